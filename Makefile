@@ -1,0 +1,113 @@
+# Penumbra.  `make help` lists what it can do.
+CXX   ?= g++
+REAL  ?= double
+ARCH  ?= native
+SIZE  ?= 256x128
+
+# Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
+FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -MMD -MP \
+            -Wall -Wextra -Wpedantic -Wshadow -Werror
+OPTIMISE := $(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O3)
+SUFFIX   := $(if $(filter float,$(REAL)),-float)$(if $(DEBUG),-debug)
+OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(if $(DEBUG),-debug)
+
+ifeq ($(filter double float,$(REAL)),)
+  $(error REAL is double or float, not '$(REAL)')
+endif
+ifeq ($(filter -j%,$(MAKEFLAGS)),)
+  MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
+endif
+
+LABS     := $(patsubst src/labs/%.cpp,%,$(wildcard src/labs/*.cpp))
+PENUMBRA := build/penumbra$(SUFFIX)
+PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
+TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
+SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
+
+.PHONY: all programs pictures test clean help layers packages always
+.DELETE_ON_ERROR:
+.SECONDARY:
+
+all: programs  ## build, and render every scene into out/ (default)
+	@+$(MAKE) --no-print-directory -j1 pictures
+
+programs: $(PROGRAMS)  ## build penumbra and its tools into build/
+
+pictures: $(SCENES:%=out/%.png)
+
+out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
+	@mkdir -p out
+	$(PENUMBRA) --size $(SIZE) -o out/$*.png -o out/$*.pfm $<
+
+test: $(OBJECTS)/all-tests $(PROGRAMS)  ## build and run all tests
+	@PROGRAM_SUFFIX=$(SUFFIX) $(OBJECTS)/all-tests
+
+clean:  ## remove build/ and out/
+	rm -rf build out
+
+help:  ## print this
+	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1] [SIZE=WxH] [ARCH=native]"
+	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+# ---- Building ------------------------------------------------------------------------------------
+
+# Variants keep their objects apart but share build/: copy only what differs.
+build/%$(SUFFIX): $(OBJECTS)/%.exe always
+	@cmp -s $< $@ || cp $< $@
+
+$(OBJECTS)/penumbra.exe: $(OBJECTS)/pathtracer.o
+	$(CXX) -pthread -o $@ $^
+
+$(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
+	$(CXX) -pthread -o $@ $^
+
+$(OBJECTS)/all-tests: $(TESTS)
+	$(CXX) -pthread -o $@ $^
+
+$(OBJECTS)/tests/%.o: tests/%.cpp Makefile | packages
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -DTESTING -c -o $@ $<
+
+$(OBJECTS)/%.o: src/%.cpp Makefile | packages
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -c -o $@ $<
+
+-include $(wildcard $(OBJECTS)/*.d $(OBJECTS)/labs/*.d $(OBJECTS)/tests/*.d)
+
+# ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
+
+DEBIAN_PACKAGES := doctest-dev libstb-dev
+HAVE_HEADERS     = printf '\043include <doctest/doctest.h>\n\043include <stb/stb_image_write.h>\n' \
+                   | $(CXX) -x c++ -fsyntax-only - 2>/dev/null
+INSTALL         := apt-get install -y $(DEBIAN_PACKAGES)
+
+packages:
+	@command -v $(firstword $(CXX)) >/dev/null || \
+	    { echo "penumbra: no compiler $(CXX): install it, or say make CXX=..." >&2; exit 1; }
+	@$(HAVE_HEADERS) && exit 0; \
+	if ! command -v apt-get >/dev/null; then \
+	    echo "penumbra: install doctest (doctest/doctest.h) and stb (stb/stb_image_write.h)" >&2; exit 1; \
+	elif [ "$$(id -u)" = 0 ]; then as=; \
+	elif command -v sudo >/dev/null && sudo -n true 2>/dev/null; then as="sudo -n"; \
+	else \
+	    echo "penumbra: two header packages are missing; run: sudo $(INSTALL)" >&2; exit 1; \
+	fi; \
+	echo "installing $(DEBIAN_PACKAGES)"; \
+	$$as $(INSTALL) >/dev/null 2>&1 || { $$as apt-get update && $$as $(INSTALL); } >/dev/null || \
+	    { echo "penumbra: apt-get failed; run: sudo $(INSTALL)" >&2; exit 1; }; \
+	$(HAVE_HEADERS) || { echo "penumbra: $(DEBIAN_PACKAGES) are installed, but $(CXX) finds no headers" >&2; exit 1; }
+
+# ---- The house: include only from floors below ----------------------------------------------------
+
+layers:  ## check that every file includes only from floors below
+	@awk ' \
+	    FNR == 1 { name = FILENAME; sub(/.*\//, "", name); \
+	               if ($$2 != name || $$3 != "floor" || $$4 !~ /^[0-9]+$$/) \
+	                   { print FILENAME ": line 1 must say: // " name "  floor N  what it is"; bad = 1 } \
+	               floor[name] = $$4 } \
+	    /^#include "/ { file = $$2; gsub(/"|.*\//, "", file); from[++n] = name; to[n] = file; at[n] = FILENAME ":" FNR } \
+	    END { for (i = 1; i <= n; ++i) \
+	              if (!(to[i] in floor) || floor[to[i]] >= floor[from[i]]) \
+	                  { print at[i] ": " from[i] " (floor " floor[from[i]] ") includes " to[i] " (floor " floor[to[i]] ")"; bad = 1 } \
+	          if (!bad) print n " includes, all downwards"; exit bad }' \
+	    $(wildcard src/*.h src/*.cpp src/labs/*.cpp)

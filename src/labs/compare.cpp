@@ -1,0 +1,109 @@
+// compare.cpp  floor 5  how far is one image from another?
+//
+//   build/compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png]
+//
+// With f the reference, g the image and N numbers (three a pixel):
+//   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
+#include "../image.h"
+
+namespace {
+
+struct Difference {
+    double d = 0, d_rel = 0;
+    double ratio_of_means = 0;
+    double largest = 0;  // |f - g|, of one channel
+    int x = 0, y = 0;    // where
+};
+
+Difference difference(const Image& f, const Image& g) {
+    Difference result;
+    double squares = 0, reference = 0, sum_f = 0, sum_g = 0;
+    for (int y = 0; y < f.height; ++y)
+        for (int x = 0; x < f.width; ++x)
+            for (size_t c = 0; c < 3; ++c) {
+                const double a = double(f.at(x, y)[c]), b = double(g.at(x, y)[c]);
+                const double error = std::abs(a - b);
+                squares += error * error;
+                reference += a * a;
+                sum_f += a;
+                sum_g += b;
+                if (error > result.largest) result = {0, 0, 0, error, x, y};
+            }
+    result.d = std::sqrt(squares / (3.0 * double(f.pixels.size())));
+    result.d_rel = std::sqrt(squares / reference);
+    result.ratio_of_means = sum_g / sum_f;
+    return result;
+}
+
+// Error of each pixel, root mean square of its channels, in units of four times d: black, blue,
+// red, yellow, white.
+Image heatmap(const Image& f, const Image& g, double d) {
+    const std::array<std::array<double, 3>, 5> colours = {
+        {{0, 0, 0}, {0, 0, 0.5}, {0.8, 0, 0.1}, {1, 0.8, 0}, {1, 1, 1}}};
+    Image map(f.width, f.height);
+    for (size_t i = 0; i < f.pixels.size(); ++i) {
+        double squares = 0;
+        for (size_t c = 0; c < 3; ++c)
+            squares += sqr(double(f.pixels[i][c]) - double(g.pixels[i][c]));
+        const double error = d > 0 ? std::min(3.999, std::sqrt(squares / 3) / d) : 0;
+        const size_t k = size_t(error);
+        for (size_t c = 0; c < 3; ++c)
+            map.pixels[i][c] =
+                float(std::lerp(colours[k][c], colours[k + 1][c], error - double(k)));
+    }
+    return map;
+}
+
+void check_finite(const std::string& path, const Image& image) {
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (float channel : image.at(x, y))
+                if (!std::isfinite(channel))
+                    throw UserError(path + ": pixel " + std::to_string(x) + "," +
+                                    std::to_string(y) + " is not finite");
+}
+
+int compare(const std::vector<std::string>& words) {
+    std::vector<std::string> images;
+    std::string map;
+    for (size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "--heatmap") {
+            if (++i == words.size()) throw UserError("--heatmap: needs a value");
+            map = words[i];
+            if (!map.ends_with(".png")) throw UserError("--heatmap: not a .png file: " + map);
+        } else if (words[i].starts_with("--")) {
+            throw UserError(unknown("option", words[i], {"--heatmap"}));
+        } else {
+            images.push_back(words[i]);
+        }
+    }
+    if (images.size() != 2)
+        throw UserError("usage: compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png]");
+    const Image f = read_pfm(images[0]), g = read_pfm(images[1]);
+    if (f.width != g.width || f.height != g.height)
+        throw UserError("sizes differ: " + std::to_string(f.width) + "x" +
+                        std::to_string(f.height) + " and " + std::to_string(g.width) + "x" +
+                        std::to_string(g.height));
+    check_finite(images[0], f);
+    check_finite(images[1], g);
+    if (!map.empty()) check_writable(map);
+    const Difference result = difference(f, g);
+    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n",
+                result.d, result.d_rel, result.ratio_of_means, result.largest, result.x, result.y);
+    if (!map.empty()) write_image(map, heatmap(f, g, result.d), 1);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return compare({argv + 1, argv + argc});
+    } catch (const UserError& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 2;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 1;
+    }
+}

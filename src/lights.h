@@ -1,0 +1,98 @@
+// lights.h  floor 2  lights that can be aimed at: spheres, polygons, points
+#pragma once
+#include <optional>
+
+#include "sampling.h"
+#include "shapes.h"
+
+struct Light {
+    enum class Kind { sphere, triangle, quad, point } kind = Kind::point;
+    vec3 p = {};          // centre of a sphere, corner of a polygon, the point
+    vec3 u = {}, v = {};  // edges of a polygon; it emits on the side of u x v
+    real r = 0;           // radius of a sphere; it emits outwards
+    rgb L = {};           // radiance; of a point: intensity, radiance x length^2
+    bool twosided = false;
+    real error = 0;  // of surface points, see Surface
+    real pick = 0;   // probability that the scene chooses this light
+    vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
+};
+
+// Emitted power of all directions, mean of the channels (watts); double, lest it overflow.
+inline double power(const Light& l) {
+    double L = double(mean_of(l.L)), r = double(l.r);
+    constexpr double pi_ = std::numbers::pi;
+    if (l.kind == Light::Kind::point) return 4 * pi_ * L;
+    if (l.kind == Light::Kind::sphere) return pi_ * L * 4 * pi_ * r * r;
+    return pi_ * L * double(length(l.area_vector())) * (l.twosided ? 2 : 1);
+}
+
+// A point of the light seen from p: the unit direction to it, the radiance from there and the
+// density of wi (1/sr).  A point light has pdf 1 and L = I / d^2.
+struct LightSample {
+    vec3 wi;
+    Surface at;
+    rgb L;
+    real pdf = 0;
+    bool delta = false;
+};
+
+// sin^2 of the half-angle of the cone that a sphere subtends; nothing from its inside.
+inline std::optional<real> sin2_subtended(const Light& l, vec3 p) {
+    vec3 f = l.p - p;
+    real d2 = dot(f, f);
+    if (!(d2 > sqr(l.r))) return {};
+    return sqr(l.r) / d2;
+}
+
+// Density per solid angle of the direction from p to the point y, for uniform points of a polygon.
+inline real pdf_polygon(const Light& l, vec3 p, const Surface& y) {
+    vec3 w = y.p - p;
+    real d2 = dot(w, w);
+    real cos_y = std::abs(dot(y.n, w)) / std::sqrt(d2);
+    real area = length(l.area_vector());
+    return cos_y > 0 ? d2 / (cos_y * area) : 0;
+}
+
+// Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  The distance
+// to its near side is the product of the roots over the far one: no cancellation close by.
+inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, vec2 u) {
+    auto sin2_max = sin2_subtended(l, p);
+    if (!sin2_max) return {};
+    vec3 local = sample_cone(u, *sin2_max);
+    vec3 to_centre = l.p - p;
+    real d = length(to_centre);
+    vec3 wi = frame(to_centre / d).to_world(local);
+    real sin2 = sqr(local.x) + sqr(local.y);
+    real half_chord = std::sqrt(std::max(real(0), sqr(l.r) - sqr(d) * sin2));
+    real t = (d - l.r) * (d + l.r) / (d * local.z + half_chord);
+    vec3 n = unit(t * wi - to_centre);
+    return LightSample{wi, {l.p + l.r * n, n, l.error}, l.L, pdf_cone(*sin2_max)};
+}
+
+// Uniform over the area, on the side that emits.
+inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, vec2 u) {
+    vec3 on = l.kind == Light::Kind::quad ? sample_quad(u, l.u, l.v) : sample_triangle(u, l.u, l.v);
+    Surface y{l.p + on, unit(cross(l.u, l.v)), l.error};
+    vec3 wi = unit(y.p - p);
+    real cos_y = -dot(y.n, wi);
+    if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
+    return LightSample{wi, y, l.L, pdf_polygon(l, p, y)};
+}
+
+// Nothing if the light sends nothing from the sampled point to p.
+inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
+    if (l.kind == Light::Kind::sphere) return sample_sphere_light(l, p, u);
+    if (l.kind != Light::Kind::point) return sample_polygon_light(l, p, u);
+    vec3 w = l.p - p;
+    real d2 = dot(w, w);
+    if (!(d2 > 0)) return {};
+    return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1, true};
+}
+
+// Density (1/sr) with which sample_light from p chooses the point y of the light.
+inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
+    if (l.kind == Light::Kind::point) return 0;
+    if (l.kind != Light::Kind::sphere) return pdf_polygon(l, p, y);
+    auto sin2_max = sin2_subtended(l, p);
+    return sin2_max ? pdf_cone(*sin2_max) : 0;
+}

@@ -1,0 +1,149 @@
+// options.h  floor 3  what the user asks
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bsdf.h"
+#include "check.h"
+
+// How light is found.
+enum class LightMode {
+    none,  // by hitting it
+    nee,   // next-event estimation: by aiming at it
+    mis    // both, weighted by the power heuristic
+};
+
+struct Options {
+    std::string scene;
+    std::vector<std::string> outputs;
+    bool default_outputs = false;
+    uint64_t spp = 0;    // 0: no limit
+    double seconds = 0;  // 0: no limit
+    Direction direction = Direction::bsdf;
+    LightMode light = LightMode::mis;
+    std::optional<int> depth;  // default: the scene's
+    int roulette = 0;          // 0: off
+    uint64_t seed = 0;
+    unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+    std::optional<Size> size;      // default: the scene's
+    std::optional<real> exposure;  // default: the scene's
+    bool quiet = false, help = false;
+};
+
+inline constexpr const char* usage = R"(usage: penumbra [options] SCENE
+
+Renders SCENE (a file in the format of scenes/*.scene) by path tracing.
+
+  -o FILE               image to write, .png or .pfm; may be repeated
+                        (default: out/NAME.png and out/NAME.pfm)
+  --spp N               stop after N samples per pixel
+  --time S              stop after S seconds; with --spp, whichever comes first
+                        (default: 64 samples if neither is given)
+  --direction uniform|bsdf   directions at rough surfaces: uniform over the
+                        hemisphere, or importance-sampled (default: bsdf)
+  --light none|nee|mis  light found by hitting it, by aiming at it (next-event
+                        estimation), or by both, weighted (default: mis)
+  --depth N             scatterings a path may have, 0: emission only
+                        (default: the scene's)
+  --roulette K          Russian roulette from the K-th scattering on
+                        (default: off)
+  --seed N              another seed, another noise (default: 0)
+  --threads N           the image does not depend on it (default: all cores)
+  --size WxH            pixels, e.g. 256x128 (default: the scene's)
+  --exposure E          factor from radiance to PNG (default: the scene's)
+  --quiet               print nothing but errors
+  --help                print this
+
+A .pfm holds linear radiance; a .png holds exposure times radiance, clamped to
+[0,1] and encoded as sRGB.  Pixel (0,0) is the top left one.
+
+Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
+2 the scene or an option cannot be used; 130 interrupted (Ctrl-C), after writing
+the image of the passes completed so far.
+)";
+
+namespace option {
+
+inline double positive(std::string_view text) {
+    double x = parse_number(text);
+    if (!(x > 0)) throw UserError(in_quotes(text) + " is not positive");
+    return x;
+}
+
+// The index of `text` among `known`.
+inline int choice(std::string_view text, const std::vector<std::string_view>& known) {
+    auto found = std::find(known.begin(), known.end(), text);
+    if (found == known.end()) throw UserError(unknown("value", text, known));
+    return int(found - known.begin());
+}
+
+inline Size size(std::string_view text) {
+    size_t x = text.find('x');
+    if (x == text.npos) throw UserError(in_quotes(text) + " is not WIDTHxHEIGHT");
+    return parse_size(text.substr(0, x), text.substr(x + 1));
+}
+
+// Gives one option its value.
+inline void set(Options& o, std::string_view name, std::string_view value) {
+    if (name == "-o") {
+        if (!value.ends_with(".png") && !value.ends_with(".pfm"))
+            throw UserError(in_quotes(value) + " ends neither in .png nor in .pfm");
+        o.outputs.emplace_back(value);
+    }
+    if (name == "--spp") o.spp = parse_count(value, 1, uint64_t(1) << 40);
+    if (name == "--time") o.seconds = positive(value);
+    if (name == "--direction") o.direction = Direction(choice(value, {"uniform", "bsdf"}));
+    if (name == "--light") o.light = LightMode(choice(value, {"none", "nee", "mis"}));
+    if (name == "--depth") o.depth = int(parse_count(value, 0, 1000000));
+    if (name == "--roulette") o.roulette = int(parse_count(value, 1, 1000000));
+    if (name == "--seed") o.seed = parse_count(value, 0, UINT64_MAX);
+    if (name == "--threads") o.threads = unsigned(parse_count(value, 1, 1024));
+    if (name == "--size") o.size = size(value);
+    if (name == "--exposure") o.exposure = real(positive(value));
+}
+
+}  // namespace option
+
+// Throws UserError about the first word that cannot be used.
+inline Options parse_options(const std::vector<std::string>& words) {
+    static const std::vector<std::string_view> with_value = {
+        "-o",         "--spp",  "--time",    "--direction", "--light",   "--depth",
+        "--roulette", "--seed", "--threads", "--size",      "--exposure"};
+    std::vector<std::string_view> known = with_value;
+    known.insert(known.end(), {"--quiet", "--help"});
+    Options o;
+    for (size_t i = 0; i < words.size(); ++i) {
+        const std::string& word = words[i];
+        if (word == "--quiet") {
+            o.quiet = true;
+        } else if (word == "--help") {
+            o.help = true;
+        } else if (std::find(with_value.begin(), with_value.end(), word) != with_value.end()) {
+            if (i + 1 == words.size()) throw UserError(word + ": needs a value");
+            try {
+                option::set(o, word, words[++i]);
+            } catch (const UserError& e) {
+                throw UserError(word + ": " + e.what());
+            }
+        } else if (word.starts_with('-')) {
+            throw UserError(unknown("option", word, known));
+        } else if (!o.scene.empty()) {
+            throw UserError("two scenes: " + in_quotes(o.scene) + " and " + in_quotes(word));
+        } else {
+            o.scene = word;
+            if (word.empty()) throw UserError("the scene's name is empty");
+        }
+    }
+    if (o.help) return o;
+    if (o.scene.empty()) throw UserError("no scene given (try --help)");
+    if (o.spp == 0 && o.seconds == 0) o.spp = 64;
+    if (o.outputs.empty()) {
+        std::string stem = "out/" + std::filesystem::path(o.scene).stem().string();
+        o.outputs = {stem + ".png", stem + ".pfm"};
+        o.default_outputs = true;
+    }
+    return o;
+}
