@@ -227,9 +227,9 @@ private:
     }
 };
 
-// Throws UserError "PATH:LINE: what is wrong".
-inline ParsedScene read_scene(const std::string& path) {
-    std::istringstream in(read_file(path));
+// Throws UserError "NAME:LINE: what is wrong".
+inline ParsedScene parse_scene(const std::string& text, const std::string& name) {
+    std::istringstream in(text);
     Parser parser;
     int number = 0;
     try {
@@ -237,6 +237,10 @@ inline ParsedScene read_scene(const std::string& path) {
         return parser.finish();
     } catch (const UserError& e) {
         int line = std::max(1, parser.line());
-        throw UserError(path + ":" + std::to_string(line) + ": " + e.what());
+        throw UserError(name + ":" + std::to_string(line) + ": " + e.what());
     }
+}
+
+inline ParsedScene read_scene(const std::string& path) {
+    return parse_scene(read_file(path), path);
 }

@@ -1,0 +1,213 @@
+// pathtracer_test.cpp  radiance: closed forms, and every way to find light finds the same
+#include "../src/pathtracer.cpp"
+
+#include <doctest/doctest.h>
+
+#include "oracle.h"
+
+namespace {
+
+// Mean of an image over pixels, samples and channels.  Its standard error pools the variances
+// within pixels: one test of the whole image sees what no test of a pixel would.
+Estimate image_mean(const Scene& scene, const Options& o, uint64_t spp) {
+    double sum = 0, squares = 0;
+    for (int y = 0; y < scene.size.height; ++y)
+        for (int x = 0; x < scene.size.width; ++x) {
+            Moments m;
+            for (uint64_t i = 0; i < spp; ++i) m.add(double(mean_of(pixel(scene, o, x, y, i).L)));
+            sum += m.mean;
+            squares += sqr(m.standard_error());
+        }
+    const double pixels = double(scene.size.width) * scene.size.height;
+    return {sum / pixels, std::sqrt(squares) / pixels};
+}
+
+struct Technique {
+    const char* name;
+    Direction direction;
+    LightMode light;
+    int roulette;
+};
+
+constexpr Technique techniques[] = {
+    {"bsdf, mis", Direction::bsdf, LightMode::mis, 0},
+    {"bsdf, nee", Direction::bsdf, LightMode::nee, 0},
+    {"bsdf, none", Direction::bsdf, LightMode::none, 0},
+    {"uniform, mis", Direction::uniform, LightMode::mis, 0},
+    {"uniform, nee", Direction::uniform, LightMode::nee, 0},
+    {"uniform, none", Direction::uniform, LightMode::none, 0},
+    {"bsdf, mis, roulette", Direction::bsdf, LightMode::mis, 1},
+    {"bsdf, nee, roulette", Direction::bsdf, LightMode::nee, 2},
+    {"uniform, none, roulette", Direction::uniform, LightMode::none, 1},
+};
+
+Options options(const Technique& t, uint64_t seed) {
+    Options o;
+    o.direction = t.direction;
+    o.light = t.light;
+    o.roulette = t.roulette;
+    o.seed = seed;
+    return o;
+}
+
+Scene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
+
+const char* const furnace = R"(
+size 8 4
+camera 0 0.3 1.8  0 0 0  60
+diffuse half 0.5 0.5 0.5
+phong   gloss 0.2 0.2 0.2  0.3 0.3 0.3  0
+light glow  0.4 0.4 0.4 twosided half
+box 4 3 4  0  -2 -1.5 -2   glow
+sphere -0.7 0 0  0.5  glow
+)";
+
+// A light behind a wall, unequal lights, one of them a triangle and one two-sided, a Phong floor:
+// where the techniques would part if a weight, a density or a visibility were wrong.
+const char* const unequal = R"(
+size 64 32
+camera 0 1.5 6  0 0.8 0  50
+depth 3
+diffuse white 0.7 0.6 0.5
+phong   floor 0.2 0.3 0.3  0.5 0.4 0.5  12
+diffuse wall  0.5 0.5 0.5
+light big     2 2 3
+light small   12 9 6  white
+light both    3 4 3  twosided
+quad -5 0 -5   0 0 10  10 0 0   floor
+quad -5 0 -3   10 0 0  0 5 0    white
+sphere -1.6 1.6 0  0.8   big
+sphere  1.8 0.7 0.4  0.4 small
+triangle -0.5 2.6 -1  0.9 2.6 -1  0.2 2.9 0.6   both
+quad 0.3 0 -1  0 0 2.5  0 1.4 0  wall
+)";
+
+// Two quad lights, one seen only through reflections; spheres of Phong, mirror and glass.
+const char* const shiny = R"(
+size 64 32
+camera 0 1.2 6  0 0.8 0  45
+depth 4
+diffuse white 0.6 0.6 0.7
+phong   gloss 0.1 0.2 0.1  0.7 0.6 0.7  40
+phong   lobe  0 0 0  0.9 0.9 0.9  3
+mirror  mirror 0.8 0.9 0.9
+glass   glass 1.5
+light   lamp  4 4 3
+light   back  2 2.5 3  white
+quad -4 0 -4   0 0 8  8 0 0    white
+quad -4 0 -3   8 0 0  0 4 0    lobe
+quad -1.5 3 -1.5  3 0 0  0 0 3   lamp
+quad 3 0 2  0 0 -3  0 2.5 0   back
+sphere -1.6 0.7 0  0.7   gloss
+sphere 0 0.7 0.5  0.6   mirror
+sphere 1.5 0.6 0.2  0.6   glass
+)";
+
+}  // namespace
+
+TEST_CASE("a furnace has the radiance Le (1 - rho^(D+1)) / (1 - rho) at every depth D") {
+    Scene scene = scene_of(furnace);
+    for (const Technique& t : techniques)
+        for (int depth : {0, 1, 2, 5, 20}) {
+            // Light samples alone have infinite variance where emitting walls meet (1 / d^2).
+            if (t.light == LightMode::nee) continue;
+            scene.depth = depth;
+            const double truth = 0.4 * (1 - std::pow(0.5, depth + 1)) / (1 - 0.5);
+            Estimate mean = image_mean(scene, options(t, 1), 400);
+            if (sizeof(real) == 4) mean.standard_error = std::hypot(mean.standard_error, 1e-6);
+            const Verdict v = expect_mean(truth, mean);
+            INFO(std::string(t.name), ", depth ", depth, ": ", v.text);
+            CHECK(v.pass);
+            CHECK(v.delta_min < 0.05);
+        }
+}
+
+TEST_CASE("a furnace by cosine sampling alone has no noise") {
+    Scene scene = scene_of(furnace);
+    scene.depth = 7;
+    const Options o = options({"", Direction::bsdf, LightMode::none, 0}, 1);
+    const real truth = real(0.4) * (1 - std::pow(real(0.5), real(8))) / real(0.5);
+    real worst = 0;
+    for (uint64_t i = 0; i < 2000; ++i)
+        worst = std::max(worst, max_abs(pixel(scene, o, 3, 2, i).L - rgb{truth, truth, truth}));
+    CHECK(worst < 64 * ulp);
+}
+
+TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {
+    const Scene scene = scene_of(unequal);
+    const Estimate reference = image_mean(scene, options(techniques[0], 99), 400);
+    uint64_t seed = 1;
+    for (const Technique& t : techniques) {
+        const Verdict v = expect_equal(image_mean(scene, options(t, seed++), 230), reference);
+        INFO(std::string(t.name), ": ", v.text);
+        CHECK(v.pass);
+        CHECK(v.delta_min < 0.04);
+    }
+}
+
+TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustics") {
+    const Scene scene = scene_of(shiny);
+    const Estimate reference = image_mean(scene, options(techniques[0], 99), 400);
+    uint64_t seed = 1;
+    for (const Technique& t : techniques) {
+        // Next-event estimation has no answer to a caustic seen in a mirror but the same one:
+        // all three count light that arrives by way of mirror or glass when they hit it.
+        const Verdict v = expect_equal(image_mean(scene, options(t, seed++), 230), reference);
+        INFO(std::string(t.name), ": ", v.text);
+        CHECK(v.pass);
+        CHECK(v.delta_min < 0.06);
+    }
+}
+
+TEST_CASE("a point light gives rho / pi I cos / d^2, and nothing behind an obstacle") {
+    const std::string text = R"(
+size 1 1
+camera 0 4 3  0 0 0  0.0001
+depth 1
+diffuse white 0.5 0.5 0.5
+pointlight 1 2 0  3 3 3
+quad -5 0 -5  0 0 10  10 0 0  white
+)";
+    const Options o = options({"", Direction::bsdf, LightMode::mis, 0}, 1);
+    // At the origin: d^2 = 5, cos = 2 / sqrt 5.  The pixel is 1e-5 wide: 1e-5 relative.
+    const double truth = 0.5 / double(pi) * 3 / 5 * 2 / std::sqrt(5.0);
+    CHECK(double(pixel(scene_of(text), o, 0, 0, 0).L.x) == doctest::Approx(truth).epsilon(1e-4));
+    const Scene shadowed = scene_of(text + "sphere 0.5 1 0  0.1  white\n");
+    CHECK(pixel(shadowed, o, 0, 0, 0).L.x == 0);
+}
+
+TEST_CASE("Russian roulette shortens paths to 1 / (1 - rho) scatterings") {
+    // Closed box, albedo 0.5, no light sampling: rays = 1 + survivors, a geometric sum of mean 2.
+    Scene scene = scene_of(furnace);
+    scene.depth = 1000;
+    const Options o = options({"", Direction::bsdf, LightMode::none, 1}, 5);
+    Moments rays;
+    for (uint64_t i = 0; i < 100000; ++i) rays.add(double(pixel(scene, o, 1, 1, i).rays));
+    const Verdict v = expect_mean(2, estimate(rays));
+    INFO(v.text);
+    CHECK(v.pass);
+}
+
+TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^2))") {
+    const Camera camera = look_at({3, -2, 5}, {-1, 4, 2}, 50);
+    const Size size{96, 40};
+    const double q = double(camera.tan_half), p = q * size.width / size.height;
+    // Jacobian of camera_ray by central differences, summed over 4 x 4 points a pixel.
+    double sum = 0;
+    const real h = real(0.125);
+    for (int y = 0; y < 4 * size.height; ++y)
+        for (int x = 0; x < 4 * size.width; ++x) {
+            const real cx = (real(x) + real(0.5)) / 4, cy = (real(y) + real(0.5)) / 4;
+            const vec3 dx =
+                camera_ray(camera, size, cx + h, cy).d - camera_ray(camera, size, cx - h, cy).d;
+            const vec3 dy =
+                camera_ray(camera, size, cx, cy + h).d - camera_ray(camera, size, cx, cy - h).d;
+            sum += double(length(cross(dx, dy)));
+        }
+    const double truth = 4 * std::atan(p * q / std::sqrt(1 + p * p + q * q));
+    CHECK(std::abs(sum / truth - 1) < 2e-5);  // midpoint rule: (1/4 pixel)^2 / 24 of the curvature
+    // Corners: exactly on the frustum's edges, top left first.
+    const vec3 d = camera_ray(camera, size, 0, 0).d;
+    CHECK(std::abs(double(dot(d, camera.right) / dot(d, camera.forward)) + p) < 1e-5);
+    CHECK(std::abs(double(dot(d, camera.up) / dot(d, camera.forward)) - q) < 1e-5);
+}
