@@ -32,22 +32,46 @@ public:
     // The nearest hit, or nothing.
     std::optional<Hit> closest(const Ray& ray) const {
         Hit best{ray.tmax};
-        walk(ray, best.t, [&](const Shape& s, uint32_t id, const Shear& k) {
-            auto hit = intersect(s, ray, k, best.t);
-            if (hit && (hit->t < best.t || id < best.id)) {
-                best = *hit;
-                best.id = id;
-            }
-            return false;
-        });
+        walk(
+            ray, best.t,
+            [&](const Shape& s, uint32_t id, const Shear& k) {
+                auto hit = intersect(s, ray, k, best.t);
+                if (hit && (hit->t < best.t || id < best.id)) {
+                    best = *hit;
+                    best.id = id;
+                }
+                return false;
+            },
+            [] {});
         return best.id == UINT32_MAX ? std::nullopt : std::optional(best);
     }
 
     // Whether anything is hit.
     bool occluded(const Ray& ray) const {
-        return walk(ray, ray.tmax, [&](const Shape& s, uint32_t, const Shear& k) {
-            return intersect(s, ray, k, ray.tmax).has_value();
-        });
+        return walk(
+            ray, ray.tmax,
+            [&](const Shape& s, uint32_t, const Shear& k) {
+                return intersect(s, ray, k, ray.tmax).has_value();
+            },
+            [] {});
+    }
+
+    // What closest(ray) costs.
+    struct Work {
+        int nodes = 0, shapes = 0;
+    };
+    Work work(const Ray& ray) const {
+        Work work;
+        real tmax = ray.tmax;
+        walk(
+            ray, tmax,
+            [&](const Shape& s, uint32_t, const Shear& k) {
+                ++work.shapes;
+                if (auto hit = intersect(s, ray, k, tmax)) tmax = hit->t;
+                return false;
+            },
+            [&] { ++work.nodes; });
+        return work;
     }
 
     size_t bytes() const {
@@ -83,9 +107,10 @@ private:
     // ---- Traversal ----------------------------------------------------------------------------
 
     // Calls visit(shape, id, shear) for the shapes in every leaf whose box the ray meets at
-    // t <= tmax, nearest box first; tmax may shrink meanwhile.  Stops when visit returns true.
-    template <class Visit>
-    bool walk(const Ray& ray, const real& tmax, Visit visit) const {
+    // t <= tmax, nearest box first, and open() for every node on the way; tmax may shrink
+    // meanwhile.  Stops when visit returns true.
+    template <class Visit, class Open>
+    bool walk(const Ray& ray, const real& tmax, Visit visit, Open open) const {
         if (nodes_.empty()) return false;
         struct Entry {
             real t;
@@ -106,6 +131,7 @@ private:
                 continue;
             }
             const Node& node = nodes_[entry.first];
+            open();
             // Slabs.  A ray within a slab's plane and parallel to it makes 0 * inf = NaN: the
             // comparisons are written so that NaN leaves the interval as it is.
             real t0[width], t1[width];

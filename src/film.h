@@ -1,4 +1,4 @@
-// film.h  floor 4  when to stop, what to say meanwhile, what to write
+// film.h  floor 4  where samples gather, and when to stop
 #pragma once
 #include <unistd.h>
 
@@ -39,8 +39,8 @@ public:
     explicit Film(Size size)
         : width(size.width),
           height(size.height),
-          sums_(size_t(width) * size_t(height)),
-          next_(sums_.size(), Sum{NAN, NAN, NAN}) {}
+          pixels_(size_t(width) * size_t(height)),
+          next_(pixels_.size(), Pixel{{NAN, NAN, NAN}, {NAN, NAN, NAN}, {}}) {}
 
     const int width, height;
     uint64_t samples() const { return samples_; }  // per pixel
@@ -49,21 +49,19 @@ public:
     template <class Radiance>
     void add_row(int y, uint64_t n, Radiance L) {
         for (int x = 0; x < width; ++x) {
-            const size_t pixel = size_t(y) * size_t(width) + size_t(x);
-            Sum sum = sums_[pixel];
+            const size_t index = size_t(y) * size_t(width) + size_t(x);
+            Pixel pixel = pixels_[index];
             for (uint64_t i = samples_; i < samples_ + n; ++i) {
                 const rgb value = L(x, i);
                 if (!is_finite(value)) report({i, x, y, value});
-                sum[0] += double(value.x);
-                sum[1] += double(value.y);
-                sum[2] += double(value.z);
+                pixel.add(i, {double(value.x), double(value.y), double(value.z)});
             }
-            next_[pixel] = sum;
+            next_[index] = pixel;
         }
     }
 
     void end_pass(uint64_t n) {
-        sums_.swap(next_);
+        pixels_.swap(next_);
         samples_ += n;
     }
 
@@ -74,16 +72,45 @@ public:
     // Means; NaN before the first pass.
     Image image() const {
         Image image(width, height);
-        if (samples_ == 0) return image;
-        for (size_t i = 0; i < sums_.size(); ++i)
+        for (size_t i = 0; i < pixels_.size() && samples_ > 0; ++i)
             for (size_t c = 0; c < 3; ++c)
-                image.pixels[i][c] = float(sums_[i][c] / double(samples_));
+                image.pixels[i][c] = float(pixels_[i].sum(c) / double(samples_));
+        return image;
+    }
+
+    // Unbiased estimates of the variance of those means.  From the spread of the samples if they
+    // are independent; from the difference of the two halves (even and odd samples) if only those
+    // are: for means A and B of nA and nB samples, (A - B)^2 nA nB / n^2.  NaN for one sample.
+    Image variance(bool independent_samples) const {
+        Image image(width, height);
+        const double n = double(samples_), nb = double(samples_ / 2), na = n - nb;
+        for (size_t i = 0; i < pixels_.size() && samples_ > 1; ++i)
+            for (size_t c = 0; c < 3; ++c) {
+                const Pixel& p = pixels_[i];
+                const double halves = sqr(p.even[c] / na - p.odd[c] / nb) * na * nb / (n * n);
+                image.pixels[i][c] = float(independent_samples ? p.m2[c] / (n - 1) / n : halves);
+            }
         return image;
     }
 
 private:
-    using Sum = std::array<double, 3>;
-    std::vector<Sum> sums_, next_;
+    using Sums = std::array<double, 3>;  // one a channel
+    struct Pixel {
+        Sums even{}, odd{};  // of the even and the odd samples
+        Sums m2{};           // of squared distances to the mean (Welford 1962)
+
+        double sum(size_t c) const { return even[c] + odd[c]; }
+        void add(uint64_t i, Sums value) {
+            for (size_t c = 0; c < 3; ++c) {
+                const double n = double(i);
+                if (i > 0) m2[c] += sqr(value[c] - sum(c) / n) * (n / (n + 1));
+                (i % 2 ? odd : even)[c] += value[c];
+            }
+        }
+    };
+    static double sqr(double x) { return x * x; }
+
+    std::vector<Pixel> pixels_, next_;
     uint64_t samples_ = 0, non_finite_ = 0;
     NonFinite first_;
     std::mutex mutex_;
@@ -96,65 +123,13 @@ private:
     }
 };
 
-// ---- Progress ---------------------------------------------------------------------------------
-
-inline std::string fixed(double x, int digits) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*f", digits, x);
-    return text;
-}
-
-// On a terminal a bar that is drawn over itself, elsewhere a plain line now and then; on stderr.
-class Progress {
-public:
-    explicit Progress(const Options& o) : options_(o), terminal_(::isatty(STDERR_FILENO) == 1) {}
-
-    double elapsed() const { return std::chrono::duration<double>(clock::now() - start_).count(); }
-
-    // `samples` so far, with the finished part of the running pass.
-    void show(double samples) {
-        const double now = elapsed();
-        if (options_.quiet || now < next_) return;
-        next_ = now + (terminal_ ? 0.1 : 2.0);
-        double done = 0;
-        if (options_.spp) done = samples / double(options_.spp);
-        if (options_.seconds > 0) done = std::max(done, now / options_.seconds);
-        done = std::min(done, 1.0);
-        std::string left = done > 0 ? fixed(now / done - now, 1) + " s left" : "";
-        std::string text =
-            fixed(samples, 1) + " samples per pixel, " + fixed(now, 1) + " s elapsed, " + left;
-        if (terminal_) {
-            std::string bar(size_t(24 * done), '#');
-            bar.resize(24, '.');
-            std::fprintf(stderr, "\r[%s] %3.0f %%  %s\033[K", bar.c_str(), 100 * done,
-                         text.c_str());
-        } else {
-            std::fprintf(stderr, "%3.0f %%  %s\n", 100 * done, text.c_str());
-        }
-        shown_ = true;
-    }
-
-    // The line that stays.
-    void summary(const std::string& text) {
-        if (options_.quiet) return;
-        std::fprintf(stderr, "%s%s\n", shown_ && terminal_ ? "\r\033[K" : "", text.c_str());
-    }
-
-private:
-    using clock = std::chrono::steady_clock;
-    const Options& options_;
-    const bool terminal_;
-    const clock::time_point start_ = clock::now();
-    double next_ = terminal_ ? 0.1 : 2.0;
-    bool shown_ = false;
-};
-
 // ---- When to stop -----------------------------------------------------------------------------
 
 // Passes long enough to keep the threads busy, short enough to stop soon.
 class Schedule {
 public:
-    explicit Schedule(const Options& o) : options_(o) {}
+    // Passes are multiples of `period` samples, but for the last of an uneven --spp.
+    Schedule(const Options& o, uint64_t period) : options_(o), period_(period) {}
 
     // Samples per pixel of the next pass, after `samples` in `elapsed` seconds; 0: enough.  The
     // first pass always runs.
@@ -165,20 +140,22 @@ public:
             if (took > 2 * shortest) size_ = std::max<uint64_t>(1, size_ / 2);
         }
         started_ = elapsed;
-        uint64_t n = size_;
-        if (options_.spp) n = std::min(n, options_.spp - samples);
+        uint64_t periods = size_;
         if (options_.seconds > 0 && samples > 0) {
-            const double left = options_.seconds - elapsed, per_sample = elapsed / double(samples);
+            const double left = options_.seconds - elapsed;
+            const double per_period = elapsed / double(samples) * double(period_);
             if (left <= 0) return 0;
-            n = std::clamp<uint64_t>(uint64_t(left / per_sample), 1, n);
+            periods = std::clamp<uint64_t>(uint64_t(left / per_period), 1, periods);
         }
-        return n;
+        const uint64_t n = periods * period_;
+        return options_.spp ? std::min(n, options_.spp - samples) : n;
     }
 
 private:
     static constexpr double shortest = 0.1;  // seconds
     const Options& options_;
-    uint64_t size_ = 1;
+    const uint64_t period_;
+    uint64_t size_ = 1;  // periods a pass
     double started_ = 0;
 };
 

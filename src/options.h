@@ -8,6 +8,7 @@
 
 #include "bsdf.h"
 #include "check.h"
+#include "sampler.h"
 
 // How light is found.
 enum class LightMode {
@@ -16,12 +17,28 @@ enum class LightMode {
     mis    // both, weighted by the power heuristic
 };
 
+// What the image shows.
+enum class View { radiance, normal, depth, albedo, bvh, variance };
+
+// Words of the options, in the order of their enumerations.
+inline const std::vector<std::string_view> sampler_names = {"independent", "stratified", "halton",
+                                                            "halton-naive"};
+inline const std::vector<std::string_view> direction_names = {"uniform", "bsdf"};
+inline const std::vector<std::string_view> light_names = {"none", "nee", "mis"};
+inline const std::vector<std::string_view> view_names = {"radiance", "normal", "depth",
+                                                         "albedo",   "bvh",    "variance"};
+
+struct Pixel {
+    int x = 0, y = 0;
+};
+
 struct Options {
     std::string scene;
     std::vector<std::string> outputs;
     bool default_outputs = false;
     uint64_t spp = 0;    // 0: no limit
     double seconds = 0;  // 0: no limit
+    SamplerKind sampler = SamplerKind::halton;
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
     std::optional<int> depth;  // default: the scene's
@@ -30,6 +47,11 @@ struct Options {
     unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     std::optional<Size> size;      // default: the scene's
     std::optional<real> exposure;  // default: the scene's
+    bool halves = false;           // see Pattern
+    View view = View::radiance;
+    std::string stats;            // file, or empty
+    std::optional<Pixel> replay;  // instead of rendering, print the path of
+    uint64_t replay_sample = 0;   // this sample
     bool quiet = false, help = false;
 };
 
@@ -42,6 +64,11 @@ Renders SCENE (a file in the format of scenes/*.scene) by path tracing.
   --spp N               stop after N samples per pixel
   --time S              stop after S seconds; with --spp, whichever comes first
                         (default: 64 samples if neither is given)
+  --sampler independent|stratified|halton|halton-naive   where the random
+                        numbers come from (default: halton); halton-naive is
+                        a lesson in what not to do, and biased
+  --halves              two independently randomised halves of stratified and
+                        halton samples, so that their error can be estimated
   --direction uniform|bsdf   directions at rough surfaces: uniform over the
                         hemisphere, or importance-sampled (default: bsdf)
   --light none|nee|mis  light found by hitting it, by aiming at it (next-event
@@ -54,6 +81,13 @@ Renders SCENE (a file in the format of scenes/*.scene) by path tracing.
   --threads N           the image does not depend on it (default: all cores)
   --size WxH            pixels, e.g. 256x128 (default: the scene's)
   --exposure E          factor from radiance to PNG (default: the scene's)
+  --view radiance|normal|depth|albedo|bvh|variance   what the image shows:
+                        radiance (default); (normal + 1) / 2; distance; albedo;
+                        nodes (red) and shapes (green) visited by a ray;
+                        variance of the pixels' means (implies --halves)
+  --stats FILE          write what was measured, as JSON
+  --pixel X,Y           instead of rendering, print every vertex of one path
+  --sample I            of sample I (default: 0)
   --quiet               print nothing but errors
   --help                print this
 
@@ -86,6 +120,13 @@ inline Size size(std::string_view text) {
     return parse_size(text.substr(0, x), text.substr(x + 1));
 }
 
+inline Pixel pixel(std::string_view text) {
+    size_t comma = text.find(',');
+    if (comma == text.npos) throw UserError(in_quotes(text) + " is not X,Y");
+    return {int(parse_count(text.substr(0, comma), 0, INT32_MAX)),
+            int(parse_count(text.substr(comma + 1), 0, INT32_MAX))};
+}
+
 // Gives one option its value.
 inline void set(Options& o, std::string_view name, std::string_view value) {
     if (name == "-o") {
@@ -95,12 +136,17 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
     }
     if (name == "--spp") o.spp = parse_count(value, 1, uint64_t(1) << 40);
     if (name == "--time") o.seconds = positive(value);
-    if (name == "--direction") o.direction = Direction(choice(value, {"uniform", "bsdf"}));
-    if (name == "--light") o.light = LightMode(choice(value, {"none", "nee", "mis"}));
+    if (name == "--sampler") o.sampler = SamplerKind(choice(value, sampler_names));
+    if (name == "--direction") o.direction = Direction(choice(value, direction_names));
+    if (name == "--light") o.light = LightMode(choice(value, light_names));
     if (name == "--depth") o.depth = int(parse_count(value, 0, 1000000));
     if (name == "--roulette") o.roulette = int(parse_count(value, 1, 1000000));
     if (name == "--seed") o.seed = parse_count(value, 0, UINT64_MAX);
     if (name == "--threads") o.threads = unsigned(parse_count(value, 1, 1024));
+    if (name == "--view") o.view = View(choice(value, view_names));
+    if (name == "--stats") o.stats = value;
+    if (name == "--pixel") o.replay = pixel(value);
+    if (name == "--sample") o.replay_sample = parse_count(value, 0, uint64_t(1) << 40);
     if (name == "--size") o.size = size(value);
     if (name == "--exposure") o.exposure = real(positive(value));
 }
@@ -110,15 +156,18 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
 // Throws UserError about the first word that cannot be used.
 inline Options parse_options(const std::vector<std::string>& words) {
     static const std::vector<std::string_view> with_value = {
-        "-o",         "--spp",  "--time",    "--direction", "--light",   "--depth",
-        "--roulette", "--seed", "--threads", "--size",      "--exposure"};
+        "-o",      "--spp",      "--time",  "--sampler", "--direction", "--light",
+        "--depth", "--roulette", "--seed",  "--threads", "--size",      "--exposure",
+        "--view",  "--stats",    "--pixel", "--sample"};
     std::vector<std::string_view> known = with_value;
-    known.insert(known.end(), {"--quiet", "--help"});
+    known.insert(known.end(), {"--halves", "--quiet", "--help"});
     Options o;
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
         if (word == "--quiet") {
             o.quiet = true;
+        } else if (word == "--halves") {
+            o.halves = true;
         } else if (word == "--help") {
             o.help = true;
         } else if (std::find(with_value.begin(), with_value.end(), word) != with_value.end()) {
@@ -138,6 +187,7 @@ inline Options parse_options(const std::vector<std::string>& words) {
         }
     }
     if (o.help) return o;
+    if (o.view == View::variance) o.halves = true;
     if (o.scene.empty()) throw UserError("no scene given (try --help)");
     if (o.spp == 0 && o.seconds == 0) o.spp = 64;
     if (o.outputs.empty()) {

@@ -10,11 +10,13 @@ namespace {
 // Mean of an image over pixels, samples and channels.  Its standard error pools the variances
 // within pixels: one test of the whole image sees what no test of a pixel would.
 Estimate image_mean(const Scene& scene, const Options& o, uint64_t spp) {
+    const Pattern pattern{SamplerKind::independent, o.seed};
     double sum = 0, squares = 0;
     for (int y = 0; y < scene.size.height; ++y)
         for (int x = 0; x < scene.size.width; ++x) {
             Moments m;
-            for (uint64_t i = 0; i < spp; ++i) m.add(double(mean_of(pixel(scene, o, x, y, i).L)));
+            for (uint64_t i = 0; i < spp; ++i)
+                m.add(double(mean_of(pixel(scene, o, pattern, x, y, i).L)));
             sum += m.mean;
             squares += sqr(m.standard_error());
         }
@@ -127,9 +129,11 @@ TEST_CASE("a furnace by cosine sampling alone has no noise") {
     scene.depth = 7;
     const Options o = options({"", Direction::bsdf, LightMode::none, 0}, 1);
     const real truth = real(0.4) * (1 - std::pow(real(0.5), real(8))) / real(0.5);
+    const Pattern pattern{SamplerKind::independent, o.seed};
     real worst = 0;
     for (uint64_t i = 0; i < 2000; ++i)
-        worst = std::max(worst, max_abs(pixel(scene, o, 3, 2, i).L - rgb{truth, truth, truth}));
+        worst = std::max(worst,
+                         max_abs(pixel(scene, o, pattern, 3, 2, i).L - rgb{truth, truth, truth}));
     CHECK(worst < 64 * ulp);
 }
 
@@ -171,9 +175,10 @@ quad -5 0 -5  0 0 10  10 0 0  white
     const Options o = options({"", Direction::bsdf, LightMode::mis, 0}, 1);
     // At the origin: d^2 = 5, cos = 2 / sqrt 5.  The pixel is 1e-5 wide: 1e-5 relative.
     const double truth = 0.5 / double(pi) * 3 / 5 * 2 / std::sqrt(5.0);
-    CHECK(double(pixel(scene_of(text), o, 0, 0, 0).L.x) == doctest::Approx(truth).epsilon(1e-4));
+    CHECK(double(pixel(scene_of(text), o, {SamplerKind::independent}, 0, 0, 0).L.x) ==
+          doctest::Approx(truth).epsilon(1e-4));
     const Scene shadowed = scene_of(text + "sphere 0.5 1 0  0.1  white\n");
-    CHECK(pixel(shadowed, o, 0, 0, 0).L.x == 0);
+    CHECK(pixel(shadowed, o, {SamplerKind::independent}, 0, 0, 0).L.x == 0);
 }
 
 TEST_CASE("Russian roulette shortens paths to 1 / (1 - rho) scatterings") {
@@ -181,8 +186,9 @@ TEST_CASE("Russian roulette shortens paths to 1 / (1 - rho) scatterings") {
     Scene scene = scene_of(furnace);
     scene.depth = 1000;
     const Options o = options({"", Direction::bsdf, LightMode::none, 1}, 5);
+    const Pattern pattern{SamplerKind::independent, o.seed};
     Moments rays;
-    for (uint64_t i = 0; i < 100000; ++i) rays.add(double(pixel(scene, o, 1, 1, i).rays));
+    for (uint64_t i = 0; i < 100000; ++i) rays.add(double(pixel(scene, o, pattern, 1, 1, i).rays));
     const Verdict v = expect_mean(2, estimate(rays));
     INFO(v.text);
     CHECK(v.pass);
