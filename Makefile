@@ -39,7 +39,7 @@ out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scene
 	@mkdir -p out
 	$(PENUMBRA) --size $(SIZE) -o out/$*.png -o out/$*.pfm $<
 
-test: $(OBJECTS)/all-tests $(PROGRAMS)  ## build and run all tests
+test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests
 	@PROGRAM_SUFFIX=$(SUFFIX) $(OBJECTS)/all-tests
 
 clean:  ## remove build/ and out/
@@ -48,6 +48,12 @@ clean:  ## remove build/ and out/
 help:  ## print this
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1] [SIZE=WxH] [ARCH=native]"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+# The mesh of scenes/mesh.scene is ours, too.
+build/knot.obj: build/knot$(SUFFIX)
+	build/knot$(SUFFIX) $@
+
+out/mesh.png: build/knot.obj
 
 # ---- Building ------------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "image.h"
+#include "obj.h"
 #include "scene.h"
 
 // The grammar: one statement a line, keyword first, material last; '#' starts a comment.
@@ -24,6 +25,7 @@ inline constexpr Statement grammar[] = {
     {"sphere", "X Y Z  RADIUS  MATERIAL"},
     {"triangle", "AX AY AZ  BX BY BZ  CX CY CZ  MATERIAL"},
     {"quad", "X Y Z  UX UY UZ  VX VY VZ  MATERIAL"},
+    {"mesh", "FILE.obj  SCALE  X Y Z  [MATERIAL]"},
     {"box", "WIDTH HEIGHT DEPTH  DEGREES_ABOUT_Y  X Y Z  MATERIAL"},
 };
 
@@ -36,6 +38,9 @@ struct ParsedScene {
 // Reads statements one after the other; every error is a UserError without the line number.
 class Parser {
 public:
+    // Files are named relative to `folder`.
+    explicit Parser(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
     void statement(const std::string& text, int line) {
         words_.clear();
         std::istringstream in(text.substr(0, text.find('#')));
@@ -73,6 +78,8 @@ public:
         } else if (keyword == "quad") {
             vec3 p = point(), u = point(), v = point();
             dropped_ += add_quad(s, p, u, v, material());
+        } else if (keyword == "mesh") {
+            mesh();
         } else if (keyword == "box") {
             real w = length_of("width"), h = length_of("height"), d = length_of("depth");
             real degrees = number();
@@ -116,6 +123,7 @@ private:
         int line;
     };
 
+    const std::filesystem::path folder_;
     Scene scene_;
     std::map<std::string, uint32_t> material_;  // by name
     std::map<std::string, int> seen_;           // line of the statements that stand only once
@@ -194,6 +202,41 @@ private:
             throw UserError("the camera must look somewhere, and not along y, which is up");
     }
 
+    // Polygons of an OBJ file, scaled and moved.  Parallelograms are lights in one piece.
+    void mesh() {
+        const std::string path = (folder_ / words_[next_++]).string();
+        const real scale = length_of("scale");
+        const vec3 move = point();
+        std::optional<uint32_t> given;
+        if (next_ < words_.size()) given = material();
+        const ObjMesh mesh = ObjReader::read(path);
+        const auto first = uint32_t(scene_.materials.size());
+        for (const ObjMesh::Material& m : mesh.materials) {
+            Material material;
+            material.kd = m.kd;
+            material.Le = m.ke;
+            scene_.materials.push_back(material);
+        }
+        for (const ObjMesh::Face& face : mesh.faces) {
+            const std::string where = path + ":" + std::to_string(face.line) + ": ";
+            if (face.material < 0 && !given)
+                throw UserError(where + "no material: give one here or in " + in_quotes("mesh"));
+            const uint32_t m = face.material < 0 ? *given : first + uint32_t(face.material);
+            std::vector<vec3> corners;
+            for (uint32_t i : face.corners) corners.push_back(mesh.vertices[i] * scale + move);
+            for (vec3 c : corners)
+                if (double(max_abs(c)) > longest) throw UserError(where + "too far away");
+            const auto fan = fan_of(corners);
+            if (!fan) throw UserError(where + "no corner sees all others: cut this polygon up");
+            const std::vector<vec3>& c = *fan;
+            if (c.size() == 4 && c[0] + c[2] == c[1] + c[3])
+                dropped_ += add_face(scene_, c[0], c[1], c[2], c[3], m);
+            else
+                for (size_t i = 1; i + 1 < c.size(); ++i)
+                    dropped_ += add_triangle(scene_, c[0], c[i], c[i + 1], m);
+        }
+    }
+
     // diffuse, phong, mirror, glass, light
     void define(const std::string& keyword) {
         const std::string name = words_[next_++];
@@ -230,7 +273,7 @@ private:
 // Throws UserError "NAME:LINE: what is wrong".
 inline ParsedScene parse_scene(const std::string& text, const std::string& name) {
     std::istringstream in(text);
-    Parser parser;
+    Parser parser(std::filesystem::path(name).parent_path());
     int number = 0;
     try {
         for (std::string line; std::getline(in, line);) parser.statement(line, ++number);

@@ -62,14 +62,13 @@ inline Pattern make_pattern(SamplerKind kind, uint64_t seed, bool halves, int de
 // it comes below n (Black, Rogaway 2002; Kensler 2013), then turned, so that every value of it is
 // exactly as likely as every other.
 inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
-    const uint32_t mask = std::bit_ceil(n) - 1, half = uint32_t(std::bit_width(n) + 1) / 2;
-    const uint32_t a = uint32_t(key), b = uint32_t(key >> 32);
+    const uint32_t mask = std::bit_ceil(n) - 1, half = uint32_t(std::bit_width(mask) + 1) / 2;
     do {
-        i = (i * (a | 1) + b) & mask;
-        i ^= i >> half;
-        i = (i * (b >> 7 | 1) + (a >> 9)) & mask;
-        i ^= i >> half;
-        i = (i * (a >> 13 | 1) + (b >> 11)) & mask;
+        uint64_t bits = key;
+        for (int round = 0; round < 4; ++round, bits = std::rotr(bits, 17)) {
+            i = (i * (uint32_t(bits) | 1) + uint32_t(bits >> 32)) & mask;
+            i ^= i >> half;
+        }
     } while (i >= n);
     return uint32_t((i + (mix(key) >> 32) * n / (uint64_t(1) << 32)) % n);
 }

@@ -1,0 +1,70 @@
+// knot.cpp  floor 5  writes a mesh to render: a trefoil knot of 24 000 triangles
+//
+//   build/knot FILE.obj
+//
+// A tube of radius 0.42 about the (2,3) torus knot p(t) = ((2 + cos 3t) cos 2t, (2 + cos 3t) sin
+// 2t, sin 3t), 600 rings of 20 corners, each ring normal to the tangent p'(t).
+#include "../check.h"
+#include "../image.h"
+#include "../vec.h"
+
+namespace {
+
+constexpr int rings = 600, corners = 20;
+constexpr double radius = 0.42;
+
+struct Ring {
+    vec3 centre, tangent;
+};
+
+Ring ring(double t) {
+    const double w = 2 + std::cos(3 * t), dw = -3 * std::sin(3 * t);
+    return {{real(w * std::cos(2 * t)), real(w * std::sin(2 * t)), real(std::sin(3 * t))},
+            {real(dw * std::cos(2 * t) - 2 * w * std::sin(2 * t)),
+             real(dw * std::sin(2 * t) + 2 * w * std::cos(2 * t)), real(3 * std::cos(3 * t))}};
+}
+
+std::string knot() {
+    std::string obj = "# trefoil knot, " + std::to_string(2 * rings * corners) + " triangles\n";
+    char line[128];
+    for (int i = 0; i < rings; ++i) {
+        const auto [centre, tangent] = ring(2 * std::numbers::pi * i / rings);
+        // The radial direction of the torus never lies along the tangent: no twist, no seam.
+        const vec3 axis_point = unit(vec3{centre.x, centre.y, 0}) * real(2);
+        const vec3 b = unit(cross(tangent, centre - axis_point)), a = unit(cross(b, tangent));
+        for (int j = 0; j < corners; ++j) {
+            const double angle = 2 * std::numbers::pi * j / corners;
+            const vec3 p =
+                centre + a * real(radius * std::cos(angle)) + b * real(radius * std::sin(angle));
+            std::snprintf(line, sizeof line, "v %.7f %.7f %.7f\n", double(p.x), double(p.y),
+                          double(p.z));
+            obj += line;
+        }
+    }
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < corners; ++j) {
+            auto index = [](int ring, int corner) {
+                return ring % rings * corners + corner % corners + 1;
+            };
+            const int a = index(i, j), b = index(i, j + 1), c = index(i + 1, j + 1),
+                      d = index(i + 1, j);
+            std::snprintf(line, sizeof line, "f %d %d %d\nf %d %d %d\n", a, d, c, a, c, b);
+            obj += line;
+        }
+    return obj;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        if (argc != 2) throw UserError("usage: knot FILE.obj");
+        write_file(argv[1], knot());
+    } catch (const UserError& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 2;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 1;
+    }
+}
