@@ -217,3 +217,99 @@ TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^
     CHECK(std::abs(double(dot(d, camera.right) / dot(d, camera.forward)) + p) < 1e-5);
     CHECK(std::abs(double(dot(d, camera.up) / dot(d, camera.forward)) - q) < 1e-5);
 }
+
+TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
+    Scene scene = scene_of(shiny);
+    scene.size = {6, 4};
+    for (SamplerKind kind :
+         {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton}) {
+        Options o;
+        o.sampler = kind;
+        o.spp = 4;
+        o.quiet = true;
+        const Pattern pattern = make_pattern(kind, 3, false, scene.depth, o.spp);
+        Film film(scene.size);
+        render(scene, o, pattern, film);
+        std::FILE* out = std::tmpfile();
+        const PathLog log(out);
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 6; ++x) {
+                double even = 0, odd = 0;  // as the film adds them
+                for (uint64_t i = 0; i < 4; ++i) {
+                    const rgb L = pixel(scene, o, pattern, x, y, i, &log).L;
+                    (i % 2 ? odd : even) += double(L.y);
+                }
+                CHECK(film.image().at(x, y)[1] == float((even + odd) / 4));
+            }
+        CHECK(std::ftell(out) > 10000);
+        std::fclose(out);
+    }
+}
+
+TEST_CASE("the film's variances are those of the means: independent samples, and halves") {
+    // Pixel values u^2: variance of one sample 1/5 - 1/9 = 4/45.
+    for (bool independent : {true, false}) {
+        Film film({400, 250});
+        const uint64_t n = 7;  // uneven, in passes of 1, 2, 4
+        for (uint64_t pass : {1, 2, 4}) {
+            for (int y = 0; y < film.height; ++y)
+                film.add_row(y, pass, [&](int x, uint64_t i) {
+                    const real u = to_unit(hash(hash(uint64_t(y), uint64_t(x)), i));
+                    return rgb{u * u, 1000 + u * u, 0};
+                });
+            film.end_pass(pass);
+        }
+        CHECK(film.samples() == n);
+        const Image variance = film.variance(independent);
+        Moments m;
+        for (const auto& p : variance.pixels) m.add(double(p[0]));
+        const Verdict v = expect_mean(4 / 45.0 / double(n), estimate(m));
+        INFO(v.text);
+        CHECK(v.pass);
+        CHECK(v.delta_min < 0.05);
+        // No cancellation far from zero, no variance where there is none.
+        const float offset_error = sizeof(real) == 4 ? 0.02f : 1e-6f;
+        CHECK(std::abs(variance.at(7, 7)[1] / variance.at(7, 7)[0] - 1) < offset_error);
+        CHECK(variance.at(3, 3)[2] == 0);
+    }
+}
+
+TEST_CASE("views show normal, distance, albedo and work") {
+    const Scene scene = scene_of(R"(
+camera 0 0 5  0 0 0  40
+phong gloss 0.1 0.2 0.3  0.5 0.25 0.125  9
+sphere 0 0 0  1  gloss
+)");
+    const Ray hit{{0, 0, 5}, {0, 0, -1}}, miss{{0, 0, 5}, {0, 0, 1}};
+    CHECK(view_along(scene, View::normal, hit) == rgb{0.5, 0.5, 1});
+    CHECK(view_along(scene, View::depth, hit) == rgb{4, 4, 4});
+    CHECK(max_abs(view_along(scene, View::albedo, hit) - rgb{real(0.6), real(0.45), real(0.425)}) <
+          2 * ulp);
+    CHECK(view_along(scene, View::bvh, hit) == rgb{1, 1, 0});
+    CHECK(view_along(scene, View::bvh, miss) == rgb{1, 0, 0});
+    for (View v : {View::normal, View::depth, View::albedo})
+        CHECK(view_along(scene, v, miss) == rgb{0, 0, 0});
+}
+
+TEST_CASE("quasi-random and stratified samples find what independent ones find") {
+    const Scene scene = scene_of(unequal);
+    const Options o = options(techniques[0], 0);
+    const Estimate reference = image_mean(scene, options(techniques[0], 99), 400);
+    for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton}) {
+        // A replicate is one randomisation of every pixel's whole point set.
+        Moments replicates;
+        for (uint64_t seed = 0; seed < 32; ++seed) {
+            const Pattern pattern = make_pattern(kind, seed, false, scene.depth, 16);
+            double sum = 0;
+            for (int y = 0; y < scene.size.height; ++y)
+                for (int x = 0; x < scene.size.width; ++x)
+                    for (uint64_t i = 0; i < 16; ++i)
+                        sum += double(mean_of(pixel(scene, o, pattern, x, y, i).L));
+            replicates.add(sum / (16.0 * scene.size.width * scene.size.height));
+        }
+        const Verdict v = expect_equal(estimate(replicates), reference);
+        INFO(v.text);
+        CHECK(v.pass);
+        CHECK(v.delta_min < 0.03);
+    }
+}
