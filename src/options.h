@@ -162,6 +162,7 @@ inline Options parse_options(const std::vector<std::string>& words) {
     std::vector<std::string_view> known = with_value;
     known.insert(known.end(), {"--halves", "--quiet", "--help"});
     Options o;
+    bool sample_given = false;
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
         if (word == "--quiet") {
@@ -171,6 +172,7 @@ inline Options parse_options(const std::vector<std::string>& words) {
         } else if (word == "--help") {
             o.help = true;
         } else if (std::find(with_value.begin(), with_value.end(), word) != with_value.end()) {
+            sample_given = sample_given || word == "--sample";
             if (i + 1 == words.size()) throw UserError(word + ": needs a value");
             try {
                 option::set(o, word, words[++i]);
@@ -188,6 +190,7 @@ inline Options parse_options(const std::vector<std::string>& words) {
     }
     if (o.help) return o;
     if (o.view == View::variance) o.halves = true;
+    if (sample_given && !o.replay) throw UserError("--sample: goes with --pixel X,Y");
     if (o.scene.empty()) throw UserError("no scene given (try --help)");
     if (o.spp == 0 && o.seconds == 0) o.spp = 64;
     if (o.outputs.empty()) {

@@ -108,11 +108,14 @@ inline int add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
 // Size along x, y, z from the origin, then rotated about y (x' = c x + s z, z' = c z - s x), then
 // moved.  Faces outwards.  Each corner is computed once, so the box is watertight.
 inline int add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t material) {
-    const real cosine = std::cos(degrees * pi / 180), sine = std::sin(degrees * pi / 180);
+    const double angle = double(degrees) * std::numbers::pi / 180;
+    const double cosine = std::cos(angle), sine = std::sin(angle);
     vec3 corner[8];  // bit 0: far in x, bit 1: in y, bit 2: in z
     for (int i = 0; i < 8; ++i) {
-        vec3 p = size * vec3{real(i & 1), real(i >> 1 & 1), real(i >> 2)};
-        corner[i] = vec3{cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x} + move;
+        const double x = double(size.x) * (i & 1), z = double(size.z) * (i >> 2);
+        corner[i] = {real(cosine * x + sine * z + double(move.x)),
+                     size.y * real(i >> 1 & 1) + move.y,
+                     real(cosine * z - sine * x + double(move.z))};
     }
     int dropped = 0;
     for (auto [a, b, c, d] : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6},   // -z, +z
