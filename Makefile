@@ -14,7 +14,7 @@ OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(if $(DEBUG),-debug)
 ifeq ($(filter double float,$(REAL)),)
   $(error REAL is double or float, not '$(REAL)')
 endif
-ifeq ($(filter -j%,$(MAKEFLAGS)),)
+ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
   MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
 endif
 
@@ -24,16 +24,14 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs pictures test clean help layers packages always
+.PHONY: all programs test clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
 all: programs  ## build, and render every scene into out/ (default)
-	@+$(MAKE) --no-print-directory -j1 pictures
+	@for s in $(SCENES); do $(MAKE) --no-print-directory out/$$s.png || exit 1; done
 
 programs: $(PROGRAMS)  ## build penumbra and its tools into build/
-
-pictures: $(SCENES:%=out/%.png)
 
 out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
 	@mkdir -p out

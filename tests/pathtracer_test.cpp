@@ -313,3 +313,51 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
         CHECK(v.delta_min < 0.03);
     }
 }
+
+TEST_CASE("the statistics' variance is that of the mean from seed to seed") {
+    Scene scene = scene_of(unequal);
+    scene.size = {24, 12};
+    for (bool halves : {false, true}) {
+        Options o;
+        o.scene = "a \"scene\"";
+        o.sampler = halves ? SamplerKind::halton : SamplerKind::independent;
+        o.halves = halves;
+        o.spp = 8;
+        o.threads = 1;
+        o.quiet = true;
+        Moments means, predicted;
+        for (o.seed = 0; o.seed < 300; ++o.seed) {
+            const Pattern pattern = make_pattern(o.sampler, o.seed, halves, scene.depth, o.spp);
+            Film film(scene.size);
+            render(scene, o, pattern, film);
+            const Image variance = film.variance(!halves);
+            means.add(mean_of_pixels(film.image())[1]);
+            predicted.add(mean_of_pixels(variance)[1] / double(variance.pixels.size()));
+        }
+        // A variance from 300 means is known within sqrt(2 / 299) = 8 % (normal means); 4.9 of
+        // those are 40 %.
+        const double ratio = means.variance() / predicted.mean;
+        INFO("measured over predicted ", ratio);
+        CHECK(std::abs(ratio - 1) < 4.9 * std::sqrt(2.0 / 299));
+    }
+}
+
+TEST_CASE("the statistics are JSON: quoted, complete, null where nothing is known") {
+    Options o;
+    o.scene = "a \"b\"\\\n";
+    Image image(2, 1), unknown(2, 1);
+    image.pixels = {{1, 2, 3}, {3, 2, 5}};
+    const RunStats run{64, 2, 4000000, 0, false};
+    const std::string text = encode_stats(o, {2, 1}, 5, run, image, unknown);
+    for (const char* line :
+         {R"("scene": "a \"b\"\\\u000a")", R"("mean_radiance": [2, 2, 4])",
+          R"("variance_of_mean": [null, null, null])", R"("rays": 4000000)",
+          R"("mrays_per_second": 2,)", R"("samples_per_pixel": 64)", R"("sampler": "halton")",
+          R"("depth": 5)", R"("roulette": null)", R"("non_finite": 0)"}) {
+        INFO(text);
+        INFO(std::string(line));
+        CHECK(text.find(line) != text.npos);
+    }
+    image.pixels = {{1, 1, 1}, {3, 3, 3}};  // variances of two pixels: of their mean (1 + 3) / 4
+    CHECK(encode_stats(o, {2, 1}, 5, run, image, image).find("mean\": [1, 1, 1]") != text.npos);
+}
