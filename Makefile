@@ -24,7 +24,7 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test clean help layers packages always
+.PHONY: all programs test techniques clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -39,6 +39,9 @@ out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scene
 
 test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests
 	@PROGRAM_SUFFIX=$(SUFFIX) $(OBJECTS)/all-tests
+
+techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NEE on coursework (8 minutes)
+	build/techniques$(SUFFIX)
 
 clean:  ## remove build/ and out/
 	rm -rf build out

@@ -28,7 +28,7 @@ inline const std::vector<std::string_view> light_names = {"none", "nee", "mis"};
 inline const std::vector<std::string_view> view_names = {"radiance", "normal", "depth",
                                                          "albedo",   "bvh",    "variance"};
 
-struct Pixel {
+struct PixelIndex {
     int x = 0, y = 0;
 };
 
@@ -49,9 +49,9 @@ struct Options {
     std::optional<real> exposure;  // default: the scene's
     bool halves = false;           // see Pattern
     View view = View::radiance;
-    std::string stats;            // file, or empty
-    std::optional<Pixel> replay;  // instead of rendering, print the path of
-    uint64_t replay_sample = 0;   // this sample
+    std::string stats;                 // file, or empty
+    std::optional<PixelIndex> replay;  // instead of rendering, print the path of
+    uint64_t replay_sample = 0;        // this sample
     bool quiet = false, help = false;
 };
 
@@ -120,7 +120,7 @@ inline Size size(std::string_view text) {
     return parse_size(text.substr(0, x), text.substr(x + 1));
 }
 
-inline Pixel pixel(std::string_view text) {
+inline PixelIndex pixel(std::string_view text) {
     size_t comma = text.find(',');
     if (comma == text.npos) throw UserError(in_quotes(text) + " is not X,Y");
     return {int(parse_count(text.substr(0, comma), 0, INT32_MAX)),
