@@ -111,7 +111,8 @@ private:
     // meanwhile.  Stops when visit returns true.
     template <class Visit, class Open>
     bool walk(const Ray& ray, const real& tmax, Visit visit, Open open) const {
-        if (nodes_.empty()) return false;
+        // A ray that is not a number meets nothing.
+        if (nodes_.empty() || !std::isfinite(dot(ray.o, ray.d))) return false;
         struct Entry {
             real t;
             uint32_t first, count;
@@ -146,14 +147,14 @@ private:
                     t1[i] = f < t1[i] ? f : t1[i];
                 }
             }
-            // Each bound is 3 roundings from the truth (Ize 2013, JCGT 2(2)): widen by 4 on
-            // both sides.
+            // Each bound is 3 roundings from the truth (Ize 2013, JCGT 2(2)), and what a shape
+            // makes of a ray from afar about as many: widen by 16 on both sides.
             const int bottom = top;
             for (int i = 0; i < width; ++i) {
-                if (!(t0[i] * (1 - 4 * ulp) <= t1[i] * (1 + 4 * ulp))) continue;
+                if (!(t0[i] * (1 - 16 * ulp) <= t1[i] * (1 + 16 * ulp))) continue;
                 int j = top++;
                 for (; j > bottom && stack[j - 1].t < t0[i]; --j) stack[j] = stack[j - 1];
-                stack[j] = {t0[i] * (1 - 4 * ulp), node.first[i], node.count[i]};
+                stack[j] = {t0[i] * (1 - 16 * ulp), node.first[i], node.count[i]};
             }
         }
         return false;

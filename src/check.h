@@ -33,12 +33,13 @@ inline std::string in_quotes(std::string_view word) {
 // most that any statement or option needs, and float holds it.
 inline constexpr double largest_number = 1e30;
 inline double parse_number(std::string_view text, double largest = largest_number) {
-    std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+    const bool plus = text.starts_with('+') && !text.starts_with("+-");
+    std::string_view digits = text.substr(plus);
     double x = 0;
     auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
     if (error == std::errc::result_out_of_range)
         throw UserError(in_quotes(text) + " is out of range");
-    if (error != std::errc() || end != digits.data() + digits.size() || digits.starts_with('+'))
+    if (error != std::errc() || end != digits.data() + digits.size())
         throw UserError(in_quotes(text) + " is not a number");
     if (!std::isfinite(x)) throw UserError(in_quotes(text) + " is not finite");
     if (std::abs(x) > largest) throw UserError(in_quotes(text) + " is too large");

@@ -25,7 +25,12 @@ inline void catch_interrupt() {
 
 // ---- Film -------------------------------------------------------------------------------------
 
-// A sample that is NaN or infinite.
+// Whether an image file can hold it; a mean of such values fits as well.
+inline bool fits_float(rgb L) {
+    return std::isfinite(float(L.x)) && std::isfinite(float(L.y)) && std::isfinite(float(L.z));
+}
+
+// A sample that is NaN or infinite, as float.
 struct NonFinite {
     uint64_t sample = UINT64_MAX;
     int x = 0, y = 0;
@@ -53,7 +58,7 @@ public:
             Pixel pixel = pixels_[index];
             for (uint64_t i = samples_; i < samples_ + n; ++i) {
                 const rgb value = L(x, i);
-                if (!is_finite(value)) report({i, x, y, value});
+                if (!fits_float(value)) report({i, x, y, value});
                 pixel.add(i, {double(value.x), double(value.y), double(value.z)});
             }
             next_[index] = pixel;
@@ -145,7 +150,8 @@ public:
             const double left = options_.seconds - elapsed;
             const double per_period = elapsed / double(samples) * double(period_);
             if (left <= 0) return 0;
-            periods = std::clamp<uint64_t>(uint64_t(left / per_period), 1, periods);
+            if (left < per_period * double(periods))
+                periods = std::max<uint64_t>(1, uint64_t(left / per_period));
         }
         const uint64_t n = periods * period_;
         return options_.spp ? std::min(n, options_.spp - samples) : n;

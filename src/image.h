@@ -42,7 +42,9 @@ inline std::string aside(const std::string& path) {
 
 // Throws UserError if `path` could not be written; leaves nothing behind.
 inline void check_writable(const std::string& path) {
-    if (std::filesystem::is_directory(path)) throw UserError(path + ": is a directory");
+    std::error_code unreachable;
+    if (std::filesystem::is_directory(path, unreachable))
+        throw UserError(path + ": is a directory");
     std::FILE* file = std::fopen(aside(path).c_str(), "wb");
     if (!file) throw UserError(path + ": cannot write: " + std::strerror(errno));
     std::fclose(file);
@@ -63,7 +65,9 @@ inline void write_file(const std::string& path, const std::string& bytes) {
 
 // The bytes of a file; throws UserError if there are none to be had.
 inline std::string read_file(const std::string& path) {
-    if (std::filesystem::is_directory(path)) throw UserError(path + ": is a directory");
+    std::error_code unreachable;
+    if (std::filesystem::is_directory(path, unreachable))
+        throw UserError(path + ": is a directory");
     std::ifstream in(path, std::ios::binary);
     if (!in) throw UserError(path + ": cannot open: " + std::strerror(errno));
     std::ostringstream bytes;
@@ -90,7 +94,7 @@ inline Image read_pfm(const std::string& path) {
     std::string magic, width, height;
     double scale = 0;
     header >> magic >> width >> height >> scale;
-    if (!header || magic != "PF" || !(scale < 0))
+    if (!header || header.eof() || magic != "PF" || !(scale < 0))
         throw UserError(path + ": not a little-endian colour PFM file");
     Size size;
     try {

@@ -76,7 +76,9 @@ inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, v
     vec3 wi = unit(y.p - p);
     real cos_y = -dot(y.n, wi);
     if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
-    return LightSample{wi, y, l.L, pdf_polygon(l, p, y)};
+    const real pdf = pdf_polygon(l, p, y);
+    if (!(pdf > 0)) return {};  // edge-on, but for the rounding of wi
+    return LightSample{wi, y, l.L, pdf};
 }
 
 // Nothing if the light sends nothing from the sampled point to p.

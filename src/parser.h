@@ -113,7 +113,7 @@ public:
     int line() const { return line_; }
 
 private:
-    // Lengths: their fourth powers must not overflow.
+    // Lengths: their fourth powers must neither overflow nor vanish.
     static constexpr double longest = sizeof(real) == 4 ? 1e9 : 1e30;
     static constexpr uint64_t max_depth = 1000000;
 
@@ -166,6 +166,7 @@ private:
     real length_of(const std::string& what) {
         real x = number(longest);
         if (!(x > 0)) throw UserError(what + " must be positive, not " + words_[next_ - 1]);
+        if (double(x) < 1 / longest) throw UserError(what + " is too small: " + words_[next_ - 1]);
         return x;
     }
     vec3 point() {
@@ -247,7 +248,7 @@ private:
         } else if (keyword == "phong") {
             m.kd = colour();
             m.ks = colour();
-            m.exponent = number();
+            m.exponent = number(1e6);
             if (m.exponent < 0) throw UserError("the exponent must not be negative");
         } else if (keyword == "mirror") {
             m.kind = Material::Kind::mirror;

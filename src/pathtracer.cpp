@@ -65,20 +65,23 @@ int penumbra(const std::vector<std::string>& words) {
         replay(scene, o, pattern);
         return 0;
     }
-    if (o.default_outputs) std::filesystem::create_directories("out");
+    catch_interrupt();
+    std::error_code failed;
+    if (o.default_outputs && (std::filesystem::create_directories("out", failed), failed))
+        throw UserError("out: cannot make this directory: " + failed.message());
     for (const std::string& path : o.outputs) check_writable(path);
     if (!o.stats.empty()) check_writable(o.stats);
 
-    catch_interrupt();
     Film film(scene.size);
     const RunStats run = render(scene, o, pattern, film);
     if (run.non_finite > 0) {
         const NonFinite& bad = film.first_non_finite();
+        const std::string pixel = std::to_string(bad.x) + "," + std::to_string(bad.y);
+        const std::string sample = std::to_string(bad.sample);
         throw SystemError(std::to_string(run.non_finite) +
-                          " samples were not finite; nothing was written.  For the first, add "
-                          "--pixel " +
-                          std::to_string(bad.x) + "," + std::to_string(bad.y) + " --sample " +
-                          std::to_string(bad.sample));
+                          " samples were not finite, the first at pixel " + pixel + " sample " +
+                          sample + " (replay it by --pixel " + pixel + " --sample " + sample +
+                          "); nothing was written");
     }
     if (run.spp > 0) {
         const Image variance = film.variance(o.sampler == SamplerKind::independent);

@@ -55,9 +55,13 @@ public:
         shown_ = true;
     }
 
-    // The line that stays.
+    // The line that stays; none of a run that will end with an error.
     void summary(const RunStats& run) {
         if (options_.quiet) return;
+        if (run.non_finite > 0) {
+            if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+            return;
+        }
         std::fprintf(
             stderr, "%s%s: %llu samples per pixel, %.2f s, %.2f Mrays/s, %llu non-finite%s\n",
             shown_ && terminal_ ? "\r\033[K" : "", options_.scene.c_str(),

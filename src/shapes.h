@@ -100,18 +100,19 @@ inline Shear shear(vec3 d) {
 }
 
 // Watertight: u, v, w are the edge functions of the sheared triangle.  Vertices that triangles
-// share are sheared to the same numbers, and the rounded difference of two rounded products never
-// has the wrong sign (rounding is monotonic), though it may be 0; a 0 counts as inside.  So a ray
-// between two triangles always meets one of them.  This holds only while no product is fused.
+// share are sheared to the same numbers, and an edge function is never rounded to the wrong sign or
+// to 0; a 0 counts as inside.  So a ray between two triangles always meets one of them.  Its error
+// is relative, so that even in a sliver (1-v-w) a + v b + w c is where the ray is.  All this holds
+// only while nothing else is fused.
 inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, const Shear& k,
                                              real tmax) {
     real ox = ray.o.*k.kx, oy = ray.o.*k.ky, oz = ray.o.*k.kz;
     real az = s.a.*k.kz - oz, ax = (s.a.*k.kx - ox) - k.sx * az, ay = (s.a.*k.ky - oy) - k.sy * az;
     real bz = s.b.*k.kz - oz, bx = (s.b.*k.kx - ox) - k.sx * bz, by = (s.b.*k.ky - oy) - k.sy * bz;
     real cz = s.c.*k.kz - oz, cx = (s.c.*k.kx - ox) - k.sx * cz, cy = (s.c.*k.ky - oy) - k.sy * cz;
-    real u = cx * by - cy * bx;
-    real v = ax * cy - ay * cx;
-    real w = bx * ay - by * ax;
+    real u = difference_of_products(cx, by, cy, bx);
+    real v = difference_of_products(ax, cy, ay, cx);
+    real w = difference_of_products(bx, ay, by, ax);
     if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return {};
     real det = u + v + w;
     if (det == 0) return {};  // edge-on: its neighbours have it
@@ -168,8 +169,10 @@ inline vec3 offset(const Surface& x, vec3 towards) {
 
 inline Ray spawn(const Surface& x, vec3 d) { return {offset(x, d), d}; }
 
-// The open segment between two surface points, to be asked whether it is occluded.
-inline Ray spawn_to(const Surface& x, const Surface& y) {
+// The open segment between two surface points, to be asked whether it is occluded.  Seen from afar
+// the far end is only as exact as the distance.
+inline Ray spawn_to(const Surface& x, Surface y) {
+    y.error += 16 * ulp * length(y.p - x.p);
     vec3 o = offset(x, y.p - x.p);
     vec3 to = offset(y, x.p - y.p) - o;
     real distance = length(to);
