@@ -24,7 +24,7 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test techniques clean help layers packages always
+.PHONY: all programs test techniques bench clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -42,6 +42,9 @@ test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all test
 
 techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NEE on coursework (8 minutes)
 	build/techniques$(SUFFIX)
+
+bench: build/bench$(SUFFIX)  ## rays a second, beside Embree if it is installed
+	build/bench$(SUFFIX)
 
 clean:  ## remove build/ and out/
 	rm -rf build out
@@ -66,7 +69,11 @@ $(OBJECTS)/penumbra.exe: $(OBJECTS)/pathtracer.o
 	$(CXX) -pthread -o $@ $^
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
-	$(CXX) -pthread -o $@ $^
+	$(CXX) -pthread -o $@ $^ $(LIBRARIES)
+
+# bench.cpp asks for the same header in the same way.
+$(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>\n' | \
+                                          $(CXX) -x c++ -fsyntax-only - 2>/dev/null && echo -lembree3)
 
 $(OBJECTS)/all-tests: $(TESTS)
 	$(CXX) -pthread -o $@ $^

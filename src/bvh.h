@@ -86,12 +86,18 @@ private:
         32;  // deeper nodes split at the median: at most 32 levels more
     static constexpr int stack_size = (sah_depth + 32) * (width - 1) + width;
 
+    // A number a child, in vector registers: GCC and Clang do arithmetic with such types, but
+    // neither makes them of a loop as tangled as walk's by itself.
+    typedef float Floats __attribute__((vector_size(width * sizeof(float))));
+    typedef real Reals __attribute__((vector_size(width * sizeof(real))));
+    static Reals widen(Floats x) { return Reals{x[0], x[1], x[2], x[3]}; }
+
     // Boxes are float, rounded outwards: half the memory; the answers come from the shapes.  An
     // absent child has the empty box, which no ray meets.
     struct Node {
-        float plane[2][3][width];  // [lower, upper][axis][child]
-        uint32_t first[width];     // child: index of a node or, in a leaf, of its first shape
-        uint32_t count[width];     // shapes in a leaf; 0: a node
+        Floats plane[2][3];     // [lower, upper][axis][child]
+        uint32_t first[width];  // child: index of a node or, in a leaf, of its first shape
+        uint32_t count[width];  // shapes in a leaf; 0: a node
     };
 
     struct Item {
@@ -122,7 +128,8 @@ private:
         stack[top++] = {0, 0, 0};
         const Shear k = shear(ray.d);
         const vec3 inverse{1 / ray.d.x, 1 / ray.d.y, 1 / ray.d.z};  // of -0: -inf
-        const bool down[3] = {std::signbit(ray.d.x), std::signbit(ray.d.y), std::signbit(ray.d.z)};
+        const size_t down[3] = {std::signbit(ray.d.x), std::signbit(ray.d.y),
+                                std::signbit(ray.d.z)};
         while (top > 0) {
             const Entry entry = stack[--top];
             if (entry.t > tmax) continue;
@@ -135,26 +142,25 @@ private:
             open();
             // Slabs.  A ray within a slab's plane and parallel to it makes 0 * inf = NaN: the
             // comparisons are written so that NaN leaves the interval as it is.
-            real t0[width], t1[width];
-            for (int i = 0; i < width; ++i) t0[i] = 0, t1[i] = tmax;
+            Reals t0{}, t1 = t0 + tmax;
             for (int a = 0; a < 3; ++a) {
-                const float* near = node.plane[down[a]][a];
-                const float* far = node.plane[!down[a]][a];
                 const real o = ray.o.*axis[a], inv = inverse.*axis[a];
-                for (int i = 0; i < width; ++i) {
-                    real n = (real(near[i]) - o) * inv, f = (real(far[i]) - o) * inv;
-                    t0[i] = n > t0[i] ? n : t0[i];
-                    t1[i] = f < t1[i] ? f : t1[i];
-                }
+                const Reals n = (widen(node.plane[down[a]][a]) - o) * inv;
+                const Reals f = (widen(node.plane[1 - down[a]][a]) - o) * inv;
+                t0 = n > t0 ? n : t0;
+                t1 = f < t1 ? f : t1;
             }
             // Each bound is 3 roundings from the truth (Ize 2013, JCGT 2(2)), and what a shape
             // makes of a ray from afar about as many: widen by 16 on both sides.
+            t0 *= 1 - 16 * ulp;
+            t1 *= 1 + 16 * ulp;
+            const auto met = t0 <= t1;
             const int bottom = top;
             for (int i = 0; i < width; ++i) {
-                if (!(t0[i] * (1 - 16 * ulp) <= t1[i] * (1 + 16 * ulp))) continue;
+                if (!met[i]) continue;
                 int j = top++;
                 for (; j > bottom && stack[j - 1].t < t0[i]; --j) stack[j] = stack[j - 1];
-                stack[j] = {t0[i] * (1 - 16 * ulp), node.first[i], node.count[i]};
+                stack[j] = {t0[i], node.first[i], node.count[i]};
             }
         }
         return false;
