@@ -79,11 +79,10 @@ public:
     }
 
 private:
-    static constexpr int width = 4;      // children a node
-    static constexpr int bins = 16;      // candidate planes an axis
-    static constexpr int leaf_size = 4;  // shapes a leaf may always hold
-    static constexpr int sah_depth =
-        32;  // deeper nodes split at the median: at most 32 levels more
+    static constexpr int width = 4;       // children a node
+    static constexpr int bins = 16;       // candidate planes an axis
+    static constexpr int leaf_size = 4;   // shapes a leaf may always hold
+    static constexpr int sah_depth = 32;  // below, split at the median: 32 levels more
     static constexpr int stack_size = (sah_depth + 32) * (width - 1) + width;
 
     // A number a child, in vector registers: GCC and Clang do arithmetic with such types, but
