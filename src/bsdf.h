@@ -46,8 +46,9 @@ inline vec3 mirrored(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 // 0.
 inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
     if (m.is_delta() || wi.z <= 0) return {};
-    real cos_alpha = std::max(real(0), dot(mirrored(wo), wi));
-    return m.kd / pi + m.ks * ((m.exponent + 2) / (2 * pi) * std::pow(cos_alpha, m.exponent));
+    real cos_alpha = dot(mirrored(wo), wi);
+    real lobe = cos_alpha > 0 ? (m.exponent + 2) / (2 * pi) * std::pow(cos_alpha, m.exponent) : 0;
+    return m.kd / pi + m.ks * lobe;
 }
 
 // Part of the samples that follow the Phong lobe rather than the cosine.
@@ -78,7 +79,7 @@ inline real fresnel(real cos_i, real cos_t, real eta) {
 // index: eta^2 when it leaves the medium of wi for that of wo (Veach 1997, sec. 5.2).
 inline BsdfSample sample_glass(const Material& m, vec3 wo, bool outside, real u) {
     real eta = outside ? 1 / m.ior : m.ior;
-    real sin2_t = sqr(eta) * (1 - sqr(wo.z));
+    real sin2_t = sqr(eta) * (sqr(wo.x) + sqr(wo.y));
     real cos_t = std::sqrt(std::max(real(0), 1 - sin2_t));
     real reflectance = sin2_t < 1 ? fresnel(wo.z, cos_t, eta) : 1;
     if (u < reflectance) {

@@ -81,7 +81,7 @@ public:
 private:
     static constexpr int width = 4;       // children a node
     static constexpr int bins = 16;       // candidate planes an axis
-    static constexpr int leaf_size = 4;   // shapes a leaf may always hold
+    static constexpr int leaf_size = 4;   // shapes a leaf holds at most
     static constexpr int sah_depth = 32;  // below, split at the median: 32 levels more
     static constexpr int stack_size = (sah_depth + 32) * (width - 1) + width;
 
@@ -89,7 +89,6 @@ private:
     // neither makes them of a loop as tangled as walk's by itself.
     typedef float Floats __attribute__((vector_size(width * sizeof(float))));
     typedef real Reals __attribute__((vector_size(width * sizeof(real))));
-    static Reals widen(Floats x) { return Reals{x[0], x[1], x[2], x[3]}; }
 
     // Boxes are float, rounded outwards: half the memory; the answers come from the shapes.  An
     // absent child has the empty box, which no ray meets.
@@ -141,11 +140,14 @@ private:
             open();
             // Slabs.  A ray within a slab's plane and parallel to it makes 0 * inf = NaN: the
             // comparisons are written so that NaN leaves the interval as it is.
-            Reals t0{}, t1 = t0 + tmax;
+            auto widen = [](const Floats& x, Reals& y) { y = Reals{x[0], x[1], x[2], x[3]}; };
+            Reals t0{}, t1 = t0 + tmax, n, f;
             for (int a = 0; a < 3; ++a) {
                 const real o = ray.o.*axis[a], inv = inverse.*axis[a];
-                const Reals n = (widen(node.plane[down[a]][a]) - o) * inv;
-                const Reals f = (widen(node.plane[1 - down[a]][a]) - o) * inv;
+                widen(node.plane[down[a]][a], n);
+                widen(node.plane[1 - down[a]][a], f);
+                n = (n - o) * inv;
+                f = (f - o) * inv;
                 t0 = n > t0 ? n : t0;
                 t1 = f < t1 ? f : t1;
             }
@@ -242,8 +244,7 @@ private:
             return uint32_t(middle - begin);
         }
         // All centroids alike, or the tree too deep: halves.
-        const vec3 e = extent;
-        int a = e.x > e.y ? (e.x > e.z ? 0 : 2) : (e.y > e.z ? 1 : 2);
+        int a = extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
         std::nth_element(begin, begin + branch.count / 2, end, [&](const Item& i, const Item& j) {
             return i.centroid().*axis[a] < j.centroid().*axis[a];
         });

@@ -83,17 +83,20 @@ public:
         return image;
     }
 
-    // Unbiased estimates of the variance of those means.  From the spread of the samples if they
-    // are independent; from the difference of the two halves (even and odd samples) if only those
-    // are: for means A and B of nA and nB samples, (A - B)^2 nA nB / n^2.  NaN for one sample.
-    Image variance(bool independent_samples) const {
+    // Estimates of the variance of those means, unbiased for an even number of samples.  From the
+    // spread of the samples if they are independent; from the difference of the two halves (even
+    // and odd samples) if only those are: for means A and B of nA and nB samples, (A - B)^2 nA nB /
+    // n^2.  NaN if not known.
+    enum class Estimate { samples, halves, none };
+    Image variance(Estimate from) const {
         Image image(width, height);
         const double n = double(samples_), nb = double(samples_ / 2), na = n - nb;
-        for (size_t i = 0; i < pixels_.size() && samples_ > 1; ++i)
+        for (size_t i = 0; i < pixels_.size() && samples_ > 1 && from != Estimate::none; ++i)
             for (size_t c = 0; c < 3; ++c) {
                 const Pixel& p = pixels_[i];
                 const double halves = sqr(p.even[c] / na - p.odd[c] / nb) * na * nb / (n * n);
-                image.pixels[i][c] = float(independent_samples ? p.m2[c] / (n - 1) / n : halves);
+                image.pixels[i][c] =
+                    float(from == Estimate::samples ? p.m2[c] / (n - 1) / n : halves);
             }
         return image;
     }
@@ -127,6 +130,12 @@ private:
         if (order(bad) < order(first_)) first_ = bad;
     }
 };
+
+// What the user's samples allow to say about their variance.
+inline Film::Estimate variance_estimate(const Options& o) {
+    if (o.sampler == SamplerKind::independent) return Film::Estimate::samples;
+    return o.halves ? Film::Estimate::halves : Film::Estimate::none;
+}
 
 // ---- When to stop -----------------------------------------------------------------------------
 

@@ -49,8 +49,9 @@ inline real pdf_polygon(const Light& l, vec3 p, const Surface& y) {
     vec3 w = y.p - p;
     real d2 = dot(w, w);
     real cos_y = std::abs(dot(y.n, w)) / std::sqrt(d2);
-    real area = length(l.area_vector());
-    return cos_y > 0 ? d2 / (cos_y * area) : 0;
+    real pdf_area =
+        l.kind == Light::Kind::quad ? pdf_quad_area(l.u, l.v) : pdf_triangle_area(l.u, l.v);
+    return cos_y > 0 ? pdf_area * d2 / cos_y : 0;
 }
 
 // Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  The distance

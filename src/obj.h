@@ -47,16 +47,16 @@ private:
     template <class Statement>
     void each_line(const std::string& path, Statement read_words) {
         std::istringstream in(read_file(path));
-        line_ = 0;
+        int line = 0;
         for (std::string text; std::getline(in, text);) {
-            ++line_;
+            line_ = ++line;
             std::istringstream words(text.substr(0, text.find('#')));
             words_.clear();
             for (std::string word; words >> word;) words_.push_back(word);
             try {
                 if (!words_.empty()) read_words();
             } catch (const UserError& e) {
-                throw UserError(path + ":" + std::to_string(line_) + ": " + e.what());
+                throw UserError(path + ":" + std::to_string(line) + ": " + e.what());
             }
         }
     }
@@ -76,10 +76,8 @@ private:
             current_ = found->second;
         } else if (keyword == "mtllib") {
             const auto folder = std::filesystem::path(path).parent_path();
-            const int line = line_;
             const std::string library = (folder / word(1)).string();
             each_line(library, [&] { material_statement(); });
-            line_ = line;
         } else if (std::find(skipped.begin(), skipped.end(), keyword) == skipped.end()) {
             throw UserError(
                 unknown("keyword", keyword, {"v", "f", "usemtl", "mtllib", "vt", "vn"}));

@@ -65,6 +65,8 @@ int penumbra(const std::vector<std::string>& words) {
         replay(scene, o, pattern);
         return 0;
     }
+    if (o.view == View::variance && o.spp == 1)
+        throw UserError("--view variance: needs --spp 2 or more");
     catch_interrupt();
     std::error_code failed;
     if (o.default_outputs && (std::filesystem::create_directories("out", failed), failed))
@@ -83,16 +85,15 @@ int penumbra(const std::vector<std::string>& words) {
                           sample + " (replay it by --pixel " + pixel + " --sample " + sample +
                           "); nothing was written");
     }
+    if (o.view == View::variance && run.spp == 1)
+        throw UserError("--view variance: one sample has no variance; nothing was written");
     if (run.spp > 0) {
-        const Image variance = film.variance(o.sampler == SamplerKind::independent);
-        const bool known = o.halves || o.sampler == SamplerKind::independent;
-        const Image unknown(film.width, film.height);
-        for (const std::string& path : o.outputs)
-            write_image(path, o.view == View::variance ? variance : film.image(),
-                        double(scene.exposure));
+        const Image variance = film.variance(variance_estimate(o));
+        const Image image = o.view == View::variance ? variance : film.image();
+        for (const std::string& path : o.outputs) write_image(path, image, double(scene.exposure));
         if (!o.stats.empty())
-            write_file(o.stats, encode_stats(o, scene.size, scene.depth, run, film.image(),
-                                             known ? variance : unknown));
+            write_file(o.stats,
+                       encode_stats(o, scene.size, scene.depth, run, film.image(), variance));
     }
     return run.interrupted ? 130 : 0;
 }
@@ -140,8 +141,11 @@ PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, i
     const vec2 u = sampler.get2(film_x);
     const Ray ray = camera_ray(scene.camera, scene.size, real(x) + u.x, real(y) + u.y);
     if (log) log->film(u, ray);
-    if (o.view != View::radiance && o.view != View::variance)
-        return {view_along(scene, o.view, ray), 1};
+    if (o.view != View::radiance && o.view != View::variance) {
+        const rgb value = view_along(scene, o.view, ray);
+        if (log) log->end("a view, not radiance", value);
+        return {value, 1};
+    }
     return Li(scene, o, ray, sampler, log);
 }
 
@@ -152,9 +156,11 @@ PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, i
 real weight_of_emission(const Scene& scene, LightMode mode, vec3 p, real pdf_wi, const Hit& hit,
                         const Surface& y) {
     if (mode == LightMode::none || std::isinf(pdf_wi)) return 1;
-    if (mode == LightMode::nee) return 0;
     const Light& light = scene.lights[size_t(scene.light_of[hit.id])];
-    return power_heuristic(pdf_wi, light.pick * pdf_light(light, p, y));
+    const real pdf = light.pick * pdf_light(light, p, y);
+    // 0 where light samples do not go: the inside of a two-sided sphere light.
+    if (mode == LightMode::nee) return pdf > 0 ? 0 : 1;
+    return power_heuristic(pdf_wi, pdf);
 }
 
 // Radiance that one light, chosen at random, sends by way of x to wo: unbiased for the sum of all,

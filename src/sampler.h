@@ -97,7 +97,7 @@ public:
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
             }
             default:
-                return radical_inverse(2, index_);
+                return radical_inverse(5, index_);
         }
     }
 

@@ -260,7 +260,8 @@ TEST_CASE("the film's variances are those of the means: independent samples, and
             film.end_pass(pass);
         }
         CHECK(film.samples() == n);
-        const Image variance = film.variance(independent);
+        const Image variance =
+            film.variance(independent ? Film::Estimate::samples : Film::Estimate::halves);
         Moments m;
         for (const auto& p : variance.pixels) m.add(double(p[0]));
         const Verdict v = expect_mean(4 / 45.0 / double(n), estimate(m));
@@ -330,7 +331,7 @@ TEST_CASE("the statistics' variance is that of the mean from seed to seed") {
             const Pattern pattern = make_pattern(o.sampler, o.seed, halves, scene.depth, o.spp);
             Film film(scene.size);
             render(scene, o, pattern, film);
-            const Image variance = film.variance(!halves);
+            const Image variance = film.variance(variance_estimate(o));
             means.add(mean_of_pixels(film.image())[1]);
             predicted.add(mean_of_pixels(variance)[1] / double(variance.pixels.size()));
         }

@@ -3,8 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <initializer_list>
+#include <numbers>
+
 #include "../src/rng.h"
-#include "../src/vec.h"
 
 namespace {
 
@@ -57,7 +59,8 @@ TEST_CASE("p-values: quantiles of the normal, Student's and the chi-squared dist
     CHECK(p_of_z(4.891638475698590) == doctest::Approx(1e-6).epsilon(1e-9));
     // t with 1 degree is Cauchy, with 2 closed; 30: table (Abramowitz, Stegun 26.10).
     for (double t : {0.1, 1.0, 12.0, 1e4}) {
-        CHECK(p_of_t(t, 1) == doctest::Approx(1 - 2 * std::atan(t) / pi).epsilon(1e-8));
+        CHECK(p_of_t(t, 1) ==
+              doctest::Approx(1 - 2 * std::atan(t) / std::numbers::pi).epsilon(1e-8));
         CHECK(p_of_t(t, 2) == doctest::Approx(1 - t / std::sqrt(2 + t * t)).epsilon(1e-8));
     }
     CHECK(p_of_t(2.042, 30) == doctest::Approx(0.05).epsilon(1e-3));
