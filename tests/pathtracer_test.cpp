@@ -163,6 +163,32 @@ TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustic
     }
 }
 
+TEST_CASE("every way finds the same inside a two-sided sphere light, and by a lobe of exponent 0") {
+    const char* const shell = R"(
+size 32 16
+camera 0 0 5  0 0 0  20
+depth 3
+diffuse grey 0.6 0.6 0.6
+phong lobe 0 0 0  0.9 0.9 0.9  0
+glass clear 1
+light shell 1 1 1 twosided clear
+light lamp 5 5 5
+sphere 0 0 0  2  shell
+sphere -0.4 0 0  0.3  grey
+sphere 0.4 0 0  0.3  lobe
+sphere 0 0.9 0  0.2  lamp
+)";
+    const Scene scene = scene_of(shell);
+    const Estimate reference = image_mean(scene, options(techniques[5], 99), 1500);
+    uint64_t seed = 1;
+    for (const Technique& t : techniques) {
+        const Verdict v = expect_equal(image_mean(scene, options(t, seed++), 400), reference);
+        INFO(std::string(t.name), ": ", v.text);
+        CHECK(v.pass);
+        CHECK(v.delta_min < 0.02);
+    }
+}
+
 TEST_CASE("a point light gives rho / pi I cos / d^2, and nothing behind an obstacle") {
     const std::string text = R"(
 size 1 1
