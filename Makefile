@@ -40,7 +40,7 @@ out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scene
 test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests
 	@PROGRAM_SUFFIX=$(SUFFIX) $(OBJECTS)/all-tests
 
-techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NEE on coursework (8 minutes)
+techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NEE on coursework (10 minutes)
 	build/techniques$(SUFFIX)
 
 bench: build/bench$(SUFFIX)  ## rays a second, beside Embree if it is installed

@@ -9,7 +9,8 @@ enum class SamplerKind {
     independent,  // every number for itself
     stratified,   // jittered grids, shuffled
     halton,       // scrambled Halton points, every pixel its own randomisation
-    halton_naive  // as often met: the same points in every pixel and at every bounce; biased
+    halton_naive  // as often met: the same points in every pixel and at every bounce; biased.
+                  // One number: base 2; two: bases 2, 3 (three would add 5: none are drawn here)
 };
 
 // What each number of a path is for: dimension(k, what) at vertex k, the first surface being 0.
@@ -97,7 +98,7 @@ public:
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
             }
             default:
-                return radical_inverse(5, index_);
+                return radical_inverse(2, index_);
         }
     }
 
