@@ -1,16 +1,15 @@
 // bvh_test.cpp  a tree answers as a loop over all shapes does, bit for bit, only sooner
 #include "../src/bvh.h"
 
-#include <doctest/doctest.h>
-
 #include <chrono>
 
 #include "../src/rng.h"
+#include "expect.h"
 
 namespace {
 
-struct Random {
-    Rng rng;
+struct Dice {
+    Rng rng{seed_here()};
     real operator()(real lo, real hi) { return lo + (hi - lo) * to_unit(rng.bits()); }
     real decades(real lo, real hi) { return std::pow(real(10), (*this)(lo, hi)); }
     size_t below(size_t n) { return size_t(rng.bits() % n); }
@@ -71,7 +70,7 @@ struct Comparison {
 // ---- Rays ---------------------------------------------------------------------------------------
 
 // A corner of a triangle, a pole of a sphere.
-vec3 corner(const Shape& s, Random& random) {
+vec3 corner(const Shape& s, Dice& random) {
     const size_t i = random.below(3);
     if (!s.is_sphere()) return i == 0 ? s.a : i == 1 ? s.b : s.c;
     vec3 p = s.a;
@@ -80,7 +79,7 @@ vec3 corner(const Shape& s, Random& random) {
 }
 
 // A plane of the box of a shape as the tree stores it.
-real box_plane(const Shape& s, size_t a, Random& random) {
+real box_plane(const Shape& s, size_t a, Dice& random) {
     const Box box = bounds(s);
     return random.below(2) ? real(std::nextafter(float(box.lo.*axis[a]), -HUGE_VALF))
                            : real(std::nextafter(float(box.hi.*axis[a]), HUGE_VALF));
@@ -98,7 +97,7 @@ enum Aim {
     along_axis,
     aims
 };
-Ray aimed(const Shape& s, int aim, real reach, Random& random) {
+Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
     const vec3 anyhow = random.direction();
     const real distance = reach * random.decades(-1, 1);
     if (aim == anywhere) return {distance * random.direction(), anyhow};
@@ -135,7 +134,7 @@ Ray aimed(const Shape& s, int aim, real reach, Random& random) {
     return {o, d};
 }
 
-void judge(Comparison& c, int rays, real reach, Random& random) {
+void judge(Comparison& c, int rays, real reach, Dice& random) {
     for (int i = 0; i < rays; ++i)
         c.judge(aimed(c.shapes[random.below(c.shapes.size())], i % aims, reach, random));
 }
@@ -143,12 +142,12 @@ void judge(Comparison& c, int rays, real reach, Random& random) {
 // ---- Scenes, about as large as 1
 // -----------------------------------------------------------------
 
-Shape triangle(real edge, Random& random) {
+Shape triangle(real edge, Dice& random) {
     const vec3 a = random(0, 1) * random.direction();
     return {a, a + edge * random.direction(), a + edge * random.direction()};
 }
 
-Shapes soup(int triangles, int spheres, Random& random) {
+Shapes soup(int triangles, int spheres, Dice& random) {
     Shapes scene;
     for (int i = 0; i < triangles; ++i) scene.push_back(triangle(random.decades(-2, 0), random));
     for (int i = 0; i < spheres; ++i)
@@ -156,7 +155,7 @@ Shapes soup(int triangles, int spheres, Random& random) {
     return scene;
 }
 
-Shapes slivers(int n, Random& random) {
+Shapes slivers(int n, Dice& random) {
     Shapes scene;
     for (int i = 0; i < n; ++i) {
         const vec3 a = random(0, 1) * random.direction(), e = random.direction();
@@ -238,7 +237,7 @@ double seconds_of(const auto& work) {
 }  // namespace
 
 TEST_CASE("closest and occluded equal a loop over all shapes, on random and on awkward rays") {
-    Random random{{1}};
+    Dice random{{1}};
     const Shapes scenes[] = {
         soup(30, 0, random), soup(15, 15, random), soup(0, 20, random), ball(), grid(2), room(),
         soup(5, 0, random)};
@@ -255,7 +254,7 @@ TEST_CASE("closest and occluded equal a loop over all shapes, on random and on a
 TEST_CASE("a tree of one shape is hit exactly when the shape is, from far away too") {
     // From there rounding moves a ray by more than the padding of a box, which is in proportion to
     // the shape: the slabs must be wide enough.  Planes through 0 are not even rounded to float.
-    Random random{{2}};
+    Dice random{{2}};
     int hits = 0, different = 0;
     for (int i = 0; i < 60000; ++i) {
         Shape s = i % 8 == 0 ? soup(0, 1, random)[0] : triangle(1, random);
@@ -274,7 +273,7 @@ TEST_CASE("a tree of one shape is hit exactly when the shape is, from far away t
 }
 
 TEST_CASE("slivers seen edge-on or at their ends are hit in their boxes or not at all") {
-    Random random{{3}};
+    Dice random{{3}};
     int hits = 0, different = 0;
     for (int i = 0; i < 200; ++i) {
         const Shapes scene = slivers(10, random);
@@ -289,7 +288,7 @@ TEST_CASE("slivers seen edge-on or at their ends are hit in their boxes or not a
 }
 
 TEST_CASE("tree and loop agree at coordinates of 1e8, of 1e-8, and of all sizes at once") {
-    Random random{{4}};
+    Dice random{{4}};
     Shapes mixture;
     for (int i = 0; i < 60; ++i)
         mixture.push_back(scaled(soup(i % 2, 1 - i % 2, random), random.decades(-8, 8))[0]);
@@ -315,7 +314,7 @@ TEST_CASE("tree and loop agree at coordinates of 1e8, of 1e-8, and of all sizes 
 }
 
 TEST_CASE("of coincident shapes the first is hit, wherever the tree has put it") {
-    Random random{{5}};
+    Dice random{{5}};
     int wrong = 0;
     for (int i = 0; i < 300; ++i) {
         // 12 shapes, 5 times over, in any order: the least index is that of the first copy.
@@ -337,7 +336,7 @@ TEST_CASE("of coincident shapes the first is hit, wherever the tree has put it")
 }
 
 TEST_CASE("1e5 identical triangles are built quickly, and the first is hit") {
-    Random random{{6}};
+    Dice random{{6}};
     const Shape t = triangle(1, random);
     const Shapes scene(100000, t);
     Bvh tree;
@@ -362,7 +361,7 @@ TEST_CASE("1e5 identical triangles are built quickly, and the first is hit") {
 TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack") {
     // As far as the cubes of coordinates are numbers; in double beyond the floats of the boxes.
     const real octaves = sizeof(real) == 8 ? 300 : 40;
-    Random random{{7}};
+    Dice random{{7}};
     Shapes scene;
     const int n = 100000;
     for (int i = 0; i < n; ++i) {
@@ -384,7 +383,7 @@ TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack
 }
 
 TEST_CASE("a tree is quicker than a loop: it looks at few of its shapes") {
-    Random random{{8}};
+    Dice random{{8}};
     Shapes scene;
     for (int i = 0; i < 50000; ++i) scene.push_back(triangle(real(0.01), random));
     Comparison c{scene};
@@ -420,7 +419,7 @@ TEST_CASE("an empty tree is missed, and a ray that is not a number misses every 
 }
 
 TEST_CASE("a scene 2^20 times as large is hit at 2^20 times the distance, bit for bit") {
-    Random random{{9}};
+    Dice random{{9}};
     const real k = std::ldexp(real(1), 20);
     const Shapes scene = soup(50, 50, random), large = scaled(scene, k);
     const Bvh tree(scene), large_tree(large);

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "oracle.h"
+
 namespace {
 
 // Test cases of the run that just ended.
@@ -28,6 +30,9 @@ int main(int argc, char** argv) {
     const int status = context.run();
     if (context.shouldExit() && ran == 0) return status;  // --help, --list-test-cases
     if (ran == 0) std::puts("no test ran");
+    if (statistical_checks > 0)
+        std::printf("%d statistical checks; a false alarm has a probability of at most %.1e\n",
+                    statistical_checks, statistical_checks * alpha);
     std::printf("%u passed, %u failed\n", ran - failed, failed);
     return ran == 0 || failed > 0 ? 1 : status;
 }

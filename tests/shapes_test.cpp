@@ -1,17 +1,16 @@
 // shapes_test.cpp  rays meet what they are aimed at, where they should, and leave it for good
 #include "../src/shapes.h"
 
-#include <doctest/doctest.h>
-
 #include <vector>
 
 #include "../src/lights.h"
 #include "../src/rng.h"
+#include "expect.h"
 
 namespace {
 
-struct Random {
-    Rng rng;
+struct Dice {
+    Rng rng{seed_here()};
     real operator()(real lo, real hi) { return lo + (hi - lo) * to_unit(rng.bits()); }
     real decades(real lo, real hi) { return std::pow(real(10), (*this)(lo, hi)); }
     size_t below(size_t n) { return size_t(rng.bits() % n); }
@@ -85,7 +84,7 @@ Roots roots(const Shape& s, const Ray& ray) {
 }
 
 // From o, past the centre at a distance of x radii.
-Ray aimed(const Shape& s, vec3 o, real x, Random& random) {
+Ray aimed(const Shape& s, vec3 o, real x, Dice& random) {
     const real sine = x * s.r / length(s.a - o);
     const vec3 local = spherical(std::sqrt(1 - sine * sine), sine, random(0, 2 * pi));
     return {o, unit(frame(unit(s.a - o)).to_world(local))};
@@ -121,13 +120,13 @@ struct SphereVerdict {
 
 // ---- Triangles ----------------------------------------------------------------------------------
 
-Shape random_triangle(Random& random, real edge) {
+Shape random_triangle(Dice& random, real edge) {
     const vec3 a = random.direction();
     return {a, a + edge * random.direction(), a + edge * random.direction()};
 }
 
 // Edges of about 1, a width of 2^-7 down to 2^-narrowest.
-Shape random_sliver(Random& random, real narrowest) {
+Shape random_sliver(Dice& random, real narrowest) {
     const vec3 a = random.direction(), e = random.direction();
     const vec3 off = random.direction(std::exp2(random(-narrowest, -7)));
     return {a, a + e, a + random(0, 1) * e + off};
@@ -201,7 +200,7 @@ Mesh mapped(Mesh mesh, Map map) {
 
 // A point of the shape as a path finds it: hit by a ray from a few sizes away.  Nothing if
 // rounding leaves too little of the shape to be hit.
-std::optional<Surface> seen(const Shape& s, Random& random) {
+std::optional<Surface> seen(const Shape& s, Dice& random) {
     for (int attempt = 0; attempt < 100; ++attempt) {
         const vec3 target = s.is_sphere() ? s.a + random.direction(random(0, s.r))
                                           : point(s, random.barycentrics());
@@ -213,7 +212,7 @@ std::optional<Surface> seen(const Shape& s, Random& random) {
 }
 
 // On the side of n, as often near the horizon (down to a cosine of 1e-7) as anywhere.
-vec3 leaving(const Surface& x, Random& random) {
+vec3 leaving(const Surface& x, Dice& random) {
     const real z = random.below(2) ? random(0, 1) : random.decades(-7, 0);
     const vec3 d = frame(x.n).to_world(spherical(z, std::sqrt(1 - z * z), random(0, 2 * pi)));
     return dot(d, x.n) < 0 ? -d : d;
@@ -226,10 +225,10 @@ struct Placement {
 constexpr Placement placements[] = {{1, 0},   {1, 3},    {real(1e-6), 0}, {real(1e6), real(1e6)},
                                     {1, 100}, {1, 10000}};
 
-Shape placed(const Shape& s, const Placement& p, Random& random) {
+Shape placed(const Shape& s, const Placement& p, Dice& random) {
     return moved(scaled(s, p.scale), random.direction(p.distance));
 }
-Shape placed_anywhere(const Shape& s, Random& random) {
+Shape placed_anywhere(const Shape& s, Dice& random) {
     return placed(s, placements[random.below(std::size(placements))], random);
 }
 
@@ -238,7 +237,7 @@ Shape placed_anywhere(const Shape& s, Random& random) {
 // ---- Boxes --------------------------------------------------------------------------------------
 
 TEST_CASE("bounds contain their shape, and its surface points with their error") {
-    Random random{{1}};
+    Dice random{{1}};
     Worst outside;
     auto contain = [&](const Box& box, big3 p, big error) {
         outside.see(std::max({box.lo.x - p.x, box.lo.y - p.y, box.lo.z - p.z, p.x - box.hi.x,
@@ -285,7 +284,7 @@ TEST_CASE("boxes grow by points and boxes, and an empty one has no area and adds
 // ---- Spheres ------------------------------------------------------------------------------------
 
 TEST_CASE("a sphere is hit where a long double reference hits it, from near, far and inside") {
-    Random random{{2}};
+    Dice random{{2}};
     SphereVerdict near, far, within, past;
     const real farthest = sizeof(real) == 8 ? 7 : 4;  // decades of D/R
     for (int i = 0; i < 100000; ++i) {
@@ -308,7 +307,7 @@ TEST_CASE("a sphere is hit where a long double reference hits it, from near, far
 }
 
 TEST_CASE("rays aimed within 0.99 R of a centre always hit, beyond 1.01 R never") {
-    Random random{{3}};
+    Dice random{{3}};
     int missed = 0, hit = 0;
     for (real d : {real(10), real(100), real(1e4), sizeof(real) == 8 ? real(1e7) : real(1e3)})
         for (int i = 0; i < 50000; ++i) {
@@ -326,7 +325,7 @@ TEST_CASE("a sphere of radius 1e6 is hit where it should be from 1e-3 above it")
     // In float 1e6 and 1e6 + 1e-3 are the same number: there, from as near as bounds allow.
     const Shape s{{0, real(-1e6), 0}, {}, {}, real(1e6)};
     const real height = std::max(real(1e-3), 4 * 24 * ulp * s.r);
-    Random random{{4}};
+    Dice random{{4}};
     SphereVerdict verdict;
     for (int i = 0; i < 100000; ++i) verdict.judge(s, {{0, height, 0}, random.direction()});
     CHECK(verdict.wrong == 0);
@@ -340,7 +339,7 @@ TEST_CASE("tangent rays touch: the edge belongs to the sphere, what lies beyond 
     CHECK(meet(s, {{-5, 1, 0}, {1, 0, 0}})->t == 5);
     CHECK(meets(s, {{-5, 1 - 2 * ulp, 0}, {1, 0, 0}}));
     CHECK(!meets(s, {{-5, 1 + 2 * ulp, 0}, {1, 0, 0}}));
-    Random random{{5}};
+    Dice random{{5}};
     SphereVerdict verdict;
     for (int i = 0; i < 200000; ++i) {
         const Shape t{random.direction(), {}, {}, random.decades(-3, 3)};
@@ -354,7 +353,7 @@ TEST_CASE("tangent rays touch: the edge belongs to the sphere, what lies beyond 
 }
 
 TEST_CASE("from a point exactly on a sphere, rays out miss it and rays in meet its far side") {
-    Random random{{6}};
+    Dice random{{6}};
     int wrong = 0;
     Worst error;
     for (vec3 q : {vec3{2, 3, 6}, vec3{1, 4, 8}, vec3{4, 4, 7}, vec3{1, 2, 2}, vec3{0, 3, 4}})
@@ -376,7 +375,7 @@ TEST_CASE("from a point exactly on a sphere, rays out miss it and rays in meet i
 }
 
 TEST_CASE("surface moves a sphere's hit onto the sphere, however far the eye") {
-    Random random{{7}};
+    Dice random{{7}};
     Worst off, tilt;
     bool covered = true;
     for (int i = 0; i < 100000; ++i) {
@@ -413,7 +412,7 @@ TEST_CASE("closed meshes let no ray out at an edge or a corner") {
                   {cones(8, real(1e-8)), {1, 1, 1}},      // slivers of aspect 1e8
                   {mapped(icosphere(), [&](vec3 p) { return p * needle; }), needle}};
     const Frame turned = frame(unit({1, -2, 3}));
-    Random random{{8}};
+    Dice random{{8}};
     for (const auto& [mesh, size] : meshes)
         for (int kind = 0; kind < 6; ++kind) {
             auto place = [&](vec3 p) {
@@ -449,7 +448,7 @@ TEST_CASE("closed meshes let no ray out at an edge or a corner") {
 }
 
 TEST_CASE("a triangle is hit where a long double reference hits it, from both sides") {
-    Random random{{9}};
+    Dice random{{9}};
     Worst v_error, t_error;
     int misses = 0;
     for (int i = 0; i < 50000; ++i) {
@@ -487,7 +486,7 @@ TEST_CASE("a triangle is hit where a long double reference hits it, from both si
 TEST_CASE("every hit of a triangle lies on its ray, however thin the triangle") {
     // The shear moves corners by 5 ulp of their distance M, the weights (products 1.5 ulp, sum 2,
     // division 1) and sums add 7 ulp, in two coordinates; t loses 16 ulp along the ray.
-    Random random{{10}};
+    Dice random{{10}};
     Worst off;
     int hits = 0, infinite = 0;
     for (int i = 0; i < 300000; ++i) {
@@ -512,7 +511,7 @@ TEST_CASE("every hit of a triangle lies on its ray, however thin the triangle") 
 }
 
 TEST_CASE("a triangle with two equal corners is never hit") {
-    Random random{{11}};
+    Dice random{{11}};
     int hits = 0;
     for (int i = 0; i < 100000; ++i) {
         const vec3 a = random.direction(), b = a + random.direction(random.decades(-6, 1));
@@ -524,7 +523,7 @@ TEST_CASE("a triangle with two equal corners is never hit") {
 }
 
 TEST_CASE("tiny triangles are hit") {
-    Random random{{12}};
+    Dice random{{12}};
     int misses = 0;
     for (int i = 0; i < 100000; ++i) {
         const real edge = sizeof(real) == 8 ? random.decades(-12, -6) : random.decades(-8, -6);
@@ -538,7 +537,7 @@ TEST_CASE("tiny triangles are hit") {
 }
 
 TEST_CASE("a triangle's surface point and normal are those of the triangle, however far the eye") {
-    Random random{{13}};
+    Dice random{{13}};
     Worst off, tilt;
     bool covered = true;
     for (int i = 0; i < 100000; ++i) {
@@ -580,7 +579,7 @@ TEST_CASE("rays reach up to tmax, that included, and begin after their origin") 
 // ---- Where the next ray starts ------------------------------------------------------------------
 
 TEST_CASE("a ray that leaves a surface never meets it again, at any angle") {
-    Random random{{14}};
+    Dice random{{14}};
     int again = 0, rays = 0;
     for (const Placement& p : placements)
         for (int i = 0; i < 2000; ++i) {
@@ -604,7 +603,7 @@ TEST_CASE("a ray that leaves a surface never meets it again, at any angle") {
 }
 
 TEST_CASE("a ray sent into a sphere meets its far side") {
-    Random random{{15}};
+    Dice random{{15}};
     Worst off;
     for (const Placement& p : placements)
         for (int i = 0; i < 20000; ++i) {
@@ -624,7 +623,7 @@ TEST_CASE("a ray sent into a sphere meets its far side") {
 }
 
 TEST_CASE("a ray starts 2 errors off its surface, and meets what lies 6 errors above") {
-    Random random{{16}};
+    Dice random{{16}};
     int jumped = 0;
     Worst off;
     for (const Placement& p : placements)
@@ -646,7 +645,7 @@ TEST_CASE("a ray starts 2 errors off its surface, and meets what lies 6 errors a
 }
 
 TEST_CASE("nothing is between two surface points that see each other, and what is, is found") {
-    Random random{{17}};
+    Dice random{{17}};
     int blocked = 0, open = 0, segments = 0;
     for (const Placement& p : placements)
         for (int i = 0; i < 40000; ++i) {
@@ -679,7 +678,7 @@ TEST_CASE("nothing is between two surface points that see each other, and what i
 }
 
 TEST_CASE("points of one sphere see each other through its inside, and two walls across an edge") {
-    Random random{{18}};
+    Dice random{{18}};
     int blocked = 0;
     for (const Placement& p : placements)
         for (int i = 0; i < 20000; ++i) {
@@ -705,7 +704,7 @@ TEST_CASE("points of one sphere see each other through its inside, and two walls
 }
 
 TEST_CASE("no light stands in its own way, near or far") {
-    Random random{{19}};
+    Dice random{{19}};
     int blocked = 0, samples = 0;
     for (int i = 0; i < 100000; ++i) {
         const Shape t = random_triangle(random, 1), ball{{}, {}, {}, real(0.5)};
@@ -731,7 +730,7 @@ TEST_CASE("no light stands in its own way, near or far") {
 }
 
 TEST_CASE("a scene 2^20 times as large gives the same numbers 2^20 times as large, bit for bit") {
-    Random random{{20}};
+    Dice random{{20}};
     const real k = std::ldexp(real(1), 20);
     int different = 0;
     for (int i = 0; i < 50000; ++i) {
