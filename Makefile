@@ -7,9 +7,12 @@ SIZE  ?= 256x128
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
 FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -MMD -MP \
             -Wall -Wextra -Wpedantic -Wshadow -Werror
-OPTIMISE := $(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O3)
-SUFFIX   := $(if $(filter float,$(REAL)),-float)$(if $(DEBUG),-debug)
-OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(if $(DEBUG),-debug)
+SANITISE := -O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all
+OPTIMISE := $(if $(SAN),$(SANITISE),$(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O3))
+VARIANT  := $(if $(SAN),-san,$(if $(DEBUG),-debug))
+SUFFIX   := $(if $(filter float,$(REAL)),-float)$(VARIANT)
+OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(VARIANT)
+LINK     := -pthread $(if $(SAN),$(SANITISE))
 
 ifeq ($(filter double float,$(REAL)),)
   $(error REAL is double or float, not '$(REAL)')
@@ -37,8 +40,8 @@ out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scene
 	@mkdir -p out
 	$(PENUMBRA) --size $(SIZE) -o out/$*.png -o out/$*.pfm $<
 
-test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests
-	@PROGRAM_SUFFIX=$(SUFFIX) $(OBJECTS)/all-tests
+test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests; ONLY=bvh: files with that name
+	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(OBJECTS)/all-tests $(ONLY)
 
 techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NEE on coursework (10 minutes)
 	build/techniques$(SUFFIX)
@@ -50,7 +53,7 @@ clean:  ## remove build/ and out/
 	rm -rf build out
 
 help:  ## print this
-	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1] [SIZE=WxH] [ARCH=native]"
+	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 # The mesh of scenes/mesh.scene is ours, too.
@@ -66,17 +69,17 @@ build/%$(SUFFIX): $(OBJECTS)/%.exe always
 	@cmp -s $< $@ || cp $< $@
 
 $(OBJECTS)/penumbra.exe: $(OBJECTS)/pathtracer.o
-	$(CXX) -pthread -o $@ $^
+	$(CXX) $(LINK) -o $@ $^
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
-	$(CXX) -pthread -o $@ $^ $(LIBRARIES)
+	$(CXX) $(LINK) -o $@ $^ $(LIBRARIES)
 
 # bench.cpp asks for the same header in the same way.
 $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>\n' | \
                                           $(CXX) -x c++ -fsyntax-only - 2>/dev/null && echo -lembree3)
 
 $(OBJECTS)/all-tests: $(TESTS)
-	$(CXX) -pthread -o $@ $^
+	$(CXX) $(LINK) -o $@ $^
 
 $(OBJECTS)/tests/%.o: tests/%.cpp Makefile | packages
 	@mkdir -p $(@D)
