@@ -371,10 +371,12 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities) 
     return v;
 }
 
-// Integral of f over [a,b]: Gauss and Kronrod's rules of 7 and 15 points, halved until they agree
-// within `tolerance`, or 30 times (a jump).
+// Integral of f over [a,b] by Gauss and Kronrod's rules of 7 and 15 points, halved until they agree
+// within `tolerance`, or within `noise`, the relative rounding of f, or 30 times.  The tolerance
+// is each part's: a jump of f then costs log2(jump / tolerance) halvings, and few parts come close.
 template <class F>
-double integral(const F& f, double a, double b, double tolerance, int depth = 30) {
+double integral(const F& f, double a, double b, double tolerance, double noise = 0x1p-50,
+                int depth = 30) {
     static constexpr struct {
         double x, kronrod, gauss;
     } nodes[] = {
@@ -397,9 +399,10 @@ double integral(const F& f, double a, double b, double tolerance, int depth = 30
         kronrod += node.kronrod * sum;
         gauss += node.gauss * sum;
     }
-    if (depth == 0 || !(std::abs(kronrod - gauss) * half > tolerance)) return kronrod * half;
-    return integral(f, a, middle, tolerance / 2, depth - 1) +
-           integral(f, middle, b, tolerance / 2, depth - 1);
+    const double agree = std::max(tolerance, noise * std::abs(kronrod) * half);
+    if (depth == 0 || !(std::abs(kronrod - gauss) * half > agree)) return kronrod * half;
+    return integral(f, a, middle, tolerance, noise, depth - 1) +
+           integral(f, middle, b, tolerance, noise, depth - 1);
 }
 
 // Cartesian coordinates in double of a point or direction, whatever its type.
@@ -511,8 +514,10 @@ struct Cells {
     // Integral of density(Polar) sin(theta) over each.  Panels in theta double in width, so that no
     // narrow lobe about the axis hides between the nodes.
     template <class Density>
-    std::array<double, bands * sectors> integrals(const Density& density, double tolerance) const {
+    std::array<double, bands * sectors> integrals(const Density& density, double tolerance,
+                                                  double noise) const {
         using std::numbers::pi;
+        const int depth = 1 - std::ilogb(noise);  // no finer than f can tell where it jumps
         std::array<double, bands * sectors> sums{};
         for (size_t cell = 0; cell < sums.size(); ++cell) {
             const size_t i = cell / sectors;
@@ -533,7 +538,7 @@ struct Cells {
                             0.1 * tolerance / (to - from));
                     return sum * std::sin(t);
                 };
-                sums[cell] += integral(ring, from, to, tolerance);
+                sums[cell] += integral(ring, from, to, tolerance, 2 * noise, depth);
             }
         }
         return sums;
@@ -571,10 +576,10 @@ Verdict expect_density(Random& random, Sample sample, Pdf pdf, DensityOptions o 
     for (Polar& p : pilot) p = draw_one();
     if (!bad.empty()) return failure(bad);
     const Cells cells(pilot);
-    const auto probabilities = cells.integrals(density, std::max(1e-9, 32 * unit));
+    const double allowed = o.tolerance > 0 ? o.tolerance : std::max(1e-6, 512 * unit);
+    const auto probabilities = cells.integrals(density, allowed / 300, allowed / 8);
     double total = 0;
     for (double p : probabilities) total += p;
-    const double allowed = o.tolerance > 0 ? o.tolerance : std::max(1e-6, 512 * unit);
     if (!(std::abs(total - 1) <= allowed)) {
         Verdict v = failure(print("the integral of pdf over the sphere is %.8g, expected 1 +- %.0e",
                                   total, allowed));
