@@ -30,7 +30,7 @@ constexpr real cosines[] = {1, real(0.6), real(0.05), real(1e-3)};
 // direction, in bands that double in width.
 double albedo(const Material& m, vec3 wo) {
     const PolarFrame f(triple(mirrored(wo)));
-    const double precise = single ? 1e-5 : 1e-9;
+    const double precise = single ? std::max(1e-5, double(m.exponent * ulp)) : 1e-9;
     const int depth = single ? 13 : 24;
     auto ring = [&](double theta) {
         auto along = [&](double phi) {

@@ -1085,6 +1085,46 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("compare: two images with their variances show the same, or not") {
+    const Folder folder;
+    folder.write("f.pfm", pfm(2, 1, {1, 2, 3, 4, 5, 6}));
+    folder.write("g.pfm", pfm(2, 1, {1, 2, 3, 4, 8, 6}));  // green sums up to 3 more
+    folder.write("none.pfm", pfm(2, 1, {0, 0, 0, 0, 0, 0}));
+    folder.write("v.pfm", pfm(2, 1, {1, 1, 1, 1, 1.25f, 1}));
+    auto verdict = [&](const std::string& words) {
+        const Outcome o = run(folder, "compare", split(words));
+        CHECK(o.status == 0);
+        double sigmas = -1, p = -1;
+        const size_t at = o.out.find("equal means:");
+        REQUIRE(at != o.out.npos);
+        CHECK(std::sscanf(o.out.c_str() + at, "equal means: %lf sigma, p = %lf", &sigmas, &p) == 2);
+        return std::pair{sigmas, p};
+    };
+    // Variance of the difference 2 x 2.25: 3 / sqrt(4.5) = 1.41 sigma, p = .1573 of one channel.
+    const auto [sigmas, p] = verdict("--variances v.pfm v.pfm f.pfm g.pfm");
+    CHECK(sigmas == 1.41);
+    CHECK(p == 0.47);
+    CHECK(verdict("g.pfm f.pfm --variances none.pfm v.pfm") == std::pair{-2.0, 0.14});
+    CHECK(verdict("f.pfm f.pfm --variances none.pfm none.pfm") == std::pair{0.0, 1.0});
+    CHECK(verdict("f.pfm g.pfm --variances none.pfm none.pfm").second == 0);
+    // Renders: another seed shows the same, another depth does not.
+    const std::string scene =
+        "camera 0 1 5 0 0 0 60\ndiffuse grey 0.5 0.5 0.5\nlight lamp 9 9 9\n"
+        "quad -5 0 -5 0 0 10 10 0 0 grey\nsphere 0 3 0 1 lamp\nsphere 1 0.5 1 0.5 grey\n";
+    folder.write("a.scene", scene);
+    const std::string options = "--quiet --size 32x16 --spp 64 --sampler independent ";
+    for (const auto& [name, more] :
+         {std::pair{"a", "--seed 1"}, {"b", "--seed 2"}, {"c", "--depth 0"}}) {
+        std::string line = options;
+        line.append(more).append(" a.scene -o ").append(name);
+        std::string image = line, variance = line;
+        expect_success(folder, "penumbra", split(image.append(".pfm")));
+        expect_success(folder, "penumbra", split(variance.append("v.pfm --view variance")));
+    }
+    CHECK(verdict("a.pfm b.pfm --variances av.pfm bv.pfm").second > 1e-6);
+    CHECK(verdict("a.pfm c.pfm --variances av.pfm cv.pfm").second < 1e-6);
+}
+
 TEST_CASE("compare: images that cannot be compared are refused, and nothing is written") {
     const Folder folder;
     const std::string one = pfm(1, 1, {1, 1, 1});
@@ -1101,6 +1141,7 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
     folder.write("text.pfm", "a picture\n");
     folder.write("big.pfm", "PF\n1 1\n1.0\n" + one.substr(12));  // big-endian
     folder.write("huge.pfm", "PF\n1000000 1000000\n-1.0\n");
+    folder.write("minus.pfm", pfm(1, 1, {1, -1, 1}));
     const std::string not_pfm = ": not a little-endian colour PFM file",
                       usage_line = "usage: compare";
     const std::pair<std::string, std::string> rows[] = {
@@ -1128,6 +1169,10 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
         {"one.pfm one.pfm --heatmap missing/a.png", "missing/a.png: cannot write: No such file"},
         {"one.pfm two.pfm --heatmap a.png", "sizes differ"},
         {"two.pfm nan.pfm --heatmap a.png", "nan.pfm: pixel 1,0 is not finite"},
+        {"one.pfm one.pfm --variances one.pfm", "--variances: needs two files"},
+        {"one.pfm one.pfm --variances one.pfm two.pfm", "sizes differ: 1x1 and 2x1"},
+        {"one.pfm one.pfm --variances one.pfm minus.pfm", "minus.pfm: a variance is negative"},
+        {"two.pfm two.pfm --variances two.pfm nan.pfm", "nan.pfm: pixel 1,0 is not finite"},
         {"one.pfm one.pfm --heat a.png", "unknown option '--heat' (did you mean '--heatmap'?)"},
     };
     for (const auto& [line, why] : rows) expect_refusal(folder, "compare", split(line), why);

@@ -1,10 +1,14 @@
 // compare.cpp  floor 5  how far is one image from another?
 //
-//   build/compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png]
+//   build/compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png] [--variances F.pfm G.pfm]
 //
 // With f the reference, g the image and N numbers (three a pixel):
 //   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
+//
+// With the variances of both images' pixels (--view variance), also whether they show the same:
+// Welch's test of the images' means.
 #include "../image.h"
+#include "../stats.h"
 
 namespace {
 
@@ -32,6 +36,30 @@ Difference difference(const Image& f, const Image& g) {
     result.d = std::sqrt(squares / (3.0 * double(f.pixels.size())));
     result.d_rel = std::sqrt(squares / reference);
     result.ratio_of_means = sum_g / sum_f;
+    return result;
+}
+
+// Whether the means of both images over all pixels are equal, by channel (Welch 1947; Jung, Hanika,
+// Dachsbacher 2020 do so by pixel, which sees far less).  Pixels are independent, and means of that
+// many are normal.
+struct Equality {
+    double sigmas = 0;  // of the channel that differs most
+    double p = 1;       // two-sided, of three channels (Bonferroni)
+};
+
+Equality equality(const Image& f, const Image& g, const Image& variance_f,
+                  const Image& variance_g) {
+    Equality result;
+    for (size_t c = 0; c < 3; ++c) {
+        double difference = 0, variance = 0;
+        for (size_t i = 0; i < f.pixels.size(); ++i) {
+            difference += double(g.pixels[i][c]) - double(f.pixels[i][c]);
+            variance += double(variance_f.pixels[i][c]) + double(variance_g.pixels[i][c]);
+        }
+        const double sigmas = difference != 0 ? difference / std::sqrt(variance) : 0;
+        if (std::abs(sigmas) >= std::abs(result.sigmas)) result.sigmas = sigmas;
+    }
+    result.p = std::min(1.0, 3 * p_of_z(result.sigmas));
     return result;
 }
 
@@ -63,33 +91,63 @@ void check_finite(const std::string& path, const Image& image) {
                                     std::to_string(y) + " is not finite");
 }
 
+void check_same_size(const Image& f, const Image& g) {
+    if (f.width != g.width || f.height != g.height)
+        throw UserError("sizes differ: " + std::to_string(f.width) + "x" +
+                        std::to_string(f.height) + " and " + std::to_string(g.width) + "x" +
+                        std::to_string(g.height));
+}
+
+// The variances of an image's pixels.
+Image read_variance(const std::string& path, const Image& image) {
+    const Image variance = read_pfm(path);
+    check_same_size(image, variance);
+    check_finite(path, variance);
+    for (const auto& pixel : variance.pixels)
+        if (std::min({pixel[0], pixel[1], pixel[2]}) < 0)
+            throw UserError(path + ": a variance is negative");
+    return variance;
+}
+
 int compare(const std::vector<std::string>& words) {
-    std::vector<std::string> images;
+    std::vector<std::string> images, variances;
     std::string map;
     for (size_t i = 0; i < words.size(); ++i) {
         if (words[i] == "--heatmap") {
             if (++i == words.size()) throw UserError("--heatmap: needs a value");
             map = words[i];
             if (!map.ends_with(".png")) throw UserError("--heatmap: not a .png file: " + map);
+        } else if (words[i] == "--variances") {
+            if (i + 2 >= words.size()) throw UserError("--variances: needs two files");
+            variances = {words[i + 1], words[i + 2]};
+            i += 2;
         } else if (words[i].starts_with("--")) {
-            throw UserError(unknown("option", words[i], {"--heatmap"}));
+            throw UserError(unknown("option", words[i], {"--heatmap", "--variances"}));
         } else {
             images.push_back(words[i]);
         }
     }
     if (images.size() != 2)
-        throw UserError("usage: compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png]");
+        throw UserError(
+            "usage: compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png] [--variances F.pfm "
+            "G.pfm]");
     const Image f = read_pfm(images[0]), g = read_pfm(images[1]);
-    if (f.width != g.width || f.height != g.height)
-        throw UserError("sizes differ: " + std::to_string(f.width) + "x" +
-                        std::to_string(f.height) + " and " + std::to_string(g.width) + "x" +
-                        std::to_string(g.height));
+    check_same_size(f, g);
     check_finite(images[0], f);
     check_finite(images[1], g);
+    std::string verdict;
+    if (!variances.empty()) {
+        const Equality e =
+            equality(f, g, read_variance(variances[0], f), read_variance(variances[1], g));
+        char line[100];
+        std::snprintf(line, sizeof line, "equal means: %+.2f sigma, p = %.2g\n", e.sigmas, e.p);
+        verdict = line;
+    }
     if (!map.empty()) check_writable(map);
     const Difference result = difference(f, g);
-    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n",
-                result.d, result.d_rel, result.ratio_of_means, result.largest, result.x, result.y);
+    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n%s",
+                result.d, result.d_rel, result.ratio_of_means, result.largest, result.x, result.y,
+                verdict.c_str());
     if (!map.empty()) write_image(map, heatmap(f, g, result.d), 1);
     return 0;
 }
