@@ -27,7 +27,7 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test soak techniques bench clean help layers packages always
+.PHONY: all programs test soak techniques bench extremes clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -51,6 +51,24 @@ techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NE
 
 bench: build/bench$(SUFFIX)  ## rays a second, beside Embree if it is installed
 	build/bench$(SUFFIX)
+
+extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)
+	@for real in double float; do \
+	    $(MAKE) --no-print-directory REAL=$$real build/extremes-$$real.rows || exit 1; done
+	@{ printf '# What precision buys\n\nWritten by `make extremes`.  Errors are relative, or counts; the bound is what is demanded of\n'; \
+	   printf 'them.  "-": float cannot tell the configuration from another, and nothing is demanded.\n\n'; \
+	   printf '| configuration: measured | double: bound | error | | float: bound | error | |\n|---|---|---|---|---|---|---|\n'; \
+	   paste build/extremes-double.rows build/extremes-float.rows | awk -F '\t' ' \
+	       function verdict(bound, error) { \
+	           return bound == "inf" ? "-" : error != "nan" && error + 0 <= bound + 0 ? "pass" : "FAIL" } \
+	       { print "| " $$1 " | " $$2 " | " $$4 " | " verdict($$2, $$4) " | " ($$7 == "inf" ? "-" : $$7) \
+	               " | " $$8 " | " verdict($$7, $$8) " |" }'; } > reference/extremes.md
+	@grep -c pass reference/extremes.md | sed 's/$$/ configurations, in reference\/extremes.md/'; ! grep FAIL reference/extremes.md
+
+# Exit status 1: a row is red, which the table shows.
+build/extremes-$(REAL).rows: $(OBJECTS)/tests/extremes_test.o $(OBJECTS)/tests/main.o always
+	$(CXX) $(LINK) -o $(OBJECTS)/extremes $(filter %.o,$^)
+	@EXTREMES=$@ $(OBJECTS)/extremes >$@.log || [ $$? = 1 ] || { cat $@.log; exit 1; }
 
 clean:  ## remove build/ and out/
 	rm -rf build out

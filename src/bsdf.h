@@ -79,9 +79,9 @@ inline real fresnel(real cos_i, real cos_t, real eta) {
 // index: eta^2 when it leaves the medium of wi for that of wo (Veach 1997, sec. 5.2).
 inline BsdfSample sample_glass(const Material& m, vec3 wo, bool outside, real u) {
     real eta = outside ? 1 / m.ior : m.ior;
-    real sin2_t = sqr(eta) * (sqr(wo.x) + sqr(wo.y));
-    real cos_t = std::sqrt(std::max(real(0), 1 - sin2_t));
-    real reflectance = sin2_t < 1 ? fresnel(wo.z, cos_t, eta) : 1;
+    real cos2_t = (1 - eta) * (1 + eta) + sqr(eta * wo.z);  // 1 - eta^2 sin^2, grazing, too
+    real cos_t = cos2_t > 0 ? std::sqrt(cos2_t) : 0;
+    real reflectance = cos2_t > 0 ? fresnel(wo.z, cos_t, eta) : 1;
     if (u < reflectance) {
         real f = reflectance / wo.z;
         return {mirrored(wo), {f, f, f}, reflectance};

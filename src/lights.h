@@ -54,19 +54,21 @@ inline real pdf_polygon(const Light& l, vec3 p, const Surface& y) {
     return cos_y > 0 ? pdf_area * d2 / cos_y : 0;
 }
 
-// Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  The distance
-// to its near side is the product of the roots over the far one: no cancellation close by.
+// Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  In radii, the
+// ray passes the centre at a distance of sin(beta) = sin(theta) / sin(sigma) and meets the sphere
+// cos(beta) before, cos^2(beta) = (1 - u) (cos(theta) + cos(sigma)) / (1 + cos(sigma)): as exact
+// far away and at the limb as it is close by.
 inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, vec2 u) {
     auto sin2_max = sin2_subtended(l, p);
     if (!sin2_max) return {};
     vec3 local = sample_cone(u, *sin2_max);
-    vec3 to_centre = l.p - p;
-    real d = length(to_centre);
-    vec3 wi = frame(to_centre / d).to_world(local);
+    real sin_max = std::sqrt(*sin2_max), cos_max = std::sqrt(1 - *sin2_max);
     real sin2 = sqr(local.x) + sqr(local.y);
-    real half_chord = std::sqrt(std::max(real(0), sqr(l.r) - sqr(d) * sin2));
-    real t = (d - l.r) * (d + l.r) / (d * local.z + half_chord);
-    vec3 n = unit(t * wi - to_centre);
+    vec3 foot = vec3{local.z * local.x, local.z * local.y, -sin2} / sin_max;
+    real before = std::sqrt((1 - u.x) * (local.z + cos_max) / (1 + cos_max));
+    const Frame f = frame(unit(l.p - p));
+    vec3 wi = f.to_world(local);
+    vec3 n = unit(f.to_world(foot - before * local));
     return LightSample{wi, {l.p + l.r * n, n, l.error}, l.L, pdf_cone(*sin2_max)};
 }
 

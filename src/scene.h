@@ -73,10 +73,11 @@ inline void add_sphere(Scene& s, vec3 centre, real r, uint32_t material) {
     add_shape(s, sphere, material, add_light(s, light, material, rounding_error(sphere)));
 }
 
-// Whether a triangle has an area to be hit or sampled.
+// Whether a triangle has an area to be hit or sampled, and a normal: its square must neither
+// overflow nor be denormal, or unit loses digits.
 inline bool has_area(const Shape& s) {
-    vec3 n = unit(area_vector(s));
-    return is_finite(n);
+    vec3 n = area_vector(s);
+    return std::isnormal(dot(n, n));
 }
 
 // Returns the number of triangles dropped because they have no area.
@@ -131,14 +132,19 @@ inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
     if (max_of(intensity) > 0) s.lights.push_back(light);
 }
 
-// Builds the tree, and lets lights be chosen in proportion to their power.
+// Builds the tree, and lets lights be chosen in proportion to their power.  Random numbers are
+// multiples of ulp: so are the probabilities, exactly, and by a share dealt evenly none is 0.
 inline void prepare(Scene& s) {
     s.bvh = Bvh(s.shapes);
-    double total = 0, sum = 0;
+    const double n = double(s.lights.size()), even = std::min(0.5, 2 * n * double(ulp));
+    double total = 0, sum = 0, before = 0;
     for (const Light& l : s.lights) total += power(l);
     for (Light& l : s.lights) {
-        l.pick = real(power(l) / total);
-        s.pick_cdf.push_back(sum += power(l) / total);
+        sum += power(l);
+        const double cdf = even * double(s.pick_cdf.size() + 1) / n + (1 - even) * (sum / total);
+        s.pick_cdf.push_back(std::round(cdf / double(ulp)) * double(ulp));
+        l.pick = real(s.pick_cdf.back() - before);
+        before = s.pick_cdf.back();
     }
 }
 

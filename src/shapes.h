@@ -151,10 +151,12 @@ inline std::optional<Hit> intersect(const Shape& s, const Ray& ray, const Shear&
 // Twice the area of a triangle, along its normal.
 inline vec3 area_vector(const Shape& s) { return cross(s.b - s.a, s.c - s.a); }
 
-// The point hit, moved onto the shape itself: it is as exact far from the eye as near it.
+// The point hit, moved onto the shape itself: it is as exact far from the eye as near it.  So far
+// away that rounding leaves only a sphere's centre, it is the point towards the eye.
 inline Surface surface(const Shape& s, const Ray& ray, const Hit& hit) {
     if (s.is_sphere()) {
-        vec3 n = unit(ray.o + hit.t * ray.d - s.a);
+        vec3 out = ray.o + hit.t * ray.d - s.a;
+        vec3 n = out == vec3{} ? -ray.d : unit(out);
         return {s.a + s.r * n, n, rounding_error(s)};
     }
     vec3 p = (1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c;
