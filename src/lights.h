@@ -36,11 +36,12 @@ struct LightSample {
     bool delta = false;
 };
 
-// sin^2 of the half-angle of the cone that a sphere subtends; nothing from its inside.
+// sin^2 of the half-angle of the cone that a sphere subtends; nothing from its inside, nor from
+// where rounding leaves open whether p is on its inner side or on its outer.
 inline std::optional<real> sin2_subtended(const Light& l, vec3 p) {
     vec3 f = l.p - p;
     real d2 = dot(f, f);
-    if (!(d2 > sqr(l.r))) return {};
+    if (!(d2 > sqr(l.r + l.error))) return {};
     return sqr(l.r) / d2;
 }
 

@@ -11,13 +11,14 @@ struct PathSample {
     uint64_t rays = 0;
 };
 
-int penumbra(const std::vector<std::string>& words);
-void replay(const Scene& scene, const Options& o, const Pattern& pattern);
-RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film);
-PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
-                 uint64_t sample, const PathLog* log = nullptr);
-PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& sampler,
-              const PathLog* log = nullptr);
+// Inline, for more than one test includes this file.
+inline int penumbra(const std::vector<std::string>& words);
+inline void replay(const Scene& scene, const Options& o, const Pattern& pattern);
+inline RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film);
+inline PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
+                        uint64_t sample, const PathLog* log = nullptr);
+inline PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& sampler,
+                     const PathLog* log = nullptr);
 
 // ---- Main -------------------------------------------------------------------------------------
 
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
 #endif
 
 // The scene that the user asks for; throws UserError if it is not to be had.
-Scene load(const Options& o) {
+inline Scene load(const Options& o) {
     auto [scene, warnings] = read_scene(o.scene);
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
@@ -153,8 +154,8 @@ PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, i
 
 // Weight of emission that a ray met by chance, its direction drawn from point p with density
 // pdf_wi (infinite: from the camera, a mirror or glass, which no light sample can imitate).
-real weight_of_emission(const Scene& scene, LightMode mode, vec3 p, real pdf_wi, const Hit& hit,
-                        const Surface& y) {
+inline real weight_of_emission(const Scene& scene, LightMode mode, vec3 p, real pdf_wi,
+                               const Hit& hit, const Surface& y) {
     if (mode == LightMode::none || std::isinf(pdf_wi)) return 1;
     const Light& light = scene.lights[size_t(scene.light_of[hit.id])];
     const real pdf = light.pick * pdf_light(light, p, y);
@@ -165,9 +166,9 @@ real weight_of_emission(const Scene& scene, LightMode mode, vec3 p, real pdf_wi,
 
 // Radiance that one light, chosen at random, sends by way of x to wo: unbiased for the sum of all,
 // f L cos / (pick pdf) where nothing is in the way.  Under MIS, its weighted share of it.
-PathSample direct(const Scene& scene, const Options& o, const Material& m, const Surface& x,
-                  const Frame& local, vec3 wo, const Sampler& sampler, int vertex,
-                  const PathLog* log) {
+inline PathSample direct(const Scene& scene, const Options& o, const Material& m, const Surface& x,
+                         const Frame& local, vec3 wo, const Sampler& sampler, int vertex,
+                         const PathLog* log) {
     if (o.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
     const Light& light = choose_light(scene, sampler.get(dimension(vertex, Draw::pick)));
     const auto s = sample_light(light, x.p, sampler.get2(dimension(vertex, Draw::light_x)));
@@ -202,7 +203,7 @@ PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& samp
         ++path.rays;
         if (!hit) return end("the ray leaves the scene");
         const Surface x = surface(scene.shapes[hit->id], ray, *hit);
-        const Material& m = scene.material(*hit);
+        const Material& m = scene.material(*hit, x.p);
         const real cos_o = -dot(x.n, ray.d);
         if (log) log->vertex(scattered, *hit, x, beta);
 

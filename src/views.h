@@ -16,9 +16,10 @@ inline rgb view_along(const Scene& scene, View view, const Ray& ray) {
     const auto hit = scene.bvh.closest(ray);
     if (!hit) return {};
     if (view == View::depth) return {hit->t, hit->t, hit->t};
-    const Material& m = scene.material(*hit);
-    if (view == View::albedo) return m.kind == Material::Kind::glass ? rgb{1, 1, 1} : m.kd + m.ks;
-    return (surface(scene.shapes[hit->id], ray, *hit).n + vec3{1, 1, 1}) / 2;
+    const Surface x = surface(scene.shapes[hit->id], ray, *hit);
+    if (view == View::normal) return (x.n + vec3{1, 1, 1}) / 2;
+    const Material& m = scene.material(*hit, x.p);
+    return m.kind == Material::Kind::glass ? rgb{1, 1, 1} : m.kd + m.ks;
 }
 
 // Factor to PNG: a scene's own is meant for radiance.  Depth reaches white at the diagonal of the
