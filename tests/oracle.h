@@ -107,6 +107,8 @@ inline std::string hint(double ratio, double tolerance) {
     return "";
 }
 
+inline std::string print_p(double p) { return p > 0 ? print("p = %.2g", p) : "p < 1e-300"; }
+
 inline Verdict failure(const std::string& why) {
     return {false, 0, std::numeric_limits<double>::infinity(), why};
 }
@@ -179,9 +181,9 @@ inline Verdict judge(const char* what, const Estimate& e, double truth) {
     v.pass = v.p > alpha || same_but_rounding(e.mean, truth, e.unit);
     v.delta_min = smallest_shift(e.df) * e.standard_error / (truth != 0 ? std::abs(truth) : 1);
     v.text = print(
-        "%s %.7g +- %.2g, expected %.7g: %+.2f sigma, p = %.2g; smallest bias seen with "
+        "%s %.7g +- %.2g, expected %.7g: %+.2f sigma, %s; smallest bias seen with "
         "99.9 %% power: ",
-        what, e.mean, e.standard_error, truth, t, v.p);
+        what, e.mean, e.standard_error, truth, t, print_p(v.p).c_str());
     v.text += truth != 0 ? print("%.2g %%", 100 * v.delta_min) : print("%.2g", v.delta_min);
     if (!v.pass && truth != 0)
         v.text += hint(e.mean / truth, 5 * e.standard_error / std::abs(truth));
@@ -373,9 +375,9 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities) 
     v.pass = v.p > alpha;
     v.delta_min = smallest_distortion(cells - 1, n);
     v.text = print(
-        "chi2 = %.1f on %d cells (n = %.0f), p = %.2g; smallest distortion seen with "
+        "chi2 = %.1f on %d cells (n = %.0f), %s; smallest distortion seen with "
         "99.9 %% power: %.2g %%",
-        chi2, cells, n, v.p, 100 * v.delta_min);
+        chi2, cells, n, print_p(v.p).c_str(), 100 * v.delta_min);
     return v;
 }
 
