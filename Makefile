@@ -27,7 +27,7 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test soak techniques bench extremes clean help layers packages always
+.PHONY: all programs test mutants soak techniques bench extremes clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -42,6 +42,9 @@ out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scene
 
 test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests; ONLY=bvh: files with that name
 	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(OBJECTS)/all-tests $(ONLY)
+
+mutants: packages  ## plant every wrong line of tests/mutants/ [ONLY=NAME]: a test must see it
+	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1" tests/mutants/run "$(ONLY)"
 
 soak: $(OBJECTS)/all-tests  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter
 	@tests/soak $(OBJECTS)/all-tests $(SECONDS)

@@ -115,6 +115,11 @@ public:
         return {x, y};
     }
 
+    // A number of that part of [0,1).
+    static real between(uint32_t cell, uint32_t cells, uint64_t bits) {
+        return std::min(below_one, (real(cell) + to_unit(bits)) / real(cells));
+    }
+
 private:
     const Pattern& pattern_;
     uint64_t index_;  // within this half
@@ -133,8 +138,5 @@ private:
         const uint32_t cell =
             permute(uint32_t(index_ % cells), cells, mix(key + index_ / cells * golden));
         return {cell, hash(key, index_)};
-    }
-    static real between(uint32_t cell, uint32_t cells, uint64_t bits) {
-        return std::min(below_one, (real(cell) + to_unit(bits)) / real(cells));
     }
 };

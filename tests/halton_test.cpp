@@ -113,6 +113,18 @@ TEST_CASE("aligned blocks of 2^i 3^j indices put one point into every 2^-i x 3^-
     }
 }
 
+TEST_CASE("the digits of a fraction are exact, carries and all") {
+    Rng rng{3};
+    for (uint32_t base : {2u, 3u, 10u, 104729u, UINT32_MAX})
+        for (uint64_t fraction :
+             {uint64_t(0), UINT64_MAX, UINT64_MAX / base + 1, rng.bits(), rng.bits()}) {
+            const uint128 product = uint128(fraction) * base;
+            uint64_t rest = fraction;
+            CHECK(next_digit(base, rest) == uint64_t(product >> 64));
+            CHECK(rest == uint64_t(product));
+        }
+}
+
 TEST_CASE("scrambling permutes the digits: the first b points fall into b different strata") {
     Rng rng{seed_here()};
     for (uint32_t base : {2u, 3u, 7u, 29u, 541u})

@@ -21,6 +21,39 @@ real draw(const Sampler& s, uint32_t dim) {
 
 }  // namespace
 
+TEST_CASE("every number of a path has a dimension of its own, in the order of the path") {
+    uint32_t next = film_y + 1;
+    for (int vertex = 0; vertex < 1000; ++vertex)
+        for (uint32_t what = 0; what < uint32_t(Draw::count); ++what)
+            CHECK(dimension(vertex, Draw(what)) == next++);
+}
+
+TEST_CASE("seed, pixel, sample, dimension: whichever is another, the number is another") {
+    for (SamplerKind kind : kinds) {
+        const Pattern pattern = make_pattern(kind, 5, false, depth, 64);
+        const Pattern reseeded = make_pattern(kind, 6, false, depth, 64);
+        int equal = 0;
+        for (uint64_t pixel = 0; pixel < 100; ++pixel)
+            for (uint32_t dim : {0u, 2u, 7u}) {
+                const real u = Sampler(pattern, pixel, 3).get(dim);
+                equal += u == Sampler(reseeded, pixel, 3).get(dim);
+                equal += u == Sampler(pattern, pixel + 1, 3).get(dim);
+                equal += u == Sampler(pattern, pixel, 4).get(dim);
+                equal += u == Sampler(pattern, pixel, 3).get(dim + 1);
+            }
+        // 1200 pairs; numbers of 24 bits are equal by chance with probability 7e-5 in all.
+        INFO(std::string(names[int(kind)]));
+        CHECK(equal < 2);
+    }
+}
+
+TEST_CASE("a number of the last cell never rounds to 1") {
+    for (uint32_t cells : {1u, 3u, 16u, 256u}) {
+        CHECK(Sampler::between(cells - 1, cells, UINT64_MAX) < 1);
+        CHECK(Sampler::between(0, cells, 0) == 0);
+    }
+}
+
 TEST_CASE("every number of every sampler is uniform over [0,1)") {
     // Over pixels, whose numbers are independent: sample i of each, whatever i is.
     const std::vector<double> equal(16, 1 / 16.0);
@@ -90,6 +123,7 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
                 make_pattern(SamplerKind::stratified, seed_here(), halves, depth, spp);
             const uint64_t period = p.period(), cells = p.columns * p.rows;
             CHECK(cells <= 256);
+            CHECK(p.columns <= 2 * p.rows);
             for (uint64_t pixel = 0; pixel < 20; ++pixel)
                 for (uint64_t half = 0; half < p.halves; ++half) {
                     std::vector<int> film(cells), pick(cells);
@@ -106,6 +140,21 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
     CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 64).columns == 8);
     CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 48).columns == 8);
     CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 48).rows == 6);
+}
+
+TEST_CASE("every pass shuffles its cells anew") {
+    const Pattern p = make_pattern(SamplerKind::stratified, 3, false, depth, 16);
+    int alike = 0;  // passes of the same order: by chance 1 in 16!
+    for (uint64_t pixel = 0; pixel < 100; ++pixel) {
+        bool same = true;
+        for (uint64_t i = 0; i < 16; ++i) {
+            const real first = Sampler(p, pixel, i).get(2),
+                       second = Sampler(p, pixel, i + 16).get(2);
+            same = same && int(first * 16) == int(second * 16);
+        }
+        alike += same;
+    }
+    CHECK(alike == 0);
 }
 
 TEST_CASE("permute is a permutation, and takes every value at every place equally often") {

@@ -51,6 +51,9 @@ TEST_CASE("a constant has no variance, nothing has no error, two numbers have th
     two.add(3);
     CHECK(two.variance() == 2);
     CHECK(two.skewness() == 0);
+    Moments three;  // 0, 0, 1: a coin of p = 1/3 has (1 - 2p) / sqrt(p (1 - p)) = 1 / sqrt(2)
+    for (double x : {0.0, 0.0, 1.0}) three.add(x);
+    CHECK(three.skewness() == doctest::Approx(std::sqrt(0.5)).epsilon(1e-14));
 }
 
 TEST_CASE("p-values: quantiles of the normal, Student's and the chi-squared distribution") {
