@@ -44,7 +44,7 @@ test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all test
 	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(OBJECTS)/all-tests $(ONLY)
 
 mutants: packages  ## plant every wrong line of tests/mutants/ [ONLY=NAME]: a test must see it
-	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1" tests/mutants/run "$(ONLY)"
+	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run "$(ONLY)"
 
 soak: $(OBJECTS)/all-tests  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter
 	@tests/soak $(OBJECTS)/all-tests $(SECONDS)

@@ -401,6 +401,23 @@ TEST_CASE("a tree is quicker than a loop: it looks at few of its shapes") {
     CHECK(walk * 20 < loop);  // about 1000 times: no clock is off by 50
 }
 
+TEST_CASE("a ray opens 15.3 nodes among 20000 triangles: nearest first, none behind the hit") {
+    Random random{{8}};
+    Shapes scene;
+    for (int i = 0; i < 20000; ++i) scene.push_back(triangle(real(0.03), random));
+    const Bvh tree(scene);
+    double nodes = 0, shapes = 0;
+    const int rays = 10000;
+    for (int i = 0; i < rays; ++i) {
+        const vec3 o = random.direction();
+        const Bvh::Work work = tree.work({o, random.direction()});
+        nodes += work.nodes, shapes += work.shapes;
+    }
+    // Farthest first opens 20.4; boxes behind the hit, too, 15.8; planes off by one bin 15.9.
+    CHECK(nodes / rays < 15.5);
+    CHECK(shapes / rays < 1);
+}
+
 TEST_CASE("an empty tree is missed, and a ray that is not a number misses every tree") {
     const real nan = std::numeric_limits<real>::quiet_NaN();
     const Ray ray{{0, 0, 3}, {0, 0, -1}};

@@ -69,6 +69,6 @@ TEST_CASE("the nearest word is the one with the fewest edits") {
 
 TEST_CASE("what the user wrote is shown short and printable") {
     CHECK(in_quotes("a b~") == "'a b~'");
-    CHECK(in_quotes("a\x7f\n\x1b\xc3") == "'a????'");
+    CHECK(in_quotes("a\x7f\n\x1b\xc3") == std::string("'a").append(4, '?') + "'");
     CHECK(in_quotes(std::string(41, 'x')) == "'" + std::string(40, 'x') + "...'");
 }
