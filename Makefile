@@ -43,7 +43,7 @@ out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scene
 test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests; ONLY=bvh: files with that name
 	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(OBJECTS)/all-tests $(ONLY)
 
-mutants: packages  ## plant every wrong line of tests/mutants/ [ONLY=NAME]: a test must see it
+mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run "$(ONLY)"
 
 soak: $(OBJECTS)/all-tests  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter

@@ -402,7 +402,7 @@ TEST_CASE("a tree is quicker than a loop: it looks at few of its shapes") {
 }
 
 TEST_CASE("a ray opens 15.3 nodes among 20000 triangles: nearest first, none behind the hit") {
-    Random random{{8}};
+    Dice random{{8}};
     Shapes scene;
     for (int i = 0; i < 20000; ++i) scene.push_back(triangle(real(0.03), random));
     const Bvh tree(scene);

@@ -376,7 +376,7 @@ TEST_CASE("from a point exactly on a sphere, rays out miss it and rays in meet i
 
 TEST_CASE("surface moves a sphere's hit onto the sphere, however far the eye") {
     Dice random{{7}};
-    Worst off, tilt, moved;
+    Worst off, tilt, shift;
     bool covered = true;
     for (int i = 0; i < 100000; ++i) {
         const Shape s = placed_anywhere({{}, {}, {}, 1}, random);
@@ -393,11 +393,11 @@ TEST_CASE("surface moves a sphere's hit onto the sphere, however far the eye") {
         tilt.see(std::abs(length(big3(x.n)) - 1) / ulp);
         tilt.see(dot(x.n, x.p - s.a) > 0 ? 0 : infinity);
         // Along the ray hits are off by 24 ulp (D + R) / cosine, cosine >= sqrt(1 - 0.9^2).
-        moved.see(length(point(ray, hit->t) - x.p) / (ulp * (length(s.a - o) + size)));
+        shift.see(length(point(ray, hit->t) - x.p) / (ulp * (length(s.a - o) + size)));
     }
     CHECK(off.value < 4 + 1 + std::sqrt(3.0));
     CHECK(tilt.value < 4);
-    CHECK(moved.value < 100);
+    CHECK(shift.value < 100);
     CHECK(covered);
 }
 
