@@ -259,49 +259,6 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
     }
 }
 
-TEST_CASE("the film's variances are those of the means: independent samples, and halves") {
-    // Pixel values u^2: variance of one sample 1/5 - 1/9 = 4/45.
-    for (bool independent : {true, false}) {
-        Film film({400, 250});
-        const uint64_t n = 7;  // uneven, in passes of 1, 2, 4
-        for (uint64_t pass : {1, 2, 4}) {
-            for (int y = 0; y < film.height; ++y)
-                film.add_row(y, pass, [&](int x, uint64_t i) {
-                    const real u = to_unit(hash(hash(uint64_t(y), uint64_t(x)), i));
-                    return rgb{u * u, 1000 + u * u, 0};
-                });
-            film.end_pass(pass);
-        }
-        CHECK(film.samples() == n);
-        const Image variance =
-            film.variance(independent ? Film::Estimate::samples : Film::Estimate::halves);
-        Moments m;
-        for (const auto& p : variance.pixels) m.add(double(p[0]));
-        EXPECT(expect_mean(4 / 45.0 / double(n), estimate(m)), 0.05);
-        // No cancellation far from zero, no variance where there is none.
-        const float offset_error = sizeof(real) == 4 ? 0.02f : 1e-6f;
-        CHECK(std::abs(variance.at(7, 7)[1] / variance.at(7, 7)[0] - 1) < offset_error);
-        CHECK(variance.at(3, 3)[2] == 0);
-    }
-}
-
-TEST_CASE("views show normal, distance, albedo and work") {
-    const Scene scene = scene_of(R"(
-camera 0 0 5  0 0 0  40
-phong gloss 0.1 0.2 0.3  0.5 0.25 0.125  9
-sphere 0 0 0  1  gloss
-)");
-    const Ray hit{{0, 0, 5}, {0, 0, -1}}, miss{{0, 0, 5}, {0, 0, 1}};
-    CHECK(view_along(scene, View::normal, hit) == rgb{0.5, 0.5, 1});
-    CHECK(view_along(scene, View::depth, hit) == rgb{4, 4, 4});
-    CHECK(max_abs(view_along(scene, View::albedo, hit) - rgb{real(0.6), real(0.45), real(0.425)}) <
-          2 * ulp);
-    CHECK(view_along(scene, View::bvh, hit) == rgb{1, 1, 0});
-    CHECK(view_along(scene, View::bvh, miss) == rgb{1, 0, 0});
-    for (View v : {View::normal, View::depth, View::albedo})
-        CHECK(view_along(scene, v, miss) == rgb{0, 0, 0});
-}
-
 TEST_CASE("quasi-random and stratified samples find what independent ones find") {
     const Scene scene = scene_of(unequal);
     const Options o = options(techniques[0], 0);
@@ -349,24 +306,4 @@ TEST_CASE("the statistics' variance is that of the mean from seed to seed") {
         INFO("measured over predicted ", ratio);
         CHECK(std::abs(ratio - 1) < 4.9 * std::sqrt(2.0 / 299));
     }
-}
-
-TEST_CASE("the statistics are JSON: quoted, complete, null where nothing is known") {
-    Options o;
-    o.scene = "a \"b\"\\\n";
-    Image image(2, 1), unknown(2, 1);
-    image.pixels = {{1, 2, 3}, {3, 2, 5}};
-    const RunStats run{64, 2, 4000000, 0, false};
-    const std::string text = encode_stats(o, {2, 1}, 5, run, image, unknown);
-    for (const char* line :
-         {R"("scene": "a \"b\"\\\u000a")", R"("mean_radiance": [2, 2, 4])",
-          R"("variance_of_mean": [null, null, null])", R"("rays": 4000000)",
-          R"("mrays_per_second": 2,)", R"("samples_per_pixel": 64)", R"("sampler": "halton")",
-          R"("depth": 5)", R"("roulette": null)", R"("non_finite": 0)"}) {
-        INFO(text);
-        INFO(std::string(line));
-        CHECK(text.find(line) != text.npos);
-    }
-    image.pixels = {{1, 1, 1}, {3, 3, 3}};  // variances of two pixels: of their mean (1 + 3) / 4
-    CHECK(encode_stats(o, {2, 1}, 5, run, image, image).find("mean\": [1, 1, 1]") != text.npos);
 }
