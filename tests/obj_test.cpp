@@ -105,10 +105,12 @@ TEST_CASE("faces: any number of corners, indices from the end, texture and norma
 
 TEST_CASE("an arrowhead is fanned from the corner that sees all, a star is refused") {
     const Folder folder;
-    const std::string arrow = "v 0 2 0\nv -1 -1 0\nv 0 0 0\nv 1 -1 0\nf 1 2 3 4\n";
-    const Scene scene = scene_with(folder, arrow, "1 0 0 0 grey");
-    REQUIRE(scene.shapes.size() == 2);
-    for (const Shape& s : scene.shapes) CHECK(double(area_vector(s).z) == doctest::Approx(2));
+    const std::string arrow = "v 0 2 0\nv -1 -1 0\nv 0 0 0\nv 1 -1 0\n";
+    for (const char* corners_in_order : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
+        const Scene scene = scene_with(folder, arrow + corners_in_order + "\n", "1 0 0 0 grey");
+        REQUIRE(scene.shapes.size() == 2);
+        for (const Shape& s : scene.shapes) CHECK(double(area_vector(s).z) == doctest::Approx(2));
+    }
     std::string star, face = "f";
     for (int i = 0; i < 10; ++i) {
         const double r = i % 2 ? 0.2 : 1, angle = i * 0.628318530718;

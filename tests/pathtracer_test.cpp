@@ -54,6 +54,29 @@ Options options(const Technique& t, uint64_t seed) {
     return o;
 }
 
+// The lines that a path's log has about `what`, of sample 0.
+std::vector<std::string> logged(const Scene& scene, const Options& o, int x, int y,
+                                const std::string& what) {
+    std::FILE* file = std::tmpfile();
+    const PathLog log(file);
+    const Pattern pattern = make_pattern(o.sampler, o.seed, false, scene.depth, 64);
+    pixel(scene, o, pattern, x, y, 0, &log);
+    std::string text(size_t(std::ftell(file)), ' ');
+    std::rewind(file);
+    REQUIRE(std::fread(text.data(), 1, text.size(), file) == text.size());
+    std::fclose(file);
+    std::istringstream in(text);
+    std::vector<std::string> found;
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with(what)) found.push_back(line);
+    return found;
+}
+
+bool all_different(std::vector<std::string> lines) {
+    std::sort(lines.begin(), lines.end());
+    return std::adjacent_find(lines.begin(), lines.end()) == lines.end();
+}
+
 Scene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
 
 const char* const furnace = R"(
@@ -133,6 +156,103 @@ TEST_CASE("a furnace by cosine sampling alone has no noise") {
         worst = std::max(worst,
                          max_abs(pixel(scene, o, pattern, 3, 2, i).L - rgb{truth, truth, truth}));
     CHECK(worst < 64 * ulp);
+}
+
+TEST_CASE("balls of clear glass and of perfect mirror are invisible in a furnace") {
+    const Scene scene = scene_of(R"(
+size 16 16
+camera 0 0.3 1.8  0 0 0  60
+depth 300
+diffuse half 0.5 0.5 0.5
+light glow  0.4 0.4 0.4 twosided half
+glass glass 1.5
+mirror mirror 1 1 1
+box 4 3 4  0  -2 -1.5 -2   glow
+sphere -0.6 0 0  0.5  glass
+sphere 0.6 0 0  0.5  mirror
+)");
+    const Options o = options({"", Direction::bsdf, LightMode::none, 0}, seed_here());
+    const Pattern pattern{SamplerKind::independent, o.seed};
+    real worst = 0;
+    for (uint64_t i = 0; i < 20; ++i)
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x) {
+                const vec3 off = pixel(scene, o, pattern, x, y, i).L / real(0.8) - rgb{1, 1, 1};
+                worst = max_abs(off) <= worst ? worst : max_abs(off);
+            }
+    CHECK(worst < 256 * ulp);
+}
+
+TEST_CASE("light within glass leaves it as (1 - R) L / n^2") {
+    // At normal incidence R = (0.5 / 2.5)^2.
+    const Scene scene = scene_of(R"(
+size 1 1
+camera 0 0 5  0 0 0  0.0001
+depth 1
+glass glass 1.5
+light lamp 1 1 1
+sphere 0 0 0  1  glass
+sphere 0 0 0  0.5  lamp
+)");
+    const Options o = options(techniques[0], seed_here());
+    EXPECT(expect_mean(0.96 / 2.25, image_mean(scene, o, 60000)), 0.01);
+}
+
+TEST_CASE("lobe, direction and roulette draw numbers of their own: a glossy floor under a lamp") {
+    const Scene scene = scene_of(R"(
+size 1 1
+camera 3 1.5 0  0 0 0  1
+depth 1
+phong floor 0.2 0.3 0.3  0.5 0.4 0.5  12
+light lamp 1 1 1
+quad -9 0 -9  0 0 18  18 0 0  floor
+quad -1 1 -1  2 0 0  0 0 2  lamp
+)");
+    const Technique uniform{"", Direction::uniform, LightMode::none, 0};
+    const Estimate reference = image_mean(scene, options(uniform, 99), 200000);
+    for (int roulette : {0, 1}) {
+        const Technique t{"", Direction::bsdf, LightMode::none, roulette};
+        EXPECT(expect_equal(image_mean(scene, options(t, seed_here()), 100000), reference), 0.04);
+    }
+}
+
+TEST_CASE("what covers part of a pixel gives that part of its radiance") {
+    // The pixel spans [-1, 1]^2 at z = 0, the light [0.4, 1] x [-1, 0] of it: 15 %.
+    const Scene scene = scene_of(R"(
+size 1 1
+camera 0 0 5  0 0 0  22.619864948040426
+depth 0
+light lamp 1 1 1
+quad 0.4 -1 0  0.6 0 0  0 1 0  lamp
+)");
+    const Options o = options(techniques[0], seed_here());
+    EXPECT(expect_mean(0.15, image_mean(scene, o, 40000)), 0.1);
+}
+
+TEST_CASE("every pixel has random numbers of its own, and every bounce, and every light sample") {
+    Scene scene = scene_of(furnace);
+    scene.size = {9, 5};
+    Options o = options(techniques[1], seed_here());
+    o.sampler = SamplerKind::independent;
+    std::vector<std::string> pixels;
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 9; ++x) pixels.push_back(logged(scene, o, x, y, "film:").at(0));
+    CHECK(all_different(pixels));
+    // Diffuse: a cosine is a function of one number; the lamp is seen by all vertices.
+    scene = scene_of(R"(
+camera 0 0 0.5  0 0 0  60
+depth 20
+diffuse half 0.5 0.5 0.5
+light lamp  1 1 1
+box 2 2 2  0  -1 -1 -1   half
+quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
+)");
+    const auto cosines = logged(scene, o, 0, 0, "  cosine:"),
+               at = logged(scene, o, 0, 0, "    at:");
+    CHECK(cosines.size() == 20);
+    CHECK(all_different(cosines));
+    CHECK(at.size() >= 10);
+    CHECK(all_different(at));
 }
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {
