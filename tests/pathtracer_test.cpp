@@ -209,10 +209,10 @@ quad -9 0 -9  0 0 18  18 0 0  floor
 quad -1 1 -1  2 0 0  0 0 2  lamp
 )");
     const Technique uniform{"", Direction::uniform, LightMode::none, 0};
-    const Estimate reference = image_mean(scene, options(uniform, 99), 200000);
+    const Estimate reference = image_mean(scene, options(uniform, 99), 400000);
     for (int roulette : {0, 1}) {
         const Technique t{"", Direction::bsdf, LightMode::none, roulette};
-        EXPECT(expect_equal(image_mean(scene, options(t, seed_here()), 100000), reference), 0.04);
+        EXPECT(expect_equal(image_mean(scene, options(t, seed_here()), 400000), reference), 0.04);
     }
 }
 

@@ -108,6 +108,18 @@ TEST_CASE("Phong lobe: E[cos] = (n+1)/(n+2), and 1 - cos keeps its digits") {
                0.03);
 }
 
+TEST_CASE("Phong lobe: the sine keeps its digits, however narrow the lobe") {
+    real worst = 0;  // relative, in ulp
+    for (real n : {real(0), real(1), real(10), real(1e3), real(1e6)})
+        for (real u = real(0.9); u > real(1e-12); u /= 3) {
+            const vec3 w = sample_phong_lobe({u, 0}, n);
+            const long double log_cos = std::log1p(-(long double)(u)) / ((long double)(n) + 1);
+            const long double sine = std::sqrt(-std::expm1(2 * log_cos));
+            worst = std::max(worst, real(std::abs((long double)(w.x) / sine - 1)) / ulp);
+        }
+    CHECK(worst < 8);
+}
+
 TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 10^-8") {
     Random random(seed_here());
     for (real sin2 : {real(1), real(0.75), real(1e-2), real(1e-4), real(1e-10), real(1e-16)}) {
