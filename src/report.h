@@ -129,7 +129,9 @@ inline std::string number(double x) {
 }
 
 inline std::string numbers(std::array<double, 3> x) {
-    return "[" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + "]";
+    std::string text = "[";
+    text += number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ']';
+    return text;
 }
 
 }  // namespace json
