@@ -100,6 +100,14 @@ TEST_CASE("no sample from the inside of a sphere light, nor from its surface") {
     }
 }
 
+TEST_CASE("no sample of a sphere light from within its rounding error of its surface") {
+    Light l{Light::Kind::sphere, {}, {}, {}, 1};
+    l.error = real(1e-4);
+    CHECK(!sample_light(l, {0, 0, 1 + real(0.9e-4)}, {real(0.5), real(0.5)}));
+    CHECK(sample_light(l, {0, 0, 1 + real(1.1e-4)}, {real(0.5), real(0.5)}));
+    CHECK(pdf_light(l, {0, 0, 1 + real(0.9e-4)}, {{0, 0, 1}, {0, 0, 1}}) == 0);
+}
+
 TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slanted") {
     Random random(seed_here());
     const vec3 corner{-1, 2, 3}, u{2, real(0.3), 0}, v{real(0.1), real(-0.4), real(1.5)};

@@ -133,7 +133,12 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     }
     CHECK(&choose_light(s, 0) == &s.lights[0]);
     CHECK(&choose_light(s, below_one) == &s.lights[2]);
+    s.pick_cdf.clear();
+    add_point_light(s, {}, {real(1e-30), 0, 0});  // so weak that its share rounds to 0
+    prepare(s);
+    CHECK(s.lights[3].pick > 0);
+    CHECK(&choose_light(s, below_one) == &s.lights[3]);
     // The last sum may be rounded to less than 1: what lies beyond is the last light's.
     s.pick_cdf.back() = 0.99;
-    CHECK(&choose_light(s, below_one) == &s.lights[2]);
+    CHECK(&choose_light(s, below_one) == &s.lights[3]);
 }
