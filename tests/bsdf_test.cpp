@@ -40,14 +40,14 @@ double albedo(const Material& m, vec3 wo) {
         };
         double sum = 0;
         for (int i = 0; i < 8; ++i)
-            sum += integral(along, i * pi_v<double> / 4, (i + 1) * pi_v<double> / 4, precise,
-                            precise, depth);
+            sum += integral(along, i * pi_v<double> / 4, (i + 1) * pi_v<double> / 4,
+                            Agreement{precise, precise, depth, false});
         return sum * std::sin(theta);
     };
     double sum = 0;
     for (double from = 0, to = 1e-4; from < pi_v<double>;
          from = to, to = std::min(2 * to, pi_v<double>))
-        sum += integral(ring, from, to, precise, precise, depth);
+        sum += integral(ring, from, to, Agreement{precise, precise, depth, true});
     return sum;
 }
 

@@ -21,6 +21,7 @@
 #include <numbers>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "../src/stats.h"
@@ -381,12 +382,13 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities) 
     return v;
 }
 
-// Integral of f over [a,b] by Gauss and Kronrod's rules of 7 and 15 points, halved until they agree
-// within `tolerance`, or within `noise`, the relative rounding of f, or 30 times.  The tolerance
-// is each part's: a jump of f then costs log2(jump / tolerance) halvings, and few parts come close.
+// Gauss and Kronrod's rules of 7 and 15 points over [a,b].
+struct Rule {
+    double kronrod = 0, gauss = 0;
+    double ends = 0;  // what a jump beyond the outermost nodes, which neither rule sees, may bring
+};
 template <class F>
-double integral(const F& f, double a, double b, double tolerance, double noise = 0x1p-50,
-                int depth = 30) {
+Rule rule(const F& f, double a, double b) {
     static constexpr struct {
         double x, kronrod, gauss;
     } nodes[] = {
@@ -402,25 +404,48 @@ double integral(const F& f, double a, double b, double tolerance, double noise =
         {0.207784955007898467600689403773245, 0.204432940075298892414161999234649, 0},
     };
     const double middle = (a + b) / 2, half = (b - a) / 2, centre = f(middle);
-    double kronrod = 0.209482141084727828012999174891714 * centre;
-    double gauss = 0.417959183673469387755102040816327 * centre;
+    double low = centre, high = centre;
+    Rule r{0.209482141084727828012999174891714 * centre,
+           0.417959183673469387755102040816327 * centre};
     for (const auto& node : nodes) {
-        const double sum = f(middle - half * node.x) + f(middle + half * node.x);
-        kronrod += node.kronrod * sum;
-        gauss += node.gauss * sum;
+        const double left = f(middle - half * node.x), right = f(middle + half * node.x);
+        r.kronrod += node.kronrod * (left + right);
+        r.gauss += node.gauss * (left + right);
+        if (&node == nodes) low = left, high = right;
     }
-    const double agree = std::max(tolerance, noise * std::abs(kronrod) * half);
-    // A jump beyond the outermost nodes is seen by neither rule, but by the ends.
-    const double gap = half * (1 - nodes[0].x);
-    auto jumps = [&](double end, double inside) {
-        const double x = f(end), y = f(inside), step = std::abs(x - y);
-        return step > 0.25 * std::max(std::abs(x), std::abs(y)) && step * gap > agree;
-    };
-    const bool smooth =
-        !(std::abs(kronrod - gauss) * half > agree) && !jumps(a, a + gap) && !jumps(b, b - gap);
-    if (depth == 0 || smooth) return kronrod * half;
-    return integral(f, a, middle, tolerance, noise, depth - 1) +
-           integral(f, middle, b, tolerance, noise, depth - 1);
+    for (const auto& [end, inside] : {std::pair{f(a), low}, std::pair{f(b), high}})
+        if (const double step = std::abs(end - inside);
+            step > 0.25 * std::max(std::abs(end), std::abs(inside)))
+            r.ends = std::max(r.ends, step * half * (1 - nodes[0].x));
+    r.kronrod *= half;
+    r.gauss *= half;
+    return r;
+}
+
+// How closely parts of an integral must agree: within `tolerance`, the same for each part (a jump
+// then costs log2(jump / tolerance) halvings, and few parts come close), or within `noise`, the
+// relative rounding of f.  Two rules agree by chance where a kink lies just so: `halves` must, too.
+struct Agreement {
+    double tolerance = 0, noise = 0x1p-50;
+    int depth = 30;  // halvings
+    bool halves = true;
+};
+
+// Integral of f over [a,b], halved until it agrees.
+template <class F>
+double integral(const F& f, double a, double b, const Agreement& g, const Rule& whole, int depth) {
+    const double rules = std::max(std::abs(whole.kronrod - whole.gauss), whole.ends);
+    const double agree = std::max(g.tolerance, g.noise * std::abs(whole.kronrod));
+    if (depth == 0 || (!g.halves && rules <= agree)) return whole.kronrod;
+    const double middle = (a + b) / 2;
+    const Rule left = rule(f, a, middle), right = rule(f, middle, b);
+    const double sum = left.kronrod + right.kronrod;
+    if (std::max(rules, std::abs(whole.kronrod - sum)) <= agree) return sum;
+    return integral(f, a, middle, g, left, depth - 1) + integral(f, middle, b, g, right, depth - 1);
+}
+template <class F>
+double integral(const F& f, double a, double b, const Agreement& g) {
+    return integral(f, a, b, g, rule(f, a, b), g.depth);
 }
 
 // Cartesian coordinates in double of a point or direction, whatever its type.
@@ -545,18 +570,17 @@ struct Cells {
             for (double from = theta[i], to; from < theta[i + 1]; from = to) {
                 to = from > 0 ? std::min({2 * from, from + pi / 8, theta[i + 1]})
                               : std::ldexp(theta[i + 1], -12);
+                const Agreement along_phi{0.1 * tolerance / (to - from), noise, depth, false};
                 auto ring = [&](double t) {
+                    auto at = [&](double f) { return density({t, f}); };
                     double sum = 0;
                     for (double k = 0; k < panels; ++k)
-                        sum += integral(
-                            [&](double f) {
-                                return density({t, f});
-                            },
-                            range[0] + k * step, range[0] + (k + 1) * step,
-                            0.1 * tolerance / (to - from));
+                        sum +=
+                            integral(at, range[0] + k * step, range[0] + (k + 1) * step, along_phi);
                     return sum * std::sin(t);
                 };
-                sums[cell] += integral(ring, from, to, tolerance, 2 * noise, depth);
+                sums[cell] +=
+                    integral(ring, from, to, Agreement{tolerance, 2 * noise, depth, true});
             }
         }
         return sums;

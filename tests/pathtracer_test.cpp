@@ -241,15 +241,15 @@ TEST_CASE("every pixel has random numbers of its own, and every bounce, and ever
     // Diffuse: a cosine is a function of one number; the lamp is seen by all vertices.
     scene = scene_of(R"(
 camera 0 0 0.5  0 0 0  60
-depth 20
+depth 60
 diffuse half 0.5 0.5 0.5
-light lamp  1 1 1
+light lamp  1 1 1  half
 box 2 2 2  0  -1 -1 -1   half
 quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
 )");
     const auto cosines = logged(scene, o, 0, 0, "  cosine:"),
                at = logged(scene, o, 0, 0, "    at:");
-    CHECK(cosines.size() == 20);
+    CHECK(cosines.size() == 60);
     CHECK(all_different(cosines));
     CHECK(at.size() >= 10);
     CHECK(all_different(at));
