@@ -301,7 +301,8 @@ sphere 0 0.9 0  0.2  lamp
     }
 }
 
-TEST_CASE("a point light behind an obstacle brings nothing") {
+TEST_CASE(
+    "a point light gives rho / pi I cos / d^2 under MIS, too, and nothing behind an obstacle") {
     const std::string text = R"(
 size 1 1
 camera 0 4 3  0 0 0  0.0001
@@ -311,7 +312,10 @@ pointlight 1 2 0  3 3 3
 quad -5 0 -5  0 0 10  10 0 0  white
 )";
     const Options o = options({"", Direction::bsdf, LightMode::mis, 0}, 1);
-    CHECK(pixel(scene_of(text), o, {SamplerKind::independent}, 0, 0, 0).L.x > 0);
+    // At the origin: d^2 = 5, cos = 2 / sqrt 5.  The pixel is 1e-5 wide: 1e-5 relative.
+    const double truth = 0.5 / double(pi) * 3 / 5 * 2 / std::sqrt(5.0);
+    CHECK(double(pixel(scene_of(text), o, {SamplerKind::independent}, 0, 0, 0).L.x) ==
+          doctest::Approx(truth).epsilon(1e-4));
     const Scene shadowed = scene_of(text + "sphere 0.5 1 0  0.1  white\n");
     CHECK(pixel(shadowed, o, {SamplerKind::independent}, 0, 0, 0).L.x == 0);
 }
