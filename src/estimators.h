@@ -16,6 +16,11 @@
 
 enum class Estimator { stochastic, control, ratio, regression };
 
+// Whether it is no mean over samples, but one number of all of them.
+inline bool estimates_pixels(Estimator e) {
+    return e == Estimator::ratio || e == Estimator::regression;
+}
+
 // Means and centred moments of n samples (U, w, w V), with b = w - U.
 struct ShadowMoments {
     uint64_t n = 0;
