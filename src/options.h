@@ -18,6 +18,12 @@ enum class LightMode {
     mis    // both, weighted by the power heuristic
 };
 
+// How points of a rectangular light are chosen.
+enum class Polygons {
+    area,  // uniform over its area
+    angle  // uniform over the solid angle that it subtends
+};
+
 // What the image shows.
 enum class View { radiance, normal, depth, albedo, bvh, variance };
 
@@ -28,6 +34,7 @@ inline const std::vector<std::string_view> direction_names = {"uniform", "bsdf"}
 inline const std::vector<std::string_view> light_names = {"none", "nee", "mis"};
 inline const std::vector<std::string_view> direct_names = {"stochastic", "control", "ratio",
                                                            "regression"};
+inline const std::vector<std::string_view> polygon_names = {"area", "angle"};
 inline const std::vector<std::string_view> view_names = {"radiance", "normal", "depth",
                                                          "albedo",   "bvh",    "variance"};
 
@@ -45,6 +52,7 @@ struct Options {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
     Estimator direct = Estimator::stochastic;
+    Polygons polygons = Polygons::area;
     std::optional<int> depth;  // default: the scene's
     int roulette = 0;          // 0: off
     uint64_t seed = 0;
@@ -81,6 +89,8 @@ Renders SCENE (a file in the format of scenes/*.scene) by path tracing.
                         diffuse surfaces are used: as they are (default), or
                         to find only what shadows take from the exact
                         unshadowed light; needs --light nee
+  --polygons area|angle points of rectangular lights: uniform over the area
+                        (default), or over the solid angle
   --depth N             scatterings a path may have, 0: emission only
                         (default: the scene's)
   --roulette K          Russian roulette from the K-th scattering on
@@ -148,6 +158,7 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
     if (name == "--direction") o.direction = Direction(choice(value, direction_names));
     if (name == "--light") o.light = LightMode(choice(value, light_names));
     if (name == "--direct") o.direct = Estimator(choice(value, direct_names));
+    if (name == "--polygons") o.polygons = Polygons(choice(value, polygon_names));
     if (name == "--depth") o.depth = int(parse_count(value, 0, 1000000));
     if (name == "--roulette") o.roulette = int(parse_count(value, 1, 1000000));
     if (name == "--seed") o.seed = parse_count(value, 0, UINT64_MAX);
@@ -165,9 +176,9 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
 // Throws UserError about the first word that cannot be used.
 inline Options parse_options(const std::vector<std::string>& words) {
     static const std::vector<std::string_view> with_value = {
-        "-o",         "--spp",   "--time",     "--sampler", "--direction", "--light",
-        "--direct",   "--depth", "--roulette", "--seed",    "--threads",   "--size",
-        "--exposure", "--view",  "--stats",    "--pixel",   "--sample"};
+        "-o",       "--spp",      "--time",  "--sampler",  "--direction", "--light",
+        "--direct", "--polygons", "--depth", "--roulette", "--seed",      "--threads",
+        "--size",   "--exposure", "--view",  "--stats",    "--pixel",     "--sample"};
     std::vector<std::string_view> known = with_value;
     known.insert(known.end(), {"--halves", "--quiet", "--help"});
     Options o;

@@ -47,6 +47,7 @@ inline Scene load(const Options& o) {
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
     scene.exposure = o.exposure.value_or(default_exposure(scene, o.view));
+    for (Light& l : scene.lights) l.by_angle = o.polygons == Polygons::angle;
     for (const Light& l : scene.lights)
         if (l.kind == Light::Kind::point && o.light == LightMode::none)
             throw UserError("--light none: rays never hit the point light of " + o.scene);
