@@ -43,7 +43,7 @@ struct Polygon {
     int n = 0;
     std::array<vec3, 8> v;
     void add(vec3 p) { v[size_t(n++)] = p; }
-    vec3 at(int i) const { return v[size_t(i % n)]; }
+    vec3 at(int i) const { return v[size_t(i < n ? i : i - n)]; }  // i < 2 n
 };
 
 // The part of at most four corners above the horizon z = 0 (Sutherland, Hodgman 1974).
@@ -65,10 +65,13 @@ inline Polygon above_horizon(const Polygon& p) {
 // 3). The sum cancels: its error is some ulp over the angle.
 inline real irradiance_lambert(const Polygon& p) {
     real sum = 0;
-    for (int i = 0; i < p.n; ++i) {
-        const vec3 a = unit(p.at(i)), b = unit(p.at(i + 1)), c = cross(a, b);
+    const vec3 first = unit(p.at(0));
+    vec3 a = first;
+    for (int i = 1; i <= p.n; ++i) {
+        const vec3 b = i < p.n ? unit(p.at(i)) : first, c = cross(a, b);
         const real sine = length(c);
         if (sine > 0) sum += std::atan2(sine, dot(a, b)) * (c.z / sine);
+        a = b;
     }
     return std::abs(sum) / 2;
 }
