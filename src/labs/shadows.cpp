@@ -1,6 +1,6 @@
 // shadows.cpp  floor 5  four estimators of direct light, on images
 //
-//   build/shadows [--quick]
+//   build/shadows [--quick] [noise] [bias] [efficiency]
 //
 // What Heitz, Hill and McGuire (2018) say of stochastic, control variate, ratio and regression,
 // seen on pixels: noise where all is lit, in penumbra and in umbra beside its prediction; the bias
@@ -25,11 +25,11 @@ const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
 
 struct Plan {
     int shrink = 2;                       // of the sides of the images that are measured
-    uint64_t look = 4096;                 // samples to find the regions
+    uint64_t look = 1024;                 // samples to find the regions
     uint64_t spp = 64, trials = 1024;     // in penumbra; of these per estimate
     uint64_t bias_trials = 64;            // of 4096 samples
-    uint64_t seeds = 8, render_spp = 64;  // whole renders
-    size_t most_pixels = 400;             // of a region
+    uint64_t seeds = 3, render_spp = 64;  // whole renders
+    size_t most_pixels = 200;             // of a region
 };
 
 std::string text(const char* format, auto... values) {
@@ -234,7 +234,7 @@ void print_noise(const Stage& v, const Regions& regions, const Plan& plan) {
                 r == umbra
                     ? ""
                     : text("%.2f ... %.2f", quantile(gain, 0.1), quantile(gain, 0.9)).c_str(),
-                predicted > 0 ? text("%.3f", variance / predicted).c_str() : "",
+                r == penumbra ? text("%.3f", variance / predicted).c_str() : "",
                 r == penumbra ? text("%.1f %%", 100 * part).c_str() : "", claim.c_str());
         }
     }
@@ -270,7 +270,7 @@ Bias measure_bias(const Stage& v, PixelIndex p, uint64_t trials, int last) {
 }
 
 void print_bias(const Stage& v, const Regions& regions, const Plan& plan) {
-    const auto pixels = regions.pixels(penumbra, plan.most_pixels / 4);
+    const auto pixels = regions.pixels(penumbra, plan.most_pixels / 2);
     std::vector<Bias> biases(pixels.size());
     auto one = [&](int i) {
         biases[size_t(i)] = measure_bias(v, pixels[size_t(i)], plan.bias_trials, steps);
@@ -352,8 +352,9 @@ Render render(const std::string& program, const std::string& scene, std::vector<
 // Efficiency 1 / (variance x core seconds) over stochastic's.  Variance from seed to seed, of the
 // mean of the channels; bias at this many samples is below a hundredth of it.
 void print_efficiency(const std::string& program, const std::string& scene, const char* depth,
-                      const char* polygons, const Plan& plan) {
-    const Stage v = load(scene, Polygons::angle, plan.shrink);
+                      const Plan& plan) {
+    const Stage v =
+        load(scene, Polygons::angle, scene == "cornell" ? 2 * plan.shrink : plan.shrink);
     const Regions regions = find_regions(v, plan.look / 4);
     const size_t n = regions.of.size();
     for (const char* sampler : {"independent", "halton"}) {
@@ -366,7 +367,7 @@ void print_efficiency(const std::string& program, const std::string& scene, cons
                 std::vector<std::string> more = {
                     "--direct",   names[e],
                     "--sampler",  sampler,
-                    "--polygons", polygons,
+                    "--polygons", "angle",
                     "--seed",     std::to_string(100 + seed),
                     "--spp",      std::to_string(plan.render_spp),
                     "--size",     text("%dx%d", regions.width, regions.height)};
@@ -402,7 +403,7 @@ void print_efficiency(const std::string& program, const std::string& scene, cons
 
 // Direct light by each estimator, its noise, and which pixels are what.
 void write_sheet(const std::string& name, const Stage& v, double exposure) {
-    constexpr int spp = 16, trials = 16;
+    constexpr int spp = 16, trials = 8;
     const int w = v.scene.size.width, h = v.scene.size.height, gap = 8;
     std::array<Image, 4> images{Image(w, h), Image(w, h), Image(w, h), Image(w, h)}, noise = images;
     Image seen(w, h);
@@ -473,18 +474,7 @@ void write_bias_sheet(const Stage& v, const Regions& regions, uint64_t trials) {
     write_image("out/shadows/bias.png", sheet, 1);
 }
 
-int run(const std::string& self, const std::vector<std::string>& words) {
-    Plan plan;
-    for (const std::string& word : words) {
-        if (word != "--quick") throw UserError(unknown("option", word, {"--quick"}));
-        plan = {8, 128, 64, 64, 8, 2, 16, 20};
-    }
-    std::filesystem::path program = self;  // build/shadows-float runs build/penumbra-float
-    program.replace_filename(program.filename().string().replace(0, 7, "penumbra"));
-    if (::access(program.c_str(), X_OK) != 0)
-        throw UserError(program.string() + ": cannot run; say  make programs");
-    std::filesystem::create_directories("out/shadows");
-
+void print_all_noise(const Plan& plan) {
     const struct {
         const char* scene;
         Polygons polygons;
@@ -493,8 +483,9 @@ int run(const std::string& self, const std::vector<std::string>& words) {
                           {"panel", Polygons::angle},
                           {"lanterns", Polygons::angle}};
     std::printf(
-        "# Four estimators of direct light\n\nnoise: standard deviation of one sample over the "
-        "mean of U, of estimates from %llu samples, root mean square over the region\n",
+        "\nNoise: standard deviation of one sample over U, root mean square over the region; of "
+        "estimates from %llu samples.  Variance: from the 10th to the 90th percentile of the "
+        "pixels; all of them over their prediction.\n",
         static_cast<unsigned long long>(plan.spp));
     for (const auto& [scene, polygons] : configurations) {
         const char* how = polygon_names[size_t(polygons)].data();
@@ -504,23 +495,55 @@ int run(const std::string& self, const std::vector<std::string>& words) {
         const Stage whole = load(scene, polygons, plan.shrink / 2);
         write_sheet(text("%s-%s", scene, how), whole, double(whole.scene.exposure));
     }
-    const Stage v = load("penumbra", Polygons::area, plan.shrink);
-    const Regions regions = find_regions(v, plan.look);
-    print_bias(v, regions, plan);
-    write_bias_sheet(v, regions, 4 * plan.bias_trials);
+}
 
+void print_all_efficiency(const std::string& program, const Plan& plan) {
     std::printf(
-        "\n## Efficiency, x stochastic\n\n%llu samples, %llu seeds, whole renders\n\n| scene | "
-        "sampler | estimator | time | lit | penumbra | umbra | between | other | whole image "
-        "|\n|---|---|---|---|---|---|---|---|---|---|\n",
+        "\n## Efficiency, x stochastic\n\n%llu samples, %llu seeds, whole renders, quads by "
+        "angle\n\n| scene | sampler | estimator | time | lit | penumbra | umbra | between | other "
+        "| whole image |\n|---|---|---|---|---|---|---|---|---|---|\n",
         static_cast<unsigned long long>(plan.render_spp),
         static_cast<unsigned long long>(plan.seeds));
-    print_efficiency(program, "penumbra", "1", "angle", plan);
-    print_efficiency(program, "penumbra", "", "angle", plan);
-    print_efficiency(program, "panel", "", "angle", plan);
-    print_efficiency(program, "lanterns", "", "angle", plan);
-    print_efficiency(program, "coursework", "", "angle", plan);
-    print_efficiency(program, "cornell", "", "angle", plan);
+    for (const auto& [scene, depth] : {std::pair{"penumbra", "1"},
+                                       {"penumbra", ""},
+                                       {"panel", ""},
+                                       {"lanterns", ""},
+                                       {"coursework", ""},
+                                       {"cornell", ""}})
+        print_efficiency(program, scene, depth, plan);
+}
+
+int run(const std::string& self, const std::vector<std::string>& words) {
+    Plan plan;
+    bool noise = false, bias = false, efficiency = false;
+    for (const std::string& word : words) {
+        if (word == "--quick")
+            plan = {8, 128, 64, 64, 8, 2, 16, 20};
+        else if (word == "noise")
+            noise = true;
+        else if (word == "bias")
+            bias = true;
+        else if (word == "efficiency")
+            efficiency = true;
+        else
+            throw UserError(unknown("word", word, {"--quick", "noise", "bias", "efficiency"}));
+    }
+    if (!noise && !bias && !efficiency) noise = bias = efficiency = true;
+    std::filesystem::path program = self;  // build/shadows-float runs build/penumbra-float
+    program.replace_filename(program.filename().string().replace(0, 7, "penumbra"));
+    if (::access(program.c_str(), X_OK) != 0)
+        throw UserError(program.string() + ": cannot run; say  make programs");
+    std::filesystem::create_directories("out/shadows");
+
+    std::printf("# Four estimators of direct light\n");
+    if (noise) print_all_noise(plan);
+    if (bias) {
+        const Stage v = load("penumbra", Polygons::area, plan.shrink);
+        const Regions regions = find_regions(v, plan.look);
+        print_bias(v, regions, plan);
+        write_bias_sheet(v, regions, 4 * plan.bias_trials);
+    }
+    if (efficiency) print_all_efficiency(program, plan);
     std::printf("\n%d claims failed; pictures in out/shadows/\n", failures);
     return failures > 0;
 }
