@@ -147,12 +147,12 @@ TEST_CASE("direct: the sphere at 75 and 105 degrees, with albedo, radiance and p
     const double E = 0.221200880053 / std::numbers::pi;
     const rgb U = r.sample(0).shadowed.U;
     const double epsilon = single ? 2e-5 : 1e-11;
-    CHECK(double(U.x) == doctest::Approx(0.5 * E).epsilon(epsilon));
-    CHECK(double(U.y) == doctest::Approx(0.25 * E).epsilon(epsilon));
-    CHECK(double(U.z) == doctest::Approx(0.125 * E).epsilon(epsilon));
+    CHECK(double(U.x) == doctest::Approx(0.5 * E).epsilon(epsilon).scale(0));
+    CHECK(double(U.y) == doctest::Approx(0.25 * E).epsilon(epsilon).scale(0));
+    CHECK(double(U.z) == doctest::Approx(0.125 * E).epsilon(epsilon).scale(0));
     r = receiver(sphere_at(105), {0, 1, 0});
     CHECK(double(r.sample(0).shadowed.U.x) ==
-          doctest::Approx(0.5 * 0.017924877377 / std::numbers::pi).epsilon(epsilon));
+          doctest::Approx(0.5 * 0.017924877377 / std::numbers::pi).epsilon(epsilon).scale(0));
 }
 
 TEST_CASE("direct: with nothing in the way w V is w; with all in the way 0") {

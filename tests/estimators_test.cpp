@@ -56,19 +56,19 @@ constexpr double pixel_truth = (1.0 / 2 + 1.0 / 3 + 1.0 / 3 + 1.0 / 4) / 2;
 }  // namespace
 
 TEST_CASE("estimators: three samples by hand") {
-    // U 2, 2, 5; w 1, 3, 5; wV 1, 0, 5.
-    const ShadowMoments m = moments({{2, 1, 1}, {2, 3, 0}, {5, 5, 5}});
+    // U 2, 2, 3.5; w 1, 3, 5; wV 1, 0, 5.
+    const ShadowMoments m = moments({{2, 1, 1}, {2, 3, 0}, {3.5, 5, 5}});
     CHECK(m.n == 3);
-    CHECK(m.U == doctest::Approx(3));
+    CHECK(m.U == doctest::Approx(2.5));
     CHECK(m.w == doctest::Approx(3));
     CHECK(m.wV == doctest::Approx(2));
-    // b -1, 1, 0; w V - 2: -1, -2, 3; U - 3: -1, -1, 2.
-    CHECK(m.bb == doctest::Approx(2));
-    CHECK(m.b_wV == doctest::Approx(-1));
-    CHECK(std::abs(m.b_U) < 1e-15);
+    // b - mean: -1.5, 0.5, 1; w V - mean: -1, -2, 3; U - mean: -0.5, -0.5, 1.
+    CHECK(m.bb == doctest::Approx(3.5));
+    CHECK(m.b_wV == doctest::Approx(3.5));
+    CHECK(m.b_U == doctest::Approx(1.5));
     CHECK(stochastic(m) == doctest::Approx(2));
-    CHECK(control(m) == doctest::Approx(2));
-    CHECK(ratio(m) == doctest::Approx(2));
+    CHECK(control(m) == doctest::Approx(1.5));
+    CHECK(ratio(m) == doctest::Approx(2.5 * 2 / 3));
     CHECK(regression(m) == ratio(m));  // too few to tell
 }
 
@@ -251,6 +251,23 @@ TEST_CASE("estimators: ratio and regression converge to the pixel where U varies
         CHECK(v.pass);
         CHECK(v.delta_min < 0.01);
     }
+}
+
+TEST_CASE("estimators: predicted biases are those of their definitions, w = 3x^2, V = [x < 0.8]") {
+    const ShadowPopulation p{1, 0.512, 1.8, 1.8 * 0.32768, 27.0 / 7, 27.0 / 7 * std::pow(0.8, 7)};
+    const double beta = p.beta(Estimator::regression);
+    double of_ratio = 0, of_regression = 0, variance = 0;
+    constexpr int n = 200000;
+    for (int i = 0; i < n; ++i) {
+        const double x = (i + 0.5) / n, w = 3 * x * x, wV = x < 0.8 ? w : 0;
+        of_ratio -= w * (wV - p.R() * w) / n;
+        variance += (w - 1) * (w - 1) / n;
+        of_regression -= (w - 1) * (w - 1) * (wV - p.S - beta * (w - 1)) / n;
+    }
+    CHECK(p.bias(Estimator::ratio) == doctest::Approx(of_ratio).epsilon(1e-6));
+    CHECK(p.bias(Estimator::regression) == doctest::Approx(of_regression / variance).epsilon(1e-6));
+    CHECK(p.bias(Estimator::stochastic) == 0);
+    CHECK(p.bias(Estimator::control) == 0);
 }
 
 TEST_CASE("estimators: variances are those predicted, and regression's is the least") {

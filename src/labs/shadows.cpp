@@ -1,6 +1,6 @@
 // shadows.cpp  floor 5  four estimators of direct light, on images
 //
-//   build/shadows [--quick] [noise] [bias] [efficiency]
+//   build/shadows [--quick] [--only SCENE] [noise] [bias] [efficiency]
 //
 // What Heitz, Hill and McGuire (2018) say of stochastic, control variate, ratio and regression,
 // seen on pixels: noise where all is lit, in penumbra and in umbra beside its prediction; the bias
@@ -24,6 +24,7 @@ constexpr Estimator estimators[4] = {Estimator::stochastic, Estimator::control, 
 const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
 
 struct Plan {
+    std::string only = {};                // one scene
     int shrink = 2;                       // of the sides of the images that are measured
     uint64_t look = 1024;                 // samples to find the regions
     uint64_t spp = 64, trials = 1024;     // in penumbra; of these per estimate
@@ -151,6 +152,8 @@ struct Noise {
     double U = 0;
     std::array<Moments, 4> value, beyond_U;  // the estimates; without the pixel's own antialiasing
     std::array<double, 4> predicted{};       // variance
+    bool shadow = false;                     // some sample is occluded
+    uint64_t blind = 0;                      // estimates none of whose samples found light
 };
 
 // Var(w V - beta (w - U)) / n from all the pixel's samples; where U is the same all over the pixel,
@@ -165,12 +168,14 @@ Noise measure(const Stage& v, PixelIndex p, uint64_t spp, uint64_t trials) {
             const Shadowed s = first_light(v, p.x, p.y, t * spp + i);
             add(m, s);
             wV.add(double(s.wV.y));
+            noise.shadow = noise.shadow || s.wV.y < s.w.y;
         }
         all = merge(all, m);
+        noise.blind += m.w <= 0;
         for (size_t e = 0; e < 4; ++e) {
             const double value = estimate(estimators[e], m);
             noise.value[e].add(value);
-            noise.beyond_U[e].add(value - m.U);
+            if (m.w > 0) noise.beyond_U[e].add(value - m.U);
         }
     }
     noise.U = all.U;
@@ -203,9 +208,12 @@ void print_noise(const Stage& v, const Regions& regions, const Plan& plan) {
         "|---|---|---|---|---|---|---|---|\n");
     for (Region r : {lit, penumbra, umbra}) {
         const auto pixels = regions.pixels(r, plan.most_pixels);
-        const auto noise =
-            measure(v, pixels, plan.spp, r == penumbra ? plan.trials : plan.trials / 8);
-        for (size_t e = 0; e < 4 && !pixels.empty(); ++e) {
+        auto noise = measure(v, pixels, plan.spp, r == penumbra ? plan.trials : plan.trials / 8);
+        // What the reference did not see.
+        if (r == lit) std::erase_if(noise, [](const Noise& n) { return n.shadow; });
+        uint64_t blind = 0;
+        for (const Noise& n : noise) blind += n.blind;
+        for (size_t e = 0; e < 4 && !noise.empty(); ++e) {
             double variance = 0, predicted = 0, U2 = 0;
             uint64_t within = 0, silent = 0;
             std::vector<double> gain;
@@ -219,17 +227,21 @@ void print_noise(const Stage& v, const Regions& regions, const Plan& plan) {
                 silent += r == lit ? n.beyond_U[e].m2 == 0 && n.beyond_U[e].mean == 0
                                    : n.value[e].m2 == 0 && n.value[e].mean == 0;
             }
-            const double part = double(within) / double(pixels.size());
+            const double part = double(within) / double(noise.size());
             std::string claim;
             if (r == penumbra) {
                 claim = verdict(std::abs(variance / predicted - 1) < 0.15);
             } else if ((r == lit && (e == 1 || e == 2)) || (r == umbra && (e == 0 || e >= 2))) {
-                claim =
-                    text("exactly %s in %llu: %s", r == lit ? "U" : "0",
-                         static_cast<unsigned long long>(silent), verdict(silent == pixels.size()));
+                claim = text("exactly %s in %llu: %s", r == lit ? "U" : "0",
+                             static_cast<unsigned long long>(silent),
+                             r == lit && blind ? text(", but for %llu estimates without light",
+                                                      static_cast<unsigned long long>(blind))
+                                                     .c_str()
+                                               : "",
+                             verdict(silent == noise.size()));
             }
             std::printf(
-                "| %s | %zu | %s | %.4f | %s | %s | %s | %s |\n", region_names[r], pixels.size(),
+                "| %s | %zu | %s | %.4f | %s | %s | %s | %s |\n", region_names[r], noise.size(),
                 names[e], std::sqrt(variance / U2 * double(plan.spp)),
                 r == umbra
                     ? ""
@@ -483,15 +495,18 @@ void print_all_noise(const Plan& plan) {
                           {"panel", Polygons::angle},
                           {"lanterns", Polygons::angle}};
     std::printf(
-        "\nNoise: standard deviation of one sample over U, root mean square over the region; of "
-        "estimates from %llu samples.  Variance: from the 10th to the 90th percentile of the "
-        "pixels; all of them over their prediction.\n",
-        static_cast<unsigned long long>(plan.spp));
+        "\nNoise: standard deviation of one sample over U, root mean square over the region.  Variance: 10th ... 90th percentile of the pixels; sum over pixels / sum of predictions.
+");
     for (const auto& [scene, polygons] : configurations) {
+        if (!plan.only.empty() && plan.only != scene) continue;
         const char* how = polygon_names[size_t(polygons)].data();
         std::printf("\n## %s, quads by %s\n\n", scene, how);
         const Stage small = load(scene, polygons, plan.shrink);
-        print_noise(small, find_regions(small, plan.look), plan);
+        // Many lights: the predictions are those of many samples.
+        Plan here = plan;
+        if (small.scene.lights.size() > 8) here.spp *= 4, here.trials /= 2, here.most_pixels /= 2;
+        std::printf("%llu samples an estimate.\n\n", static_cast<unsigned long long>(here.spp));
+        print_noise(small, find_regions(small, plan.look), here);
         const Stage whole = load(scene, polygons, plan.shrink / 2);
         write_sheet(text("%s-%s", scene, how), whole, double(whole.scene.exposure));
     }
@@ -510,15 +525,18 @@ void print_all_efficiency(const std::string& program, const Plan& plan) {
                                        {"lanterns", ""},
                                        {"coursework", ""},
                                        {"cornell", ""}})
-        print_efficiency(program, scene, depth, plan);
+        if (plan.only.empty() || plan.only == scene) print_efficiency(program, scene, depth, plan);
 }
 
 int run(const std::string& self, const std::vector<std::string>& words) {
     Plan plan;
     bool noise = false, bias = false, efficiency = false;
-    for (const std::string& word : words) {
+    for (size_t i = 0; i < words.size(); ++i) {
+        const std::string& word = words[i];
         if (word == "--quick")
-            plan = {8, 128, 64, 64, 8, 2, 16, 20};
+            plan = {plan.only, 8, 128, 64, 64, 8, 2, 16, 20};
+        else if (word == "--only" && i + 1 < words.size())
+            plan.only = words[++i];
         else if (word == "noise")
             noise = true;
         else if (word == "bias")
@@ -526,7 +544,8 @@ int run(const std::string& self, const std::vector<std::string>& words) {
         else if (word == "efficiency")
             efficiency = true;
         else
-            throw UserError(unknown("word", word, {"--quick", "noise", "bias", "efficiency"}));
+            throw UserError(
+                unknown("word", word, {"--quick", "--only", "noise", "bias", "efficiency"}));
     }
     if (!noise && !bias && !efficiency) noise = bias = efficiency = true;
     std::filesystem::path program = self;  // build/shadows-float runs build/penumbra-float
