@@ -56,6 +56,9 @@ techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NE
 estimators1d: build/estimators1d$(SUFFIX)  ## four estimators of a shadowed integral in 1D (a minute)
 	build/estimators1d$(SUFFIX)
 
+penumbra: $(PENUMBRA) build/shadows$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
+	build/shadows$(SUFFIX)
+
 bench: build/bench$(SUFFIX)  ## rays a second, beside Embree if it is installed
 	build/bench$(SUFFIX)
 

@@ -232,7 +232,7 @@ void print_noise(const Stage& v, const Regions& regions, const Plan& plan) {
             if (r == penumbra) {
                 claim = verdict(std::abs(variance / predicted - 1) < 0.15);
             } else if ((r == lit && (e == 1 || e == 2)) || (r == umbra && (e == 0 || e >= 2))) {
-                claim = text("exactly %s in %llu: %s", r == lit ? "U" : "0",
+                claim = text("exactly %s in %llu%s: %s", r == lit ? "U" : "0",
                              static_cast<unsigned long long>(silent),
                              r == lit && blind ? text(", but for %llu estimates without light",
                                                       static_cast<unsigned long long>(blind))
@@ -359,6 +359,30 @@ Render render(const std::string& program, const std::string& scene, std::vector<
     std::filesystem::remove(pfm);
     std::filesystem::remove(json);
     return r;
+}
+
+// Whole renders at equal samples, and the variance that each states of itself.
+void write_renders(const std::string& program, const std::string& scene) {
+    for (const char* name : names)
+        for (const bool variance : {false, true}) {
+            std::vector<std::string> words = {
+                program,
+                "--quiet",
+                "--light",
+                "nee",
+                "--direct",
+                name,
+                "--polygons",
+                "angle",
+                "--spp",
+                "16",
+                "-o",
+                "out/shadows/" + scene + "-" + name + (variance ? "-variance.png" : ".png"),
+                "scenes/" + scene + ".scene"};
+            if (variance) words.insert(words.end(), {"--view", "variance", "--exposure", "200"});
+            if (const int status = execute(words))
+                throw SystemError(program + " failed: exit status " + std::to_string(status));
+        }
 }
 
 // Efficiency 1 / (variance x core seconds) over stochastic's.  Variance from seed to seed, of the
@@ -495,8 +519,9 @@ void print_all_noise(const Plan& plan) {
                           {"panel", Polygons::angle},
                           {"lanterns", Polygons::angle}};
     std::printf(
-        "\nNoise: standard deviation of one sample over U, root mean square over the region.  Variance: 10th ... 90th percentile of the pixels; sum over pixels / sum of predictions.
-");
+        "\nNoise: standard deviation of one sample over U, root mean square over the region.  "
+        "Variance: "
+        "10th ... 90th percentile of the pixels; sum over pixels / sum of predictions.\n");
     for (const auto& [scene, polygons] : configurations) {
         if (!plan.only.empty() && plan.only != scene) continue;
         const char* how = polygon_names[size_t(polygons)].data();
@@ -513,6 +538,7 @@ void print_all_noise(const Plan& plan) {
 }
 
 void print_all_efficiency(const std::string& program, const Plan& plan) {
+    for (const char* scene : {"penumbra", "panel", "lanterns"}) write_renders(program, scene);
     std::printf(
         "\n## Efficiency, x stochastic\n\n%llu samples, %llu seeds, whole renders, quads by "
         "angle\n\n| scene | sampler | estimator | time | lit | penumbra | umbra | between | other "
