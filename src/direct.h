@@ -25,9 +25,10 @@ inline bool is_finite(const Shadowed& s) { return is_finite(s.U) && is_finite(s.
 inline bool has_closed_form(const Light& l, const Surface& x) {
     const real error = 2 * (x.error + l.error);
     if (l.kind == Light::Kind::point) return false;
-    if (l.kind == Light::Kind::sphere) return length(x.p - l.p) - l.r > error;
+    const vec3 p = x.p - l.p;
+    if (l.kind == Light::Kind::sphere) return dot(p, p) > sqr(l.r + error);
     const vec3 n = cross(l.u, l.v);
-    return std::abs(dot(n, x.p - l.p)) > error * length(n);
+    return std::abs(dot(n, p)) > error * length(n);
 }
 
 // Irradiance / pi of a diffuse surface by one light that has a closed form.

@@ -24,9 +24,8 @@ inline real t_minus_atan(real t) {
 //   E / L = sin^2 cos(beta) acos(y) + atan(t) - q sin(sigma) cos(sigma).
 // The last two cancel to their third order for small sigma: q sin cos = t - t sin^2.
 inline real irradiance_sphere(real cosine, real sin2) {
+    if (sqr(cosine) >= sin2) return cosine > 0 ? pi * sin2 * cosine : 0;
     const real s = std::sqrt(sin2);
-    if (cosine >= s) return pi * sin2 * cosine;
-    if (!(cosine > -s)) return 0;
     const real cos_sigma = std::sqrt(1 - sin2), sin_beta = std::sqrt((1 - cosine) * (1 + cosine));
     const real y = std::clamp(-cos_sigma * cosine / (s * sin_beta), real(-1), real(1));
     const real q = sin_beta * std::sqrt((1 - y) * (1 + y));

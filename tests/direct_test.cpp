@@ -146,7 +146,7 @@ TEST_CASE("direct: the sphere at 75 and 105 degrees, with albedo, radiance and p
     Receiver r = receiver(sphere_at(75) + "sphere 0 -9 0  1  lamp\n", {0, 1, 0});
     const double E = 0.221200880053 / std::numbers::pi;
     const rgb U = r.sample(0).shadowed.U;
-    const double epsilon = single ? 2e-5 : 1e-11;
+    const double epsilon = single ? 2e-5 : 5e-11;
     CHECK(double(U.x) == doctest::Approx(0.5 * E).epsilon(epsilon).scale(0));
     CHECK(double(U.y) == doctest::Approx(0.25 * E).epsilon(epsilon).scale(0));
     CHECK(double(U.z) == doctest::Approx(0.125 * E).epsilon(epsilon).scale(0));

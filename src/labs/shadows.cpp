@@ -394,7 +394,7 @@ void print_efficiency(const std::string& program, const std::string& scene, cons
     const Regions regions = find_regions(v, plan.look / 4);
     const size_t n = regions.of.size();
     for (const char* sampler : {"independent", "halton"}) {
-        std::array<std::array<double, 6>, 4> efficiency{};
+        std::array<std::array<double, 6>, 4> variances{};
         std::array<double, 4> seconds{};
         std::array<size_t, 6> count{};
         std::vector<std::array<Moments, 4>> pixels(n);
@@ -419,16 +419,18 @@ void print_efficiency(const std::string& program, const std::string& scene, cons
         for (size_t e = 0; e < 4; ++e)
             for (size_t i = 0; i < n; ++i)
                 for (size_t region : {size_t(regions.of[i]), size_t(5)})
-                    efficiency[e][region] += pixels[i][e].variance();
+                    variances[e][region] += pixels[i][e].variance();
+        // Variances of 0 have no ratio.
+        auto gain = [&](size_t e, size_t region) -> std::string {
+            const double mine = variances[e][region], plain = variances[0][region];
+            if (region < 5 && count[region] == 0) return "–";
+            if (mine <= 0 || plain <= 0) return mine > 0 ? "0" : plain > 0 ? "∞" : "0/0";
+            return text("%.2f", plain * seconds[0] / (mine * seconds[e]));
+        };
         for (size_t e = 0; e < 4; ++e) {
             std::printf("| %s%s%s | %s | %s | %.3f |", scene.c_str(), *depth ? ", depth " : "",
                         depth, sampler, names[e], seconds[e] / seconds[0]);
-            for (size_t region : {0, 1, 2, 3, 4, 5})
-                std::printf(" %s |", region < 5 && count[region] == 0
-                                         ? "–"
-                                         : text("%.2f", efficiency[0][region] * seconds[0] /
-                                                            (efficiency[e][region] * seconds[e]))
-                                               .c_str());
+            for (size_t region : {0, 1, 2, 3, 4, 5}) std::printf(" %s |", gain(e, region).c_str());
             std::printf("\n");
         }
         std::fflush(stdout);
