@@ -488,7 +488,7 @@ void write_sheet(const std::string& name, const Stage& v, double exposure) {
     write_image("out/shadows/" + name + ".png", sheet, 1);
 }
 
-// The bias of ratio, magnified: red too bright, blue too dark.
+// The bias of ratio, 200 times: red too bright, blue too dark.
 void write_bias_sheet(const Stage& v, const Regions& regions, uint64_t trials) {
     const int w = regions.width, h = regions.height, gap = 8, last = 5;
     Image sheet(last * (w + gap) + gap, h + 22 + gap);
@@ -499,7 +499,7 @@ void write_bias_sheet(const Stage& v, const Regions& regions, uint64_t trials) {
             const bool biased = r == penumbra || r == mixed;
             const Bias bias = biased ? measure_bias(v, {x, y}, trials, last) : Bias{};
             for (int k = 0; k < last; ++k) {
-                const float b = float(20 * bias.excess[size_t(k)][0].mean);
+                const float b = float(200 * bias.excess[size_t(k)][0].mean);
                 sheet.at(gap + k * (w + gap) + x, gap + y) = {0.5f + b, 0.5f - std::abs(b) / 2,
                                                               0.5f - b};
             }
