@@ -79,29 +79,25 @@ struct DirectLight {
 inline DirectLight direct_light(const Scene& scene, const Options& o, const Material& m,
                                 const Surface& x, const Frame& local, vec3 wo,
                                 const Sampler& sampler, int vertex) {
-    DirectLight d;
-    if (o.light == LightMode::none || scene.lights.empty() || m.is_delta()) return d;
+    if (o.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
     const bool split = splits(o, vertex);
-    if (split) d.shadowed.U = unshadowed(scene, m, x, local);
+    DirectLight nothing;
+    if (split) nothing.shadowed.U = unshadowed(scene, m, x, local);
     const Light& light = choose_light(scene, sampler.get(dimension(vertex, Draw::pick)));
     const auto s = sample_light(light, x.p, sampler.get2(dimension(vertex, Draw::light_x)));
-    if (!s) return d;
+    if (!s) return nothing;
     const vec3 wi = local.to_local(s->wi);
     const rgb f = eval(m, wo, wi);
-    if (max_of(f) <= 0) return d;
-    d.light = &light;
-    d.sample = *s;
-    d.pdf = light.pick * s->pdf;
+    if (max_of(f) <= 0) return nothing;
+    const real pdf_light = light.pick * s->pdf;
     const bool share = o.light == LightMode::mis && !s->delta;
-    d.weight = share ? power_heuristic(d.pdf, pdf(m, wo, wi, o.direction)) : 1;
-    d.occluded = scene.bvh.occluded(spawn_to(x, s->at));
-    d.rays = 1;
-    const real scale = wi.z / d.pdf * d.weight;
-    const rgb f_known = split && has_closed_form(light, x) ? m.kd / pi : rgb{};
-    if (!d.occluded) d.L = (f - f_known) * s->L * scale;
-    d.shadowed.w = f_known * s->L * scale;
-    if (!d.occluded) d.shadowed.wV = d.shadowed.w;
-    return d;
+    const real weight = share ? power_heuristic(pdf_light, pdf(m, wo, wi, o.direction)) : 1;
+    const bool occluded = scene.bvh.occluded(spawn_to(x, s->at));
+    const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
+    const rgb known = split && has_closed_form(light, x) ? m.kd / pi : rgb{};
+    const rgb w = known * s->L * (wi.z / pdf_light * weight);
+    const rgb wV = occluded ? rgb{} : w;
+    return {L - wV, {nothing.shadowed.U, w, wV}, 1, &light, *s, pdf_light, weight, occluded};
 }
 
 // ---- Pixels -----------------------------------------------------------------------------------

@@ -125,8 +125,8 @@ void replay(const Scene& scene, const Options& o, const Pattern& pattern) {
 // ---- Render loop ------------------------------------------------------------------------------
 
 // Adds passes to the film until the schedule is content, or Ctrl-C, or a sample is not finite.
-RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film,
-                ShadowFilm* shadows) {
+inline RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film,
+                       ShadowFilm* shadows) {
     Progress progress(o);
     Schedule schedule(o, pattern.period());
     std::atomic<uint64_t> rays = 0;
@@ -156,8 +156,8 @@ RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Fi
 }
 
 // One sample of the mean over a pixel.  Unbiased, but for the scene's depth.
-PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
-                 uint64_t sample, const PathLog* log) {
+inline PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
+                        uint64_t sample, const PathLog* log) {
     const uint64_t index = uint64_t(y) * uint64_t(scene.size.width) + uint64_t(x);
     const Sampler sampler(pattern, index, sample);
     const vec2 u = sampler.get2(film_x);
@@ -188,8 +188,8 @@ inline real weight_of_emission(const Scene& scene, LightMode mode, vec3 p, real 
 // The rendering equation (Kajiya 1986) along one path: at every vertex x
 //   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi,
 // the integral by one direction, the light that reaches x directly by one light sample as well.
-PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& sampler,
-              const PathLog* log) {
+inline PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& sampler,
+                     const PathLog* log) {
     PathSample path;
     auto end = [&](const char* why) {
         if (log) log->end(why, path.L);

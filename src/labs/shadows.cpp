@@ -74,8 +74,8 @@ Shadowed first_light(const Stage& v, int x, int y, uint64_t i) {
     const real cos_o = -dot(p.n, ray.d);
     if (cos_o == 0) return {};
     const Frame local = frame(cos_o > 0 ? p.n : -p.n);
-    return direct_light(s, v.options, s.material(*hit), p, local, local.to_local(-ray.d), sampler,
-                        0)
+    return direct_light(s, v.options, s.material(*hit, p.p), p, local, local.to_local(-ray.d),
+                        sampler, 0)
         .shadowed;
 }
 
