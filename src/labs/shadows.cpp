@@ -540,7 +540,8 @@ void print_all_noise(const Plan& plan) {
 }
 
 void print_all_efficiency(const std::string& program, const Plan& plan) {
-    for (const char* scene : {"penumbra", "panel", "lanterns"}) write_renders(program, scene);
+    for (const std::string scene : {"penumbra", "panel", "lanterns"})
+        if (plan.only.empty() || plan.only == scene) write_renders(program, scene);
     std::printf(
         "\n## Efficiency, x stochastic\n\n%llu samples, %llu seeds, whole renders, quads by "
         "angle\n\n| scene | sampler | estimator | time | lit | penumbra | umbra | between | other "
