@@ -12,11 +12,11 @@ namespace {
 constexpr Estimator all[] = {Estimator::stochastic, Estimator::control, Estimator::ratio,
                              Estimator::regression};
 
-struct Triple {
+struct LightTriple {
     double U, w, wV;
 };
 
-ShadowMoments moments(const std::vector<Triple>& samples) {
+ShadowMoments moments(const std::vector<LightTriple>& samples) {
     ShadowMoments m;
     for (const auto& [U, w, wV] : samples) m.add(U, w, wV);
     return m;
@@ -38,7 +38,7 @@ ShadowMoments of_ramp(Random& random, uint64_t n) {
 // What light samples of a pixel look like: U differs from sample to sample, w is unbiased for it,
 // V depends on both.  E[U] = 1.5; w = U (1/2 + t), V = [t < s], U = 1 + s: S = E[(1 + s) (s/2 +
 // s^2/2)].
-Triple pixel_sample(Random& random) {
+LightTriple pixel_sample(Random& random) {
     const double s = random(), t = random(), U = 1 + s, w = U * (0.5 + t);
     return {U, w, t < s ? w : 0};
 }
@@ -73,7 +73,7 @@ TEST_CASE("estimators: three samples by hand") {
 }
 
 TEST_CASE("estimators: eight samples by hand, where U differs and means do") {
-    std::vector<Triple> samples;
+    std::vector<LightTriple> samples;
     for (int i = 0; i < 8; ++i) {
         const double U = 1 + i % 2, w = U + (i < 4 ? 1 : -0.5), V = i % 4 != 3;
         samples.push_back({U, w, V ? w : 0});
@@ -91,7 +91,7 @@ TEST_CASE("estimators: eight samples by hand, where U differs and means do") {
 TEST_CASE("estimators: the part of beta that only follows U is left out") {
     // w V = U / 2 whatever b: the light is half in shadow, and beta must be 0, not the chance
     // correlation of U and b.
-    std::vector<Triple> samples;
+    std::vector<LightTriple> samples;
     for (int i = 0; i < 16; ++i) {
         const double U = 1 + (i % 3) * 0.5, b = (i % 5) * 0.1;
         samples.push_back({U, U + b, (U + b) * 0.5});
@@ -130,12 +130,12 @@ TEST_CASE("estimators: no sample that found light, no sample at all, constant w"
     for (Estimator e : all) {
         CHECK(estimate(e, ShadowMoments{}) == 0);
         CHECK(std::isfinite(estimate(e, moments({{1, 0, 0}}))));
-        CHECK(std::isfinite(estimate(e, moments(std::vector<Triple>(20, {1, 0, 0})))));
+        CHECK(std::isfinite(estimate(e, moments(std::vector<LightTriple>(20, {1, 0, 0})))));
     }
     CHECK(ratio(moments({{1, 0, 0}, {1, 0, 0}})) == 0);
-    CHECK(regression(moments(std::vector<Triple>(20, {1, 0, 0}))) == 0);
+    CHECK(regression(moments(std::vector<LightTriple>(20, {1, 0, 0}))) == 0);
     // Where w is constant every form is the mean of w V.
-    std::vector<Triple> half(20, {2, 2, 2});
+    std::vector<LightTriple> half(20, {2, 2, 2});
     half.resize(40, {2, 2, 0});
     for (Estimator e : all) CHECK(estimate(e, moments(half)) == doctest::Approx(1));
 }
@@ -145,7 +145,7 @@ TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in
     ShadowMoments one, even, odd;
     SumsAbout sums{1e8};
     double bb = 0, b_wV = 0, b_U = 0;
-    std::vector<Triple> samples;
+    std::vector<LightTriple> samples;
     for (int i = 0; i < 501; ++i) {
         const double b = 2 * random() - 1, U = 1e8, w = U + b;
         samples.push_back({U + (i % 7), w + (i % 7), random() < 0.3 ? w : 0});
