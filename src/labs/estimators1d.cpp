@@ -4,7 +4,7 @@
 //
 // S = integral over [0,1] of w V, W = that of w, x uniform (Heitz, Hill, McGuire 2018, supplement).
 // Tables and a verdict on stdout, exit status 1 if a prediction fails; every number in
-// out/estimators1d.csv, the seed's Figure 1 in out/estimators1d.png.
+// out/estimators1d.csv, the paper's Figure 1 in out/estimators1d.png.
 #include <array>
 #include <cstdio>
 #include <string>

@@ -157,7 +157,7 @@ struct Noise {
 };
 
 // Var(w V - beta (w - U)) / n from all the pixel's samples; where U is the same all over the pixel,
-// FACTS' Var(w V), Var(w (1 - V)), Var(w (V - R)) and (1 - corr^2) Var(w V).
+// Var(w V), Var(w (1 - V)), Var(w (V - R)) and (1 - corr^2) Var(w V).
 Noise measure(const Stage& v, PixelIndex p, uint64_t spp, uint64_t trials) {
     Noise noise;
     ShadowMoments all;
