@@ -147,16 +147,20 @@ Measured measured(const Row& row, size_t e) {
             std::sqrt(error.mean * error.mean + error.m2 / double(error.n))};
 }
 
-struct Plan {
-    uint64_t trials = 40000, more = 131072;  // up to 65536 numbers; up to 4096, in their place
-    int k_more = 12;
+// Trials of 2^k_max numbers; of their first 2^k_min ones and more.
+struct Tier {
+    uint64_t trials;
+    int k_min, k_max;
 };
+using Plan = std::array<Tier, 3>;
+constexpr Plan full = {{{131072, 0, 12}, {40000, 13, 14}, {16384, 15, 16}}};
+constexpr Plan quick = {{{2000, 0, 12}, {500, 13, 14}, {200, 15, 16}}};
 
 Rows experiment(const Case& c, const Plan& plan) {
     Rows rows;
     const uint64_t key = hash(0, uint64_t(c.letter));
-    add_trials(rows, c, hash(key, 1), plan.more, 0, plan.k_more);
-    add_trials(rows, c, hash(key, 2), plan.trials, plan.k_more + 1, steps - 1);
+    for (const auto& [trials, k_min, k_max] : plan)
+        add_trials(rows, c, hash(key, uint64_t(k_max)), trials, k_min, k_max);
     return rows;
 }
 
@@ -366,23 +370,24 @@ Image figure(const std::vector<Rows>& all) {
 }
 
 int run(const std::vector<std::string>& words) {
-    Plan plan;
+    Plan plan = full;
     for (const std::string& word : words) {
         if (word != "--quick") throw UserError(unknown("option", word, {"--quick"}));
-        plan = {500, 2000, 12};
+        plan = quick;
     }
     const std::string stem = "out/estimators1d";
     std::filesystem::create_directories("out");
     check_writable(stem + ".csv");
     std::vector<Rows> all;
-    std::printf(
-        "# Four estimators of a shadowed integral\n\n%llu trials up to N = %.0f, %llu beyond (each "
-        "N the start of the next); sd of a measured variance: %.1f %% and %.1f %%.\n"
+    std::puts("# Four estimators of a shadowed integral\n");
+    for (const auto& [trials, k_min, k_max] : plan)
+        std::printf(
+            "N = %.0f ... %.0f: %.0f trials, each N the start of the next; spread of a variance "
+            "%.1f %%\n",
+            n_of(k_min), n_of(k_max), double(trials), 100 * std::sqrt(2 / double(trials)));
+    std::puts(
         "Regression is ratio below N = 8.  Bias of ratio and regression: of their difference to "
-        "their own linearisation.\n",
-        static_cast<unsigned long long>(plan.more), n_of(plan.k_more),
-        static_cast<unsigned long long>(plan.trials), 100 * std::sqrt(2 / double(plan.more)),
-        100 * std::sqrt(2 / double(plan.trials)));
+        "their own linearisation.");
     for (const Case& c : cases) {
         all.push_back(experiment(c, plan));
         print_case(c, all.back());
