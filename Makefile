@@ -27,7 +27,8 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak techniques bench extremes clean help layers packages always
+.PHONY: all programs test mutants soak techniques estimators1d penumbra bench extremes clean help layers \
+        packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -51,6 +52,12 @@ soak: $(OBJECTS)/all-tests  ## run the random tests with fresh seeds for 10 minu
 
 techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NEE on coursework (10 minutes)
 	build/techniques$(SUFFIX)
+
+estimators1d: build/estimators1d$(SUFFIX)  ## four estimators of a shadowed integral in 1D (a minute)
+	build/estimators1d$(SUFFIX)
+
+penumbra: $(PENUMBRA) build/shadows$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
+	build/shadows$(SUFFIX)
 
 bench: build/bench$(SUFFIX)  ## rays a second, beside Embree if it is installed
 	build/bench$(SUFFIX)

@@ -101,6 +101,27 @@ public:
         return image;
     }
 
+    // Means of the even (0) or odd (1) samples.
+    Image half(size_t odd) const {
+        Image image(width, height);
+        const double n = double(odd ? samples_ / 2 : samples_ - samples_ / 2);
+        for (size_t i = 0; i < pixels_.size() && n > 0; ++i)
+            for (size_t c = 0; c < 3; ++c)
+                image.pixels[i][c] = float((odd ? pixels_[i].odd : pixels_[i].even)[c] / n);
+        return image;
+    }
+
+    // As from halves above, of any images that even and odd samples make.
+    Image variance_of_halves(const Image& even, const Image& odd) const {
+        Image image(width, height);
+        const double n = double(samples_), nb = double(samples_ / 2), na = n - nb;
+        for (size_t i = 0; i < pixels_.size(); ++i)
+            for (size_t c = 0; c < 3; ++c)
+                image.pixels[i][c] = float(
+                    sqr(double(even.pixels[i][c]) - double(odd.pixels[i][c])) * na * nb / (n * n));
+        return image;
+    }
+
 private:
     using Sums = std::array<double, 3>;  // one a channel
     struct Pixel {

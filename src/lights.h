@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "rectangle.h"
 #include "sampling.h"
 #include "shapes.h"
 
@@ -12,8 +13,9 @@ struct Light {
     real r = 0;           // radius of a sphere; it emits outwards
     rgb L = {};           // radiance; of a point: intensity, radiance x length^2
     bool twosided = false;
-    real error = 0;  // of surface points, see Surface
-    real pick = 0;   // probability that the scene chooses this light
+    bool by_angle = false;  // of a rectangle: sample the solid angle, not the area
+    real error = 0;         // of surface points, see Surface
+    real pick = 0;          // probability that the scene chooses this light
     vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
 };
 
@@ -45,8 +47,14 @@ inline std::optional<real> sin2_subtended(const Light& l, vec3 p) {
     return sqr(l.r) / d2;
 }
 
+// The rectangle that p sees, if its solid angle is to be sampled and can be.
+inline std::optional<SeenRectangle> seen_rectangle(const Light& l, vec3 p) {
+    if (!l.by_angle || l.kind != Light::Kind::quad) return {};
+    return see_rectangle(l.p - p, l.u, l.v);
+}
+
 // Density per solid angle of the direction from p to the point y, for uniform points of a polygon.
-inline real pdf_polygon(const Light& l, vec3 p, const Surface& y) {
+inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
     vec3 w = y.p - p;
     real d2 = dot(w, w);
     real cos_y = std::abs(dot(y.n, w)) / std::sqrt(d2);
@@ -73,14 +81,15 @@ inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, ve
     return LightSample{wi, {l.p + l.r * n, n, l.error}, l.L, pdf_cone(*sin2_max)};
 }
 
-// Uniform over the area, on the side that emits.
+// Uniform over the area, or over the solid angle; nothing from the side that does not emit.
 inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, vec2 u) {
+    const auto seen = seen_rectangle(l, p);
     vec3 on = l.kind == Light::Kind::quad ? sample_quad(u, l.u, l.v) : sample_triangle(u, l.u, l.v);
-    Surface y{l.p + on, unit(cross(l.u, l.v)), l.error};
+    Surface y{seen ? p + sample_rectangle(*seen, u) : l.p + on, unit(cross(l.u, l.v)), l.error};
     vec3 wi = unit(y.p - p);
     real cos_y = -dot(y.n, wi);
     if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
-    const real pdf = pdf_polygon(l, p, y);
+    const real pdf = seen ? pdf_rectangle(*seen) : pdf_polygon_by_area(l, p, y);
     if (!(pdf > 0)) return {};  // edge-on, but for the rounding of wi
     return LightSample{wi, y, l.L, pdf};
 }
@@ -98,7 +107,10 @@ inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
 // Density (1/sr) with which sample_light from p chooses the point y of the light.
 inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
     if (l.kind == Light::Kind::point) return 0;
-    if (l.kind != Light::Kind::sphere) return pdf_polygon(l, p, y);
+    if (l.kind != Light::Kind::sphere) {
+        const auto seen = seen_rectangle(l, p);
+        return seen ? pdf_rectangle(*seen) : pdf_polygon_by_area(l, p, y);
+    }
     auto sin2_max = sin2_subtended(l, p);
     return sin2_max ? pdf_cone(*sin2_max) : 0;
 }

@@ -8,6 +8,7 @@
 
 #include "bsdf.h"
 #include "check.h"
+#include "estimators.h"
 #include "sampler.h"
 
 // How light is found.
@@ -15,6 +16,12 @@ enum class LightMode {
     none,  // by hitting it
     nee,   // next-event estimation: by aiming at it
     mis    // both, weighted by the power heuristic
+};
+
+// How points of a rectangular light are chosen.
+enum class Polygons {
+    area,  // uniform over its area
+    angle  // uniform over the solid angle that it subtends
 };
 
 // What the image shows.
@@ -25,6 +32,9 @@ inline const std::vector<std::string_view> sampler_names = {"independent", "stra
                                                             "halton-naive"};
 inline const std::vector<std::string_view> direction_names = {"uniform", "bsdf"};
 inline const std::vector<std::string_view> light_names = {"none", "nee", "mis"};
+inline const std::vector<std::string_view> direct_names = {"stochastic", "control", "ratio",
+                                                           "regression"};
+inline const std::vector<std::string_view> polygon_names = {"area", "angle"};
 inline const std::vector<std::string_view> view_names = {"radiance", "normal", "depth",
                                                          "albedo",   "bvh",    "variance"};
 
@@ -41,6 +51,8 @@ struct Options {
     SamplerKind sampler = SamplerKind::halton;
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
+    Estimator direct = Estimator::stochastic;
+    Polygons polygons = Polygons::area;
     std::optional<int> depth;  // default: the scene's
     int roulette = 0;          // 0: off
     uint64_t seed = 0;
@@ -73,6 +85,12 @@ Renders SCENE (a file in the format of scenes/*.scene) by path tracing.
                         hemisphere, or importance-sampled (default: bsdf)
   --light none|nee|mis  light found by hitting it, by aiming at it (next-event
                         estimation), or by both, weighted (default: mis)
+  --direct stochastic|control|ratio|regression   how light samples on visible
+                        diffuse surfaces are used: as they are (default), or
+                        to find only what shadows take from the exact
+                        unshadowed light; needs --light nee
+  --polygons area|angle points of rectangular lights: uniform over the area
+                        (default), or over the solid angle
   --depth N             scatterings a path may have, 0: emission only
                         (default: the scene's)
   --roulette K          Russian roulette from the K-th scattering on
@@ -139,6 +157,8 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
     if (name == "--sampler") o.sampler = SamplerKind(choice(value, sampler_names));
     if (name == "--direction") o.direction = Direction(choice(value, direction_names));
     if (name == "--light") o.light = LightMode(choice(value, light_names));
+    if (name == "--direct") o.direct = Estimator(choice(value, direct_names));
+    if (name == "--polygons") o.polygons = Polygons(choice(value, polygon_names));
     if (name == "--depth") o.depth = int(parse_count(value, 0, 1000000));
     if (name == "--roulette") o.roulette = int(parse_count(value, 1, 1000000));
     if (name == "--seed") o.seed = parse_count(value, 0, UINT64_MAX);
@@ -156,9 +176,9 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
 // Throws UserError about the first word that cannot be used.
 inline Options parse_options(const std::vector<std::string>& words) {
     static const std::vector<std::string_view> with_value = {
-        "-o",      "--spp",      "--time",  "--sampler", "--direction", "--light",
-        "--depth", "--roulette", "--seed",  "--threads", "--size",      "--exposure",
-        "--view",  "--stats",    "--pixel", "--sample"};
+        "-o",       "--spp",      "--time",  "--sampler",  "--direction", "--light",
+        "--direct", "--polygons", "--depth", "--roulette", "--seed",      "--threads",
+        "--size",   "--exposure", "--view",  "--stats",    "--pixel",     "--sample"};
     std::vector<std::string_view> known = with_value;
     known.insert(known.end(), {"--halves", "--quiet", "--help"});
     Options o;
@@ -191,6 +211,9 @@ inline Options parse_options(const std::vector<std::string>& words) {
     if (o.help) return o;
     if (o.view == View::variance) o.halves = true;
     if (sample_given && !o.replay) throw UserError("--sample: goes with --pixel X,Y");
+    if (o.direct != Estimator::stochastic && o.light != LightMode::nee)
+        throw UserError("--direct " + std::string(direct_names[size_t(o.direct)]) +
+                        ": needs --light nee");
     if (o.scene.empty()) throw UserError("no scene given (try --help)");
     if (o.spp == 0 && o.seconds == 0) o.spp = 64;
     if (o.outputs.empty()) {

@@ -1,20 +1,25 @@
 // pathtracer.cpp  floor 5  the path tracer; read it downwards: main, render, pixel, Li
+#include "direct.h"
 #include "film.h"
 #include "parser.h"
 #include "report.h"
 #include "sampler.h"
 #include "views.h"
 
-// What one path brings: radiance, and the rays it took.
+// What one path brings: radiance, and the rays it took.  With --direct ratio or regression L lacks
+// the light in `shadowed`, which only a pixel's samples together can estimate.
 struct PathSample {
     rgb L;
     uint64_t rays = 0;
+    Shadowed shadowed = {};
 };
 
 // Inline, for more than one test includes this file.
 inline int penumbra(const std::vector<std::string>& words);
+inline Image variance_of(const Film& film, const ShadowFilm& shadows, Film::Estimate from);
 inline void replay(const Scene& scene, const Options& o, const Pattern& pattern);
-inline RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film);
+inline RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film,
+                       ShadowFilm* shadows = nullptr);
 inline PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
                         uint64_t sample, const PathLog* log = nullptr);
 inline PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& sampler,
@@ -42,6 +47,7 @@ inline Scene load(const Options& o) {
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
     scene.exposure = o.exposure.value_or(default_exposure(scene, o.view));
+    for (Light& l : scene.lights) l.by_angle = o.polygons == Polygons::angle;
     for (const Light& l : scene.lights)
         if (l.kind == Light::Kind::point && o.light == LightMode::none)
             throw UserError("--light none: rays never hit the point light of " + o.scene);
@@ -76,7 +82,9 @@ int penumbra(const std::vector<std::string>& words) {
     if (!o.stats.empty()) check_writable(o.stats);
 
     Film film(scene.size);
-    const RunStats run = render(scene, o, pattern, film);
+    std::optional<ShadowFilm> shadows;
+    if (estimates_pixels(o.direct)) shadows.emplace(o.direct, scene.size);
+    const RunStats run = render(scene, o, pattern, film, shadows ? &*shadows : nullptr);
     if (run.non_finite > 0) {
         const NonFinite& bad = film.first_non_finite();
         const std::string pixel = std::to_string(bad.x) + "," + std::to_string(bad.y);
@@ -89,14 +97,23 @@ int penumbra(const std::vector<std::string>& words) {
     if (o.view == View::variance && run.spp == 1)
         throw UserError("--view variance: one sample has no variance; nothing was written");
     if (run.spp > 0) {
-        const Image variance = film.variance(variance_estimate(o));
-        const Image image = o.view == View::variance ? variance : film.image();
+        const Image variance = shadows ? variance_of(film, *shadows, variance_estimate(o))
+                                       : film.variance(variance_estimate(o));
+        const Image radiance = shadows ? shadows->added_to(film.image()) : film.image();
+        const Image& image = o.view == View::variance ? variance : radiance;
         for (const std::string& path : o.outputs) write_image(path, image, double(scene.exposure));
         if (!o.stats.empty())
-            write_file(o.stats,
-                       encode_stats(o, scene.size, scene.depth, run, film.image(), variance));
+            write_file(o.stats, encode_stats(o, scene.size, scene.depth, run, radiance, variance));
     }
     return run.interrupted ? 130 : 0;
+}
+
+// Ratio and regression are no means of samples: the spread of samples says nothing about them, the
+// difference of two halves does, with an error of its own that falls as their bias does.
+inline Image variance_of(const Film& film, const ShadowFilm& shadows, Film::Estimate from) {
+    if (from == Film::Estimate::none) return film.variance(from);
+    return film.variance_of_halves(shadows.half_added_to(film.half(0), 0),
+                                   shadows.half_added_to(film.half(1), 1));
 }
 
 // Prints one path of the image.
@@ -108,17 +125,20 @@ void replay(const Scene& scene, const Options& o, const Pattern& pattern) {
 // ---- Render loop ------------------------------------------------------------------------------
 
 // Adds passes to the film until the schedule is content, or Ctrl-C, or a sample is not finite.
-RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film) {
+inline RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film,
+                       ShadowFilm* shadows) {
     Progress progress(o);
     Schedule schedule(o, pattern.period());
     std::atomic<uint64_t> rays = 0;
     while (uint64_t n = schedule.next(film.samples(), progress.elapsed())) {
         auto row = [&](int y) {
             uint64_t row_rays = 0;
+            if (shadows) shadows->begin_row(y);
             film.add_row(y, n, [&](int x, uint64_t sample) {
                 const PathSample path = pixel(scene, o, pattern, x, y, sample);
                 row_rays += path.rays;
-                return path.L;
+                if (shadows) shadows->add(x, y, sample, path.shadowed);
+                return is_finite(path.shadowed) ? path.L : rgb{NAN, NAN, NAN};
             });
             rays += row_rays;
         };
@@ -128,6 +148,7 @@ RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Fi
         if (!parallel_rows(film.height, o.threads, row, meanwhile)) break;
         if (film.non_finite() > 0) break;
         film.end_pass(n);
+        if (shadows) shadows->end_pass();
     }
     const RunStats run{film.samples(), progress.elapsed(), rays, film.non_finite(), interrupted};
     progress.summary(run);
@@ -135,8 +156,8 @@ RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Fi
 }
 
 // One sample of the mean over a pixel.  Unbiased, but for the scene's depth.
-PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
-                 uint64_t sample, const PathLog* log) {
+inline PathSample pixel(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
+                        uint64_t sample, const PathLog* log) {
     const uint64_t index = uint64_t(y) * uint64_t(scene.size.width) + uint64_t(x);
     const Sampler sampler(pattern, index, sample);
     const vec2 u = sampler.get2(film_x);
@@ -164,32 +185,11 @@ inline real weight_of_emission(const Scene& scene, LightMode mode, vec3 p, real 
     return power_heuristic(pdf_wi, pdf);
 }
 
-// Radiance that one light, chosen at random, sends by way of x to wo: unbiased for the sum of all,
-// f L cos / (pick pdf) where nothing is in the way.  Under MIS, its weighted share of it.
-inline PathSample direct(const Scene& scene, const Options& o, const Material& m, const Surface& x,
-                         const Frame& local, vec3 wo, const Sampler& sampler, int vertex,
-                         const PathLog* log) {
-    if (o.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
-    const Light& light = choose_light(scene, sampler.get(dimension(vertex, Draw::pick)));
-    const auto s = sample_light(light, x.p, sampler.get2(dimension(vertex, Draw::light_x)));
-    if (!s) return {};
-    const vec3 wi = local.to_local(s->wi);
-    const rgb f = eval(m, wo, wi);
-    if (max_of(f) <= 0) return {};
-    const real pdf_light = light.pick * s->pdf;
-    const bool share = o.light == LightMode::mis && !s->delta;
-    const real weight = share ? power_heuristic(pdf_light, pdf(m, wo, wi, o.direction)) : 1;
-    const bool occluded = scene.bvh.occluded(spawn_to(x, s->at));
-    const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
-    if (log) log->light(light, *s, pdf_light, weight, occluded, L);
-    return {L, 1};
-}
-
 // The rendering equation (Kajiya 1986) along one path: at every vertex x
 //   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi,
 // the integral by one direction, the light that reaches x directly by one light sample as well.
-PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& sampler,
-              const PathLog* log) {
+inline PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& sampler,
+                     const PathLog* log) {
     PathSample path;
     auto end = [&](const char* why) {
         if (log) log->end(why, path.L);
@@ -219,9 +219,16 @@ PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sampler& samp
         const Frame local = frame(cos_o > 0 ? x.n : -x.n);
         const vec3 wo = local.to_local(-ray.d);
 
-        const PathSample d = direct(scene, o, m, x, local, wo, sampler, scattered, log);
+        const DirectLight d = direct_light(scene, o, m, x, local, wo, sampler, scattered);
         path.L += beta * d.L;
         path.rays += d.rays;
+        if (log && d.light)
+            log->light(*d.light, d.sample, d.pdf, d.weight, d.occluded, d.L + d.shadowed.wV);
+        if (splits(o, scattered)) {
+            const auto& [U, w, wV] = path.shadowed = d.shadowed;
+            if (log) log->shadowed(U, w, wV);
+            if (o.direct == Estimator::control) path.L += U - (w - wV);
+        }
 
         const vec2 u_wi = sampler.get2(dimension(scattered, Draw::wi_x));
         const real u_lobe = sampler.get(dimension(scattered, Draw::lobe));

@@ -155,6 +155,8 @@ inline std::string encode_stats(const Options& o, Size size, int depth, const Ru
     line("halves", o.halves ? "true" : "false");
     line("direction", json::string(direction_names[size_t(o.direction)]));
     line("light", json::string(light_names[size_t(o.light)]));
+    line("direct", json::string(direct_names[size_t(o.direct)]));
+    line("polygons", json::string(polygon_names[size_t(o.polygons)]));
     line("depth", count(depth));
     line("roulette", o.roulette ? count(o.roulette) : "null");
     line("seed", count(o.seed));

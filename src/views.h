@@ -67,6 +67,11 @@ public:
         print("    its weight", {weight});
         print("    reflected", L);
     }
+    void shadowed(rgb U, rgb w, rgb wV) const {
+        print("  without shadows, exact", U);
+        print("  without shadows, as sampled", w);
+        print("  as sampled, with shadows", wV);
+    }
     void scattering(vec3 wi, rgb f, real cosine, real pdf) const {
         print("  wi", wi);
         print("  f", f);

@@ -527,6 +527,10 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
         {"--light '' file.scene", "--light: unknown value ''"},
         {"--direction bdsf file.scene", "--direction: unknown value 'bdsf' (did you mean 'bsdf'?)"},
         {"--direction unifrom file.scene", "--direction: unknown value 'unifrom' (did you mean 'u"},
+        {"--direct ratio file.scene", "--direct ratio: needs --light nee"},
+        {"--direct control --light none file.scene", "--direct control: needs --light nee"},
+        {"--light mis --direct regression file.scene", "--direct regression: needs --light nee"},
+        {"--light nee --direct rato file.scene", "--direct: unknown value 'rato' (did you mean 'r"},
         // Outputs.
         {"-o missing/a.png file.scene", "missing/a.png: cannot write: No such file or directory"},
         {"-o file.scene/a.png file.scene", "file.scene/a.png: cannot write: Not a directory"},
@@ -595,6 +599,8 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
         {"--spp", {"1", "0"}},
         {"--time", {"1", "0"}},
         {"--light", {"mis", "miss"}},
+        {"--direct", {"stochastic", "stochastc"}},
+        {"--polygons", {"angle", "angel"}},
         {"--depth", {"1", "-1"}},
         {"--roulette", {"1", "0"}},
         {"--seed", {"1", "one"}},
@@ -734,8 +740,9 @@ TEST_CASE("--help names every option on one page of stdout") {
         CHECK(o.err == "");
         for (const char* word :
              {"penumbra [options] SCENE", "-o FILE", "--spp N", "--time S", "uniform|bsdf",
-              "--direction", "--light none|nee|mis", "--depth N", "--roulette K", "--seed N",
-              "--threads N", "--size WxH", "--exposure E", "--quiet", "--help", ".png", ".pfm"}) {
+              "--direction", "--light none|nee|mis", "--direct stochastic|control|ratio|regression",
+              "--polygons area|angle", "--depth N", "--roulette K", "--seed N", "--threads N",
+              "--size WxH", "--exposure E", "--quiet", "--help", ".png", ".pfm"}) {
             INFO(std::string(word));
             CHECK(contains(o.out, word));
         }
@@ -993,11 +1000,18 @@ TEST_CASE("an image depends on the seed, and not on threads, passes or the run")
         const bool same = image(options) == one;
         CHECK(same);
     }
-    std::set<std::string> different{one};
-    for (const char* options : {"--seed 1", "--seed 2", "--seed 18446744073709551615", "--spp 6",
-                                "--spp 4", "--light nee", "--direction uniform", "--depth 1"})
+    const std::string ratio = image("--light nee --direct ratio --threads 1");
+    for (const char* options : {"--threads 3", "--time 1e6"}) {
+        const bool same = image(std::string("--light nee --direct ratio ") + options) == ratio;
+        CHECK(same);
+    }
+    std::set<std::string> different{one, ratio};
+    for (const char* options :
+         {"--seed 1", "--seed 2", "--seed 18446744073709551615", "--spp 6", "--spp 4",
+          "--light nee", "--direction uniform", "--depth 1", "--light nee --direct control",
+          "--light nee --direct regression --spp 8"})
         different.insert(image(options));
-    CHECK(different.size() == 9);
+    CHECK(different.size() == 12);
 }
 
 // ---- compare ------------------------------------------------------------------------------------
