@@ -37,6 +37,7 @@ inline Rectangle grown(const Rectangle& r, double by) {
 // The points of the window that are nearer to one site than to all others.
 struct VoronoiCell {
     double area = 0;
+    Point rim;            // sum over its edges on the window's border: length x outward normal
     Point offset;         // of the centroid, from the site
     bool bounded = true;  // stretched: reaches not beyond twice the domain's size around it
     bool inside = true;   // stretched: is all in the domain
@@ -333,14 +334,15 @@ inline Rectangle bounds(const Outline& o) {
 
 // Area and centroid by triangles (site, corner, next corner): none is negative.
 inline VoronoiCell measured(const Outline& o) {
+    VoronoiCell cell;
     double twice = 0, six_x = 0, six_y = 0;
     for (int k = 0, before = o.size - 1; k < o.size; before = k++) {
         const double x = o.x[before], y = o.y[before], cross = x * o.y[k] - o.x[k] * y;
         twice += cross;
         six_x += cross * (x + o.x[k]);
         six_y += cross * (y + o.y[k]);
+        if (o.edge[before] < 0) cell.rim = {cell.rim.x + o.y[k] - y, cell.rim.y - o.x[k] + x};
     }
-    VoronoiCell cell;
     cell.area = twice / 2;
     if (twice > 0) cell.offset = {six_x / (3 * twice), six_y / (3 * twice)};
     return cell;
@@ -602,6 +604,7 @@ private:
         cell = voronoi::measured(o);
         cell.area *= unit_ * unit_;
         cell.offset = {cell.offset.x * unit_, cell.offset.y * unit_};
+        cell.rim = {cell.rim.x * unit_, cell.rim.y * unit_};
         if (check_reach_) {
             const Rectangle domain = moved(domain_, {x_[i], y_[i]});
             cell.settled = !voronoi::crossed(o, domain).any();
