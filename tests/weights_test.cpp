@@ -161,3 +161,36 @@ TEST_CASE("clipped: n times the bias has the limit that the border's half-plane 
     CHECK(v.pass);
     CHECK(v.delta_min < 0.45);
 }
+
+TEST_CASE("gradients, reconstruction and border correction are exact for linear pieces") {
+    Random random(seed_of("linear pieces"));
+    Voronoi v;
+    v.with_neighbours = true;
+    const auto sites = scattered(400, random);
+    const auto& cells = v.clipped(sites, {{0, 0}, {1, 1}});
+    std::vector<double> plane, roof;
+    for (const Point& p : sites) {
+        plane.push_back(3 * p.x - 2 * p.y + 1);
+        roof.push_back(std::abs(p.x - 0.5));
+    }
+    for (size_t i = 0; i < sites.size(); ++i) {
+        const Point g = gradient(v, sites, plane, i);
+        CHECK(g.x == doctest::Approx(3).epsilon(1e-9));
+        CHECK(g.y == doctest::Approx(-2).epsilon(1e-9));
+    }
+    CHECK(linear_reconstruction(v, cells, sites, plane) == doctest::Approx(1.5).epsilon(1e-12));
+    CHECK(std::abs(border_correction(v, cells, sites, plane)) < 1e-12);
+    // The roof falls by 1 a unit from both sides: the integral of the outward derivative is 2.  The
+    // ridge ends at the border, where a cell or two see both slopes.
+    CHECK(border_correction(v, cells, sites, roof) ==
+          doctest::Approx(2 / (4 * std::numbers::pi * 400)).epsilon(0.05));
+}
+
+TEST_CASE("two sites alone have no gradient") {
+    Voronoi v;
+    v.with_neighbours = true;
+    const std::vector<Point> sites = {{0.2, 0.5}, {0.7, 0.5}};
+    v.clipped(sites, {{0, 0}, {1, 1}});
+    const std::vector<double> f = {1, 2};
+    CHECK(gradient(v, sites, f, 0).x == 0);
+}
