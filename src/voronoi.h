@@ -45,6 +45,10 @@ struct VoronoiCell {
     uint32_t copies = 1;  // sites at the same place share the area equally
 };
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between functions of one file only
+#endif
+
 namespace voronoi {
 
 // Eight numbers in a vector register (or what the machine has): GCC and Clang do arithmetic with
