@@ -113,6 +113,30 @@ struct Outline {
     int size;
 };
 
+// Which sides of a box about the site the cell's flower crosses.  The flower is the discs about the
+// corners through the site, the origin: no site outside can cut the cell (Calka 2002).  The disc
+// about v crosses the line x = b > 0 where v.x + |v| > b, that is, v.y^2 + 2 b v.x > b^2.
+struct Sides {
+    bool left = false, right = false, below = false, above = false;
+    bool any() const { return left || right || below || above; }
+};
+inline Sides crossed(Lanes x, Lanes y, const Rectangle& box) {
+    const Lanes xx = x * x, yy = y * y;
+    return {bits(yy + 2 * box.lo.x * x > box.lo.x * box.lo.x) != 0,
+            bits(yy + 2 * box.hi.x * x > box.hi.x * box.hi.x) != 0,
+            bits(xx + 2 * box.lo.y * y > box.lo.y * box.lo.y) != 0,
+            bits(xx + 2 * box.hi.y * y > box.hi.y * box.hi.y) != 0};
+}
+inline Sides crossed(const Outline& o, const Rectangle& box) {
+    Sides all;
+    for (int at = 0; at < o.size; at += width) {
+        const Sides s = crossed(load(o.x + at), load(o.y + at), box);
+        all = {all.left || s.left, all.right || s.right, all.below || s.below,
+               all.above || s.above};
+    }
+    return all;
+}
+
 // A cell of up to eight corners: most of them.  Lanes that are no corners are the site itself,
 // which no bisector cuts off.
 class SmallPolygon {
@@ -160,6 +184,8 @@ public:
         *reinterpret_cast<Ints*>(edge_out_) = edge_;
         return {x_out_, y_out_, edge_out_, size_};
     }
+
+    Sides crossed(const Rectangle& box) const { return voronoi::crossed(x_, y_, box); }
 
 private:
     Lanes x_, y_;
@@ -237,14 +263,23 @@ public:
         is_large_ = false;
     }
     void cut(const Bisector& b) {
-        if (!is_large_ && small_.cut(b)) return;
-        if (!is_large_) large_.start(small_.outline());
-        is_large_ = true;
-        large_.cut(b);
+        if (is_large_) [[unlikely]]
+            return large_.cut(b);
+        if (small_.cut(b)) [[likely]]
+            return;
+        grow(b);
+    }
+    Sides crossed(const Rectangle& box) {
+        return is_large_ ? voronoi::crossed(large_.outline(), box) : small_.crossed(box);
     }
     Outline outline() { return is_large_ ? large_.outline() : small_.outline(); }
 
 private:
+    [[gnu::cold, gnu::noinline]] void grow(const Bisector& b) {
+        large_.start(small_.outline());
+        is_large_ = true;
+        large_.cut(b);
+    }
     SmallPolygon small_;
     LargePolygon& large_;  // keeps its memory
     bool is_large_ = false;
@@ -278,6 +313,7 @@ public:
         constexpr int64_t digits = most - 1;
         alignas(64) int64_t key[most];
         alignas(64) int64_t rank[width];
+        store(h_ + size, Lanes{} + 1e300);  // what fills the last lanes comes last
         for (int at = 0; at < size; at += width) {
             const Ints k = (Ints(load(h_ + at)) & ~digits) | (iota + at);
             *reinterpret_cast<Ints*>(key + at) = k;
@@ -287,7 +323,7 @@ public:
             Ints nearer = {};
             for (int k = 0; k < size; ++k) nearer = key[k] < mine ? nearer + 1 : nearer;
             *reinterpret_cast<Ints*>(rank) = nearer;
-            for (int k = 0; k < std::min(width, size - at); ++k) order_[rank[k]] = at + k;
+            for (int k = 0; k < width; ++k) order_[rank[k]] = at + k;
         }
         return order_;
     }
@@ -304,29 +340,10 @@ public:
     bool cuts(int k) const { return depth_[k] > 0; }
 
 private:
-    double dx_[most], dy_[most], h_[most], depth_[most];
+    double dx_[most], dy_[most], h_[most + width], depth_[most];
     uint32_t id_[most];
-    int order_[most];
+    int order_[most + width];
 };
-
-// Which sides of a box about the site the cell's flower crosses.  The flower is the discs about the
-// corners through the site, the origin: no site outside can cut the cell (Calka 2002).  The disc
-// about v crosses the line x = b > 0 where v.x + |v| > b, that is, v.y^2 + 2 b v.x > b^2.
-struct Sides {
-    bool left = false, right = false, below = false, above = false;
-    bool any() const { return left || right || below || above; }
-};
-inline Sides crossed(const Outline& o, const Rectangle& box) {
-    Ints left = {}, right = {}, below = {}, above = {};
-    for (int at = 0; at < o.size; at += width) {
-        const Lanes x = load(o.x + at), y = load(o.y + at);
-        left |= y * y + 2 * box.lo.x * x > box.lo.x * box.lo.x;
-        right |= y * y + 2 * box.hi.x * x > box.hi.x * box.hi.x;
-        below |= x * x + 2 * box.lo.y * y > box.lo.y * box.lo.y;
-        above |= x * x + 2 * box.hi.y * y > box.hi.y * box.hi.y;
-    }
-    return {bits(left) != 0, bits(right) != 0, bits(below) != 0, bits(above) != 0};
-}
 
 inline Rectangle bounds(const Outline& o) {
     Rectangle r;
@@ -431,7 +448,6 @@ private:
     std::vector<uint32_t> bucket_of_, start_, id_;
     std::vector<double> x_, y_;
 
-    voronoi::Neighbours near_;
     voronoi::LargePolygon large_;
 
     // ---- Sites --------------------------------------------------------------------------------
@@ -560,34 +576,39 @@ private:
     [[gnu::always_inline]] Outcome cut_by_buckets(voronoi::Polygon& p, uint32_t i, int x, int y) {
         using enum Outcome;
         const Point site = {x_[i], y_[i]};
+        voronoi::Neighbours near;
+        const double *const xs = x_.data(), *const ys = y_.data();
+        const uint32_t* const starts = start_.data();
+        const int columns = columns_;
         auto gather = [&](int x0, int x1, int at_y) {
-            return near_.add(x_.data(), y_.data(), start(x0, at_y), start(x1 + 1, at_y), site);
+            const uint32_t* row = starts + size_t(at_y) * size_t(columns);
+            return near.add(xs, ys, row[x0], row[x1 + 1], site);
         };
         p.start(frame(site));
-        near_.size = 0;
+        near.size = 0;
         for (int at = std::max(y - 1, 0); at <= std::min(y + 1, rows_ - 1); ++at)
             if (!gather(std::max(x - 1, 0), std::min(x + 1, columns_ - 1), at)) return too_much;
-        const int* order = near_.by_distance();  // the first is site i
-        if (near_.size > 1 && near_[order[1]].h == 0) return duplicate;
-        const int first = std::min(near_.size, 6);
-        for (int k = 1; k < first; ++k) p.cut(near_[order[k]]);
-        near_.find_cutters(p.outline());
-        for (int k = first; k < near_.size; ++k)
-            if (near_.cuts(order[k])) p.cut(near_[order[k]]);
+        const int* order = near.by_distance();  // the first is site i
+        if (near.size > 1 && near[order[1]].h == 0) return duplicate;
+        const int first = std::min(near.size, 6);
+        for (int k = 1; k < first; ++k) p.cut(near[order[k]]);
+        near.find_cutters(p.outline());
+        for (int k = first; k < near.size; ++k)
+            if (near.cuts(order[k])) p.cut(near[order[k]]);
         for (int ring = 2;; ++ring) {
             // The buckets seen so far end here.
             const Rectangle seen = {{domain_.lo.x + (x - ring + 1) / x_scale_ - site.x,
                                      domain_.lo.y + (y - ring + 1) / y_scale_ - site.y},
                                     {domain_.lo.x + (x + ring) / x_scale_ - site.x,
                                      domain_.lo.y + (y + ring) / y_scale_ - site.y}};
-            voronoi::Sides more = voronoi::crossed(p.outline(), seen);
+            voronoi::Sides more = p.crossed(seen);
             more.left = more.left && x >= ring;
             more.right = more.right && x + ring < columns_;
             more.below = more.below && y >= ring;
             more.above = more.above && y + ring < rows_;
             if (!more.any()) return done;
             if (ring > most_rings) return too_much;
-            near_.size = 0;
+            near.size = 0;
             const int x0 = std::max(x - ring + !more.left, 0),
                       x1 = std::min(x + ring - !more.right, columns_ - 1),
                       y0 = std::max(y - ring + 1, 0), y1 = std::min(y + ring - 1, rows_ - 1);
@@ -597,9 +618,9 @@ private:
                 if (more.left && !gather(x - ring, x - ring, at)) return too_much;
                 if (more.right && !gather(x + ring, x + ring, at)) return too_much;
             }
-            near_.find_cutters(p.outline());
-            for (int k = 0; k < near_.size; ++k)
-                if (near_.cuts(k)) p.cut(near_[k]);
+            near.find_cutters(p.outline());
+            for (int k = 0; k < near.size; ++k)
+                if (near.cuts(k)) p.cut(near[k]);
         }
     }
 
