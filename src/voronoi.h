@@ -443,6 +443,7 @@ private:
     // Sites in the order of their buckets, and their indices; some places more, to be read only.
     int columns_ = 1, rows_ = 1;
     double x_scale_ = 1, y_scale_ = 1;  // buckets a unit
+    double x_step_ = 1, y_step_ = 1;    // units a bucket
     uint32_t count_ = 0;                // sites, without copies
     std::vector<uint32_t> first_of_;    // the first site at the same place; empty: all are alone
     std::vector<uint32_t> bucket_of_, start_, id_;
@@ -507,6 +508,7 @@ private:
         columns_ = std::max(1, int(std::sqrt(buckets * w / h)));
         rows_ = std::max(1, int(buckets / columns_));
         x_scale_ = columns_ / w, y_scale_ = rows_ / h;
+        x_step_ = w / columns_, y_step_ = h / rows_;
         bucket_of_.resize(raw_.size());
         start_.assign(size_t(columns_) * size_t(rows_) + 2, 0);
         for (size_t i = 0; i < raw_.size(); ++i) {
@@ -585,7 +587,6 @@ private:
             return near.add(xs, ys, row[x0], row[x1 + 1], site);
         };
         p.start(frame(site));
-        near.size = 0;
         for (int at = std::max(y - 1, 0); at <= std::min(y + 1, rows_ - 1); ++at)
             if (!gather(std::max(x - 1, 0), std::min(x + 1, columns_ - 1), at)) return too_much;
         const int* order = near.by_distance();  // the first is site i
@@ -597,10 +598,10 @@ private:
             if (near.cuts(order[k])) p.cut(near[order[k]]);
         for (int ring = 2;; ++ring) {
             // The buckets seen so far end here.
-            const Rectangle seen = {{domain_.lo.x + (x - ring + 1) / x_scale_ - site.x,
-                                     domain_.lo.y + (y - ring + 1) / y_scale_ - site.y},
-                                    {domain_.lo.x + (x + ring) / x_scale_ - site.x,
-                                     domain_.lo.y + (y + ring) / y_scale_ - site.y}};
+            const Rectangle seen = {{domain_.lo.x + (x - ring + 1) * x_step_ - site.x,
+                                     domain_.lo.y + (y - ring + 1) * y_step_ - site.y},
+                                    {domain_.lo.x + (x + ring) * x_step_ - site.x,
+                                     domain_.lo.y + (y + ring) * y_step_ - site.y}};
             voronoi::Sides more = p.crossed(seen);
             more.left = more.left && x >= ring;
             more.right = more.right && x + ring < columns_;

@@ -31,7 +31,7 @@ struct Plan {
 };
 // Of the samples, how many sets of n are looked at.
 uint64_t sets(const Plan& plan, uint64_t n) {
-    return std::min<uint64_t>(plan.most / n, n == 64 ? 8 : n == 256 ? 4 : 1);
+    return std::min<uint64_t>(plan.most / n, n == 64 ? 16 : n == 256 ? 4 : 1);
 }
 
 double thread_seconds() {
@@ -118,10 +118,10 @@ struct Tally {
     std::array<double, regions> count_by_region{};
     uint64_t redraws = 0, fallbacks = 0;
 
-    void add(const Mean& m, const std::array<float, 3>& truth, const std::array<double, 3>& noise,
+    void add(const Mean& m, const std::array<float, 3>& truth, const std::array<float, 3>& noise,
              Region r) {
         for (size_t c = 0; c < 3; ++c) {
-            const double e = m[c] - double(truth[c]), square = e * e - noise[c];
+            const double e = m[c] - double(truth[c]), square = e * e - double(noise[c]);
             squares += square;
             by_region[r] += square;
         }
@@ -147,7 +147,8 @@ struct Result {
 
 struct Reference {
     Image image;
-    std::array<double, 3> noise{};  // its own mean squared error, a channel each
+    Image noise;                   // its own squared error, expected, pixel by pixel
+    std::array<double, 3> mean{};  // of noise, a channel each
 };
 
 Result measure(const Scene& scene, const Plan& plan, const Reference& reference) {
@@ -164,7 +165,7 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
         for (auto& at_n : mine) at_n.fill({});
         for (int x = 0; x < scene.size.width; ++x) {
             const Region region = region_of(scene, x, y);
-            const auto& truth = reference.image.at(x, y);
+            const auto &truth = reference.image.at(x, y), &noise = reference.noise.at(x, y);
             double start = thread_seconds();
             const Samples s = draw_samples(scene, o, pattern, x, y, plan.most);
             const double a_path = (thread_seconds() - start) / double(plan.most);
@@ -184,7 +185,7 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
                         tally.redraws += weigher.redraws - redraws;
                         tally.fallbacks += weigher.fallbacks - fallbacks;
                         const Mean m = weighted_mean(w, s.L.data() + set * n);
-                        tally.add(m, truth, reference.noise, region);
+                        tally.add(m, truth, noise, region);
                         for (size_t c = 0; c < 3 && n == 64; ++c) spread[t][c].add(m[c]);
                     }
                 const Options jittered = options_of(2, SamplerKind::stratified);
@@ -195,8 +196,8 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
                 mine[k][stratified].seconds += thread_seconds() - start;
                 mine[k][stratified].samples += double(n);
                 mine[k][stratified].add(
-                    weighted_mean(std::vector<double>(n, 1 / double(n)), j.L.data()), truth,
-                    reference.noise, region);
+                    weighted_mean(std::vector<double>(n, 1 / double(n)), j.L.data()), truth, noise,
+                    region);
             }
             for (size_t t = 0; t < films.size(); ++t)
                 for (size_t c = 0; c < 3; ++c)
@@ -258,18 +259,19 @@ struct Place {
     int x = 0, y = 0;
 };
 
-// The pixel of that region whose samples' variance the clipped cells explain best.
+// The pixel of that region where clipped cells take away most variance.
 Place telling_pixel(const Scene& scene, const Result& r, Region region) {
     Place best;
-    double most = -1;
+    double most = -INFINITY;
     for (int y = 0; y < scene.size.height; ++y)
         for (int x = 0; x < scene.size.width; ++x) {
-            if (region_of(scene, x, y) != region) continue;
+            if (region_of(scene, x, y) != region || !(r.variance[0].at(x, y)[0] > 0)) continue;
             double gained = 0;
             for (size_t c = 0; c < 3; ++c)
                 gained += double(r.variance[0].at(x, y)[c]) - double(r.variance[3].at(x, y)[c]);
-            if (region == plain) gained = -std::abs(gained) - std::abs(y - scene.size.height / 2);
-            if (most < gained || most == -1) most = gained, best = {x, y};
+            if (region == plain)  // just one in the middle
+                gained = -std::hypot(x - scene.size.width / 2, y - scene.size.height / 3);
+            if (gained > most) most = gained, best = {x, y};
         }
     return best;
 }
@@ -316,7 +318,7 @@ void print_pixel(const Scene& scene, const Plan& plan, Place at, const Axes& axe
     const double middle = all.back()[stratified].mean,
                  spread = 1.3 * std::sqrt(all[0][0].variance());
     a.x0 = ns.front(), a.x1 = ns.back(), a.y0 = middle - spread, a.y1 = middle + spread;
-    a.frame("a pixel at the light's border: mean and deviation over N", ns);
+    a.frame("light's border: mean, deviation", ns);
     size_t line = 0;
     for (size_t t : {size_t(0), size_t(1), size_t(3), stratified}) {
         std::vector<double> low, mid, high;
@@ -407,28 +409,35 @@ Scene scene_of(const std::string& name, Size size) {
     return scene;
 }
 
-// The image by the best that we have, and its own error by the difference of its halves.
+// The image by the best that we have.  Its error: the variance of its mean, from its halves, is the
+// sum over pixels; how pixels share in it, an image of the variance of fewer samples tells.
 Reference read_reference(const std::string& name, Size size) {
-    const std::string file = reference_file(name, size),
-                      json = std::filesystem::path(file).replace_extension(".json").string();
-    for (const std::string& needed : {file, json})
+    const std::string file = reference_file(name, size), stem = file.substr(0, file.size() - 4),
+                      json = stem + ".json", variance = stem + "-variance.pfm";
+    const std::string options =
+        " --seed 1000 --size " + std::to_string(size.width) + "x" + std::to_string(size.height);
+    for (const std::string& needed : {file, json, variance})
         if (!std::filesystem::exists(needed))
-            throw UserError(needed +
-                            ": missing; make it by  build/penumbra --halves --seed 1000 "
-                            "--spp 8192 --size " +
-                            std::to_string(size.width) + "x" + std::to_string(size.height) +
-                            " -o " + file + " --stats " + json + " scenes/" + name + ".scene");
-    Reference r{read_pfm(file)};
-    if (r.image.width != size.width || r.image.height != size.height)
-        throw UserError(file + ": of another size");
+            throw UserError(needed + ": missing; make it by\n  build/penumbra --halves --spp 4096" +
+                            options + " -o " + file + " --stats " + json + " scenes/" + name +
+                            ".scene\n  build/penumbra --view variance --spp 512" + options +
+                            " -o " + variance + " scenes/" + name + ".scene");
+    Reference r{read_pfm(file), read_pfm(variance)};
+    for (const Image* image : {&r.image, &r.noise})
+        if (image->width != size.width || image->height != size.height)
+            throw UserError(file + ": of another size");
     const std::string text = read_file(json), key = "\"variance_of_mean\": [";
     const size_t from = text.find(key);
     if (from == text.npos) throw UserError(json + ": no variance_of_mean");
     std::istringstream in(text.substr(from + key.size()));
     char comma = 0;
-    for (double& v : r.noise) {
-        in >> v >> comma;
-        v *= double(r.image.pixels.size());  // of a pixel, on average
+    const double pixels = double(r.image.pixels.size());
+    for (size_t c = 0; c < 3; ++c) {
+        in >> r.mean[c] >> comma;
+        r.mean[c] *= pixels;  // of a pixel, on average
+        double sum = 0;
+        for (const auto& pixel : r.noise.pixels) sum += double(pixel[c]) / pixels;
+        for (auto& pixel : r.noise.pixels) pixel[c] *= float(r.mean[c] / sum);
     }
     return r;
 }
@@ -438,7 +447,7 @@ void run(const std::string& name, const Plan& plan) {
     const Scene scene = scene_of(name, plan.size);
     const Result r = measure(scene, plan, reference);
     std::printf("\n%s: the reference's own squared error, subtracted: %.2e %.2e %.2e (r, g, b)\n",
-                name.c_str(), reference.noise[0], reference.noise[1], reference.noise[2]);
+                name.c_str(), reference.mean[0], reference.mean[1], reference.mean[2]);
     print_errors(name, plan, r);
     const int scale = std::max(1, 256 / plan.size.width), side = plan.size.width * scale,
               high = plan.size.height * scale, gap = 20;
@@ -446,8 +455,7 @@ void run(const std::string& name, const Plan& plan) {
     draw_image(sheet, gap, gap, scale, reference.image);
     draw_text(sheet, gap, gap + high + 5, "reference");
     draw_map(sheet, 2 * gap + side, gap, scale, r, 3);
-    draw_text(sheet, 2 * gap + side, gap + high + 5,
-              "variance mc / cvor, 64 samples: blue 4, grey 1, red 1/4");
+    draw_text(sheet, 2 * gap + side, gap + high + 5, "variance mc / cvor: blue 4, red 1/4");
     const Place border = telling_pixel(scene, r, light_border);
     print_pixel(
         scene, plan, border,
