@@ -56,13 +56,13 @@ Region region_of(const Scene& scene, int x, int y) {
             camera_ray(scene.camera, scene.size, real(x) + (real(k % 8) + real(0.5)) / 8,
                        real(y) + (real(k / 8) + real(0.5)) / 8);
         const auto hit = scene.bvh.closest(ray);
-        const bool lit = hit && scene.material(*hit).emits();
-        emits = emits || lit;
-        dark = dark || !lit;
-        if (hit && (scene.material(*hit).is_delta() || max_of(scene.material(*hit).ks) > 0))
-            sphere = true;
         const uint32_t id = hit ? hit->id : UINT32_MAX;
-        const vec3 normal = hit ? surface(scene.shapes[id], ray, *hit).n : vec3{};
+        const Surface at = hit ? surface(scene.shapes[id], ray, *hit) : Surface{};
+        const Material m = hit ? scene.material(*hit, at.p) : Material{};
+        emits = emits || m.emits();
+        dark = dark || !m.emits();
+        sphere = sphere || m.is_delta() || max_of(m.ks) > 0;
+        const vec3 normal = at.n;
         if (k == 0) first = id, n = normal;
         other = other || (id != first && !(normal == n));
     }
