@@ -45,7 +45,7 @@ struct VoronoiCell {
     uint32_t copies = 1;  // sites at the same place share the area equally
 };
 
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between functions of one file only
 #endif
 

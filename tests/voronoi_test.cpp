@@ -189,8 +189,10 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
     Voronoi v;
     const Rectangle wide = {{-1, 2}, {1, 3}};
     for (const Rectangle& window : {unit_square, wide})
-        for (int n : {1, 2, 3, 7, 40}) {
+        for (int n : {1, 2, 3, 7, 40, 100}) {
             Points sites = scattered(n, random), all;
+            if (n == 100)  // a cluster: its cells reach far beyond what its number suggests
+                for (Point& p : sites) p = {0.1 * p.x, 0.1 * p.y};
             for (Point& p : sites)
                 p = {window.lo.x + p.x * window.width(), window.lo.y + p.y * window.height()};
             for (int j = -2; j <= 2; ++j)

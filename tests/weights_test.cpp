@@ -182,8 +182,8 @@ TEST_CASE("gradients, reconstruction and border correction are exact for linear 
     CHECK(std::abs(border_correction(v, cells, sites, plane)) < 1e-12);
     // The roof falls by 1 a unit from both sides: the integral of the outward derivative is 2.  The
     // ridge ends at the border, where a cell or two see both slopes.
-    CHECK(border_correction(v, cells, sites, roof) ==
-          doctest::Approx(2 / (4 * std::numbers::pi * 400)).epsilon(0.05));
+    const double sum = 4 * std::numbers::pi * 400 * border_correction(v, cells, sites, roof);
+    CHECK(std::abs(sum - 2) < 0.1);
 }
 
 TEST_CASE("two sites alone have no gradient") {

@@ -31,7 +31,7 @@ struct Plan {
 };
 // Of the samples, how many sets of n are looked at.
 uint64_t sets(const Plan& plan, uint64_t n) {
-    return std::min<uint64_t>(plan.most / n, n == 64 ? 16 : n == 256 ? 4 : 1);
+    return std::min<uint64_t>(plan.most / n, n == 64 ? 8 : n == 256 ? 4 : 1);
 }
 
 double thread_seconds() {
@@ -446,6 +446,7 @@ void run(const std::string& name, const Plan& plan) {
     const Reference reference = read_reference(name, plan.size);
     const Scene scene = scene_of(name, plan.size);
     const Result r = measure(scene, plan, reference);
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
     std::printf("\n%s: the reference's own squared error, subtracted: %.2e %.2e %.2e (r, g, b)\n",
                 name.c_str(), reference.mean[0], reference.mean[1], reference.mean[2]);
     print_errors(name, plan, r);

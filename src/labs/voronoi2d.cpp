@@ -516,7 +516,7 @@ void draw(const std::vector<Series>& all, const std::string& file) {
 }
 
 int voronoi2d(const std::vector<std::string>& words) {
-    uint64_t trials = 1000;
+    uint64_t trials = 400;
     for (size_t i = 0; i < words.size(); ++i) {
         if (words[i] == "--quick") {
             trials = 50;
