@@ -12,7 +12,7 @@
 
 #include <ctime>
 
-#include "../plot.h"
+#include "../curves.h"
 #include "../stats.h"
 
 namespace {
