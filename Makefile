@@ -27,7 +27,7 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak techniques estimators1d penumbra bench extremes clean help layers \
+.PHONY: all programs test mutants soak techniques estimators1d penumbra bench voronoi voronoi2d extremes clean help layers \
         packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -59,8 +59,15 @@ estimators1d: build/estimators1d$(SUFFIX)  ## four estimators of a shadowed inte
 penumbra: $(PENUMBRA) build/shadows$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
 	build/shadows$(SUFFIX)
 
-bench: build/bench$(SUFFIX)  ## rays a second, beside Embree if it is installed
+bench: build/bench$(SUFFIX) build/cells$(SUFFIX)  ## rays and Voronoi cells a second, beside Embree and CGAL if installed
 	build/bench$(SUFFIX)
+	build/cells$(SUFFIX)
+
+voronoi2d: build/voronoi2d$(SUFFIX)  ## integrate functions by Voronoi cells; FULL=1: 10 times the trials
+	build/voronoi2d$(SUFFIX) $(if $(FULL),--trials 10000)
+
+voronoi: build/voronoi$(SUFFIX)  ## weigh pixels' samples by Voronoi cells (5 minutes; FULL=1: the published size, 80)
+	build/voronoi$(SUFFIX) $(if $(FULL),--size 256x256 --most 4096)
 
 extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)
 	@for real in double float; do \
@@ -108,6 +115,10 @@ $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
 # bench.cpp asks for the same header in the same way.
 $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>\n' | \
                                           $(CXX) -x c++ -fsyntax-only - 2>/dev/null && echo -lembree3)
+
+# cells.cpp likewise.
+$(OBJECTS)/cells.exe: LIBRARIES = $(shell printf '\043include <CGAL/Delaunay_triangulation_2.h>\n' | \
+                                          $(CXX) -std=c++20 -x c++ -fsyntax-only - 2>/dev/null && echo -lmpfr -lgmp)
 
 $(OBJECTS)/all-tests: $(TESTS)
 	$(CXX) $(LINK) -o $@ $^

@@ -154,6 +154,7 @@ private:
 
 // What the user's samples allow to say about their variance.
 inline Film::Estimate variance_estimate(const Options& o) {
+    if (o.film != Weighting::mc) return Film::Estimate::none;
     if (o.sampler == SamplerKind::independent) return Film::Estimate::samples;
     return o.halves ? Film::Estimate::halves : Film::Estimate::none;
 }

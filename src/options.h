@@ -10,6 +10,7 @@
 #include "check.h"
 #include "estimators.h"
 #include "sampler.h"
+#include "weights.h"
 
 // How light is found.
 enum class LightMode {
@@ -61,6 +62,7 @@ struct Options {
     std::optional<real> exposure;  // default: the scene's
     bool halves = false;           // see Pattern
     View view = View::radiance;
+    Weighting film = Weighting::mc;    // of a pixel's samples
     std::string stats;                 // file, or empty
     std::optional<PixelIndex> replay;  // instead of rendering, print the path of
     uint64_t replay_sample = 0;        // this sample
@@ -103,6 +105,11 @@ Renders SCENE (a file in the format of scenes/*.scene) by path tracing.
                         radiance (default); (normal + 1) / 2; distance; albedo;
                         nodes (red) and shapes (green) visited by a ray;
                         variance of the pixels' means (implies --halves)
+  --film mc|vor|fvor|cvor|torus   weights of a pixel's samples: equal (default),
+                        or the areas of their Voronoi cells in the pixel: bounded
+                        by a strip around it, the same but without cells that
+                        leave the strip, clipped to it, or as if it were repeated;
+                        all but mc need --sampler independent and --spp
   --stats FILE          write what was measured, as JSON
   --pixel X,Y           instead of rendering, print every vertex of one path
   --sample I            of sample I (default: 0)
@@ -164,6 +171,7 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
     if (name == "--seed") o.seed = parse_count(value, 0, UINT64_MAX);
     if (name == "--threads") o.threads = unsigned(parse_count(value, 1, 1024));
     if (name == "--view") o.view = View(choice(value, view_names));
+    if (name == "--film") o.film = Weighting(choice(value, weighting_names));
     if (name == "--stats") o.stats = value;
     if (name == "--pixel") o.replay = pixel(value);
     if (name == "--sample") o.replay_sample = parse_count(value, 0, uint64_t(1) << 40);
@@ -178,7 +186,8 @@ inline Options parse_options(const std::vector<std::string>& words) {
     static const std::vector<std::string_view> with_value = {
         "-o",       "--spp",      "--time",  "--sampler",  "--direction", "--light",
         "--direct", "--polygons", "--depth", "--roulette", "--seed",      "--threads",
-        "--size",   "--exposure", "--view",  "--stats",    "--pixel",     "--sample"};
+        "--size",   "--exposure", "--view",  "--film",     "--stats",     "--pixel",
+        "--sample"};
     std::vector<std::string_view> known = with_value;
     known.insert(known.end(), {"--halves", "--quiet", "--help"});
     Options o;
@@ -216,6 +225,17 @@ inline Options parse_options(const std::vector<std::string>& words) {
                         ": needs --light nee");
     if (o.scene.empty()) throw UserError("no scene given (try --help)");
     if (o.spp == 0 && o.seconds == 0) o.spp = 64;
+    if (o.film != Weighting::mc) {
+        const std::string film = "--film " + std::string(weighting_names[size_t(o.film)]);
+        if (o.sampler != SamplerKind::independent)
+            throw UserError(film + ": needs --sampler independent");
+        if (o.seconds > 0)
+            throw UserError(film + ": needs --spp, not --time: all samples of a pixel at once");
+        if (o.spp > (1 << 20)) throw UserError(film + ": at most 1048576 samples per pixel");
+        if (o.view == View::variance) throw UserError(film + ": its variance is not known");
+        if (o.direct != Estimator::stochastic)
+            throw UserError(film + ": needs --direct stochastic");
+    }
     if (o.outputs.empty()) {
         std::string stem = "out/" + std::filesystem::path(o.scene).stem().string();
         o.outputs = {stem + ".png", stem + ".pfm"};

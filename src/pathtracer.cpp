@@ -1,10 +1,13 @@
 // pathtracer.cpp  floor 5  the path tracer; read it downwards: main, render, pixel, Li
+#include <functional>
+
 #include "direct.h"
 #include "film.h"
 #include "parser.h"
 #include "report.h"
 #include "sampler.h"
 #include "views.h"
+#include "weighted.h"
 
 // What one path brings: radiance, and the rays it took.  With --direct ratio or regression L lacks
 // the light in `shadowed`, which only a pixel's samples together can estimate.
@@ -128,18 +131,27 @@ void replay(const Scene& scene, const Options& o, const Pattern& pattern) {
 inline RunStats render(const Scene& scene, const Options& o, const Pattern& pattern, Film& film,
                        ShadowFilm* shadows) {
     Progress progress(o);
-    Schedule schedule(o, pattern.period());
-    std::atomic<uint64_t> rays = 0;
+    const bool weighted = o.film != Weighting::mc;
+    Schedule schedule(o, weighted ? o.spp : pattern.period());
+    std::atomic<uint64_t> rays = 0, redraws = 0, fallbacks = 0;
     while (uint64_t n = schedule.next(film.samples(), progress.elapsed())) {
         auto row = [&](int y) {
             uint64_t row_rays = 0;
             if (shadows) shadows->begin_row(y);
-            film.add_row(y, n, [&](int x, uint64_t sample) {
+            auto L = [&](int x, uint64_t sample) {
                 const PathSample path = pixel(scene, o, pattern, x, y, sample);
                 row_rays += path.rays;
                 if (shadows) shadows->add(x, y, sample, path.shadowed);
                 return is_finite(path.shadowed) ? path.L : rgb{NAN, NAN, NAN};
-            });
+            };
+            if (weighted) {
+                WeightedRow row_L(o, pattern, scene.size, y, L);
+                film.add_row(y, n, std::ref(row_L));
+                redraws += row_L.weigher().redraws;
+                fallbacks += row_L.weigher().fallbacks;
+            } else {
+                film.add_row(y, n, L);
+            }
             rays += row_rays;
         };
         auto meanwhile = [&](double part) {
@@ -150,7 +162,8 @@ inline RunStats render(const Scene& scene, const Options& o, const Pattern& patt
         film.end_pass(n);
         if (shadows) shadows->end_pass();
     }
-    const RunStats run{film.samples(), progress.elapsed(), rays, film.non_finite(), interrupted};
+    const RunStats run{film.samples(), progress.elapsed(), rays, film.non_finite(), interrupted,
+                       redraws,        fallbacks};
     progress.summary(run);
     return run;
 }

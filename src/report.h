@@ -17,6 +17,7 @@ struct RunStats {
     uint64_t rays = 0;
     uint64_t non_finite = 0;
     bool interrupted = false;
+    uint64_t redraws = 0, fallbacks = 0;  // of weights, see Weigher
 };
 
 inline std::string fixed(double x, int digits) {
@@ -153,6 +154,9 @@ inline std::string encode_stats(const Options& o, Size size, int depth, const Ru
     line("view", json::string(view_names[size_t(o.view)]));
     line("sampler", json::string(sampler_names[size_t(o.sampler)]));
     line("halves", o.halves ? "true" : "false");
+    line("film", json::string(weighting_names[size_t(o.film)]));
+    line("film_redraws", count(run.redraws));
+    line("film_fallbacks", count(run.fallbacks));
     line("direction", json::string(direction_names[size_t(o.direction)]));
     line("light", json::string(light_names[size_t(o.light)]));
     line("direct", json::string(direct_names[size_t(o.direct)]));

@@ -1,0 +1,44 @@
+// weighted.h  floor 4  a row of pixels whose samples weigh as much as their Voronoi cells
+#pragma once
+#include "options.h"
+
+// For Film::add_row in place of L, the radiance of sample i of pixel x of row y: that times n w_i,
+// so that the film's plain mean is the weighted one.  The weights need all n samples of a pixel, so
+// its first one renders them all.  Bias class: see Weighting.
+template <class Radiance>
+class WeightedRow {
+public:
+    WeightedRow(const Options& o, const Pattern& pattern, Size size, int y, Radiance L)
+        : options_(o), pattern_(pattern), first_(uint64_t(y) * uint64_t(size.width)), L_(L) {}
+
+    const Weigher& weigher() const { return weigher_; }
+
+    rgb operator()(int x, uint64_t i) {
+        if (i == 0) gather(x);
+        return values_[i] * real((*weights_)[i] * double(values_.size()));
+    }
+
+private:
+    const Options& options_;
+    const Pattern& pattern_;
+    const uint64_t first_;  // index of the row's first pixel
+    Radiance L_;
+    Weigher weigher_;
+    std::vector<rgb> values_;
+    std::vector<Point> places_;
+    const std::vector<double>* weights_ = nullptr;
+
+    void gather(int x) {
+        const uint64_t pixel = first_ + uint64_t(x);
+        values_.clear();
+        places_.clear();
+        for (uint64_t i = 0; i < options_.spp; ++i) {
+            const vec2 u = Sampler(pattern_, pixel, i).get2(film_x);  // as L draws it
+            places_.push_back({double(u.x), double(u.y)});
+            values_.push_back(L_(x, i));
+        }
+        // No path draws this number.
+        const uint64_t strip = hash(hash(hash(0, options_.seed), pixel), UINT64_MAX);
+        weights_ = &weigher_(options_.film, places_, strip);
+    }
+};

@@ -1,0 +1,196 @@
+// weights_test.cpp  Voronoi weights: sums, constants, biases where there are any and none elsewhere
+#include "../src/weights.h"
+
+#include <doctest/doctest.h>
+
+#include "oracle.h"
+
+namespace {
+
+constexpr Weighting all[] = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
+                             Weighting::torus};
+
+std::vector<Point> scattered(uint64_t n, Random& random) {
+    std::vector<Point> p;
+    for (uint64_t i = 0; i < n; ++i) {
+        const double x = random(), y = random();
+        p.push_back({x, y});
+    }
+    return p;
+}
+
+// Weighted sum of f over n samples.
+template <class F>
+double estimate(Weigher& weigher, Weighting kind, uint64_t n, Random& random, F f) {
+    const auto samples = scattered(n, random);
+    const auto& w = weigher(kind, samples, random.bits());
+    double sum = 0;
+    for (size_t i = 0; i < samples.size(); ++i) sum += w[i] * f(samples[i]);
+    return sum;
+}
+
+double tilted_bowl(Point p) { return p.x * p.x + 2 * p.y * p.y + p.x; }
+constexpr double mean_of_bowl = 1.0 / 3 + 2.0 / 3 + 0.5;
+
+}  // namespace
+
+TEST_CASE("divided weights add up to 1, so that constants come out exactly, from n = 1 on") {
+    Random random(seed_of("constants"));
+    Weigher weigher;
+    for (Weighting kind : all)
+        for (uint64_t n : {1, 2, 3, 5, 17, 64, 300}) {
+            const double sum = estimate(weigher, kind, n, random, [](Point) { return 1.0; });
+            INFO(std::string(weighting_names[size_t(kind)]), ", n = ", n);
+            CHECK(std::abs(sum - 1) <= 1e-12 * double(n));
+        }
+}
+
+TEST_CASE("the strip's width solves n 4 u e^-u = p, u = pi n width^2") {
+    for (double n : {1.0, 64.0, 4096.0, 1e6})
+        for (double p : {1e-3, 1e-6}) {
+            const double u = std::numbers::pi * n * strip_width(n, p) * strip_width(n, p);
+            CHECK(4 * n * u * std::exp(-u) == doctest::Approx(p).epsilon(1e-10));
+            CHECK(u > 1);
+        }
+}
+
+TEST_CASE("Poisson numbers: mean and variance") {
+    for (double mean : {0.3, 5.0, 40.0}) {
+        Rng rng{seed_of("Poisson numbers")};
+        auto mean_of_64 = [&](auto f) {
+            return expect_mean(mean, 3000, [&] {
+                double sum = 0;
+                for (int k = 0; k < 64; ++k) sum += f(double(poisson(mean, rng)));
+                return sum / 64;
+            });
+        };
+        for (const Verdict& v : {mean_of_64([](double k) { return k; }),
+                                 mean_of_64([&](double k) { return (k - mean) * (k - mean); })}) {
+            INFO(v.text);
+            CHECK(v.pass);
+            CHECK(v.delta_min < 0.06);
+        }
+    }
+}
+
+TEST_CASE("vor, undivided: unbiased for a Poisson process (Slivnyak, Mecke), strip and all") {
+    Random random(seed_of("vor undivided"));
+    Weigher weigher;
+    weigher.divide = false;
+    weigher.intensity = 25;
+    const Verdict v = expect_mean(mean_of_bowl, 30000, [&] {
+        Rng rng{random.bits()};
+        const uint64_t n = poisson(weigher.intensity, rng);
+        return n ? estimate(weigher, Weighting::vor, n, random, tilted_bowl) : 0;
+    });
+    INFO(v.text);
+    CHECK(v.pass);
+    CHECK(v.delta_min < 0.015);
+    CHECK(weigher.redraws < 30);  // at most p = 0.001 each
+}
+
+TEST_CASE("vor, divided: its bias falls faster than 1/n") {
+    // X = sum A (f - mean of f) has the mean 0 and takes the noise away from X / sum A.
+    Random random(seed_of("vor divided"));
+    Weigher weigher;
+    weigher.divide = false;
+    const Verdict v = expect_bias_decay(0, 128, 4000, [&](uint64_t n) {
+        weigher.intensity = double(n);
+        Rng rng{random.bits()};
+        const auto samples = scattered(poisson(double(n), rng), random);
+        const auto& w = weigher(Weighting::vor, samples, random.bits());
+        double x = 0, sum = 0;
+        for (size_t i = 0; i < samples.size(); ++i) {
+            x += w[i] * (tilted_bowl(samples[i]) - mean_of_bowl);
+            sum += w[i];
+        }
+        return x / sum - x;
+    });
+    INFO(v.text);
+    CHECK(v.pass);
+    CHECK(v.delta_min < 0.5);
+}
+
+TEST_CASE("fvor without a cell inside falls back to the plain mean, and counts it") {
+    Random random(seed_of("fvor falls back"));
+    Weigher weigher;
+    weigher.intensity = 1e-3;  // nobody in the strip, whose width is set by it
+    uint64_t uniform = 0;
+    for (int k = 0; k < 100; ++k) {
+        const auto& w = weigher(Weighting::fvor, scattered(3, random), random.bits());
+        uniform += w[0] == w[1] && w[1] == w[2];
+    }
+    CHECK(weigher.fallbacks > 20);
+    CHECK(weigher.fallbacks == uniform);
+}
+
+TEST_CASE("torus: unbiased, however few the samples") {
+    Random random(seed_of("torus unbiased"));
+    Weigher weigher;
+    for (uint64_t n : {1, 2, 3, 10}) {
+        const Verdict v = expect_mean(mean_of_bowl, 20000, [&] {
+            return estimate(weigher, Weighting::torus, n, random, tilted_bowl);
+        });
+        INFO(v.text);
+        CHECK(v.pass);
+        CHECK(v.delta_min < 0.04);
+    }
+}
+
+TEST_CASE("clipped: n times the bias has the limit that the border's half-plane gives") {
+    // Samples near a border sit on its inner side: with sites of intensity 1 in a half-plane, the
+    // displacement from a point to its nearest site, integrated over the distance of the point, is
+    //   c = int_0^1 sqrt(1 - s^2) / k(s)^2 ds,  k = pi - acos s + s sqrt(1 - s^2)
+    // inwards; inside, E r^2 = 1/pi.  With f to second order and Gauss's theorem,
+    //   n bias -> (1/(4 pi) - c) integral of the Laplacian of f.
+    double c = 0;
+    constexpr int steps = 100000;  // midpoint rule
+    for (int k = 0; k < steps; ++k) {
+        const double s = (k + 0.5) / steps, root = std::sqrt(1 - s * s);
+        const double area = std::numbers::pi - std::acos(s) + s * root;
+        c += root / (area * area) / steps;
+    }
+    CHECK(c == doctest::Approx(1 / (2 * std::numbers::pi)).epsilon(1e-6));
+    const double limit = (1 / (4 * std::numbers::pi) - c) * 6;  // of tilted_bowl
+    Random random(seed_of("clipped bias"));
+    Weigher weigher;
+    const Verdict v = expect_bias_decay(limit, 256, 2500, [&](uint64_t n) {
+        return estimate(weigher, Weighting::cvor, n, random, tilted_bowl) - mean_of_bowl;
+    });
+    INFO(v.text);
+    CHECK(v.pass);
+    CHECK(v.delta_min < 0.45);
+}
+
+TEST_CASE("gradients, reconstruction and border correction are exact for linear pieces") {
+    Random random(seed_of("linear pieces"));
+    Voronoi v;
+    v.with_neighbours = true;
+    const auto sites = scattered(400, random);
+    const auto& cells = v.clipped(sites, {{0, 0}, {1, 1}});
+    std::vector<double> plane, roof;
+    for (const Point& p : sites) {
+        plane.push_back(3 * p.x - 2 * p.y + 1);
+        roof.push_back(std::abs(p.x - 0.5));
+    }
+    for (size_t i = 0; i < sites.size(); ++i) {
+        const Point g = gradient(v, sites, plane, i);
+        CHECK(g.x == doctest::Approx(3).epsilon(1e-9));
+        CHECK(g.y == doctest::Approx(-2).epsilon(1e-9));
+    }
+    CHECK(linear_reconstruction(v, cells, sites, plane) == doctest::Approx(1.5).epsilon(1e-12));
+    CHECK(std::abs(border_correction(v, cells, sites, plane)) < 1e-12);
+    // The roof falls by 1 a unit from both sides: the integral of the outward derivative is 2.  The
+    // ridge ends at the border, where a cell or two see both slopes.
+    const double sum = 4 * std::numbers::pi * 400 * border_correction(v, cells, sites, roof);
+    CHECK(std::abs(sum - 2) < 0.1);
+}
+
+TEST_CASE("two sites alone have no gradient") {
+    Voronoi v;
+    v.with_neighbours = true;
+    const std::vector<Point> sites = {{0.2, 0.5}, {0.7, 0.5}};
+    v.clipped(sites, {{0, 0}, {1, 1}});
+    const std::vector<double> f = {1, 2};
+    CHECK(gradient(v, sites, f, 0).x == 0);
+}
