@@ -123,6 +123,10 @@ $(OBJECTS)/cells.exe: LIBRARIES = $(shell printf '\043include <CGAL/Delaunay_tri
 $(OBJECTS)/all-tests: $(TESTS)
 	$(CXX) $(LINK) -o $@ $^
 
+# Tests that compute little are compiled in less time.
+LIGHT := check film image obj options parser program report rng scene vec views
+$(LIGHT:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1)
+
 $(OBJECTS)/tests/%.o: tests/%.cpp Makefile | packages
 	@mkdir -p $(@D)
 	$(CXX) $(FLAGS) $(OPTIMISE) -DTESTING -c -o $@ $<

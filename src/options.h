@@ -106,10 +106,10 @@ Renders SCENE (a file in the format of scenes/*.scene) by path tracing.
                         nodes (red) and shapes (green) visited by a ray;
                         variance of the pixels' means (implies --halves)
   --film mc|vor|fvor|cvor|torus   weights of a pixel's samples: equal (default),
-                        or the areas of their Voronoi cells in the pixel: bounded
-                        by a strip around it, the same but without cells that
-                        leave the strip, clipped to it, or as if it were repeated;
-                        all but mc need --sampler independent and --spp
+                        or areas of their Voronoi cells in the pixel: bounded by
+                        a strip around it, the same without cells that leave it,
+                        clipped to the pixel, or on a torus; all but mc need
+                        --sampler independent and --spp
   --stats FILE          write what was measured, as JSON
   --pixel X,Y           instead of rendering, print every vertex of one path
   --sample I            of sample I (default: 0)

@@ -17,11 +17,11 @@
 #endif
 
 // Always double: areas are to add up to that of the window, to 1e-12 n of it.
-struct Point {
+struct Site {
     double x = 0, y = 0;
 };
 struct Rectangle {
-    Point lo, hi;
+    Site lo, hi;
 
     double width() const { return hi.x - lo.x; }
     double height() const { return hi.y - lo.y; }
@@ -37,8 +37,8 @@ inline Rectangle grown(const Rectangle& r, double by) {
 // The points of the window that are nearer to one site than to all others.
 struct VoronoiCell {
     double area = 0;
-    Point rim;            // sum over its edges on the window's border: length x outward normal
-    Point offset;         // of the centroid, from the site
+    Site rim;             // sum over its edges on the window's border: length x outward normal
+    Site offset;          // of the centroid, from the site
     bool bounded = true;  // stretched: reaches not beyond twice the domain's size around it
     bool inside = true;   // stretched: is all in the domain
     bool settled = true;  // no site outside the domain could change it
@@ -292,7 +292,7 @@ public:
     int size = 0;
 
     // Sites from ... to; false if there is no room.
-    bool add(const double* x, const double* y, uint32_t from, uint32_t to, Point site) {
+    bool add(const double* x, const double* y, uint32_t from, uint32_t to, Site site) {
         for (; from < to; from += width) {
             if (size + width > most) return false;
             const Lanes dx = load(x + from) - site.x, dy = load(y + from) - site.y;
@@ -381,7 +381,7 @@ public:
     bool with_neighbours = false;  // whether neighbours(i) is to be had
 
     // Clipped to the window, in which all sites are.
-    const std::vector<VoronoiCell>& clipped(std::span<const Point> sites, const Rectangle& window) {
+    const std::vector<VoronoiCell>& clipped(std::span<const Site> sites, const Rectangle& window) {
         begin(sites, sites.size(), window, window);
         add_sites(sites);
         frame_ = domain_;
@@ -389,7 +389,7 @@ public:
     }
 
     // The first `inner` of the sites; the others only bound their cells.  All are in the domain.
-    const std::vector<VoronoiCell>& stretched(std::span<const Point> sites, size_t inner,
+    const std::vector<VoronoiCell>& stretched(std::span<const Site> sites, size_t inner,
                                               const Rectangle& domain) {
         begin(sites, inner, domain, domain);
         add_sites(sites);
@@ -399,7 +399,7 @@ public:
     }
 
     // The window is repeated in both directions.
-    const std::vector<VoronoiCell>& torus(std::span<const Point> sites, const Rectangle& window) {
+    const std::vector<VoronoiCell>& torus(std::span<const Site> sites, const Rectangle& window) {
         const double w = window.width(), h = window.height(), side = std::max(w, h);
         // No flower reaches farther: a cell's corners are within half a diagonal.
         const double enough = (side + std::hypot(w, h)) / 2 * (1 + 1e-9);
@@ -431,14 +431,14 @@ private:
     std::vector<VoronoiCell> cells_;
     std::vector<uint32_t> neighbours_, first_neighbour_, neighbour_count_;
 
-    Point origin_;  // of the window; in units of its greater side:
+    Site origin_;  // of the window; in units of its greater side:
     double unit_ = 1;
     Rectangle domain_;          // where all sites are
     Rectangle frame_;           // every cell is cut from this,
     bool relative_ = false;     // or from this moved to its site
     bool check_reach_ = false;  // whether cells may depend on what is outside the domain
     size_t inner_ = 0;          // sites whose cells are asked for
-    std::vector<Point> raw_;    // all sites
+    std::vector<Site> raw_;     // all sites
 
     // Sites in the order of their buckets, and their indices; some places more, to be read only.
     int columns_ = 1, rows_ = 1;
@@ -453,7 +453,7 @@ private:
 
     // ---- Sites --------------------------------------------------------------------------------
 
-    void begin(std::span<const Point> sites, size_t inner, const Rectangle& window,
+    void begin(std::span<const Site> sites, size_t inner, const Rectangle& window,
                const Rectangle& domain) {
         if (sites.size() > UINT32_MAX / 32) throw std::length_error("voronoi: too many sites");
         origin_ = window.lo;
@@ -466,14 +466,14 @@ private:
     }
 
     // To 2^-50, so that differences are exact and squares of them do not vanish.
-    Point rounded(Point p) const {
+    Site rounded(Site p) const {
         return {((p.x - origin_.x) / unit_ + 4) - 4, ((p.y - origin_.y) / unit_ + 4) - 4};
     }
 
-    void add_sites(std::span<const Point> sites) {
+    void add_sites(std::span<const Site> sites) {
         bool out = false;
-        for (const Point& site : sites) {
-            const Point p = rounded(site);
+        for (const Site& site : sites) {
+            const Site p = rounded(site);
             out = out || !(p.x >= domain_.lo.x && p.x <= domain_.hi.x && p.y >= domain_.lo.y &&
                            p.y <= domain_.hi.y);
             raw_.push_back(p);
@@ -488,7 +488,7 @@ private:
         for (int j = -rows; j <= rows; ++j)
             for (int i = -columns; i <= columns; ++i)
                 for (size_t k = 0; k < inner_ && (i != 0 || j != 0); ++k) {
-                    const Point p = {raw_[k].x + i * w, raw_[k].y + j * h};
+                    const Site p = {raw_[k].x + i * w, raw_[k].y + j * h};
                     if (p.x >= domain_.lo.x && p.x <= domain_.hi.x && p.y >= domain_.lo.y &&
                         p.y <= domain_.hi.y)
                         raw_.push_back(p);
@@ -560,9 +560,9 @@ private:
         return true;
     }
 
-    Rectangle frame(Point site) const { return relative_ ? frame_ : moved(frame_, site); }
+    Rectangle frame(Site site) const { return relative_ ? frame_ : moved(frame_, site); }
     // As seen from a site.
-    static Rectangle moved(const Rectangle& r, Point site) {
+    static Rectangle moved(const Rectangle& r, Site site) {
         return {{r.lo.x - site.x, r.lo.y - site.y}, {r.hi.x - site.x, r.hi.y - site.y}};
     }
 
@@ -577,7 +577,7 @@ private:
 
     [[gnu::always_inline]] Outcome cut_by_buckets(voronoi::Polygon& p, uint32_t i, int x, int y) {
         using enum Outcome;
-        const Point site = {x_[i], y_[i]};
+        const Site site = {x_[i], y_[i]};
         voronoi::Neighbours near;
         const double *const xs = x_.data(), *const ys = y_.data();
         const uint32_t* const starts = start_.data();
@@ -654,7 +654,7 @@ private:
         std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
         first_of_ = order;
         for (size_t k = 0; k < order.size(); ++k) {
-            const Point p = raw_[order[k]], q = raw_[order[k ? k - 1 : 0]];
+            const Site p = raw_[order[k]], q = raw_[order[k ? k - 1 : 0]];
             const bool copy = k > 0 && p.x == q.x && p.y == q.y;
             first_of_[order[k]] = copy ? first_of_[order[k - 1]] : order[k];
         }
@@ -710,20 +710,20 @@ private:
             std::iota(tree_sites_.begin(), tree_sites_.end(), 0u);
             grow(0, count_);
         }
-        const Point site = {x_[i], y_[i]};
+        const Site site = {x_[i], y_[i]};
         p.start(frame(site));
         return cut_by(p, tree_[0], i, site) ? Outcome::done : Outcome::duplicate;
     }
 
     // Square of the distance of p from a box.
-    static double distance2(const Rectangle& box, Point p) {
+    static double distance2(const Rectangle& box, Site p) {
         const double x = std::max({box.lo.x - p.x, p.x - box.hi.x, 0.0}),
                      y = std::max({box.lo.y - p.y, p.y - box.hi.y, 0.0});
         return x * x + y * y;
     }
 
     // By the sites of a node, if its box meets the flower; false if one is at the place of site i.
-    bool cut_by(voronoi::Polygon& p, const Node& node, uint32_t i, Point site) {
+    bool cut_by(voronoi::Polygon& p, const Node& node, uint32_t i, Site site) {
         const voronoi::Outline o = p.outline();
         bool meets = false;
         for (int k = 0; k < o.size && !meets; ++k) {

@@ -25,7 +25,7 @@ private:
     Radiance L_;
     Weigher weigher_;
     std::vector<rgb> values_;
-    std::vector<Point> places_;
+    std::vector<Site> places_;
     const std::vector<double>* weights_ = nullptr;
 
     void gather(int x) {

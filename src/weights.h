@@ -41,8 +41,8 @@ inline uint64_t poisson(double mean, Rng& random) {
 
 // Gradient at site i of values given at all sites: the plane through its own value that fits those
 // of its Voronoi neighbours best (least squares); 0 if they are collinear.
-inline Point gradient(const Voronoi& cells, std::span<const Point> sites, std::span<const double> f,
-                      size_t i) {
+inline Site gradient(const Voronoi& cells, std::span<const Site> sites, std::span<const double> f,
+                     size_t i) {
     double xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
     for (uint32_t j : cells.neighbours(i)) {
         const double dx = sites[j].x - sites[i].x, dy = sites[j].y - sites[i].y, df = f[j] - f[i];
@@ -62,12 +62,12 @@ inline Point gradient(const Voronoi& cells, std::span<const Point> sites, std::s
 // to first order in 1/n, and this sum over the cells there estimates what to add: gradients need no
 // more than the neighbours.  What is left is O(n^-3/2) for smooth f.
 inline double border_correction(const Voronoi& clipped, const std::vector<VoronoiCell>& cells,
-                                std::span<const Point> sites, std::span<const double> f) {
+                                std::span<const Site> sites, std::span<const double> f) {
     double sum = 0;
     for (size_t i = 0; i < sites.size(); ++i) {
-        const Point rim = cells[i].rim;
+        const Site rim = cells[i].rim;
         if (rim.x == 0 && rim.y == 0) continue;
-        const Point g = gradient(clipped, sites, f, i);
+        const Site g = gradient(clipped, sites, f, i);
         sum += g.x * rim.x + g.y * rim.y;
     }
     return sum / (4 * std::numbers::pi * double(sites.size()));
@@ -75,10 +75,10 @@ inline double border_correction(const Voronoi& clipped, const std::vector<Vorono
 
 // sum A_i (f_i + grad f_i . (centroid - x_i)): exact where f is linear.
 inline double linear_reconstruction(const Voronoi& clipped, const std::vector<VoronoiCell>& cells,
-                                    std::span<const Point> sites, std::span<const double> f) {
+                                    std::span<const Site> sites, std::span<const double> f) {
     double sum = 0;
     for (size_t i = 0; i < sites.size(); ++i) {
-        const Point g = gradient(clipped, sites, f, i), d = cells[i].offset;
+        const Site g = gradient(clipped, sites, f, i), d = cells[i].offset;
         sum += cells[i].area * (f[i] + g.x * d.x + g.y * d.y);
     }
     return sum;
@@ -99,7 +99,7 @@ public:
     Voronoi cells;
 
     // Weights of these samples of [0,1)^2; `key` gives the strip its random numbers.
-    const std::vector<double>& operator()(Weighting kind, std::span<const Point> samples,
+    const std::vector<double>& operator()(Weighting kind, std::span<const Site> samples,
                                           uint64_t key) {
         constexpr Rectangle square = {{0, 0}, {1, 1}};
         weights_.assign(samples.size(), 1 / double(samples.size()));
@@ -113,12 +113,12 @@ public:
 
 private:
     std::vector<double> weights_;
-    std::vector<Point> sites_;
+    std::vector<Site> sites_;
 
     static double uniform(Rng& random) { return double(random.bits() >> 11) * 0x1p-53; }
 
     // Four rectangles around the square, each from one corner to beyond the next.
-    static Point in_strip(double width, Rng& random) {
+    static Site in_strip(double width, Rng& random) {
         const uint64_t side = random.bits() >> 62;
         const double along = uniform(random) * (1 + width), away = -width * uniform(random);
         switch (side) {
@@ -133,7 +133,7 @@ private:
         }
     }
 
-    const std::vector<double>& by_strip(Weighting kind, std::span<const Point> samples,
+    const std::vector<double>& by_strip(Weighting kind, std::span<const Site> samples,
                                         uint64_t key) {
         const double n = intensity > 0 ? intensity : double(samples.size());
         const double width = strip_width(n), mean = n * 4 * width * (1 + width);

@@ -9,7 +9,7 @@
 
 namespace {
 
-using Points = std::vector<Point>;
+using Points = std::vector<Site>;
 constexpr Rectangle unit_square = {{0, 0}, {1, 1}};
 
 double total(const std::vector<VoronoiCell>& cells) {
@@ -50,7 +50,7 @@ Measure brute_force(const Points& sites, size_t i, const Rectangle& start) {
     const Corner lo = {start.lo.x - ox, start.lo.y - oy}, hi = {start.hi.x - ox, start.hi.y - oy};
     std::vector<Corner> cell = {lo, {hi.x, lo.y}, hi, {lo.x, hi.y}};
     int copies = 0;
-    for (const Point& p : sites) {
+    for (const Site& p : sites) {
         const Corner d = {p.x - ox, p.y - oy};
         const bool same = d.x == 0 && d.y == 0;
         copies += same;
@@ -83,7 +83,7 @@ Points scattered(int n, Random& random) {
 
 // Sites that the rounding to 2^-50 leaves alone.
 Points rounded(Points sites) {
-    for (Point& p : sites) p = {(p.x + 4) - 4, (p.y + 4) - 4};
+    for (Site& p : sites) p = {(p.x + 4) - 4, (p.y + 4) - 4};
     return sites;
 }
 
@@ -101,36 +101,36 @@ std::vector<Hard> hard_cases(Random& random) {
         for (int i = 0; i < n; ++i) p.push_back(site(i));
         cases.push_back({name, rounded(p)});
     };
-    make("a square lattice", 144, [](int i) { return Point{i % 12 / 12.0, i / 12 / 12.0}; });
-    make("a lattice up to the border", 81, [](int i) { return Point{i % 9 / 8.0, i / 9 / 8.0}; });
-    make("collinear, horizontal", 60, [&](int) { return Point{random(), 0.3}; });
-    make("collinear, vertical", 60, [&](int) { return Point{0.999, random()}; });
-    make("collinear, diagonal", 300, [](int i) { return Point{i / 300.0, i / 300.0}; });
-    make("almost collinear", 100, [&](int i) { return Point{i / 100.0, 0.5 + 1e-14 * random()}; });
+    make("a square lattice", 144, [](int i) { return Site{i % 12 / 12.0, i / 12 / 12.0}; });
+    make("a lattice up to the border", 81, [](int i) { return Site{i % 9 / 8.0, i / 9 / 8.0}; });
+    make("collinear, horizontal", 60, [&](int) { return Site{random(), 0.3}; });
+    make("collinear, vertical", 60, [&](int) { return Site{0.999, random()}; });
+    make("collinear, diagonal", 300, [](int i) { return Site{i / 300.0, i / 300.0}; });
+    make("almost collinear", 100, [&](int i) { return Site{i / 100.0, 0.5 + 1e-14 * random()}; });
     make("a circle about its centre", 101, [](int i) {
         const double phi = 2 * std::numbers::pi * i / 100, r = i < 100 ? 0.375 : 0;
-        return Point{0.5 + r * std::cos(phi), 0.5 + r * std::sin(phi)};
+        return Site{0.5 + r * std::cos(phi), 0.5 + r * std::sin(phi)};
     });
     make("on the border", 80, [&](int i) {
         const double t = random();
-        return i % 4 == 0   ? Point{0, t}
-               : i % 4 == 1 ? Point{1, t}
-               : i % 4 == 2 ? Point{t, 0}
-                            : Point{t, 1};
+        return i % 4 == 0   ? Site{0, t}
+               : i % 4 == 1 ? Site{1, t}
+               : i % 4 == 2 ? Site{t, 0}
+                            : Site{t, 1};
     });
-    make("corners", 4, [](int i) { return Point{double(i % 2), double(i / 2)}; });
+    make("corners", 4, [](int i) { return Site{double(i % 2), double(i / 2)}; });
     make("a cluster in a corner", 300, [&](int i) {
-        return i == 0 ? Point{0.9, 0.8} : Point{1e-3 * random(), 1e-3 * random()};
+        return i == 0 ? Site{0.9, 0.8} : Site{1e-3 * random(), 1e-3 * random()};
     });
     make("a cluster of rounding errors", 50, [](int i) {
-        return Point{0.5 + 0x1p-48 * (i % 7), 0.5 + 0x1p-48 * (i / 7)};
+        return Site{0.5 + 0x1p-48 * (i % 7), 0.5 + 0x1p-48 * (i / 7)};
     });
     make("pairs", 60, [&](int i) {
-        static Point last;
+        static Site last;
         if (i % 2 == 0) last = {random(), random()};
         return last;
     });
-    make("all equal", 17, [](int) { return Point{0.25, 0.125}; });
+    make("all equal", 17, [](int) { return Site{0.25, 0.125}; });
     return cases;
 }
 
@@ -192,12 +192,12 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
         for (int n : {1, 2, 3, 7, 40, 100}) {
             Points sites = scattered(n, random), all;
             if (n == 100)  // a cluster: its cells reach far beyond what its number suggests
-                for (Point& p : sites) p = {0.1 * p.x, 0.1 * p.y};
-            for (Point& p : sites)
+                for (Site& p : sites) p = {0.1 * p.x, 0.1 * p.y};
+            for (Site& p : sites)
                 p = {window.lo.x + p.x * window.width(), window.lo.y + p.y * window.height()};
             for (int j = -2; j <= 2; ++j)
                 for (int i = -2; i <= 2; ++i)
-                    for (const Point& p : sites)
+                    for (const Site& p : sites)
                         all.push_back({p.x + i * window.width(), p.y + j * window.height()});
             const auto cells = v.torus(sites, window);
             double off = 0;
@@ -209,7 +209,7 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
             CHECK(off < 1e-13);
             CHECK(std::abs(total(cells) - window.area()) <= 1e-12 * n);
             Points moved = sites;
-            for (Point& p : moved) p.x += p.x + 0.7 > window.hi.x ? 0.7 - window.width() : 0.7;
+            for (Site& p : moved) p.x += p.x + 0.7 > window.hi.x ? 0.7 - window.width() : 0.7;
             const auto again = v.torus(moved, window);
             for (size_t i = 0; i < sites.size(); ++i)
                 CHECK(again[i].area == doctest::Approx(cells[i].area).epsilon(1e-12));
@@ -226,7 +226,7 @@ TEST_CASE("a strip about the window: brute force; what is bounded, inside, settl
         const Rectangle domain = grown(unit_square, 0.5);
         Points sites = scattered(n, random);
         while (int(sites.size()) < n + m) {
-            const Point p = {2 * random() - 0.5, 2 * random() - 0.5};
+            const Site p = {2 * random() - 0.5, 2 * random() - 0.5};
             if (p.x < 0 || p.y < 0 || p.x > 1 || p.y > 1) sites.push_back(p);
         }
         sites = rounded(sites);
@@ -234,7 +234,7 @@ TEST_CASE("a strip about the window: brute force; what is bounded, inside, settl
         REQUIRE(cells.size() == n);
         Points more = sites;  // a site that may be anywhere outside the domain
         for (int k = 0; k < 40; ++k) {
-            const Point p = {5 * random() - 2, 5 * random() - 2};
+            const Site p = {5 * random() - 2, 5 * random() - 2};
             if (p.x < -0.5 || p.y < -0.5 || p.x > 1.5 || p.y > 1.5) more.push_back(p);
         }
         for (size_t i = 0; i < n; ++i, ++all) {
@@ -317,21 +317,17 @@ TEST_CASE("translated, mirrored or scaled sites in a window have the same areas"
     const auto cells = v.clipped(sites, unit_square);
     auto worst = [&](auto map, const Rectangle& window, double factor) {
         Points moved;
-        for (const Point& p : sites) moved.push_back(map(p));
+        for (const Site& p : sites) moved.push_back(map(p));
         const auto& again = v.clipped(moved, window);
         double off = 0;
         for (size_t i = 0; i < sites.size(); ++i)
             off = std::max(off, std::abs(again[i].area - factor * cells[i].area) / factor);
         return off;
     };
-    CHECK(worst([](Point p) { return Point{1 - p.x, p.y}; }, unit_square, 1) < 1e-15);
-    CHECK(worst([](Point p) { return Point{p.y, p.x}; }, unit_square, 1) < 1e-15);
-    CHECK(worst(
-              [](Point p) {
-                  return Point{p.x - 0.5, p.y + 8};
-              },
-              {{-0.5, 8}, {0.5, 9}}, 1) < 1e-13);
-    CHECK(worst([](Point p) { return Point{4 * p.x, 4 * p.y}; }, {{0, 0}, {4, 4}}, 16) < 1e-15);
+    CHECK(worst([](Site p) { return Site{1 - p.x, p.y}; }, unit_square, 1) < 1e-15);
+    CHECK(worst([](Site p) { return Site{p.y, p.x}; }, unit_square, 1) < 1e-15);
+    CHECK(worst([](Site p) { return Site{p.x - 0.5, p.y + 8}; }, {{-0.5, 8}, {0.5, 9}}, 1) < 1e-13);
+    CHECK(worst([](Site p) { return Site{4 * p.x, 4 * p.y}; }, {{0, 0}, {4, 4}}, 16) < 1e-15);
 }
 
 TEST_CASE("a site outside the window, or no window, is refused") {

@@ -31,7 +31,7 @@ TEST_CASE("a weighted row adds up to n sum w L for every pixel, and constants to
             for (int x = 0; x < size.width; ++x) {
                 rgb sum;
                 for (uint64_t i = 0; i < spp; ++i) sum += row(x, i);
-                std::vector<Point> places;
+                std::vector<Site> places;
                 for (uint64_t i = 0; i < spp; ++i)
                     places.push_back({double(place(x, i).x), double(place(x, i).y)});
                 Weigher weigher;

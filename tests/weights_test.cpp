@@ -10,8 +10,8 @@ namespace {
 constexpr Weighting all[] = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
                              Weighting::torus};
 
-std::vector<Point> scattered(uint64_t n, Random& random) {
-    std::vector<Point> p;
+std::vector<Site> scattered(uint64_t n, Random& random) {
+    std::vector<Site> p;
     for (uint64_t i = 0; i < n; ++i) {
         const double x = random(), y = random();
         p.push_back({x, y});
@@ -29,7 +29,7 @@ double estimate(Weigher& weigher, Weighting kind, uint64_t n, Random& random, F 
     return sum;
 }
 
-double tilted_bowl(Point p) { return p.x * p.x + 2 * p.y * p.y + p.x; }
+double tilted_bowl(Site p) { return p.x * p.x + 2 * p.y * p.y + p.x; }
 constexpr double mean_of_bowl = 1.0 / 3 + 2.0 / 3 + 0.5;
 
 }  // namespace
@@ -39,7 +39,7 @@ TEST_CASE("divided weights add up to 1, so that constants come out exactly, from
     Weigher weigher;
     for (Weighting kind : all)
         for (uint64_t n : {1, 2, 3, 5, 17, 64, 300}) {
-            const double sum = estimate(weigher, kind, n, random, [](Point) { return 1.0; });
+            const double sum = estimate(weigher, kind, n, random, [](Site) { return 1.0; });
             INFO(std::string(weighting_names[size_t(kind)]), ", n = ", n);
             CHECK(std::abs(sum - 1) <= 1e-12 * double(n));
         }
@@ -169,12 +169,12 @@ TEST_CASE("gradients, reconstruction and border correction are exact for linear 
     const auto sites = scattered(400, random);
     const auto& cells = v.clipped(sites, {{0, 0}, {1, 1}});
     std::vector<double> plane, roof;
-    for (const Point& p : sites) {
+    for (const Site& p : sites) {
         plane.push_back(3 * p.x - 2 * p.y + 1);
         roof.push_back(std::abs(p.x - 0.5));
     }
     for (size_t i = 0; i < sites.size(); ++i) {
-        const Point g = gradient(v, sites, plane, i);
+        const Site g = gradient(v, sites, plane, i);
         CHECK(g.x == doctest::Approx(3).epsilon(1e-9));
         CHECK(g.y == doctest::Approx(-2).epsilon(1e-9));
     }
@@ -189,7 +189,7 @@ TEST_CASE("gradients, reconstruction and border correction are exact for linear 
 TEST_CASE("two sites alone have no gradient") {
     Voronoi v;
     v.with_neighbours = true;
-    const std::vector<Point> sites = {{0.2, 0.5}, {0.7, 0.5}};
+    const std::vector<Site> sites = {{0.2, 0.5}, {0.7, 0.5}};
     v.clipped(sites, {{0, 0}, {1, 1}});
     const std::vector<double> f = {1, 2};
     CHECK(gradient(v, sites, f, 0).x == 0);

@@ -26,8 +26,8 @@ namespace {
 
 double seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }  // of the processor
 
-std::vector<Point> scattered(size_t n, Rng& random) {
-    std::vector<Point> p;
+std::vector<Site> scattered(size_t n, Rng& random) {
+    std::vector<Site> p;
     auto uniform = [&] { return double(random.bits() >> 11) * 0x1p-53; };
     for (size_t i = 0; i < n; ++i) {
         const double x = uniform(), y = uniform();
@@ -38,9 +38,9 @@ std::vector<Point> scattered(size_t n, Rng& random) {
 
 struct Ours {
     Voronoi cells;
-    std::vector<std::vector<Point>> sets;
+    std::vector<std::vector<Site>> sets;
 
-    explicit Ours(const std::vector<std::vector<Point>>& s) : sets(s) {}
+    explicit Ours(const std::vector<std::vector<Site>>& s) : sets(s) {}
     // Something that depends on the work, so that it is done.
     double run(size_t set) { return cells.clipped(sets[set], {{0, 0}, {1, 1}})[0].area; }
 };
@@ -51,10 +51,10 @@ struct Theirs {
     using Triangulation = CGAL::Delaunay_triangulation_2<Kernel>;
     std::vector<std::vector<Kernel::Point_2>> sets;
 
-    explicit Theirs(const std::vector<std::vector<Point>>& s) {
+    explicit Theirs(const std::vector<std::vector<Site>>& s) {
         for (const auto& set : s) {
             sets.emplace_back();
-            for (const Point& p : set) sets.back().push_back({p.x, p.y});
+            for (const Site& p : set) sets.back().push_back({p.x, p.y});
         }
     }
     double run(size_t set) {
@@ -95,7 +95,7 @@ int bench(const std::vector<std::string>& words) {
     std::vector<double> at_256, at_65536;
     for (size_t n : {64, 256, 1024, 4096, 65536}) {
         Rng random{mix(n)};
-        std::vector<std::vector<Point>> sets;
+        std::vector<std::vector<Site>> sets;
         for (size_t k = 0; k < std::clamp<size_t>(sites / n, 1, 64); ++k)
             sets.push_back(scattered(n, random));
         Ours ours(sets);

@@ -73,7 +73,7 @@ Region region_of(const Scene& scene, int x, int y) {
 // ---- Samples ------------------------------------------------------------------------------------
 
 struct Samples {
-    std::vector<Point> places;
+    std::vector<Site> places;
     std::vector<rgb> L;
 };
 
@@ -371,7 +371,7 @@ void draw_cells(Image& sheet, int left, int top, int side, const Scene& scene, P
     std::vector<size_t> above(size_t(side), SIZE_MAX);
     for (int y = 0; y < side; ++y)
         for (int x = 0, before = -1; x < side; ++x) {
-            const Point p = {(x + 0.5) / side, (y + 0.5) / side};
+            const Site p = {(x + 0.5) / side, (y + 0.5) / side};
             size_t nearest = 0;
             auto distance = [&](size_t i) {
                 return std::hypot(s.places[i].x - p.x, s.places[i].y - p.y);

@@ -9,8 +9,8 @@
 #include <cinttypes>
 #include <ctime>
 
-#include "../halton.h"
 #include "../curves.h"
+#include "../halton.h"
 #include "../stats.h"
 #include "../weights.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 // ---- Functions and their integrals --------------------------------------------------------------
 
-double power_of_xy(double alpha, Point p) { return std::pow(std::abs(p.x * p.y), alpha); }
+double power_of_xy(double alpha, Site p) { return std::pow(std::abs(p.x * p.y), alpha); }
 double mean_of_power(double alpha) {
     const double side = 2 * std::pow(0.5, alpha + 1) / (alpha + 1);
     return side * side;
@@ -26,7 +26,7 @@ double mean_of_power(double alpha) {
 
 struct Function {
     const char* name;
-    double (*at)(Point);
+    double (*at)(Site);
     double integral;
     double theory;       // exponent of n that bounds the deviation of vor, undivided; 0: none
     bool finite = true;  // its variance
@@ -57,24 +57,24 @@ double integral_of_not_c1() {
 }
 
 const std::vector<Function> functions = {
-    {"holder_1", [](Point p) { return power_of_xy(1, p); }, mean_of_power(1), -0.75},
-    {"holder_0.5", [](Point p) { return power_of_xy(0.5, p); }, mean_of_power(0.5), -0.75},
-    {"holder_0.1", [](Point p) { return power_of_xy(0.1, p); }, mean_of_power(0.1), -0.75},
-    {"holder_0.01", [](Point p) { return power_of_xy(0.01, p); }, mean_of_power(0.01), -0.75},
-    {"not_holder", [](Point p) { return -1 / std::log(std::hypot(p.x, p.y)); },
+    {"holder_1", [](Site p) { return power_of_xy(1, p); }, mean_of_power(1), -0.75},
+    {"holder_0.5", [](Site p) { return power_of_xy(0.5, p); }, mean_of_power(0.5), -0.75},
+    {"holder_0.1", [](Site p) { return power_of_xy(0.1, p); }, mean_of_power(0.1), -0.75},
+    {"holder_0.01", [](Site p) { return power_of_xy(0.01, p); }, mean_of_power(0.01), -0.75},
+    {"not_holder", [](Site p) { return -1 / std::log(std::hypot(p.x, p.y)); },
      integral_of_not_holder(), -0.75},
-    {"discontinuity", [](Point p) { return 1 / std::hypot(p.x, p.y); },
+    {"discontinuity", [](Site p) { return 1 / std::hypot(p.x, p.y); },
      4 * std::log(1 + std::numbers::sqrt2), 0, false},
-    {"not_c1", [](Point p) { return p.x * p.y * std::sin(1 / p.x) * std::sin(1 / p.y); },
+    {"not_c1", [](Site p) { return p.x * p.y * std::sin(1 / p.x) * std::sin(1 / p.y); },
      integral_of_not_c1(), -0.75},
     {"hat",
-     [](Point p) {
+     [](Site p) {
          return std::max(0.0, 1 - 2 * std::abs(p.x)) * std::max(0.0, 1 - 2 * std::abs(p.y));
      },
      0.25, -1},
-    {"exp", [](Point p) { return std::exp(p.x + p.y / 2); },
+    {"exp", [](Site p) { return std::exp(p.x + p.y / 2); },
      (2 * std::sinh(0.5)) * (4 * std::sinh(0.25)), -0.75},
-    {"disc", [](Point p) { return p.x * p.x + p.y * p.y < 0.09 ? 1.0 : 0.0; },
+    {"disc", [](Site p) { return p.x * p.x + p.y * p.y < 0.09 ? 1.0 : 0.0; },
      0.09 * std::numbers::pi, -0.75},
 };
 
@@ -149,8 +149,8 @@ double seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }  // of the pr
 
 double uniform(Rng& random) { return double(random.bits() >> 11) * 0x1p-53; }
 
-std::vector<Point> independent(uint64_t n, Rng& random) {
-    std::vector<Point> p;
+std::vector<Site> independent(uint64_t n, Rng& random) {
+    std::vector<Site> p;
     for (uint64_t i = 0; i < n; ++i) {
         const double x = uniform(random), y = uniform(random);
         p.push_back({x, y});
@@ -158,9 +158,9 @@ std::vector<Point> independent(uint64_t n, Rng& random) {
     return p;
 }
 
-std::vector<Point> jittered(uint64_t n, Rng& random) {
+std::vector<Site> jittered(uint64_t n, Rng& random) {
     const auto side = uint64_t(std::lround(std::sqrt(double(n))));
-    std::vector<Point> p;
+    std::vector<Site> p;
     for (uint64_t i = 0; i < side * side; ++i) {
         const double x = uniform(random), y = uniform(random);
         p.push_back({(double(i % side) + x) / double(side), (double(i / side) + y) / double(side)});
@@ -168,9 +168,9 @@ std::vector<Point> jittered(uint64_t n, Rng& random) {
     return p;
 }
 
-std::vector<Point> scrambled_halton(uint64_t n, Rng& random) {
+std::vector<Site> scrambled_halton(uint64_t n, Rng& random) {
     const uint64_t a = random.bits(), b = random.bits(), c = random.bits(), d = random.bits();
-    std::vector<Point> p;
+    std::vector<Site> p;
     for (uint64_t i = 0; i < n; ++i)
         p.push_back({double(scrambled_radical_inverse(2, i, a, b)),
                      double(scrambled_radical_inverse(3, i, c, d))});
@@ -208,7 +208,7 @@ public:
 private:
     Series& series_;
     Weigher weigher_, clipped_;
-    std::vector<Point> samples_;
+    std::vector<Site> samples_;
     std::vector<std::vector<double>> values_{functions.size()};
     std::vector<double> value_seconds_ = std::vector<double>(functions.size());
     double sample_seconds_ = 0;
