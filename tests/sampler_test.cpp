@@ -181,6 +181,16 @@ TEST_CASE("permute is a permutation, and takes every value at every place equall
     }
 }
 
+TEST_CASE("permute is as fair where it must walk: numbers that are no power of two") {
+    Rng rng{seed_here()};
+    for (uint32_t n : {3u, 5u, 6u})
+        for (uint32_t place = 0; place < n; ++place) {
+            std::vector<uint64_t> values(n);
+            for (int k = 0; k < 50000; ++k) ++values[permute(place, n, rng.bits())];
+            EXPECT(expect_counts(values, std::vector<double>(n, 1 / double(n))), 0.1);
+        }
+}
+
 TEST_CASE("halves are randomised apart; without them odd and even samples are one point set") {
     const Pattern whole = make_pattern(SamplerKind::halton, seed_here(), false, depth, 64);
     const Pattern halves = make_pattern(SamplerKind::halton, seed_here(), true, depth, 64);
