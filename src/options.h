@@ -184,10 +184,9 @@ inline void set(Options& o, std::string_view name, std::string_view value) {
 // Throws UserError about the first word that cannot be used.
 inline Options parse_options(const std::vector<std::string>& words) {
     static const std::vector<std::string_view> with_value = {
-        "-o",       "--spp",      "--time",  "--sampler",  "--direction", "--light",
-        "--direct", "--polygons", "--depth", "--roulette", "--seed",      "--threads",
-        "--size",   "--exposure", "--view",  "--film",     "--stats",     "--pixel",
-        "--sample"};
+        "-o",         "--spp",   "--time",     "--sampler", "--direction", "--light", "--direct",
+        "--polygons", "--depth", "--roulette", "--seed",    "--threads",   "--size",  "--exposure",
+        "--view",     "--film",  "--stats",    "--pixel",   "--sample"};
     std::vector<std::string_view> known = with_value;
     known.insert(known.end(), {"--halves", "--quiet", "--help"});
     Options o;
