@@ -89,7 +89,8 @@ class Weigher {
 public:
     double intensity =
         0;  // the strip has a Poisson number of sites; 0: as many as the samples demand
-    bool divide = true;  // false: vor and fvor stay areas, whatever their sum
+    double unbounded = 1e-3;  // probability that the strip does not bound every cell
+    bool divide = true;       // false: vor and fvor stay areas, whatever their sum
     // How often a strip was drawn anew since it left a cell unbounded: the strip only, not the
     // samples, which stay as they are.
     uint64_t redraws = 0;
@@ -136,7 +137,7 @@ private:
     const std::vector<double>& by_strip(Weighting kind, std::span<const Site> samples,
                                         uint64_t key) {
         const double n = intensity > 0 ? intensity : double(samples.size());
-        const double width = strip_width(n), mean = n * 4 * width * (1 + width);
+        const double width = strip_width(n, unbounded), mean = n * 4 * width * (1 + width);
         Rng random{key};
         for (int attempt = 0; attempt < 100; ++attempt, ++redraws) {
             sites_.assign(samples.begin(), samples.end());
