@@ -124,7 +124,8 @@ $(OBJECTS)/all-tests: $(TESTS)
 	$(CXX) $(LINK) -o $@ $^
 
 # Tests that compute little are compiled in less time.
-LIGHT := check film image obj options parser program report rng scene vec views
+LIGHT := check estimators extremes film halton image irradiance lights obj options parser program \
+         rectangle report rng sampler sampling scene stats vec views weighted
 $(LIGHT:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1)
 
 $(OBJECTS)/tests/%.o: tests/%.cpp Makefile | packages
