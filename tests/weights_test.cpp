@@ -192,9 +192,9 @@ TEST_CASE("gradients, reconstruction and border correction are exact for linear 
     CHECK(linear_reconstruction(v, cells, sites, plane) == doctest::Approx(1.5).epsilon(1e-12));
     CHECK(std::abs(border_correction(v, cells, sites, plane)) < 1e-12);
     // The roof falls by 1 a unit from both sides: the integral of the outward derivative is 2.  The
-    // ridge ends at the border, where a cell or two at each end, 1/20 wide, see both slopes.
+    // ridge ends at the border, where at each end cells of up to 0.15, 3 spacings, see both slopes.
     const double sum = 4 * std::numbers::pi * 400 * border_correction(v, cells, sites, roof);
-    CHECK(std::abs(sum - 2) < 0.3);
+    CHECK(std::abs(sum - 2) < 0.6);
 }
 
 TEST_CASE("two sites alone have no gradient") {
