@@ -82,9 +82,9 @@ struct Axes {
             draw_text(sheet, left - 44, int(at_y(y)) - 4, number(y));
         };
         if (log_y)
-            for (double y = std::pow(10, std::ceil(std::log10(y0) - 1e-9)); y <= y1 * 1.0001;
-                 y *= 10)
-                mark(y);
+            // Exponents, with room for the rounding of a logarithm: y0 and y1 may be powers of 10.
+            for (double e = std::ceil(std::log10(y0) - 1e-9); e <= std::log10(y1) + 1e-9; ++e)
+                mark(std::pow(10, e));
         else
             for (int k = 0; k <= 4; ++k) mark(y0 + (y1 - y0) * k / 4);
         draw_text(sheet, left, top - 14, title);
