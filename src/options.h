@@ -10,7 +10,6 @@
 #include "check.h"
 #include "estimators.h"
 #include "sampler.h"
-#include "weights.h"
 
 // How light is found.
 enum class LightMode {

@@ -1,6 +1,8 @@
 // sampler.h  floor 2  the numbers of one path
 #pragma once
 #include <bit>
+#include <string_view>
+#include <vector>
 
 #include "halton.h"
 #include "rng.h"
@@ -12,6 +14,17 @@ enum class SamplerKind {
     halton_naive  // as often met: the same points in every pixel and at every bounce; biased.
                   // One number: base 2; two: bases 2, 3 (three would add 5: none are drawn here)
 };
+
+// How samples x_1 ... x_n, independent and uniform in the unit square, make up a mean: by sum of
+// w_i f(x_i), with weights that add up to 1 (see weights.h).  A_i is the area of the cell of x_i.
+enum class Weighting {
+    mc,    // 1/n.  Unbiased.
+    vor,   // A_i / sum A, cells bounded by random sites in a strip around the square.  Consistent.
+    fvor,  // the same without the cells that reach beyond the strip.  Consistent.
+    cvor,  // A_i, clipped to the square.  Consistent: bias O(1/n), see border_correction.
+    torus  // A_i, the square repeated.  Unbiased: all sites are alike.
+};
+inline const std::vector<std::string_view> weighting_names = {"mc", "vor", "fvor", "cvor", "torus"};
 
 // What each number of a path is for: dimension(k, what) at vertex k, the first surface being 0.
 enum class Draw { light_x, light_y, wi_x, wi_y, pick, lobe, roulette, count };

@@ -1,6 +1,7 @@
 // weighted.h  floor 4  a row of pixels whose samples weigh as much as their Voronoi cells
 #pragma once
 #include "options.h"
+#include "weights.h"
 
 // For Film::add_row in place of L, the radiance of sample i of pixel x of row y: that times n w_i,
 // so that the film's plain mean is the weighted one.  The weights need all n samples of a pixel, so

@@ -1,21 +1,10 @@
-// weights.h  floor 2  samples of a square weighted by their Voronoi cells
+// weights.h  floor 3  samples of a square weighted by their Voronoi cells
 #pragma once
 #include <numbers>
-#include <string_view>
 
 #include "rng.h"
+#include "sampler.h"
 #include "voronoi.h"
-
-// How samples x_1 ... x_n, independent and uniform in the unit square, make up a mean: by sum of
-// w_i f(x_i), with weights that add up to 1.  A_i is the area of the cell of x_i.
-enum class Weighting {
-    mc,    // 1/n.  Unbiased.
-    vor,   // A_i / sum A, cells bounded by random sites in a strip around the square.  Consistent.
-    fvor,  // the same without the cells that reach beyond the strip.  Consistent.
-    cvor,  // A_i, clipped to the square.  Consistent: bias O(1/n), see border_correction.
-    torus  // A_i, the square repeated.  Unbiased: all sites are alike.
-};
-inline const std::vector<std::string_view> weighting_names = {"mc", "vor", "fvor", "cvor", "torus"};
 
 // Width of the strip that leaves a cell of a Poisson process of intensity n unbounded with a
 // probability of at most p: the circumscribed radius of the typical cell exceeds r with at most

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "oracle.h"
+#include "expect.h"
 
 namespace {
 
@@ -102,7 +102,7 @@ TEST_CASE("estimators: the part of beta that only follows U is left out") {
 }
 
 TEST_CASE("estimators: exact where all is lit and where nothing is") {
-    Random random(seed_of("estimators exact"));
+    Random random(seed_here());
     ShadowMoments lit, dark;
     SumsAbout lit_sums{1}, dark_sums{1};
     for (int i = 0; i < 1000; ++i) {
@@ -141,7 +141,7 @@ TEST_CASE("estimators: no sample that found light, no sample at all, constant w"
 }
 
 TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in parts") {
-    Random random(seed_of("estimators moments"));
+    Random random(seed_here());
     ShadowMoments one, even, odd;
     SumsAbout sums{1e8};
     double bb = 0, b_wV = 0, b_U = 0, UU = 0, vv = 0;
@@ -183,12 +183,10 @@ TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in
 TEST_CASE("estimators: stochastic and control are unbiased at any n, also where U varies") {
     for (Estimator e : {Estimator::stochastic, Estimator::control})
         for (uint64_t n : {1, 2, 8}) {
-            Random random(seed_of("estimators unbiased") + n);
+            Random random(seed_here() + n);
             const Verdict v =
                 expect_mean(0.25, 100000, [&] { return estimate(e, of_ramp(random, n)); });
-            INFO(v.text);
-            CHECK(v.pass);
-            CHECK(v.delta_min < 0.1);
+            EXPECT(v, 0.1);
             const Verdict u = expect_mean(pixel_truth, 100000, [&] {
                 ShadowMoments m;
                 for (uint64_t i = 0; i < n; ++i) {
@@ -197,20 +195,16 @@ TEST_CASE("estimators: stochastic and control are unbiased at any n, also where 
                 }
                 return estimate(e, m);
             });
-            INFO(u.text);
-            CHECK(u.pass);
-            CHECK(u.delta_min < 0.04);
+            EXPECT(u, 0.04);
         }
 }
 
 TEST_CASE("estimators: ratio's bias at n = 1, 2 is known, and n times it tends to 1/6") {
-    Random random(seed_of("estimators ratio bias"));
+    Random random(seed_here());
     for (auto [n, truth] : {std::pair{1, 0.25}, std::pair{2, 0.119188}}) {
         const Verdict v = expect_mean(0.25 + truth, 400000,
                                       [&, n = n] { return ratio(of_ramp(random, uint64_t(n))); });
-        INFO(v.text);
-        CHECK(v.pass);
-        CHECK(v.delta_min < 0.02);
+        EXPECT(v, 0.02);
     }
     CHECK(ramp.bias(Estimator::ratio) == doctest::Approx(1.0 / 6));
     const Verdict v = expect_bias_decay(ramp.bias(Estimator::ratio), 64, 2000, [&](uint64_t n) {
@@ -219,13 +213,11 @@ TEST_CASE("estimators: ratio's bias at n = 1, 2 is known, and n times it tends t
             return ratio(m) - (m.wV - ramp.R() * (m.w - 1));
         });
     });
-    INFO(v.text);
-    CHECK(v.pass);
-    CHECK(v.delta_min < 0.25);
+    EXPECT(v, 0.25);
 }
 
 TEST_CASE("estimators: regression's bias falls as predicted") {
-    Random random(seed_of("estimators regression bias"));
+    Random random(seed_here());
     const double beta = ramp.beta(Estimator::regression);
     const Verdict v =
         expect_bias_decay(ramp.bias(Estimator::regression), 64, 2000, [&](uint64_t n) {
@@ -234,13 +226,11 @@ TEST_CASE("estimators: regression's bias falls as predicted") {
                 return regression(m) - (m.wV - beta * (m.w - 1));
             });
         });
-    INFO(v.text);
-    CHECK(v.pass);
-    CHECK(v.delta_min < 0.5);
+    EXPECT(v, 0.5);
 }
 
 TEST_CASE("estimators: ratio and regression converge to the pixel where U varies in it") {
-    Random random(seed_of("estimators pixel"));
+    Random random(seed_here());
     for (Estimator e : {Estimator::ratio, Estimator::regression}) {
         // Their bias at n = 4096 is of the order of 1e-4, a tenth of what the test sees.
         const Verdict v = expect_mean(pixel_truth, 400, [&] {
@@ -251,9 +241,7 @@ TEST_CASE("estimators: ratio and regression converge to the pixel where U varies
             }
             return estimate(e, m);
         });
-        INFO(v.text);
-        CHECK(v.pass);
-        CHECK(v.delta_min < 0.01);
+        EXPECT(v, 0.01);
     }
 }
 
@@ -279,7 +267,7 @@ TEST_CASE("estimators: variances are those predicted, and regression's is the le
     const double published[] = {5.0 / 48, 29.0 / 48};  // 0.104, 0.604
     for (size_t i = 0; i < 2; ++i) CHECK(ramp.variance(all[i]) == doctest::Approx(published[i]));
     for (Estimator e : all) {
-        Random random(seed_of("estimators variance") + uint64_t(e));
+        Random random(seed_here() + uint64_t(e));
         CHECK(ramp.variance(Estimator::regression) <= ramp.variance(e));
         // Of ratio and regression at n = 256 the variance still differs by some 1/n.
         const Verdict v = expect_mean(ramp.variance(e), 2000, [&] {
@@ -288,9 +276,7 @@ TEST_CASE("estimators: variances are those predicted, and regression's is the le
                 return 256 * error * error;
             });
         });
-        INFO(v.text);
-        CHECK(v.pass);
-        CHECK(v.delta_min < 0.1);
+        EXPECT(v, 0.1);
     }
     // (e) of the 1D experiment in closed form: w = 3x^2, V = [x < 0.8].
     const ShadowPopulation e{1, 0.512, 1.8, 1.8 * 0.32768, 0, 0};

@@ -15,6 +15,7 @@
 #include "../src/report.h"
 #include "../src/sampler.h"
 #include "../src/views.h"
+#include "../src/weighted.h"
 #include "oracle.h"
 
 // The whole renderer, under a name of its own: another test has it, too.

@@ -49,12 +49,14 @@ inline int statistical_checks = 0;
 // ---- Seeds
 // ---------------------------------------------------------------------------------------
 
-// A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one.
+// A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one:
+// it is part of the name.  (Added to the seed it could be a number of steps in the same stream.)
 inline uint64_t seed_of(const std::string& name) {
+    const char* more = std::getenv("TEST_SEED");
     uint64_t seed = 0xcbf29ce484222325u;
-    for (char c : name) seed = (seed ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    const char* shift = std::getenv("TEST_SEED");
-    return seed + (shift ? std::strtoull(shift, nullptr, 10) * 0x9e3779b97f4a7c15u : 0);
+    for (char c : more ? name + ' ' + more : name)
+        seed = (seed ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    return seed;
 }
 
 // Uniform numbers of [0,1) (SplitMix64; Steele, Lea, Flood 2014).  Of its own, lest the generator

@@ -292,6 +292,15 @@ TEST_CASE("seeds depend on the name and on TEST_SEED alone") {
     const uint64_t old = seed_of("a");
     setenv("TEST_SEED", "123456", 1);
     CHECK(seed_of("a") != old);
+    // Seeds that follow each other are not places in one stream that follow each other.
+    std::vector<uint64_t> bits;
+    for (const char* seed : {"0", "1", "2", "3"}) {
+        setenv("TEST_SEED", seed, 1);
+        Random random(seed_of("a"));
+        for (int k = 0; k < 10000; ++k) bits.push_back(random.bits());
+    }
+    std::sort(bits.begin(), bits.end());
+    CHECK(std::adjacent_find(bits.begin(), bits.end()) == bits.end());
     before ? setenv("TEST_SEED", restore.c_str(), 1) : unsetenv("TEST_SEED");
     CHECK(seed_of("a") == old);
 }

@@ -207,7 +207,11 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
         for (size_t k = 0; k < mine.size(); ++k)
             for (size_t t = 0; t < techniques; ++t) result.of[k][t].merge(mine[k][t]);
     };
-    parallel_rows(scene.size.height, plan.threads, row, [](double) {});
+    Options shown;
+    shown.spp = plan.most;
+    Progress progress(shown);
+    parallel_rows(scene.size.height, plan.threads, row,
+                  [&](double part) { progress.show(part * double(plan.most)); });
     return result;
 }
 
@@ -418,7 +422,7 @@ Reference read_reference(const std::string& name, Size size) {
         " --seed 1000 --size " + std::to_string(size.width) + "x" + std::to_string(size.height);
     for (const std::string& needed : {file, json, variance})
         if (!std::filesystem::exists(needed))
-            throw UserError(needed + ": missing; make it by\n  build/penumbra --halves --spp 4096" +
+            throw UserError(needed + ": missing; make it by\n  build/penumbra --halves --spp 8192" +
                             options + " -o " + file + " --stats " + json + " scenes/" + name +
                             ".scene\n  build/penumbra --view variance --spp 512" + options +
                             " -o " + variance + " scenes/" + name + ".scene");
