@@ -29,7 +29,8 @@ inline uint64_t poisson(double mean, Rng& random) {
 }
 
 // Gradient at site i of values given at all sites: the plane through its own value that fits those
-// of its Voronoi neighbours best (least squares); 0 if they are collinear.
+// of its Voronoi neighbours best (least squares); 0 if they are in line but for a few degrees, for
+// errors grow as one over that angle, and without a limit they would have no variance.
 inline Site gradient(const Voronoi& cells, std::span<const Site> sites, std::span<const double> f,
                      size_t i) {
     double xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
@@ -38,8 +39,8 @@ inline Site gradient(const Voronoi& cells, std::span<const Site> sites, std::spa
         xx += dx * dx, xy += dx * dy, yy += dy * dy;
         xf += dx * df, yf += dy * df;
     }
-    const double det = xx * yy - xy * xy;
-    if (!(det > 1e-12 * xx * yy)) return {};
+    const double det = xx * yy - xy * xy, trace = xx + yy;
+    if (!(det > 1e-3 * trace * trace)) return {};
     return {(yy * xf - xy * yf) / det, (xx * yf - xy * xf) / det};
 }
 
