@@ -4,6 +4,7 @@
 #include "direct.h"
 #include "film.h"
 #include "parser.h"
+#include "program.h"
 #include "report.h"
 #include "sampler.h"
 #include "views.h"
@@ -32,15 +33,7 @@ inline PathSample Li(const Scene& scene, const Options& o, Ray ray, const Sample
 
 #ifndef TESTING
 int main(int argc, char** argv) {
-    try {
-        return penumbra({argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return penumbra({argv + 1, argv + argc}); });
 }
 #endif
 

@@ -7,7 +7,7 @@
 using Colour = std::array<float, 3>;  // linear, 0 ... 1
 
 // Ink over what is there; `part` of the pixel is covered.
-inline void blend(Image& image, int x, int y, Colour ink, float part) {
+inline void blend(Image& image, int x, int y, Colour ink, float part = 1) {
     if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
     for (size_t c = 0; c < 3; ++c) image.at(x, y)[c] += part * (ink[c] - image.at(x, y)[c]);
 }

@@ -12,6 +12,7 @@
 
 #include "../src/film.h"
 #include "../src/parser.h"
+#include "../src/program.h"
 #include "../src/report.h"
 #include "../src/sampler.h"
 #include "../src/views.h"

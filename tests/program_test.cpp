@@ -16,6 +16,7 @@
 
 #include "../src/options.h"
 #include "../src/parser.h"
+#include "../src/program.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -1205,4 +1206,20 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
         {"one.pfm one.pfm --heat a.png", "unknown option '--heat' (did you mean '--heatmap'?)"},
     };
     for (const auto& [line, why] : rows) expect_refusal(folder, "compare", split(line), why);
+}
+
+TEST_CASE("a program that another runs: its failure, or that it is not there, is an error") {
+    execute({"/bin/sh", "-c", "test \"$0\" = word", "word"});
+    auto what = [](std::vector<std::string> words) -> std::string {
+        try {
+            execute(words);
+        } catch (const SystemError& e) {
+            return e.what();
+        }
+        return "";
+    };
+    CHECK(what({"/bin/sh", "-c", "exit 3"}) == "/bin/sh failed: exit status 3");
+    CHECK(what({"/bin/sh", "-c", "kill -9 $$"}) == "/bin/sh failed: killed by signal 9");
+    CHECK(what({"/nowhere"}).starts_with("/nowhere: cannot run: "));
+    CHECK(exit_status([] { return 7; }) == 7);
 }

@@ -14,6 +14,7 @@
 #include <ctime>
 
 #include "../parser.h"
+#include "../program.h"
 #include "../rng.h"
 
 #if __has_include(<embree3/rtcore.h>)
@@ -381,13 +382,5 @@ int bench(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return bench({argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return bench({argv + 1, argv + argc}); });
 }

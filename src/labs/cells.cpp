@@ -11,6 +11,7 @@
 #include <ctime>
 
 #include "../check.h"
+#include "../program.h"
 #include "../rng.h"
 #include "../voronoi.h"
 
@@ -129,13 +130,5 @@ int bench(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return bench({argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return bench({argv + 1, argv + argc}); });
 }

@@ -8,6 +8,7 @@
 // With the variances of both images' pixels (--view variance), also whether they show the same:
 // Welch's test of the images' means.
 #include "../image.h"
+#include "../program.h"
 #include "../stats.h"
 
 namespace {
@@ -155,13 +156,5 @@ int compare(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return compare({argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return compare({argv + 1, argv + argc}); });
 }

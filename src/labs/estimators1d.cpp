@@ -13,6 +13,7 @@
 
 #include "../estimators.h"
 #include "../plot.h"
+#include "../program.h"
 #include "../rng.h"
 #include "../stats.h"
 
@@ -404,13 +405,5 @@ int run(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run({argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return run({argv + 1, argv + argc}); });
 }

@@ -6,6 +6,7 @@
 // 2t, sin 3t), 600 rings of 20 corners, each ring normal to the tangent p'(t).
 #include "../check.h"
 #include "../image.h"
+#include "../program.h"
 #include "../vec.h"
 
 namespace {
@@ -57,14 +58,9 @@ std::string knot() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
+    return exit_status([&] {
         if (argc != 2) throw UserError("usage: knot FILE.obj");
         write_file(argv[1], knot());
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+        return 0;
+    });
 }

@@ -7,13 +7,12 @@
 // of ratio; what each brings for its time.  Tables on stdout, exit status 1 if a claim fails;
 // pictures in out/shadows/.  Noise is that of the direct light of surfaces that the camera sees,
 // unless told; of its green channel.
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include "../direct.h"
 #include "../film.h"
 #include "../parser.h"
 #include "../plot.h"
+#include "../program.h"
 #include "../stats.h"
 
 namespace {
@@ -328,19 +327,6 @@ void print_bias(const Stage& v, const Regions& regions, const Plan& plan) {
 
 // ---- Whole renders ------------------------------------------------------------------------------
 
-int execute(std::vector<std::string> words) {
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    pid_t child = 0;
-    if (const int error = ::posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ))
-        throw SystemError(words[0] + ": cannot run: " + std::strerror(error));
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-}
-
 struct Render {
     Image image;
     double core_seconds = 0;
@@ -352,8 +338,7 @@ Render render(const std::string& program, const std::string& scene, std::vector<
         program, "--quiet", "--light", "nee", "scenes/" + scene + ".scene",
         "-o",    pfm,       "--stats", json};
     words.insert(words.end(), more.begin(), more.end());
-    if (const int status = execute(words))
-        throw SystemError(program + " failed: exit status " + std::to_string(status));
+    execute(words);
     const std::string stats = read_file(json), key = "\"cpu_seconds\": ";
     Render r{read_pfm(pfm), std::stod(stats.substr(stats.find(key) + key.size()))};
     std::filesystem::remove(pfm);
@@ -380,8 +365,7 @@ void write_renders(const std::string& program, const std::string& scene) {
                 "out/shadows/" + scene + "-" + name + (variance ? "-variance.png" : ".png"),
                 "scenes/" + scene + ".scene"};
             if (variance) words.insert(words.end(), {"--view", "variance", "--exposure", "200"});
-            if (const int status = execute(words))
-                throw SystemError(program + " failed: exit status " + std::to_string(status));
+            execute(words);
         }
 }
 
@@ -599,13 +583,5 @@ int run(const std::string& self, const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argv[0], {argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return run(argv[0], {argv + 1, argv + argc}); });
 }

@@ -6,14 +6,13 @@
 // alone and together, on scenes/coursework.scene: a table and what follows from it on stdout, every
 // image in out/techniques.png.  With f the reference, g an image, N numbers (three a pixel):
 //   d_rel = sqrt(1/N sum (f - g)^2) / sqrt(1/N sum f^2)          (Khodulev 1996, ch. 5)
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include <functional>
 
 #include <stb/stb_easy_font.h>
 
 #include "../image.h"
+#include "../program.h"
 #include "../stats.h"
 
 namespace {
@@ -157,18 +156,6 @@ std::vector<Run> make_runs(const Plan& plan) {
 }
 
 // Exit status of a program; its errors go to our stderr.
-int execute(std::vector<std::string> words) {
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    pid_t child = 0;
-    if (const int error = ::posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ))
-        throw SystemError(words[0] + ": cannot run: " + std::strerror(error));
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-}
 
 void render(Run& run, const std::string& program, const Plan& plan, const Reference& reference) {
     const Technique& t = techniques[run.technique];
@@ -185,8 +172,7 @@ void render(Run& run, const std::string& program, const Plan& plan, const Refere
     run.spp ? add("--spp", count(run.spp)) : add("--time", text("%g", plan.seconds));
     add("-o", pfm);
     add("--stats", json);
-    if (const int status = execute(words))
-        throw SystemError(program + " failed: exit status " + std::to_string(status));
+    execute(words);
     run.image = read_pfm(pfm);
     if (run.image.pixels.size() != reference.image.pixels.size())
         throw UserError(plan.reference + ": not of the scene's size");
@@ -480,13 +466,5 @@ int compare_techniques(const std::string& self, const std::vector<std::string>& 
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return compare_techniques(argv[0], {argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return compare_techniques(argv[0], {argv + 1, argv + argc}); });
 }

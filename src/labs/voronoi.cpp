@@ -13,6 +13,7 @@
 #include <ctime>
 
 #include "../curves.h"
+#include "../program.h"
 #include "../stats.h"
 
 namespace {
@@ -334,8 +335,8 @@ void print_pixel(const Scene& scene, const Plan& plan, Place at, const Axes& axe
         }
         a.band(ns, low, high, palette[t]);
         a.curve(ns, mid, palette[t]);
-        draw_text(a.sheet, a.left + a.width - 70, a.top + 6 + 12 * int(line++), name_of(t),
-                  palette[t]);
+        caption(a.sheet, a.left + a.width - 70, a.top + 6 + 12 * int(line++), name_of(t),
+                palette[t]);
     }
 }
 
@@ -362,7 +363,7 @@ void draw_map(Image& sheet, int left, int top, int scale, const Result& r, size_
             const Colour colour = {0.5f * (1 - up) + 0.5f * down, 0.5f * (1 - up - down),
                                    0.5f * (1 - down) + 0.5f * up};
             for (int k = 0; k < scale * scale; ++k)
-                set_pixel(sheet, left + x * scale + k % scale, top + y * scale + k / scale, colour);
+                blend(sheet, left + x * scale + k % scale, top + y * scale + k / scale, colour);
         }
 }
 
@@ -389,7 +390,7 @@ void draw_cells(Image& sheet, int left, int top, int side, const Scene& scene, P
                 (before >= 0 && before != int(nearest)) || (y > 0 && above[size_t(x)] != nearest);
             if (border) colour = {0.02f, 0.05f, 0.25f};
             if (distance(nearest) * side < 1.6) colour = {0.9f, 0.1f, 0.05f};
-            set_pixel(sheet, left + x, top + y, colour);
+            blend(sheet, left + x, top + y, colour);
             before = int(nearest);
             above[size_t(x)] = nearest;
         }
@@ -398,7 +399,7 @@ void draw_cells(Image& sheet, int left, int top, int side, const Scene& scene, P
 void draw_image(Image& sheet, int left, int top, int scale, const Image& image) {
     for (int y = 0; y < image.height * scale; ++y)
         for (int x = 0; x < image.width * scale; ++x)
-            set_pixel(sheet, left + x, top + y, image.at(x / scale, y / scale));
+            blend(sheet, left + x, top + y, image.at(x / scale, y / scale));
 }
 
 // ---- Main ---------------------------------------------------------------------------------------
@@ -458,9 +459,9 @@ void run(const std::string& name, const Plan& plan) {
               high = plan.size.height * scale, gap = 20;
     Image sheet = blank(3 * (side + gap) + gap, 2 * (high + 3 * gap));
     draw_image(sheet, gap, gap, scale, reference.image);
-    draw_text(sheet, gap, gap + high + 5, "reference");
+    caption(sheet, gap, gap + high + 5, "reference");
     draw_map(sheet, 2 * gap + side, gap, scale, r, 3);
-    draw_text(sheet, 2 * gap + side, gap + high + 5, "variance mc / cvor: blue 4, red 1/4");
+    caption(sheet, 2 * gap + side, gap + high + 5, "variance mc / cvor: blue 4, red 1/4");
     const Place border = telling_pixel(scene, r, light_border);
     print_pixel(
         scene, plan, border,
@@ -470,9 +471,9 @@ void run(const std::string& name, const Plan& plan) {
     for (Region region : {light_border, ball, plain}) {
         const Place at = telling_pixel(scene, r, region);
         draw_cells(sheet, left, top, std::min(side, high), scene, at);
-        draw_text(sheet, left, top + high + 5,
-                  std::string(region_names[region]) + ": pixel " + std::to_string(at.x) + "," +
-                      std::to_string(at.y));
+        caption(sheet, left, top + high + 5,
+                std::string(region_names[region]) + ": pixel " + std::to_string(at.x) + "," +
+                    std::to_string(at.y));
         left += side + gap;
     }
     const std::string file = "out/voronoi-" + name + ".png";
@@ -501,13 +502,5 @@ int voronoi_lab(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return voronoi_lab({argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return voronoi_lab({argv + 1, argv + argc}); });
 }

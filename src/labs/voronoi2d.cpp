@@ -11,6 +11,7 @@
 
 #include "../curves.h"
 #include "../halton.h"
+#include "../program.h"
 #include "../stats.h"
 #include "../weights.h"
 
@@ -510,8 +511,8 @@ void draw(const std::vector<Series>& all, const std::string& file) {
                     palette[j]);
     }
     for (size_t j = 0; j < shown.size(); ++j)
-        draw_text(sheet, 55 + int(j % 4) * step_x, 45 + 3 * step_y + 20 * int(j / 4),
-                  names[shown[j]], palette[j], 2);
+        caption(sheet, 55 + int(j % 4) * step_x, 45 + 3 * step_y + 20 * int(j / 4), names[shown[j]],
+                palette[j], 2);
     write_image(file, sheet, 1);
 }
 
@@ -552,13 +553,5 @@ int voronoi2d(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return voronoi2d({argv + 1, argv + argc});
-    } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
+    return exit_status([&] { return voronoi2d({argv + 1, argv + argc}); });
 }
