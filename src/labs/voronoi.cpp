@@ -5,8 +5,7 @@
 // The rendering results of Vandewiele et al. 2025, "Voronoi integration of the rendering equation",
 // on scenes/cornell.scene and scenes/cornellglossy.scene: 64 ... N samples a pixel, next-event
 // estimation.  Every weighting gets the same samples.  Tables on stdout, pictures in
-// out/voronoi-SCENE.png.  A floor above
-// the roof: it needs the samples, not the image.
+// out/voronoi-SCENE.png.  A floor above the roof: it needs the samples, not the image.
 #define TESTING  // the path tracer without its main
 #include "../pathtracer.cpp"
 
@@ -26,8 +25,8 @@ std::string name_of(size_t t) {
 }
 
 struct Plan {
-    Size size = {128, 128};
-    uint64_t most = 1024;  // samples a pixel
+    Size size = {256, 256};  // as published
+    uint64_t most = 256;     // samples a pixel
     unsigned threads = std::max(1u, std::thread::hardware_concurrency());
 };
 // Of the samples, how many sets of n are looked at.
