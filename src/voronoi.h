@@ -193,6 +193,10 @@ private:
     enum class Outcome { done, duplicate, too_much };
 
     bool cell(uint32_t i, int x, int y) {
+        // Neighbours in the plane are far apart in memory: fetched while the cell is being made.
+        const VoronoiCell* const place = &cells_[sites_.id[i]];
+        __builtin_prefetch(place, 1);
+        __builtin_prefetch(place + 1, 1);
         Outcome outcome = wrap(i, x, y);
         if (outcome == Outcome::too_much) outcome = cut(i);
         return outcome == Outcome::done;
