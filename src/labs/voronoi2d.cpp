@@ -152,6 +152,7 @@ double uniform(Rng& random) { return double(random.bits() >> 11) * 0x1p-53; }
 
 std::vector<Site> independent(uint64_t n, Rng& random) {
     std::vector<Site> p;
+    p.reserve(n);
     for (uint64_t i = 0; i < n; ++i) {
         const double x = uniform(random), y = uniform(random);
         p.push_back({x, y});
@@ -162,6 +163,7 @@ std::vector<Site> independent(uint64_t n, Rng& random) {
 std::vector<Site> jittered(uint64_t n, Rng& random) {
     const auto side = uint64_t(std::lround(std::sqrt(double(n))));
     std::vector<Site> p;
+    p.reserve(n);
     for (uint64_t i = 0; i < side * side; ++i) {
         const double x = uniform(random), y = uniform(random);
         p.push_back({(double(i % side) + x) / double(side), (double(i / side) + y) / double(side)});
@@ -172,6 +174,7 @@ std::vector<Site> jittered(uint64_t n, Rng& random) {
 std::vector<Site> scrambled_halton(uint64_t n, Rng& random) {
     const uint64_t a = random.bits(), b = random.bits(), c = random.bits(), d = random.bits();
     std::vector<Site> p;
+    p.reserve(n);
     for (uint64_t i = 0; i < n; ++i)
         p.push_back({double(scrambled_radical_inverse(2, i, a, b)),
                      double(scrambled_radical_inverse(3, i, c, d))});
