@@ -15,6 +15,7 @@
 struct Corner {
     Site p;
     int32_t neighbour = -1;
+    bool stays = false;  // no site is nearer to it
 };
 using Outline = std::span<const Corner>;
 
@@ -33,7 +34,8 @@ inline HalfPlane bisector(Site d, uint32_t neighbour) {
 // the flower can cut the cell (Calka 2002).
 inline Rectangle flower_box(Outline cell) {
     Rectangle box;
-    for (const auto& [p, neighbour] : cell) {
+    for (const Corner& c : cell) {
+        const Site p = c.p;
         const double r = std::sqrt(p.x * p.x + p.y * p.y);
         box = {{std::min(box.lo.x, p.x - r), std::min(box.lo.y, p.y - r)},
                {std::max(box.hi.x, p.x + r), std::max(box.hi.y, p.y + r)}};
@@ -44,6 +46,7 @@ inline Rectangle flower_box(Outline cell) {
 // ---- Few neighbours: the cell is wrapped --------------------------------------------------------
 
 #if defined(__GNUC__)
+#pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between functions of one file only
 #endif
 
@@ -59,7 +62,7 @@ inline constexpr int lanes = 4;
 inline constexpr int lanes = 2;
 #endif
 typedef double Lanes __attribute__((vector_size(8 * lanes)));
-typedef double LooseLanes __attribute__((vector_size(8 * lanes), aligned(8)));
+typedef double LooseLanes __attribute__((vector_size(8 * lanes), aligned(8), may_alias));
 typedef int64_t Ints __attribute__((vector_size(8 * lanes)));
 using Indices = std::make_integer_sequence<int, lanes>;
 
@@ -92,7 +95,8 @@ struct Least {
         int k;
     };
     OfAll of_all() {
-        if constexpr (lanes > 4) halve<4 % lanes>();
+        if constexpr (lanes > 4)
+            halve<4 % lanes>();  // the remainder: fewer lanes compile this, too
         if constexpr (lanes > 2) halve<2 % lanes>();
         halve<1>();
         return {value[0], int(k[0])};
@@ -107,16 +111,16 @@ private:
 
 }  // namespace cell
 
-// Up to 124 half-planes in a frame.  What they have in common is found by walking along its border
-// from line to line, as a gift is wrapped (Jarvis 1973).
+// Some hundred half-planes and four walls.  What they have in common is found by walking along its
+// border from line to line, as a gift is wrapped (Jarvis 1973).
 class HalfPlanes {
 public:
-    // Only the frame, a box about the site.
-    void start(const Rectangle& frame) {
-        set(0, {{-1, 0}, -frame.lo.x});
-        set(1, {{1, 0}, frame.hi.x});
-        set(2, {{0, -1}, -frame.lo.y});
-        set(3, {{0, 1}, frame.hi.y});
+    // Only the walls, of a box that holds the site.
+    void start(const Rectangle& box) {
+        set(0, {{-1, 0}, -box.lo.x});
+        set(1, {{1, 0}, box.hi.x});
+        set(2, {{0, -1}, -box.lo.y});
+        set(3, {{0, 1}, box.hi.y});
         size_ = walls;
     }
 
@@ -157,7 +161,7 @@ public:
         size_ = kept;
     }
 
-    // The nearest neighbour, if there is one, else the nearest wall.
+    // The line of the nearest neighbour; of the nearest wall if there is no neighbour.
     int nearest() {
         using namespace cell;
         store(dx_ + size_, Lanes{});
@@ -173,9 +177,10 @@ public:
     // That neighbour is at the same place.
     bool is_copy(int k) const { return k >= walls && h_[k] == 0; }
 
-    // From the nearest line, which is an edge since its foot is nearer to no other site, both ways
-    // until they meet.  Where many lines meet in a point, rounding may take the steps past each
-    // other: over an edge of no length.  Empty: too many corners.
+    // From `first`, which is nearest() after all lines are there, both ways until they meet.  It
+    // has an edge: half way to the nearest neighbour no other site is nearer.  Where lines meet in
+    // one point, or nearly coincide, rounding may let the two ways pass each other, which ends the
+    // walk, too; the outline may then have a spike of no width.  Empty: too many corners.
     Outline wrap(int first) {
         int a = first, b = first, begin = most_corners / 2, end = begin;
         while (begin > 0) {
@@ -195,8 +200,9 @@ public:
 
 private:
     static constexpr int most = 128, walls = 4, most_corners = 64;
-    alignas(64) double dx_[most + cell::lanes], dy_[most + cell::lanes], h_[most + cell::lanes];
-    int32_t neighbour_[most + cell::lanes];
+    alignas(64) double dx_[most + cell::lanes] = {}, dy_[most + cell::lanes] = {},
+                                  h_[most + cell::lanes] = {};
+    int32_t neighbour_[most + cell::lanes] = {};
     Corner corners_[most_corners];
     int size_ = 0;
 
@@ -208,14 +214,16 @@ private:
         Site p;
         int line;
     };
-    // The first line that is met on the way along line j, p = foot + t (-d.y, d.x), from its foot
-    // counterclockwise (turn = 1) or clockwise (-1) around the site.
+    // Where the edge of line j ends, counterclockwise (turn = 1) or clockwise (-1), and which line
+    // ends it.  Of the points foot + t (-d.y, d.x), the foot nearest to the site, line k leaves
+    // those with t <= num / den, if den > 0: the least of these ends the edge.
     template <int turn>
     [[gnu::always_inline]] Meeting next(int j) const {
         using namespace cell;
+        // foot = d h / d^2: d = 1 for walls, h = d^2 / 2 for bisectors.
         const double x = dx_[j], y = dy_[j], scale = j < walls ? h_[j] : 0.5;
         const Site foot = {x * scale, y * scale};
-        // The least t = num / den of those with den > 0; fractions are compared without dividing.
+        // Fractions are compared without dividing; at first they are infinite.
         Lanes num = Lanes{} + 1, den = {};
         Ints first = {}, id = iota(Indices());
         for (int at = 0; at < size_; at += lanes, id += lanes) {
@@ -235,17 +243,21 @@ private:
     bool turns(int a, int b) const { return dx_[a] * dy_[b] > dy_[a] * dx_[b]; }
 };
 
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
 // ---- Any number of neighbours: a polygon is cut -------------------------------------------------
 
 // By one after the other (Sutherland, Hodgman 1974).  Keeps its memory for the next cell.
 class ConvexPolygon {
 public:
-    void start(const Rectangle& frame) {
+    void start(const Rectangle& box) {
         corners_.clear();
-        corners_.push_back({frame.lo});
-        corners_.push_back({{frame.hi.x, frame.lo.y}});
-        corners_.push_back({frame.hi});
-        corners_.push_back({{frame.lo.x, frame.hi.y}});
+        corners_.push_back({box.lo});
+        corners_.push_back({{box.hi.x, box.lo.y}});
+        corners_.push_back({box.hi});
+        corners_.push_back({{box.lo.x, box.hi.y}});
     }
 
     void cut(const HalfPlane& by) {
@@ -269,9 +281,17 @@ public:
         }
         if (next_.size() < 3) return;  // rounding alone: the site itself stays
         corners_.swap(next_);
+        next_.reserve(corners_.capacity());  // alike, so that their memory is enough next time
     }
 
     Outline outline() const { return corners_; }
+
+    // The next corner that is not known to stay, if there is one.
+    Corner* open_corner() {
+        const auto open = std::find_if(corners_.begin(), corners_.end(),
+                                       [](const Corner& c) { return !c.stays; });
+        return open == corners_.end() ? nullptr : &*open;
+    }
 
 private:
     std::vector<Corner> corners_, next_;

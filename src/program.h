@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,9 @@ inline void execute(std::vector<std::string> words) {
     if (const int error = ::posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ))
         throw SystemError(words[0] + ": cannot run: " + std::strerror(error));
     int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    while (::waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            throw SystemError(words[0] + ": cannot wait for it: " + std::strerror(errno));
     if (WIFSIGNALED(status))
         throw SystemError(words[0] + " failed: killed by signal " +
                           std::to_string(WTERMSIG(status)));

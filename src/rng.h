@@ -19,4 +19,5 @@ inline uint64_t hash(uint64_t key, uint64_t x) { return mix(key + mix(x + golden
 struct Rng {
     uint64_t state = 0;
     uint64_t bits() { return mix(state += golden); }
+    double uniform() { return double(bits() >> 11) * 0x1p-53; }  // in [0,1)
 };

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "plane.h"
@@ -23,7 +25,8 @@ struct Buckets {
     void sort(std::span<const Site> sites, std::span<const uint32_t> first_of,
               const Rectangle& domain) {
         const double buckets = double(sites.size()) / per_bucket;
-        columns = std::max(1, int(std::sqrt(buckets * domain.width() / domain.height())));
+        const double across = std::sqrt(buckets * domain.width() / domain.height());
+        columns = int(std::clamp(across, 1.0, std::max(1.0, buckets)));
         rows = std::max(1, int(buckets / columns));
         origin_ = domain.lo;
         step_ = {domain.width() / columns, domain.height() / rows};
@@ -79,13 +82,27 @@ public:
         std::iota(order_.begin(), order_.end(), 0u);
         nodes_.clear();
         grow(sites, 0, sites.size());
+        place_.resize(sites.size());
+        for (uint32_t k = 0; k < sites.size(); ++k) place_[order_[k]] = k;
     }
 
-    // visit(k) for the sites k of every box that `meets`, those near `from` first, until it is
-    // false; so is then the answer.
-    template <class Meets, class Visit>
-    bool each(Site from, Meets meets, Visit visit) const {
-        return each(nodes_[0], from, meets, visit);
+    // Some sites that are likely to be near site i, which is one of them.
+    std::span<const uint32_t> about(uint32_t i) const {
+        const uint32_t from = place_[i] - std::min(place_[i], leaf_size),
+                       to = std::min(place_[i] + leaf_size, uint32_t(order_.size()));
+        return std::span(order_).subspan(from, to - from);
+    }
+
+    // Of the sites that are not `left_out`, seen from `site` at d, the one nearest to the point c,
+    // seen from there, too: the one of the greatest d c - d d / 2, if this is greater than `least`.
+    // It is 0 where both sites are equally near, and d is exact: clusters keep their digits far
+    // away.
+    template <class LeftOut>
+    std::optional<uint32_t> nearest(const Buckets& sites, Site site, Site c, double least,
+                                    LeftOut left_out) const {
+        std::optional<uint32_t> best;
+        search(nodes_[0], sites, site, c, least, best, left_out);
+        return best;
     }
 
 private:
@@ -96,7 +113,7 @@ private:
         uint32_t second = 0;  // child; the first follows its parent.  0: a leaf
     };
     std::vector<Node> nodes_;
-    std::vector<uint32_t> order_;
+    std::vector<uint32_t> order_, place_;  // sites as the leaves have them, and where each is
 
     void grow(const Buckets& sites, uint32_t begin, uint32_t end) {
         Rectangle box{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
@@ -118,16 +135,24 @@ private:
         grow(sites, middle, end);
     }
 
-    template <class Meets, class Visit>
-    bool each(const Node& node, Site from, Meets& meets, Visit& visit) const {
-        if (!meets(node.box)) return true;
+    template <class LeftOut>
+    void search(const Node& node, const Buckets& sites, Site site, Site c, double& least,
+                std::optional<uint32_t>& best, LeftOut& left_out) const {
+        // d c - d d / 2 = (c c - |c - d|^2) / 2, but for the rounding of what may be close.
+        const double c2 = c.x * c.x + c.y * c.y;
+        if (distance2(seen_from(site, node.box), c) > c2 * (1 + 1e-14) - 2 * least) return;
         if (node.second) {
+            const Site p = {site.x + c.x, site.y + c.y};
             const Node *near = &node + 1, *far = &nodes_[node.second];
-            if (distance2(far->box, from) < distance2(near->box, from)) std::swap(near, far);
-            return each(*near, from, meets, visit) && each(*far, from, meets, visit);
+            if (distance2(far->box, p) < distance2(near->box, p)) std::swap(near, far);
+            search(*near, sites, site, c, least, best, left_out);
+            search(*far, sites, site, c, least, best, left_out);
+            return;
         }
-        for (uint32_t k = node.begin; k < node.end; ++k)
-            if (!visit(order_[k])) return false;
-        return true;
+        for (uint32_t k = node.begin; k < node.end; ++k) {
+            const Site d = sites.site(order_[k]) - site;
+            const double excess = d.x * c.x + d.y * c.y - (d.x * d.x + d.y * d.y) * 0.5;
+            if (excess > least && !left_out(order_[k])) least = excess, best = order_[k];
+        }
     }
 };

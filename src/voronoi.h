@@ -13,20 +13,23 @@
 #include "cell.h"
 #include "sites.h"
 
-// The points of the window that are nearer to one site than to all others.
+// The points of the window that are nearer to one site than to all others; lengths and areas in
+// units of the window's own.
 struct VoronoiCell {
     double area = 0;
-    Site rim;             // sum over its edges on the window's border: length x outward normal
-    Site offset;          // of the centroid, from the site
-    bool bounded = true;  // stretched: reaches not beyond twice the domain's size around it
-    bool inside = true;   // stretched: is all in the domain
+    Site rim;     // sum over its edges on the window's border: length x outward normal
+    Site offset;  // of the centroid, from the site
+    // In a stretched window and on a torus; where many sites are within rounding of each other,
+    // they may be false for want of digits.
+    bool bounded = true;  // reaches not beyond twice the domain's size around it
+    bool inside = true;   // is all in the domain
     bool settled = true;  // no site outside the domain could change it
-    uint32_t copies = 1;  // sites at the same place share the area equally
+    uint32_t copies = 1;  // sites at the same place share area and rim equally
 };
 
 namespace voronoi {
 
-// Area and centroid by triangles (site, corner, next corner): none is negative.
+// Area and centroid by triangles (site, corner, next corner).
 inline VoronoiCell measured(Outline corners) {
     VoronoiCell cell;
     double twice = 0, six_x = 0, six_y = 0;
@@ -47,35 +50,40 @@ inline VoronoiCell measured(Outline corners) {
 
 }  // namespace voronoi
 
-// Cells of sites in a window, each by itself: a polygon that the sites around clip, nearest first,
-// until none is left that could reach it.  Areas are continuous in the sites, so rounding, ties and
-// near-ties cost digits of the 16th place and nothing else.  Sites are rounded to 2^-50 of the
-// window's greater side.  Linear expected time for scattered sites, by buckets; O(n log n) for
-// clustered or collinear ones, by a tree.  Keeps its memory for the next call.
+// Cells of sites in a window, each by itself: its border is wrapped from the bisectors with the
+// sites around, which come ring by ring of a grid of buckets, until no other site could reach it; a
+// cell of crowded sites is cut from the window instead, by sites that a tree finds.  Sites are
+// rounded to 2^-50 of the window's greater side, and areas are exact but for rounding, in ties and
+// near-ties, too; only who is a neighbour may then depend on the side one looks from.  Linear
+// expected time for scattered sites, O(n log n) for clusters, about O(n^3/2) for sites along lines
+// and curves, but O(n^2) for n sites on one circle, whose cells all end at its centre.  Keeps its
+// memory for the next call.
 class Voronoi {
 public:
     bool with_neighbours = false;  // whether neighbours(i) is to be had
 
-    // Clipped to the window, in which all sites are.
+    // Clipped to the window, in which all sites are: std::domain_error if not, or if the window is
+    // empty or more than 1000 times as long as wide.
     const std::vector<VoronoiCell>& clipped(std::span<const Site> sites, const Rectangle& window) {
         begin(sites, sites.size(), window, window);
         add_sites(sites);
-        frame_ = domain_;
+        bounds_ = domain_;
         return tessellate();
     }
 
-    // The first `inner` of the sites; the others only bound their cells.  All are in the domain.
+    // The cells of the first `inner` sites; the others only bound them.  All are in the domain.
     const std::vector<VoronoiCell>& stretched(std::span<const Site> sites, size_t inner,
                                               const Rectangle& domain) {
         begin(sites, inner, domain, domain);
         add_sites(sites);
-        frame_ = grown(domain_, 2);
+        bounds_ = grown(domain_, 2);
         check_reach_ = true;
         return tessellate();
     }
 
-    // The window is repeated in both directions.
+    // The window is repeated in both directions.  Sites on opposite borders are at the same place.
     const std::vector<VoronoiCell>& torus(std::span<const Site> sites, const Rectangle& window) {
+        check(window);
         const double w = window.width(), h = window.height(), side = std::max(w, h);
         // No flower reaches farther: a cell's corners are within half a diagonal.
         const double enough = (side + std::hypot(w, h)) / 2 * (1 + 1e-9);
@@ -84,8 +92,8 @@ public:
             margin = std::min(margin, enough);
             begin(sites, sites.size(), window, grown(window, margin));
             add_sites(sites);
-            add_copies(w / side, h / side);
-            frame_ = {{-0.5 * w / side, -0.5 * h / side}, {0.5 * w / side, 0.5 * h / side}};
+            add_images(w / side, h / side);
+            bounds_ = {{-0.5 * w / side, -0.5 * h / side}, {0.5 * w / side, 0.5 * h / side}};
             relative_ = check_reach_ = true;
             tessellate();
             settled = margin == enough ||
@@ -94,27 +102,29 @@ public:
         return cells_;
     }
 
-    // The sites that share an edge with site i, in order; windows are left out.
+    // The sites that share an edge with site i, counterclockwise, if with_neighbours was set.
     std::span<const uint32_t> neighbours(size_t i) const {
         return {neighbours_.data() + first_neighbour_[i], neighbour_count_[i]};
     }
 
 private:
     static constexpr int most_rings = 12;  // of buckets, before the tree takes over
+    static constexpr size_t most_sites = UINT32_MAX / 32;
 
     std::vector<VoronoiCell> cells_;
     std::vector<uint32_t> neighbours_, first_neighbour_, neighbour_count_;
 
     Site origin_;  // of the window; in units of its greater side:
     double unit_ = 1;
-    Rectangle domain_;          // where all sites are
-    Rectangle frame_;           // every cell is cut from this,
-    bool relative_ = false;     // or from this moved to its site
-    bool check_reach_ = false;  // whether cells may depend on what is outside the domain
-    size_t inner_ = 0;          // sites whose cells are asked for
-    std::vector<Site> raw_;     // all sites
-    Buckets sites_;             // all that are alone or the first at their place
-    SiteTree tree_;             // of these; empty until it is needed
+    Rectangle domain_;               // where all sites are
+    Rectangle bounds_;               // every cell is cut from this,
+    bool relative_ = false;          // or from this moved to its site
+    bool check_reach_ = false;       // whether cells may depend on what is outside the domain
+    size_t inner_ = 0;               // sites whose cells are asked for
+    std::vector<Site> raw_;          // all sites
+    Buckets sites_;                  // all that are alone or the first at their place
+    SiteTree tree_;                  // of these; empty until it is needed
+    std::vector<uint32_t> used_by_;  // the last cell that a site has cut by the tree
     HalfPlanes lines_;
     ConvexPolygon polygon_;
     std::vector<uint32_t> first_of_;  // the first site at the same place; empty: all are alone
@@ -122,9 +132,19 @@ private:
 
     // ---- Sites --------------------------------------------------------------------------------
 
+    static void check(const Rectangle& window) {
+        const double least = std::min(window.width(), window.height()),
+                     most = std::max(window.width(), window.height());
+        if (!(least > 0 && std::isfinite(most)))
+            throw std::domain_error("voronoi: an empty window");
+        if (!(most <= 1000 * least)) throw std::domain_error("voronoi: a window too long");
+    }
+
     void begin(std::span<const Site> sites, size_t inner, const Rectangle& window,
                const Rectangle& domain) {
-        if (sites.size() > UINT32_MAX / 32) throw std::length_error("voronoi: too many sites");
+        check(domain);
+        if (sites.size() > most_sites) throw std::length_error("voronoi: too many sites");
+        if (inner > sites.size()) throw std::domain_error("voronoi: more cells than sites");
         origin_ = window.lo;
         unit_ = std::max(window.width(), window.height());
         domain_ = {rounded(domain.lo), rounded(domain.hi)};
@@ -149,7 +169,7 @@ private:
         if (out) throw std::domain_error("voronoi: a site outside the window");
     }
 
-    void add_copies(double w, double h) {
+    void add_images(double w, double h) {
         w = (w + 4) - 4, h = (h + 4) - 4;
         const int columns = int(std::ceil(-domain_.lo.x / w)),
                   rows = int(std::ceil(-domain_.lo.y / h));
@@ -158,14 +178,14 @@ private:
                 for (size_t k = 0; k < inner_ && (i != 0 || j != 0); ++k) {
                     const Site p = {raw_[k].x + i * w, raw_[k].y + j * h};
                     if (domain_.contains(p)) raw_.push_back(p);
+                    if (raw_.size() > most_sites)
+                        throw std::length_error("voronoi: too many sites");
                 }
     }
 
     // ---- Cells --------------------------------------------------------------------------------
 
     const std::vector<VoronoiCell>& tessellate() {
-        if (!(domain_.width() > 0 && domain_.height() > 0))
-            throw std::domain_error("voronoi: an empty window");
         first_of_.clear();
         if (all_cells()) return cells_;
         find_copies();
@@ -202,7 +222,7 @@ private:
         return outcome == Outcome::done;
     }
 
-    Rectangle frame(Site site) const { return relative_ ? frame_ : seen_from(site, frame_); }
+    Rectangle bounds(Site site) const { return relative_ ? bounds_ : seen_from(site, bounds_); }
 
     // By the sites of its bucket and of those around, ring by ring as far as the flower reaches.
     Outcome wrap(uint32_t i, int x, int y) {
@@ -213,7 +233,7 @@ private:
             return lines_.add(sites_.x.data(), sites_.y.data(), sites_.start(x0, at),
                               sites_.start(x1 + 1, at), site);
         };
-        lines_.start(frame(site));
+        lines_.start(bounds(site));
         const int west = std::max(x - 1, 0), east = std::min(x + 1, last_x);
         if (y > 0 && !gather(west, east, y - 1)) return too_much;
         const int self = lines_.size() + int(i - sites_.start(west, y));
@@ -248,24 +268,33 @@ private:
         return done;
     }
 
-    // By the sites of all boxes of the tree that meet the flower.
+    // As long as some site is nearer to a corner than site i is, the nearest one cuts the corner
+    // off; each does so once.  A corner that is nearest to site i stays, so that the first k stay.
     Outcome cut(uint32_t i) {
-        if (tree_.empty()) tree_.grow(sites_);
+        if (tree_.empty()) {
+            tree_.grow(sites_);
+            used_by_.assign(sites_.size(), UINT32_MAX);
+        }
         const Site site = sites_.site(i);
-        polygon_.start(frame(site));
-        auto meets = [&](const Rectangle& box) {
-            const Rectangle seen = seen_from(site, box);
-            const Outline o = polygon_.outline();
-            return std::any_of(o.begin(), o.end(), [&](const Corner& c) {
-                return distance2(seen, c.p) <= c.p.x * c.p.x + c.p.y * c.p.y;
-            });
+        auto used = [&](uint32_t j) { return j == i || used_by_[j] == i; };
+        auto use = [&](uint32_t j) {
+            used_by_[j] = i;
+            polygon_.cut(bisector(sites_.site(j) - site, j));
         };
-        auto visit = [&](uint32_t j) {
-            const HalfPlane half = bisector(sites_.site(j) - site, j);
-            if (j != i) polygon_.cut(half);
-            return j == i || half.h > 0;
-        };
-        if (!tree_.each(site, meets, visit)) return Outcome::duplicate;
+        polygon_.start(bounds(site));
+        if (const auto j = tree_.nearest(sites_, site, {}, -INFINITY, used)) {
+            const Site d = sites_.site(*j) - site;
+            if (d.x == 0 && d.y == 0) return Outcome::duplicate;
+            use(*j);
+        }
+        for (uint32_t j : tree_.about(i))
+            if (!used(j)) use(j);
+        while (Corner* const corner = polygon_.open_corner()) {
+            if (const auto j = tree_.nearest(sites_, site, corner->p, 0, used))
+                use(*j);
+            else
+                corner->stays = true;
+        }
         finish(polygon_.outline(), i);
         return Outcome::done;
     }
@@ -313,8 +342,10 @@ private:
         for (size_t i = inner_; i-- > 0;) {
             const uint32_t first = first_of_[i];
             cells_[i] = cells_[first];
-            cells_[i].area /= copies_[first];
-            cells_[i].copies = copies_[first];
+            const uint32_t sharing = copies_[first];
+            cells_[i].area /= sharing;
+            cells_[i].rim = {cells_[i].rim.x / sharing, cells_[i].rim.y / sharing};
+            cells_[i].copies = sharing;
             if (!with_neighbours) continue;
             first_neighbour_[i] = first_neighbour_[first];
             neighbour_count_[i] = neighbour_count_[first];

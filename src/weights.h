@@ -1,6 +1,11 @@
 // weights.h  floor 3  samples of a square weighted by their Voronoi cells
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "rng.h"
 #include "sampler.h"
@@ -21,7 +26,7 @@ inline uint64_t poisson(double mean, Rng& random) {
     for (; mean > 0; mean -= 16) {
         const double least = std::exp(-std::min(mean, 16.0));
         for (double p = 1;; ++n) {
-            p *= double(random.bits() >> 11) * 0x1p-53;
+            p *= random.uniform();
             if (p <= least) break;
         }
     }
@@ -29,8 +34,10 @@ inline uint64_t poisson(double mean, Rng& random) {
 }
 
 // Gradient at site i of values given at all sites: the plane through its own value that fits those
-// of its Voronoi neighbours best (least squares); 0 if they are in line but for a few degrees, for
-// errors grow as one over that angle, and without a limit they would have no variance.
+// of its Voronoi neighbours best (least squares).  0 if they are about in line, the lesser moment
+// of their differences below a thousandth of both: errors grow as one over the angle between two
+// neighbours, without a limit their variance would be infinite, and at this one their skewness is
+// that of many cells.
 inline Site gradient(const Voronoi& cells, std::span<const Site> sites, std::span<const double> f,
                      size_t i) {
     double xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
@@ -106,12 +113,10 @@ private:
     std::vector<double> weights_;
     std::vector<Site> sites_;
 
-    static double uniform(Rng& random) { return double(random.bits() >> 11) * 0x1p-53; }
-
     // Four rectangles around the square, each from one corner to beyond the next.
     static Site in_strip(double width, Rng& random) {
         const uint64_t side = random.bits() >> 62;
-        const double along = uniform(random) * (1 + width), away = -width * uniform(random);
+        const double along = random.uniform() * (1 + width), away = -width * random.uniform();
         switch (side) {
             case 0:
                 return {along, away};

@@ -49,8 +49,9 @@ inline int statistical_checks = 0;
 // ---- Seeds
 // ---------------------------------------------------------------------------------------
 
-// A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one:
-// it is part of the name.  (Added to the seed it could be a number of steps in the same stream.)
+// A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one.
+// It lengthens the name: a multiple of a number added to the seed could be what Random adds, too,
+// and then only skip some draws.
 inline uint64_t seed_of(const std::string& name) {
     const char* more = std::getenv("TEST_SEED");
     uint64_t seed = 0xcbf29ce484222325u;

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <optional>
+
 #include "expect.h"
 
 namespace {
@@ -58,7 +60,7 @@ TEST_CASE("copies are left out of the buckets") {
     CHECK(b.id[0] + b.id[1] == 1);
 }
 
-TEST_CASE("the tree visits all sites of the boxes that meet a disc, and few others") {
+TEST_CASE("the tree finds the nearest site that is near enough and not left out") {
     Random random(seed_here());
     Buckets b;
     SiteTree tree;
@@ -68,28 +70,53 @@ TEST_CASE("the tree visits all sites of the boxes that meet a disc, and few othe
         CHECK(tree.empty());
         tree.grow(b);
         CHECK(!tree.empty());
-        for (int trial = 0; trial < 20; ++trial) {
-            const Site centre = {-1 + 4 * random(), 2 + random()};
-            const double r2 = random() * random();
-            auto meets = [&](const Rectangle& box) { return distance2(box, centre) <= r2; };
-            std::vector<int> seen(size_t(n), 0);
-            int visited = 0;
-            CHECK(tree.each(centre, meets, [&](uint32_t k) { return ++seen[k], ++visited, true; }));
-            int within = 0;
+        for (int trial = 0; trial < 100; ++trial) {
+            const Site site = sites[size_t(n * random())],
+                       c = {-2 + 4 * random(), -1 + 2 * random()};
+            const double least = trial % 2 ? -INFINITY : 0;
+            auto left_out = [&](uint32_t k) { return trial % 3 == 0 && k % 2 == 0; };
+            std::optional<uint32_t> found;
+            double nearest = trial % 2 ? INFINITY : c.x * c.x + c.y * c.y;
             for (uint32_t k = 0; k < b.size(); ++k) {
-                const Site d = b.site(k) - centre;
-                const bool in = d.x * d.x + d.y * d.y <= r2;
-                within += in;
-                CHECK(seen[k] >= int(in));
-                CHECK(seen[k] <= 1);
+                const Site d = b.site(k) - site, away = d - c;
+                const double d2 = away.x * away.x + away.y * away.y;
+                const bool itself = d.x == 0 && d.y == 0;
+                if (!itself && d2 < nearest && !left_out(k)) nearest = d2, found = k;
             }
-            if (n == 500) CHECK(visited <= 2 * within + 60);
-            // It stops where it is told to.
-            int until = visited / 2;
-            const bool all = tree.each(centre, meets, [&](uint32_t) { return --until >= 0; });
-            CHECK(all == (visited == 0));
+            auto skip = [&](uint32_t k) {
+                return left_out(k) || (b.x[k] == site.x && b.y[k] == site.y);
+            };
+            CHECK(tree.nearest(b, site, c, least, skip) == found);
         }
         tree.clear();
+    }
+}
+
+TEST_CASE("the tree looks at few of many sites: scattered, clustered, along a line or a curve") {
+    Random random(seed_here());
+    Buckets b;
+    SiteTree tree;
+    for (int kind = 0; kind < 4; ++kind) {
+        std::vector<Site> sites;
+        for (int i = 0; i < 20000; ++i) {
+            const double t = random(), u = random();
+            sites.push_back(kind == 0   ? Site{-1 + 4 * t, 2 + u}
+                            : kind == 1 ? Site{-1 + 1e-6 * t, 2 + 1e-6 * u}
+                            : kind == 2 ? Site{-1 + 4 * t, 2 + t}
+                                        : Site{-1 + 4 * t, 2 + t * t});
+        }
+        b.sort(sites, {}, domain);
+        tree.grow(b);
+        for (int trial = 0; trial < 50; ++trial) {
+            const Site p = b.site(uint32_t(20000 * random()));
+            int seen = 0;  // this one and the one that is nearest, at least
+            tree.nearest(b, p, {}, -INFINITY, [&](uint32_t k) {
+                ++seen;
+                return b.x[k] == p.x && b.y[k] == p.y;
+            });
+            CHECK(seen >= 2);
+            CHECK(seen <= 100);  // of 20 000
+        }
     }
 }
 

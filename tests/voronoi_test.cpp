@@ -197,6 +197,17 @@ TEST_CASE("areas and centroids equal those of brute force in long double, hard c
         CHECK(area < 1e-15 * double(c.sites.size()) + 4e-15);
         CHECK(centroid < 1e-9);
         CHECK(std::abs(total(cells) - 1) <= 1e-12 * double(c.sites.size()));
+        // Around the window the outward normals add up to 0, on one side of it to its length, less
+        // what cells hide that reach from side to side.
+        Site all;
+        double east = 0;
+        for (const VoronoiCell& cell : cells) {
+            all = {all.x + cell.rim.x, all.y + cell.rim.y};
+            east += std::max(cell.rim.x, 0.0);
+        }
+        CHECK(std::hypot(all.x, all.y) < 1e-12);
+        CHECK(east <= 1 + 1e-12);
+        if (std::string(c.name) == "pairs" || c.sites.size() == 200) CHECK(east >= 1 - 1e-12);
     }
 }
 
@@ -232,6 +243,7 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
                 CHECK(again[i].area == doctest::Approx(cells[i].area).epsilon(1e-12));
         }
     CHECK(v.torus(Points{{0.5, 0.5}, {0.5, 0.5}}, unit_square)[1].area == 0.5);
+    CHECK(v.torus(Points{{0, 0.5}, {1, 0.5}}, unit_square)[1].area == 0.5);  // the same place
 }
 
 TEST_CASE("a strip about the window: brute force; what is bounded, inside, settled") {
@@ -368,11 +380,20 @@ TEST_CASE("translated, mirrored or scaled sites in a window have the same areas"
     CHECK(worst([](Site p) { return Site{4 * p.x, 4 * p.y}; }, {{0, 0}, {4, 4}}, 16) < 1e-15);
 }
 
-TEST_CASE("a site outside the window, or no window, is refused") {
+TEST_CASE("a site outside the window, no window, a line of a window are refused") {
     Voronoi v;
     CHECK_THROWS_AS(v.clipped(Points{{1.5, 0.5}}, unit_square), std::domain_error);
     CHECK_THROWS_AS(v.clipped(Points{{NAN, 0.5}}, unit_square), std::domain_error);
     CHECK_THROWS_AS(v.clipped(Points{{0, 0}}, {{0, 0}, {0, 1}}), std::domain_error);
+    CHECK_THROWS_AS(v.torus(Points{{0, 0}}, {{0, 0}, {1, 0}}), std::domain_error);
+    CHECK_THROWS_AS(v.torus(Points{{0, 0}}, {{0, 0}, {1, NAN}}), std::domain_error);
+    CHECK_THROWS_AS(v.clipped(Points{{0, 0}}, {{0, 0}, {1, 1e-4}}), std::domain_error);
+    CHECK_THROWS_AS(v.stretched(Points{{0, 0}}, 2, unit_square), std::domain_error);
+    for (const Rectangle& thin : {Rectangle{{0, 0}, {1, 1e-3}}, Rectangle{{0, 0}, {2e-3, 2}}}) {
+        CHECK(v.clipped(Points{{0, 0}}, thin)[0].area ==
+              doctest::Approx(thin.area()).epsilon(1e-12));
+        CHECK(v.torus(Points{{0, 0}}, thin)[0].area == doctest::Approx(thin.area()).epsilon(1e-12));
+    }
 }
 
 // ---- Bias ---------------------------------------------------------------------------------------

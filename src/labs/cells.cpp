@@ -29,9 +29,8 @@ double seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }  // of the pr
 
 std::vector<Site> scattered(size_t n, Rng& random) {
     std::vector<Site> p;
-    auto uniform = [&] { return double(random.bits() >> 11) * 0x1p-53; };
     for (size_t i = 0; i < n; ++i) {
-        const double x = uniform(), y = uniform();
+        const double x = random.uniform(), y = random.uniform();
         p.push_back({x, y});
     }
     return p;

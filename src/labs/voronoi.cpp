@@ -17,6 +17,7 @@
 
 namespace {
 
+// In the order of the enumeration, so that a weighting is its own index.
 constexpr std::array films = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
                               Weighting::torus};
 constexpr size_t stratified = films.size(), techniques = films.size() + 1;
@@ -269,10 +270,13 @@ Place telling_pixel(const Scene& scene, const Result& r, Region region) {
     double most = -INFINITY;
     for (int y = 0; y < scene.size.height; ++y)
         for (int x = 0; x < scene.size.width; ++x) {
-            if (region_of(scene, x, y) != region || !(r.variance[0].at(x, y)[0] > 0)) continue;
+            if (region_of(scene, x, y) != region ||
+                !(r.variance[size_t(Weighting::mc)].at(x, y)[0] > 0))
+                continue;
             double gained = 0;
             for (size_t c = 0; c < 3; ++c)
-                gained += double(r.variance[0].at(x, y)[c]) - double(r.variance[3].at(x, y)[c]);
+                gained += double(r.variance[size_t(Weighting::mc)].at(x, y)[c]) -
+                          double(r.variance[size_t(Weighting::cvor)].at(x, y)[c]);
             if (region == plain)  // just one in the middle
                 gained = -std::hypot(x - scene.size.width / 2, y - scene.size.height / 3);
             if (gained > most) most = gained, best = {x, y};
@@ -324,7 +328,8 @@ void print_pixel(const Scene& scene, const Plan& plan, Place at, const Axes& axe
     a.x0 = ns.front(), a.x1 = ns.back(), a.y0 = middle - spread, a.y1 = middle + spread;
     a.frame("light's border: mean, deviation", ns);
     size_t line = 0;
-    for (size_t t : {size_t(0), size_t(1), size_t(3), stratified}) {
+    for (size_t t :
+         {size_t(Weighting::mc), size_t(Weighting::vor), size_t(Weighting::cvor), stratified}) {
         std::vector<double> low, mid, high;
         for (const auto& at_n : all) {
             const double sd = std::sqrt(at_n[t].variance());
@@ -437,10 +442,12 @@ Reference read_reference(const std::string& name, Size size) {
     char comma = 0;
     const double pixels = double(r.image.pixels.size());
     for (size_t c = 0; c < 3; ++c) {
-        in >> r.mean[c] >> comma;
+        if (!(in >> r.mean[c] >> comma && r.mean[c] > 0))
+            throw UserError(json + ": variance_of_mean is not three numbers above 0");
         r.mean[c] *= pixels;  // of a pixel, on average
         double sum = 0;
         for (const auto& pixel : r.noise.pixels) sum += double(pixel[c]) / pixels;
+        if (!(sum > 0)) throw UserError(variance + ": no variance");
         for (auto& pixel : r.noise.pixels) pixel[c] *= float(r.mean[c] / sum);
     }
     return r;
@@ -459,7 +466,7 @@ void run(const std::string& name, const Plan& plan) {
     Image sheet = blank(3 * (side + gap) + gap, 2 * (high + 3 * gap));
     draw_image(sheet, gap, gap, scale, reference.image);
     caption(sheet, gap, gap + high + 5, "reference");
-    draw_map(sheet, 2 * gap + side, gap, scale, r, 3);
+    draw_map(sheet, 2 * gap + side, gap, scale, r, size_t(Weighting::cvor));
     caption(sheet, 2 * gap + side, gap + high + 5, "variance mc / cvor: blue 4, red 1/4");
     const Place border = telling_pixel(scene, r, light_border);
     print_pixel(

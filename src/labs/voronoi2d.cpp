@@ -148,13 +148,11 @@ struct Series {
 
 double seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }  // of the processor
 
-double uniform(Rng& random) { return double(random.bits() >> 11) * 0x1p-53; }
-
 std::vector<Site> independent(uint64_t n, Rng& random) {
     std::vector<Site> p;
     p.reserve(n);
     for (uint64_t i = 0; i < n; ++i) {
-        const double x = uniform(random), y = uniform(random);
+        const double x = random.uniform(), y = random.uniform();
         p.push_back({x, y});
     }
     return p;
@@ -165,7 +163,7 @@ std::vector<Site> jittered(uint64_t n, Rng& random) {
     std::vector<Site> p;
     p.reserve(n);
     for (uint64_t i = 0; i < side * side; ++i) {
-        const double x = uniform(random), y = uniform(random);
+        const double x = random.uniform(), y = random.uniform();
         p.push_back({(double(i % side) + x) / double(side), (double(i / side) + y) / double(side)});
     }
     return p;
