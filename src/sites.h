@@ -152,7 +152,7 @@ private:
         for (uint32_t k = node.begin; k < node.end; ++k) {
             const Site d = sites.site(order_[k]) - site;
             const double excess = d.x * c.x + d.y * c.y - (d.x * d.x + d.y * d.y) * 0.5;
-            if (excess > least && !left_out(order_[k])) least = excess, best = order_[k];
+            if (!left_out(order_[k]) && excess > least) least = excess, best = order_[k];
         }
     }
 };

@@ -146,6 +146,9 @@ std::vector<Hard> hard_cases(Random& random) {
         if (i % 2 == 0) last = {random(), random()};
         return last;
     });
+    make("crowds at three places", 450, [](int i) {
+        return Site{0.25 + 0.25 * (i % 3), 0.5 - 0.125 * (i % 3)};
+    });
     make("all equal", 17, [](int) { return Site{0.25, 0.125}; });
     return cases;
 }
