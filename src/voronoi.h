@@ -269,7 +269,7 @@ private:
     }
 
     // As long as some site is nearer to a corner than site i is, the nearest one cuts the corner
-    // off; each does so once.  A corner that is nearest to site i stays, so that the first k stay.
+    // off; but each only once, since rounding could put the new corners nearer to it again.
     Outcome cut(uint32_t i) {
         if (tree_.empty()) {
             tree_.grow(sites_);

@@ -34,10 +34,9 @@ inline uint64_t poisson(double mean, Rng& random) {
 }
 
 // Gradient at site i of values given at all sites: the plane through its own value that fits those
-// of its Voronoi neighbours best (least squares).  0 if they are about in line, the lesser moment
-// of their differences below a thousandth of both: errors grow as one over the angle between two
-// neighbours, without a limit their variance would be infinite, and at this one their skewness is
-// that of many cells.
+// of its Voronoi neighbours best (least squares).  0 if they are about in line, the smaller of the
+// principal moments of their differences less than a thousandth of the larger: errors grow as one
+// over the angle between two neighbours, and without a limit their variance would be infinite.
 inline Site gradient(const Voronoi& cells, std::span<const Site> sites, std::span<const double> f,
                      size_t i) {
     double xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
