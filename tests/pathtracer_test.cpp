@@ -272,7 +272,9 @@ TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustic
     for (const Technique& t : techniques) {
         // Next-event estimation has no answer to a caustic seen in a mirror but the same one:
         // all three count light that arrives by way of mirror or glass when they hit it.
-        const Estimate mean = image_mean(scene, options(t, seed++), 230);
+        // Light found by chance comes in rare large parts: more samples, or one decides the error.
+        const uint64_t spp = t.light == LightMode::none ? 920 : 230;
+        const Estimate mean = image_mean(scene, options(t, seed++), spp);
         EXPECT(expect_equal(mean, reference).of(t.name), 0.06);
     }
 }
