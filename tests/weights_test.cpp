@@ -38,19 +38,22 @@ double bump(Site p) { return p.x * (1 - p.x) + p.y * (1 - p.y); }
 // cvor, its border corrected or not, less the unbiased torus of the same samples: the bias, with
 // little noise.
 struct Pair {
-    Voronoi clipped, torus;
+    Weigher clipped, torus;
+    Voronoi cells;
     std::vector<double> f;
-    Pair() { clipped.with_neighbours = true; }
+    Pair() { cells.with_neighbours = true; }
 
     double error(uint64_t n, Random& random, bool correct) {
         const auto samples = scattered(n, random);
         f.clear();
         for (const Site& p : samples) f.push_back(bump(p));
-        const auto& cells = clipped.clipped(samples, {{0, 0}, {1, 1}});
-        const auto& unbiased = torus.torus(samples, {{0, 0}, {1, 1}});
-        double sum = correct ? border_correction(clipped, cells, samples, f) : 0;
-        for (size_t i = 0; i < f.size(); ++i) sum += (cells[i].area - unbiased[i].area) * f[i];
-        return sum;
+        const auto& w = clipped(Weighting::cvor, samples, 0);
+        const auto& unbiased = torus(Weighting::torus, samples, 0);
+        double sum = 0;
+        for (size_t i = 0; i < f.size(); ++i) sum += (w[i] - unbiased[i]) * f[i];
+        if (!correct) return sum;
+        const auto& around = cells.clipped(samples, {{0, 0}, {1, 1}});
+        return sum + border_correction(cells, around, samples, f);
     }
 };
 
