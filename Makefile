@@ -63,10 +63,10 @@ bench: build/bench$(SUFFIX) build/cells$(SUFFIX)  ## rays and Voronoi cells a se
 	build/bench$(SUFFIX)
 	build/cells$(SUFFIX)
 
-voronoi2d: build/voronoi2d$(SUFFIX)  ## integrate functions by Voronoi cells; FULL=1: 10 times the trials
+voronoi2d: build/voronoi2d$(SUFFIX)  ## integrate functions by Voronoi cells; FULL=1: 10 000 trials, not 400
 	build/voronoi2d$(SUFFIX) $(if $(FULL),--trials 10000)
 
-voronoi: build/voronoi$(SUFFIX)  ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, as published, 40)
+voronoi: build/voronoi$(SUFFIX)  ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, as published, 45)
 	build/voronoi$(SUFFIX) $(if $(FULL),--most 4096)
 
 extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)

@@ -138,7 +138,8 @@ private:
     template <class LeftOut>
     void search(const Node& node, const Buckets& sites, Site site, Site c, double& least,
                 std::optional<uint32_t>& best, LeftOut& left_out) const {
-        // d c - d d / 2 = (c c - |c - d|^2) / 2, but for the rounding of what may be close.
+        // d c - d d / 2 = (c c - |c - d|^2) / 2, where the squares lose digits to each other: some
+        // fifty roundings more, and the sites themselves decide.
         const double c2 = c.x * c.x + c.y * c.y;
         if (distance2(seen_from(site, node.box), c) > c2 * (1 + 1e-14) - 2 * least) return;
         if (node.second) {

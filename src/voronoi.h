@@ -85,7 +85,7 @@ public:
     const std::vector<VoronoiCell>& torus(std::span<const Site> sites, const Rectangle& window) {
         check(window);
         const double w = window.width(), h = window.height(), side = std::max(w, h);
-        // No flower reaches farther: a cell's corners are within half a diagonal.
+        // No flower reaches farther, rounded up: a cell's corners are within half a diagonal.
         const double enough = (side + std::hypot(w, h)) / 2 * (1 + 1e-9);
         double margin = 4 * std::sqrt(window.area() / double(std::max<size_t>(sites.size(), 1)));
         for (bool settled = false; !settled; margin *= 2) {
@@ -110,6 +110,7 @@ public:
 private:
     static constexpr int most_rings = 12;  // of buckets, before the tree takes over
     static constexpr size_t most_sites = UINT32_MAX / 32;
+    static_assert(cell::lanes <= int(Buckets::spare), "HalfPlanes::add reads as many places more");
 
     std::vector<VoronoiCell> cells_;
     std::vector<uint32_t> neighbours_, first_neighbour_, neighbour_count_;
@@ -133,11 +134,11 @@ private:
     // ---- Sites --------------------------------------------------------------------------------
 
     static void check(const Rectangle& window) {
-        const double least = std::min(window.width(), window.height()),
-                     most = std::max(window.width(), window.height());
-        if (!(least > 0 && std::isfinite(most)))
+        const double w = window.width(), h = window.height();
+        if (!(w > 0 && h > 0 && std::isfinite(w) && std::isfinite(h)))
             throw std::domain_error("voronoi: an empty window");
-        if (!(most <= 1000 * least)) throw std::domain_error("voronoi: a window too long");
+        if (std::max(w, h) > 1000 * std::min(w, h))
+            throw std::domain_error("voronoi: a window more than 1000 times as long as wide");
     }
 
     void begin(std::span<const Site> sites, size_t inner, const Rectangle& window,

@@ -46,7 +46,8 @@ TEST_CASE("buckets hold every site once, where it is") {
         CHECK(std::count(seen.begin(), seen.end(), 1) == n);
         if (n == 1000) {  // about square, and about as many as was meant
             CHECK(b.columns == doctest::Approx(4 * b.rows).epsilon(0.1));
-            CHECK(n / (b.rows * b.columns) == doctest::Approx(Buckets::per_bucket).epsilon(0.1));
+            CHECK(double(n) / (b.rows * b.columns) ==
+                  doctest::Approx(Buckets::per_bucket).epsilon(0.1));
         }
     }
 }

@@ -389,7 +389,11 @@ TEST_CASE("a site outside the window, no window, a line of a window are refused"
     CHECK_THROWS_AS(v.clipped(Points{{NAN, 0.5}}, unit_square), std::domain_error);
     CHECK_THROWS_AS(v.clipped(Points{{0, 0}}, {{0, 0}, {0, 1}}), std::domain_error);
     CHECK_THROWS_AS(v.torus(Points{{0, 0}}, {{0, 0}, {1, 0}}), std::domain_error);
-    CHECK_THROWS_AS(v.torus(Points{{0, 0}}, {{0, 0}, {1, NAN}}), std::domain_error);
+    for (const Rectangle& none : {Rectangle{{0, 0}, {1, NAN}}, Rectangle{{NAN, 0}, {1, 1}},
+                                  Rectangle{{0, 0}, {1, INFINITY}}}) {
+        CHECK_THROWS_AS(v.clipped(Points{}, none), std::domain_error);
+        CHECK_THROWS_AS(v.torus(Points{}, none), std::domain_error);
+    }
     CHECK_THROWS_AS(v.clipped(Points{{0, 0}}, {{0, 0}, {1, 1e-4}}), std::domain_error);
     CHECK_THROWS_AS(v.stretched(Points{{0, 0}}, 2, unit_square), std::domain_error);
     for (const Rectangle& thin : {Rectangle{{0, 0}, {1, 1e-3}}, Rectangle{{0, 0}, {2e-3, 2}}}) {
