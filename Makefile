@@ -5,7 +5,7 @@ ARCH  ?= native
 SIZE  ?= 256x128
 
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
-FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -MMD -MP \
+FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
             -Wall -Wextra -Wpedantic -Wshadow -Werror
 SANITISE := -O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all
 OPTIMISE := $(if $(SAN),$(SANITISE),$(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O3))
@@ -24,7 +24,7 @@ endif
 LABS     := $(patsubst src/labs/%.cpp,%,$(wildcard src/labs/*.cpp))
 PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
-TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp))
+TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp tests/*/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak techniques estimators1d penumbra bench voronoi voronoi2d extremes clean help layers \
@@ -83,7 +83,7 @@ extremes:  ## what precision buys: errors at the extremes into reference/extreme
 	@grep -c pass reference/extremes.md | sed 's/$$/ configurations, in reference\/extremes.md/'; ! grep FAIL reference/extremes.md
 
 # Exit status 1: a row is red, which the table shows.
-build/extremes-$(REAL).rows: $(OBJECTS)/tests/extremes_test.o $(OBJECTS)/tests/main.o always
+build/extremes-$(REAL).rows: $(OBJECTS)/tests/whole/extremes_test.o $(OBJECTS)/tests/main.o always
 	$(CXX) $(LINK) -o $(OBJECTS)/extremes $(filter %.o,$^)
 	@EXTREMES=$@ $(OBJECTS)/extremes >$@.log || [ $$? = 1 ] || { cat $@.log; exit 1; }
 
@@ -106,7 +106,7 @@ out/mesh.png: build/knot.obj
 build/%$(SUFFIX): $(OBJECTS)/%.exe always
 	@cmp -s $< $@ || cp $< $@
 
-$(OBJECTS)/penumbra.exe: $(OBJECTS)/pathtracer.o
+$(OBJECTS)/penumbra.exe: $(OBJECTS)/app/penumbra.o
 	$(CXX) $(LINK) -o $@ $^
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
@@ -124,19 +124,20 @@ $(OBJECTS)/all-tests: $(TESTS)
 	$(CXX) $(LINK) -o $@ $^
 
 # Tests that compute little are compiled in less time.
-LIGHT := check estimators extremes film halton image irradiance lights obj options parser program \
-         rectangle report rng sampler sampling scene stats vec views weighted
+LIGHT := $(addprefix app/,options report views) $(addprefix base/,rng stats vec words) film/film film/image film/passes \
+         path/halton path/sampler shadow/estimators shadow/irradiance voronoi/weighted whole/extremes whole/program \
+         $(addprefix world/,lights obj scene scene_file spherical_rectangle warp)
 $(LIGHT:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1)
 
 $(OBJECTS)/tests/%.o: tests/%.cpp Makefile | packages
 	@mkdir -p $(@D)
-	$(CXX) $(FLAGS) $(OPTIMISE) -DTESTING -c -o $@ $<
+	$(CXX) $(FLAGS) $(OPTIMISE) -Itests -c -o $@ $<
 
 $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 	@mkdir -p $(@D)
 	$(CXX) $(FLAGS) $(OPTIMISE) -c -o $@ $<
 
--include $(wildcard $(OBJECTS)/*.d $(OBJECTS)/labs/*.d $(OBJECTS)/tests/*.d)
+-include $(wildcard $(OBJECTS)/*/*.d $(OBJECTS)/tests/*/*.d)
 
 # ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
 
@@ -163,15 +164,22 @@ packages:
 
 # ---- The house: include only from floors below ----------------------------------------------------
 
+# Folders by floor; those of one floor do not know each other.
+FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 app:4 labs:5
+
 layers:  ## check that every file includes only from floors below
-	@awk ' \
-	    FNR == 1 { name = FILENAME; sub(/.*\//, "", name); \
-	               if ($$2 != name || $$3 != "floor" || $$4 !~ /^[0-9]+$$/) \
-	                   { print FILENAME ": line 1 must say: // " name "  floor N  what it is"; bad = 1 } \
-	               floor[name] = $$4 } \
-	    /^#include "/ { file = $$2; gsub(/"|.*\//, "", file); from[++n] = name; to[n] = file; at[n] = FILENAME ":" FNR } \
-	    END { for (i = 1; i <= n; ++i) \
-	              if (!(to[i] in floor) || floor[to[i]] >= floor[from[i]]) \
-	                  { print at[i] ": " from[i] " (floor " floor[from[i]] ") includes " to[i] " (floor " floor[to[i]] ")"; bad = 1 } \
+	@awk -v floors='$(FLOORS)' ' \
+	    function folder(file) { return substr(file, 1, index(file, "/") - 1) } \
+	    BEGIN { split(floors, list, " "); \
+	            for (i in list) { split(list[i], pair, ":"); floor[pair[1]] = pair[2] } } \
+	    FNR == 1 { name = FILENAME; sub(/^src\//, "", name); number[name] = $$3; \
+	               if (!(folder(name) in floor)) { print FILENAME ": no such folder in FLOORS"; bad = 1 } \
+	               if ($$2 != name || $$3 !~ /^[0-9]+$$/ || NF < 5) \
+	                   { print FILENAME ": line 1 must say: // " name "  NUMBER  what it is"; bad = 1 } } \
+	    /^#include "/ { split($$0, quoted, "\""); from[++n] = name; to[n] = quoted[2]; at[n] = FILENAME ":" FNR } \
+	    END { for (i = 1; i <= n; ++i) { \
+	              f = folder(from[i]); g = folder(to[i]); \
+	              if (!(to[i] in number) || (f == g ? number[to[i]] >= number[from[i]] : floor[g] >= floor[f])) \
+	                  { print at[i] ": " from[i] " is not above " to[i]; bad = 1 } } \
 	          if (!bad) print n " includes, all downwards"; exit bad }' \
-	    $(wildcard src/*.h src/*.cpp src/labs/*.cpp)
+	    $(wildcard src/*/*)

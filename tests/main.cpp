@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "oracle.h"
+#include "oracle/oracle.h"
 
 // Counts allocations of memory.
 std::atomic<size_t> allocations = 0;

@@ -1,4 +1,4 @@
-// bench.cpp  floor 5  how many rays a second?
+// labs/bench.cpp  3  how many rays a second?
 //
 //   build/bench [--quick]
 //
@@ -13,9 +13,9 @@
 // round.  Nothing here fails for being slow.
 #include <ctime>
 
-#include "../parser.h"
-#include "../program.h"
-#include "../rng.h"
+#include "base/program.h"
+#include "base/rng.h"
+#include "world/scene_file.h"
 
 #if __has_include(<embree3/rtcore.h>)
 #include <embree3/rtcore.h>

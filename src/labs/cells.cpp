@@ -1,4 +1,4 @@
-// cells.cpp  floor 5  how many Voronoi cells a second?
+// labs/cells.cpp  3  how many Voronoi cells a second?
 //
 //   build/cells [--quick]
 //
@@ -10,10 +10,10 @@
 #include <cstdio>
 #include <ctime>
 
-#include "../check.h"
-#include "../program.h"
-#include "../rng.h"
-#include "../voronoi.h"
+#include "base/program.h"
+#include "base/rng.h"
+#include "base/words.h"
+#include "voronoi/voronoi.h"
 
 #if __has_include(<CGAL/Delaunay_triangulation_2.h>)
 #include <CGAL/Delaunay_triangulation_2.h>

@@ -1,4 +1,4 @@
-// compare.cpp  floor 5  how far is one image from another?
+// labs/compare.cpp  3  how far is one image from another?
 //
 //   build/compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png] [--variances F.pfm G.pfm]
 //
@@ -7,9 +7,9 @@
 //
 // With the variances of both images' pixels (--view variance), also whether they show the same:
 // Welch's test of the images' means.
-#include "../image.h"
-#include "../program.h"
-#include "../stats.h"
+#include "base/program.h"
+#include "base/stats.h"
+#include "film/image.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// estimators1d.cpp  floor 5  four estimators of a shadowed integral, on the unit interval
+// labs/estimators1d.cpp  3  four estimators of a shadowed integral, on the unit interval
 //
 //   build/estimators1d [--quick]
 //
@@ -11,11 +11,11 @@
 #include <thread>
 #include <vector>
 
-#include "../estimators.h"
-#include "../plot.h"
-#include "../program.h"
-#include "../rng.h"
-#include "../stats.h"
+#include "base/program.h"
+#include "base/rng.h"
+#include "base/stats.h"
+#include "labs/plot.h"
+#include "shadow/estimators.h"
 
 namespace {
 

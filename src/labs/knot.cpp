@@ -1,13 +1,13 @@
-// knot.cpp  floor 5  writes a mesh to render: a trefoil knot of 24 000 triangles
+// labs/knot.cpp  3  writes a mesh to render: a trefoil knot of 24 000 triangles
 //
 //   build/knot FILE.obj
 //
 // A tube of radius 0.42 about the (2,3) torus knot p(t) = ((2 + cos 3t) cos 2t, (2 + cos 3t) sin
 // 2t, sin 3t), 600 rings of 20 corners, each ring normal to the tangent p'(t).
-#include "../check.h"
-#include "../image.h"
-#include "../program.h"
-#include "../vec.h"
+#include "base/program.h"
+#include "base/vec.h"
+#include "base/words.h"
+#include "film/image.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// shadows.cpp  floor 5  four estimators of direct light, on images
+// labs/shadows.cpp  3  four estimators of direct light, on images
 //
 //   build/shadows [--quick] [--only SCENE] [noise] [bias] [efficiency]
 //
@@ -8,12 +8,13 @@
 // pictures in out/shadows/.  Noise is that of the direct light of surfaces that the camera sees,
 // unless told; of its green channel.
 
-#include "../direct.h"
-#include "../film.h"
-#include "../parser.h"
-#include "../plot.h"
-#include "../program.h"
-#include "../stats.h"
+#include "app/options.h"
+#include "base/program.h"
+#include "base/stats.h"
+#include "film/passes.h"
+#include "labs/plot.h"
+#include "shadow/shadow.h"
+#include "world/scene_file.h"
 
 namespace {
 
@@ -48,7 +49,7 @@ const char* verdict(bool pass) {
 
 struct Stage {
     Scene scene;
-    Options options;
+    Technique technique;
     Pattern pattern;
 };
 
@@ -56,26 +57,14 @@ Stage load(const std::string& name, Polygons polygons, int shrink) {
     Stage v{read_scene("scenes/" + name + ".scene").scene, {}, {SamplerKind::independent, 1}};
     v.scene.size = {v.scene.size.width / shrink, v.scene.size.height / shrink};
     for (Light& l : v.scene.lights) l.by_angle = polygons == Polygons::angle;
-    v.options.light = LightMode::nee;
-    v.options.direct = Estimator::control;
+    v.technique.light = LightMode::nee;
     return v;
 }
 
 // Direct light that the camera sees by sample i of a pixel.
 Shadowed first_light(const Stage& v, int x, int y, uint64_t i) {
-    const Scene& s = v.scene;
-    const Sampler sampler(v.pattern, uint64_t(y) * uint64_t(s.size.width) + uint64_t(x), i);
-    const vec2 u = sampler.get2(film_x);
-    const Ray ray = camera_ray(s.camera, s.size, real(x) + u.x, real(y) + u.y);
-    const auto hit = s.bvh.closest(ray);
-    if (!hit) return {};
-    const Surface p = surface(s.shapes[hit->id], ray, *hit);
-    const real cos_o = -dot(p.n, ray.d);
-    if (cos_o == 0) return {};
-    const Frame local = frame(cos_o > 0 ? p.n : -p.n);
-    return direct_light(s, v.options, s.material(*hit, p.p), p, local, local.to_local(-ray.d),
-                        sampler, 0)
-        .shadowed;
+    const Start at = start(v.scene, v.pattern, x, y, i);
+    return shadowed(v.scene, step(v.scene, v.technique, {at.ray, at.ray.o}, at.sampler));
 }
 
 void add(ShadowMoments& m, const Shadowed& s) {
@@ -510,7 +499,7 @@ void print_all_noise(const Plan& plan) {
         "10th ... 90th percentile of the pixels; sum over pixels / sum of predictions.\n");
     for (const auto& [scene, polygons] : configurations) {
         if (!plan.only.empty() && plan.only != scene) continue;
-        const char* how = polygon_names[size_t(polygons)].data();
+        const char* how = polygons == Polygons::area ? "area" : "angle";
         std::printf("\n## %s, quads by %s\n\n", scene, how);
         const Stage small = load(scene, polygons, plan.shrink);
         // Many lights: the predictions are those of many samples.

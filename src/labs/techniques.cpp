@@ -1,4 +1,4 @@
-// techniques.cpp  floor 5  what each of three techniques brings
+// labs/techniques.cpp  3  what each of three techniques brings
 //
 //   build/techniques [--reference FILE.pfm] [--time S] [--quick]
 //
@@ -11,9 +11,9 @@
 
 #include <stb/stb_easy_font.h>
 
-#include "../image.h"
-#include "../program.h"
-#include "../stats.h"
+#include "base/program.h"
+#include "base/stats.h"
+#include "film/image.h"
 
 namespace {
 

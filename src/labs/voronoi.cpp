@@ -1,19 +1,21 @@
-// voronoi.cpp  floor 6  does it pay to weigh a pixel's samples by their Voronoi cells?
+// labs/voronoi.cpp  3  does it pay to weigh a pixel's samples by their Voronoi cells?
 //
 //   build/voronoi [--size WxH] [--most N] [--scene NAME]
 //
 // The rendering results of Vandewiele et al. 2025, "Voronoi integration of the rendering equation",
 // on scenes/cornell.scene and scenes/cornellglossy.scene: 64 ... N samples a pixel, next-event
 // estimation.  Every weighting gets the same samples.  Tables on stdout, pictures in
-// out/voronoi-SCENE.png.  A floor above the roof: it needs the samples, not the image.
-#define TESTING  // the path tracer without its main
-#include "../pathtracer.cpp"
-
+// out/voronoi-SCENE.png.
 #include <ctime>
 
-#include "../curves.h"
-#include "../program.h"
-#include "../stats.h"
+#include "app/options.h"
+#include "app/report.h"
+#include "base/program.h"
+#include "base/stats.h"
+#include "labs/curves.h"
+#include "path/start.h"
+#include "voronoi/weights.h"
+#include "world/scene_file.h"
 
 namespace {
 
@@ -21,9 +23,8 @@ namespace {
 constexpr std::array films = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
                               Weighting::torus};
 constexpr size_t stratified = films.size(), techniques = films.size() + 1;
-std::string name_of(size_t t) {
-    return t == stratified ? "stratified" : std::string(weighting_names[t]);
-}
+constexpr const char* weighting_names[] = {"mc", "vor", "fvor", "cvor", "torus"};
+std::string name_of(size_t t) { return t == stratified ? "stratified" : weighting_names[t]; }
 
 struct Plan {
     Size size = {256, 256};  // as published
@@ -56,14 +57,13 @@ Region region_of(const Scene& scene, int x, int y) {
         const Ray ray =
             camera_ray(scene.camera, scene.size, real(x) + (real(k % 8) + real(0.5)) / 8,
                        real(y) + (real(k / 8) + real(0.5)) / 8);
-        const auto hit = scene.bvh.closest(ray);
-        const uint32_t id = hit ? hit->id : UINT32_MAX;
-        const Surface at = hit ? surface(scene.shapes[id], ray, *hit) : Surface{};
-        const Material m = hit ? scene.material(*hit, at.p) : Material{};
+        const auto met = meet(scene, ray);
+        const uint32_t id = met ? met->hit.id : UINT32_MAX;
+        const Material m = met ? *met->material : Material{};
         emits = emits || m.emits();
         dark = dark || !m.emits();
         sphere = sphere || m.is_delta() || max_of(m.ks) > 0;
-        const vec3 normal = at.n;
+        const vec3 normal = met ? met->at.n : vec3{};
         if (k == 0) first = id, n = normal;
         other = other || (id != first && !(normal == n));
     }
@@ -73,19 +73,19 @@ Region region_of(const Scene& scene, int x, int y) {
 
 // ---- Samples ------------------------------------------------------------------------------------
 
+const Technique technique = {Direction::bsdf, LightMode::nee, 0};
+
 struct Samples {
     std::vector<Site> places;
     std::vector<rgb> L;
 };
 
-Samples draw_samples(const Scene& scene, const Options& o, const Pattern& pattern, int x, int y,
-                     uint64_t n) {
+Samples draw_samples(const Scene& scene, const Pattern& pattern, int x, int y, uint64_t n) {
     Samples s;
     for (uint64_t i = 0; i < n; ++i) {
-        const uint64_t index = uint64_t(y) * uint64_t(scene.size.width) + uint64_t(x);
-        const vec2 u = Sampler(pattern, index, i).get2(film_x);  // as pixel draws it
-        s.places.push_back({double(u.x), double(u.y)});
-        s.L.push_back(pixel(scene, o, pattern, x, y, i).L);
+        const Start at = start(scene, pattern, x, y, i);
+        s.places.push_back({double(at.u.x), double(at.u.y)});
+        s.L.push_back(Li(scene, technique, at.ray, at.sampler));
     }
     return s;
 }
@@ -99,14 +99,6 @@ Mean weighted_mean(const std::vector<double>& w, const rgb* L) {
         m[2] += w[i] * double(L[i].z);
     }
     return m;
-}
-
-Options options_of(uint64_t seed, SamplerKind kind = SamplerKind::independent) {
-    Options o;
-    o.light = LightMode::nee;
-    o.sampler = kind;
-    o.seed = seed;
-    return o;
 }
 
 // ---- Errors -------------------------------------------------------------------------------------
@@ -157,8 +149,7 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
     for (uint64_t n = 64; n <= plan.most; n *= 4) result.ns.push_back(n);
     result.of.resize(result.ns.size());
     for (Image& v : result.variance) v = Image(scene.size.width, scene.size.height);
-    const Options o = options_of(1);
-    const Pattern pattern{SamplerKind::independent, o.seed};
+    const Pattern pattern{SamplerKind::independent, 1};
     std::mutex mutex;
     auto row = [&](int y) {
         Weigher weigher;
@@ -168,7 +159,7 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
             const Region region = region_of(scene, x, y);
             const auto &truth = reference.image.at(x, y), &noise = reference.noise.at(x, y);
             double start = thread_seconds();
-            const Samples s = draw_samples(scene, o, pattern, x, y, plan.most);
+            const Samples s = draw_samples(scene, pattern, x, y, plan.most);
             const double a_path = (thread_seconds() - start) / double(plan.most);
             std::array<std::array<Moments, 3>, films.size()> spread{};
             for (size_t k = 0; k < result.ns.size(); ++k) {
@@ -189,11 +180,10 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
                         tally.add(m, truth, noise, region);
                         for (size_t c = 0; c < 3 && n == 64; ++c) spread[t][c].add(m[c]);
                     }
-                const Options jittered = options_of(2, SamplerKind::stratified);
                 const Pattern strata =
-                    make_pattern(SamplerKind::stratified, jittered.seed, false, scene.depth, n);
+                    make_pattern(SamplerKind::stratified, 2, false, scene.depth, n);
                 start = thread_seconds();
-                const Samples j = draw_samples(scene, jittered, strata, x, y, n);
+                const Samples j = draw_samples(scene, strata, x, y, n);
                 mine[k][stratified].seconds += thread_seconds() - start;
                 mine[k][stratified].samples += double(n);
                 mine[k][stratified].add(
@@ -208,9 +198,7 @@ Result measure(const Scene& scene, const Plan& plan, const Reference& reference)
         for (size_t k = 0; k < mine.size(); ++k)
             for (size_t t = 0; t < techniques; ++t) result.of[k][t].merge(mine[k][t]);
     };
-    Options shown;
-    shown.spp = plan.most;
-    Progress progress(shown);
+    Progress progress({plan.most, 0}, false);
     parallel_rows(scene.size.height, plan.threads, row,
                   [&](double part) { progress.show(part * double(plan.most)); });
     return result;
@@ -299,9 +287,8 @@ void print_pixel(const Scene& scene, const Plan& plan, Place at, const Axes& axe
     for (uint64_t n = 64; n <= plan.most; n *= 4) ns.push_back(double(n));
     std::vector<std::array<Moments, techniques>> all(ns.size());
     for (uint64_t seed = 100; seed < 100 + replicates; ++seed) {
-        const Options o = options_of(seed), jittered = options_of(seed, SamplerKind::stratified);
         const Samples s =
-            draw_samples(scene, o, {SamplerKind::independent, seed}, at.x, at.y, plan.most);
+            draw_samples(scene, {SamplerKind::independent, seed}, at.x, at.y, plan.most);
         Weigher weigher;
         auto mean = [](const Mean& m) { return (m[0] + m[1] + m[2]) / 3; };
         for (size_t k = 0; k < ns.size(); ++k) {
@@ -311,7 +298,7 @@ void print_pixel(const Scene& scene, const Plan& plan, Place at, const Axes& axe
                     mean(weighted_mean(weigher(films[t], {s.places.data(), n}, seed), s.L.data())));
             const Pattern strata =
                 make_pattern(SamplerKind::stratified, seed, false, scene.depth, n);
-            const Samples j = draw_samples(scene, jittered, strata, at.x, at.y, n);
+            const Samples j = draw_samples(scene, strata, at.x, at.y, n);
             all[k][stratified].add(
                 mean(weighted_mean(std::vector<double>(n, 1 / double(n)), j.L.data())));
         }
@@ -373,8 +360,7 @@ void draw_map(Image& sheet, int left, int top, int scale, const Result& r, size_
 
 // The cells of 256 samples, as bright as what was seen there.
 void draw_cells(Image& sheet, int left, int top, int side, const Scene& scene, Place at) {
-    const Samples s =
-        draw_samples(scene, options_of(5), {SamplerKind::independent, 5}, at.x, at.y, 256);
+    const Samples s = draw_samples(scene, {SamplerKind::independent, 5}, at.x, at.y, 256);
     double most = 0;
     for (rgb L : s.L) most = std::max(most, double(max_of(L)));
     std::vector<size_t> above(size_t(side), SIZE_MAX);

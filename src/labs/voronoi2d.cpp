@@ -1,4 +1,4 @@
-// voronoi2d.cpp  floor 5  integrals over a square by Voronoi cells: what they cost and bring
+// labs/voronoi2d.cpp  3  integrals over a square by Voronoi cells: what they cost and bring
 //
 //   build/voronoi2d [--trials N] [--quick]
 //
@@ -9,11 +9,11 @@
 #include <cinttypes>
 #include <ctime>
 
-#include "../curves.h"
-#include "../halton.h"
-#include "../program.h"
-#include "../stats.h"
-#include "../weights.h"
+#include "base/program.h"
+#include "base/stats.h"
+#include "labs/curves.h"
+#include "path/halton.h"
+#include "voronoi/weights.h"
 
 namespace {
 

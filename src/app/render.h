@@ -1,0 +1,150 @@
+// app/render.h  3  from options to images: which samples, on which film
+#pragma once
+#include <atomic>
+
+#include "app/report.h"
+#include "app/views.h"
+#include "shadow/shadow.h"
+#include "voronoi/weighted.h"
+
+// ---- What to render -----------------------------------------------------------------------------
+
+// The user's target, or the scene's number of samples.
+inline Target target_of(const Options& o, const Scene& scene) {
+    if (o.target.samples > 0 || o.target.seconds > 0) return o.target;
+    return {scene.samples, 0};
+}
+
+// What the user's samples allow to say about their variance.
+inline VarianceFrom variance_from(const Options& o) {
+    if (o.film != Weighting::mc) return VarianceFrom::nothing;
+    const bool samples = o.sampler == SamplerKind::independent;
+    return samples    ? VarianceFrom::samples
+           : o.halves ? VarianceFrom::halves
+                      : VarianceFrom::nothing;
+}
+
+struct Job {
+    const Options& o;
+    const Scene& scene;
+    const Pattern pattern;
+    const Passes passes;
+};
+
+inline Job job_of(const Options& o, const Scene& scene) {
+    const Target target = target_of(o, scene);
+    const Pattern pattern = make_pattern(o.sampler, o.seed, o.halves, scene.depth, target.samples);
+    // Voronoi weights need all of a pixel's samples at once.
+    const uint64_t period = o.film == Weighting::mc ? pattern.period() : target.samples;
+    return {o, scene, pattern, {target, period, o.threads}};
+}
+
+// ---- Samples ------------------------------------------------------------------------------------
+
+// Whether the image shows something that takes no path.
+inline bool is_plain_view(View v) { return v != View::radiance && v != View::variance; }
+
+// An account of Li that counts the path's rays.
+inline auto counting(uint64_t& rays) {
+    return [&rays](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); };
+}
+
+// Unbiased for the pixel's mean, but for the scene's depth.
+inline rgb radiance(const Job& job, const Start& at, uint64_t& rays) {
+    const auto& [o, scene, pattern, passes] = job;
+    if (is_plain_view(o.view)) return ++rays, view_along(scene, o.view, at.ray);
+    if (o.direct == Estimator::control)
+        return shadow_Li(scene, o.technique, o.direct, at, counting(rays)).rest;
+    return Li(scene, o.technique, at.ray, at.sampler, counting(rays));
+}
+
+// ---- Images -------------------------------------------------------------------------------------
+
+struct Rendered {
+    Image image, variance;
+    RunStats run;
+};
+
+// Throws if a sample did not fit into the film; otherwise says how it went.
+template <class Pixel>
+void finish(const Film<Pixel>& film, const Job& job, Progress& progress, RunStats& run) {
+    run.spp = film.samples();
+    run.seconds = progress.elapsed();
+    run.non_finite = film.non_finite();
+    run.interrupted = interrupted;
+    progress.summary(job.o.scene, run);
+    if (run.non_finite == 0) return;
+    const NonFinite& bad = film.first_non_finite();
+    const std::string pixel = std::to_string(bad.x) + "," + std::to_string(bad.y);
+    const std::string sample = std::to_string(bad.sample);
+    throw SystemError(std::to_string(run.non_finite) +
+                      " samples were not finite, the first at pixel " + pixel + " sample " +
+                      sample + " (replay it by --pixel " + pixel + " --sample " + sample +
+                      "); nothing was written");
+}
+
+// Fills a film with L(start, rays).
+template <class Pixel, class Radiance>
+RunStats fill(Film<Pixel>& film, const Job& job, Radiance L) {
+    Progress progress(job.passes.target, job.o.quiet);
+    std::atomic<uint64_t> rays = 0;
+    auto row = [&](int y, uint64_t n) {
+        uint64_t row_rays = 0;
+        film.add_row(y, n, [&](int x, uint64_t i) {
+            return L(start(job.scene, job.pattern, x, y, i), row_rays);
+        });
+        rays += row_rays;
+    };
+    render(film, job.passes, row, progress);
+    RunStats run;
+    run.rays = rays;
+    finish(film, job, progress, run);
+    return run;
+}
+
+inline Rendered render_means(const Job& job) {
+    Film<MeanPixel> film(job.scene.size);
+    const RunStats run =
+        fill(film, job, [&](const Start& at, uint64_t& rays) { return radiance(job, at, rays); });
+    return {image_of(film), variance_of(film, variance_from(job.o)), run};
+}
+
+// Direct light by ratio or regression.
+inline Rendered render_shadows(const Job& job) {
+    const auto& [o, scene, pattern, passes] = job;
+    Film<ShadowPixel> film(scene.size);
+    const RunStats run = fill(film, job, [&](const Start& at, uint64_t& rays) {
+        return shadow_Li(scene, o.technique, o.direct, at, counting(rays));
+    });
+    return {image_of(film, o.direct), variance_of(film, o.direct, variance_from(o)), run};
+}
+
+// Samples weighted by the areas of their Voronoi cells.
+inline Rendered render_cells(const Job& job) {
+    const auto& [o, scene, pattern, passes] = job;
+    Film<MeanPixel> film(scene.size);
+    Progress progress(passes.target, o.quiet);
+    std::atomic<uint64_t> rays = 0, redraws = 0, fallbacks = 0;
+    auto row = [&](int y, uint64_t n) {
+        uint64_t row_rays = 0;
+        auto L = [&](int x, uint64_t i) {
+            return radiance(job, start(scene, pattern, x, y, i), row_rays);
+        };
+        WeightedRow weighted(o.film, pattern, n, uint64_t(y) * uint64_t(scene.size.width), L);
+        film.add_row(y, n, [&](int x, uint64_t i) { return weighted(x, i); });
+        rays += row_rays;
+        redraws += weighted.weigher().redraws;
+        fallbacks += weighted.weigher().fallbacks;
+    };
+    render(film, passes, row, progress);
+    RunStats run;
+    run.rays = rays, run.redraws = redraws, run.fallbacks = fallbacks;
+    finish(film, job, progress, run);
+    return {image_of(film), variance_of(film, VarianceFrom::nothing), run};
+}
+
+inline Rendered rendered(const Job& job) {
+    if (job.o.film != Weighting::mc) return render_cells(job);
+    const bool plain = is_plain_view(job.o.view) || !estimates_pixels(job.o.direct);
+    return plain ? render_means(job) : render_shadows(job);
+}

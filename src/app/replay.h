@@ -1,0 +1,93 @@
+// app/replay.h  4  one path in words (--pixel)
+#pragma once
+#include <cstdio>
+
+#include "app/render.h"
+
+// Writes down what happens on a path, a line an event, with every digit: what it prints is what
+// the image was made of.
+class PathLog {
+public:
+    explicit PathLog(std::FILE* out) : out_(out) {}
+
+    void film(const Start& at) const {
+        print("film", {at.u.x, at.u.y});
+        print("ray from", at.ray.o);
+        print("ray towards", at.ray.d);
+    }
+
+    // A vertex, as an account of Li.
+    void operator()(const Segment& s, const Step& e) const {
+        if (!e.x) return;
+        const Vertex& x = *e.x;
+        std::fprintf(out_, "vertex %d: shape %u at distance %.17g\n", s.k, x.hit.id,
+                     double(x.hit.t));
+        print("  p", x.at.p);
+        print("  n", x.at.n);
+        print("  throughput", s.beta);
+        if (x.material->emits()) {
+            print("  emission", e.Le);
+            print("  its weight", {e.weight});
+        }
+        if (e.direct.light) light(e.direct);
+        if (e.scattered.pdf > 0) {
+            print("  wi", e.wi);
+            print("  f", e.scattered.f);
+            print("  cosine", {std::abs(e.scattered.wi.z)});
+            print("  pdf", {e.scattered.pdf});
+        }
+    }
+
+    // What the estimators of direct light make of the first vertex.
+    void shadowed(const Shadowed& s) const {
+        print("first vertex without shadows, exact", s.U);
+        print("first vertex without shadows, as sampled", s.w);
+        print("first vertex as sampled, with shadows", s.wV);
+    }
+
+    void end(const char* why, rgb L) const {
+        std::fprintf(out_, "end: %s\n", why);
+        print("L", L);
+    }
+
+private:
+    std::FILE* out_;
+
+    void light(const DirectLight& d) const {
+        constexpr const char* kinds[] = {"sphere", "triangle", "quad", "point"};
+        std::fprintf(out_, "  light sample: %s light, chosen with probability %.17g, %s\n",
+                     kinds[int(d.light->kind)], double(d.light->pick),
+                     d.occluded ? "occluded" : "visible");
+        print("    at", d.sample.at.p);
+        print("    wi", d.sample.wi);
+        print("    pdf", {d.pdf});
+        print("    its weight", {d.weight});
+        print("    reflected", d.L);
+    }
+    void print(const char* what, std::initializer_list<real> numbers) const {
+        std::fprintf(out_, "%s:", what);
+        for (real x : numbers) std::fprintf(out_, " %.17g", double(x));
+        std::fputc('\n', out_);
+    }
+    void print(const char* what, vec3 v) const { print(what, {v.x, v.y, v.z}); }
+};
+
+// Prints one path of the image.
+inline void replay(const Job& job) {
+    const auto& [o, scene, pattern, passes] = job;
+    const PathLog log(stdout);
+    const Start at = start(scene, pattern, o.replay->x, o.replay->y, o.sample.value_or(0));
+    log.film(at);
+    if (is_plain_view(o.view))
+        return log.end("a view, not radiance", view_along(scene, o.view, at.ray));
+    const char* why = nullptr;
+    auto account = [&](const Segment& s, const Step& e) {
+        log(s, e);
+        why = e.end;
+    };
+    if (o.direct == Estimator::stochastic)
+        return log.end(why, Li(scene, o.technique, at.ray, at.sampler, account));
+    const ShadowSample sample = shadow_Li(scene, o.technique, o.direct, at, account);
+    log.shadowed(sample.first);
+    log.end(why, sample.rest);
+}

@@ -1,0 +1,88 @@
+// base/vec.h  1  numbers, vectors, colours and frames
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#ifndef REAL
+#define REAL double
+#endif
+using real = REAL;  // the only switch of precision: make REAL=float
+
+inline constexpr real pi = std::numbers::pi_v<real>;
+inline constexpr real infinity = std::numeric_limits<real>::infinity();
+inline constexpr real ulp = std::numeric_limits<real>::epsilon() / 2;  // rounding error of one op
+inline constexpr real below_one = 1 - ulp;                             // largest real < 1
+
+// The top bits of a random word as a number in [0,1): 53 of them in double, 24 in float, so that
+// rounding never makes a 1.
+inline real to_unit(uint64_t bits) {
+    constexpr int digits = std::numeric_limits<real>::digits;
+    return real(bits >> (64 - digits)) * (1 / real(uint64_t(1) << digits));
+}
+
+inline real sqr(real x) { return x * x; }
+
+struct vec2 {
+    real x = 0, y = 0;
+};
+
+struct vec3 {
+    real x = 0, y = 0, z = 0;
+};
+using rgb = vec3;  // linear radiance or reflectance, one number a channel
+
+// A coordinate axis, to be used as v.*axis[i].
+inline constexpr real vec3::*axis[3] = {&vec3::x, &vec3::y, &vec3::z};
+
+inline vec3 operator+(vec3 a, vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline vec3 operator-(vec3 a, vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline vec3 operator*(vec3 a, vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+inline vec3 operator*(vec3 a, real s) { return {a.x * s, a.y * s, a.z * s}; }
+inline vec3 operator*(real s, vec3 a) { return a * s; }
+inline vec3 operator/(vec3 a, real s) { return {a.x / s, a.y / s, a.z / s}; }
+inline vec3 operator-(vec3 a) { return {-a.x, -a.y, -a.z}; }
+inline vec3& operator+=(vec3& a, vec3 b) { return a = a + b; }
+inline vec3& operator*=(vec3& a, vec3 b) { return a = a * b; }
+inline vec3& operator/=(vec3& a, real s) { return a = a / s; }
+inline bool operator==(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+inline real dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline real length(vec3 a) { return std::sqrt(dot(a, a)); }
+inline vec3 unit(vec3 a) { return a / length(a); }
+inline real max_of(vec3 a) { return std::max({a.x, a.y, a.z}); }
+inline real max_abs(vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
+inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
+inline bool is_finite(vec3 a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
+
+// a b - c d within 1.5 ulp, however much cancels (Kahan; Jeannerod et al. 2013, Math. Comp. 82).
+inline real difference_of_products(real a, real b, real c, real d) {
+    real cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+// Accurate component by component: the normals of slivers depend on it.
+inline vec3 cross(vec3 a, vec3 b) {
+    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+            difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
+// Right-handed orthonormal frame (s, t, n); local z is n.
+struct Frame {
+    vec3 s, t, n;
+    vec3 to_world(vec3 v) const { return s * v.x + t * v.y + n * v.z; }
+    vec3 to_local(vec3 v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
+};
+
+// Frame about the unit vector n, continuous but for the plane n.z = 0, stable at both poles
+// (Duff et al. 2017, JCGT 6(1)).
+inline Frame frame(vec3 n) {
+    real sign = std::copysign(real(1), n.z);
+    real a = -1 / (sign + n.z);
+    real b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}

@@ -1,0 +1,117 @@
+// film/passes.h  1  the one loop that renders: passes, threads, time, Ctrl-C
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+// ---- Ctrl-C -------------------------------------------------------------------------------------
+
+inline std::atomic<bool> interrupted = false;
+
+// The first Ctrl-C asks for an end after the passes completed so far; a second one kills.
+inline void catch_interrupt() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = true; };
+    action.sa_flags = int(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+}
+
+// ---- When to stop -------------------------------------------------------------------------------
+
+// Whichever comes first; 0: no limit.
+struct Target {
+    uint64_t samples = 0;  // per pixel
+    double seconds = 0;
+};
+
+// Passes long enough to keep the threads busy, short enough to stop soon.
+class Schedule {
+public:
+    // Passes are multiples of `period` samples, but for the last of an uneven target.
+    Schedule(const Target& target, uint64_t period) : target_(target), period_(period) {}
+
+    // Samples per pixel of the next pass, after `samples` in `elapsed` seconds; 0: enough.  The
+    // first pass always runs.
+    uint64_t next(uint64_t samples, double elapsed) {
+        if (samples > 0) {
+            const double took = elapsed - started_;
+            if (took < shortest) size_ *= 2;
+            if (took > 2 * shortest) size_ = std::max<uint64_t>(1, size_ / 2);
+        }
+        started_ = elapsed;
+        uint64_t periods = size_;
+        if (target_.seconds > 0 && samples > 0) {
+            const double left = target_.seconds - elapsed;
+            const double per_period = elapsed / double(samples) * double(period_);
+            if (left <= 0) return 0;
+            if (left < per_period * double(periods))
+                periods = std::max<uint64_t>(1, uint64_t(left / per_period));
+        }
+        const uint64_t n = periods * period_;
+        return target_.samples ? std::min(n, target_.samples - samples) : n;
+    }
+
+private:
+    static constexpr double shortest = 0.1;  // seconds
+    const Target target_;
+    const uint64_t period_;
+    uint64_t size_ = 1;  // periods a pass
+    double started_ = 0;
+};
+
+// ---- Threads ------------------------------------------------------------------------------------
+
+inline unsigned all_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
+
+// Calls row(y) for every y < height from several threads, and meanwhile() from this one ten times
+// a second.  Returns early, with rows missing, once `interrupted`; then the answer is false.
+template <class Row, class Meanwhile>
+bool parallel_rows(int height, unsigned threads, Row row, Meanwhile meanwhile) {
+    std::atomic<int> next = 0, done = 0;
+    std::mutex mutex;
+    std::condition_variable finished;
+    unsigned running = std::min(threads, unsigned(height));
+    std::vector<std::jthread> workers;
+    for (unsigned i = running; i > 0; --i)
+        workers.emplace_back([&] {
+            for (int y; !interrupted && (y = next++) < height; ++done) row(y);
+            std::lock_guard lock(mutex);
+            --running;
+            finished.notify_one();
+        });
+    std::unique_lock lock(mutex);
+    while (!finished.wait_for(lock, std::chrono::milliseconds(100), [&] { return running == 0; }))
+        meanwhile(double(done) / height);
+    meanwhile(double(done) / height);
+    return done == height;
+}
+
+// ---- Passes -------------------------------------------------------------------------------------
+
+// How a film is filled.
+struct Passes {
+    Target target;
+    uint64_t period = 1;  // samples after which a pass may end
+    unsigned threads = 1;
+};
+
+// Adds passes to the film until the target is met, `interrupted`, or a sample is not finite; row(y,
+// n) adds n samples to each pixel of row y.  A clock of seconds(); show(samples so far) while the
+// threads work.
+template <class Film, class Row, class Progress>
+void render(Film& film, const Passes& passes, Row row, Progress& progress) {
+    Schedule schedule(passes.target, passes.period);
+    while (const uint64_t n = schedule.next(film.samples(), progress.elapsed())) {
+        const bool complete = parallel_rows(
+            film.size.height, passes.threads, [&](int y) { row(y, n); },
+            [&](double part) { progress.show(double(film.samples()) + part * double(n)); });
+        if (!complete || film.non_finite() > 0) return;
+        film.end_pass(n);
+    }
+}

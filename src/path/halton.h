@@ -1,0 +1,67 @@
+// path/halton.h  1  radical inverses: points more even than random ones
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+
+// The first n primes, by the sieve of Eratosthenes.  p_n < n (ln n + ln ln n) for n >= 6 (Rosser
+// 1941).
+inline std::vector<uint32_t> first_primes(size_t n) {
+    const double x = double(std::max<size_t>(n, 6));
+    const size_t limit = size_t(x * (std::log(x) + std::log(std::log(x)))) + 1;
+    std::vector<bool> composite(limit + 1);
+    std::vector<uint32_t> primes;
+    for (size_t p = 2; primes.size() < n; ++p) {
+        if (composite[p]) continue;
+        primes.push_back(uint32_t(p));
+        for (size_t q = p * p; q <= limit; q += p) composite[q] = true;
+    }
+    return primes;
+}
+
+// The digits of an index in a base, mirrored at the point: they gather here as digits / power, both
+// exact.  Digits after the 64th bit are below every rounding and are left out.
+struct MirroredDigits {
+    uint64_t digits = 0, power = 1;
+
+    bool full(uint32_t base) const { return power > UINT64_MAX / base; }
+    void append(uint32_t base, uint64_t digit) {
+        digits = digits * base + digit;
+        power *= base;
+    }
+    // Plus a part of [0,1) of the last digit; never 1.
+    real value(real rest) const {
+        return std::min(below_one, real((double(digits) + double(rest)) / double(power)));
+    }
+};
+
+// Radical inverse of i (van der Corput 1935; Halton 1960): i = sum d_k b^k becomes
+// sum d_k b^(-k-1).
+inline real radical_inverse(uint32_t base, uint64_t i) {
+    MirroredDigits mirrored;
+    for (; i > 0 && !mirrored.full(base); i /= base) mirrored.append(base, i % base);
+    return mirrored.value(0);
+}
+
+// The next digit of a fraction of 2^64ths, which is replaced by what follows that digit.
+inline uint64_t next_digit(uint32_t base, uint64_t& fraction) {
+    const uint64_t low = (fraction & UINT32_MAX) * base;
+    const uint64_t high = (fraction >> 32) * base + (low >> 32);
+    fraction *= base;
+    return high >> 32;
+}
+
+// The same with digits scrambled: d_k becomes (a d_k + c_k) mod b, 1 <= a < b, with the c_k the
+// digits of a uniform number (random linear scrambling: Matousek 1998, J. Complexity 14).  For
+// uniform random bits every point is uniform; any set of points stays as even as it was.
+inline real scrambled_radical_inverse(uint32_t base, uint64_t i, uint64_t shift_bits,
+                                      uint64_t factor_bits) {
+    const uint64_t factor = 1 + (factor_bits >> 32) * (base - 1) / (uint64_t(1) << 32);
+    MirroredDigits mirrored;
+    for (; i > 0 && !mirrored.full(base); i /= base) {
+        const uint64_t shift = next_digit(base, shift_bits);
+        mirrored.append(base, (factor * (i % base) + shift) % base);
+    }
+    return mirrored.value(to_unit(shift_bits));  // the zeros ahead of i, scrambled: c_k alone
+}

@@ -1,0 +1,170 @@
+// path/pathtracer.h  3  the path tracer: radiance along a ray, vertex by vertex
+//
+// Read it downwards: where a ray stops, what light is found there by aiming, what happens there in
+// all, and the sum over a path.  Directions are in world space, but for wo and the wi of densities,
+// which are in the vertex's local frame; all densities are per solid angle (1/sr).
+#pragma once
+#include <optional>
+
+#include "path/sampler.h"
+#include "world/scene.h"
+
+// How light is found.
+enum class LightMode {
+    none,  // by hitting it
+    nee,   // next-event estimation: by aiming at it
+    mis    // both, weighted by the power heuristic
+};
+
+// What a path depends on beside its scene.
+struct Technique {
+    Direction direction = Direction::bsdf;
+    LightMode light = LightMode::mis;
+    int roulette = 0;  // Russian roulette from this scattering on; 0: never
+};
+
+// ---- Where a ray stops --------------------------------------------------------------------------
+
+struct Vertex {
+    Hit hit;
+    Surface at;
+    const Material* material;
+    real cos_o;   // between the surface's own normal and wo; negative on its back
+    Frame local;  // z is the normal on the side of wo
+    vec3 wo;      // to where the ray came from, local
+};
+
+inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
+    const auto hit = scene.bvh.closest(ray);
+    if (!hit) return {};
+    const Surface x = surface(scene.shapes[hit->id], ray, *hit);
+    const real cos_o = -dot(x.n, ray.d);
+    const Frame local = frame(cos_o > 0 ? x.n : -x.n);
+    return Vertex{*hit, x, &scene.material(*hit), cos_o, local, local.to_local(-ray.d)};
+}
+
+// ---- Light by aiming at it ----------------------------------------------------------------------
+
+struct DirectLight {
+    rgb L;  // radiance that it sends by way of the vertex to wo
+    // How it came about; only if a shadow ray was traced.
+    const Light* light = nullptr;
+    LightSample sample = {};
+    real cosine = 0;  // between the normal and the direction to the light
+    real pdf = 0;     // of that direction, the choice of the light included
+    real weight = 0;  // beside light found by hitting it
+    bool occluded = false;
+};
+
+// By one light, chosen at random: f L cos / pdf where nothing is in the way.  Unbiased for the sum
+// of all lights; under MIS, for the weighted share of it.
+inline DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
+                                const Sampler& sampler, int vertex) {
+    const Material& m = *x.material;
+    if (t.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
+    const Light& light = choose_light(scene, sampler.get(dimension(vertex, Draw::pick)));
+    const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
+    if (!s) return {};
+    const vec3 wi = x.local.to_local(s->wi);
+    const rgb f = eval(m, x.wo, wi);
+    if (max_of(f) <= 0) return {};
+    const real pdf_light = light.pick * s->pdf;
+    const bool share = t.light == LightMode::mis && !s->delta;
+    const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
+    const bool occluded = scene.bvh.occluded(spawn_to(x.at, s->at));
+    const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
+    return {L, &light, *s, wi.z, pdf_light, weight, occluded};
+}
+
+// ---- One vertex ---------------------------------------------------------------------------------
+
+// The path so far: its last ray, drawn from the point `from` with density pdf (infinite: from the
+// camera, a mirror or glass), after k scatterings; beta is the product of f |cos| / pdf over them.
+struct Segment {
+    Ray ray;
+    vec3 from;
+    real pdf = infinity;
+    rgb beta{1, 1, 1};
+    int k = 0;
+};
+
+// What happened where it stopped.  The path's radiance grows by beta (Le weight + direct.L).
+struct Step {
+    std::optional<Vertex> x;      // nothing: the ray left the scene
+    rgb Le;                       // emitted towards wo
+    real weight = 0;              // of Le, beside light samples
+    DirectLight direct;           // reflected towards wo
+    BsdfSample scattered;         // its wi is local
+    vec3 wi;                      // the same in world space
+    std::optional<Segment> next;  // nothing: the path ends, for this reason:
+    const char* end = nullptr;
+};
+
+// Weight of emission that a ray met by chance.
+inline real weight_of_emission(const Scene& scene, LightMode mode, const Segment& s,
+                               const Vertex& x) {
+    if (mode == LightMode::none || std::isinf(s.pdf)) return 1;
+    const Light& light = scene.lights[size_t(scene.light_of[x.hit.id])];
+    const real pdf = light.pick * pdf_light(light, s.from, x.at);
+    // 0 where light samples do not go: the inside of a two-sided sphere light.
+    if (mode == LightMode::nee) return pdf > 0 ? 0 : 1;
+    return power_heuristic(s.pdf, pdf);
+}
+
+// The rendering equation (Kajiya 1986) at one vertex x:
+//   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi,
+// the integral by one direction, the light that reaches x directly by one light sample as well.
+inline Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
+    Step e;
+    auto end = [&](const char* why) {
+        e.end = why;
+        return e;
+    };
+    e.x = meet(scene, s.ray);
+    if (!e.x) return end("the ray leaves the scene");
+    const Vertex& x = *e.x;
+    const Material& m = *x.material;
+    if (m.emits()) {
+        e.Le = emitted(m, x.cos_o);
+        e.weight = weight_of_emission(scene, t.light, s, x);
+    }
+    if (s.k == scene.depth) return end("the scene's depth");
+    if (x.cos_o == 0) return end("a ray within the surface");
+    e.direct = direct_light(scene, t, x, sampler, s.k);
+
+    const vec2 u = sampler.get2(dimension(s.k, Draw::wi_x));
+    const real u_lobe = sampler.get(dimension(s.k, Draw::lobe));
+    const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
+    e.wi = x.local.to_world(b.wi);
+    if (max_of(b.f) <= 0) return end("nothing is reflected that way");
+    rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
+    if (t.roulette > 0 && s.k + 1 >= t.roulette) {
+        const real survival = std::min(real(1), max_of(beta));
+        if (sampler.get(dimension(s.k, Draw::roulette)) >= survival) return end("Russian roulette");
+        beta /= survival;
+    }
+    e.next = Segment{spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1};
+    return e;
+}
+
+// ---- The path -----------------------------------------------------------------------------------
+
+struct NoAccount {
+    void operator()(const Segment&, const Step&) const {}
+};
+
+// Radiance that comes along a ray, against its direction.  Unbiased, but for the scene's depth.
+// Calls account(segment, step) at every vertex.
+template <class Account = NoAccount>
+rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
+       Account account = {}) {
+    rgb L;
+    for (std::optional<Segment> s = Segment{ray, ray.o}; s;) {
+        const Step e = step(scene, t, *s, sampler);
+        L += s->beta * e.Le * e.weight;
+        L += s->beta * e.direct.L;
+        account(*s, e);
+        s = e.next;
+    }
+    return L;
+}

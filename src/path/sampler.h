@@ -1,0 +1,143 @@
+// path/sampler.h  2  the numbers of one path
+#pragma once
+#include <bit>
+#include <vector>
+
+#include "base/rng.h"
+#include "path/halton.h"
+
+enum class SamplerKind {
+    independent,  // every number for itself
+    stratified,   // jittered grids, shuffled
+    halton,       // scrambled Halton points, every pixel its own randomisation
+    halton_naive  // as often met: the same points in every pixel and at every bounce; biased.
+                  // One number: base 2; two: bases 2, 3 (three would add 5: none are drawn here)
+};
+
+// What each number of a path is for: dimension(k, what) at vertex k, the first surface being 0.
+enum class Draw { light_x, light_y, wi_x, wi_y, pick, lobe, roulette, count };
+inline constexpr uint32_t film_x = 0, film_y = 1;
+inline constexpr uint32_t dimension(int vertex, Draw what) {
+    return 2 + uint32_t(vertex) * uint32_t(Draw::count) + uint32_t(what);
+}
+
+// What the samplers of all paths share.
+struct Pattern {
+    SamplerKind kind = SamplerKind::halton;
+    uint64_t seed = 0;
+    uint32_t halves = 1;               // 2: odd samples have a randomisation of their own
+    uint32_t columns = 1, rows = 1;    // stratified: of a grid
+    std::vector<uint32_t> bases = {};  // halton: one prime a dimension
+
+    // Samples per pixel after which whole grids are complete.
+    uint64_t period() const { return uint64_t(halves) * columns * rows; }
+};
+
+// The most square grid of n cells.
+inline uint32_t rows_of_grid(uint64_t n) {
+    uint32_t rows = uint32_t(std::sqrt(double(n)));
+    while (n % rows) --rows;
+    return rows;
+}
+
+// For paths of up to `depth` scatterings.  A grid has at most 256 cells, divides the samples
+// without rest and is at most twice as wide as high: 16 cells if nothing fits, or spp is 0
+// (unknown).  Before its last pass is complete the cells are still a fair, if random, choice.
+inline Pattern make_pattern(SamplerKind kind, uint64_t seed, bool halves, int depth, uint64_t spp) {
+    Pattern p{kind, seed, halves && kind != SamplerKind::independent ? 2u : 1u};
+    if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
+    if (kind == SamplerKind::stratified) {
+        p.columns = p.rows = 4;
+        const uint64_t n = spp / p.halves;
+        for (uint64_t cells = std::min<uint64_t>(n, 256); cells > 1; --cells) {
+            const uint32_t rows = rows_of_grid(cells);
+            if (n % cells || cells > 2 * uint64_t(rows) * rows) continue;
+            p.columns = uint32_t(cells / rows);
+            p.rows = rows;
+            break;
+        }
+    }
+    return p;
+}
+
+// A random permutation of 0 ... n-1, at i: a keyed bijection of the next power of two, walked until
+// it comes below n (Black, Rogaway 2002; Kensler 2013), then turned, so that every value of it is
+// exactly as likely as every other.
+inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
+    const uint32_t mask = std::bit_ceil(n) - 1, half = uint32_t(std::bit_width(mask) + 1) / 2;
+    do {
+        uint64_t bits = key;
+        for (int round = 0; round < 4; ++round, bits = std::rotr(bits, 17)) {
+            i = (i * (uint32_t(bits) | 1) + uint32_t(bits >> 32)) & mask;
+            i ^= i >> half;
+        }
+    } while (i >= n);
+    return uint32_t((i + (mix(key) >> 32) * n / (uint64_t(1) << 32)) % n);
+}
+
+// The numbers of [0,1) of one sample of one pixel, a function of (seed, pixel, sample, dimension)
+// alone: any thread may draw any path at any time.
+class Sampler {
+public:
+    Sampler(const Pattern& pattern, uint64_t pixel, uint64_t sample)
+        : pattern_(pattern),
+          index_(sample / pattern.halves),
+          key_(hash(hash(hash(0, pattern.seed), pixel), sample % pattern.halves)) {
+        if (pattern.kind == SamplerKind::independent) key_ = hash(key_, sample);
+    }
+
+    real get(uint32_t dim) const {
+        switch (pattern_.kind) {
+            case SamplerKind::independent:
+                return to_unit(random(dim));
+            case SamplerKind::stratified: {
+                const auto [cell, jitter] = stratum(dim);
+                return between(cell, pattern_.columns * pattern_.rows, jitter);
+            }
+            case SamplerKind::halton: {
+                const uint64_t bits = random(dim);
+                return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
+            }
+            default:
+                return radical_inverse(2, index_);
+        }
+    }
+
+    // Dimensions dim and dim + 1.
+    vec2 get2(uint32_t dim) const {
+        if (pattern_.kind == SamplerKind::halton_naive)
+            return {radical_inverse(2, index_), radical_inverse(3, index_)};
+        if (pattern_.kind == SamplerKind::stratified) {
+            const auto [cell, jitter] = stratum(dim);
+            return {between(cell % pattern_.columns, pattern_.columns, jitter),
+                    between(cell / pattern_.columns, pattern_.rows, mix(jitter))};
+        }
+        const real x = get(dim), y = get(dim + 1);
+        return {x, y};
+    }
+
+    // A number of that part of [0,1).
+    static real between(uint32_t cell, uint32_t cells, uint64_t bits) {
+        return std::min(below_one, (real(cell) + to_unit(bits)) / real(cells));
+    }
+
+private:
+    const Pattern& pattern_;
+    uint64_t index_;  // within this half
+    uint64_t key_;    // of seed, pixel and half; independent: of the sample, too
+
+    uint64_t random(uint32_t dim) const { return mix(key_ + (dim + 1) * golden); }
+
+    // The cell of this sample in its grid, and random bits for the place in it.
+    struct Stratum {
+        uint32_t cell;
+        uint64_t jitter;
+    };
+    Stratum stratum(uint32_t dim) const {
+        const uint32_t cells = pattern_.columns * pattern_.rows;
+        const uint64_t key = random(dim);
+        const uint32_t cell =
+            permute(uint32_t(index_ % cells), cells, mix(key + index_ / cells * golden));
+        return {cell, hash(key, index_)};
+    }
+};

@@ -1,0 +1,104 @@
+// shadow/irradiance.h  1  what unoccluded spheres and polygons send to a diffuse receiver
+//
+// Irradiance over radiance (sr): the integral of max(0, cos theta) over the directions in which the
+// emitter is seen, theta from the receiver's normal.  A diffuse surface sends rho / pi of it to the
+// eye.  What is below the receiver's horizon counts as clipped away.
+#pragma once
+#include <array>
+
+#include "base/vec.h"
+
+// ---- Spheres ----------------------------------------------------------------------------------
+
+// t - atan(t) for t >= 0 without cancellation.
+inline real t_minus_atan(real t) {
+    if (t > real(0.25)) return t - std::atan(t);
+    real sum = 0, power = t * t * t;
+    for (real k = 3; std::abs(power / k) > sum * ulp / 4; k += 2, power *= -t * t) sum += power / k;
+    return sum;
+}
+
+// A sphere whose centre has cosine `cosine` with the normal and which subtends sin^2(sigma) =
+// (r / d)^2 <= 1 (Martinez, Radiative view factors; Lagarde, de Rousiers 2014).  Where the horizon
+// cuts it, with y = -cot(sigma) cot(beta), q = sin(beta) sqrt(1 - y^2), t = q tan(sigma):
+//   E / L = sin^2 cos(beta) acos(y) + atan(t) - q sin(sigma) cos(sigma).
+// The last two cancel to their third order for small sigma: q sin cos = t - t sin^2.
+inline real irradiance_sphere(real cosine, real sin2) {
+    if (sqr(cosine) >= sin2) return cosine > 0 ? pi * sin2 * cosine : 0;
+    const real s = std::sqrt(sin2);
+    const real cos_sigma = std::sqrt(1 - sin2), sin_beta = std::sqrt((1 - cosine) * (1 + cosine));
+    const real y = std::clamp(-cos_sigma * cosine / (s * sin_beta), real(-1), real(1));
+    const real q = sin_beta * std::sqrt((1 - y) * (1 + y));
+    const real first = sin2 * cosine * std::acos(y);
+    if (q * s > cos_sigma) return first + std::atan2(q * s, cos_sigma) - q * s * cos_sigma;
+    const real t = q * s / cos_sigma;
+    return std::max(real(0), first + sin2 * t - t_minus_atan(t));
+}
+
+// ---- Polygons ---------------------------------------------------------------------------------
+
+// A convex polygon seen from the receiver: vertices relative to it, z along its normal.
+struct Polygon {
+    int n = 0;
+    std::array<vec3, 8> v;
+    void add(vec3 p) { v[size_t(n++)] = p; }
+    vec3 at(int i) const { return v[size_t(i < n ? i : i - n)]; }  // i < 2 n
+};
+
+// The part of at most four corners above the horizon z = 0 (Sutherland, Hodgman 1974).
+inline Polygon above_horizon(const Polygon& p) {
+    Polygon above;
+    for (int i = 0; i < p.n; ++i) {
+        const vec3 a = p.at(i), b = p.at(i + 1);
+        if (a.z > 0) above.add(a);
+        if ((a.z > 0) != (b.z > 0)) {
+            const vec3 c = a + (b - a) * (a.z / (a.z - b.z));
+            above.add({c.x, c.y, 0});
+        }
+    }
+    return above;
+}
+
+// Lambert's theorem: E / L = 1/2 |sum over edges of Theta (Gamma)_z|, Theta the angle under which
+// an edge is seen and Gamma the unit normal of its plane with the receiver (Arvo 1995, thesis, sec.
+// 3). The sum cancels: its error is some ulp over the angle.
+inline real irradiance_lambert(const Polygon& p) {
+    real sum = 0;
+    const vec3 first = unit(p.at(0));
+    vec3 a = first;
+    for (int i = 1; i <= p.n; ++i) {
+        const vec3 b = i < p.n ? unit(p.at(i)) : first, c = cross(a, b);
+        const real sine = length(c);
+        if (sine > 0) sum += std::atan2(sine, dot(a, b)) * (c.z / sine);
+        a = b;
+    }
+    return std::abs(sum) / 2;
+}
+
+// Small ones: the integral of cos cos' / r^2 over the area, on each triangle of a fan by the
+// middles of its sides, which is exact to second order: its error is the angle cubed.
+inline real irradiance_by_area(const Polygon& p) {
+    real sum = 0;
+    for (int i = 1; i + 1 < p.n; ++i) {
+        const vec3 a = p.at(0), b = p.at(i), c = p.at(i + 1), twice_area = cross(b - a, c - a);
+        for (const vec3 m : {(a + b) / 2, (b + c) / 2, (c + a) / 2}) {
+            const real r2 = dot(m, m);
+            sum += std::abs(dot(twice_area / r2, m)) * (m.z / r2);
+        }
+    }
+    return sum / 6;
+}
+
+// A polygon of three or four corners, whichever side it shows; each formula where it is the better.
+inline real irradiance_polygon(const Polygon& whole) {
+    constexpr real small = sizeof(real) == 4 ? real(1.6e-2) : real(1e-4);  // ulp^(1/4)
+    const Polygon p = above_horizon(whole);
+    real side2 = 0, nearest2 = infinity;
+    for (int i = 0; i < p.n; ++i) {
+        const vec3 side = p.at(i + 1) - p.at(i);
+        side2 = std::max(side2, dot(side, side));
+        nearest2 = std::min(nearest2, dot(p.at(i), p.at(i)));
+    }
+    if (p.n < 3) return 0;
+    return side2 < sqr(small) * nearest2 ? irradiance_by_area(p) : irradiance_lambert(p);
+}

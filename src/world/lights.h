@@ -1,0 +1,116 @@
+// world/lights.h  2  lights that can be aimed at: spheres, polygons, points
+#pragma once
+#include <optional>
+
+#include "world/shapes.h"
+#include "world/spherical_rectangle.h"
+#include "world/warp.h"
+
+struct Light {
+    enum class Kind { sphere, triangle, quad, point } kind = Kind::point;
+    vec3 p = {};          // centre of a sphere, corner of a polygon, the point
+    vec3 u = {}, v = {};  // edges of a polygon; it emits on the side of u x v
+    real r = 0;           // radius of a sphere; it emits outwards
+    rgb L = {};           // radiance; of a point: intensity, radiance x length^2
+    bool twosided = false;
+    bool by_angle = false;  // of a rectangle: sample the solid angle, not the area
+    real error = 0;         // of surface points, see Surface
+    real pick = 0;          // probability that the scene chooses this light
+    vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
+};
+
+// Emitted power of all directions, mean of the channels (watts); double, lest it overflow.
+inline double power(const Light& l) {
+    double L = double(mean_of(l.L)), r = double(l.r);
+    constexpr double pi_ = std::numbers::pi;
+    if (l.kind == Light::Kind::point) return 4 * pi_ * L;
+    if (l.kind == Light::Kind::sphere) return pi_ * L * 4 * pi_ * r * r;
+    return pi_ * L * double(length(l.area_vector())) * (l.twosided ? 2 : 1);
+}
+
+// A point of the light seen from p: the unit direction to it, the radiance from there and the
+// density of wi (1/sr).  A point light has pdf 1 and L = I / d^2.
+struct LightSample {
+    vec3 wi;
+    Surface at;
+    rgb L;
+    real pdf = 0;
+    bool delta = false;
+};
+
+// sin^2 of the half-angle of the cone that a sphere subtends; nothing from its inside, nor from
+// where rounding leaves open whether p is on its inner side or on its outer.
+inline std::optional<real> sin2_subtended(const Light& l, vec3 p) {
+    vec3 f = l.p - p;
+    real d2 = dot(f, f);
+    if (!(d2 > sqr(l.r + l.error))) return {};
+    return sqr(l.r) / d2;
+}
+
+// The rectangle that p sees, if its solid angle is to be sampled and can be.
+inline std::optional<SeenRectangle> seen_rectangle(const Light& l, vec3 p) {
+    if (!l.by_angle || l.kind != Light::Kind::quad) return {};
+    return see_rectangle(l.p - p, l.u, l.v);
+}
+
+// Density per solid angle of the direction from p to the point y, for uniform points of a polygon.
+inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
+    vec3 w = y.p - p;
+    real d2 = dot(w, w);
+    real cos_y = std::abs(dot(y.n, w)) / std::sqrt(d2);
+    real pdf_area =
+        l.kind == Light::Kind::quad ? pdf_quad_area(l.u, l.v) : pdf_triangle_area(l.u, l.v);
+    return cos_y > 0 ? pdf_area * d2 / cos_y : 0;
+}
+
+// Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  In radii, the
+// ray passes the centre at a distance of sin(beta) = sin(theta) / sin(sigma) and meets the sphere
+// cos(beta) before, cos^2(beta) = (1 - u) (cos(theta) + cos(sigma)) / (1 + cos(sigma)): as exact
+// far away and at the limb as it is close by.
+inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, vec2 u) {
+    auto sin2_max = sin2_subtended(l, p);
+    if (!sin2_max) return {};
+    vec3 local = sample_cone(u, *sin2_max);
+    real sin_max = std::sqrt(*sin2_max), cos_max = std::sqrt(1 - *sin2_max);
+    real sin2 = sqr(local.x) + sqr(local.y);
+    vec3 foot = vec3{local.z * local.x, local.z * local.y, -sin2} / sin_max;
+    real before = std::sqrt((1 - u.x) * (local.z + cos_max) / (1 + cos_max));
+    const Frame f = frame(unit(l.p - p));
+    vec3 wi = f.to_world(local);
+    vec3 n = unit(f.to_world(foot - before * local));
+    return LightSample{wi, {l.p + l.r * n, n, l.error}, l.L, pdf_cone(*sin2_max)};
+}
+
+// Uniform over the area, or over the solid angle; nothing from the side that does not emit.
+inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, vec2 u) {
+    const auto seen = seen_rectangle(l, p);
+    vec3 on = l.kind == Light::Kind::quad ? sample_quad(u, l.u, l.v) : sample_triangle(u, l.u, l.v);
+    Surface y{seen ? p + sample_rectangle(*seen, u) : l.p + on, unit(cross(l.u, l.v)), l.error};
+    vec3 wi = unit(y.p - p);
+    real cos_y = -dot(y.n, wi);
+    if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
+    const real pdf = seen ? pdf_rectangle(*seen) : pdf_polygon_by_area(l, p, y);
+    if (!(pdf > 0)) return {};  // edge-on, but for the rounding of wi
+    return LightSample{wi, y, l.L, pdf};
+}
+
+// Nothing if the light sends nothing from the sampled point to p.
+inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
+    if (l.kind == Light::Kind::sphere) return sample_sphere_light(l, p, u);
+    if (l.kind != Light::Kind::point) return sample_polygon_light(l, p, u);
+    vec3 w = l.p - p;
+    real d2 = dot(w, w);
+    if (!(d2 > 0)) return {};
+    return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1, true};
+}
+
+// Density (1/sr) with which sample_light from p chooses the point y of the light.
+inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
+    if (l.kind == Light::Kind::point) return 0;
+    if (l.kind != Light::Kind::sphere) {
+        const auto seen = seen_rectangle(l, p);
+        return seen ? pdf_rectangle(*seen) : pdf_polygon_by_area(l, p, y);
+    }
+    auto sin2_max = sin2_subtended(l, p);
+    return sin2_max ? pdf_cone(*sin2_max) : 0;
+}

@@ -1,0 +1,156 @@
+// world/scene.h  3  what the world contains
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/words.h"
+#include "world/bsdf.h"
+#include "world/bvh.h"
+#include "world/lights.h"
+
+// A pinhole; the axes are unit, tan_half is the tangent of half the vertical field of view.
+struct Camera {
+    vec3 eye, right, up, forward;
+    real tan_half = 1;
+};
+
+// Right-handed with +y up: looking along -z, +x is right.  fov is vertical, in degrees.
+inline Camera look_at(vec3 eye, vec3 target, real fov) {
+    vec3 forward = unit(target - eye);
+    vec3 right = unit(cross(forward, {0, 1, 0}));
+    return {eye, right, cross(right, forward), forward, std::tan(fov * pi / 360)};
+}
+
+// Through the point (x, y) of the image plane, in pixels from its top left corner.  Pixels are
+// square: a wider image sees more, never stretches.
+inline Ray camera_ray(const Camera& c, Size size, real x, real y) {
+    real pixel = 2 * c.tan_half / real(size.height);
+    vec3 d = c.forward + c.right * ((x - real(size.width) / 2) * pixel) +
+             c.up * ((real(size.height) / 2 - y) * pixel);
+    return {c.eye, unit(d)};
+}
+
+inline constexpr int32_t no_light = -1;
+
+struct Scene {
+    Size size{256, 128};
+    Camera camera;
+    int depth = 8;          // scatterings
+    uint64_t samples = 64;  // per pixel, unless the user asks for others
+    real exposure = 1;      // factor from radiance to PNG
+
+    std::vector<Material> materials;
+    std::vector<Shape> shapes;
+    std::vector<uint32_t> material_of;  // of each shape
+    std::vector<int32_t> light_of;      // of each shape, or no_light
+    std::vector<Light> lights;
+
+    Bvh bvh;                       // from here on made by prepare
+    std::vector<double> pick_cdf;  // running sum of lights[i].pick
+
+    const Material& material(const Hit& hit) const { return materials[material_of[hit.id]]; }
+};
+
+inline void add_shape(Scene& s, const Shape& shape, uint32_t material, int32_t light) {
+    s.shapes.push_back(shape);
+    s.material_of.push_back(material);
+    s.light_of.push_back(light);
+}
+
+// Adds the light that an emitting shape is; returns its index, or no_light.
+inline int32_t add_light(Scene& s, Light light, uint32_t material, real error) {
+    const Material& m = s.materials[material];
+    if (!m.emits()) return no_light;
+    light.L = m.Le;
+    light.twosided = m.twosided;
+    light.error = error;
+    s.lights.push_back(light);
+    return int32_t(s.lights.size()) - 1;
+}
+
+inline void add_sphere(Scene& s, vec3 centre, real r, uint32_t material) {
+    Shape sphere{centre, {}, {}, r};
+    Light light{Light::Kind::sphere, centre, {}, {}, r};
+    add_shape(s, sphere, material, add_light(s, light, material, rounding_error(sphere)));
+}
+
+// Whether a triangle has an area to be hit or sampled, and a normal: its square must neither
+// overflow nor be denormal, or unit loses digits.
+inline bool has_area(const Shape& s) {
+    vec3 n = area_vector(s);
+    return std::isnormal(dot(n, n));
+}
+
+// Returns the number of triangles dropped because they have no area.
+inline int add_triangle(Scene& s, vec3 a, vec3 b, vec3 c, uint32_t material) {
+    Shape t{a, b, c};
+    if (!has_area(t)) return 1;
+    Light light{Light::Kind::triangle, a, b - a, c - a};
+    add_shape(s, t, material, add_light(s, light, material, rounding_error(t)));
+    return 0;
+}
+
+// Parallelogram with corners a, b, c, d: triangles (a, b, c) and (a, c, d), one light; it faces the
+// side of (b-a) x (d-a).
+inline int add_face(Scene& s, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material) {
+    Shape first{a, b, c}, second{a, c, d};
+    if (!has_area(first) || !has_area(second)) return 2;
+    real error = std::max(rounding_error(first), rounding_error(second));
+    int32_t light = add_light(s, {Light::Kind::quad, a, b - a, d - a}, material, error);
+    add_shape(s, first, material, light);
+    add_shape(s, second, material, light);
+    return 0;
+}
+
+// Corner p and two edges.
+inline int add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
+    return add_face(s, p, p + u, p + u + v, p + v, material);
+}
+
+// Size along x, y, z from the origin, then rotated about y (x' = c x + s z, z' = c z - s x), then
+// moved.  Faces outwards.  Each corner is computed once, so the box is watertight.
+inline int add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t material) {
+    const double angle = double(degrees) * std::numbers::pi / 180;
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    vec3 corner[8];  // bit 0: far in x, bit 1: in y, bit 2: in z
+    for (int i = 0; i < 8; ++i) {
+        const double x = double(size.x) * (i & 1), z = double(size.z) * (i >> 2);
+        corner[i] = {real(cosine * x + sine * z + double(move.x)),
+                     size.y * real(i >> 1 & 1) + move.y,
+                     real(cosine * z - sine * x + double(move.z))};
+    }
+    int dropped = 0;
+    for (auto [a, b, c, d] : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6},   // -z, +z
+                              std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3},   // -y, +y
+                              std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})  // -x, +x
+        dropped += add_face(s, corner[a], corner[b], corner[c], corner[d], material);
+    return dropped;
+}
+
+inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
+    Light light{Light::Kind::point, p};
+    light.L = intensity;
+    if (max_of(intensity) > 0) s.lights.push_back(light);
+}
+
+// Builds the tree, and lets lights be chosen in proportion to their power.  Random numbers are
+// multiples of ulp: so are the probabilities, exactly, and by a share dealt evenly none is 0.
+inline void prepare(Scene& s) {
+    s.bvh = Bvh(s.shapes);
+    const double n = double(s.lights.size()), even = std::min(0.5, 2 * n * double(ulp));
+    double total = 0, sum = 0, before = 0;
+    for (const Light& l : s.lights) total += power(l);
+    for (Light& l : s.lights) {
+        sum += power(l);
+        const double cdf = even * double(s.pick_cdf.size() + 1) / n + (1 - even) * (sum / total);
+        s.pick_cdf.push_back(std::round(cdf / double(ulp)) * double(ulp));
+        l.pick = real(s.pick_cdf.back() - before);
+        before = s.pick_cdf.back();
+    }
+}
+
+// A light, with probability pick.  Only if there is one.
+inline const Light& choose_light(const Scene& s, real u) {
+    auto i = std::upper_bound(s.pick_cdf.begin(), s.pick_cdf.end(), double(u));
+    return s.lights[std::min(size_t(i - s.pick_cdf.begin()), s.lights.size() - 1)];
+}

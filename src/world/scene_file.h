@@ -1,0 +1,293 @@
+// world/scene_file.h  4  reading scenes/NAME.scene
+#pragma once
+#include <map>
+#include <sstream>
+
+#include "world/obj.h"
+#include "world/scene.h"
+
+// The grammar: one statement a line, keyword first, material last; '#' starts a comment.
+struct Statement {
+    std::string_view keyword, words;
+};
+inline constexpr Statement grammar[] = {
+    {"size", "WIDTH HEIGHT"},
+    {"camera", "EYE_X EYE_Y EYE_Z  TARGET_X TARGET_Y TARGET_Z  VERTICAL_FOV"},
+    {"depth", "SCATTERINGS"},
+    {"samples", "PER_PIXEL"},
+    {"exposure", "FACTOR"},
+    {"diffuse", "NAME  R G B"},
+    {"phong", "NAME  DIFFUSE_R DIFFUSE_G DIFFUSE_B  LOBE_R LOBE_G LOBE_B  EXPONENT"},
+    {"mirror", "NAME  R G B"},
+    {"glass", "NAME  INDEX_OF_REFRACTION"},
+    {"light", "NAME  R G B  [twosided] [MATERIAL]"},
+    {"pointlight", "X Y Z  R G B"},
+    {"sphere", "X Y Z  RADIUS  MATERIAL"},
+    {"triangle", "AX AY AZ  BX BY BZ  CX CY CZ  MATERIAL"},
+    {"quad", "X Y Z  UX UY UZ  VX VY VZ  MATERIAL"},
+    {"mesh", "FILE.obj  SCALE  X Y Z  [MATERIAL]"},
+    {"box", "WIDTH HEIGHT DEPTH  DEGREES_ABOUT_Y  X Y Z  MATERIAL"},
+};
+
+// A scene and what its author should know about it.
+struct ParsedScene {
+    Scene scene;
+    std::vector<std::string> warnings;
+};
+
+// Reads statements one after the other; every error is a UserError without the line number.
+class Parser {
+public:
+    // Files are named relative to `folder`.
+    explicit Parser(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    void statement(const std::string& text, int line) {
+        words_.clear();
+        std::istringstream in(text.substr(0, text.find('#')));
+        for (std::string word; in >> word;) words_.push_back(word);
+        if (words_.empty()) return;
+        next_ = 1;
+        line_ = line;
+        const std::string keyword = words_[0];
+        check_count(keyword);
+        Scene& s = scene_;
+        if (keyword == "size") {
+            once(keyword);
+            s.size = parse_size(words_[1], words_[2]);
+        } else if (keyword == "camera") {
+            once(keyword);
+            camera();
+        } else if (keyword == "depth") {
+            once(keyword);
+            s.depth = int(parse_count(words_[1], 0, max_depth));
+        } else if (keyword == "samples") {
+            once(keyword);
+            s.samples = parse_count(words_[1], 1, max_samples);
+        } else if (keyword == "exposure") {
+            once(keyword);
+            s.exposure = positive("exposure");
+        } else if (keyword == "pointlight") {
+            vec3 p = point();
+            add_point_light(s, p, colour());
+        } else if (keyword == "sphere") {
+            vec3 centre = point();
+            real r = length_of("radius");
+            uint32_t m = material();
+            add_sphere(s, centre, r, m);
+            if (s.materials[m].emits()) sphere_lights_.push_back({centre, r, line_});
+        } else if (keyword == "triangle") {
+            vec3 a = point(), b = point(), c = point();
+            dropped_ += add_triangle(s, a, b, c, material());
+        } else if (keyword == "quad") {
+            vec3 p = point(), u = point(), v = point();
+            dropped_ += add_quad(s, p, u, v, material());
+        } else if (keyword == "mesh") {
+            mesh();
+        } else if (keyword == "box") {
+            real w = length_of("width"), h = length_of("height"), d = length_of("depth");
+            real degrees = number();
+            vec3 move = point();
+            dropped_ += add_box(s, {w, h, d}, degrees, move, material());
+        } else {
+            define(keyword);
+        }
+    }
+
+    // What only the whole scene can tell.
+    ParsedScene finish() {
+        if (!seen_.contains("camera")) throw UserError("no camera");
+        if (scene_.shapes.empty()) throw UserError("empty scene: nothing to look at");
+        for (const SphereLight& l : sphere_lights_)
+            if (length(scene_.camera.eye - l.centre) <= l.r) {
+                line_ = l.line;
+                throw UserError("the camera is inside this sphere light");
+            }
+        ParsedScene result;
+        if (dropped_ > 0)
+            result.warnings.push_back(std::to_string(dropped_) +
+                                      (dropped_ == 1 ? " triangle without area was dropped"
+                                                     : " triangles without area were dropped"));
+        if (scene_.lights.empty()) result.warnings.push_back("no light: all will be black");
+        prepare(scene_);
+        result.scene = std::move(scene_);
+        return result;
+    }
+
+    int line() const { return line_; }
+
+private:
+    // Lengths: their fourth powers must neither overflow nor vanish.
+    static constexpr double longest = sizeof(real) == 4 ? 1e9 : 1e30;
+    static constexpr uint64_t max_depth = 1000000, max_samples = 1 << 20;
+
+    struct SphereLight {
+        vec3 centre;
+        real r;
+        int line;
+    };
+
+    const std::filesystem::path folder_;
+    Scene scene_;
+    std::map<std::string, uint32_t> material_;  // by name
+    std::map<std::string, int> seen_;           // line of the statements that stand only once
+    std::vector<SphereLight> sphere_lights_;
+    std::vector<std::string> words_;
+    size_t next_ = 0;  // word to read
+    int line_ = 0, dropped_ = 0;
+
+    void check_count(const std::string& keyword) const {
+        std::vector<std::string_view> known;
+        for (const Statement& g : grammar) {
+            known.push_back(g.keyword);
+            if (g.keyword != keyword) continue;
+            size_t least = 0, most = 0;
+            std::istringstream in{std::string(g.words)};
+            for (std::string word; in >> word; ++most) least += word[0] != '[';
+            size_t found = words_.size() - 1;
+            if (found < least || found > most)
+                throw UserError("too " + std::string(found < least ? "few" : "many") + " words (" +
+                                std::to_string(found) + "): " + keyword + " " +
+                                std::string(g.words));
+            return;
+        }
+        throw UserError(unknown("keyword", keyword, known));
+    }
+
+    void once(const std::string& keyword) {
+        auto [place, is_new] = seen_.try_emplace(keyword, line_);
+        if (!is_new)
+            throw UserError("a second " + keyword + ", after line " +
+                            std::to_string(place->second));
+    }
+
+    real number(double most = largest_number) { return real(parse_number(words_[next_++], most)); }
+    real positive(const std::string& what) {
+        real x = number();
+        if (!(x > 0)) throw UserError(what + " must be positive, not " + words_[next_ - 1]);
+        return x;
+    }
+    real length_of(const std::string& what) {
+        real x = number(longest);
+        if (!(x > 0)) throw UserError(what + " must be positive, not " + words_[next_ - 1]);
+        if (double(x) < 1 / longest) throw UserError(what + " is too small: " + words_[next_ - 1]);
+        return x;
+    }
+    vec3 point() {
+        real x = number(longest), y = number(longest), z = number(longest);
+        return {x, y, z};
+    }
+    rgb colour() {
+        rgb c;
+        for (auto channel : axis) {
+            c.*channel = number();
+            if (c.*channel < 0)
+                throw UserError("a colour must not be negative: " + words_[next_ - 1]);
+        }
+        return c;
+    }
+    void check_albedo(rgb albedo) const {
+        if (max_of(albedo) > 1 + 4 * ulp)
+            throw UserError("reflects more than it receives: a channel of the albedo exceeds 1");
+    }
+
+    uint32_t material() {
+        const std::string& name = words_[next_++];
+        auto found = material_.find(name);
+        if (found == material_.end()) throw UserError("undefined material " + in_quotes(name));
+        return found->second;
+    }
+
+    void camera() {
+        vec3 eye = point(), target = point();
+        real fov = number();
+        if (!(fov > 0 && fov < 180)) throw UserError("field of view must be between 0 and 180");
+        scene_.camera = look_at(eye, target, fov);
+        if (!is_finite(scene_.camera.right))
+            throw UserError("the camera must look somewhere, and not along y, which is up");
+    }
+
+    // Polygons of an OBJ file, scaled and moved.  Parallelograms are lights in one piece.
+    void mesh() {
+        const std::string path = (folder_ / words_[next_++]).string();
+        const real scale = length_of("scale");
+        const vec3 move = point();
+        std::optional<uint32_t> given;
+        if (next_ < words_.size()) given = material();
+        const ObjMesh mesh = ObjReader::read(path);
+        const auto first = uint32_t(scene_.materials.size());
+        for (const ObjMesh::Material& m : mesh.materials) {
+            Material material;
+            material.kd = m.kd;
+            material.Le = m.ke;
+            scene_.materials.push_back(material);
+        }
+        for (const ObjMesh::Face& face : mesh.faces) {
+            const std::string where = path + ":" + std::to_string(face.line) + ": ";
+            if (face.material < 0 && !given)
+                throw UserError(where + "no material: give one here or in " + in_quotes("mesh"));
+            const uint32_t m = face.material < 0 ? *given : first + uint32_t(face.material);
+            std::vector<vec3> corners;
+            for (uint32_t i : face.corners) corners.push_back(mesh.vertices[i] * scale + move);
+            for (vec3 c : corners)
+                if (double(max_abs(c)) > longest) throw UserError(where + "too far away");
+            const auto fan = fan_of(corners);
+            if (!fan) throw UserError(where + "no corner sees all others: cut this polygon up");
+            const std::vector<vec3>& c = *fan;
+            if (c.size() == 4 && c[0] + c[2] == c[1] + c[3])
+                dropped_ += add_face(scene_, c[0], c[1], c[2], c[3], m);
+            else
+                for (size_t i = 1; i + 1 < c.size(); ++i)
+                    dropped_ += add_triangle(scene_, c[0], c[i], c[i + 1], m);
+        }
+    }
+
+    // diffuse, phong, mirror, glass, light
+    void define(const std::string& keyword) {
+        const std::string name = words_[next_++];
+        if (material_.contains(name)) throw UserError("a second material " + in_quotes(name));
+        Material m;
+        if (keyword == "diffuse") {
+            m.kd = colour();
+        } else if (keyword == "phong") {
+            m.kd = colour();
+            m.ks = colour();
+            m.exponent = number(1e6);
+            if (m.exponent < 0) throw UserError("the exponent must not be negative");
+        } else if (keyword == "mirror") {
+            m.kind = Material::Kind::mirror;
+            m.ks = colour();
+        } else if (keyword == "glass") {
+            m.kind = Material::Kind::glass;
+            m.ior = positive("index of refraction");
+        } else {
+            rgb Le = colour();
+            bool twosided = next_ < words_.size() && words_[next_] == "twosided";
+            if (twosided) ++next_;
+            if (next_ < words_.size()) m = scene_.materials[material()];
+            if (next_ < words_.size()) throw UserError("unknown word " + in_quotes(words_[next_]));
+            m.Le = Le;
+            m.twosided = twosided;
+        }
+        check_albedo(m.kd + m.ks);
+        material_[name] = uint32_t(scene_.materials.size());
+        scene_.materials.push_back(m);
+    }
+};
+
+// Throws UserError "NAME:LINE: what is wrong".
+inline ParsedScene parse_scene(const std::string& text, const std::string& name) {
+    std::istringstream in(text);
+    Parser parser(std::filesystem::path(name).parent_path());
+    int number = 0;
+    try {
+        for (std::string line; std::getline(in, line);) parser.statement(line, ++number);
+        return parser.finish();
+    } catch (const UserError& e) {
+        int line = std::max(1, parser.line());
+        throw UserError(name + ":" + std::to_string(line) + ": " + e.what());
+    }
+}
+
+inline ParsedScene read_scene(const std::string& path) {
+    return parse_scene(read_file(path), path);
+}

@@ -1,0 +1,182 @@
+// world/shapes.h  1  rays, boxes, triangles, spheres, and where the next ray starts
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "base/vec.h"
+
+// The points o + t d with 0 < t <= tmax.  d is unit, so t is a distance.
+struct Ray {
+    vec3 o, d;
+    real tmax = infinity;
+};
+
+// A triangle (vertices a, b, c; r = 0) or a sphere (centre a, radius r > 0).
+struct Shape {
+    vec3 a, b, c;
+    real r = 0;
+    bool is_sphere() const { return r > 0; }
+};
+
+// Where a ray meets a shape: at distance t, in a triangle at p = (1-v-w) a + v b + w c.
+struct Hit {
+    real t = infinity;
+    uint32_t id = UINT32_MAX;  // index of the shape
+    real v = 0, w = 0;
+};
+
+// A point of a surface, its unit normal (triangle: side of (b-a) x (c-a); sphere: outwards), and
+// a bound on the distance between p as computed and the surface as the intersectors see it.
+struct Surface {
+    vec3 p, n;
+    real error = 0;
+};
+
+// ---- Boxes ------------------------------------------------------------------------------------
+
+struct Box {
+    vec3 lo{infinity, infinity, infinity};
+    vec3 hi{-infinity, -infinity, -infinity};  // empty
+
+    void add(vec3 p) {
+        lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+        hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    }
+    void add(const Box& b) {
+        lo = {std::min(lo.x, b.lo.x), std::min(lo.y, b.lo.y), std::min(lo.z, b.lo.z)};
+        hi = {std::max(hi.x, b.hi.x), std::max(hi.y, b.hi.y), std::max(hi.z, b.hi.z)};
+    }
+    // Half the surface area; 0 for an empty box.
+    real half_area() const {
+        vec3 e = hi - lo;
+        return e.x < 0 ? 0 : e.x * e.y + e.y * e.z + e.z * e.x;
+    }
+};
+
+// What rounding may do to a shape's own geometry, as a length: the intersectors lose a few ulp of
+// the largest coordinate, wherever on the shape the hit lies.  Proportional to the scene, so that
+// a scene scaled by a power of two gives the same image bit for bit.
+inline real rounding_error(const Shape& s) {
+    real size =
+        s.is_sphere() ? max_abs(s.a) + s.r : std::max({max_abs(s.a), max_abs(s.b), max_abs(s.c)});
+    return 16 * ulp * size;
+}
+
+// Bounds of a shape, padded so that no box starts behind a hit that its shape computes.
+inline Box bounds(const Shape& s) {
+    Box box;
+    if (s.is_sphere()) {
+        vec3 r{s.r, s.r, s.r};
+        box.add(s.a - r);
+        box.add(s.a + r);
+    } else {
+        box.add(s.a);
+        box.add(s.b);
+        box.add(s.c);
+    }
+    real e = rounding_error(s);
+    return {box.lo - vec3{e, e, e}, box.hi + vec3{e, e, e}};
+}
+
+// ---- Triangles --------------------------------------------------------------------------------
+
+// The shear that turns a ray into the z axis: kz is the longest component of d (Woop, Benthin,
+// Wald 2013, JCGT 2(1)).
+struct Shear {
+    real vec3::*kx = nullptr;
+    real vec3::*ky = nullptr;
+    real vec3::*kz = nullptr;
+    real sx = 0, sy = 0, sz = 0;
+};
+
+inline Shear shear(vec3 d) {
+    vec3 m{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
+    int k = m.x > m.y ? (m.x > m.z ? 0 : 2) : (m.y > m.z ? 1 : 2);
+    Shear s{axis[(k + 1) % 3], axis[(k + 2) % 3], axis[k]};
+    s.sz = 1 / d.*s.kz;
+    s.sx = d.*s.kx * s.sz;
+    s.sy = d.*s.ky * s.sz;
+    return s;
+}
+
+// Watertight: u, v, w are the edge functions of the sheared triangle.  Vertices that triangles
+// share are sheared to the same numbers, and an edge function is never rounded to the wrong sign or
+// to 0; a 0 counts as inside.  So a ray between two triangles always meets one of them.  Its error
+// is relative, so that even in a sliver (1-v-w) a + v b + w c is where the ray is.  All this holds
+// only while nothing else is fused.
+inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, const Shear& k,
+                                             real tmax) {
+    real ox = ray.o.*k.kx, oy = ray.o.*k.ky, oz = ray.o.*k.kz;
+    real az = s.a.*k.kz - oz, ax = (s.a.*k.kx - ox) - k.sx * az, ay = (s.a.*k.ky - oy) - k.sy * az;
+    real bz = s.b.*k.kz - oz, bx = (s.b.*k.kx - ox) - k.sx * bz, by = (s.b.*k.ky - oy) - k.sy * bz;
+    real cz = s.c.*k.kz - oz, cx = (s.c.*k.kx - ox) - k.sx * cz, cy = (s.c.*k.ky - oy) - k.sy * cz;
+    real u = difference_of_products(cx, by, cy, bx);
+    real v = difference_of_products(ax, cy, ay, cx);
+    real w = difference_of_products(bx, ay, by, ax);
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return {};
+    real det = u + v + w;
+    if (det == 0) return {};  // edge-on: its neighbours have it
+    real t = (u * az + v * bz + w * cz) * k.sz / det;
+    if (!(t > 0 && t <= tmax)) return {};
+    return Hit{t, 0, v / det, w / det};
+}
+
+// ---- Spheres ----------------------------------------------------------------------------------
+
+// Roots of |f + t d|^2 = r^2, f = o - c, without cancellation: the discriminant from the vector
+// between the centre and its foot on the ray, the roots from q = b +- sqrt and c / q (Haines,
+// Gunther, Akenine-Moller 2019, Ray Tracing Gems ch. 7).  Comparisons are written so that NaN
+// misses.
+inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real tmax) {
+    vec3 f = ray.o - s.a;
+    real b = -dot(f, ray.d);
+    vec3 foot = f + b * ray.d;
+    real discriminant = s.r * s.r - dot(foot, foot);
+    if (!(discriminant >= 0)) return {};
+    real q = b + std::copysign(std::sqrt(discriminant), b);
+    real c = dot(f, f) - s.r * s.r;
+    real near = b >= 0 ? c / q : q;
+    real far = b >= 0 ? q : c / q;
+    real t = near > 0 ? near : far;
+    if (!(t > 0 && t <= tmax)) return {};
+    return Hit{t};
+}
+
+// ---- Any shape --------------------------------------------------------------------------------
+
+inline std::optional<Hit> intersect(const Shape& s, const Ray& ray, const Shear& k, real tmax) {
+    return s.is_sphere() ? intersect_sphere(s, ray, tmax) : intersect_triangle(s, ray, k, tmax);
+}
+
+// Twice the area of a triangle, along its normal.
+inline vec3 area_vector(const Shape& s) { return cross(s.b - s.a, s.c - s.a); }
+
+// The point hit, moved onto the shape itself: it is as exact far from the eye as near it.  So far
+// away that rounding leaves only a sphere's centre, it is the point towards the eye.
+inline Surface surface(const Shape& s, const Ray& ray, const Hit& hit) {
+    if (s.is_sphere()) {
+        vec3 out = ray.o + hit.t * ray.d - s.a;
+        vec3 n = out == vec3{} ? -ray.d : unit(out);
+        return {s.a + s.r * n, n, rounding_error(s)};
+    }
+    vec3 p = (1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c;
+    return {p, unit(area_vector(s)), rounding_error(s)};
+}
+
+// The one place that owns the ray offset.  A ray leaves a surface from a point 2 errors off it,
+// on the side that d points to; one error is p's, the other the intersector's.
+inline vec3 offset(const Surface& x, vec3 towards) {
+    return x.p + std::copysign(2 * x.error, dot(x.n, towards)) * x.n;
+}
+
+inline Ray spawn(const Surface& x, vec3 d) { return {offset(x, d), d}; }
+
+// The open segment between two surface points, to be asked whether it is occluded.  Seen from afar
+// the far end is only as exact as the distance.
+inline Ray spawn_to(const Surface& x, Surface y) {
+    y.error += 16 * ulp * length(y.p - x.p);
+    vec3 o = offset(x, y.p - x.p);
+    vec3 to = offset(y, x.p - y.p) - o;
+    real distance = length(to);
+    return {o, to / distance, distance};
+}

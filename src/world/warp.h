@@ -1,0 +1,66 @@
+// world/warp.h  1  points and directions from uniform numbers u in [0,1)^2, with densities
+//
+// Every sampler stands above its density.  Densities are per solid angle (1/sr) unless the name
+// ends in _area (1/length^2).  Local z is the axis.
+#pragma once
+#include "base/vec.h"
+
+inline vec3 spherical(real cos_theta, real sin_theta, real phi) {
+    return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
+}
+
+// Uniform over the hemisphere z > 0: z = 1 - u is uniform (Archimedes).
+inline vec3 sample_uniform_hemisphere(vec2 u) {
+    real z = 1 - u.x;
+    return spherical(z, std::sqrt(u.x * (1 + z)), 2 * pi * u.y);
+}
+inline real pdf_uniform_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 / (2 * pi) : 0; }
+
+// Density cos(theta)/pi: a uniform point of the disc, lifted to the hemisphere (Malley 1988).
+inline vec3 sample_cosine_hemisphere(vec2 u) {
+    return spherical(std::sqrt(1 - u.x), std::sqrt(u.x), 2 * pi * u.y);
+}
+inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? cos_theta / pi : 0; }
+
+// Density (n+1)/(2 pi) cos^n(alpha) about z, 0 for alpha >= 90 degrees (Phong 1975; Lafortune,
+// Willems 1994).  cos(alpha) = (1-u)^(1/(n+1)); 1 - cos^2 by expm1 keeps its digits for large n.
+inline vec3 sample_phong_lobe(vec2 u, real n) {
+    real log_cos = std::log1p(-u.x) / (n + 1);
+    return spherical(std::exp(log_cos), std::sqrt(-std::expm1(2 * log_cos)), 2 * pi * u.y);
+}
+inline real pdf_phong_lobe(real cos_alpha, real n) {
+    return cos_alpha > 0 ? (n + 1) / (2 * pi) * std::pow(cos_alpha, n) : 0;
+}
+
+// Solid angle of the cone of half-angle sigma, from sin^2(sigma), sigma <= 90 degrees:
+// 2 pi (1 - cos) = 2 pi sin^2 / (1 + cos) without cancellation.
+inline real solid_angle_cone(real sin2_max) {
+    return 2 * pi * sin2_max / (1 + std::sqrt(1 - sin2_max));
+}
+
+// Uniform over that cone about z.  With x = 1 - cos(theta), sin^2(theta) = x (2 - x).
+inline vec3 sample_cone(vec2 u, real sin2_max) {
+    real x = u.x * sin2_max / (1 + std::sqrt(1 - sin2_max));
+    return spherical(1 - x, std::sqrt(x * (2 - x)), 2 * pi * u.y);
+}
+inline real pdf_cone(real sin2_max) { return 1 / solid_angle_cone(sin2_max); }
+
+// Uniform over a triangle with corner at the origin and edges e, f (Turk 1990): the corner's
+// barycentric coordinate is 1 - sqrt(u).
+inline vec3 sample_triangle(vec2 u, vec3 e, vec3 f) {
+    real s = std::sqrt(u.x);
+    return s * (1 - u.y) * e + s * u.y * f;
+}
+inline real pdf_triangle_area(vec3 e, vec3 f) { return 2 / length(cross(e, f)); }
+
+// Uniform over the parallelogram with corner at the origin and edges e, f.
+inline vec3 sample_quad(vec2 u, vec3 e, vec3 f) { return u.x * e + u.y * f; }
+inline real pdf_quad_area(vec3 e, vec3 f) { return 1 / length(cross(e, f)); }
+
+// Weight of the technique with density p beside one with density q, for one sample of each
+// (power heuristic, Veach 1997, eq. 9.14), without overflow.  Infinite p (a delta) weighs 1.
+inline real power_heuristic(real p, real q) {
+    if (p == 0) return 0;
+    real ratio = q / p;
+    return 1 / (1 + ratio * ratio);
+}

@@ -1,0 +1,81 @@
+// base/vec_test.cpp  frames, cross products, numbers of [0,1)
+#include "base/vec.h"
+
+#include "base/rng.h"
+#include "oracle/expect.h"
+
+namespace {
+
+// The larger of both; infinite if either is not a number.
+real worse(real a, real b) { return a <= b ? b : b <= a ? a : infinity; }
+
+real largest_flaw(const Frame& f) {
+    if (!is_finite(f.s) || !is_finite(f.t) || !is_finite(f.n)) return infinity;
+    return std::max({std::abs(dot(f.s, f.t)), std::abs(dot(f.t, f.n)), std::abs(dot(f.n, f.s)),
+                     std::abs(dot(f.s, f.s) - 1), std::abs(dot(f.t, f.t) - 1),
+                     length(cross(f.s, f.t) - f.n)});
+}
+
+}  // namespace
+
+TEST_CASE("frames are right-handed and orthonormal, at the poles too") {
+    Rng rng{seed_here()};
+    auto u = [&] { return 2 * to_unit(rng.bits()) - 1; };
+    real worst = 0;
+    for (int i = 0; i < 100000; ++i)
+        worst = worse(worst, largest_flaw(frame(unit({u(), u(), u()}))));
+    for (real z : {real(1), real(-1)})
+        for (real tiny = 1; tiny > 0; tiny /= 4)
+            for (real angle = 0; angle < 6; angle += real(0.1))
+                worst = worse(
+                    worst,
+                    largest_flaw(frame(unit({tiny * std::cos(angle), tiny * std::sin(angle), z}))));
+    for (real zero : {real(0), -real(0)}) worst = worse(worst, largest_flaw(frame({1, 0, zero})));
+    CHECK(worst < 16 * ulp);
+}
+
+TEST_CASE("a frame's local coordinates invert its world coordinates") {
+    const Frame f = frame(unit({1, -2, real(0.5)}));
+    const vec3 v{3, 4, -5};
+    CHECK(length(f.to_world(f.to_local(v)) - v) < 32 * ulp * length(v));
+    CHECK(length(f.to_world({0, 0, 1}) - f.n) == 0);
+}
+
+TEST_CASE("cross products keep their digits where the factors are nearly parallel") {
+    // (1, e, 0) x (1, 2e, 0) = (0, 0, e): naive rounding loses nothing here, the next one all.
+    const real e = 64 * ulp;
+    const real a = 1 + e, b = 1 - e;  // a b - 1 = -e^2, far below the rounding of a b
+    CHECK(cross({a, 1, 0}, {1, b, 0}).z == -e * e);
+    CHECK(cross({1, a, 0}, {b, 1, 0}).z == e * e);
+}
+
+TEST_CASE("every channel counts: largest, mean, finite") {
+    const real nan = std::numeric_limits<real>::quiet_NaN();
+    for (auto channel : axis) {
+        vec3 v{1, 1, 1};
+        v.*channel = -7;
+        CHECK(mean_of(v) == real(-5) / 3);
+        CHECK(max_of(v) == 1);
+        CHECK(max_abs(v) == 7);
+        v.*channel = 4;
+        CHECK(max_of(v) == 4);
+        CHECK(is_finite(v));
+        for (real bad : {nan, infinity, -infinity}) {
+            v.*channel = bad;
+            CHECK(!is_finite(v));
+        }
+    }
+}
+
+TEST_CASE("random bits become numbers below 1, all of them") {
+    CHECK(to_unit(UINT64_MAX) == below_one);
+    CHECK(to_unit(0) == 0);
+    CHECK(to_unit(uint64_t(1) << 63) == real(0.5));
+}
+
+TEST_CASE("power of two scaling commutes with every operation of a frame") {
+    const vec3 v{real(0.3), real(-0.7), real(1.9)};
+    const real k = std::ldexp(real(1), 20);
+    CHECK(unit(v * k) == unit(v));
+    CHECK(cross(v * k, {1, 2, 3}) == cross(v, {1, 2, 3}) * k);
+}

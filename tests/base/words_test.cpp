@@ -1,0 +1,74 @@
+// base/words_test.cpp  numbers, sizes and words as users write them
+#include "base/words.h"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+// What is said about it; "" if it is accepted.
+std::string complaint(const auto& read) {
+    try {
+        read();
+        return "";
+    } catch (const UserError& e) {
+        return e.what();
+    }
+}
+
+std::string about_number(const std::string& text) {
+    return complaint([&] { parse_number(text); });
+}
+
+std::string about_size(const std::string& width, const std::string& height) {
+    return complaint([&] { parse_size(width, height); });
+}
+
+}  // namespace
+
+TEST_CASE("a number is the whole word, finite and within its limits") {
+    CHECK(parse_number("-1.5e-3") == -0.0015);
+    CHECK(parse_number("+2") == 2);
+    CHECK(parse_number("-1e30") == -1e30);
+    for (const char* word : {"", "x", "1x", "1 ", " 1", "+-1", "++1", "0x10", "1,5"})
+        CHECK(about_number(word).find("is not a number") != std::string::npos);
+    CHECK(about_number("nan") == "'nan' is not finite");
+    CHECK(about_number("-inf") == "'-inf' is not finite");
+    CHECK(about_number("1.1e30") == "'1.1e30' is too large");
+    CHECK(about_number("-1.1e30") == "'-1.1e30' is too large");
+    CHECK(about_number("1e999") == "'1e999' is out of range");
+}
+
+TEST_CASE("a count is a whole number from the least to the most") {
+    CHECK(parse_count("3", 3, 5) == 3);
+    CHECK(parse_count("5", 3, 5) == 5);
+    CHECK(parse_count("18446744073709551615", 0, UINT64_MAX) == UINT64_MAX);
+    for (const char* word : {"2", "6", "-3", "+3", "3.0", "3x", "", "18446744073709551619"})
+        CHECK(complaint([&] {
+                  parse_count(word, 3, 5);
+              }).ends_with(" is not a whole number from 3 to 5"));
+}
+
+TEST_CASE("a size has 1 to 65536 pixels a side and at most 2^25 in all") {
+    CHECK(parse_size("65536", "512").width == 65536);
+    CHECK(parse_size("512", "65536").height == 65536);
+    for (const auto& [width, height] : {std::pair{"65536", "65536"}, {"65536", "513"}})
+        CHECK(about_size(width, height).ends_with("has more than 33554432 pixels"));
+    CHECK(about_size("0", "1") == "'0' is not a whole number from 1 to 65536");
+    CHECK(about_size("1", "65537") == "'65537' is not a whole number from 1 to 65536");
+}
+
+TEST_CASE("the nearest word is the one with the fewest edits") {
+    CHECK(edit_distance("", "abc") == 3);
+    CHECK(edit_distance("abc", "abc") == 0);
+    CHECK(edit_distance("kitten", "sitting") == 3);
+    CHECK(edit_distance("sitting", "kitten") == 3);
+    CHECK(edit_distance("spere", "sphere") == 1);
+    CHECK(unknown("keyword", "qaud", {"size", "quad", "sphere"}) ==
+          "unknown keyword 'qaud' (did you mean 'quad'?)");
+}
+
+TEST_CASE("what the user wrote is shown short and printable") {
+    CHECK(in_quotes("a b~") == "'a b~'");
+    CHECK(in_quotes("a\x7f\n\x1b\xc3") == std::string("'a").append(4, '?') + "'");
+    CHECK(in_quotes(std::string(41, 'x')) == "'" + std::string(40, 'x') + "...'");
+}

@@ -1,0 +1,359 @@
+// film/image_test.cpp  images keep their values and their orientation, in memory, in files, in
+// pictures
+#include "film/image.h"
+
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <map>
+
+#include "film/film.h"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Pixel = std::array<float, 3>;
+
+// A directory of its own, removed at the end.
+struct Folder {
+    fs::path path;
+    Folder() {
+        std::string name = (fs::temp_directory_path() / "penumbra-image-XXXXXX").string();
+        REQUIRE(::mkdtemp(name.data()) != nullptr);
+        path = name;
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() { fs::remove_all(path); }
+
+    std::string operator/(const std::string& name) const { return (path / name).string(); }
+    void write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(*this / name, std::ios::binary) << bytes;
+    }
+    size_t files() const {
+        return size_t(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+    }
+};
+
+// The bytes of a PFM of one colour pixel (1, -2, 0.5): 0x3f800000, 0xc0000000, 0x3f000000.
+const std::string one_pixel("PF\n1 1\n-1.0\n\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f", 24);
+
+bool refused(const std::string& path) {
+    try {
+        read_pfm(path);
+    } catch (const UserError& e) {
+        return std::string(e.what()).starts_with(path + ": ");
+    }
+    return false;
+}
+
+// All values different, in every pixel and channel, with signs, zeros and subnormal numbers.
+Image variegated(int width, int height) {
+    Image image(width, height);
+    float k = 0;
+    for (Pixel& pixel : image.pixels)
+        for (float& channel : pixel) {
+            channel = (k - 7) * 0.37f;
+            ++k;
+        }
+    image.at(0, 0) = {0, -0.0f, 1e-42f};
+    return image;
+}
+
+struct Decoded {
+    int width = 0, height = 0;
+    std::vector<int> bytes;  // three a pixel
+    int at(int x, int y, int channel) const { return bytes[size_t(3 * (y * width + x) + channel)]; }
+};
+
+Decoded decode_png(const std::string& png) {
+    Decoded d;
+    int channels = 0;
+    auto* bytes = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()),
+                                        int(png.size()), &d.width, &d.height, &channels, 0);
+    REQUIRE(bytes != nullptr);
+    REQUIRE(channels == 3);
+    d.bytes.assign(bytes, bytes + 3 * d.width * d.height);
+    stbi_image_free(bytes);
+    return d;
+}
+
+// What the program makes of a scene; its PNG as well, if asked for.
+Image render(const std::string& scene, const std::string& options, Decoded* png = nullptr) {
+    const Folder folder;
+    folder.write("test.scene", scene);
+    const char* suffix = std::getenv("PROGRAM_SUFFIX");
+    const std::string command = "build/penumbra" + std::string(suffix ? suffix : "") +
+                                " --quiet --spp 4 --depth 0 " + options + " -o '" +
+                                (folder / "image.pfm") + "' -o '" + (folder / "image.png") + "' '" +
+                                (folder / "test.scene") + "'";
+    REQUIRE(std::system(command.c_str()) == 0);
+    if (png) *png = decode_png(read_file(folder / "image.png"));
+    return read_pfm(folder / "image.pfm");
+}
+
+// Bounds of the pixels that are not black, and their centre of mass weighted by radiance, in
+// pixels from the top left corner.
+struct Bright {
+    int left = 1 << 20, right = -1, top = 1 << 20, bottom = -1;
+    double x = 0, y = 0, sum = 0;
+    int width() const { return right - left + 1; }
+    int height() const { return bottom - top + 1; }
+};
+Bright bright(const Image& image) {
+    Bright b;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const double L = double(image.at(x, y)[0]);
+            if (!(L > 0)) continue;
+            b.left = std::min(b.left, x), b.right = std::max(b.right, x);
+            b.top = std::min(b.top, y), b.bottom = std::max(b.bottom, y);
+            b.x += (x + 0.5) * L, b.y += (y + 0.5) * L, b.sum += L;
+        }
+    b.x /= b.sum, b.y /= b.sum;
+    return b;
+}
+
+}  // namespace
+
+// ---- Images and files ---------------------------------------------------------------------------
+
+TEST_CASE("a fresh image is NaN everywhere, and (x, y) counts from the top left, row by row") {
+    Image image(3, 2);
+    REQUIRE(image.pixels.size() == 6);
+    bool all_nan = true;
+    for (const Pixel& pixel : image.pixels)
+        for (float channel : pixel) all_nan = all_nan && std::isnan(channel);
+    CHECK(all_nan);
+    image.at(1, 0) = {1, 1, 1};
+    image.at(0, 1) = {2, 2, 2};
+    CHECK(image.pixels[1][0] == 1);
+    CHECK(image.pixels[3][0] == 2);
+}
+
+TEST_CASE("a PFM is its header, then rows from the bottom up, little-endian") {
+    Image image(1, 1);
+    image.at(0, 0) = {1, -2, 0.5f};
+    CHECK(encode_pfm(image) == one_pixel);
+
+    Image four(2, 2);
+    for (int i = 0; i < 4; ++i) four.pixels[size_t(i)] = {float(i), float(i), float(i)};
+    const std::string bytes = encode_pfm(four), header = "PF\n2 2\n-1.0\n";
+    REQUIRE(bytes.size() == header.size() + 48);
+    CHECK(bytes.starts_with(header));
+    std::array<float, 12> values;
+    std::memcpy(values.data(), bytes.data() + header.size(), 48);
+    CHECK(values == std::array<float, 12>{2, 2, 2, 3, 3, 3, 0, 0, 0, 1, 1, 1});
+}
+
+TEST_CASE("what is written to a PFM is read back bit by bit, NaN and infinity too") {
+    const Folder folder;
+    for (auto [w, h] : {std::pair(1, 1), std::pair(5, 3), std::pair(3, 5), std::pair(1, 7)}) {
+        Image image = variegated(w, h);
+        image.pixels.back() = {NAN, INFINITY, 3.4e38f};
+        write_image(folder / "a.pfm", image, 17);  // exposure is for PNG
+        const Image back = read_pfm(folder / "a.pfm");
+        CHECK(back.width == w);
+        CHECK(back.height == h);
+        REQUIRE(back.pixels.size() == image.pixels.size());
+        CHECK(std::memcmp(back.pixels.data(), image.pixels.data(), size_t(12 * w * h)) == 0);
+    }
+    folder.write("b.pfm", "PF 1\t1 -1\n" + one_pixel.substr(12));  // any white space will do
+    CHECK(read_pfm(folder / "b.pfm").at(0, 0) == Pixel{1, -2, 0.5f});
+}
+
+TEST_CASE("no part of a PFM passes for a whole one, nor does anything else") {
+    const Folder folder;
+    for (size_t length = 0; length < one_pixel.size(); ++length) {
+        folder.write("a.pfm", one_pixel.substr(0, length));
+        INFO(length, " bytes");
+        CHECK(refused(folder / "a.pfm"));
+    }
+    const std::string pixel = one_pixel.substr(12);
+    for (const std::string& bytes :
+         {one_pixel + "x", "PF\n1 1\n1.0\n" + pixel, "Pf\n1 1\n-1.0\n" + pixel,
+          "P6\n1 1\n-1.0\n" + pixel, "PF\n1 2\n-1.0\n" + pixel, "PF\n0 1\n-1.0\n" + pixel,
+          "PF\n-1 -1\n-1.0\n" + pixel, "PF\n1.0 1\n-1.0\n" + pixel, "PF\n1 1\nnan\n" + pixel,
+          std::string("PF\n1000000 1000000\n-1.0\n"), std::string("PF\n65536 65536\n-1.0\n"),
+          // As long as the header it lacks the rest of: 12 bytes.
+          std::string("PF\n1 1\n-1.00")}) {
+        folder.write("a.pfm", bytes);
+        INFO(bytes);
+        CHECK(refused(folder / "a.pfm"));
+    }
+    CHECK(refused(folder / "missing.pfm"));
+    CHECK(refused(folder.path.string()));
+    CHECK(refused(folder / std::string(1000, 'a')));
+    folder.write("a.pfm", one_pixel);
+    CHECK_FALSE(refused(folder / "a.pfm"));
+}
+
+TEST_CASE("sRGB has the values of its standard") {
+    CHECK(encode_srgb(0) == 0);
+    CHECK(std::abs(encode_srgb(1) - 1) < 1e-15);
+    CHECK(std::abs(encode_srgb(0.0031308) - 0.04045) < 1e-6);
+    CHECK(std::abs(encode_srgb(0.0031309) - 0.04045) < 2e-6);  // the branches meet
+    CHECK(std::abs(encode_srgb(0.001) - 0.01292) < 1e-15);
+    const std::map<double, int> known = {{0.0, 0},   {0.0031308, 10}, {0.01, 25},    {0.18, 118},
+                                         {0.5, 188}, {0.75, 225},     {1.0, 255},    {-1.0, 0},
+                                         {-1e30, 0}, {1.001, 255},    {7.0, 255},    {1e30, 255},
+                                         {1e-9, 0},  {0.0001518, 1},  {0.0001517, 0}};
+    for (const auto& value : known) {
+        INFO(value.first);
+        CHECK(int(to_byte(value.first)) == value.second);
+    }
+    for (int byte = 0; byte < 256; ++byte) {
+        const double s = byte / 255.0;  // decoded as the standard has it, written independently
+        const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+        CHECK(int(to_byte(linear)) == byte);
+    }
+}
+
+TEST_CASE("a PNG holds exposure times radiance in sRGB, from the top left, and nothing else") {
+    Image image = variegated(5, 3);
+    image.at(4, 0) = {1e30f, -1e30f, INFINITY};
+    for (double exposure : {1.0, 0.25}) {
+        const std::string bytes = encode_png(image, exposure);
+        // Signature, then IHDR: 13 bytes, width and height big-endian, 8 bits, RGB.
+        CHECK(
+            bytes.starts_with(std::string("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x05\0\0\0\x03"
+                                          "\x08\x02\0\0\0",
+                                          29)));
+        const Decoded png = decode_png(bytes);
+        REQUIRE(png.width == 5);
+        REQUIRE(png.height == 3);
+        bool same = true;
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < 5; ++x)
+                for (int c = 0; c < 3; ++c)
+                    same = same && png.at(x, y, c) ==
+                                       int(to_byte(exposure * double(image.at(x, y)[size_t(c)])));
+        CHECK(same);
+        CHECK(png.at(4, 0, 0) == 255);
+        CHECK(png.at(4, 0, 1) == 0);
+        CHECK(png.at(4, 0, 2) == 255);
+    }
+}
+
+TEST_CASE("a file that cannot be written whole leaves the old one, and nothing beside it") {
+    const Folder folder;
+    const std::string path = folder / "a.pfm";
+    write_file(path, "old");
+    CHECK(read_file(path) == "old");
+    write_file(path, "new and longer");
+    CHECK(read_file(path) == "new and longer");
+    CHECK(folder.files() == 1);
+
+    // A disk that is full after 1000 bytes: fails in fwrite or, buffered, only in fclose.
+    for (size_t size : {size_t(2000), size_t(1000000)}) {
+        rlimit old_limit;
+        REQUIRE(getrlimit(RLIMIT_FSIZE, &old_limit) == 0);
+        auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{1000, old_limit.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        std::string error;
+        try {
+            write_file(path, std::string(size, 'x'));
+        } catch (const SystemError& e) {
+            error = e.what();
+        }
+        setrlimit(RLIMIT_FSIZE, &old_limit);
+        std::signal(SIGXFSZ, old_handler);
+        CHECK(error.starts_with(path + ": cannot write: "));
+        CHECK(read_file(path) == "new and longer");
+        CHECK(folder.files() == 1);
+    }
+
+    fs::create_directory(folder / "b.pfm");  // the last step, renaming, fails
+    CHECK_THROWS_AS(write_file(folder / "b.pfm", "x"), SystemError);
+    CHECK(folder.files() == 2);
+    CHECK(fs::is_empty(folder / "b.pfm"));
+    fs::create_directory(aside(path));  // the first step fails
+    CHECK_THROWS_AS(write_file(path, "x"), SystemError);
+    CHECK(read_file(path) == "new and longer");
+}
+
+TEST_CASE("asking whether a file can be written changes nothing") {
+    const Folder folder;
+    folder.write("a.pfm", "old");
+    check_writable(folder / "a.pfm");
+    check_writable(folder / "b.pfm");
+    CHECK(read_file(folder / "a.pfm") == "old");
+    CHECK(folder.files() == 1);
+    CHECK_THROWS_AS(check_writable(folder / "missing/a.pfm"), UserError);
+    CHECK_THROWS_AS(check_writable(folder / "a.pfm/a.pfm"), UserError);
+    CHECK_THROWS_AS(check_writable(folder.path.string()), UserError);
+    CHECK_THROWS_AS(check_writable(folder / std::string(1000, 'a')), UserError);
+}
+
+// ---- Pictures -----------------------------------------------------------------------------------
+
+TEST_CASE("up is up and right is right, in wide and in tall pictures") {
+    // One square emitter per view, +x or the view's right, +y; each in its top left quadrant.
+    struct Case {
+        const char *camera, *quad;
+    };
+    const Case views[] = {{"0 0 5  0 0 0", "-0.8 0.5 0  0.4 0 0  0 0.6 0"},    // right: +x
+                          {"0 0 -5  0 0 0", "0.8 0.5 0  -0.4 0 0  0 0.6 0"},   // right: -x
+                          {"5 0 0  0 0 0", "0 0.5 0.8  0 0 -0.4  0 0.6 0"},    // right: -z
+                          {"-5 2 0  0 2 0", "0 2.5 -0.8  0 0 0.4  0 0.6 0"}};  // right: +z
+    for (const Case& view : views)
+        for (const Size size : {Size{64, 32}, Size{32, 64}, Size{48, 48}}) {
+            const int w = size.width, h = size.height;
+            INFO(std::string(view.camera), ", ", w, "x", h);
+            Decoded png;
+            const Image image =
+                render("camera " + std::string(view.camera) + "  40\nlight l 0.5 0.25 1\nquad " +
+                           view.quad + " l\n",
+                       "--size " + std::to_string(w) + "x" + std::to_string(h), &png);
+            REQUIRE(image.width == w);
+            REQUIRE(image.height == h);
+            const Bright b = bright(image);
+            CHECK(b.right < w / 2);
+            CHECK(b.bottom < h / 2);
+            // The square's centre (-0.6, 0.8) at distance 5; a pixel is 2 tan(20 degrees) / h wide.
+            const double pixel = 2 * std::tan(20 * std::numbers::pi / 180) / h;
+            CHECK(std::abs(b.x - (w / 2.0 - 0.6 / 5 / pixel)) < 0.3);
+            CHECK(std::abs(b.y - (h / 2.0 - 0.8 / 5 / pixel)) < 0.3);
+            CHECK(std::abs(b.width() - 0.4 / 5 / pixel) < 2.01);
+            CHECK(std::abs(b.height() - 0.6 / 5 / pixel) < 2.01);
+            // Channels in order; the PNG shows the same.
+            const int x = int(b.x), y = int(b.y);
+            CHECK(image.at(x, y) == Pixel{0.5f, 0.25f, 1});
+            bool same = png.width == w && png.height == h;
+            for (int i = 0; same && i < w * h; ++i)
+                for (size_t c = 0; c < 3; ++c)
+                    same = same && png.bytes[3 * size_t(i) + c] ==
+                                       int(to_byte(double(image.pixels[size_t(i)][c])));
+            CHECK(same);
+        }
+}
+
+TEST_CASE(
+    "a new size never stretches: a ball is as wide as high, its height a part of the image's") {
+    const std::string scene =
+        "size 64 32\ncamera 0 0 5  0 0 0  40\nlight l 1 1 1\nsphere 0 0 0 1 l\n";
+    for (const Size size : {Size{64, 32}, Size{32, 64}, Size{48, 48}, Size{90, 31}}) {
+        const int w = size.width, h = size.height;
+        INFO(w, "x", h);
+        const Bright b =
+            bright(render(scene, "--size " + std::to_string(w) + "x" + std::to_string(h)));
+        const double pixel = 2 * std::tan(20 * std::numbers::pi / 180) / h;
+        const double across =
+            2 * std::tan(std::asin(0.2)) / pixel;  // sine of the half-angle: 1 / 5
+        const bool cropped = across > w;
+        CHECK(std::abs(b.height() - across) < 2.01);
+        CHECK(std::abs(b.width() - (cropped ? w : across)) < 2.01);
+        CHECK(std::abs(b.sum / (std::numbers::pi / 4 * across * across) - 1) <
+              (cropped ? 0.2 : 0.02));
+        CHECK(std::abs(b.x - w / 2.0) < 0.2);
+        CHECK(std::abs(b.y - h / 2.0) < 0.2);
+    }
+}

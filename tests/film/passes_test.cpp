@@ -1,0 +1,73 @@
+// film/passes_test.cpp  when to stop, and rows by several threads
+#include "film/passes.h"
+
+#include <doctest/doctest.h>
+
+TEST_CASE("the schedule stops at the samples or the seconds asked for, and always begins") {
+    auto passes = [](uint64_t spp, double seconds, double seconds_a_sample) {
+        Schedule schedule({spp, seconds}, 1);
+        std::vector<uint64_t> sizes;
+        uint64_t samples = 0;
+        while (uint64_t n = schedule.next(samples, double(samples) * seconds_a_sample)) {
+            sizes.push_back(n);
+            samples += n;
+            REQUIRE(sizes.size() < 2000);
+        }
+        return std::pair(samples, sizes);
+    };
+    for (uint64_t spp : {1, 2, 5, 64, 1000})
+        for (double speed : {0.0, 1e-6, 0.03, 7.0}) {
+            CHECK(passes(spp, 0, speed).first == spp);
+            CHECK(passes(spp, 1e30, speed).first == spp);
+        }
+    CHECK(passes(0, 1e-9, 7).first == 1);  // one sample at least
+    CHECK(passes(0, 100, 7).first == 15);  // the pass that crosses the end is short
+    CHECK(passes(5, 100, 7).first == 5);   // whichever comes first
+    CHECK(passes(50, 100, 7).first == 15);
+    const auto [samples, sizes] = passes(0, 10, 1e-3);
+    CHECK(samples >= 10000);
+    CHECK(samples < 10100);
+    CHECK(*std::max_element(sizes.begin(), sizes.end()) < 400);  // so that Ctrl-C is soon obeyed
+    CHECK(sizes.size() < 200);                                   // and threads are seldom idle
+    for (uint64_t n : passes(100, 0, 7).second) CHECK(n == 1);
+}
+
+TEST_CASE("passes are whole grids, and shrink when samples take longer") {
+    Schedule schedule({}, 18);
+    uint64_t samples = 0, longest = 0, last = 0;
+    double elapsed = 0;
+    for (int pass = 0; pass < 40; ++pass) {
+        const uint64_t n = schedule.next(samples, elapsed);
+        CHECK(n % 18 == 0);
+        longest = std::max(longest, n), last = n;
+        samples += n;
+        elapsed += double(n) * (pass < 20 ? 1e-5 : 1e-2);
+    }
+    CHECK(longest > 1000);
+    CHECK(last == 18);  // 0.18 s
+}
+
+TEST_CASE("an interrupted pass is told to be incomplete") {
+    auto row = [](int y) { interrupted = y == 1; };
+    CHECK(!parallel_rows(100, 1, row, [](double) {}));
+    interrupted = false;
+}
+
+TEST_CASE("every row is rendered once, by any number of threads") {
+    for (int height : {1, 2, 100})
+        for (unsigned threads : {1u, 2u, 7u, 300u}) {
+            std::vector<std::atomic<int>> done(static_cast<size_t>(height));
+            std::atomic<bool> outside = false;
+            double part = -1;
+            auto row = [&](int y) {
+                if (y < 0 || y >= height)
+                    outside = true;
+                else
+                    ++done[size_t(y)];
+            };
+            CHECK(parallel_rows(height, threads, row, [&](double p) { part = p; }));
+            CHECK_FALSE(outside);
+            CHECK(part == 1);
+            for (const auto& times : done) CHECK(times == 1);
+        }
+}

@@ -1,0 +1,289 @@
+// shadow/estimators_test.cpp  exact zeros, unbiased means, variances and biases as predicted
+#include "shadow/estimators.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "oracle/expect.h"
+
+namespace {
+
+constexpr Estimator all[] = {Estimator::stochastic, Estimator::control, Estimator::ratio,
+                             Estimator::regression};
+
+struct LightTriple {
+    double U, w, wV;
+};
+
+ShadowMoments moments(const std::vector<LightTriple>& samples) {
+    ShadowMoments m;
+    for (const auto& [U, w, wV] : samples) m.add(U, w, wV);
+    return m;
+}
+
+// w = 2x, V = [x < 1/2]: W = 1, S = R = 1/4, E[w^2] = 4/3, E[w^2 V] = 1/6, E[w^3] = 2, E[w^3 V] =
+// 1/8.
+constexpr ShadowPopulation ramp{1, 0.25, 4.0 / 3, 1.0 / 6, 2, 1.0 / 8};
+
+ShadowMoments of_ramp(Random& random, uint64_t n) {
+    SumsAbout sums{1};
+    for (uint64_t i = 0; i < n; ++i) {
+        const double x = random(), w = 2 * x;
+        sums.add(w, x < 0.5 ? w : 0);
+    }
+    return sums.moments();
+}
+
+// What light samples of a pixel look like: U differs from sample to sample, w is unbiased for it,
+// V depends on both.  E[U] = 1.5; w = U (1/2 + t), V = [t < s], U = 1 + s: S = E[(1 + s) (s/2 +
+// s^2/2)].
+LightTriple pixel_sample(Random& random) {
+    const double s = random(), t = random(), U = 1 + s, w = U * (0.5 + t);
+    return {U, w, t < s ? w : 0};
+}
+
+// The mean of some f(): squares and products have long tails, means of 32 of them shorter ones.
+template <class F>
+double of_many(F f) {
+    double sum = 0;
+    for (int i = 0; i < 32; ++i) sum += f() / 32;
+    return sum;
+}
+
+constexpr double pixel_truth = (1.0 / 2 + 1.0 / 3 + 1.0 / 3 + 1.0 / 4) / 2;
+
+}  // namespace
+
+TEST_CASE("estimators: three samples by hand") {
+    // U 2, 2, 3.5; w 1, 3, 5; wV 1, 0, 5.
+    const ShadowMoments m = moments({{2, 1, 1}, {2, 3, 0}, {3.5, 5, 5}});
+    CHECK(m.n == 3);
+    CHECK(m.U == doctest::Approx(2.5));
+    CHECK(m.w == doctest::Approx(3));
+    CHECK(m.wV == doctest::Approx(2));
+    // b - mean: -1.5, 0.5, 1; w V - mean: -1, -2, 3; U - mean: -0.5, -0.5, 1.
+    CHECK(m.bb == doctest::Approx(3.5));
+    CHECK(m.b_wV == doctest::Approx(3.5));
+    CHECK(m.b_U == doctest::Approx(1.5));
+    CHECK(stochastic(m) == doctest::Approx(2));
+    CHECK(control(m) == doctest::Approx(1.5));
+    CHECK(ratio(m) == doctest::Approx(2.5 * 2 / 3));
+    CHECK(regression(m) == ratio(m));  // too few to tell
+}
+
+TEST_CASE("estimators: eight samples by hand, where U differs and means do") {
+    std::vector<LightTriple> samples;
+    for (int i = 0; i < 8; ++i) {
+        const double U = 1 + i % 2, w = U + (i < 4 ? 1 : -0.5), V = i % 4 != 3;
+        samples.push_back({U, w, V ? w : 0});
+    }
+    // w: 2 3 2 3 .5 1.5 .5 1.5; wV: 2 3 2 0 .5 1.5 .5 0; b: four of 1, four of -.5.
+    const ShadowMoments m = moments(samples);
+    const double U = 1.5, w = 14.0 / 8, wV = 9.5 / 8, R = wV / w, bb = 8 * 0.75 * 0.75;
+    const double b_wV = 0.75 * (7 - 2.5), b_U = 0.75 * (6 - 6), beta = (b_wV - R * b_U) / bb;
+    CHECK(stochastic(m) == doctest::Approx(wV));
+    CHECK(control(m) == doctest::Approx(U - w + wV));
+    CHECK(ratio(m) == doctest::Approx(U * wV / w));
+    CHECK(regression(m) == doctest::Approx(wV - beta * (w - U)));
+}
+
+TEST_CASE("estimators: the part of beta that only follows U is left out") {
+    // w V = U / 2 whatever b: the light is half in shadow, and beta must be 0, not the chance
+    // correlation of U and b.
+    std::vector<LightTriple> samples;
+    for (int i = 0; i < 16; ++i) {
+        const double U = 1 + (i % 3) * 0.5, b = (i % 5) * 0.1;
+        samples.push_back({U, U + b, (U + b) * 0.5});
+    }
+    const ShadowMoments m = moments(samples);
+    CHECK(std::abs(m.b_U) > 1e-3);
+    CHECK(regression(m) == doctest::Approx(m.U / 2).epsilon(1e-14));
+}
+
+TEST_CASE("estimators: exact where all is lit and where nothing is") {
+    Random random(seed_here());
+    ShadowMoments lit, dark;
+    SumsAbout lit_sums{1}, dark_sums{1};
+    for (int i = 0; i < 1000; ++i) {
+        const auto [U, w, wV] = pixel_sample(random);
+        lit.add(U, w, w);
+        dark.add(U, w, 0);
+        lit_sums.add(w, w);
+        dark_sums.add(w, 0);
+        CHECK(control(lit) == lit.U);
+        CHECK(ratio(lit) == lit.U);
+        CHECK(regression(lit) == doctest::Approx(lit.U).epsilon(1e-14));
+        CHECK(stochastic(dark) == 0);
+        CHECK(ratio(dark) == 0);
+        CHECK(regression(dark) == 0);
+        CHECK(control(lit_sums.moments()) == 1);
+        CHECK(ratio(lit_sums.moments()) == 1);
+        CHECK(regression(lit_sums.moments()) == doctest::Approx(1).epsilon(1e-14));
+        CHECK(stochastic(dark_sums.moments()) == 0);
+        CHECK(ratio(dark_sums.moments()) == 0);
+        CHECK(std::abs(regression(dark_sums.moments())) < 1e-14);
+    }
+}
+
+TEST_CASE("estimators: no sample that found light, no sample at all, constant w") {
+    for (Estimator e : all) {
+        CHECK(estimate(e, ShadowMoments{}) == 0);
+        CHECK(std::isfinite(estimate(e, moments({{1, 0, 0}}))));
+        CHECK(std::isfinite(estimate(e, moments(std::vector<LightTriple>(20, {1, 0, 0})))));
+    }
+    CHECK(ratio(moments({{1, 0, 0}, {1, 0, 0}})) == 0);
+    CHECK(regression(moments(std::vector<LightTriple>(20, {1, 0, 0}))) == 0);
+    // Where w is constant every form is the mean of w V.
+    std::vector<LightTriple> half(20, {2, 2, 2});
+    half.resize(40, {2, 2, 0});
+    for (Estimator e : all) CHECK(estimate(e, moments(half)) == doctest::Approx(1));
+}
+
+TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in parts") {
+    Random random(seed_here());
+    ShadowMoments one, even, odd;
+    SumsAbout sums{1e8};
+    double bb = 0, b_wV = 0, b_U = 0, UU = 0, vv = 0;
+    std::vector<LightTriple> samples;
+    for (int i = 0; i < 501; ++i) {
+        const double b = 2 * random() - 1, U = 1e8, w = U + b;
+        samples.push_back({U + (i % 7), w + (i % 7), random() < 0.3 ? w : 0});
+        const auto& [U_, w_, wV_] = samples.back();
+        one.add(U_, w_, wV_);
+        (i % 2 ? odd : even).add(U_, w_, wV_);
+        sums.add(w, wV_);
+    }
+    double mean_b = 0, mean_wV = 0, mean_U = 0;
+    for (const auto& [U, w, wV] : samples) {
+        mean_b += (w - U) / 501;
+        mean_wV += wV / 501;
+        mean_U += U / 501;
+    }
+    for (const auto& [U, w, wV] : samples) {
+        bb += (w - U - mean_b) * (w - U - mean_b);
+        b_wV += (w - U - mean_b) * (wV - mean_wV);
+        b_U += (w - U - mean_b) * (U - mean_U);
+        UU += (U - mean_U) * (U - mean_U);
+        vv += (wV - mean_wV) * (wV - mean_wV);
+    }
+    // Of what a product could be: a covariance may be small by chance.
+    const double most_wV = std::sqrt(bb * vv), most_U = std::sqrt(bb * UU);
+    for (const ShadowMoments& m :
+         {one, merge(even, odd), merge(odd, even), merge(ShadowMoments{}, one)}) {
+        CHECK(m.n == 501);
+        CHECK(m.bb == doctest::Approx(bb).epsilon(1e-6));
+        CHECK(std::abs(m.b_wV - b_wV) < 1e-6 * most_wV);
+        CHECK(std::abs(m.b_U - b_U) < 1e-6 * most_U);
+    }
+    CHECK(sums.moments().bb == doctest::Approx(bb).epsilon(1e-6));
+    CHECK(std::abs(sums.moments().b_wV - b_wV) < 1e-6 * most_wV);
+}
+
+TEST_CASE("estimators: stochastic and control are unbiased at any n, also where U varies") {
+    for (Estimator e : {Estimator::stochastic, Estimator::control})
+        for (uint64_t n : {1, 2, 8}) {
+            Random random(seed_here() + n);
+            const Verdict v =
+                expect_mean(0.25, 100000, [&] { return estimate(e, of_ramp(random, n)); });
+            EXPECT(v, 0.1);
+            const Verdict u = expect_mean(pixel_truth, 100000, [&] {
+                ShadowMoments m;
+                for (uint64_t i = 0; i < n; ++i) {
+                    const auto [U, w, wV] = pixel_sample(random);
+                    m.add(U, w, wV);
+                }
+                return estimate(e, m);
+            });
+            EXPECT(u, 0.04);
+        }
+}
+
+TEST_CASE("estimators: ratio's bias at n = 1, 2 is known, and n times it tends to 1/6") {
+    Random random(seed_here());
+    for (auto [n, truth] : {std::pair{1, 0.25}, std::pair{2, 0.119188}}) {
+        const Verdict v = expect_mean(0.25 + truth, 400000,
+                                      [&, n = n] { return ratio(of_ramp(random, uint64_t(n))); });
+        EXPECT(v, 0.02);
+    }
+    CHECK(ramp.bias(Estimator::ratio) == doctest::Approx(1.0 / 6));
+    const Verdict v = expect_bias_decay(ramp.bias(Estimator::ratio), 64, 2000, [&](uint64_t n) {
+        return of_many([&] {
+            const ShadowMoments m = of_ramp(random, n);
+            return ratio(m) - (m.wV - ramp.R() * (m.w - 1));
+        });
+    });
+    EXPECT(v, 0.25);
+}
+
+TEST_CASE("estimators: regression's bias falls as predicted") {
+    Random random(seed_here());
+    const double beta = ramp.beta(Estimator::regression);
+    const Verdict v =
+        expect_bias_decay(ramp.bias(Estimator::regression), 64, 2000, [&](uint64_t n) {
+            return of_many([&] {
+                const ShadowMoments m = of_ramp(random, n);
+                return regression(m) - (m.wV - beta * (m.w - 1));
+            });
+        });
+    EXPECT(v, 0.5);
+}
+
+TEST_CASE("estimators: ratio and regression converge to the pixel where U varies in it") {
+    Random random(seed_here());
+    for (Estimator e : {Estimator::ratio, Estimator::regression}) {
+        // Their bias at n = 4096 is of the order of 1e-4, a tenth of what the test sees.
+        const Verdict v = expect_mean(pixel_truth, 400, [&] {
+            ShadowMoments m;
+            for (int i = 0; i < 4096; ++i) {
+                const auto [U, w, wV] = pixel_sample(random);
+                m.add(U, w, wV);
+            }
+            return estimate(e, m);
+        });
+        EXPECT(v, 0.01);
+    }
+}
+
+TEST_CASE("estimators: predicted biases are those of their definitions, w = 3x^2, V = [x < 0.8]") {
+    const ShadowPopulation p{1, 0.512, 1.8, 1.8 * 0.32768, 27.0 / 7, 27.0 / 7 * std::pow(0.8, 7)};
+    const double beta = p.beta(Estimator::regression);
+    double of_ratio = 0, of_regression = 0, variance = 0;
+    constexpr int n = 200000;
+    for (int i = 0; i < n; ++i) {
+        const double x = (i + 0.5) / n, w = 3 * x * x, wV = x < 0.8 ? w : 0;
+        of_ratio -= w * (wV - p.R() * w) / n;
+        variance += (w - 1) * (w - 1) / n;
+        of_regression -= (w - 1) * (w - 1) * (wV - p.S - beta * (w - 1)) / n;
+    }
+    CHECK(p.bias(Estimator::ratio) == doctest::Approx(of_ratio).epsilon(1e-6));
+    CHECK(p.bias(Estimator::regression) == doctest::Approx(of_regression / variance).epsilon(1e-6));
+    CHECK(p.bias(Estimator::stochastic) == 0);
+    CHECK(p.bias(Estimator::control) == 0);
+}
+
+TEST_CASE("estimators: variances are those predicted, and regression's is the least") {
+    // n variance, about the truth: mean of n (estimate - S)^2 over trials.
+    const double published[] = {5.0 / 48, 29.0 / 48};  // 0.104, 0.604
+    for (size_t i = 0; i < 2; ++i) CHECK(ramp.variance(all[i]) == doctest::Approx(published[i]));
+    for (Estimator e : all) {
+        Random random(seed_here() + uint64_t(e));
+        CHECK(ramp.variance(Estimator::regression) <= ramp.variance(e));
+        // Of ratio and regression at n = 256 the variance still differs by some 1/n.
+        const Verdict v = expect_mean(ramp.variance(e), 2000, [&] {
+            return of_many([&] {
+                const double error = estimate(e, of_ramp(random, 256)) - ramp.S;
+                return 256 * error * error;
+            });
+        });
+        EXPECT(v, 0.1);
+    }
+    // (e) of the 1D experiment in closed form: w = 3x^2, V = [x < 0.8].
+    const ShadowPopulation e{1, 0.512, 1.8, 1.8 * 0.32768, 0, 0};
+    CHECK(e.variance(Estimator::stochastic) == doctest::Approx(0.589824 - 0.262144));
+    CHECK(e.variance(Estimator::control) == doctest::Approx(1.210176 - 0.238144));
+    CHECK(e.variance(Estimator::ratio) ==
+          doctest::Approx(0.589824 * 0.238144 + 1.210176 * 0.262144));
+    CHECK(e.variance(Estimator::regression) ==
+          doctest::Approx(0.32768 - (0.589824 - 0.512) * (0.589824 - 0.512) / 0.8));
+}

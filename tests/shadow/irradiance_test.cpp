@@ -1,0 +1,250 @@
+// shadow/irradiance_test.cpp  closed forms against published values, quadrature and each other
+#include "shadow/irradiance.h"
+
+#include <doctest/doctest.h>
+
+#include <functional>
+
+#include "oracle/oracle.h"
+
+namespace {
+
+constexpr bool single = sizeof(real) == 4;
+
+// Gauss-Legendre nodes and weights on [0, 1].
+struct Rule {
+    std::vector<double> x, w;
+};
+Rule gauss(int n) {
+    Rule rule;
+    for (int i = 0; i < n; ++i) {
+        double x = std::cos(std::numbers::pi * (i + 0.75) / (n + 0.5)), derivative = 1;
+        for (int step = 0; step < 50; ++step) {
+            double p0 = 1, p1 = x;
+            for (int k = 2; k <= n; ++k) {
+                const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
+                p0 = p1;
+                p1 = p2;
+            }
+            derivative = n * (x * p1 - p0) / (x * x - 1);
+            x -= p1 / derivative;
+        }
+        rule.x.push_back((1 + x) / 2);
+        rule.w.push_back(1 / ((1 - x * x) * derivative * derivative));
+    }
+    return rule;
+}
+
+// The integral of cos+ over the cone of half-angle sigma about an axis at this elevation above the
+// horizon: over the azimuth in closed form, over the polar angle theta by quadrature, split where
+// the horizon first cuts the circle; theta = k + (..) u^2 smooths the root that begins there.
+double cone_by_quadrature(double elevation, double sigma) {
+    static const Rule rule = gauss(40);
+    const double pi_ = std::numbers::pi, kink = std::abs(elevation);
+    auto circle = [&](double theta) {
+        const double a = std::cos(theta) * std::sin(elevation),
+                     b = std::sin(theta) * std::cos(elevation);
+        if (a >= b) return 2 * pi_ * a;
+        if (a <= -b) return 0.0;
+        return 2 * (a * std::acos(-a / b) + std::sqrt((b - a) * (b + a)));
+    };
+    double sum = 0;
+    const double middle = std::min(kink, sigma);
+    for (size_t i = 0; i < rule.x.size(); ++i) {
+        const double u = rule.x[i], below = middle * u, above = middle + (sigma - middle) * u * u;
+        sum += rule.w[i] * (middle * circle(below) * std::sin(below) +
+                            2 * u * (sigma - middle) * circle(above) * std::sin(above));
+    }
+    return sum;
+}
+
+// Seven-point rule of degree 5 (Radon 1948) on triangles split until none is cut by the horizon, or
+// small: area form, its own clipping.
+double area_by_subdivision(vec3 a, vec3 b, vec3 c, int depth) {
+    if (a.z <= 0 && b.z <= 0 && c.z <= 0) return 0;
+    const bool cut = a.z < 0 || b.z < 0 || c.z < 0;
+    if (depth > 0 && (cut || depth > 9)) {
+        const vec3 ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+        return area_by_subdivision(a, ab, ca, depth - 1) +
+               area_by_subdivision(ab, b, bc, depth - 1) +
+               area_by_subdivision(ca, bc, c, depth - 1) +
+               area_by_subdivision(ab, bc, ca, depth - 1);
+    }
+    const vec3 n = cross(b - a, c - a);
+    auto f = [&](double u, double v) {
+        const vec3 m = a * real(1 - u - v) + b * real(u) + c * real(v);
+        const double r2 = double(dot(m, m));
+        return std::abs(double(dot(n, m))) * std::max(0.0, double(m.z)) / (r2 * r2);
+    };
+    const double r = std::sqrt(15.0), p = (6 - r) / 21, q = (6 + r) / 21;
+    return (f(1.0 / 3, 1.0 / 3) * 9 / 40 +
+            (f(p, p) + f(1 - 2 * p, p) + f(p, 1 - 2 * p)) * (155 - r) / 1200 +
+            (f(q, q) + f(1 - 2 * q, q) + f(q, 1 - 2 * q)) * (155 + r) / 1200) /
+           2;
+}
+
+Polygon polygon(std::initializer_list<vec3> corners) {
+    Polygon p;
+    for (vec3 v : corners) p.add(v);
+    return p;
+}
+Polygon quad(vec3 p, vec3 u, vec3 v) { return polygon({p, p + u, p + u + v, p + v}); }
+
+// A differential element and the rectangle a x b at distance h above it, one corner on its normal
+// (Howell, catalogue, C-11 of a differential element), times pi.
+double corner(double a, double b, double h) {
+    const double x = a / h, y = b / h, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+    return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / 2;
+}
+
+doctest::Approx approx(double x, double in_double = 1e-12, double in_float = 2e-5) {
+    return doctest::Approx(x).epsilon(single ? in_float : in_double).scale(0);  // relative
+}
+
+}  // namespace
+
+TEST_CASE("sphere irradiance: published values at 75, 90 and 105 degrees") {
+    const real s2 = real(0.25);
+    CHECK(double(irradiance_sphere(std::cos(75 * pi / 180), s2)) == approx(0.221200880053, 5e-12));
+    CHECK(double(irradiance_sphere(0, s2)) == approx(0.090586073706));
+    CHECK(double(irradiance_sphere(std::cos(105 * pi / 180), s2)) == approx(0.017924877377, 5e-11));
+    CHECK(double(irradiance_sphere(1, s2)) == approx(std::numbers::pi / 4));
+    CHECK(irradiance_sphere(std::cos(121 * pi / 180), s2) == 0);
+    CHECK(irradiance_sphere(-1, 1) == 0);
+    CHECK(double(irradiance_sphere(0, 1)) == approx(std::numbers::pi / 2));
+}
+
+TEST_CASE("sphere irradiance: every tilt against quadrature, from a touching sphere to s = 1e-9") {
+    for (double s :
+         {1 - 1e-6, 0.999, 0.9, 0.6, 0.3, 0.26, 0.24, 0.1, 1e-2, 1e-3, 5e-4, 1e-4, 1e-6, 1e-9}) {
+        const double sigma = std::asin(s);
+        for (int i = -24; i <= 24; ++i) {
+            const double k = i / 20.0, elevation = k * sigma, cosine = std::sin(elevation);
+            if (std::abs(elevation) > std::numbers::pi / 2) continue;
+            const double truth = cone_by_quadrature(elevation, sigma);
+            const double E = double(irradiance_sphere(real(cosine), real(s * s)));
+            INFO("s = ", s, ", k = ", k, ": ", E, " expected ", truth);
+            // Relative to the largest value at the horizon; rounding of s^2 and cos shifts k.
+            const double slack = single ? 2e-6 : 2e-13;
+            CHECK(std::abs(E - truth) <= slack * (s * s * s + truth) / std::sqrt(1.000001 - s * s));
+        }
+    }
+}
+
+TEST_CASE("sphere irradiance: small ones follow the asymptote, and nothing jumps at the horizon") {
+    for (double s : {4e-4, 1e-5, 1e-8})
+        for (double k : {-0.95, -0.5, 0.0, 0.3, 0.95}) {
+            const double E = double(irradiance_sphere(real(k * s), real(s * s)));
+            const double truth =
+                s * s * s * (k * std::acos(-k) + std::sqrt(1 - k * k) * (2 + k * k) / 3);
+            CHECK(E == approx(truth, 4e-7, 1e-4));
+        }
+    for (double s : {0.9, 0.3, 1e-2, 1e-6})
+        for (double side : {-1.0, 1.0}) {
+            const double nudge = 1 - (single ? 1e-6 : 1e-14);
+            const double inside = double(irradiance_sphere(real(side * s * nudge), real(s * s)));
+            const double limit = side > 0 ? std::numbers::pi * s * s * s : 0;
+            CHECK(std::abs(inside - limit) <= (single ? 1e-5 : 1e-13) * s * s * s);
+        }
+}
+
+TEST_CASE("polygon irradiance: a ceiling and a wall that the horizon halves") {
+    CHECK(double(irradiance_polygon(quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}))) ==
+          approx(1.740839502734));
+    CHECK(double(irradiance_polygon(quad({1, -1, -1}, {0, 2, 0}, {0, 0, 2}))) ==
+          approx(0.350188287714));
+    CHECK(irradiance_polygon(quad({1, -1, -2}, {0, 2, 0}, {0, 0, 2})) == 0);
+    CHECK(irradiance_polygon(quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0})) == 0);
+}
+
+TEST_CASE("polygon irradiance: a corner overhead at every size, across the change of formula") {
+    for (double size = 1e-9; size < 1e7; size *= 1.7) {
+        const double a = size, b = 0.6 * size;
+        const Polygon p = quad({0, 0, 1}, {real(a), 0, 0}, {0, real(b), 0});
+        INFO("size ", size);
+        CHECK(double(irradiance_polygon(p)) == approx(corner(a, b, 1), 2e-12, 3e-5));
+    }
+}
+
+TEST_CASE(
+    "polygon irradiance: a tiny one is its area times both cosines over the square distance") {
+    for (int power = single ? -10 : -20; power >= (single ? -12 : -32); power -= 2) {
+        const real side = std::ldexp(real(1), power);
+        const vec3 centre{1, 2, 2}, u{side, 0, 0}, v{0, side, 0};
+        const double E = double(irradiance_polygon(quad(centre - (u + v) / 2, u, v)));
+        const double truth = double(dot(cross(u, v), centre)) * 2 / 81;
+        INFO("side 2^", power);
+        CHECK(E == approx(std::abs(truth), 1e-11, 2e-5));
+    }
+}
+
+TEST_CASE("polygon irradiance: random triangles and parallelograms against subdivision") {
+    Random random(seed_of("polygon irradiance"));
+    auto number = [&] { return real(2 * random() - 1); };
+    int cut = 0;
+    for (int i = 0; i < 60; ++i) {
+        const vec3 centre = unit({number(), number(), number() / 3}) * real(1.2);
+        const vec3 u = vec3{number(), number(), number()} * real(0.6),
+                   v = vec3{number(), number(), number()} * real(0.6);
+        const vec3 p = centre - (u + v) / 2;
+        const Polygon whole = i % 2 ? quad(p, u, v) : polygon({p, p + u, p + v});
+        double truth = area_by_subdivision(p, p + u, p + v, 12);
+        if (i % 2) truth += area_by_subdivision(p + u, p + u + v, p + v, 12);
+        const double E = double(irradiance_polygon(whole));
+        INFO("polygon ", i, ": ", E, " expected ", truth);
+        CHECK(std::abs(E - truth) < 2e-6 + (single ? 2e-6 : 0));
+        const Polygon above = above_horizon(whole);
+        cut += above.n > 0 && above.n != whole.n;
+        for (int k = 0; k < above.n; ++k) CHECK(above.at(k).z >= 0);
+    }
+    CHECK(cut > 10);
+}
+
+TEST_CASE("polygon irradiance: parts add up; order, sense and scale of the corners do not matter") {
+    Random random(seed_of("polygon additivity"));
+    auto number = [&] { return real(2 * random() - 1); };
+    for (int i = 0; i < 300; ++i) {
+        const real far = std::pow(real(10), real(8 * random() - 1) * (single ? real(0.4) : 1));
+        const vec3 p = vec3{number(), number(), number()} * far, u{number(), number(), number()},
+                   v{number(), number(), number()};
+        const real t = real(random());
+        const double E = double(irradiance_polygon(quad(p, u, v)));
+        const double parts = double(irradiance_polygon(quad(p, u * t, v)) +
+                                    irradiance_polygon(quad(p + u * t, u * (1 - t), v)));
+        // Of the solid angle, which the horizon may leave little of; the corners themselves round.
+        const double distance = double(length(p)) + 1;
+        const double angle = double(length(cross(u, v))) / sqr(distance);
+        const double slack = angle * (64 * double(ulp) * distance + (single ? 3e-4 : 1e-11));
+        CHECK(std::abs(parts - E) <= slack);
+        const Polygon q = quad(p, u, v);
+        const double turned =
+                         double(irradiance_polygon(polygon({q.at(2), q.at(3), q.at(0), q.at(1)}))),
+                     reversed =
+                         double(irradiance_polygon(polygon({q.at(3), q.at(2), q.at(1), q.at(0)}))),
+                     scaled = double(irradiance_polygon(quad(p * 1024, u * 1024, v * 1024)));
+        CHECK(std::abs(turned - E) <= slack);
+        CHECK(std::abs(reversed - E) <= slack);
+        CHECK(scaled == E);
+    }
+}
+
+TEST_CASE(
+    "polygon irradiance: a disc of slices tends to the disc, tilted as a sphere's cap would be") {
+    // A sphere and the disc in which its cone meets a plane across the axis look the same.
+    const int slices = 2000;
+    for (double degrees : {0.0, 40.0, 75.0, 100.0}) {
+        const double beta = degrees * std::numbers::pi / 180, s = 0.5, r = s / std::sqrt(1 - s * s);
+        const vec3 axis_{real(std::sin(beta)), 0, real(std::cos(beta))};
+        const Frame f = frame(axis_);
+        double sum = 0;
+        for (int i = 0; i < slices; ++i) {
+            auto rim = [&](int k) {
+                const double phi = 2 * std::numbers::pi * k / slices;
+                return axis_ + f.to_world({real(r * std::cos(phi)), real(r * std::sin(phi)), 0});
+            };
+            sum += double(irradiance_polygon(polygon({axis_, rim(i), rim(i + 1)})));
+        }
+        const double truth = double(irradiance_sphere(real(std::cos(beta)), real(s * s)));
+        CHECK(sum == approx(truth, 1e-5, 1e-4));
+    }
+}

@@ -1,0 +1,256 @@
+// voronoi/weights_test.cpp  Voronoi weights: sums, constants, biases where there are any and none
+// elsewhere
+#include "voronoi/weights.h"
+
+#include <doctest/doctest.h>
+
+#include "oracle/expect.h"
+
+namespace {
+
+constexpr Weighting all[] = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
+                             Weighting::torus};
+
+std::vector<Site> scattered(uint64_t n, Random& random) {
+    std::vector<Site> p;
+    for (uint64_t i = 0; i < n; ++i) {
+        const double x = random(), y = random();
+        p.push_back({x, y});
+    }
+    return p;
+}
+
+// Weighted sum of f over n samples.
+template <class F>
+double estimate(Weigher& weigher, Weighting kind, uint64_t n, Random& random, F f) {
+    const auto samples = scattered(n, random);
+    const auto& w = weigher(kind, samples, random.bits());
+    double sum = 0;
+    for (size_t i = 0; i < samples.size(); ++i) sum += w[i] * f(samples[i]);
+    return sum;
+}
+
+double tilted_bowl(Site p) { return p.x * p.x + 2 * p.y * p.y + p.x; }
+constexpr double mean_of_bowl = 1.0 / 3 + 2.0 / 3 + 0.5;
+
+// Has the same values on opposite sides: on a torus it is continuous.  Its Laplacian is -4.
+double bump(Site p) { return p.x * (1 - p.x) + p.y * (1 - p.y); }
+
+// cvor, its border corrected or not, less the unbiased torus of the same samples: the bias, with
+// little noise.
+struct Pair {
+    Weigher clipped, torus;
+    Voronoi cells;
+    std::vector<double> f;
+    Pair() { cells.with_neighbours = true; }
+
+    double error(uint64_t n, Random& random, bool correct) {
+        const auto samples = scattered(n, random);
+        f.clear();
+        for (const Site& p : samples) f.push_back(bump(p));
+        const auto& w = clipped(Weighting::cvor, samples, 0);
+        const auto& unbiased = torus(Weighting::torus, samples, 0);
+        double sum = 0;
+        for (size_t i = 0; i < f.size(); ++i) sum += (w[i] - unbiased[i]) * f[i];
+        if (!correct) return sum;
+        const auto& around = cells.clipped(samples, {{0, 0}, {1, 1}});
+        return sum + border_correction(cells, around, samples, f);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("divided weights add up to 1, so that constants come out exactly, from n = 1 on") {
+    Random random(seed_here());
+    Weigher weigher;
+    for (Weighting kind : all)
+        for (uint64_t n : {1, 2, 3, 5, 17, 64, 300}) {
+            const double sum = estimate(weigher, kind, n, random, [](Site) { return 1.0; });
+            INFO("weighting ", int(kind), ", n = ", n);
+            CHECK(std::abs(sum - 1) <= 1e-12 * double(n));
+        }
+}
+
+TEST_CASE("the strip's width solves n 4 u e^-u = p, u = pi n width^2") {
+    for (double n : {1.0, 64.0, 4096.0, 1e6})
+        for (double p : {1e-3, 1e-6}) {
+            const double u = std::numbers::pi * n * strip_width(n, p) * strip_width(n, p);
+            CHECK(4 * n * u * std::exp(-u) == doctest::Approx(p).epsilon(1e-10));
+            CHECK(u > 1);
+        }
+}
+
+TEST_CASE("Poisson numbers: mean and variance") {
+    for (double mean : {0.3, 5.0, 40.0}) {
+        Rng rng{seed_here()};
+        auto mean_of_64 = [&](auto f) {
+            return expect_mean(mean, 3000, [&] {
+                double sum = 0;
+                for (int k = 0; k < 64; ++k) sum += f(double(poisson(mean, rng)));
+                return sum / 64;
+            });
+        };
+        for (const Verdict& v : {mean_of_64([](double k) { return k; }),
+                                 mean_of_64([&](double k) { return (k - mean) * (k - mean); })}) {
+            EXPECT(v, 0.06);
+        }
+    }
+}
+
+TEST_CASE("vor, undivided: unbiased for a Poisson process (Slivnyak, Mecke), strip and all") {
+    Random random(seed_here());
+    Weigher weigher;
+    weigher.divide = false;
+    weigher.intensity = 25;
+    const Verdict v = expect_mean(mean_of_bowl, 30000, [&] {
+        Rng rng{random.bits()};
+        const uint64_t n = poisson(weigher.intensity, rng);
+        return n ? estimate(weigher, Weighting::vor, n, random, tilted_bowl) : 0;
+    });
+    EXPECT(v, 0.015);
+    CHECK(weigher.redraws < 30);  // at most p = 0.001 each
+}
+
+TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1/n") {
+    // X = sum A (f - mean of f) has the mean 0 and S = sum A the mean 1, so that X / S - X has that
+    // of -X (S - 1).  Only cells at the border make S differ from 1, each as much wherever it is:
+    //   E X (S - 1) -> Var S (mean of f on the border - mean of f),  Var S = O(n^-3/2).
+    // With that taken away, O(n^-2) is left.
+    constexpr double on_border = (5.0 / 6 + 17.0 / 6 + 2.0 / 3 + 8.0 / 3) / 4;  // side by side
+    Random random(seed_here());
+    Weigher weigher;
+    weigher.divide = false;
+    weigher.unbounded = 1e-9;  // or one cell in a million is large, which a mean cannot judge
+    const Verdict v = expect_bias_decay(0, 32, 20000, [&](uint64_t n) {
+        weigher.intensity = double(n);
+        Rng rng{random.bits()};
+        const auto samples = scattered(poisson(double(n), rng), random);
+        const auto& w = weigher(Weighting::vor, samples, random.bits());
+        double x = 0, s = 0;
+        for (size_t i = 0; i < samples.size(); ++i) {
+            x += w[i] * (tilted_bowl(samples[i]) - mean_of_bowl);
+            s += w[i];
+        }
+        return x / s - x + (s - 1) * (s - 1) * (on_border - mean_of_bowl);
+    });
+    EXPECT(v, 0.025);
+}
+
+TEST_CASE("fvor without a cell inside falls back to the plain mean, and counts it") {
+    Random random(seed_here());
+    Weigher weigher;
+    weigher.intensity = 1e-3;  // nobody in the strip, whose width is set by it
+    uint64_t uniform = 0;
+    for (int k = 0; k < 400; ++k) {
+        const auto& w = weigher(Weighting::fvor, scattered(3, random), random.bits());
+        uniform += w[0] == w[1] && w[1] == w[2];
+    }
+    CHECK(weigher.fallbacks > 20);
+    CHECK(weigher.fallbacks == uniform);
+}
+
+TEST_CASE("torus: unbiased, however few the samples") {
+    Random random(seed_here());
+    Weigher weigher;
+    for (uint64_t n : {1, 2, 3, 10}) {
+        const Verdict v = expect_mean(mean_of_bowl, 20000, [&] {
+            return estimate(weigher, Weighting::torus, n, random, tilted_bowl);
+        });
+        EXPECT(v, 0.04);
+    }
+}
+
+TEST_CASE("clipped: n times the bias has the limit that the border's half-plane gives") {
+    // Samples near a border sit on its inner side: with sites of intensity 1 in a half-plane, the
+    // displacement from a point to its nearest site, integrated over the distance of the point, is
+    //   c = int_0^1 sqrt(1 - s^2) / k(s)^2 ds,  k = pi - acos s + s sqrt(1 - s^2)
+    // inwards; inside, E r^2 = 1/pi.  With f to second order and Gauss's theorem,
+    //   n bias -> (1/(4 pi) - c) integral of the Laplacian of f.
+    double c = 0;
+    constexpr int steps = 100000;  // midpoint rule
+    for (int k = 0; k < steps; ++k) {
+        const double s = (k + 0.5) / steps, root = std::sqrt(1 - s * s);
+        const double area = std::numbers::pi - std::acos(s) + s * root;
+        c += root / (area * area) / steps;
+    }
+    CHECK(c == doctest::Approx(1 / (2 * std::numbers::pi)).epsilon(1e-6));
+    const double limit = (1 / (4 * std::numbers::pi) - c) * -4;  // of bump: 1/pi
+    Random random(seed_here());
+    Pair pair;
+    const Verdict v = expect_bias_decay(limit, 256, 2500,
+                                        [&](uint64_t n) { return pair.error(n, random, false); });
+    EXPECT(v, 0.12);
+}
+
+TEST_CASE("clipped, with the border correction: what is left falls faster than 1/n") {
+    // By n^-1/2, for gradients at the border know one side: 2 B(4n) - B(n) has lost that.
+    Random random(seed_here());
+    Pair pair;
+    const Verdict v = expect_mean(0, 1500, [&] {
+        const double coarse = 256 * pair.error(256, random, true),
+                     fine = 1024 * pair.error(1024, random, true);
+        return 2 * fine - coarse;
+    });
+    EXPECT(v, 0.045);  // of 1/pi, which it is without
+}
+
+TEST_CASE("gradients, reconstruction and border correction are exact for planes") {
+    Random random(seed_here());
+    Voronoi v;
+    v.with_neighbours = true;
+    // A jittered lattice: no cell has its neighbours in line.
+    std::vector<Site> sites;
+    for (int i = 0; i < 400; ++i) {
+        const double x = i % 20 + 0.2 + 0.6 * random(), y = i / 20 + 0.2 + 0.6 * random();
+        sites.push_back({x / 20, y / 20});
+    }
+    const auto& cells = v.clipped(sites, {{0, 0}, {1, 1}});
+    std::vector<double> plane;
+    for (const Site& p : sites) plane.push_back(3 * p.x - 2 * p.y + 1);
+    for (size_t i = 0; i < sites.size(); ++i) {
+        const Site g = gradient(v, sites, plane, i);
+        CHECK(g.x == doctest::Approx(3).epsilon(1e-9));
+        CHECK(g.y == doctest::Approx(-2).epsilon(1e-9));
+    }
+    CHECK(linear_reconstruction(v, cells, sites, plane) == doctest::Approx(1.5).epsilon(1e-12));
+    CHECK(std::abs(border_correction(v, cells, sites, plane)) < 1e-12);
+}
+
+TEST_CASE("border correction: 4 pi n times it tends to the integral of the outward derivative") {
+    // Of the bowl that is the integral of its Laplacian, 6.  Neighbours at the border are on one
+    // side, which costs the gradients O(n^-1/2); 2 C(4n) - C(n) has lost that, and O(1/n) is left:
+    // some 0.003 here.
+    Random random(seed_here());
+    Voronoi v;
+    v.with_neighbours = true;
+    auto scaled_correction = [&](uint64_t n) {
+        const auto sites = scattered(n, random);
+        std::vector<double> f;
+        for (const Site& p : sites) f.push_back(tilted_bowl(p));
+        const auto& cells = v.clipped(sites, {{0, 0}, {1, 1}});
+        return 4 * std::numbers::pi * double(n) * border_correction(v, cells, sites, f);
+    };
+    const Verdict verdict = expect_mean(6, 1000, [&] {
+        const double coarse = scaled_correction(256), fine = scaled_correction(1024);
+        return 2 * fine - coarse;
+    });
+    EXPECT(verdict, 0.008);
+}
+
+TEST_CASE("a site whose neighbours are in line has no gradient, nor has one of two") {
+    Voronoi v;
+    v.with_neighbours = true;
+    const std::vector<Site> sites = {{0.2, 0.5}, {0.7, 0.5}};
+    v.clipped(sites, {{0, 0}, {1, 1}});
+    const std::vector<double> f = {1, 2};
+    CHECK(gradient(v, sites, f, 0).x == 0);
+    // From the middle to neighbours east and west, one of them turned: the plane's slopes are there
+    // only if it is turned enough.
+    for (double turn : {0.02, 0.5}) {
+        const std::vector<Site> line = {
+            {0.5, 0.5}, {0.9, 0.5}, {0.5 - 0.4 * std::cos(turn), 0.5 - 0.4 * std::sin(turn)}};
+        v.clipped(line, {{0, 0}, {1, 1}});
+        const std::vector<double> plane = {1, 1 + 0.4 * 3, 1 - 0.4 * 3 * std::cos(turn)};
+        CHECK(gradient(v, line, plane, 0).x == doctest::Approx(turn > 0.1 ? 3 : 0).epsilon(1e-9));
+    }
+}

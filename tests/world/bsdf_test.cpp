@@ -1,0 +1,222 @@
+// world/bsdf_test.cpp  how surfaces scatter: densities, energy, reciprocity, the laws of reflection
+#include "world/bsdf.h"
+
+#include "oracle/expect.h"
+
+namespace {
+
+constexpr bool single = sizeof(real) == 4;
+using std::numbers::pi_v;
+
+Material rough(real kd, real ks, real exponent) {
+    Material m;
+    m.kd = {kd, kd, kd};
+    m.ks = {ks, ks, ks};
+    m.exponent = exponent;
+    return m;
+}
+Material glass(real ior) {
+    Material m;
+    m.kind = Material::Kind::glass;
+    m.ior = ior;
+    return m;
+}
+
+// Normal, oblique, grazing.
+vec3 at_cosine(real z) { return spherical(z, std::sqrt((1 - z) * (1 + z)), real(0.7)); }
+constexpr real cosines[] = {1, real(0.6), real(0.05), real(1e-3)};
+
+// Reflected part of light that comes from wo: int f cos dw, by quadrature about the mirror
+// direction, in bands that double in width.
+double albedo(const Material& m, vec3 wo) {
+    const PolarFrame f(triple(mirrored(wo)));
+    const double precise = single ? std::max(1e-5, double(m.exponent * ulp)) : 1e-9;
+    const int depth = single ? 13 : 24;
+    auto ring = [&](double theta) {
+        auto along = [&](double phi) {
+            const Triple w = f.direction({theta, phi});
+            return w[2] > 0 ? double(eval(m, wo, {real(w[0]), real(w[1]), real(w[2])}).x) * w[2]
+                            : 0;
+        };
+        double sum = 0;
+        for (int i = 0; i < 8; ++i)
+            sum += integral(along, i * pi_v<double> / 4, (i + 1) * pi_v<double> / 4,
+                            Agreement{precise, precise, depth, false});
+        return sum * std::sin(theta);
+    };
+    double sum = 0;
+    for (double from = 0, to = 1e-4; from < pi_v<double>;
+         from = to, to = std::min(2 * to, pi_v<double>))
+        sum += integral(ring, from, to, Agreement{precise, precise, depth, true});
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("directions follow pdf: diffuse, lobe and mixture, exponents 0 to 10^5, grazing too") {
+    Random random(seed_here());
+    for (const auto& [kd, ks] :
+         {std::pair{real(0.5), real(0)}, {real(0), real(0.9)}, {real(0.3), real(0.6)}})
+        for (real exponent : {real(0), real(1), real(20), real(1e3), real(1e5)}) {
+            if (ks == 0 && exponent > 0) continue;
+            const Material m = rough(kd, ks, exponent);
+            for (real z : cosines) {
+                const vec3 wo = at_cosine(z);
+                DensityOptions o;
+                o.axis = triple(mirrored(wo));
+                o.smooth = false;
+                o.n = 32000;
+                o.tolerance = single ? std::max(1e-3, 16.0 * exponent * ulp) : 0;
+                auto draw_one = [&](double u, double v) {
+                    return sample(m, wo, true, real(random()), {real(u), real(v)}, Direction::bsdf)
+                        .wi;
+                };
+                auto density = [&](vec3 wi) { return pdf(m, wo, wi, Direction::bsdf); };
+                EXPECT(expect_density(random, draw_one, density, o)
+                           .of(print("kd %g, ks %g, exponent %g, cos %g", double(kd), double(ks),
+                                     double(exponent), double(z))),
+                       0.07);
+            }
+        }
+}
+
+TEST_CASE("f cos / pdf has the mean int f cos dw, however directions are chosen") {
+    Random random(seed_here());
+    for (real exponent : {real(0), real(5), real(60)})
+        for (real z : {real(1), real(0.4), real(0.05)})
+            for (Direction direction : {Direction::uniform, Direction::bsdf}) {
+                const Material m = rough(real(0.3), real(0.6), exponent);
+                const vec3 wo = at_cosine(z);
+                auto weight = [&] {
+                    const real lobe = real(random());
+                    const vec2 u{real(random()), real(random())};
+                    const BsdfSample s = sample(m, wo, true, lobe, u, direction);
+                    CHECK(s.f == eval(m, wo, s.wi));
+                    CHECK(s.pdf == pdf(m, wo, s.wi, direction));
+                    return s.wi.z > 0 ? s.f.x * s.wi.z / s.pdf : real(0);
+                };
+                EXPECT(expect_mean(albedo(m, wo), 100000, weight)
+                           .of(print("int f cos dw, exponent %g, cos %g", double(exponent),
+                                     double(z))),
+                       0.1);
+            }
+}
+
+TEST_CASE("a rough surface reflects kd + ks at normal incidence, never more") {
+    for (real exponent : {real(0), real(1), real(20), real(1e3), real(1e5)})
+        for (real z : cosines) {
+            const double a = albedo(rough(real(0.25), real(0.5), exponent), at_cosine(z));
+            const double rounding = single ? std::max(1e-4, 16.0 * exponent * ulp) : 1e-6;
+            INFO("exponent ", exponent, ", cos ", z, ": ", a);
+            CHECK(a <= 0.75 + rounding);
+            if (z == 1) CHECK(std::abs(a - 0.75) < rounding);
+        }
+}
+
+TEST_CASE("rough surfaces are reciprocal: f(wo, wi) = f(wi, wo), and black from below") {
+    Random random(seed_here());
+    const Material m = rough(real(0.2), real(0.7), 30);
+    for (int i = 0; i < 10000; ++i) {
+        const vec2 u{real(random()), real(random())}, v{real(random()), real(random())};
+        const vec3 a = sample_uniform_hemisphere(u), b = sample_uniform_hemisphere(v);
+        CHECK(max_abs(eval(m, a, b) - eval(m, b, a)) <= 64 * ulp * max_of(eval(m, a, b)));
+        CHECK(max_of(eval(m, a, {b.x, b.y, -b.z})) == 0);
+    }
+    // Off the mirror direction by 90 degrees and more the lobe is gone, for exponent 0 too.
+    const Material lobe = rough(0, 1, 0);
+    CHECK(eval(lobe, at_cosine(real(0.1)), at_cosine(real(0.1))).x == 0);
+    CHECK(eval(lobe, {0, 0, 1}, {0, 0, 1}).x == 1 / pi);
+}
+
+TEST_CASE("lobes are chosen in proportion to ks and kd") {
+    CHECK(lobe_probability(rough(real(0.25), real(0.75), 5)) == real(0.75));
+    CHECK(lobe_probability(rough(real(0.5), 0, 5)) == 0);
+    CHECK(lobe_probability(rough(0, real(0.1), 5)) == 1);
+    CHECK(lobe_probability(rough(0, 0, 5)) == 0);
+}
+
+TEST_CASE("mirrors: wi = (-x, -y, z), f cos / pdf = the reflectance, eval and pdf are 0") {
+    Material m;
+    m.kind = Material::Kind::mirror;
+    m.ks = {real(0.25), real(0.5), real(0.75)};
+    for (real z : cosines) {
+        const vec3 wo = at_cosine(z);
+        const BsdfSample s = sample(m, wo, true, 0, {}, Direction::bsdf);
+        CHECK(s.wi == vec3{-wo.x, -wo.y, wo.z});
+        CHECK(max_abs(s.f * (s.wi.z / s.pdf) - m.ks) <= 2 * ulp);
+        CHECK(max_of(eval(m, wo, s.wi)) == 0);
+        CHECK(pdf(m, wo, s.wi, Direction::bsdf) == 0);
+    }
+}
+
+TEST_CASE("Fresnel: normal incidence, Brewster's angle, grazing, the same from both sides") {
+    for (real n : {real(1.1), real(1.5), real(2.4)}) {
+        CHECK(fresnel(1, 1, 1 / n) ==
+              doctest::Approx(double(sqr((n - 1) / (n + 1)))).epsilon(1e-5));
+        // Brewster: tan = n, where nothing of the parallel part is reflected and the rest is
+        // ((n^2 - 1) / (n^2 + 1))^2, half of which remains.
+        const real c = 1 / std::sqrt(1 + n * n), cos_t = std::sqrt(1 - (1 - c * c) / (n * n));
+        const double brewster = double(sqr((n * n - 1) / (n * n + 1))) / 2;
+        CHECK(fresnel(c, cos_t, 1 / n) == doctest::Approx(brewster).epsilon(1e-5));
+        CHECK(fresnel(cos_t, c, n) == doctest::Approx(brewster).epsilon(1e-5));
+        CHECK(fresnel(0, std::sqrt(1 - 1 / (n * n)), 1 / n) == 1);
+    }
+}
+
+TEST_CASE(
+    "glass: Snell's law, Fresnel's part, radiance by the square of the index, no energy lost") {
+    Random random(seed_here());
+    for (real n : {real(1), real(1.5), real(2.4), real(0.7)})
+        for (bool outside : {true, false})
+            for (real z : {real(1), real(0.8), real(0.3), real(1e-3)}) {
+                const Material m = glass(n);
+                const vec3 wo = at_cosine(z);
+                const real eta = outside ? 1 / n : n, sin2_t = sqr(eta) * (1 - z * z);
+                const BsdfSample up = sample(m, wo, outside, 0, {}, Direction::bsdf);
+                const BsdfSample down = sample(m, wo, outside, below_one, {}, Direction::bsdf);
+                INFO("index ", n, ", outside ", outside, ", cos ", z);
+                if (sin2_t >= 1) {  // total reflection
+                    CHECK(down.wi == mirrored(wo));
+                    CHECK(std::abs(down.f.x * down.wi.z / down.pdf - 1) < 4 * ulp);
+                    continue;
+                }
+                CHECK(down.wi.z < 0);
+                CHECK(std::abs(length(down.wi) - 1) < 16 * ulp);
+                CHECK(std::abs(down.wi.x + eta * wo.x) < 8 * ulp);
+                CHECK(std::abs(down.wi.y + eta * wo.y) < 8 * ulp);
+                const real through = down.f.x * -down.wi.z / down.pdf;
+                CHECK(std::abs(through - sqr(eta)) < 16 * ulp * sqr(eta));
+                // Back along the same path the part that is let through is the same, and the
+                // radiance as before: f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2.
+                const BsdfSample back =
+                    sample(m, -down.wi, !outside, below_one, {}, Direction::bsdf);
+                const real slope = 1 + 1 / z;  // of Fresnel's part, near grazing
+                CHECK(std::abs(back.pdf - down.pdf) < 64 * ulp * slope);
+                CHECK(length(back.wi + wo) < 64 * ulp * slope);
+                CHECK(std::abs(back.f.x * -back.wi.z / back.pdf * through - 1) < 64 * ulp);
+                if (n == 1) {
+                    CHECK(1 - down.pdf <= sqr(4 * ulp / (z * z)));  // rounding of cos_t
+                    continue;
+                }
+                CHECK(up.wi == mirrored(wo));
+                CHECK(std::abs(up.f.x * up.wi.z / up.pdf - 1) < 4 * ulp);
+                CHECK(std::abs(up.pdf + down.pdf - 1) < 4 * ulp);
+                if (up.pdf < real(0.01) || up.pdf > real(0.99)) continue;
+                uint64_t counts[2] = {};
+                for (int i = 0; i < 20000; ++i)
+                    ++counts[sample(m, wo, outside, real(random()), {}, Direction::bsdf).wi.z < 0];
+                EXPECT(expect_counts(counts, std::array{double(up.pdf), double(down.pdf)}), 0.1);
+            }
+}
+
+TEST_CASE("emission: on the front only, unless it is two-sided") {
+    Material m;
+    CHECK(!m.emits());
+    m.Le = {0, 0, 2};
+    CHECK(m.emits());
+    CHECK(emitted(m, real(0.1)) == rgb{0, 0, 2});
+    CHECK(emitted(m, 0) == rgb{0, 0, 0});
+    CHECK(emitted(m, real(-0.1)) == rgb{0, 0, 0});
+    m.twosided = true;
+    CHECK(emitted(m, real(-0.1)) == rgb{0, 0, 2});
+}

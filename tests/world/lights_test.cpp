@@ -1,0 +1,212 @@
+// world/lights_test.cpp  aiming at lights: densities per solid angle, points on the light, fair
+// choices
+#include "world/lights.h"
+
+#include "oracle/expect.h"
+#include "world/scene.h"
+
+namespace {
+
+constexpr bool single = sizeof(real) == 4;
+
+Light sphere_light(vec3 centre, real r) {
+    Light l{Light::Kind::sphere, centre, {}, {}, r};
+    l.L = {1, 2, 3};
+    return l;
+}
+Light polygon_light(Light::Kind kind, vec3 p, vec3 u, vec3 v) {
+    Light l{kind, p, u, v};
+    l.L = {1, 2, 3};
+    return l;
+}
+
+auto directions(const Light& l, vec3 p) {
+    return [=](double u, double v) {
+        const auto s = sample_light(l, p, {real(u), real(v)});
+        return s ? s->wi : vec3{};
+    };
+}
+
+vec3 middle(const Light& l) {
+    if (l.kind == Light::Kind::sphere) return l.p;
+    return l.p + (l.u + l.v) * real(l.kind == Light::Kind::quad ? 0.5 : 1 / 3.0);
+}
+
+// Solid angle of the triangle a, b, c seen from the origin (van Oosterom, Strackee 1983).
+double solid_angle(vec3 a, vec3 b, vec3 c) {
+    const double A = double(length(a)), B = double(length(b)), C = double(length(c));
+    return 2 * std::atan2(std::abs(double(dot(a, cross(b, c)))), A * B * C + double(dot(a, b)) * C +
+                                                                     double(dot(b, c)) * A +
+                                                                     double(dot(c, a)) * B);
+}
+double solid_angle(const Light& l, vec3 p) {
+    const vec3 a = l.p - p, b = a + l.u, c = a + l.v;
+    return solid_angle(a, b, c) + (l.kind == Light::Kind::quad ? solid_angle(b, b + l.v, c) : 0.0);
+}
+
+}  // namespace
+
+TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it to 10^4 radii") {
+    Random random(seed_here());
+    const vec3 centre{real(0.3), real(-0.2), real(0.5)}, away = unit({2, 1, -3});
+    const real r = real(0.25);
+    for (double gap : {1e-7, 1e-3, 0.5, 1.0, 30.0, 1e4}) {
+        if (single && (gap < 1e-5 || gap > 100)) continue;  // below the rounding of p or of wi
+        const double d = double(r) * (1 + gap), sigma = double(r) / d;
+        const double rounding = 64 * double(ulp) / std::min(sigma, std::sqrt(gap));
+        const Light l = sphere_light(centre, r);
+        const vec3 p = centre + real(d) * away;
+        DensityOptions o;
+        o.axis = triple(-away);
+        o.tolerance = std::max(single ? 2e-3 : 1e-6, 100 * rounding);
+        o.n = 32000;
+        auto density = [&](vec3 w) {
+            const vec3 off = cross(w, centre - p);
+            const bool inside = dot(w, away) < 0 && dot(off, off) <= sqr(r * (1 + real(rounding)));
+            return inside ? pdf_light(l, p, {}) : 0;
+        };
+        EXPECT(
+            expect_density(random, directions(l, p), density, o).of(print("gap of %g radii", gap)),
+            0.07);
+    }
+}
+
+TEST_CASE("sphere light: points lie on the sphere and on the ray, on the near side") {
+    Random random(seed_here());
+    const Light l = sphere_light({1, 2, 3}, real(0.5));
+    for (real d : {real(0.5005), real(0.6), real(2), real(100)})
+        for (int i = 0; i < 2000; ++i) {
+            const vec2 v{real(random()), real(random())}, u{real(random()), real(random())};
+            const vec3 p =
+                l.p + d * spherical(1 - 2 * v.x, 2 * std::sqrt(v.x * (1 - v.x)), 2 * pi * v.y);
+            const auto s = sample_light(l, p, u);
+            REQUIRE(s);
+            const real rounding = 32 * ulp * (d + length(l.p));
+            CHECK(std::abs(length(s->at.p - l.p) - l.r) < rounding);
+            CHECK(std::abs(length(s->at.n) - 1) < 8 * ulp);
+            // Off the ray by rounding, magnified where the ray grazes.
+            const vec3 off = cross(s->at.p - p, s->wi);
+            CHECK(length(off) < 4 * rounding);
+            CHECK(dot(s->at.n, s->wi) < 8 * ulp * (1 + d / l.r));
+            CHECK(s->L == l.L);
+            CHECK(s->pdf == pdf_light(l, p, s->at));
+        }
+}
+
+TEST_CASE("no sample from the inside of a sphere light, nor from its surface") {
+    const Light l = sphere_light({0, 0, 0}, 2);
+    for (real d : {real(0), real(1), real(2)}) {
+        CHECK(!sample_light(l, {0, d, 0}, {real(0.3), real(0.4)}));
+        CHECK(pdf_light(l, {0, d, 0}, {{0, 2, 0}, {0, 1, 0}, 0}) == 0);
+    }
+}
+
+TEST_CASE("no sample of a sphere light from within its rounding error of its surface") {
+    Light l{Light::Kind::sphere, {}, {}, {}, 1};
+    l.error = real(1e-4);
+    CHECK(!sample_light(l, {0, 0, 1 + real(0.9e-4)}, {real(0.5), real(0.5)}));
+    CHECK(sample_light(l, {0, 0, 1 + real(1.1e-4)}, {real(0.5), real(0.5)}));
+    CHECK(pdf_light(l, {0, 0, 1 + real(0.9e-4)}, {{0, 0, 1}, {0, 0, 1}}) == 0);
+}
+
+TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slanted") {
+    Random random(seed_here());
+    const vec3 corner{-1, 2, 3}, u{2, real(0.3), 0}, v{real(0.1), real(-0.4), real(1.5)};
+    const vec3 n = unit(cross(u, v));
+    for (Light::Kind kind : {Light::Kind::triangle, Light::Kind::quad})
+        for (real height : {real(0.3), real(2), real(30)})
+            for (vec3 beside : {vec3{}, 2 * unit(u), 8 * unit(v)}) {
+                const Light l = polygon_light(kind, corner, u, v);
+                const vec3 p = middle(l) + height * n + beside;
+                const std::string where =
+                    print("height %g, %g beside", double(height), double(length(beside)));
+                // As the integrator evaluates it: at the point of the light that wi meets.
+                auto density = [&](vec3 wi) {
+                    return pdf_light(l, p, {p + dot(l.p - p, n) / dot(wi, n) * wi, n, 0});
+                };
+                EXPECT(expect_jacobian(random, directions(l, p), density, single ? 0.02 : 1e-6)
+                           .of(where),
+                       0.02);
+                auto per_pdf = [&] {
+                    const auto s = sample_light(l, p, {real(random()), real(random())});
+                    CHECK(std::abs(s->pdf / density(s->wi) - 1) < 1e4 * ulp);
+                    return 1 / s->pdf;
+                };
+                EXPECT(expect_mean(solid_angle(l, p), 20000, per_pdf)
+                           .of("E[1 / pdf] = solid angle, " + where),
+                       0.15);
+            }
+}
+
+TEST_CASE("polygon lights: the side that emits, both sides, edge-on") {
+    Light l = polygon_light(Light::Kind::quad, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const vec2 u{real(0.3), real(0.6)};
+    CHECK(sample_light(l, {0, 0, 1}, u));
+    CHECK(!sample_light(l, {0, 0, -1}, u));
+    CHECK(!sample_light(l, {5, 0, 0}, u));
+    l.twosided = true;
+    CHECK(sample_light(l, {0, 0, -1}, u));
+    CHECK(!sample_light(l, {5, 0, 0}, u));
+    CHECK(pdf_light(l, {5, 0, 0}, {{0, 0, 0}, {0, 0, 1}, 0}) == 0);
+    const auto s = sample_light(l, {0, 0, -2}, u);
+    CHECK(length(s->at.p - vec3{real(0.3), real(0.6), 0}) < 4 * ulp);
+}
+
+TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
+    Light l;
+    l.p = {1, 2, 3};
+    l.L = {18, 9, 0};
+    const auto s = sample_light(l, {1, 2, 0}, {});
+    REQUIRE(s);
+    CHECK(s->wi == vec3{0, 0, 1});
+    CHECK(s->L == rgb{2, 1, 0});
+    CHECK(s->pdf == 1);
+    CHECK(s->delta);
+    CHECK(pdf_light(l, {1, 2, 0}, s->at) == 0);
+    CHECK(!sample_light(l, {1, 2, 3}, {}));
+}
+
+TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels") {
+    const double pi_ = std::numbers::pi;
+    CHECK(power(sphere_light({}, real(0.5))) == doctest::Approx(2 * pi_ * pi_).epsilon(1e-6));
+    Light quad = polygon_light(Light::Kind::quad, {}, {3, 0, 0}, {1, 2, 0});
+    CHECK(power(quad) == doctest::Approx(2 * pi_ * 6).epsilon(1e-6));
+    quad.twosided = true;
+    CHECK(power(quad) == doctest::Approx(2 * pi_ * 12).epsilon(1e-6));
+    CHECK(power(polygon_light(Light::Kind::triangle, {}, {3, 0, 0}, {1, 2, 0})) ==
+          doctest::Approx(2 * pi_ * 3).epsilon(1e-6));
+    Light point;
+    point.L = {1, 2, 3};
+    CHECK(power(point) == doctest::Approx(8 * pi_).epsilon(1e-6));
+}
+
+TEST_CASE("lights are chosen as often as `pick` says, in proportion to unequal powers") {
+    Random random(seed_here());
+    Scene s;
+    Material lamp;
+    lamp.Le = {1, 1, 1};
+    s.materials.push_back(lamp);
+    lamp.Le = {4, 5, 6};
+    s.materials.push_back(lamp);
+    add_sphere(s, {0, 0, 0}, 1, 0);
+    add_sphere(s, {5, 0, 0}, real(0.5), 1);
+    add_quad(s, {0, 5, 0}, {2, 0, 0}, {0, 0, 1}, 1);
+    add_point_light(s, {0, 9, 0}, {3, 3, 3});
+    add_triangle(s, {0, 7, 0}, {1, 7, 0}, {0, 7, 1}, 0);
+    prepare(s);
+    std::vector<double> pick;
+    double sum = 0, all = 0;
+    for (const Light& l : s.lights) all += power(l);
+    for (const Light& l : s.lights) {
+        pick.push_back(double(l.pick));
+        sum += pick.back();
+        CHECK(std::abs(double(l.pick) - power(l) / all) < 4 * double(ulp));
+    }
+    CHECK(std::abs(sum - 1) < 8 * double(ulp));
+    std::vector<uint64_t> counts(s.lights.size());
+    for (int i = 0; i < 50000; ++i)
+        ++counts[size_t(&choose_light(s, real(random())) - s.lights.data())];
+    EXPECT(expect_counts(counts, pick), 0.05);
+    CHECK(&choose_light(s, 0) == &s.lights.front());
+    CHECK(&choose_light(s, below_one) == &s.lights.back());
+}

@@ -1,0 +1,159 @@
+// world/obj_test.cpp  meshes: what is read, what is refused and where, and the same picture as by
+// hand
+#include "world/obj.h"
+
+#include <doctest/doctest.h>
+
+#include "world/scene_file.h"
+
+namespace {
+
+// A folder of its own, gone at the end.
+struct Folder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("penumbra-obj-" + std::to_string(::getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() { std::filesystem::remove_all(path); }
+    std::string put(const std::string& name, const std::string& text) const {
+        write_file((path / name).string(), text);
+        return (path / name).string();
+    }
+};
+
+// What reading `text` as an OBJ file complains about, without the folder; "" if nothing.
+std::string complaint(const Folder& folder, const std::string& text) {
+    try {
+        ObjReader::read(folder.put("m.obj", text));
+        return "";
+    } catch (const UserError& e) {
+        return std::string(e.what()).substr(folder.path.string().size() + 1);
+    }
+}
+
+const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+Scene scene_with(const Folder& folder, const std::string& obj, const std::string& placement) {
+    folder.put("m.obj", obj);
+    const std::string text =
+        "camera 0 0 5  0 0 0  40\ndiffuse grey 0.5 0.5 0.5\nmesh m.obj " + placement + "\n";
+    return parse_scene(text, (folder.path / "s.scene").string()).scene;
+}
+
+}  // namespace
+
+TEST_CASE("an OBJ file that cannot be used is refused at its line") {
+    const Folder folder;
+    folder.put("good.mtl", "newmtl red\nKd 1 0 0\nNs 3\nmap_Kd no.png\n");
+    folder.put("early.mtl", "Kd 1 0 0\n");
+    folder.put("bright.mtl", "newmtl a\nKd 1 0 1.5\n");
+    folder.put("negative.mtl", "newmtl a\nKe 1 0 -1\n");
+    folder.put("twice.mtl", "newmtl a\nnewmtl a\n");
+    const struct {
+        std::string text, message;
+    } table[] = {
+        {"v 1 2\n", "m.obj:1: v needs three numbers"},
+        {"v 1 2 x\n", "m.obj:1: 'x' is not a number"},
+        {"\nv 1 nan 2\n", "m.obj:2: 'nan' is not finite"},
+        {"v 1 1e999 2\n", "m.obj:1: '1e999' is out of range"},
+        {corners + "f 1 2\n", "m.obj:5: a face needs three corners or more"},
+        {corners + "f 1 2 5\n", "m.obj:5: no vertex '5' among the 4 so far"},
+        {corners + "f 0 1 2\n", "m.obj:5: no vertex '0' among the 4 so far"},
+        {corners + "f -5 1 2\n", "m.obj:5: no vertex '-5' among the 4 so far"},
+        {corners + "f 1.5 2 3\n", "m.obj:5: no vertex '1.5' among the 4 so far"},
+        {corners + "f a b c\n", "m.obj:5: 'a' is not a number"},
+        {"f 1 2 3\n" + corners, "m.obj:1: no vertex '1' among the 0 so far"},
+        {"usemtl red\n", "m.obj:1: undefined material 'red'"},
+        {"usemtl\n", "m.obj:1: usemtl needs a name"},
+        {"facet 1 2 3\n", "m.obj:1: unknown keyword 'facet' (did you mean 'f'?)"},
+        {"mtllib early.mtl\n", "early.mtl:1: Kd before newmtl"},
+        {"mtllib bright.mtl\n", "bright.mtl:2: Kd must not exceed 1"},
+        {"mtllib negative.mtl\n", "negative.mtl:2: a colour must not be negative"},
+        {"mtllib twice.mtl\n", "twice.mtl:2: a second material 'a'"},
+        {"mtllib good.mtl\nusemtl blue\n", "m.obj:2: undefined material 'blue'"},
+    };
+    for (const auto& row : table) {
+        const std::string found = complaint(folder, row.text);
+        INFO("found ", found, ", expected ", row.message);
+        CHECK(found.find(row.message) != found.npos);
+    }
+    CHECK(complaint(folder, "mtllib none.mtl\n").find("cannot open") != std::string::npos);
+    CHECK(complaint(folder, "mtllib good.mtl\nusemtl red\n" + corners + "f 1 2 3\n").empty());
+}
+
+TEST_CASE("faces: any number of corners, indices from the end, texture and normal indices") {
+    const Folder folder;
+    const std::string same[] = {"f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/2 3/3 4/4",
+                                "f 1//1 2//1 3//1 4//1", "f 1/9/9 2/9/9 3/9/9 4/9/9"};
+    for (const std::string& face : same) {
+        const ObjMesh mesh = ObjReader::read(folder.put(
+            "m.obj",
+            "# comment\no thing\nvn 0 0 1\nvt 0 0\ng a\ns off\n" + corners + face + "\r\n"));
+        REQUIRE(mesh.faces.size() == 1);
+        CHECK(mesh.faces[0].corners == std::vector<uint32_t>{0, 1, 2, 3});
+    }
+    std::string ngon, face = "f";
+    for (int i = 0; i < 100; ++i) {
+        ngon += "v " + std::to_string(std::cos(i * 0.0628318530718)) + " " +
+                std::to_string(std::sin(i * 0.0628318530718)) + " 0\n";
+        (face += " ") += std::to_string(i + 1);
+    }
+    const Scene scene = scene_with(folder, ngon + face + "\n", "1 0 0 0 grey");
+    CHECK(scene.shapes.size() == 98);
+    double area = 0;
+    for (const Shape& s : scene.shapes) area += double(area_vector(s).z) / 2;
+    CHECK(area == doctest::Approx(50 * std::sin(0.0628318530718)).epsilon(1e-5));
+}
+
+TEST_CASE("an arrowhead is fanned from the corner that sees all, a star is refused") {
+    const Folder folder;
+    const std::string arrow = "v 0 2 0\nv -1 -1 0\nv 0 0 0\nv 1 -1 0\n";
+    for (const char* corners_in_order : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
+        const Scene scene = scene_with(folder, arrow + corners_in_order + "\n", "1 0 0 0 grey");
+        REQUIRE(scene.shapes.size() == 2);
+        for (const Shape& s : scene.shapes) CHECK(double(area_vector(s).z) == doctest::Approx(2));
+    }
+    std::string star, face = "f";
+    for (int i = 0; i < 10; ++i) {
+        const double r = i % 2 ? 0.2 : 1, angle = i * 0.628318530718;
+        star += "v " + std::to_string(r * std::cos(angle)) + " " +
+                std::to_string(r * std::sin(angle)) + " 0\n";
+        (face += " ") += std::to_string(i + 1);
+    }
+    CHECK_THROWS_WITH_AS(scene_with(folder, star + face + "\n", "1 0 0 0 grey"),
+                         doctest::Contains("m.obj:11: no corner sees all others"), UserError);
+}
+
+TEST_CASE("a mesh is scaled, then moved; a material of its own goes before the scene's") {
+    const Folder folder;
+    folder.put("m.mtl", "newmtl lamp\nKd 0.1 0.2 0.3\nKe 4 5 6\n");
+    const Scene scene =
+        scene_with(folder, "mtllib m.mtl\n" + corners + "f 1 2 3\nusemtl lamp\nf 1 2 3 4\n",
+                   "2 10 20 30 grey");
+    REQUIRE(scene.shapes.size() == 3);
+    CHECK(scene.shapes[0].c == vec3{12, 22, 30});
+    CHECK(scene.materials[scene.material_of[0]].kd == rgb{0.5, 0.5, 0.5});
+    CHECK(scene.materials[scene.material_of[1]].kd == rgb{real(0.1), real(0.2), real(0.3)});
+    REQUIRE(scene.lights.size() == 1);  // the square is one light
+    CHECK(scene.lights[0].kind == Light::Kind::quad);
+    CHECK(scene.lights[0].L == rgb{4, 5, 6});
+    CHECK(scene.light_of == std::vector<int32_t>{no_light, 0, 0});
+    CHECK_THROWS_WITH_AS(scene_with(folder, corners + "f 1 2 3\n", "1 0 0 0"),
+                         doctest::Contains("m.obj:5: no material"), UserError);
+    CHECK_THROWS_WITH_AS(scene_with(folder, corners, "0 0 0 0 grey"),
+                         doctest::Contains("s.scene:3: scale must be positive"), UserError);
+}
+
+TEST_CASE("cornell36 by statements and as OBJ are the same shapes, materials and lights") {
+    const Scene a = read_scene("scenes/cornell36.scene").scene;
+    const Scene b = read_scene("scenes/cornell36obj.scene").scene;
+    REQUIRE(a.shapes.size() == 36);
+    REQUIRE(b.shapes.size() == 36);
+    for (size_t i = 0; i < a.shapes.size(); ++i) {
+        CHECK((a.shapes[i].a == b.shapes[i].a && a.shapes[i].b == b.shapes[i].b &&
+               a.shapes[i].c == b.shapes[i].c));
+        CHECK(a.materials[a.material_of[i]].kd == b.materials[b.material_of[i]].kd);
+        CHECK(a.light_of[i] == b.light_of[i]);
+    }
+    CHECK(b.lights.size() == 1);
+    CHECK(a.camera.tan_half == b.camera.tan_half);
+}

@@ -1,0 +1,100 @@
+// world/scene_file_test.cpp  what statements mean, and which are refused and where
+#include "world/scene_file.h"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+const std::string camera = "camera 0 0 5  0 0 0  40\n";
+
+Scene scene_of(const std::string& text) { return parse_scene(camera + text, "a.scene").scene; }
+
+std::string complaint(const std::string& text) {
+    try {
+        scene_of(text);
+        return "";
+    } catch (const UserError& e) {
+        return e.what();
+    }
+}
+
+}  // namespace
+
+TEST_CASE("materials are what their statements say") {
+    const Scene s = scene_of(R"(
+diffuse d  .1 .2 .3       # comment
+phong   p  .1 .2 .3  .4 .5 .6  7
+mirror  m  .7 .8 .9
+glass   g  1.5
+light   l  2 3 4
+light   t  5 6 7  twosided p
+sphere 0 0 0  1  d
+)");
+    REQUIRE(s.materials.size() == 6);
+    const rgb low{real(.1), real(.2), real(.3)}, high{real(.4), real(.5), real(.6)};
+    CHECK(s.materials[0].kd == low);
+    CHECK(s.materials[0].ks == rgb{});
+    CHECK(!s.materials[0].emits());
+    CHECK(s.materials[1].kd == low);
+    CHECK(s.materials[1].ks == high);
+    CHECK(s.materials[1].exponent == 7);
+    CHECK(s.materials[2].kind == Material::Kind::mirror);
+    CHECK(s.materials[2].ks == rgb{real(.7), real(.8), real(.9)});
+    CHECK(s.materials[3].kind == Material::Kind::glass);
+    CHECK(s.materials[3].ior == 1.5);
+    CHECK(s.materials[4].Le == rgb{2, 3, 4});
+    CHECK(s.materials[4].kd == rgb{});
+    CHECK(!s.materials[4].twosided);
+    CHECK(s.materials[5].Le == rgb{5, 6, 7});
+    CHECK(s.materials[5].twosided);
+    CHECK(s.materials[5].ks == high);
+}
+
+TEST_CASE("shapes, lights and the rest are what their statements say") {
+    const Scene s = scene_of(R"(
+size 30 20
+depth 3
+exposure 2
+diffuse d .1 .2 .3
+pointlight 1 2 3  4 5 6
+sphere 1 2 3  4  d
+triangle 1 0 0  0 1 0  0 0 1  d
+quad 1 2 3  1 0 0  0 1 0  d
+box 1 2 3  0  4 5 6  d
+)");
+    CHECK(s.size.width == 30);
+    CHECK(s.size.height == 20);
+    CHECK(s.depth == 3);
+    CHECK(s.exposure == 2);
+    REQUIRE(s.lights.size() == 1);
+    CHECK(s.lights[0].p == vec3{1, 2, 3});
+    CHECK(s.lights[0].L == rgb{4, 5, 6});
+    REQUIRE(s.shapes.size() == 1 + 1 + 2 + 12);
+    CHECK(s.shapes[0].a == vec3{1, 2, 3});
+    CHECK(s.shapes[0].r == 4);
+    CHECK(s.shapes[1].c == vec3{0, 0, 1});
+    CHECK(s.shapes[2].a == vec3{1, 2, 3});
+    CHECK(s.shapes[2].c == vec3{2, 3, 3});
+    Box box;
+    for (size_t i = 4; i < 16; ++i) box.add(bounds(s.shapes[i]));
+    CHECK(max_abs(box.lo - vec3{4, 5, 6}) < 32 * 9 * ulp);
+    CHECK(max_abs(box.hi - vec3{5, 7, 9}) < 32 * 9 * ulp);
+}
+
+TEST_CASE("what cannot be is refused, at its line") {
+    const std::pair<const char*, const char*> rows[] = {
+        {"phong p  .6 .6 .6  .5 .1 .1  7\n", "a.scene:2: reflects more than it receives"},
+        {"diffuse d  .1 -.2 .3\n", "a.scene:2: a colour must not be negative: -.2"},
+        {"\n\nsize 3 4\nsize 3 4\n", "a.scene:5: a second size, after line 4"},
+        {"light l 1 1 1\nsphere 0 0 4  2  l\n",
+         "a.scene:3: the camera is inside this sphere light"},
+        {"sphere 0 0 0  1  x\n", "a.scene:2: undefined material 'x'"},
+        {"sphere 0 0 0  1\n", "a.scene:2: too few words (4)"},
+        {"shpere 0 0 0  1\n", "a.scene:2: unknown keyword 'shpere' (did you mean 'sphere'?)"},
+        {"# nothing\n", "a.scene:1: empty scene"}};
+    for (const auto& [text, why] : rows) {
+        const std::string found = complaint(text);
+        INFO(found);
+        CHECK(found.starts_with(why));
+    }
+}

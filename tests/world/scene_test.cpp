@@ -1,0 +1,144 @@
+// world/scene_test.cpp  the camera's rays, what statements build, and how lights are chosen
+#include "world/scene.h"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+constexpr uint32_t grey = 0, lamp = 1, panel = 2;
+
+// Three materials: grey; lamp, which emits (1, 2, 3); panel, which emits on both sides.
+Scene empty_scene() {
+    Scene s;
+    s.materials.resize(3);
+    s.materials[lamp].Le = {1, 2, 3};
+    s.materials[panel].Le = {1, 1, 1};
+    s.materials[panel].twosided = true;
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("camera: the top of a 90 degree view is at 45 degrees, +x is right, pixels are square") {
+    const Camera c = look_at({1, 2, 3}, {1, 2, -7}, 90);
+    const real h = 1 / std::sqrt(real(2));
+    for (const Size size : {Size{60, 40}, Size{40, 60}, Size{50, 50}}) {
+        const real w = real(size.width), aspect = w / real(size.height);
+        const struct {
+            real x, y;
+            vec3 d;
+        } rows[] = {{w / 2, 0, {0, h, -h}},
+                    {w / 2, real(size.height), {0, -h, -h}},
+                    {w / 2, real(size.height) / 2, {0, 0, -1}},
+                    {w, real(size.height) / 2, unit({aspect, 0, -1})},
+                    {0, 0, unit({-aspect, 1, -1})}};
+        for (const auto& row : rows) {
+            const Ray ray = camera_ray(c, size, row.x, row.y);
+            CHECK(ray.o == vec3{1, 2, 3});
+            CHECK(length(ray.d - row.d) < 16 * ulp);
+        }
+    }
+}
+
+TEST_CASE("an emitting shape is a light: its geometry, its error, and which shapes it is") {
+    Scene s = empty_scene();
+    add_sphere(s, {1, 2, 3}, 4, lamp);
+    add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
+    add_quad(s, {5, 0, 0}, {2, 0, 0}, {0, 3, 0}, panel);
+    add_triangle(s, {0, 0, 7}, {1, 0, 7}, {0, 1, 7}, lamp);
+    add_point_light(s, {1, 1, 1}, {2, 2, 2});
+    add_point_light(s, {1, 1, 1}, {0, 0, 0});  // dark: none
+    CHECK(s.light_of == std::vector<int32_t>{0, no_light, 1, 1, 2});
+    CHECK(s.material_of == std::vector<uint32_t>{lamp, grey, panel, panel, lamp});
+    REQUIRE(s.lights.size() == 4);
+    CHECK(s.lights[0].kind == Light::Kind::sphere);
+    CHECK(s.lights[0].r == 4);
+    CHECK(s.lights[0].L == rgb{1, 2, 3});
+    CHECK(s.lights[1].kind == Light::Kind::quad);
+    CHECK(s.lights[1].area_vector() == vec3{0, 0, 6});  // it faces +z, as its shapes do
+    for (size_t i : {2, 3}) CHECK(area_vector(s.shapes[i]) == vec3{0, 0, 6});
+    CHECK(s.lights[2].area_vector() == vec3{0, 0, real(0.5)});
+    for (size_t i = 0; i < 5; ++i)
+        if (s.light_of[i] != no_light)
+            CHECK(s.lights[size_t(s.light_of[i])].error >= rounding_error(s.shapes[i]));
+    CHECK(!s.lights[0].twosided);
+    CHECK(s.lights[1].twosided);
+    CHECK(s.lights[3].kind == Light::Kind::point);
+    CHECK(s.lights[3].L == rgb{2, 2, 2});
+}
+
+TEST_CASE("a quad is two triangles that share a diagonal and nothing else") {
+    Scene s = empty_scene();
+    add_quad(s, {1, 1, 0}, {2, 0, 0}, {0, 2, 0}, grey);
+    const real inner[] = {real(0.1), real(0.7), real(1.3), real(1.9)};
+    for (real x : inner)
+        for (real y : inner) {
+            if (x == y) continue;
+            const Ray ray{{1 + x, 1 + y, 5}, {0, 0, -1}};
+            int hits = 0;
+            for (const Shape& t : s.shapes)
+                hits += intersect(t, ray, shear(ray.d), infinity).has_value();
+            CHECK(hits == 1);
+        }
+}
+
+TEST_CASE("what has no area is dropped and counted") {
+    Scene s = empty_scene();
+    CHECK(add_triangle(s, {0, 0, 0}, {1, 1, 1}, {2, 2, 2}, lamp) == 1);
+    CHECK(add_quad(s, {0, 0, 0}, {1, 1, 1}, {2, 2, 2}, lamp) == 2);
+    CHECK(s.shapes.empty());
+    CHECK(s.lights.empty());
+    CHECK(add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey) == 0);
+}
+
+TEST_CASE("a box faces outwards and turns about y: x' = c x + s z, z' = c z - s x") {
+    for (real degrees : {real(0), real(30), real(90), real(-135)}) {
+        Scene s = empty_scene();
+        const vec3 size{1, 2, 3}, move{10, 20, 30};
+        CHECK(add_box(s, size, degrees, move, grey) == 0);
+        REQUIRE(s.shapes.size() == 12);
+        const real c = std::cos(degrees * pi / 180), sine = std::sin(degrees * pi / 180);
+        auto turned = [&](vec3 v) { return vec3{c * v.x + sine * v.z, v.y, c * v.z - sine * v.x}; };
+        const vec3 centre = turned(size / 2) + move;
+        real volume = 0;
+        for (const Shape& t : s.shapes) {
+            CHECK(dot(area_vector(t), t.a - centre) > 0);
+            volume += dot(area_vector(t), t.a - centre) / 6;
+        }
+        CHECK(double(volume) == doctest::Approx(6).epsilon(1e-5));
+        const vec3 far = turned(size) + move;
+        const bool found = std::any_of(s.shapes.begin(), s.shapes.end(), [&](const Shape& t) {
+            for (vec3 p : {t.a, t.b, t.c})
+                if (length(p - far) < 128 * ulp * length(far)) return true;
+            return false;
+        });
+        CHECK(found);
+    }
+}
+
+TEST_CASE("a light is chosen as often as its power says, and says so") {
+    Scene s = empty_scene();
+    for (real intensity : {real(1), real(5), real(2)})
+        add_point_light(s, {}, {intensity, intensity, intensity});
+    add_sphere(s, {}, 1, grey);
+    prepare(s);
+    // Of 8000 equidistant numbers those of [0, 1/8), [1/8, 6/8), [6/8, 1).
+    int count[3] = {};
+    for (int i = 0; i < 8000; ++i)
+        ++count[&choose_light(s, (real(i) + real(0.5)) / 8000) - &s.lights[0]];
+    const int expected[] = {1000, 5000, 2000};
+    for (size_t i = 0; i < 3; ++i) {
+        CHECK(count[i] == expected[i]);
+        CHECK(std::abs(s.lights[i].pick - real(expected[i]) / 8000) < 2 * ulp);
+    }
+    CHECK(&choose_light(s, 0) == &s.lights[0]);
+    CHECK(&choose_light(s, below_one) == &s.lights[2]);
+    s.pick_cdf.clear();
+    add_point_light(s, {}, {real(1e-30), 0, 0});  // so weak that its share rounds to 0
+    prepare(s);
+    CHECK(s.lights[3].pick > 0);
+    CHECK(&choose_light(s, below_one) == &s.lights[3]);
+    // The last sum may be rounded to less than 1: what lies beyond is the last light's.
+    s.pick_cdf.back() = 0.99;
+    CHECK(&choose_light(s, below_one) == &s.lights[3]);
+}
