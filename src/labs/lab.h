@@ -1,0 +1,243 @@
+// labs/lab.h  2  what experiments share: numbers of many runs, reports, renders, command lines
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <numeric>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "base/program.h"
+#include "film/image.h"
+#include "labs/svg.h"
+
+// As printf.
+inline std::string text(const char* format, auto... values) {
+    std::string line(size_t(std::snprintf(nullptr, 0, format, values...)), ' ');
+    std::snprintf(line.data(), line.size() + 1, format, values...);
+    return line;
+}
+
+// ---- Numbers of many runs -----------------------------------------------------------------------
+
+// Of n numbers sorted, number q (n - 1), between neighbours linear; NaN of none.
+inline double quantile(std::vector<double> x, double q) {
+    if (x.empty()) return NAN;
+    std::sort(x.begin(), x.end());
+    const double place = q * double(x.size() - 1);
+    const size_t below = size_t(place), above = std::min(below + 1, x.size() - 1);
+    return std::lerp(x[below], x[above], place - double(below));
+}
+inline double median(const std::vector<double>& x) { return quantile(x, 0.5); }
+
+// Exponent p of y = c x^p: least squares of the logarithms.
+inline double slope(const std::vector<double>& x, const std::vector<double>& y) {
+    const double n = double(x.size());
+    double mx = 0, my = 0, xx = 0, xy = 0;
+    for (size_t k = 0; k < x.size(); ++k) mx += std::log(x[k]) / n, my += std::log(y[k]) / n;
+    for (size_t k = 0; k < x.size(); ++k) {
+        xx += (std::log(x[k]) - mx) * (std::log(x[k]) - mx);
+        xy += (std::log(x[k]) - mx) * (std::log(y[k]) - my);
+    }
+    return xy / xx;
+}
+
+// "1.21 (1.19–1.30)": the median with the least and the greatest, by a format for one number.
+inline std::string with_range(const std::vector<double>& x, const char* format) {
+    const auto [least, most] = std::minmax_element(x.begin(), x.end());
+    return text(format, median(x)) + " (" + text(format, *least) + "–" + text(format, *most) + ")";
+}
+
+// Mean squared difference of two images of one size, over pixels and channels.
+inline double mse(const Image& f, const Image& g) {
+    double sum = 0;
+    for (size_t i = 0; i < f.pixels.size(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            const double error = double(f.pixels[i][c]) - double(g.pixels[i][c]);
+            sum += error * error;
+        }
+    return sum / (3 * double(f.pixels.size()));
+}
+
+// ---- Reports ------------------------------------------------------------------------------------
+
+// What an experiment has to say, in Markdown: on stdout as it comes, and in the end in a file.
+class Report {
+public:
+    // Writes FOLDER/NAME.md, and pictures beside it.
+    Report(const std::string& folder, const std::string& name) : folder_(folder), name_(name) {
+        std::filesystem::create_directories(folder);
+        check_writable(file(name + ".md"));
+        std::setvbuf(stdout, nullptr, _IOLBF, 0);
+    }
+
+    // A paragraph, a heading.
+    void say(const std::string& words) { add(words + "\n\n"); }
+
+    // A table: its head, then rows.
+    void head(const std::vector<std::string>& cells) {
+        row(cells);
+        add("|");
+        for (size_t i = 0; i < cells.size(); ++i) add("---|");
+        add("\n");
+    }
+    void row(const std::vector<std::string>& cells) {
+        add("|");
+        for (const std::string& cell : cells) add(" " + cell + " |");
+        add("\n");
+    }
+    void end_of_table() { add("\n"); }
+
+    // Writes a plot or a sheet beside the report and shows it.
+    void picture(const std::string& name, const Svg& svg, const std::string& what) {
+        write_file(file(name + ".svg"), svg.file());
+        say("![" + what + "](" + name + ".svg)");
+    }
+
+    // "ok" or "FAILS".
+    std::string verdict(bool holds) {
+        failures_ += !holds;
+        return holds ? "ok" : "**FAILS**";
+    }
+
+    // Writes the report; the exit status: 1 if a claim failed.
+    int finish() {
+        write_file(file(name_ + ".md"), markdown_);
+        std::fprintf(stderr, "wrote %s; %d claims failed\n", file(name_ + ".md").c_str(),
+                     failures_);
+        return failures_ > 0;
+    }
+
+    // Of a name in the report's folder.
+    std::string file(const std::string& name) const { return folder_ + "/" + name; }
+
+private:
+    std::string folder_, name_, markdown_;
+    int failures_ = 0;
+
+    void add(const std::string& words) {
+        markdown_ += words;
+        std::fputs(words.c_str(), stdout);
+    }
+};
+
+// "17 of 96, 40 s left: cosine + NEE", on stderr: drawn over itself on a terminal, else a line
+// each.
+class Steps {
+public:
+    explicit Steps(size_t total) : total_(total), terminal_(::isatty(STDERR_FILENO) == 1) {}
+    ~Steps() {
+        if (terminal_) std::fputs("\r\033[K", stderr);
+    }
+    void next(const std::string& what) {
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double left = done_ ? seconds / double(done_) * double(total_ - done_) : 0;
+        const std::string when = done_ ? text(", %.0f s left", left) : "";
+        std::fprintf(stderr, terminal_ ? "\r%zu of %zu%s: %s\033[K" : "%zu of %zu%s: %s\n",
+                     done_ + 1, total_, when.c_str(), what.c_str());
+        ++done_;
+    }
+
+private:
+    const size_t total_;
+    const bool terminal_;
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    size_t done_ = 0;
+};
+
+// ---- Renders ------------------------------------------------------------------------------------
+
+// The numbers that a statistics file has under `key`: one, or one a channel; NaN: not known.
+inline std::vector<double> stats(const std::string& json, const std::string& key) {
+    const std::string before = "\"" + key + "\": ";
+    const size_t at = json.find(before);
+    if (at == json.npos) throw UserError("statistics without " + key);
+    std::string line = json.substr(at + before.size());
+    line = line.substr(0, line.find('\n'));
+    for (char& c : line)
+        if (c == '[' || c == ']' || c == ',') c = ' ';
+    std::vector<double> numbers;
+    std::istringstream words(line);
+    for (std::string word; words >> word;)
+        numbers.push_back(word == "null" ? NAN : parse_number(word, HUGE_VAL));
+    return numbers;
+}
+
+struct Rendering {
+    Image image;
+    std::string stats;  // JSON
+    double core_seconds() const { return ::stats(stats, "cpu_seconds")[0]; }
+    uint64_t samples() const { return uint64_t(::stats(stats, "samples_per_pixel")[0]); }
+};
+
+// Runs build/penumbra with these words, which name a scene and no output.
+inline Rendering rendering(const std::string& program, std::vector<std::string> words) {
+    std::filesystem::create_directories("out");
+    const std::string stem = "out/lab" + std::to_string(::getpid()), pfm = stem + ".pfm",
+                      json = stem + ".json";
+    words.insert(words.begin(), program);
+    words.insert(words.end(), {"--quiet", "-o", pfm, "--stats", json});
+    execute(words);
+    Rendering r{read_pfm(pfm), read_file(json)};
+    std::filesystem::remove(pfm);
+    std::filesystem::remove(json);
+    return r;
+}
+
+// ---- Command lines ------------------------------------------------------------------------------
+
+struct Flag {
+    std::string_view name, value, help;           // value: what stands after it; "": nothing
+    std::function<void(const std::string&)> set;  // may throw UserError
+};
+
+struct Lab {
+    std::string_view name, purpose;
+    std::vector<Flag> flags;
+};
+
+inline void print_help(const Lab& lab) {
+    std::printf("usage: %s [options]\n\n%s\n\n", std::string(lab.name).c_str(),
+                std::string(lab.purpose).c_str());
+    for (const Flag& flag : lab.flags)
+        std::printf("  %-20s %s\n", text("%s %s", flag.name.data(), flag.value.data()).c_str(),
+                    std::string(flag.help).c_str());
+    std::printf("  %-20s %s\n", "--help", "print this");
+}
+
+// The renderer beside this lab: build/techniques-float runs build/penumbra-float.
+inline std::string renderer_beside(const Lab& lab, const std::string& self) {
+    std::filesystem::path program = self;
+    program.replace_filename(program.filename().string().replace(0, lab.name.size(), "penumbra"));
+    if (::access(program.c_str(), X_OK) != 0)
+        throw UserError(program.string() + ": cannot run; say  make build/penumbra");
+    return program.string();
+}
+
+// A lab's main: reads its flags, then work() is its exit status.
+template <class Work>
+int lab_main(int argc, char** argv, const Lab& lab, Work work) {
+    return exit_status([&] {
+        const std::vector<std::string> words(argv + 1, argv + argc);
+        std::vector<std::string_view> known = {"--help"};
+        for (const Flag& flag : lab.flags) known.push_back(flag.name);
+        for (size_t i = 0; i < words.size(); ++i) {
+            if (words[i] == "--help") return print_help(lab), 0;
+            const auto flag = std::find_if(lab.flags.begin(), lab.flags.end(),
+                                           [&](const Flag& f) { return f.name == words[i]; });
+            if (flag == lab.flags.end()) throw UserError(unknown("option", words[i], known));
+            if (flag->value.empty()) {
+                flag->set("");
+                continue;
+            }
+            if (++i == words.size()) throw UserError(std::string(flag->name) + ": needs a value");
+            flag->set(words[i]);
+        }
+        return work();
+    });
+}

@@ -1,0 +1,251 @@
+// labs/svg.h  1  plots and sheets of pictures as SVG, in one style
+//
+// Light ground, axes with units, labels at the curves themselves, colours that the colour-blind
+// tell apart (Okabe, Ito 2008).  Lengths are in pixels from the top left corner.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "film/image.h"
+
+struct Place {
+    double x = 0, y = 0;
+};
+
+namespace svg {
+
+inline constexpr const char* ink = "#222222";
+inline constexpr const char* grid = "#e2e2e2";
+inline constexpr const char* frame = "#888888";
+inline constexpr const char* colours[] = {"#000000", "#0072b2", "#d55e00", "#009e73",
+                                          "#cc79a7", "#e69f00", "#56b4e9", "#888888"};
+inline constexpr double letter = 13;  // size of type
+
+inline std::string escaped(std::string_view words) {
+    std::string out;
+    for (char c : words) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
+    }
+    return out;
+}
+
+// To a tenth of a pixel.
+inline std::string number(double x) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.1f", x);
+    return digits;
+}
+
+inline std::string base64(std::string_view bytes) {
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t word = 0;
+        for (size_t k = 0; k < 3; ++k)
+            word = word << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0);
+        for (size_t k = 0; k < 4; ++k)
+            out += i + k > bytes.size() ? '=' : digits[word >> (18 - 6 * k) & 63];
+    }
+    return out;
+}
+
+// 10⁻³, or 0.25: as short as it can be read.
+inline std::string tick(double x) {
+    char digits[32];
+    const double exponent = std::log10(std::abs(x));
+    const bool far = x != 0 && (exponent < -2.5 || exponent > 5.5);
+    std::snprintf(digits, sizeof digits, "%.4g", x);
+    if (!far || std::abs(exponent - std::round(exponent)) > 1e-9) return digits;
+    std::snprintf(digits, sizeof digits, "%d", int(std::abs(std::round(exponent))));
+    constexpr const char* raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string out = exponent < 0 ? "10⁻" : "10";
+    for (const char* d = digits; *d; ++d) out += raised[*d - '0'];
+    return out;
+}
+
+}  // namespace svg
+
+// ---- A sheet ------------------------------------------------------------------------------------
+
+class Svg {
+public:
+    Svg(double width, double height) : width_(width), height_(height) {}
+
+    struct Type {
+        const char* anchor =
+            "start";  // or "middle", "end": which part of the words is at the place
+        const char* colour = svg::ink;
+        double size = svg::letter;
+        bool bold = false;
+        double turn = 0;  // degrees, clockwise
+    };
+    void words(Place at, std::string_view words) { this->words(at, words, Type()); }
+    void words(Place at, std::string_view words, const Type& type) {
+        body_ += "<text x=\"" + svg::number(at.x) + "\" y=\"" + svg::number(at.y) +
+                 "\" text-anchor=\"" + type.anchor + "\" fill=\"" + type.colour +
+                 "\" font-size=\"" + svg::number(type.size) + "\"";
+        if (type.bold) body_ += " font-weight=\"bold\"";
+        if (type.turn != 0)
+            body_ += " transform=\"rotate(" + svg::number(type.turn) + " " + svg::number(at.x) +
+                     " " + svg::number(at.y) + ")\"";
+        body_ += ">" + svg::escaped(words) + "</text>\n";
+    }
+
+    void line(const std::vector<Place>& through, const char* colour, double width = 1,
+              bool dashed = false) {
+        body_ += "<polyline fill=\"none\" stroke=\"" + std::string(colour) + "\" stroke-width=\"" +
+                 svg::number(width) + "\"" + (dashed ? " stroke-dasharray=\"5 4\"" : "") +
+                 " points=\"" + points(through) + "\"/>\n";
+    }
+    void area(const std::vector<Place>& outline, const char* colour, double opacity = 1) {
+        body_ += "<polygon fill=\"" + std::string(colour) + "\" fill-opacity=\"" +
+                 svg::number(opacity) + "\" points=\"" + points(outline) + "\"/>\n";
+    }
+    void dot(Place at, const char* colour, double radius = 3) {
+        body_ += "<circle cx=\"" + svg::number(at.x) + "\" cy=\"" + svg::number(at.y) + "\" r=\"" +
+                 svg::number(radius) + "\" fill=\"" + colour + "\"/>\n";
+    }
+    // The pixels of a picture, enlarged to that width without smoothing.
+    void picture(Place at, double width, const Image& image, double exposure) {
+        const double height = width * image.height / image.width;
+        body_ += "<image x=\"" + svg::number(at.x) + "\" y=\"" + svg::number(at.y) + "\" width=\"" +
+                 svg::number(width) + "\" height=\"" + svg::number(height) +
+                 "\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64," +
+                 svg::base64(encode_png(image, exposure)) + "\"/>\n";
+    }
+
+    std::string file() const {
+        const std::string size = svg::number(width_) + "\" height=\"" + svg::number(height_);
+        return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
+               svg::number(width_) + " " + svg::number(height_) +
+               "\" font-family=\"Helvetica, Arial, sans-serif\">\n<rect width=\"" + size +
+               "\" fill=\"white\"/>\n" + body_ + "</svg>\n";
+    }
+
+private:
+    double width_, height_;
+    std::string body_;
+
+    static std::string points(const std::vector<Place>& places) {
+        std::string out;
+        for (const Place& p : places) out += svg::number(p.x) + "," + svg::number(p.y) + " ";
+        if (!out.empty()) out.pop_back();
+        return out;
+    }
+};
+
+// ---- Axes ---------------------------------------------------------------------------------------
+
+struct Axis {
+    std::string label;  // with its unit
+    double lo = 0, hi = 1;
+    bool log = true;
+    std::vector<double> ticks = {};  // none: powers of ten, or five even steps
+
+    // 0 at lo, 1 at hi; beyond, at the nearer end.
+    double part(double x) const {
+        const double t = log ? std::log(x / lo) / std::log(hi / lo) : (x - lo) / (hi - lo);
+        return std::clamp(t, 0.0, 1.0);
+    }
+    std::vector<double> marks() const {
+        if (!ticks.empty()) return ticks;
+        std::vector<double> out;
+        // With room for the rounding of a logarithm: lo and hi may be powers of ten.
+        for (double e = std::ceil(std::log10(lo) - 1e-9); log && e <= std::log10(hi) + 1e-9; ++e)
+            out.push_back(std::pow(10, e));
+        for (int k = 0; !log && k <= 4; ++k) out.push_back(lo + (hi - lo) * k / 4);
+        return out;
+    }
+};
+
+// A part of a sheet with two axes; labels of curves stand at their right ends.
+class Plot {
+public:
+    // The frame's corner and size; ticks and labels need some 60 to its left, 45 below, 25 above.
+    Plot(Svg& sheet, Place corner, Place size, Axis x, Axis y, std::string_view title)
+        : sheet_(sheet), corner_(corner), size_(size), x_(std::move(x)), y_(std::move(y)) {
+        for (double t : x_.marks()) {
+            const double at = place(t, y_.lo).x;
+            sheet_.line({{at, corner_.y}, {at, bottom()}}, svg::grid);
+            sheet_.words({at, bottom() + 16}, svg::tick(t), {.anchor = "middle"});
+        }
+        for (double t : y_.marks()) {
+            const double at = place(x_.lo, t).y;
+            sheet_.line({{corner_.x, at}, {right(), at}}, svg::grid);
+            sheet_.words({corner_.x - 6, at + 4}, svg::tick(t), {.anchor = "end"});
+        }
+        sheet_.line(
+            {corner_, {right(), corner_.y}, {right(), bottom()}, {corner_.x, bottom()}, corner_},
+            svg::frame);
+        sheet_.words({corner_.x, corner_.y - 8}, title, {.bold = true});
+        sheet_.words({corner_.x + size_.x / 2, bottom() + 34}, x_.label, {.anchor = "middle"});
+        sheet_.words({corner_.x - 46, corner_.y + size_.y / 2}, y_.label,
+                     {.anchor = "middle", .turn = -90});
+    }
+    Plot(const Plot&) = delete;
+    Plot& operator=(const Plot&) = delete;
+    // Labels find their places when all are known.
+    ~Plot() {
+        std::sort(labels_.begin(), labels_.end(),
+                  [](const Label& a, const Label& b) { return a.y < b.y; });
+        double above = -INFINITY;
+        for (const Label& l : labels_) {
+            above = std::max(l.y, above + svg::letter + 2);
+            sheet_.words({right() + 6, above + 4}, l.words, {.colour = l.colour});
+        }
+    }
+
+    Place place(double x, double y) const {
+        return {corner_.x + size_.x * x_.part(x), corner_.y + size_.y * (1 - y_.part(y))};
+    }
+
+    struct Style {
+        const char* colour = svg::ink;
+        bool dots = true, dashed = false;
+        double width = 2;
+    };
+    void curve(const std::vector<double>& x, const std::vector<double>& y, const Style& style,
+               const std::string& label = "") {
+        std::vector<Place> through;
+        for (size_t k = 0; k < x.size(); ++k) through.push_back(place(x[k], y[k]));
+        sheet_.line(through, style.colour, style.width, style.dashed);
+        for (const Place& p : through)
+            if (style.dots) sheet_.dot(p, style.colour);
+        if (!label.empty()) labels_.push_back({through.back().y, label, style.colour});
+    }
+    // Between two curves.
+    void band(const std::vector<double>& x, const std::vector<double>& low,
+              const std::vector<double>& high, const char* colour) {
+        std::vector<Place> outline;
+        for (size_t k = 0; k < x.size(); ++k) outline.push_back(place(x[k], low[k]));
+        for (size_t k = x.size(); k-- > 0;) outline.push_back(place(x[k], high[k]));
+        sheet_.area(outline, colour, 0.2);
+    }
+
+private:
+    struct Label {
+        double y;
+        std::string words;
+        const char* colour;
+    };
+    Svg& sheet_;
+    Place corner_, size_;
+    Axis x_, y_;
+    std::vector<Label> labels_;
+
+    double right() const { return corner_.x + size_.x; }
+    double bottom() const { return corner_.y + size_.y; }
+};
