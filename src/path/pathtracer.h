@@ -1,8 +1,7 @@
 // path/pathtracer.h  3  the path tracer: radiance along a ray, vertex by vertex
 //
 // Read it downwards: where a ray stops, what light is found there by aiming, what happens there in
-// all, and the sum over a path.  Directions are in world space, but for wo and the wi of densities,
-// which are in the vertex's local frame; all densities are per solid angle (1/sr).
+// all, and the sum over a path.  Directions are in world space unless they are said to be local.
 #pragma once
 #include <optional>
 
@@ -51,7 +50,7 @@ struct DirectLight {
     const Light* light = nullptr;
     LightSample sample = {};
     real cosine = 0;  // between the normal and the direction to the light
-    real pdf = 0;     // of that direction, the choice of the light included
+    real pdf = 0;     // of that direction (1/sr), the choice of the light included
     real weight = 0;  // beside light found by hitting it
     bool occluded = false;
 };
@@ -116,31 +115,32 @@ inline real weight_of_emission(const Scene& scene, LightMode mode, const Segment
 // the integral by one direction, the light that reaches x directly by one light sample as well.
 inline Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
     Step e;
-    auto end = [&](const char* why) {
-        e.end = why;
-        return e;
+    auto ends = [&e](bool here, const char* why) {
+        if (here) e.end = why;
+        return here;
     };
     e.x = meet(scene, s.ray);
-    if (!e.x) return end("the ray leaves the scene");
+    if (ends(!e.x, "the ray leaves the scene")) return e;
     const Vertex& x = *e.x;
     const Material& m = *x.material;
     if (m.emits()) {
         e.Le = emitted(m, x.cos_o);
         e.weight = weight_of_emission(scene, t.light, s, x);
     }
-    if (s.k == scene.depth) return end("the scene's depth");
-    if (x.cos_o == 0) return end("a ray within the surface");
+    if (ends(s.k == scene.depth, "the scene's depth")) return e;
+    if (ends(x.cos_o == 0, "a ray within the surface")) return e;
     e.direct = direct_light(scene, t, x, sampler, s.k);
 
     const vec2 u = sampler.get2(dimension(s.k, Draw::wi_x));
     const real u_lobe = sampler.get(dimension(s.k, Draw::lobe));
     const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
     e.wi = x.local.to_world(b.wi);
-    if (max_of(b.f) <= 0) return end("nothing is reflected that way");
+    if (ends(max_of(b.f) <= 0, "nothing is reflected that way")) return e;
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
     if (t.roulette > 0 && s.k + 1 >= t.roulette) {
         const real survival = std::min(real(1), max_of(beta));
-        if (sampler.get(dimension(s.k, Draw::roulette)) >= survival) return end("Russian roulette");
+        const real u_survival = sampler.get(dimension(s.k, Draw::roulette));
+        if (ends(u_survival >= survival, "Russian roulette")) return e;
         beta /= survival;
     }
     e.next = Segment{spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1};
