@@ -12,6 +12,7 @@
 // A median of the rounds is followed by their least and greatest; the ratios are taken round by
 // round.  Nothing here fails for being slow.
 #include <ctime>
+#include <numeric>
 
 #include "base/program.h"
 #include "base/rng.h"
