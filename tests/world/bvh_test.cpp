@@ -1,22 +1,9 @@
 // world/bvh_test.cpp  a tree answers as a loop over all shapes does, bit for bit, only sooner
 #include "world/bvh.h"
 
-#include "base/rng.h"
-#include "oracle/expect.h"
+#include "world/geometry.h"
 
 namespace {
-
-struct Dice {
-    Rng rng{seed_here()};
-    real operator()(real lo, real hi) { return lo + (hi - lo) * to_unit(rng.bits()); }
-    real decades(real lo, real hi) { return std::pow(real(10), (*this)(lo, hi)); }
-    size_t below(size_t n) { return size_t(rng.bits() % n); }
-    vec3 direction() {
-        const real z = (*this)(-1, 1), phi = (*this)(0, 2 * pi), r = std::sqrt((1 - z) * (1 + z));
-        return {r * std::cos(phi), r * std::sin(phi), z};
-    }
-    real sign() { return below(2) ? real(1) : real(-1); }
-};
 
 using Shapes = std::vector<Shape>;
 
@@ -204,25 +191,8 @@ Shapes room() {
     return scene;
 }
 
-// The octahedron, refined twice and blown up.
-Shapes ball() {
-    Shapes scene;
-    for (real x : {real(-1), real(1)})
-        for (real y : {real(-1), real(1)})
-            for (real z : {real(-1), real(1)}) scene.push_back({{x, 0, 0}, {0, y, 0}, {0, 0, z}});
-    for (int level = 0; level < 2; ++level) {
-        Shapes finer;
-        for (const auto& [a, b, c, r] : scene) {
-            const vec3 ab = unit(a + b), bc = unit(b + c), ca = unit(c + a);
-            finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-        }
-        scene = finer;
-    }
-    return scene;
-}
-
 Shapes scaled(Shapes shapes, real k) {
-    for (Shape& s : shapes) s = {s.a * k, s.b * k, s.c * k, s.r * k};
+    for (Shape& s : shapes) s = scaled(s, k);
     return shapes;
 }
 
@@ -231,7 +201,7 @@ Shapes scaled(Shapes shapes, real k) {
 TEST_CASE("closest and occluded equal a loop over all shapes, on random and on awkward rays") {
     Dice random{{1}};
     const Shapes scenes[] = {
-        soup(30, 0, random), soup(15, 15, random), soup(0, 20, random), ball(), grid(2), room(),
+        soup(30, 0, random), soup(15, 15, random), soup(0, 20, random), ball(2), grid(2), room(),
         soup(5, 0, random)};
     for (const Shapes& scene : scenes) {
         Comparison c{scene};

@@ -1,0 +1,56 @@
+// whole/extremes.h  what precision buys: each configuration with the error it may have
+//
+// The rows of extremes_*_test.cpp are asserted there in the precision of the build; `make extremes`
+// runs them in both and writes reference/extremes.md.
+#pragma once
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+#include "world/geometry.h"
+
+inline constexpr big big_pi = 3.141592653589793238462643383279502884L;
+inline constexpr bool is_double = sizeof(real) == 8;
+inline constexpr double d_ulp = 0x1p-53, f_ulp = 0x1p-24;  // of double and float: 1.1e-16, 6e-8
+inline constexpr double any = HUGE_VAL;
+
+// `error` runs the configuration with this build's `real`.  Where any error will do in float, it
+// cannot tell the configuration from another.
+struct Row {
+    const char* name;
+    double in_double, in_float;  // the error that each may have
+    std::function<double()> error;
+    bool in_suite = true;  // else too long for it: `make extremes` alone
+    double bound() const { return is_double ? in_double : in_float; }
+};
+
+// With EXTREMES=FILE every row, also the long ones, is added to that file: name, both bounds,
+// error.
+inline void check_rows(const std::vector<Row>& rows) {
+    const char* path = std::getenv("EXTREMES");
+    std::FILE* out = path ? std::fopen(path, "a") : nullptr;
+    REQUIRE((!path || out));
+    for (const Row& row : rows) {
+        if (!row.in_suite && !out) continue;
+        const double error = row.error();
+        INFO(std::string(row.name));
+        CHECK(!std::isnan(error));
+        CHECK(error <= row.bound());
+        if (out)
+            std::fprintf(out, "%s\t%.2g\t%.2g\t%.2g\n", row.name, row.in_double, row.in_float,
+                         error);
+    }
+    if (out) std::fclose(out);
+}
+
+inline double relative(big value, big truth) {
+    return double(std::abs(value - truth) / std::abs(truth));
+}
+
+// Midpoints of n x n cells of the unit square.
+template <class F>
+void each_cell(int n, F f) {
+    for (int i = 0; i < n * n; ++i)
+        f(vec2{(real(i % n) + real(0.5)) / real(n), (real(i / n) + real(0.5)) / real(n)});
+}

@@ -1,0 +1,273 @@
+// whole/extremes_light_test.cpp  lights near, far, faint, clipped and edge-on
+#include "whole/extremes.h"
+#include "world/scene.h"
+
+namespace {
+
+Light sphere_light(vec3 centre, real r) {
+    Light l{Light::Kind::sphere, centre, {}, {}, r, {1, 1, 1}};
+    l.error = rounding_error(Shape{centre, {}, {}, r});
+    l.pick = 1;
+    return l;
+}
+
+// Irradiance at p, n up from light l, by midpoints: mean of cos / pdf.
+double irradiance(const Light& l, vec3 p, int cells) {
+    double sum = 0;
+    each_cell(cells, [&](vec2 u) {
+        const auto s = sample_light(l, p, u);
+        if (s && s->wi.z > 0) sum += double(s->wi.z) / double(s->pdf);
+    });
+    return sum / (double(cells) * cells);
+}
+
+double cone_solid_angle() {
+    Dice random{{seed_of("solid angle of a cone")}};
+    Worst worst;
+    for (int i = 0; i < 10000; ++i) {
+        const real sin2 = random.decades(-20, 0);
+        worst.see(relative(solid_angle_cone(sin2),
+                           2 * big_pi * big(sin2) / (1 + std::sqrt(1 - big(sin2)))));
+    }
+    return worst.value;
+}
+
+double cone_sines() {
+    const real sin2_max = real(1e-8) / pi;  // 1e-8 sr
+    Worst worst;
+    each_cell(64, [&](vec2 u) {
+        const vec3 w = sample_cone(u, sin2_max);
+        const big x = u.x * big(sin2_max) / (1 + std::sqrt(1 - big(sin2_max)));
+        worst.see(relative(std::hypot(big(w.x), big(w.y)), std::sqrt(x * (2 - x))));
+    });
+    return worst.value;
+}
+
+// 1 / pdf is the solid angle; light of radius 1 seen from a distance of d.
+double sphere_light_pdf(real d) {
+    Dice random{{seed_of("pdf of a sphere light")}};
+    Worst worst;
+    for (int i = 0; i < 1000; ++i) {
+        const Light l = sphere_light(random.direction(), 1);
+        const vec3 p = d * random.direction();
+        const big3 f = big3(l.p) - p;
+        const big sin2 = 1 / dot(f, f);
+        const big truth = 2 * big_pi * sin2 / (1 + std::sqrt(1 - sin2));
+        const auto s = sample_light(l, p, random.pair());
+        worst.see(s ? relative(1 / big(s->pdf), truth) : HUGE_VAL);
+        worst.see(relative(1 / big(pdf_light(l, p, {})), truth));
+    }
+    return worst.value;
+}
+
+// Normal where the ray meets the sphere: beta between it and -wi has sin(beta) = sin(theta) /
+// sin(sigma), so the angle at the centre is beta - theta.  From u in long double.
+double sphere_light_normal(real d) {
+    Dice random{{seed_of("normal of a sphere light")}};
+    Worst worst;
+    for (int i = 0; i < 20000; ++i) {
+        const Light l = sphere_light({}, real(0.01));
+        const vec3 p = d * l.r * random.direction();
+        const vec2 u = random.pair();
+        const auto s = sample_light(l, p, u);
+        if (!s) return HUGE_VAL;
+        const big sin2_max = big(l.r) * l.r / dot(big3(p), big3(p));
+        const big x = u.x * sin2_max / (1 + std::sqrt(1 - sin2_max)), phi = 2 * big_pi * u.y;
+        const big theta = std::atan2(std::sqrt(x * (2 - x)), 1 - x);
+        const big sin_beta = std::sqrt(x * (2 - x) / sin2_max);
+        const big alpha = std::atan2(sin_beta, std::sqrt(1 - sin_beta * sin_beta)) - theta;
+        const Frame f = frame(-p / length(p));
+        const big3 n = std::sin(alpha) * std::cos(phi) * big3(f.s) +
+                       std::sin(alpha) * std::sin(phi) * big3(f.t) - std::cos(alpha) * big3(f.n);
+        worst.see(length(big3(s->at.n) - n));
+    }
+    return worst.value;
+}
+
+// E = pi sin^2(sigma) under the middle of the light, h above whose surface the receiver is.
+double sphere_light_from(real r, real h) {
+    const Light l = sphere_light({0, 0, r + h}, r);
+    const big d = l.p.z;
+    return relative(irradiance(l, {}, 64), big_pi * r * r / (d * d));
+}
+
+// k = cos / sin(sigma): E = s^3 (k acos(-k) + sqrt(1 - k^2) (2 + k^2) / 3) for small s (relative
+// error 1.4 s^2); 0 is half above the horizon.
+double clipped_sphere_light(real s, real k) {
+    const real c = k * s;
+    const Light l = sphere_light({std::sqrt(1 - c * c), 0, c}, s);
+    const big truth = big(s) * s * s *
+                      (k * std::acos(-big(k)) + std::sqrt(1 - big(k) * k) * (2 + big(k) * k) / 3);
+    return relative(irradiance(l, {}, 1024), truth);
+}
+
+bool sane(const std::optional<LightSample>& s) {
+    return !s || (is_finite(s->wi) && is_finite(s->at.p) && is_finite(s->at.n) && s->pdf > 0 &&
+                  !std::isnan(s->pdf));
+}
+
+// From the surface of a sphere light, one number below and above, and its inside.
+double insane_on_a_light() {
+    Dice random{{seed_of("on a light")}};
+    int insane = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Light l = sphere_light(random.direction(), random.decades(-3, 3));
+        const real at[] = {l.r, std::nextafter(l.r, real(0)), std::nextafter(l.r, infinity),
+                           l.r * random(0, 1), 0};
+        const vec3 p = l.p + at[i % 5] * random.direction();
+        const vec2 corners[] = {{0, 0}, {below_one, below_one}, random.pair()};
+        for (vec2 u : corners) insane += !sane(sample_light(l, p, u));
+        insane += !std::isfinite(pdf_light(l, p, {l.p, {0, 0, 1}, 0}));
+    }
+    return insane;
+}
+
+// From corners, edges, the plane of a quad and points next to it.
+double insane_beside_a_light() {
+    Dice random{{seed_of("beside a light")}};
+    int insane = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Light l{Light::Kind::quad, {1, 2, 3}, {2, 0, 0}, {0, 0, 4}, 0, {1, 1, 1}, i % 2 == 0};
+        const real heights[] = {0, std::numeric_limits<real>::denorm_min(), real(1e-30), -0.0};
+        const vec3 p = l.p + random(0, 1) * l.u + vec3{0, heights[i / 2 % 4], 0};
+        const vec2 u = random.pair();
+        l.p.y = 0;
+        insane += !sane(sample_light(l, {p.x, heights[i / 2 % 4], p.z}, u));
+        insane += !sane(sample_light(l, l.p, {0, 0}));
+        insane += !sane(sample_light(l, l.p + u.x * l.u + u.y * l.v, u));
+        insane += pdf_light(l, {p.x, 0, p.z}, {l.p + l.u, {0, 1, 0}, 0}) != 0;
+    }
+    return insane;
+}
+
+// A quad seen at a grazing angle from h above its plane, point by point: cos / pdf is
+// x h A / d^4 for the normal +x.
+double edge_on(real h) {
+    const Light l{Light::Kind::quad, {1, real(-0.5), h}, {0, 1, 0}, {1, 0, 0}};
+    Worst worst;
+    each_cell(32, [&](vec2 u) {
+        const auto s = sample_light(l, {}, u);
+        const big x = 1 + big(u.y), y = big(u.x) - 0.5L, d2 = x * x + y * y + big(h) * h;
+        worst.see(s ? relative(big(s->wi.x) / s->pdf, x * h / (d2 * d2)) : HUGE_VAL);
+    });
+    return worst.value;
+}
+
+// a b - c d from exact products, each a sum of two doubles (Dekker 1971).
+big exact_difference(double a, double b, double c, double d) {
+    const double ab = a * b, cd = c * d;
+    return (big(ab) - cd) + (big(std::fma(a, b, -ab)) - std::fma(c, d, -cd));
+}
+
+// Area of a triangle whose edges differ by 2^-narrow.
+double sliver_light(int narrow) {
+    Dice random{{seed_of("sliver light")}};
+    const real off = std::exp2(real(-narrow));
+    Worst worst;
+    for (int i = 0; i < 10000; ++i) {
+        const vec3 u = random.direction(), v = u + off * random.direction();
+        const big3 n{exact_difference(u.y, v.z, u.z, v.y), exact_difference(u.z, v.x, u.x, v.z),
+                     exact_difference(u.x, v.y, u.y, v.x)};
+        worst.see(relative(1 / big(pdf_triangle_area(u, v)), length(n) / 2));
+    }
+    return worst.value;
+}
+
+// Point light at a distance of 1e-9 to 1e9: L d^2 = I.
+double point_light() {
+    Dice random{{seed_of("point light")}};
+    Light l;
+    l.L = {1, 1, 1};
+    Worst worst;
+    for (int i = 0; i < 1000; ++i) {
+        const vec3 p = random.decades(-9, 9) * random.direction();
+        const auto s = sample_light(l, p, {});
+        worst.see(s ? relative(s->L.x, 1 / dot(big3(p), big3(p))) : HUGE_VAL);
+    }
+    return worst.value;
+}
+
+// A light `ratio` times as powerful as another: the part of all random numbers that choose each
+// against the probability that estimates are divided by.
+double choice_of_lights(double ratio) {
+    Scene s;
+    Material faint, bright;
+    faint.Le = {1, 1, 1}, bright.Le = rgb{1, 1, 1} * real(ratio);
+    s.materials = {faint, bright};
+    for (uint32_t m : {0u, 1u, 0u}) add_sphere(s, {real(m), 0, 0}, 1, m);
+    prepare(s);
+    constexpr int digits = std::numeric_limits<real>::digits;
+    const uint64_t all = uint64_t(1) << digits;
+    auto first_of = [&](size_t light) {  // number that chooses this light or a later one
+        uint64_t low = 0, high = all;
+        while (low < high) {
+            const uint64_t middle = (low + high) / 2;
+            const real u = to_unit(middle << (64 - digits));
+            const bool reached = &choose_light(s, u) >= &s.lights[light];
+            (reached ? high : low) = reached ? middle : middle + 1;
+        }
+        return low;
+    };
+    Worst worst;
+    for (size_t i = 0; i < 3; ++i) {
+        const big part = big((i < 2 ? first_of(i + 1) : all) - first_of(i)) / all;
+        worst.see(relative(s.lights[i].pick, part));
+    }
+    return worst.value;
+}
+
+double weights_of_two() {
+    Dice random{{seed_of("weights")}};
+    Worst worst;
+    for (int i = 0; i < 100000; ++i) {
+        const real p = random.decades(-30, 30), q = random.decades(-30, 30);
+        worst.see(std::abs(power_heuristic(p, q) + power_heuristic(q, p) - 1));
+    }
+    worst.see(std::abs(power_heuristic(infinity, 1) - 1));
+    worst.see(power_heuristic(0, 1));
+    worst.see(std::abs(power_heuristic(1, 0) - 1));
+    return worst.value;
+}
+
+}  // namespace
+
+TEST_CASE("extremes of lights: no more error than they may have") {
+    check_rows({
+        {"cone of 10^-20 ... 2 pi sr: solid angle", 4 * d_ulp, 4 * f_ulp, cone_solid_angle},
+        {"cone of 10^-8 sr: sines of sampled angles", 8 * d_ulp, 8 * f_ulp, cone_sines},
+        {"sphere light of 10^-8 sr: 1 / pdf", 16 * d_ulp, 16 * f_ulp,
+         [] { return sphere_light_pdf(real(17725)); }},
+        {"sphere light of 10^-12 sr: 1 / pdf", 16 * d_ulp, 16 * f_ulp,
+         [] { return sphere_light_pdf(real(1.7725e6)); }},
+        {"sphere light 10 radii away: normal", 32 * d_ulp, 32 * f_ulp,
+         [] { return sphere_light_normal(10); }},
+        {"sphere light 10^7 radii away: normal", 32 * d_ulp, 32 * f_ulp,
+         [] { return sphere_light_normal(real(1e7)); }},
+        // So near that float cannot tell outside from inside: no light samples there.
+        {"10^-7 above a sphere light: irradiance", 64 * d_ulp, any,
+         [] { return sphere_light_from(1, real(1e-7)); }},
+        {"10^-3 above a light of radius 10^6: irradiance", 64 * d_ulp, any,
+         [] { return sphere_light_from(real(1e6), real(1e-3)); }},
+        // 1024 midpoints of the square root of u: 0.3 / 1024^1.5 = 1e-5.
+        {"sphere light of sine 10^-4, a third below the horizon: irradiance", 1e-5, 1e-4,
+         [] { return clipped_sphere_light(real(1e-4), real(0.4)); }},
+        {"sphere light of sine 10^-5, half below: irradiance", 1e-5, 1e-4,
+         [] { return clipped_sphere_light(real(1e-5), 0); }},
+        {"sphere light of sine 10^-5, nine tenths below: irradiance", 1e-5, 1e-4,
+         [] { return clipped_sphere_light(real(1e-5), real(-0.8)); }},
+        {"on the surface of a sphere light, and in it: samples not finite", 0, 0,
+         insane_on_a_light},
+        {"in the plane of a quad light, on its edge, its corner: samples not finite", 0, 0,
+         insane_beside_a_light},
+        {"quad light edge-on, 10^-9 off its plane: contributions", 16 * d_ulp, 16 * f_ulp,
+         [] { return edge_on(real(1e-9)); }},
+        {"light as thin as 10^-6 of its length: area", 8 * d_ulp, 8 * f_ulp,
+         [] { return sliver_light(20); }},
+        {"point light 10^-9 ... 10^9 away: radiance", 8 * d_ulp, 8 * f_ulp, point_light},
+        {"lights of powers 1 and 10^9: how often against how probable", 0, 0,
+         [] { return choice_of_lights(1e9); }},
+        {"lights of powers 1 and 10^30: how often against how probable", 0, 0,
+         [] { return choice_of_lights(1e30); }},
+        {"MIS weights of densities 10^-30 ... 10^30: sum", 4 * d_ulp, 4 * f_ulp, weights_of_two},
+    });
+}

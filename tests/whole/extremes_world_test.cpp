@@ -1,0 +1,453 @@
+// whole/extremes_world_test.cpp  rays and shapes, directions, materials, the camera
+#include "base/stats.h"
+#include "whole/extremes.h"
+#include "world/scene.h"
+
+namespace {
+
+// ---- Spheres and triangles ----------------------------------------------------------------------
+
+// Part of the rays that miss; how far o + t d, and the point that paths use, are off the surface,
+// in distances at most and in radii in the mean.
+struct FarSphere {
+    double missed = 0, hit_off = 0, hit_mean = 0, point_off = 0, point_mean = 0;
+};
+FarSphere far_sphere(real d) {
+    Dice random{{seed_of("far sphere")}};
+    FarSphere result;
+    Worst hit_off, point_off;
+    Moments hit_mean, point_mean;
+    const int n = 50000;
+    for (int i = 0; i < n; ++i) {
+        const real x = random(0, real(0.99));
+        const Shape s{{}, {}, {}, random.decades(-3, 3)};
+        const Ray ray = aimed(s, s.a + d * s.r * random.direction(), x, random);
+        const auto hit = meet(s, ray);
+        result.missed += hit ? 0 : 1.0 / n;
+        if (!hit) continue;
+        auto off = [&](big3 p) { return double(std::abs(length(p - s.a) - s.r) / s.r); };
+        const double at_hit = off(big3(ray.o) + hit->t * big3(ray.d));
+        const double at_point = off(surface(s, ray, *hit).p);
+        hit_off.see(at_hit / double(d));
+        hit_mean.add(at_hit);
+        point_off.see(at_point / double(d));
+        point_mean.add(at_point);
+    }
+    result.hit_off = hit_off.value, result.hit_mean = hit_mean.mean;
+    result.point_off = point_off.value, result.point_mean = point_mean.mean;
+    return result;
+}
+
+// Height of 1e-3 over a sphere of radius 1e6, by a ray straight down; in radii.
+double over_a_planet() {
+    const Shape s{{0, real(-1e6), 0}, {}, {}, real(1e6)};
+    const auto hit = meet(s, {{0, real(1e-3), 0}, {0, -1, 0}});
+    return hit ? std::abs(double(hit->t) - 1e-3) / 1e6 : HUGE_VAL;
+}
+
+// Rays that leave a surface point outwards, at any angle, and meet their own shape.
+double met_again() {
+    Dice random{{seed_of("met again")}};
+    int again = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const real sizes[] = {real(1e-6), 1, real(1e6)};
+        const real size = sizes[i % 3], distance = i % 2 ? real(1e6) : 0;
+        const vec3 at = distance * random.direction();
+        Shape s{at, {}, {}, size};
+        if (i % 5 == 0) s = {at, at + size * random.direction(), at + size * random.direction()};
+        if (!s.is_sphere() && s.a == s.b) continue;
+        const vec3 target = s.is_sphere() ? s.a : (s.a + s.b + s.c) / 3;
+        const vec3 o = target + 4 * size * random.direction();
+        if (o == target) continue;
+        const Ray ray{o, unit(target - o)};
+        const auto hit = meet(s, ray);
+        if (!hit) continue;
+        const Surface x = surface(s, ray, *hit);
+        if (!is_finite(x.n)) continue;
+        const Frame f = frame(x.n);
+        for (int k = 0; k < 16; ++k) {
+            const real z = k % 2 ? random(0, 1) : random.decades(-12, 0);
+            const vec3 d = f.to_world(spherical(z, std::sqrt(1 - z * z), 2 * pi * random(0, 1)));
+            if (dot(d, x.n) > 0) again += meet(s, spawn(x, d)).has_value();
+        }
+    }
+    return again;
+}
+
+// Rays from inside, aimed at corners and edges, that find a way out of the mesh.
+double leaks(Mesh mesh, vec3 move) {
+    for (Shape& s : mesh) s = {s.a + move, s.b + move, s.c + move};
+    const Bvh bvh(mesh);
+    Dice random{{seed_of("leaks")}};
+    int leaked = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const Shape& s = mesh[random.below(mesh.size())];
+        const vec3 corner[3] = {s.a, s.b, s.c};
+        const size_t k = random.below(3);
+        const real along = i % 3 ? random(0, 1) : 0;
+        const vec3 target = corner[k] + along * (corner[(k + 1) % 3] - corner[k]);
+        const vec3 o = move + random(0, real(0.3)) * random.direction();
+        leaked += !bvh.closest({o, unit(target - o)});
+    }
+    return leaked;
+}
+
+// Rays along axes, within the faces of boxes and of the tree: tree against loop.
+double along_axes() {
+    Dice random{{seed_of("along axes")}};
+    Scene boxes;
+    boxes.materials.resize(1);
+    for (int i = 0; i < 60; ++i)
+        add_box(boxes, {1, 1, real(i % 3 ? 1 : 0.5)}, 0,
+                {real(random.below(6)), real(random.below(6)), real(random.below(6))}, 0);
+    const std::vector<Shape>& shapes = boxes.shapes;
+    const Bvh bvh(shapes);
+    int wrong = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const vec3 o{real(random.below(7)) - (i % 7 == 0 ? 10 : 0), real(random.below(7)),
+                     real(random.below(7))};
+        vec3 d{i & 1 ? -real(0) : real(0), i & 2 ? -real(0) : real(0), i & 4 ? -real(0) : real(0)};
+        d.*axis[i % 3] = i & 8 ? -1 : 1;
+        const Ray ray{o, d};
+        Hit best;
+        for (size_t j = 0; j < shapes.size(); ++j)
+            if (const auto hit = meet(shapes[j], ray); hit && hit->t < best.t)
+                best = *hit, best.id = uint32_t(j);
+        const auto hit = bvh.closest(ray);
+        wrong += hit ? hit->id != best.id || hit->t != best.t : best.id != UINT32_MAX;
+        wrong += bvh.occluded(ray) != hit.has_value();
+    }
+    return wrong;
+}
+
+// Of coincident shapes the first is seen, whatever surrounds them.
+double coincident() {
+    Dice random{{seed_of("coincident")}};
+    int wrong = 0;
+    for (int trial = 0; trial < 50; ++trial) {
+        std::vector<Shape> shapes;
+        const Shape wall{{-9, -9, 0}, {9, -9, 0}, {0, 12, 0}};
+        const size_t n = 1 + random.below(40), first = random.below(n);
+        for (size_t i = 0; i < n; ++i)
+            shapes.push_back(i == first || (i > first && random.below(2))
+                                 ? wall
+                                 : Shape{random.direction() - vec3{0, 0, 3}, {}, {}, 1});
+        const Bvh bvh(shapes);
+        for (int i = 0; i < 200; ++i) {
+            const vec3 o{random(-2, 2), random(-2, 2), 5};
+            const auto hit = bvh.closest({o, {0, 0, -1}});
+            wrong += !hit || hit->id != first;
+        }
+    }
+    return wrong;
+}
+
+// A sheet `gap` before a wall, seen from about 10 away: part of the rays that see the wall.
+double sheet_before_wall(real gap) {
+    std::vector<Shape> shapes;
+    for (real z : {real(0), gap}) shapes.push_back({{-20, -20, z}, {20, -20, z}, {0, 30, z}});
+    const Bvh bvh(shapes);
+    Dice random{{seed_of("sheet")}};
+    const int n = 20000;
+    int wall = 0;
+    for (int i = 0; i < n; ++i) {
+        const vec3 o{random(-3, 3), random(-3, 3), 10}, to{random(-3, 3), random(-3, 3), 0};
+        const auto hit = bvh.closest({o, unit(to - o)});
+        wall += !hit || hit->id == 0;
+    }
+    return double(wall) / n;
+}
+
+// The same sheet over a floor: part of the shadow rays from the floor that pass it.
+double shadow_of_sheet(real gap) {
+    const Shape floor{{-20, -20, 0}, {20, -20, 0}, {0, 30, 0}};
+    const Bvh bvh({floor, {{-20, -20, gap}, {20, -20, gap}, {0, 30, gap}}});
+    Dice random{{seed_of("shadow of a sheet")}};
+    const int n = 20000;
+    int lit = 0;
+    for (int i = 0; i < n; ++i) {
+        const Surface x{{random(-3, 3), random(-3, 3), 0}, {0, 0, 1}, rounding_error(floor)};
+        lit += !bvh.occluded(spawn_to(x, {{random(-3, 3), random(-3, 3), 10}, {0, 0, -1}, 0}));
+    }
+    return double(lit) / n;
+}
+
+// Triangles with edges of 10^-k, and with no area, as scenes take them: each is dropped, or has a
+// normal of length 1.  Worst | |n| - 1 |.
+double tiny_normals() {
+    Dice random{{seed_of("tiny normals")}};
+    Scene scene;
+    scene.materials.resize(1);
+    const real least = is_double ? -320 : -44;
+    Worst worst;
+    for (int i = 0; i < 20000; ++i) {
+        const vec3 a = i % 2 ? vec3{} : random.direction();
+        const real size = random.decades(least, 0);
+        const vec3 b = a + size * random.direction();
+        const vec3 c = i % 5 ? a + size * random.direction() : i % 3 ? b : a + 2 * (b - a);
+        scene.shapes.clear();
+        add_triangle(scene, a, b, c, 0);
+        add_quad(scene, a, b - a, c - a, 0);
+        for (const Shape& s : scene.shapes)
+            worst.see(std::abs(length(big3(surface(s, {}, {}).n)) - 1));
+    }
+    return worst.value;
+}
+
+double few_shapes() {
+    int wrong = Bvh(std::vector<Shape>{}).closest({{}, {0, 0, 1}}).has_value();
+    const Bvh one({{{0, 0, 5}, {}, {}, 1}});
+    wrong += one.closest({{}, {0, 0, 1}})->t != 4;
+    wrong += one.closest({{}, {0, 0, -1}}).has_value();
+    const real nan = std::numeric_limits<real>::quiet_NaN();
+    wrong += one.closest({{}, {nan, nan, nan}}).has_value();
+    return wrong;
+}
+
+// ---- Directions ---------------------------------------------------------------------------------
+
+// Largest scalar product of two axes.
+double skewness(const Frame& f) {
+    return double(std::max({std::abs(dot(big3(f.s), f.t)), std::abs(dot(big3(f.t), f.n)),
+                            std::abs(dot(big3(f.n), f.s))}));
+}
+
+double frames_anywhere() {
+    Dice random{{seed_of("frames")}};
+    Worst worst;
+    for (int i = 0; i < 20000; ++i) worst.see(skewness(frame(random.direction())));
+    return worst.value;
+}
+
+// Down to 1e-9, 1e-20 and 0 from both poles.
+double frames_at_poles() {
+    Worst worst;
+    for (real z : {real(-1), real(1)})
+        for (real tiny : {real(1e-4), real(4.5e-5), real(1e-9), real(1e-20), real(0)})
+            for (real angle = 0; angle < 6; angle += real(0.01))
+                worst.see(skewness(frame({tiny * std::cos(angle), tiny * std::sin(angle),
+                                          z * std::sqrt(1 - tiny * tiny)})));
+    return worst.value;
+}
+
+// Directions from the corners of the unit square: lengths off 1.
+double corners_of_the_square() {
+    Worst worst;
+    const real ends[] = {0, std::numeric_limits<real>::denorm_min(), ulp, real(0.5), below_one};
+    for (real x : ends)
+        for (real y : ends)
+            for (vec3 w : {sample_uniform_hemisphere({x, y}), sample_cosine_hemisphere({x, y}),
+                           sample_phong_lobe({x, y}, 0), sample_phong_lobe({x, y}, real(1e6)),
+                           sample_cone({x, y}, 1), sample_cone({x, y}, real(1e-30))}) {
+                worst.see(std::abs(length(big3(w)) - 1));
+                worst.see(w.z >= 0 ? 0 : HUGE_VAL);
+            }
+    return worst.value;
+}
+
+// Near the pole of a uniform hemisphere: sin^2 = u (2 - u).
+double sines_at_the_pole() {
+    Dice random{{seed_of("pole")}};
+    Worst worst;
+    for (int i = 0; i < 10000; ++i) {
+        const real u = random.decades(is_double ? -15 : -7, 0);
+        const vec3 w = sample_uniform_hemisphere({u, real(0.3)});
+        // 1 - u is rounded, and so is the point; the sine is that of u.
+        worst.see(relative(std::hypot(big(w.x), big(w.y)), std::sqrt(big(u) * (2 - big(u)))));
+    }
+    return worst.value;
+}
+
+// Exponent 1e5: sine of the angle from the axis.
+double lobe_sines() {
+    const real n = real(1e5);
+    Dice random{{seed_of("lobe")}};
+    Worst worst;
+    for (int i = 0; i < 10000; ++i) {
+        const real u = random.decades(is_double ? -12 : -6, 0);
+        const vec3 w = sample_phong_lobe({u, real(0.3)}, n);
+        const big truth = std::sqrt(-std::expm1(2 * std::log1p(-big(u)) / (big(n) + 1)));
+        worst.see(relative(std::hypot(big(w.x), big(w.y)), truth));
+    }
+    return worst.value;
+}
+
+// Mirrored at a cosine of 1e-6 by a lobe of exponent 1e5: its density, as `pdf` finds it from wi
+// against that from u; and the weight f cos / pdf, which must be ks (n+2) / (n+1) cos.
+struct Lobe {
+    double density = 0, weight = 0;
+};
+Lobe grazing_lobe() {
+    Material m;
+    m.ks = {1, 1, 1}, m.exponent = real(1e5);
+    const real z = real(1e-6);
+    const vec3 wo{std::sqrt(1 - z * z), 0, z};
+    Worst density, weight;
+    each_cell(64, [&](vec2 u) {
+        const BsdfSample s = sample(m, wo, true, 0, u, Direction::bsdf);
+        const big n = m.exponent;
+        density.see(relative(s.pdf, (n + 1) / (2 * big_pi) * std::pow(1 - big(u.x), n / (n + 1))));
+        if (s.wi.z > 0) weight.see(relative(s.f.x * (s.wi.z / s.pdf), (n + 2) / (n + 1) * s.wi.z));
+    });
+    return {double(density.value), double(weight.value)};
+}
+
+// ---- Glass --------------------------------------------------------------------------------------
+
+Material glass(real ior) {
+    Material m;
+    m.kind = Material::Kind::glass, m.ior = ior;
+    return m;
+}
+vec3 at_cosine(real z) { return {std::sqrt((1 - z) * (1 + z)), 0, z}; }
+
+// Reflectance as sample_glass has it, against Fresnel's in long double.
+double glass_off(real ior, bool outside, real z) {
+    const BsdfSample s = sample(glass(ior), at_cosine(z), outside, 0, {}, Direction::bsdf);
+    const big reflectance = s.wi.z > 0 ? big(s.pdf) : 1 - big(s.pdf);
+    const big eta = outside ? 1 / big(ior) : big(ior);
+    const big i = z, cos2 = (1 - eta) * (1 + eta) + eta * eta * i * i, c = std::sqrt(cos2);
+    const big parallel = (i - eta * c) / (i + eta * c), cross = (eta * i - c) / (eta * i + c);
+    const big truth = cos2 > 0 ? (parallel * parallel + cross * cross) / 2 : 1;
+    return double(std::abs(reflectance - truth));
+}
+
+double glass_like_air() {
+    Worst worst;
+    for (bool outside : {false, true})
+        for (real z = 1; z > real(1e-12); z *= real(0.7)) worst.see(glass_off(1, outside, z));
+    return worst.value;
+}
+
+double grazing_glass() {
+    Worst worst;
+    for (real ior : {real(1.5), real(2.4), real(100)})
+        for (real z = 1; z > real(1e-12); z *= real(0.7)) worst.see(glass_off(ior, true, z));
+    return worst.value;
+}
+
+double critical_glass() {
+    Worst worst;
+    for (real ior : {real(1.5), real(1.0001), real(2.4)}) {
+        const real critical = std::sqrt(1 - 1 / (ior * ior));
+        for (real off = real(0.01); off > ulp; off *= real(0.8))
+            for (real z : {critical * (1 - off), critical * (1 + off), critical})
+                worst.see(glass_off(ior, false, z));
+    }
+    return worst.value;
+}
+
+// f cos / pdf is 1 for what is reflected, eta^2 for what is refracted: index 10^-30 to 10^30.
+double glass_weights() {
+    Dice random{{seed_of("glass")}};
+    Worst worst;
+    for (int i = 0; i < 100000; ++i) {
+        const real ior = i % 3 ? random.decades(-30, 30) : random(real(0.5), 2);
+        const vec3 wo = i % 7 ? at_cosine(random.decades(-9, 0)) : vec3{0, 0, 1};
+        const bool outside = i % 2;
+        const BsdfSample s = sample(glass(ior), wo, outside, random(0, 1), {}, Direction::bsdf);
+        const big eta = s.wi.z > 0 ? 1 : outside ? 1 / big(ior) : big(ior);
+        worst.see(relative(s.f.x * (std::abs(s.wi.z) / s.pdf), eta * eta));
+        worst.see(is_finite(s.wi) ? 0 : HUGE_VAL);
+    }
+    return worst.value;
+}
+
+// ---- Camera -------------------------------------------------------------------------------------
+
+// Neighbouring pixels of a telescope: the angle between their rays is 2 tan(fov / 2) / height.
+double telescope(real degrees) {
+    const Camera c = look_at({}, {1, 2, -3}, degrees);
+    const big angle = 2 * std::tan(big(degrees) * big_pi / 360) / 128;
+    Worst worst;
+    for (int x = 100; x < 150; ++x) {
+        const Ray a = camera_ray(c, {256, 128}, real(x), 64),
+                  b = camera_ray(c, {256, 128}, real(x + 1), 64);
+        worst.see(relative(length(big3(a.d) - b.d), angle));
+    }
+    return worst.value;
+}
+
+// A field of view of 179.99 degrees: height of the image plane.
+double wide_angle() {
+    const real degrees = real(179.99);
+    const Camera c = look_at({}, {0, 0, -1}, degrees);
+    return relative(c.tan_half, std::tan(big(degrees) * big_pi / 360));
+}
+
+// Looking almost straight down: axes not orthonormal.
+double from_above(real off) {
+    const Camera c = look_at({real(0.3) + off, 1, off / 3}, {real(0.3), real(0.2), 0}, 40);
+    return double(
+        std::max({std::abs(dot(big3(c.right), c.up)), std::abs(dot(big3(c.up), c.forward)),
+                  std::abs(dot(big3(c.forward), c.right)), std::abs(length(big3(c.right)) - 1),
+                  std::abs(length(big3(c.up)) - 1)}));
+}
+
+}  // namespace
+
+TEST_CASE("extremes of shapes and directions: no more error than they may have") {
+    check_rows({
+        // Rounding of a unit direction moves the hit by 3 ulp of the distance, of the roots by 5.
+        {"sphere 10^4 radii away: hit off the surface, in distances", 8 * d_ulp, 8 * f_ulp,
+         [] { return far_sphere(real(1e4)).hit_off; }},
+        {"sphere 10^4 radii away: point of a path off the surface, in distances", 5e-16, 3e-7,
+         [] { return far_sphere(real(1e4)).point_off; }},
+        {"sphere 10^4 radii away: part of the rays within 0.99 R that miss", 0, 0,
+         [] { return far_sphere(real(1e4)).missed; }},
+        {"sphere 10^7 radii away: part of the rays within 0.99 R that miss", 0, 0.5,
+         [] { return far_sphere(real(1e7)).missed; }},
+        {"sphere 10^7 radii away: hit off the surface, mean, in radii", 8e7 * d_ulp, any,
+         [] { return far_sphere(real(1e7)).hit_mean; }},
+        {"sphere 10^7 radii away: point of a path off the surface, mean, in radii", 6e-10,
+         4 * f_ulp, [] { return far_sphere(real(1e7)).point_mean; }},
+        {"sphere 1 / ulp radii away: the same", 4 * d_ulp, 4 * f_ulp,
+         [] { return far_sphere(1 / ulp).point_mean; }},
+        {"sphere of radius 10^6 seen from 10^-3: distance, in radii", 8 * d_ulp, any,
+         over_a_planet},
+        {"rays leaving spheres of 10^-6 ... 10^6, 10^6 from the origin: met again", 0, 0,
+         met_again},
+        {"closed mesh at (148376, 1234, -223423), aimed at edges and corners: leaks", 0, 0,
+         [] {
+             return leaks(ball(3), {148376, 1234, -223423});
+         }},
+        {"closed mesh of slivers, aspect 10^8, aimed at edges and corners: leaks", 0, 0,
+         [] { return leaks(cones(150, real(1e-8)), {}); }},
+        {"rays along axes, +0 and -0, in faces of boxes: tree unlike loop", 0, 0, along_axes},
+        {"coincident surfaces: not the first one seen", 0, 0, coincident},
+        {"sheet 10^-6 before a wall, from 10: part of the rays that see the wall", 0, 0.5,
+         [] { return sheet_before_wall(real(1e-6)); }},
+        {"sheet 10^-6 above a floor: part of the shadow rays that pass", 0, any,
+         [] { return shadow_of_sheet(real(1e-6)); }},
+        {"triangles from 1 to denormal, and without area: length of the normal", 4 * d_ulp,
+         4 * f_ulp, tiny_normals},
+        {"no shape, one shape, a ray that is not a number: wrong answers", 0, 0, few_shapes},
+
+        {"frames about n.z = +-1, and 10^-9 off: scalar products of axes", 2.8e-16, 1e-7,
+         frames_at_poles},
+        // n is unit within 2 ulp.
+        {"frames anywhere: scalar products of axes", 8 * d_ulp, 8 * f_ulp, frames_anywhere},
+        {"samplers at the corners of the unit square: length", 8 * d_ulp, 8 * f_ulp,
+         corners_of_the_square},
+        {"uniform hemisphere near its pole: sines", 8 * d_ulp, 8 * f_ulp, sines_at_the_pole},
+        {"Phong exponent 10^5: sines from the axis", 8 * d_ulp, 8 * f_ulp, lobe_sines},
+        // Rounding of the cosine, 4 ulp, times the exponent.
+        {"Phong exponent 10^5, grazing: density", 4e5 * d_ulp, 4e5 * f_ulp,
+         [] { return grazing_lobe().density; }},
+        {"Phong exponent 10^5, grazing: weight", 16 * d_ulp, 16 * f_ulp,
+         [] { return grazing_lobe().weight; }},
+        {"glass of index 1, cosines down to 10^-12: reflectance", 8 * d_ulp, 8 * f_ulp,
+         glass_like_air},
+        {"glass of index 1.5 ... 100, cosines down to 10^-12: reflectance", 16 * d_ulp, 16 * f_ulp,
+         grazing_glass},
+        // 4 ulp of cos^2 cancel, the root of which is the refracted cosine over n cos; 1 - R is
+        // 2 (n + 1 / n) / cos times that: 2 (n^2 + 1) sqrt(4 ulp), n = 2.4.
+        {"glass at its critical angle: reflectance", 2.9e-7, 6.6e-3, critical_glass},
+        {"glass of index 10^-30 ... 10^30: weights", 16 * d_ulp, 16 * f_ulp, glass_weights},
+        {"field of view of 10^-4 degrees: angle between pixels", 1e-6, any,
+         [] { return telescope(real(1e-4)); }},
+        {"field of view of 179.99 degrees: its tangent", 1e-11, 1e-2, wide_angle},
+        {"camera 10^-9 from looking straight down: axes", 8 * d_ulp, 8 * f_ulp,
+         [] { return from_above(real(1e-9)); }},
+    });
+}
