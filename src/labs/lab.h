@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <numeric>
@@ -12,7 +13,9 @@
 #include <vector>
 
 #include "base/program.h"
+#include "base/stats.h"
 #include "film/image.h"
+#include "film/passes.h"
 #include "labs/svg.h"
 
 // As printf.
@@ -52,6 +55,12 @@ inline std::string with_range(const std::vector<double>& x, const char* format) 
     return text(format, median(x)) + " (" + text(format, *least) + "–" + text(format, *most) + ")";
 }
 
+// "1.21 ± 0.03": mean and standard deviation, by a format for one number; of one run its number.
+inline std::string plus_minus(const Moments& m, const char* format) {
+    return text(format, m.mean) +
+           (m.n > 1 ? " ± " + text(format, std::sqrt(m.variance())) : std::string());
+}
+
 // Mean squared difference of two images of one size, over pixels and channels.
 inline double mse(const Image& f, const Image& g) {
     double sum = 0;
@@ -62,6 +71,9 @@ inline double mse(const Image& f, const Image& g) {
         }
     return sum / (3 * double(f.pixels.size()));
 }
+
+// Of the processor, by all threads of this program.
+inline double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 // ---- Reports ------------------------------------------------------------------------------------
 
@@ -124,6 +136,22 @@ private:
         std::fputs(words.c_str(), stdout);
     }
 };
+
+// Where reports go: what is committed comes from all runs, in double.
+inline std::string report_folder(bool quick) {
+    return quick || sizeof(real) < sizeof(double) ? "out" : "reference";
+}
+
+// The last words of a report: the command that wrote it and what that ran on.
+inline std::string made_by(const std::string& command) {
+#ifdef __clang__
+    const char* compiler = __VERSION__;
+#else
+    const char* compiler = "g++ " __VERSION__;
+#endif
+    return text("Written by `%s`: %u threads, numbers in %s, compiled by %s.", command.c_str(),
+                all_cores(), sizeof(real) == sizeof(double) ? "double" : "float", compiler);
+}
 
 // "17 of 96, 40 s left: cosine + NEE", on stderr: drawn over itself on a terminal, else a line
 // each.

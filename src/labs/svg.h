@@ -67,7 +67,8 @@ inline std::string tick(double x) {
     char digits[32];
     const double exponent = std::log10(std::abs(x));
     const bool far = x != 0 && (exponent < -2.5 || exponent > 5.5);
-    std::snprintf(digits, sizeof digits, "%.4g", x);
+    const bool whole = x == std::round(x);  // %g would write 65536 as 6.554e+04
+    std::snprintf(digits, sizeof digits, whole && !far ? "%.0f" : "%.4g", x);
     if (!far || std::abs(exponent - std::round(exponent)) > 1e-9) return digits;
     std::snprintf(digits, sizeof digits, "%d", int(std::abs(std::round(exponent))));
     constexpr const char* raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -85,8 +86,7 @@ public:
     Svg(double width, double height) : width_(width), height_(height) {}
 
     struct Type {
-        const char* anchor =
-            "start";  // or "middle", "end": which part of the words is at the place
+        const char* anchor = "start";  // what is at the place; or "middle", "end"
         const char* colour = svg::ink;
         double size = svg::letter;
         bool bold = false;
@@ -197,15 +197,17 @@ public:
     }
     Plot(const Plot&) = delete;
     Plot& operator=(const Plot&) = delete;
-    // Labels find their places when all are known.
+    // Labels find their places when all are known: a line apart, and none below the frame.
     ~Plot() {
-        std::sort(labels_.begin(), labels_.end(),
-                  [](const Label& a, const Label& b) { return a.y < b.y; });
-        double above = -INFINITY;
-        for (const Label& l : labels_) {
-            above = std::max(l.y, above + svg::letter + 2);
-            sheet_.words({right() + 6, above + 4}, l.words, {.colour = l.colour});
-        }
+        std::stable_sort(labels_.begin(), labels_.end(),
+                         [](const Label& a, const Label& b) { return a.y < b.y; });
+        double room = -INFINITY;
+        for (Label& l : labels_) room = l.y = std::max(l.y, room + line_height);
+        room = bottom() + line_height;
+        for (size_t k = labels_.size(); k-- > 0;)
+            room = labels_[k].y = std::min(labels_[k].y, room - line_height);
+        for (const Label& l : labels_)
+            sheet_.words({right() + 6, l.y + 4}, l.words, {.colour = l.colour});
     }
 
     Place place(double x, double y) const {
@@ -215,16 +217,23 @@ public:
     struct Style {
         const char* colour = svg::ink;
         bool dots = true, dashed = false;
-        double width = 2;
+        double width = 2, radius = 3;  // of the line (0: none) and of the dots
     };
+    // Points that are not finite are left out.
     void curve(const std::vector<double>& x, const std::vector<double>& y, const Style& style,
-               const std::string& label = "") {
+               const std::string& words = "") {
         std::vector<Place> through;
-        for (size_t k = 0; k < x.size(); ++k) through.push_back(place(x[k], y[k]));
-        sheet_.line(through, style.colour, style.width, style.dashed);
+        for (size_t k = 0; k < x.size(); ++k)
+            if (std::isfinite(x[k]) && std::isfinite(y[k])) through.push_back(place(x[k], y[k]));
+        if (through.empty()) return;
+        if (style.width > 0) sheet_.line(through, style.colour, style.width, style.dashed);
         for (const Place& p : through)
-            if (style.dots) sheet_.dot(p, style.colour);
-        if (!label.empty()) labels_.push_back({through.back().y, label, style.colour});
+            if (style.dots) sheet_.dot(p, style.colour, style.radius);
+        if (!words.empty()) labels_.push_back({through.back().y, words, style.colour});
+    }
+    // At the right border.
+    void label(double y, const std::string& words, const char* colour) {
+        labels_.push_back({place(x_.hi, y).y, words, colour});
     }
     // Between two curves.
     void band(const std::vector<double>& x, const std::vector<double>& low,
@@ -245,6 +254,8 @@ private:
     Place corner_, size_;
     Axis x_, y_;
     std::vector<Label> labels_;
+
+    static constexpr double line_height = svg::letter + 2;
 
     double right() const { return corner_.x + size_.x; }
     double bottom() const { return corner_.y + size_.y; }

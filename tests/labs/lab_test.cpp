@@ -1,0 +1,152 @@
+// labs/lab_test.cpp  what experiments say is what their numbers say
+#include "labs/lab.h"
+
+#include <doctest/doctest.h>
+
+#include <optional>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder of its own, removed at the end.
+struct Folder {
+    fs::path path;
+    Folder() {
+        std::string name = (fs::temp_directory_path() / "penumbra-lab-XXXXXX").string();
+        REQUIRE(::mkdtemp(name.data()) != nullptr);
+        path = name;
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() { fs::remove_all(path); }
+    std::string read(const std::string& name) const { return read_file((path / name).string()); }
+};
+
+// Calls a lab that knows --quick and --time S; what it saw, and its exit status.
+struct Called {
+    int status = 0;
+    bool worked = false, quick = false;
+    std::string time;
+};
+Called call(std::vector<std::string> words) {
+    Called c;
+    words.insert(words.begin(), "build/lab");
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    const Lab lab{"lab",
+                  "Nothing.",
+                  {{"--quick", "", "less", [&](const std::string&) { c.quick = true; }},
+                   {"--time", "S", "seconds", [&](const std::string& s) { c.time = s; }}}};
+    c.status = lab_main(int(argv.size()), argv.data(), lab, [&] {
+        c.worked = true;
+        return 7;
+    });
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("quantiles lie between neighbours; the order of the numbers does not matter") {
+    CHECK(median({3, 1, 2}) == 2);
+    CHECK(median({4, 1, 3, 2}) == 2.5);
+    CHECK(median({5}) == 5);
+    CHECK(std::isnan(median({})));
+    CHECK(quantile({1, 2, 3, 4, 5}, 0) == 1);
+    CHECK(quantile({1, 2, 3, 4, 5}, 1) == 5);
+    CHECK(quantile({5, 4, 3, 2, 1}, 0.25) == 2);
+    CHECK(quantile({0, 10}, 0.9) == doctest::Approx(9));
+}
+
+TEST_CASE("the slope is the exponent") {
+    CHECK(slope({1, 4, 16}, {3, 6, 12}) == doctest::Approx(0.5));  // y = 3 sqrt x
+    CHECK(slope({10, 100}, {1, 1e-3}) == doctest::Approx(-3));
+    // Logarithms to base 2: x 0, 1, 2, y 0, 0, 3; sum (x - 1) y / sum (x - 1)^2 = 3 / 2.
+    CHECK(slope({1, 2, 4}, {1, 1, 8}) == doctest::Approx(1.5));
+}
+
+TEST_CASE("numbers of many runs as words") {
+    CHECK(with_range({1.3, 1.19, 1.21}, "%.2f") == "1.21 (1.19–1.30)");
+    CHECK(with_range({2}, "%.0f") == "2 (2–2)");
+    Moments m;
+    m.add(1);
+    CHECK(plus_minus(m, "%.2f") == "1.00");
+    m.add(3);
+    CHECK(plus_minus(m, "%.2f") == "2.00 ± 1.41");
+    CHECK(text("%d%%, %s", 5, "x") == "5%, x");
+    CHECK(text("plain") == "plain");
+}
+
+TEST_CASE("mean squared difference is over all channels") {
+    Image f(2, 1), g(2, 1);
+    f.at(0, 0) = f.at(1, 0) = g.at(0, 0) = {1, 2, 3};
+    g.at(1, 0) = {1, 2, 6};
+    CHECK(mse(f, g) == doctest::Approx(9.0 / 6));
+    CHECK(mse(f, f) == 0);
+}
+
+TEST_CASE("the statistics reader: numbers, channels, null, a key that is missing") {
+    const std::string json =
+        "{\n  \"scene\": \"a.scene\",\n  \"seconds\": 12.5,\n  \"cpu_seconds\": 25,\n"
+        "  \"mean\": [1, null, 3e-05],\n  \"roulette\": null,\n  \"last\": 7\n}\n";
+    CHECK(stats(json, "seconds") == std::vector<double>{12.5});
+    CHECK(stats(json, "cpu_seconds") == std::vector<double>{25});
+    CHECK(stats(json, "last") == std::vector<double>{7});
+    const std::vector<double> mean = stats(json, "mean");
+    REQUIRE(mean.size() == 3);
+    CHECK(mean[0] == 1);
+    CHECK(std::isnan(mean[1]));
+    CHECK(mean[2] == 3e-5);
+    CHECK(std::isnan(stats(json, "roulette").at(0)));
+    CHECK_THROWS_AS(stats(json, "samples"), UserError);
+    CHECK_THROWS_AS(stats(json, "scene"), UserError);
+}
+
+TEST_CASE("flags set what they say; without flags the work is done all the same") {
+    const Called none = call({}), both = call({"--time", "3", "--quick"});
+    CHECK(none.status == 7);
+    CHECK(!none.quick);
+    CHECK(both.status == 7);
+    CHECK(both.quick);
+    CHECK(both.time == "3");
+}
+
+TEST_CASE("flags that are not known or lack their value: exit status 2, and no work") {
+    for (const std::vector<std::string>& words :
+         std::vector<std::vector<std::string>>{{"--quik"}, {"--time"}, {"--quick", "3"}, {"x"}}) {
+        const Called c = call(words);
+        CHECK(c.status == 2);
+        CHECK(!c.worked);
+    }
+}
+
+TEST_CASE("--help: exit status 0, and no work") {
+    const Called c = call({"--quick", "--help"});
+    CHECK(c.status == 0);
+    CHECK(!c.worked);
+}
+
+TEST_CASE("a report is written as it was said, and counts the claims that failed") {
+    const Folder folder;
+    Report good(folder.path.string(), "good"), bad(folder.path.string(), "bad");
+    good.say("# Title");
+    good.head({"a", "b"});
+    good.row({"1", good.verdict(true)});
+    good.end_of_table();
+    good.picture("curve", Svg(10, 10), "A curve");
+    CHECK(good.finish() == 0);
+    CHECK(folder.read("good.md") ==
+          "# Title\n\n| a | b |\n|---|---|\n| 1 | ok |\n\n![A curve](curve.svg)\n\n");
+    CHECK(folder.read("curve.svg") == Svg(10, 10).file());
+    bad.say(bad.verdict(true) + bad.verdict(false));
+    CHECK(bad.finish() == 1);
+    CHECK(folder.read("bad.md").find("FAILS") != std::string::npos);
+}
+
+TEST_CASE("what is committed comes from all runs, in double; a report says what made it") {
+    CHECK(report_folder(true) == "out");
+    CHECK(report_folder(false) == (sizeof(real) == 8 ? "reference" : "out"));
+    const std::string words = made_by("build/lab --quick");
+    CHECK(words.find("`build/lab --quick`") != std::string::npos);
+    CHECK(words.find(sizeof(real) == 8 ? "double" : "float") != std::string::npos);
+}
