@@ -18,10 +18,12 @@
 #include "film/passes.h"
 #include "labs/svg.h"
 
-// As printf.
-inline std::string text(const char* format, auto... values) {
-    std::string line(size_t(std::snprintf(nullptr, 0, format, values...)), ' ');
-    std::snprintf(line.data(), line.size() + 1, format, values...);
+// As printf; a string for %s may be a std::string.
+inline const char* printable(const std::string& words) { return words.c_str(); }
+inline auto printable(auto number) { return number; }
+inline std::string text(const char* format, const auto&... values) {
+    std::string line(size_t(std::snprintf(nullptr, 0, format, printable(values)...)), ' ');
+    std::snprintf(line.data(), line.size() + 1, format, printable(values)...);
     return line;
 }
 
@@ -115,6 +117,10 @@ public:
         failures_ += !holds;
         return holds ? "ok" : "**FAILS**";
     }
+    // A point of a list, with its verdict.
+    void claim(bool holds, const std::string& words) {
+        say(text("* %s: %s.", words, verdict(holds)));
+    }
 
     // Writes the report; the exit status: 1 if a claim failed.
     int finish() {
@@ -149,8 +155,8 @@ inline std::string made_by(const std::string& command) {
 #else
     const char* compiler = "g++ " __VERSION__;
 #endif
-    return text("Written by `%s`: %u threads, numbers in %s, compiled by %s.", command.c_str(),
-                all_cores(), sizeof(real) == sizeof(double) ? "double" : "float", compiler);
+    return text("Written by `%s`: %u threads, numbers in %s, compiled by %s.", command, all_cores(),
+                sizeof(real) == sizeof(double) ? "double" : "float", compiler);
 }
 
 // "17 of 96, 40 s left: cosine + NEE", on stderr: drawn over itself on a terminal, else a line
@@ -228,6 +234,11 @@ struct Lab {
     std::string_view name, purpose;
     std::vector<Flag> flags;
 };
+
+// Of every experiment.
+inline Flag quick_flag(bool& quick) {
+    return {"--quick", "", "fewer runs, into out/", [&](const std::string&) { quick = true; }};
+}
 
 inline void print_help(const Lab& lab) {
     std::printf("usage: %s [options]\n\n%s\n\n", std::string(lab.name).c_str(),
