@@ -18,15 +18,6 @@
 #include "film/passes.h"
 #include "labs/svg.h"
 
-// As printf; a string for %s may be a std::string.
-inline const char* printable(const std::string& words) { return words.c_str(); }
-inline auto printable(auto number) { return number; }
-inline std::string text(const char* format, const auto&... values) {
-    std::string line(size_t(std::snprintf(nullptr, 0, format, printable(values)...)), ' ');
-    std::snprintf(line.data(), line.size() + 1, format, printable(values)...);
-    return line;
-}
-
 // ---- Numbers of many runs -----------------------------------------------------------------------
 
 // Of n numbers sorted, number q (n - 1), between neighbours linear; NaN of none.
@@ -59,8 +50,8 @@ inline std::string with_range(const std::vector<double>& x, const char* format) 
 
 // "1.21 ± 0.03": mean and standard deviation, by a format for one number; of one run its number.
 inline std::string plus_minus(const Moments& m, const char* format) {
-    return text(format, m.mean) +
-           (m.n > 1 ? " ± " + text(format, std::sqrt(m.variance())) : std::string());
+    const std::string mean = text(format, m.mean);
+    return m.n > 1 ? text("%s ± %s", mean, text(format, std::sqrt(m.variance()))) : mean;
 }
 
 // Mean squared difference of two images of one size, over pixels and channels.
@@ -72,6 +63,14 @@ inline double mse(const Image& f, const Image& g) {
             sum += error * error;
         }
     return sum / (3 * double(f.pixels.size()));
+}
+
+// A part of an image, from the pixel (left, top) on.
+inline Image part_of(const Image& image, int left, int top, Size size) {
+    Image part(size.width, size.height);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) part.at(x, y) = image.at(left + x, top + y);
+    return part;
 }
 
 // Of the processor, by all threads of this program.
@@ -208,6 +207,12 @@ struct Rendering {
     double core_seconds() const { return ::stats(stats, "cpu_seconds")[0]; }
     uint64_t samples() const { return uint64_t(::stats(stats, "samples_per_pixel")[0]); }
 };
+
+// One that was kept: FILE.pfm and FILE.json.
+inline Rendering read_rendering(const std::string& pfm) {
+    const auto json = std::filesystem::path(pfm).replace_extension(".json");
+    return {read_pfm(pfm), read_file(json.string())};
+}
 
 // Runs build/penumbra with these words, which name a scene and no output.
 inline Rendering rendering(const std::string& program, std::vector<std::string> words) {

@@ -13,6 +13,15 @@
 
 #include "film/image.h"
 
+// As printf; a string for %s may be a std::string.
+inline const char* printable(const std::string& words) { return words.c_str(); }
+inline auto printable(auto number) { return number; }
+inline std::string text(const char* format, const auto&... values) {
+    std::string line(size_t(std::snprintf(nullptr, 0, format, printable(values)...)), ' ');
+    std::snprintf(line.data(), line.size() + 1, format, printable(values)...);
+    return line;
+}
+
 struct Place {
     double x = 0, y = 0;
 };
@@ -41,13 +50,6 @@ inline std::string escaped(std::string_view words) {
     return out;
 }
 
-// To a tenth of a pixel.
-inline std::string number(double x) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.1f", x);
-    return digits;
-}
-
 inline std::string base64(std::string_view bytes) {
     constexpr std::string_view digits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -64,17 +66,15 @@ inline std::string base64(std::string_view bytes) {
 
 // 10⁻³, or 0.25: as short as it can be read.
 inline std::string tick(double x) {
-    char digits[32];
-    const double exponent = std::log10(std::abs(x));
+    const double exponent = std::log10(std::abs(x)), nearest = std::round(exponent);
     const bool far = x != 0 && (exponent < -2.5 || exponent > 5.5);
-    const bool whole = x == std::round(x);  // %g would write 65536 as 6.554e+04
-    std::snprintf(digits, sizeof digits, whole && !far ? "%.0f" : "%.4g", x);
-    if (!far || std::abs(exponent - std::round(exponent)) > 1e-9) return digits;
-    std::snprintf(digits, sizeof digits, "%d", int(std::abs(std::round(exponent))));
-    constexpr const char* raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    std::string out = exponent < 0 ? "10⁻" : "10";
-    for (const char* d = digits; *d; ++d) out += raised[*d - '0'];
-    return out;
+    if (far && std::abs(exponent - nearest) < 1e-9) {
+        constexpr const char* raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+        std::string out = exponent < 0 ? "10⁻" : "10";
+        for (char digit : text("%.0f", std::abs(nearest))) out += raised[digit - '0'];
+        return out;
+    }
+    return text(x == std::round(x) && !far ? "%.0f" : "%.4g", x);  // %g: 65536 is 6.554e+04
 }
 
 }  // namespace svg
@@ -94,45 +94,43 @@ public:
     };
     void words(Place at, std::string_view words) { this->words(at, words, Type()); }
     void words(Place at, std::string_view words, const Type& type) {
-        body_ += "<text x=\"" + svg::number(at.x) + "\" y=\"" + svg::number(at.y) +
-                 "\" text-anchor=\"" + type.anchor + "\" fill=\"" + type.colour +
-                 "\" font-size=\"" + svg::number(type.size) + "\"";
-        if (type.bold) body_ += " font-weight=\"bold\"";
+        body_ += text(R"(<text x="%.1f" y="%.1f" text-anchor="%s" fill="%s" font-size="%.1f")",
+                      at.x, at.y, type.anchor, type.colour, type.size);
+        if (type.bold) body_ += R"( font-weight="bold")";
         if (type.turn != 0)
-            body_ += " transform=\"rotate(" + svg::number(type.turn) + " " + svg::number(at.x) +
-                     " " + svg::number(at.y) + ")\"";
-        body_ += ">" + svg::escaped(words) + "</text>\n";
+            body_ += text(" transform=\"rotate(%.1f %.1f %.1f)\"", type.turn, at.x, at.y);
+        body_ += text(">%s</text>\n", svg::escaped(words));
     }
 
     void line(const std::vector<Place>& through, const char* colour, double width = 1,
               bool dashed = false) {
-        body_ += "<polyline fill=\"none\" stroke=\"" + std::string(colour) + "\" stroke-width=\"" +
-                 svg::number(width) + "\"" + (dashed ? " stroke-dasharray=\"5 4\"" : "") +
-                 " points=\"" + points(through) + "\"/>\n";
+        body_ +=
+            text("<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\"%s points=\"%s\"/>\n",
+                 colour, width, dashed ? R"( stroke-dasharray="5 4")" : "", points(through));
     }
     void area(const std::vector<Place>& outline, const char* colour, double opacity = 1) {
-        body_ += "<polygon fill=\"" + std::string(colour) + "\" fill-opacity=\"" +
-                 svg::number(opacity) + "\" points=\"" + points(outline) + "\"/>\n";
+        body_ += text("<polygon fill=\"%s\" fill-opacity=\"%.1f\" points=\"%s\"/>\n", colour,
+                      opacity, points(outline));
     }
     void dot(Place at, const char* colour, double radius = 3) {
-        body_ += "<circle cx=\"" + svg::number(at.x) + "\" cy=\"" + svg::number(at.y) + "\" r=\"" +
-                 svg::number(radius) + "\" fill=\"" + colour + "\"/>\n";
+        body_ += text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\"/>\n", at.x, at.y,
+                      radius, colour);
     }
     // The pixels of a picture, enlarged to that width without smoothing.
     void picture(Place at, double width, const Image& image, double exposure) {
-        const double height = width * image.height / image.width;
-        body_ += "<image x=\"" + svg::number(at.x) + "\" y=\"" + svg::number(at.y) + "\" width=\"" +
-                 svg::number(width) + "\" height=\"" + svg::number(height) +
-                 "\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64," +
-                 svg::base64(encode_png(image, exposure)) + "\"/>\n";
+        body_ += text(
+            "<image x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" "
+            "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,%s\"/>\n",
+            at.x, at.y, width, width * image.height / image.width,
+            svg::base64(encode_png(image, exposure)));
     }
 
     std::string file() const {
-        const std::string size = svg::number(width_) + "\" height=\"" + svg::number(height_);
-        return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
-               svg::number(width_) + " " + svg::number(height_) +
-               "\" font-family=\"Helvetica, Arial, sans-serif\">\n<rect width=\"" + size +
-               "\" fill=\"white\"/>\n" + body_ + "</svg>\n";
+        return text(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" "
+            "viewBox=\"0 0 %g %g\" font-family=\"Helvetica, Arial, sans-serif\">\n"
+            "<rect width=\"%g\" height=\"%g\" fill=\"white\"/>\n%s</svg>\n",
+            width_, height_, width_, height_, width_, height_, body_);
     }
 
 private:
@@ -141,11 +139,30 @@ private:
 
     static std::string points(const std::vector<Place>& places) {
         std::string out;
-        for (const Place& p : places) out += svg::number(p.x) + "," + svg::number(p.y) + " ";
-        if (!out.empty()) out.pop_back();
+        for (const Place& p : places) out += text("%.1f,%.1f ", p.x, p.y);
         return out;
     }
 };
+
+struct Picture {
+    Image image;
+    std::string title, caption;
+};
+
+// Pictures of one size, pixel by pixel, `columns` a row, each above its title and its caption.
+inline Svg contact_sheet(const std::vector<Picture>& pictures, size_t columns, double exposure) {
+    constexpr double gap = 16, words = 48;
+    const double width = pictures[0].image.width + gap, height = pictures[0].image.height + words;
+    const size_t rows = (pictures.size() + columns - 1) / columns;
+    Svg sheet(gap + width * double(columns), gap + height * double(rows));
+    for (size_t i = 0; i < pictures.size(); ++i) {
+        const Place at = {gap + width * double(i % columns), gap + height * double(i / columns)};
+        sheet.picture(at, width - gap, pictures[i].image, exposure);
+        sheet.words({at.x, at.y + height - words + 16}, pictures[i].title, {.bold = true});
+        sheet.words({at.x, at.y + height - words + 32}, pictures[i].caption);
+    }
+    return sheet;
+}
 
 // ---- Axes ---------------------------------------------------------------------------------------
 

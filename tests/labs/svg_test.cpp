@@ -106,7 +106,7 @@ TEST_CASE("a sheet with everything on it is well-formed, and says its size") {
         plot.band({1, 100}, {0.1, 0.2}, {0.3, 0.4}, svg::colours[1]);
     }
     CHECK(wrong_with(sheet.file()) == "");
-    CHECK(sheet.file().find("viewBox=\"0 0 640.0 360.0\"") != std::string::npos);
+    CHECK(sheet.file().find("viewBox=\"0 0 640 360\"") != std::string::npos);
     CHECK(sheet.file().find("width=\"64.0\" height=\"32.0\"") != std::string::npos);
 }
 
