@@ -128,7 +128,8 @@ $(OBJECTS)/all-tests: $(TESTS)
 
 # Tests that compute little are compiled in less time.
 LIGHT := $(addprefix app/,options report views) $(addprefix base/,rng stats vec words) film/film film/image film/passes \
-         path/halton path/sampler shadow/estimators shadow/irradiance voronoi/weighted $(EXTREMES:%=whole/extremes_%) whole/program \
+         path/halton path/sampler shadow/estimators shadow/irradiance voronoi/weighted $(EXTREMES:%=whole/extremes_%) \
+         $(addprefix whole/,refusals behaviour outputs interrupt compare) \
          $(addprefix world/,lights obj scene scene_file spherical_rectangle warp)
 $(LIGHT:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1)
 

@@ -1,0 +1,287 @@
+// whole/behaviour_test.cpp  what the program accepts, says and shows; an image depends on its seed
+#include <set>
+
+#include "whole/process.h"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+// ---- Accepted -----------------------------------------------------------------------------------
+
+TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped is counted") {
+    const std::string in_the_plane = "quad 0 0 0 1 2 3 2 4 6 m\n";
+    struct Row {
+        std::string scene, options, warning;
+        int width, height;
+    };
+    const Row rows[] = {
+        {good, "", "", 8, 4},
+        {good + "triangle 0 0 0 1 1 1 2 2 2 m\n", "", "1 triangle without area was dropped", 8, 4},
+        {good + "triangle 1 2 3 1 2 3 1 2 3 m\n" + in_the_plane + "triangle 0 0 0 1 0 0 1 0 0 l\n",
+         "", "4 triangles without area were dropped", 8, 4},
+        {good + "quad 0 0 0 0 0 0 0 1 0 l\n", "", "2 triangles without area were dropped", 8, 4},
+        {camera + "size 8 4\ndiffuse m 1 1 1\nsphere 0 0 0 1 m\n", "",
+         "no light: all will be black", 8, 4},
+        {camera + "size 1 1\nlight l 1 1 1\nsphere 0 0 0 1 l\n", "", "", 1, 1},
+        {camera + "size 16384 1\nlight l 1 1 1\nsphere 0 0 0 1 l\n", "", "", 16384, 1},
+        {camera + "size 1 16384\nlight l 1 1 1\nsphere 0 0 0 1 l\n", "", "", 1, 16384},
+        {good, "--size 1x1", "", 1, 1},
+        {good, "--size 16384x1", "", 16384, 1},
+        {good, "--size 3x5", "", 3, 5},
+        // Inside a ball that is no light, inside a box of light, and a turned one: coplanar points.
+        {good + "glass g 1.5\nsphere 0 0 5 1 g\n", "", "", 8, 4},
+        {good + "box 1 1 1 0 -.5 -.5 4.5 l\n", "", "", 8, 4},
+        {camera +
+             "size 8 4\ndiffuse m .5 .5 .5\nlight l 1 1 1 twosided m\nbox 9 9 9 30 -7 -4 -4 l\n",
+         "--spp 200", "", 8, 4},
+        {camera +
+             "size 8 4\ndiffuse m .5 .5 .5\nlight l 1 1 1 twosided m\nbox 9 9 9 30 -7 -4 -4 l\n",
+         "--spp 200 --light nee --direction uniform", "", 8, 4},
+        // Extremes of every number.
+        {good + "phong p .5 .5 .5 .5 .5 .5 1e6\nphong q 0 0 0 1 1 1 0\nsphere 1 0 0 1 p\n"
+                "sphere -1 0 0 1 q\n",
+         "--spp 200", "", 8, 4},
+        {good + "glass g 1\nglass h 1e-3\nglass i 1e3\nsphere 1 0 0 1 g\nsphere -1 0 0 1 h\n"
+                "sphere 0 1 0 1 i\n",
+         "--spp 200", "", 8, 4},
+        {good + "sphere 0 -1e8 0 99999999 m\nsphere 1 2 1 1e-8 l\n", "", "", 8, 4},
+        {good + "depth 0\nexposure 1e-30\n", "", "", 8, 4},
+        {good + "depth 1000000\nexposure 1e30\n", "", "", 8, 4},
+        {good, "--depth 0 --exposure 1e-30 --seed 18446744073709551615 --threads 1024", "", 8, 4},
+        {good, "--depth 1000000 --exposure 1e30 --seed 0 --threads 1 --roulette 1", "", 8, 4},
+        {good, "--spp 3 --time 1e30 --roulette 1000000", "", 8, 4},
+        {good, "--spp 1099511627776 --time 1e-9", "", 8, 4},
+        {good, "--light none --direction uniform", "", 8, 4},
+        {good, "--light none --light nee --direction uniform --direction bsdf", "", 8, 4},
+    };
+    for (const Row& row : rows) {
+        const Folder folder;
+        folder.write("file.scene", row.scene);
+        INFO(row.scene, row.options);
+        const Outcome o = expect_success(
+            folder, "penumbra", split("--spp 8 " + row.options + " -o a.pfm -o a.png file.scene"));
+        const Image image = folder.image("a.pfm");
+        CHECK(image.width == row.width);
+        CHECK(image.height == row.height);
+        CHECK(all_finite(image));
+        CHECK(summary(o.err).found);
+        CHECK(summary(o.err).non_finite == 0);
+        const std::string warning = "file.scene: warning: " + row.warning + "\n";
+        CHECK(contains(o.err, row.warning.empty() ? "warning" : warning) == !row.warning.empty());
+        CHECK(folder.all().size() == 3);
+    }
+}
+
+TEST_CASE("a scene's meaning does not depend on its line ends, comments, blanks or name") {
+    auto replaced = [](std::string text, const std::string& what, const std::string& by) {
+        for (size_t i = 0; (i = text.find(what, i)) != text.npos; i += by.size())
+            text.replace(i, what.size(), by);
+        return text;
+    };
+    const Folder folder;
+    folder.write("good.scene", good);
+    expect_success(folder, "penumbra", split("--spp 2 -o good.pfm good.scene"));
+    const std::string scenes[] = {
+        replaced(good, "\n", "\r\n"),
+        replaced(good, " ", "\t"),
+        replaced(good, "\n", "# comment with 'words' 1 2 3\n\n  # another\n"),
+        replaced(good, "\n", "   \n\n\n\t"),
+        good.substr(0, good.size() - 1),
+        replaced(good, ".5", "+5e-1"),
+        "# sphere\n" + good + "# size 3 3\n#",
+        good + "light other 3 3 3\n",  // nothing is made of it
+    };
+    for (const std::string& scene : scenes)
+        for (const std::string name :
+             {"a.scene", "a folder/a scene's \"name\" .scene", "--/a", "a"}) {
+            INFO(name, ":\n", scene);
+            folder.write(name, scene);
+            const Words words{"--spp", "2", "-o", "an image.pfm", "./" + name};
+            expect_success(folder, "penumbra", words);
+            CHECK(folder.same("an image.pfm", "good.pfm"));
+            fs::remove(folder.path / "an image.pfm");
+        }
+}
+
+// ---- Behaviour ----------------------------------------------------------------------------------
+
+TEST_CASE("--help names every option on one page of stdout") {
+    const Folder folder;
+    for (const char* line : {"--help", "--help file.scene", "--spp 3 --quiet --help"}) {
+        const Outcome o = run(folder, "penumbra", split(line));
+        CHECK(o.status == 0);
+        CHECK(o.err == "");
+        for (const char* word : {"penumbra [options] SCENE",
+                                 "-o FILE",
+                                 "--spp N",
+                                 "--time S",
+                                 "uniform|bsdf",
+                                 "--direction",
+                                 "--light none|nee|mis",
+                                 "--direct stochastic|control|ratio|regression",
+                                 "--polygons area|angle",
+                                 "--film mc|vor|fvor|cvor|torus",
+                                 "--depth N",
+                                 "--roulette K",
+                                 "--seed N",
+                                 "--threads N",
+                                 "--size WxH",
+                                 "--exposure E",
+                                 "--quiet",
+                                 "--help",
+                                 ".png",
+                                 ".pfm"}) {
+            INFO(std::string(word));
+            CHECK(contains(o.out, word));
+        }
+        CHECK(o.out.ends_with("\n"));
+        CHECK(std::count(o.out.begin(), o.out.end(), '\n') <= 60);
+        std::istringstream lines(o.out);
+        for (std::string text; std::getline(lines, text);) CHECK(text.size() <= 80);
+    }
+    CHECK(folder.all().empty());
+}
+
+TEST_CASE("--quiet prints nothing, but errors") {
+    const Folder folder;
+    folder.write("file.scene", good + "triangle 0 0 0 1 1 1 2 2 2 m\n");
+    const Outcome o = expect_success(folder, "penumbra", split("--quiet --spp 2 file.scene"));
+    CHECK(o.err == "");
+    expect_refusal(folder, "penumbra", split("--quiet --spp 0 file.scene"), "--spp: '0'");
+    folder.write("bad.scene", "x");
+    expect_refusal(folder, "penumbra", split("--quiet bad.scene"), "bad.scene:1: unknown keyword");
+}
+
+TEST_CASE("the summary is one line: samples, seconds, Mrays/s, non-finite") {
+    const Folder folder;
+    folder.write("file.scene", good);
+    for (const auto& [options, samples] : std::map<std::string, unsigned>{
+             {"", 64}, {"--spp 7", 7}, {"--spp 9 --spp 7 --time 1e6", 7}}) {
+        const Outcome o = expect_success(folder, "penumbra", split(options + " file.scene"));
+        INFO(o.err);
+        const Summary s = summary(o.err);
+        REQUIRE(s.found);
+        CHECK(s.scene == "file.scene");
+        CHECK(s.samples == samples);
+        CHECK(s.seconds >= 0);
+        CHECK(s.speed > 0);
+        CHECK(s.non_finite == 0);
+        CHECK_FALSE(s.interrupted);
+        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    }
+}
+
+TEST_CASE("--time stops before --spp is reached; 64 samples are meant only if neither is given") {
+    const Folder folder;
+    folder.write("file.scene", good);
+    const Outcome o =
+        expect_success(folder, "penumbra", split("--spp 1000000000 --time 0.1 file.scene"));
+    CHECK(summary(o.err).samples > 0);
+    CHECK(summary(o.err).samples < 1000000000);
+    folder.write("few.scene", good + "samples 3\n");
+    CHECK(summary(expect_success(folder, "penumbra", {"few.scene"}).err).samples == 3);
+    CHECK(summary(expect_success(folder, "penumbra", split("--spp 5 few.scene")).err).samples == 5);
+    const Outcome timed = expect_success(folder, "penumbra", split("--time 0.2 few.scene"));
+    CHECK(summary(timed.err).samples > 3);
+}
+
+TEST_CASE("--exposure changes the PNG, by the command line before the scene, and never the PFM") {
+    const Folder folder;
+    folder.write("a.scene",
+                 camera + "size 4 4\nlight l .18 .18 .18\nsphere 0 0 0 4 l\nexposure 2\n");
+    const std::pair<std::string, int> rows[] = {
+        {"", 162}, {"--exposure 1", 118}, {"--exposure 9", 255}};
+    for (const auto& [options, byte] : rows) {
+        expect_success(folder, "penumbra", split(options + " -o a.png -o a.pfm a.scene"));
+        CHECK(folder.image("a.pfm").at(2, 2) == std::array<float, 3>{.18f, .18f, .18f});
+        const std::string png = folder.read("a.png");
+        int w = 0, h = 0, n = 0;
+        stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()),
+                                                int(png.size()), &w, &h, &n, 3);
+        REQUIRE(pixels != nullptr);
+        CHECK(int(pixels[0]) == byte);
+        stbi_image_free(pixels);
+    }
+}
+
+TEST_CASE("on a terminal a bar shows time elapsed and time left, and goes; --quiet: no bar") {
+    if (!terminal_to_be_had()) {
+        MESSAGE("this machine lends no pseudo-terminal: not tested");
+        return;
+    }
+    const Folder folder;
+    folder.write("file.scene", good);
+    Process loud(folder, "penumbra", split("--spp 1000000000 --time 0.5 --threads 1 file.scene"),
+                 {.terminal = true});
+    const Outcome o = loud.finish();
+    INFO(o.err);
+    CHECK(o.status == 0);
+    for (const char* part :
+         {"\r[", "###", "...]", " samples per pixel, ", " s elapsed, ", " s left"})
+        CHECK(contains(o.err, part));
+    const size_t erased = o.err.rfind("\r\033[K");
+    REQUIRE(erased != o.err.npos);
+    CHECK(o.err.find("file.scene: ", erased) == erased + 4);
+    CHECK(summary(o.err).samples > 0);
+
+    Process quiet(folder, "penumbra", split("--quiet --time 0.25 --threads 1 file.scene"),
+                  {.terminal = true});
+    CHECK(quiet.finish().err == "");
+}
+
+TEST_CASE("a sample that no image can hold: exit status 1, told where, nothing written") {
+    // A lamp of 1e30 at 1e-6 of a quad that just fills pixel 2,1: 1e41, too much for float.
+    const Folder folder;
+    folder.write(
+        "file.scene",
+        "size 3 2\ncamera 0 0 3.2e-6  0 0 0  3.579821\ndiffuse m .5 .5 .5\n"
+        "quad .5e-7 -1e-7 0  1e-7 0 0  0 1e-7 0  m\npointlight 1e-7 0 1e-6 1e30 1e30 1e30\n");
+    folder.write("out/file.pfm", "old");
+    for (const char* options : {"", "--threads 3", "--quiet"}) {
+        const auto before = folder.all();
+        const Outcome o = run(folder, "penumbra", split(std::string(options) + " file.scene"));
+        INFO(o.err);
+        CHECK(o.signal == 0);
+        CHECK(o.status == 1);
+        CHECK(contains(o.err, " not finite, the first at pixel 2,1 sample 0"));
+        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+        const bool untouched = folder.all() == before;
+        CHECK(untouched);
+    }
+}
+
+// ---- Determinism --------------------------------------------------------------------------------
+
+TEST_CASE("an image depends on the seed, and not on threads, passes or the run") {
+    const Folder folder;
+    folder.write("file.scene",
+                 good +
+                     "phong p .2 .2 .2 .5 .5 .5 20\nglass g 1.5\nquad -9 -1 -9  0 0 18  18 0 0  p\n"
+                     "sphere 1 0 1 .5 g\npointlight 2 3 3  5 5 5\n");
+    auto image = [&](const std::string& options) {
+        expect_success(folder, "penumbra",
+                       split("--spp 5 --size 33x17 " + options + " -o a.pfm -o a.png file.scene"));
+        return folder.read("a.pfm") + folder.read("a.png");
+    };
+    const std::string one = image("--threads 1");
+    for (const char* options : {"--threads 1", "--threads 2", "--threads 3", "--threads 7",
+                                "--threads 100", "", "--seed 0", "--time 1e6", "--quiet"}) {
+        INFO(std::string(options));
+        const bool same = image(options) == one;
+        CHECK(same);
+    }
+    const std::string ratio = image("--light nee --direct ratio --threads 1");
+    for (const char* options : {"--threads 3", "--time 1e6"}) {
+        const bool same = image(std::string("--light nee --direct ratio ") + options) == ratio;
+        CHECK(same);
+    }
+    std::set<std::string> different{one, ratio};
+    for (const char* options :
+         {"--seed 1", "--seed 2", "--seed 18446744073709551615", "--spp 6", "--spp 4",
+          "--light nee", "--direction uniform", "--depth 1", "--light nee --direct control",
+          "--light nee --direct regression --spp 8"})
+        different.insert(image(options));
+    CHECK(different.size() == 12);
+}

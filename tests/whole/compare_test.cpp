@@ -1,0 +1,200 @@
+// whole/compare_test.cpp  compare by hand, and how programs run others
+#include "base/program.h"
+#include "whole/process.h"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+namespace {
+
+struct Comparison {
+    double d = -1, d_rel = -1, ratio = -1, largest = -1;
+    int x = -1, y = -1;
+    bool found = false;
+};
+
+Comparison compare(const Folder& folder, const Words& words) {
+    const Outcome o = run(folder, "compare", words);
+    INFO(o.err);
+    CHECK(o.status == 0);
+    CHECK(o.err == "");
+    Comparison c;
+    int end = 0;
+    const int read = std::sscanf(
+        o.out.c_str(), "d: %lf\nd_rel: %lf\nratio of means: %lf\nlargest error: %lf at %d,%d\n%n",
+        &c.d, &c.d_rel, &c.ratio, &c.largest, &c.x, &c.y, &end);
+    c.found = read == 6 && size_t(end) == o.out.size();
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("compare: d, d_rel, ratio of means, largest error and where, as by hand") {
+    const Folder folder;
+    std::vector<float> f{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, g = f;
+    g[5] = 8;  // +2 at the top right, pixel 1,0
+    g[7] = 3;  // -5 at the bottom left, pixel 0,1
+    folder.write("f.pfm", pfm(2, 2, f));
+    folder.write("g.pfm", pfm(2, 2, g));
+    // Sums: 78 and 75, squares of f: 650, of g: 623, squares of the errors: 29.
+    const Comparison c = compare(folder, {"f.pfm", "g.pfm"});
+    REQUIRE(c.found);
+    CHECK(c.d == doctest::Approx(std::sqrt(29 / 12.0)).epsilon(1e-5));
+    CHECK(c.d_rel == doctest::Approx(std::sqrt(29 / 650.0)).epsilon(1e-5));
+    CHECK(c.ratio == doctest::Approx(75 / 78.0).epsilon(1e-5));
+    CHECK(c.largest == 5);
+    CHECK(c.x == 0);
+    CHECK(c.y == 1);
+    const Comparison back = compare(folder, {"g.pfm", "f.pfm"});  // the other is the reference
+    REQUIRE(back.found);
+    CHECK(back.d == c.d);
+    CHECK(back.d_rel == doctest::Approx(std::sqrt(29 / 623.0)).epsilon(1e-5));
+    CHECK(back.ratio == doctest::Approx(78 / 75.0).epsilon(1e-5));
+    const Comparison same = compare(folder, {"f.pfm", "f.pfm"});
+    REQUIRE(same.found);
+    CHECK(same.d == 0);
+    CHECK(same.d_rel == 0);
+    CHECK(same.ratio == 1);
+    CHECK(same.largest == 0);
+    CHECK(folder.all().size() == 2);
+}
+
+TEST_CASE(
+    "compare: the heat map is black where images agree, and brighter where they differ more") {
+    const Folder folder;
+    std::vector<float> f(18, 1.0f), g = f;
+    for (size_t c = 0; c < 3; ++c) {
+        g[3 * 2 + c] += 1;  // pixel 2,0
+        g[3 * 3 + c] -= 4;  // pixel 0,1
+    }
+    folder.write("f.pfm", pfm(3, 2, f));
+    folder.write("g.pfm", pfm(3, 2, g));
+    for (bool differ : {true, false}) {
+        compare(folder, {"f.pfm", "--heatmap", "map.png", differ ? "g.pfm" : "f.pfm"});
+        const std::string png = folder.read("map.png");
+        int w = 0, h = 0, n = 0;
+        stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()),
+                                                int(png.size()), &w, &h, &n, 3);
+        REQUIRE(pixels != nullptr);
+        REQUIRE(w == 3);
+        REQUIRE(h == 2);
+        auto brightness = [&](int i) {
+            return pixels[3 * i] + pixels[3 * i + 1] + pixels[3 * i + 2];
+        };
+        for (int i : {0, 1, 4, 5}) CHECK(brightness(i) == 0);
+        CHECK((brightness(2) > 0) == differ);
+        CHECK((brightness(3) > brightness(2)) == differ);
+        stbi_image_free(pixels);
+    }
+}
+
+TEST_CASE("compare: two images with their variances show the same, or not") {
+    const Folder folder;
+    folder.write("f.pfm", pfm(2, 1, {1, 2, 3, 4, 5, 6}));
+    folder.write("g.pfm", pfm(2, 1, {1, 2, 3, 4, 8, 6}));  // green sums up to 3 more
+    folder.write("none.pfm", pfm(2, 1, {0, 0, 0, 0, 0, 0}));
+    folder.write("v.pfm", pfm(2, 1, {1, 1, 1, 1, 1.25f, 1}));
+    auto verdict = [&](const std::string& words) {
+        const Outcome o = run(folder, "compare", split(words));
+        CHECK(o.status == 0);
+        double sigmas = -1, p = -1;
+        const size_t at = o.out.find("equal means:");
+        REQUIRE(at != o.out.npos);
+        CHECK(std::sscanf(o.out.c_str() + at, "equal means: %lf sigma, p = %lf", &sigmas, &p) == 2);
+        return std::pair{sigmas, p};
+    };
+    // Variance of the difference 2 x 2.25: 3 / sqrt(4.5) = 1.41 sigma, p = .1573 of one channel.
+    const auto [sigmas, p] = verdict("--variances v.pfm v.pfm f.pfm g.pfm");
+    CHECK(sigmas == 1.41);
+    CHECK(p == 0.47);
+    CHECK(verdict("g.pfm f.pfm --variances none.pfm v.pfm") == std::pair{-2.0, 0.14});
+    CHECK(verdict("f.pfm f.pfm --variances none.pfm none.pfm") == std::pair{0.0, 1.0});
+    CHECK(verdict("f.pfm g.pfm --variances none.pfm none.pfm").second == 0);
+    // Renders: another seed shows the same, another depth does not.
+    const std::string scene =
+        "camera 0 1 5 0 0 0 60\ndiffuse grey 0.5 0.5 0.5\nlight lamp 9 9 9\n"
+        "quad -5 0 -5 0 0 10 10 0 0 grey\nsphere 0 3 0 1 lamp\nsphere 1 0.5 1 0.5 grey\n";
+    folder.write("a.scene", scene);
+    const std::string options = "--quiet --size 32x16 --spp 64 --sampler independent ";
+    for (const auto& [name, more] :
+         {std::pair{"a", "--seed 1"}, {"b", "--seed 2"}, {"c", "--depth 0"}}) {
+        std::string line = options;
+        line.append(more).append(" a.scene -o ").append(name);
+        std::string image = line, variance = line;
+        expect_success(folder, "penumbra", split(image.append(".pfm")));
+        expect_success(folder, "penumbra", split(variance.append("v.pfm --view variance")));
+    }
+    CHECK(verdict("a.pfm b.pfm --variances av.pfm bv.pfm").second > 1e-6);
+    CHECK(verdict("a.pfm c.pfm --variances av.pfm cv.pfm").second < 1e-6);
+}
+
+TEST_CASE("compare: images that cannot be compared are refused, and nothing is written") {
+    const Folder folder;
+    const std::string one = pfm(1, 1, {1, 1, 1});
+    folder.write("one.pfm", one);
+    folder.write("two.pfm", pfm(2, 1, {1, 1, 1, 1, 1, 1}));
+    folder.write("high.pfm", pfm(1, 2, {1, 1, 1, 1, 1, 1}));
+    folder.write("nan.pfm", pfm(2, 1, {1, 1, 1, 1, NAN, 1}));
+    folder.write("inf.pfm", pfm(1, 2, {1, 1, 1, 1, 1, -INFINITY}));
+    folder.write("cut.pfm", one.substr(0, one.size() - 1));
+    folder.write("head.pfm", "PF\n1 1\n");
+    folder.write("last.pfm", "PF\n1 1\n-1.00");  // 12 bytes, as many as a pixel
+    folder.write("long.pfm", one + "x");
+    folder.write("empty.pfm", "");
+    folder.write("text.pfm", "a picture\n");
+    folder.write("big.pfm", "PF\n1 1\n1.0\n" + one.substr(12));  // big-endian
+    folder.write("huge.pfm", "PF\n1000000 1000000\n-1.0\n");
+    folder.write("minus.pfm", pfm(1, 1, {1, -1, 1}));
+    const std::string not_pfm = ": not a little-endian colour PFM file",
+                      usage_line = "usage: compare";
+    const std::pair<std::string, std::string> rows[] = {
+        {"", usage_line},
+        {"one.pfm", usage_line},
+        {"one.pfm one.pfm one.pfm", usage_line},
+        {"one.pfm two.pfm", "sizes differ: 1x1 and 2x1"},
+        {"two.pfm high.pfm", "sizes differ: 2x1 and 1x2"},
+        {"one.pfm missing.pfm", "missing.pfm: cannot open: No such file or directory"},
+        {"missing.pfm one.pfm", "missing.pfm: cannot open: No such file or directory"},
+        {"one.pfm .", ".: is a directory"},
+        {"two.pfm nan.pfm", "nan.pfm: pixel 1,0 is not finite"},
+        {"nan.pfm two.pfm", "nan.pfm: pixel 1,0 is not finite"},
+        {"high.pfm inf.pfm", "inf.pfm: pixel 0,1 is not finite"},
+        {"one.pfm cut.pfm", "cut.pfm: 1x1 pixels do not fill the file"},
+        {"long.pfm one.pfm", "long.pfm: 1x1 pixels do not fill the file"},
+        {"one.pfm head.pfm", "head.pfm" + not_pfm},
+        {"last.pfm last.pfm", "last.pfm" + not_pfm},
+        {"one.pfm empty.pfm", "empty.pfm" + not_pfm},
+        {"one.pfm text.pfm", "text.pfm" + not_pfm},
+        {"one.pfm big.pfm", "big.pfm" + not_pfm},
+        {"one.pfm huge.pfm", "huge.pfm: '1000000' is not a whole number from 1 to 65536"},
+        {"one.pfm one.pfm --heatmap", "--heatmap: needs a value"},
+        {"one.pfm one.pfm --heatmap a.pfm", "--heatmap: not a .png file: a.pfm"},
+        {"one.pfm one.pfm --heatmap missing/a.png", "missing/a.png: cannot write: No such file"},
+        {"one.pfm two.pfm --heatmap a.png", "sizes differ"},
+        {"two.pfm nan.pfm --heatmap a.png", "nan.pfm: pixel 1,0 is not finite"},
+        {"one.pfm one.pfm --variances one.pfm", "--variances: needs two files"},
+        {"one.pfm one.pfm --variances one.pfm two.pfm", "sizes differ: 1x1 and 2x1"},
+        {"one.pfm one.pfm --variances one.pfm minus.pfm", "minus.pfm: a variance is negative"},
+        {"two.pfm two.pfm --variances two.pfm nan.pfm", "nan.pfm: pixel 1,0 is not finite"},
+        {"one.pfm one.pfm --heat a.png", "unknown option '--heat' (did you mean '--heatmap'?)"},
+    };
+    for (const auto& [line, why] : rows) expect_refusal(folder, "compare", split(line), why);
+}
+
+TEST_CASE("a program that another runs: its failure, or that it is not there, is an error") {
+    execute({"/bin/sh", "-c", "test \"$0\" = word", "word"});
+    auto what = [](std::vector<std::string> words) -> std::string {
+        try {
+            execute(words);
+        } catch (const SystemError& e) {
+            return e.what();
+        }
+        return "";
+    };
+    CHECK(what({"/bin/sh", "-c", "exit 3"}) == "/bin/sh failed: exit status 3");
+    CHECK(what({"/bin/sh", "-c", "kill -9 $$"}) == "/bin/sh failed: killed by signal 9");
+    CHECK(what({"/nowhere"}).starts_with("/nowhere: cannot run: "));
+    CHECK(exit_status([] { return 7; }) == 7);
+}

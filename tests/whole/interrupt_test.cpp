@@ -1,0 +1,81 @@
+// whole/interrupt_test.cpp  Ctrl-C: when it is heard, and what is kept
+#include "whole/process.h"
+
+TEST_CASE("Ctrl-C writes the passes completed so far, with their true sample count") {
+    const Folder folder;
+    folder.write("file.scene", good + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
+    Outcome o;
+    // A busy machine may not have begun: then again, with more patience.
+    for (double patience = 0.25; patience < 20 && !folder.has("a.pfm"); patience *= 3) {
+        Process process(folder, "penumbra",
+                        split("--spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene"));
+        process.listen(patience, [](const Outcome&) { return false; });
+        process.interrupt();
+        o = process.finish();
+    }
+    INFO(o.err);
+    CHECK(o.signal == 0);
+    CHECK(o.status == 130);
+    CHECK(folder.all().size() == 3);
+    const Summary s = summary(o.err);
+    REQUIRE(s.found);
+    CHECK(s.interrupted);
+    REQUIRE(s.samples > 0);
+    CHECK(s.samples < 1000000000);
+    // A run that was asked for as many gives the same image, bit by bit.
+    expect_success(folder, "penumbra",
+                   {"--spp", std::to_string(s.samples), "--size", "33x17", "-o", "b.pfm", "-o",
+                    "b.png", "file.scene"});
+    CHECK(folder.same("a.pfm", "b.pfm"));
+    CHECK(folder.same("a.png", "b.png"));
+}
+
+TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no terminal is, no bar") {
+    const Folder folder;
+    folder.write("file.scene", hall_of_mirrors("64 4096", 5000));  // minutes a pass, 50 ms a row
+    folder.write("out/file.png", "old");
+    const auto before = folder.all();
+    Process process(folder, "penumbra", split("--threads 1 file.scene"));
+    // The first line about progress comes after two seconds.
+    REQUIRE(process.listen(30, [](const Outcome& o) { return contains(o.err, " s elapsed"); }));
+    process.interrupt();
+    const Outcome o = process.finish();
+    INFO(o.err);
+    CHECK(o.signal == 0);
+    CHECK(o.status == 130);
+    CHECK(contains(o.err, " s left\n"));
+    CHECK_FALSE(contains(o.err, "\r"));
+    CHECK_FALSE(contains(o.err, "\033"));
+    const Summary s = summary(o.err);
+    CHECK(s.found);
+    CHECK(s.interrupted);
+    CHECK(s.samples == 0);
+    const bool untouched = folder.all() == before;
+    CHECK(untouched);
+}
+
+TEST_CASE("a second Ctrl-C kills at once, and leaves no file") {
+    const Folder folder;
+    folder.write("file.scene", hall_of_mirrors("1000 1", 1000000));  // minutes a row
+    const auto before = folder.all();
+    auto never = [](const Outcome&) { return false; };
+    Outcome o;
+    double seconds = 0;
+    // A busy machine may not have begun the row: then again, with more patience.
+    for (double patience = 0.1; patience < 20 && o.signal == 0; patience *= 3) {
+        Process process(folder, "penumbra", split("-o a.pfm file.scene"));
+        process.listen(patience, never);
+        const auto start = std::chrono::steady_clock::now();
+        for (int i = 0; i < 50 && !process.ended(); ++i) {  // signals that follow too soon are one
+            process.interrupt();
+            process.listen(0.02, never);
+        }
+        o = process.finish();
+        seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        CHECK(contains(o.err, "no light"));
+    }
+    CHECK(o.signal == SIGINT);
+    CHECK(seconds < 10);
+    const bool untouched = folder.all() == before;
+    CHECK(untouched);
+}
