@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -14,17 +15,24 @@
 #include "base/words.h"
 
 // The exit status for main: that of `work`, 2 for what the user can mend, 1 for all else that goes
-// wrong; then with a line on stderr.
+// wrong, a full stdout among it; then with a line on stderr.
 template <class Work>
 int exit_status(Work work) {
+    auto failed = [](int status, const char* why) {
+        std::fprintf(stderr, "%s\n", printable(why).c_str());
+        return status;
+    };
     try {
-        return work();
+        const int status = work();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout))
+            throw SystemError("stdout: cannot write: " + std::string(std::strerror(errno)));
+        return status;
     } catch (const UserError& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
+        return failed(2, e.what());
+    } catch (const std::bad_alloc&) {
+        return failed(1, "out of memory");
     } catch (const std::exception& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
+        return failed(1, e.what());
     }
 }
 

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,19 @@ struct UserError : std::runtime_error {
 struct SystemError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+// A message on one line of a terminal: '?' for control characters, which might move its cursor.
+// Names of files may hold them, and other letters than ASCII's, which stay.
+inline std::string printable(std::string text) {
+    unsigned char before = 0;
+    for (char& c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool c1 = before == 0xc2 && byte < 0xa0;  // U+0080 to U+009F in UTF-8
+        if (byte < ' ' || byte == 0x7f || c1) c = '?';
+        before = byte;
+    }
+    return text;
+}
 
 // The user's word for a message: shortened, with '?' for what a terminal might not print.
 inline std::string in_quotes(std::string_view word) {
@@ -85,12 +99,45 @@ inline size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+// Without leading dashes, in small letters.
+inline std::string letters_of(std::string_view word) {
+    std::string letters(word.substr(std::min(word.find_first_not_of('-'), word.size())));
+    for (char& c : letters)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    return letters;
+}
+
+// " (did you mean 'nearest'?)", or nothing if every known word is far: more than half of the longer
+// one's letters would change.  What a word begins with is near.
+inline std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
+    const std::string letters = letters_of(word);
+    std::string_view nearest;
+    size_t least = SIZE_MAX;
+    for (std::string_view k : known) {
+        const std::string other = letters_of(k);
+        const size_t longer = std::max(letters.size(), other.size());
+        const bool begun =
+            !letters.empty() && other.size() > letters.size() && other.starts_with(letters);
+        // A word of a million letters is not worth the time.
+        const size_t edits = begun ? 1 : longer > 1000 ? longer : edit_distance(letters, other);
+        if (2 * edits <= longer && edits < least) least = edits, nearest = k;
+    }
+    return nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)";
+}
+
 // "unknown WHAT 'word' (did you mean 'nearest'?)"
 inline std::string unknown(std::string_view what, std::string_view word,
                            const std::vector<std::string_view>& known) {
-    auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) {
-        return edit_distance(word, a) < edit_distance(word, b);
-    });
-    return "unknown " + std::string(what) + " " + in_quotes(word) + " (did you mean '" +
-           std::string(nearest) + "'?)";
+    return "unknown " + std::string(what) + " " + in_quotes(word) + did_you_mean(word, known);
+}
+
+// What has this name; throws UserError "undefined WHAT 'name' (did you mean 'other'?)".
+template <class Value>
+const Value& look_up(const std::map<std::string, Value>& defined, const std::string& name,
+                     const std::string& what) {
+    const auto found = defined.find(name);
+    if (found != defined.end()) return found->second;
+    std::vector<std::string_view> known;
+    for (const auto& [other, value] : defined) known.push_back(other);
+    throw UserError("undefined " + what + " " + in_quotes(name) + did_you_mean(name, known));
 }

@@ -67,6 +67,39 @@ TEST_CASE("the nearest word is the one with the fewest edits") {
           "unknown keyword 'qaud' (did you mean 'quad'?)");
 }
 
+TEST_CASE("only a near word is meant: case and dashes are none of its letters") {
+    using Known = std::vector<std::string_view>;
+    const Known options = {"-o", "--spp", "--sampler", "--heatmap", "--help"};
+    auto meant = [](const std::string& word) { return " (did you mean '" + word + "'?)"; };
+    CHECK(did_you_mean("MIS", {"none", "nee", "mis"}) == meant("mis"));
+    CHECK(did_you_mean("gray", {"red", "grey"}) == meant("grey"));
+    CHECK(did_you_mean("abcd", {"abxy"}) == meant("abxy"));  // half of them
+    CHECK(did_you_mean("abcd", {"axyz"}) == "");
+    CHECK(did_you_mean("-O", options) == meant("-o"));
+    CHECK(did_you_mean("-x", options) == "");
+    CHECK(did_you_mean("-", options) == "");
+    CHECK(did_you_mean("-spp", options) == meant("--spp"));
+    CHECK(did_you_mean("--heat", options) == meant("--heatmap"));  // not --help, by two edits
+    CHECK(did_you_mean("", {"a"}) == "");
+    CHECK(did_you_mean("a", {}) == "");
+    CHECK(did_you_mean(std::string(1 << 20, 'x'), {"x"}) == "");
+    CHECK(did_you_mean("a\n", {"a\n\n"}) == meant("a??"));
+}
+
+TEST_CASE("a name is looked up, or told with its neighbour") {
+    const std::map<std::string, int> defined = {{"grey", 1}, {"red", 2}};
+    CHECK(look_up(defined, "red", "colour") == 2);
+    CHECK(complaint([&] { look_up(defined, "Grey", "colour"); }) ==
+          "undefined colour 'Grey' (did you mean 'grey'?)");
+}
+
+TEST_CASE("a message keeps its letters, and loses what would move the cursor") {
+    CHECK(printable("a \xc3\xa9 ~") == "a \xc3\xa9 ~");
+    CHECK(printable("\x1b[2J\n\x7f\t") == "?[2J???");
+    CHECK(printable("\xc2\x9b"
+                    "2J \xc2\xa0") == "\xc2?2J \xc2\xa0");  // CSI, a blank
+}
+
 TEST_CASE("what the user wrote is shown short and printable") {
     CHECK(in_quotes("a b~") == "'a b~'");
     CHECK(in_quotes("a\x7f\n\x1b\xc3") == std::string("'a").append(4, '?') + "'");

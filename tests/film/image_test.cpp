@@ -3,12 +3,11 @@
 #include "film/image.h"
 
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstdlib>
 #include <map>
 
+#include "base/folder.h"
 #include "film/film.h"
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -18,29 +17,7 @@
 
 namespace {
 
-namespace fs = std::filesystem;
 using Pixel = std::array<float, 3>;
-
-// A directory of its own, removed at the end.
-struct Folder {
-    fs::path path;
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "penumbra-image-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() { fs::remove_all(path); }
-
-    std::string operator/(const std::string& name) const { return (path / name).string(); }
-    void write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(*this / name, std::ios::binary) << bytes;
-    }
-    size_t files() const {
-        return size_t(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
-    }
-};
 
 // The bytes of a PFM of one colour pixel (1, -2, 0.5): 0x3f800000, 0xc0000000, 0x3f000000.
 const std::string one_pixel("PF\n1 1\n-1.0\n\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f", 24);
@@ -240,57 +217,6 @@ TEST_CASE("a PNG holds exposure times radiance in sRGB, from the top left, and n
         CHECK(png.at(4, 0, 1) == 0);
         CHECK(png.at(4, 0, 2) == 255);
     }
-}
-
-TEST_CASE("a file that cannot be written whole leaves the old one, and nothing beside it") {
-    const Folder folder;
-    const std::string path = folder / "a.pfm";
-    write_file(path, "old");
-    CHECK(read_file(path) == "old");
-    write_file(path, "new and longer");
-    CHECK(read_file(path) == "new and longer");
-    CHECK(folder.files() == 1);
-
-    // A disk that is full after 1000 bytes: fails in fwrite or, buffered, only in fclose.
-    for (size_t size : {size_t(2000), size_t(1000000)}) {
-        rlimit old_limit;
-        REQUIRE(getrlimit(RLIMIT_FSIZE, &old_limit) == 0);
-        auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-        const rlimit limit{1000, old_limit.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-        std::string error;
-        try {
-            write_file(path, std::string(size, 'x'));
-        } catch (const SystemError& e) {
-            error = e.what();
-        }
-        setrlimit(RLIMIT_FSIZE, &old_limit);
-        std::signal(SIGXFSZ, old_handler);
-        CHECK(error.starts_with(path + ": cannot write: "));
-        CHECK(read_file(path) == "new and longer");
-        CHECK(folder.files() == 1);
-    }
-
-    fs::create_directory(folder / "b.pfm");  // the last step, renaming, fails
-    CHECK_THROWS_AS(write_file(folder / "b.pfm", "x"), SystemError);
-    CHECK(folder.files() == 2);
-    CHECK(fs::is_empty(folder / "b.pfm"));
-    fs::create_directory(aside(path));  // the first step fails
-    CHECK_THROWS_AS(write_file(path, "x"), SystemError);
-    CHECK(read_file(path) == "new and longer");
-}
-
-TEST_CASE("asking whether a file can be written changes nothing") {
-    const Folder folder;
-    folder.write("a.pfm", "old");
-    check_writable(folder / "a.pfm");
-    check_writable(folder / "b.pfm");
-    CHECK(read_file(folder / "a.pfm") == "old");
-    CHECK(folder.files() == 1);
-    CHECK_THROWS_AS(check_writable(folder / "missing/a.pfm"), UserError);
-    CHECK_THROWS_AS(check_writable(folder / "a.pfm/a.pfm"), UserError);
-    CHECK_THROWS_AS(check_writable(folder.path.string()), UserError);
-    CHECK_THROWS_AS(check_writable(folder / std::string(1000, 'a')), UserError);
 }
 
 // ---- Pictures -----------------------------------------------------------------------------------
