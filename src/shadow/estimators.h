@@ -4,19 +4,20 @@
 // of it where something is in the way; U = E[w] is known, as a number or at every sample.  With
 // R = S / E[w], all four are mean(w V) - beta mean(w - U) (Heitz, Hill, McGuire 2018; supplement):
 //
-//   estimator     beta                    class        N variance          N bias
-//   stochastic    0                       unbiased     Var(w V)            0
-//   control       1                       unbiased     Var(w (1 - V))      0
-//   ratio         R estimated             consistent   Var(w (V - R))      -E[w^2 (V - R)] / W
-//   regression    Cov(w V, w) / Var(w),   consistent   (1 - corr^2)        -E[(w - W)^2 e] /
-//   Var(w),
-//                 estimated                            Var(w V)            e the residual
+// clang-format off
+//   estimator   beta                  class       N variance             N bias
+//   stochastic  0                     unbiased    Var(w V)               0
+//   control     1                     unbiased    Var(w (1 - V))         0
+//   ratio       R estimated           consistent  Var(w (V - R))         -E[w^2 (V - R)] / W
+//   regression  Cov(w V, w) / Var(w)  consistent  (1 - corr^2) Var(w V)  -E[(w - W)^2 e] / Var(w)
+//               estimated                                                e the residual
+// clang-format on
 #pragma once
 #include <cstdint>
 
 enum class Estimator { stochastic, control, ratio, regression };
 
-// Whether it is no mean over samples, but one number of all of them.
+// Whether it takes all samples of a pixel together, and is no mean of samples.
 inline bool estimates_pixels(Estimator e) {
     return e == Estimator::ratio || e == Estimator::regression;
 }
