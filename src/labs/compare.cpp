@@ -6,7 +6,7 @@
 //   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
 //
 // With the variances of both images' pixels (--view variance), also whether they show the same:
-// Welch's test of the images' means.
+// Welch's test of the images' means; exit status 1 if p < 10^-6.
 #include "base/program.h"
 #include "base/stats.h"
 #include "film/image.h"
@@ -45,7 +45,7 @@ Difference difference(const Image& f, const Image& g) {
 // many are normal.
 struct Equality {
     double sigmas = 0;  // of the channel that differs most
-    double p = 1;       // two-sided, of three channels (Bonferroni)
+    double p = 1;       // two-sided: of so large a difference in one of three channels (Sidak 1967)
 };
 
 Equality equality(const Image& f, const Image& g, const Image& variance_f,
@@ -60,7 +60,7 @@ Equality equality(const Image& f, const Image& g, const Image& variance_f,
         const double sigmas = difference != 0 ? difference / std::sqrt(variance) : 0;
         if (std::abs(sigmas) >= std::abs(result.sigmas)) result.sigmas = sigmas;
     }
-    result.p = std::min(1.0, 3 * p_of_z(result.sigmas));
+    result.p = -std::expm1(3 * std::log1p(-p_of_z(result.sigmas)));  // 1 - (1 - p)^3
     return result;
 }
 
@@ -84,12 +84,8 @@ Image heatmap(const Image& f, const Image& g, double d) {
 }
 
 void check_finite(const std::string& path, const Image& image) {
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            for (float channel : image.at(x, y))
-                if (!std::isfinite(channel))
-                    throw UserError(path + ": pixel " + std::to_string(x) + "," +
-                                    std::to_string(y) + " is not finite");
+    if (const auto pixel = first_non_finite(image))
+        throw UserError(path + ": pixel " + *pixel + " is not finite");
 }
 
 void check_same_size(const Image& f, const Image& g) {
@@ -110,47 +106,69 @@ Image read_variance(const std::string& path, const Image& image) {
     return variance;
 }
 
-int compare(const std::vector<std::string>& words) {
+struct Request {
     std::vector<std::string> images, variances;
     std::string map;
+    bool help = false;
+};
+
+const std::string usage =
+    "usage: compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png] [--variances F.pfm G.pfm]";
+
+Request parse(const std::vector<std::string>& words) {
+    Request r;
     for (size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == "--heatmap") {
+        const std::string& word = words[i];
+        if (word == "--help" || word == "-h") {
+            r.help = true;
+        } else if (word == "--heatmap") {
             if (++i == words.size()) throw UserError("--heatmap: needs a value");
-            map = words[i];
-            if (!map.ends_with(".png")) throw UserError("--heatmap: not a .png file: " + map);
-        } else if (words[i] == "--variances") {
+            r.map = words[i];
+            if (!r.map.ends_with(".png"))
+                throw UserError("--heatmap: " + in_quotes(r.map) + " does not end in .png");
+        } else if (word == "--variances") {
             if (i + 2 >= words.size()) throw UserError("--variances: needs two files");
-            variances = {words[i + 1], words[i + 2]};
+            r.variances = {words[i + 1], words[i + 2]};
             i += 2;
-        } else if (words[i].starts_with("--")) {
-            throw UserError(unknown("option", words[i], {"--heatmap", "--variances"}));
+        } else if (word.starts_with('-')) {
+            throw UserError(unknown("option", word, {"--heatmap", "--variances", "--help"}));
         } else {
-            images.push_back(words[i]);
+            r.images.push_back(word);
         }
     }
-    if (images.size() != 2)
-        throw UserError(
-            "usage: compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png] [--variances F.pfm "
-            "G.pfm]");
-    const Image f = read_pfm(images[0]), g = read_pfm(images[1]);
-    check_same_size(f, g);
-    check_finite(images[0], f);
-    check_finite(images[1], g);
-    std::string verdict;
-    if (!variances.empty()) {
-        const Equality e =
-            equality(f, g, read_variance(variances[0], f), read_variance(variances[1], g));
-        char line[100];
-        std::snprintf(line, sizeof line, "equal means: %+.2f sigma, p = %.2g\n", e.sigmas, e.p);
-        verdict = line;
+    if (r.images.size() != 2 && !r.help) throw UserError(usage);
+    return r;
+}
+
+int compare(const std::vector<std::string>& words) {
+    const Request r = parse(words);
+    if (r.help) {
+        std::printf(
+            "%s\n\nPrints how far IMAGE is from REFERENCE: d is the root of the mean squared "
+            "difference,\nd_rel that over the root of the mean square of REFERENCE.  The heat "
+            "map is black where\nthey agree and white from 4 d on.  With variances (penumbra "
+            "--view variance), whether\nboth show the same: exit status 1 if not, p < 1e-6.\n",
+            usage.c_str());
+        return 0;
     }
-    if (!map.empty()) check_writable(map);
-    const Difference result = difference(f, g);
-    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n%s",
-                result.d, result.d_rel, result.ratio_of_means, result.largest, result.x, result.y,
-                verdict.c_str());
-    if (!map.empty()) write_image(map, heatmap(f, g, result.d), 1);
-    return 0;
+    const Image f = read_pfm(r.images[0]), g = read_pfm(r.images[1]);
+    check_same_size(f, g);
+    check_finite(r.images[0], f);
+    check_finite(r.images[1], g);
+    std::optional<Equality> e;
+    if (!r.variances.empty()) {
+        const Image of_f = read_variance(r.variances[0], f);
+        e = equality(f, g, of_f, read_variance(r.variances[1], g));
+    }
+    if (!r.map.empty()) check_writable(r.map);
+    const Difference d = difference(f, g);
+    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n", d.d,
+                d.d_rel, d.ratio_of_means, d.largest, d.x, d.y);
+    if (e)
+        std::printf("equal means: %+.2f sigma, p = %.2g (the worst of three channels)\n", e->sigmas,
+                    e->p);
+    if (!r.map.empty()) write_image(r.map, heatmap(f, g, d.d), 1);
+    return e && e->p < 1e-6 ? 1 : 0;
 }
 
 }  // namespace

@@ -4,10 +4,9 @@
 //
 // A tube of radius 0.42 about the (2,3) torus knot p(t) = ((2 + cos 3t) cos 2t, (2 + cos 3t) sin
 // 2t, sin 3t), 600 rings of 20 corners, each ring normal to the tangent p'(t).
+#include "base/files.h"
 #include "base/program.h"
 #include "base/vec.h"
-#include "base/words.h"
-#include "film/image.h"
 
 namespace {
 
@@ -55,12 +54,20 @@ std::string knot() {
     return obj;
 }
 
+int run(const std::vector<std::string>& words) {
+    const std::string usage = "usage: knot FILE.obj";
+    if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
+        std::printf("%s\nWrites a mesh to render: a trefoil knot of %d triangles.\n", usage.c_str(),
+                    2 * rings * corners);
+        return 0;
+    }
+    if (words.size() != 1 || !words[0].ends_with(".obj")) throw UserError(usage);
+    write_file(words[0], knot());
+    return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    return exit_status([&] {
-        if (argc != 2) throw UserError("usage: knot FILE.obj");
-        write_file(argv[1], knot());
-        return 0;
-    });
+    return exit_status([&] { return run({argv + 1, argv + argc}); });
 }
