@@ -27,7 +27,7 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp tests/*/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak techniques estimators1d penumbra bench voronoi voronoi2d extremes clean help layers \
+.PHONY: all programs test mutants soak techniques estimators1d penumbra bench voronoi voronoi2d extremes readme clean help layers \
         packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -90,6 +90,9 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
 
+readme: build/readme$(SUFFIX)  ## write the README's tables of options and statements
+	build/readme$(SUFFIX)
+
 clean:  ## remove build/ and out/
 	rm -rf build out
 
@@ -127,7 +130,7 @@ $(OBJECTS)/all-tests: $(TESTS)
 	$(CXX) $(LINK) -o $@ $^
 
 # Tests that compute little are compiled in less time.
-LIGHT := $(addprefix app/,options report views) $(addprefix base/,rng stats vec words) film/film film/image film/passes \
+LIGHT := $(addprefix app/,help options report views) $(addprefix base/,files rng stats vec words) film/film film/image film/passes \
          path/halton path/sampler shadow/estimators shadow/irradiance voronoi/weighted $(EXTREMES:%=whole/extremes_%) \
          $(addprefix whole/,refusals behaviour outputs interrupt compare) \
          $(addprefix world/,lights obj scene scene_file spherical_rectangle warp)
