@@ -204,7 +204,7 @@ inline const std::vector<Option> option_table = {
     {"--sample", "I", "of this sample, with --pixel", "0",
      [](Options& o, Text v) { o.sample = parse_count(v, 0, option::most_samples); }},
     {"--quiet", "", "print nothing but errors", "", [](Options& o, Text) { o.quiet = true; }},
-    {"--help", "", "print this", "", [](Options& o, Text) { o.help = true; }},
+    {"--help", "", "print this, as -h does", "", [](Options& o, Text) { o.help = true; }},
 };
 
 // How the user would write that option: "--light nee".
@@ -244,7 +244,7 @@ inline Options parse_options(const std::vector<std::string>& words) {
     for (const Option& row : table) known.push_back(row.name);
     Options o;
     for (size_t i = 0; i < words.size(); ++i) {
-        const std::string& word = words[i];
+        const std::string word = words[i] == "-h" ? "--help" : words[i];
         const auto row = std::find_if(table.begin(), table.end(),
                                       [&](const Option& r) { return r.name == word; });
         if (row != table.end()) {

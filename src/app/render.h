@@ -65,82 +65,90 @@ struct Rendered {
     RunStats run;
 };
 
-// Throws if a sample did not fit into the film; otherwise says how it went.
+// Throws if a sample did not fit into the film.
 template <class Pixel>
-void finish(const Film<Pixel>& film, const Job& job, Progress& progress, RunStats& run) {
-    run.spp = film.samples();
-    run.seconds = progress.elapsed();
-    run.non_finite = film.non_finite();
-    run.interrupted = interrupted;
-    progress.summary(job.o.scene, run);
-    if (run.non_finite == 0) return;
+void check_finite(const Film<Pixel>& film) {
+    if (film.non_finite() == 0) return;
     const NonFinite& bad = film.first_non_finite();
     const std::string pixel = std::to_string(bad.x) + "," + std::to_string(bad.y);
     const std::string sample = std::to_string(bad.sample);
-    throw SystemError(std::to_string(run.non_finite) +
+    throw SystemError(std::to_string(film.non_finite()) +
                       " samples were not finite, the first at pixel " + pixel + " sample " +
                       sample + " (replay it by --pixel " + pixel + " --sample " + sample +
                       "); nothing was written");
 }
 
-// Fills a film with L(start, rays).
-template <class Pixel, class Radiance>
-RunStats fill(Film<Pixel>& film, const Job& job, Radiance L) {
+// Renders row by row, row(y, n, rays), which counts its rays.
+template <class Pixel, class Row>
+RunStats fill(Film<Pixel>& film, const Job& job, Row row) {
     Progress progress(job.passes.target, job.o.quiet);
     std::atomic<uint64_t> rays = 0;
-    auto row = [&](int y, uint64_t n) {
+    auto counted = [&](int y, uint64_t n) {
         uint64_t row_rays = 0;
-        film.add_row(y, n, [&](int x, uint64_t i) {
-            return L(start(job.scene, job.pattern, x, y, i), row_rays);
-        });
+        row(y, n, row_rays);
         rays += row_rays;
     };
-    render(film, job.passes, row, progress);
+    render(film, job.passes, counted, progress);
+    check_finite(film);
     RunStats run;
-    run.rays = rays;
-    finish(film, job, progress, run);
+    run.spp = film.samples(), run.seconds = progress.elapsed(), run.rays = rays;
+    run.non_finite = film.non_finite(), run.interrupted = interrupted;
     return run;
 }
 
+// What the film holds.  Pixels are independent of each other: the variance of their mean is the
+// mean of their variances over their number.
+template <class Pixel, class Value, class Variance>
+Rendered developed(const Film<Pixel>& film, RunStats run, Value value, Variance variance) {
+    const Image image = film.image_of(value);
+    run.mean_radiance = mean_of_pixels(image);
+    run.variance_of_mean = film.mean_of(variance);
+    for (double& v : run.variance_of_mean) v /= double(image.pixels.size());
+    return {image, film.image_of(variance), run};
+}
+
 inline Rendered render_means(const Job& job) {
-    Film<MeanPixel> film(job.scene.size);
-    const RunStats run =
-        fill(film, job, [&](const Start& at, uint64_t& rays) { return radiance(job, at, rays); });
-    return {image_of(film), variance_of(film, variance_from(job.o)), run};
+    const auto& [o, scene, pattern, passes] = job;
+    Film<MeanPixel> film(scene.size);
+    const RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
+        film.add_row(y, n, [&](int x, uint64_t i) {
+            return radiance(job, start(scene, pattern, x, y, i), rays);
+        });
+    });
+    return developed(film, run, value_in(film), variance_in(film, variance_from(o)));
 }
 
 // Direct light by ratio or regression.
 inline Rendered render_shadows(const Job& job) {
     const auto& [o, scene, pattern, passes] = job;
     Film<ShadowPixel> film(scene.size);
-    const RunStats run = fill(film, job, [&](const Start& at, uint64_t& rays) {
-        return shadow_Li(scene, o.technique, o.direct, at, counting(rays));
+    const RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
+        film.add_row(y, n, [&](int x, uint64_t i) {
+            const Start at = start(scene, pattern, x, y, i);
+            return shadow_Li(scene, o.technique, o.direct, at, counting(rays));
+        });
     });
-    return {image_of(film, o.direct), variance_of(film, o.direct, variance_from(o)), run};
+    return developed(film, run, value_in(film, o.direct),
+                     variance_in(film, o.direct, variance_from(o)));
 }
 
 // Samples weighted by the areas of their Voronoi cells.
 inline Rendered render_cells(const Job& job) {
     const auto& [o, scene, pattern, passes] = job;
     Film<MeanPixel> film(scene.size);
-    Progress progress(passes.target, o.quiet);
-    std::atomic<uint64_t> rays = 0, redraws = 0, fallbacks = 0;
-    auto row = [&](int y, uint64_t n) {
-        uint64_t row_rays = 0;
+    std::atomic<uint64_t> redraws = 0, fallbacks = 0;
+    RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
         auto L = [&](int x, uint64_t i) {
-            return radiance(job, start(scene, pattern, x, y, i), row_rays);
+            if (interrupted) return rgb{};  // its pass will not count
+            return radiance(job, start(scene, pattern, x, y, i), rays);
         };
         WeightedRow weighted(o.film, pattern, n, uint64_t(y) * uint64_t(scene.size.width), L);
         film.add_row(y, n, [&](int x, uint64_t i) { return weighted(x, i); });
-        rays += row_rays;
         redraws += weighted.weigher().redraws;
         fallbacks += weighted.weigher().fallbacks;
-    };
-    render(film, passes, row, progress);
-    RunStats run;
-    run.rays = rays, run.redraws = redraws, run.fallbacks = fallbacks;
-    finish(film, job, progress, run);
-    return {image_of(film), variance_of(film, VarianceFrom::nothing), run};
+    });
+    run.redraws = redraws, run.fallbacks = fallbacks;
+    return developed(film, run, value_in(film), variance_in(film, VarianceFrom::nothing));
 }
 
 inline Rendered rendered(const Job& job) {

@@ -8,7 +8,7 @@
 // the image was made of.
 class PathLog {
 public:
-    explicit PathLog(std::FILE* out) : out_(out) {}
+    PathLog(const Scene& scene, std::FILE* out) : scene_(scene), out_(out) {}
 
     void film(const Start& at) const {
         print("film", {at.u.x, at.u.y});
@@ -20,8 +20,8 @@ public:
     void operator()(const Segment& s, const Step& e) const {
         if (!e.x) return;
         const Vertex& x = *e.x;
-        std::fprintf(out_, "vertex %d: shape %u at distance %.17g\n", s.k, x.hit.id,
-                     double(x.hit.t));
+        std::fprintf(out_, "vertex %d: shape %u%s at distance %.17g\n", s.k, x.hit.id,
+                     origin(x.hit.id).c_str(), double(x.hit.t));
         print("  p", x.at.p);
         print("  n", x.at.n);
         print("  throughput", s.beta);
@@ -51,7 +51,15 @@ public:
     }
 
 private:
+    const Scene& scene_;
     std::FILE* out_;
+
+    // Where the scene's file has this shape.
+    std::string origin(uint32_t shape) const {
+        if (scene_.line_of.empty()) return "";
+        return ", material " + in_quotes(scene_.names[scene_.material_of[shape]]) + ", line " +
+               std::to_string(scene_.line_of[shape]) + ",";
+    }
 
     void light(const DirectLight& d) const {
         constexpr const char* kinds[] = {"sphere", "triangle", "quad", "point"};
@@ -75,7 +83,7 @@ private:
 // Prints one path of the image.
 inline void replay(const Job& job) {
     const auto& [o, scene, pattern, passes] = job;
-    const PathLog log(stdout);
+    const PathLog log(scene, stdout);
     const Start at = start(scene, pattern, o.replay->x, o.replay->y, o.sample.value_or(0));
     log.film(at);
     if (is_plain_view(o.view))

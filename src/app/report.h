@@ -18,7 +18,8 @@ struct RunStats {
     uint64_t rays = 0;
     uint64_t non_finite = 0;
     bool interrupted = false;
-    uint64_t redraws = 0, fallbacks = 0;  // of weights, see Weigher
+    std::array<double, 3> mean_radiance{}, variance_of_mean{};  // a channel at a time
+    uint64_t redraws = 0, fallbacks = 0;                        // of weights, see Weigher
 };
 
 inline std::string fixed(double x, int digits) {
@@ -27,11 +28,17 @@ inline std::string fixed(double x, int digits) {
     return text;
 }
 
-// On a terminal a bar that is drawn over itself, elsewhere a plain line now and then; on stderr.
+// On a terminal a bar that is drawn over itself and goes at the end, elsewhere a plain line now and
+// then; on stderr.
 class Progress {
 public:
     Progress(const Target& target, bool quiet)
         : target_(target), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    ~Progress() {
+        if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+    }
 
     double elapsed() const { return std::chrono::duration<double>(clock::now() - start_).count(); }
 
@@ -58,21 +65,6 @@ public:
         shown_ = true;
     }
 
-    // The line that stays; none of a run that will end with an error.
-    void summary(const std::string& scene, const RunStats& run) {
-        if (quiet_) return;
-        if (run.non_finite > 0) {
-            if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
-            return;
-        }
-        std::fprintf(
-            stderr, "%s%s: %llu samples per pixel, %.2f s, %.2f Mrays/s, %llu non-finite%s\n",
-            shown_ && terminal_ ? "\r\033[K" : "", scene.c_str(),
-            static_cast<unsigned long long>(run.spp), run.seconds,
-            double(run.rays) / run.seconds * 1e-6, static_cast<unsigned long long>(run.non_finite),
-            run.interrupted ? " (interrupted)" : "");
-    }
-
 private:
     using clock = std::chrono::steady_clock;
     const Target target_;
@@ -82,6 +74,14 @@ private:
     double next_ = terminal_ ? 0.1 : 2.0;
     bool shown_ = false;
 };
+
+// The line that stays.
+inline std::string summary(const std::string& scene, const RunStats& run) {
+    return scene + ": " + std::to_string(run.spp) + " samples per pixel, " + fixed(run.seconds, 2) +
+           " s, " + fixed(double(run.rays) / run.seconds * 1e-6, 2) + " Mrays/s, " +
+           std::to_string(run.non_finite) + " non-finite" +
+           (run.interrupted ? " (interrupted)" : "");
+}
 
 // ---- Statistics (--stats) ---------------------------------------------------------------------
 
@@ -140,12 +140,8 @@ inline std::string numbers(std::array<double, 3> x) {
 
 }  // namespace json
 
-// One object.  variance_of_mean is that of mean_radiance, channel by channel; pixels are
-// independent of each other, so it is the mean of their variances over their number.
-inline std::string encode_stats(const Options& o, Size size, int depth, const RunStats& run,
-                                const Image& image, const Image& variance) {
-    std::array<double, 3> of_mean = mean_of_pixels(variance);
-    for (double& v : of_mean) v /= double(variance.pixels.size());
+// One object.
+inline std::string encode_stats(const Options& o, Size size, int depth, const RunStats& run) {
     std::string text = "{\n";
     auto line = [&](const std::string& key, const std::string& value) {
         text += (text.size() > 2 ? ",\n  \"" : "  \"") + key + "\": " + value;
@@ -166,8 +162,8 @@ inline std::string encode_stats(const Options& o, Size size, int depth, const Ru
     line("cpu_seconds", json::number(cpu_seconds()));
     line("rays", count(run.rays));
     line("mrays_per_second", json::number(double(run.rays) / run.seconds * 1e-6));
-    line("mean_radiance", json::numbers(mean_of_pixels(image)));
-    line("variance_of_mean", json::numbers(of_mean));
+    line("mean_radiance", json::numbers(run.mean_radiance));
+    line("variance_of_mean", json::numbers(run.variance_of_mean));
     line("non_finite", count(run.non_finite));
     line("peak_memory_bytes", count(peak_memory_bytes()));
     return text + "\n}\n";

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "film/image.h"
+#include "film/passes.h"
 
 // ---- A film of any kind of pixel ----------------------------------------------------------------
 
@@ -30,13 +31,15 @@ public:
     const Size size;
     uint64_t samples() const { return samples_; }  // per pixel
 
-    // Row y of the pass that brings n more samples: L(x, i) is sample i of pixel (x, y).
+    // Row y of the pass that brings n more samples: L(x, i) is sample i of pixel (x, y).  Once
+    // `interrupted` the rest is left out, and the pass must not end.
     template <class Radiance>
     void add_row(int y, uint64_t n, Radiance L) {
         for (int x = 0; x < size.width; ++x) {
             const size_t index = size_t(y) * size_t(size.width) + size_t(x);
             Pixel pixel = pixels_[index];
             for (uint64_t i = samples_; i < samples_ + n; ++i) {
+                if (interrupted) return;
                 const Sample value = L(x, i);
                 if (!Pixel::fits(value)) report({i, x, y});
                 pixel.add(i, value);
@@ -61,6 +64,17 @@ public:
         for (size_t i = 0; i < pixels_.size() && samples_ > 0; ++i)
             for (size_t c = 0; c < 3; ++c) image.pixels[i][c] = float(value(pixels_[i], c));
         return image;
+    }
+
+    // The mean of value(pixel, channel) over the pixels; NaN before the first pass.
+    template <class Value>
+    std::array<double, 3> mean_of(Value value) const {
+        std::array<double, 3> mean{};
+        for (size_t c = 0; c < 3; ++c) {
+            for (const Pixel& pixel : pixels_) mean[c] += value(pixel, c);
+            mean[c] = samples_ > 0 ? mean[c] / double(pixels_.size()) : double(NAN);
+        }
+        return mean;
     }
 
 private:
@@ -110,10 +124,11 @@ private:
     static double sqr(double x) { return x * x; }
 };
 
-inline Image image_of(const Film<MeanPixel>& film) {
-    const double n = double(film.samples());
-    return film.image_of([n](const MeanPixel& p, size_t c) { return p.sum(c) / n; });
+inline auto value_in(const Film<MeanPixel>& film) {
+    return [n = double(film.samples())](const MeanPixel& p, size_t c) { return p.sum(c) / n; };
 }
+
+inline Image image_of(const Film<MeanPixel>& film) { return film.image_of(value_in(film)); }
 
 // ---- Variances of means -------------------------------------------------------------------------
 
@@ -127,13 +142,16 @@ inline double variance_of_halves(double a, double b, uint64_t samples) {
     return (a - b) * (a - b) * na * nb / (n * n);
 }
 
-// Unbiased; NaN if not known.
-inline Image variance_of(const Film<MeanPixel>& film, VarianceFrom from) {
-    const uint64_t samples = film.samples();
-    const double n = double(samples), nb = double(samples / 2), na = n - nb;
-    return film.image_of([&](const MeanPixel& p, size_t c) {
+// That of a pixel's mean, in double.  Unbiased; NaN if not known.
+inline auto variance_in(const Film<MeanPixel>& film, VarianceFrom from) {
+    return [from, samples = film.samples()](const MeanPixel& p, size_t c) {
+        const double n = double(samples), nb = double(samples / 2), na = n - nb;
         if (samples < 2 || from == VarianceFrom::nothing) return double(NAN);
         if (from == VarianceFrom::samples) return p.m2[c] / (n - 1) / n;
         return variance_of_halves(p.half[0][c] / na, p.half[1][c] / nb, samples);
-    });
+    };
+}
+
+inline Image variance_of(const Film<MeanPixel>& film, VarianceFrom from) {
+    return film.image_of(variance_in(film, from));
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -28,6 +29,15 @@ struct Image {
         return pixels[size_t(y) * size_t(width) + size_t(x)];
     }
 };
+
+// The first pixel, "x,y", that holds what is no finite number.
+inline std::optional<std::string> first_non_finite(const Image& image) {
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (float channel : image.at(x, y))
+                if (!std::isfinite(channel)) return std::to_string(x) + "," + std::to_string(y);
+    return {};
+}
 
 // ---- PFM: linear float, bottom row first, little-endian ---------------------------------------
 

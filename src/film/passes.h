@@ -6,20 +6,29 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 // ---- Ctrl-C -------------------------------------------------------------------------------------
 
-inline std::atomic<bool> interrupted = false;
+// The signal that asks for an end, or 0.
+inline std::atomic<int> interrupted = 0;
 
-// The first Ctrl-C asks for an end after the passes completed so far; a second one kills.
+// The first Ctrl-C, or another signal to end, asks for an end after the passes completed so far; a
+// second one kills.  What whoever started us ignores stays ignored.  A stderr that nobody reads is
+// no reason to lose an image, and a file that grows too large is an error of its own.
 inline void catch_interrupt() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = true; };
-    action.sa_flags = int(SA_RESETHAND);
-    sigaction(SIGINT, &action, nullptr);
+    for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction action {};
+        struct sigaction before {};
+        action.sa_handler = [](int caught) { interrupted = caught; };
+        action.sa_flags = int(SA_RESETHAND);
+        sigaction(signal, nullptr, &before);
+        if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+    }
+    for (int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 // ---- When to stop -------------------------------------------------------------------------------
@@ -70,24 +79,40 @@ private:
 inline unsigned all_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
 
 // Calls row(y) for every y < height from several threads, and meanwhile() from this one ten times
-// a second.  Returns early, with rows missing, once `interrupted`; then the answer is false.
+// a second.  Returns early, with rows missing, once `interrupted`; then the answer is false.  What
+// row throws, it throws.
 template <class Row, class Meanwhile>
 bool parallel_rows(int height, unsigned threads, Row row, Meanwhile meanwhile) {
     std::atomic<int> next = 0, done = 0;
     std::mutex mutex;
     std::condition_variable finished;
+    std::exception_ptr failure;
     unsigned running = std::min(threads, unsigned(height));
-    std::vector<std::jthread> workers;
-    for (unsigned i = running; i > 0; --i)
-        workers.emplace_back([&] {
-            for (int y; !interrupted && (y = next++) < height; ++done) row(y);
+    auto work = [&] {
+        try {  // a row that was cut short does not count
+            for (int y; !interrupted && (y = next++) < height; done += !interrupted) row(y);
+        } catch (...) {
             std::lock_guard lock(mutex);
-            --running;
-            finished.notify_one();
-        });
-    std::unique_lock lock(mutex);
-    while (!finished.wait_for(lock, std::chrono::milliseconds(100), [&] { return running == 0; }))
-        meanwhile(double(done) / height);
+            failure = std::current_exception();
+            next = height;
+        }
+        std::lock_guard lock(mutex);
+        --running;
+        finished.notify_one();
+    };
+    {
+        std::vector<std::jthread> workers;
+        struct Stop {  // before they are waited for, whatever is thrown here
+            std::atomic<int>& next;
+            const int end;
+            ~Stop() { next = end; }
+        } stop{next, height};
+        for (unsigned i = running; i > 0; --i) workers.emplace_back(work);
+        std::unique_lock lock(mutex);
+        while (!finished.wait_for(lock, std::chrono::milliseconds(100), [&] { return !running; }))
+            meanwhile(double(done) / height);
+    }
+    if (failure) std::rethrow_exception(failure);
     meanwhile(double(done) / height);
     return done == height;
 }

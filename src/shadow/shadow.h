@@ -119,23 +119,28 @@ inline float value_of(const ShadowPixel& p, Estimator e, uint64_t n, size_t c) {
     const auto& [even, odd] = p.shadowed;
     return float(p.rest.sum(c) / double(n)) + float(estimate(e, merge(even[c], odd[c])));
 }
-inline float value_of_half(const ShadowPixel& p, Estimator e, uint64_t n, size_t c, size_t half) {
+inline double value_of_half(const ShadowPixel& p, Estimator e, uint64_t n, size_t c, size_t half) {
     const double samples = double(half ? n / 2 : n - n / 2);
-    return float(p.rest.half[half][c] / samples) + float(estimate(e, p.shadowed[half][c]));
+    return p.rest.half[half][c] / samples + estimate(e, p.shadowed[half][c]);
 }
 
-inline Image image_of(const Film<ShadowPixel>& film, Estimator e) {
-    return film.image_of(
-        [&](const ShadowPixel& p, size_t c) { return value_of(p, e, film.samples(), c); });
+inline auto value_in(const Film<ShadowPixel>& film, Estimator e) {
+    return [e, n = film.samples()](const ShadowPixel& p, size_t c) { return value_of(p, e, n, c); };
 }
 
 // Ratio and regression are no means of samples: the spread of samples says nothing about them.  The
 // difference of two halves does, with an error of its own that falls as their bias does.
-inline Image variance_of(const Film<ShadowPixel>& film, Estimator e, VarianceFrom from) {
-    const uint64_t n = film.samples();
-    return film.image_of([&](const ShadowPixel& p, size_t c) {
+inline auto variance_in(const Film<ShadowPixel>& film, Estimator e, VarianceFrom from) {
+    return [e, from, n = film.samples()](const ShadowPixel& p, size_t c) {
         if (n < 2 || from == VarianceFrom::nothing) return double(NAN);
-        return variance_of_halves(double(value_of_half(p, e, n, c, 0)),
-                                  double(value_of_half(p, e, n, c, 1)), n);
-    });
+        return variance_of_halves(value_of_half(p, e, n, c, 0), value_of_half(p, e, n, c, 1), n);
+    };
+}
+
+inline Image image_of(const Film<ShadowPixel>& film, Estimator e) {
+    return film.image_of(value_in(film, e));
+}
+
+inline Image variance_of(const Film<ShadowPixel>& film, Estimator e, VarianceFrom from) {
+    return film.image_of(variance_in(film, e, from));
 }

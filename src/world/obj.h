@@ -11,6 +11,7 @@
 // Polygons, with the materials that their file gives them.
 struct ObjMesh {
     struct Material {
+        std::string name;
         rgb kd, ke;  // diffuse albedo, emitted radiance
     };
     struct Face {
@@ -21,6 +22,7 @@ struct ObjMesh {
     std::vector<vec3> vertices;
     std::vector<Material> materials;
     std::vector<Face> faces;
+    std::vector<std::string> files;  // that it was read from
 };
 
 // Reads `v` and `f` (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative,
@@ -33,6 +35,7 @@ public:
     static ObjMesh read(const std::string& path) {
         ObjReader reader;
         reader.each_line(path, [&] { reader.statement(path); });
+        if (reader.mesh_.faces.empty()) throw UserError(path + ": no face in it");
         return std::move(reader.mesh_);
     }
 
@@ -46,6 +49,7 @@ private:
     template <class Statement>
     void each_line(const std::string& path, Statement read_words) {
         std::istringstream in(read_file(path));
+        mesh_.files.push_back(path);
         int line = 0;
         for (std::string text; std::getline(in, text);) {
             line_ = ++line;
@@ -69,18 +73,26 @@ private:
         } else if (keyword == "f") {
             face();
         } else if (keyword == "usemtl") {
-            auto found = material_.find(word(1));
-            if (found == material_.end())
-                throw UserError("undefined material " + in_quotes(word(1)));
-            current_ = found->second;
+            current_ = look_up(material_, word(1), "material");
         } else if (keyword == "mtllib") {
             const auto folder = std::filesystem::path(path).parent_path();
             const std::string library = (folder / word(1)).string();
+            const size_t before = mesh_.materials.size();
             each_line(library, [&] { material_statement(); });
+            if (mesh_.materials.size() == before) throw UserError(library + ": no material in it");
         } else if (std::find(skipped.begin(), skipped.end(), keyword) == skipped.end()) {
+            // What is no mesh at all may be anything, and is not shown.
+            if (!looks_like_a_keyword(keyword)) throw UserError("not a line of an OBJ file");
             throw UserError(
                 unknown("keyword", keyword, {"v", "f", "usemtl", "mtllib", "vt", "vn"}));
         }
+    }
+
+    static bool looks_like_a_keyword(const std::string& word) {
+        auto fits = [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+        };
+        return word.size() <= 20 && std::all_of(word.begin(), word.end(), fits);
     }
 
     void material_statement() {
@@ -88,7 +100,7 @@ private:
         if (keyword == "newmtl") {
             if (!material_.try_emplace(word(1), int(mesh_.materials.size())).second)
                 throw UserError("a second material " + in_quotes(word(1)));
-            mesh_.materials.emplace_back();
+            mesh_.materials.push_back({word(1), {}, {}});
         }
         if (keyword != "Kd" && keyword != "Ke") return;
         if (mesh_.materials.empty()) throw UserError(keyword + " before newmtl");
@@ -128,20 +140,25 @@ private:
 
 // The polygon's corners, turned so that the triangles (0, i, i+1) all face the same way; nothing
 // if there is no such corner to start from.  Convex polygons always have one, and are not turned.
-inline std::optional<std::vector<vec3>> fan_of(const std::vector<vec3>& corners) {
+// Others may have to try every corner, in n^2 steps: not with more than `most_concave`.
+inline constexpr size_t most_concave = 1000;
+inline std::optional<std::vector<vec3>> fan_of(std::vector<vec3> corners) {
     const size_t n = corners.size();
     vec3 normal;  // twice the area (Newell)
     for (size_t i = 1; i + 1 < n; ++i)
         normal += cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
-    for (size_t start = 0; start < n; ++start) {
-        std::vector<vec3> turned(corners);
-        std::rotate(turned.begin(), turned.begin() + std::ptrdiff_t(start), turned.end());
-        bool fair = true;
+    auto fair_from = [&](size_t start) {
         for (size_t i = 1; i + 1 < n; ++i) {
-            const vec3 area = cross(turned[i] - turned[0], turned[i + 1] - turned[0]);
-            fair = fair && dot(area, normal) >= 0;
+            const vec3 a = corners[start], b = corners[(start + i) % n] - a,
+                       c = corners[(start + i + 1) % n] - a;
+            if (!(dot(cross(b, c), normal) >= 0)) return false;
         }
-        if (fair) return turned;
-    }
+        return true;
+    };
+    for (size_t start = 0; start < (n <= most_concave ? n : 1); ++start)
+        if (fair_from(start)) {
+            std::rotate(corners.begin(), corners.begin() + std::ptrdiff_t(start), corners.end());
+            return corners;
+        }
     return {};
 }

@@ -45,6 +45,11 @@ struct Scene {
     std::vector<int32_t> light_of;      // of each shape, or no_light
     std::vector<Light> lights;
 
+    // For messages: names of materials, and the lines of the file that made shapes and lights.
+    // Empty where no file is.
+    std::vector<std::string> names;
+    std::vector<uint32_t> line_of, line_of_light;
+
     Bvh bvh;                       // from here on made by prepare
     std::vector<double> pick_cdf;  // running sum of lights[i].pick
 

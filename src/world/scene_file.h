@@ -3,36 +3,14 @@
 #include <map>
 #include <sstream>
 
+#include "world/grammar.h"
 #include "world/obj.h"
 #include "world/scene.h"
 
-// The grammar: one statement a line, keyword first, material last; '#' starts a comment.
-struct Statement {
-    std::string_view keyword, words;
-};
-inline constexpr Statement grammar[] = {
-    {"size", "WIDTH HEIGHT"},
-    {"camera", "EYE_X EYE_Y EYE_Z  TARGET_X TARGET_Y TARGET_Z  VERTICAL_FOV"},
-    {"depth", "SCATTERINGS"},
-    {"samples", "PER_PIXEL"},
-    {"exposure", "FACTOR"},
-    {"diffuse", "NAME  R G B"},
-    {"phong", "NAME  DIFFUSE_R DIFFUSE_G DIFFUSE_B  LOBE_R LOBE_G LOBE_B  EXPONENT"},
-    {"mirror", "NAME  R G B"},
-    {"glass", "NAME  INDEX_OF_REFRACTION"},
-    {"light", "NAME  R G B  [twosided] [MATERIAL]"},
-    {"pointlight", "X Y Z  R G B"},
-    {"sphere", "X Y Z  RADIUS  MATERIAL"},
-    {"triangle", "AX AY AZ  BX BY BZ  CX CY CZ  MATERIAL"},
-    {"quad", "X Y Z  UX UY UZ  VX VY VZ  MATERIAL"},
-    {"mesh", "FILE.obj  SCALE  X Y Z  [MATERIAL]"},
-    {"box", "WIDTH HEIGHT DEPTH  DEGREES_ABOUT_Y  X Y Z  MATERIAL"},
-};
-
-// A scene and what its author should know about it.
+// A scene, what its author should know about it, and the files that it was read from.
 struct ParsedScene {
     Scene scene;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings, files;
 };
 
 // Reads statements one after the other; every error is a UserError without the line number.
@@ -48,49 +26,12 @@ public:
         if (words_.empty()) return;
         next_ = 1;
         line_ = line;
-        const std::string keyword = words_[0];
-        check_count(keyword);
-        Scene& s = scene_;
-        if (keyword == "size") {
-            once(keyword);
-            s.size = parse_size(words_[1], words_[2]);
-        } else if (keyword == "camera") {
-            once(keyword);
-            camera();
-        } else if (keyword == "depth") {
-            once(keyword);
-            s.depth = int(parse_count(words_[1], 0, max_depth));
-        } else if (keyword == "samples") {
-            once(keyword);
-            s.samples = parse_count(words_[1], 1, max_samples);
-        } else if (keyword == "exposure") {
-            once(keyword);
-            s.exposure = positive("exposure");
-        } else if (keyword == "pointlight") {
-            vec3 p = point();
-            add_point_light(s, p, colour());
-        } else if (keyword == "sphere") {
-            vec3 centre = point();
-            real r = length_of("radius");
-            uint32_t m = material();
-            add_sphere(s, centre, r, m);
-            if (s.materials[m].emits()) sphere_lights_.push_back({centre, r, line_});
-        } else if (keyword == "triangle") {
-            vec3 a = point(), b = point(), c = point();
-            dropped_ += add_triangle(s, a, b, c, material());
-        } else if (keyword == "quad") {
-            vec3 p = point(), u = point(), v = point();
-            dropped_ += add_quad(s, p, u, v, material());
-        } else if (keyword == "mesh") {
-            mesh();
-        } else if (keyword == "box") {
-            real w = length_of("width"), h = length_of("height"), d = length_of("depth");
-            real degrees = number();
-            vec3 move = point();
-            dropped_ += add_box(s, {w, h, d}, degrees, move, material());
-        } else {
-            define(keyword);
-        }
+        const Statement& statement = statement_of(words_);
+        if (statement.kind == Statement::setting) set(words_[0]);
+        if (statement.kind == Statement::material) define(words_[0]);
+        if (statement.kind == Statement::content) add(words_[0]);
+        scene_.line_of.resize(scene_.shapes.size(), uint32_t(line));
+        scene_.line_of_light.resize(scene_.lights.size(), uint32_t(line));
     }
 
     // What only the whole scene can tell.
@@ -110,6 +51,7 @@ public:
         if (scene_.lights.empty()) result.warnings.push_back("no light: all will be black");
         prepare(scene_);
         result.scene = std::move(scene_);
+        result.files = std::move(files_);
         return result;
     }
 
@@ -131,26 +73,47 @@ private:
     std::map<std::string, uint32_t> material_;  // by name
     std::map<std::string, int> seen_;           // line of the statements that stand only once
     std::vector<SphereLight> sphere_lights_;
+    std::vector<std::string> files_;  // of meshes
     std::vector<std::string> words_;
     size_t next_ = 0;  // word to read
     int line_ = 0, dropped_ = 0;
 
-    void check_count(const std::string& keyword) const {
-        std::vector<std::string_view> known;
-        for (const Statement& g : grammar) {
-            known.push_back(g.keyword);
-            if (g.keyword != keyword) continue;
-            size_t least = 0, most = 0;
-            std::istringstream in{std::string(g.words)};
-            for (std::string word; in >> word; ++most) least += word[0] != '[';
-            size_t found = words_.size() - 1;
-            if (found < least || found > most)
-                throw UserError("too " + std::string(found < least ? "few" : "many") + " words (" +
-                                std::to_string(found) + "): " + keyword + " " +
-                                std::string(g.words));
-            return;
+    // ---- Statements ---------------------------------------------------------------------------
+
+    void set(const std::string& keyword) {
+        once(keyword);
+        if (keyword == "size") scene_.size = parse_size(words_[1], words_[2]);
+        if (keyword == "camera") camera();
+        if (keyword == "depth") scene_.depth = int(parse_count(words_[1], 0, max_depth));
+        if (keyword == "samples") scene_.samples = parse_count(words_[1], 1, max_samples);
+        if (keyword == "exposure") scene_.exposure = positive("exposure");
+    }
+
+    void add(const std::string& keyword) {
+        Scene& s = scene_;
+        if (keyword == "pointlight") {
+            vec3 p = point();
+            add_point_light(s, p, colour());
+        } else if (keyword == "sphere") {
+            vec3 centre = point();
+            real r = length_of("radius");
+            uint32_t m = material();
+            add_sphere(s, centre, r, m);
+            if (s.materials[m].emits()) sphere_lights_.push_back({centre, r, line_});
+        } else if (keyword == "triangle") {
+            vec3 a = point(), b = point(), c = point();
+            dropped_ += add_triangle(s, a, b, c, material());
+        } else if (keyword == "quad") {
+            vec3 p = point(), u = point(), v = point();
+            dropped_ += add_quad(s, p, u, v, material());
+        } else if (keyword == "mesh") {
+            mesh();
+        } else {  // box
+            real w = length_of("width"), h = length_of("height"), d = length_of("depth");
+            real degrees = number();
+            vec3 move = point();
+            dropped_ += add_box(s, {w, h, d}, degrees, move, material());
         }
-        throw UserError(unknown("keyword", keyword, known));
     }
 
     void once(const std::string& keyword) {
@@ -160,16 +123,19 @@ private:
                             std::to_string(place->second));
     }
 
+    // ---- Words ----------------------------------------------------------------------------------
+
+    std::string last() const { return in_quotes(words_[next_ - 1]); }  // word read
     real number(double most = largest_number) { return real(parse_number(words_[next_++], most)); }
     real positive(const std::string& what) {
         real x = number();
-        if (!(x > 0)) throw UserError(what + " must be positive, not " + words_[next_ - 1]);
+        if (!(x > 0)) throw UserError(what + " must be positive, not " + last());
         return x;
     }
     real length_of(const std::string& what) {
         real x = number(longest);
-        if (!(x > 0)) throw UserError(what + " must be positive, not " + words_[next_ - 1]);
-        if (double(x) < 1 / longest) throw UserError(what + " is too small: " + words_[next_ - 1]);
+        if (!(x > 0)) throw UserError(what + " must be positive, not " + last());
+        if (double(x) < 1 / longest) throw UserError(what + " is too small: " + last());
         return x;
     }
     vec3 point() {
@@ -180,8 +146,7 @@ private:
         rgb c;
         for (auto channel : axis) {
             c.*channel = number();
-            if (c.*channel < 0)
-                throw UserError("a colour must not be negative: " + words_[next_ - 1]);
+            if (c.*channel < 0) throw UserError("a colour must not be negative: " + last());
         }
         return c;
     }
@@ -190,12 +155,7 @@ private:
             throw UserError("reflects more than it receives: a channel of the albedo exceeds 1");
     }
 
-    uint32_t material() {
-        const std::string& name = words_[next_++];
-        auto found = material_.find(name);
-        if (found == material_.end()) throw UserError("undefined material " + in_quotes(name));
-        return found->second;
-    }
+    uint32_t material() { return look_up(material_, words_[next_++], "material"); }
 
     void camera() {
         vec3 eye = point(), target = point();
@@ -214,31 +174,42 @@ private:
         std::optional<uint32_t> given;
         if (next_ < words_.size()) given = material();
         const ObjMesh mesh = ObjReader::read(path);
+        files_.insert(files_.end(), mesh.files.begin(), mesh.files.end());
         const auto first = uint32_t(scene_.materials.size());
         for (const ObjMesh::Material& m : mesh.materials) {
             Material material;
             material.kd = m.kd;
             material.Le = m.ke;
             scene_.materials.push_back(material);
+            scene_.names.push_back(m.name);
         }
         for (const ObjMesh::Face& face : mesh.faces) {
-            const std::string where = path + ":" + std::to_string(face.line) + ": ";
-            if (face.material < 0 && !given)
-                throw UserError(where + "no material: give one here or in " + in_quotes("mesh"));
-            const uint32_t m = face.material < 0 ? *given : first + uint32_t(face.material);
-            std::vector<vec3> corners;
-            for (uint32_t i : face.corners) corners.push_back(mesh.vertices[i] * scale + move);
-            for (vec3 c : corners)
-                if (double(max_abs(c)) > longest) throw UserError(where + "too far away");
-            const auto fan = fan_of(corners);
-            if (!fan) throw UserError(where + "no corner sees all others: cut this polygon up");
-            const std::vector<vec3>& c = *fan;
-            if (c.size() == 4 && c[0] + c[2] == c[1] + c[3])
-                dropped_ += add_face(scene_, c[0], c[1], c[2], c[3], m);
-            else
-                for (size_t i = 1; i + 1 < c.size(); ++i)
-                    dropped_ += add_triangle(scene_, c[0], c[i], c[i + 1], m);
+            try {
+                if (face.material < 0 && !given)
+                    throw UserError("no material: give one here or in 'mesh'");
+                std::vector<vec3> corners;
+                for (uint32_t i : face.corners) corners.push_back(mesh.vertices[i] * scale + move);
+                polygon(corners, face.material < 0 ? *given : first + uint32_t(face.material));
+            } catch (const UserError& e) {
+                throw UserError(path + ":" + std::to_string(face.line) + ": " + e.what());
+            }
         }
+    }
+
+    void polygon(const std::vector<vec3>& corners, uint32_t m) {
+        for (vec3 c : corners)
+            if (double(max_abs(c)) > longest) throw UserError("too far away");
+        const auto fan = fan_of(corners);
+        if (!fan && corners.size() > most_concave)
+            throw UserError("concave, with more than " + std::to_string(most_concave) +
+                            " corners: cut this polygon up");
+        if (!fan) throw UserError("no corner sees all others: cut this polygon up");
+        const std::vector<vec3>& c = *fan;
+        if (c.size() == 4 && c[0] + c[2] == c[1] + c[3])
+            dropped_ += add_face(scene_, c[0], c[1], c[2], c[3], m);
+        else
+            for (size_t i = 1; i + 1 < c.size(); ++i)
+                dropped_ += add_triangle(scene_, c[0], c[i], c[i + 1], m);
     }
 
     // diffuse, phong, mirror, glass, light
@@ -271,6 +242,7 @@ private:
         check_albedo(m.kd + m.ks);
         material_[name] = uint32_t(scene_.materials.size());
         scene_.materials.push_back(m);
+        scene_.names.push_back(name);
     }
 };
 
@@ -288,6 +260,9 @@ inline ParsedScene parse_scene(const std::string& text, const std::string& name)
     }
 }
 
+// A scene may come through a pipe, too.
 inline ParsedScene read_scene(const std::string& path) {
-    return parse_scene(read_file(path), path);
+    ParsedScene parsed = parse_scene(read_file(path, path == "/dev/stdin"), path);
+    parsed.files.push_back(path);
+    return parsed;
 }

@@ -19,7 +19,7 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
         const Job job = job_of(o, scene);
         const Image image = rendered(job).image;
         std::FILE* out = std::tmpfile();
-        const PathLog log(out);
+        const PathLog log(scene, out);
         for (int y = 0; y < 4; ++y)
             for (int x = 0; x < 6; ++x) {
                 double even = 0, odd = 0;  // as the film adds them
@@ -50,7 +50,9 @@ TEST_CASE("the statistics' variance is that of the mean from seed to seed") {
         for (int run = 0; run < 300; ++run, ++o.seed) {
             const auto [image, variance, stats] = rendered(job_of(o, scene));
             means.add(mean_of_pixels(image)[1]);
-            predicted.add(mean_of_pixels(variance)[1] / double(variance.pixels.size()));
+            predicted.add(stats.variance_of_mean[1]);
+            CHECK(mean_of_pixels(variance)[1] / double(variance.pixels.size()) ==
+                  doctest::Approx(stats.variance_of_mean[1]).epsilon(1e-6));
         }
         // A variance from 300 means is known within sqrt(2 / 299) = 8 % (normal means); 4.9 of
         // those are 40 %.

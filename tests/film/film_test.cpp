@@ -53,6 +53,32 @@ TEST_CASE("a pass that is not complete leaves no trace in the image") {
     for (const Pixel& pixel : image_of(film).pixels) CHECK(pixel == Pixel{3, 3, 3});
 }
 
+TEST_CASE("a row takes no more samples once the run is interrupted") {
+    MeanFilm film({8, 1});
+    int samples = 0;
+    film.add_row(0, 100, [&](int x, uint64_t i) {
+        interrupted = x == 2 && i == 7;
+        ++samples;
+        return rgb{};
+    });
+    interrupted = 0;
+    CHECK(samples == 208);
+}
+
+TEST_CASE("means over pixels are of doubles, whatever float holds") {
+    MeanFilm film({2, 1});
+    CHECK(std::isnan(film.mean_of([](const MeanPixel&, size_t) { return 1.0; })[0]));
+    film.add_row(0, 2, [](int x, uint64_t i) {
+        return rgb{i && x ? real(1e30) : 0, i ? real(1e-30) : 0, 0};
+    });
+    film.end_pass(2);
+    const std::array<double, 3> mean = film.mean_of(variance_in(film, VarianceFrom::halves));
+    CHECK(mean[0] == doctest::Approx(1e60 / 4 / 2));
+    CHECK(mean[1] / 1e-60 == doctest::Approx(1 / 4.0));
+    CHECK(mean[2] == 0);
+    CHECK(std::isinf(variance_of(film, VarianceFrom::halves).at(1, 0)[0]));
+}
+
 TEST_CASE("samples that no file can hold are counted, and the first by sample, row, column told") {
     const real nan = std::numeric_limits<real>::quiet_NaN();
     const std::map<std::array<int, 3>, rgb> bad = {{{7, 0, 0}, {nan, 1, 1}},  // sample, y, x

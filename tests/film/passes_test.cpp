@@ -50,7 +50,33 @@ TEST_CASE("passes are whole grids, and shrink when samples take longer") {
 TEST_CASE("an interrupted pass is told to be incomplete") {
     auto row = [](int y) { interrupted = y == 1; };
     CHECK(!parallel_rows(100, 1, row, [](double) {}));
-    interrupted = false;
+    interrupted = 0;
+}
+
+TEST_CASE("a last row that is cut short is no end of the pass") {
+    auto row = [](int y) { interrupted = y == 9; };
+    CHECK(!parallel_rows(10, 1, row, [](double) {}));
+    interrupted = 0;
+}
+
+TEST_CASE("what a row throws reaches the caller, and nobody begins another row") {
+    for (unsigned threads : {1u, 3u}) {
+        std::atomic<int> rows = 0;
+        auto row = [&](int y) {
+            ++rows;
+            if (y == 5) throw std::bad_alloc();
+        };
+        CHECK_THROWS_AS(parallel_rows(1 << 20, threads, row, [](double) {}), std::bad_alloc);
+        CHECK(rows < 1 << 20);
+    }
+    std::atomic<int> rows = 0;
+    auto slow = [&](int) {
+        ++rows;
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    };
+    auto meanwhile = [](double) { throw std::bad_alloc(); };
+    CHECK_THROWS_AS(parallel_rows(100, 1, slow, meanwhile), std::bad_alloc);
+    CHECK(rows < 100);
 }
 
 TEST_CASE("every row is rendered once, by any number of threads") {

@@ -62,7 +62,7 @@ TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped i
         INFO(row.scene, row.options);
         const Outcome o = expect_success(
             folder, "penumbra", split("--spp 8 " + row.options + " -o a.pfm -o a.png file.scene"));
-        const Image image = folder.image("a.pfm");
+        const Image image = read_pfm(folder / "a.pfm");
         CHECK(image.width == row.width);
         CHECK(image.height == row.height);
         CHECK(all_finite(image));
@@ -109,7 +109,7 @@ TEST_CASE("a scene's meaning does not depend on its line ends, comments, blanks 
 
 TEST_CASE("--help names every option on one page of stdout") {
     const Folder folder;
-    for (const char* line : {"--help", "--help file.scene", "--spp 3 --quiet --help"}) {
+    for (const char* line : {"--help", "--help file.scene", "--spp 3 --quiet --help", "-h"}) {
         const Outcome o = run(folder, "penumbra", split(line));
         CHECK(o.status == 0);
         CHECK(o.err == "");
@@ -154,7 +154,7 @@ TEST_CASE("--quiet prints nothing, but errors") {
     expect_refusal(folder, "penumbra", split("--quiet bad.scene"), "bad.scene:1: unknown keyword");
 }
 
-TEST_CASE("the summary is one line: samples, seconds, Mrays/s, non-finite") {
+TEST_CASE("the summary is a line of samples, seconds, Mrays/s, non-finite, and one of files") {
     const Folder folder;
     folder.write("file.scene", good);
     for (const auto& [options, samples] : std::map<std::string, unsigned>{
@@ -169,8 +169,12 @@ TEST_CASE("the summary is one line: samples, seconds, Mrays/s, non-finite") {
         CHECK(s.speed > 0);
         CHECK(s.non_finite == 0);
         CHECK_FALSE(s.interrupted);
-        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 2);
+        CHECK(o.err.ends_with("\nwrote out/file.png, out/file.pfm\n"));
     }
+    const Outcome o =
+        expect_success(folder, "penumbra", split("-o a.pfm --stats s.json -o b.png file.scene"));
+    CHECK(o.err.ends_with("\nwrote a.pfm, b.png, s.json\n"));
 }
 
 TEST_CASE("--time stops before --spp is reached; 64 samples are meant only if neither is given") {
@@ -187,6 +191,45 @@ TEST_CASE("--time stops before --spp is reached; 64 samples are meant only if ne
     CHECK(summary(timed.err).samples > 3);
 }
 
+TEST_CASE("a scene may come through a pipe") {
+    const Folder folder;
+    folder.write("file.scene", good);
+    expect_success(folder, "penumbra", split("--spp 2 -o a.pfm file.scene"));
+    Process process(folder, "penumbra", split("--spp 2 -o b.pfm /dev/stdin"), {.input = good});
+    CHECK(process.finish().status == 0);
+    CHECK(folder.same("a.pfm", "b.pfm"));
+}
+
+TEST_CASE("a picture that is black, though there are lights, gets a hint") {
+    const Folder folder;
+    const std::string quad = camera + "size 4 4\nlight l 1 1 1\nquad -1 -1 0 ";
+    folder.write("faces.scene", quad + "2 0 0  0 2 0  l\n");
+    folder.write("turned.scene", quad + "0 2 0  2 0 0  l\n");
+    auto err = [&](const std::string& line) {
+        return expect_success(folder, "penumbra", split("--spp 2 -o a.pfm " + line)).err;
+    };
+    CHECK(contains(err("turned.scene"), "turned.scene: all is black: no light reaches the camera"));
+    CHECK(err("--quiet turned.scene") == "");
+    CHECK_FALSE(contains(err("faces.scene"), "black"));
+    CHECK_FALSE(contains(err("--view albedo turned.scene"), "black"));
+}
+
+TEST_CASE("--pixel names the material and the line of what a path meets") {
+    const Folder folder;
+    folder.write("m.obj", "v -9 -1 -9\nv -9 -1 9\nv 9 -1 9\nv 9 -1 -9\nf 1 2 3 4\n");
+    folder.write("file.scene", good + "mesh m.obj 1 0 0 0 m\n");
+    const Outcome o = run(folder, "penumbra", split("--size 3x3 --pixel 1,1 file.scene"));
+    CHECK(o.status == 0);
+    CHECK(contains(o.out, "vertex 0: shape 0, material 'm', line 5, at distance 4."));
+    bool ground = false;
+    for (int sample = 0; sample < 20 && !ground; ++sample) {
+        const std::string line = "--size 3x3 --pixel 1,2 --sample " + std::to_string(sample);
+        ground = contains(run(folder, "penumbra", split(line + " file.scene")).out,
+                          ", material 'm', line 7, at distance ");
+    }
+    CHECK(ground);
+}
+
 TEST_CASE("--exposure changes the PNG, by the command line before the scene, and never the PFM") {
     const Folder folder;
     folder.write("a.scene",
@@ -195,7 +238,7 @@ TEST_CASE("--exposure changes the PNG, by the command line before the scene, and
         {"", 162}, {"--exposure 1", 118}, {"--exposure 9", 255}};
     for (const auto& [options, byte] : rows) {
         expect_success(folder, "penumbra", split(options + " -o a.png -o a.pfm a.scene"));
-        CHECK(folder.image("a.pfm").at(2, 2) == std::array<float, 3>{.18f, .18f, .18f});
+        CHECK(read_pfm(folder / "a.pfm").at(2, 2) == std::array<float, 3>{.18f, .18f, .18f});
         const std::string png = folder.read("a.png");
         int w = 0, h = 0, n = 0;
         stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()),
@@ -253,6 +296,68 @@ TEST_CASE("a sample that no image can hold: exit status 1, told where, nothing w
 }
 
 // ---- Determinism --------------------------------------------------------------------------------
+
+TEST_CASE("a variance that no image can hold: exit status 1, told where, nothing written") {
+    const Folder folder;
+    folder.write("file.scene",
+                 "size 3 2\n" + camera + "light l 1e25 1e25 1e25\nsphere 0 0 0 1 l\n");
+    const auto before = folder.all();
+    for (const char* options : {"", "--sampler independent"}) {
+        const Outcome o = run(folder, "penumbra",
+                              split("--view variance --spp 16 -o a.pfm --stats s.json file.scene " +
+                                    std::string(options)));
+        INFO(o.err);
+        CHECK(o.status == 1);
+        CHECK(o.err.starts_with("pixel "));
+        CHECK(o.err.ends_with(" is more than a file can hold; nothing was written\n"));
+        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+        const bool untouched = folder.all() == before;
+        CHECK(untouched);
+    }
+    expect_success(folder, "penumbra", split("--spp 16 -o a.pfm file.scene"));
+}
+
+TEST_CASE("the statistics' variance is right however bright the light: 2^70 and 2^-70 times") {
+    const Folder folder;
+    auto variance = [&](const std::string& light, const std::string& options) {
+        std::string scene = good;
+        scene.replace(scene.find("1 1 1"), 5, light + " " + light + " " + light);
+        folder.write("file.scene", scene + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
+        expect_success(folder, "penumbra",
+                       split("--spp 8 --stats s.json -o a.pfm file.scene " + options));
+        const std::string stats = folder.read("s.json"), key = "\"variance_of_mean\": [";
+        return std::strtod(stats.c_str() + stats.find(key) + key.size(), nullptr);
+    };
+    for (const char* options :
+         {"--sampler independent", "--halves", "--halves --light nee --direct ratio"}) {
+        INFO(std::string(options));
+        const double one = variance("1", options);
+        CHECK(one > 0);
+        CHECK(variance("1180591620717411303424", options) == std::ldexp(one, 140));
+        CHECK(variance("8.470329472543003390683225006796419620513916015625e-22", options) ==
+              std::ldexp(one, -140));
+    }
+}
+
+TEST_CASE("no memory for a row: exit status 1, and nothing is written") {
+#ifdef __SANITIZE_ADDRESS__
+    MESSAGE("the address sanitizer needs more memory than that: not tested");
+#else
+    const Folder folder;
+    folder.write("file.scene", good);
+    const auto before = folder.all();
+    Process process(folder, "penumbra",
+                    split("--size 1x1 --threads 1 --film cvor --sampler independent --spp 1000000 "
+                          "--depth 1 -o a.pfm file.scene"),
+                    {.memory = 60 << 20});
+    const Outcome o = process.finish();
+    CHECK(o.signal == 0);
+    CHECK(o.status == 1);
+    CHECK(o.err == "out of memory\n");
+    const bool untouched = folder.all() == before;
+    CHECK(untouched);
+#endif
+}
 
 TEST_CASE("an image depends on the seed, and not on threads, passes or the run") {
     const Folder folder;

@@ -24,7 +24,7 @@ TEST_CASE("without -o the images are out/NAME.png and out/NAME.pfm; with it, tho
     CHECK(other.read("b.png").starts_with("\x89PNG"));
 }
 
-TEST_CASE("a disk that fills up: exit status 1, and the old image is whole") {
+TEST_CASE("a disk that fills up: exit status 1, the old image is whole, and nothing beside it") {
     const Folder folder;
     folder.write("file.scene", good);
     folder.write("a.pfm", "old");
@@ -37,4 +37,67 @@ TEST_CASE("a disk that fills up: exit status 1, and the old image is whole") {
     CHECK(contains(o.err, "a.pfm: cannot write: "));
     const bool untouched = folder.all() == before;
     CHECK(untouched);
+}
+
+TEST_CASE("a name as long as names may be, and a link, are written; what a killed run left goes") {
+    const Folder folder;
+    const std::string name = std::string(251, 'a') + ".pfm";
+    folder.write("file.scene", good);
+    folder.write("deep/old.pfm", "old");
+    fs::create_symlink("deep/old.pfm", folder / "link.pfm");
+    folder.write(".link.pfm.part2147483646", "not beside what is written");
+    folder.write("deep/.old.pfm.part2147483646", "half");  // more than Linux gives to processes
+    expect_success(folder, "penumbra", {"-o", name, "-o", "link.pfm", "--spp", "2", "file.scene"});
+    CHECK(fs::is_symlink(folder / "link.pfm"));
+    CHECK(folder.same(name, "deep/old.pfm"));
+    CHECK(folder.has(".link.pfm.part2147483646"));
+    CHECK(folder.files() == 6);
+}
+
+TEST_CASE("two things never get one file, nor does anything the file of the scene") {
+    const Folder folder;
+    folder.write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    folder.write("m.mtl", "newmtl a\nKd 1 1 1\n");
+    folder.write("file.scene", good + "mesh m.obj 1 0 0 0\n");
+    folder.write("out/scene.pfm", good);
+    folder.write("a.png", "old");
+    fs::create_symlink("a.png", folder / "link.pfm");
+    const std::pair<std::string, std::string> rows[] = {
+        {"--stats a.pfm -o a.pfm file.scene", "a.pfm: cannot be both a .pfm image and the stat"},
+        {"--stats ./a.pfm -o out/../a.pfm file.scene", "./a.pfm: cannot be both a .pfm image an"},
+        {"-o a.png -o link.pfm file.scene", "link.pfm: cannot be both a .png image and a .pfm i"},
+        {"--stats out/file.png file.scene", "out/file.png: cannot be both a .png image and the"},
+        {"--stats file.scene file.scene", "file.scene: cannot be both part of the scene and th"},
+        {"--stats out/../m.obj file.scene", "out/../m.obj: cannot be both part of the scene and"},
+        {"--stats m.mtl file.scene", "m.mtl: cannot be both part of the scene and the statist"},
+        {"out/scene.pfm", "out/scene.pfm: cannot be both part of the scene and a .pfm image"}};
+    for (const auto& [line, why] : rows) expect_refusal(folder, "penumbra", split(line), why);
+    expect_success(folder, "penumbra", split("--spp 1 -o a.pfm -o ./a.pfm -o a.pfm file.scene"));
+}
+
+TEST_CASE("what stdout does not take is an error") {
+    const Folder folder;
+    folder.write("file.scene", good);
+    folder.write("a.pfm", pfm(1, 1, {1, 1, 1}));
+    for (const auto& [program, line] : {std::pair{"penumbra", "--help"},
+                                        {"penumbra", "--pixel 1,1 file.scene"},
+                                        {"compare", "a.pfm a.pfm"},
+                                        {"compare", "--help"},
+                                        {"knot", "--help"}}) {
+        Process process(folder, program, split(line), {.output = "/dev/full"});
+        const Outcome o = process.finish();
+        INFO(std::string(program), " ", std::string(line));
+        CHECK(o.status == 1);
+        CHECK(o.err == "stdout: cannot write: No space left on device\n");
+    }
+}
+
+TEST_CASE("a stderr that nobody reads costs no image") {
+    const Folder folder;
+    folder.write("file.scene", good + "triangle 0 0 0 1 1 1 2 2 2 m\n");  // a warning
+    Process process(folder, "penumbra", split("--spp 2 -o a.pfm file.scene"), {.deaf = true});
+    const Outcome o = process.finish();
+    CHECK(o.signal == 0);
+    CHECK(o.status == 0);
+    CHECK(folder.has("a.pfm"));
 }

@@ -1,5 +1,4 @@
-// whole/process.h  programs as their user meets them: a folder to work in, a process, what to
-// expect
+// whole/process.h  programs as their user meets them: processes, and what to expect of them
 #pragma once
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -14,51 +13,14 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <map>
 #include <sstream>
 
+#include "base/folder.h"
 #include "film/image.h"
 
-namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-// ---- A place to work, and programs to run there -------------------------------------------------
-
-// A directory of its own, removed at the end.
-struct Folder {
-    fs::path path;
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "penumbra-program-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() { fs::remove_all(path); }
-
-    void write(const std::string& name, const std::string& bytes) const {
-        fs::create_directories((path / name).parent_path());
-        std::ofstream(path / name, std::ios::binary) << bytes;
-    }
-    bool has(const std::string& name) const { return fs::exists(path / name); }
-    std::string read(const std::string& name) const {
-        REQUIRE(has(name));
-        return read_file((path / name).string());
-    }
-    // Of two files; a failed CHECK prints no bytes.
-    bool same(const std::string& a, const std::string& b) const { return read(a) == read(b); }
-    Image image(const std::string& name) const { return read_pfm((path / name).string()); }
-    // Everything that is there, with its bytes.
-    std::map<std::string, std::string> all() const {
-        std::map<std::string, std::string> found;
-        for (const auto& entry : fs::recursive_directory_iterator(path))
-            found[fs::relative(entry.path(), path).string()] =
-                entry.is_directory() ? "a directory" : read_file(entry.path().string());
-        return found;
-    }
-};
+// ---- Programs to run in a folder ---------------------------------------------------------------
 
 struct Outcome {
     int status = -1;  // of an exit
@@ -66,54 +28,79 @@ struct Outcome {
     std::string out, err;
 };
 
-// A program that runs in a folder, its stderr a pipe or a terminal.
+// Both ends of a pipe or, to be written to, of a terminal.
+struct Channel {
+    int from = -1, to = -1;
+};
+
+inline Channel pipe_channel() {
+    int ends[2];
+    REQUIRE(::pipe2(ends, O_CLOEXEC) == 0);
+    return {ends[0], ends[1]};
+}
+
+inline Channel terminal_channel() {
+    const int from = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    REQUIRE(from >= 0);
+    REQUIRE(::grantpt(from) == 0);
+    REQUIRE(::unlockpt(from) == 0);
+    const int to = ::open(::ptsname(from), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    REQUIRE(to >= 0);
+    termios plain;  // without \n -> \r\n
+    ::tcgetattr(to, &plain);
+    plain.c_oflag &= ~tcflag_t(OPOST);
+    ::tcsetattr(to, TCSANOW, &plain);
+    return {from, to};
+}
+
+// A program that runs in a folder.
 class Process {
 public:
     struct Setting {
-        bool terminal = false;
-        rlim_t largest_file = RLIM_INFINITY;
+        bool terminal = false;                // stderr is one, and no pipe
+        bool deaf = false;                    // nobody reads stderr
+        std::string input = {}, output = {};  // what stdin brings, a file for stdout
+        int ignored = 0;                      // a signal
+        rlim_t largest_file = RLIM_INFINITY, memory = RLIM_INFINITY;
     };
 
-    Process(const Folder& folder, const std::string& program, const Words& words, Setting setting) {
+    Process(const Folder& folder, const std::string& program, const Words& words,
+            const Setting& setting) {
         const char* suffix = std::getenv("PROGRAM_SUFFIX");
         const std::string path = fs::absolute("build/" + program + (suffix ? suffix : "")).string();
         std::vector<char*> argv{const_cast<char*>(path.c_str())};
         for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
         argv.push_back(nullptr);
 
-        int out[2], err[2];
-        REQUIRE(::pipe2(out, O_CLOEXEC) == 0);
-        if (setting.terminal) {
-            err[0] = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-            REQUIRE(err[0] >= 0);
-            REQUIRE(::grantpt(err[0]) == 0);
-            REQUIRE(::unlockpt(err[0]) == 0);
-            err[1] = ::open(::ptsname(err[0]), O_RDWR | O_NOCTTY | O_CLOEXEC);
-            REQUIRE(err[1] >= 0);
-            termios plain;  // without \n -> \r\n
-            ::tcgetattr(err[1], &plain);
-            plain.c_oflag &= ~tcflag_t(OPOST);
-            ::tcsetattr(err[1], TCSANOW, &plain);
-        } else {
-            REQUIRE(::pipe2(err, O_CLOEXEC) == 0);
+        const Channel in = pipe_channel();
+        REQUIRE(::write(in.to, setting.input.data(), setting.input.size()) ==
+                ssize_t(setting.input.size()));
+        ::close(in.to);
+        Channel out = pipe_channel(), err = setting.terminal ? terminal_channel() : pipe_channel();
+        if (!setting.output.empty()) {
+            ::close(out.to);
+            out.to = ::open(setting.output.c_str(), O_WRONLY | O_CLOEXEC);
+            REQUIRE(out.to >= 0);
+        }
+        if (setting.deaf) {
+            ::close(err.from);
+            err.from = -1;
+            open_[1] = false;
         }
         pid_ = ::fork();
         REQUIRE(pid_ >= 0);
         if (pid_ == 0) {
-            std::signal(SIGINT, SIG_DFL);
-            const rlimit limit{setting.largest_file, setting.largest_file};
-            if (setting.largest_file != RLIM_INFINITY) {
-                std::signal(SIGXFSZ, SIG_IGN);
-                ::setrlimit(RLIMIT_FSIZE, &limit);
-            }
-            if (::chdir(folder.path.c_str()) == 0 && ::dup2(out[1], 1) == 1 &&
-                ::dup2(err[1], 2) == 2)
+            for (int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ})
+                std::signal(s, s == setting.ignored ? SIG_IGN : SIG_DFL);
+            limit(RLIMIT_FSIZE, setting.largest_file);
+            limit(RLIMIT_AS, setting.memory);
+            if (::chdir(folder.path.c_str()) == 0 && ::dup2(in.from, 0) == 0 &&
+                ::dup2(out.to, 1) == 1 && ::dup2(err.to, 2) == 2)
                 ::execv(path.c_str(), argv.data());
             ::_exit(127);
         }
-        ::close(out[1]);
-        ::close(err[1]);
-        from_ = {out[0], err[0]};
+        for (int fd : {in.from, out.to, err.to}) ::close(fd);
+        from_ = {out.from, err.from};
     }
     Process(const Folder& folder, const std::string& program, const Words& words)
         : Process(folder, program, words, Setting()) {}
@@ -124,7 +111,8 @@ public:
             ::kill(pid_, SIGKILL);
             ::waitpid(pid_, nullptr, 0);
         }
-        for (int fd : from_) ::close(fd);
+        for (int fd : from_)
+            if (fd >= 0) ::close(fd);
     }
 
     // Reads what the program prints, until it is enough (true) or for so many seconds, or all that
@@ -152,7 +140,7 @@ public:
     }
 
     bool ended() const { return !open_[0] && !open_[1]; }
-    void interrupt() const { ::kill(pid_, SIGINT); }
+    void interrupt(int signal = SIGINT) const { ::kill(pid_, signal); }
 
     // Waits for its end; kills it after a minute.
     Outcome finish() {
@@ -171,6 +159,12 @@ private:
     std::array<int, 2> from_{-1, -1};  // its stdout and stderr
     std::array<bool, 2> open_{true, true};
     Outcome outcome_;
+
+    template <class Resource>
+    static void limit(Resource resource, rlim_t most) {
+        const rlimit limit{most, most};
+        if (most != RLIM_INFINITY) ::setrlimit(resource, &limit);
+    }
 };
 
 inline Outcome run(const Folder& folder, const std::string& program, const Words& words) {
@@ -246,20 +240,23 @@ struct Summary {
     bool interrupted = false, found = false;
 };
 
-// Of the last line.
+// Of the line that tells of the samples; a bar may have stood where it stands.
 inline Summary summary(const std::string& err) {
     Summary s;
-    if (!err.ends_with('\n')) return s;
-    const size_t start = err.find_last_of("\n\r", err.size() - 2) + 1, name = err.find(": ", start);
-    if (name == err.npos) return s;
-    s.scene = err.substr(start, name - start);
-    int end = 0;
-    const std::string rest = err.substr(name);
+    const size_t end = err.find('\n', err.find(" Mrays/s, "));
+    if (end == err.npos) return s;
+    const size_t start = err.rfind('\n', end - 1) + 1;
+    std::string line = err.substr(start, end - start);
+    line.erase(0, line.rfind("\033[K") == line.npos ? 0 : line.rfind("\033[K") + 3);
+    const size_t name = std::min(line.find(": "), line.size());
+    s.scene = line.substr(0, name);
+    line.erase(0, name);
+    int read_to = 0;
     const int read =
-        std::sscanf(rest.c_str(), ": %llu samples per pixel, %lf s, %lf Mrays/s, %llu non-finite%n",
-                    &s.samples, &s.seconds, &s.speed, &s.non_finite, &end);
-    s.interrupted = contains(rest, "(interrupted)");
-    s.found = read == 4 && (rest.substr(size_t(end)) == "\n" || s.interrupted);
+        std::sscanf(line.c_str(), ": %llu samples per pixel, %lf s, %lf Mrays/s, %llu non-finite%n",
+                    &s.samples, &s.seconds, &s.speed, &s.non_finite, &read_to);
+    s.interrupted = line.substr(size_t(read_to)) == " (interrupted)";
+    s.found = read == 4 && (size_t(read_to) == line.size() || s.interrupted);
     return s;
 }
 

@@ -1,4 +1,6 @@
 // whole/refusals_test.cpp  what is refused, in one line, with no file touched
+#include <sys/stat.h>
+
 #include <set>
 
 #include "app/options.h"
@@ -72,26 +74,26 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
          "7: undefined material 'm?"
          "?'"},
         // Numbers that are not what they measure.
-        {good + "sphere 0 0 0 -1 m\n", "7: radius must be positive, not -1"},
-        {good + "sphere 0 0 0 0 m\n", "7: radius must be positive, not 0"},
-        {good + "sphere 0 0 0 -0.0 m\n", "7: radius must be positive, not -0.0"},
+        {good + "sphere 0 0 0 -1 m\n", "7: radius must be positive, not '-1'"},
+        {good + "sphere 0 0 0 0 m\n", "7: radius must be positive, not '0'"},
+        {good + "sphere 0 0 0 -0.0 m\n", "7: radius must be positive, not '-0.0'"},
         {good + "sphere 0 0 0 1e-200 l\n", "7: radius "},  // its square would vanish
-        {good + "box 0 1 1 0 0 0 0 m\n", "7: width must be positive, not 0"},
-        {good + "box 1 -2 1 0 0 0 0 m\n", "7: height must be positive, not -2"},
-        {good + "box 1 1 -1 0 0 0 0 m\n", "7: depth must be positive, not -1"},
-        {good + "exposure 0\n", "7: exposure must be positive, not 0"},
-        {good + "exposure -1\n", "7: exposure must be positive, not -1"},
-        {good + "glass g 0\n", "7: index of refraction must be positive, not 0"},
-        {good + "glass g -1.5\n", "7: index of refraction must be positive, not -1.5"},
+        {good + "box 0 1 1 0 0 0 0 m\n", "7: width must be positive, not '0'"},
+        {good + "box 1 -2 1 0 0 0 0 m\n", "7: height must be positive, not '-2'"},
+        {good + "box 1 1 -1 0 0 0 0 m\n", "7: depth must be positive, not '-1'"},
+        {good + "exposure 0\n", "7: exposure must be positive, not '0'"},
+        {good + "exposure -1\n", "7: exposure must be positive, not '-1'"},
+        {good + "glass g 0\n", "7: index of refraction must be positive, not '0'"},
+        {good + "glass g -1.5\n", "7: index of refraction must be positive, not '-1.5'"},
         {good + "depth -1\n", "7: '-1' is not a whole number"},
         {good + "depth 1.5\n", "7: '1.5' is not a whole number"},
         {good + "depth 1000001\n", "7: '1000001' is not a whole number"},
         {good + "depth 99999999999999999999\n", "7: '99999999999999999999' is not a whole number"},
-        {good + "diffuse n .5 -.1 .5\n", "7: a colour must not be negative: -.1"},
-        {good + "phong n 0 0 0 0 0 -1 1\n", "7: a colour must not be negative: -1"},
-        {good + "mirror n -1 0 0\n", "7: a colour must not be negative: -1"},
-        {good + "light n 0 -1 0\n", "7: a colour must not be negative: -1"},
-        {good + "pointlight 0 0 0 1 -1 1\n", "7: a colour must not be negative: -1"},
+        {good + "diffuse n .5 -.1 .5\n", "7: a colour must not be negative: '-.1'"},
+        {good + "phong n 0 0 0 0 0 -1 1\n", "7: a colour must not be negative: '-1'"},
+        {good + "mirror n -1 0 0\n", "7: a colour must not be negative: '-1'"},
+        {good + "light n 0 -1 0\n", "7: a colour must not be negative: '-1'"},
+        {good + "pointlight 0 0 0 1 -1 1\n", "7: a colour must not be negative: '-1'"},
         {good + "diffuse n .5 1.001 .5\n", "7: reflects more than it receives"},
         {good + "mirror n 1 1 1.001\n", "7: reflects more than it receives"},
         {good + "phong n .6 0 0 .401 0 0 5\n", "7: reflects more than it receives"},
@@ -108,7 +110,9 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
         {"size 8 4.5\n" + camera, "1: '4.5' is not a whole number from 1"},
         {"size 8 4294967297\n" + camera, "1: '4294967297' is not a whole number from 1"},
         // Materials.
-        {good + "sphere 0 0 0 1 glas\n", "7: undefined material 'glas'"},
+        {good + "sphere 0 0 0 1 glas\n", "7: undefined material 'glas'\n"},
+        {good + "diffuse grey 1 1 1\nsphere 0 0 0 1 gray\n",
+         "8: undefined material 'gray' (did you mean 'grey'?)"},
         {good + "triangle 0 0 0 1 0 0 0 1 0 x\n", "7: undefined material 'x'"},
         {good + "quad 0 0 0 1 0 0 0 1 0 M\n", "7: undefined material 'M'"},
         {good + "box 1 1 1 0 0 0 0 x\n", "7: undefined material 'x'"},
@@ -226,21 +230,21 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
         {long_name, long_name + ": cannot open: File name too long"},
         {"file.scene file.scene", "two scenes: 'file.scene' and 'file.scene'"},
         {"file.scene --quiet point.scene", "two scenes: 'file.scene' and 'point.scene'"},
-        {"--light none point.scene", "--light none: "},
+        {"--light none point.scene", "point.scene:7: --light none: rays never hit a point light"},
         // Unknown words.
         {"--sp 4 file.scene", "unknown option '--sp' (did you mean '--spp'?)"},
         {"--deph 4 file.scene", "unknown option '--deph' (did you mean '--depth'?)"},
         {"--thread 4 file.scene", "unknown option '--thread' (did you mean '--threads'?)"},
         {"--ligth mis file.scene", "unknown option '--ligth' (did you mean '--light'?)"},
         {"--spp=4 file.scene", "unknown option '--spp=4' (did you mean '--spp'?)"},
-        {"-h", "unknown option '-h'"},
+        {"-x", "unknown option '-x'\n"},
         {"-O a.png file.scene", "unknown option '-O' (did you mean '-o'?)"},
         {"- file.scene", "unknown option '-'"},
         {"file.scene --quiett", "unknown option '--quiett' (did you mean '--quiet'?)"},
         {"--help --bogus", "unknown option '--bogus'"},
         {"--help --spp 0", "--spp: '0' is not a whole number"},
         {"--light nope file.scene", "--light: unknown value 'nope' (did you mean 'none'?)"},
-        {"--light MIS file.scene", "--light: unknown value 'MIS'"},
+        {"--light MIS file.scene", "--light: unknown value 'MIS' (did you mean 'mis'?)"},
         {"--light '' file.scene", "--light: unknown value ''"},
         {"--direction bdsf file.scene", "--direction: unknown value 'bdsf' (did you mean 'bsdf'?)"},
         {"--direction unifrom file.scene", "--direction: unknown value 'unifrom' (did you mean 'u"},
@@ -348,4 +352,34 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
     CHECK_FALSE(blocked.has("out"));
     blocked.write("out/file.png/a", "");
     expect_refusal(blocked, "penumbra", {"file.scene"}, "out/file.png: is a directory");
+}
+
+TEST_CASE("what is no regular file is not read, and what cannot be read is told") {
+    const Folder folder;
+    REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+    folder.write("a.scene", good + "mesh pipe 1 0 0 0 m\n");
+    folder.write("b.scene", good + "mesh /dev/zero 1 0 0 0 m\n");
+    const std::pair<std::string, std::string> rows[] = {
+        {"pipe", "pipe: is no regular file"},
+        {"/dev/zero", "/dev/zero: is no regular file"},
+        {"a.scene", "a.scene:7: pipe: is no regular file"},
+        {"b.scene", "b.scene:7: /dev/zero: is no regular file"}};
+    for (const auto& [line, why] : rows) expect_refusal(folder, "penumbra", split(line), why);
+    expect_refusal(folder, "compare", {"pipe", "pipe"}, "pipe: is no regular file");
+    const Outcome o = run(folder, "penumbra", {"/proc/self/mem"});
+    CHECK(o.status == 1);
+    CHECK(o.err == "/proc/self/mem: cannot read: Input/output error\n");
+}
+
+TEST_CASE("names of files reach the terminal without control characters, on one line") {
+    const Folder folder;
+    const std::string name = "a\x1b[2J\nb\x7f";
+    expect_refusal(folder, "penumbra", {name}, "a?[2J?b?: cannot open: No such file");
+    folder.write(name, "mesh c\x1b[2J 1 0 0 0\n");
+    expect_refusal(folder, "penumbra", {name}, "a?[2J?b?:1: c?[2J: cannot open: No such file");
+    expect_refusal(folder, "penumbra", {"-o", name + "/a.png", name}, "a?[2J?b?:1: ");
+    folder.write(name, good);
+    const Outcome o = expect_success(folder, "penumbra", {"-o", "\x1b.pfm", "--spp", "1", name});
+    CHECK(summary(o.err).scene == "a?[2J?b?");
+    CHECK(contains(o.err, "\nwrote ?.pfm\n"));
 }

@@ -2,28 +2,16 @@
 // hand
 #include "world/obj.h"
 
-#include <doctest/doctest.h>
-
+#include "base/folder.h"
 #include "world/scene_file.h"
 
 namespace {
 
-// A folder of its own, gone at the end.
-struct Folder {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("penumbra-obj-" + std::to_string(::getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() { std::filesystem::remove_all(path); }
-    std::string put(const std::string& name, const std::string& text) const {
-        write_file((path / name).string(), text);
-        return (path / name).string();
-    }
-};
-
 // What reading `text` as an OBJ file complains about, without the folder; "" if nothing.
 std::string complaint(const Folder& folder, const std::string& text) {
     try {
-        ObjReader::read(folder.put("m.obj", text));
+        folder.write("m.obj", text);
+        ObjReader::read(folder / "m.obj");
         return "";
     } catch (const UserError& e) {
         return std::string(e.what()).substr(folder.path.string().size() + 1);
@@ -33,7 +21,7 @@ std::string complaint(const Folder& folder, const std::string& text) {
 const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 Scene scene_with(const Folder& folder, const std::string& obj, const std::string& placement) {
-    folder.put("m.obj", obj);
+    folder.write("m.obj", obj);
     const std::string text =
         "camera 0 0 5  0 0 0  40\ndiffuse grey 0.5 0.5 0.5\nmesh m.obj " + placement + "\n";
     return parse_scene(text, (folder.path / "s.scene").string()).scene;
@@ -43,11 +31,12 @@ Scene scene_with(const Folder& folder, const std::string& obj, const std::string
 
 TEST_CASE("an OBJ file that cannot be used is refused at its line") {
     const Folder folder;
-    folder.put("good.mtl", "newmtl red\nKd 1 0 0\nNs 3\nmap_Kd no.png\n");
-    folder.put("early.mtl", "Kd 1 0 0\n");
-    folder.put("bright.mtl", "newmtl a\nKd 1 0 1.5\n");
-    folder.put("negative.mtl", "newmtl a\nKe 1 0 -1\n");
-    folder.put("twice.mtl", "newmtl a\nnewmtl a\n");
+    folder.write("good.mtl", "newmtl red\nKd 1 0 0\nNs 3\nmap_Kd no.png\n");
+    folder.write("none_in_it.mtl", "# nothing\nillum 2\n");
+    folder.write("early.mtl", "Kd 1 0 0\n");
+    folder.write("bright.mtl", "newmtl a\nKd 1 0 1.5\n");
+    folder.write("negative.mtl", "newmtl a\nKe 1 0 -1\n");
+    folder.write("twice.mtl", "newmtl a\nnewmtl a\n");
     const struct {
         std::string text, message;
     } table[] = {
@@ -64,7 +53,12 @@ TEST_CASE("an OBJ file that cannot be used is refused at its line") {
         {"f 1 2 3\n" + corners, "m.obj:1: no vertex '1' among the 0 so far"},
         {"usemtl red\n", "m.obj:1: undefined material 'red'"},
         {"usemtl\n", "m.obj:1: usemtl needs a name"},
-        {"facet 1 2 3\n", "m.obj:1: unknown keyword 'facet' (did you mean 'f'?)"},
+        {"vertex 1 2 3\n", "m.obj:1: unknown keyword 'vertex'"},
+        {"root:x:0:0::/root:/bin/sh\n", "m.obj:1: not a line of an OBJ file"},
+        {corners, "m.obj: no face in it"},
+        {"", "m.obj: no face in it"},
+        {"mtllib none_in_it.mtl\nf 1 2 3\n", "none_in_it.mtl: no material in it"},
+        {"mtllib good.mtl\nusemtl Red\n", "undefined material 'Red' (did you mean 'red'?)"},
         {"mtllib early.mtl\n", "early.mtl:1: Kd before newmtl"},
         {"mtllib bright.mtl\n", "bright.mtl:2: Kd must not exceed 1"},
         {"mtllib negative.mtl\n", "negative.mtl:2: a colour must not be negative"},
@@ -85,9 +79,9 @@ TEST_CASE("faces: any number of corners, indices from the end, texture and norma
     const std::string same[] = {"f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/2 3/3 4/4",
                                 "f 1//1 2//1 3//1 4//1", "f 1/9/9 2/9/9 3/9/9 4/9/9"};
     for (const std::string& face : same) {
-        const ObjMesh mesh = ObjReader::read(folder.put(
-            "m.obj",
-            "# comment\no thing\nvn 0 0 1\nvt 0 0\ng a\ns off\n" + corners + face + "\r\n"));
+        folder.write("m.obj", "# comment\no thing\nvn 0 0 1\nvt 0 0\ng a\ns off\n" + corners +
+                                  face + "\r\n");
+        const ObjMesh mesh = ObjReader::read(folder / "m.obj");
         REQUIRE(mesh.faces.size() == 1);
         CHECK(mesh.faces[0].corners == std::vector<uint32_t>{0, 1, 2, 3});
     }
@@ -123,9 +117,41 @@ TEST_CASE("an arrowhead is fanned from the corner that sees all, a star is refus
                          doctest::Contains("m.obj:11: no corner sees all others"), UserError);
 }
 
+TEST_CASE("a concave face has at most 1000 corners: each may have to be tried as the fan's") {
+    // A star about the origin, which is its last corner and the only one that sees all others.
+    auto star = [](int n) {
+        std::vector<vec3> corners;
+        for (int i = 0; i < n; ++i) {
+            const double angle = 1.5 * i / n, r = 1 + i % 2;
+            corners.push_back({real(r * std::cos(angle)), real(r * std::sin(angle)), 0});
+        }
+        corners.push_back({0, 0, 0});
+        return corners;
+    };
+    const auto fan = fan_of(star(999));
+    REQUIRE(fan);
+    CHECK(fan->front() == vec3{0, 0, 0});
+    CHECK((*fan)[1] == star(999)[0]);
+    CHECK(!fan_of(star(1000)));
+    std::vector<vec3> round;
+    for (int i = 0; i < 5000; ++i)
+        round.push_back({real(std::cos(i * 0.001)), real(std::sin(i * 0.001)), 0});
+    CHECK(fan_of(round));  // convex: any number
+    const Folder folder;
+    std::string text, face = "f";
+    int count = 0;
+    for (const vec3& c : star(16000)) {
+        text += "v " + std::to_string(c.x) + " " + std::to_string(c.y) + " 0\n";
+        (face += " ") += std::to_string(++count);
+    }
+    CHECK_THROWS_WITH_AS(scene_with(folder, text + face + "\n", "1 0 0 0 grey"),
+                         doctest::Contains("m.obj:16002: concave, with more than 1000 corners"),
+                         UserError);
+}
+
 TEST_CASE("a mesh is scaled, then moved; a material of its own goes before the scene's") {
     const Folder folder;
-    folder.put("m.mtl", "newmtl lamp\nKd 0.1 0.2 0.3\nKe 4 5 6\n");
+    folder.write("m.mtl", "newmtl lamp\nKd 0.1 0.2 0.3\nKe 4 5 6\n");
     const Scene scene =
         scene_with(folder, "mtllib m.mtl\n" + corners + "f 1 2 3\nusemtl lamp\nf 1 2 3 4\n",
                    "2 10 20 30 grey");

@@ -84,7 +84,7 @@ box 1 2 3  0  4 5 6  d
 TEST_CASE("what cannot be is refused, at its line") {
     const std::pair<const char*, const char*> rows[] = {
         {"phong p  .6 .6 .6  .5 .1 .1  7\n", "a.scene:2: reflects more than it receives"},
-        {"diffuse d  .1 -.2 .3\n", "a.scene:2: a colour must not be negative: -.2"},
+        {"diffuse d  .1 -.2 .3\n", "a.scene:2: a colour must not be negative: '-.2'"},
         {"\n\nsize 3 4\nsize 3 4\n", "a.scene:5: a second size, after line 4"},
         {"light l 1 1 1\nsphere 0 0 4  2  l\n",
          "a.scene:3: the camera is inside this sphere light"},
@@ -97,4 +97,33 @@ TEST_CASE("what cannot be is refused, at its line") {
         INFO(found);
         CHECK(found.starts_with(why));
     }
+}
+
+TEST_CASE("the defaults of the grammar are those of a scene that says nothing") {
+    const Scene silent = scene_of("diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
+    for (const Statement& s : grammar) {
+        if (s.otherwise.empty()) continue;
+        const std::string line = std::string(s.keyword) + " " + std::string(s.otherwise) + "\n";
+        const Scene scene = scene_of(line + "diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
+        CHECK(scene.size.width == silent.size.width);
+        CHECK(scene.size.height == silent.size.height);
+        CHECK(scene.depth == silent.depth);
+        CHECK(scene.samples == silent.samples);
+        CHECK(scene.exposure == silent.exposure);
+    }
+}
+
+TEST_CASE("a scene knows the names of its materials and the lines of its shapes and lights") {
+    const Scene s = scene_of(R"(diffuse d 1 1 1
+light l 1 1 1
+box 1 1 1  0  0 0 0  d
+
+pointlight 0 9 0  1 1 1
+sphere 0 0 0  1  l
+)");
+    CHECK(s.names == std::vector<std::string>{"d", "l"});
+    std::vector<uint32_t> lines(12, 4);
+    lines.push_back(7);
+    CHECK(s.line_of == lines);
+    CHECK(s.line_of_light == std::vector<uint32_t>{6, 7});
 }
