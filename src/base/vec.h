@@ -51,10 +51,24 @@ inline bool operator==(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z 
 
 inline real dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline real length(vec3 a) { return std::sqrt(dot(a, a)); }
-inline vec3 unit(vec3 a) { return a / length(a); }
 inline real max_of(vec3 a) { return std::max({a.x, a.y, a.z}); }
 inline real max_abs(vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
+// Of a vector whose square is denormal or infinite: a power of two makes it normal, exactly.
+[[gnu::noinline]] inline vec3 unit_of_extreme(vec3 a) {
+    constexpr int exponent = std::numeric_limits<real>::max_exponent / 4 * 3;
+    a = a * std::ldexp(real(1), max_abs(a) < 1 ? exponent : -exponent);
+    return a / length(a);
+}
+
+// Within 3.5 ulp, whatever the length.
+inline vec3 unit(vec3 a) {
+    const real a2 = dot(a, a);
+    if (!std::isnormal(a2)) [[unlikely]]
+        return unit_of_extreme(a);
+    return a / std::sqrt(a2);
+}
+
 inline bool is_finite(vec3 a) {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }

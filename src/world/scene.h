@@ -79,8 +79,8 @@ inline void add_sphere(Scene& s, vec3 centre, real r, uint32_t material) {
     add_shape(s, sphere, material, add_light(s, light, material, rounding_error(sphere)));
 }
 
-// Whether a triangle has an area to be hit or sampled, and a normal: its square must neither
-// overflow nor be denormal, or unit loses digits.
+// Whether a triangle has an area to be hit or sampled, and a normal: their square must neither
+// overflow nor be denormal, or both lose digits.
 inline bool has_area(const Shape& s) {
     vec3 n = area_vector(s);
     return std::isnormal(dot(n, n));

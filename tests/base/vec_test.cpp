@@ -34,6 +34,34 @@ TEST_CASE("frames are right-handed and orthonormal, at the poles too") {
     CHECK(worst < 16 * ulp);
 }
 
+TEST_CASE("unit vectors are unit, and as long as they were they point there") {
+    using big = long double;  // of a wider range than real, and 40 or 11 bits more
+    Rng rng{seed_here()};
+    auto u = [&] { return 2 * to_unit(rng.bits()) - 1; };
+    constexpr int digits = std::numeric_limits<real>::digits,
+                  lowest = std::numeric_limits<real>::min_exponent - digits,
+                  highest = std::numeric_limits<real>::max_exponent - 1;
+    big worst = 0;
+    for (int i = 0; i < 200000; ++i) {
+        // Every binary exponent of real.  What is denormal has lost digits, so that it is rounded
+        // before the reference sees it.
+        const int e = lowest + i % (highest - lowest + 1);
+        const vec3 v{std::ldexp(u(), e), std::ldexp(u(), e), std::ldexp(u(), e)};
+        if (v == vec3{}) continue;
+        const vec3 n = unit(v);
+        const big l = std::sqrt(big(v.x) * v.x + big(v.y) * v.y + big(v.z) * v.z);
+        for (auto k : axis) {
+            const big off = std::abs(n.*k - v.*k / l) / ulp;
+            worst = off <= worst ? worst : off;
+        }
+    }
+    // Products and sums 3 ulp, of which the root halves, and 1; the division 1.
+    CHECK(worst < 3.5);
+    CHECK(unit({0, std::numeric_limits<real>::denorm_min(), 0}) == vec3{0, 1, 0});
+    CHECK(unit({0, 0, -std::numeric_limits<real>::max()}) == vec3{0, 0, -1});
+    CHECK(std::isnan(unit({}).x));  // what has no direction says so
+}
+
 TEST_CASE("a frame's local coordinates invert its world coordinates") {
     const Frame f = frame(unit({1, -2, real(0.5)}));
     const vec3 v{3, 4, -5};
@@ -77,5 +105,8 @@ TEST_CASE("power of two scaling commutes with every operation of a frame") {
     const vec3 v{real(0.3), real(-0.7), real(1.9)};
     const real k = std::ldexp(real(1), 20);
     CHECK(unit(v * k) == unit(v));
+    for (int e : {std::numeric_limits<real>::min_exponent + std::numeric_limits<real>::digits,
+                  std::numeric_limits<real>::max_exponent - 2})
+        CHECK(unit(v * std::ldexp(real(1), e)) == unit(v));
     CHECK(cross(v * k, {1, 2, 3}) == cross(v, {1, 2, 3}) * k);
 }

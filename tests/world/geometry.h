@@ -38,6 +38,14 @@ inline big3 operator-(big3 a, big3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}
 inline big3 operator*(big s, big3 a) { return {s * a.x, s * a.y, s * a.z}; }
 inline big dot(big3 a, big3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline big length(big3 a) { return std::sqrt(dot(a, a)); }
+inline big difference_of_products(big a, big b, big c, big d) {
+    const big cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+inline big3 cross(big3 a, big3 b) {
+    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+            difference_of_products(a.x, b.y, a.y, b.x)};
+}
 
 // The largest number seen; a NaN counts as infinite.
 struct Worst {

@@ -40,6 +40,19 @@ TEST_CASE("camera: the top of a 90 degree view is at 45 degrees, +x is right, pi
     }
 }
 
+TEST_CASE("camera: it looks at its target, however near or far that is") {
+    constexpr int low = std::numeric_limits<real>::min_exponent,
+                  high = std::numeric_limits<real>::max_exponent;
+    const Camera c = look_at({}, {1, -2, 3}, 40);
+    for (int e : {low, low / 2, low * 9 / 20, high / 2, high - 3}) {
+        const real k = std::ldexp(real(1), e);
+        const Camera scaled = look_at({}, {k, -2 * k, 3 * k}, 40);
+        CHECK(scaled.forward == c.forward);
+        CHECK(scaled.right == c.right);
+        CHECK(scaled.up == c.up);
+    }
+}
+
 TEST_CASE("an emitting shape is a light: its geometry, its error, and which shapes it is") {
     Scene s = empty_scene();
     add_sphere(s, {1, 2, 3}, 4, lamp);

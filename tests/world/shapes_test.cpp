@@ -3,15 +3,6 @@
 
 namespace {
 
-big difference_of_products(big a, big b, big c, big d) {
-    const big cd = c * d;
-    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
-}
-big3 cross(big3 a, big3 b) {
-    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
-            difference_of_products(a.x, b.y, a.y, b.x)};
-}
-
 bool meets(const Shape& s, const Ray& ray) { return meet(s, ray).has_value(); }
 
 big3 point(const Shape& s, const Hit& hit) {
