@@ -2,7 +2,7 @@
 CXX   ?= g++
 REAL  ?= double
 ARCH  ?= native
-SIZE  ?= 256x128
+SIZE  ?=
 
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
 FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
@@ -27,47 +27,58 @@ PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
 TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp tests/*/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak techniques estimators1d penumbra bench voronoi voronoi2d extremes readme clean help layers \
-        packages always
+.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows bench cells voronoi voronoi2d \
+        extremes readme clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: programs  ## build, and render every scene into out/ (default)
+all: $(PENUMBRA) build/compare$(SUFFIX)  ## build the renderer, and render every scene into out/ (default)
 	@for s in $(SCENES); do $(MAKE) --no-print-directory out/$$s.png || exit 1; done
+	@scenes/gallery $(SCENES)
 
-programs: $(PROGRAMS)  ## build penumbra and its tools into build/
+penumbra: $(PENUMBRA)  ## build the renderer alone: build/penumbra
 
-out/%.png out/%.pfm &: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
-	@mkdir -p out
-	$(PENUMBRA) --size $(SIZE) -o out/$*.png -o out/$*.pfm $<
+programs: $(PROGRAMS)  ## build the renderer and every lab
 
-test: $(OBJECTS)/all-tests $(PROGRAMS) build/knot.obj  ## build and run all tests; ONLY=bvh: files with that name
+# A render that is interrupted leaves what it has in out/unfinished/, and nothing that make takes for done.
+out/%.png: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
+	@mkdir -p out/unfinished
+	$(PENUMBRA) $(SIZE:%=--size %) -o out/unfinished/$*.png -o out/unfinished/$*.pfm \
+	    --stats out/unfinished/$*.json $<
+	@mv out/unfinished/$*.* out/
+
+# Scenes depend on the meshes that they name.
+MESHES = $(shell sed -n 's|^mesh  *\([^ ]*\).*|scenes/\1|p' scenes/$(1).scene | sed 's|scenes/\.\./||')
+$(foreach s,$(SCENES),$(eval out/$(s).png: $(call MESHES,$(s)) $(wildcard $(patsubst %.obj,%.mtl,$(call MESHES,$(s))))))
+
+# The mesh of scenes/mesh.scene is ours, too.
+build/knot.obj: build/knot$(SUFFIX)
+	build/knot$(SUFFIX) $@
+
+# The tests run these programs.
+TESTED := $(PENUMBRA) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj
+test: $(OBJECTS)/all-tests $(TESTED)  ## build and run all tests; ONLY=bvh: files with that name
 	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(OBJECTS)/all-tests $(ONLY)
 
 mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
-	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run "$(ONLY)"
+	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
 
 soak: $(OBJECTS)/all-tests  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter
 	@tests/soak $(OBJECTS)/all-tests $(SECONDS)
 
-techniques: $(PENUMBRA) build/techniques$(SUFFIX)  ## measure cosine, Halton, NEE on coursework (10 minutes)
-	build/techniques$(SUFFIX)
-
-estimators1d: build/estimators1d$(SUFFIX)  ## four estimators of a shadowed integral in 1D (a minute)
-	build/estimators1d$(SUFFIX)
-
-penumbra: $(PENUMBRA) build/shadows$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
-	build/shadows$(SUFFIX)
-
-bench: build/bench$(SUFFIX) build/cells$(SUFFIX)  ## rays and Voronoi cells a second, beside Embree and CGAL if installed
-	build/bench$(SUFFIX)
-	build/cells$(SUFFIX)
-
-voronoi2d: build/voronoi2d$(SUFFIX)  ## integrate functions by Voronoi cells; FULL=1: 10 000 trials, not 400
-	build/voronoi2d$(SUFFIX) $(if $(FULL),--trials 10000)
-
-voronoi: build/voronoi$(SUFFIX)  ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, as published, 45)
-	build/voronoi$(SUFFIX) $(if $(FULL),--most 4096)
+# Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
+techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)
+estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
+shadows: $(PENUMBRA)       ## four estimators of direct light on images (5 minutes)
+voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
+voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
+bench:                     ## rays a second, beside Embree if libembree-dev is installed
+cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
+EXPERIMENTS := techniques estimators1d shadows voronoi2d voronoi bench cells
+voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
+voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
+$(EXPERIMENTS): %: build/%$(SUFFIX)
+	build/$@$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
 
 extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)
 	@for real in double float; do \
@@ -100,12 +111,6 @@ help:  ## print this
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST))
 
-# The mesh of scenes/mesh.scene is ours, too.
-build/knot.obj: build/knot$(SUFFIX)
-	build/knot$(SUFFIX) $@
-
-out/mesh.png: build/knot.obj
-
 # ---- Building ------------------------------------------------------------------------------------
 
 # Variants keep their objects apart but share build/: copy only what differs.
@@ -129,12 +134,10 @@ $(OBJECTS)/cells.exe: LIBRARIES = $(shell printf '\043include <CGAL/Delaunay_tri
 $(OBJECTS)/all-tests: $(TESTS)
 	$(CXX) $(LINK) -o $@ $^
 
-# Tests that compute little are compiled in less time.
-LIGHT := $(addprefix app/,help options report views) $(addprefix base/,files rng stats vec words) film/film film/image film/passes \
-         path/halton path/sampler shadow/estimators shadow/irradiance voronoi/weighted $(EXTREMES:%=whole/extremes_%) \
-         $(addprefix whole/,refusals behaviour outputs interrupt compare) \
-         $(addprefix world/,lights obj scene scene_file spherical_rectangle warp)
-$(LIGHT:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1)
+# Most tests take longer to compile than to run; these compute much.
+HEAVY := oracle/oracle path/pathtracer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms world/bvh
+$(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-O1)
+$(HEAVY:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O2)
 
 $(OBJECTS)/tests/%.o: tests/%.cpp Makefile | packages
 	@mkdir -p $(@D)
