@@ -111,10 +111,10 @@ public:
         say("![" + what + "](" + name + ".svg)");
     }
 
-    // "ok" or "FAILS".
-    std::string verdict(bool holds) {
+    // The word for a claim, which counts if it fails.
+    std::string verdict(bool holds, const char* yes = "ok", const char* no = "**FAILS**") {
         failures_ += !holds;
-        return holds ? "ok" : "**FAILS**";
+        return holds ? yes : no;
     }
     // A point of a list, with its verdict.
     void claim(bool holds, const std::string& words) {
@@ -156,6 +156,12 @@ inline std::string made_by(const std::string& command) {
 #endif
     return text("Written by `%s`: %u threads, numbers in %s, compiled by %s.", command, all_cores(),
                 sizeof(real) == sizeof(double) ? "double" : "float", compiler);
+}
+
+inline std::string made_by(int argc, char** argv) {
+    std::string command = argv[0];
+    for (int k = 1; k < argc; ++k) command += std::string(" ") + argv[k];
+    return made_by(command);
 }
 
 // "17 of 96, 40 s left: cosine + NEE", on stderr: drawn over itself on a terminal, else a line

@@ -70,7 +70,7 @@ inline std::string tick(double x) {
     const bool far = x != 0 && (exponent < -2.5 || exponent > 5.5);
     if (far && std::abs(exponent - nearest) < 1e-9) {
         constexpr const char* raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-        std::string out = exponent < 0 ? "10⁻" : "10";
+        std::string out = text(exponent < 0 ? "%s10⁻" : "%s10", x < 0 ? "-" : "");
         for (char digit : text("%.0f", std::abs(nearest))) out += raised[digit - '0'];
         return out;
     }
@@ -259,6 +259,15 @@ public:
         for (size_t k = 0; k < x.size(); ++k) outline.push_back(place(x[k], low[k]));
         for (size_t k = x.size(); k-- > 0;) outline.push_back(place(x[k], high[k]));
         sheet_.area(outline, colour, 0.2);
+    }
+    // A curve in a band of y ± deviation.
+    void spread(const std::vector<double>& x, const std::vector<double>& y,
+                const std::vector<double>& deviation, const char* colour,
+                const std::string& words) {
+        std::vector<double> low = y, high = y;
+        for (size_t k = 0; k < y.size(); ++k) low[k] -= deviation[k], high[k] += deviation[k];
+        band(x, low, high, colour);
+        curve(x, y, {.colour = colour}, words);
     }
 
 private:

@@ -154,6 +154,7 @@ TEST_CASE("ticks are written as short as they can be read") {
     CHECK(svg::tick(4096) == "4096");
     CHECK(svg::tick(1e-3) == "10⁻³");
     CHECK(svg::tick(1e12) == "10¹²");
+    CHECK(svg::tick(-1e-3) == "-10⁻³");
     CHECK(svg::tick(0.01) == "0.01");
     CHECK(svg::tick(100000) == "100000");
     CHECK(svg::tick(1234567) == "1.235e+06");
