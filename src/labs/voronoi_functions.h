@@ -1,0 +1,85 @@
+// labs/voronoi_functions.h  1  functions on a square with their integrals, for voronoi2d
+//
+// Those of Table 2 in Vandewiele et al. 2025, "Voronoi integration of the rendering equation", and
+// three more: one that vanishes on the border, one that is not even, one that jumps.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "voronoi/plane.h"
+
+// On [-1/2, 1/2]^2.
+struct Function {
+    std::string name, formula;
+    double (*at)(Site);
+    double integral;
+    double rim = NAN;  // integral of the outward derivative over the border; NaN: there is none
+    double exponent = -0.75;  // of N in the deviation of vor, undivided, at most; NaN: infinite
+
+    bool has_variance() const { return !std::isnan(exponent); }
+};
+
+namespace functions {
+
+inline double power_of_xy(double alpha, Site p) { return std::pow(std::abs(p.x * p.y), alpha); }
+// On x = 1/2 its outward derivative is alpha (1/2)^(alpha - 1) |y|^alpha.
+inline Function holder(const std::string& alpha, double a, double (*at)(Site)) {
+    const double side = 2 * std::pow(0.5, a + 1) / (a + 1);  // integral of |x|^alpha
+    return {"holder_" + alpha, "\\|xy\\|^" + alpha, at, side * side,
+            4 * a * std::pow(0.5, a - 1) * side};
+}
+
+// -1 / ln r over the square: in polar coordinates int r dr / -ln r = E1(-2 ln r), over the distance
+// of the side, eight times (midpoint rule; the integrand is smooth).
+inline double integral_of_not_holder() {
+    constexpr int steps = 20000;
+    double sum = 0;
+    for (int k = 0; k < steps; ++k) {
+        const double phi = std::numbers::pi / 4 * (k + 0.5) / steps;
+        sum += -std::expint(2 * std::log(0.5 / std::cos(phi)));
+    }
+    return 8 * sum * std::numbers::pi / 4 / steps;
+}
+
+// (2 int_0^1/2 x sin(1/x) dx)^2; with t = 1/x, twice by parts,
+// int_2^inf sin t / t^3 dt = sin 2 / 8 + cos 2 / 4 - (pi/2 - Si(2)) / 2.
+inline double integral_of_not_c1() {
+    constexpr double si = 1.6054129768026948;  // Si(2)
+    const double half = std::sin(2) / 8 + std::cos(2) / 4 - (std::numbers::pi / 2 - si) / 2;
+    return 4 * half * half;
+}
+
+inline double tent(double x) { return std::max(0.0, 1 - 2 * std::abs(x)); }
+
+inline std::vector<Function> all() {
+    const double of_exp = (2 * std::sinh(0.5)) * (4 * std::sinh(0.25));
+    return {
+        holder("1", 1, [](Site p) { return power_of_xy(1, p); }),
+        holder("0.5", 0.5, [](Site p) { return power_of_xy(0.5, p); }),
+        holder("0.1", 0.1, [](Site p) { return power_of_xy(0.1, p); }),
+        holder("0.01", 0.01, [](Site p) { return power_of_xy(0.01, p); }),
+        {"not_holder", "−1 / ln r", [](Site p) { return -1 / std::log(std::hypot(p.x, p.y)); },
+         integral_of_not_holder()},
+        {"discontinuity", "1 / r", [](Site p) { return 1 / std::hypot(p.x, p.y); },
+         4 * std::log(1 + std::numbers::sqrt2), NAN, NAN},
+        {"not_c1", "x y sin(1/x) sin(1/y)",
+         [](Site p) { return p.x * p.y * std::sin(1 / p.x) * std::sin(1 / p.y); },
+         integral_of_not_c1()},
+        // Its outward derivative on x = 1/2 is -2 (1 - 2 |y|).
+        {"hat", "(1 − 2\\|x\\|) (1 − 2\\|y\\|)", [](Site p) { return tent(p.x) * tent(p.y); }, 0.25,
+         -4, -1},
+        // Its Laplacian is 5/4 of it, which Gauss's theorem takes to the border.
+        {"exp", "e^(x + y/2)", [](Site p) { return std::exp(p.x + p.y / 2); }, of_exp,
+         1.25 * of_exp},
+        {"disc", "1 if r < 0.3, else 0",
+         [](Site p) { return p.x * p.x + p.y * p.y < 0.09 ? 1.0 : 0.0; }, 0.09 * std::numbers::pi},
+    };
+}
+
+// Their numbers in that list.
+enum { holder_1, holder_05, holder_01, holder_001, not_holder, discontinuity, not_c1, hat, expo };
+
+}  // namespace functions
