@@ -14,11 +14,11 @@
 #include "film/image.h"
 
 // As printf; a string for %s may be a std::string.
-inline const char* printable(const std::string& words) { return words.c_str(); }
-inline auto printable(auto number) { return number; }
+inline const char* for_printf(const std::string& words) { return words.c_str(); }
+inline auto for_printf(auto number) { return number; }
 inline std::string text(const char* format, const auto&... values) {
-    std::string line(size_t(std::snprintf(nullptr, 0, format, printable(values)...)), ' ');
-    std::snprintf(line.data(), line.size() + 1, format, printable(values)...);
+    std::string line(size_t(std::snprintf(nullptr, 0, format, for_printf(values)...)), ' ');
+    std::snprintf(line.data(), line.size() + 1, format, for_printf(values)...);
     return line;
 }
 
