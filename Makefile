@@ -24,7 +24,6 @@ endif
 LABS     := $(patsubst src/labs/%.cpp,%,$(wildcard src/labs/*.cpp))
 PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
-TESTS    := $(patsubst tests/%.cpp,$(OBJECTS)/tests/%.o,$(wildcard tests/*.cpp tests/*/*.cpp))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows bench cells voronoi voronoi2d \
@@ -47,24 +46,41 @@ out/%.png: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
 	    --stats out/unfinished/$*.json $<
 	@mv out/unfinished/$*.* out/
 
-# Scenes depend on the meshes that they name.
-MESHES = $(shell sed -n 's|^mesh  *\([^ ]*\).*|scenes/\1|p' scenes/$(1).scene | sed 's|scenes/\.\./||')
-$(foreach s,$(SCENES),$(eval out/$(s).png: $(call MESHES,$(s)) $(wildcard $(patsubst %.obj,%.mtl,$(call MESHES,$(s))))))
+out/%.pfm: out/%.png
+	@[ -e $@ ] || { rm $< && $(MAKE) --no-print-directory $<; }
+
+# A picture also depends on the meshes that its scene names, and on the materials that those name.
+PARTS := $(shell awk ' \
+    $$1 == "mesh" { picture = FILENAME; sub(/^scenes/, "out", picture); sub(/scene$$/, "png", picture); \
+                    mesh = "scenes/" $$2; sub(/^scenes\/\.\.\//, "", mesh); print picture ":" mesh; \
+                    folder = mesh; sub(/[^\/]*$$/, "", folder); \
+                    while ((getline line < mesh) > 0) \
+                        if (split(line, word, " ") && word[1] == "mtllib") print picture ":" folder word[2] }' \
+    scenes/*.scene)
+$(foreach rule,$(PARTS),$(eval $(rule)))
 
 # The mesh of scenes/mesh.scene is ours, too.
 build/knot.obj: build/knot$(SUFFIX)
 	build/knot$(SUFFIX) $@
 
-# The tests run these programs.
-TESTED := $(PENUMBRA) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj
-test: $(OBJECTS)/all-tests $(TESTED)  ## build and run all tests; ONLY=bvh: files with that name
-	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(OBJECTS)/all-tests $(ONLY)
+# ONLY=bvh: a program of the test files with that name alone.  Some tests run the programs.
+CHOSEN := $(wildcard tests/*/*_test.cpp)
+SUITE  := $(OBJECTS)/all-tests
+ifdef ONLY
+  CHOSEN := $(foreach file,$(CHOSEN),$(if $(findstring $(ONLY),$(file)),$(file)))
+  SUITE  := $(OBJECTS)/tests-of-$(subst /,-,$(ONLY))
+endif
+RUN := $(if $(shell grep -l 'build/penumbra\|whole/process.h' /dev/null $(CHOSEN)), \
+            $(PENUMBRA) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj)
+
+test: $(SUITE) $(RUN)  ## build and run all tests; ONLY=bvh: files with that name
+	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(SUITE) $(ONLY)
 
 mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
 
-soak: $(OBJECTS)/all-tests  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter
-	@tests/soak $(OBJECTS)/all-tests $(SECONDS)
+soak: $(SUITE)  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter
+	@tests/soak $(SUITE) $(SECONDS)
 
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
 techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)
@@ -131,7 +147,7 @@ $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>
 $(OBJECTS)/cells.exe: LIBRARIES = $(shell printf '\043include <CGAL/Delaunay_triangulation_2.h>\n' | \
                                           $(CXX) -std=c++20 -x c++ -fsyntax-only - 2>/dev/null && echo -lmpfr -lgmp)
 
-$(OBJECTS)/all-tests: $(TESTS)
+$(SUITE): $(patsubst %.cpp,$(OBJECTS)/%.o,$(CHOSEN) tests/main.cpp)
 	$(CXX) $(LINK) -o $@ $^
 
 # Most tests take longer to compile than to run; these compute much.
@@ -174,22 +190,26 @@ packages:
 
 # ---- The house: include only from floors below ----------------------------------------------------
 
-# Folders by floor; those of one floor do not know each other.
-FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 app:4 labs:5
+# Folders by floor; those of one floor do not know each other.  Tests may include all of their folder
+# and of those below, of src and of tests, and the oracle.
+FLOORS := base:0 oracle:1 world:1 path:2 film:2 shadow:3 voronoi:3 app:4 labs:5 whole:6
 
 layers:  ## check that every file includes only from floors below
 	@awk -v floors='$(FLOORS)' ' \
 	    function folder(file) { return substr(file, 1, index(file, "/") - 1) } \
 	    BEGIN { split(floors, list, " "); \
 	            for (i in list) { split(list[i], pair, ":"); floor[pair[1]] = pair[2] } } \
-	    FNR == 1 { name = FILENAME; sub(/^src\//, "", name); number[name] = $$3; \
+	    FNR == 1 { name = FILENAME; sub(/^(src|tests)\//, "", name); test[name] = FILENAME ~ /^tests/; \
+	               number[name] = test[name] ? 0 : $$3; \
 	               if (!(folder(name) in floor)) { print FILENAME ": no such folder in FLOORS"; bad = 1 } \
-	               if ($$2 != name || $$3 !~ /^[0-9]+$$/ || NF < 5) \
+	               if (!test[name] && ($$2 != name || $$3 !~ /^[0-9]+$$/ || NF < 5)) \
 	                   { print FILENAME ": line 1 must say: // " name "  NUMBER  what it is"; bad = 1 } } \
 	    /^#include "/ { split($$0, quoted, "\""); from[++n] = name; to[n] = quoted[2]; at[n] = FILENAME ":" FNR } \
 	    END { for (i = 1; i <= n; ++i) { \
 	              f = folder(from[i]); g = folder(to[i]); \
-	              if (!(to[i] in number) || (f == g ? number[to[i]] >= number[from[i]] : floor[g] >= floor[f])) \
+	              below = f != g ? floor[g] < floor[f] : test[from[i]] || number[to[i]] < number[from[i]]; \
+	              if (g == "oracle") below = 1; \
+	              if (!(to[i] in number) || (test[to[i]] && !test[from[i]]) || !below) \
 	                  { print at[i] ": " from[i] " is not above " to[i]; bad = 1 } } \
 	          if (!bad) print n " includes, all downwards"; exit bad }' \
-	    $(wildcard src/*/*)
+	    $(wildcard src/*/* tests/*/*.h tests/*/*.cpp)
