@@ -21,10 +21,11 @@ Moments moments(const Results& results, const Number& number) {
     return m;
 }
 
-// Seed by seed.
+// Seed by seed; naive points have but one result.
 Moments ratio(const Results& a, const Results& b, const Number& number) {
     Moments m;
-    for (size_t k = 0; k < std::min(a.size(), b.size()); ++k) m.add(number(a[k]) / number(b[k]));
+    for (size_t k = 0; k < a.size(); ++k)
+        m.add(number(a[k]) / number(b[std::min(k, b.size() - 1)]));
     return m;
 }
 
@@ -95,8 +96,8 @@ naive points know no seed.)",
 // Parts of the images, since noise does not compress.
 void tell_images(Report& report, const Study& s) {
     auto picture = [](const Rendering& r, const char* name, double d_rel) {
-        return Picture{part_of(r.image, 44, 0, {192, r.image.height}), name,
-                       text("d_rel %.4f, %.0f samples", d_rel, double(r.samples()))};
+        return Picture{part_of(r.image, 50, 0, {168, r.image.height}), name,
+                       text("d_rel %.4f, %.0f spp", d_rel, double(r.samples()))};
     };
     std::vector<Picture> pictures;
     for (size_t t : {uniform, cosine, nee, cosine_nee, halton, cosine_halton, halton_nee, all_three,

@@ -75,6 +75,7 @@ TEST_CASE("numbers of many runs as words") {
     CHECK(plus_minus(m, "%.2f") == "2.00 ± 1.41");
     CHECK(text("%d%%, %s", 5, "x") == "5%, x");
     CHECK(text("plain") == "plain");
+    CHECK(text("%s%.1f", std::string("x"), 0.25) == "x0.2");
 }
 
 TEST_CASE("mean squared difference is over all channels") {
@@ -85,9 +86,20 @@ TEST_CASE("mean squared difference is over all channels") {
     CHECK(mse(f, f) == 0);
 }
 
+TEST_CASE("a part of an image begins at its left and its top") {
+    Image image(4, 3);
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 4; ++x) image.at(x, y) = {float(x), float(y), 0};
+    const Image part = part_of(image, 1, 2, {3, 1});
+    CHECK(part.width == 3);
+    CHECK(part.height == 1);
+    CHECK(part.at(0, 0) == image.at(1, 2));
+    CHECK(part.at(2, 0) == image.at(3, 2));
+}
+
 TEST_CASE("the statistics reader: numbers, channels, null, a key that is missing") {
     const std::string json =
-        "{\n  \"scene\": \"a.scene\",\n  \"seconds\": 12.5,\n  \"cpu_seconds\": 25,\n"
+        "{\n  \"scene\": \"a.scene\",\n  \"cpu_seconds\": 25,\n  \"seconds\": 12.5,\n"
         "  \"mean\": [1, null, 3e-05],\n  \"roulette\": null,\n  \"last\": 7\n}\n";
     CHECK(stats(json, "seconds") == std::vector<double>{12.5});
     CHECK(stats(json, "cpu_seconds") == std::vector<double>{25});
@@ -139,7 +151,9 @@ TEST_CASE("a report is written as it was said, and counts the claims that failed
           "# Title\n\n| a | b |\n|---|---|\n| 1 | ok |\n\n![A curve](curve.svg)\n\n");
     CHECK(folder.read("curve.svg") == Svg(10, 10).file());
     bad.say(bad.verdict(true) + bad.verdict(false));
+    bad.claim(true, "One");
     CHECK(bad.finish() == 1);
+    CHECK(folder.read("bad.md").find("* One: ok.") != std::string::npos);
     CHECK(folder.read("bad.md").find("FAILS") != std::string::npos);
 }
 

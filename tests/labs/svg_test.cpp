@@ -110,6 +110,20 @@ TEST_CASE("a sheet with everything on it is well-formed, and says its size") {
     CHECK(sheet.file().find("width=\"64.0\" height=\"32.0\"") != std::string::npos);
 }
 
+TEST_CASE("a contact sheet: pictures row by row, each with its words, all on the sheet") {
+    Image image(30, 20);
+    image.pixels.assign(image.pixels.size(), {0, 0, 0});
+    const std::string file =
+        contact_sheet({{image, "a", "1 < 2"}, {image, "b", ""}, {image, "c", ""}}, 2, 1).file();
+    CHECK(wrong_with(file) == "");
+    CHECK(find(file, "b").x - find(file, "a").x > 30);
+    CHECK(find(file, "b").y == find(file, "a").y);
+    CHECK(find(file, "c").x == find(file, "a").x);
+    CHECK(find(file, "c").y - find(file, "a").y > 20 + svg::letter);
+    CHECK(find(file, "1 &lt; 2").y > find(file, "a").y);
+    CHECK(find(file, "c").y < std::stod(file.substr(file.find("height=\"") + 8)));
+}
+
 TEST_CASE("base64 as in RFC 4648, section 10") {
     CHECK(svg::base64("") == "");
     CHECK(svg::base64("f") == "Zg==");
