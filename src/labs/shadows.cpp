@@ -59,10 +59,11 @@ std::string cell(Report& report, Region region, size_t e, const std::vector<Nois
         return (region == lit ? noise + ", exactly U: " : "exactly 0: ") +
                report.verdict(exact == pixels.size());
     if (region != penumbra) return noise;
-    return noise +
-           text(" (×%.2f–%.2f; %.3f, %.1f %%): ", quantile(gain, 0.1), quantile(gain, 0.9),
-                variance / predicted, 100 * double(within) / double(pixels.size())) +
-           report.verdict(std::abs(variance / predicted - 1) < 0.15);
+    const std::string spread =
+        e == 0 ? "" : text("×%.2f–%.2f; ", quantile(gain, 0.1), quantile(gain, 0.9));
+    return text("%s (%s%.3f, %.1f %%): %s", noise, spread, variance / predicted,
+                100 * double(within) / double(pixels.size()),
+                report.verdict(std::abs(variance / predicted - 1) < 0.15));
 }
 
 void measure_scene(Report& report, const std::string& name, const Stage& v, Plan plan) {
