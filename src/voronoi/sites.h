@@ -100,9 +100,9 @@ public:
     template <class LeftOut>
     std::optional<uint32_t> nearest(const Buckets& sites, Site site, Site c, double least,
                                     LeftOut left_out) const {
-        std::optional<uint32_t> best;
-        search(nodes_[0], sites, site, c, least, best, left_out);
-        return best;
+        Search s{site, c, least, {}};
+        search(nodes_[0], sites, s, left_out);
+        return s.best;
     }
 
 private:
@@ -135,25 +135,32 @@ private:
         grow(sites, middle, end);
     }
 
+    // What is looked for, and the best so far.
+    struct Search {
+        Site site, c;
+        double least;
+        std::optional<uint32_t> best;
+    };
+
     template <class LeftOut>
-    void search(const Node& node, const Buckets& sites, Site site, Site c, double& least,
-                std::optional<uint32_t>& best, LeftOut& left_out) const {
+    void search(const Node& node, const Buckets& sites, Search& s, LeftOut& left_out) const {
         // d c - d d / 2 = (c c - |c - d|^2) / 2, where the squares lose digits to each other: some
         // fifty roundings more, and the sites themselves decide.
+        const Site c = s.c;
         const double c2 = c.x * c.x + c.y * c.y;
-        if (distance2(seen_from(site, node.box), c) > c2 * (1 + 1e-14) - 2 * least) return;
+        if (distance2(seen_from(s.site, node.box), c) > c2 * (1 + 1e-14) - 2 * s.least) return;
         if (node.second) {
-            const Site p = {site.x + c.x, site.y + c.y};
+            const Site p = {s.site.x + c.x, s.site.y + c.y};
             const Node *near = &node + 1, *far = &nodes_[node.second];
             if (distance2(far->box, p) < distance2(near->box, p)) std::swap(near, far);
-            search(*near, sites, site, c, least, best, left_out);
-            search(*far, sites, site, c, least, best, left_out);
+            search(*near, sites, s, left_out);
+            search(*far, sites, s, left_out);
             return;
         }
         for (uint32_t k = node.begin; k < node.end; ++k) {
-            const Site d = sites.site(order_[k]) - site;
+            const Site d = sites.site(order_[k]) - s.site;
             const double excess = d.x * c.x + d.y * c.y - (d.x * d.x + d.y * d.y) * 0.5;
-            if (!left_out(order_[k]) && excess > least) least = excess, best = order_[k];
+            if (!left_out(order_[k]) && excess > s.least) s.least = excess, s.best = order_[k];
         }
     }
 };
