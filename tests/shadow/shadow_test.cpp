@@ -342,6 +342,18 @@ TEST_CASE("direct: a film of moments counts whole passes, and all samples of a p
     }
 }
 
+TEST_CASE("halves that float cannot tell apart have a variance of their own") {
+    // Even samples 1 and 1 + 2^-23, of mean 1 + 2^-24, which float rounds to 1; odd ones 1.
+    Film<ShadowPixel> film({1, 1});
+    film.add_row(0, 4, [](int, uint64_t i) {
+        const real x = i == 2 ? 1 + std::ldexp(real(1), -23) : 1;
+        return ShadowSample{{x, x, x}, {}};
+    });
+    film.end_pass(4);
+    const Image variance = variance_of(film, Estimator::ratio, VarianceFrom::halves);
+    CHECK(variance.at(0, 0)[0] == std::ldexp(1.0f, -48) / 4);
+}
+
 TEST_CASE("direct: a sample whose moments are no numbers does not fit a film") {
     const rgb one{1, 1, 1}, bad{1, NAN, 1};
     CHECK(ShadowPixel::fits({one, {one, one, one}}));
