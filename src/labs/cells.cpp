@@ -143,7 +143,7 @@ and the greatest in brackets.)",
     report.end_of_table();
     report.say(text(
         R"(A site at 65536 costs %.2f times one at 256; other work on the machine takes the caches, and more.
-That is with vectors of %d numbers, and with fewer (`make bench ARCH=haswell`: 4, `ARCH=x86-64`: 2) it
+That is with vectors of %d numbers, and with fewer (`make cells ARCH=haswell`: 4, `ARCH=x86-64`: 2) it
 takes longer.  Sites along a line take time like n^%.2f, on one circle, whose cells all meet in its
 centre, like n^%.2f.  Half of the time of scattered sites goes into the walk from bisector to bisector
 (`perf record`).)",
