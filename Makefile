@@ -77,7 +77,7 @@ test: $(SUITE) $(RUN)  ## build and run all tests; ONLY=bvh: files with that nam
 	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(SUITE) $(ONLY)
 
 mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
-	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
+	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
 
 soak: $(SUITE)  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter
 	@tests/soak $(SUITE) $(SECONDS)
