@@ -79,6 +79,15 @@ inline real difference_of_products(real a, real b, real c, real d) {
     return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
+// a + b = value + error, exactly (Knuth).
+struct ExactSum {
+    real value, error;
+};
+inline ExactSum exact_sum(real a, real b) {
+    const real value = a + b, b_added = value - a;
+    return {value, (a - (value - b_added)) + (b - b_added)};
+}
+
 // Accurate component by component: the normals of slivers depend on it.
 inline vec3 cross(vec3 a, vec3 b) {
     return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),

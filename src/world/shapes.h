@@ -123,18 +123,36 @@ inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, con
 
 // ---- Spheres ----------------------------------------------------------------------------------
 
-// Roots of |f + t d|^2 = r^2, f = o - c, without cancellation: the discriminant from the vector
-// between the centre and its foot on the ray, the roots from q = b +- sqrt and c / q (Haines,
-// Gunther, Akenine-Moller 2019, Ray Tracing Gems ch. 7).  Comparisons are written so that NaN
-// misses.
+// The power of the point o, |o - a|^2 - r^2, within 4 ulp of itself and of ulp r^2, however close
+// to the sphere o is: differences, squares and sums with their rounding errors (Ogita, Rump, Oishi
+// 2005, SIAM J. Sci. Comput. 26(6)).
+inline real power_of_point(vec3 o, const Shape& s) {
+    real sum = -s.r * s.r, errors = -std::fma(s.r, s.r, sum);
+    for (auto k : axis) {
+        const ExactSum f = exact_sum(o.*k, -s.a.*k);
+        const real square = f.value * f.value;
+        const ExactSum next = exact_sum(sum, square);
+        sum = next.value;
+        errors += next.error + std::fma(f.value, f.value, -square) + 2 * f.value * f.error;
+    }
+    return sum + errors;
+}
+
+// Roots of |f + t d|^2 = r^2, f = o - a, without cancellation, from q = b +- sqrt and c / q.  The
+// discriminant is that of the vector between the centre and its foot on the ray, which is exact
+// from afar (Haines, Gunther, Akenine-Moller 2019, Ray Tracing Gems ch. 7), but near the surface,
+// where c vanishes and decides, b^2 - c is.  Comparisons are written so that NaN misses.
 inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real tmax) {
-    vec3 f = ray.o - s.a;
-    real b = -dot(f, ray.d);
-    vec3 foot = f + b * ray.d;
-    real discriminant = s.r * s.r - dot(foot, foot);
+    const vec3 f = ray.o - s.a;
+    const real b = -dot(f, ray.d), r2 = s.r * s.r;
+    const vec3 foot = f + b * ray.d;
+    real c = dot(f, f) - r2, discriminant = r2 - dot(foot, foot);
+    if (std::abs(c) < r2 / 16) {
+        c = power_of_point(ray.o, s);
+        discriminant = b * b - c;
+    }
     if (!(discriminant >= 0)) return {};
     real q = b + std::copysign(std::sqrt(discriminant), b);
-    real c = dot(f, f) - s.r * s.r;
     real near = b >= 0 ? c / q : q;
     real far = b >= 0 ? q : c / q;
     real t = near > 0 ? near : far;
