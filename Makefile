@@ -151,13 +151,19 @@ $(SUITE): $(patsubst %.cpp,$(OBJECTS)/%.o,$(CHOSEN) tests/main.cpp)
 	$(CXX) $(LINK) -o $@ $^
 
 # Most tests take longer to compile than to run; these compute much.
-HEAVY := oracle/oracle path/pathtracer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms world/bvh
-$(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-O1)
-$(HEAVY:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O2)
+HEAVY := app/render oracle/oracle path/pathtracer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms \
+         world/bsdf world/bvh world/shapes
+$(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-Og)
+$(HEAVY:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1)
 
-$(OBJECTS)/tests/%.o: tests/%.cpp Makefile | packages
+$(OBJECTS)/tests/%.o: tests/%.cpp $(OBJECTS)/std.h.gch Makefile | packages
 	@mkdir -p $(@D)
-	$(CXX) $(FLAGS) $(OPTIMISE) -Itests -c -o $@ $<
+	$(CXX) $(FLAGS) $(OPTIMISE) -Itests -include $(OBJECTS)/std.h -c -o $@ $<
+
+# The compiler takes it for $(OBJECTS)/std.h, which need not be there.
+$(OBJECTS)/std.h.gch: tests/std.h Makefile | packages
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -x c++-header -o $@ $<
 
 $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 	@mkdir -p $(@D)
