@@ -1,11 +1,11 @@
-// world/scene_file.h  5  reading scenes/NAME.scene
+// world/scene_file.h  6  reading scenes/NAME.scene
 #pragma once
 #include <map>
 #include <sstream>
 
 #include "world/grammar.h"
 #include "world/obj.h"
-#include "world/scene.h"
+#include "world/scene_check.h"
 
 // A scene, what its author should know about it, and the files that it was read from.
 struct ParsedScene {
@@ -48,7 +48,7 @@ public:
             result.warnings.push_back(std::to_string(dropped_) +
                                       (dropped_ == 1 ? " triangle without area was dropped"
                                                      : " triangles without area were dropped"));
-        if (scene_.lights.empty()) result.warnings.push_back("no light: all will be black");
+        check_light(result.warnings);
         prepare(scene_);
         result.scene = std::move(scene_);
         result.files = std::move(files_);
@@ -58,6 +58,27 @@ public:
     int line() const { return line_; }
 
 private:
+    // Refuses what rounding would decide, and tells what can be seen but for that.
+    void check_light(std::vector<std::string>& warnings) {
+        for (const auto& [line, cover] : drop_covered_lights(scene_))
+            warnings.push_back("line " + std::to_string(line) + ": this light is dark: line " +
+                               std::to_string(cover) + " covers it, which comes first");
+        for (size_t k = 0; k < scene_.lights.size(); ++k)
+            if (const uint32_t line = surface_of(scene_, k)) {
+                line_ = int(scene_.line_of_light[k]);
+                throw UserError("this point light lies on the surface of line " +
+                                std::to_string(line) + ": move it off");
+            }
+        const Coarse c = coarsest(scene_);
+        if (c.part > real(0.01))
+            warnings.push_back(
+                "line " + std::to_string(c.line) + ": numbers of " + std::to_string(sizeof(real)) +
+                " bytes are coarse here: rays start " +
+                std::to_string(int(std::min(real(1e9), 100 * c.part))) +
+                " % of this shape's size off the surface of line " + std::to_string(c.because));
+        if (scene_.lights.empty()) warnings.push_back("no light: all will be black");
+    }
+
     // Lengths: their fourth powers must neither overflow nor vanish.
     static constexpr double longest = sizeof(real) == 4 ? 1e9 : 1e30;
     static constexpr uint64_t max_depth = 1000000, max_samples = 1 << 20;

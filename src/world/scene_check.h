@@ -1,0 +1,115 @@
+// world/scene_check.h  5  what a scene's author may not see: covered lights, points on surfaces,
+// rounding
+#pragma once
+#include <map>
+#include <string>
+
+#include "world/scene.h"
+
+// ---- Lights that something covers ---------------------------------------------------------------
+
+// Shapes of the same key are the same set of points.
+using ShapeKey = std::array<std::array<real, 3>, 4>;
+inline ShapeKey key_of(const Shape& s) {
+    ShapeKey key{
+        {{s.a.x, s.a.y, s.a.z}, {s.b.x, s.b.y, s.b.z}, {s.c.x, s.c.y, s.c.z}, {s.r, 0, 0}}};
+    std::sort(key.begin(), key.begin() + 3);
+    return key;
+}
+
+// For each shape of a light the first shape in the same place, which is the one that rays meet.
+inline std::map<ShapeKey, uint32_t> first_in_place(const Scene& s) {
+    std::map<ShapeKey, uint32_t> first;
+    for (uint32_t i = 0; i < s.shapes.size(); ++i)
+        if (s.light_of[i] != no_light) first.try_emplace(key_of(s.shapes[i]), i);
+    if (first.empty()) return first;
+    for (uint32_t i = 0; i < s.shapes.size(); ++i)
+        if (const auto found = first.find(key_of(s.shapes[i])); found != first.end())
+            found->second = std::min(found->second, i);
+    return first;
+}
+
+// No ray ever meets a light whose shapes all come after others in the same places; light samples
+// must not find it either.  Takes such lights away; returns the lines of each and of its cover.
+inline std::vector<std::array<uint32_t, 2>> drop_covered_lights(Scene& s) {
+    const auto first = first_in_place(s);
+    std::vector<int> seen(s.lights.size());        // shapes of each that rays can meet
+    std::vector<uint32_t> cover(s.lights.size());  // the line of what covers another
+    for (uint32_t i = 0; i < s.shapes.size(); ++i) {
+        if (s.light_of[i] == no_light) continue;
+        const uint32_t before = first.at(key_of(s.shapes[i]));
+        seen[size_t(s.light_of[i])] += before == i;
+        if (before < i) cover[size_t(s.light_of[i])] = s.line_of[before];
+    }
+    std::vector<std::array<uint32_t, 2>> dropped;
+    for (size_t k = s.lights.size(); k-- > 0;) {
+        if (seen[k] > 0 || s.lights[k].kind == Light::Kind::point) continue;
+        dropped.push_back({s.line_of_light[k], cover[k]});
+        s.lights.erase(s.lights.begin() + std::ptrdiff_t(k));
+        s.line_of_light.erase(s.line_of_light.begin() + std::ptrdiff_t(k));
+        for (int32_t& light : s.light_of)
+            light = light == int32_t(k) ? no_light : light > int32_t(k) ? light - 1 : light;
+    }
+    return dropped;
+}
+
+// ---- Point lights on surfaces -------------------------------------------------------------------
+
+// Whether p lies on the shape but for rounding, so that chance would decide on which side it is.
+inline bool lies_on(const Shape& s, vec3 p) {
+    const real error = rounding_error(s) + 16 * ulp * max_abs(p);
+    if (s.is_sphere()) return std::abs(length(p - s.a) - s.r) <= error;
+    const vec3 n = unit(area_vector(s)), corner[] = {s.a, s.b, s.c};
+    if (!(std::abs(dot(n, p - s.a)) <= error)) return false;
+    for (size_t k = 0; k < 3; ++k) {
+        const vec3 edge = corner[(k + 1) % 3] - corner[k];
+        if (dot(cross(edge, p - corner[k]), n) < -error * length(edge)) return false;
+    }
+    return true;
+}
+
+// The line of the shape that the point light k lies on; 0: none.
+inline uint32_t surface_of(const Scene& s, size_t k) {
+    for (size_t i = 0; i < s.shapes.size() && s.lights[k].kind == Light::Kind::point; ++i)
+        if (lies_on(s.shapes[i], s.lights[k].p)) return s.line_of[i];
+    return 0;
+}
+
+// ---- Rounding -----------------------------------------------------------------------------------
+
+// Rays start as far from a surface as its rounding demands (see spawn).  Where that is more than a
+// hundredth of what lies there, images are wrong by per cents.
+struct Coarse {
+    real part = 0;                   // of the shape's size that rays start away from surfaces
+    uint32_t line = 0, because = 0;  // of the shape; of the one whose rounding it is
+};
+
+inline real size_of(const Shape& s) {
+    if (s.is_sphere()) return 2 * s.r;
+    return std::max({max_abs(s.b - s.a), max_abs(s.c - s.b), max_abs(s.a - s.c)});
+}
+
+// Whether the other shape is as near to a sphere's surface, or to a triangle's box, as it is large.
+inline bool is_near(const Shape& s, const Shape& other) {
+    const real size = size_of(other);
+    if (s.is_sphere()) return std::abs(length(other.a - s.a) - s.r) <= size;
+    const Box box = bounds(s), there = bounds(other);
+    for (auto a : axis)
+        if (there.lo.*a > box.hi.*a + size || there.hi.*a < box.lo.*a - size) return false;
+    return true;
+}
+
+// The worst shape, by its own rounding and by that of the shape that has most.
+inline Coarse coarsest(const Scene& s) {
+    uint32_t worst = 0;
+    for (uint32_t i = 0; i < s.shapes.size(); ++i)
+        if (rounding_error(s.shapes[i]) > rounding_error(s.shapes[worst])) worst = i;
+    Coarse found;
+    for (uint32_t i = 0; i < s.shapes.size(); ++i)
+        for (uint32_t by : {i, worst}) {
+            const real part = 2 * rounding_error(s.shapes[by]) / size_of(s.shapes[i]);
+            if (part > found.part && (by == i || is_near(s.shapes[by], s.shapes[i])))
+                found = {part, s.line_of[i], s.line_of[by]};
+        }
+    return found;
+}
