@@ -56,7 +56,7 @@ size 30 20
 depth 3
 exposure 2
 diffuse d .1 .2 .3
-pointlight 1 2 3  4 5 6
+pointlight 7 8 9  4 5 6
 sphere 1 2 3  4  d
 triangle 1 0 0  0 1 0  0 0 1  d
 quad 1 2 3  1 0 0  0 1 0  d
@@ -67,7 +67,7 @@ box 1 2 3  0  4 5 6  d
     CHECK(s.depth == 3);
     CHECK(s.exposure == 2);
     REQUIRE(s.lights.size() == 1);
-    CHECK(s.lights[0].p == vec3{1, 2, 3});
+    CHECK(s.lights[0].p == vec3{7, 8, 9});
     CHECK(s.lights[0].L == rgb{4, 5, 6});
     REQUIRE(s.shapes.size() == 1 + 1 + 2 + 12);
     CHECK(s.shapes[0].a == vec3{1, 2, 3});
