@@ -1,4 +1,4 @@
-// world/scene_check_test.cpp  covered lights, point lights on surfaces, coordinates too coarse
+// whole/scene_check_test.cpp  covered lights, point lights on surfaces, coordinates too coarse
 #include "world/scene_check.h"
 
 #include <doctest/doctest.h>
