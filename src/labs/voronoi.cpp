@@ -5,7 +5,6 @@
 // The rendering results of Vandewiele et al. 2025, "Voronoi integration of the rendering equation",
 // on scenes/cornell.scene and scenes/cornellglossy.scene: 64 ... N samples a pixel, next-event
 // estimation.  Every weighting gets the same samples.  Writes voronoi.md and voronoi-SCENE.svg.
-#include "app/options.h"
 #include "labs/maps.h"
 #include "labs/voronoi_pixels.h"
 
@@ -115,7 +114,8 @@ void print_verdict(Report& report, const std::vector<Result>& all) {
             ": in an image the weights halve the squared error, roughly, as published.");
     verdict(
         [](auto& r, size_t k) {
-            return r.gain(k, cvor, light_border) > 2 && r.gain(k, cvor, plain) < 1;
+            return r.gain(k, cvor, light_border) > 2 && r.gain(k, cvor, plain) < 1 &&
+                   r.gain(0, cvor, ball) < 1;
         },
         ": all of that is in the few pixels that the border of the light crosses, and grows with "
         "the samples there.  Nearly everywhere else, on diffuse surfaces above all, the weights "
