@@ -55,9 +55,10 @@ inline std::vector<std::array<uint32_t, 2>> drop_covered_lights(Scene& s) {
 
 // ---- Point lights on surfaces -------------------------------------------------------------------
 
-// Whether p lies on the shape but for rounding, so that chance would decide on which side it is.
+// Whether p lies on the shape but for rounding, so that chance would decide on which side it is: by
+// a quarter of what rounding_error allows, which is what the intersectors do lose.
 inline bool lies_on(const Shape& s, vec3 p) {
-    const real error = rounding_error(s) + 16 * ulp * max_abs(p);
+    const real error = rounding_error(s) / 4 + 4 * ulp * max_abs(p);
     if (s.is_sphere()) return std::abs(length(p - s.a) - s.r) <= error;
     const vec3 n = unit(area_vector(s)), corner[] = {s.a, s.b, s.c};
     if (!(std::abs(dot(n, p - s.a)) <= error)) return false;
