@@ -1,27 +1,11 @@
 // labs/lab_test.cpp  what experiments say is what their numbers say
 #include "labs/lab.h"
 
-#include <doctest/doctest.h>
-
 #include <optional>
 
+#include "base/folder.h"
+
 namespace {
-
-namespace fs = std::filesystem;
-
-// A folder of its own, removed at the end.
-struct Folder {
-    fs::path path;
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "penumbra-lab-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() { fs::remove_all(path); }
-    std::string read(const std::string& name) const { return read_file((path / name).string()); }
-};
 
 // Calls a lab that knows --quick and --time S; what it saw, and its exit status.
 struct Called {
