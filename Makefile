@@ -4,9 +4,11 @@ REAL  ?= double
 ARCH  ?= native
 SIZE  ?=
 
+# What is begun and does not use all it has yet: a warning, and no error.
+UNUSED   := parameter variable function but-set-variable but-set-parameter value label
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
 FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
-            -Wall -Wextra -Wpedantic -Wshadow -Werror
+            -Wall -Wextra -Wpedantic -Wshadow -Werror $(UNUSED:%=-Wno-error=unused-%)
 SANITISE := -O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all
 OPTIMISE := $(if $(SAN),$(SANITISE),$(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O3))
 VARIANT  := $(if $(SAN),-san,$(if $(DEBUG),-debug))
@@ -63,18 +65,20 @@ $(foreach rule,$(PARTS),$(eval $(rule)))
 build/knot.obj: build/knot$(SUFFIX)
 	build/knot$(SUFFIX) $@
 
-# ONLY=bvh: a program of the test files with that name alone.  Some tests run the programs.
-CHOSEN := $(wildcard tests/*/*_test.cpp)
-SUITE  := $(OBJECTS)/all-tests
-ifdef ONLY
-  CHOSEN := $(foreach file,$(CHOSEN),$(if $(findstring $(ONLY),$(file)),$(file)))
-  SUITE  := $(OBJECTS)/tests-of-$(subst /,-,$(ONLY))
-endif
-RUN := $(if $(shell grep -l 'build/penumbra\|whole/process.h' /dev/null $(CHOSEN)), \
-            $(PENUMBRA) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj)
+# Every test is a program of its own.  tests/run asks for them floor by floor, and runs them.
+TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
+SUITE := $(OBJECTS)/all-tests
 
-test: $(SUITE) $(RUN)  ## build and run all tests; ONLY=bvh: files with that name
-	@PROGRAM_SUFFIX=$(SUFFIX) tests/run $(SUITE) $(ONLY)
+test: packages  ## build and run the tests from the lowest floor up; ONLY=bvh: that alone; ALL=1: do not stop
+	@FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' PROGRAM_SUFFIX=$(SUFFIX) ALL=$(ALL) \
+	    LIMIT=$(if $(SAN)$(DEBUG),10) HEAVY='$(HEAVY)' tests/run $(ONLY)
+
+# Says to tests/run that a test is built, and the programs that it runs.
+RUN      := $(PENUMBRA) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj
+RUNNERS  := $(shell grep -l 'build/penumbra\|whole/process.h' tests/*/*_test.cpp)
+$(RUNNERS:tests/%.cpp=$(OBJECTS)/tests/%.ready): $(RUN)
+$(TESTS:%=$(OBJECTS)/tests/%.ready): %.ready: %.exe always
+	@touch $@
 
 mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
@@ -147,7 +151,10 @@ $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>
 $(OBJECTS)/cells.exe: LIBRARIES = $(shell printf '\043include <CGAL/Delaunay_triangulation_2.h>\n' | \
                                           $(CXX) -std=c++20 -x c++ -fsyntax-only - 2>/dev/null && echo -lmpfr -lgmp)
 
-$(SUITE): $(patsubst %.cpp,$(OBJECTS)/%.o,$(CHOSEN) tests/main.cpp)
+$(TESTS:%=$(OBJECTS)/tests/%.exe): %.exe: %.o $(OBJECTS)/tests/main.o
+	$(CXX) $(LINK) -o $@ $^
+
+$(SUITE): $(TESTS:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/main.o
 	$(CXX) $(LINK) -o $@ $^
 
 # Most tests take longer to compile than to run; these compute much.

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "oracle/oracle.h"
+#include "reporter.h"
 
 // Counts allocations of memory.
 std::atomic<size_t> allocations = 0;
@@ -19,28 +20,14 @@ std::atomic<size_t> allocations = 0;
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, size_t) noexcept { std::free(p); }
 
-namespace {
-
-// Test cases of the run that just ended.
-unsigned ran = 0, failed = 0;
-
-struct Counter : doctest::ConsoleReporter {
-    using ConsoleReporter::ConsoleReporter;
-    void test_run_end(const doctest::TestRunStats& stats) override {
-        ran = stats.numTestCasesPassingFilters;
-        failed = stats.numTestCasesFailed;
-    }
-};
-
-}  // namespace
-
-REGISTER_REPORTER("counter", 0, Counter);
+REGISTER_REPORTER("counter", 0, Reporter);
 
 int main(int argc, char** argv) {
     doctest::Context context;
     context.setOption("reporters", "counter");
     context.applyCommandLine(argc, argv);
     const int status = context.run();
+    const unsigned ran = Reporter::ran, failed = Reporter::failed;
     if (context.shouldExit() && ran == 0) return status;  // --help, --list-test-cases
     if (ran == 0) std::puts("no test ran");
     if (statistical_checks > 0)

@@ -1,0 +1,130 @@
+// reporter.h  what tests/run reads: every case as it begins, and the first line of its verdict
+//
+// The file that TEST_REPORT names gets a line for each, in columns parted by tabs, and has it
+// before anything can crash:
+//     case  FILE:LINE  NAME      it begins
+//     fail  FILE:LINE  VERDICT   its first check that failed, or what ended it
+//     end   FAILED               1 if it failed, 0 if it passed
+#pragma once
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <mutex>
+#include <sstream>
+#include <string>
+
+// For main.cpp alone, as is the reporter of doctest that it adds to.
+namespace {
+
+// The first line that says something; columns and lines part at control characters.
+std::string one_line(std::string text) {
+    text = text.substr(0, text.find('\n', text.find_first_not_of('\n')));
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    return text;
+}
+
+struct Reporter : doctest::ConsoleReporter {
+    static inline unsigned ran = 0, failed = 0;  // test cases of the run that ended last
+
+    explicit Reporter(const doctest::ContextOptions& options) : ConsoleReporter(options) {
+        if (const char* name = std::getenv("TEST_REPORT")) report = std::fopen(name, "w");
+    }
+    Reporter(const Reporter&) = delete;
+    Reporter& operator=(const Reporter&) = delete;
+    ~Reporter() override {
+        if (report) std::fclose(report);
+    }
+
+    void test_case_start(const doctest::TestCaseData& test) override {
+        ConsoleReporter::test_case_start(test);
+        running = &test;
+        told = false;
+        write("case", place(test), test.m_name);
+    }
+    void test_case_end(const doctest::CurrentTestCaseStats& stats) override {
+        ConsoleReporter::test_case_end(stats);
+        const bool good = stats.testCaseSuccess;
+        if (!good && running) tell(place(*running), "as its log says");
+        write("end", good ? "0" : "1", "");
+        flush();
+    }
+    void test_case_exception(const doctest::TestCaseException& e) override {
+        ConsoleReporter::test_case_exception(e);
+        const std::string what = e.error_string.c_str();
+        if (running) tell(place(*running), (e.is_crash ? "crashed: " : "threw: ") + what);
+        flush();
+    }
+    void log_assert(const doctest::AssertData& check) override {
+        ConsoleReporter::log_assert(check);
+        if (check.m_failed && !(check.m_at & doctest::assertType::is_warn))
+            tell(place(check.m_file, check.m_line), verdict(check));
+    }
+    void log_message(const doctest::MessageData& message) override {
+        ConsoleReporter::log_message(message);
+        if (!(message.m_severity & doctest::assertType::is_warn))
+            tell(place(message.m_file, message.m_line), message.m_string.c_str());
+    }
+    void test_run_end(const doctest::TestRunStats& stats) override {
+        ConsoleReporter::test_run_end(stats);
+        ran = stats.numTestCasesPassingFilters;
+        failed = stats.numTestCasesFailed;
+        flush();
+    }
+
+private:
+    std::FILE* report = nullptr;
+    const doctest::TestCaseData* running = nullptr;
+    bool told = false;
+    std::mutex telling;
+
+    static std::string place(const std::string& file, int line) {
+        return file + ":" + std::to_string(line);
+    }
+    static std::string place(const doctest::TestCaseData& test) {
+        return place(test.m_file.c_str(), int(test.m_line));
+    }
+
+    void write(const char* what, const std::string& first, const std::string& second) {
+        if (!report) return;
+        std::fprintf(report, "%s\t%s\t%s\n", what, one_line(first).c_str(),
+                     one_line(second).c_str());
+        std::fflush(report);
+    }
+    void tell(const std::string& where, const std::string& why) {
+        const std::lock_guard lock(telling);
+        if (!told) write("fail", where, why);
+        told = true;
+    }
+    // What is not yet written is lost when a signal ends the program.
+    static void flush() {
+        std::cout.flush();
+        std::fflush(stdout);
+    }
+
+    // What the oracle says of it; else the expression, its values and what was noted around it.
+    static std::string verdict(const doctest::AssertData& check) {
+        const std::string expression = check.m_expr;
+        const int notes = get_num_active_contexts();
+        if (notes > 0 && expression.ends_with(".pass")) return note(notes - 1);
+        std::string text = place(check.m_file, check.m_line) + ": " + expression;
+        if (check.m_threw)
+            text += " threw " + std::string(check.m_exception.c_str());
+        else if (check.m_at & doctest::assertType::is_throws)
+            text += " did not throw";
+        else if (check.m_decomp != check.m_expr)
+            text += "; it is " + std::string(check.m_decomp.c_str());
+        text = one_line(text);
+        for (int i = 0; i < notes; ++i) text += "; " + note(i);
+        return text;
+    }
+    static std::string note(int i) {
+        std::ostringstream text;
+        get_active_contexts()[i]->stringify(&text);
+        return one_line(text.str());
+    }
+};
+
+}  // namespace
