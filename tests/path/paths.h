@@ -1,5 +1,10 @@
 // path/paths.h  single paths of a scene, for tests
 #pragma once
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
+
 #include "path/pathtracer.h"
 #include "path/start.h"
 
@@ -18,4 +23,18 @@ inline uint64_t rays_of(const Scene& scene, const Technique& t, const Pattern& p
     radiance(scene, t, pattern, x, y, i,
              [&](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); });
     return rays;
+}
+
+// f(i) of every i < n, in this order; as many at a time as there are cores.
+template <class F>
+auto side_by_side(int n, F f) {
+    std::vector<decltype(f(0))> results(static_cast<size_t>(n));
+    std::atomic<int> next = 0;
+    std::vector<std::jthread> workers;
+    for (unsigned i = std::max(1u, std::thread::hardware_concurrency()); i > 0; --i)
+        workers.emplace_back([&] {
+            for (int k = next++; k < n; k = next++) results[static_cast<size_t>(k)] = f(k);
+        });
+    workers.clear();
+    return results;
 }

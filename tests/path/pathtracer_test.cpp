@@ -11,15 +11,18 @@ namespace {
 // within pixels: one test of the whole image sees what no test of a pixel would.
 Estimate image_mean(const Scene& scene, const Technique& t, uint64_t seed, uint64_t spp) {
     const Pattern pattern{SamplerKind::independent, seed};
+    const auto pixel_mean = [&](int pixel) {
+        const int x = pixel % scene.size.width, y = pixel / scene.size.width;
+        Moments m;
+        for (uint64_t i = 0; i < spp; ++i)
+            m.add(double(mean_of(radiance(scene, t, pattern, x, y, i))));
+        return m;
+    };
     double sum = 0, squares = 0;
-    for (int y = 0; y < scene.size.height; ++y)
-        for (int x = 0; x < scene.size.width; ++x) {
-            Moments m;
-            for (uint64_t i = 0; i < spp; ++i)
-                m.add(double(mean_of(radiance(scene, t, pattern, x, y, i))));
-            sum += m.mean;
-            squares += sqr(m.standard_error());
-        }
+    for (const Moments& m : side_by_side(scene.size.width * scene.size.height, pixel_mean)) {
+        sum += m.mean;
+        squares += sqr(m.standard_error());
+    }
     const double pixels = double(scene.size.width) * scene.size.height;
     Estimate e;
     e.mean = sum / pixels;
@@ -177,17 +180,17 @@ quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {
     const Scene scene = scene_of(unequal);
-    const Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 400);
+    const Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
     uint64_t seed = seed_here();
     for (const Named& t : techniques) {
-        const Estimate mean = image_mean(scene, t, seed++, 230);
+        const Estimate mean = image_mean(scene, t, seed++, 150);
         EXPECT(expect_equal(mean, reference).of(t.name), 0.06);
     }
 }
 
 TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustics") {
     const Scene scene = scene_of(shiny);
-    const Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 400);
+    const Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
     uint64_t seed = seed_here();
     for (const Named& t : techniques) {
         // Next-event estimation has no answer to a caustic seen in a mirror but the same one:
@@ -215,11 +218,11 @@ sphere 0.4 0 0  0.3  lobe
 sphere 0 0.9 0  0.2  lamp
 )";
     const Scene scene = scene_of(shell);
-    const Estimate reference = image_mean(scene, techniques[5], ~seed_here(), 1500);
+    const Estimate reference = image_mean(scene, techniques[5], ~seed_here(), 375);
     uint64_t seed = seed_here();
     for (const Named& t : techniques) {
-        const Estimate mean = image_mean(scene, t, seed++, 400);
-        EXPECT(expect_equal(mean, reference).of(t.name), 0.03);
+        const Estimate mean = image_mean(scene, t, seed++, 100);
+        EXPECT(expect_equal(mean, reference).of(t.name), 0.007);
     }
 }
 
@@ -280,19 +283,20 @@ TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^
 TEST_CASE("quasi-random and stratified samples find what independent ones find") {
     const Scene scene = scene_of(unequal);
     const Technique& t = techniques[0];
-    const Estimate reference = image_mean(scene, t, ~seed_here(), 400);
+    const Estimate reference = image_mean(scene, t, ~seed_here(), 300);
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton}) {
         // A replicate is one randomisation of every pixel's whole point set.
-        Moments replicates;
-        for (uint64_t seed = 0; seed < 32; ++seed) {
-            const Pattern pattern = make_pattern(kind, seed_here() + seed, false, scene.depth, 16);
+        const auto replicate = [&, first = seed_here()](int k) {
+            const Pattern pattern = make_pattern(kind, first + uint64_t(k), false, scene.depth, 16);
             double sum = 0;
             for (int y = 0; y < scene.size.height; ++y)
                 for (int x = 0; x < scene.size.width; ++x)
                     for (uint64_t i = 0; i < 16; ++i)
                         sum += double(mean_of(radiance(scene, t, pattern, x, y, i)));
-            replicates.add(sum / (16.0 * scene.size.width * scene.size.height));
-        }
+            return sum / (16.0 * scene.size.width * scene.size.height);
+        };
+        Moments replicates;
+        for (double mean : side_by_side(24, replicate)) replicates.add(mean);
         EXPECT(expect_equal(estimate(replicates, ulp), reference), 0.03);
     }
 }
