@@ -94,6 +94,8 @@ Bright bright(const Image& image) {
             b.top = std::min(b.top, y), b.bottom = std::max(b.bottom, y);
             b.x += (x + 0.5) * L, b.y += (y + 0.5) * L, b.sum += L;
         }
+    REQUIRE(b.sum > 0);  // not all black or NaN
+    REQUIRE(std::isfinite(b.sum));
     b.x /= b.sum, b.y /= b.sum;
     return b;
 }

@@ -131,9 +131,11 @@ TEST_CASE("scrambling permutes the digits: the first b points fall into b differ
         for (int trial = 0; trial < 50; ++trial) {
             const uint64_t shift = rng.bits(), factor = rng.bits();
             std::vector<int> hits(base);
-            for (uint64_t i = 0; i < base; ++i)
-                ++hits[size_t(scrambled_radical_inverse(base, i, shift, factor) * real(base) *
-                              (1 + 8 * ulp))];
+            for (uint64_t i = 0; i < base; ++i) {
+                const real u = scrambled_radical_inverse(base, i, shift, factor);
+                REQUIRE((u >= 0 && u < 1));
+                ++hits[std::min<size_t>(size_t(u * real(base) * (1 + 8 * ulp)), base - 1)];
+            }
             CHECK(*std::max_element(hits.begin(), hits.end()) == 1);
         }
 }

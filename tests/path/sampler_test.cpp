@@ -20,6 +20,12 @@ real draw(const Sampler& s, uint32_t dim) {
     return s.get(dim);
 }
 
+// Which of n equal parts of [0,1) holds u.
+size_t part(uint64_t n, real u) {
+    REQUIRE((u >= 0 && u < 1));
+    return size_t(u * real(n));
+}
+
 }  // namespace
 
 TEST_CASE("every number of a path has a dimension of its own, in the order of the path") {
@@ -64,9 +70,7 @@ TEST_CASE("every number of every sampler is uniform over [0,1)") {
             for (uint64_t sample : {0, 1, 5, 63}) {
                 std::vector<uint64_t> cells(16);
                 for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
-                    const real u = draw(Sampler(pattern, pixel, sample), dim);
-                    REQUIRE((u >= 0 && u < 1));
-                    ++cells[size_t(u * 16)];
+                    ++cells[part(16, draw(Sampler(pattern, pixel, sample), dim))];
                 }
                 const std::string what = names[int(kind)];
                 EXPECT(expect_counts(cells, equal).of(what), 0.2);
@@ -111,7 +115,7 @@ TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
         int boxes[6] = {};
         for (uint64_t i = 0; i < 6; ++i) {
             const vec2 u = Sampler(pattern, pixel, i).get2(film_x);
-            ++boxes[int(u.x * 2) * 3 + int(u.y * 3)];
+            ++boxes[part(2, u.x) * 3 + part(3, u.y)];
         }
         for (int b : boxes) REQUIRE(b == 1);
     }
@@ -131,9 +135,8 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
                     for (uint64_t i = 5 * period + half; i < 6 * period; i += p.halves) {
                         const Sampler s(p, pixel, i);
                         const vec2 u = s.get2(film_x);
-                        ++film[size_t(u.y * real(p.rows)) * p.columns +
-                               size_t(u.x * real(p.columns))];
-                        ++pick[size_t(s.get(dimension(3, Draw::pick)) * real(cells))];
+                        ++film[part(p.rows, u.y) * p.columns + part(p.columns, u.x)];
+                        ++pick[part(cells, s.get(dimension(3, Draw::pick)))];
                     }
                     for (uint64_t c = 0; c < cells; ++c) REQUIRE((film[c] == 1 && pick[c] == 1));
                 }
@@ -151,7 +154,7 @@ TEST_CASE("every pass shuffles its cells anew") {
         for (uint64_t i = 0; i < 16; ++i) {
             const real first = Sampler(p, pixel, i).get(2),
                        second = Sampler(p, pixel, i + 16).get(2);
-            same = same && int(first * 16) == int(second * 16);
+            same = same && part(16, first) == part(16, second);
         }
         alike += same;
     }
@@ -201,7 +204,7 @@ TEST_CASE("halves are randomised apart; without them odd and even samples are on
         const real a = Sampler(halves, pixel, 6).get(2), b = Sampler(halves, pixel, 7).get(2);
         equal += a == b;
         const real c = Sampler(whole, pixel, 0).get(0), d = Sampler(whole, pixel, 1).get(0);
-        CHECK(int(2 * c) != int(2 * d));
+        CHECK(part(2, c) != part(2, d));
     }
     CHECK(equal < 3);
 }

@@ -161,6 +161,7 @@ TEST_CASE("exact areas: one site, two, four, on the border, in a corner") {
     CHECK(v.clipped(Points{{0.3, 0.9}}, unit_square)[0].area == 1);
     CHECK(v.clipped(Points{{0, 1}}, unit_square)[0].area == 1);
     const auto& two = v.clipped(Points{{0.25, 0.5}, {0.5, 0.5}}, unit_square);
+    REQUIRE(two.size() == 2);
     CHECK(two[0].area == 0.375);
     CHECK(two[1].area == 0.625);
     CHECK(two[0].offset.x == doctest::Approx(0.1875 - 0.25).epsilon(1e-15));

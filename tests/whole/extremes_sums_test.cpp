@@ -52,8 +52,9 @@ double late_samples() {
             int cells[16] = {};
             for (uint64_t i = late; i < late + 16; ++i) {
                 const vec2 u = Sampler(pattern, 77, i).get2(dim);
-                wrong += !(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1);
-                ++cells[size_t(u.x * 4) * 4 + size_t(u.y * 4)];
+                const bool inside = u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1;
+                wrong += !inside;
+                if (inside) ++cells[size_t(u.x * 4) * 4 + size_t(u.y * 4)];
             }
             if (kind == SamplerKind::stratified)
                 for (int c : cells) wrong += c != 1;

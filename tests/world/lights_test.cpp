@@ -204,8 +204,11 @@ TEST_CASE("lights are chosen as often as `pick` says, in proportion to unequal p
     }
     CHECK(std::abs(sum - 1) < 8 * double(ulp));
     std::vector<uint64_t> counts(s.lights.size());
-    for (int i = 0; i < 50000; ++i)
-        ++counts[size_t(&choose_light(s, real(random())) - s.lights.data())];
+    for (int i = 0; i < 50000; ++i) {
+        const auto chosen = size_t(&choose_light(s, real(random())) - s.lights.data());
+        REQUIRE(chosen < counts.size());
+        ++counts[chosen];
+    }
     EXPECT(expect_counts(counts, pick), 0.05);
     CHECK(&choose_light(s, 0) == &s.lights.front());
     CHECK(&choose_light(s, below_one) == &s.lights.back());

@@ -130,6 +130,7 @@ TEST_CASE("a concave face has at most 1000 corners: each may have to be tried as
     };
     const auto fan = fan_of(star(999));
     REQUIRE(fan);
+    REQUIRE(fan->size() > 1);
     CHECK(fan->front() == vec3{0, 0, 0});
     CHECK((*fan)[1] == star(999)[0]);
     CHECK(!fan_of(star(1000)));
@@ -156,6 +157,7 @@ TEST_CASE("a mesh is scaled, then moved; a material of its own goes before the s
         scene_with(folder, "mtllib m.mtl\n" + corners + "f 1 2 3\nusemtl lamp\nf 1 2 3 4\n",
                    "2 10 20 30 grey");
     REQUIRE(scene.shapes.size() == 3);
+    REQUIRE(scene.material_of.size() == 3);
     CHECK(scene.shapes[0].c == vec3{12, 22, 30});
     CHECK(scene.materials[scene.material_of[0]].kd == rgb{0.5, 0.5, 0.5});
     CHECK(scene.materials[scene.material_of[1]].kd == rgb{real(0.1), real(0.2), real(0.3)});

@@ -137,8 +137,12 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     prepare(s);
     // Of 8000 equidistant numbers those of [0, 1/8), [1/8, 6/8), [6/8, 1).
     int count[3] = {};
-    for (int i = 0; i < 8000; ++i)
-        ++count[&choose_light(s, (real(i) + real(0.5)) / 8000) - &s.lights[0]];
+    REQUIRE(s.lights.size() == 3);
+    for (int i = 0; i < 8000; ++i) {
+        const auto chosen = &choose_light(s, (real(i) + real(0.5)) / 8000) - s.lights.data();
+        REQUIRE((chosen >= 0 && chosen < 3));
+        ++count[chosen];
+    }
     const int expected[] = {1000, 5000, 2000};
     for (size_t i = 0; i < 3; ++i) {
         CHECK(count[i] == expected[i]);
@@ -149,6 +153,8 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     s.pick_cdf.clear();
     add_point_light(s, {}, {real(1e-30), 0, 0});  // so weak that its share rounds to 0
     prepare(s);
+    REQUIRE(s.lights.size() == 4);
+    REQUIRE(!s.pick_cdf.empty());
     CHECK(s.lights[3].pick > 0);
     CHECK(&choose_light(s, below_one) == &s.lights[3]);
     // The last sum may be rounded to less than 1: what lies beyond is the last light's.
