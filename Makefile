@@ -4,8 +4,8 @@ REAL  ?= double
 ARCH  ?= native
 SIZE  ?=
 
-# What is begun and does not use all it has yet: a warning, and no error.
-UNUSED   := parameter variable function but-set-variable but-set-parameter value label
+# What is begun and does not yet use all it has gets a warning, and no error.
+UNUSED   ?= parameter variable function but-set-variable but-set-parameter label local-typedefs
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
 FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
             -Wall -Wextra -Wpedantic -Wshadow -Werror $(UNUSED:%=-Wno-error=unused-%)
@@ -69,7 +69,7 @@ build/knot.obj: build/knot$(SUFFIX)
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
 SUITE := $(OBJECTS)/all-tests
 
-test: packages  ## build and run the tests from the lowest floor up; ONLY=bvh: that alone; ALL=1: do not stop
+test: packages  ## build and run the tests, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
 	@FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' PROGRAM_SUFFIX=$(SUFFIX) ALL=$(ALL) \
 	    LIMIT=$(if $(SAN)$(DEBUG),10) HEAVY='$(HEAVY)' tests/run $(ONLY)
 

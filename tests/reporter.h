@@ -114,7 +114,7 @@ private:
             text += " threw " + std::string(check.m_exception.c_str());
         else if (check.m_at & doctest::assertType::is_throws)
             text += " did not throw";
-        else if (check.m_decomp != check.m_expr)
+        else if (check.m_decomp != check.m_expr && check.m_decomp != "{?}")
             text += "; it is " + std::string(check.m_decomp.c_str());
         text = one_line(text);
         for (int i = 0; i < notes; ++i) text += "; " + note(i);

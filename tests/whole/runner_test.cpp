@@ -69,10 +69,10 @@ done
     void add(const std::string& name, int number, const std::string& script) const {
         folder.write("src/" + name + ".h",
                      "// " + name + ".h  " + std::to_string(number) + "  it\n");
-        add_test(name, script);
+        add_test(name, name, script);
     }
-    void add_test(const std::string& name, const std::string& script) const {
-        folder.write("tests/" + name + "_test.cpp", "#include \"" + name + ".h\"\n");
+    void add_test(const std::string& name, const std::string& of, const std::string& script) const {
+        folder.write("tests/" + name + "_test.cpp", "#include \"" + of + ".h\"\n");
         folder.write("built/" + name + "_test.exe", "#!/bin/sh\n" + script);
         fs::permissions(folder / ("built/" + name + "_test.exe"), fs::perms::owner_all);
     }
@@ -220,8 +220,9 @@ exit 1
 TEST_CASE("names are those of tests, headers or folders; another one is told from its nearest") {
     House house;
     house.add("world/shapes", 1, passes);
-    house.add_test("world/shapes_spawn", passes);
+    house.add_test("world/shapes_spawn", "world/lights", passes);  // it stands on lights, too
     house.add("world/bvh", 3, passes);
+    house.add("world/lights", 2, passes);
     house.add("base/low", 1, passes);
     house.add("film/film", 2, passes);
     house.add("film/image", 1, passes);
@@ -229,6 +230,8 @@ TEST_CASE("names are those of tests, headers or folders; another one is told fro
     house.folder.write("src/film/film.h", "// film/film.h  2  it\n#include \"film/odd.h\"\n");
     const std::string bvh = "world/bvh_test\n", film = "film/film_test\n",
                       shapes = "world/shapes_test\nworld/shapes_spawn_test\n";
+    const std::string world =
+        "world/shapes_test\nworld/lights_test\nworld/shapes_spawn_test\n" + bvh;
     const struct {
         std::string names, tests;
     } known[] = {
@@ -239,13 +242,13 @@ TEST_CASE("names are those of tests, headers or folders; another one is told fro
         {"shapes", shapes},
         {"src/world/shapes.h", shapes},
         {"shapes_spawn", "world/shapes_spawn_test\n"},
-        {"world/", shapes + bvh},
-        {"world", shapes + bvh},
+        {"world/", world},
+        {"world", world},
         {"film", film},
         {"film/", "film/image_test\n" + film},
         {"src/film/odd.h", film},
         {"bvh low", "base/low_test\n" + bvh},
-        {"", "base/low_test\n" + shapes + bvh + "film/image_test\n" + film},
+        {"", "base/low_test\n" + world + "film/image_test\n" + film},
     };
     for (const auto& k : known) {
         const Said said = house.test("LIST=1", k.names);
