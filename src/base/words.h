@@ -60,6 +60,15 @@ inline double parse_number(std::string_view text, double largest = largest_numbe
     return x;
 }
 
+// The whole of `text` as a number that is not negative, in hundredths if a percent sign follows it:
+// "2%" is 0.02.  Throws UserError otherwise.
+inline double parse_fraction(std::string_view text) {
+    const bool percent = text.ends_with('%');
+    const double x = parse_number(text.substr(0, text.size() - percent));
+    if (x < 0) throw UserError(in_quotes(text) + " is negative");
+    return percent ? x / 100 : x;
+}
+
 // The whole of `text` as a whole number of [least, most]; throws UserError otherwise.
 inline uint64_t parse_count(std::string_view text, uint64_t least, uint64_t most) {
     uint64_t n = 0;

@@ -1,12 +1,14 @@
 // labs/compare.cpp  3  how far is one image from another?
 //
-//   build/compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png] [--variances F.pfm G.pfm]
+//   build/compare REFERENCE.pfm IMAGE.pfm [--limit 2%] [--variances F.pfm G.pfm [--alpha 1e-6]]
+//                 [--heatmap FILE.png]
 //
 // With f the reference, g the image and N numbers (three a pixel):
 //   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
 //
-// With the variances of both images' pixels (--view variance), also whether they show the same:
-// Welch's test of the images' means; exit status 1 if p < 10^-6.
+// With the variances of both images' pixels (--view variance) also Welch's test whether they show
+// the same.  The verdict, and the exit status 1 if they differ: d_rel above the limit, or p below
+// alpha.
 #include "base/program.h"
 #include "base/stats.h"
 #include "film/image.h"
@@ -35,7 +37,7 @@ Difference difference(const Image& f, const Image& g) {
                 if (error > result.largest) result = {0, 0, 0, error, x, y};
             }
     result.d = std::sqrt(squares / (3.0 * double(f.pixels.size())));
-    result.d_rel = std::sqrt(squares / reference);
+    result.d_rel = squares > 0 ? std::sqrt(squares / reference) : 0;
     result.ratio_of_means = sum_g / sum_f;
     return result;
 }
@@ -44,8 +46,11 @@ Difference difference(const Image& f, const Image& g) {
 // Dachsbacher 2020 do so by pixel, which sees far less).  Pixels are independent, and means of that
 // many are normal.
 struct Equality {
-    double sigmas = 0;  // of the channel that differs most
-    double p = 1;       // two-sided: of so large a difference in one of three channels (Sidak 1967)
+    size_t channel = 0;  // that differs most
+    double sigmas = 0;   // by so many
+    // Two-sided: of so large a difference in that channel, and in any of three.  Channels go
+    // together, which only makes the latter rarer (Sidak 1967).
+    double p_alone = 1, p = 1;
 };
 
 Equality equality(const Image& f, const Image& g, const Image& variance_f,
@@ -58,9 +63,10 @@ Equality equality(const Image& f, const Image& g, const Image& variance_f,
             variance += double(variance_f.pixels[i][c]) + double(variance_g.pixels[i][c]);
         }
         const double sigmas = difference != 0 ? difference / std::sqrt(variance) : 0;
-        if (std::abs(sigmas) >= std::abs(result.sigmas)) result.sigmas = sigmas;
+        if (std::abs(sigmas) > std::abs(result.sigmas)) result = {c, sigmas};
     }
-    result.p = -std::expm1(3 * std::log1p(-p_of_z(result.sigmas)));  // 1 - (1 - p)^3
+    result.p_alone = p_of_z(result.sigmas);
+    result.p = -std::expm1(3 * std::log1p(-result.p_alone));  // 1 - (1 - p)^3
     return result;
 }
 
@@ -106,14 +112,37 @@ Image read_variance(const std::string& path, const Image& image) {
     return variance;
 }
 
+// ---- What is asked, and what is answered --------------------------------------------------------
+
 struct Request {
     std::vector<std::string> images, variances;
     std::string map;
+    std::optional<double> limit, alpha;
     bool help = false;
 };
 
 const std::string usage =
-    "usage: compare REFERENCE.pfm IMAGE.pfm [--heatmap FILE.png] [--variances F.pfm G.pfm]";
+    "usage: compare REFERENCE.pfm IMAGE.pfm [--limit 2%] [--variances F.pfm G.pfm [--alpha 1e-6]] "
+    "[--heatmap FILE.png]";
+
+// The number after an option.
+double fraction_after(const std::vector<std::string>& words, size_t& i) {
+    const std::string& option = words[i];
+    if (++i == words.size()) throw UserError(option + ": needs a value");
+    try {
+        return parse_fraction(words[i]);
+    } catch (const UserError& e) {
+        throw UserError(option + ": " + e.what());
+    }
+}
+
+void check(const Request& r) {
+    if (r.help) return;
+    if (r.images.size() != 2) throw UserError(usage);
+    if (r.alpha && r.variances.empty()) throw UserError("--alpha: needs --variances");
+    if (r.alpha && !(*r.alpha > 0 && *r.alpha < 1))
+        throw UserError("--alpha: must be between 0 and 1");
+}
 
 Request parse(const std::vector<std::string>& words) {
     Request r;
@@ -130,25 +159,61 @@ Request parse(const std::vector<std::string>& words) {
             if (i + 2 >= words.size()) throw UserError("--variances: needs two files");
             r.variances = {words[i + 1], words[i + 2]};
             i += 2;
+        } else if (word == "--limit") {
+            r.limit = fraction_after(words, i);
+        } else if (word == "--alpha") {
+            r.alpha = fraction_after(words, i);
         } else if (word.starts_with('-')) {
-            throw UserError(unknown("option", word, {"--heatmap", "--variances", "--help"}));
+            throw UserError(unknown("option", word,
+                                    {"--limit", "--variances", "--alpha", "--heatmap", "--help"}));
         } else {
             r.images.push_back(word);
         }
     }
-    if (r.images.size() != 2 && !r.help) throw UserError(usage);
+    check(r);
     return r;
 }
+
+void print(const Difference& d, const std::optional<Equality>& e) {
+    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n", d.d,
+                d.d_rel, d.ratio_of_means, d.largest, d.x, d.y);
+    const char* const channels[] = {"red", "green", "blue"};
+    if (e)
+        std::printf(
+            "means: %s differs most, by %+.2f sigma: p = %.3g of one channel, %.3g of the "
+            "worst of three\n",
+            channels[e->channel], e->sigmas, e->p_alone, e->p);
+}
+
+// "same: " or "differ: " and why, one comparison for each thing asked; the exit status.
+int judge(const Request& r, const Difference& d, const std::optional<Equality>& e) {
+    const double alpha = r.alpha.value_or(1e-6);
+    const bool far = r.limit && d.d_rel > *r.limit, unlikely = e && e->p < alpha;
+    if (!r.limit && !e) return 0;
+    std::printf("%s: ", far || unlikely ? "differ" : "same");
+    if (r.limit)
+        std::printf("d_rel %.6g %% %s %.6g %%%s", 100 * d.d_rel, far ? ">" : "<=", 100 * *r.limit,
+                    e ? ", " : "\n");
+    if (e) std::printf("p = %.3g %s %.3g\n", e->p, unlikely ? "<" : ">=", alpha);
+    return far || unlikely ? 1 : 0;
+}
+
+const char* const help = R"(
+Prints how far IMAGE is from REFERENCE: d is the root of the mean squared difference,
+d_rel that over the root of the mean square of REFERENCE.  With the variances of both
+(penumbra --view variance) also by how much their means differ.  The last line and the
+exit status say whether they show the same (0) or differ (1):
+
+  --limit 2%           they differ if d_rel is greater than this; .02 is the same
+  --variances F G      they differ if so large a difference of their means has a
+  --alpha 1e-6         probability p below alpha, by chance alone
+  --heatmap FILE.png   draws the errors: black where they agree, white from 4 d on
+)";
 
 int compare(const std::vector<std::string>& words) {
     const Request r = parse(words);
     if (r.help) {
-        std::printf(
-            "%s\n\nPrints how far IMAGE is from REFERENCE: d is the root of the mean squared "
-            "difference,\nd_rel that over the root of the mean square of REFERENCE.  The heat "
-            "map is black where\nthey agree and white from 4 d on.  With variances (penumbra "
-            "--view variance), whether\nboth show the same: exit status 1 if not, p < 1e-6.\n",
-            usage.c_str());
+        std::printf("%s\n%s", usage.c_str(), help);
         return 0;
     }
     const Image f = read_pfm(r.images[0]), g = read_pfm(r.images[1]);
@@ -162,13 +227,9 @@ int compare(const std::vector<std::string>& words) {
     }
     if (!r.map.empty()) check_writable(r.map);
     const Difference d = difference(f, g);
-    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n", d.d,
-                d.d_rel, d.ratio_of_means, d.largest, d.x, d.y);
-    if (e)
-        std::printf("equal means: %+.2f sigma, p = %.2g (the worst of three channels)\n", e->sigmas,
-                    e->p);
+    print(d, e);
     if (!r.map.empty()) write_image(r.map, heatmap(f, g, d.d), 1);
-    return e && e->p < 1e-6 ? 1 : 0;
+    return judge(r, d, e);
 }
 
 }  // namespace

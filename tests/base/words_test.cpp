@@ -38,6 +38,18 @@ TEST_CASE("a number is the whole word, finite and within its limits") {
     CHECK(about_number("1e999") == "'1e999' is out of range");
 }
 
+TEST_CASE("a fraction is a number, or so many hundredths, and not negative") {
+    CHECK(parse_fraction("0.25") == 0.25);
+    CHECK(parse_fraction("2%") == 0.02);
+    CHECK(parse_fraction("250%") == 2.5);
+    CHECK(parse_fraction("0") == 0);
+    auto about = [](const std::string& text) { return complaint([&] { parse_fraction(text); }); };
+    CHECK(about("-1e-9") == "'-1e-9' is negative");
+    CHECK(about("-2%") == "'-2%' is negative");
+    for (const char* word : {"", "%", "2%%", "2 %", "%2", "2%x"})
+        CHECK(about(word).find("is not a number") != std::string::npos);
+}
+
 TEST_CASE("a count is a whole number from the least to the most") {
     CHECK(parse_count("3", 3, 5) == 3);
     CHECK(parse_count("5", 3, 5) == 5);

@@ -98,18 +98,20 @@ TEST_CASE("compare: two images with their variances show the same, or not") {
     folder.write("v.pfm", pfm(2, 1, {1, 1, 1, 1, 1.25f, 1}));
     auto verdict = [&](const std::string& words) {
         const Outcome o = run(folder, "compare", split(words));
-        double sigmas = -1, p = -1;
-        const size_t at = o.out.find("equal means:");
+        double sigmas = -1, alone = -1, p = -1;
+        const size_t at = o.out.find("by ");
         REQUIRE(at != o.out.npos);
-        CHECK(std::sscanf(o.out.c_str() + at, "equal means: %lf sigma, p = %lf", &sigmas, &p) == 2);
+        CHECK(std::sscanf(o.out.c_str() + at,
+                          "by %lf sigma: p = %lf of one channel, %lf of the worst of three",
+                          &sigmas, &alone, &p) == 3);
+        CHECK(std::erfc(std::abs(sigmas) / std::sqrt(2.0)) ==
+              doctest::Approx(alone).epsilon(0.01 * (1 + sigmas * sigmas)));  // as rounded
         CHECK(o.status == (p < 1e-6 ? 1 : 0));
         return std::pair{sigmas, p};
     };
     // Variance of the difference 2 x 2.25: 3 / sqrt(4.5) = 1.41 sigma, p = .1573 of one channel,
     // 1 - .8427^3 of the worst of three; of 2 sigma .0455 and .1304.
-    const auto [sigmas, p] = verdict("--variances v.pfm v.pfm f.pfm g.pfm");
-    CHECK(sigmas == 1.41);
-    CHECK(p == 0.4);
+    CHECK(verdict("--variances v.pfm v.pfm f.pfm g.pfm") == std::pair{1.41, 0.402});
     CHECK(verdict("g.pfm f.pfm --variances none.pfm v.pfm") == std::pair{-2.0, 0.13});
     CHECK(verdict("f.pfm f.pfm --variances none.pfm none.pfm") == std::pair{0.0, 1.0});
     CHECK(verdict("f.pfm g.pfm --variances none.pfm none.pfm").second == 0);
@@ -129,6 +131,53 @@ TEST_CASE("compare: two images with their variances show the same, or not") {
     }
     CHECK(verdict("a.pfm b.pfm --variances av.pfm bv.pfm").second > 1e-6);
     CHECK(verdict("a.pfm c.pfm --variances av.pfm cv.pfm").second < 1e-6);
+}
+
+TEST_CASE("compare judges: the last line and the exit status say the same, and why") {
+    const Folder folder;
+    folder.write("f.pfm", pfm(1, 1, {50, 50, 50}));
+    folder.write("g.pfm", pfm(1, 1, {51, 51, 51}));  // d_rel = 1/50
+    folder.write("h.pfm", pfm(1, 1, {50, 52, 50}));  // 2 / 50 / sqrt(3), by 2 sigma in green
+    folder.write("black.pfm", pfm(1, 1, {0, 0, 0}));
+    folder.write("one.pfm", pfm(1, 1, {1, 1, 1}));
+    // p of 2 sigma in one of three channels is .130384.
+    const std::string h = "f.pfm h.pfm --variances one.pfm black.pfm ";
+    const struct {
+        std::string words;
+        std::string verdict;  // the last line
+    } rows[] = {
+        {"f.pfm g.pfm --limit 2%", "same: d_rel 2 % <= 2 %"},
+        {"--limit .02 f.pfm g.pfm", "same: d_rel 2 % <= 2 %"},
+        {"f.pfm --limit 0.01999 g.pfm", "differ: d_rel 2 % > 1.999 %"},
+        {"f.pfm g.pfm --limit 1.9999%", "differ: d_rel 2 % > 1.9999 %"},
+        {"f.pfm f.pfm --limit 0", "same: d_rel 0 % <= 0 %"},
+        {"f.pfm g.pfm --limit 0%", "differ: d_rel 2 % > 0 %"},
+        {"black.pfm black.pfm --limit 1%", "same: d_rel 0 % <= 1 %"},
+        {"black.pfm f.pfm --limit 1e30", "differ: d_rel inf % > 1e+32 %"},
+        {h, "same: p = 0.13 >= 1e-06"},
+        {h + "--alpha 0.13038", "same: p = 0.13 >= 0.13"},
+        {h + "--alpha 13.038%", "same: p = 0.13 >= 0.13"},
+        {h + "--alpha 0.13039", "differ: p = 0.13 < 0.13"},
+        {"h.pfm f.pfm --variances one.pfm black.pfm --alpha 0.13039", "differ: p = 0.13 < 0.13"},
+        {"h.pfm f.pfm --variances one.pfm black.pfm --alpha 0.13038", "same: p = 0.13 >= 0.13"},
+        {h + "--alpha 1e-3 --limit 3%", "same: d_rel 2.3094 % <= 3 %, p = 0.13 >= 0.001"},
+        {h + "--alpha 1e-3 --limit 2%", "differ: d_rel 2.3094 % > 2 %, p = 0.13 >= 0.001"},
+        {h + "--alpha .2 --limit 3%", "differ: d_rel 2.3094 % <= 3 %, p = 0.13 < 0.2"},
+        {h + "--alpha .2 --limit 2%", "differ: d_rel 2.3094 % > 2 %, p = 0.13 < 0.2"},
+        {"f.pfm g.pfm --variances black.pfm black.pfm --alpha 1e-30", "differ: p = 0 < 1e-30"},
+        {"f.pfm f.pfm --variances black.pfm black.pfm --alpha .999", "same: p = 1 >= 0.999"},
+        {"black.pfm black.pfm --variances black.pfm black.pfm", "same: p = 1 >= 1e-06"},
+    };
+    for (const auto& row : rows) {
+        const Outcome o = run(folder, "compare", split(row.words));
+        CAPTURE(row.words);
+        CHECK(o.err == "");
+        const size_t last = o.out.rfind('\n', o.out.size() - 2);
+        REQUIRE(last != o.out.npos);
+        CHECK(o.out.substr(last + 1) == row.verdict + "\n");
+        CHECK(o.status == (row.verdict.starts_with("same: ") ? 0 : 1));
+    }
+    CHECK(run(folder, "compare", {"f.pfm", "g.pfm"}).status == 0);  // nothing is asked
 }
 
 TEST_CASE("compare: images that cannot be compared are refused, and nothing is written") {
@@ -179,6 +228,18 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
         {"one.pfm one.pfm --variances one.pfm two.pfm", "sizes differ: 1x1 and 2x1"},
         {"one.pfm one.pfm --variances one.pfm minus.pfm", "minus.pfm: a variance is negative"},
         {"two.pfm two.pfm --variances two.pfm nan.pfm", "nan.pfm: pixel 1,0 is not finite"},
+        {"one.pfm one.pfm --limit", "--limit: needs a value"},
+        {"one.pfm one.pfm --limit -1%", "--limit: '-1%' is negative"},
+        {"one.pfm one.pfm --limit %", "--limit: '' is not a number"},
+        {"one.pfm one.pfm --limit nan%", "--limit: 'nan' is not finite"},
+        {"one.pfm one.pfm --limit one.pfm", "--limit: 'one.pfm' is not a number"},
+        {"one.pfm one.pfm --alpha 1e-6", "--alpha: needs --variances"},
+        {"one.pfm one.pfm --variances one.pfm one.pfm --alpha", "--alpha: needs a value"},
+        {"one.pfm one.pfm --variances one.pfm one.pfm --alpha 0",
+         "--alpha: must be between 0 and 1"},
+        {"one.pfm one.pfm --variances one.pfm one.pfm --alpha 100%",
+         "--alpha: must be between 0 and 1"},
+        {"two.pfm nan.pfm --limit 1", "nan.pfm: pixel 1,0 is not finite"},
         {"one.pfm one.pfm --heat a.png", "unknown option '--heat' (did you mean '--heatmap'?)"},
     };
     for (const auto& [line, why] : rows) expect_refusal(folder, "compare", split(line), why);

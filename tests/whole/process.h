@@ -208,7 +208,7 @@ inline void expect_refusal(const Folder& folder, const std::string& program, con
                                        [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); });
     CHECK(printable);
     CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
-    CHECK(o.err.back() == '\n');
+    CHECK(o.err.ends_with('\n'));
     const bool untouched = folder.all() == before;
     CHECK(untouched);
 }
