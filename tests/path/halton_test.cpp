@@ -139,3 +139,20 @@ TEST_CASE("scrambling permutes the digits: the first b points fall into b differ
             CHECK(*std::max_element(hits.begin(), hits.end()) == 1);
         }
 }
+
+TEST_CASE("the factors 1 ... b-1 have equal shares of the bits, the first and the last, too") {
+    // Index 1 has one digit, 1, which the factor multiplies; half a digit more is the shift.
+    for (uint32_t base : {2u, 3u, 5u, 29u, 541u}) {
+        const uint64_t share = 1000, n = share * (base - 1), half = (uint64_t(1) << 63) / base;
+        std::vector<uint64_t> hits(base);
+        for (uint64_t k = 0; k < n; ++k) {
+            const uint64_t bits = k * (UINT64_MAX / n) + UINT64_MAX / n / 2;
+            ++hits[size_t(scrambled_radical_inverse(base, 1, half, bits) * real(base))];
+        }
+        CHECK(hits[0] == 0);
+        for (uint32_t factor = 1; factor < base; ++factor) {
+            CHECK(hits[factor] >= share - 1);
+            CHECK(hits[factor] <= share + 1);
+        }
+    }
+}

@@ -49,6 +49,52 @@ constexpr Named techniques[] = {
     {{uniform, none, 1}, "uniform, none, roulette"},
 };
 
+// What numbers decide at a vertex: which light, where on it, the direction that goes on, if any.
+struct Decision {
+    const Light* light;  // none if the place is below a horizon
+    vec3 on_light, wi;
+    bool goes_on;
+    bool operator==(const Decision&) const = default;
+};
+std::vector<Decision> decisions(const Scene& scene, const Technique& t, const Pattern& pattern,
+                                int x) {
+    std::vector<Decision> path;
+    radiance(scene, t, pattern, x, 0, 5, [&](const Segment&, const Step& e) {
+        path.push_back({e.direct.light, e.direct.sample.at.p, e.wi, e.next.has_value()});
+    });
+    return path;
+}
+
+// Which of them differ at a vertex.
+enum Differs { of_light = 1, of_place = 2, of_direction = 4, of_end = 8 };
+int difference(const Decision& a, const Decision& b) {
+    const bool other_light = a.light && b.light && a.light != b.light;
+    return other_light * of_light + !(a.on_light == b.on_light) * of_place +
+           !(a.wi == b.wi) * of_direction + (a.goes_on != b.goes_on) * of_end;
+}
+
+// What a number may move at its vertex, and what it must, sometimes.
+struct Purpose {
+    int may, must;
+};
+Purpose purpose(Draw what, bool glossy) {
+    switch (what) {
+        case Draw::pick:
+            return {of_light | of_place, of_light};
+        case Draw::light_x:
+        case Draw::light_y:
+            return {of_place, of_place};
+        case Draw::lobe:
+            if (!glossy) return {0, 0};
+            [[fallthrough]];
+        case Draw::wi_x:
+        case Draw::wi_y:
+            return {of_direction | (glossy ? of_end : 0), of_direction};
+        default:
+            return glossy ? Purpose{0, 0} : Purpose{of_end, of_end};
+    }
+}
+
 bool all_different(std::vector<real> numbers) {
     std::sort(numbers.begin(), numbers.end());
     return std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end();
@@ -154,10 +200,15 @@ TEST_CASE("every pixel has random numbers of its own, and every bounce, and ever
     Scene scene = scene_of(furnace);
     scene.size = {9, 5};
     const Pattern pattern{SamplerKind::independent, seed_here()};
-    std::vector<real> places;
+    std::vector<real> across, down;
     for (int y = 0; y < 5; ++y)
-        for (int x = 0; x < 9; ++x) places.push_back(start(scene, pattern, x, y, 0).u.x);
-    CHECK(all_different(places));
+        for (int x = 0; x < 9; ++x) {
+            const vec2 u = start(scene, pattern, x, y, 0).u;
+            across.push_back(u.x);
+            down.push_back(u.y);
+        }
+    CHECK(all_different(across));
+    CHECK(all_different(down));
     // Diffuse: a cosine is a function of one number; the lamp is seen by all vertices.
     scene = scene_of(R"(
 camera 0 0 0.5  0 0 0  60
@@ -176,6 +227,98 @@ quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
     CHECK(all_different(cosines));
     CHECK(on_the_lamp.size() >= 10);
     CHECK(all_different(on_the_lamp));
+}
+
+TEST_CASE("every number of a path moves what it is for, and nothing else at or before its vertex") {
+    // With another base a Halton point has another number in that dimension, and the same in all
+    // others.  Diffuse paths end by roulette, glossy ones have two lobes and end below the surface.
+    const std::string room = R"(
+size 400 1
+camera 0 0.1 1.9  0 0 0  60
+depth 3
+light ball  1 1 1  half
+light panel 1 1 1  half
+box 4 4 4  0  -2 -2 -2  half
+sphere -1 0.5 0  0.3  ball
+sphere 1 -0.5 0.3  0.2  ball
+quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
+)";
+    for (bool glossy : {false, true}) {
+        const Scene scene = scene_of(
+            (glossy ? "phong half 0.3 0.3 0.3  0.3 0.3 0.3  4\n" : "diffuse half 0.5 0.5 0.5\n") +
+            room);
+        const Technique t{bsdf, mis, glossy ? 0 : 1};
+        const Pattern pattern =
+            make_pattern(SamplerKind::halton, seed_here(), false, scene.depth + 1, 64);
+        for (uint32_t dim = dimension(0, Draw(0)); dim < pattern.bases.size(); ++dim) {
+            const Draw what = Draw((dim - dimension(0, Draw(0))) % uint32_t(Draw::count));
+            const size_t k = (dim - dimension(0, Draw(0))) / uint32_t(Draw::count);
+            const bool last = int(k) == scene.depth;  // where a path ends anyhow
+            const auto [may, must] = last ? Purpose{0, 0} : purpose(what, glossy);
+            Pattern other = pattern;
+            other.bases[dim] = 2;  // all of them have greater ones
+            int moved = 0, wrong = 0;
+            for (int x = 0; x < scene.size.width; ++x) {
+                const auto a = decisions(scene, t, pattern, x), b = decisions(scene, t, other, x);
+                const size_t before = std::min(k, a.size());
+                wrong += b.size() < before ||
+                         !std::equal(a.begin(), a.begin() + long(before), b.begin());
+                if (a.size() <= k || b.size() <= k) {
+                    wrong += a.size() != b.size();
+                    continue;
+                }
+                const int here = difference(a[k], b[k]);
+                wrong += (here & ~may) != 0;
+                const bool same_way = (here & (of_direction | of_end)) == 0;
+                wrong += same_way && !std::equal(a.begin() + long(k) + 1, a.end(),
+                                                 b.begin() + long(k) + 1, b.end());
+                moved += (here & must) != 0;
+            }
+            CAPTURE(glossy);
+            CAPTURE(dim);
+            CHECK(wrong == 0);
+            CHECK((moved > 10) == (must != 0));
+        }
+    }
+}
+
+TEST_CASE(
+    "the weights of a light's point, aimed at and hit, add up to 1 above a vast ground, too") {
+    // A ray starts 32 ulp of the ground's size above it: 7e-12 in double, 4e-3 in float.  What it
+    // hits is weighed from the ground itself, as what is aimed at is.
+    const Scene scene = scene_of(R"(
+size 20 20
+camera 0 2 0.1  0 0 0  60
+diffuse white 0.5 0.5 0.5
+light ball 1 1 1
+quad -2000 0 -2000  0 0 4000  4000 0 0  white
+sphere 0.3 0.5 0  0.2  ball
+sphere -0.5 0.4 0.2  0.1  ball
+)");
+    const Technique t{uniform, mis};
+    const Pattern pattern{SamplerKind::independent, seed_here()};
+    int hits = 0;
+    real worst = 0;
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x) {
+            const Start at = start(scene, pattern, x, y, 0);
+            const auto ground = meet(scene, at.ray);
+            if (!ground || ground->material->emits()) continue;
+            const DirectLight aimed = direct_light(scene, t, *ground, at.sampler, 0);
+            if (!aimed.light) continue;
+            const vec3 wi = ground->local.to_local(aimed.sample.wi);
+            const real density = pdf(*ground->material, ground->wo, wi, t.direction);
+            const Segment s{
+                spawn(ground->at, aimed.sample.wi), ground->at.p, density, {1, 1, 1}, 1};
+            const auto lamp = meet(scene, s.ray);
+            if (!lamp || &scene.lights[size_t(scene.light_of[lamp->hit.id])] != aimed.light)
+                continue;
+            worst = std::max(
+                worst, std::abs(aimed.weight + weight_of_emission(scene, t.light, s, *lamp) - 1));
+            ++hits;
+        }
+    CHECK(hits > 200);
+    CHECK(worst <= 4 * ulp);
 }
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {

@@ -216,3 +216,59 @@ TEST_CASE("halton-naive repeats itself: the same numbers in every pixel and at e
     CHECK(a.get2(film_x).x == radical_inverse(2, 11));
     CHECK(a.get2(film_x).y == radical_inverse(3, 11));
 }
+
+TEST_CASE("samples 2^32 apart differ, whatever the sampler, in halves, too") {
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
+                             SamplerKind::halton_naive})
+        for (bool halves : {false, true}) {
+            const Pattern pattern = make_pattern(kind, seed_here(), halves, depth, 64);
+            int equal = 0;
+            for (uint64_t i = 0; i < 100; ++i)
+                for (uint64_t far : {uint64_t(1) << 32, uint64_t(1) << 33}) {
+                    const Sampler near(pattern, 7, i), beyond(pattern, 7, i + far);
+                    // Base 3: in base 2 the samples' digits differ from the 33rd on.
+                    equal += near.get2(film_x).y == beyond.get2(film_x).y;
+                }
+            INFO("sampler ", int(kind), ", halves ", halves);
+            CHECK(equal < 2);
+        }
+}
+
+TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in every pixel") {
+    // The first digit of sample 1 is 1, that of sample 0 is 0: scrambled they differ by the factor.
+    const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), false, depth, 64);
+    auto factor = [&](uint64_t pixel, uint32_t dim) {
+        const uint32_t base = pattern.bases[dim];
+        auto digit = [&](uint64_t i) {
+            return uint32_t(Sampler(pattern, pixel, i).get(dim) * real(base) * (1 + 8 * ulp));
+        };
+        return (digit(1) + base - digit(0)) % base;
+    };
+    // Where in its range a factor is, from -1/2 to 1/2: of variance 1/12 but for the smallest
+    // bases, which are left out.
+    Moments places, between_dimensions;
+    for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
+        double sum = 0, products = 0, last = 0;
+        for (uint32_t dim = 5; dim < dimensions; ++dim) {
+            const double place = (factor(pixel, dim) - 0.5) / (pattern.bases[dim] - 1) - 0.5;
+            sum += place;
+            products += place * last;
+            last = place;
+        }
+        places.add(sum / (dimensions - 5));
+        between_dimensions.add(products / (dimensions - 6));
+    }
+    EXPECT(expect_mean(0, estimate(places)).of("place"), 0.02);
+    EXPECT(expect_mean(0, estimate(between_dimensions)).of("dimensions"), 0.02 / 12);
+    for (uint32_t dim : {1u, 2u, 3u}) {
+        std::vector<uint64_t> counts(pattern.bases[dim] - 1);
+        for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
+            const uint32_t f = factor(pixel, dim);
+            REQUIRE(f > 0);
+            ++counts[f - 1];
+        }
+        EXPECT(
+            expect_counts(counts, std::vector<double>(counts.size(), 1.0 / double(counts.size()))),
+            0.2);
+    }
+}
