@@ -393,3 +393,33 @@ TEST_CASE("a scene 2^20 times as large is hit at 2^20 times the distance, bit fo
     CHECK(different == 0);
     CHECK(hits > 20000);
 }
+
+TEST_CASE("below a depth of 32 nodes are halved, on spines to the left and to the right") {
+    // Sizes and places in powers of two: each split parts the few largest from all the others, of
+    // which there are 200 octaves.
+    for (real side : {real(1), real(-1)}) {
+        Shapes scene;
+        const int n = 2000;
+        for (int i = 0; i < n; ++i) {
+            const real x = std::exp2(real(200) * real(i) / n - 140);
+            scene.push_back({{side * x, -x, -x}, {side * x, x, -x}, {side * x, 0, x}});
+        }
+        const bvh::BinaryTree tree = bvh::build(scene);
+        // Children follow their parents.
+        std::vector<int> depth(tree.branches.size());
+        int deepest = 0, halved = 0, uneven = 0;
+        for (size_t i = 0; i < tree.branches.size(); ++i) {
+            const bvh::Branch& b = tree.branches[i];
+            deepest = std::max(deepest, depth[i]);
+            if (b.leaf()) continue;
+            depth[b.left] = depth[b.right] = depth[i] + 1;
+            if (depth[i] < bvh::BinaryTree::sah_depth) continue;
+            ++halved;
+            uneven += tree.branches[b.left].count != b.count / 2;
+        }
+        CAPTURE(side);
+        CHECK(halved > 10);
+        CHECK(uneven == 0);
+        CHECK(deepest <= bvh::BinaryTree::depth);
+    }
+}

@@ -185,3 +185,13 @@ TEST_CASE("cornell36 by statements and as OBJ are the same shapes, materials and
     CHECK(b.lights.size() == 1);
     CHECK(a.camera.tan_half == b.camera.tan_half);
 }
+
+TEST_CASE("negative indices count from the last of those so far, not of the file") {
+    const Folder folder;
+    folder.write("m.obj", corners + "f -3 -2 -1\nv 2 0 0\nf -1 -2 -5\n" + corners + "f 1 -1 -9\n");
+    const ObjMesh mesh = ObjReader::read(folder / "m.obj");
+    REQUIRE(mesh.faces.size() == 3);
+    CHECK(mesh.faces[0].corners == std::vector<uint32_t>{1, 2, 3});
+    CHECK(mesh.faces[1].corners == std::vector<uint32_t>{4, 3, 0});
+    CHECK(mesh.faces[2].corners == std::vector<uint32_t>{0, 8, 0});
+}
