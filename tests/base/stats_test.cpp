@@ -75,3 +75,24 @@ TEST_CASE("p-values: quantiles of the normal, Student's and the chi-squared dist
     }
     CHECK(p_of_chi2(124.342, 100) == doctest::Approx(0.05).epsilon(1e-4));
 }
+
+TEST_CASE("p of t is not that of z at hundreds of degrees of freedom: in closed form, far out") {
+    // For even k, with theta = atan(t / sqrt k) and c_j = (1 3 ... 2j-1) / (2 4 ... 2j), what the
+    // finite sum of Abramowitz, Stegun 26.7.4 leaves of 1:
+    //   p = sin(theta) (c_j cos^2j(theta) summed over j >= k/2).
+    auto closed = [](double t, int k) {
+        const double cos2 = k / (k + t * t);
+        double term = t / std::sqrt(k + t * t), sum = 0;
+        for (int j = 1; j <= k / 2; ++j) term *= cos2 * (2 * j - 1) / (2 * j);
+        for (int j = k / 2; term > 1e-12 * sum; ++j, term *= cos2 * (2 * j - 1) / (2 * j))
+            sum += term;
+        return sum;
+    };
+    CHECK(closed(3, 2) == doctest::Approx(1 - 3 / std::sqrt(11.0)).epsilon(1e-9));
+    for (int k : {100, 200, 1000, 10000})
+        for (double t : {5.0, 6.0, 7.0, 8.0}) {
+            CAPTURE(k);
+            CAPTURE(t);
+            CHECK(p_of_t(t, k) == doctest::Approx(closed(t, k)).epsilon(1e-6).scale(0));
+        }
+}
