@@ -248,3 +248,19 @@ TEST_CASE(
         CHECK(sum == approx(truth, 1e-5, 1e-4));
     }
 }
+
+TEST_CASE(
+    "sphere irradiance: a horizon that touches it, within ulps, leaves all of it or nothing") {
+    Random random(seed_of("sphere at the horizon"));
+    double worst = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const real s = std::exp2(real(-20 * random() * random())) * real(0.9999);
+        for (real side : {real(1), real(-1)})
+            for (real cosine = side * s, k = 0; k < 6; ++k, cosine = std::nextafter(cosine, 0)) {
+                const double E = double(irradiance_sphere(cosine, s * s));
+                const double truth = side > 0 ? std::numbers::pi * std::pow(double(s), 3) : 0;
+                worst = std::max(worst, std::abs(E - truth) / std::pow(double(s), 3));
+            }
+    }
+    CHECK(worst < 64 * double(ulp));
+}
