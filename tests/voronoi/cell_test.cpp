@@ -157,3 +157,18 @@ TEST_CASE("a neighbour at the same place is seen, one that is removed is not") {
     CHECK(!lines.is_copy(lines.nearest()));
     CHECK(lines.wrap(lines.nearest()).size() >= 4);
 }
+
+TEST_CASE("a neighbour within rounding of the site does not cut the site away") {
+    Random random(seed_here());
+    ConvexPolygon polygon;
+    for (int trial = 0; trial < 1000; ++trial) {
+        // Corners are rounded to 1e-16 or so, farther than these neighbours are.
+        const double d = 1e-18 * (1 + random()), turn = 2 * std::numbers::pi * random();
+        polygon.start({{-random(), -random()}, {random(), random()}});
+        for (int k = 0; k < 6; ++k) {
+            const double phi = turn + std::numbers::pi * k * (k % 2 ? 1 : 0.3);
+            polygon.cut(bisector({d * std::cos(phi), d * std::sin(phi)}, 0));
+        }
+        REQUIRE(polygon.outline().size() >= 3);
+    }
+}

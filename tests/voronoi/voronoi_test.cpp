@@ -215,6 +215,18 @@ TEST_CASE("areas and centroids equal those of brute force in long double, hard c
     }
 }
 
+TEST_CASE("sites nearer than 2^-51 are at the same place, though their squares vanish") {
+    Voronoi v;
+    for (double near : {0x1p-52, 1e-100, 1e-160, 1e-200, 1e-320}) {
+        const auto cells = v.clipped(Points{{0, 0}, {near, 0}, {0, near}, {0.5, 0.5}}, unit_square);
+        for (size_t i : {0, 1, 2}) {
+            CHECK(cells[i].copies == 3);
+            CHECK(cells[i].area == doctest::Approx(0.125 / 3).epsilon(1e-14));
+        }
+        CHECK(cells[3].area == 0.875);
+    }
+}
+
 TEST_CASE("a torus: brute force with all copies around; translations change nothing") {
     Random random(seed_here());
     Voronoi v;
@@ -247,7 +259,11 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
                 CHECK(again[i].area == doctest::Approx(cells[i].area).epsilon(1e-12));
         }
     CHECK(v.torus(Points{{0.5, 0.5}, {0.5, 0.5}}, unit_square)[1].area == 0.5);
-    CHECK(v.torus(Points{{0, 0.5}, {1, 0.5}}, unit_square)[1].area == 0.5);  // the same place
+    // Opposite borders are the same place, where the period is no binary fraction, too.
+    CHECK(v.torus(Points{{0, 0.5}, {1, 0.5}}, unit_square)[1].area == 0.5);
+    const auto& shared = v.torus(Points{{0.2, 0.1}, {0.2, 0.4}, {0.6, 0.2}}, {{0, 0.1}, {1, 0.4}});
+    CHECK(shared[0].copies == 2);
+    CHECK(shared[0].area == shared[1].area);
 }
 
 TEST_CASE("a strip about the window: brute force; what is bounded, inside, settled") {
