@@ -3,7 +3,6 @@
 // Parsing, --help, suggestions, --stats and the README's table all follow from option_table.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -102,34 +101,43 @@ inline size_t choice(std::string_view text, std::string_view alternatives) {
 
 // ---- The table ----------------------------------------------------------------------------------
 
+using Text = std::string_view;
+
+// Functions are plain pointers: std::function would cost every file that includes this a second.
 struct Option {
-    std::string_view name;
-    std::string_view value;           // what stands after it; "": nothing
-    std::string_view help;            // what it is for
-    std::string_view otherwise = {};  // without it; "": nothing
-    std::function<void(Options&, std::string_view)> set;
-    std::function<std::string(const Options&)> stats = {};  // its JSON value; none: not in --stats
+    Text name;
+    Text value;           // what stands after it; "": nothing
+    Text help;            // what it is for
+    Text otherwise = {};  // without it; "": nothing
+    void (*assign)(Options&, Text);
+    std::string (*json)(const Options&) = nullptr;  // its value; none: not in --stats
+    // Of a choice instead: its word's index among those of `value`.
+    void (*choose)(Options&, size_t) = nullptr;
+    size_t (*chosen)(const Options&) = nullptr;
+
+    void set(Options& o, Text v) const {
+        if (choose)
+            choose(o, option::choice(v, value));
+        else
+            assign(o, v);
+    }
+    std::string stats(const Options& o) const {  // "": nothing
+        if (chosen) return '"' + std::string(option::words_of(value)[chosen(o)]) + '"';
+        return json ? json(o) : "";
+    }
 };
 
 // One of several words, which stand in the order of their enumeration; at(o) is where it is kept.
 template <class At>
-Option one_of(std::string_view name, std::string_view words, std::string_view help, At at) {
-    using Enum = std::remove_reference_t<decltype(at(std::declval<Options&>()))>;
-    auto word = [=](const Options& o) {
-        Options copy = o;
-        return option::words_of(words)[size_t(at(copy))];
-    };
-    return {name,
-            words,
-            help,
-            word(Options{}),
-            [=](Options& o, std::string_view v) { at(o) = Enum(option::choice(v, words)); },
-            [=](const Options& o) { return '"' + std::string(word(o)) + '"'; }};
+Option one_of(Text name, Text words, Text help, At) {
+    using Enum = std::remove_reference_t<decltype(At()(std::declval<Options&>()))>;
+    auto choose = [](Options& o, size_t k) { At()(o) = Enum(k); };
+    auto chosen = [](const Options& o) { return size_t(At()(o)); };
+    const Text otherwise = option::words_of(words)[chosen({})];
+    return {name, words, help, otherwise, nullptr, nullptr, choose, chosen};
 }
 
-using Text = std::string_view;
-
-inline const std::vector<Option> option_table = {
+inline const Option option_table[] = {
     {"-o", "FILE", "image to write, .png or .pfm; may be repeated", "out/NAME.png, out/NAME.pfm",
      [](Options& o, Text v) { o.outputs.push_back(option::image(v)); }},
     {"--spp", "N", "stop after N samples per pixel", "the scene's, unless --time is given",
@@ -140,7 +148,7 @@ inline const std::vector<Option> option_table = {
         "--sampler", "independent|stratified|halton|halton-naive",
         "where the random numbers come from; halton-naive is a lesson in what not to do, and "
         "biased",
-        [](Options& o) -> auto& { return o.sampler; }),
+        [](auto& o) -> auto& { return o.sampler; }),
     {"--halves", "",
      "two independently randomised halves of stratified and halton samples, so "
      "that their error can be estimated",
@@ -149,21 +157,21 @@ inline const std::vector<Option> option_table = {
     one_of(
         "--direction", "uniform|bsdf",
         "directions at rough surfaces: uniform over the hemisphere, or importance-sampled",
-        [](Options& o) -> auto& { return o.technique.direction; }),
+        [](auto& o) -> auto& { return o.technique.direction; }),
     one_of(
         "--light", "none|nee|mis",
         "light found by hitting it, by aiming at it (next-event estimation), or by both, "
         "weighted",
-        [](Options& o) -> auto& { return o.technique.light; }),
+        [](auto& o) -> auto& { return o.technique.light; }),
     one_of(
         "--direct", "stochastic|control|ratio|regression",
         "how light samples on visible diffuse surfaces are used: as they are, or to find "
         "only what shadows take from the exact unshadowed light; needs --light nee",
-        [](Options& o) -> auto& { return o.direct; }),
+        [](auto& o) -> auto& { return o.direct; }),
     one_of(
         "--polygons", "area|angle",
         "points of rectangular lights: uniform over the area, or over the solid angle",
-        [](Options& o) -> auto& { return o.polygons; }),
+        [](auto& o) -> auto& { return o.polygons; }),
     {"--depth", "N", "scatterings a path may have, 0: emission only", "the scene's",
      [](Options& o, Text v) { o.depth = int(parse_count(v, 0, option::most_scatterings)); }},
     {"--roulette", "K", "Russian roulette from the K-th scattering on", "off",
@@ -190,13 +198,13 @@ inline const std::vector<Option> option_table = {
         "what the image shows: radiance; (normal + 1) / 2; distance; albedo; nodes (red) and "
         "shapes (green) visited by a ray; variance of the pixels' means, which implies "
         "--halves",
-        [](Options& o) -> auto& { return o.view; }),
+        [](auto& o) -> auto& { return o.view; }),
     one_of(
         "--film", "mc|vor|fvor|cvor|torus",
         "weights of a pixel's samples: equal, or areas of their Voronoi cells in the pixel: "
         "bounded by a strip around it, the same without cells that leave it, clipped to the "
         "pixel, or on a torus; all but mc need --sampler independent and --spp",
-        [](Options& o) -> auto& { return o.film; }),
+        [](auto& o) -> auto& { return o.film; }),
     {"--stats", "FILE", "write what was measured, as JSON", "",
      [](Options& o, Text v) { o.stats = v; }},
     {"--pixel", "X,Y", "instead of rendering, print every vertex of one path", "",
@@ -239,15 +247,14 @@ inline void check_together(const Options& o) {
 
 // Throws UserError about the first word that cannot be used.
 inline Options parse_options(const std::vector<std::string>& words) {
-    const auto& table = option_table;
-    std::vector<std::string_view> known;
-    for (const Option& row : table) known.push_back(row.name);
+    std::vector<Text> known;
+    for (const Option& row : option_table) known.push_back(row.name);
     Options o;
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string word = words[i] == "-h" ? "--help" : words[i];
-        const auto row = std::find_if(table.begin(), table.end(),
+        const auto row = std::find_if(std::begin(option_table), std::end(option_table),
                                       [&](const Option& r) { return r.name == word; });
-        if (row != table.end()) {
+        if (row != std::end(option_table)) {
             const bool has_value = !row->value.empty();
             if (has_value && i + 1 == words.size()) throw UserError(word + ": needs a value");
             try {

@@ -151,7 +151,8 @@ inline std::string encode_stats(const Options& o, Size size, int depth, const Ru
     line("width", count(size.width));
     line("height", count(size.height));
     for (const Option& row : option_table)
-        if (row.stats) line(std::string(row.name.substr(2)), row.stats(o));
+        if (const std::string value = row.stats(o); !value.empty())
+            line(std::string(row.name.substr(2)), value);
     line("depth", count(depth));
     line("film_redraws", count(run.redraws));
     line("film_fallbacks", count(run.fallbacks));
