@@ -159,7 +159,7 @@ $(SUITE): $(TESTS:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/main.o
 
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
 # vector is told so.
-HEAVY := app/render oracle/oracle path/pathtracer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms \
+HEAVY := app/render oracle/mistakes oracle/oracle path/pathtracer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms \
          world/bsdf world/bvh world/shapes
 $(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 $(HEAVY:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
@@ -221,6 +221,7 @@ layers:  ## check that every file includes only from floors below
 	                   { print FILENAME ": line 1 must say: // " name "  NUMBER  what it is"; bad = 1 } } \
 	    /^#include "/ { split($$0, quoted, "\""); from[++n] = name; to[n] = quoted[2]; at[n] = FILENAME ":" FNR } \
 	    END { for (i = 1; i <= n; ++i) { \
+	              if (!(to[i] ~ /\//)) to[i] = folder(from[i]) "/" to[i]; \
 	              f = folder(from[i]); g = folder(to[i]); \
 	              below = f != g ? floor[g] < floor[f] : test[from[i]] || number[to[i]] < number[from[i]]; \
 	              if (g == "oracle") below = 1; \

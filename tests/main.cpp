@@ -30,9 +30,9 @@ int main(int argc, char** argv) {
     const unsigned ran = Reporter::ran, failed = Reporter::failed;
     if (context.shouldExit() && ran == 0) return status;  // --help, --list-test-cases
     if (ran == 0) std::puts("no test ran");
-    if (statistical_checks > 0)
+    if (oracle::statistical_checks > 0)
         std::printf("%d statistical checks; a false alarm has a probability of at most %.1e\n",
-                    statistical_checks, statistical_checks * alpha);
+                    oracle::statistical_checks, oracle::alpha_spent);
     std::printf("%u passed, %u failed\n", ran - failed, failed);
     return ran == 0 || failed > 0 ? 1 : status;
 }

@@ -2,6 +2,7 @@
 #include "app/render.h"
 
 #include "app/replay.h"
+#include "base/moments.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
 #include "path/scenes.h"
@@ -102,15 +103,15 @@ TEST_CASE("direct: every estimator finds the same image; its parts are those of 
         Scene scene = scene_of(text);
         scene.size = {16, 8};
         // Ratio and regression: at 64 samples their bias is some thousandths of their noise.
-        Estimate reference;
+        oracle::Estimate reference;
         for (Estimator e : direct_estimators) {
             Moments means;
             for (uint64_t seed = 0; seed < 20; ++seed)
                 means.add(mean_of_pixels(
                     render(scene, direct_options(e, 100 * uint64_t(e) + seed, 64)).image)[1]);
-            const Estimate mean{means.mean, means.standard_error(), 19};
+            const oracle::Estimate mean{means.mean, means.standard_error(), 19};
             if (e == Estimator::stochastic) reference = mean;
-            const Verdict v = expect_equal(mean, reference);
+            const oracle::Verdict v = oracle::expect_equal(mean, reference);
             INFO("estimator ", int(e), ": ", v.text);
             CHECK((e == Estimator::stochastic || v.pass));
             CHECK(v.delta_min < 0.2);

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "base/moments.h"
 #include "base/rng.h"
 #include "oracle/expect.h"
 
@@ -151,7 +152,7 @@ TEST_CASE("the film's variances are those of the means: independent samples, and
             variance_of(film, independent ? VarianceFrom::samples : VarianceFrom::halves);
         Moments m;
         for (const auto& p : variance.pixels) m.add(double(p[0]));
-        EXPECT(expect_mean(4 / 45.0 / double(n), estimate(m)), 0.05);
+        EXPECT(oracle::expect_mean(4 / 45.0 / double(n), estimate(m)), 0.05);
         // No cancellation far from zero, no variance where there is none.
         const float offset_error = sizeof(real) == 4 ? 0.02f : 1e-6f;
         CHECK(std::abs(variance.at(7, 7)[1] / variance.at(7, 7)[0] - 1) < offset_error);

@@ -1,17 +1,19 @@
-// oracle/expect.h  verdicts of the oracle as checks of the running test case
+// oracle/expect.h  verdicts of the oracle as checks of the running test case of doctest
 #pragma once
 #include <doctest/doctest.h>
 
-#include "oracle/oracle.h"
+#include "oracle.h"
 
 // Of the running test case: a function of its name and of TEST_SEED.
-inline uint64_t seed_here() { return seed_of(doctest::getContextOptions()->currentTest->m_name); }
+inline uint64_t seed_here() {
+    return oracle::seed_of(doctest::getContextOptions()->currentTest->m_name);
+}
 
 // Passes, and would have seen an error of `largest`: a test that has grown blind fails, too.
-#define EXPECT(verdict, largest)                \
-    do {                                        \
-        const Verdict verdict_ = (verdict);     \
-        INFO(verdict_.text);                    \
-        CHECK(verdict_.pass);                   \
-        CHECK(verdict_.delta_min <= (largest)); \
+#define EXPECT(verdict, largest)                    \
+    do {                                            \
+        const oracle::Verdict verdict_ = (verdict); \
+        INFO(verdict_.text);                        \
+        CHECK(verdict_.pass);                       \
+        CHECK(verdict_.delta_min <= (largest));     \
     } while (false)

@@ -1,38 +1,52 @@
 // oracle/oracle.h  verdicts about random numbers, each with its significance and its power
 //
-// Point it at any renderer: it needs ../src/stats.h and the standard library.  Every check returns
-// a Verdict.  It refuses what is right with a probability of at most alpha = 1e-6 (0 where the
-// check is exact), and passes what is off by delta_min with a probability of 1e-3.  Nothing is
-// forgiven but rounding: 64 units of the type that the tested function returns.
+// Copy this one file to any renderer: it needs the standard library (C++20) alone, and all of it is
+// in namespace oracle.  Every check returns a Verdict.  It refuses what is right with a probability
+// of at most `significance` = 1e-6 (0 where the check is exact), and passes what is off by
+// delta_min with one of 1e-3.  Nothing is forgiven but rounding, which it measures.
 //
-//   Random random(seed_of("my sampler"));
-//   Verdict v = expect_mean(2 * pi / 3, 100000, [&] { return my_estimate(random); });
-//   if (!v.pass) std::puts(v.text.c_str());
+//   oracle::Random random(oracle::seed_of("cosine hemisphere"));
+//   oracle::Verdict v = oracle::expect_density(random, my_sample, my_pdf);
+//   if (!v.pass) std::puts(v.text.c_str());  // its first line says what is wrong
+//
+// README.md beside this file has every check with an example.
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cctype>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "base/stats.h"
+// A host may have variables called n or alpha.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
 
-inline constexpr double alpha = 1e-6;
+namespace oracle {
 
-struct Verdict {
+inline constexpr double pi = std::numbers::pi;
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct [[nodiscard]] Verdict {
     bool pass = false;
     double p = 1;          // two-sided; 1 if exact
     double delta_min = 0;  // smallest error seen with 99.9 % power; relative unless the truth is 0
-    std::string text;
+    std::string text;      // the first line says what was seen, and what is wrong
 
     // With what was tested before it, an equation if there is one.
     Verdict of(const std::string& what) const {
@@ -42,12 +56,45 @@ struct Verdict {
     }
 };
 
-// Checks that have used up their alpha.  Together they raise a false alarm with a probability of at
-// most statistical_checks * alpha.
-inline int statistical_checks = 0;
+// A point or direction in double, whatever the host's type.
+template <size_t N>
+using Point = std::array<double, N>;
+using Triple = Point<3>;
 
-// ---- Seeds
-// ---------------------------------------------------------------------------------------
+// Something that may have been forgotten or taken twice: a number in this very configuration (for
+// means), or a function of the direction or point (for densities).
+struct Factor {
+    std::string name;
+    std::function<double(const Triple&)> at;
+    Factor(std::string name_, double value)
+        : name(std::move(name_)), at([value](const Triple&) { return value; }) {}
+    Factor(std::string name_, std::function<double(const Triple&)> at_)
+        : name(std::move(name_)), at(std::move(at_)) {}
+};
+
+struct Options {
+    double alpha = 1e-6;  // probability of refusing what is right
+    double sees =
+        0.01;  // distortion of a density seen with 99.9 % power: the number of samples follows
+    uint64_t n = 0;         // number of samples, in place of what follows from `sees`
+    double tolerance = 0;   // relative error of the density that is known and forgiven
+    std::string name = {};  // begins the text, and names the picture
+    std::vector<Factor> factors = {};
+    Triple axis{0, 0, 0};  // of a hemisphere or lobe; (0,0,0): the mean of its samples
+};
+
+// Where failed checks draw what they saw: a folder, or "" for none.
+inline std::string pictures = [] {
+    const char* folder = std::getenv("ORACLE_PICTURES");
+    return std::string(folder ? folder : ".");
+}();
+
+// Checks that have used up their alpha, and the sum of it: a bound of the probability that any of
+// them raised a false alarm.
+inline int statistical_checks = 0;
+inline double alpha_spent = 0;
+
+// ---- Seeds --------------------------------------------------------------------------------------
 
 // A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one.
 // It lengthens the name: a multiple of a number added to the seed could be what Random adds, too,
@@ -72,63 +119,70 @@ struct Random {
         return x ^ (x >> 31);
     }
     double operator()() { return double(bits() >> 11) * 0x1p-53; }
+    double single() { return double(bits() >> 40) * 0x1p-24; }  // a float, never 1
 };
 
-// ---- What went wrong, in words
-// -------------------------------------------------------------------
+// ---- Probabilities ------------------------------------------------------------------------------
 
-inline std::string print(const char* format, auto... values) {
-    char text[512];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
+// Two-sided p-value of a standard normal z.
+inline double p_of_z(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
+
+// Regularised upper incomplete gamma function Q(a, x), a > 0, x >= 0: series below a + 1, continued
+// fraction (Lentz) above (Abramowitz, Stegun 6.5.29, 6.5.31).
+inline double gamma_q(double a, double x) {
+    if (x <= 0) return 1;
+    const double front = std::exp(a * std::log(x) - x - std::lgamma(a));
+    if (x < a + 1) {
+        double term = 1 / a, sum = term;
+        for (double k = a + 1; term > sum * 1e-17; ++k) sum += term *= x / k;
+        return 1 - front * sum;
+    }
+    double b = x + 1 - a, c = 1e300, d = 1 / b, fraction = d;
+    for (int i = 1; i < 10000; ++i) {
+        const double numerator = -i * (i - a);
+        b += 2;
+        d = 1 / (numerator * d + b);
+        c = b + numerator / c;
+        fraction *= c * d;
+        if (std::abs(c * d - 1) < 1e-15) break;
+    }
+    return front * fraction;
 }
 
-// The likely mistake behind a ratio of measured to expected known within `tolerance`, if it is a
-// classic one.
-inline std::string hint(double ratio, double tolerance) {
-    using std::numbers::pi;
-    const struct {
-        double ratio;
-        const char* mistake;
-    } classics[] = {
-        {pi, "pi: an albedo is not a BRDF, 1/pi forgotten"},
-        {1 / pi, "1/pi: divided by pi twice"},
-        {2, "2: counted twice (emission after a light sample, both sides of a light, half a pdf)"},
-        {0.5, "1/2: not divided by the probability of a choice among two, or half a domain"},
-        {2 / pi, "2/pi: mean of a cosine over the angle, not over the solid angle"},
-        {pi / 2, "pi/2: an angle uniform, not its cosine"},
-        {4, "4: a diameter for a radius, a sphere's area for its disc's"},
-        {0.25, "1/4: a radius for a diameter, a disc's area for its sphere's"},
-        {2 * pi, "2 pi: density of the angle phi forgotten"},
-        {1 / (2 * pi), "1/(2 pi): density of the angle phi twice"},
-        {2.0 / 3, "2/3: a cosine too many"},
-        {1.5, "3/2: a cosine too few"},
-        {-1, "-1: a sign"},
-    };
-    for (const auto& c : classics)
-        if (std::abs(ratio / c.ratio - 1) <= std::min(0.02, tolerance))
-            return print("; ratio %.4g, is it %s?", ratio, c.mistake);
-    return "";
+// P(X >= chi2) for chi-squared with k degrees of freedom.
+inline double p_of_chi2(double chi2, double k) { return gamma_q(k / 2, chi2 / 2); }
+
+// Regularised incomplete beta function I_x(a, b) by continued fraction (Abramowitz, Stegun 26.5.8).
+inline double beta_i(double a, double b, double x) {
+    if (x <= 0 || x >= 1) return x <= 0 ? 0 : 1;
+    if (x > (a + 1) / (a + b + 2)) return 1 - beta_i(b, a, 1 - x);
+    const double front = std::exp(a * std::log(x) + b * std::log1p(-x) + std::lgamma(a + b) -
+                                  std::lgamma(a) - std::lgamma(b)) /
+                         a;
+    double c = 1, d = 1 / (1 - (a + b) * x / (a + 1)), fraction = d;
+    for (int m = 1; m < 10000; ++m) {
+        const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+        d = 1 / (1 + even * d);
+        c = 1 + even / c;
+        fraction *= c * d;
+        const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+        d = 1 / (1 + odd * d);
+        c = 1 + odd / c;
+        fraction *= c * d;
+        if (std::abs(c * d - 1) < 1e-15) break;
+    }
+    return front * fraction;
 }
 
-inline std::string print_p(double p) { return p > 0 ? print("p = %.2g", p) : "p < 1e-300"; }
-
-inline Verdict failure(const std::string& why) {
-    return {false, 0, std::numeric_limits<double>::infinity(), why};
+// Two-sided p-value of Student's t with k degrees of freedom; normal from 10^7 on, where p differs
+// by t^4 / 4k = 2e-5 of itself at t = 5.
+inline double p_of_t(double t, double k) {
+    return k < 1e7 ? beta_i(k / 2, 0.5, k / (k + t * t)) : p_of_z(t);
 }
 
-// ---- Judgement
-// -----------------------------------------------------------------------------------
-
-// A mean, its standard error with df degrees of freedom, and the unit of rounding (half an ulp of
-// 1) of the numbers it is made of.
-struct Estimate {
-    double mean = 0, standard_error = 0;
-    double df = std::numeric_limits<double>::infinity();
-    double unit = 0x1p-53;
-};
-inline Estimate estimate(const Moments& m, double unit = 0x1p-53) {
-    return {m.mean, m.standard_error(), double(m.n) - 1, unit};
+// P(K >= k) of a Poisson variable with this mean.
+inline double p_at_least(double k, double mean) {
+    return k <= 0 ? 1 : mean <= 0 ? 0 : 1 - gamma_q(k, mean);
 }
 
 // x >= 0 where p(x), which falls from 1 to 0, has fallen to `target`.
@@ -145,200 +199,25 @@ double where_equal(P p, double target) {
 
 // Standard errors by which the mean must be off for the t-test to see it with 99.9 % power: by the
 // normal approximation of noncentral t (Johnson, Welch 1940) t_alpha + 3.09 sqrt(1 + t_alpha^2 / 2
-// df), which is 8.0 for many degrees.
-inline double smallest_shift(double df) {
-    static std::map<double, double> known;
-    const auto [at, is_new] = known.try_emplace(df, 0.0);
+// df), which is 8.0 for many degrees and alpha = 1e-6.
+inline double smallest_shift(double df, double significance = 1e-6) {
+    static std::map<std::pair<double, double>, double> known;
+    const auto [at, is_new] = known.try_emplace({df, significance}, 0.0);
     if (is_new) {
-        const double t = where_equal([&](double x) { return p_of_t(x, df); }, alpha);
+        const double t = where_equal([&](double x) { return p_of_t(x, df); }, significance);
         at->second = t + 3.09 * std::sqrt(1 + t * t / (2 * df));
     }
     return at->second;
 }
 
-// Two numbers, equal but for 64 roundings.
-inline bool same_but_rounding(double a, double b, double unit) {
-    return std::abs(a - b) <= 64 * unit * std::max(std::abs(a), std::abs(b));
-}
-
-inline Verdict judge_exact(const char* what, double value, double truth, double unit) {
-    Verdict v;
-    v.pass = same_but_rounding(value, truth, unit);
-    v.p = v.pass ? 1 : 0;
-    v.text = print("%s is constant, %.17g, %s %.17g", what, value,
-                   v.pass ? "as expected:" : "but expected was", truth);
-    if (!v.pass && truth != 0) v.text += hint(value / truth, 1e-3);
-    return v;
-}
-
-// The estimate's mean is `truth`: Student's t-test.
-inline Verdict judge(const char* what, const Estimate& e, double truth) {
-    if (!std::isfinite(e.mean) || !std::isfinite(e.standard_error))
-        return failure(print("%s %g +- %g is not finite", what, e.mean, e.standard_error));
-    if (!(e.df >= 1)) return failure("one number has no spread: no degree of freedom");
-    if (e.standard_error <= 8 * e.unit * std::abs(e.mean))
-        return judge_exact(what, e.mean, truth, e.unit);
-    const double t = (e.mean - truth) / e.standard_error;
-    Verdict v;
-    v.p = p_of_t(t, e.df);
-    ++statistical_checks;
-    v.pass = v.p > alpha || same_but_rounding(e.mean, truth, e.unit);
-    v.delta_min = smallest_shift(e.df) * e.standard_error / (truth != 0 ? std::abs(truth) : 1);
-    v.text = print(
-        "%s %.7g +- %.2g, expected %.7g: %+.2f sigma, %s; smallest bias seen with "
-        "99.9 %% power: ",
-        what, e.mean, e.standard_error, truth, t, print_p(v.p).c_str());
-    v.text += truth != 0 ? print("%.2g %%", 100 * v.delta_min) : print("%.2g", v.delta_min);
-    if (!v.pass && truth != 0)
-        v.text += hint(e.mean / truth, 5 * e.standard_error / std::abs(truth));
-    return v;
-}
-
-// ---- Means
-// ---------------------------------------------------------------------------------------
-
-// Half an ulp of 1 of the number that f returns.
-template <class Number>
-double unit_of(Number) {
-    return double(std::numeric_limits<Number>::epsilon()) / 2;
-}
-
-// Numbers drawn, and what makes their mean untrustworthy.
-struct Draws {
-    Moments moments;
-    std::vector<double> values;
-    double unit = 0x1p-53;
-
-    template <class Number>
-    void add(Number number) {
-        if constexpr (std::is_floating_point_v<Number>) unit = unit_of(number);
-        values.push_back(double(number));
-        moments.add(double(number));
-    }
-
-    bool constant() const {
-        const auto [least, most] = std::minmax_element(values.begin(), values.end());
-        return same_but_rounding(*least, *most, unit);
-    }
-
-    // Index xi of the tail, P(|x - mean| > t) ~ t^(-1/xi), from the k farthest numbers (Hill 1975);
-    // its standard error is xi / sqrt(k).  Variance is infinite from 1/2 on.
-    double tail_index(size_t k) const {
-        std::vector<double> far;
-        for (double x : values) far.push_back(std::abs(x - moments.mean));
-        std::nth_element(far.begin(), far.begin() + long(k), far.end(), std::greater<>());
-        double sum = 0;
-        for (size_t i = 0; i < k; ++i) sum += std::log(far[i] / far[k]);
-        return far[k] > 0 ? sum / double(k) : 0;
-    }
-
-    // Whether the tail is that of an infinite variance, as far as 400 numbers can tell: xi > 0.4,
-    // and among the farthest of them still within 5 standard errors of 1/2, which bounded lumps are
-    // not.
-    bool heavy() const {
-        const size_t k = 400;
-        if (values.size() < 100 * k || tail_index(k) <= 0.4) return false;
-        return tail_index(k / 4) * (1 + 5 / std::sqrt(k / 4)) > 0.5 &&
-               tail_index(k / 16) * (1 + 5 / std::sqrt(k / 16)) > 0.5;
-    }
-
-    // Why the mean cannot be judged; empty if it can.  The t-test keeps its alpha within a factor
-    // of 2 from n = 1000 skewness^2 on (measured with Bernoulli trials of 1 %).  A sample of n
-    // normal numbers has a skewness of 0 +- sqrt(6 / n): five of those are no evidence.
-    std::string problem() const {
-        const double n = double(moments.n);
-        if (values.empty()) return "no sample at all";
-        for (size_t i = 0; i < values.size(); ++i)
-            if (!std::isfinite(values[i]))
-                return print("sample %zu is %g, not finite", i, values[i]);
-        if (constant()) return "";
-        if (values.size() < 2) return "one sample has no spread";
-        const double skewness = std::max(0.0, std::abs(moments.skewness()) - 5 * std::sqrt(6 / n));
-        const double needed = 1000 * skewness * skewness;
-        if (n < needed)
-            return print(
-                "n = %.0f is too small for a skewness of %.2g: take %.0f or more; if it "
-                "grows with n, the variance is infinite",
-                n, moments.skewness(), needed);
-        if (heavy())
-            return print("the tail falls as t^-%.1f: the variance may be infinite",
-                         1 / tail_index(400));
-        return "";
-    }
-};
-
-template <class F>
-Draws draw(uint64_t n, F f) {
-    Draws draws;
-    for (uint64_t i = 0; i < n; ++i) draws.add(f());
-    return draws;
-}
-
-inline Verdict judge(const char* what, const Draws& d, double truth) {
-    if (const std::string why = d.problem(); !why.empty()) return failure(why);
-    if (d.constant()) return judge_exact(what, d.moments.mean, truth, d.unit);
-    return judge(what, estimate(d.moments, d.unit), truth);
-}
-
-// The mean of n independent draws f() is `truth`.
-template <class F>
-Verdict expect_mean(double truth, uint64_t n, F f) {
-    return judge("mean", draw(n, f), truth);
-}
-inline Verdict expect_mean(double truth, const Estimate& e) { return judge("mean", e, truth); }
-
-// Two independent estimates have the same mean: Welch's test (1947).  Exact if both are constant.
-inline Verdict expect_equal(const Estimate& a, const Estimate& b) {
-    const double va = a.standard_error * a.standard_error, vb = b.standard_error * b.standard_error;
-    const double df = va + vb > 0 ? (va + vb) * (va + vb) / (va * va / a.df + vb * vb / b.df) : 1;
-    const Estimate first{a.mean, std::sqrt(va + vb), df, std::max(a.unit, b.unit)};
-    return judge("first of two means", first, b.mean);
-}
-
-// f() and g() have the same mean: n independent draws of each.
-template <class F, class G>
-Verdict expect_equal(F f, G g, uint64_t n) {
-    const Draws a = draw(n, f), b = draw(n, g);
-    if (const std::string why = a.problem(); !why.empty()) return failure(why).of("first");
-    if (const std::string why = b.problem(); !why.empty()) return failure(why).of("second");
-    return expect_equal(estimate(a.moments, a.unit), estimate(b.moments, b.unit));
-}
-
-// Quasi-Monte Carlo: f(r) is the whole estimate of the r-th independent randomisation of the point
-// set.  Its samples depend on each other, so that a replicate is one number, taken as normal.
-template <class F>
-Verdict expect_replicates(double truth, int replicates, F f) {
-    Draws d;
-    for (int r = 0; r < replicates; ++r) d.add(f(r));
-    if (0 < replicates && replicates < 16 && !d.constant())
-        return failure(print("%d replicates show no significance of 1e-6: take 16", replicates));
-    return judge("mean of replicates", d, truth);
-}
-
-// Consistent estimators: the bias of f(n), its error from n samples (less that of an unbiased
-// estimate from the same samples, if this cancels noise), is constant / n + O(1 / n^2).  With B(n)
-// = n f(n), 2 B(2n) - B(n) is `constant` up to O(1 / n^2).
-template <class F>
-Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f) {
-    const Draws a = draw(trials, [&] { return double(n) * f(n); });
-    const Draws b = draw(trials, [&] { return double(2 * n) * f(2 * n); });
-    if (const std::string why = a.problem(); !why.empty()) return failure(why);
-    if (const std::string why = b.problem(); !why.empty()) return failure(why);
-    const double error = std::hypot(2 * b.moments.standard_error(), a.moments.standard_error());
-    const Estimate limit{2 * b.moments.mean - a.moments.mean, error, double(trials) - 1};
-    return judge("limit of n * bias", limit, constant);
-}
-
-// ---- Distributions
-// -------------------------------------------------------------------------------
-
 // Distortion sqrt(sum (p - q)^2 / q) of the cells' probabilities that chi-squared over n samples
 // sees with 99.9 % power: from the exact noncentral distribution, a Poisson mixture.
-inline double smallest_distortion(int df, double n) {
-    static std::map<int, double> known;
-    const auto [at, is_new] = known.try_emplace(df, 0.0);
+inline double smallest_distortion(int df, double n, double significance = 1e-6) {
+    static std::map<std::pair<int, double>, double> known;
+    const auto [at, is_new] = known.try_emplace({df, significance}, 0.0);
     if (is_new) {
-        const double critical = where_equal([&](double x) { return p_of_chi2(x, df); }, alpha);
+        const double critical =
+            where_equal([&](double x) { return p_of_chi2(x, df); }, significance);
         auto missed = [&](double noncentrality) {
             double weight = std::exp(-noncentrality / 2), sum = 0;
             for (int j = 0; j < 400; weight *= noncentrality / 2 / ++j)
@@ -350,40 +229,550 @@ inline double smallest_distortion(int df, double n) {
     return std::sqrt(at->second / n);
 }
 
+// ---- What went wrong, in words ------------------------------------------------------------------
+
+inline std::string say(const char* format, auto... values) {
+    char text[512];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+inline std::string say_p(double p) { return p > 0 ? say("p = %.2g", p) : "p < 1e-300"; }
+inline std::string percent(double x) { return say("%.3g %%", 100 * x); }
+
+inline Verdict failure(const std::string& why) { return {false, 0, infinity, why}; }
+
+// The number in words, if it is one of those that are forgotten.
+inline std::string constant_named(double x, double tolerance) {
+    const struct {
+        double value;
+        const char* name;
+    } known[] = {{1 / pi, "1/pi"},  {pi, "pi"},
+                 {2 * pi, "2 pi"},  {1 / (2 * pi), "1/(2 pi)"},
+                 {4 * pi, "4 pi"},  {1 / (4 * pi), "1/(4 pi)"},
+                 {pi / 2, "pi/2"},  {2 / pi, "2/pi"},
+                 {pi * pi, "pi^2"}, {1 / (pi * pi), "1/pi^2"},
+                 {0.5, "1/2"},      {0.25, "1/4"},
+                 {2.0 / 3, "2/3"},  {1.5, "3/2"},
+                 {1.0 / 3, "1/3"},  {0.75, "3/4"},
+                 {4.0 / 3, "4/3"}};
+    const char* name = nullptr;
+    for (const auto& k : known)
+        if (std::abs(x / k.value - 1) <= tolerance) {
+            if (name) return "";  // two are as near
+            name = k.name;
+        }
+    return name ? name : "";
+}
+inline std::string times(double x, double tolerance) {
+    if (std::abs(x / 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (twice)", x);
+    if (std::abs(x * 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (half)", x);
+    if (std::abs(x / 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (four times)", x);
+    if (std::abs(x * 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/4)", x);
+    const std::string name = tolerance <= 0.005 ? constant_named(x, tolerance) : "";
+    return say("%.4g", x) + (name.empty() ? "" : " (" + name + ")");
+}
+
+// Why an estimate may be `ratio` times the truth, known within `tolerance`: the causes that explain
+// it, unless there are many.
+inline std::string cause_of(double ratio, double tolerance, const std::vector<Factor>& factors) {
+    if (!(tolerance < 0.05)) return "";
+    const double close = std::max(1e-9, std::min(0.02, tolerance));
+    std::vector<std::string> causes;
+    auto may_be = [&](double x, const std::string& cause) {
+        if (std::abs(ratio / x - 1) <= close) causes.push_back(cause);
+    };
+    for (const Factor& f : factors) {
+        const double x = f.at({});
+        if (std::abs(x - 1) <= 3 * close || !(std::abs(x) > 0)) continue;
+        may_be(1 / x, f.name + " forgotten");
+        may_be(x, "a factor " + f.name + " too many, or 1/(" + f.name + ") forgotten");
+        may_be(1 / (x * x), "divided by " + f.name + " in place of multiplied");
+        may_be(x * x, "multiplied by " + f.name + " in place of divided");
+        if (x > 0) may_be(std::sqrt(x), "a root of " + f.name);
+        if (x > 0) may_be(1 / std::sqrt(x), "a root of " + f.name + " in place of it");
+    }
+    may_be(pi, "1/pi forgotten (an albedo is not a BRDF)");
+    may_be(1 / pi, "divided by pi twice, or pi forgotten");
+    may_be(2 * pi, "1/(2 pi) forgotten");
+    may_be(1 / (2 * pi), "2 pi forgotten, or divided by it twice");
+    may_be(4 * pi, "1/(4 pi) forgotten");
+    may_be(1 / (4 * pi), "4 pi forgotten, or divided by it twice");
+    may_be(-1, "the sign reversed");
+    // 2 and 1/2 have too many: counted twice, a choice not divided by, a half domain.
+    if (causes.empty() || causes.size() > 3) return "";
+    std::string text = "; looks like " + causes[0];
+    for (size_t i = 1; i < causes.size(); ++i) text += " or " + causes[i];
+    return text;
+}
+
+// ---- Judgement ----------------------------------------------------------------------------------
+
+// A mean, its standard error with df degrees of freedom, and the unit of rounding (half an ulp of
+// 1) of the numbers it is made of.
+struct Estimate {
+    double mean = 0, standard_error = 0;
+    double df = infinity;
+    double unit = 0x1p-53;
+};
+
+// Two numbers, equal but for 64 roundings.
+inline bool same_but_rounding(double a, double b, double unit, double roundings = 64) {
+    return std::abs(a - b) <= roundings * unit * std::max(std::abs(a), std::abs(b));
+}
+
+inline Verdict judge_exact(const char* what, double value, double truth, double unit,
+                           const Options& o = {}) {
+    Verdict v;
+    v.pass = same_but_rounding(value, truth, unit);
+    v.p = v.pass ? 1 : 0;
+    v.text = say("%s is constant, %.17g, %s %.17g", what, value,
+                 v.pass ? "as expected:" : "but expected was", truth);
+    if (v.pass) return v;
+    if (value == 0) {
+        v.text = say("%s is 0 in every sample, expected %.7g", what, truth);
+    } else if (same_but_rounding(value, truth, unit, 1e5)) {
+        v.text += say(": off by %.1e, which could be rounding%s", value / truth - 1,
+                      unit > 1e-10 ? ": take double" : "");
+    } else if (truth != 0) {
+        v.text +=
+            "; ratio " + times(value / truth, 1e-6) + cause_of(value / truth, 1e-6, o.factors);
+    }
+    return v;
+}
+
+// The estimate's mean is `truth`: Student's t-test.
+inline Verdict judge(const char* what, const Estimate& e, double truth, const Options& o = {}) {
+    if (!std::isfinite(e.mean) || !std::isfinite(e.standard_error))
+        return failure(say("%s %g +- %g is not finite", what, e.mean, e.standard_error));
+    if (!(e.df >= 1)) return failure("one number has no spread: no degree of freedom");
+    if (e.standard_error <= 8 * e.unit * std::abs(e.mean))
+        return judge_exact(what, e.mean, truth, e.unit, o);
+    const double t = (e.mean - truth) / e.standard_error, ratio = e.mean / truth;
+    Verdict v;
+    v.p = p_of_t(t, e.df);
+    ++statistical_checks;
+    alpha_spent += o.alpha;
+    v.pass = v.p > o.alpha || same_but_rounding(e.mean, truth, e.unit);
+    v.delta_min =
+        smallest_shift(e.df, o.alpha) * e.standard_error / (truth != 0 ? std::abs(truth) : 1);
+    const std::string sigma =
+        std::abs(t) < 1e4 ? say("%+.2f sigma", t)
+                          : say("%.1e of itself away", std::abs(e.mean - truth) / std::abs(e.mean));
+    v.text = say("%s %.7g +- %.2g, expected %.7g: %s, %s", what, e.mean, e.standard_error, truth,
+                 sigma.c_str(), say_p(v.p).c_str());
+    if (!v.pass && same_but_rounding(e.mean, truth, e.unit, 1e5)) {
+        v.text += say("; could be rounding%s", e.unit > 1e-10 ? ": take double" : "");
+    } else if (!v.pass && truth != 0) {
+        const double within = 5 * e.standard_error / std::abs(e.mean);
+        v.text += "; ratio " + times(ratio, within) + cause_of(ratio, within, o.factors);
+    }
+    const std::string seen = truth != 0 ? percent(v.delta_min) : say("%.2g", v.delta_min);
+    v.text += (v.pass ? "; " : "\n") + ("smallest bias seen with 99.9 % power: " + seen);
+    return v;
+}
+
+// ---- Pictures -----------------------------------------------------------------------------------
+
+// A picture in SVG of a width and height in pixels; y points down.
+struct Drawing {
+    double width, height;
+    std::string body = {};
+
+    void rectangle(double x, double y, double w, double h, const std::string& style) {
+        body += say("<rect x='%.2f' y='%.2f' width='%.2f' height='%.2f' style='%s'/>\n", x, y, w, h,
+                    style.c_str());
+    }
+    void text(double x, double y, const std::string& words) {
+        body += say("<text x='%.1f' y='%.1f'>", x, y);
+        for (char c : words) body += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+        body += "</text>\n";
+    }
+    void curve(const std::vector<std::pair<double, double>>& points, const std::string& style) {
+        body += "<polyline points='";
+        for (const auto& [x, y] : points) body += say("%.1f,%.1f ", x, y);
+        body += "' style='fill:none;" + style + "'/>\n";
+    }
+
+    // Into the folder of pictures; "" or "\nsee PATH".
+    std::string written(const std::string& name) const {
+        if (pictures.empty()) return "";
+        static int unnamed = 0;
+        std::string file;
+        for (char c : name.empty() ? say("check-%d", ++unnamed) : name)
+            file += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
+        std::error_code ignored;
+        std::filesystem::create_directories(pictures, ignored);
+        const std::string path = pictures + "/oracle-" + file.substr(0, 100) + ".svg";
+        std::ofstream out(path);
+        out << say("<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f' ", width,
+                   height)
+            << "font-family='sans-serif' font-size='12' shape-rendering='crispEdges'>\n<rect "
+               "width='100%' height='100%' fill='white'/>\n"
+            << body << "</svg>\n";
+        return out ? "\nsee " + path : "\n" + path + ": cannot be written";
+    }
+};
+
+// White at 0, black at 1; or blue at -1, white at 0, red at 1.
+inline std::string grey(double x) {
+    const int level = int(255 * (1 - std::clamp(x, 0.0, 1.0)));
+    return say("fill:rgb(%d,%d,%d)", level, level, level);
+}
+inline std::string blue_white_red(double x) {
+    const int fade = int(255 * (1 - std::min(1.0, std::abs(x))));
+    return x < 0 ? say("fill:rgb(%d,%d,255)", fade, fade) : say("fill:rgb(255,%d,%d)", fade, fade);
+}
+
+// ---- Means --------------------------------------------------------------------------------------
+
+// Half an ulp of 1 of the number that f returns.
+template <class Number>
+double unit_of(Number) {
+    if constexpr (std::is_floating_point_v<Number>)
+        return double(std::numeric_limits<Number>::epsilon()) / 2;
+    else
+        return 0x1p-53;
+}
+
+// Numbers drawn, and what makes their mean untrustworthy.
+struct Draws {
+    std::vector<double> values = {};
+    double unit = 0x1p-53;
+
+    template <class Number>
+    void add(Number number) {
+        unit = unit_of(number);
+        values.push_back(double(number));
+    }
+    double n() const { return double(values.size()); }
+
+    // Mean and centred moments, by two passes.
+    double mean() const {
+        double sum = 0;
+        for (double x : values) sum += x;
+        const double first = sum / n();
+        sum = 0;
+        for (double x : values) sum += x - first;
+        return first + sum / n();
+    }
+    double moment(int power) const {
+        const double m = mean();
+        double sum = 0;
+        for (double x : values) sum += power == 2 ? (x - m) * (x - m) : (x - m) * (x - m) * (x - m);
+        return sum / n();
+    }
+    double variance() const { return n() > 1 ? moment(2) * n() / (n() - 1) : 0; }
+    double skewness() const {
+        const double m2 = moment(2);
+        return m2 > 0 ? moment(3) / (m2 * std::sqrt(m2)) : 0;
+    }
+    Estimate estimate() const { return {mean(), std::sqrt(variance() / n()), n() - 1, unit}; }
+
+    bool constant() const {
+        const auto [least, most] = std::minmax_element(values.begin(), values.end());
+        return same_but_rounding(*least, *most, unit);
+    }
+
+    // Index xi of the tail, P(|x - mean| > t) ~ t^(-1/xi), from the k farthest numbers (Hill 1975);
+    // its standard error is xi / sqrt(k).  Variance is infinite from 1/2 on.
+    double tail_index(size_t k) const {
+        const double m = mean();
+        std::vector<double> far;
+        for (double x : values) far.push_back(std::abs(x - m));
+        std::nth_element(far.begin(), far.begin() + long(k), far.end(), std::greater<>());
+        double sum = 0;
+        for (size_t i = 0; i < k; ++i) sum += std::log(far[i] / far[k]);
+        return far[k] > 0 ? sum / double(k) : 0;
+    }
+
+    // Whether the tail is that of an infinite variance, as far as k numbers can tell: xi > 0.4,
+    // and among the farthest of them still within 5 standard errors of 1/2, which bounded lumps are
+    // not.
+    static constexpr size_t tail = 400;
+    bool heavy() const {
+        if (values.size() < 100 * tail || tail_index(tail) <= 0.4) return false;
+        for (size_t k : {tail / 4, tail / 16})
+            if (tail_index(k) * (1 + 5 / std::sqrt(double(k))) <= 0.5) return false;
+        return true;
+    }
+
+    // Why the mean cannot be judged; empty if it can.  The t-test keeps its alpha within a factor
+    // of 2 from n = 1000 skewness^2 on (measured with Bernoulli trials of 1 %).  A sample of n
+    // normal numbers has a skewness of 0 +- sqrt(6 / n): five of those are no evidence.
+    std::string problem() const {
+        if (values.empty()) return "no sample at all";
+        for (size_t i = 0; i < values.size(); ++i)
+            if (!std::isfinite(values[i])) return say("sample %zu is %g, not finite", i, values[i]);
+        if (constant()) return "";
+        if (values.size() < 2) return "one sample has no spread";
+        if (heavy())
+            return say(
+                "the variance is infinite: the tail falls as t^-%.1f (largest value %g, mean %g)",
+                1 / tail_index(tail), *std::max_element(values.begin(), values.end()), mean());
+        const double s = skewness(),
+                     needed =
+                         1000 * std::pow(std::max(0.0, std::abs(s) - 5 * std::sqrt(6 / n())), 2);
+        if (n() < needed)
+            return say(
+                "n = %.0f is too small for a skewness of %.2g: take %.0f or more; if it "
+                "grows with n, the variance is infinite",
+                n(), s, needed);
+        return "";
+    }
+
+    // The running mean, and the band in which it would be with a mean of `truth`.
+    Drawing drawing(double truth, double significance) const {
+        const Estimate e = estimate();
+        const double t = where_equal([&](double x) { return p_of_t(x, e.df); }, significance);
+        std::vector<std::pair<double, double>> running, above, below;
+        const double deviation = std::sqrt(variance());
+        const double half = std::max(1.5 * std::abs(e.mean - truth), 3 * t * e.standard_error);
+        auto add = [&](auto& curve, double i, double y) {
+            curve.emplace_back(60 + 520 * i / n(),
+                               180 - 140 * std::clamp((y - truth) / half, -1.1, 1.1));
+        };
+        double sum = 0;
+        const size_t step = std::max<size_t>(1, values.size() / 260);
+        for (size_t i = 0; i < values.size(); ++i) {
+            sum += values[i];
+            if ((i + 1) % step != 0) continue;
+            const double k = double(i + 1), band = t * deviation / std::sqrt(k);
+            add(running, k, sum / k);
+            add(above, k, truth + band);
+            add(below, k, truth - band);
+        }
+        Drawing d{600, 350};
+        d.curve({{60, 180}, {580, 180}}, "stroke:black");
+        d.curve(above, "stroke:grey");
+        d.curve(below, "stroke:grey");
+        d.curve(running, "stroke:rgb(200,0,0);stroke-width:2");
+        d.text(60, 20,
+               say("running mean (red) of %.0f samples; grey: where it is with a mean of %.6g", n(),
+                   truth));
+        d.text(2, 184, say("%.4g", truth));
+        d.text(2, 44, say("%.4g", truth + half));
+        d.text(2, 324, say("%.4g", truth - half));
+        d.text(500, 345, say("n = %.0f", n()));
+        return d;
+    }
+};
+
+template <class F>
+Draws draw(uint64_t n, F f) {
+    Draws draws;
+    for (uint64_t i = 0; i < n; ++i) draws.add(f());
+    return draws;
+}
+
+inline Verdict judge(const char* what, const Draws& d, double truth, const Options& o = {}) {
+    Verdict v;
+    if (const std::string why = d.problem(); !why.empty())
+        v = failure(why);
+    else if (d.constant())
+        v = judge_exact(what, d.mean(), truth, d.unit, o);
+    else
+        v = judge(what, d.estimate(), truth, o);
+    if (!v.pass && d.n() >= 2 && std::isfinite(d.variance()))
+        v.text += d.drawing(truth, o.alpha).written(o.name);
+    return o.name.empty() ? v : v.of(o.name);
+}
+
+// The mean of n independent draws f() is `truth`.
+template <class F>
+Verdict expect_mean(double truth, uint64_t n, F f, const Options& o = {}) {
+    return judge("mean", draw(n, f), truth, o);
+}
+inline Verdict expect_mean(double truth, const Estimate& e, const Options& o = {}) {
+    return judge("mean", e, truth, o);
+}
+
+// Two independent estimates have the same mean: Welch's test (1947).  Exact if both are constant.
+inline Verdict expect_equal(const Estimate& a, const Estimate& b, const Options& o = {}) {
+    const double va = a.standard_error * a.standard_error, vb = b.standard_error * b.standard_error;
+    const double df = va + vb > 0 ? (va + vb) * (va + vb) / (va * va / a.df + vb * vb / b.df) : 1;
+    const Estimate first{a.mean, std::sqrt(va + vb), df, std::max(a.unit, b.unit)};
+    return judge("first of two means", first, b.mean, o);
+}
+
+// f() and g() have the same mean: n independent draws of each.
+template <class F, class G>
+Verdict expect_equal(F f, G g, uint64_t n, const Options& o = {}) {
+    const Draws a = draw(n, f), b = draw(n, g);
+    if (const std::string why = a.problem(); !why.empty()) return failure(why).of("first");
+    if (const std::string why = b.problem(); !why.empty()) return failure(why).of("second");
+    return expect_equal(a.estimate(), b.estimate(), o);
+}
+
+// Quasi-Monte Carlo: f(r) is the whole estimate of the r-th independent randomisation of the point
+// set.  Its samples depend on each other, so that a replicate is one number, taken as normal.
+template <class F>
+Verdict expect_replicates(double truth, int replicates, F f, const Options& o = {}) {
+    Draws d;
+    for (int r = 0; r < replicates; ++r) d.add(f(r));
+    if (0 < replicates && replicates < 16 && !d.constant())
+        return failure(say("%d replicates show no significance of 1e-6: take 16", replicates));
+    return judge("mean of replicates", d, truth, o);
+}
+
+// Consistent estimators: the bias of f(n), its error from n samples (less that of an unbiased
+// estimate from the same samples, if this cancels noise), is constant / n + O(1 / n^2).  With B(n)
+// = n f(n), 2 B(2n) - B(n) is `constant` up to O(1 / n^2).
+template <class F>
+Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
+                          const Options& o = {}) {
+    const Draws a = draw(trials, [&] { return double(n) * f(n); });
+    const Draws b = draw(trials, [&] { return double(2 * n) * f(2 * n); });
+    if (const std::string why = a.problem(); !why.empty()) return failure(why);
+    if (const std::string why = b.problem(); !why.empty()) return failure(why);
+    const double error = std::hypot(2 * b.estimate().standard_error, a.estimate().standard_error);
+    const Estimate limit{2 * b.mean() - a.mean(), error, double(trials) - 1};
+    return judge("limit of n * bias", limit, constant, o);
+}
+
+// ---- Counts and choices -------------------------------------------------------------------------
+
 // Counts follow the probabilities: chi-squared, on cells where 100 or more are expected, so that
-// its p-value is good down to 1e-6.
+// its p-value is good down to 1e-6.  `variances`: of the probabilities, where they are estimates.
 template <class Counts, class Probabilities>
-Verdict expect_counts(const Counts& counts, const Probabilities& probabilities) {
-    double n = 0, chi2 = 0, fewest = std::numeric_limits<double>::infinity();
+Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
+                      const Options& o = {}, const std::vector<double>& variances = {}) {
+    double n = 0, chi2 = 0, fewest = infinity;
     int cells = 0;
-    for (uint64_t count : counts) n += double(count);
+    for (auto count : counts) n += double(count);
     if (n == 0) return failure("no sample at all");
     for (size_t i = 0; i < std::size(counts); ++i) {
         const double expected = n * double(probabilities[i]), seen = double(counts[i]);
         if (expected <= 1e-6) {
             if (seen > 0)
-                return failure(print("%.0f samples of %.0f where the density is 0", seen, n));
+                return failure(
+                    say("%.0f samples of %.0f in cell %zu, where the density is 0", seen, n, i));
             continue;
         }
         fewest = std::min(fewest, expected);
-        chi2 += (seen - expected) * (seen - expected) / expected;
+        const double known = variances.empty() ? 0 : n * n * variances[i];
+        chi2 += (seen - expected) * (seen - expected) / (expected + known);
         ++cells;
     }
     if (cells < 2) return failure("fewer than two cells");
     Verdict v;
     v.p = p_of_chi2(chi2, cells - 1);
-    if (v.p > alpha && fewest < 100)
-        return failure(print("n = %.0f is too small: %.1f expected in a cell, take %.0f", n, fewest,
-                             std::ceil(100 * n / fewest)));
+    if (v.p > o.alpha && fewest < 100)
+        return failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n, fewest,
+                           std::ceil(100 * n / fewest)));
     ++statistical_checks;
-    v.pass = v.p > alpha;
-    v.delta_min = smallest_distortion(cells - 1, n);
-    v.text = print(
-        "chi2 = %.1f on %d cells (n = %.0f), %s; smallest distortion seen with "
-        "99.9 %% power: %.2g %%",
-        chi2, cells, n, print_p(v.p).c_str(), 100 * v.delta_min);
-    return v;
+    alpha_spent += o.alpha;
+    v.pass = v.p > o.alpha;
+    v.delta_min = smallest_distortion(cells - 1, n, o.alpha);
+    v.text = say("chi2 = %.1f on %d cells (n = %.0f), %s; smallest distortion seen with "
+                 "99.9 %% power: ",
+                 chi2, cells, n, say_p(v.p).c_str()) +
+             percent(v.delta_min);
+    return o.name.empty() ? v : v.of(o.name);
 }
+
+// choose(u) is an index below count, or a negative one for none, drawn with probability(index):
+// they sum to 1 less the part that fails; chi-squared over the indices, rare ones together.
+template <class Choose, class Probability>
+Verdict expect_choice(Random& random, Choose choose, Probability probability, size_t count,
+                      const Options& o = {}) {
+    const uint64_t n =
+        o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
+    std::vector<double> expected(count);
+    double total = 0;
+    auto done = [&](const std::string& why) {
+        return o.name.empty() ? failure(why) : failure(why).of(o.name);
+    };
+    for (size_t i = 0; i < count; ++i) {
+        expected[i] = double(probability(int(i)));
+        if (!(expected[i] >= 0 && std::isfinite(expected[i])))
+            return done(say("the probability of index %zu is %g", i, expected[i]));
+        total += expected[i];
+    }
+    std::vector<double> seen(count);
+    double none = 0;
+    for (uint64_t k = 0; k < n; ++k) {
+        const double u = random();
+        const auto index = static_cast<long long>(choose(u));
+        if (index >= static_cast<long long>(count))
+            return done(
+                say("index %lld of %zu chosen, at u = %.9g: beyond the last", index, count, u));
+        index < 0 ? ++none : ++seen[size_t(index)];
+    }
+    const double unit = unit_of(probability(0));
+    const double samples = double(n);
+    if (none == 0 && std::abs(total - 1) > std::max(64 * unit * double(count), 1e-9) + o.tolerance)
+        return done("the probabilities sum to " + times(total, 1e-4) + ", expected 1");
+    // Whether the counts are those of other probabilities, of the same sum.
+    auto fits = [&](const std::vector<double>& p) {
+        double chi2 = 0, cells = 0, rare = 0, rare_seen = 0;
+        auto cell = [&](double mean, double number) {
+            if (!(mean > 0)) return chi2 += number > 0 ? infinity : 0.0;
+            ++cells;
+            return chi2 += (number - mean) * (number - mean) / mean;
+        };
+        for (size_t i = 0; i < p.size(); ++i)
+            if (p[i] * samples >= 100 || p[i] == 0)
+                cell(p[i] * samples, seen[i]);
+            else
+                rare += p[i] * samples, rare_seen += seen[i];
+        double failing = samples;
+        for (double q : p) failing -= q * samples;
+        if (none > 0 || failing > 1e-6 * samples) rare += std::max(0.0, failing), rare_seen += none;
+        if (rare > 0 || rare_seen > 0) cell(rare, rare_seen);
+        return std::pair{chi2, cells};
+    };
+    const auto [chi2, cells] = fits(expected);
+    Verdict v;
+    v.p = cells > 1 ? p_of_chi2(chi2, cells - 1) : chi2 == 0 ? 1 : 0;
+    ++statistical_checks;
+    alpha_spent += o.alpha;
+    v.pass = v.p > o.alpha;
+    v.delta_min = smallest_distortion(int(std::max(1.0, cells - 1)), samples, o.alpha);
+    v.text = say("%.0f choices among %zu, chi2 = %.1f on %.0f cells, %s; smallest distortion seen "
+                 "with 99.9 %% power: ",
+                 samples, count, chi2, cells, say_p(v.p).c_str()) +
+             percent(v.delta_min);
+    if (!v.pass) {
+        size_t worst = 0;
+        double most = -1;
+        for (size_t i = 0; i < count; ++i) {
+            const double mean = expected[i] * samples;
+            const double off = mean > 0      ? std::abs(seen[i] - mean) / std::sqrt(mean)
+                               : seen[i] > 0 ? infinity
+                                             : 0;
+            if (off > most) most = off, worst = i;
+        }
+        std::string first =
+            expected[worst] > 0
+                ? say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
+                      seen[worst] / (expected[worst] * samples), expected[worst])
+                : say("index %zu is chosen, though its probability is 0", worst);
+        auto explained = [&](std::vector<double> p, const char* cause) {
+            const auto [other, other_cells] = fits(p);
+            if (first.find("looks") == std::string::npos && other_cells > 1 &&
+                p_of_chi2(other, other_cells - 1) > 1e-4)
+                first += std::string("; looks like ") + cause;
+        };
+        if (seen[worst] == 0 && expected[worst] > 0)
+            first = say("index %zu is never chosen, though its probability is %.4g", worst,
+                        expected[worst]);
+        if (count == 2)
+            explained({expected.rbegin(), expected.rend()}, "the two exchanged (p for 1 - p)");
+        auto turned = expected;
+        std::rotate(turned.begin(), turned.end() - 1, turned.end());
+        explained(turned, "the index one too large");
+        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+        explained(turned, "the index one too small");
+        explained(std::vector<double>(count, total / double(count)), "a uniform choice");
+        if (count > 2) explained({expected.rbegin(), expected.rend()}, "the order reversed");
+        v.text = first + "\n" + v.text;
+    }
+    return o.name.empty() ? v : v.of(o.name);
+}
+
+// ---- Quadrature ---------------------------------------------------------------------------------
 
 // Gauss and Kronrod's rules of 7 and 15 points over [a,b].
 struct Rule {
@@ -434,209 +823,1757 @@ struct Agreement {
     bool halves = true;
 };
 
-// Integral of f over [a,b], halved until it agrees.
-template <class F>
-double integral(const F& f, double a, double b, const Agreement& g, const Rule& whole, int depth) {
+// Integral of f over [a,b], halved until it agrees; once `enough()`, only as well as it is known.
+template <class F, class Enough>
+double integral(const F& f, double a, double b, const Agreement& g, const Enough& enough,
+                const Rule& whole, int depth) {
     const double rules = std::max(std::abs(whole.kronrod - whole.gauss), whole.ends);
     const double agree = std::max(g.tolerance, g.noise * std::abs(whole.kronrod));
-    if (depth == 0 || (!g.halves && rules <= agree)) return whole.kronrod;
+    if (depth == 0 || enough() || (!g.halves && rules <= agree)) return whole.kronrod;
     const double middle = (a + b) / 2;
     const Rule left = rule(f, a, middle), right = rule(f, middle, b);
     const double sum = left.kronrod + right.kronrod;
     if (std::max(rules, std::abs(whole.kronrod - sum)) <= agree) return sum;
-    return integral(f, a, middle, g, left, depth - 1) + integral(f, middle, b, g, right, depth - 1);
+    return integral(f, a, middle, g, enough, left, depth - 1) +
+           integral(f, middle, b, g, enough, right, depth - 1);
 }
-template <class F>
-double integral(const F& f, double a, double b, const Agreement& g) {
-    return integral(f, a, b, g, rule(f, a, b), g.depth);
+template <class F, class Enough>
+double integral(const F& f, double a, double b, const Agreement& g, const Enough& enough) {
+    return oracle::integral(f, a, b, g, enough, rule(f, a, b), g.depth);
 }
 
-// Cartesian coordinates in double of a point or direction, whatever its type.
-using Triple = std::array<double, 3>;
+template <class F>
+double integral(const F& f, double a, double b, const Agreement& g) {
+    return oracle::integral(f, a, b, g, [] { return false; });
+}
+
+// ---- The host's types ---------------------------------------------------------------------------
+
+// Number of coordinates of a number, pair, array or vector.
 template <class V>
-Triple triple(const V& v) {
-    return {double(v.x), double(v.y), double(v.z)};
+constexpr size_t coordinates_of() {
+    if constexpr (std::is_arithmetic_v<V>)
+        return 1;
+    else if constexpr (requires { V::SizeAtCompileTime; })
+        return size_t(V::SizeAtCompileTime);
+    else if constexpr (
+        requires(const V& v) { v.z; } || requires(const V& v) { v.z(); })
+        return 3;
+    else if constexpr (
+        requires(const V& v) { v.y; } || requires(const V& v) { v.y(); })
+        return 2;
+    else if constexpr (requires { std::tuple_size<V>::value; })
+        return std::tuple_size<V>::value;
+    else
+        return 3;
+}
+
+template <size_t I, class V>
+auto coordinate(const V& v) {
+    if constexpr (std::is_arithmetic_v<V>)
+        return v;
+    else if constexpr (requires {
+                           v.x();
+                           v.y();
+                       }) {
+        if constexpr (I == 0)
+            return v.x();
+        else if constexpr (I == 1)
+            return v.y();
+        else
+            return v.z();
+    } else if constexpr (requires {
+                             v.x;
+                             v.y;
+                         }) {
+        if constexpr (I == 0)
+            return v.x;
+        else if constexpr (I == 1)
+            return v.y;
+        else
+            return v.z;
+    } else if constexpr (requires { std::tuple_size<V>::value; })
+        return std::get<I>(v);
+    else
+        return v[I];
+}
+
+template <class V>
+using Coordinate = std::decay_t<decltype(oracle::coordinate<0>(std::declval<const V&>()))>;
+
+// The host's point or direction in double, and back.
+template <class V, size_t N = coordinates_of<V>()>
+Point<N> point(const V& v) {
+    return [&]<size_t... I>(std::index_sequence<I...>) {
+        return Point<N>{double(oracle::coordinate<I>(v))...};
+    }
+    (std::make_index_sequence<N>());
+}
+template <class V, size_t N>
+V of_host(const Point<N>& c) {
+    using T = Coordinate<V>;
+    return [&]<size_t... I>(std::index_sequence<I...>) {
+        if constexpr (std::is_arithmetic_v<V>)
+            return T(c[0]);
+        else if constexpr (requires { V{T(c[I])...}; })
+            return V{T(c[I])...};
+        else if constexpr (requires { V(T(c[I])...); })
+            return V(T(c[I])...);
+        else {
+            V v{};
+            ((v[I] = T(c[I])), ...);
+            return v;
+        }
+    }
+    (std::make_index_sequence<N>());
 }
 inline double dot(const Triple& a, const Triple& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-
-struct DensityOptions {
-    uint64_t n = 64000;
-    Triple axis{0, 0, 1};  // about which the density is concentrated, if it is
-    bool smooth = true;    // sample(u, v) is one smooth map, without choices
-    double tolerance = 0;  // of the identities; 0: 1e-6, in float 1e-3
-};
-
-// pdf(x(u,v)) |dx/du x dx/dv| = 1 for a smooth map of the unit square to a surface in space (to the
-// sphere, if x are directions): by differences of fourth order, without noise.
-template <class Sample, class Pdf>
-Verdict expect_jacobian(Random& random, Sample sample, Pdf pdf, double tolerance = 0) {
-    const bool single = unit_of(sample(0.5, 0.5).x) > 1e-10;
-    if (tolerance == 0) tolerance = single ? 1e-3 : 1e-6;
-    Verdict v;
-    v.pass = true;
-    double worst = -1;
-    for (int i = 0; i < 300 && v.pass; ++i) {
-        const double at_u = 0.01 + 0.98 * random(), at_v = 0.01 + 0.98 * random();
-        auto slope = [&](bool along_u) {
-            const double u = along_u ? at_u : at_v;
-            const double h = (single ? 0.05 : 2e-3) * std::min(u, 1 - u);
-            auto x = [&](double by) {
-                return triple(along_u ? sample(at_u + by, at_v) : sample(at_u, at_v + by));
-            };
-            const Triple p1 = x(h), m1 = x(-h), p2 = x(2 * h), m2 = x(-2 * h);
-            Triple d;
-            for (size_t k = 0; k < 3; ++k)
-                d[k] = (8 * (p1[k] - m1[k]) - (p2[k] - m2[k])) / (12 * h);
-            return d;
-        };
-        const Triple a = slope(true), b = slope(false);
-        const double area = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                                       a[0] * b[1] - a[1] * b[0]);
-        const double product = double(pdf(sample(at_u, at_v))) * area;
-        if (std::abs(product - 1) <= worst) continue;
-        worst = std::abs(product - 1);
-        v.pass = worst <= tolerance;
-        v.text = print("pdf |dx/du x dx/dv| = %.8g at u = (%.4f, %.4f), expected 1 +- %.0e",
-                       product, at_u, at_v, tolerance);
-        if (!v.pass) v.text += hint(product, 1e-3);
-    }
-    v.p = v.pass ? 1 : 0;
-    v.delta_min = tolerance;
-    return v;
+template <size_t N>
+std::string say_point(const Point<N>& c) {
+    std::string text;
+    for (double x : c) text += (text.empty() ? "" : ", ") + say("%.4g", x);
+    return N == 1 ? text : "(" + text + ")";
 }
 
-// Polar coordinates about an axis.
-struct Polar {
-    double theta = 0, phi = 0;
+// Whether f takes D numbers of type A, or one argument that is made from {D numbers}.  Braces
+// refuse to make a float of a double, and tell which of them f wants.
+template <class F, class A, size_t D>
+constexpr bool takes_numbers = []<size_t... I>(std::index_sequence<I...>) {
+    return requires(F & f, A a) { f(((void)I, a)...); };
+}
+(std::make_index_sequence<D>());
+template <class F, class A, size_t D>
+constexpr bool takes_exactly = []<size_t... I>(std::index_sequence<I...>) {
+    return requires(F & f, A a) { f({((void)I, a)}...); };
+}
+(std::make_index_sequence<D>());
+template <class F, class A, size_t D>
+constexpr bool takes_braces = []<size_t... I>(std::index_sequence<I...>) {
+    return requires(F & f, A a) { f({((void)I, a)...}); };
+}
+(std::make_index_sequence<D>());
+
+template <class F, size_t D = 8>
+constexpr size_t numbers_of() {
+    if constexpr (D == 0)
+        return 0;
+    else if constexpr (takes_numbers<F, double, D> ||
+                       (D > 1 && (takes_braces<F, double, D> || takes_braces<F, float, D>)))
+        return D;
+    else
+        return numbers_of<F, D - 1>();
+}
+
+template <class F, size_t D>
+auto call(F& f, const Point<D>& u) {
+    return [&]<size_t... I>(std::index_sequence<I...>) {
+        if constexpr (takes_exactly<F, double, D>)
+            return f(u[I]...);
+        else if constexpr (takes_exactly<F, float, D>)
+            return f(float(u[I])...);
+        else if constexpr (takes_numbers<F, double, D>)
+            return f(u[I]...);
+        else if constexpr (takes_braces<F, double, D>)
+            return f({u[I]...});
+        else
+            return f({float(u[I])...});
+    }
+    (std::make_index_sequence<D>());
+}
+
+// A host's sampler and density without the host's types, so that the checks are compiled once: a
+// map from the unit cube to points, or to nothing where it fails, and their density.
+template <size_t M, size_t N>
+struct Model {
+    std::function<std::optional<Point<N>>(const Point<M>&)> sample;
+    std::function<double(const Point<N>&)> pdf;
+    bool single;      // coordinates are floats
+    double unit;      // of their rounding,
+    double pdf_unit;  // and of the density's
+
+    Point<M> draw(Random& random) const {
+        Point<M> u;
+        for (double& x : u) x = single ? random.single() : random();
+        return u;
+    }
 };
-struct PolarFrame {
-    Triple x, y, z;
-    // Duff et al. 2017; in double, whatever the renderer's precision.
-    explicit PolarFrame(const Triple& along) : z(along) {
+
+template <class Sample, class Pdf>
+auto model(Sample& sample, Pdf& pdf) {
+    constexpr size_t M = numbers_of<Sample>();
+    static_assert(M > 0, "sample takes numbers u, v, ... or one argument made from {u, v, ...}");
+    using Raw = decltype(oracle::call(sample, Point<M>{}));
+    constexpr bool may_fail = requires(const Raw& r) {
+        bool(r);
+        *r;
+    };
+    using V = std::decay_t<decltype([](const Raw& r) {
+        if constexpr (may_fail)
+            return *r;
+        else
+            return r;
+    }(std::declval<Raw>()))>;
+    constexpr size_t N = coordinates_of<V>();
+    using T = Coordinate<V>;
+    return Model<M, N>{[&sample](const Point<M>& u) -> std::optional<Point<N>> {
+                           const Raw r = oracle::call(sample, u);
+                           if constexpr (may_fail)
+                               return r ? std::optional(oracle::point(*r)) : std::nullopt;
+                           else
+                               return oracle::point(r);
+                       },
+                       [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
+                       std::is_same_v<T, float>, unit_of(T{}),
+                       unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
+}
+
+// ---- Domains ------------------------------------------------------------------------------------
+
+// Each has coordinates c between lower and upper, at(c) in it, coordinates(x) back, and weight(c),
+// the measure of dc.  Before, fit(points) sees where samples lie.
+
+// Directions, per solid angle: (theta, phi) about an axis.
+struct Sphere {
+    static constexpr size_t dimensions = 2;
+    static constexpr const char *measure = "solid angle", *place = "direction";
+    Triple x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    Point<2> lower{0, 0}, upper{pi, 2 * pi};
+
+    void fit(const std::vector<Triple>& points, const Triple& axis) {
+        Triple sum = axis;
+        if (dot(axis, axis) == 0)
+            for (const Triple& p : points)
+                for (size_t k = 0; k < 3; ++k) sum[k] += p[k] / double(points.size());
+        const double length = std::sqrt(dot(sum, sum));
+        if (!(length > 0.05)) return;
+        // A hemisphere's axis, where samples follow one but for noise: jumps at its horizon then
+        // lie along coordinates.
+        for (size_t k = 0; k < 3; ++k) z[k] = sum[k] / length;
+        for (size_t k = 0; k < 3; ++k)
+            if (std::abs(z[k]) > 1 - 1e-3 && dot(axis, axis) == 0) {
+                const double sign = z[k];
+                z = {0, 0, 0};
+                z[k] = sign > 0 ? 1 : -1;
+            }
+        // Duff et al. 2017; in double, whatever the renderer's precision.
         const double sign = std::copysign(1.0, z[2]), a = -1 / (sign + z[2]), b = z[0] * z[1] * a;
         x = {1 + sign * z[0] * z[0] * a, sign * b, -sign * z[0]};
         y = {b, sign + z[1] * z[1] * a, -z[1]};
     }
-    Polar of(const Triple& w) const {
+    Point<2> coordinates(const Triple& w) const {
         const double phi = std::atan2(dot(w, y), dot(w, x));
         return {std::atan2(std::hypot(dot(w, x), dot(w, y)), dot(w, z)),
-                phi < 0 ? phi + 2 * std::numbers::pi : phi};
+                phi < 0 ? phi + 2 * pi : phi};
     }
-    Triple direction(Polar p) const {
-        const double s = std::sin(p.theta), a = s * std::cos(p.phi), b = s * std::sin(p.phi);
-        const double c = std::cos(p.theta);
-        return {a * x[0] + b * y[0] + c * z[0], a * x[1] + b * y[1] + c * z[1],
-                a * x[2] + b * y[2] + c * z[2]};
+    Triple at(const Point<2>& c) const {
+        const double s = std::sin(c[0]), a = s * std::cos(c[1]), b = s * std::sin(c[1]);
+        const double h = std::cos(c[0]);
+        return {a * x[0] + b * y[0] + h * z[0], a * x[1] + b * y[1] + h * z[1],
+                a * x[2] + b * y[2] + h * z[2]};
+    }
+    double weight(const Point<2>& c) const { return std::sin(c[0]); }
+};
+
+// A box of D dimensions, per length, area, volume.
+template <size_t D>
+struct Box {
+    static constexpr size_t dimensions = D;
+    static constexpr const char *measure = D == 1   ? "length"
+                                           : D == 2 ? "area"
+                                                    : "volume",
+                                *place = "point";
+    Point<D> lower{}, upper{};
+
+    void fit(const std::vector<Point<D>>&, const Triple&) {}
+    Point<D> coordinates(const Point<D>& x) const { return x; }
+    Point<D> at(const Point<D>& c) const { return c; }
+    double weight(const Point<D>&) const { return 1; }
+};
+struct Interval : Box<1> {
+    Interval(double a, double b) : Box<1>{{a}, {b}} {}
+};
+struct Square : Box<2> {
+    Square() : Box<2>{{0, 0}, {1, 1}} {}
+};
+
+// All of space in D dimensions: x = median + width tan(pi (c - 1/2)) along each.
+template <size_t D>
+struct Space {
+    static constexpr size_t dimensions = D;
+    static constexpr const char *measure = Box<D>::measure, *place = "point";
+    Point<D> lower, upper, median{}, width;
+    Space() {
+        lower.fill(0x1p-40);
+        upper.fill(1 - 0x1p-40);
+        width.fill(1);
+    }
+
+    void fit(const std::vector<Point<D>>& points, const Triple&) {
+        for (size_t k = 0; k < D; ++k) {
+            std::vector<double> x;
+            for (const Point<D>& p : points) x.push_back(p[k]);
+            std::sort(x.begin(), x.end());
+            median[k] = x[x.size() / 2];
+            const double quartiles = x[x.size() * 3 / 4] - x[x.size() / 4];
+            if (quartiles > 0) width[k] = quartiles / 2;
+        }
+    }
+    Point<D> coordinates(const Point<D>& x) const {
+        Point<D> c;
+        for (size_t k = 0; k < D; ++k)
+            c[k] =
+                std::clamp(0.5 + std::atan((x[k] - median[k]) / width[k]) / pi, lower[k], upper[k]);
+        return c;
+    }
+    Point<D> at(const Point<D>& c) const {
+        Point<D> x;
+        for (size_t k = 0; k < D; ++k) x[k] = median[k] + width[k] * std::tan(pi * (c[k] - 0.5));
+        return x;
+    }
+    double weight(const Point<D>& c) const {
+        double product = 1;
+        for (size_t k = 0; k < D; ++k) {
+            const double t = std::tan(pi * (c[k] - 0.5));
+            product *= width[k] * pi * (1 + t * t);
+        }
+        return product;
+    }
+};
+using Line = Space<1>;
+using Plane = Space<2>;
+
+// A triangle of the plane or of space, per area: x = a + s (b - a) + s t (c - b).
+template <size_t N>
+struct Triangle {
+    static constexpr size_t dimensions = 2;
+    static constexpr const char *measure = "area", *place = "point";
+    Point<N> a, b, c;
+    Point<2> lower{0, 0}, upper{1, 1};
+    Triangle(const Point<N>& a_, const Point<N>& b_, const Point<N>& c_) : a(a_), b(b_), c(c_) {}
+
+    void fit(const std::vector<Point<N>>&, const Triple&) {}
+    // Barycentric coordinates of b and c by least squares; the distance from the plane is checked
+    // where a sample is drawn.
+    Point<2> coordinates(const Point<N>& x) const {
+        double ee = 0, ef = 0, ff = 0, ex = 0, fx = 0;
+        for (size_t k = 0; k < N; ++k) {
+            const double e = b[k] - a[k], f = c[k] - a[k], d = x[k] - a[k];
+            ee += e * e, ef += e * f, ff += f * f, ex += e * d, fx += f * d;
+        }
+        const double det = ee * ff - ef * ef;
+        const double beta = (ex * ff - fx * ef) / det, gamma = (fx * ee - ex * ef) / det;
+        const double s = beta + gamma;
+        return {s, s > 0 ? gamma / s : 0};
+    }
+    Point<N> at(const Point<2>& st) const {
+        Point<N> x;
+        for (size_t k = 0; k < N; ++k)
+            x[k] = a[k] + st[0] * (b[k] - a[k]) + st[0] * st[1] * (c[k] - b[k]);
+        return x;
+    }
+    double weight(const Point<2>& st) const {
+        double ee = 0, ef = 0, ff = 0;
+        for (size_t k = 0; k < N; ++k) {
+            const double e = b[k] - a[k], f = c[k] - a[k];
+            ee += e * e, ef += e * f, ff += f * f;
+        }
+        return st[0] * std::sqrt(ee * ff - ef * ef);
+    }
+};
+template <size_t N>
+Triangle(Point<N>, Point<N>, Point<N>) -> Triangle<N>;
+
+template <size_t N>
+auto usual_domain() {
+    if constexpr (N == 3)
+        return Sphere{};
+    else
+        return Space<N>{};
+}
+
+// ---- The density of samples where their map is smooth
+// --------------------------------------------
+
+// What differences of the map tell at one point x(u): the density p that the pdf claims there, and
+// q = 1 / sqrt(det J^T J) that this sheet of the map has.  Where several u lead to x, p > q.
+template <size_t N>
+struct Local {
+    Point<N> x;
+    double p = 0, q = 0;
+    double error = 0;     // relative, of q: what two step sizes differ by
+    double noise = 0;     // relative, of q: standard deviation by the rounding of x(u)
+    double collapse = 1;  // det over the product of the slopes: 0 where they are parallel
+    unsigned still = 0;   // a bit for each number that moves nothing
+    double product() const { return p / q; }
+};
+
+// sqrt(det J^T J) by Gram and Schmidt, which keeps digits of thin parallelepipeds.
+template <size_t D, size_t N>
+double volume(std::array<Point<N>, D> slopes) {
+    double product = 1;
+    for (size_t i = 0; i < D; ++i) {
+        double square = 0;
+        for (double x : slopes[i]) square += x * x;
+        product *= std::sqrt(square);
+        if (!(square > 0)) return square;
+        for (size_t j = i + 1; j < D; ++j) {
+            double along = 0;
+            for (size_t k = 0; k < N; ++k) along += slopes[i][k] * slopes[j][k];
+            for (size_t k = 0; k < N; ++k) slopes[j][k] -= along / square * slopes[i][k];
+        }
+    }
+    return product;
+}
+
+// A step for differences: a power of two, so that u + h is exact in float, too.
+inline double step_of(double u, bool single) {
+    return std::exp2(std::floor(std::log2((single ? 0.06 : 0.004) * std::min(u, 1 - u))));
+}
+
+// By central differences of fourth order at the steps h and h / 2, and the noise of x(u) by fourth
+// differences of h / 32.  Nothing if a sample fails near u.
+template <size_t D, size_t N>
+std::optional<Local<N>> local_at(const Model<D, N>& model, const Point<D>& u) {
+    std::array<Point<N>, D> coarse{}, fine{};
+    Local<N> here;
+    double lengths = 1;
+    for (size_t k = 0; k < D; ++k) {
+        const double h = step_of(u[k], model.single);
+        auto x = [&](double by) -> std::optional<Point<N>> {
+            Point<D> moved = u;
+            moved[k] += by;
+            return model.sample(moved);
+        };
+        const auto a1 = x(h / 2), a2 = x(h), a4 = x(2 * h), b1 = x(-h / 2), b2 = x(-h),
+                   b4 = x(-2 * h);
+        if (!a1 || !a2 || !a4 || !b1 || !b2 || !b4) return {};
+        double square = 0;
+        for (size_t i = 0; i < N; ++i) {
+            const double d1 = (*a1)[i] - (*b1)[i], d2 = (*a2)[i] - (*b2)[i],
+                         d4 = (*a4)[i] - (*b4)[i];
+            coarse[k][i] = (8 * d2 - d4) / (12 * h);
+            fine[k][i] = (8 * d1 - d2) / (6 * h);
+            square += fine[k][i] * fine[k][i];
+        }
+        lengths *= std::sqrt(square);
+        if (square == 0) here.still |= 1u << k;
+        // Fourth differences of equal steps, of which curvature is no part.
+        std::array<Point<N>, 13> near;
+        for (int j = 0; j < 13; ++j) {
+            const auto at = x((j - 6) * h / 32);
+            if (!at) return {};
+            near[size_t(j)] = *at;
+        }
+        double rough = 0;
+        for (size_t j = 2; j < 11; ++j)
+            for (size_t i = 0; i < N; ++i)
+                rough += std::pow(near[j - 2][i] - 4 * near[j - 1][i] + 6 * near[j][i] -
+                                      4 * near[j + 1][i] + near[j + 2][i],
+                                  2) /
+                         (70 * 9);
+        if (square > 0) here.noise += 2 * rough / (h * h * square);
+    }
+    const auto centre = model.sample(u);
+    if (!centre) return {};
+    const double j = oracle::volume(fine), rough = oracle::volume(coarse);
+    here.x = *centre;
+    here.p = model.pdf(*centre);
+    here.q = j > 0 ? 1 / j : infinity;
+    here.error = j > 0 ? std::abs(rough / j - 1) : infinity;
+    here.collapse = lengths > 0 ? j / lengths : 0;
+    here.noise = here.collapse > 0 ? std::sqrt(here.noise) / here.collapse : 0;
+    return here;
+}
+
+// Somewhere inside the unit cube, with 12 binary digits.
+template <size_t D>
+Point<D> somewhere(Random& random) {
+    Point<D> u;
+    for (double& x : u) x = std::floor((0.01 + 0.98 * random()) * 4096) / 4096;
+    return u;
+}
+
+inline double median(std::vector<double> x, double part = 0.5) {
+    const auto middle = x.begin() + long(part * double(x.size() - 1));
+    std::nth_element(x.begin(), middle, x.end());
+    return *middle;
+}
+
+// Whether p / q is off 1 about u by more than rounding: at 15 points close to u its median is
+// beyond `tolerance`, twice its quartiles' distance and the noise.  > 0: too large, < 0: too small.
+// In float coordinates are steps: points closer than h would be off alike.
+template <size_t D, size_t N>
+int off_about(const Model<D, N>& model, const Point<D>& u, Random& random, double tolerance) {
+    std::vector<double> off, noise;
+    for (int i = 0; i < 15; ++i) {
+        auto near = u;
+        for (double& x : near)
+            x = std::floor(
+                    (x + (model.single ? 0.4 : 0.04) * (random() - 0.5) * std::min(x, 1 - x)) *
+                    65536) /
+                65536;
+        const auto l = local_at(model, near);
+        if (l && l->p > 0 && l->error < 0.3)
+            off.push_back(l->product() - 1), noise.push_back(l->noise);
+    }
+    if (off.size() < 12) return 0;
+    const double middle = median(off), spread = median(off, 0.75) - median(off, 0.25);
+    return std::abs(middle) > tolerance + 2 * spread + 4 * median(noise) ? (middle > 0 ? 1 : -1)
+                                                                         : 0;
+}
+
+template <size_t N, size_t D>
+struct Sheets {
+    std::vector<Local<N>> all;    // where differences at two steps agree
+    std::optional<Local<N>> off;  // p < q (or, if asked, p > q), and not by rounding
+    Point<D> u{};                 // there
+    double blind = 0;             // errors below this are not told from rounding
+    size_t failed = 0;
+};
+
+template <size_t D, size_t N>
+Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double tolerance,
+                       bool both_sides) {
+    Sheets<N, D> s;
+    std::vector<double> errors;
+    for (int i = 0; i < 300; ++i) {
+        const Point<D> u = somewhere<D>(random);
+        const auto l = local_at(model, u);
+        if (!l) ++s.failed;
+        if (!l || !std::isfinite(l->p) || !(l->error < 0.3 || l->q == infinity)) continue;
+        s.all.push_back(*l);
+        if (!(l->q < infinity)) continue;
+        errors.push_back(l->error + 4 * l->noise);
+        const double off = l->product() - 1;
+        const bool beyond =
+            l->p > 0 && (both_sides ? std::abs(off) : -off) > tolerance + errors.back();
+        if (beyond && (!s.off || std::abs(off) > std::abs(s.off->product() - 1))) {
+            const int side = off_about(model, u, random, tolerance);
+            if (side < 0 || (both_sides && side > 0)) s.off = l, s.u = u;
+        }
+    }
+    if (!errors.empty()) s.blind = std::max(tolerance, median(errors, 0.9));
+    if (s.off && std::abs(s.off->product() - 1) <= tolerance + 2 * s.blind) s.off = {};
+    return s;
+}
+
+// ---- The mistake behind a density ---------------------------------------------------------------
+
+// A function of the place that pdfs or samplers are known to forget.
+template <size_t N>
+struct Base {
+    std::string name;
+    std::function<double(const Point<N>&)> at;
+    enum Kind { cosine, sine, coordinate, named } kind = named;
+};
+
+template <size_t N>
+std::vector<Base<N>> bases_of(const Options& o, bool directions, const Triple& lobe) {
+    std::vector<Base<N>> bases;
+    for (const Factor& f : o.factors)
+        bases.push_back({f.name,
+                         [&f](const Point<N>& x) {
+                             Triple three{};
+                             for (size_t k = 0; k < std::min<size_t>(3, N); ++k) three[k] = x[k];
+                             return f.at(three);
+                         },
+                         Base<N>::named});
+    if constexpr (N == 3)
+        if (directions) {
+            const double length = std::sqrt(dot(o.axis, o.axis));
+            Triple n{0, 0, 1};
+            if (length > 0)
+                for (size_t k = 0; k < 3; ++k) n[k] = o.axis[k] / length;
+            bases.push_back({"cos(theta)", [n](const Triple& w) { return std::abs(dot(w, n)); },
+                             Base<N>::cosine});
+            bases.push_back({"sin(theta)",
+                             [n](const Triple& w) {
+                                 return std::sqrt(std::max(0.0, 1 - dot(w, n) * dot(w, n)));
+                             },
+                             Base<N>::sine});
+            if (dot(n, lobe) < 0.999)
+                bases.push_back({"the cosine to the lobe's axis",
+                                 [lobe](const Triple& w) { return std::abs(dot(w, lobe)); },
+                                 Base<N>::cosine});
+            return bases;
+        }
+    const char* names[] = {"x", "y", "z"};
+    for (size_t k = 0; k < std::min<size_t>(3, N); ++k)
+        bases.push_back(
+            {names[k], [k](const Point<N>& x) { return std::abs(x[k]); }, Base<N>::coordinate});
+    if (N > 1)
+        bases.push_back({"r",
+                         [](const Point<N>& x) {
+                             double square = 0;
+                             for (double c : x) square += c * c;
+                             return std::sqrt(square);
+                         },
+                         Base<N>::coordinate});
+    return bases;
+}
+
+// pdf / density = factor b1^k1 b2^k2, where it holds at 95 % of the points within `tolerance`.
+struct Law {
+    double factor = 0;
+    bool holds = false;
+};
+inline Law law_of(const std::vector<double>& ratios, double tolerance) {
+    Law law{median(ratios)};
+    size_t near = 0;
+    for (double r : ratios) near += std::abs(r / law.factor - 1) <= tolerance;
+    law.holds = law.factor > 0 && double(near) >= 0.95 * double(ratios.size());
+    return law;
+}
+
+inline std::string power(const std::string& name, double k) {
+    return k == 1 ? name : name + (k == 0.5 ? "^(1/2)" : k == -0.5 ? "^(-1/2)" : say("^%.3g", k));
+}
+
+// In words, why p / q is a power of a base: normalised is whether the pdf integrates to 1.
+template <size_t N>
+std::string cause_of_base(const Base<N>& b, double k, bool normalised) {
+    if (b.kind == Base<N>::named) {
+        if (k == 1)
+            return "a factor " + b.name + " too many in the pdf, or 1/(" + b.name + ") forgotten";
+        if (k == -1) return b.name + " forgotten in the pdf, or divided by twice";
+        if (k == 2) return "multiplied by " + b.name + " in place of divided, in the pdf";
+        if (k == -2) return "divided by " + b.name + " in place of multiplied, in the pdf";
+        return "a root of " + b.name;
+    }
+    if (b.kind == Base<N>::sine && k == 1)
+        return normalised ? "theta drawn uniformly, or r = u without its square root: samples lack "
+                            "a factor sin(theta)"
+                          : "a density per (theta, phi), not per solid angle";
+    if (normalised && b.kind == Base<N>::coordinate && k == 1)
+        return b.name + " drawn uniformly, without its root";
+    if (normalised) return "";
+    return k > 0 ? "a factor " + b.name + " too many in the pdf"
+                 : "a factor " + b.name + " missing in the pdf";
+}
+
+// What the sheets of a map, the integral of the pdf and its symmetries say of the mistake: a fact,
+// then "looks like" and a cause where one explains all of it.
+template <size_t N>
+struct Mistake {
+    const std::function<double(const Point<N>&)>& pdf;
+    bool directions, single;
+    double unit;   // of rounding
+    double total;  // integral of the pdf
+    double share;  // of the samples that failed
+    std::vector<Base<N>> bases;
+    Triple normal{0, 0, 1};
+    std::vector<Local<N>> sheets = {};  // where the map is one-to-one about u,
+    std::vector<Local<N>> good = {};    // and the pdf positive: of these
+    std::vector<double> ratios = {};    // p / q
+    double tolerance = 0;
+    bool normalised = false;
+
+    // The first that explains it; or nothing.
+    std::string name(const std::vector<Local<N>>& all) {
+        if (const std::string why = degenerate(all); !why.empty()) return why;
+        for (const Local<N>& l : all)
+            if (l.q < infinity && l.p >= 0 && l.collapse > 1e-7) sheets.push_back(l);
+        if (sheets.size() < 100) return "";
+        std::vector<double> errors;
+        for (const Local<N>& l : sheets) {
+            errors.push_back(l.error);
+            if (l.p > 0) good.push_back(l), ratios.push_back(l.product());
+        }
+        tolerance = std::min(0.05, std::max(single ? 0.01 : 1e-4, 4 * median(errors)));
+        normalised = std::abs(total + share - 1) < close();
+        if (good.size() >= 50) {
+            if (law_of(ratios, tolerance).holds) return constant(law_of(ratios, tolerance).factor);
+            for (const std::string& why : {power_law(), two_powers(), exponent()})
+                if (!why.empty()) return why;
+        }
+        return symmetry();
+    }
+
+    // How well the integral and the failed part are known, together.
+    double close() const { return std::max(share > 0 ? 0.01 : 1e-3, tolerance); }
+
+    std::string degenerate(const std::vector<Local<N>>& all) const {
+        unsigned still = ~0u;
+        size_t collapsed = 0;
+        for (const Local<N>& l : all) {
+            still &= l.still;
+            collapsed += l.collapse < (single ? 1e-3 : 1e-7);
+        }
+        if (all.size() < 100) return "";
+        if (still != 0)
+            return say(
+                "samples do not depend on number %d of those they are made from: looks like "
+                "one number used for both, or one ignored",
+                std::countr_zero(still) + 1);
+        return double(collapsed) < 0.95 * double(all.size())
+                   ? ""
+                   : "all samples lie on a line: looks like one number used for both";
+    }
+
+    // p = c q wherever samples come.
+    std::string constant(double c) const {
+        if (std::abs(c - 1) <= tolerance)
+            return total + share > 1 + close()
+                       ? "the pdf is right where samples come, but also positive where none comes" +
+                             where_none() + ": it integrates to " + times(total, tolerance)
+                       : "";
+        const bool gap = c < 1 && std::abs(total + share - 1) < (1 - c) / 3;
+        if (!gap && std::abs((total / c + share) - 1) <= close()) {
+            std::string cause;
+            for (const Base<N>& b : bases) {
+                if (b.kind != Base<N>::named) continue;
+                std::vector<double> f;
+                for (const Local<N>& l : good) f.push_back(b.at(l.x));
+                const Law law = law_of(f, 1e-6);
+                if (!law.holds || std::abs(law.factor - 1) <= tolerance) continue;
+                if (std::abs(c * law.factor - 1) <= tolerance)
+                    cause += (cause.empty() ? "" : " or ") + b.name + " forgotten in the pdf";
+                if (std::abs(c / law.factor - 1) <= tolerance)
+                    cause += (cause.empty() ? "" : " or ") +
+                             ("a factor " + b.name + " too many in the pdf");
+            }
+            const std::string constant_name = constant_named(c, 0.003);
+            if (cause.empty() &&
+                (constant_name == "pi" || constant_name == "2 pi" || constant_name == "4 pi"))
+                cause = "1/(" + constant_name + ") forgotten";
+            if (!cause.empty()) cause = "; looks like " + cause;
+            // The cosine of a cone so narrow has no more digits.
+            std::vector<double> heights;
+            for (const Local<N>& l : good) heights.push_back(l.p);
+            if (single && std::abs(c - 1) < 2 * pi * unit * median(heights))
+                cause += "; could be rounding: take double";
+            return "the pdf is " + times(c, 0.003) +
+                   " times the density of the samples, everywhere" + cause;
+        }
+        if (gap)
+            return "samples are " + times(1 / c, 0.003) +
+                   " times as dense as the pdf says wherever they come" + where_none() +
+                   "; looks like a gap: part of the domain (half of it? of phi?) never sampled";
+        return "";
+    }
+
+    // On which side of a plane through the origin no sample comes, where the pdf is positive.
+    std::string where_none() const {
+        if constexpr (N == 3) {
+            const char* names[] = {"x", "y", "z"};
+            for (size_t k = 0; k < 3 && directions; ++k)
+                for (double sign : {1.0, -1.0}) {
+                    size_t beyond = 0, positive = 0;
+                    for (const Local<N>& l : sheets) {
+                        auto mirrored = l.x;
+                        mirrored[k] = -mirrored[k];
+                        beyond += sign * l.x[k] < 0;
+                        positive += pdf(mirrored) > 0;
+                    }
+                    if (beyond == 0 && positive > sheets.size() / 2)
+                        return std::string(": no sample has ") + names[k] +
+                               (sign > 0 ? " < 0" : " > 0") +
+                               (std::abs(normal[k]) > 0.99 ? ", below the horizon" : "");
+                }
+        }
+        return "";
+    }
+
+    struct Fit {
+        const Base<N>* base;
+        double power, factor;
+    };
+    std::string over(double factor) const {
+        return "pdf / density of the samples = " +
+               (std::abs(factor - 1) <= tolerance ? "" : times(factor, 0.003) + " ");
+    }
+    Law law_without(const Base<N>& a, double j, const Base<N>* b = nullptr, double k = 0) const {
+        std::vector<double> rest;
+        for (size_t i = 0; i < good.size(); ++i)
+            rest.push_back(ratios[i] / (std::pow(a.at(good[i].x), j) *
+                                        (b ? std::pow(b->at(good[i].x), k) : 1)));
+        return law_of(rest, tolerance);
+    }
+
+    // p / q = c b^k.  One without a constant goes before those with one.
+    std::string power_law() const {
+        std::vector<Fit> fits;
+        for (const double k : {1.0, -1.0, 2.0, -2.0, 0.5, -0.5})
+            for (const Base<N>& b : bases)
+                if (const Law law = law_without(b, k); law.holds)
+                    fits.push_back({&b, k, law.factor});
+        std::stable_partition(fits.begin(), fits.end(),
+                              [&](const Fit& f) { return std::abs(f.factor - 1) <= tolerance; });
+        if (fits.empty()) return "";
+        const Fit f = fits[0];
+        std::string cause = cause_of_base(*f.base, f.power, normalised);
+        // With a constant left over, a named factor is one of several that vary alike.
+        if (f.base->kind == Base<N>::named && fits.size() > 1 && std::abs(f.factor - 1) > tolerance)
+            cause = "";
+        return over(f.factor) + power(f.base->name, f.power) +
+               (cause.empty() ? "" : ": looks like " + cause);
+    }
+    std::string two_powers() const {
+        for (const double j : {1.0, -1.0, 2.0, -2.0})
+            for (const double k : {1.0, -1.0, 2.0, -2.0})
+                for (const Base<N>& a : bases)
+                    for (const Base<N>& b : bases) {
+                        if (&a >= &b || a.kind != Base<N>::named) continue;
+                        const Law law = law_without(a, j, &b, k);
+                        if (law.holds && std::abs(law.factor - 1) <= tolerance)
+                            return over(1) + power(a.name, j) + " " + power(b.name, k) +
+                                   ": looks like those forgotten, or too many, in the pdf";
+                    }
+        return "";
+    }
+
+    // Any power of the cosine to an axis: the exponent of a lobe.
+    std::string exponent() const {
+        for (const Base<N>& b : bases) {
+            if (b.kind != Base<N>::cosine) continue;
+            std::vector<double> slopes;
+            for (size_t i = 0; i + 1 < good.size(); ++i) {
+                const double x = std::log(b.at(good[i + 1].x) / b.at(good[i].x));
+                if (std::abs(x) > 1e-6) slopes.push_back(std::log(ratios[i + 1] / ratios[i]) / x);
+            }
+            if (slopes.size() < 40) continue;
+            const double k = median(slopes);
+            if (const Law law = law_without(b, k); law.holds && std::abs(k) > 0.05)
+                return over(law.factor) + power(b.name, k) + ": looks like the exponent of a lobe";
+        }
+        return "";
+    }
+
+    // Samples of which a mirror image has the pdf.
+    std::string symmetry() const {
+        struct Image {
+            const char* name;
+            std::array<size_t, 3> from;
+            Triple sign;
+        };
+        const Image images[] = {
+            {"z negated", {0, 1, 2}, {1, 1, -1}},
+            {"x negated", {0, 1, 2}, {-1, 1, 1}},
+            {"y negated", {0, 1, 2}, {1, -1, 1}},
+            {"the direction negated", {0, 1, 2}, {-1, -1, -1}},
+            {"x and z exchanged", {2, 1, 0}, {1, 1, 1}},
+            {"y and z exchanged", {0, 2, 1}, {1, 1, 1}},
+            {"x and y exchanged", {1, 0, 2}, {1, 1, 1}},
+            {"x, y, z in another order", {1, 2, 0}, {1, 1, 1}},
+            {"x, y, z in another order", {2, 0, 1}, {1, 1, 1}},
+        };
+        if constexpr (N == 3)
+            for (const Image& image : images) {
+                std::vector<double> turned;
+                for (const Local<N>& l : sheets) {
+                    Triple x;
+                    for (size_t k = 0; k < 3; ++k) x[k] = image.sign[k] * l.x[image.from[k]];
+                    if (const double p = pdf(x); p > 0) turned.push_back(p / l.q);
+                }
+                if (!directions || double(turned.size()) < 0.6 * double(sheets.size())) continue;
+                if (const Law law = law_of(turned, tolerance);
+                    law.holds && std::abs(law.factor - 1) <= tolerance)
+                    return std::string("samples have the density of the pdf with ") + image.name +
+                           ": looks like " + image.name + " in one of the two" +
+                           (image.name[0] == 'z' && normal[2] == 1 ? ", below the horizon" : "");
+            }
+        return "";
     }
 };
 
-// 8 x 4 cells in (theta, phi), as equal as the quantiles of a few samples make them.
+template <size_t D, size_t N>
+Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
+    const double tolerance = std::max(model.single ? 1e-3 : 1e-6, o.tolerance);
+    const Sheets<N, D> s = sheets_of(model, random, tolerance, true);
+    Verdict v;
+    v.pass = s.all.size() >= 100 && !s.off;
+    v.p = v.pass ? 1 : 0;
+    v.delta_min = std::max(s.blind, tolerance);
+    v.text = say("pdf sqrt(det J^T J) = 1 within %.1e at %zu points", v.delta_min, s.all.size());
+    if (s.all.size() < 100)
+        v.text = "the map is smooth at " +
+                 say("%zu of 300 points only: is it one map, without choices?", s.all.size());
+    if (s.off) {
+        const double product = s.off->product();
+        v.text = say("pdf sqrt(det J^T J) = %.8g, expected 1 +- %.0e: ", product, tolerance);
+        Mistake<N> mistake{
+            model.pdf, false, model.single, model.unit, product, 0, bases_of<N>(o, false, {})};
+        const std::string why = mistake.name(s.all);
+        v.text += !why.empty()
+                      ? why
+                      : say("samples are %.4g times as dense as the pdf says", 1 / product);
+        v.text += ", at " + say_point(s.off->x) + ", u = " + say_point(s.u);
+        if (model.single && std::abs(product - 1) < 10 * s.blind)
+            v.text += "; could be rounding: take double";
+    }
+    return o.name.empty() ? v : v.of(o.name);
+}
+
+// Samples x(u) of a smooth one-to-one map of the unit cube have the density pdf(x): pdf sqrt(det
+// J^T J) = 1, by differences, without noise.  Of directions, points of surfaces in space, anything.
+template <class Sample, class Pdf>
+Verdict expect_jacobian(Random& random, Sample sample, Pdf pdf, const Options& o = {}) {
+    return judge_jacobian(random, model(sample, pdf), o);
+}
+
+// ---- Densities ----------------------------------------------------------------------------------
+
+template <size_t D>
+struct Range {
+    Point<D> lower, upper;
+    Point<D> middle() const {
+        Point<D> c;
+        for (size_t k = 0; k < D; ++k) c[k] = (lower[k] + upper[k]) / 2;
+        return c;
+    }
+};
+
+// 32 cells that a few points fill alike: halved at medians, along each dimension in turn.
+template <size_t D>
 struct Cells {
-    static constexpr size_t bands = 8, sectors = 4;
-    double theta[bands + 1] = {};
-    double phi[bands][sectors + 1] = {};
+    static constexpr size_t levels = 5, count = 32;
+    std::array<double, count> split{};  // of node k into 2k and 2k + 1
 
-    explicit Cells(std::vector<Polar> samples) {
-        using std::numbers::pi;
-        std::sort(samples.begin(), samples.end(), [](auto p, auto q) { return p.theta < q.theta; });
-        const size_t in_band = samples.size() / bands;
-        for (size_t i = 0; i < bands; ++i) {
-            theta[i + 1] = i + 1 < bands ? samples[(i + 1) * in_band].theta : pi;
-            const auto begin = samples.begin() + long(i * in_band);
-            std::sort(begin, begin + long(in_band), [](auto p, auto q) { return p.phi < q.phi; });
-            for (size_t j = 1; j < sectors; ++j) phi[i][j] = begin[long(j * in_band / sectors)].phi;
-            phi[i][sectors] = 2 * pi;
+    explicit Cells(std::vector<Point<D>> points) { halve(1, 0, points, 0, points.size()); }
+    void halve(size_t node, size_t level, std::vector<Point<D>>& points, size_t begin, size_t end) {
+        if (level == levels) return;
+        const size_t k = level % D, middle = (begin + end) / 2;
+        std::nth_element(points.begin() + long(begin), points.begin() + long(middle),
+                         points.begin() + long(end),
+                         [k](const auto& a, const auto& b) { return a[k] < b[k]; });
+        split[node] = points[middle][k];
+        halve(2 * node, level + 1, points, begin, middle);
+        halve(2 * node + 1, level + 1, points, middle, end);
+    }
+    size_t of(const Point<D>& c) const {
+        size_t node = 1;
+        for (size_t level = 0; level < levels; ++level)
+            node = 2 * node + (c[level % D] >= split[node]);
+        return node - count;
+    }
+    Range<D> range(size_t cell, Range<D> all) const {
+        for (size_t level = 0; level < levels; ++level) {
+            const size_t node = (cell + count) >> (levels - level);
+            const bool above = (cell + count) >> (levels - level - 1) & 1;
+            (above ? all.lower : all.upper)[level % D] = split[node];
         }
+        return all;
+    }
+};
+
+// Integral of f over a range: by nested rules while `enough` allows.
+template <size_t K = 0, size_t D, class F, class Enough>
+double nested(const F& f, Point<D>& c, const Range<D>& range, const Agreement& g,
+              const Enough& enough) {
+    if constexpr (K == D)
+        return f(c);
+    else {
+        auto along = [&](double x) {
+            c[K] = x;
+            Agreement inner = g;
+            inner.tolerance *= 0.1 / (range.upper[K] - range.lower[K]);
+            inner.halves = false;
+            return oracle::nested<K + 1>(f, c, range, inner, enough);
+        };
+        Agreement here = g;
+        if (K == 0 && D > 1) here.noise *= 2;
+        return oracle::integral(along, range.lower[K], range.upper[K], here, enough);
+    }
+}
+
+// The part of a density in each cell, and the variance of what is not known exactly.
+struct Parts {
+    std::array<double, 32> value{}, variance{};
+    double total = 0, error = 0;  // standard error of the total
+};
+
+// One check of a sampler against a density; its steps in the order of their costs.
+template <size_t M, size_t N, class Domain>
+struct DensityCheck {
+    static constexpr size_t D = Domain::dimensions;
+    static constexpr bool directions = std::is_same_v<Domain, Sphere>;
+
+    Random& random;
+    const Model<M, N>& model;
+    Domain domain;
+    const Options& o;
+
+    std::string wrong = {};  // the first thing that no right sampler or pdf does
+    double samples = 0, none = 0;
+    std::string first_none = {};
+    std::vector<Point<D>> pilot = {};
+    std::vector<double> pilot_density = {}, heights = {};  // of the pdf per dc, and by itself
+    double rounding = 0;                                 // relative, of the pdf in the host's type
+    std::function<double(const Point<N>&)> weight = {};  // what the pdf may lack
+    double most_negative = 0;
+    std::string where_negative = {};
+
+    double density_at(const Point<D>& c) {
+        const Point<N> x = domain.at(c);
+        const double p = model.pdf(x);
+        if (wrong.empty() && !std::isfinite(p))
+            wrong = say("the pdf is %g, not finite, at ", p) + at(x);
+        if (p < most_negative) most_negative = p, where_negative = at(x);
+        const double measure = domain.weight(c) * (weight ? weight(x) : 1);
+        return measure > 0 ? p * measure : 0;
+    }
+    static std::string at(const Point<N>& x) {
+        return std::string(Domain::place) + " " + say_point(x);
     }
 
-    size_t of(Polar p) const {
-        const auto i = std::upper_bound(theta + 1, theta + bands, p.theta) - (theta + 1);
-        const auto j = std::upper_bound(phi[i] + 1, phi[i] + sectors, p.phi) - (phi[i] + 1);
-        return size_t(i) * sectors + size_t(j);
+    // One sample, in the domain's coordinates; nothing if it failed.
+    std::optional<Point<D>> one() {
+        const auto u = model.draw(random);
+        const auto x = model.sample(u);
+        ++samples;
+        auto failed = [&](const std::string& how) {
+            if (none++ == 0) first_none = how + " at u = " + say_point(u);
+            return std::nullopt;
+        };
+        if (!x) return failed("nothing");
+        const Point<N> w = *x;
+        const auto c = domain.coordinates(w);
+        if (const double p = model.pdf(w); !(p > 0 && std::isfinite(p))) {
+            bool finite = true;
+            for (double k : w) finite = finite && std::isfinite(k);
+            if (!finite)
+                return broken("sample " + say_point(w) + " is not finite, u = " + say_point(u));
+            if (p != 0)
+                return broken(say("the pdf is %s, %.4g, at the sample ",
+                                  p < 0 ? "negative" : "not finite", p) +
+                              say_point(w));
+            return failed("pdf 0 at " + at(w));
+        }
+        const Point<N> back = domain.at(c);
+        double off = 0, size = 1e-300;
+        for (size_t k = 0; k < N; ++k) off += std::pow(back[k] - w[k], 2), size += w[k] * w[k];
+        bool inside = off <= 1e-6 * size;
+        for (size_t k = 0; k < D; ++k) {
+            const double slack = 1e-5 * (domain.upper[k] - domain.lower[k]);
+            inside = inside && c[k] >= domain.lower[k] - slack && c[k] <= domain.upper[k] + slack;
+        }
+        if (!inside)
+            return broken(directions ? say("a sample is no direction: its length is %.6g, ",
+                                           std::sqrt(size)) +
+                                           say_point(w)
+                                     : "a sample lies outside of the domain, " + say_point(w));
+        return c;
+    }
+    std::nullopt_t broken(const std::string& how) {
+        if (wrong.empty()) wrong = how;
+        return std::nullopt;
     }
 
-    // Integral of density(Polar) sin(theta) over each.  Panels in theta double in width, so that no
-    // narrow lobe about the axis hides between the nodes.
-    template <class Density>
-    std::array<double, bands * sectors> integrals(const Density& density, double tolerance,
-                                                  double noise) const {
-        using std::numbers::pi;
-        const int depth = 1 - std::ilogb(noise);  // no finer than f can tell where it jumps
-        std::array<double, bands * sectors> sums{};
-        for (size_t cell = 0; cell < sums.size(); ++cell) {
-            const size_t i = cell / sectors;
-            const double* range = phi[i] + cell % sectors;
-            const double panels = std::ceil((range[1] - range[0]) / (0.6 * pi));
-            const double step = (range[1] - range[0]) / panels;
-            for (double from = theta[i], to; from < theta[i + 1]; from = to) {
-                to = from > 0 ? std::min({2 * from, from + pi / 8, theta[i + 1]})
-                              : std::ldexp(theta[i + 1], -12);
-                const Agreement along_phi{0.1 * tolerance / (to - from), noise, depth, false};
-                auto ring = [&](double t) {
-                    auto at = [&](double f) { return density({t, f}); };
-                    double sum = 0;
-                    for (double k = 0; k < panels; ++k)
-                        sum +=
-                            integral(at, range[0] + k * step, range[0] + (k + 1) * step, along_phi);
-                    return sum * std::sin(t);
-                };
-                sums[cell] +=
-                    integral(ring, from, to, Agreement{tolerance, 2 * noise, depth, true});
+    void fly_pilot() {
+        std::vector<Point<N>> points;
+        for (int i = 0; i < 40000 && points.size() < 4096; ++i) {
+            const auto x = model.sample(model.draw(random));
+            if (x && model.pdf(*x) > 0) points.push_back(*x);
+        }
+        if (points.size() < 1024) return;
+        domain.fit(points, o.axis);
+        double changes = 0;
+        const int jitters = model.single ? 8 : 1;
+        for (size_t i = 0; i < points.size(); ++i) {
+            const auto c = domain.coordinates(points[i]);
+            pilot.push_back(c);
+            const double p = model.pdf(points[i]);
+            heights.push_back(p);
+            pilot_density.push_back(p * domain.weight(c));
+            // What an ulp or two of the coordinates changes; jumps are met by few.
+            double length = 0;
+            for (double k : points[i]) length = std::max(length, std::abs(k));
+            for (int j = 0; j < jitters; ++j) {
+                Point<N> near = points[i];
+                for (double& k : near) k += (random() - 0.5) * 8 * length * model.unit;
+                changes += std::min(1.0, std::abs(model.pdf(near) / p - 1));
             }
         }
-        return sums;
+        rounding = changes / double(points.size()) / jitters;
     }
-};
 
-// Directions sample(u, v) with density pdf(direction) per solid angle: the Jacobian, if the map is
-// smooth; the integral of pdf over the sphere, 1 by quadrature; pdf > 0 at every sample;
-// chi-squared over cells.
-template <class Sample, class Pdf>
-Verdict expect_density(Random& random, Sample sample, Pdf pdf, DensityOptions o = {}) {
-    using V = decltype(sample(0.5, 0.5));
-    using T = decltype(V::x);
-    const double unit = unit_of(T{});
-    if (o.smooth)
-        if (const Verdict v = expect_jacobian(random, sample, pdf, o.tolerance); !v.pass) return v;
+    double allowed() const {
+        return std::max(1e-6, 512 * model.pdf_unit) + 8 * rounding + o.tolerance;
+    }
 
-    const PolarFrame frame_of_axis(o.axis);
-    std::string bad;  // why a sample cannot be
-    auto draw_one = [&] {
-        const double u = random(), v = random();
-        const V w = sample(u, v);
-        const double p = double(pdf(w));
-        if (!(p > 0 && std::isfinite(p)) && bad.empty())
-            bad = print("the density is %g at the sample (%g, %g, %g)", p, double(w.x), double(w.y),
-                        double(w.z));
-        return frame_of_axis.of(triple(w));
-    };
-    auto density = [&](Polar p) {
-        const Triple w = frame_of_axis.direction(p);
-        return double(pdf(V{T(w[0]), T(w[1]), T(w[2])}));
-    };
+    // Ranges so small that no peak that the pilot found hides between the nodes of a rule.
+    void divide(const Range<D>& range, std::vector<size_t> inside, std::vector<Range<D>>& parts,
+                int depth) const {
+        size_t widest = 0;
+        double share = 0, least = infinity, most = 0;
+        for (size_t k = 0; k < D; ++k)
+            if (const double s =
+                    (range.upper[k] - range.lower[k]) / (domain.upper[k] - domain.lower[k]);
+                s > share)
+                share = s, widest = k;
+        for (size_t i : inside) {
+            least = std::min(least, pilot_density[i]);
+            most = std::max(most, pilot_density[i]);
+        }
+        const bool uneven = inside.size() >= 4 && most > 16 * least;
+        if (depth == 0 || (share <= 0.3 && !uneven)) return parts.push_back(range);
+        Range<D> low = range, high = range;
+        double border = (range.lower[widest] + range.upper[widest]) / 2;
+        if (share <= 0.3) {
+            // Where the points' spread is widest against the range.
+            std::vector<double> x;
+            for (size_t i : inside) x.push_back(pilot[i][widest]);
+            border = median(x);
+            if (!(border > range.lower[widest] && border < range.upper[widest]))
+                return parts.push_back(range);
+        }
+        low.upper[widest] = high.lower[widest] = border;
+        std::vector<size_t> below, above;
+        for (size_t i : inside) (pilot[i][widest] < border ? below : above).push_back(i);
+        divide(low, below, parts, depth - 1);
+        divide(high, above, parts, depth - 1);
+    }
 
-    std::vector<Polar> pilot(4096);
-    for (Polar& p : pilot) p = draw_one();
-    if (!bad.empty()) return failure(bad);
-    const Cells cells(pilot);
-    const double allowed = o.tolerance > 0 ? o.tolerance : std::max(1e-6, 512 * unit);
-    const auto probabilities = cells.integrals(density, allowed / 300, allowed / 8);
-    double total = 0;
-    for (double p : probabilities) total += p;
-    if (!(std::abs(total - 1) <= allowed)) {
-        Verdict v = failure(print("the integral of pdf over the sphere is %.8g, expected 1 +- %.0e",
-                                  total, allowed));
-        v.text += hint(total, 1e-3);
+    Parts integrate(const Cells<D>& cells) {
+        std::array<std::vector<size_t>, 32> inside;
+        for (size_t i = 0; i < pilot.size(); ++i) inside[cells.of(pilot[i])].push_back(i);
+        std::vector<Range<D>> ranges;
+        std::vector<size_t> of_cell;
+        for (size_t cell = 0; cell < 32; ++cell) {
+            divide(cells.range(cell, {domain.lower, domain.upper}), inside[cell], ranges, 12);
+            of_cell.resize(ranges.size(), cell);
+        }
+        size_t evaluations = 0;
+        auto f = [&](const Point<D>& c) {
+            ++evaluations;
+            return density_at(c);
+        };
+        constexpr size_t budget = 4'000'000;
+        auto enough = [&] { return evaluations > budget; };
+        Parts parts;
+        if constexpr (D <= 2) {
+            const double close = allowed();
+            // No finer than f can tell where it jumps.
+            const Agreement g{close / 300, close / 8, 1 - std::ilogb(close / 8), true};
+            for (size_t i = 0; i < ranges.size() && !enough(); ++i) {
+                Point<D> c{};
+                parts.value[of_cell[i]] += oracle::nested(f, c, ranges[i], g, enough);
+            }
+        }
+        if (D > 2 || enough()) parts = scatter(f, ranges, of_cell);
+        for (size_t cell = 0; cell < 32; ++cell) {
+            parts.total += parts.value[cell];
+            parts.error += parts.variance[cell];
+        }
+        parts.error = std::sqrt(parts.error);
+        return parts;
+    }
+
+    // More dimensions or jumps than rules can follow: 16 shifts of a lattice (Roberts's generalised
+    // golden ratio) in each range.
+    template <class F>
+    Parts scatter(const F& f, const std::vector<Range<D>>& ranges,
+                  const std::vector<size_t>& of_cell) {
+        double golden = 1.5;
+        for (int i = 0; i < 60; ++i) golden = std::pow(1 + golden, 1 / (double(D) + 1));
+        const size_t points = std::max<size_t>(64, 3'000'000 / 16 / ranges.size());
+        Parts parts;
+        for (size_t i = 0; i < ranges.size(); ++i) {
+            const Range<D>& r = ranges[i];
+            double volume = 1;
+            for (size_t k = 0; k < D; ++k) volume *= r.upper[k] - r.lower[k];
+            Draws shifts;
+            for (int shift = 0; shift < 16; ++shift) {
+                Point<D> x;
+                for (double& s : x) s = random();
+                double sum = 0;
+                for (size_t j = 0; j < points; ++j) {
+                    Point<D> c;
+                    for (size_t k = 0; k < D; ++k) {
+                        x[k] += std::pow(golden, -double(k + 1));
+                        x[k] -= std::floor(x[k]);
+                        c[k] = r.lower[k] + x[k] * (r.upper[k] - r.lower[k]);
+                    }
+                    sum += f(c);
+                }
+                shifts.add(sum / double(points) * volume);
+            }
+            parts.value[of_cell[i]] += shifts.mean();
+            parts.variance[of_cell[i]] += shifts.variance() / 16;
+        }
+        return parts;
+    }
+
+    Verdict run() {
+        fly_pilot();
+        if (pilot.empty()) {
+            for (int i = 0; i < 100; ++i) (void)one();
+            if (!wrong.empty()) return failure(wrong);
+            return failure("hardly any sample comes where the pdf is positive: " + first_none +
+                           symmetry());
+        }
+        for (size_t i = 0; i < 4096 && wrong.empty(); ++i) (void)one();
+        if (!wrong.empty()) return failure(wrong);
+        samples = none = 0;
+        const Cells<D> cells(pilot);
+        const Parts parts = integrate(cells);
+        if (!wrong.empty()) return failure(wrong);
+        // Rounding may make a 0 negative.
+        if (most_negative < -1e-12 * median(heights))
+            return failure(say("the pdf is negative, %.4g, at ", most_negative) + where_negative);
+
+        const double close = allowed() + 6 * parts.error;
+        Sheets<N, M> sheets;
+        if constexpr (M == D)
+            sheets =
+                sheets_of(model, random,
+                          std::max(model.single ? 2e-3 : 1e-6, 3 * rounding) + o.tolerance, false);
+        const uint64_t n =
+            o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
+        const bool off_already = sheets.off || parts.total > 1 + close;
+        Histogram<D> histogram(pilot, {domain.lower, domain.upper});
+        std::array<uint64_t, 32> counts{};
+        for (uint64_t i = 0; i < (off_already ? std::min<uint64_t>(n, 100000) : n); ++i)
+            if (const auto c = one()) {
+                ++counts[cells.of(*c)];
+                histogram.add(*c);
+            }
+        if (!wrong.empty()) return failure(wrong);
+
+        const std::string integral_is =
+            "the pdf integrates to " + say("%.8g over the %s", parts.total, Domain::measure);
+        // What fails is missing from the integral, as closely as it is known.
+        const double fewest = samples * (1 - parts.total - close),
+                     most = samples * (1 - parts.total + close);
+        const bool balanced =
+            none == 0 ? std::abs(parts.total - 1) <= close ||
+                            (parts.total < 1 && most - 2 * samples * close < 12)
+                      : p_at_least(none, most) > o.alpha / 2 &&
+                            (fewest <= 0 || 1 - p_at_least(none + 1, fewest) > o.alpha / 2);
+        std::vector<double> expected, variances;
+        for (size_t i = 0; i < 32; ++i) {
+            expected.push_back(parts.value[i] / parts.total);
+            variances.push_back(parts.variance[i] / (parts.total * parts.total));
+        }
+        Options plain = o;
+        plain.name = "";
+        if (none > 0) plain.alpha = o.alpha / 2;
+        Verdict v = expect_counts(counts, expected, plain, variances);
+        if (none > 0) alpha_spent += o.alpha / 2;
+        const bool counted = v.pass;
+        v.text += "; " + integral_is;
+        if (parts.error > 0) v.text += say(" +- %.1e", parts.error);
+        if (none > 0) v.text += "; " + percent(none / samples) + " of the samples fail";
+        if (sheets.blind > 0) v.text += say("; Jacobian within %.1e", sheets.blind);
+        v.pass = counted && balanced && !sheets.off;
+        if (v.pass) return v;
+        if (!balanced || sheets.off) v.p = 0;
+        v.text = finding(parts, close, counted, balanced, sheets, cells, counts, expected) + "\n" +
+                 v.text +
+                 histogram.drawing(*this, parts.total, worst_cell(counts, expected), cells)
+                     .written(o.name);
         return v;
     }
 
-    std::array<uint64_t, Cells::bands * Cells::sectors> counts{};
-    for (uint64_t i = 0; i < o.n; ++i) {
-        const Polar p = draw_one();
-        if (!bad.empty()) return failure(bad);
-        ++counts[cells.of(p)];
+    static size_t worst_cell(const std::array<uint64_t, 32>& counts,
+                             const std::vector<double>& expected) {
+        double n = 0, most = -1;
+        for (uint64_t c : counts) n += double(c);
+        size_t worst = 0;
+        for (size_t i = 0; i < 32; ++i)
+            if (const double off =
+                    std::abs(double(counts[i]) - n * expected[i]) / std::sqrt(n * expected[i] + 1);
+                off > most)
+                most = off, worst = i;
+        return worst;
     }
-    return expect_counts(counts, probabilities);
+
+    // Of samples that all come where the pdf is 0.
+    std::string symmetry() {
+        if constexpr (M != D)
+            return "";
+        else {
+            const auto sheets = sheets_of(model, random, 1, false);
+            const std::string why = explained(sheets.all, 1);
+            return why.empty() ? "" : "; " + why;
+        }
+    }
+    std::string explained(const std::vector<Local<N>>& all, double total) {
+        Triple lobe{0, 0, 1};
+        if constexpr (directions) lobe = domain.z;
+        Mistake<N> mistake{model.pdf,
+                           directions,
+                           model.single,
+                           model.unit,
+                           total,
+                           none / std::max(1.0, samples),
+                           bases_of<N>(o, directions, lobe)};
+        if (const double length = std::sqrt(dot(o.axis, o.axis)); length > 0)
+            for (size_t k = 0; k < 3; ++k) mistake.normal[k] = o.axis[k] / length;
+        return mistake.name(all);
+    }
+
+    // The first line of a refusal.
+    std::string finding(const Parts& parts, double close, bool counted, bool balanced,
+                        const auto& sheets, const Cells<D>& cells,
+                        const std::array<uint64_t, 32>& counts,
+                        const std::vector<double>& expected) {
+        const double total = parts.total, share = none / samples;
+        std::string rounded;
+        if (model.single && counted && std::abs(total - 1 + share) < 10 * close &&
+            (!sheets.off || std::abs(sheets.off->product() - 1) < 10 * sheets.blind))
+            rounded = "; could be rounding: take double";
+        if (M == D)
+            if (const std::string why = explained(sheets.all, total); !why.empty())
+                return why + rounded;
+        const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
+        if (!balanced && none > 0) {
+            const std::string fails = percent(share) + " of the samples fail (" + first_none + ")";
+            if (std::abs(total - 1) <= close)
+                return fails + ", though the pdf integrates to 1, as if none did";
+            return fails + ", but " + integral_is +
+                   say(": together %.6g, expected 1", total + share) + rounded;
+        }
+        if (!balanced) return integral_is + say(", expected 1 +- %.0e", close) + rounded;
+        if (sheets.off && M == D)
+            return "samples are " + say("%.4g", 1 / sheets.off->product()) +
+                   " times as dense as the pdf says, at " + at(sheets.off->x) +
+                   ", u = " + say_point(sheets.u) + rounded;
+        if (const std::string why = counted ? "" : law_of_cells(cells, counts); !why.empty())
+            return why + rounded;
+        const size_t worst = worst_cell(counts, expected);
+        const double mean = expected[worst] * (samples - none);
+        const auto where = domain.at(cells.range(worst, {domain.lower, domain.upper}).middle());
+        if (!(mean > 0)) return "samples come where the pdf is 0, near " + at(where);
+        return "samples are " + say("%.4g", double(counts[worst]) / mean) +
+               " times as dense as the pdf says, around " + at(where);
+    }
+
+    // Whether counts follow the pdf times a power of a base: for samplers whose map tells nothing.
+    std::string law_of_cells(const Cells<D>& cells, const std::array<uint64_t, 32>& counts) {
+        const Options plain{.alpha = 1e-3};
+        Triple lobe{0, 0, 1};
+        if constexpr (directions) lobe = domain.z;
+        for (const double k : {1.0, -1.0, 2.0, -2.0})
+            for (const Base<N>& b : bases_of<N>(o, directions, lobe)) {
+                weight = [&](const Point<N>& x) { return std::pow(b.at(x), k); };
+                const Parts parts = integrate(cells);
+                weight = {};
+                if (!(parts.total > 0 && std::isfinite(parts.total))) continue;
+                std::vector<double> p, variances;
+                for (size_t i = 0; i < 32; ++i) {
+                    p.push_back(parts.value[i] / parts.total);
+                    variances.push_back(parts.variance[i] / (parts.total * parts.total));
+                }
+                if (expect_counts(counts, p, plain, variances).pass)
+                    return "samples have the density of the pdf times " + power(b.name, k);
+            }
+        return "";
+    }
+
+    // Maps of the samples, of the pdf, and of their difference.
+    template <size_t Dims>
+    struct Histogram {
+        static constexpr size_t across = 48, down = Dims == 1 ? 1 : 32;
+        Range<Dims> shown;
+        std::vector<double> bins = std::vector<double>(across * down);
+        double total = 0;
+
+        Histogram(const std::vector<Point<Dims>>& points, Range<Dims> all) : shown(all) {
+            for (size_t k = 0; k < Dims; ++k) {
+                shown.lower[k] = infinity, shown.upper[k] = -infinity;
+                for (const auto& c : points)
+                    shown.lower[k] = std::min(shown.lower[k], c[k]),
+                    shown.upper[k] = std::max(shown.upper[k], c[k]);
+                const double margin = 0.05 * (shown.upper[k] - shown.lower[k]) + 1e-12;
+                shown.lower[k] = std::max(all.lower[k], shown.lower[k] - margin);
+                shown.upper[k] = std::min(all.upper[k], shown.upper[k] + margin);
+            }
+        }
+        // phi (or the first coordinate) runs to the right, theta downwards.
+        static constexpr size_t right = Dims == 1 ? 0 : 1;
+        void add(const Point<Dims>& c) {
+            ++total;
+            const double x =
+                (c[right] - shown.lower[right]) / (shown.upper[right] - shown.lower[right]);
+            const double y =
+                Dims == 1 ? 0 : (c[0] - shown.lower[0]) / (shown.upper[0] - shown.lower[0]);
+            if (x >= 0 && x < 1 && y >= 0 && y < 1)
+                ++bins[size_t(y * double(down)) * across + size_t(x * double(across))];
+        }
+        Drawing drawing(DensityCheck& check, double integral_of_pdf, size_t worst,
+                        const Cells<Dims>& cells) const {
+            Drawing d{Dims == 1 ? 620.0 : 1100.0, 330};
+            if (Dims > 2) return d;
+            std::vector<double> claimed;
+            double area = 1, most = 1;
+            for (size_t k = 0; k < Dims; ++k)
+                area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
+            for (size_t i = 0; i < bins.size(); ++i) {
+                double sum = 0;
+                for (int s = 0; s < 9; ++s) {
+                    Point<Dims> c;
+                    for (size_t k = 0; k < Dims; ++k) {
+                        const size_t index = k == right ? i % across : i / across,
+                                     bins_here = k == right ? across : down;
+                        const double sub = ((k == right ? s % 3 : s / 3) + 0.5) / 3;
+                        c[k] = shown.lower[k] + (double(index) + sub) / double(bins_here) *
+                                                    (shown.upper[k] - shown.lower[k]);
+                        c[k] = std::clamp(c[k], check.domain.lower[k], check.domain.upper[k]);
+                    }
+                    sum += check.density_at(c) / 9;
+                }
+                claimed.push_back(sum * area * total / integral_of_pdf);
+                most = std::max({most, bins[i], claimed[i]});
+            }
+            const Range<Dims> cell = cells.range(worst, {check.domain.lower, check.domain.upper});
+            const double size = 350.0 / across;
+            auto place = [&](double c, size_t k, double length) {
+                return length * std::clamp((c - shown.lower[k]) / (shown.upper[k] - shown.lower[k]),
+                                           0.0, 1.0);
+            };
+            if (Dims == 1) {
+                std::vector<std::pair<double, double>> line;
+                for (size_t i = 0; i < across; ++i) {
+                    d.rectangle(40 + 11.5 * double(i), 290 - 240 * bins[i] / most, 10,
+                                240 * bins[i] / most, "fill:rgb(170,170,170)");
+                    line.emplace_back(45 + 11.5 * double(i), 290 - 240 * claimed[i] / most);
+                }
+                d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
+                d.text(40, 20, "samples (grey) and pdf (red); worst cell below");
+                d.rectangle(40 + place(cell.lower[0], 0, 552), 300,
+                            place(cell.upper[0], 0, 552) - place(cell.lower[0], 0, 552), 6,
+                            "fill:black");
+                d.text(40, 322, say("%.4g", shown.lower[0]));
+                d.text(560, 322, say("%.4g", shown.upper[0]));
+                return d;
+            }
+            const char* titles[] = {"samples", "pdf", "samples - pdf: red too many, blue too few"};
+            for (size_t map_of = 0; map_of < 3; ++map_of) {
+                const double left = 10 + 362 * double(map_of);
+                d.text(left, 20, titles[map_of]);
+                for (size_t i = 0; i < bins.size(); ++i) {
+                    const double off =
+                        (bins[i] - claimed[i]) / (std::sqrt(claimed[i] + bins[i] + 1) * 6);
+                    d.rectangle(left + size * double(i % across), 30 + 8 * double(i / across),
+                                size + 0.1, 8.1,
+                                map_of == 2
+                                    ? blue_white_red(off)
+                                    : grey(std::sqrt((map_of == 0 ? bins : claimed)[i] / most)));
+                }
+                d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
+                const double x0 = place(cell.lower[right], right, 350),
+                             y0 = place(cell.lower[0], 0, 256);
+                d.rectangle(left + x0, 30 + y0, place(cell.upper[right], right, 350) - x0,
+                            place(cell.upper[0], 0, 256) - y0,
+                            "fill:none;stroke:rgb(0,140,0);stroke-width:3");
+            }
+            const char *horizontal = directions ? "phi" : "second coordinate",
+                       *vertical = directions ? "theta" : "first coordinate";
+            d.text(10, 304,
+                   say("to the right %s from %.4g to %.4g, down %s from %.4g to %.4g; worst cell "
+                       "in green",
+                       horizontal, shown.lower[right], shown.upper[right], vertical, shown.lower[0],
+                       shown.upper[0]));
+            return d;
+        }
+    };
+};
+
+// Samples of sample(u, v, ...) have the density pdf(sample), which integrates to 1 over the domain
+// less the part of samples that fail (nothing returned, or pdf 0): by quadrature; by the Jacobian,
+// where the map is smooth, as far as samples may be sparser than the pdf of one sheet but not
+// denser; by chi-squared.
+template <size_t M, size_t N, class Domain>
+Verdict judge_density(Random& random, const Model<M, N>& model, const Domain& domain,
+                      const Options& o) {
+    static_assert(N == std::tuple_size_v<decltype(domain.at({}))>,
+                  "the domain has other coordinates than the samples");
+    DensityCheck<M, N, Domain> check{random, model, domain, o};
+    const Verdict v = check.run();
+    return o.name.empty() ? v : v.of(o.name);
 }
+template <class Sample, class Pdf, class Domain>
+requires requires { Domain::dimensions; }
+Verdict expect_density(Random& random, Sample sample, Pdf pdf, const Domain& domain,
+                       const Options& o = {}) {
+    return judge_density(random, model(sample, pdf), domain, o);
+}
+template <class Sample, class Pdf>
+Verdict expect_density(Random& random, Sample sample, Pdf pdf, const Options& o = {}) {
+    const auto erased = model(sample, pdf);
+    return [&]<size_t M, size_t N>(const Model<M, N>& m) {
+        return judge_density(random, m, usual_domain<N>(), o);
+    }(erased);
+}
+
+// ---- BSDFs --------------------------------------------------------------------------------------
+
+template <class C>
+double brightness(const C& c) {
+    if constexpr (std::is_arithmetic_v<C>)
+        return double(c);
+    else if constexpr (requires {
+                           c.r;
+                           c.g;
+                           c.b;
+                       })
+        return (double(c.r) + double(c.g) + double(c.b)) / 3;
+    else {
+        const auto rgb = oracle::point(c);
+        double sum = 0;
+        for (double x : rgb) sum += x / double(rgb.size());
+        return sum;
+    }
+}
+
+// The type of a function's first argument.
+template <class R, class C, class A, class... More>
+std::decay_t<A> first_argument(R (C::*)(A, More...) const);
+template <class R, class C, class A, class... More>
+std::decay_t<A> first_argument(R (C::*)(A, More...));
+template <class R, class A, class... More>
+std::decay_t<A> first_argument(R (*)(A, More...));
+template <class F>
+auto first_argument_of() {
+    if constexpr (requires { &F::operator(); })
+        return decltype(first_argument(&F::operator())){};
+    else
+        return decltype(first_argument(std::declval<F>())){};
+}
+
+// A reflecting BSDF in the frame whose z is the normal, for three directions wo: samples
+// sample(wo, u, v) have the density pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not
+// negative and reciprocal; no more is reflected than comes.
+template <class Sample, class Pdf, class Eval>
+Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Options& o = {}) {
+    using V = decltype(first_argument_of<Pdf>());  // the host's direction
+    using T = Coordinate<V>;
+    constexpr bool single = std::is_same_v<T, float>;
+    auto unit_at = [](double z, double phi) {
+        const double s = std::sqrt(1 - z * z);
+        return Triple{s * std::cos(phi), s * std::sin(phi), z};
+    };
+    auto named = [&](const Verdict& v) { return o.name.empty() ? v : v.of(o.name); };
+    Verdict all{true, 1, 0, ""};
+    for (const auto& [z, phi] : {std::pair{0.95, 1.0}, std::pair{0.6, 3.0}, std::pair{0.2, 5.0}}) {
+        const Triple out = unit_at(z, phi);
+        const V wo = of_host<V>(out);
+        auto half = [out](const Triple& w) {
+            Triple h;
+            for (size_t k = 0; k < 3; ++k) h[k] = w[k] + out[k];
+            const double length = std::sqrt(dot(h, h));
+            for (double& x : h) x /= length;
+            return h;
+        };
+        Options here = o;
+        here.name += (o.name.empty() ? "" : " ") + ("wo = " + say_point(out));
+        here.factors.emplace_back("4 wo.h", [=](const Triple& w) { return 4 * dot(out, half(w)); });
+        here.factors.emplace_back("n.h", [=](const Triple& w) { return half(w)[2]; });
+        const Verdict v = expect_density(
+            random, [&](T a, T b) { return sample(wo, a, b); },
+            [&](const V& w) { return pdf(wo, w); }, here);
+        if (!v.pass) return v;
+        all.p = std::min(all.p, v.p);
+        all.delta_min = std::max(all.delta_min, v.delta_min);
+
+        Draws albedo;
+        for (int i = 0; i < 100000; ++i) {
+            const T a = T(single ? random.single() : random()),
+                    b = T(single ? random.single() : random());
+            const auto w = sample(wo, a, b);
+            double weight = 0;
+            auto weigh = [&](const V& wi) {
+                const double p = double(pdf(wo, wi));
+                if (p > 0) weight = brightness(eval(wo, wi)) * std::abs(oracle::point(wi)[2]) / p;
+            };
+            if constexpr (requires {
+                              bool(w);
+                              *w;
+                          }) {
+                if (w) weigh(*w);
+            } else {
+                weigh(w);
+            }
+            if (!std::isfinite(weight))
+                return named(failure("eval cos / pdf is not finite for wo = " + say_point(out)));
+            albedo.add(weight);
+        }
+        const Estimate e = albedo.estimate();
+        if (e.mean > 1 + 1e-3 + 5 * e.standard_error)
+            return named(failure("an albedo of " +
+                                 times(e.mean, std::max(0.003, 3 * e.standard_error / e.mean)) +
+                                 ": more is reflected than comes, for wo = " + say_point(out)));
+    }
+    double worst = 0, with_cosine = 0, with_inverse = 0, compared = 0;
+    Triple worst_o{}, worst_i{};
+    for (int i = 0; i < 2000; ++i) {
+        const Triple a = unit_at(0.05 + 0.95 * random(), 2 * pi * random()),
+                     b = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
+        const V wo = of_host<V>(a), wi = of_host<V>(b);
+        const double there = brightness(eval(wo, wi)), back = brightness(eval(wi, wo));
+        for (double f : {there, back})
+            if (!(f >= 0 && std::isfinite(f)))
+                return named(failure(
+                    say("eval is %s, %.4g, for wo = ", f < 0 ? "negative" : "not finite", f) +
+                    say_point(a) + ", wi = " + say_point(b)));
+        const double largest = std::max(there, back);
+        if (largest <= 0) continue;
+        ++compared;
+        const double close = single ? 0.02 : 1e-6, off = std::abs(there - back) / largest;
+        with_cosine += std::abs(there * a[2] / (back * b[2]) - 1) < close;
+        with_inverse += std::abs(there * b[2] / (back * a[2]) - 1) < close;
+        if (off > worst) worst = off, worst_o = a, worst_i = b;
+    }
+    // Narrow lobes in float: half vectors of exchanged directions differ by rounding.
+    if (worst > (single ? 0.02 : 1e-6)) {
+        Verdict v = failure(
+            say("eval is not reciprocal: f(wo, wi) and f(wi, wo) differ by %.3g %%, for wo = ",
+                100 * worst) +
+            say_point(worst_o) + ", wi = " + say_point(worst_i));
+        if (with_cosine > 0.95 * compared)
+            v.text += "; looks like the cosine of wi included in eval";
+        if (with_inverse > 0.95 * compared)
+            v.text += "; looks like eval divided by the cosine of wi";
+        return named(v);
+    }
+    all.text = "density, albedo and reciprocity as expected";
+    return named(all);
+}
+
+// ---- Images -------------------------------------------------------------------------------------
+
+// An image with the standard errors of its values against a reference: all pixels together, 16
+// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Anything with [] will
+// do for values, errors and reference, row by row from the top.
+template <class Values, class Errors, class Reference>
+Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
+                     const Reference& reference, const Options& o = {}) {
+    const size_t n = width * height;
+    auto named = [&](const Verdict& v) { return o.name.empty() ? v : v.of(o.name); };
+    auto pixel = [&](size_t i) { return say("pixel (%zu, %zu)", i % width, i / width); };
+    std::vector<double> f(n), s(n), truth(n);
+    for (size_t i = 0; i < n; ++i) {
+        f[i] = double(values[i]), s[i] = double(errors[i]), truth[i] = double(reference[i]);
+        if (!std::isfinite(f[i])) return named(failure(pixel(i) + say(" is %g, not finite", f[i])));
+        if (!(s[i] >= 0 && std::isfinite(s[i])))
+            return named(failure(pixel(i) + say(" has the standard error %g", s[i])));
+    }
+    struct Result {
+        double p = 1, mean = 0, mean_p = 1, z = 0;
+        size_t worst = 0;
+    };
+    // Of the image divided by c against these values.
+    auto against = [&](const std::vector<double>& g, double c = 1) {
+        struct Sum {
+            double off = 0, variance = 0;
+            double z() const {
+                return off == 0 ? 0 : variance > 0 ? off / std::sqrt(variance) : infinity;
+            }
+        };
+        Sum whole;
+        std::array<Sum, 16> blocks;
+        Result r;
+        double most = 0;
+        for (size_t i = 0; i < n; ++i) {
+            const double off = f[i] / c - g[i], error = s[i] / c;
+            Sum one{std::abs(off) <= 1e-6 * std::abs(g[i]) ? 0 : off, error * error};
+            for (Sum* sum :
+                 {&whole, &blocks[(i / width) * 4 / height * 4 + (i % width) * 4 / width]})
+                sum->off += one.off, sum->variance += one.variance;
+            if (const double z = std::abs(one.z()); z > most) most = z, r.worst = i;
+        }
+        double block = 0;
+        for (const Sum& b : blocks) block = std::max(block, std::abs(b.z()));
+        auto sidak = [](double z, double m) {
+            return -std::expm1(m * std::log1p(-std::min(p_of_z(z), 1 - 1e-16)));
+        };
+        r.mean = whole.off / double(n);
+        r.mean_p = p_of_z(whole.z());
+        r.z = most;
+        r.p = std::min(1.0, 3 * std::min({r.mean_p, sidak(block, 16), sidak(most, double(n))}));
+        return r;
+    };
+    const Result r = against(truth);
+    Verdict v;
+    v.p = r.p;
+    v.pass = r.p > o.alpha;
+    ++statistical_checks;
+    alpha_spent += o.alpha;
+    double sum = 0, sum_f = 0, variance = 0;
+    for (size_t i = 0; i < n; ++i) sum += truth[i], sum_f += f[i], variance += s[i] * s[i];
+    v.delta_min = smallest_shift(infinity, o.alpha / 3) * std::sqrt(variance) /
+                  (sum != 0 ? std::abs(sum) : 1);
+    v.text = say("%zux%zu pixels, mean off by %.3g (%s), largest %.2f sigma at ", width, height,
+                 r.mean, say_p(r.mean_p).c_str(), r.z) +
+             pixel(r.worst) + ", " + say_p(r.p) +
+             "; smallest bias of all seen with 99.9 % power: " + percent(v.delta_min);
+    if (v.pass) return named(v);
+
+    std::string first;
+    auto explains = [&](const std::vector<double>& g, const std::string& cause, double c = 1) {
+        if (first.empty() && against(g, c).p > std::max(1e-5, 10 * o.alpha)) first = cause;
+    };
+    std::vector<double> turned(n);
+    for (size_t i = 0; i < n; ++i) turned[i] = truth[(height - 1 - i / width) * width + i % width];
+    explains(turned,
+             "the image is the reference upside down: looks like rows written in the other order");
+    for (size_t i = 0; i < n; ++i) turned[i] = truth[i / width * width + (width - 1 - i % width)];
+    explains(turned, "the image is the reference mirrored: looks like x reversed");
+    if (sum != 0 && sum_f / sum > 0) {
+        const double within = 5 * std::sqrt(variance) / std::abs(sum_f);
+        explains(truth,
+                 "the image is " + times(sum_f / sum, within) + " times the reference, everywhere" +
+                     cause_of(sum_f / sum, within, o.factors),
+                 sum_f / sum);
+    }
+    for (double gamma : {1 / 2.2, 2.2, 0.5, 2.0}) {
+        for (size_t i = 0; i < n; ++i) turned[i] = std::pow(std::max(0.0, truth[i]), gamma);
+        explains(turned, say("the image is the reference to the power of %.4g: looks like gamma %s",
+                             gamma, gamma < 1 ? "applied" : "removed twice"));
+    }
+    const auto shifted = [&](int dx, int dy, const char* where) {
+        for (size_t i = 0; i < n; ++i) {
+            const long x = std::clamp(long(i % width) + dx, 0L, long(width) - 1),
+                       y = std::clamp(long(i / width) + dy, 0L, long(height) - 1);
+            turned[i] = truth[size_t(y) * width + size_t(x)];
+        }
+        // The border has no neighbour to compare with.
+        for (size_t i = 0; i < n; ++i)
+            if (i % width == 0 || i % width == width - 1 || i < width || i >= n - width)
+                turned[i] = f[i];
+        explains(turned, std::string("the image is the reference one pixel further ") + where);
+    };
+    shifted(1, 0, "left"), shifted(-1, 0, "right"), shifted(0, 1, "up"), shifted(0, -1, "down");
+    if (first.empty())
+        first = pixel(r.worst) +
+                say(" is %.6g +- %.2g, expected %.6g", f[r.worst], s[r.worst], truth[r.worst]) +
+                say("; all pixels: %.4g times the reference", sum_f / sum);
+    // The three, by blocks of pixels.
+    const size_t across = std::min<size_t>(width, 64), down = std::min<size_t>(height, 48);
+    std::vector<double> image(across * down), wanted(across * down), weight(across * down);
+    for (size_t i = 0; i < n; ++i) {
+        const size_t b = (i / width) * down / height * across + (i % width) * across / width;
+        image[b] += f[i], wanted[b] += truth[i], ++weight[b];
+    }
+    double most = 1e-300, most_off = 1e-300;
+    for (size_t b = 0; b < image.size(); ++b) {
+        image[b] /= weight[b], wanted[b] /= weight[b];
+        most = std::max({most, image[b], wanted[b]});
+        most_off = std::max(most_off, std::abs(image[b] - wanted[b]));
+    }
+    const double w = 350.0 / double(across),
+                 h = 350.0 * double(height) / double(width) / double(down);
+    Drawing d{1100, 60 + h * double(down)};
+    const char* titles[] = {"image", "reference",
+                            "image - reference: red too bright, blue too dark"};
+    for (size_t k = 0; k < 3; ++k) {
+        const double left = 10 + 362 * double(k);
+        d.text(left, 20, titles[k]);
+        for (size_t b = 0; b < image.size(); ++b)
+            d.rectangle(
+                left + w * double(b % across), 30 + h * double(b / across), w + 0.1, h + 0.1,
+                k == 2 ? blue_white_red((image[b] - wanted[b]) / most_off)
+                       : grey(1 - std::pow(std::max(0.0, (k == 0 ? image : wanted)[b] / most),
+                                           1 / 2.2)));
+    }
+    d.text(10, 50 + h * double(down), say("white is %.4g; full red and blue %.4g", most, most_off));
+    v.text = first + "\n" + v.text + d.written(o.name);
+    return named(v);
+}
+
+}  // namespace oracle
+
+#pragma GCC diagnostic pop

@@ -6,10 +6,11 @@
 #include <limits>
 
 #include "oracle/expect.h"
+#include "oracle/textbook.h"
 
 namespace {
 
-using std::numbers::pi;
+using namespace oracle;
 
 struct Direction {
     double x, y, z;
@@ -23,13 +24,18 @@ Direction cosine_direction(double u, double v) { return direction(std::sqrt(1 - 
 double cosine_pdf(Direction w) { return std::max(0.0, w.z) / pi; }
 double uniform_pdf(Direction w) { return w.z > 0 ? 1 / (2 * pi) : 0; }
 
-// Runs of one check that do not count among those of the suite.
+// Runs that do not count among those of the suite, and draw nothing.
+struct Aside {
+    const int checks = statistical_checks;
+    const double spent = alpha_spent;
+    const std::string folder = std::exchange(pictures, "");
+    ~Aside() { statistical_checks = checks, alpha_spent = spent, pictures = folder; }
+};
 template <class Check>
 std::vector<Verdict> runs(int n, Check check) {
-    const int before = statistical_checks;
+    const Aside aside;
     std::vector<Verdict> verdicts;
     for (int i = 0; i < n; ++i) verdicts.push_back(check());
-    statistical_checks = before;
     return verdicts;
 }
 
@@ -44,7 +50,7 @@ void check_uniform(const std::vector<Verdict>& verdicts) {
     for (size_t i = 0; i < p.size(); ++i)
         d = std::max({d, p[i] - double(i) / n, double(i + 1) / n - p[i]});
     INFO("D = ", d, ", p below .01: ", std::lower_bound(p.begin(), p.end(), 0.01) - p.begin());
-    CHECK(2 * std::exp(-2 * n * d * d) > alpha);
+    CHECK(2 * std::exp(-2 * n * d * d) > 1e-6);
     for (double tail : {0.001, 0.01, 0.1}) {
         // Few or many: the normal approximation, and for rare ones Poisson's tail of 4 + 14.
         const double below = double(std::lower_bound(p.begin(), p.end(), tail) - p.begin());
@@ -114,8 +120,7 @@ TEST_CASE("replicates: p-values are uniform with 16, and a bias of the stated si
     };
     check_uniform(runs(2000, [&] { return expect_replicates(1, 16, replicate(0)); }));
     // The stated size varies with the estimated deviation: here it is the true one.
-    const double deviation =
-        std::sqrt(draw(100000, [&] { return replicate(0)(0); }).moments.variance());
+    const double deviation = std::sqrt(draw(100000, [&] { return replicate(0)(0); }).variance());
     const double bias = smallest_shift(15) * deviation / 4;
     check_seen(runs(1000, [&] { return expect_replicates(1, 16, replicate(bias)); }));
 }
@@ -164,71 +169,294 @@ TEST_CASE("counts: p-values are uniform, and a distortion of the stated size is 
 
 TEST_CASE("densities: p-values are uniform, and a distortion of the stated size is seen") {
     Random random(seed_here());
-    DensityOptions o;
+    Options o;
     o.n = 6400;
-    o.smooth = false;
-    o.tolerance = 1e-4;
-    auto slope = [&](double a) {
-        return [&random, a](double u, double v) {
-            // phi with density (1 + a cos(2 phi)) / 2 pi, by rejection.
+    // phi with density (1 + a sin(2 phi + turn)) / 2 pi, by rejection.
+    auto slope = [&](double a, double turn) {
+        return [&random, a, turn](double u, double v) {
             double phi = 2 * pi * v;
-            while (2 * random() > 1 + a * std::cos(2 * phi)) phi = 2 * pi * random();
+            while (2 * random() > 1 + a * std::sin(2 * phi + turn)) phi = 2 * pi * random();
             return direction(1 - u, phi);
         };
     };
     const auto verdicts =
-        runs(1000, [&] { return expect_density(random, slope(0), uniform_pdf, o); });
+        runs(200, [&] { return expect_density(random, slope(0, 0), uniform_pdf, o); });
     check_uniform(verdicts);
-    // Cells are quadrants but for the noise of their borders; in terms of cos(2 phi) each would be
-    // half up, half down: turned by 45 degrees, sin(2 phi) has 2 / pi a more in every other one.
-    auto turned = [&](double a) {
-        return [&random, a](double u, double v) {
-            double phi = 2 * pi * v;
-            while (2 * random() > 1 + a * std::sin(2 * phi)) phi = 2 * pi * random();
-            return direction(1 - u, phi);
-        };
-    };
+    // Cells are quadrants but for the noise of their borders: sin(2 phi) has 2 / pi a more in every
+    // other one.  The borders are quantiles of distorted samples, which then hide part: 1.1 covers
+    // it.
     const double a = verdicts[0].delta_min * pi / 2;
-    // The borders are quantiles of distorted samples, which then hide part: 1.1 covers it.
-    check_seen(runs(300, [&] { return expect_density(random, turned(1.1 * a), uniform_pdf, o); }));
+    check_seen(
+        runs(300, [&] { return expect_density(random, slope(1.1 * a, 0), uniform_pdf, o); }));
+}
+
+TEST_CASE("densities: the number of samples follows from the error to be seen") {
+    Random random(seed_here());
+    const Options rough{.alpha = 1e-3, .sees = 0.03};
+    const Verdict v = expect_density(random, cosine_direction, cosine_pdf, rough);
+    says(v, "n = 9");
+    CHECK(v.pass);
+    CHECK(v.delta_min == doctest::Approx(0.03).epsilon(1e-3));
+    CHECK(expect_density(random, cosine_direction, cosine_pdf).delta_min ==
+          doctest::Approx(0.01).epsilon(1e-3));
+}
+
+TEST_CASE("choices: p-values are uniform, and a distortion of the stated size is seen") {
+    Random random(seed_here());
+    Options o;
+    o.n = 20000;
+    auto choose = [](double a) {
+        return [a](double u) { return u < 0.25 * (1 + a) ? 0 : u < 0.5 ? 1 : u < 0.75 ? 2 : 3; };
+    };
+    auto quarter = [](int) { return 0.25; };
+    const auto verdicts =
+        runs(2000, [&] { return expect_choice(random, choose(0), quarter, 4, o); });
+    check_uniform(verdicts);
+    const double size = verdicts[0].delta_min * std::sqrt(2.0);  // two cells of four
+    check_seen(runs(1000, [&] { return expect_choice(random, choose(size), quarter, 4, o); }));
+}
+
+TEST_CASE("images: right ones pass, and a bias of the stated size is seen") {
+    Random random(seed_here());
+    const size_t width = 16, height = 8, n = width * height;
+    const std::vector<double> truth(n, 2), errors(n, 0.1);
+    auto image = [&](double bias) {
+        std::vector<double> values(n);
+        for (double& x : values) {
+            double normal = -6;  // nearly
+            for (int i = 0; i < 12; ++i) normal += random();
+            x = 2 * (1 + bias) + 0.1 * normal;
+        }
+        return values;
+    };
+    const auto right =
+        runs(2000, [&] { return expect_image(width, height, image(0), errors, truth); });
+    // Sidak's and Bonferroni's corrections: as often as stated, or less often.
+    for (double tail : {0.01, 0.1}) {
+        double below = 0;
+        for (const Verdict& v : right) below += v.p < tail;
+        CHECK(below <= 2000 * tail + 5 * std::sqrt(2000 * tail));
+        CHECK(below >= 2000 * tail / 10);
+    }
+    const double size = right[0].delta_min;
+    check_seen(runs(1000, [&] { return expect_image(width, height, image(size), errors, truth); }));
 }
 
 TEST_CASE("identities see an error of 10^-5 without noise") {
     Random random(seed_here());
-    CHECK(expect_density(random, cosine_direction, cosine_pdf).pass);
     auto off = [](Direction w) { return (1 + 1e-5) * cosine_pdf(w); };
-    says(expect_jacobian(random, cosine_direction, off), "pdf |dx/du x dx/dv| = 1.00001");
-    DensityOptions o;
-    o.smooth = false;
-    says(expect_density(random, cosine_direction, off, o),
-         "integral of pdf over the sphere is 1.00001");
+    const Aside aside;
+    says(expect_jacobian(random, cosine_direction, off), "pdf sqrt(det J^T J) = 1.00001");
+    CHECK(!expect_density(random, cosine_direction, off).pass);
+    says(expect_density(random, cosine_direction, off), "integrates to 1.00001");
+    // As dense as the pdf at the pole, and 10^-5 denser at the horizon.
+    auto bent = [](Direction w) { return cosine_pdf(w) * (1 + 1e-5 * (w.z - 2 / 3.0)); };
+    says(expect_density(random, cosine_direction, bent),
+         "times as dense as the pdf says, at direction");
 }
 
-TEST_CASE("classic mistakes of hemisphere samplers are seen and named") {
+TEST_CASE("densities on other domains, with jumps and with failing samples, need no option") {
     Random random(seed_here());
-    DensityOptions rough;
-    rough.smooth = false;
-    auto flat = [](double u, double v) { return direction(1 - u, 2 * pi * v); };
-    auto no_root = [](double u, double v) { return direction(std::sqrt(1 - u * u), 2 * pi * v); };
-    auto half = [](double u, double v) { return direction(std::sqrt(1 - u), pi * v); };
-    for (const auto& wrong : {+flat, +no_root, +half}) {
-        CHECK(!expect_density(random, wrong, cosine_pdf).pass);
-        says(expect_density(random, wrong, cosine_pdf, rough), "chi2");
-    }
-    says(expect_density(random, half, cosine_pdf), "1/2");
-    auto per_angle = [](Direction w) { return cosine_pdf(w) * std::hypot(w.x, w.y); };
-    says(expect_density(random, cosine_direction, per_angle, rough), "ratio 0.6667, is it 2/3");
-    auto below = [](double u, double v) { return direction(u < 0.001 ? -0.5 : 1 - u, 2 * pi * v); };
-    says(expect_density(random, below, uniform_pdf, rough), "the density is 0 at the sample");
-    // A lobe as narrow as 10^-4 that the density misses or has is seen.
-    auto lobe = [](double u, double v) { return direction(std::pow(1 - u, 1e-8), 2 * pi * v); };
-    auto lobe_pdf = [](Direction w) {
-        return w.z > 0 ? 1e8 / (2 * pi) * std::pow(w.z, 1e8 - 1) : 0;
+    const Options o{.sees = 0.03};
+    auto exponential = [](double u) { return -std::log1p(-u); };
+    CHECK(expect_density(
+              random, exponential, [](double x) { return x < 0 ? 0 : std::exp(-x); }, o)
+              .pass);
+    CHECK(expect_density(
+              random, [](double u) { return std::sqrt(u); }, [](double x) { return 2 * x; },
+              Interval{0, 1}, o)
+              .pass);
+    using Pair = std::pair<double, double>;
+    auto disc = [](double u, double v) {
+        return Pair{std::sqrt(u) * std::cos(2 * pi * v), std::sqrt(u) * std::sin(2 * pi * v)};
     };
-    rough.tolerance = 1e-5;  // pow(cos, 10^8) keeps no more digits of the cosine's
-    CHECK(!expect_density(random, lobe, uniform_pdf, rough).pass);
-    CHECK(!expect_density(random, flat, lobe_pdf, rough).pass);
+    auto in_disc = [](Pair x) { return x.first * x.first + x.second * x.second < 1 ? 1 / pi : 0; };
+    CHECK(expect_density(random, disc, in_disc, o).pass);
+    CHECK(!expect_density(
+               random, disc, [&](Pair x) { return 1.01 * in_disc(x); }, o)
+               .pass);
+    // A Gaussian of the plane, by Box and Muller.
+    auto gauss = [](Pair u) {
+        return Pair{std::sqrt(-2 * std::log1p(-u.first)) * std::cos(2 * pi * u.second),
+                    std::sqrt(-2 * std::log1p(-u.first)) * std::sin(2 * pi * u.second)};
+    };
+    CHECK(expect_density(
+              random, gauss,
+              [](Pair x) {
+                  return std::exp(-(x.first * x.first + x.second * x.second) / 2) / (2 * pi);
+              },
+              o)
+              .pass);
+    // Uniform points of a triangle in space.
+    const Triangle<3> t{{0, 0, 1}, {2, 0, 0}, {0, 1, 0}};
+    auto corner = [&](double u, double v) { return t.at({std::sqrt(u), v}); };
+    CHECK(expect_density(
+              random, corner, [](Triple) { return 2 / std::sqrt(9.0); }, t, o)
+              .pass);
+    says(runs(1,
+              [&] {
+                  return expect_density(
+                      random,
+                      [&](double u, double v) {
+                          return t.at({u, v});
+                      },
+                      [](Triple) { return 2 / 3.0; }, t, o);
+              })[0],
+         "dense");
+    says(expect_density(
+             random,
+             [](double u, double v) {
+                 return Triple{u, v, 0};
+             },
+             [](Triple) { return 2 / 3.0; }, t, o),
+         "outside of the domain");
+    // Four dimensions, of which one follows 3 x^2; a piecewise constant density of 32 x 16 cells.
+    auto four = [](double a, double b, double c, double d) {
+        return std::array{a, b, std::cbrt(c), d};
+    };
+    CHECK(expect_density(
+              random, four, [](std::array<double, 4> x) { return 3 * x[2] * x[2]; },
+              Box<4>{{0, 0, 0, 0}, {1, 1, 1, 1}}, o)
+              .pass);
+    CHECK(!runs(1,
+                [&] {
+                    return expect_density(
+                        random, four, [](std::array<double, 4> x) { return 4 * std::pow(x[2], 3); },
+                        Box<4>{{0, 0, 0, 0}, {1, 1, 1, 1}}, o);
+                })[0]
+               .pass);
+    auto texel = [](double x, double y) {
+        return 0.25 + (int(32 * x) * 7 + int(16 * y) * 5) % 4 * 0.5;
+    };
+    auto rejected = [&](double u, double v, double w) {
+        return 1.75 * w < texel(u, v) ? std::optional(Pair{u, v}) : std::nullopt;
+    };
+    const Verdict v = expect_density(
+        random, rejected, [&](Pair x) { return texel(x.first, x.second) / 1.75; }, Square{}, o);
+    says(v, "of the samples fail");
+    CHECK(v.pass);
+    // Mixtures.
+    auto mixed = [&](double u, double w) {
+        return u < 0.3 ? cosine_direction(u / 0.3, w) : direction(1 - (u - 0.3) / 0.7, 2 * pi * w);
+    };
+    CHECK(expect_density(
+              random, mixed, [](Direction w) { return 0.3 * cosine_pdf(w) + 0.7 * uniform_pdf(w); },
+              o)
+              .pass);
+    const auto swapped = runs(1, [&] {
+        return expect_density(
+            random, mixed, [](Direction w) { return 0.7 * cosine_pdf(w) + 0.3 * uniform_pdf(w); },
+            o);
+    });
+    CHECK(!swapped[0].pass);
 }
+
+TEST_CASE("narrow lobes: one that the pdf or the sampler misses, one in a hundred of a mixture") {
+    Random random(seed_here());
+    const Aside aside;
+    const Options o{.sees = 0.03};
+    auto flat = [](double u, double v) { return direction(1 - u, 2 * pi * v); };
+    // About x, 10^-4 wide.
+    auto lobe = [](double u, double v) {
+        const Direction w = direction(std::pow(1 - u, 1e-8), 2 * pi * v);
+        return Direction{w.z, w.x, w.y};
+    };
+    auto lobe_pdf = [](Direction w) {
+        return w.x > 0 ? 1e8 / (2 * pi) *
+                             std::exp((1e8 - 1) * std::log1p(-(w.y * w.y + w.z * w.z) / (1 + w.x)))
+                       : 0;
+    };
+    CHECK(expect_density(random, lobe, lobe_pdf, o).pass);
+    CHECK(!expect_density(random, lobe, uniform_pdf, o).pass);
+    CHECK(!expect_density(random, flat, lobe_pdf, o).pass);
+    auto both = [&](double u, double v) {
+        return u < 0.01 ? lobe(u / 0.01, v) : flat((u - 0.01) / 0.99, v);
+    };
+    auto pdf = [&](double share) {
+        return
+            [&, share](Direction w) { return share * lobe_pdf(w) + (1 - share) * uniform_pdf(w); };
+    };
+    CHECK(expect_density(random, both, pdf(0.01), o).pass);
+    CHECK(!expect_density(
+               random, both, [&](Direction w) { return 0.99 * uniform_pdf(w); }, o)
+               .pass);
+}
+
+// Textbook code, in float and in double: 200 seeds by TEXTBOOK_SEEDS=200.
+namespace {
+
+template <class T>
+void check_textbook(const char* what, const std::function<textbook::Vec<T>(T, T)>& sample,
+                    const std::function<T(textbook::Vec<T>)>& density) {
+    const char* more = std::getenv("TEXTBOOK_SEEDS");
+    const int seeds = more ? std::atoi(more) : 1;
+    int refused = 0, missed = 0;
+    std::string text;
+    const Aside aside;
+    for (int i = 0; i < seeds; ++i) {
+        Random random(seed_here() + uint64_t(i) * 0x9e3779b9);
+        const Options o{.sees = more ? 0.01 : 0.03};
+        const Verdict v = expect_density(random, sample, density, o);
+        if (!v.pass) ++refused, text = v.text;
+        if (!more) continue;
+        for (T factor : {T(0.99), T(1.01)})
+            missed +=
+                expect_density(
+                    random, sample, [&](textbook::Vec<T> w) { return factor * density(w); }, o)
+                    .pass;
+    }
+    INFO(std::string(what), sizeof(T) == 4 ? " in float: " : " in double: ", refused,
+         " refused of ", seeds, ", ", missed, " off by 1 % missed: ", text);
+    if (more)
+        std::printf("%-30s %s: %d of %d refused, %d of %d off by 1 %% missed\n", what,
+                    sizeof(T) == 4 ? "float" : "double", refused, seeds, missed, 2 * seeds),
+            std::fflush(stdout);
+    CHECK(refused == 0);
+    CHECK(missed == 0);
+}
+
+template <class T>
+void check_textbooks() {
+    using namespace textbook;
+    using V = Vec<T>;
+    check_textbook<T>(
+        "cosine", [](T u, T v) { return cosine_sample(u, v); },
+        [](V w) { return textbook::cosine_pdf(w); });
+    for (T n : {T(1), T(50), T(1000)})
+        check_textbook<T>(
+            say("Phong lobe, n = %g", double(n)).c_str(),
+            [n](T u, T v) { return phong_sample(u, v, n); }, [n](V w) { return phong_pdf(w, n); });
+    for (T c : {T(0.5), T(0.99), T(0.9999)})
+        check_textbook<T>(
+            say("cone, cos = %g", double(c)).c_str(),
+            [c](T u, T v) { return cone_sample(u, v, c); }, [c](V w) { return cone_pdf(w, c); });
+    for (T a : {T(0.02), T(0.05), T(0.1), T(0.3), T(0.8)})
+        for (T z : {T(1), T(0.7), T(0.2)}) {
+            const V wo{std::sqrt(1 - z * z), 0, z};
+            const std::string where = say(", alpha %g, cos %g", double(a), double(z));
+            check_textbook<T>(("half vector" + where).c_str(),
+                              [=](T u, T v) { return ggx_half_sample(wo, u, v, a); },
+                              [=](V w) { return ggx_half_pdf(wo, w, a); });
+            check_textbook<T>(("visible normal" + where).c_str(),
+                              [=](T u, T v) { return ggx_visible_sample(wo, u, v, a); },
+                              [=](V w) { return ggx_visible_pdf(wo, w, a); });
+            if (z != T(0.7)) continue;
+            check_textbook<T>(
+                ("mixture" + where).c_str(),
+                [=](T u, T v) {
+                    return u < T(0.3) ? cosine_sample(u / T(0.3), v)
+                                      : ggx_visible_sample(wo, (u - T(0.3)) / T(0.7), v, a);
+                },
+                [=](V w) {
+                    return T(0.3) * textbook::cosine_pdf(w) + T(0.7) * ggx_visible_pdf(wo, w, a);
+                });
+        }
+}
+
+}  // namespace
+
+TEST_CASE("textbook samplers in float are right") { check_textbooks<float>(); }
+TEST_CASE("textbook samplers in double are right") { check_textbooks<double>(); }
 
 TEST_CASE("what cannot be judged fails, and says why") {
     Random random(seed_here());
@@ -259,12 +487,13 @@ TEST_CASE("what cannot be judged fails, and says why") {
     const double third[] = {1 / 3.0, 1 / 3.0, 1 / 3.0};
     says(expect_counts(few, third), "take 300");
     says(expect_counts(none, third), "no sample at all");
-    says(expect_density(random,
-                        [&](double u, double v) {
-                            return u < 1e-3 ? Direction{nan, 0, 0} : cosine_direction(u, v);
-                        },
-                        cosine_pdf, {64000, {0, 0, 1}, false, 0}),
-         "at the sample (nan, 0, 0)");
+    says(expect_density(
+             random,
+             [&](double u, double v) {
+                 return u < 1e-3 ? Direction{nan, 0, 0} : cosine_direction(u, v);
+             },
+             cosine_pdf),
+         "sample (nan, 0, 0) is not finite");
 }
 
 TEST_CASE("constants are exact: equal within rounding, or wrong") {
@@ -275,7 +504,7 @@ TEST_CASE("constants are exact: equal within rounding, or wrong") {
     CHECK(!expect_mean(0, 1000, [] { return 1e-300; }).pass);
     CHECK(expect_mean(0, 1000, [] { return 0.0; }).pass);
     says(expect_mean(1, 1000, [] { return pi; }), "1/pi forgotten");
-    says(expect_mean(1, 1000, [] { return 0.5; }), "probability of a choice among two");
+    says(expect_mean(1, 1000, [] { return 0.5; }), "ratio 0.5 (1/2)");
     CHECK(expect_equal([] { return 0.1 + 0.2; }, [] { return 0.3; }, 10).pass);
     CHECK(!expect_equal([] { return 0.2; }, [] { return 0.3; }, 10).pass);
     // Noise within rounding is no evidence: float's last bits, one of them always up.
@@ -303,4 +532,45 @@ TEST_CASE("seeds depend on the name and on TEST_SEED alone") {
     CHECK(std::adjacent_find(bits.begin(), bits.end()) == bits.end());
     before ? setenv("TEST_SEED", restore.c_str(), 1) : unsetenv("TEST_SEED");
     CHECK(seed_of("a") == old);
+}
+
+TEST_CASE("p-values: quantiles of the normal, Student's and the chi-squared distribution") {
+    CHECK(p_of_z(1.959963984540054) == doctest::Approx(0.05).epsilon(1e-12));
+    CHECK(p_of_z(4.891638475698590) == doctest::Approx(1e-6).epsilon(1e-9));
+    // t with 1 degree is Cauchy, with 2 closed; 30: table (Abramowitz, Stegun 26.10).
+    for (double t : {0.1, 1.0, 12.0, 1e4}) {
+        CHECK(p_of_t(t, 1) ==
+              doctest::Approx(1 - 2 * std::atan(t) / std::numbers::pi).epsilon(1e-8));
+        CHECK(p_of_t(t, 2) == doctest::Approx(1 - t / std::sqrt(2 + t * t)).epsilon(1e-8));
+    }
+    CHECK(p_of_t(2.042, 30) == doctest::Approx(0.05).epsilon(1e-3));
+    CHECK(p_of_t(5, 1e7) == doctest::Approx(p_of_z(5)).epsilon(1e-4));
+    // chi2 with 2 degrees is exponential; with 1 the square of z; odd ones by the recurrence.
+    for (double x : {0.01, 1.0, 5.0, 60.0}) {
+        CHECK(p_of_chi2(x, 2) == doctest::Approx(std::exp(-x / 2)).epsilon(1e-12));
+        CHECK(p_of_chi2(x, 1) == doctest::Approx(p_of_z(std::sqrt(x))).epsilon(1e-10));
+        CHECK(p_of_chi2(x, 4) == doctest::Approx(std::exp(-x / 2) * (1 + x / 2)).epsilon(1e-12));
+    }
+    CHECK(p_of_chi2(124.342, 100) == doctest::Approx(0.05).epsilon(1e-4));
+}
+
+TEST_CASE("p of t is not that of z at hundreds of degrees of freedom: in closed form, far out") {
+    // For even k, with theta = atan(t / sqrt k) and c_j = (1 3 ... 2j-1) / (2 4 ... 2j), what the
+    // finite sum of Abramowitz, Stegun 26.7.4 leaves of 1:
+    //   p = sin(theta) (c_j cos^2j(theta) summed over j >= k/2).
+    auto closed = [](double t, int k) {
+        const double cos2 = k / (k + t * t);
+        double term = t / std::sqrt(k + t * t), sum = 0;
+        for (int j = 1; j <= k / 2; ++j) term *= cos2 * (2 * j - 1) / (2 * j);
+        for (int j = k / 2; term > 1e-12 * sum; ++j, term *= cos2 * (2 * j - 1) / (2 * j))
+            sum += term;
+        return sum;
+    };
+    CHECK(closed(3, 2) == doctest::Approx(1 - 3 / std::sqrt(11.0)).epsilon(1e-9));
+    for (int k : {100, 200, 1000, 10000})
+        for (double t : {5.0, 6.0, 7.0, 8.0}) {
+            CAPTURE(k);
+            CAPTURE(t);
+            CHECK(p_of_t(t, k) == doctest::Approx(closed(t, k)).epsilon(1e-6).scale(0));
+        }
 }

@@ -1,6 +1,7 @@
 // path/pathtracer_test.cpp  radiance: closed forms, and every way to find light finds the same
 #include "path/pathtracer.h"
 
+#include "base/moments.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
 #include "path/scenes.h"
@@ -9,7 +10,7 @@ namespace {
 
 // Mean of an image over pixels, samples and channels.  Its standard error pools the variances
 // within pixels: one test of the whole image sees what no test of a pixel would.
-Estimate image_mean(const Scene& scene, const Technique& t, uint64_t seed, uint64_t spp) {
+oracle::Estimate image_mean(const Scene& scene, const Technique& t, uint64_t seed, uint64_t spp) {
     const Pattern pattern{SamplerKind::independent, seed};
     const auto pixel_mean = [&](int pixel) {
         const int x = pixel % scene.size.width, y = pixel / scene.size.width;
@@ -24,7 +25,7 @@ Estimate image_mean(const Scene& scene, const Technique& t, uint64_t seed, uint6
         squares += sqr(m.standard_error());
     }
     const double pixels = double(scene.size.width) * scene.size.height;
-    Estimate e;
+    oracle::Estimate e;
     e.mean = sum / pixels;
     e.standard_error = std::sqrt(squares) / pixels;
     e.unit = ulp;
@@ -110,8 +111,8 @@ TEST_CASE("a furnace has the radiance Le (1 - rho^(D+1)) / (1 - rho) at every de
             if (t.light == nee) continue;
             scene.depth = depth;
             const double truth = 0.4 * (1 - std::pow(0.5, depth + 1)) / (1 - 0.5);
-            const Estimate mean = image_mean(scene, t, seed_here(), 400);
-            EXPECT(expect_mean(truth, mean).of(t.name), 0.07);
+            const oracle::Estimate mean = image_mean(scene, t, seed_here(), 400);
+            EXPECT(oracle::expect_mean(truth, mean).of(t.name), 0.07);
         }
 }
 
@@ -164,7 +165,8 @@ light lamp 1 1 1
 sphere 0 0 0  1  glass
 sphere 0 0 0  0.5  lamp
 )");
-    EXPECT(expect_mean(0.96 / 2.25, image_mean(scene, techniques[0], seed_here(), 60000)), 0.01);
+    EXPECT(oracle::expect_mean(0.96 / 2.25, image_mean(scene, techniques[0], seed_here(), 60000)),
+           0.01);
 }
 
 TEST_CASE("lobe, direction and roulette draw numbers of their own: a glossy floor under a lamp") {
@@ -177,10 +179,10 @@ light lamp 1 1 1
 quad -9 0 -9  0 0 18  18 0 0  floor
 quad -1 1 -1  2 0 0  0 0 2  lamp
 )");
-    const Estimate reference = image_mean(scene, {uniform, none}, 99, 400000);
+    const oracle::Estimate reference = image_mean(scene, {uniform, none}, 99, 400000);
     for (int roulette : {0, 1}) {
         const Technique t{bsdf, none, roulette};
-        EXPECT(expect_equal(image_mean(scene, t, seed_here(), 400000), reference), 0.04);
+        EXPECT(oracle::expect_equal(image_mean(scene, t, seed_here(), 400000), reference), 0.04);
     }
 }
 
@@ -193,7 +195,7 @@ depth 0
 light lamp 1 1 1
 quad 0.4 -1 0  0.6 0 0  0 1 0  lamp
 )");
-    EXPECT(expect_mean(0.15, image_mean(scene, techniques[0], seed_here(), 40000)), 0.1);
+    EXPECT(oracle::expect_mean(0.15, image_mean(scene, techniques[0], seed_here(), 40000)), 0.1);
 }
 
 TEST_CASE("every pixel has random numbers of its own, and every bounce, and every light sample") {
@@ -323,25 +325,25 @@ sphere -0.5 0.4 0.2  0.1  ball
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {
     const Scene scene = scene_of(unequal);
-    const Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
+    const oracle::Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
     uint64_t seed = seed_here();
     for (const Named& t : techniques) {
-        const Estimate mean = image_mean(scene, t, seed++, 150);
-        EXPECT(expect_equal(mean, reference).of(t.name), 0.06);
+        const oracle::Estimate mean = image_mean(scene, t, seed++, 150);
+        EXPECT(oracle::expect_equal(mean, reference).of(t.name), 0.06);
     }
 }
 
 TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustics") {
     const Scene scene = scene_of(shiny);
-    const Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
+    const oracle::Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
     uint64_t seed = seed_here();
     for (const Named& t : techniques) {
         // Next-event estimation has no answer to a caustic seen in a mirror but the same one:
         // all three count light that arrives by way of mirror or glass when they hit it.
         // Light found by chance comes in rare large parts: more samples, or one decides the error.
         const uint64_t spp = t.light == none ? 920 : 230;
-        const Estimate mean = image_mean(scene, t, seed++, spp);
-        EXPECT(expect_equal(mean, reference).of(t.name), 0.06);
+        const oracle::Estimate mean = image_mean(scene, t, seed++, spp);
+        EXPECT(oracle::expect_equal(mean, reference).of(t.name), 0.06);
     }
 }
 
@@ -361,11 +363,11 @@ sphere 0.4 0 0  0.3  lobe
 sphere 0 0.9 0  0.2  lamp
 )";
     const Scene scene = scene_of(shell);
-    const Estimate reference = image_mean(scene, techniques[5], ~seed_here(), 375);
+    const oracle::Estimate reference = image_mean(scene, techniques[5], ~seed_here(), 375);
     uint64_t seed = seed_here();
     for (const Named& t : techniques) {
-        const Estimate mean = image_mean(scene, t, seed++, 100);
-        EXPECT(expect_equal(mean, reference).of(t.name), 0.007);
+        const oracle::Estimate mean = image_mean(scene, t, seed++, 100);
+        EXPECT(oracle::expect_equal(mean, reference).of(t.name), 0.007);
     }
 }
 
@@ -396,7 +398,7 @@ TEST_CASE("Russian roulette shortens paths to 1 / (1 - rho) scatterings") {
     const Pattern pattern{SamplerKind::independent, seed_here()};
     Moments rays;
     for (uint64_t i = 0; i < 100000; ++i) rays.add(double(rays_of(scene, t, pattern, 1, 1, i)));
-    EXPECT(expect_mean(2, estimate(rays)), 0.02);
+    EXPECT(oracle::expect_mean(2, estimate(rays)), 0.02);
 }
 
 TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^2))") {
@@ -426,7 +428,7 @@ TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^
 TEST_CASE("quasi-random and stratified samples find what independent ones find") {
     const Scene scene = scene_of(unequal);
     const Technique& t = techniques[0];
-    const Estimate reference = image_mean(scene, t, ~seed_here(), 300);
+    const oracle::Estimate reference = image_mean(scene, t, ~seed_here(), 300);
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton}) {
         // A replicate is one randomisation of every pixel's whole point set.
         const auto replicate = [&, first = seed_here()](int k) {
@@ -440,6 +442,6 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
         };
         Moments replicates;
         for (double mean : side_by_side(24, replicate)) replicates.add(mean);
-        EXPECT(expect_equal(estimate(replicates, ulp), reference), 0.03);
+        EXPECT(oracle::expect_equal(estimate(replicates, ulp), reference), 0.03);
     }
 }

@@ -2,6 +2,7 @@
 // pixel
 #include "path/sampler.h"
 
+#include "base/moments.h"
 #include "oracle/expect.h"
 
 namespace {
@@ -73,7 +74,7 @@ TEST_CASE("every number of every sampler is uniform over [0,1)") {
                     ++cells[part(16, draw(Sampler(pattern, pixel, sample), dim))];
                 }
                 const std::string what = names[int(kind)];
-                EXPECT(expect_counts(cells, equal).of(what), 0.2);
+                EXPECT(oracle::expect_counts(cells, equal).of(what), 0.2);
             }
     }
 }
@@ -103,8 +104,8 @@ TEST_CASE("neighbouring dimensions and neighbouring pixels are uncorrelated") {
         }
         // 1/12 is what full correlation would give: the bias is stated in its units.
         const std::string name = names[int(kind)];
-        EXPECT(expect_mean(0, estimate(between_dimensions)).of(name), 0.02 / 12);
-        EXPECT(expect_mean(0, estimate(between_pixels)).of(name), 0.02 / 12);
+        EXPECT(oracle::expect_mean(0, estimate(between_dimensions)).of(name), 0.02 / 12);
+        EXPECT(oracle::expect_mean(0, estimate(between_pixels)).of(name), 0.02 / 12);
     }
 }
 
@@ -177,7 +178,7 @@ TEST_CASE("permute is a permutation, and takes every value at every place equall
             ++values[permute(5, n, random)];
             ++pairs[permute(0, n, random) * n + permute(1, n, random)];
         }
-        EXPECT(expect_counts(values, std::vector<double>(n, 1 / 16.0)), 0.1);
+        EXPECT(oracle::expect_counts(values, std::vector<double>(n, 1 / 16.0)), 0.1);
         double chi2_pairs = 0;
         for (uint32_t k = 0; k < n * n; ++k)
             if (k / n != k % n) chi2_pairs += sqr(double(pairs[k]) - 100.0) / 100;
@@ -191,7 +192,7 @@ TEST_CASE("permute is as fair where it must walk: numbers that are no power of t
         for (uint32_t place = 0; place < n; ++place) {
             std::vector<uint64_t> values(n);
             for (int k = 0; k < 50000; ++k) ++values[permute(place, n, rng.bits())];
-            EXPECT(expect_counts(values, std::vector<double>(n, 1 / double(n))), 0.1);
+            EXPECT(oracle::expect_counts(values, std::vector<double>(n, 1 / double(n))), 0.1);
         }
 }
 
@@ -258,8 +259,8 @@ TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in e
         places.add(sum / (dimensions - 5));
         between_dimensions.add(products / (dimensions - 6));
     }
-    EXPECT(expect_mean(0, estimate(places)).of("place"), 0.02);
-    EXPECT(expect_mean(0, estimate(between_dimensions)).of("dimensions"), 0.02 / 12);
+    EXPECT(oracle::expect_mean(0, estimate(places)).of("place"), 0.02);
+    EXPECT(oracle::expect_mean(0, estimate(between_dimensions)).of("dimensions"), 0.02 / 12);
     for (uint32_t dim : {1u, 2u, 3u}) {
         std::vector<uint64_t> counts(pattern.bases[dim] - 1);
         for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
@@ -267,8 +268,8 @@ TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in e
             REQUIRE(f > 0);
             ++counts[f - 1];
         }
-        EXPECT(
-            expect_counts(counts, std::vector<double>(counts.size(), 1.0 / double(counts.size()))),
-            0.2);
+        EXPECT(oracle::expect_counts(
+                   counts, std::vector<double>(counts.size(), 1.0 / double(counts.size()))),
+               0.2);
     }
 }

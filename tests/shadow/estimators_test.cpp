@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "base/moments.h"
 #include "oracle/expect.h"
 
 namespace {
@@ -26,7 +27,7 @@ ShadowMoments moments(const std::vector<LightTriple>& samples) {
 // 1/8.
 constexpr ShadowPopulation ramp{1, 0.25, 4.0 / 3, 1.0 / 6, 2, 1.0 / 8};
 
-ShadowMoments of_ramp(Random& random, uint64_t n) {
+ShadowMoments of_ramp(oracle::Random& random, uint64_t n) {
     SumsAbout sums{1};
     for (uint64_t i = 0; i < n; ++i) {
         const double x = random(), w = 2 * x;
@@ -38,7 +39,7 @@ ShadowMoments of_ramp(Random& random, uint64_t n) {
 // What light samples of a pixel look like: U differs from sample to sample, w is unbiased for it,
 // V depends on both.  E[U] = 1.5; w = U (1/2 + t), V = [t < s], U = 1 + s: S = E[(1 + s) (s/2 +
 // s^2/2)].
-LightTriple pixel_sample(Random& random) {
+LightTriple pixel_sample(oracle::Random& random) {
     const double s = random(), t = random(), U = 1 + s, w = U * (0.5 + t);
     return {U, w, t < s ? w : 0};
 }
@@ -102,7 +103,7 @@ TEST_CASE("estimators: the part of beta that only follows U is left out") {
 }
 
 TEST_CASE("estimators: exact where all is lit and where nothing is") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     ShadowMoments lit, dark;
     SumsAbout lit_sums{1}, dark_sums{1};
     for (int i = 0; i < 1000; ++i) {
@@ -141,7 +142,7 @@ TEST_CASE("estimators: no sample that found light, no sample at all, constant w"
 }
 
 TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in parts") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     ShadowMoments one, even, odd;
     SumsAbout sums{1e8};
     double bb = 0, b_wV = 0, b_U = 0, UU = 0, vv = 0;
@@ -183,11 +184,11 @@ TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in
 TEST_CASE("estimators: stochastic and control are unbiased at any n, also where U varies") {
     for (Estimator e : {Estimator::stochastic, Estimator::control})
         for (uint64_t n : {1, 2, 8}) {
-            Random random(seed_here() + n);
-            const Verdict v =
-                expect_mean(0.25, 100000, [&] { return estimate(e, of_ramp(random, n)); });
+            oracle::Random random(seed_here() + n);
+            const oracle::Verdict v =
+                oracle::expect_mean(0.25, 100000, [&] { return estimate(e, of_ramp(random, n)); });
             EXPECT(v, 0.1);
-            const Verdict u = expect_mean(pixel_truth, 100000, [&] {
+            const oracle::Verdict u = oracle::expect_mean(pixel_truth, 100000, [&] {
                 ShadowMoments m;
                 for (uint64_t i = 0; i < n; ++i) {
                     const auto [U, w, wV] = pixel_sample(random);
@@ -200,27 +201,28 @@ TEST_CASE("estimators: stochastic and control are unbiased at any n, also where 
 }
 
 TEST_CASE("estimators: ratio's bias at n = 1, 2 is known, and n times it tends to 1/6") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (auto [n, truth] : {std::pair{1, 0.25}, std::pair{2, 0.119188}}) {
-        const Verdict v = expect_mean(0.25 + truth, 400000,
-                                      [&, n = n] { return ratio(of_ramp(random, uint64_t(n))); });
+        const oracle::Verdict v = oracle::expect_mean(
+            0.25 + truth, 400000, [&, n = n] { return ratio(of_ramp(random, uint64_t(n))); });
         EXPECT(v, 0.02);
     }
     CHECK(ramp.bias(Estimator::ratio) == doctest::Approx(1.0 / 6));
-    const Verdict v = expect_bias_decay(ramp.bias(Estimator::ratio), 64, 2000, [&](uint64_t n) {
-        return of_many([&] {
-            const ShadowMoments m = of_ramp(random, n);
-            return ratio(m) - (m.wV - ramp.R() * (m.w - 1));
+    const oracle::Verdict v =
+        oracle::expect_bias_decay(ramp.bias(Estimator::ratio), 64, 2000, [&](uint64_t n) {
+            return of_many([&] {
+                const ShadowMoments m = of_ramp(random, n);
+                return ratio(m) - (m.wV - ramp.R() * (m.w - 1));
+            });
         });
-    });
     EXPECT(v, 0.25);
 }
 
 TEST_CASE("estimators: regression's bias falls as predicted") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     const double beta = ramp.beta(Estimator::regression);
-    const Verdict v =
-        expect_bias_decay(ramp.bias(Estimator::regression), 64, 2000, [&](uint64_t n) {
+    const oracle::Verdict v =
+        oracle::expect_bias_decay(ramp.bias(Estimator::regression), 64, 2000, [&](uint64_t n) {
             return of_many([&] {
                 const ShadowMoments m = of_ramp(random, n);
                 return regression(m) - (m.wV - beta * (m.w - 1));
@@ -230,10 +232,10 @@ TEST_CASE("estimators: regression's bias falls as predicted") {
 }
 
 TEST_CASE("estimators: ratio and regression converge to the pixel where U varies in it") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (Estimator e : {Estimator::ratio, Estimator::regression}) {
         // Their bias at n = 4096 is of the order of 1e-4, a tenth of what the test sees.
-        const Verdict v = expect_mean(pixel_truth, 400, [&] {
+        const oracle::Verdict v = oracle::expect_mean(pixel_truth, 400, [&] {
             ShadowMoments m;
             for (int i = 0; i < 4096; ++i) {
                 const auto [U, w, wV] = pixel_sample(random);
@@ -267,10 +269,10 @@ TEST_CASE("estimators: variances are those predicted, and regression's is the le
     const double published[] = {5.0 / 48, 29.0 / 48};  // 0.104, 0.604
     for (size_t i = 0; i < 2; ++i) CHECK(ramp.variance(all[i]) == doctest::Approx(published[i]));
     for (Estimator e : all) {
-        Random random(seed_here() + uint64_t(e));
+        oracle::Random random(seed_here() + uint64_t(e));
         CHECK(ramp.variance(Estimator::regression) <= ramp.variance(e));
         // Of ratio and regression at n = 256 the variance still differs by some 1/n.
-        const Verdict v = expect_mean(ramp.variance(e), 2000, [&] {
+        const oracle::Verdict v = oracle::expect_mean(ramp.variance(e), 2000, [&] {
             return of_many([&] {
                 const double error = estimate(e, of_ramp(random, 256)) - ramp.S;
                 return 256 * error * error;

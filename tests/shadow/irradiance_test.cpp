@@ -179,7 +179,7 @@ TEST_CASE(
 }
 
 TEST_CASE("polygon irradiance: random triangles and parallelograms against subdivision") {
-    Random random(seed_of("polygon irradiance"));
+    oracle::Random random(oracle::seed_of("polygon irradiance"));
     auto number = [&] { return real(2 * random() - 1); };
     int cut = 0;
     for (int i = 0; i < 60; ++i) {
@@ -201,7 +201,7 @@ TEST_CASE("polygon irradiance: random triangles and parallelograms against subdi
 }
 
 TEST_CASE("polygon irradiance: parts add up; order, sense and scale of the corners do not matter") {
-    Random random(seed_of("polygon additivity"));
+    oracle::Random random(oracle::seed_of("polygon additivity"));
     auto number = [&] { return real(2 * random() - 1); };
     for (int i = 0; i < 300; ++i) {
         const real far = std::pow(real(10), real(8 * random() - 1) * (single ? real(0.4) : 1));
@@ -251,7 +251,7 @@ TEST_CASE(
 
 TEST_CASE(
     "sphere irradiance: a horizon that touches it, within ulps, leaves all of it or nothing") {
-    Random random(seed_of("sphere at the horizon"));
+    oracle::Random random(oracle::seed_of("sphere at the horizon"));
     double worst = 0;
     for (int i = 0; i < 20000; ++i) {
         const real s = std::exp2(real(-20 * random() * random())) * real(0.9999);

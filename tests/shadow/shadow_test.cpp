@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/moments.h"
 #include "oracle/oracle.h"
 #include "world/scene_file.h"
 
@@ -50,8 +51,8 @@ Receiver receiver(const std::string& statements, vec3 n, bool by_angle = false) 
 // Sphere light of radiance 1 at distance 2, radius 1 (s = 0.5), in direction `degrees` from +y.
 std::string sphere_at(double degrees) {
     const double a = degrees * std::numbers::pi / 180;
-    return print("light lamp 1 1 1\nsphere %.17g %.17g 0  1  lamp\n", 2 * std::sin(a),
-                 2 * std::cos(a));
+    return oracle::say("light lamp 1 1 1\nsphere %.17g %.17g 0  1  lamp\n", 2 * std::sin(a),
+                       2 * std::cos(a));
 }
 
 // Half of that sphere, at 30 degrees, behind a wall across the axis whose edge meets the axis; the
@@ -59,8 +60,8 @@ std::string sphere_at(double degrees) {
 std::string knife_edge(int side) {
     const double c = std::cos(std::numbers::pi / 6), s = 0.5;
     // Corner on the axis at distance 0.8, 4 to the front; edges 8 along z and 4 towards -h.
-    return sphere_at(30) + print("quad %.17g %.17g -4   0 0 8   %.17g %.17g 0   black\n", 0.8 * s,
-                                 0.8 * c, -4 * side * c, 4 * side * s);
+    return sphere_at(30) + oracle::say("quad %.17g %.17g -4   0 0 8   %.17g %.17g 0   black\n",
+                                       0.8 * s, 0.8 * c, -4 * side * c, 4 * side * s);
 }
 double knife_edge_irradiance(int side) {
     const double pi_ = std::numbers::pi, s = 0.5, sigma = std::asin(s), c30 = std::cos(pi_ / 6);
@@ -121,9 +122,9 @@ TEST_CASE("direct: U is the mean of w, for every light, tilt, side and way to sa
     };
     for (const auto& c : cases) {
         const Receiver r = receiver(c.scene, c.n, c.by_angle);
-        const uint64_t seed = seed_of(std::string("direct U ") + c.name), n = 150000;
+        const uint64_t seed = oracle::seed_of(std::string("direct U ") + c.name), n = 150000;
         uint64_t i = 0;
-        Estimate w[3];
+        oracle::Estimate w[3];
         std::array<Moments, 3> m;
         rgb U;
         for (; i < n; ++i) {
@@ -135,7 +136,7 @@ TEST_CASE("direct: U is the mean of w, for every light, tilt, side and way to sa
             w[k] = estimate(m[k]);
             w[k].standard_error =
                 std::hypot(w[k].standard_error, (single ? 1e-5 : 1e-12) * w[k].mean);
-            const Verdict v = expect_mean(double(U.*axis[k]), w[k]);
+            const oracle::Verdict v = oracle::expect_mean(double(U.*axis[k]), w[k]);
             INFO(std::string(c.name), ", channel ", k, ": ", v.text);
             CHECK(v.pass);
             CHECK(v.delta_min < 0.09);
@@ -183,11 +184,11 @@ TEST_CASE("direct: the knife edge by four estimators") {
             const Receiver r = receiver(knife_edge(side), {0, 1, 0});
             uint64_t i = 0;
             // The bias of ratio and regression at 512 is below a tenth of what the test sees.
-            const Verdict v =
-                expect_mean(0.5 * knife_edge_irradiance(side) / std::numbers::pi, 400, [&] {
+            const oracle::Verdict v =
+                oracle::expect_mean(0.5 * knife_edge_irradiance(side) / std::numbers::pi, 400, [&] {
                     ShadowMoments m;
                     for (int k = 0; k < 512; ++k) {
-                        const Shadowed s = r.shadowed_sample(i++, seed_of("knife edge"));
+                        const Shadowed s = r.shadowed_sample(i++, oracle::seed_of("knife edge"));
                         m.add(double(s.U.x), double(s.w.x), double(s.wV.x));
                     }
                     return estimate(e, m);
@@ -223,12 +224,12 @@ TEST_CASE("direct: at the knife edge N times the bias of ratio tends to its cons
     const Receiver r = receiver(knife_edge(side), {0, 1, 0});
     uint64_t i = 0;
     const double R = S / W;
-    const Verdict v = expect_bias_decay(constant, 8, 1000, [&](uint64_t n) {
+    const oracle::Verdict v = oracle::expect_bias_decay(constant, 8, 1000, [&](uint64_t n) {
         double sum = 0;
         for (int k = 0; k < 16; ++k) {
             ShadowMoments m;
             while (m.n < n) {
-                const Shadowed s = r.shadowed_sample(i++, seed_of("knife edge bias"));
+                const Shadowed s = r.shadowed_sample(i++, oracle::seed_of("knife edge bias"));
                 m.add(double(s.U.x), double(s.w.x), double(s.wV.x));
             }
             sum += ratio(m) - (m.wV - R * (m.w - m.U));
@@ -303,7 +304,7 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
 }
 
 TEST_CASE("direct: a film of moments counts whole passes, and all samples of a pixel together") {
-    Random random(seed_of("shadow film"));
+    oracle::Random random(oracle::seed_of("shadow film"));
     Film<ShadowPixel> film({2, 2});
     std::array<ShadowMoments, 3> all, even, odd;
     auto draw = [&](int x, int y, uint64_t i) {

@@ -52,7 +52,7 @@ TEST_CASE("no neighbour: the frame, also if the site is on its border or in a co
 }
 
 TEST_CASE("a cell that is wrapped is the cell that is cut: scattered, lattices, circles") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Both both;
     double off = 0;
     int corners = 0;
@@ -79,7 +79,7 @@ TEST_CASE("a cell that is wrapped is the cell that is cut: scattered, lattices, 
 }
 
 TEST_CASE("corners go around counterclockwise, and each edge knows whose it is") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Both both;
     for (int trial = 0; trial < 300; ++trial) {
         std::vector<Site> others;
@@ -159,7 +159,7 @@ TEST_CASE("a neighbour at the same place is seen, one that is removed is not") {
 }
 
 TEST_CASE("a neighbour within rounding of the site does not cut the site away") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     ConvexPolygon polygon;
     for (int trial = 0; trial < 1000; ++trial) {
         // Corners are rounded to 1e-16 or so, farther than these neighbours are.

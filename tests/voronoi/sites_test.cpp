@@ -11,7 +11,7 @@ namespace {
 
 constexpr Rectangle domain = {{-1, 2}, {3, 3}};
 
-std::vector<Site> scattered(int n, Random& random) {
+std::vector<Site> scattered(int n, oracle::Random& random) {
     std::vector<Site> sites;
     for (int k = 0; k < n; ++k) {
         const double x = -1 + 4 * random(), y = 2 + random();
@@ -23,7 +23,7 @@ std::vector<Site> scattered(int n, Random& random) {
 }  // namespace
 
 TEST_CASE("buckets hold every site once, where it is") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Buckets b;
     for (int n : {0, 1, 2, 7, 1000}) {
         std::vector<Site> sites = scattered(n, random);
@@ -62,7 +62,7 @@ TEST_CASE("copies are left out of the buckets") {
 }
 
 TEST_CASE("the tree finds the nearest site that is near enough and not left out") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Buckets b;
     SiteTree tree;
     for (int n : {1, 8, 9, 500}) {
@@ -94,7 +94,7 @@ TEST_CASE("the tree finds the nearest site that is near enough and not left out"
 }
 
 TEST_CASE("the tree looks at few of many sites: scattered, clustered, along a line or a curve") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Buckets b;
     SiteTree tree;
     for (int kind = 0; kind < 4; ++kind) {

@@ -75,7 +75,7 @@ Measure brute_force(const Points& sites, size_t i, const Rectangle& start) {
 
 // ---- Sites that are hard, each in its own way ---------------------------------------------------
 
-Points scattered(int n, Random& random) {
+Points scattered(int n, oracle::Random& random) {
     Points p;
     for (int i = 0; i < n; ++i) {
         const double x = random(), y = random();
@@ -95,7 +95,7 @@ struct Hard {
     Points sites;
 };
 
-std::vector<Hard> hard_cases(Random& random) {
+std::vector<Hard> hard_cases(oracle::Random& random) {
     std::vector<Hard> cases;
     for (int n : {1, 2, 3, 4, 5, 8, 30, 200})
         cases.push_back({"scattered", rounded(scattered(n, random))});
@@ -184,7 +184,7 @@ TEST_CASE("exact areas: one site, two, four, on the border, in a corner") {
 }
 
 TEST_CASE("areas and centroids equal those of brute force in long double, hard cases too") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     for (const Hard& c : hard_cases(random)) {
         const auto cells = v.clipped(c.sites, unit_square);
@@ -228,7 +228,7 @@ TEST_CASE("sites nearer than 2^-51 are at the same place, though their squares v
 }
 
 TEST_CASE("a torus: brute force with all copies around; translations change nothing") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     const Rectangle wide = {{-1, 2}, {1, 3}};
     for (const Rectangle& window : {unit_square, wide})
@@ -267,7 +267,7 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
 }
 
 TEST_CASE("a strip about the window: brute force; what is bounded, inside, settled") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     int bounded = 0, inside = 0, settled = 0, all = 0;
     for (int trial = 0; trial < 60; ++trial) {
@@ -309,7 +309,7 @@ TEST_CASE("a strip about the window: brute force; what is bounded, inside, settl
 }
 
 TEST_CASE("who is a neighbour: it shares an edge, and it is mutual") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     v.with_neighbours = true;
     const Points lattice = {{0.25, 0.5}, {0.5, 0.5}, {0.75, 0.5}, {0.5, 0.25}, {0.5, 0.75}};
@@ -333,7 +333,7 @@ TEST_CASE("who is a neighbour: it shares an edge, and it is mutual") {
 }
 
 TEST_CASE("a million sites, all scattered or all at 1000 places: areas add up to the window") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     Points sites = scattered(1000000, random);
     CHECK(std::abs(total(v.clipped(sites, unit_square)) - 1) < 1e-9);
@@ -346,7 +346,7 @@ TEST_CASE("a million sites, all scattered or all at 1000 places: areas add up to
 }
 
 TEST_CASE("clustered and collinear sites take the tree, not the square of their number") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     Points line, cluster;
     for (int i = 0; i < 50000; ++i) {
@@ -360,7 +360,7 @@ TEST_CASE("clustered and collinear sites take the tree, not the square of their 
 }
 
 TEST_CASE("once warmed up, no memory is allocated: all windows, copies and clusters, too") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Points spread = scattered(1000, random), cluster = spread, copies = spread;
     for (size_t i = 1; i < cluster.size(); ++i) cluster[i] = {1e-4 * random(), 1e-4 * random()};
     for (size_t i = 100; i < copies.size(); ++i) copies[i] = copies[i % 100];
@@ -381,7 +381,7 @@ TEST_CASE("once warmed up, no memory is allocated: all windows, copies and clust
 }
 
 TEST_CASE("translated, mirrored or scaled sites in a window have the same areas") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     const Points sites = rounded(scattered(100, random));
     const auto cells = v.clipped(sites, unit_square);
@@ -424,11 +424,11 @@ TEST_CASE("a site outside the window, no window, a line of a window are refused"
 
 TEST_CASE("one dimension, f = x^2: clipped cells have bias -(n-1) / ((n+1)(n+2)(n+3))") {
     // Sites of one height: the square is divided as its side is.
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     for (int n : {1, 2, 4, 16}) {
         const double bias = -double(n - 1) / ((n + 1.0) * (n + 2) * (n + 3));
-        const Verdict verdict = expect_mean(1.0 / 3 + bias, 100000, [&] {
+        const oracle::Verdict verdict = oracle::expect_mean(1.0 / 3 + bias, 100000, [&] {
             Points sites;
             for (int i = 0; i < n; ++i) sites.push_back({random(), 0.5});
             const auto& cells = v.clipped(sites, unit_square);

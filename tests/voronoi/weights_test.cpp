@@ -11,7 +11,7 @@ namespace {
 constexpr Weighting all[] = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
                              Weighting::torus};
 
-std::vector<Site> scattered(uint64_t n, Random& random) {
+std::vector<Site> scattered(uint64_t n, oracle::Random& random) {
     std::vector<Site> p;
     for (uint64_t i = 0; i < n; ++i) {
         const double x = random(), y = random();
@@ -22,7 +22,7 @@ std::vector<Site> scattered(uint64_t n, Random& random) {
 
 // Weighted sum of f over n samples.
 template <class F>
-double estimate(Weigher& weigher, Weighting kind, uint64_t n, Random& random, F f) {
+double estimate(Weigher& weigher, Weighting kind, uint64_t n, oracle::Random& random, F f) {
     const auto samples = scattered(n, random);
     const auto& w = weigher(kind, samples, random.bits());
     double sum = 0;
@@ -44,7 +44,7 @@ struct Pair {
     std::vector<double> f;
     Pair() { cells.with_neighbours = true; }
 
-    double error(uint64_t n, Random& random, bool correct) {
+    double error(uint64_t n, oracle::Random& random, bool correct) {
         const auto samples = scattered(n, random);
         f.clear();
         for (const Site& p : samples) f.push_back(bump(p));
@@ -61,7 +61,7 @@ struct Pair {
 }  // namespace
 
 TEST_CASE("divided weights add up to 1, so that constants come out exactly, from n = 1 on") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Weigher weigher;
     for (Weighting kind : all)
         for (uint64_t n : {1, 2, 3, 5, 17, 64, 300}) {
@@ -84,25 +84,26 @@ TEST_CASE("Poisson numbers: mean and variance") {
     for (double mean : {0.3, 5.0, 40.0}) {
         Rng rng{seed_here()};
         auto mean_of_64 = [&](auto f) {
-            return expect_mean(mean, 3000, [&] {
+            return oracle::expect_mean(mean, 3000, [&] {
                 double sum = 0;
                 for (int k = 0; k < 64; ++k) sum += f(double(poisson(mean, rng)));
                 return sum / 64;
             });
         };
-        for (const Verdict& v : {mean_of_64([](double k) { return k; }),
-                                 mean_of_64([&](double k) { return (k - mean) * (k - mean); })}) {
+        for (const oracle::Verdict& v :
+             {mean_of_64([](double k) { return k; }),
+              mean_of_64([&](double k) { return (k - mean) * (k - mean); })}) {
             EXPECT(v, 0.06);
         }
     }
 }
 
 TEST_CASE("vor, undivided: unbiased for a Poisson process (Slivnyak, Mecke), strip and all") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Weigher weigher;
     weigher.divide = false;
     weigher.intensity = 25;
-    const Verdict v = expect_mean(mean_of_bowl, 30000, [&] {
+    const oracle::Verdict v = oracle::expect_mean(mean_of_bowl, 30000, [&] {
         Rng rng{random.bits()};
         const uint64_t n = poisson(weigher.intensity, rng);
         return n ? estimate(weigher, Weighting::vor, n, random, tilted_bowl) : 0;
@@ -117,11 +118,11 @@ TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1
     //   E X (S - 1) -> Var S (mean of f on the border - mean of f),  Var S = O(n^-3/2).
     // With that taken away, O(n^-2) is left.
     constexpr double on_border = (5.0 / 6 + 17.0 / 6 + 2.0 / 3 + 8.0 / 3) / 4;  // side by side
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Weigher weigher;
     weigher.divide = false;
     weigher.unbounded = 1e-9;  // or one cell in a million is large, which a mean cannot judge
-    const Verdict v = expect_bias_decay(0, 32, 20000, [&](uint64_t n) {
+    const oracle::Verdict v = oracle::expect_bias_decay(0, 32, 20000, [&](uint64_t n) {
         weigher.intensity = double(n);
         Rng rng{random.bits()};
         const auto samples = scattered(poisson(double(n), rng), random);
@@ -137,7 +138,7 @@ TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1
 }
 
 TEST_CASE("fvor without a cell inside falls back to the plain mean, and counts it") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Weigher weigher;
     weigher.intensity = 1e-3;  // nobody in the strip, whose width is set by it
     uint64_t uniform = 0;
@@ -150,10 +151,10 @@ TEST_CASE("fvor without a cell inside falls back to the plain mean, and counts i
 }
 
 TEST_CASE("torus: unbiased, however few the samples") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Weigher weigher;
     for (uint64_t n : {1, 2, 3, 10}) {
-        const Verdict v = expect_mean(mean_of_bowl, 20000, [&] {
+        const oracle::Verdict v = oracle::expect_mean(mean_of_bowl, 20000, [&] {
             return estimate(weigher, Weighting::torus, n, random, tilted_bowl);
         });
         EXPECT(v, 0.04);
@@ -175,18 +176,18 @@ TEST_CASE("clipped: n times the bias has the limit that the border's half-plane 
     }
     CHECK(c == doctest::Approx(1 / (2 * std::numbers::pi)).epsilon(1e-6));
     const double limit = (1 / (4 * std::numbers::pi) - c) * -4;  // of bump: 1/pi
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Pair pair;
-    const Verdict v = expect_bias_decay(limit, 256, 2500,
-                                        [&](uint64_t n) { return pair.error(n, random, false); });
+    const oracle::Verdict v = oracle::expect_bias_decay(
+        limit, 256, 2500, [&](uint64_t n) { return pair.error(n, random, false); });
     EXPECT(v, 0.12);
 }
 
 TEST_CASE("clipped, with the border correction: what is left falls faster than 1/n") {
     // By n^-1/2, for gradients at the border know one side: 2 B(4n) - B(n) has lost that.
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Pair pair;
-    const Verdict v = expect_mean(0, 1500, [&] {
+    const oracle::Verdict v = oracle::expect_mean(0, 1500, [&] {
         const double coarse = 256 * pair.error(256, random, true),
                      fine = 1024 * pair.error(1024, random, true);
         return 2 * fine - coarse;
@@ -195,7 +196,7 @@ TEST_CASE("clipped, with the border correction: what is left falls faster than 1
 }
 
 TEST_CASE("gradients, reconstruction and border correction are exact for planes") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     v.with_neighbours = true;
     // A jittered lattice: no cell has its neighbours in line.
@@ -220,7 +221,7 @@ TEST_CASE("border correction: 4 pi n times it tends to the integral of the outwa
     // Of the bowl that is the integral of its Laplacian, 6.  Neighbours at the border are on one
     // side, which costs the gradients O(n^-1/2); 2 C(4n) - C(n) has lost that, and O(1/n) is left:
     // some 0.003 here.
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Voronoi v;
     v.with_neighbours = true;
     auto scaled_correction = [&](uint64_t n) {
@@ -230,7 +231,7 @@ TEST_CASE("border correction: 4 pi n times it tends to the integral of the outwa
         const auto& cells = v.clipped(sites, {{0, 0}, {1, 1}});
         return 4 * std::numbers::pi * double(n) * border_correction(v, cells, sites, f);
     };
-    const Verdict verdict = expect_mean(6, 1000, [&] {
+    const oracle::Verdict verdict = oracle::expect_mean(6, 1000, [&] {
         const double coarse = scaled_correction(256), fine = scaled_correction(1024);
         return 2 * fine - coarse;
     });

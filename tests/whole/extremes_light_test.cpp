@@ -22,7 +22,7 @@ double irradiance(const Light& l, vec3 p, int cells) {
 }
 
 double cone_solid_angle() {
-    Dice random{{seed_of("solid angle of a cone")}};
+    Dice random{{oracle::seed_of("solid angle of a cone")}};
     Worst worst;
     for (int i = 0; i < 10000; ++i) {
         const real sin2 = random.decades(-20, 0);
@@ -45,7 +45,7 @@ double cone_sines() {
 
 // 1 / pdf is the solid angle; light of radius 1 seen from a distance of d.
 double sphere_light_pdf(real d) {
-    Dice random{{seed_of("pdf of a sphere light")}};
+    Dice random{{oracle::seed_of("pdf of a sphere light")}};
     Worst worst;
     for (int i = 0; i < 1000; ++i) {
         const Light l = sphere_light(random.direction(), 1);
@@ -63,7 +63,7 @@ double sphere_light_pdf(real d) {
 // Normal where the ray meets the sphere: beta between it and -wi has sin(beta) = sin(theta) /
 // sin(sigma), so the angle at the centre is beta - theta.  From u in long double.
 double sphere_light_normal(real d) {
-    Dice random{{seed_of("normal of a sphere light")}};
+    Dice random{{oracle::seed_of("normal of a sphere light")}};
     Worst worst;
     for (int i = 0; i < 20000; ++i) {
         const Light l = sphere_light({}, real(0.01));
@@ -108,7 +108,7 @@ bool sane(const std::optional<LightSample>& s) {
 
 // From the surface of a sphere light, one number below and above, and its inside.
 double insane_on_a_light() {
-    Dice random{{seed_of("on a light")}};
+    Dice random{{oracle::seed_of("on a light")}};
     int insane = 0;
     for (int i = 0; i < 20000; ++i) {
         const Light l = sphere_light(random.direction(), random.decades(-3, 3));
@@ -124,7 +124,7 @@ double insane_on_a_light() {
 
 // From corners, edges, the plane of a quad and points next to it.
 double insane_beside_a_light() {
-    Dice random{{seed_of("beside a light")}};
+    Dice random{{oracle::seed_of("beside a light")}};
     int insane = 0;
     for (int i = 0; i < 20000; ++i) {
         Light l{Light::Kind::quad, {1, 2, 3}, {2, 0, 0}, {0, 0, 4}, 0, {1, 1, 1}, i % 2 == 0};
@@ -161,7 +161,7 @@ big exact_difference(double a, double b, double c, double d) {
 
 // Area of a triangle whose edges differ by 2^-narrow.
 double sliver_light(int narrow) {
-    Dice random{{seed_of("sliver light")}};
+    Dice random{{oracle::seed_of("sliver light")}};
     const real off = std::exp2(real(-narrow));
     Worst worst;
     for (int i = 0; i < 10000; ++i) {
@@ -175,7 +175,7 @@ double sliver_light(int narrow) {
 
 // Point light at a distance of 1e-9 to 1e9: L d^2 = I.
 double point_light() {
-    Dice random{{seed_of("point light")}};
+    Dice random{{oracle::seed_of("point light")}};
     Light l;
     l.L = {1, 1, 1};
     Worst worst;
@@ -217,7 +217,7 @@ double choice_of_lights(double ratio) {
 }
 
 double weights_of_two() {
-    Dice random{{seed_of("weights")}};
+    Dice random{{oracle::seed_of("weights")}};
     Worst worst;
     for (int i = 0; i < 100000; ++i) {
         const real p = random.decades(-30, 30), q = random.decades(-30, 30);

@@ -1,4 +1,5 @@
 // whole/extremes_scene_test.cpp  a scene anywhere, at any size and brightness
+#include "oracle/oracle.h"
 #include "path/paths.h"
 #include "whole/extremes.h"
 #include "world/scene_file.h"
@@ -7,7 +8,7 @@ namespace {
 
 // Lights of every kind, every material; lengths times k, then moved.
 std::string room(double k, vec3 move = {}, double brightness = 1, bool point_light = true) {
-    auto number = [](double x) { return print("%.17g ", x); };
+    auto number = [](double x) { return oracle::say("%.17g ", x); };
     auto length = [&](double x) { return number(k * x); };
     auto edge = [&](double x, double y, double z) { return length(x) + length(y) + length(z); };
     auto point = [&](double x, double y, double z) {
@@ -36,7 +37,7 @@ std::string room(double k, vec3 move = {}, double brightness = 1, bool point_lig
 // Radiance of every sample of every pixel.
 std::vector<rgb> samples_of(const std::string& text, int spp) {
     const Scene scene = parse_scene(text, "extreme").scene;
-    const Pattern pattern{SamplerKind::independent, seed_of("room")};
+    const Pattern pattern{SamplerKind::independent, oracle::seed_of("room")};
     std::vector<rgb> samples;
     for (int y = 0; y < scene.size.height; ++y)
         for (int x = 0; x < scene.size.width; ++x)
@@ -96,7 +97,7 @@ double white_furnace() {
                             "furnace")
                             .scene;
     const Technique chance{Direction::bsdf, LightMode::none};
-    const Pattern pattern{SamplerKind::independent, seed_of("white furnace")};
+    const Pattern pattern{SamplerKind::independent, oracle::seed_of("white furnace")};
     const big truth = -std::expm1(10001 * std::log1p(-1e-7L)) / 1e-7L;
     Worst worst;
     for (uint64_t i = 0; i < 10; ++i)

@@ -24,7 +24,7 @@ double halton_at(uint64_t index) {
 // Blocks of b^k scrambled points at the far end of the indices: intervals of b^-k without exactly
 // one point.
 double halton_blocks() {
-    Dice random{{seed_of("blocks")}};
+    Dice random{{oracle::seed_of("blocks")}};
     int wrong = 0;
     for (uint32_t base : {2u, 3u, 5u})
         for (uint64_t about : {uint64_t(1) << 31, uint64_t(1) << 32, uint64_t(1) << 53}) {
@@ -47,7 +47,7 @@ double late_samples() {
     const uint64_t late = uint64_t(1) << 40;
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
                              SamplerKind::halton_naive}) {
-        const Pattern pattern = make_pattern(kind, seed_of("late samples"), false, 4, 16);
+        const Pattern pattern = make_pattern(kind, oracle::seed_of("late samples"), false, 4, 16);
         for (uint32_t dim : {film_x, dimension(3, Draw::wi_x)}) {
             int cells[16] = {};
             for (uint64_t i = late; i < late + 16; ++i) {
@@ -111,8 +111,8 @@ double film_far_from_zero() {
 
 // P(|z| > 20), and Student's t far out: P(|t| > x) -> 2 / (pi x) for one degree of freedom.
 double tails() {
-    return std::max(relative(p_of_z(20), 5.507248237212467e-89L),
-                    relative(p_of_t(1e8, 1), 2 / (big_pi * 1e8L)));
+    return std::max(relative(oracle::p_of_z(20), 5.507248237212467e-89L),
+                    relative(oracle::p_of_t(1e8, 1), 2 / (big_pi * 1e8L)));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ struct FarSphere {
     double missed = 0, hit_off = 0, hit_mean = 0, point_off = 0, point_mean = 0;
 };
 FarSphere far_sphere(real d) {
-    Dice random{{seed_of("far sphere")}};
+    Dice random{{oracle::seed_of("far sphere")}};
     FarSphere result;
     Worst hit_off, point_off;
     Moments hit_mean, point_mean;
@@ -47,7 +47,7 @@ double over_a_planet() {
 
 // Rays that leave a surface point outwards, at any angle, and meet their own shape.
 double met_again() {
-    Dice random{{seed_of("met again")}};
+    Dice random{{oracle::seed_of("met again")}};
     int again = 0;
     for (int i = 0; i < 20000; ++i) {
         const real sizes[] = {real(1e-6), 1, real(1e6)};
@@ -78,7 +78,7 @@ double met_again() {
 double leaks(Mesh mesh, vec3 move) {
     for (Shape& s : mesh) s = {s.a + move, s.b + move, s.c + move};
     const Bvh bvh(mesh);
-    Dice random{{seed_of("leaks")}};
+    Dice random{{oracle::seed_of("leaks")}};
     int leaked = 0;
     for (int i = 0; i < 40000; ++i) {
         const Shape& s = mesh[random.below(mesh.size())];
@@ -94,7 +94,7 @@ double leaks(Mesh mesh, vec3 move) {
 
 // Rays along axes, within the faces of boxes and of the tree: tree against loop.
 double along_axes() {
-    Dice random{{seed_of("along axes")}};
+    Dice random{{oracle::seed_of("along axes")}};
     Scene boxes;
     boxes.materials.resize(1);
     for (int i = 0; i < 60; ++i)
@@ -122,7 +122,7 @@ double along_axes() {
 
 // Of coincident shapes the first is seen, whatever surrounds them.
 double coincident() {
-    Dice random{{seed_of("coincident")}};
+    Dice random{{oracle::seed_of("coincident")}};
     int wrong = 0;
     for (int trial = 0; trial < 50; ++trial) {
         std::vector<Shape> shapes;
@@ -147,7 +147,7 @@ double sheet_before_wall(real gap) {
     std::vector<Shape> shapes;
     for (real z : {real(0), gap}) shapes.push_back({{-20, -20, z}, {20, -20, z}, {0, 30, z}});
     const Bvh bvh(shapes);
-    Dice random{{seed_of("sheet")}};
+    Dice random{{oracle::seed_of("sheet")}};
     const int n = 20000;
     int wall = 0;
     for (int i = 0; i < n; ++i) {
@@ -162,7 +162,7 @@ double sheet_before_wall(real gap) {
 double shadow_of_sheet(real gap) {
     const Shape floor{{-20, -20, 0}, {20, -20, 0}, {0, 30, 0}};
     const Bvh bvh({floor, {{-20, -20, gap}, {20, -20, gap}, {0, 30, gap}}});
-    Dice random{{seed_of("shadow of a sheet")}};
+    Dice random{{oracle::seed_of("shadow of a sheet")}};
     const int n = 20000;
     int lit = 0;
     for (int i = 0; i < n; ++i) {
@@ -175,7 +175,7 @@ double shadow_of_sheet(real gap) {
 // Triangles with edges of 10^-k, and with no area, as scenes take them: each is dropped, or has
 // its normal: the product of its edges as rounded.
 double tiny_normals() {
-    Dice random{{seed_of("tiny normals")}};
+    Dice random{{oracle::seed_of("tiny normals")}};
     Scene scene;
     scene.materials.resize(1);
     const real least = is_double ? -320 : -44;
@@ -215,7 +215,7 @@ double skewness(const Frame& f) {
 }
 
 double frames_anywhere() {
-    Dice random{{seed_of("frames")}};
+    Dice random{{oracle::seed_of("frames")}};
     Worst worst;
     for (int i = 0; i < 20000; ++i) worst.see(skewness(frame(random.direction())));
     return worst.value;
@@ -249,7 +249,7 @@ double corners_of_the_square() {
 
 // Near the pole of a uniform hemisphere: sin^2 = u (2 - u).
 double sines_at_the_pole() {
-    Dice random{{seed_of("pole")}};
+    Dice random{{oracle::seed_of("pole")}};
     Worst worst;
     for (int i = 0; i < 10000; ++i) {
         const real u = random.decades(is_double ? -15 : -7, 0);
@@ -263,7 +263,7 @@ double sines_at_the_pole() {
 // Exponent 1e5: sine of the angle from the axis.
 double lobe_sines() {
     const real n = real(1e5);
-    Dice random{{seed_of("lobe")}};
+    Dice random{{oracle::seed_of("lobe")}};
     Worst worst;
     for (int i = 0; i < 10000; ++i) {
         const real u = random.decades(is_double ? -12 : -6, 0);
@@ -341,7 +341,7 @@ double critical_glass() {
 
 // f cos / pdf is 1 for what is reflected, eta^2 for what is refracted: index 10^-30 to 10^30.
 double glass_weights() {
-    Dice random{{seed_of("glass")}};
+    Dice random{{oracle::seed_of("glass")}};
     Worst worst;
     for (int i = 0; i < 100000; ++i) {
         const real ior = i % 3 ? random.decades(-30, 30) : random(real(0.5), 2);

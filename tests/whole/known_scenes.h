@@ -15,7 +15,7 @@ namespace closed_forms {
 
 inline std::string words(std::initializer_list<double> numbers) {
     std::string text;
-    for (double x : numbers) text += print(" %.17g", x);
+    for (double x : numbers) text += oracle::say(" %.17g", x);
     return text;
 }
 inline std::string words(Point p) { return words({p.x, p.y, p.z}); }

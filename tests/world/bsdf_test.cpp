@@ -29,32 +29,33 @@ constexpr real cosines[] = {1, real(0.6), real(0.05), real(1e-3)};
 // Reflected part of light that comes from wo: int f cos dw, by quadrature about the mirror
 // direction, in bands that double in width.
 double albedo(const Material& m, vec3 wo) {
-    const PolarFrame f(triple(mirrored(wo)));
+    oracle::Sphere f;
+    f.fit({}, oracle::point(mirrored(wo)));
     const double precise = single ? std::max(1e-5, double(m.exponent * ulp)) : 1e-9;
     const int depth = single ? 13 : 24;
     auto ring = [&](double theta) {
         auto along = [&](double phi) {
-            const Triple w = f.direction({theta, phi});
+            const oracle::Triple w = f.at({theta, phi});
             return w[2] > 0 ? double(eval(m, wo, {real(w[0]), real(w[1]), real(w[2])}).x) * w[2]
                             : 0;
         };
         double sum = 0;
         for (int i = 0; i < 8; ++i)
-            sum += integral(along, i * pi_v<double> / 4, (i + 1) * pi_v<double> / 4,
-                            Agreement{precise, precise, depth, false});
+            sum += oracle::integral(along, i * pi_v<double> / 4, (i + 1) * pi_v<double> / 4,
+                                    oracle::Agreement{precise, precise, depth, false});
         return sum * std::sin(theta);
     };
     double sum = 0;
     for (double from = 0, to = 1e-4; from < pi_v<double>;
          from = to, to = std::min(2 * to, pi_v<double>))
-        sum += integral(ring, from, to, Agreement{precise, precise, depth, true});
+        sum += oracle::integral(ring, from, to, oracle::Agreement{precise, precise, depth, true});
     return sum;
 }
 
 }  // namespace
 
 TEST_CASE("directions follow pdf: diffuse, lobe and mixture, exponents 0 to 10^5, grazing too") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (const auto& [kd, ks] :
          {std::pair{real(0.5), real(0)}, {real(0), real(0.9)}, {real(0.3), real(0.6)}})
         for (real exponent : {real(0), real(1), real(20), real(1e3), real(1e5)}) {
@@ -62,26 +63,24 @@ TEST_CASE("directions follow pdf: diffuse, lobe and mixture, exponents 0 to 10^5
             const Material m = rough(kd, ks, exponent);
             for (real z : cosines) {
                 const vec3 wo = at_cosine(z);
-                DensityOptions o;
-                o.axis = triple(mirrored(wo));
-                o.smooth = false;
+                oracle::Options o;
+                o.axis = oracle::point(mirrored(wo));
                 o.n = 32000;
-                o.tolerance = single ? std::max(1e-3, 16.0 * exponent * ulp) : 0;
                 auto draw_one = [&](double u, double v) {
                     return sample(m, wo, true, real(random()), {real(u), real(v)}, Direction::bsdf)
                         .wi;
                 };
                 auto density = [&](vec3 wi) { return pdf(m, wo, wi, Direction::bsdf); };
-                EXPECT(expect_density(random, draw_one, density, o)
-                           .of(print("kd %g, ks %g, exponent %g, cos %g", double(kd), double(ks),
-                                     double(exponent), double(z))),
+                EXPECT(oracle::expect_density(random, draw_one, density, o)
+                           .of(oracle::say("kd %g, ks %g, exponent %g, cos %g", double(kd),
+                                           double(ks), double(exponent), double(z))),
                        0.07);
             }
         }
 }
 
 TEST_CASE("f cos / pdf has the mean int f cos dw, however directions are chosen") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (real exponent : {real(0), real(5), real(60)})
         for (real z : {real(1), real(0.4), real(0.05)})
             for (Direction direction : {Direction::uniform, Direction::bsdf}) {
@@ -95,9 +94,9 @@ TEST_CASE("f cos / pdf has the mean int f cos dw, however directions are chosen"
                     CHECK(s.pdf == pdf(m, wo, s.wi, direction));
                     return s.wi.z > 0 ? s.f.x * s.wi.z / s.pdf : real(0);
                 };
-                EXPECT(expect_mean(albedo(m, wo), 100000, weight)
-                           .of(print("int f cos dw, exponent %g, cos %g", double(exponent),
-                                     double(z))),
+                EXPECT(oracle::expect_mean(albedo(m, wo), 100000, weight)
+                           .of(oracle::say("int f cos dw, exponent %g, cos %g", double(exponent),
+                                           double(z))),
                        0.1);
             }
 }
@@ -114,7 +113,7 @@ TEST_CASE("a rough surface reflects kd + ks at normal incidence, never more") {
 }
 
 TEST_CASE("rough surfaces are reciprocal: f(wo, wi) = f(wi, wo), and black from below") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     const Material m = rough(real(0.2), real(0.7), 30);
     for (int i = 0; i < 10000; ++i) {
         const vec2 u{real(random()), real(random())}, v{real(random()), real(random())};
@@ -165,7 +164,7 @@ TEST_CASE("Fresnel: normal incidence, Brewster's angle, grazing, the same from b
 
 TEST_CASE(
     "glass: Snell's law, Fresnel's part, radiance by the square of the index, no energy lost") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (real n : {real(1), real(1.5), real(2.4), real(0.7)})
         for (bool outside : {true, false})
             for (real z : {real(1), real(0.8), real(0.3), real(1e-3)}) {
@@ -205,7 +204,8 @@ TEST_CASE(
                 uint64_t counts[2] = {};
                 for (int i = 0; i < 20000; ++i)
                     ++counts[sample(m, wo, outside, real(random()), {}, Direction::bsdf).wi.z < 0];
-                EXPECT(expect_counts(counts, std::array{double(up.pdf), double(down.pdf)}), 0.1);
+                EXPECT(oracle::expect_counts(counts, std::array{double(up.pdf), double(down.pdf)}),
+                       0.1);
             }
 }
 

@@ -47,7 +47,7 @@ double solid_angle(const Light& l, vec3 p) {
 }  // namespace
 
 TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it to 10^4 radii") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     const vec3 centre{real(0.3), real(-0.2), real(0.5)}, away = unit({2, 1, -3});
     const real r = real(0.25);
     for (double gap : {1e-7, 1e-3, 0.5, 1.0, 30.0, 1e4}) {
@@ -56,8 +56,8 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
         const double rounding = 64 * double(ulp) / std::min(sigma, std::sqrt(gap));
         const Light l = sphere_light(centre, r);
         const vec3 p = centre + real(d) * away;
-        DensityOptions o;
-        o.axis = triple(-away);
+        oracle::Options o;
+        o.axis = oracle::point(-away);
         o.tolerance = std::max(single ? 2e-3 : 1e-6, 100 * rounding);
         o.n = 32000;
         auto density = [&](vec3 w) {
@@ -65,14 +65,14 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
             const bool inside = dot(w, away) < 0 && dot(off, off) <= sqr(r * (1 + real(rounding)));
             return inside ? pdf_light(l, p, {}) : 0;
         };
-        EXPECT(
-            expect_density(random, directions(l, p), density, o).of(print("gap of %g radii", gap)),
-            0.07);
+        EXPECT(oracle::expect_density(random, directions(l, p), density, o)
+                   .of(oracle::say("gap of %g radii", gap)),
+               0.07);
     }
 }
 
 TEST_CASE("sphere light: points lie on the sphere and on the ray, on the near side") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     const Light l = sphere_light({1, 2, 3}, real(0.5));
     for (real d : {real(0.5005), real(0.6), real(2), real(100)})
         for (int i = 0; i < 2000; ++i) {
@@ -110,7 +110,7 @@ TEST_CASE("no sample of a sphere light from within its rounding error of its sur
 }
 
 TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slanted") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     const vec3 corner{-1, 2, 3}, u{2, real(0.3), 0}, v{real(0.1), real(-0.4), real(1.5)};
     const vec3 n = unit(cross(u, v));
     for (Light::Kind kind : {Light::Kind::triangle, Light::Kind::quad})
@@ -119,20 +119,18 @@ TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slante
                 const Light l = polygon_light(kind, corner, u, v);
                 const vec3 p = middle(l) + height * n + beside;
                 const std::string where =
-                    print("height %g, %g beside", double(height), double(length(beside)));
+                    oracle::say("height %g, %g beside", double(height), double(length(beside)));
                 // As the integrator evaluates it: at the point of the light that wi meets.
                 auto density = [&](vec3 wi) {
                     return pdf_light(l, p, {p + dot(l.p - p, n) / dot(wi, n) * wi, n, 0});
                 };
-                EXPECT(expect_jacobian(random, directions(l, p), density, single ? 0.02 : 1e-6)
-                           .of(where),
-                       0.02);
+                EXPECT(oracle::expect_jacobian(random, directions(l, p), density).of(where), 0.02);
                 auto per_pdf = [&] {
                     const auto s = sample_light(l, p, {real(random()), real(random())});
                     CHECK(std::abs(s->pdf / density(s->wi) - 1) < 1e4 * ulp);
                     return 1 / s->pdf;
                 };
-                EXPECT(expect_mean(solid_angle(l, p), 20000, per_pdf)
+                EXPECT(oracle::expect_mean(solid_angle(l, p), 20000, per_pdf)
                            .of("E[1 / pdf] = solid angle, " + where),
                        0.15);
             }
@@ -181,7 +179,7 @@ TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels
 }
 
 TEST_CASE("lights are chosen as often as `pick` says, in proportion to unequal powers") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     Scene s;
     Material lamp;
     lamp.Le = {1, 1, 1};
@@ -209,7 +207,7 @@ TEST_CASE("lights are chosen as often as `pick` says, in proportion to unequal p
         REQUIRE(chosen < counts.size());
         ++counts[chosen];
     }
-    EXPECT(expect_counts(counts, pick), 0.05);
+    EXPECT(oracle::expect_counts(counts, pick), 0.05);
     CHECK(&choose_light(s, 0) == &s.lights.front());
     CHECK(&choose_light(s, below_one) == &s.lights.back());
 }

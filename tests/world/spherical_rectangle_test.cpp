@@ -38,7 +38,7 @@ TEST_CASE("rectangle: solid angle of a corner, a frustum, any rectangle; either 
 }
 
 TEST_CASE("rectangle: the solid angle that a step of u covers is the same everywhere") {
-    Random random(seed_of("rectangle density"));
+    oracle::Random random(oracle::seed_of("rectangle density"));
     auto number = [&] { return real(2 * random() - 1); };
     for (int i = 0; i < 200; ++i) {
         const Frame f = frame(unit({number(), number(), number()}));
@@ -67,7 +67,7 @@ TEST_CASE("rectangle: the solid angle that a step of u covers is the same everyw
 }
 
 TEST_CASE("rectangle: samples lie on it, corners are reached") {
-    Random random(seed_of("rectangle points"));
+    oracle::Random random(oracle::seed_of("rectangle points"));
     auto number = [&] { return real(2 * random() - 1); };
     for (int i = 0; i < 300; ++i) {
         const Frame f = frame(unit({number(), number(), number()}));

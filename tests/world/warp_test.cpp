@@ -13,8 +13,8 @@ auto turned(vec3 n, auto sample) {
     const Frame f = frame(n);
     return [=](double u, double v) { return f.to_world(sample(vec2{real(u), real(v)})); };
 }
-DensityOptions about(vec3 n) {
-    DensityOptions o;
+oracle::Options about(vec3 n) {
+    oracle::Options o;
     o.axis = {double(n.x), double(n.y), double(n.z)};
     return o;
 }
@@ -34,61 +34,60 @@ std::vector<vec3> some_axes() {
 }  // namespace
 
 TEST_CASE("uniform hemisphere: p(w) = 1 / 2 pi, about any axis") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (vec3 n : some_axes())
-        EXPECT(expect_density(
+        EXPECT(oracle::expect_density(
                    random, turned(n, sample_uniform_hemisphere),
                    [&](vec3 w) { return pdf_uniform_hemisphere(dot(n, w)); }, about(n)),
                0.05);
 }
 
 TEST_CASE("cosine hemisphere: p(w) = cos(theta) / pi, about any axis") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (vec3 n : some_axes())
-        EXPECT(expect_density(
+        EXPECT(oracle::expect_density(
                    random, turned(n, sample_cosine_hemisphere),
                    [&](vec3 w) { return pdf_cosine_hemisphere(dot(n, w)); }, about(n)),
                0.05);
 }
 
 TEST_CASE("cosine hemisphere: E[z^k] = 2 / (k+2), E[x] = E[y] = 0, estimates of int cos dw") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     auto draw_one = [&] {
         const vec2 u{real(random()), real(random())};
         return sample_cosine_hemisphere(u);
     };
     for (int k : {1, 2, 3, 6})
-        EXPECT(expect_mean(2 / (k + 2.0), 50000, [&] { return std::pow(draw_one().z, real(k)); })
+        EXPECT(oracle::expect_mean(2 / (k + 2.0), 50000,
+                                   [&] { return std::pow(draw_one().z, real(k)); })
                    .of("E[z^k] = int z^k cos/pi dw"),
                0.08);
-    EXPECT(expect_mean(0, 50000, [&] { return draw_one().x; }), 0.02);
-    EXPECT(expect_mean(0, 50000, [&] { return draw_one().y; }), 0.02);
+    EXPECT(oracle::expect_mean(0, 50000, [&] { return draw_one().x; }), 0.02);
+    EXPECT(oracle::expect_mean(0, 50000, [&] { return draw_one().y; }), 0.02);
     // cos / pdf has no variance: exact.
-    EXPECT(expect_mean(std::numbers::pi, 1000,
-                       [&] {
-                           const vec3 w = draw_one();
-                           return w.z / pdf_cosine_hemisphere(w.z);
-                       })
+    EXPECT(oracle::expect_mean(std::numbers::pi, 1000,
+                               [&] {
+                                   const vec3 w = draw_one();
+                                   return w.z / pdf_cosine_hemisphere(w.z);
+                               })
                .of("int cos dw = pi"),
            1e-12);
-    EXPECT(expect_mean(std::numbers::pi, 100000,
-                       [&] {
-                           const vec2 u{real(random()), real(random())};
-                           const vec3 w = sample_uniform_hemisphere(u);
-                           return w.z / pdf_uniform_hemisphere(w.z);
-                       })
+    EXPECT(oracle::expect_mean(std::numbers::pi, 100000,
+                               [&] {
+                                   const vec2 u{real(random()), real(random())};
+                                   const vec3 w = sample_uniform_hemisphere(u);
+                                   return w.z / pdf_uniform_hemisphere(w.z);
+                               })
                .of("int cos dw = pi by uniform directions, variance pi^2 / 3"),
            0.016);
 }
 
 TEST_CASE("Phong lobe: p(w) = (n+1)/(2 pi) cos^n(alpha), exponents 0 to 10^5") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (real n : {real(0), real(0.5), real(1), real(10), real(1000), real(1e5)})
         for (vec3 z : {vec3{0, 0, 1}, unit({1, -2, real(-0.3)})}) {
-            DensityOptions o = about(z);
-            // The cosine's rounding, n times in cos^n.
-            o.tolerance = single ? std::max(2e-3, 16.0 * n * ulp) : 1e-6;
-            EXPECT(expect_density(
+            oracle::Options o = about(z);
+            EXPECT(oracle::expect_density(
                        random, turned(z, [&](vec2 u) { return sample_phong_lobe(u, n); }),
                        [&](vec3 w) { return pdf_phong_lobe(dot(z, w), n); }, o),
                    0.05);
@@ -96,14 +95,14 @@ TEST_CASE("Phong lobe: p(w) = (n+1)/(2 pi) cos^n(alpha), exponents 0 to 10^5") {
 }
 
 TEST_CASE("Phong lobe: E[cos] = (n+1)/(n+2), and 1 - cos keeps its digits") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (real n : {real(0), real(3), real(100), real(1e5)})
-        EXPECT(expect_mean(1 / (double(n) + 2), 100000,
-                           [&] {
-                               const vec2 u{real(random()), real(random())};
-                               const vec3 w = sample_phong_lobe(u, n);
-                               return (sqr(w.x) + sqr(w.y)) / (1 + w.z);  // 1 - cos
-                           })
+        EXPECT(oracle::expect_mean(1 / (double(n) + 2), 100000,
+                                   [&] {
+                                       const vec2 u{real(random()), real(random())};
+                                       const vec3 w = sample_phong_lobe(u, n);
+                                       return (sqr(w.x) + sqr(w.y)) / (1 + w.z);  // 1 - cos
+                                   })
                    .of("E[1 - cos] = 1 / (n+2)"),
                0.03);
 }
@@ -121,30 +120,29 @@ TEST_CASE("Phong lobe: the sine keeps its digits, however narrow the lobe") {
 }
 
 TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 10^-8") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (real sin2 : {real(1), real(0.75), real(1e-2), real(1e-4), real(1e-10), real(1e-16)}) {
         auto inside = [&](vec3 w) {
             return w.z >= 0 && sqr(w.x) + sqr(w.y) <= sin2 * (1 + 8 * ulp);
         };
-        DensityOptions o;
-        o.tolerance = single ? 1e-3 : 0;
-        EXPECT(expect_density(
+        oracle::Options o;
+        EXPECT(oracle::expect_density(
                    random, turned({0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); }),
                    [&](vec3 w) { return inside(w) ? pdf_cone(sin2) : 0; }, o)
-                   .of(print("sin^2 = %g", double(sin2))),
+                   .of(oracle::say("sin^2 = %g", double(sin2))),
                0.05);
     }
 }
 
 TEST_CASE("cone: E[1 - cos] = (1 - cos_max) / 2, to the last digits of the smallest") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     for (double sin2 : {0.75, 1e-4, 1e-12})
-        EXPECT(expect_mean(sin2 / (1 + std::sqrt(1 - sin2)) / 2, 20000,
-                           [&] {
-                               const vec2 u{real(random()), real(random())};
-                               const vec3 w = sample_cone(u, real(sin2));
-                               return (sqr(w.x) + sqr(w.y)) / (1 + w.z);
-                           }),
+        EXPECT(oracle::expect_mean(sin2 / (1 + std::sqrt(1 - sin2)) / 2, 20000,
+                                   [&] {
+                                       const vec2 u{real(random()), real(random())};
+                                       const vec3 w = sample_cone(u, real(sin2));
+                                       return (sqr(w.x) + sqr(w.y)) / (1 + w.z);
+                                   }),
                0.05);
     // 2 pi (1 - cos): against long double, where the naive form has no digit left.
     for (double sin2 : {1.0, 0.5, 1e-3, 1e-8, 1e-16, 1e-30}) {
@@ -155,12 +153,13 @@ TEST_CASE("cone: E[1 - cos] = (1 - cos_max) / 2, to the last digits of the small
 }
 
 TEST_CASE("triangle and quad: p = 1 / area, every part of them alike") {
-    Random random(seed_here());
+    oracle::Random random(seed_here());
     const vec3 e{2, 1, real(-0.5)}, f{real(-0.3), real(0.7), 4};
     auto triangle = [&](double u, double v) { return sample_triangle({real(u), real(v)}, e, f); };
     auto quad = [&](double u, double v) { return sample_quad({real(u), real(v)}, e, f); };
-    EXPECT(expect_jacobian(random, triangle, [&](vec3) { return pdf_triangle_area(e, f); }), 1e-3);
-    EXPECT(expect_jacobian(random, quad, [&](vec3) { return pdf_quad_area(e, f); }), 1e-3);
+    EXPECT(oracle::expect_jacobian(random, triangle, [&](vec3) { return pdf_triangle_area(e, f); }),
+           1e-3);
+    EXPECT(oracle::expect_jacobian(random, quad, [&](vec3) { return pdf_quad_area(e, f); }), 1e-3);
     // Barycentric coordinates (a, b) of p = a e + b f; 4 x 4 cells of the quad, of which a triangle
     // has 6 whole and 4 halves.
     const vec3 n = cross(e, f);
@@ -179,7 +178,7 @@ TEST_CASE("triangle and quad: p = 1 / area, every part of them alike") {
             const size_t sum = i / 4 + i % 4;
             expected[i] = of_quad ? 1 / 16.0 : sum < 3 ? 1 / 8.0 : sum == 3 ? 1 / 16.0 : 0;
         }
-        EXPECT(expect_counts(counts, expected), 0.06);
+        EXPECT(oracle::expect_counts(counts, expected), 0.06);
     }
 }
 
@@ -199,17 +198,19 @@ TEST_CASE("power heuristic: p^2 / (p^2 + q^2), sums to 1, at any scale") {
 }
 
 TEST_CASE("multiple importance sampling: int cos^2 dw = 2 pi / 3 from two techniques") {
-    Random random(seed_here());
-    EXPECT(expect_mean(2 * std::numbers::pi / 3, 100000,
-                       [&] {
-                           const vec2 u{real(random()), real(random())};
-                           const vec2 v{real(random()), real(random())};
-                           const vec3 a = sample_cosine_hemisphere(u);
-                           const vec3 b = sample_phong_lobe(v, 20);
-                           const real pa = pdf_cosine_hemisphere(a.z), qa = pdf_phong_lobe(a.z, 20);
-                           const real pb = pdf_cosine_hemisphere(b.z), qb = pdf_phong_lobe(b.z, 20);
-                           return sqr(a.z) / pa * power_heuristic(pa, qa) +
-                                  sqr(b.z) / qb * power_heuristic(qb, pb);
-                       }),
+    oracle::Random random(seed_here());
+    EXPECT(oracle::expect_mean(2 * std::numbers::pi / 3, 100000,
+                               [&] {
+                                   const vec2 u{real(random()), real(random())};
+                                   const vec2 v{real(random()), real(random())};
+                                   const vec3 a = sample_cosine_hemisphere(u);
+                                   const vec3 b = sample_phong_lobe(v, 20);
+                                   const real pa = pdf_cosine_hemisphere(a.z),
+                                              qa = pdf_phong_lobe(a.z, 20);
+                                   const real pb = pdf_cosine_hemisphere(b.z),
+                                              qb = pdf_phong_lobe(b.z, 20);
+                                   return sqr(a.z) / pa * power_heuristic(pa, qa) +
+                                          sqr(b.z) / qb * power_heuristic(qb, pb);
+                               }),
            0.03);
 }

@@ -1,0 +1,49 @@
+// oracle/mistakes_test.cpp  the oracle refuses classic mistakes, and names them
+#include <doctest/doctest.h>
+
+#include "oracle/mistakes_of_light.h"
+
+namespace {
+
+// Every mistake is refused; nine of ten first lines name it, and none names another cause.
+void all_named(const mistakes::Mistakes& catalogue, const std::string& seed) {
+    const std::string folder = std::exchange(oracle::pictures, "");
+    int planted = 0, named = 0;
+    for (const auto& m : catalogue) {
+        oracle::Random random(oracle::seed_of(seed + m.name));
+        const oracle::Verdict v = m.run(random);
+        CAPTURE(m.name);
+        CAPTURE(m.wrong);
+        INFO(mistakes::first_line(v.text));
+        CHECK(v.pass == m.expected.empty());
+        if (m.expected.empty() || v.pass) continue;
+        const mistakes::Naming naming = mistakes::naming(m, v);
+        CHECK(naming != mistakes::Naming::wrong);
+        ++planted;
+        if (naming == mistakes::Naming::right)
+            ++named;
+        else
+            MESSAGE("not named: " << m.name << ": " << mistakes::first_line(v.text));
+    }
+    oracle::pictures = folder;
+    MESSAGE(named << " of " << planted << " named");
+    CHECK(named >= 0.9 * planted);
+}
+
+}  // namespace
+
+TEST_CASE("oracle: classic mistakes are refused and named") { all_named(mistakes::all(), ""); }
+
+TEST_CASE("oracle: how a hint is read") {
+    using mistakes::says, mistakes::hint_of;
+    CHECK(says("is it a factor of 2?", "2"));
+    CHECK_FALSE(says("samples 2.5 times", "2"));
+    CHECK_FALSE(says("samples 0.2 times", "2"));
+    CHECK(says("the density lacks 1/pi.", "pi"));
+    CHECK_FALSE(says("is it 2 pi?", "pi"));
+    CHECK(says("is it 2 pi?", "2 pi"));
+    CHECK_FALSE(says("a spin", "pi"));
+    CHECK(says("Negative at (0, 0, -1)", "negative"));
+    CHECK(hint_of("off by 3").empty());
+    CHECK(hint_of("off by 3: is it a sign?") == "is it a sign?");
+}
