@@ -1537,7 +1537,8 @@ struct Mistake {
             const std::string constant_name = constant_named(c, 0.003);
             if (cause.empty() &&
                 (constant_name == "pi" || constant_name == "2 pi" || constant_name == "4 pi"))
-                cause = "1/(" + constant_name + ") forgotten";
+                cause = constant_name == "pi" ? "1/pi forgotten"
+                                              : "1/(" + constant_name + ") forgotten";
             if (!cause.empty()) cause = "; looks like " + cause;
             // The cosine of a cone so narrow has no more digits.
             std::vector<double> heights;
@@ -1592,15 +1593,19 @@ struct Mistake {
         return law_of(rest, tolerance);
     }
 
-    // p / q = c b^k.  One without a constant goes before those with one.
+    // p / q = c b^k.  One without a constant goes before those with one, one that the host named
+    // before others.
     std::string power_law() const {
         std::vector<Fit> fits;
         for (const double k : {1.0, -1.0, 2.0, -2.0, 0.5, -0.5})
             for (const Base<N>& b : bases)
                 if (const Law law = law_without(b, k); law.holds)
                     fits.push_back({&b, k, law.factor});
-        std::stable_partition(fits.begin(), fits.end(),
-                              [&](const Fit& f) { return std::abs(f.factor - 1) <= tolerance; });
+        auto rank = [&](const Fit& f) {
+            return 2 * (std::abs(f.factor - 1) > tolerance) + (f.base->kind != Base<N>::named);
+        };
+        std::stable_sort(fits.begin(), fits.end(),
+                         [&](const Fit& a, const Fit& b) { return rank(a) < rank(b); });
         if (fits.empty()) return "";
         const Fit f = fits[0];
         std::string cause = cause_of_base(*f.base, f.power, normalised);
@@ -1800,7 +1805,8 @@ struct DensityCheck {
     std::string first_none = {};
     std::vector<Point<D>> pilot = {};
     std::vector<double> pilot_density = {}, heights = {};  // of the pdf per dc, and by itself
-    double rounding = 0;                                 // relative, of the pdf in the host's type
+    double arriving = 1;  // part of the samples that does not fail, nearly
+    double rounding = 0;  // relative, of the pdf in the host's type
     std::function<double(const Point<N>&)> weight = {};  // what the pdf may lack
     double most_negative = 0;
     std::string where_negative = {};
@@ -1863,11 +1869,13 @@ struct DensityCheck {
 
     void fly_pilot() {
         std::vector<Point<N>> points;
-        for (int i = 0; i < 40000 && points.size() < 4096; ++i) {
+        int drawn = 0;
+        for (; drawn < 40000 && points.size() < 4096; ++drawn) {
             const auto x = model.sample(model.draw(random));
             if (x && model.pdf(*x) > 0) points.push_back(*x);
         }
         if (points.size() < 1024) return;
+        arriving = double(points.size()) / drawn;
         domain.fit(points, o.axis);
         double changes = 0;
         const int jitters = model.single ? 8 : 1;
@@ -2020,8 +2028,8 @@ struct DensityCheck {
             sheets =
                 sheets_of(model, random,
                           std::max(model.single ? 2e-3 : 1e-6, 3 * rounding) + o.tolerance, false);
-        const uint64_t n =
-            o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
+        const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
+        const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
         const bool off_already = sheets.off || parts.total > 1 + close;
         Histogram<D> histogram(pilot, {domain.lower, domain.upper});
         std::array<uint64_t, 32> counts{};
