@@ -1948,11 +1948,11 @@ struct DensityCheck {
             ++evaluations;
             return density_at(c);
         };
-        constexpr size_t budget = 4'000'000;
+        const size_t budget = weight ? 200'000 : 4'000'000;  // a guess need not be exact
         auto enough = [&] { return evaluations > budget; };
         Parts parts;
         if constexpr (D <= 2) {
-            const double close = allowed();
+            const double close = weight ? 3e-3 : allowed();
             // No finer than f can tell where it jumps.
             const Agreement g{close / 300, close / 8, 1 - std::ilogb(close / 8), true};
             for (size_t i = 0; i < ranges.size() && !enough(); ++i) {
@@ -1976,7 +1976,8 @@ struct DensityCheck {
                   const std::vector<size_t>& of_cell) {
         double golden = 1.5;
         for (int i = 0; i < 60; ++i) golden = std::pow(1 + golden, 1 / (double(D) + 1));
-        const size_t points = std::max<size_t>(64, 3'000'000 / 16 / ranges.size());
+        const size_t points =
+            std::max<size_t>(64, (weight ? 300'000 : 3'000'000) / 16 / ranges.size());
         Parts parts;
         for (size_t i = 0; i < ranges.size(); ++i) {
             const Range<D>& r = ranges[i];
