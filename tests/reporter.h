@@ -114,8 +114,9 @@ private:
             text += " threw " + std::string(check.m_exception.c_str());
         else if (check.m_at & doctest::assertType::is_throws)
             text += " did not throw";
-        else if (check.m_decomp != check.m_expr && check.m_decomp != "{?}")
-            text += "; it is " + std::string(check.m_decomp.c_str());
+        else if (const std::string values = check.m_decomp.c_str();
+                 values != expression && values.find("{?}") == values.npos)
+            text += "; it is " + values;
         text = one_line(text);
         for (int i = 0; i < notes; ++i) text += "; " + note(i);
         return text;

@@ -129,7 +129,8 @@ TEST_CASE("a failed floor: one line a case, where to start, and what stands on i
     CHECK(said.has("; make test ONLY=first\n"));
     CHECK(said.has("\nwaits for base: world film; make test ALL=1 runs all\n"));
     CHECK(said.out.ends_with("\n2 passed, 3 failed\n"));
-    CHECK(!house.folder.has("ran"));
+    CHECK(!said.has("\nworld "));
+    CHECK(!fs::exists(house.folder / "build/logs/world.mid_test"));
     CHECK(house.log("base.second_test").find("two == 4") != std::string::npos);
 
     const Said all = house.test("ALL=1");
