@@ -1,6 +1,7 @@
 // oracle/mistakes_test.cpp  the oracle refuses classic mistakes, and names them
 #include <doctest/doctest.h>
 
+#include "oracle/mistakes_held_out.h"
 #include "oracle/mistakes_of_light.h"
 
 namespace {
@@ -33,6 +34,12 @@ void all_named(const mistakes::Mistakes& catalogue, const std::string& seed) {
 }  // namespace
 
 TEST_CASE("oracle: classic mistakes are refused and named") { all_named(mistakes::all(), ""); }
+
+// Written by somebody who had not seen the hints: 36 of 48 were named, and 2 wrongly, before
+// the hints of these, too, were mended.
+TEST_CASE("oracle: mistakes that were held out are refused and named") {
+    all_named(mistakes::held_out(), "");
+}
 
 TEST_CASE("oracle: how a hint is read") {
     using mistakes::says, mistakes::hint_of;

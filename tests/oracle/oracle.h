@@ -265,9 +265,9 @@ inline std::string constant_named(double x, double tolerance) {
     return name ? name : "";
 }
 inline std::string times(double x, double tolerance) {
-    if (std::abs(x / 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (twice)", x);
-    if (std::abs(x * 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (half)", x);
-    if (std::abs(x / 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (four times)", x);
+    if (std::abs(x / 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (2, twice)", x);
+    if (std::abs(x * 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/2, half)", x);
+    if (std::abs(x / 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (4, four times)", x);
     if (std::abs(x * 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/4)", x);
     const std::string name = tolerance <= 0.005 ? constant_named(x, tolerance) : "";
     return say("%.4g", x) + (name.empty() ? "" : " (" + name + ")");
@@ -287,6 +287,10 @@ inline std::string cause_of(double ratio, double tolerance, const std::vector<Fa
         if (std::abs(x - 1) <= 3 * close || !(std::abs(x) > 0)) continue;
         may_be(1 / x, f.name + " forgotten");
         may_be(x, "a factor " + f.name + " too many, or 1/(" + f.name + ") forgotten");
+        if (0 < x && x < 1) {
+            may_be(x / (1 - x), "divided by 1 - " + f.name + " in place of " + f.name);
+            may_be((1 - x) / x, "multiplied by 1 - " + f.name + " in place of " + f.name);
+        }
         may_be(1 / (x * x), "divided by " + f.name + " in place of multiplied");
         may_be(x * x, "multiplied by " + f.name + " in place of divided");
         if (x > 0) may_be(std::sqrt(x), "a root of " + f.name);
@@ -365,7 +369,11 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
         v.text += say("; could be rounding%s", e.unit > 1e-10 ? ": take double" : "");
     } else if (!v.pass && truth != 0) {
         const double within = 5 * e.standard_error / std::abs(e.mean);
-        v.text += "; ratio " + times(ratio, within) + cause_of(ratio, within, o.factors);
+        if (std::abs(e.mean) <= 5 * e.standard_error)
+            v.text += "; 0 within its error: what has both signs may cancel";
+        else
+            v.text += "; ratio " + times(ratio, within) + (ratio < 0 ? ", of the wrong sign" : "") +
+                      cause_of(ratio, within, o.factors);
     }
     const std::string seen = truth != 0 ? percent(v.delta_min) : say("%.2g", v.delta_min);
     v.text += (v.pass ? "; " : "\n") + ("smallest bias seen with 99.9 % power: " + seen);
@@ -761,10 +769,10 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
             explained({expected.rbegin(), expected.rend()}, "the two exchanged (p for 1 - p)");
         auto turned = expected;
         std::rotate(turned.begin(), turned.end() - 1, turned.end());
-        explained(turned, "the index one too large");
+        explained(turned, "index and probability shifted by one");
         std::rotate(turned.begin(), turned.begin() + 1, turned.end());
         std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-        explained(turned, "the index one too small");
+        explained(turned, "index and probability shifted by one");
         explained(std::vector<double>(count, total / double(count)), "a uniform choice");
         if (count > 2) explained({expected.rbegin(), expected.rend()}, "the order reversed");
         v.text = first + "\n" + v.text;
@@ -1622,9 +1630,15 @@ struct Mistake {
                     for (const Base<N>& b : bases) {
                         if (&a >= &b || a.kind != Base<N>::named) continue;
                         const Law law = law_without(a, j, &b, k);
-                        if (law.holds && std::abs(law.factor - 1) <= tolerance)
-                            return over(1) + power(a.name, j) + " " + power(b.name, k) +
-                                   ": looks like those forgotten, or too many, in the pdf";
+                        const bool plain = std::abs(law.factor - 1) <= tolerance;
+                        if (!law.holds || (!plain && constant_named(law.factor, 0.003).empty()))
+                            continue;
+                        auto fate = [](const Base<N>& base, double exponent) {
+                            return base.name + (exponent > 0 ? " too many" : " forgotten");
+                        };
+                        return over(law.factor) + power(a.name, j) + " " + power(b.name, k) +
+                               ": looks like " + fate(a, j) + ", and " + fate(b, k) +
+                               ", in the pdf";
                     }
         return "";
     }
