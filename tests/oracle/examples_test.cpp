@@ -27,6 +27,8 @@ float pdf_cosine(Vec w) { return w.z > 0 ? w.z / Pi : 0; }
 
 }  // namespace
 
+// clang-format off: the page is not formatted
+
 TEST_CASE("a density") {
     // [density
     oracle::Random random(oracle::seed_of("cosine hemisphere"));
@@ -41,8 +43,7 @@ TEST_CASE("a mistake") {
     oracle::Random random(oracle::seed_of("forgotten"));
     // [mistake
     auto forgotten = [](Vec w) { return w.z > 0 ? w.z : 0; };  // 1/pi
-    oracle::Verdict v =
-        oracle::expect_density(random, sample_cosine, forgotten, {.name = "cosine"});
+    oracle::Verdict v = oracle::expect_density(random, sample_cosine, forgotten, {.name = "cosine"});
     // ]
     CHECK(!v.pass);
     CHECK(
@@ -63,12 +64,9 @@ TEST_CASE("another framework") {
     int failures = 0;
     auto my_check = [&](bool passed, const std::string&) { failures += !passed; };
     oracle::Random random(1);
-// [framework
-#define MY_EXPECT(verdict)                    \
-    do {                                      \
-        const oracle::Verdict v_ = (verdict); \
-        my_check(v_.pass, v_.text);           \
-    } while (false)
+    // [framework
+    #define MY_EXPECT(verdict) \
+        do { const oracle::Verdict v_ = (verdict); my_check(v_.pass, v_.text); } while (false)
     MY_EXPECT(oracle::expect_density(random, sample_cosine, pdf_cosine));
     // ]
     CHECK(failures == 0);
@@ -80,8 +78,7 @@ TEST_CASE("failing samples and lobes") {
     auto upper = [](double u, double v) -> std::optional<oracle::Triple> {
         const double z = 1 - 2 * u, r = std::sqrt(1 - z * z);
         if (z < 0) return {};
-        return oracle::Triple{r * std::cos(2 * oracle::pi * v), r * std::sin(2 * oracle::pi * v),
-                              z};
+        return oracle::Triple{r * std::cos(2 * oracle::pi * v), r * std::sin(2 * oracle::pi * v), z};
     };
     auto half = [](const oracle::Triple& w) { return w[2] > 0 ? 1 / (4 * oracle::pi) : 0; };
     oracle::Verdict v = oracle::expect_density(random, upper, half);  // 50 % of the samples fail
@@ -94,25 +91,15 @@ TEST_CASE("domains") {
     oracle::Verdict a, b, c, d;
     // [domains
     using Pair = std::pair<double, double>;
-    a = oracle::expect_density(
-        random, [](double u) { return -std::log1p(-u); },
-        [](double t) { return t < 0 ? 0 : std::exp(-t); });  // the line
-    b = oracle::expect_density(
-        random,
-        [](double u, double v) {
-            return Pair{u, std::sqrt(v)};
-        },
-        [](Pair x) { return 2 * x.second; }, oracle::Square{});
+    a = oracle::expect_density(random, [](double u) { return -std::log1p(-u); },
+                               [](double t) { return t < 0 ? 0 : std::exp(-t); });  // the line
+    b = oracle::expect_density(random, [](double u, double v) { return Pair{u, std::sqrt(v)}; },
+                               [](Pair x) { return 2 * x.second; }, oracle::Square{});
     const oracle::Triangle<3> t{{0, 0, 1}, {2, 0, 0}, {0, 1, 0}};  // in space: area 3/2
-    c = oracle::expect_density(
-        random,
-        [&](double u, double v) {
-            return t.at({std::sqrt(u), v});
-        },
-        [](oracle::Triple) { return 2 / 3.0; }, t);
-    d = oracle::expect_choice(
-        random, [](double u) { return u < 0.3 ? 0 : 1; }, [](int i) { return i == 0 ? 0.3 : 0.7; },
-        2);
+    c = oracle::expect_density(random, [&](double u, double v) { return t.at({std::sqrt(u), v}); },
+                               [](oracle::Triple) { return 2 / 3.0; }, t);
+    d = oracle::expect_choice(random, [](double u) { return u < 0.3 ? 0 : 1; },
+                              [](int i) { return i == 0 ? 0.3 : 0.7; }, 2);
     // ]
     CHECK(a.pass);
     CHECK(b.pass);
@@ -152,8 +139,8 @@ TEST_CASE("means") {
     // [means
     // int cos dw over the hemisphere by uniform directions; the pdf 1 / (2 pi) forgotten.
     auto estimate = [&] { return random(); };
-    oracle::Verdict v =
-        oracle::expect_mean(oracle::pi, 100000, estimate, {.factors = {{"1/pdf", 2 * oracle::pi}}});
+    oracle::Verdict v = oracle::expect_mean(oracle::pi, 100000, estimate,
+                                            {.factors = {{"1/pdf", 2 * oracle::pi}}});
     // ]
     CHECK(!v.pass);
     INFO(v.text);

@@ -33,12 +33,12 @@ void all_named(const mistakes::Mistakes& catalogue, const std::string& seed) {
 
 }  // namespace
 
-TEST_CASE("oracle: classic mistakes are refused and named") { all_named(mistakes::all(), ""); }
-
-// Written by somebody who had not seen the hints: 36 of 48 were named, and 2 wrongly, before
-// the hints of these, too, were mended.
-TEST_CASE("oracle: mistakes that were held out are refused and named") {
-    all_named(mistakes::held_out(), "");
+// The second catalogue was written by somebody who had not seen the hints: 36 of its 46 mistakes
+// were named, and 2 wrongly, before hints were mended for it, too.
+TEST_CASE("oracle: classic mistakes are refused and named") {
+    mistakes::Mistakes both = mistakes::all();
+    for (const auto& m : mistakes::held_out()) both.push_back(m);
+    all_named(both, "");
 }
 
 TEST_CASE("oracle: how a hint is read") {

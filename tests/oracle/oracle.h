@@ -370,7 +370,7 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
     } else if (!v.pass && truth != 0) {
         const double within = 5 * e.standard_error / std::abs(e.mean);
         if (std::abs(e.mean) <= 5 * e.standard_error)
-            v.text += "; 0 within its error: what has both signs may cancel";
+            v.text += "; 0 within its error: what has either sign may cancel";
         else
             v.text += "; ratio " + times(ratio, within) + (ratio < 0 ? ", of the wrong sign" : "") +
                       cause_of(ratio, within, o.factors);

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <limits>
 
 #include "oracle/expect.h"
@@ -458,6 +459,78 @@ void check_textbooks() {
 
 }  // namespace
 
+// Seconds in which a check sees an error of 1 % at alpha = 1e-6, and one of 3 % at 1e-3: the table
+// of README.md.  build/.../oracle_test.exe -ns -tc="what checks cost"
+TEST_CASE("what checks cost" * doctest::skip()) {
+    using clock = std::chrono::steady_clock;
+    auto row = [](const char* what, auto check) {
+        std::printf("| %s |", what);
+        for (const Options& o : {Options{}, Options{.alpha = 1e-3, .sees = 0.03}}) {
+            std::vector<double> seconds;
+            double seen = 0;
+            for (int i = 0; i < 5; ++i) {
+                const auto begin = clock::now();
+                const Verdict v = check(o);
+                seconds.push_back(std::chrono::duration<double>(clock::now() - begin).count());
+                CHECK(v.pass);
+                seen = v.delta_min;
+            }
+            std::printf(" %.2g %% in %.2f s |", 100 * seen, median(seconds));
+        }
+        std::printf("\n");
+    };
+    Random random(seed_here());
+    auto density = [&](auto sample, auto pdf) {
+        return [&random, sample, pdf](const Options& o) {
+            return expect_density(random, sample, pdf, o);
+        };
+    };
+    row("cosine hemisphere", density(cosine_direction, cosine_pdf));
+    const textbook::Vec<double> wo{0.8, 0, 0.6};
+    using V = textbook::Vec<double>;
+    for (double a : {0.3, 0.02})
+        row(say("GGX by visible normals, alpha = %g", a).c_str(),
+            density([=](double u, double v) { return textbook::ggx_visible_sample(wo, u, v, a); },
+                    [=](V w) { return textbook::ggx_visible_pdf(wo, w, a); }));
+    row("GGX by half vectors, alpha = 0.3, of which 6 % fail",
+        density([=](double u, double v) { return textbook::ggx_half_sample(wo, u, v, 0.3); },
+                [=](V w) { return textbook::ggx_half_pdf(wo, w, 0.3); }));
+    row("mixture of cosine and uniform hemisphere",
+        density(
+            [](double u, double w) {
+                return u < 0.3 ? cosine_direction(u / 0.3, w)
+                               : direction(1 - (u - 0.3) / 0.7, 2 * pi * w);
+            },
+            [](Direction w) { return 0.3 * cosine_pdf(w) + 0.7 * uniform_pdf(w); }));
+    row("exponential, on the line", density([](double u) { return -std::log1p(-u); },
+                                            [](double x) { return x < 0 ? 0 : std::exp(-x); }));
+    using Pair = std::pair<double, double>;
+    row("disc, in the plane",
+        density(
+            [](double u, double v) {
+                return Pair{std::sqrt(u) * std::cos(2 * pi * v),
+                            std::sqrt(u) * std::sin(2 * pi * v)};
+            },
+            [](Pair x) { return x.first * x.first + x.second * x.second < 1 ? 1 / pi : 0; }));
+    row("box of three dimensions", [&](const Options& o) {
+        return expect_density(
+            random,
+            [](double a, double b, double c) {
+                return Triple{a, b, std::cbrt(c)};
+            },
+            [](Triple x) { return 3 * x[2] * x[2]; }, Box<3>{{0, 0, 0}, {1, 1, 1}}, o);
+    });
+    row("choice among 16", [&](const Options& o) {
+        return expect_choice(
+            random, [](double u) { return int(16 * u); }, [](int) { return 1 / 16.0; }, 16, o);
+    });
+    row("mean of numbers that spread as much as they are large", [&](const Options& o) {
+        const uint64_t n = uint64_t(std::pow(smallest_shift(infinity, o.alpha) / o.sees, 2));
+        return expect_mean(
+            1, n, [&] { return -std::log1p(-random()); }, o);
+    });
+}
+
 TEST_CASE("textbook samplers in float are right") { check_textbooks<float>(); }
 TEST_CASE("textbook samplers in double are right") { check_textbooks<double>(); }
 
@@ -507,7 +580,7 @@ TEST_CASE("constants are exact: equal within rounding, or wrong") {
     CHECK(!expect_mean(0, 1000, [] { return 1e-300; }).pass);
     CHECK(expect_mean(0, 1000, [] { return 0.0; }).pass);
     says(expect_mean(1, 1000, [] { return pi; }), "1/pi forgotten");
-    says(expect_mean(1, 1000, [] { return 0.5; }), "ratio 0.5 (1/2)");
+    says(expect_mean(1, 1000, [] { return 0.5; }), "ratio 0.5 (1/2, half)");
     CHECK(expect_equal([] { return 0.1 + 0.2; }, [] { return 0.3; }, 10).pass);
     CHECK(!expect_equal([] { return 0.2; }, [] { return 0.3; }, 10).pass);
     // Noise within rounding is no evidence: float's last bits, one of them always up.
