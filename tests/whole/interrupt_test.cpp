@@ -3,7 +3,7 @@
 
 namespace {
 
-void oracle::expect_passes_so_far(int signal, int status) {
+void expect_passes_so_far(int signal, int status) {
     const Folder folder;
     folder.write("file.scene", good + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
     Outcome o;
@@ -35,12 +35,12 @@ void oracle::expect_passes_so_far(int signal, int status) {
 }  // namespace
 
 TEST_CASE("Ctrl-C writes the passes completed so far, with their true sample count") {
-    oracle::expect_passes_so_far(SIGINT, 130);
+    expect_passes_so_far(SIGINT, 130);
 }
 
 TEST_CASE("SIGTERM and SIGHUP do what Ctrl-C does, and the exit status tells them apart") {
-    oracle::expect_passes_so_far(SIGTERM, 143);
-    oracle::expect_passes_so_far(SIGHUP, 129);
+    expect_passes_so_far(SIGTERM, 143);
+    expect_passes_so_far(SIGHUP, 129);
 }
 
 TEST_CASE("a signal that was ignored from the start stays ignored") {
