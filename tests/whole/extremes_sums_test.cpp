@@ -1,4 +1,5 @@
 // whole/extremes_sums_test.cpp  numbers of paths, and sums over them
+#include "base/stats.h"
 #include "film/film.h"
 #include "path/sampler.h"
 #include "whole/extremes.h"
