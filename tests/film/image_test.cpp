@@ -1,5 +1,4 @@
-// film/image_test.cpp  images keep their values and their orientation, in memory, in files, in
-// pictures
+// film/image_test.cpp  images keep their values and their orientation, in memory and in files
 #include "film/image.h"
 
 #include <doctest/doctest.h>
@@ -9,11 +8,7 @@
 
 #include "base/folder.h"
 #include "film/film.h"
-
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#include <stb/stb_image.h>
+#include "film/png.h"
 
 namespace {
 
@@ -42,62 +37,6 @@ Image variegated(int width, int height) {
         }
     image.at(0, 0) = {0, -0.0f, 1e-42f};
     return image;
-}
-
-struct Decoded {
-    int width = 0, height = 0;
-    std::vector<int> bytes;  // three a pixel
-    int at(int x, int y, int channel) const { return bytes[size_t(3 * (y * width + x) + channel)]; }
-};
-
-Decoded decode_png(const std::string& png) {
-    Decoded d;
-    int channels = 0;
-    auto* bytes = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()),
-                                        int(png.size()), &d.width, &d.height, &channels, 0);
-    REQUIRE(bytes != nullptr);
-    REQUIRE(channels == 3);
-    d.bytes.assign(bytes, bytes + 3 * d.width * d.height);
-    stbi_image_free(bytes);
-    return d;
-}
-
-// What the program makes of a scene; its PNG as well, if asked for.
-Image render(const std::string& scene, const std::string& options, Decoded* png = nullptr) {
-    const Folder folder;
-    folder.write("test.scene", scene);
-    const char* suffix = std::getenv("PROGRAM_SUFFIX");
-    const std::string command = "build/penumbra" + std::string(suffix ? suffix : "") +
-                                " --quiet --spp 4 --depth 0 " + options + " -o '" +
-                                (folder / "image.pfm") + "' -o '" + (folder / "image.png") + "' '" +
-                                (folder / "test.scene") + "'";
-    REQUIRE(std::system(command.c_str()) == 0);
-    if (png) *png = decode_png(read_file(folder / "image.png"));
-    return read_pfm(folder / "image.pfm");
-}
-
-// Bounds of the pixels that are not black, and their centre of mass weighted by radiance, in
-// pixels from the top left corner.
-struct Bright {
-    int left = 1 << 20, right = -1, top = 1 << 20, bottom = -1;
-    double x = 0, y = 0, sum = 0;
-    int width() const { return right - left + 1; }
-    int height() const { return bottom - top + 1; }
-};
-Bright bright(const Image& image) {
-    Bright b;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const double L = double(image.at(x, y)[0]);
-            if (!(L > 0)) continue;
-            b.left = std::min(b.left, x), b.right = std::max(b.right, x);
-            b.top = std::min(b.top, y), b.bottom = std::max(b.bottom, y);
-            b.x += (x + 0.5) * L, b.y += (y + 0.5) * L, b.sum += L;
-        }
-    REQUIRE(b.sum > 0);  // not all black or NaN
-    REQUIRE(std::isfinite(b.sum));
-    b.x /= b.sum, b.y /= b.sum;
-    return b;
 }
 
 }  // namespace
@@ -218,70 +157,5 @@ TEST_CASE("a PNG holds exposure times radiance in sRGB, from the top left, and n
         CHECK(png.at(4, 0, 0) == 255);
         CHECK(png.at(4, 0, 1) == 0);
         CHECK(png.at(4, 0, 2) == 255);
-    }
-}
-
-// ---- Pictures -----------------------------------------------------------------------------------
-
-TEST_CASE("up is up and right is right, in wide and in tall pictures") {
-    // One square emitter per view, +x or the view's right, +y; each in its top left quadrant.
-    struct Case {
-        const char *camera, *quad;
-    };
-    const Case views[] = {{"0 0 5  0 0 0", "-0.8 0.5 0  0.4 0 0  0 0.6 0"},    // right: +x
-                          {"0 0 -5  0 0 0", "0.8 0.5 0  -0.4 0 0  0 0.6 0"},   // right: -x
-                          {"5 0 0  0 0 0", "0 0.5 0.8  0 0 -0.4  0 0.6 0"},    // right: -z
-                          {"-5 2 0  0 2 0", "0 2.5 -0.8  0 0 0.4  0 0.6 0"}};  // right: +z
-    for (const Case& view : views)
-        for (const Size size : {Size{64, 32}, Size{32, 64}, Size{48, 48}}) {
-            const int w = size.width, h = size.height;
-            INFO(std::string(view.camera), ", ", w, "x", h);
-            Decoded png;
-            const Image image =
-                render("camera " + std::string(view.camera) + "  40\nlight l 0.5 0.25 1\nquad " +
-                           view.quad + " l\n",
-                       "--size " + std::to_string(w) + "x" + std::to_string(h), &png);
-            REQUIRE(image.width == w);
-            REQUIRE(image.height == h);
-            const Bright b = bright(image);
-            CHECK(b.right < w / 2);
-            CHECK(b.bottom < h / 2);
-            // The square's centre (-0.6, 0.8) at distance 5; a pixel is 2 tan(20 degrees) / h wide.
-            const double pixel = 2 * std::tan(20 * std::numbers::pi / 180) / h;
-            CHECK(std::abs(b.x - (w / 2.0 - 0.6 / 5 / pixel)) < 0.3);
-            CHECK(std::abs(b.y - (h / 2.0 - 0.8 / 5 / pixel)) < 0.3);
-            CHECK(std::abs(b.width() - 0.4 / 5 / pixel) < 2.01);
-            CHECK(std::abs(b.height() - 0.6 / 5 / pixel) < 2.01);
-            // Channels in order; the PNG shows the same.
-            const int x = int(b.x), y = int(b.y);
-            CHECK(image.at(x, y) == Pixel{0.5f, 0.25f, 1});
-            bool same = png.width == w && png.height == h;
-            for (int i = 0; same && i < w * h; ++i)
-                for (size_t c = 0; c < 3; ++c)
-                    same = same && png.bytes[3 * size_t(i) + c] ==
-                                       int(to_byte(double(image.pixels[size_t(i)][c])));
-            CHECK(same);
-        }
-}
-
-TEST_CASE(
-    "a new size never stretches: a ball is as wide as high, its height a part of the image's") {
-    const std::string scene =
-        "size 64 32\ncamera 0 0 5  0 0 0  40\nlight l 1 1 1\nsphere 0 0 0 1 l\n";
-    for (const Size size : {Size{64, 32}, Size{32, 64}, Size{48, 48}, Size{90, 31}}) {
-        const int w = size.width, h = size.height;
-        INFO(w, "x", h);
-        const Bright b =
-            bright(render(scene, "--size " + std::to_string(w) + "x" + std::to_string(h)));
-        const double pixel = 2 * std::tan(20 * std::numbers::pi / 180) / h;
-        const double across =
-            2 * std::tan(std::asin(0.2)) / pixel;  // sine of the half-angle: 1 / 5
-        const bool cropped = across > w;
-        CHECK(std::abs(b.height() - across) < 2.01);
-        CHECK(std::abs(b.width() - (cropped ? w : across)) < 2.01);
-        CHECK(std::abs(b.sum / (std::numbers::pi / 4 * across * across) - 1) <
-              (cropped ? 0.2 : 0.02));
-        CHECK(std::abs(b.x - w / 2.0) < 0.2);
-        CHECK(std::abs(b.y - h / 2.0) < 0.2);
     }
 }
