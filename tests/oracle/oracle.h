@@ -1884,7 +1884,7 @@ struct DensityCheck {
     void fly_pilot() {
         std::vector<Point<N>> points;
         int drawn = 0;
-        for (; drawn < 40000 && points.size() < 4096; ++drawn) {
+        for (; drawn < 400000 && points.size() < 4096; ++drawn) {
             const auto x = model.sample(model.draw(random));
             if (x && model.pdf(*x) > 0) points.push_back(*x);
         }
@@ -1915,37 +1915,52 @@ struct DensityCheck {
         return std::max(1e-6, 512 * model.pdf_unit) + 8 * rounding + o.tolerance;
     }
 
-    // Ranges so small that no peak that the pilot found hides between the nodes of a rule.
-    void divide(const Range<D>& range, std::vector<size_t> inside, std::vector<Range<D>>& parts,
-                int depth) const {
+    // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
+    // rule: none longer than 0.3 of the domain, none of which points fill a corner alone, none in
+    // which the density differs much.
+    void divide(const Range<D>& range, const std::vector<size_t>& inside,
+                std::vector<Range<D>>& parts, int depth) const {
+        auto split = [&](size_t k, double border) {
+            Range<D> low = range, high = range;
+            low.upper[k] = high.lower[k] = border;
+            std::vector<size_t> below, above;
+            for (size_t i : inside) (pilot[i][k] < border ? below : above).push_back(i);
+            divide(low, below, parts, depth - 1);
+            divide(high, above, parts, depth - 1);
+        };
+        if (depth == 0) return parts.push_back(range);
         size_t widest = 0;
-        double share = 0, least = infinity, most = 0;
+        double share = 0;
         for (size_t k = 0; k < D; ++k)
             if (const double s =
                     (range.upper[k] - range.lower[k]) / (domain.upper[k] - domain.lower[k]);
                 s > share)
                 share = s, widest = k;
+        if (share > 0.3) return split(widest, range.middle()[widest]);
+        if (inside.size() < 4) return parts.push_back(range);
+        double least = infinity, most = 0;
         for (size_t i : inside) {
             least = std::min(least, pilot_density[i]);
             most = std::max(most, pilot_density[i]);
         }
-        const bool uneven = inside.size() >= 4 && most > 16 * least;
-        if (depth == 0 || (share <= 0.3 && !uneven)) return parts.push_back(range);
-        Range<D> low = range, high = range;
-        double border = (range.lower[widest] + range.upper[widest]) / 2;
-        if (share <= 0.3) {
-            // Where the points' spread is widest against the range.
-            std::vector<double> x;
-            for (size_t i : inside) x.push_back(pilot[i][widest]);
-            border = median(x);
-            if (!(border > range.lower[widest] && border < range.upper[widest]))
-                return parts.push_back(range);
+        for (size_t k = 0; k < D; ++k) {
+            double first = infinity, last = -infinity;
+            for (size_t i : inside) {
+                first = std::min(first, pilot[i][k]);
+                last = std::max(last, pilot[i][k]);
+            }
+            const double spread = last - first;
+            if (!(spread > 0)) continue;
+            if (range.upper[k] - last > 4 * spread) return split(k, last + 2 * spread);
+            if (first - range.lower[k] > 4 * spread) return split(k, first - 2 * spread);
         }
-        low.upper[widest] = high.lower[widest] = border;
-        std::vector<size_t> below, above;
-        for (size_t i : inside) (pilot[i][widest] < border ? below : above).push_back(i);
-        divide(low, below, parts, depth - 1);
-        divide(high, above, parts, depth - 1);
+        if (most <= 16 * least) return parts.push_back(range);
+        std::vector<double> x;
+        for (size_t i : inside) x.push_back(pilot[i][widest]);
+        const double border = median(x);
+        if (border > range.lower[widest] && border < range.upper[widest])
+            return split(widest, border);
+        parts.push_back(range);
     }
 
     Parts integrate(const Cells<D>& cells) {
@@ -1954,7 +1969,7 @@ struct DensityCheck {
         std::vector<Range<D>> ranges;
         std::vector<size_t> of_cell;
         for (size_t cell = 0; cell < 32; ++cell) {
-            divide(cells.range(cell, {domain.lower, domain.upper}), inside[cell], ranges, 12);
+            divide(cells.range(cell, {domain.lower, domain.upper}), inside[cell], ranges, 16);
             of_cell.resize(ranges.size(), cell);
         }
         size_t evaluations = 0;
@@ -1990,6 +2005,8 @@ struct DensityCheck {
                   const std::vector<size_t>& of_cell) {
         double golden = 1.5;
         for (int i = 0; i < 60; ++i) golden = std::pow(1 + golden, 1 / (double(D) + 1));
+        Point<D> step;
+        for (size_t k = 0; k < D; ++k) step[k] = std::pow(golden, -double(k + 1));
         const size_t points =
             std::max<size_t>(64, (weight ? 300'000 : 3'000'000) / 16 / ranges.size());
         Parts parts;
@@ -2005,7 +2022,7 @@ struct DensityCheck {
                 for (size_t j = 0; j < points; ++j) {
                     Point<D> c;
                     for (size_t k = 0; k < D; ++k) {
-                        x[k] += std::pow(golden, -double(k + 1));
+                        x[k] += step[k];
                         x[k] -= std::floor(x[k]);
                         c[k] = r.lower[k] + x[k] * (r.upper[k] - r.lower[k]);
                     }

@@ -14,7 +14,7 @@ auto turned(vec3 n, auto sample) {
     return [=](double u, double v) { return f.to_world(sample(vec2{real(u), real(v)})); };
 }
 oracle::Options about(vec3 n) {
-    oracle::Options o;
+    oracle::Options o{.sees = 0.04};
     o.axis = {double(n.x), double(n.y), double(n.z)};
     return o;
 }
@@ -125,7 +125,7 @@ TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 1
         auto inside = [&](vec3 w) {
             return w.z >= 0 && sqr(w.x) + sqr(w.y) <= sin2 * (1 + 8 * ulp);
         };
-        oracle::Options o;
+        const oracle::Options o{.sees = 0.04};
         EXPECT(oracle::expect_density(
                    random, turned({0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); }),
                    [&](vec3 w) { return inside(w) ? pdf_cone(sin2) : 0; }, o)
