@@ -70,7 +70,7 @@ TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
 SUITE := $(OBJECTS)/all-tests
 
 test: packages  ## build and run the tests, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
-	@FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' PROGRAM_SUFFIX=$(SUFFIX) ALL=$(ALL) \
+	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' PROGRAM_SUFFIX=$(SUFFIX) ALL=$(ALL) \
 	    LIMIT=$(if $(SAN)$(DEBUG),10) HEAVY='$(HEAVY)' tests/run $(ONLY)
 
 # Says to tests/run that a test is built, and the programs that it runs.
