@@ -336,7 +336,9 @@ inline Mistakes lobes() {
          [](Random& random) {
              const float cos_max = std::sqrt(1 - 1e-3f * 1e-3f);
              auto pdf = [=](F w) {
-                 return std::hypot(w.x, w.y) <= 1e-3f ? 1 / (float(2 * pi) * (1 - cos_max)) : 0.f;
+                 return w.z > 0 && std::hypot(w.x, w.y) <= 1e-3f
+                            ? 1 / (float(2 * pi) * (1 - cos_max))
+                            : 0.f;
              };
              auto sample = [](float u, float v) {
                  const float x = u * 0.5e-6f, s = std::sqrt(x * (2 - x));

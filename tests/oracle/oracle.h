@@ -1818,7 +1818,8 @@ struct DensityCheck {
     double samples = 0, none = 0;
     std::string first_none = {};
     std::vector<Point<D>> pilot = {};
-    std::vector<double> pilot_density = {}, heights = {};  // of the pdf per dc, and by itself
+    std::vector<Point<D>> places = {};  // theirs, and mirror images where the pdf is positive, too:
+    std::vector<double> per_dc = {}, heights = {};  // the pdf there per dc, and by itself
     double arriving = 1;  // part of the samples that does not fail, nearly
     double rounding = 0;  // relative, of the pdf in the host's type
     std::function<double(const Point<N>&)> weight = {};  // what the pdf may lack
@@ -1898,7 +1899,17 @@ struct DensityCheck {
             pilot.push_back(c);
             const double p = model.pdf(points[i]);
             heights.push_back(p);
-            pilot_density.push_back(p * domain.weight(c));
+            places.push_back(c);
+            per_dc.push_back(p * domain.weight(c));
+            if constexpr (directions)
+                for (size_t k = 0; i % 8 == 0 && k < 3; ++k) {
+                    Triple image = points[i];
+                    image[k] = -image[k];
+                    const double there = model.pdf(image);
+                    if (!(there > 0)) continue;
+                    places.push_back(domain.coordinates(image));
+                    per_dc.push_back(there * domain.weight(places.back()));
+                }
             // What an ulp or two of the coordinates changes; jumps are met by few.
             double length = 0;
             for (double k : points[i]) length = std::max(length, std::abs(k));
@@ -1924,7 +1935,7 @@ struct DensityCheck {
             Range<D> low = range, high = range;
             low.upper[k] = high.lower[k] = border;
             std::vector<size_t> below, above;
-            for (size_t i : inside) (pilot[i][k] < border ? below : above).push_back(i);
+            for (size_t i : inside) (places[i][k] < border ? below : above).push_back(i);
             divide(low, below, parts, depth - 1);
             divide(high, above, parts, depth - 1);
         };
@@ -1940,14 +1951,14 @@ struct DensityCheck {
         if (inside.size() < 4) return parts.push_back(range);
         double least = infinity, most = 0;
         for (size_t i : inside) {
-            least = std::min(least, pilot_density[i]);
-            most = std::max(most, pilot_density[i]);
+            least = std::min(least, per_dc[i]);
+            most = std::max(most, per_dc[i]);
         }
         for (size_t k = 0; k < D; ++k) {
             double first = infinity, last = -infinity;
             for (size_t i : inside) {
-                first = std::min(first, pilot[i][k]);
-                last = std::max(last, pilot[i][k]);
+                first = std::min(first, places[i][k]);
+                last = std::max(last, places[i][k]);
             }
             const double spread = last - first;
             if (!(spread > 0)) continue;
@@ -1956,7 +1967,7 @@ struct DensityCheck {
         }
         if (most <= 16 * least) return parts.push_back(range);
         std::vector<double> x;
-        for (size_t i : inside) x.push_back(pilot[i][widest]);
+        for (size_t i : inside) x.push_back(places[i][widest]);
         const double border = median(x);
         if (border > range.lower[widest] && border < range.upper[widest])
             return split(widest, border);
@@ -1965,7 +1976,7 @@ struct DensityCheck {
 
     Parts integrate(const Cells<D>& cells) {
         std::array<std::vector<size_t>, 32> inside;
-        for (size_t i = 0; i < pilot.size(); ++i) inside[cells.of(pilot[i])].push_back(i);
+        for (size_t i = 0; i < places.size(); ++i) inside[cells.of(places[i])].push_back(i);
         std::vector<Range<D>> ranges;
         std::vector<size_t> of_cell;
         for (size_t cell = 0; cell < 32; ++cell) {

@@ -370,6 +370,9 @@ TEST_CASE("narrow lobes: one that the pdf or the sampler misses, one in a hundre
     CHECK(expect_density(random, lobe, lobe_pdf, o).pass);
     CHECK(!expect_density(random, lobe, uniform_pdf, o).pass);
     CHECK(!expect_density(random, flat, lobe_pdf, o).pass);
+    // Positive at the opposite pole, too, where no sample comes.
+    auto either_pole = [&](Direction w) { return lobe_pdf({std::abs(w.x), w.y, w.z}); };
+    says(expect_density(random, lobe, either_pole, o), "integrates to 2 (2, twice)");
     auto both = [&](double u, double v) {
         return u < 0.01 ? lobe(u / 0.01, v) : flat((u - 0.01) / 0.99, v);
     };
