@@ -917,23 +917,24 @@ Point<N> point(const V& v) {
     }
     (std::make_index_sequence<N>());
 }
+template <class V, size_t N, size_t... I>
+V of_host(const Point<N>& c, std::index_sequence<I...>) {
+    using T = Coordinate<V>;
+    if constexpr (std::is_arithmetic_v<V>)
+        return T(c[0]);
+    else if constexpr (requires { V{T(c[I])...}; })
+        return V{T(c[I])...};
+    else if constexpr (requires { V(T(c[I])...); })
+        return V(T(c[I])...);
+    else {
+        V v{};
+        ((v[I] = T(c[I])), ...);
+        return v;
+    }
+}
 template <class V, size_t N>
 V of_host(const Point<N>& c) {
-    using T = Coordinate<V>;
-    return [&]<size_t... I>(std::index_sequence<I...>) {
-        if constexpr (std::is_arithmetic_v<V>)
-            return T(c[0]);
-        else if constexpr (requires { V{T(c[I])...}; })
-            return V{T(c[I])...};
-        else if constexpr (requires { V(T(c[I])...); })
-            return V(T(c[I])...);
-        else {
-            V v{};
-            ((v[I] = T(c[I])), ...);
-            return v;
-        }
-    }
-    (std::make_index_sequence<N>());
+    return oracle::of_host<V>(c, std::make_index_sequence<N>());
 }
 inline double dot(const Triple& a, const Triple& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -947,21 +948,24 @@ std::string say_point(const Point<N>& c) {
 
 // Whether f takes D numbers of type A, or one argument that is made from {D numbers}.  Braces
 // refuse to make a float of a double, and tell which of them f wants.
-template <class F, class A, size_t D>
-constexpr bool takes_numbers = []<size_t... I>(std::index_sequence<I...>) {
+template <class F, class A, size_t... I>
+constexpr bool numbers_fit(std::index_sequence<I...>) {
     return requires(F & f, A a) { f(((void)I, a)...); };
 }
-(std::make_index_sequence<D>());
 template <class F, class A, size_t D>
-constexpr bool takes_exactly = []<size_t... I>(std::index_sequence<I...>) {
+constexpr bool takes_numbers = numbers_fit<F, A>(std::make_index_sequence<D>());
+template <class F, class A, size_t... I>
+constexpr bool exactly_fit(std::index_sequence<I...>) {
     return requires(F & f, A a) { f({((void)I, a)}...); };
 }
-(std::make_index_sequence<D>());
 template <class F, class A, size_t D>
-constexpr bool takes_braces = []<size_t... I>(std::index_sequence<I...>) {
+constexpr bool takes_exactly = exactly_fit<F, A>(std::make_index_sequence<D>());
+template <class F, class A, size_t... I>
+constexpr bool braces_fit(std::index_sequence<I...>) {
     return requires(F & f, A a) { f({((void)I, a)...}); };
 }
-(std::make_index_sequence<D>());
+template <class F, class A, size_t D>
+constexpr bool takes_braces = braces_fit<F, A>(std::make_index_sequence<D>());
 
 template <class F, size_t D = 8>
 constexpr size_t numbers_of() {
