@@ -6,8 +6,6 @@
 
 namespace {
 
-constexpr bool single = sizeof(real) == 4;
-
 // The sampler as a map of (u, v), turned so that its axis is n.
 auto turned(vec3 n, auto sample) {
     const Frame f = frame(n);
