@@ -25,8 +25,8 @@ public:
     using Sample = typename Pixel::Sample;
     explicit Film(Size s)
         : size(s),
-          pixels_(size_t(s.width) * size_t(s.height)),
-          next_(pixels_.size(), Pixel::unwritten()) {}
+          pixels_(size_t(s.width) * size_t(s.height), Pixel::unwritten()),
+          next_(pixels_) {}
 
     const Size size;
     uint64_t samples() const { return samples_; }  // per pixel
@@ -37,7 +37,7 @@ public:
     void add_row(int y, uint64_t n, Radiance L) {
         for (int x = 0; x < size.width; ++x) {
             const size_t index = size_t(y) * size_t(size.width) + size_t(x);
-            Pixel pixel = pixels_[index];
+            Pixel pixel = samples_ > 0 ? pixels_[index] : Pixel();
             for (uint64_t i = samples_; i < samples_ + n; ++i) {
                 if (interrupted) return;
                 const Sample value = L(x, i);

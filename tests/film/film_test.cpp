@@ -54,6 +54,16 @@ TEST_CASE("a pass that is not complete leaves no trace in the image") {
     for (const Pixel& pixel : image_of(film).pixels) CHECK(pixel == Pixel{3, 3, 3});
 }
 
+TEST_CASE("a pixel that nobody wrote is no number in the image, even if the pass is ended") {
+    MeanFilm film({2, 2});
+    for (int pass = 0; pass < 2; ++pass) {
+        film.add_row(0, 1, [](int, uint64_t) { return rgb{1, 1, 1}; });
+        film.end_pass(1);
+        CHECK(image_of(film).at(0, 0) == Pixel{1, 1, 1});
+        CHECK(first_non_finite(image_of(film)) == "0,1");
+    }
+}
+
 TEST_CASE("a row takes no more samples once the run is interrupted") {
     MeanFilm film({8, 1});
     int samples = 0;
