@@ -79,6 +79,51 @@ TEST_CASE("what a row throws reaches the caller, and nobody begins another row")
     CHECK(rows < 100);
 }
 
+TEST_CASE("who waits is told what part of the rows is done") {
+    std::atomic<int> calls = 0;
+    std::vector<double> parts;
+    auto row = [&](int y) {
+        if (y != 3) return;
+        // The call under way may have looked before row 2 was done, the one after it has not.
+        for (const int before = calls; calls < before + 2;) std::this_thread::yield();
+    };
+    auto meanwhile = [&](double part) {
+        parts.push_back(part);
+        ++calls;
+    };
+    CHECK(parallel_rows(4, 1, row, meanwhile));
+    REQUIRE(parts.size() >= 3);
+    CHECK(parts[parts.size() - 2] == 0.75);
+    CHECK(parts.back() == 1);
+}
+
+TEST_CASE("progress is told in samples a pixel; a sample that is no number ends it at its pass") {
+    struct Samples {
+        struct {
+            int height = 3;
+        } size;
+        uint64_t n = 0, bad = 0;
+        uint64_t samples() const { return n; }
+        uint64_t non_finite() const { return bad; }
+        void end_pass(uint64_t more) { n += more; }
+    };
+    struct {
+        std::vector<double> shown;
+        double elapsed() const { return 0; }
+        void show(double samples) { shown.push_back(samples); }
+    } progress;
+    Samples film;
+    render(
+        film, {{24, 0}, 8, 1}, [](int, uint64_t) {}, progress);  // 8, and twice as many
+    CHECK(film.n == 24);
+    CHECK(std::find(progress.shown.begin(), progress.shown.end(), 8) != progress.shown.end());
+    CHECK(progress.shown.back() == 24);
+    Samples broken;
+    render(
+        broken, {{24, 0}, 8, 1}, [&](int, uint64_t n) { broken.bad = n == 16; }, progress);
+    CHECK(broken.n == 8);
+}
+
 TEST_CASE("every row is rendered once, by any number of threads") {
     for (int height : {1, 2, 100})
         for (unsigned threads : {1u, 2u, 7u, 300u}) {

@@ -130,6 +130,7 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
             const uint64_t period = p.period(), cells = p.columns * p.rows;
             CHECK(cells <= 256);
             CHECK(p.columns <= 2 * p.rows);
+            CHECK((spp % period == 0 || cells == 16));  // or nothing fits
             for (uint64_t pixel = 0; pixel < 20; ++pixel)
                 for (uint64_t half = 0; half < p.halves; ++half) {
                     std::vector<int> film(cells), pick(cells);
@@ -145,6 +146,7 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
     CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 64).columns == 8);
     CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 48).columns == 8);
     CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 48).rows == 6);
+    CHECK(make_pattern(SamplerKind::stratified, 0, true, 1, 64).period() == 64);
 }
 
 TEST_CASE("every pass shuffles its cells anew") {

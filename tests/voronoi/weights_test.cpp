@@ -137,6 +137,19 @@ TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1
     EXPECT(v, 0.025);
 }
 
+TEST_CASE("vor draws its strip anew until every cell is bounded, whichever is not") {
+    oracle::Random random(seed_here());
+    Weigher weigher;
+    weigher.unbounded = 20;  // cells a square, as a bound: a narrow strip
+    int without_weight = 0;
+    for (int k = 0; k < 400; ++k)
+        for (double w : weigher(Weighting::vor, scattered(20, random), random.bits()))
+            without_weight += w == 0;
+    CHECK(weigher.redraws > 100);
+    CHECK(weigher.fallbacks == 0);
+    CHECK(without_weight == 0);
+}
+
 TEST_CASE("fvor without a cell inside falls back to the plain mean, and counts it") {
     oracle::Random random(seed_here());
     Weigher weigher;

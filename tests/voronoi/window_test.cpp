@@ -35,6 +35,17 @@ TEST_CASE("a repeated window: all images that the domain holds, each once") {
                             [&](Site p) { return p.x == e.x && p.y == e.y; }) == 1);
 }
 
+TEST_CASE("a window that is longer one way is repeated more often the other way") {
+    // Domains of [-1/2, 3/2] along the window, periods of 1 x 1/4: rows -2 ... 2 hold the middle.
+    for (bool tall : {false, true}) {
+        WindowSites s;
+        s.begin(tall ? Rectangle{{0, 0}, {1, 4}} : Rectangle{{0, 0}, {4, 1}}, 2);
+        s.add(tall ? Points{{0.5, 2}} : Points{{2, 0.5}});
+        s.repeat(tall ? 1 : 4, tall ? 4 : 1);
+        CHECK(s.sites().size() == 15);
+    }
+}
+
 TEST_CASE("sites at the same place know the first of them, which knows how many they are") {
     WindowSites s;
     s.begin({{0, 0}, {1, 1}}, 0);

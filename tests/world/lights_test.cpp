@@ -136,6 +136,24 @@ TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slante
             }
 }
 
+TEST_CASE("by solid angle: rectangles alone; triangles and parallelograms keep to their area") {
+    oracle::Random random(seed_here());
+    const vec3 corner{-1, 2, 3}, u{2, 0, 0}, p{0, 0, 1};
+    for (const auto& [kind, v, may] : {std::tuple(Light::Kind::triangle, vec3{0, 0, -3}, false),
+                                       {Light::Kind::quad, vec3{1, 0, -3}, false},
+                                       {Light::Kind::quad, vec3{-1, 0, -3}, false},
+                                       {Light::Kind::quad, vec3{0, 0, -3}, true}}) {
+        Light by_area = polygon_light(kind, corner, u, v), by_angle = by_area;
+        by_area.twosided = by_angle.twosided = by_angle.by_angle = true;
+        const vec2 here{real(random()), real(random())};
+        const auto a = sample_light(by_area, p, here), b = sample_light(by_angle, p, here);
+        REQUIRE((a && b));
+        CHECK((a->wi == b->wi) == !may);
+        CHECK((a->pdf == b->pdf) == !may);
+        CHECK((pdf_light(by_area, p, a->at) == pdf_light(by_angle, p, a->at)) == !may);
+    }
+}
+
 TEST_CASE("polygon lights: the side that emits, both sides, edge-on") {
     Light l = polygon_light(Light::Kind::quad, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     const vec2 u{real(0.3), real(0.6)};

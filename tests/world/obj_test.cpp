@@ -64,6 +64,10 @@ TEST_CASE("an OBJ file that cannot be used is refused at its line") {
         {"mtllib negative.mtl\n", "negative.mtl:2: a colour must not be negative"},
         {"mtllib twice.mtl\n", "twice.mtl:2: a second material 'a'"},
         {"mtllib good.mtl\nusemtl blue\n", "m.obj:2: undefined material 'blue'"},
+        // The line that names a library, whatever the library's own lines are.
+        {"\n\n\nmtllib none_in_it.mtl\n", "m.obj:4: "},
+        {"\n\nmtllib bright.mtl\n", "m.obj:3: "},
+        {"mtllib good.mtl\nmtllib none_in_it.mtl\n", "none_in_it.mtl: no material in it"},
     };
     for (const auto& row : table) {
         const std::string found = complaint(folder, row.text);
@@ -76,8 +80,13 @@ TEST_CASE("an OBJ file that cannot be used is refused at its line") {
 
 TEST_CASE("faces: any number of corners, indices from the end, texture and normal indices") {
     const Folder folder;
-    const std::string same[] = {"f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/2 3/3 4/4",
-                                "f 1//1 2//1 3//1 4//1", "f 1/9/9 2/9/9 3/9/9 4/9/9"};
+    const std::string same[] = {"f 1 2 3 4",
+                                "f -4 -3 -2 -1",
+                                "f 1/1 2/2 3/3 4/4",
+                                "f 1//1 2//1 3//1 4//1",
+                                "f 1/9/9 2/9/9 3/9/9 4/9/9",
+                                "f 1 2 3 4 # 5",
+                                "f 1 2 3 4# 5"};
     for (const std::string& face : same) {
         folder.write("m.obj", "# comment\no thing\nvn 0 0 1\nvt 0 0\ng a\ns off\n" + corners +
                                   face + "\r\n");
@@ -115,6 +124,16 @@ TEST_CASE("an arrowhead is fanned from the corner that sees all, a star is refus
     }
     CHECK_THROWS_WITH_AS(scene_with(folder, star + face + "\n", "1 0 0 0 grey"),
                          doctest::Contains("m.obj:11: no corner sees all others"), UserError);
+}
+
+TEST_CASE("a corner between two others in line is a corner, wherever the polygon begins") {
+    std::vector<vec3> square = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+    for (size_t start = 0; start < square.size(); ++start) {
+        const auto fan = fan_of(square);
+        REQUIRE(fan);
+        CHECK(*fan == square);  // convex: not turned
+        std::rotate(square.begin(), square.begin() + 1, square.end());
+    }
 }
 
 TEST_CASE("a concave face has at most 1000 corners: each may have to be tried as the fan's") {
