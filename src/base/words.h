@@ -60,12 +60,15 @@ inline double parse_number(std::string_view text, double largest = largest_numbe
     return x;
 }
 
-// The whole of `text` as a number that is not negative, in hundredths if a percent sign follows it:
-// "2%" is 0.02.  Throws UserError otherwise.
+// The whole of `text` as a number of [0,1], or, if a percent sign follows it, in hundredths: "2%"
+// is 0.02.  Throws UserError otherwise.
 inline double parse_fraction(std::string_view text) {
     const bool percent = text.ends_with('%');
     const double x = parse_number(text.substr(0, text.size() - percent));
     if (x < 0) throw UserError(in_quotes(text) + " is negative");
+    if (x > 1 && !percent)
+        throw UserError(in_quotes(text) + " is more than 100 %; for percent say " +
+                        std::string(text) + "%");
     return percent ? x / 100 : x;
 }
 

@@ -43,6 +43,8 @@ TEST_CASE("a fraction is a number, or so many hundredths, and not negative") {
     CHECK(parse_fraction("2%") == 0.02);
     CHECK(parse_fraction("250%") == 2.5);
     CHECK(parse_fraction("0") == 0);
+    CHECK(parse_fraction("1") == 1);
+    CHECK_THROWS_AS(parse_fraction("1.01"), UserError);
     auto about = [](const std::string& text) { return complaint([&] { parse_fraction(text); }); };
     CHECK(about("-1e-9") == "'-1e-9' is negative");
     CHECK(about("-2%") == "'-2%' is negative");

@@ -88,18 +88,17 @@ TEST_CASE("failing samples and lobes") {
 
 TEST_CASE("domains") {
     oracle::Random random(oracle::seed_of("domains"));
-    oracle::Verdict a, b, c, d;
     // [domains
     using Pair = std::pair<double, double>;
-    a = oracle::expect_density(random, [](double u) { return -std::log1p(-u); },
-                               [](double t) { return t < 0 ? 0 : std::exp(-t); });  // the line
-    b = oracle::expect_density(random, [](double u, double v) { return Pair{u, std::sqrt(v)}; },
-                               [](Pair x) { return 2 * x.second; }, oracle::Square{});
+    oracle::Verdict a = oracle::expect_density(random, [](double u) { return -std::log1p(-u); },
+                                               [](double t) { return t < 0 ? 0 : std::exp(-t); });  // the line
+    oracle::Verdict b = oracle::expect_density(
+        random, [](double u, double v) { return Pair{u, std::sqrt(v)}; }, [](Pair x) { return 2 * x.second; }, oracle::Square{});
     const oracle::Triangle<3> t{{0, 0, 1}, {2, 0, 0}, {0, 1, 0}};  // in space: area 3/2
-    c = oracle::expect_density(random, [&](double u, double v) { return t.at({std::sqrt(u), v}); },
-                               [](oracle::Triple) { return 2 / 3.0; }, t);
-    d = oracle::expect_choice(random, [](double u) { return u < 0.3 ? 0 : 1; },
-                              [](int i) { return i == 0 ? 0.3 : 0.7; }, 2);
+    oracle::Verdict c = oracle::expect_density(
+        random, [&](double u, double v) { return t.at({std::sqrt(u), v}); }, [](oracle::Triple) { return 2 / 3.0; }, t);
+    oracle::Verdict d = oracle::expect_choice(random, [](double u) { return u < 0.3 ? 0 : 1; },
+                                              [](int i) { return i == 0 ? 0.3 : 0.7; }, 2);
     // ]
     CHECK(a.pass);
     CHECK(b.pass);
@@ -175,7 +174,7 @@ TEST_CASE("BSDFs") {
     // [bsdf
     auto sample = [](Vec, float u, float v) { return sample_cosine(u, v); };
     auto pdf = [](Vec, Vec wi) { return pdf_cosine(wi); };
-    auto eval = [](Vec wo, Vec wi) { return wo.z > 0 && wi.z > 0 ? 0.5f / Pi : 0; };
+    auto eval = [](Vec wo, Vec wi) { return wo.z > 0 && wi.z > 0 ? 0.5f / float(oracle::pi) : 0; };
     oracle::Verdict v = oracle::expect_bsdf(random, sample, pdf, eval);
     // ]
     CHECK(v.pass);

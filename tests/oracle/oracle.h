@@ -2,7 +2,7 @@
 //
 // Copy this one file to any renderer: it needs the standard library (C++20) alone, and all of it is
 // in namespace oracle.  Every check returns a Verdict.  It refuses what is right with a probability
-// of at most `significance` = 1e-6 (0 where the check is exact), and passes what is off by
+// of at most `alpha` = 1e-6 (0 where the check is exact), and passes what is off by
 // delta_min with one of 1e-3.  Nothing is forgiven but rounding, which it measures.
 //
 //   oracle::Random random(oracle::seed_of("cosine hemisphere"));
@@ -16,7 +16,6 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -180,9 +179,12 @@ inline double p_of_t(double t, double k) {
     return k < 1e7 ? beta_i(k / 2, 0.5, k / (k + t * t)) : p_of_z(t);
 }
 
-// P(K >= k) of a Poisson variable with this mean.
+// P(K >= k) of a Poisson variable with this mean, and of a binomial one of n trials.
 inline double p_at_least(double k, double mean) {
     return k <= 0 ? 1 : mean <= 0 ? 0 : 1 - gamma_q(k, mean);
+}
+inline double p_at_least(double k, double n, double p) {
+    return k <= 0 ? 1 : k > n ? 0 : beta_i(k, n - k + 1, p);
 }
 
 // x >= 0 where p(x), which falls from 1 to 0, has fallen to `target`.
@@ -219,9 +221,11 @@ inline double smallest_distortion(int df, double n, double significance = 1e-6) 
         const double critical =
             where_equal([&](double x) { return p_of_chi2(x, df); }, significance);
         auto missed = [&](double noncentrality) {
-            double weight = std::exp(-noncentrality / 2), sum = 0;
-            for (int j = 0; j < 400; weight *= noncentrality / 2 / ++j)
-                sum += weight * (1 - p_of_chi2(critical, df + 2 * j));
+            const double mode = noncentrality / 2, width = 10 * std::sqrt(mode) + 20;
+            double sum = 0;
+            for (double j = std::max(0.0, std::floor(mode - width)); j < mode + width; ++j)
+                sum += std::exp(-mode + (j > 0 ? j * std::log(mode) : 0) - std::lgamma(j + 1)) *
+                       (1 - p_of_chi2(critical, df + 2 * j));
             return sum;
         };
         at->second = where_equal(missed, 1e-3);
@@ -318,7 +322,12 @@ struct Estimate {
     double mean = 0, standard_error = 0;
     double df = infinity;
     double unit = 0x1p-53;
+    bool both_signs = false;  // of the numbers, as far as it is known
 };
+
+inline Verdict named(const Verdict& v, const Options& o) {
+    return o.name.empty() ? v : v.of(o.name);
+}
 
 // Two numbers, equal but for 64 roundings.
 inline bool same_but_rounding(double a, double b, double unit, double roundings = 64) {
@@ -370,7 +379,8 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
     } else if (!v.pass && truth != 0) {
         const double within = 5 * e.standard_error / std::abs(e.mean);
         if (std::abs(e.mean) <= 5 * e.standard_error)
-            v.text += "; 0 within its error: what has either sign may cancel";
+            v.text += e.both_signs ? "; 0 within its error: what has either sign may cancel"
+                                   : "; 0 within its error";
         else
             v.text += "; ratio " + times(ratio, within) + (ratio < 0 ? ", of the wrong sign" : "") +
                       cause_of(ratio, within, o.factors);
@@ -475,7 +485,10 @@ struct Draws {
         const double m2 = moment(2);
         return m2 > 0 ? moment(3) / (m2 * std::sqrt(m2)) : 0;
     }
-    Estimate estimate() const { return {mean(), std::sqrt(variance() / n()), n() - 1, unit}; }
+    Estimate estimate() const {
+        const auto [least, most] = std::minmax_element(values.begin(), values.end());
+        return {mean(), std::sqrt(variance() / n()), n() - 1, unit, *least < 0 && *most > 0};
+    }
 
     bool constant() const {
         const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -516,7 +529,8 @@ struct Draws {
         if (values.size() < 2) return "one sample has no spread";
         if (heavy())
             return say(
-                "the variance is infinite: the tail falls as t^-%.1f (largest value %g, mean %g)",
+                "the variance may be infinite: the tail falls as t^-%.1f (largest value %g, mean "
+                "%g)",
                 1 / tail_index(tail), *std::max_element(values.begin(), values.end()), mean());
         const double s = skewness(),
                      needed =
@@ -527,6 +541,14 @@ struct Draws {
                 "grows with n, the variance is infinite",
                 n(), s, needed);
         return "";
+    }
+
+    // Too few to know the skewness that would mislead the t-test.
+    bool few() const {
+        return !values.empty() && values.size() < 200 && std::isfinite(mean()) && !constant();
+    }
+    std::string few_text() const {
+        return say("n = %.0f is too small to know how skewed the numbers are: take 1000", n());
     }
 
     // The running mean, and the band in which it would be with a mean of `truth`.
@@ -589,10 +611,12 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
 // The mean of n independent draws f() is `truth`.
 template <class F>
 Verdict expect_mean(double truth, uint64_t n, F f, const Options& o = {}) {
-    return judge("mean", draw(n, f), truth, o);
+    const Draws d = draw(n, f);
+    if (d.few()) return named(failure(d.few_text()), o);
+    return judge("mean", d, truth, o);
 }
 inline Verdict expect_mean(double truth, const Estimate& e, const Options& o = {}) {
-    return judge("mean", e, truth, o);
+    return named(judge("mean", e, truth, o), o);
 }
 
 // Two independent estimates have the same mean: Welch's test (1947).  Exact if both are constant.
@@ -600,13 +624,14 @@ inline Verdict expect_equal(const Estimate& a, const Estimate& b, const Options&
     const double va = a.standard_error * a.standard_error, vb = b.standard_error * b.standard_error;
     const double df = va + vb > 0 ? (va + vb) * (va + vb) / (va * va / a.df + vb * vb / b.df) : 1;
     const Estimate first{a.mean, std::sqrt(va + vb), df, std::max(a.unit, b.unit)};
-    return judge("first of two means", first, b.mean, o);
+    return named(judge("first of two means", first, b.mean, o), o);
 }
 
 // f() and g() have the same mean: n independent draws of each.
 template <class F, class G>
 Verdict expect_equal(F f, G g, uint64_t n, const Options& o = {}) {
     const Draws a = draw(n, f), b = draw(n, g);
+    if (a.few() || b.few()) return named(failure(a.few_text()), o);
     if (const std::string why = a.problem(); !why.empty()) return failure(why).of("first");
     if (const std::string why = b.problem(); !why.empty()) return failure(why).of("second");
     return expect_equal(a.estimate(), b.estimate(), o);
@@ -635,7 +660,7 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
     if (const std::string why = b.problem(); !why.empty()) return failure(why);
     const double error = std::hypot(2 * b.estimate().standard_error, a.estimate().standard_error);
     const Estimate limit{2 * b.mean() - a.mean(), error, double(trials) - 1};
-    return judge("limit of n * bias", limit, constant, o);
+    return named(judge("limit of n * bias", limit, constant, o), o);
 }
 
 // ---- Counts and choices -------------------------------------------------------------------------
@@ -676,107 +701,6 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
                  "99.9 %% power: ",
                  chi2, cells, n, say_p(v.p).c_str()) +
              percent(v.delta_min);
-    return o.name.empty() ? v : v.of(o.name);
-}
-
-// choose(u) is an index below count, or a negative one for none, drawn with probability(index):
-// they sum to 1 less the part that fails; chi-squared over the indices, rare ones together.
-template <class Choose, class Probability>
-Verdict expect_choice(Random& random, Choose choose, Probability probability, size_t count,
-                      const Options& o = {}) {
-    const uint64_t n =
-        o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
-    std::vector<double> expected(count);
-    double total = 0;
-    auto done = [&](const std::string& why) {
-        return o.name.empty() ? failure(why) : failure(why).of(o.name);
-    };
-    for (size_t i = 0; i < count; ++i) {
-        expected[i] = double(probability(int(i)));
-        if (!(expected[i] >= 0 && std::isfinite(expected[i])))
-            return done(say("the probability of index %zu is %g", i, expected[i]));
-        total += expected[i];
-    }
-    std::vector<double> seen(count);
-    double none = 0;
-    for (uint64_t k = 0; k < n; ++k) {
-        const double u = random();
-        const auto index = static_cast<long long>(choose(u));
-        if (index >= static_cast<long long>(count))
-            return done(
-                say("index %lld of %zu chosen, at u = %.9g: beyond the last", index, count, u));
-        index < 0 ? ++none : ++seen[size_t(index)];
-    }
-    const double unit = unit_of(probability(0));
-    const double samples = double(n);
-    if (none == 0 && std::abs(total - 1) > std::max(64 * unit * double(count), 1e-9) + o.tolerance)
-        return done("the probabilities sum to " + times(total, 1e-4) + ", expected 1");
-    // Whether the counts are those of other probabilities, of the same sum.
-    auto fits = [&](const std::vector<double>& p) {
-        double chi2 = 0, cells = 0, rare = 0, rare_seen = 0;
-        auto cell = [&](double mean, double number) {
-            if (!(mean > 0)) return chi2 += number > 0 ? infinity : 0.0;
-            ++cells;
-            return chi2 += (number - mean) * (number - mean) / mean;
-        };
-        for (size_t i = 0; i < p.size(); ++i)
-            if (p[i] * samples >= 100 || p[i] == 0)
-                cell(p[i] * samples, seen[i]);
-            else
-                rare += p[i] * samples, rare_seen += seen[i];
-        double failing = samples;
-        for (double q : p) failing -= q * samples;
-        if (none > 0 || failing > 1e-6 * samples) rare += std::max(0.0, failing), rare_seen += none;
-        if (rare > 0 || rare_seen > 0) cell(rare, rare_seen);
-        return std::pair{chi2, cells};
-    };
-    const auto [chi2, cells] = fits(expected);
-    Verdict v;
-    v.p = cells > 1 ? p_of_chi2(chi2, cells - 1) : chi2 == 0 ? 1 : 0;
-    ++statistical_checks;
-    alpha_spent += o.alpha;
-    v.pass = v.p > o.alpha;
-    v.delta_min = smallest_distortion(int(std::max(1.0, cells - 1)), samples, o.alpha);
-    v.text = say("%.0f choices among %zu, chi2 = %.1f on %.0f cells, %s; smallest distortion seen "
-                 "with 99.9 %% power: ",
-                 samples, count, chi2, cells, say_p(v.p).c_str()) +
-             percent(v.delta_min);
-    if (!v.pass) {
-        size_t worst = 0;
-        double most = -1;
-        for (size_t i = 0; i < count; ++i) {
-            const double mean = expected[i] * samples;
-            const double off = mean > 0      ? std::abs(seen[i] - mean) / std::sqrt(mean)
-                               : seen[i] > 0 ? infinity
-                                             : 0;
-            if (off > most) most = off, worst = i;
-        }
-        std::string first =
-            expected[worst] > 0
-                ? say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
-                      seen[worst] / (expected[worst] * samples), expected[worst])
-                : say("index %zu is chosen, though its probability is 0", worst);
-        auto explained = [&](std::vector<double> p, const char* cause) {
-            const auto [other, other_cells] = fits(p);
-            if (first.find("looks") == std::string::npos && other_cells > 1 &&
-                p_of_chi2(other, other_cells - 1) > 1e-4)
-                first += std::string("; looks like ") + cause;
-        };
-        if (seen[worst] == 0 && expected[worst] > 0)
-            first = say("index %zu is never chosen, though its probability is %.4g", worst,
-                        expected[worst]);
-        if (count == 2)
-            explained({expected.rbegin(), expected.rend()}, "the two exchanged (p for 1 - p)");
-        auto turned = expected;
-        std::rotate(turned.begin(), turned.end() - 1, turned.end());
-        explained(turned, "index and probability shifted by one");
-        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-        explained(turned, "index and probability shifted by one");
-        explained(std::vector<double>(count, total / double(count)), "a uniform choice");
-        if (count > 2) explained({expected.rbegin(), expected.rend()}, "the order reversed");
-        v.text = first + "\n" + v.text;
-    }
     return o.name.empty() ? v : v.of(o.name);
 }
 
@@ -829,6 +753,7 @@ struct Agreement {
     double tolerance = 0, noise = 0x1p-50;
     int depth = 30;  // halvings
     bool halves = true;
+    double* left = nullptr;  // what the deepest parts still disagree by is added to it
 };
 
 // Integral of f over [a,b], halved until it agrees; once `enough()`, only as well as it is known.
@@ -837,6 +762,7 @@ double integral(const F& f, double a, double b, const Agreement& g, const Enough
                 const Rule& whole, int depth) {
     const double rules = std::max(std::abs(whole.kronrod - whole.gauss), whole.ends);
     const double agree = std::max(g.tolerance, g.noise * std::abs(whole.kronrod));
+    if (depth == 0 && g.left) *g.left += rules;
     if (depth == 0 || enough() || (!g.halves && rules <= agree)) return whole.kronrod;
     const double middle = (a + b) / 2;
     const Rule left = rule(f, a, middle), right = rule(f, middle, b);
@@ -978,6 +904,12 @@ constexpr size_t numbers_of() {
         return numbers_of<F, D - 1>();
 }
 
+// Whether call() makes floats of them: 1 - 2^-54 would become 1.
+template <class F, size_t D>
+constexpr bool takes_floats =
+    !takes_exactly<F, double, D> &&
+    (takes_exactly<F, float, D> || (!takes_numbers<F, double, D> && !takes_braces<F, double, D>));
+
 template <class F, size_t D>
 auto call(F& f, const Point<D>& u) {
     return [&]<size_t... I>(std::index_sequence<I...>) {
@@ -1002,12 +934,13 @@ struct Model {
     std::function<std::optional<Point<N>>(const Point<M>&)> sample;
     std::function<double(const Point<N>&)> pdf;
     bool single;      // coordinates are floats
+    bool floats;      // so are the numbers that sample takes
     double unit;      // of their rounding,
     double pdf_unit;  // and of the density's
 
     Point<M> draw(Random& random) const {
         Point<M> u;
-        for (double& x : u) x = single ? random.single() : random();
+        for (double& x : u) x = single || floats ? random.single() : random();
         return u;
     }
 };
@@ -1037,8 +970,124 @@ auto model(Sample& sample, Pdf& pdf) {
                                return oracle::point(r);
                        },
                        [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
-                       std::is_same_v<T, float>, unit_of(T{}),
+                       std::is_same_v<T, float>,
+                       takes_floats<Sample, M>,
+                       unit_of(T{}),
                        unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
+}
+
+// choose(u) is an index below count, or a negative one for none, drawn with probability(index):
+// they sum to 1 less the part that fails; chi-squared over the indices, rare ones together.
+template <class Choose, class Probability>
+Verdict expect_choice(Random& random, Choose choose, Probability probability, size_t count,
+                      const Options& o = {}) {
+    const uint64_t n =
+        o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
+    std::vector<double> expected(count);
+    double total = 0;
+    auto done = [&](const std::string& why) {
+        return o.name.empty() ? failure(why) : failure(why).of(o.name);
+    };
+    for (size_t i = 0; i < count; ++i) {
+        expected[i] = double(probability(int(i)));
+        if (!(expected[i] >= 0 && std::isfinite(expected[i])))
+            return done(say("the probability of index %zu is %g", i, expected[i]));
+        total += expected[i];
+    }
+    std::vector<double> seen(count);
+    double none = 0;
+    for (uint64_t k = 0; k < n; ++k) {
+        const Point<1> u{takes_floats<Choose, 1> ? random.single() : random()};
+        const auto index = static_cast<long long>(oracle::call(choose, u));
+        if (index >= static_cast<long long>(count))
+            return done(
+                say("index %lld of %zu chosen, at u = %.9g: beyond the last", index, count, u[0]));
+        index < 0 ? ++none : ++seen[size_t(index)];
+    }
+    const double unit = unit_of(probability(0));
+    const double samples = double(n);
+    if (none == 0 && std::abs(total - 1) > std::max(64 * unit * double(count), 1e-9) + o.tolerance)
+        return done("the probabilities sum to " + times(total, 1e-4) + ", expected 1");
+    struct Fit {
+        double chi2, cells, p;
+    };
+    // Whether the counts are those of other probabilities, of the same sum; rare ones by Poisson.
+    auto fits = [&](const std::vector<double>& p) {
+        double chi2 = 0, cells = 0, rare = 0, rare_seen = 0, impossible = 0;
+        auto cell = [&](double mean, double number) {
+            ++cells;
+            chi2 += (number - mean) * (number - mean) / mean;
+        };
+        for (size_t i = 0; i < p.size(); ++i)
+            if (p[i] == 0)
+                impossible += seen[i];
+            else if (p[i] * samples >= 100)
+                cell(p[i] * samples, seen[i]);
+            else
+                rare += p[i] * samples, rare_seen += seen[i];
+        double failing = samples;
+        for (double q : p) failing -= q * samples;
+        if (none > 0 || failing > 1e-6 * samples) rare += std::max(0.0, failing), rare_seen += none;
+        double chance = 1;
+        if (rare >= 100)
+            cell(rare, rare_seen);
+        else if (rare_seen > 0)
+            chance = 2 * p_at_least(rare_seen, rare);
+        const double p_cells = cells > 1 ? p_of_chi2(chi2, cells - 1) : 1;
+        return Fit{chi2, cells,
+                   impossible > 0
+                       ? 0
+                       : std::min({1.0, (rare > 0 && rare < 100 ? 2 : 1) * p_cells, chance})};
+    };
+    const auto [chi2, cells, p_value] = fits(expected);
+    Verdict v;
+    v.p = p_value;
+    ++statistical_checks;
+    alpha_spent += o.alpha;
+    v.pass = v.p > o.alpha;
+    v.delta_min = smallest_distortion(int(std::max(1.0, cells - 1)), samples, o.alpha);
+    v.text = say("%.0f choices among %zu, chi2 = %.1f on %.0f cells, %s; smallest distortion seen "
+                 "with 99.9 %% power: ",
+                 samples, count, chi2, cells, say_p(v.p).c_str()) +
+             percent(v.delta_min);
+    if (!v.pass) {
+        size_t worst = 0;
+        double most = -1;
+        for (size_t i = 0; i < count; ++i) {
+            const double mean = expected[i] * samples;
+            const double off = mean > 0      ? std::abs(seen[i] - mean) / std::sqrt(mean)
+                               : seen[i] > 0 ? infinity
+                                             : 0;
+            if (off > most) most = off, worst = i;
+        }
+        std::string first =
+            expected[worst] > 0
+                ? say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
+                      seen[worst] / (expected[worst] * samples), expected[worst])
+                : say("index %zu is chosen, though its probability is 0", worst);
+        auto explained = [&](std::vector<double> p, const char* cause) {
+            if (first.find("looks") == std::string::npos && fits(p).p > 1e-4)
+                first += std::string("; looks like ") + cause;
+        };
+        if (seen[worst] == 0 && expected[worst] > 0)
+            first = say("index %zu is never chosen, though its probability is %.4g", worst,
+                        expected[worst]);
+        if (none > 0 && std::abs(total - 1) < 1e-6)
+            first = percent(none / samples) +
+                    " of the choices are none, though the probabilities sum to 1";
+        if (count == 2)
+            explained({expected.rbegin(), expected.rend()}, "the two exchanged (p for 1 - p)");
+        auto turned = expected;
+        std::rotate(turned.begin(), turned.end() - 1, turned.end());
+        explained(turned, "index and probability shifted by one");
+        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+        explained(turned, "index and probability shifted by one");
+        explained(std::vector<double>(count, total / double(count)), "a uniform choice");
+        if (count > 2) explained({expected.rbegin(), expected.rend()}, "the order reversed");
+        v.text = first + "\n" + v.text;
+    }
+    return o.name.empty() ? v : v.of(o.name);
 }
 
 // ---- Domains ------------------------------------------------------------------------------------
@@ -1205,8 +1254,7 @@ auto usual_domain() {
         return Space<N>{};
 }
 
-// ---- The density of samples where their map is smooth
-// --------------------------------------------
+// ---- The density of samples where their map is smooth ------------------------------------------
 
 // What differences of the map tell at one point x(u): the density p that the pdf claims there, and
 // q = 1 / sqrt(det J^T J) that this sheet of the map has.  Where several u lead to x, p > q.
@@ -1514,6 +1562,8 @@ struct Mistake {
             collapsed += l.collapse < (single ? 1e-3 : 1e-7);
         }
         if (all.size() < 100) return "";
+        if (std::all_of(all.begin(), all.end(), [&](const Local<N>& l) { return l.x == all[0].x; }))
+            return "samples are all the same, " + say_point(all[0].x);
         if (still != 0)
             return say(
                 "samples do not depend on number %d of those they are made from: looks like "
@@ -1527,7 +1577,8 @@ struct Mistake {
     // p = c q wherever samples come.
     std::string constant(double c) const {
         if (std::abs(c - 1) <= tolerance)
-            return total + share > 1 + close()
+            return total + share > 1 + close() &&
+                           *std::max_element(ratios.begin(), ratios.end()) <= c + 3 * tolerance
                        ? "the pdf is right where samples come, but also positive where none comes" +
                              where_none() + ": it integrates to " + times(total, tolerance)
                        : "";
@@ -1824,8 +1875,10 @@ struct DensityCheck {
     std::vector<Point<D>> pilot = {};
     std::vector<Point<D>> places = {};  // theirs, and mirror images where the pdf is positive, too:
     std::vector<double> per_dc = {}, heights = {};  // the pdf there per dc, and by itself
+    double extent = 0;                              // median of the pilot's squared distances
     double arriving = 1;  // part of the samples that does not fail, nearly
     double rounding = 0;  // relative, of the pdf in the host's type
+    double jumps = 0;     // part of the samples that an ulp or two move across one
     std::function<double(const Point<N>&)> weight = {};  // what the pdf may lack
     double most_negative = 0;
     std::string where_negative = {};
@@ -1869,9 +1922,11 @@ struct DensityCheck {
         const Point<N> back = domain.at(c);
         double off = 0, size = 1e-300;
         for (size_t k = 0; k < N; ++k) off += std::pow(back[k] - w[k], 2), size += w[k] * w[k];
-        bool inside = off <= 1e-6 * size;
+        const double ulps = 64 * model.unit * std::sqrt(size);
+        bool inside = off <= (directions ? 1e-6 : 1e-6 * extent + ulps * ulps);
         for (size_t k = 0; k < D; ++k) {
-            const double slack = 1e-5 * (domain.upper[k] - domain.lower[k]);
+            const double slack =
+                1e-5 * (domain.upper[k] - domain.lower[k]) + (directions ? 0 : ulps);
             inside = inside && c[k] >= domain.lower[k] - slack && c[k] <= domain.upper[k] + slack;
         }
         if (!inside)
@@ -1896,7 +1951,10 @@ struct DensityCheck {
         if (points.size() < 1024) return;
         arriving = double(points.size()) / drawn;
         domain.fit(points, o.axis);
-        double changes = 0;
+        std::vector<double> squares(points.size());
+        for (size_t i = 0; i < points.size(); ++i)
+            for (size_t k = 0; k < N; ++k) squares[i] += std::pow(points[i][k] - points[0][k], 2);
+        extent = median(squares);
         const int jitters = model.single ? 8 : 1;
         for (size_t i = 0; i < points.size(); ++i) {
             const auto c = domain.coordinates(points[i]);
@@ -1920,14 +1978,16 @@ struct DensityCheck {
             for (int j = 0; j < jitters; ++j) {
                 Point<N> near = points[i];
                 for (double& k : near) k += (random() - 0.5) * 8 * length * model.unit;
-                changes += std::min(1.0, std::abs(model.pdf(near) / p - 1));
+                const double change = std::abs(model.pdf(near) / p - 1);
+                (change < 0.5 ? rounding : jumps) += std::min(1.0, change);
             }
         }
-        rounding = changes / double(points.size()) / jitters;
+        rounding /= double(points.size()) * jitters;
+        jumps /= double(points.size()) * jitters;
     }
 
     double allowed() const {
-        return std::max(1e-6, 512 * model.pdf_unit) + 8 * rounding + o.tolerance;
+        return std::max(1e-6, 512 * model.pdf_unit) + 2 * rounding + 8 * jumps + o.tolerance;
     }
 
     // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
@@ -1995,10 +2055,12 @@ struct DensityCheck {
         const size_t budget = weight ? 200'000 : 4'000'000;  // a guess need not be exact
         auto enough = [&] { return evaluations > budget; };
         Parts parts;
+        double left = 0;
         if constexpr (D <= 2) {
             const double close = weight ? 3e-3 : allowed();
             // No finer than f can tell where it jumps.
-            const Agreement g{close / 300, close / 8, 1 - std::ilogb(close / 8), true};
+            const Agreement g{close / 300, close / 8, 1 - std::ilogb(close / 8), true,
+                              D == 1 ? &left : nullptr};
             for (size_t i = 0; i < ranges.size() && !enough(); ++i) {
                 Point<D> c{};
                 parts.value[of_cell[i]] += oracle::nested(f, c, ranges[i], g, enough);
@@ -2009,7 +2071,7 @@ struct DensityCheck {
             parts.total += parts.value[cell];
             parts.error += parts.variance[cell];
         }
-        parts.error = std::sqrt(parts.error);
+        parts.error = std::sqrt(parts.error) + left;
         return parts;
     }
 
@@ -2056,7 +2118,8 @@ struct DensityCheck {
         if (pilot.empty()) {
             for (int i = 0; i < 100; ++i) (void)one();
             if (!wrong.empty()) return failure(wrong);
-            return failure("hardly any sample comes where the pdf is positive: " + first_none +
+            return failure("of " + say("%.0f", samples) +
+                           " samples hardly any comes where the pdf is positive: " + first_none +
                            symmetry());
         }
         for (size_t i = 0; i < 4096 && wrong.empty(); ++i) (void)one();
@@ -2072,9 +2135,9 @@ struct DensityCheck {
         const double close = allowed() + 6 * parts.error;
         Sheets<N, M> sheets;
         if constexpr (M == D)
-            sheets =
-                sheets_of(model, random,
-                          std::max(model.single ? 2e-3 : 1e-6, 3 * rounding) + o.tolerance, false);
+            sheets = sheets_of(
+                model, random,
+                std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)) + o.tolerance, false);
         const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
         const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
         const bool off_already = sheets.off || parts.total > 1 + close;
@@ -2094,9 +2157,9 @@ struct DensityCheck {
                      most = samples * (1 - parts.total + close);
         const bool balanced =
             none == 0 ? std::abs(parts.total - 1) <= close ||
-                            (parts.total < 1 && most - 2 * samples * close < 12)
-                      : p_at_least(none, most) > o.alpha / 2 &&
-                            (fewest <= 0 || 1 - p_at_least(none + 1, fewest) > o.alpha / 2);
+                            (parts.total < 1 && fewest < -std::log(o.alpha / 4))
+                      : p_at_least(none, samples, most / samples) > o.alpha / 4 &&
+                            1 - p_at_least(none + 1, samples, fewest / samples) > o.alpha / 4;
         std::vector<double> expected, variances;
         for (size_t i = 0; i < 32; ++i) {
             expected.push_back(parts.value[i] / parts.total);
@@ -2112,13 +2175,15 @@ struct DensityCheck {
         if (parts.error > 0) v.text += say(" +- %.1e", parts.error);
         if (none > 0) v.text += "; " + percent(none / samples) + " of the samples fail";
         if (sheets.blind > 0) v.text += say("; Jacobian within %.1e", sheets.blind);
+        v.delta_min = std::max(v.delta_min, close);  // where rounding rules
         v.pass = counted && balanced && !sheets.off;
         if (v.pass) return v;
         if (!balanced || sheets.off) v.p = 0;
         v.text = finding(parts, close, counted, balanced, sheets, cells, counts, expected) + "\n" +
                  v.text +
-                 histogram.drawing(*this, parts.total, worst_cell(counts, expected), cells)
-                     .written(o.name);
+                 (D > 2 ? ""
+                        : histogram.drawing(*this, parts.total, worst_cell(counts, expected), cells)
+                              .written(o.name));
         return v;
     }
 
@@ -2191,7 +2256,13 @@ struct DensityCheck {
             return why + rounded;
         const size_t worst = worst_cell(counts, expected);
         const double mean = expected[worst] * (samples - none);
-        const auto where = domain.at(cells.range(worst, {domain.lower, domain.upper}).middle());
+        // In the middle of those that the pilot found there: the range's may be where nothing is.
+        std::vector<Point<D>> there;
+        for (const Point<D>& c : pilot)
+            if (cells.of(c) == worst) there.push_back(c);
+        if (there.empty())
+            there.push_back(cells.range(worst, {domain.lower, domain.upper}).middle());
+        const auto where = domain.at(there[there.size() / 2]);
         if (!(mean > 0)) return "samples come where the pdf is 0, near " + at(where);
         return "samples are " + say("%.4g", double(counts[worst]) / mean) +
                " times as dense as the pdf says, around " + at(where);
@@ -2252,7 +2323,6 @@ struct DensityCheck {
         Drawing drawing(DensityCheck& check, double integral_of_pdf, size_t worst,
                         const Cells<Dims>& cells) const {
             Drawing d{Dims == 1 ? 620.0 : 1100.0, 330};
-            if (Dims > 2) return d;
             std::vector<double> claimed;
             double area = 1, most = 1;
             for (size_t k = 0; k < Dims; ++k)
@@ -2292,8 +2362,8 @@ struct DensityCheck {
                 d.rectangle(40 + place(cell.lower[0], 0, 552), 300,
                             place(cell.upper[0], 0, 552) - place(cell.lower[0], 0, 552), 6,
                             "fill:black");
-                d.text(40, 322, say("%.4g", shown.lower[0]));
-                d.text(560, 322, say("%.4g", shown.upper[0]));
+                d.text(40, 322, say_point(check.domain.at(shown.lower)));
+                d.text(560, 322, say_point(check.domain.at(shown.upper)));
                 return d;
             }
             const char* titles[] = {"samples", "pdf", "samples - pdf: red too many, blue too few"};
@@ -2316,13 +2386,15 @@ struct DensityCheck {
                             place(cell.upper[0], 0, 256) - y0,
                             "fill:none;stroke:rgb(0,140,0);stroke-width:3");
             }
-            const char *horizontal = directions ? "phi" : "second coordinate",
-                       *vertical = directions ? "theta" : "first coordinate";
+            const std::string from = say_point(check.domain.at(shown.lower)),
+                              to = say_point(check.domain.at(shown.upper));
             d.text(10, 304,
-                   say("to the right %s from %.4g to %.4g, down %s from %.4g to %.4g; worst cell "
-                       "in green",
-                       horizontal, shown.lower[right], shown.upper[right], vertical, shown.lower[0],
-                       shown.upper[0]));
+                   (directions
+                        ? say("to the right phi from %.4g to %.4g, down theta from %.4g to %.4g",
+                              shown.lower[1], shown.upper[1], shown.lower[0], shown.upper[0])
+                        : "the second coordinate to the right, the first down, from " + from +
+                              " to " + to) +
+                       "; worst cell in green");
             return d;
         }
     };
@@ -2415,6 +2487,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
             return h;
         };
         Options here = o;
+        here.alpha = o.alpha / 4;
         here.name += (o.name.empty() ? "" : " ") + ("wo = " + say_point(out));
         here.factors.emplace_back("4 wo.h", [=](const Triple& w) { return 4 * dot(out, half(w)); });
         here.factors.emplace_back("n.h", [=](const Triple& w) { return half(w)[2]; });
@@ -2485,19 +2558,22 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
             v.text += "; looks like eval divided by the cosine of wi";
         return named(v);
     }
-    all.text = "density, albedo and reciprocity as expected";
+    if (compared == 0) return named(failure("eval is 0 for all directions above the surface"));
+    all.text = "density, albedo <= 1 and, above the surface, reciprocity as expected";
     return named(all);
 }
 
 // ---- Images -------------------------------------------------------------------------------------
 
 // An image with the standard errors of its values against a reference: all pixels together, 16
-// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Anything with [] will
-// do for values, errors and reference, row by row from the top.
+// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
+// normal, means of 256 samples or more; options.n says how many, for Student's t.  Anything with []
+// will do for values, errors and reference, row by row from the top.
 template <class Values, class Errors, class Reference>
 Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
                      const Reference& reference, const Options& o = {}) {
     const size_t n = width * height;
+    if (n == 0) return failure("no pixel");
     auto named = [&](const Verdict& v) { return o.name.empty() ? v : v.of(o.name); };
     auto pixel = [&](size_t i) { return say("pixel (%zu, %zu)", i % width, i / width); };
     std::vector<double> f(n), s(n), truth(n);
@@ -2533,13 +2609,15 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
         }
         double block = 0;
         for (const Sum& b : blocks) block = std::max(block, std::abs(b.z()));
-        auto sidak = [](double z, double m) {
-            return -std::expm1(m * std::log1p(-std::min(p_of_z(z), 1 - 1e-16)));
+        auto sidak = [](double p, double m) {
+            return -std::expm1(m * std::log1p(-std::min(p, 1 - 1e-16)));
         };
+        const double of_pixel = o.n > 1 ? p_of_t(most, double(o.n) - 1) : p_of_z(most);
         r.mean = whole.off / double(n);
         r.mean_p = p_of_z(whole.z());
         r.z = most;
-        r.p = std::min(1.0, 3 * std::min({r.mean_p, sidak(block, 16), sidak(most, double(n))}));
+        r.p = std::min(
+            1.0, 3 * std::min({r.mean_p, sidak(p_of_z(block), 16), sidak(of_pixel, double(n))}));
         return r;
     };
     const Result r = against(truth);
@@ -2592,7 +2670,13 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
                 turned[i] = f[i];
         explains(turned, std::string("the image is the reference one pixel further ") + where);
     };
-    shifted(1, 0, "left"), shifted(-1, 0, "right"), shifted(0, 1, "up"), shifted(0, -1, "down");
+    // Only where it is the inside that differs.
+    for (size_t i = 0; i < n; ++i) {
+        const bool border = i % width == 0 || i % width == width - 1 || i < width || i >= n - width;
+        turned[i] = border ? f[i] : truth[i];
+    }
+    if (width > 4 && height > 4 && against(turned).p <= o.alpha)
+        shifted(1, 0, "left"), shifted(-1, 0, "right"), shifted(0, 1, "up"), shifted(0, -1, "down");
     if (first.empty())
         first = pixel(r.worst) +
                 say(" is %.6g +- %.2g, expected %.6g", f[r.worst], s[r.worst], truth[r.worst]) +
