@@ -2271,6 +2271,8 @@ struct DensityCheck {
     // Whether counts follow the pdf times a power of a base: for samplers whose map tells nothing.
     std::string law_of_cells(const Cells<D>& cells, const std::array<uint64_t, 32>& counts) {
         const Options plain{.alpha = 1e-3};
+        const auto [checks, spent] =
+            std::pair{statistical_checks, alpha_spent};  // guesses are none
         Triple lobe{0, 0, 1};
         if constexpr (directions) lobe = domain.z;
         for (const double k : {1.0, -1.0, 2.0, -2.0})
@@ -2284,8 +2286,9 @@ struct DensityCheck {
                     p.push_back(parts.value[i] / parts.total);
                     variances.push_back(parts.variance[i] / (parts.total * parts.total));
                 }
-                if (expect_counts(counts, p, plain, variances).pass)
-                    return "samples have the density of the pdf times " + power(b.name, k);
+                const bool fits = expect_counts(counts, p, plain, variances).pass;
+                statistical_checks = checks, alpha_spent = spent;
+                if (fits) return "samples have the density of the pdf times " + power(b.name, k);
             }
         return "";
     }
