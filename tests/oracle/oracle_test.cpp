@@ -276,6 +276,19 @@ TEST_CASE("densities on other domains, with jumps and with failing samples, need
     CHECK(!expect_density(
                random, disc, [&](Pair x) { return 1.01 * in_disc(x); }, o)
                .pass);
+    // A triangle in float, whose border cuts across the coordinates.
+    using Floats = std::array<float, 2>;
+    auto corner_of_square = [](float u, float v) {
+        return Floats{1 - std::sqrt(u), v * std::sqrt(u)};
+    };
+    auto below_diagonal = [](Floats x) {
+        return x[0] >= 0 && x[1] >= 0 && x[0] + x[1] <= 1 ? 2.0f : 0.0f;
+    };
+    for (int i = 0; i < 5; ++i) {
+        const Verdict flat = expect_density(random, corner_of_square, below_diagonal, o);
+        INFO(flat.text);
+        CHECK(flat.pass);
+    }
     // A Gaussian of the plane, by Box and Muller.
     auto gauss = [](Pair u) {
         return Pair{std::sqrt(-2 * std::log1p(-u.first)) * std::cos(2 * pi * u.second),
