@@ -128,7 +128,7 @@ TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 1
                    random, turned({0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); }),
                    [&](vec3 w) { return inside(w) ? pdf_cone(sin2) : 0; }, o)
                    .of(oracle::say("sin^2 = %g", double(sin2))),
-               0.05);
+               sizeof(real) == 4 && sin2 < real(1e-8) ? 10 : 0.05);  // float has no such directions
     }
 }
 
