@@ -1,0 +1,139 @@
+// radiosity/facets.h  1  the scene that illumination maps can hold: diffuse triangles
+#pragma once
+#include <string>
+
+#include "world/scene_file.h"
+
+// ---- What cannot be held
+// --------------------------------------------------------------------------
+
+inline const char* other_than_diffuse(const Material& m) {
+    if (m.kind == Material::Kind::mirror) return "a mirror";
+    if (m.kind == Material::Kind::glass) return "glass";
+    return max_of(m.ks) > 0 ? "glossy" : nullptr;
+}
+
+// Throws UserError "NAME:LINE: ..." about the first shape that scatters otherwise than diffusely.
+inline void check_diffuse(const Scene& s, const std::string& name) {
+    for (size_t i = 0; i < s.shapes.size(); ++i)
+        if (const char* what = other_than_diffuse(s.materials[s.material_of[i]]))
+            throw UserError(name + ":" + std::to_string(s.line_of[i]) + ": " +
+                            in_quotes(s.names[s.material_of[i]]) + " is " + what +
+                            ": illumination maps hold diffuse surfaces alone");
+}
+
+// ---- Spheres
+// --------------------------------------------------------------------------------------
+
+// How often the faces of an icosahedron are quartered: twice at least, and until no edge is longer
+// than H.  Its edges are 1.052 radii long, and on their way out to the sphere grow by less than a
+// quarter.
+inline int quarterings(real r, double H) {
+    int k = 2;
+    for (double edge = 1.052 * 1.25 / 4 * double(r); edge > H && k < 10; edge /= 2) ++k;
+    return k;
+}
+inline double facets_of_sphere(real r, double H) { return 20 * std::pow(4, quarterings(r, H)); }
+
+// The faces of an icosahedron in the unit sphere, their corners counterclockwise from without.
+inline std::vector<std::array<vec3, 3>> icosahedron() {
+    const real a = 1, b = (1 + std::sqrt(real(5))) / 2;  // corners: (0, +-a, +-b), turned
+    auto corner = [&](int k) {
+        const real x = k & 1 ? a : -a, y = k & 2 ? b : -b;
+        const vec3 of[] = {{0, x, y}, {x, y, 0}, {y, 0, x}};
+        return unit(of[k >> 2]);
+    };
+    std::vector<std::array<vec3, 3>> faces;
+    const real near = real(1.1);  // between an edge, 1.05, and what is farther
+    for (int i = 0; i < 12; ++i)
+        for (int j = i + 1; j < 12; ++j)
+            for (int k = j + 1; k < 12; ++k) {
+                const vec3 p = corner(i), q = corner(j), r = corner(k);
+                if (length(p - q) > near || length(q - r) > near || length(r - p) > near) continue;
+                const bool outwards = dot(cross(q - p, r - p), p) > 0;
+                faces.push_back({p, outwards ? q : r, outwards ? r : q});
+            }
+    return faces;
+}
+
+// Each triangle becomes four; new corners lie on the sphere.
+inline std::vector<std::array<vec3, 3>> quartered(const std::vector<std::array<vec3, 3>>& faces) {
+    std::vector<std::array<vec3, 3>> out;
+    for (const auto& [a, b, c] : faces) {
+        const vec3 ab = unit(a + b), bc = unit(b + c), ca = unit(c + a);
+        for (const auto& face : {std::array{a, ab, ca}, std::array{ab, b, bc},
+                                 std::array{ca, bc, c}, std::array{ab, bc, ca}})
+            out.push_back(face);
+    }
+    return out;
+}
+
+// ---- The scene of facets
+// --------------------------------------------------------------------------
+
+struct Faceted {
+    Scene scene;
+    std::vector<std::string> warnings;  // "LINE: what"
+};
+
+// A shape of `from`, and a light that it is alone, as they are in `to`.
+inline void add_facet(Scene& to, const Scene& from, size_t i, const Shape& shape, int32_t light) {
+    add_shape(to, shape, from.material_of[i], light);
+    to.line_of.push_back(from.line_of[i]);
+}
+
+// Adds the facets of sphere i; returns their area over the sphere's.
+inline double add_facets(Scene& to, const Scene& from, size_t i, double H) {
+    const Shape& sphere = from.shapes[i];
+    auto faces = icosahedron();
+    for (int k = quarterings(sphere.r, H); k > 0; --k) faces = quartered(faces);
+    double area = 0;
+    for (const auto& [a, b, c] : faces) {
+        const Shape facet{sphere.a + sphere.r * a, sphere.a + sphere.r * b,
+                          sphere.a + sphere.r * c};
+        int32_t light = no_light;
+        if (from.light_of[i] != no_light) {
+            Light l = from.lights[size_t(from.light_of[i])];
+            l.kind = Light::Kind::triangle;
+            l.p = facet.a, l.u = facet.b - facet.a, l.v = facet.c - facet.a;
+            light = int32_t(to.lights.size());
+            to.lights.push_back(l);
+            to.line_of_light.push_back(from.line_of[i]);
+        }
+        add_facet(to, from, i, facet, light);
+        area += double(length(area_vector(facet))) / 2;
+    }
+    return area / (4 * std::numbers::pi * double(sphere.r) * double(sphere.r));
+}
+
+// The same scene of triangles alone: a sphere becomes an icosphere inscribed in it, with edges of
+// at most H, of less area and so, if it emits, of less power.  Lights keep their radiance.
+inline Faceted faceted(const Scene& from, double H) {
+    Faceted result{from, {}};
+    Scene& to = result.scene;
+    to.shapes.clear(), to.material_of.clear(), to.light_of.clear(), to.line_of.clear();
+    to.lights.clear(), to.line_of_light.clear(), to.pick_cdf.clear();
+    std::vector<int32_t> light(from.lights.size(), no_light);  // of those that are no spheres
+    for (size_t k = 0; k < from.lights.size(); ++k) {
+        if (from.lights[k].kind == Light::Kind::sphere) continue;
+        light[k] = int32_t(to.lights.size());
+        to.lights.push_back(from.lights[k]);
+        to.line_of_light.push_back(from.line_of_light[k]);
+    }
+    for (size_t i = 0; i < from.shapes.size(); ++i) {
+        const int32_t own = from.light_of[i];
+        if (!from.shapes[i].is_sphere()) {
+            add_facet(to, from, i, from.shapes[i], own == no_light ? own : light[size_t(own)]);
+            continue;
+        }
+        const size_t before = to.shapes.size();
+        const double area = add_facets(to, from, i, H);
+        char less[32];
+        std::snprintf(less, sizeof less, "%.2g", 100 * (1 - area));
+        result.warnings.push_back(std::to_string(from.line_of[i]) + ": the sphere becomes " +
+                                  std::to_string(to.shapes.size() - before) +
+                                  " triangles, whose area is " + less + " % less");
+    }
+    prepare(to);
+    return result;
+}

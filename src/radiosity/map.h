@@ -1,0 +1,89 @@
+// radiosity/map.h  3  illumination maps, and what a camera sees of them
+#pragma once
+#include "film/image.h"
+#include "film/passes.h"
+#include "path/pathtracer.h"
+#include "radiosity/mesh.h"
+
+// Irradiance E (W / m^2; lux, if radiance is in nit) on both sides of every vertex: number 2 v on
+// the side of the shape's own normal, 2 v + 1 on its back.  Linear between the vertices of a
+// triangle.
+using Map = std::vector<rgb>;
+
+inline size_t number_of_sides(const Mesh& mesh) { return 2 * mesh.vertices(); }
+
+inline rgb irradiance(const Mesh& mesh, const Map& map, const Hit& hit, bool back) {
+    const auto [vertex, weight] = between(mesh, hit);
+    rgb E;
+    for (size_t k = 0; k < 3; ++k) E += map[2 * vertex[k] + back] * weight[k];
+    return E;
+}
+
+// What the side of a face reflects, and the radiance that it emits.
+inline rgb albedo(const Scene& s, const Face& f) { return s.materials[s.material_of[f.shape]].kd; }
+inline rgb emission(const Scene& s, const Face& f, bool back) {
+    return s.light_of[f.shape] == no_light
+               ? rgb{}
+               : emitted(s.materials[s.material_of[f.shape]], back ? real(-1) : real(1));
+}
+
+// Emitted power, a channel at a time (watts; lumen): pi L times the area, 4 pi I of a point.
+inline rgb emitted_power(const Scene& s) {
+    rgb power;
+    for (const Light& l : s.lights)
+        power += l.kind == Light::Kind::point
+                     ? 4 * pi * l.L
+                     : pi * length(l.area_vector()) * (l.twosided ? 2 : 1) * l.L;
+    return power;
+}
+
+// ---- Images
+// ---------------------------------------------------------------------------------------
+
+struct Seen {
+    rgb E, L;  // irradiance, and radiance Le + albedo E / pi towards the eye
+};
+
+// Where a ray meets nothing, both are black.
+inline Seen seen_along(const Scene& scene, const Mesh& mesh, const Map& map, const Ray& ray) {
+    const auto x = meet(scene, ray);
+    if (!x || x->cos_o == 0) return {};
+    const rgb E = irradiance(mesh, map, x->hit, x->cos_o < 0);
+    return {E, emitted(*x->material, x->cos_o) + x->material->kd * E / pi};
+}
+
+// The means over K x K rays a pixel, on a regular grid: no random numbers.
+template <class Value>
+rgb pixel_of(const Scene& scene, int x, int y, int K, Value value) {
+    rgb sum;
+    for (int j = 0; j < K; ++j)
+        for (int i = 0; i < K; ++i) {
+            const real u = (real(i) + real(0.5)) / real(K), v = (real(j) + real(0.5)) / real(K);
+            sum += value(camera_ray(scene.camera, scene.size, real(x) + u, real(y) + v));
+        }
+    return sum / real(K * K);
+}
+
+template <class Value>
+Image image_of_rays(const Scene& scene, int K, unsigned threads, Value value) {
+    Image image(scene.size.width, scene.size.height);
+    auto row = [&](int y) {
+        for (int x = 0; x < image.width; ++x) {
+            const rgb c = pixel_of(scene, x, y, K, value);
+            image.at(x, y) = {float(c.x), float(c.y), float(c.z)};
+        }
+    };
+    parallel_rows(image.height, threads, row, [](double) {});
+    return image;
+}
+
+inline Image radiance_image(const Scene& scene, const Mesh& mesh, const Map& map, int K,
+                            unsigned threads) {
+    return image_of_rays(scene, K, threads,
+                         [&](const Ray& ray) { return seen_along(scene, mesh, map, ray).L; });
+}
+inline Image irradiance_image(const Scene& scene, const Mesh& mesh, const Map& map, int K,
+                              unsigned threads) {
+    return image_of_rays(scene, K, threads,
+                         [&](const Ray& ray) { return seen_along(scene, mesh, map, ray).E; });
+}

@@ -1,0 +1,234 @@
+// radiosity/particles.h  5  particles from the lights fill the maps
+//
+// A particle is power (a channel at a time) that leaves a light, is added to the hats where it
+// hits, and survives by the albedo.  Unbiased for the maps of projection.h, with any sampler that
+// is.
+#pragma once
+#include "radiosity/projection.h"
+
+// ---- One walk
+// ---------------------------------------------------------------------------------------
+
+// What became of the power: emitted = absorbed + escaped, but for rounding.
+struct Balance {
+    rgb emitted, absorbed, escaped;
+};
+
+// The numbers of a walk: five for its start, three a scattering.  Beyond `structured` scatterings
+// they are independent: Halton's bases would be large, and their points no better.
+class WalkNumbers {
+public:
+    static constexpr uint32_t pick = 0, point = 1, direction = 3, side = 5, structured = 8;
+
+    WalkNumbers(const Pattern& pattern, const Pattern& independent, uint64_t batch, uint64_t i)
+        : first_(pattern, batch, i), rest_(independent, batch, i) {}
+
+    real start(uint32_t what) const { return first_.get(what); }
+    vec2 start2(uint32_t what) const { return first_.get2(what); }
+    real survival(uint32_t k) const { return of(k).get(6 + 3 * k); }
+    vec2 scattered(uint32_t k) const { return of(k).get2(7 + 3 * k); }
+
+private:
+    Sampler first_, rest_;
+    const Sampler& of(uint32_t k) const { return k < structured ? first_ : rest_; }
+};
+
+struct Particle {
+    Ray ray;
+    rgb power;
+};
+
+// From a light chosen by its power, uniformly from its area, as Lambert's cosine law has it.
+inline Particle emit(const Scene& scene, const WalkNumbers& u) {
+    const Light& l = choose_light(scene, u.start(WalkNumbers::pick));
+    const vec2 at = u.start2(WalkNumbers::point), d = u.start2(WalkNumbers::direction);
+    if (l.kind == Light::Kind::point) {
+        const vec3 w = spherical(1 - 2 * d.x, 2 * std::sqrt(d.x * (1 - d.x)), 2 * pi * d.y);
+        return {{l.p, w}, 4 * pi * l.L / l.pick};
+    }
+    const vec3 area = l.area_vector();
+    const vec3 on =
+        l.kind == Light::Kind::quad ? sample_quad(at, l.u, l.v) : sample_triangle(at, l.u, l.v);
+    const bool back = l.twosided && u.start(WalkNumbers::side) >= real(0.5);
+    const vec3 n = back ? -unit(area) : unit(area);
+    const vec3 w = frame(n).to_world(sample_cosine_hemisphere(d));
+    return {spawn({l.p + on, n, l.error}, w),
+            pi * length(area) * (l.twosided ? 2 : 1) * l.L / l.pick};
+}
+
+// Calls hit(vertex, power) wherever the particle stops; returns the number of rays.
+template <class Hit>
+uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hit) {
+    constexpr real most = real(0.98);  // survive at most: white rooms end, too
+    auto [ray, power] = emit(scene, u);
+    balance.emitted += power;
+    for (uint32_t k = 0;; ++k) {
+        const auto x = meet(scene, ray);
+        if (!x) {
+            balance.escaped += power;
+            return k + 1;
+        }
+        hit(*x, power);
+        const rgb rho = x->material->kd;
+        const real survival = std::min(max_of(rho), most);
+        if (u.survival(k) >= survival) {
+            balance.absorbed += power;
+            return k + 1;
+        }
+        const rgb left = power * rho / survival;
+        balance.absorbed += power - left;
+        power = left;
+        const vec3 w = x->local.to_world(sample_cosine_hemisphere(u.scattered(k)));
+        ray = spawn(x->at, w);
+    }
+}
+
+// ---- All of them
+// ------------------------------------------------------------------------------------
+
+class Particles {
+public:
+    // A batch is a randomisation of its own, and one thread's work at a time: the sums are the
+    // same, bit for bit, for any number of threads; and the batches' spread is the error of their
+    // mean.
+    static constexpr int batches = 16;
+
+    // Both must outlive it.
+    Particles(const Scene& scene, const Mesh& mesh, const Pattern& pattern)
+        : scene_(scene),
+          mesh_(mesh),
+          pattern_(pattern),
+          independent_(make_pattern(SamplerKind::independent, pattern.seed, false, 0, 0)),
+          batch_(batches, Batch{std::vector<Sum>(number_of_sides(mesh)), {}, 0, 0}) {}
+
+    // Pattern of as many dimensions as the numbers of a walk have.
+    static Pattern pattern(SamplerKind kind, uint64_t seed, uint64_t samples) {
+        return make_pattern(kind, seed, false, 5, samples / batches);
+    }
+
+    // ---- As a film for render() of passes.h: rows are batches, samples particles of each --------
+    const Size size{1, batches};
+    uint64_t samples() const { return samples_; }
+    uint64_t non_finite() const { return 0; }
+    void end_pass(uint64_t n) { samples_ += n; }
+
+    // Walks n more particles of a batch; all but those for which there is no time after Ctrl-C.
+    void add(int batch, uint64_t n) {
+        Batch& b = batch_[size_t(batch)];
+        for (const uint64_t end = b.n + n; b.n < end && !interrupted; ++b.n) {
+            const WalkNumbers u(pattern_, independent_, uint64_t(batch), b.n);
+            b.rays += walk(scene_, u, b.balance, [&](const Vertex& x, rgb power) {
+                const auto [vertex, weight] = between(mesh_, x.hit);
+                for (size_t k = 0; k < 3; ++k)
+                    add_to(b.sums[2 * vertex[k] + (x.cos_o < 0)], power * weight[k]);
+            });
+        }
+    }
+
+    // ---- Results
+    // ------------------------------------------------------------------------------------
+
+    uint64_t particles() const {
+        uint64_t n = 0;
+        for (const Batch& b : batch_) n += b.n;
+        return n;
+    }
+    uint64_t rays() const {
+        uint64_t n = 0;
+        for (const Batch& b : batch_) n += b.rays;
+        return n;
+    }
+    // Of all particles together, over their number.
+    Balance balance() const {
+        Balance sum;
+        for (const Batch& b : batch_)
+            for (auto part : {&Balance::emitted, &Balance::absorbed, &Balance::escaped})
+                sum.*part += b.balance.*part / real(particles());
+        return sum;
+    }
+
+    Map map(Functional functional = Functional::projection) const {
+        Map map(number_of_sides(mesh_));
+        for_each_side([&](const Projection& onto, const Face& f, bool back) {
+            Sums b(f.vertices());
+            for (const Batch& batch : batch_) add_sums(b, batch, f, back, 1 / double(particles()));
+            const Sums E = onto(b, functional);
+            for (uint32_t v = 0; v < E.size(); ++v) map[2 * (f.vertex + v) + back] = E[v];
+        });
+        return map;
+    }
+
+    // The standard error of the map by the batches' spread: in the quadratic mean over the surfaces
+    // and channels, relative to the quadratic mean of E.  Of its square the estimate is unbiased,
+    // if the batches are of one length.  NaN if a batch is empty.
+    double error(Functional functional = Functional::projection) const {
+        double spread = 0, whole = 0;
+        for (const Batch& batch : batch_)
+            if (batch.n == 0) return NAN;
+        for_each_side([&](const Projection& onto, const Face& f, bool back) {
+            Sums mean(f.vertices());
+            for (const Batch& batch : batch_)
+                add_sums(mean, batch, f, back, 1 / (double(batch.n) * batches));
+            auto square = [&](const Sums& b) {
+                const rgb channels = onto.square(onto(b, functional));
+                return double(channels.x) + double(channels.y) + double(channels.z);
+            };
+            whole += square(mean);
+            for (const Batch& batch : batch_) {
+                Sums difference(f.vertices());
+                add_sums(difference, batch, f, back, 1 / double(batch.n));
+                for (size_t v = 0; v < mean.size(); ++v) difference[v] += -mean[v];
+                spread += square(difference);
+            }
+        });
+        return std::sqrt(spread / (batches * (batches - 1)) / whole);
+    }
+
+    static Bytes bytes() {
+        Bytes b;
+        b.vertex += 2 * (batches * sizeof(Sum) + sizeof(rgb));
+        return b;
+    }
+
+private:
+    using Sum = std::array<double, 3>;
+    struct Batch {
+        std::vector<Sum> sums;  // of power times hat, for the sides of all vertices
+        Balance balance;
+        uint64_t n, rays;
+    };
+
+    const Scene& scene_;
+    const Mesh& mesh_;
+    const Pattern pattern_, independent_;
+    std::vector<Batch> batch_;
+    uint64_t samples_ = 0;
+
+    static void add_to(Sum& sum, rgb x) {
+        for (size_t c = 0; c < 3; ++c) sum[c] += double(x.*axis[c]);
+    }
+
+    // Adds a batch's sums on one side of a face, times a factor.
+    static void add_sums(Sums& b, const Batch& batch, const Face& f, bool back, double factor) {
+        for (uint32_t v = 0; v < b.size(); ++v) {
+            const Sum& sum = batch.sums[2 * (f.vertex + v) + back];
+            b[v] += {real(sum[0] * factor), real(sum[1] * factor), real(sum[2] * factor)};
+        }
+    }
+
+    // Calls visit(projection, face, back) for the sides that a particle has met.
+    template <class Visit>
+    void for_each_side(Visit visit) const {
+        for (const Face& f : mesh_.faces) {
+            const Projection onto(mesh_, f);
+            for (const bool back : {false, true})
+                if (met(f, back)) visit(onto, f, back);
+        }
+    }
+    bool met(const Face& f, bool back) const {
+        for (const Batch& batch : batch_)
+            for (uint32_t v = f.vertex; v < f.vertex + f.vertices(); ++v)
+                if (batch.sums[2 * v + back] != Sum{}) return true;
+        return false;
+    }
+};

@@ -1,0 +1,246 @@
+// radiosity/shooting.h  5  progressive refinement: what has most light to send sends it first
+//
+// Radiosity (Goral et al. 1984) by shooting (Cohen, Chen, Wallace, Greenberg 1988): whatever sends
+// most light that it has not yet sent sends it to all vertices at once.  No random number is drawn.
+// Biased by the mesh and by the fixed pattern of shadow rays, and by what is not yet sent.
+#pragma once
+#include <barrier>
+#include <numeric>
+#include <tuple>
+
+#include "radiosity/transfer.h"
+
+// Whichever comes first; 0: no limit.
+struct ShootingTarget {
+    double unshot = 0;   // of the emitted power
+    double seconds = 0;  // of all runs together
+    uint64_t shots = 0;
+};
+
+// What shoots at once.
+enum class Shooter {
+    element,  // one triangle of the mesh: as published
+    face      // a whole face, in parts that are small as a vertex sees them, after the links of
+              // Hanrahan, Salzman, Aupperle (1991)
+};
+
+class Shooting {
+public:
+    // Both must outlive it.
+    Shooting(const Scene& scene, const Mesh& mesh, Shooter shooter, unsigned threads)
+        : scene_(scene),
+          mesh_(mesh),
+          shooter_(shooter),
+          threads_(std::max(1u, threads)),
+          tree_(mesh),
+          map_(number_of_sides(mesh)),
+          shot_(2 * mesh.elements()),
+          sent_(2 * mesh.elements()),
+          radiance_(tree_.first(mesh.faces.size())),
+          best_(2 * mesh.faces.size()),
+          order_(mesh.faces.size()) {
+        for (uint32_t side = 0; side < best_.size(); ++side) best_[side] = candidate(side);
+        std::iota(order_.begin(), order_.end(), 0u);
+        std::stable_sort(order_.begin(), order_.end(), [&](uint32_t a, uint32_t b) {
+            return mesh.faces[a].vertices() > mesh.faces[b].vertices();
+        });
+        for (const Light& l : scene.lights)
+            if (l.kind == Light::Kind::point) points_.push_back(&l);
+        emitted_ = unsent();
+    }
+
+    const Map& map() const { return map_; }
+    uint64_t shots() const { return shots_; }
+    uint64_t rays() const { return rays_; }
+    double seconds() const { return seconds_; }
+    // What has not yet been sent, over what is emitted.
+    double unshot() const { return emitted_ > 0 ? unsent() / emitted_ : 0; }
+
+    // Shoots until the target is met, nothing is left or `interrupted`; may be called again for a
+    // farther target.  The map is the same, bit for bit, for any number of threads: every vertex
+    // receives one shot after the other.  Calls show(*this) between shots.
+    template <class Show>
+    void run(const ShootingTarget& target, Show show) {
+        const auto start = std::chrono::steady_clock::now();
+        const double before = seconds_;
+        bool enough = false;
+        std::atomic<size_t> next = 0;
+        std::atomic<uint64_t> rays = 0;
+        auto between_shots = [&]() noexcept {
+            const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+            seconds_ = before + took.count();
+            rays_ += rays.exchange(0);
+            next = 0;
+            enough = interrupted || met(target) || !choose();
+            show(*this);
+        };
+        std::barrier sync(std::ptrdiff_t(threads_), between_shots);
+        auto work = [&] {
+            while (sync.arrive_and_wait(), !enough)
+                for (size_t k; (k = next++) < order_.size();) rays += receive(order_[k]);
+        };
+        std::vector<std::jthread> others;
+        for (unsigned k = 1; k < threads_; ++k) others.emplace_back(work);
+        work();
+    }
+
+    static Bytes bytes() {
+        Bytes b;
+        b.vertex += 2 * sizeof(rgb);
+        b.element +=
+            Trees::bytes_per_element + 2 * (sizeof(Corners) + sizeof(double)) + 2 * sizeof(Corners);
+        b.face += 2 * sizeof(Candidate) + sizeof(uint32_t);
+        return b;
+    }
+
+private:
+    // Of a side of a face, number 2 face + back: the power that is not yet sent, and which of its
+    // nodes should send next.
+    struct Candidate {
+        double all = 0, power = 0;  // means of the channels: of the side, of the node
+        uint32_t node = 0;
+        bool emits = false;  // light of its own, not yet sent
+        auto rank() const { return std::tuple(emits, power); }
+    };
+
+    const Scene& scene_;
+    const Mesh& mesh_;
+    const Shooter shooter_;
+    const unsigned threads_;
+    const Trees tree_;
+    Map map_;
+    std::vector<Corners> shot_;      // exitance that element e has sent: number 2 e + back
+    std::vector<double> sent_;       // the same in the mean of its corners and channels
+    std::vector<Corners> radiance_;  // of the nodes of the side that shoots
+    std::vector<Candidate> best_;
+    std::vector<uint32_t> order_;  // faces, the largest first, so that threads end together
+    std::vector<const Light*> points_;
+    size_t next_point_ = 0;
+    double emitted_ = 0, seconds_ = 0;
+    uint64_t shots_ = 0, rays_ = 0;
+
+    // Who shoots now: a point light, or a node of a side.
+    const Light* point_ = nullptr;
+    uint32_t side_ = 0, node_ = 0;
+
+    // ---- Who shoots -----------------------------------------------------------------------------
+
+    // The exitance (W / m^2) of an element by all that it has received so far.  It never falls, by
+    // rounding neither, so what is not yet sent is never negative.
+    Corners exitance(const Face& f, uint32_t element, bool back) const {
+        const auto& v = mesh_.corners[element];
+        const rgb own = emission(scene_, f, back) * pi, rho = albedo(scene_, f);
+        Corners M;
+        for (size_t k = 0; k < 3; ++k) M[k] = own + rho * map_[2 * v[k] + back];
+        return M;
+    }
+    double mean_exitance(const Face& f, uint32_t element, bool back) const {
+        return double(mean_of(exitance(f, element, back).mean()));
+    }
+
+    Candidate candidate(uint32_t side) const {
+        const uint32_t face = side / 2;
+        const bool back = side % 2;
+        const Face& f = mesh_.faces[face];
+        const double area = double(f.area()) / f.elements();
+        const bool lamp = max_of(emission(scene_, f, back)) > 0;
+        Candidate best;
+        for (uint32_t e = f.element; e < f.element + f.elements(); ++e) {
+            const double sent = sent_[2 * size_t(e) + back];
+            const double power = area * (mean_exitance(f, e, back) - sent);
+            const Candidate c{0, power, tree_.leaf(e), lamp && sent == 0};
+            best.all += power;
+            if (power > 0 && c.rank() > best.rank()) best = {best.all, c.power, c.node, c.emits};
+        }
+        if (shooter_ == Shooter::face) best.power = best.all, best.node = tree_.first(face);
+        return best;
+    }
+
+    // Power of points that have not shot, and of all sides.
+    double unsent() const {
+        double power = 0;
+        for (size_t k = next_point_; k < points_.size(); ++k) power += ::power(*points_[k]);
+        for (const Candidate& c : best_) power += c.all;
+        return power;
+    }
+
+    bool met(const ShootingTarget& t) const {
+        return (t.shots && shots_ >= t.shots) || (t.seconds > 0 && seconds_ >= t.seconds) ||
+               unshot() <= t.unshot;
+    }
+
+    // Lights first, then whoever has most.  Returns whether there is one.
+    bool choose() {
+        point_ = next_point_ < points_.size() ? points_[next_point_++] : nullptr;
+        if (!point_) {
+            const auto best = std::max_element(
+                best_.begin(), best_.end(), [](auto& a, auto& b) { return a.rank() < b.rank(); });
+            if (best == best_.end() || !(best->power > 0)) return false;
+            side_ = uint32_t(best - best_.begin()), node_ = best->node;
+            load(node_);
+        }
+        ++shots_;
+        return true;
+    }
+
+    // The radiance of a node and of all below it, which counts as sent from now on; of a node with
+    // children its mean.
+    rgb load(uint32_t i) {
+        const Node& n = tree_[i];
+        Corners& L = radiance_[i];
+        if (n.children == 0) {
+            const Face& f = mesh_.faces[side_ / 2];
+            const size_t own = 2 * size_t(n.first) + side_ % 2;
+            const Corners M = exitance(f, n.first, side_ % 2);
+            for (size_t k = 0; k < 3; ++k) L[k] = (M[k] - shot_[own][k]) / pi;
+            shot_[own] = M;
+            sent_[own] = mean_exitance(f, n.first, side_ % 2);
+            return L.mean();
+        }
+        rgb sum;
+        for (uint32_t k = n.first; k < n.first + n.children; ++k) sum += load(k) * tree_[k].area;
+        L.fill(sum / n.area);
+        return L[0];
+    }
+
+    // ---- Who receives ---------------------------------------------------------------------------
+
+    // All vertices of a face.  Returns the number of shadow rays.
+    uint64_t receive(uint32_t face) {
+        const Face& f = mesh_.faces[face];
+        const bool shoots = !point_ && face == side_ / 2;
+        Transfer transfer(scene_);
+        for (const bool back : {false, true}) {
+            const vec3 n = back ? -f.n : f.n;
+            Receiver to{{{}, n, f.error}, frame(n)};
+            bool changed = shoots;
+            for (uint32_t v = f.vertex; !shoots && v < f.vertex + f.vertices(); ++v) {
+                to.x.p = mesh_.at[v];
+                const rgb E = point_ ? transfer.from_point(to, *point_) : from_side(to, transfer);
+                if (max_of(E) > 0) map_[2 * v + back] += E, changed = true;
+            }
+            if (changed) best_[2 * face + back] = candidate(2 * face + back);
+        }
+        return transfer.rays;
+    }
+
+    // A face does not see itself, nor what lies in its plane.
+    rgb from_side(const Receiver& to, Transfer& transfer) const {
+        const Face& f = mesh_.faces[side_ / 2];
+        const Source from{side_ % 2 ? -f.n : f.n, f.error};
+        if (!(dot(to.x.p - f.a, from.n) > f.error + to.x.error)) return {};
+        return from_node(to, from, node_, transfer);
+    }
+
+    // A node with children is taken as a whole if the vertex sees it under a small angle.
+    rgb from_node(const Receiver& to, const Source& from, uint32_t i, Transfer& transfer) const {
+        const Node& node = tree_[i];
+        const Corners& L = radiance_[i];
+        if (node.children == 0) return transfer.from_element(to, from, node, L);
+        if (!near(to, node, 8)) return transfer.from_whole(to, from, node, L.mean());
+        rgb E;
+        for (uint32_t k = node.first; k < node.first + node.children; ++k)
+            E += from_node(to, from, k, transfer);
+        return E;
+    }
+};
