@@ -104,8 +104,8 @@ TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {
     CHECK(warns(box_at(1e6), "are coarse here") == single);
     CHECK(!warns(box_at(1e3), "are coarse here"));
     if (!single) CHECK(warns(box_at(1e14), "line 4: numbers of 8 bytes are coarse here"));
-    for (const char* name : {"cornell", "cornell36", "cornellglossy", "coursework", "cube",
-                             "furnace", "lanterns", "materials", "panel", "penumbra"})
+    for (const char* name : {"atelier", "cornell", "cornell36", "cornellglossy", "coursework",
+                             "cube", "furnace", "lanterns", "materials", "panel", "penumbra"})
         CHECK(!warns(read_scene("scenes/" + std::string(name) + ".scene"), "are coarse"));
     CHECK(warns(read_scene("scenes/extremes.scene"), "are coarse here") == single);
     // The ground's rounding, some ball's size where it stands; not far above it.
@@ -116,4 +116,27 @@ TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {
     };
     CHECK(warns(ball_at("1"), "off the surface of line 4"));
     CHECK(!warns(ball_at("1000"), "are coarse"));
+}
+
+// Maps of its light have one side and no sky.  In float a ray that starts 10 micrometres from an
+// edge may start behind it.
+TEST_CASE("the house of atelier is closed, and only the fronts of its faces are seen") {
+    const ParsedScene atelier = read_scene("scenes/atelier.scene");
+    CHECK(atelier.warnings.empty());
+    CHECK(atelier.scene.lights.size() == 5);
+    const Scene& scene = atelier.scene;
+    int escapes = 0, backs = 0;
+    for (int y = 0; y < scene.size.height; ++y)
+        for (int x = 0; x < scene.size.width; ++x)
+            radiance(scene, {Direction::bsdf, LightMode::none}, {SamplerKind::independent, 5}, x, y,
+                     0, [&](const Segment&, const Step& e) {
+                         if (!e.x)
+                             ++escapes;
+                         else if (e.x->cos_o < 0)
+                             ++backs;
+                     });
+    if (!single) {
+        CHECK(escapes == 0);
+        CHECK(backs == 0);
+    }
 }
