@@ -8,11 +8,11 @@
 // Irradiance E (W / m^2; lux, if radiance is in nit) on both sides of every vertex: number 2 v on
 // the side of the shape's own normal, 2 v + 1 on its back.  Linear between the vertices of a
 // triangle.
-using Map = std::vector<rgb>;
+using IlluminationMap = std::vector<rgb>;
 
 inline size_t number_of_sides(const Mesh& mesh) { return 2 * mesh.vertices(); }
 
-inline rgb irradiance(const Mesh& mesh, const Map& map, const Hit& hit, bool back) {
+inline rgb irradiance(const Mesh& mesh, const IlluminationMap& map, const Hit& hit, bool back) {
     const auto [vertex, weight] = between(mesh, hit);
     rgb E;
     for (size_t k = 0; k < 3; ++k) E += map[2 * vertex[k] + back] * weight[k];
@@ -45,7 +45,8 @@ struct Seen {
 };
 
 // Where a ray meets nothing, both are black.
-inline Seen seen_along(const Scene& scene, const Mesh& mesh, const Map& map, const Ray& ray) {
+inline Seen seen_along(const Scene& scene, const Mesh& mesh, const IlluminationMap& map,
+                       const Ray& ray) {
     const auto x = meet(scene, ray);
     if (!x || x->cos_o == 0) return {};
     const rgb E = irradiance(mesh, map, x->hit, x->cos_o < 0);
@@ -77,13 +78,13 @@ Image image_of_rays(const Scene& scene, int K, unsigned threads, Value value) {
     return image;
 }
 
-inline Image radiance_image(const Scene& scene, const Mesh& mesh, const Map& map, int K,
+inline Image radiance_image(const Scene& scene, const Mesh& mesh, const IlluminationMap& map, int K,
                             unsigned threads) {
     return image_of_rays(scene, K, threads,
                          [&](const Ray& ray) { return seen_along(scene, mesh, map, ray).L; });
 }
-inline Image irradiance_image(const Scene& scene, const Mesh& mesh, const Map& map, int K,
-                              unsigned threads) {
+inline Image irradiance_image(const Scene& scene, const Mesh& mesh, const IlluminationMap& map,
+                              int K, unsigned threads) {
     return image_of_rays(scene, K, threads,
                          [&](const Ray& ray) { return seen_along(scene, mesh, map, ray).E; });
 }

@@ -147,8 +147,8 @@ public:
         return sum;
     }
 
-    Map map(Functional functional = Functional::projection) const {
-        Map map(number_of_sides(mesh_));
+    IlluminationMap map(Functional functional = Functional::projection) const {
+        IlluminationMap map(number_of_sides(mesh_));
         for_each_side([&](const Projection& onto, const Face& f, bool back) {
             Sums b(f.vertices());
             for (const Batch& batch : batch_) add_sums(b, batch, f, back, 1 / double(particles()));

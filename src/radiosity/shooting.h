@@ -47,9 +47,12 @@ public:
         for (const Light& l : scene.lights)
             if (l.kind == Light::Kind::point) points_.push_back(&l);
         emitted_ = unsent();
+        double area = 0;
+        for (const Face& f : mesh.faces) area += 2 * double(f.area());
+        faint_ = shooter == Shooter::face ? real(faintest * emitted_ / area) : 0;
     }
 
-    const Map& map() const { return map_; }
+    const IlluminationMap& map() const { return map_; }
     uint64_t shots() const { return shots_; }
     uint64_t rays() const { return rays_; }
     double seconds() const { return seconds_; }
@@ -108,7 +111,7 @@ private:
     const Shooter shooter_;
     const unsigned threads_;
     const Trees tree_;
-    Map map_;
+    IlluminationMap map_;
     std::vector<Corners> shot_;      // exitance that element e has sent: number 2 e + back
     std::vector<double> sent_;       // the same in the mean of its corners and channels
     std::vector<Corners> radiance_;  // of the nodes of the side that shoots
@@ -117,6 +120,8 @@ private:
     std::vector<const Light*> points_;
     size_t next_point_ = 0;
     double emitted_ = 0, seconds_ = 0;
+    real faint_ = 0;                          // irradiance for which no node is opened
+    static constexpr double faintest = 1e-2;  // of the mean that lights alone would give
     uint64_t shots_ = 0, rays_ = 0;
 
     // Who shoots now: a point light, or a node of a side.
@@ -236,11 +241,21 @@ private:
     rgb from_node(const Receiver& to, const Source& from, uint32_t i, Transfer& transfer) const {
         const Node& node = tree_[i];
         const Corners& L = radiance_[i];
-        if (node.children == 0) return transfer.from_element(to, from, node, L);
-        if (!near(to, node, 8)) return transfer.from_whole(to, from, node, L.mean());
+        if (node.children == 0 && !is_faint(to, node, L))
+            return transfer.from_element(to, from, node, L);
+        if (!near(to, node, 8) || is_faint(to, node, L))
+            return transfer.from_whole(to, from, node, L.mean());
         rgb E;
         for (uint32_t k = node.first; k < node.first + node.children; ++k)
             E += from_node(to, from, k, transfer);
         return E;
+    }
+
+    static real bound(const Receiver& to, const Node& node, real L) {
+        const vec3 d = node.centre - to.x.p;
+        return pi * L * std::min(real(1), sqr(node.radius) / dot(d, d));
+    }
+    bool is_faint(const Receiver& to, const Node& node, const Corners& L) const {
+        return bound(to, node, mean_of(L.mean())) < faint_;
     }
 };
