@@ -131,7 +131,7 @@ void draw_functions(Svg& sheet, Place corner, const Case& c) {
               text("(%s)  w = %s,  V = %s", c.letter, c.w.formula, c.V_formula));
     std::vector<double> x, w, V;
     for (int i = 0; i <= 400; ++i) {
-        x.push_back(std::min(i / 400.0, 1 - 1e-9));
+        x.push_back(i / 400.0);
         w.push_back(c.w(x.back()));
         V.push_back(c.V(x.back()));
     }

@@ -145,3 +145,31 @@ TEST_CASE(
                               {.name = "both"}),
          "both: ");
 }
+
+TEST_CASE("a verdict on what cannot be judged begins with the name that it was given, once") {
+    const Quiet quiet;
+    oracle::Random random(seed_here());
+    const oracle::Options o{.name = "mine"};
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    auto uniform = [&] { return random(); };
+    auto broken = [&] { return nan; };
+    auto rare = [&](int) { return random(); };
+    auto decays_not = [&](uint64_t) { return nan; };
+    const uint64_t none[] = {0, 0}, few[] = {3, 4}, off[] = {500, 1}, one[] = {1000};
+    const double halves[] = {0.5, 0.5}, all[] = {1, 0};
+    const std::vector<double> nothing, value{nan}, error{nan}, number{1};
+    for (const oracle::Verdict& v :
+         {oracle::expect_mean(1, 1000, broken, o), oracle::expect_equal(broken, uniform, 1000, o),
+          oracle::expect_equal(uniform, broken, 1000, o), oracle::expect_replicates(1, 15, rare, o),
+          oracle::expect_bias_decay(1, 4, 1000, decays_not, o),
+          oracle::expect_counts(none, halves, o), oracle::expect_counts(few, halves, o),
+          oracle::expect_counts(off, all, o), oracle::expect_counts(one, all, o),
+          oracle::expect_image(0, 0, nothing, nothing, nothing, o),
+          oracle::expect_image(1, 1, value, number, number, o),
+          oracle::expect_image(1, 1, number, error, number, o)}) {
+        INFO(v.text);
+        CHECK(!v.pass);
+        CHECK(v.text.rfind("mine: ", 0) == 0);
+        CHECK(v.text.rfind("mine: ") == 0);
+    }
+}

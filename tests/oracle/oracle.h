@@ -201,7 +201,8 @@ double where_equal(P p, double target) {
 
 // Standard errors by which the mean must be off for the t-test to see it with 99.9 % power: by the
 // normal approximation of noncentral t (Johnson, Welch 1940) t_alpha + 3.09 sqrt(1 + t_alpha^2 / 2
-// df), which is 8.0 for many degrees and alpha = 1e-6.
+// df), which is 8.0 for many degrees and alpha = 1e-6.  Remembers what it has found, and that is
+// for one thread alone; so does smallest_distortion.
 inline double smallest_shift(double df, double significance = 1e-6) {
     static std::map<std::pair<double, double>, double> known;
     const auto [at, is_new] = known.try_emplace({df, significance}, 0.0);
@@ -605,7 +606,7 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
         v = judge(what, d.estimate(), truth, o);
     if (!v.pass && d.n() >= 2 && std::isfinite(d.variance()))
         v.text += d.drawing(truth, o.alpha).written(o.name);
-    return o.name.empty() ? v : v.of(o.name);
+    return named(v, o);
 }
 
 // The mean of n independent draws f() is `truth`.
@@ -632,8 +633,10 @@ template <class F, class G>
 Verdict expect_equal(F f, G g, uint64_t n, const Options& o = {}) {
     const Draws a = draw(n, f), b = draw(n, g);
     if (a.few() || b.few()) return named(failure(a.few_text()), o);
-    if (const std::string why = a.problem(); !why.empty()) return failure(why).of("first");
-    if (const std::string why = b.problem(); !why.empty()) return failure(why).of("second");
+    if (const std::string why = a.problem(); !why.empty())
+        return named(failure(why).of("first"), o);
+    if (const std::string why = b.problem(); !why.empty())
+        return named(failure(why).of("second"), o);
     return expect_equal(a.estimate(), b.estimate(), o);
 }
 
@@ -644,7 +647,8 @@ Verdict expect_replicates(double truth, int replicates, F f, const Options& o = 
     Draws d;
     for (int r = 0; r < replicates; ++r) d.add(f(r));
     if (0 < replicates && replicates < 16 && !d.constant())
-        return failure(say("%d replicates show no significance of 1e-6: take 16", replicates));
+        return named(
+            failure(say("%d replicates show no significance of 1e-6: take 16", replicates)), o);
     return judge("mean of replicates", d, truth, o);
 }
 
@@ -656,8 +660,8 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
                           const Options& o = {}) {
     const Draws a = draw(trials, [&] { return double(n) * f(n); });
     const Draws b = draw(trials, [&] { return double(2 * n) * f(2 * n); });
-    if (const std::string why = a.problem(); !why.empty()) return failure(why);
-    if (const std::string why = b.problem(); !why.empty()) return failure(why);
+    if (const std::string why = a.problem(); !why.empty()) return named(failure(why), o);
+    if (const std::string why = b.problem(); !why.empty()) return named(failure(why), o);
     const double error = std::hypot(2 * b.estimate().standard_error, a.estimate().standard_error);
     const Estimate limit{2 * b.mean() - a.mean(), error, double(trials) - 1};
     return named(judge("limit of n * bias", limit, constant, o), o);
@@ -673,13 +677,14 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
     double n = 0, chi2 = 0, fewest = infinity;
     int cells = 0;
     for (auto count : counts) n += double(count);
-    if (n == 0) return failure("no sample at all");
+    if (n == 0) return named(failure("no sample at all"), o);
     for (size_t i = 0; i < std::size(counts); ++i) {
         const double expected = n * double(probabilities[i]), seen = double(counts[i]);
         if (expected <= 1e-6) {
             if (seen > 0)
-                return failure(
-                    say("%.0f samples of %.0f in cell %zu, where the density is 0", seen, n, i));
+                return named(failure(say("%.0f samples of %.0f in cell %zu, where the density is 0",
+                                         seen, n, i)),
+                             o);
             continue;
         }
         fewest = std::min(fewest, expected);
@@ -687,12 +692,13 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
         chi2 += (seen - expected) * (seen - expected) / (expected + known);
         ++cells;
     }
-    if (cells < 2) return failure("fewer than two cells");
+    if (cells < 2) return named(failure("fewer than two cells"), o);
     Verdict v;
     v.p = p_of_chi2(chi2, cells - 1);
     if (v.p > o.alpha && fewest < 100)
-        return failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n, fewest,
-                           std::ceil(100 * n / fewest)));
+        return named(failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n,
+                                 fewest, std::ceil(100 * n / fewest))),
+                     o);
     ++statistical_checks;
     alpha_spent += o.alpha;
     v.pass = v.p > o.alpha;
@@ -701,7 +707,7 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
                  "99.9 %% power: ",
                  chi2, cells, n, say_p(v.p).c_str()) +
              percent(v.delta_min);
-    return o.name.empty() ? v : v.of(o.name);
+    return named(v, o);
 }
 
 // ---- Quadrature ---------------------------------------------------------------------------------
@@ -985,9 +991,7 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
         o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
     std::vector<double> expected(count);
     double total = 0;
-    auto done = [&](const std::string& why) {
-        return o.name.empty() ? failure(why) : failure(why).of(o.name);
-    };
+    auto done = [&](const std::string& why) { return named(failure(why), o); };
     for (size_t i = 0; i < count; ++i) {
         expected[i] = double(probability(int(i)));
         if (!(expected[i] >= 0 && std::isfinite(expected[i])))
@@ -1087,7 +1091,7 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
         if (count > 2) explained({expected.rbegin(), expected.rend()}, "the order reversed");
         v.text = first + "\n" + v.text;
     }
-    return o.name.empty() ? v : v.of(o.name);
+    return named(v, o);
 }
 
 // ---- Domains ------------------------------------------------------------------------------------
@@ -1780,7 +1784,7 @@ Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& 
         if (model.single && std::abs(product - 1) < 10 * s.blind)
             v.text += "; could be rounding: take double";
     }
-    return o.name.empty() ? v : v.of(o.name);
+    return named(v, o);
 }
 
 // Samples x(u) of a smooth one-to-one map of the unit cube have the density pdf(x): pdf sqrt(det
@@ -2422,7 +2426,7 @@ Verdict judge_density(Random& random, const Model<M, N>& model, const Domain& do
                   "the domain has other coordinates than the samples");
     DensityCheck<M, N, Domain> check{random, model, domain, o};
     const Verdict v = check.run();
-    return o.name.empty() ? v : v.of(o.name);
+    return named(v, o);
 }
 template <class Sample, class Pdf, class Domain>
 requires requires { Domain::dimensions; }
@@ -2485,7 +2489,6 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
         const double s = std::sqrt(1 - z * z);
         return Triple{s * std::cos(phi), s * std::sin(phi), z};
     };
-    auto named = [&](const Verdict& v) { return o.name.empty() ? v : v.of(o.name); };
     Verdict all{true, 1, 0, ""};
     for (const auto& [z, phi] : {std::pair{0.95, 1.0}, std::pair{0.6, 3.0}, std::pair{0.2, 5.0}}) {
         const Triple out = unit_at(z, phi);
@@ -2528,14 +2531,15 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
                 weigh(w);
             }
             if (!std::isfinite(weight))
-                return named(failure("eval cos / pdf is not finite for wo = " + say_point(out)));
+                return named(failure("eval cos / pdf is not finite for wo = " + say_point(out)), o);
             albedo.add(weight);
         }
         const Estimate e = albedo.estimate();
         if (e.mean > 1 + 1e-3 + 5 * e.standard_error)
             return named(failure("an albedo of " +
                                  times(e.mean, std::max(0.003, 3 * e.standard_error / e.mean)) +
-                                 ": more is reflected than comes, for wo = " + say_point(out)));
+                                 ": more is reflected than comes, for wo = " + say_point(out)),
+                         o);
     }
     double worst = 0, with_cosine = 0, with_inverse = 0, compared = 0;
     Triple worst_o{}, worst_i{};
@@ -2546,9 +2550,10 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
         const double there = brightness(eval(wo, wi)), back = brightness(eval(wi, wo));
         for (double f : {there, back})
             if (!(f >= 0 && std::isfinite(f)))
-                return named(failure(
-                    say("eval is %s, %.4g, for wo = ", f < 0 ? "negative" : "not finite", f) +
-                    say_point(a) + ", wi = " + say_point(b)));
+                return named(failure(say("eval is %s, %.4g, for wo = ",
+                                         f < 0 ? "negative" : "not finite", f) +
+                                     say_point(a) + ", wi = " + say_point(b)),
+                             o);
         const double largest = std::max(there, back);
         if (largest <= 0) continue;
         ++compared;
@@ -2567,11 +2572,11 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
             v.text += "; looks like the cosine of wi included in eval";
         if (with_inverse > 0.95 * compared)
             v.text += "; looks like eval divided by the cosine of wi";
-        return named(v);
+        return named(v, o);
     }
-    if (compared == 0) return named(failure("eval is 0 for all directions above the surface"));
+    if (compared == 0) return named(failure("eval is 0 for all directions above the surface"), o);
     all.text = "density, albedo <= 1 and, above the surface, reciprocity as expected";
-    return named(all);
+    return named(all, o);
 }
 
 // ---- Images -------------------------------------------------------------------------------------
@@ -2584,15 +2589,15 @@ template <class Values, class Errors, class Reference>
 Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
                      const Reference& reference, const Options& o = {}) {
     const size_t n = width * height;
-    if (n == 0) return failure("no pixel");
-    auto named = [&](const Verdict& v) { return o.name.empty() ? v : v.of(o.name); };
+    if (n == 0) return named(failure("no pixel"), o);
     auto pixel = [&](size_t i) { return say("pixel (%zu, %zu)", i % width, i / width); };
     std::vector<double> f(n), s(n), truth(n);
     for (size_t i = 0; i < n; ++i) {
         f[i] = double(values[i]), s[i] = double(errors[i]), truth[i] = double(reference[i]);
-        if (!std::isfinite(f[i])) return named(failure(pixel(i) + say(" is %g, not finite", f[i])));
+        if (!std::isfinite(f[i]))
+            return named(failure(pixel(i) + say(" is %g, not finite", f[i])), o);
         if (!(s[i] >= 0 && std::isfinite(s[i])))
-            return named(failure(pixel(i) + say(" has the standard error %g", s[i])));
+            return named(failure(pixel(i) + say(" has the standard error %g", s[i])), o);
     }
     struct Result {
         double p = 1, mean = 0, mean_p = 1, z = 0;
@@ -2645,7 +2650,7 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
                  r.mean, say_p(r.mean_p).c_str(), r.z) +
              pixel(r.worst) + ", " + say_p(r.p) +
              "; smallest bias of all seen with 99.9 % power: " + percent(v.delta_min);
-    if (v.pass) return named(v);
+    if (v.pass) return named(v, o);
 
     std::string first;
     auto explains = [&](const std::vector<double>& g, const std::string& cause, double c = 1) {
@@ -2722,7 +2727,7 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
     }
     d.text(10, 50 + h * double(down), say("white is %.4g; full red and blue %.4g", most, most_off));
     v.text = first + "\n" + v.text + d.written(o.name);
-    return named(v);
+    return named(v, o);
 }
 
 }  // namespace oracle

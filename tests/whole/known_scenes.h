@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "base/closed_forms.h"
 #include "base/words.h"
-#include "whole/closed_forms.h"
 #include "world/shapes.h"
 
 namespace closed_forms {

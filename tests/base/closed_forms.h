@@ -1,4 +1,4 @@
-// whole/closed_forms.h  formulas of light that nothing of the renderer went into
+// base/closed_forms.h  formulas of light that nothing of the renderer went into
 //
 // E is irradiance.
 #pragma once

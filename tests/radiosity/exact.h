@@ -1,0 +1,57 @@
+// radiosity/exact.h  illuminance that is known without a renderer
+#pragma once
+#include <array>
+
+#include "base/closed_forms.h"
+
+namespace exact {
+
+// ---- The cube -----------------------------------------------------------------------------------
+
+// Inside of a cube of 10 m, a point light of 50 000 cd at its centre, walls of reflectance 2/3.
+// Points of a face are (x, y) in [-1,1]^2.  L in nit, +-10^-5: labs/cube_test.cpp derives it from
+// the integral equation.  On an edge it is the limit from within the face.
+inline constexpr double cube_half_width = 5, cube_intensity = 50000, cube_albedo = 2.0 / 3;
+
+struct CubePoint {
+    char name;
+    double x, y, luminance;
+};
+inline constexpr std::array<CubePoint, 6> cube_points = {{{'A', 0, 0, 892.79810},
+                                                          {'B', 0.5, 0, 768.69470},
+                                                          {'C', 0.5, 0.5, 686.69745},
+                                                          {'D', 1, 0, 565.09748},
+                                                          {'E', 1, 0.5, 522.41378},
+                                                          {'F', 1, 1, 388.44554}}};
+inline constexpr double cube_mean_luminance =
+    2000.0 / 3;  // by energy: Phi / (A (1 - rho)) rho / pi
+
+// E (lx) before the first bounce.
+inline double cube_direct(double x, double y) {
+    return cube_intensity / (cube_half_width * cube_half_width) / std::pow(1 + x * x + y * y, 1.5);
+}
+
+// ---- Form factors -------------------------------------------------------------------------------
+
+// From the inside of a sphere of radius R to one of radius r within it, wherever it lies, and to
+// itself (F_21 and F_22 of Howell's C-136): by reciprocity, since all that leaves the inner one
+// arrives.
+inline double to_inner_sphere(double r, double R) { return (r / R) * (r / R); }
+inline double to_itself(double r, double R) { return (1 - r / R) * (1 + r / R); }
+
+// Two such spheres about one centre, of reflectances rho and exitances M: E on each.
+struct Spheres {
+    double r, R, rho_inner, rho_outer, M_inner, M_outer;
+};
+struct OfSpheres {
+    double inner, outer;
+};
+// E_inner = B_outer and E_outer = F_21 B_inner + F_22 B_outer, where B = M + rho E.
+inline OfSpheres illuminances(const Spheres& s) {
+    const double to_inner = to_inner_sphere(s.r, s.R), own = to_itself(s.r, s.R);
+    const double outer = (to_inner * (s.M_inner + s.rho_inner * s.M_outer) + own * s.M_outer) /
+                         (1 - s.rho_outer * (own + to_inner * s.rho_inner));
+    return {s.M_outer + s.rho_outer * outer, outer};
+}
+
+}  // namespace exact
