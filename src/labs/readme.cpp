@@ -5,6 +5,7 @@
 // What stands between <!-- options --> and <!-- /options --> becomes the table of options, and so
 // do the statements of a scene's file.
 #include "app/help.h"
+#include "app/options.h"
 #include "base/files.h"
 #include "base/program.h"
 
@@ -28,8 +29,8 @@ int run(const std::vector<std::string>& words) {
         throw UserError(usage);
     const std::string path = words.empty() ? "README.md" : words[0];
     const std::string old = read_file(path);
-    write_file(path, with_table(with_table(old, "options", help_markdown()), "statements",
-                                grammar_markdown()));
+    write_file(path, with_table(with_table(old, "options", option_markdown(option_table)),
+                                "statements", grammar_markdown()));
     return 0;
 }
 
