@@ -122,7 +122,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
 
-readme: build/readme$(SUFFIX)  ## write the README's tables of options and statements
+readme: build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
 	build/readme$(SUFFIX)
 
 clean:  ## remove build/ and out/

@@ -22,7 +22,12 @@ struct CommonOptions {
     std::optional<real> exposure;  // default: the scene's
     std::string stats;             // file, or empty
     bool quiet = false, help = false;
+    std::vector<std::string_view> given;  // names of options that the user gave
 };
+
+inline bool is_given(const CommonOptions& o, std::string_view name) {
+    return std::find(o.given.begin(), o.given.end(), name) != o.given.end();
+}
 
 // ---- Values -------------------------------------------------------------------------------------
 
@@ -184,6 +189,7 @@ O parse_words(const OptionTable<O>& table, const std::vector<std::string>& words
             if (has_value && i + 1 == words.size()) throw UserError(word + ": needs a value");
             try {
                 row->set(o, has_value ? words[++i] : "");
+                o.given.push_back(row->name);
             } catch (const UserError& e) {
                 throw UserError(word + ": " + e.what());
             }

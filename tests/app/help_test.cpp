@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "app/options.h"
+#include "app/radiosity_options.h"
 #include "base/files.h"
 
 namespace {
@@ -47,12 +48,15 @@ TEST_CASE("every option is in --help and can be given") {
     CHECK(parse_options({"-h"}).help);
 }
 
-TEST_CASE("the README's tables are the program's: make readme") {
+TEST_CASE("the tables of README and reference are the programs': make readme") {
     const std::string readme = read_file("README.md");
     const bool options = between(readme, "options") == option_markdown(option_table);
     CHECK(options);
     const bool statements = between(readme, "statements") == grammar_markdown();
     CHECK(statements);
+    const std::string page = read_file("reference/radiosity-options.md");
+    const bool radiosity = between(page, "options") == option_markdown(radiosity_table);
+    CHECK(radiosity);
 }
 
 TEST_CASE("a row of Markdown has its words once, and no bar that ends a column") {
