@@ -60,7 +60,7 @@ inline const OptionTable<RadiosityOptions> radiosity_table = {
         "lights",
         [](auto& o) -> auto& { return o.method; }),
     {"--mesh", "H", "longest edge of the triangles that faces are cut into",
-     "a 50th of the scene's size",
+     "a 32nd of the scene's diagonal",
      [](RadiosityOptions& o, Text v) { o.mesh = option::positive(v); }},
     {"--unshot", "F",
      "stop once this fraction of the power is unshot: 0.01, or 1%; not with particles",
