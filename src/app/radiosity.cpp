@@ -188,14 +188,15 @@ Image picture_of(const RadiosityOptions& o, const Stage& stage, const Map& map) 
     return image;
 }
 
-// The picture even after Ctrl-C, which ends the search for light, or the first attempt at drawing;
-// nothing but a second one ends that.
+// The picture to its end even after Ctrl-C, which ends the search for light alone; a second one
+// kills.
 Image picture_to_the_end(const RadiosityOptions& o, const Stage& stage, Solution& s) {
-    interrupted = 0;
     Image image = picture_of(o, stage, s.map);
-    if (interrupted == 0) return image;
-    s.signal = interrupted.exchange(0);
-    return picture_of(o, stage, s.map);
+    while (interrupted) {  // rows are missing
+        s.signal = interrupted.exchange(0);
+        image = picture_of(o, stage, s.map);
+    }
+    return image;
 }
 
 std::string encode_stats(const RadiosityOptions& o, const Stage& stage, const Solution& s,
