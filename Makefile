@@ -24,8 +24,9 @@ ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
 endif
 
 LABS     := $(patsubst src/labs/%.cpp,%,$(wildcard src/labs/*.cpp))
+APPS     := $(patsubst src/app/%.cpp,%,$(wildcard src/app/*.cpp))
 PENUMBRA := build/penumbra$(SUFFIX)
-PROGRAMS := $(PENUMBRA) $(LABS:%=build/%$(SUFFIX))
+PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows bench cells voronoi voronoi2d \
@@ -39,7 +40,7 @@ all: $(PENUMBRA) build/compare$(SUFFIX)  ## build the renderer, and render every
 
 penumbra: $(PENUMBRA)  ## build the renderer alone: build/penumbra
 
-programs: $(PROGRAMS)  ## build the renderer and every lab
+programs: $(PROGRAMS)  ## build the renderers (build/penumbra, build/radiosity) and every lab
 
 # A render that is interrupted leaves what it has in out/unfinished/, and nothing that make takes for done.
 out/%.png: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
@@ -74,7 +75,7 @@ test: packages  ## build and run the tests, lowest floor first; ONLY=bvh: those 
 	    LIMIT=$(if $(SAN)$(DEBUG),10) HEAVY='$(HEAVY)' tests/run $(ONLY)
 
 # Says to tests/run that a test is built, and the programs that it runs.
-RUN      := $(PENUMBRA) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj
+RUN      := $(APPS:%=build/%$(SUFFIX)) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj
 RUNNERS  := $(shell grep -l 'build/penumbra\|whole/process.h' tests/*/*_test.cpp)
 $(RUNNERS:tests/%.cpp=$(OBJECTS)/tests/%.ready): $(RUN)
 $(TESTS:%=$(OBJECTS)/tests/%.ready): %.ready: %.exe always
@@ -121,7 +122,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
 
-readme: build/readme$(SUFFIX)  ## write the README's tables of options and statements
+readme: build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
 	build/readme$(SUFFIX)
 
 clean:  ## remove build/ and out/
@@ -137,7 +138,8 @@ help:  ## print this
 build/%$(SUFFIX): $(OBJECTS)/%.exe always
 	@cmp -s $< $@ || cp $< $@
 
-$(OBJECTS)/penumbra.exe: $(OBJECTS)/app/penumbra.o
+# A program of src/app and one of src/labs never have the same name.
+$(APPS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/app/%.o
 	$(CXX) $(LINK) -o $@ $^
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o

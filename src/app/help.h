@@ -2,7 +2,7 @@
 #pragma once
 #include <sstream>
 
-#include "app/options.h"
+#include "app/option.h"
 #include "world/grammar.h"
 
 // Appends text to a page, broken into lines of less than 80 columns; further lines are indented.
@@ -19,12 +19,12 @@ inline void wrap(std::string& page, const std::string& text, size_t indent) {
     page.back() = '\n';
 }
 
-inline std::string help_page() {
+// A line or two for every option.
+template <class O>
+std::string option_lines(const OptionTable<O>& table) {
     constexpr size_t indent = 24;
-    std::string page =
-        "usage: penumbra [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) "
-        "by path tracing.\n\n";
-    for (const Option& row : option_table) {
+    std::string page;
+    for (const Option<O>& row : table) {
         std::string line = "  " + std::string(row.name) + " " + std::string(row.value) + " ";
         if (line.size() > indent) line.back() = '\n';
         line.append(line.size() > indent ? indent : indent - line.size(), ' ');
@@ -33,14 +33,7 @@ inline std::string help_page() {
         if (!row.otherwise.empty()) text.append(" (default: ").append(row.otherwise).append(")");
         wrap(page, text, indent);
     }
-    return page + R"(
-A .pfm holds linear radiance; a .png holds exposure times radiance, clamped to
-[0,1] and encoded as sRGB.  Pixel (0,0) is the top left one.
-
-Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
-2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
-129 SIGHUP), after writing the image of the passes completed so far.
-)";
+    return page;
 }
 
 // ---- Tables of the README -----------------------------------------------------------------------
@@ -57,9 +50,10 @@ inline std::string row_markdown(std::string_view word, std::string_view argument
     return row.append(otherwise).append(otherwise.empty() ? "|\n" : " |\n");
 }
 
-inline std::string help_markdown() {
+template <class O>
+std::string option_markdown(const OptionTable<O>& options) {
     std::string table = "| option | meaning | default |\n|---|---|---|\n";
-    for (const Option& row : option_table)
+    for (const Option<O>& row : options)
         table += row_markdown(row.name, row.value, row.help, row.otherwise);
     return table;
 }

@@ -1,8 +1,8 @@
-// app/render.h  3  from options to images: which samples, on which film
+// app/render.h  4  from options to images: which samples, on which film
 #pragma once
 #include <atomic>
 
-#include "app/report.h"
+#include "app/summary.h"
 #include "app/views.h"
 #include "shadow/shadow.h"
 #include "voronoi/weighted.h"
@@ -11,7 +11,7 @@
 
 // The user's target, or the scene's number of samples.
 inline Target target_of(const Options& o, const Scene& scene) {
-    if (o.target.samples > 0 || o.target.seconds > 0) return o.target;
+    if (o.spp > 0 || o.seconds > 0) return {o.spp, o.seconds};
     return {scene.samples, 0};
 }
 
@@ -81,7 +81,7 @@ void check_finite(const Film<Pixel>& film) {
 // Renders row by row, row(y, n, rays), which counts its rays.
 template <class Pixel, class Row>
 RunStats fill(Film<Pixel>& film, const Job& job, Row row) {
-    Progress progress(job.passes.target, job.o.quiet);
+    SampleProgress progress(job.passes.target, job.o.quiet);
     std::atomic<uint64_t> rays = 0;
     auto counted = [&](int y, uint64_t n) {
         uint64_t row_rays = 0;

@@ -1,4 +1,4 @@
-// app/replay.h  4  one path in words (--pixel)
+// app/replay.h  5  one path in words (--pixel)
 #pragma once
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-// app/report.h  2  what a run tells: progress, summary, statistics
+// app/report.h  2  what runs tell: progress on stderr, statistics in JSON
 #pragma once
 #include <sys/resource.h>
 #include <unistd.h>
@@ -8,19 +8,8 @@
 #include <cstdio>
 #include <string>
 
-#include "app/options.h"
+#include "app/option.h"
 #include "film/image.h"
-
-// What a run measured.
-struct RunStats {
-    uint64_t spp = 0;
-    double seconds = 0;
-    uint64_t rays = 0;
-    uint64_t non_finite = 0;
-    bool interrupted = false;
-    std::array<double, 3> mean_radiance{}, variance_of_mean{};  // a channel at a time
-    uint64_t redraws = 0, fallbacks = 0;                        // of weights, see Weigher
-};
 
 inline std::string fixed(double x, int digits) {
     char text[64];
@@ -28,12 +17,15 @@ inline std::string fixed(double x, int digits) {
     return text;
 }
 
+// ---- Progress -----------------------------------------------------------------------------------
+
 // On a terminal a bar that is drawn over itself and goes at the end, elsewhere a plain line now and
 // then; on stderr.
 class Progress {
 public:
-    Progress(const Target& target, bool quiet)
-        : target_(target), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+    // Of a run that ends after so many seconds; 0: no limit.
+    Progress(double limit, bool quiet)
+        : limit_(limit), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     ~Progress() {
@@ -42,18 +34,15 @@ public:
 
     double elapsed() const { return std::chrono::duration<double>(clock::now() - start_).count(); }
 
-    // `samples` so far, with the finished part of the running pass.
-    void show(double samples) {
+    // `done` is the fraction of all work, 0 if the clock alone ends it; `words` say it in its unit.
+    void show(double done, const std::string& words) {
         const double now = elapsed();
         if (quiet_ || now < next_) return;
         next_ = now + (terminal_ ? 0.1 : 2.0);
-        double done = 0;
-        if (target_.samples) done = samples / double(target_.samples);
-        if (target_.seconds > 0) done = std::max(done, now / target_.seconds);
+        if (limit_ > 0) done = std::max(done, now / limit_);
         done = std::min(done, 1.0);
         std::string left = done > 0 ? fixed(now / done - now, 1) + " s left" : "";
-        std::string text =
-            fixed(samples, 1) + " samples per pixel, " + fixed(now, 1) + " s elapsed, " + left;
+        std::string text = words + ", " + fixed(now, 1) + " s elapsed, " + left;
         if (terminal_) {
             std::string bar(size_t(24 * done), '#');
             bar.resize(24, '.');
@@ -67,21 +56,13 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
-    const Target target_;
+    const double limit_;
     const bool quiet_;
     const bool terminal_;
     const clock::time_point start_ = clock::now();
     double next_ = terminal_ ? 0.1 : 2.0;
     bool shown_ = false;
 };
-
-// The line that stays.
-inline std::string summary(const std::string& scene, const RunStats& run) {
-    return scene + ": " + std::to_string(run.spp) + " samples per pixel, " + fixed(run.seconds, 2) +
-           " s, " + fixed(double(run.rays) / run.seconds * 1e-6, 2) + " Mrays/s, " +
-           std::to_string(run.non_finite) + " non-finite" +
-           (run.interrupted ? " (interrupted)" : "");
-}
 
 // ---- Statistics (--stats) ---------------------------------------------------------------------
 
@@ -138,34 +119,31 @@ inline std::string numbers(std::array<double, 3> x) {
     return text;
 }
 
+inline std::string truth(bool b) { return b ? "true" : "false"; }
+
+// An object of one member a line.
+class Object {
+public:
+    void add(const std::string& key, const std::string& value) {
+        text_ += (text_.empty() ? "  \"" : ",\n  \"") + key + "\": " + value;
+    }
+    std::string text() const { return "{\n" + text_ + "\n}\n"; }
+
+private:
+    std::string text_;
+};
+
 }  // namespace json
 
-// One object.
-inline std::string encode_stats(const Options& o, Size size, int depth, const RunStats& run) {
-    std::string text = "{\n";
-    auto line = [&](const std::string& key, const std::string& value) {
-        text += (text.size() > 2 ? ",\n  \"" : "  \"") + key + "\": " + value;
-    };
-    auto count = [](auto n) { return std::to_string(n); };
-    line("scene", json::string(o.scene));
-    line("width", count(size.width));
-    line("height", count(size.height));
-    for (const Option& row : option_table)
+// What was asked for: the statistics begin with it.
+template <class O>
+json::Object asked_for(const O& o, const OptionTable<O>& table, Size size) {
+    json::Object object;
+    object.add("scene", json::string(o.scene));
+    object.add("width", std::to_string(size.width));
+    object.add("height", std::to_string(size.height));
+    for (const Option<O>& row : table)
         if (const std::string value = row.stats(o); !value.empty())
-            line(std::string(row.name.substr(2)), value);
-    line("depth", count(depth));
-    line("film_redraws", count(run.redraws));
-    line("film_fallbacks", count(run.fallbacks));
-    line("precision", sizeof(real) == 4 ? "\"float\"" : "\"double\"");
-    line("interrupted", run.interrupted ? "true" : "false");
-    line("samples_per_pixel", count(run.spp));
-    line("seconds", json::number(run.seconds));
-    line("cpu_seconds", json::number(cpu_seconds()));
-    line("rays", count(run.rays));
-    line("mrays_per_second", json::number(double(run.rays) / run.seconds * 1e-6));
-    line("mean_radiance", json::numbers(run.mean_radiance));
-    line("variance_of_mean", json::numbers(run.variance_of_mean));
-    line("non_finite", count(run.non_finite));
-    line("peak_memory_bytes", count(peak_memory_bytes()));
-    return text + "\n}\n";
+            object.add(std::string(row.name.substr(2)), value);
+    return object;
 }

@@ -1,4 +1,4 @@
-// app/views.h  2  other things to look at than radiance (--view)
+// app/views.h  3  other things to look at than radiance (--view)
 #pragma once
 #include "app/options.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <ctime>
 
-#include "app/report.h"
+#include "app/summary.h"
 #include "base/stats.h"
 #include "labs/lab.h"
 #include "path/pathtracer.h"
@@ -233,7 +233,7 @@ inline Result measure(const std::string& name, const Plan& plan) {
     r.of.resize(r.ns.size());
     r.variance.fill(Image(plan.size.width, plan.size.height));
     std::mutex mutex;
-    Progress progress({plan.most, 0}, false);
+    SampleProgress progress({plan.most, 0}, false);
     auto row = [&](int y) {
         Weigher weigher;
         std::vector<std::array<Tally, techniques>> mine(r.ns.size());

@@ -3,12 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include "app/options.h"
+#include "app/radiosity_options.h"
 #include "base/files.h"
 
 namespace {
 
 // A value that the option takes.
-std::string value_of(const Option& o) {
+std::string value_of(const Option<Options>& o) {
     if (o.value.find('|') != o.value.npos) return std::string(option::words_of(o.value).back());
     if (o.value == "FILE") return "a.png";
     if (o.value == "WxH") return "3x2";
@@ -27,8 +29,8 @@ std::string between(const std::string& text, const std::string& name) {
 }  // namespace
 
 TEST_CASE("every option is in --help and can be given") {
-    const std::string page = help_page();
-    for (const Option& o : option_table) {
+    const std::string page = "\n" + option_lines(option_table);
+    for (const Option<Options>& o : option_table) {
         const std::string name(o.name), value(o.value);
         INFO(name);
         CHECK(page.find("\n  " + name + " " + value) != page.npos);
@@ -46,12 +48,15 @@ TEST_CASE("every option is in --help and can be given") {
     CHECK(parse_options({"-h"}).help);
 }
 
-TEST_CASE("the README's tables are the program's: make readme") {
+TEST_CASE("the tables of README and reference are the programs': make readme") {
     const std::string readme = read_file("README.md");
-    const bool options = between(readme, "options") == help_markdown();
+    const bool options = between(readme, "options") == option_markdown(option_table);
     CHECK(options);
     const bool statements = between(readme, "statements") == grammar_markdown();
     CHECK(statements);
+    const std::string page = read_file("reference/radiosity-options.md");
+    const bool radiosity = between(page, "options") == option_markdown(radiosity_table);
+    CHECK(radiosity);
 }
 
 TEST_CASE("a row of Markdown has its words once, and no bar that ends a column") {

@@ -30,8 +30,8 @@ TEST_CASE("every option sets what it is named after") {
                              "--sample",  "9",          "-o",     "a.pfm",   "-o",
                              "b.png",     "--halves",   "--quiet"});
     CHECK(o.scene == "a.scene");
-    CHECK(o.target.samples == 7);
-    CHECK(o.target.seconds == 2.5);
+    CHECK(o.spp == 7);
+    CHECK(o.seconds == 2.5);
     CHECK(o.depth == 3);
     CHECK(o.technique.roulette == 4);
     CHECK(o.seed == UINT64_MAX);
@@ -69,8 +69,8 @@ TEST_CASE("words of choices mean what they say") {
 
 TEST_CASE("without options: Halton samples, importance-sampled, MIS") {
     const Options o = parse({});
-    CHECK(o.target.samples == 0);  // the scene's
-    CHECK(o.target.seconds == 0);
+    CHECK(o.spp == 0);  // the scene's
+    CHECK(o.seconds == 0);
     CHECK(o.sampler == SamplerKind::halton);
     CHECK(o.technique.direction == Direction::bsdf);
     CHECK(o.technique.light == LightMode::mis);
@@ -106,7 +106,7 @@ TEST_CASE("--film other than mc: independent samples, their number known, no var
     CHECK(parse({"--film", "mc", "--time", "1"}).film == Weighting::mc);
     for (const char* film : {"vor", "fvor", "cvor", "torus"}) {
         CHECK_THROWS_AS(parse({"--film", film, "--time", "1"}), UserError);
-        CHECK(parse({"--film", film, "--spp", "1048576"}).target.samples == 1048576);
+        CHECK(parse({"--film", film, "--spp", "1048576"}).spp == 1048576);
         CHECK_THROWS_AS(parse({"--film", film, "--spp", "1048577"}), UserError);
         CHECK_THROWS_AS(parse({"--film", film, "--view", "variance"}), UserError);
         CHECK_THROWS_AS(parse_options({"--film", film, "x.scene"}), UserError);

@@ -14,7 +14,7 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
          {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton}) {
         Options o;
         o.sampler = kind;
-        o.target.samples = 4;
+        o.spp = 4;
         o.quiet = true;
         o.seed = seed_here();
         const Job job = job_of(o, scene);
@@ -44,7 +44,7 @@ TEST_CASE("the statistics' variance is that of the mean from seed to seed") {
         o.sampler = halves ? SamplerKind::halton : SamplerKind::independent;
         o.halves = halves;
         o.seed = seed_here();
-        o.target.samples = 8;
+        o.spp = 8;
         o.threads = 1;
         o.quiet = true;
         Moments means, predicted;
@@ -76,7 +76,7 @@ Options direct_options(Estimator e, uint64_t seed, uint64_t spp) {
     o.direct = e;
     o.sampler = SamplerKind::independent;
     o.seed = seed;
-    o.target.samples = spp;
+    o.spp = spp;
     o.threads = 1;
     o.quiet = true;
     return o;

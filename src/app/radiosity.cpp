@@ -1,0 +1,267 @@
+// app/radiosity.cpp  6  the program: a scene's illumination maps, and what its camera sees of them
+#include "app/help.h"
+#include "app/mesh_view.h"
+#include "app/outputs.h"
+#include "app/radiosity_options.h"
+#include "app/report.h"
+#include "base/program.h"
+#include "radiosity/particles.h"
+#include "radiosity/shooting.h"
+
+namespace {
+
+constexpr const char* before_options =
+    "usage: radiosity [options] SCENE\n\nFinds the illumination of SCENE (a file in the format of "
+    "scenes/*.scene, all of\nit diffuse), on triangles that its faces are cut into, and draws what "
+    "its camera\nsees of them.  Light is scattered without end, whatever the scene's depth.\n\n";
+
+constexpr const char* after_options = R"(
+A .pfm holds linear radiance; a .png holds exposure times radiance, clamped to
+[0,1] and encoded as sRGB.  Pixel (0,0) is the top left one.
+
+Exit status: 0 done; 1 a file could not be written; 2 the scene or an option
+cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM, 129 SIGHUP), after
+writing the image of the light found so far.
+)";
+
+// ---- What is measured ---------------------------------------------------------------------------
+
+// What a method has found; NaN: it does not say.
+struct Solution {
+    Map map;
+    uint64_t shots = 0, particles = 0, rays = 0;
+    double unshot = NAN, error = NAN, seconds = 0;
+    int signal = 0;  // that cut it short
+    bool empty() const { return shots == 0 && particles == 0; }
+};
+
+// "0.982 %"
+std::string percent(double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g %%", 100 * x);
+    return text;
+}
+
+// How far it is, for the bar and for the line that stays.
+std::string walked(uint64_t particles, double error) {
+    return std::to_string(particles) + " particles" +
+           (std::isfinite(error) ? ", error " + percent(error) : "");
+}
+std::string shot(uint64_t shots, double unshot) {
+    return std::to_string(shots) + " shots, " + percent(unshot) + " unshot";
+}
+
+std::string summary(const std::string& scene, const Mesh& mesh, const Solution& s) {
+    return scene + ": " + std::to_string(mesh.elements()) + " triangles, " +
+           (std::isnan(s.unshot) ? walked(s.particles, s.error) : shot(s.shots, s.unshot)) + ", " +
+           fixed(s.seconds, 2) + " s, " + fixed(double(s.rays) / s.seconds * 1e-6, 2) + " Mrays/s" +
+           (s.signal ? " (interrupted)" : "");
+}
+
+// ---- The scene ----------------------------------------------------------------------------------
+
+struct Stage {
+    Scene scene;  // of triangles
+    Mesh mesh;
+    double H = 0;      // longest edge
+    double bytes = 0;  // of mesh and solution
+};
+
+Bytes bytes_of(const RadiosityOptions& o) {
+    return is_random(o) ? Particles::bytes() : Shooting::bytes();
+}
+
+double diagonal(const Scene& scene) {
+    Box box;
+    for (const Shape& s : scene.shapes) box.add(bounds(s));
+    return double(length(box.hi - box.lo));
+}
+
+// How long edges are; throws UserError if the scene is none for illumination maps, or its mesh none
+// for this machine.
+double edge_length(const RadiosityOptions& o, const Scene& scene) {
+    check_diffuse(scene, o.scene);
+    const double H = o.mesh.value_or(diagonal(scene) / 32);
+    try {
+        check_fits(scene, H, bytes_of(o), bytes_of_machine());
+    } catch (const UserError& e) {
+        throw UserError("--mesh: " + std::string(e.what()));
+    }
+    return H;
+}
+
+Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
+    auto [facets, warnings] = faceted(scene, H);
+    for (const std::string& w : warnings) tell(o, o.scene + ":" + w);
+    Stage stage{std::move(facets), {}, H, bytes_of(o).of(sizes(scene, H))};
+    stage.mesh = make_mesh(stage.scene, H);
+    return stage;
+}
+
+// ---- Methods ------------------------------------------------------------------------------------
+
+Solution shoot(const RadiosityOptions& o, const Stage& stage) {
+    const Shooter shooter = o.method == Method::shooting ? Shooter::element : Shooter::face;
+    Shooting solver(stage.scene, stage.mesh, shooter, o.threads);
+    Progress progress(o.seconds, o.quiet);
+    solver.run({o.unshot, o.seconds, o.shots}, [&](const Shooting& now) {
+        const double unshot = now.unshot();
+        // It falls by about the same factor from shot to shot.
+        double done = o.shots ? double(now.shots()) / double(o.shots) : 0;
+        if (o.unshot > 0 && o.unshot < 1 && unshot > 0)
+            done = std::max(done, std::log(unshot) / std::log(o.unshot));
+        progress.show(done, shot(now.shots(), unshot));
+    });
+    Solution s{solver.map()};
+    s.shots = solver.shots(), s.rays = solver.rays(), s.unshot = solver.unshot();
+    s.seconds = progress.elapsed();
+    return s;
+}
+
+// Particles, as render() fills a film and shows how far it is.
+class Walks {
+public:
+    Walks(const RadiosityOptions& o, Particles& particles)
+        : quiet_(o.quiet), limit_(o.particles), particles_(particles), bar_(o.seconds, o.quiet) {}
+
+    const Size size{1, Particles::batches};
+    uint64_t samples() const { return particles_.samples(); }
+    uint64_t non_finite() const { return particles_.non_finite(); }
+
+    // The error takes time of its own: it is asked for when the particles have doubled.
+    void end_pass(uint64_t n) {
+        particles_.end_pass(n);
+        if (quiet_ || samples() < 2 * of_ || elapsed() < 1) return;
+        of_ = samples();
+        error_ = particles_.error();
+    }
+
+    double elapsed() const { return bar_.elapsed(); }
+
+    // In the meantime it falls like 1 / sqrt(n).
+    void show(double samples) {
+        const double n = samples * Particles::batches;
+        bar_.show(limit_ ? n / double(limit_) : 0,
+                  walked(uint64_t(n), error_ * std::sqrt(double(of_) / samples)));
+    }
+
+private:
+    const bool quiet_;
+    const uint64_t limit_;
+    Particles& particles_;
+    Progress bar_;
+    uint64_t of_ = 0;  // samples at which the error was that
+    double error_ = NAN;
+};
+
+Solution walk_all(const RadiosityOptions& o, const Stage& stage) {
+    const Pattern pattern = Particles::pattern(o.sampler, o.seed, o.particles);
+    Particles particles(stage.scene, stage.mesh, pattern);
+    Walks walks(o, particles);
+    const uint64_t a_batch = (o.particles + Particles::batches - 1) / Particles::batches;
+    if (!stage.scene.lights.empty())
+        render(
+            walks, {{a_batch, o.seconds}, pattern.period(), o.threads},
+            [&](int batch, uint64_t n) { particles.add(batch, n); }, walks);
+    Solution s;
+    s.particles = particles.particles(), s.rays = particles.rays();
+    s.map = s.particles > 0 ? particles.map() : Map(number_of_sides(stage.mesh));
+    s.error = particles.error();
+    s.seconds = walks.elapsed();
+    return s;
+}
+
+Solution solve(const RadiosityOptions& o, const Stage& stage) {
+    Solution s = is_random(o) ? walk_all(o, stage) : shoot(o, stage);
+    s.signal = interrupted;
+    return s;
+}
+
+// ---- Images and statistics ----------------------------------------------------------------------
+
+Image picture_of(const RadiosityOptions& o, const Stage& stage, const Map& map) {
+    const auto& [scene, mesh, H, bytes] = stage;
+    if (o.view == MapView::illuminance)
+        return irradiance_image(scene, mesh, map, o.rays, o.threads);
+    Image image = radiance_image(scene, mesh, map, o.rays, o.threads);
+    if (o.view == MapView::mesh) draw_mesh(image, scene, mesh, o.rays, o.threads);
+    return image;
+}
+
+// The picture to its end even after Ctrl-C, which ends the search for light alone; a second one
+// kills.
+Image picture_to_the_end(const RadiosityOptions& o, const Stage& stage, Solution& s) {
+    Image image = picture_of(o, stage, s.map);
+    while (interrupted) {  // rows are missing
+        s.signal = interrupted.exchange(0);
+        image = picture_of(o, stage, s.map);
+    }
+    return image;
+}
+
+std::string encode_stats(const RadiosityOptions& o, const Stage& stage, const Solution& s,
+                         const std::array<double, 3>& mean) {
+    const Mesh& mesh = stage.mesh;
+    json::Object object = asked_for(o, radiosity_table, stage.scene.size);
+    auto count = [](auto n) { return std::to_string(n); };
+    object.add("rays_per_pixel", count(o.rays * o.rays));
+    object.add("mesh", json::number(stage.H));
+    object.add("faces", count(mesh.faces.size()));
+    object.add("elements", count(mesh.elements()));
+    object.add("vertices", count(mesh.vertices()));
+    object.add("bytes", json::number(stage.bytes));
+    object.add("precision", sizeof(real) == 4 ? "\"float\"" : "\"double\"");
+    object.add("interrupted", json::truth(s.signal != 0));
+    object.add("shots", count(s.shots));
+    object.add("unshot", json::number(s.unshot));
+    object.add("particles", count(s.particles));
+    object.add("error", json::number(s.error));
+    object.add("seconds", json::number(s.seconds));
+    object.add("cpu_seconds", json::number(cpu_seconds()));
+    object.add("rays", count(s.rays));
+    object.add("mrays_per_second", json::number(double(s.rays) / s.seconds * 1e-6));
+    object.add("mean_of_image", json::numbers(mean));
+    object.add("peak_memory_bytes", count(peak_memory_bytes()));
+    return object.text();
+}
+
+void write(const RadiosityOptions& o, const Stage& stage, Solution& s,
+           const std::vector<std::string>& outputs) {
+    const Image picture = picture_to_the_end(o, stage, s);
+    const auto mean = mean_of_pixels(picture);
+    const real exposure = stage.scene.exposure;
+    write_images(outputs, picture, o.view == MapView::illuminance ? exposure / pi : exposure);
+    if (!o.stats.empty()) write_file(o.stats, encode_stats(o, stage, s, mean));
+    tell(o, summary(o.scene, stage.mesh, s));
+    tell_written(o, outputs);
+    if (!stage.scene.lights.empty() && mean == std::array<double, 3>{}) tell_black(o);
+}
+
+// The program; returns its exit status, throws UserError and SystemError.
+int radiosity(const std::vector<std::string>& words) {
+    const RadiosityOptions o = parse_radiosity(words);
+    if (o.help) {
+        std::printf("%s%s%s", before_options, option_lines(radiosity_table).c_str(), after_options);
+        return 0;
+    }
+    ParsedScene parsed = read_scene(o.scene);
+    parsed.scene.size = o.size.value_or(parsed.scene.size);
+    parsed.scene.exposure = o.exposure.value_or(parsed.scene.exposure);
+    const double H = edge_length(o, parsed.scene);
+    const std::vector<std::string> outputs = outputs_of(o, "-radiosity", parsed.files);
+    catch_interrupt();
+    for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
+    const Stage stage = stage_of(o, parsed.scene, H);
+    Solution s = solve(o, stage);
+    if (s.empty() && s.signal)
+        tell(o, summary(o.scene, stage.mesh, s));
+    else
+        write(o, stage, s, outputs);
+    return s.signal ? 128 + s.signal : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return exit_status([&] { return radiosity({argv + 1, argv + argc}); });
+}
