@@ -28,7 +28,7 @@ writing the image of the light found so far.
 
 // What a method has found; NaN: it does not say.
 struct Solution {
-    Map map;
+    IlluminationMap map;
     uint64_t shots = 0, particles = 0, rays = 0;
     double unshot = NAN, error = NAN, seconds = 0;
     int signal = 0;  // that cut it short
@@ -165,7 +165,7 @@ Solution walk_all(const RadiosityOptions& o, const Stage& stage) {
             [&](int batch, uint64_t n) { particles.add(batch, n); }, walks);
     Solution s;
     s.particles = particles.particles(), s.rays = particles.rays();
-    s.map = s.particles > 0 ? particles.map() : Map(number_of_sides(stage.mesh));
+    s.map = s.particles > 0 ? particles.map() : IlluminationMap(number_of_sides(stage.mesh));
     s.error = particles.error();
     s.seconds = walks.elapsed();
     return s;
@@ -179,7 +179,7 @@ Solution solve(const RadiosityOptions& o, const Stage& stage) {
 
 // ---- Images and statistics ----------------------------------------------------------------------
 
-Image picture_of(const RadiosityOptions& o, const Stage& stage, const Map& map) {
+Image picture_of(const RadiosityOptions& o, const Stage& stage, const IlluminationMap& map) {
     const auto& [scene, mesh, H, bytes] = stage;
     if (o.view == MapView::illuminance)
         return irradiance_image(scene, mesh, map, o.rays, o.threads);

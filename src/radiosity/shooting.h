@@ -237,25 +237,23 @@ private:
         return from_node(to, from, node_, transfer);
     }
 
-    // A node with children is taken as a whole if the vertex sees it under a small angle.
+    // A node with children is taken as a whole if the vertex sees it under a small angle, or if it
+    // is faint (brightness-weighted refinement, Hanrahan et al. 1991).
     rgb from_node(const Receiver& to, const Source& from, uint32_t i, Transfer& transfer) const {
         const Node& node = tree_[i];
         const Corners& L = radiance_[i];
-        if (node.children == 0 && !is_faint(to, node, L))
-            return transfer.from_element(to, from, node, L);
-        if (!near(to, node, 8) || is_faint(to, node, L))
-            return transfer.from_whole(to, from, node, L.mean());
+        if (is_faint(to, node, L.mean())) return transfer.from_whole(to, from, node, L.mean(), 1);
+        if (node.children == 0) return transfer.from_element(to, from, node, L);
+        if (!near(to, node, 8)) return transfer.from_whole(to, from, node, L.mean(), 1);
         rgb E;
         for (uint32_t k = node.first; k < node.first + node.children; ++k)
             E += from_node(to, from, k, transfer);
         return E;
     }
 
-    static real bound(const Receiver& to, const Node& node, real L) {
+    // pi L (r / d)^2 is about the most that a node of radius r sends.
+    bool is_faint(const Receiver& to, const Node& node, rgb L) const {
         const vec3 d = node.centre - to.x.p;
-        return pi * L * std::min(real(1), sqr(node.radius) / dot(d, d));
-    }
-    bool is_faint(const Receiver& to, const Node& node, const Corners& L) const {
-        return bound(to, node, mean_of(L.mean())) < faint_;
+        return pi * mean_of(L) * std::min(real(1), sqr(node.radius) / dot(d, d)) < faint_;
     }
 };

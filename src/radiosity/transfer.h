@@ -52,24 +52,24 @@ public:
     rgb from_element(const Receiver& to, const Source& from, const Node& node, const Corners& L,
                      int depth = 0) {
         constexpr int deepest = 6;
-        if (depth == deepest || !near(to, node, 4)) return from_whole(to, from, node, L.mean());
+        if (depth == deepest || !near(to, node, 4))
+            return from_whole(to, from, node, L.mean(), depth == 0 && near(to, node, 8) ? 4 : 1);
         const auto& [a, b, c, unused] = node.corner;
         const vec3 ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
         const rgb Lab = (L[0] + L[1]) / 2, Lbc = (L[1] + L[2]) / 2, Lca = (L[2] + L[0]) / 2;
         auto part = [&](const std::array<vec3, 4>& corner, const Corners& of) {
-            Node quarter = node_of(corner, 3);
-            quarter.part = true;
-            return from_element(to, from, quarter, of, depth + 1);
+            return from_element(to, from, node_of(corner, 3), of, depth + 1);
         };
         return part({a, ab, ca}, {{L[0], Lab, Lca}}) + part({ab, b, bc}, {{Lab, L[1], Lbc}}) +
                part({ca, bc, c}, {{Lca, Lbc, L[2]}}) + part({bc, ca, ab}, {{Lbc, Lca, Lab}});
     }
 
     // A node of one radiance: the closed form of what it would send if nothing were in the way
-    // (Lambert's theorem) times the part of it that is visible.
-    rgb from_whole(const Receiver& to, const Source& from, const Node& node, rgb L) {
+    // (Lambert's theorem) times the part of it that is visible, by one shadow ray or four.
+    rgb from_whole(const Receiver& to, const Source& from, const Node& node, rgb L,
+                   int shadow_rays) {
         if (max_of(L) <= 0 || dot(node.centre - to.x.p, to.x.n) < -node.radius) return {};
-        const real visible = visible_part(to, from, node);
+        const real visible = visible_part(to, from, node, shadow_rays);
         return visible > 0 ? L * (visible * irradiance_polygon(seen_from(to, node))) : rgb{};
     }
 
@@ -81,20 +81,17 @@ private:
         return !scene_.bvh.occluded(spawn_to(to.x, y));
     }
 
-    // By shadow rays to the middles of its four quarters, or to its centre if it is far away for
-    // its size or itself a part of an element.  None ends below the horizon, unless all would: then
-    // one goes to the middle of what is above.
-    real visible_part(const Receiver& to, const Source& from, const Node& node) {
+    // By shadow rays to the centre, or to the middles of four quarters.  None ends below the
+    // horizon, unless all would: then one goes to the middle of what is above.
+    real visible_part(const Receiver& to, const Source& from, const Node& node, int shadow_rays) {
         int above = 0, visible = 0;
         auto look_at = [&](vec3 p) {
             if (!(dot(p - to.x.p, to.x.n) > 0)) return;
             ++above;
             visible += sees(to, {p, from.n, from.error});
         };
-        if (node.part || !near(to, node, 8))
-            look_at(node.centre);
-        else
-            for (uint32_t k = 0; k < 4; ++k) look_at(middle_of_quarter(node, k));
+        if (shadow_rays == 1) look_at(node.centre);
+        for (uint32_t k = 0; shadow_rays == 4 && k < 4; ++k) look_at(middle_of_quarter(node, k));
         if (above == 0) look_at(middle_above(to, node));
         return above == 0 ? 0 : real(visible) / real(above);
     }

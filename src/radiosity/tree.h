@@ -9,11 +9,10 @@ struct Node {
     uint32_t children = 0, first = 0;  // consecutive nodes; none: the element `first`
     vec3 centre;
     real area = 0, radius = 0;  // of the corners about the centre
-    bool part = false;          // of an element
 };
 
 inline Node node_of(const std::array<vec3, 4>& corner, uint32_t corners) {
-    Node n{corner, corners, 0, 0, {}, 0, 0, false};
+    Node n{corner, corners, 0, 0, {}, 0, 0};
     for (uint32_t k = 0; k < corners; ++k) n.centre += corner[k] / real(corners);
     for (uint32_t k = 0; k < corners; ++k)
         n.radius = std::max(n.radius, length(corner[k] - n.centre));
