@@ -64,7 +64,7 @@ private:
     bool shown_ = false;
 };
 
-// ---- Statistics (--stats) ---------------------------------------------------------------------
+// ---- Statistics (--stats) -----------------------------------------------------------------------
 
 // Mean over an image, a channel at a time; NaN stays NaN.
 inline std::array<double, 3> mean_of_pixels(const Image& image) {

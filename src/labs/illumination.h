@@ -18,8 +18,7 @@ inline double d_rel(const Image& f, const Image& g) {
     return std::sqrt(mse(f, g) * 3 * double(f.pixels.size()) / square);
 }
 
-// ---- Rooms
-// ----------------------------------------------------------------------------------------
+// ---- Rooms --------------------------------------------------------------------------------------
 
 // A scene and its triangles, no edge of them longer than H.
 struct Room {
@@ -87,8 +86,7 @@ private:
     }
 };
 
-// ---- Solutions
-// ------------------------------------------------------------------------------------
+// ---- Solutions ----------------------------------------------------------------------------------
 
 struct Filled {
     Image image;

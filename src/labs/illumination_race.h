@@ -22,8 +22,7 @@ inline Power power_through(const Curve& c) {
     return {std::exp(log_factor / double(c.error.size())), p};
 }
 
-// ---- References whose error is inferred
-// -------------------------------------------------------------
+// ---- References whose error is inferred ---------------------------------------------------------
 
 // The error of an image is proportional to what a run reports of its map (Khodulev 1996, ch. 5).
 // Of two runs with reports a and b, the squares add: d = k sqrt(a^2 + b^2).
@@ -62,8 +61,7 @@ inline Proportion proportion(const std::vector<Filled>& shorter, const Filled& l
     return p;
 }
 
-// ---- A race
-// -----------------------------------------------------------------------------------------
+// ---- A race -------------------------------------------------------------------------------------
 
 // What is run: the longest Monte Carlo run, and where shooting ends.
 struct Course {

@@ -4,8 +4,7 @@
 
 #include "world/scene_file.h"
 
-// ---- What cannot be held
-// --------------------------------------------------------------------------
+// ---- What cannot be held ------------------------------------------------------------------------
 
 inline const char* other_than_diffuse(const Material& m) {
     if (m.kind == Material::Kind::mirror) return "a mirror";
@@ -22,8 +21,7 @@ inline void check_diffuse(const Scene& s, const std::string& name) {
                             ": illumination maps hold diffuse surfaces alone");
 }
 
-// ---- Spheres
-// --------------------------------------------------------------------------------------
+// ---- Spheres ------------------------------------------------------------------------------------
 
 // How often the faces of an icosahedron are quartered: twice at least, and until no edge is longer
 // than H.  Its edges are 1.052 radii long, and on their way out to the sphere grow by less than a
@@ -68,8 +66,7 @@ inline std::vector<std::array<vec3, 3>> quartered(const std::vector<std::array<v
     return out;
 }
 
-// ---- The scene of facets
-// --------------------------------------------------------------------------
+// ---- The scene of facets ------------------------------------------------------------------------
 
 struct Faceted {
     Scene scene;

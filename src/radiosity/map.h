@@ -37,8 +37,7 @@ inline rgb emitted_power(const Scene& s) {
     return power;
 }
 
-// ---- Images
-// ---------------------------------------------------------------------------------------
+// ---- Images -------------------------------------------------------------------------------------
 
 struct Seen {
     rgb E, L;  // irradiance, and radiance Le + albedo E / pi towards the eye

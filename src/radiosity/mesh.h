@@ -4,8 +4,7 @@
 
 #include "radiosity/facets.h"
 
-// ---- Faces
-// ----------------------------------------------------------------------------------------
+// ---- Faces --------------------------------------------------------------------------------------
 
 // A parallelogram a b c d, which two triangles (a, b, c) and (a, c, d) of the scene are, or one
 // triangle a b c; cut into a grid of columns x rows cells along ab and ad, or into rows^2
@@ -71,8 +70,7 @@ inline Grid grid_of(const Face& f, double H) {
     return g;
 }
 
-// ---- The mesh
-// -------------------------------------------------------------------------------------
+// ---- The mesh -----------------------------------------------------------------------------------
 
 struct Mesh {
     std::vector<Face> faces;
@@ -138,8 +136,7 @@ inline Between between(const Mesh& mesh, const Hit& hit) {
     return {triangle_at(f, i, j, half), w};
 }
 
-// ---- Construction
-// ---------------------------------------------------------------------------------
+// ---- Construction -------------------------------------------------------------------------------
 
 // Corner (i, j) of the grid, which may lie between its points.
 inline vec3 point_at(const Face& f, real i, real j) {
