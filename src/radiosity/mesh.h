@@ -40,8 +40,8 @@ inline Face face_at(const Scene& s, uint32_t i) {
     return f;
 }
 
-// The fewest cells for which no edge is longer than H; of a triangle a power of two, so that it can
-// be quartered.  Double, for there may be too many.
+// Few cells for which no edge is longer than H; of a triangle the fewest rows that are a power of
+// two, so that it can be quartered.  Double, for there may be too many.
 struct Grid {
     double columns = 1, rows = 1;
 };
@@ -165,9 +165,12 @@ struct Sizes {
 inline Sizes sizes(const Scene& s, double H) {
     Sizes sum;
     for (uint32_t i = 0; i < s.shapes.size(); ++i) {
-        if (s.shapes[i].is_sphere()) {  // facets, some of which need another cut
-            const double n = facets_of_sphere(s.shapes[i].r, H);
-            sum.faces += n, sum.elements += n, sum.vertices += 3 * n;
+        if (const real r = s.shapes[i].r; r > 0) {  // a sphere: at most, if facets are cut again
+            const double n = facets_of_sphere(r, H), edge = edge_of_facets(r, quarterings(r, H));
+            double rows = 1;
+            while (edge / rows > H) rows *= 2;
+            sum.faces += n, sum.elements += n * rows * rows;
+            sum.vertices += n * (rows + 1) * (rows + 2) / 2;
             continue;
         }
         const Face f = face_at(s, i);

@@ -1,0 +1,218 @@
+// radiosity/facets_test.cpp  icospheres; what becomes of lights; what is refused
+#include "radiosity/facets.h"
+
+#include <map>
+
+#include "radiosity/rooms.h"
+
+using namespace rooms;
+
+namespace {
+
+using Facet = std::array<vec3, 3>;
+
+std::vector<Facet> icosphere(int k) {
+    auto faces = icosahedron();
+    for (; k > 0; --k) faces = quartered(faces);
+    return faces;
+}
+
+double longest_edge(const std::vector<Facet>& faces) {
+    double longest = 0;
+    for (const auto& [a, b, c] : faces)
+        longest = std::max(
+            {longest, double(length(a - b)), double(length(b - c)), double(length(c - a))});
+    return longest;
+}
+
+std::array<double, 3> key(vec3 p) { return {double(p.x), double(p.y), double(p.z)}; }
+
+const std::string camera = "camera 0 0 50  0 0 0  40\n";
+Scene parsed(const std::string& text) { return parse_scene(camera + text, "a.scene").scene; }
+
+std::string complaint(const std::string& text) {
+    try {
+        check_diffuse(parsed(text), "a.scene");
+        return "";
+    } catch (const UserError& e) {
+        return e.what();
+    }
+}
+
+double area(const Scene& s) {
+    double sum = 0;
+    for (const Shape& t : s.shapes) sum += double(length(area_vector(t))) / 2;
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("icospheres are closed, and look outwards: every edge has two facets, one each way") {
+    for (int k = 0; k < 5; ++k) {
+        CAPTURE(k);
+        const auto faces = icosphere(k);
+        REQUIRE(faces.size() == size_t(20 * std::pow(4, k)));
+        std::map<std::pair<std::array<double, 3>, std::array<double, 3>>, int> edges;
+        std::map<std::array<double, 3>, int> vertices;
+        int outwards = 0;
+        for (const Facet& f : faces) {
+            outwards += dot(cross(f[1] - f[0], f[2] - f[0]), f[0] + f[1] + f[2]) > 0;
+            for (size_t i = 0; i < 3; ++i) {
+                ++edges[{key(f[i]), key(f[(i + 1) % 3])}], ++vertices[key(f[i])];
+                CHECK(std::abs(length(f[i]) - 1) <= 4 * ulp);
+            }
+        }
+        CHECK(outwards == int(faces.size()));
+        // Euler: V - E + F = 2.
+        CHECK(vertices.size() == faces.size() / 2 + 2);
+        REQUIRE(edges.size() == 3 * faces.size());
+        for (const auto& [edge, count] : edges) {
+            CHECK(count == 1);
+            CHECK(edges.contains({edge.second, edge.first}));
+        }
+    }
+    CHECK(longest_edge(icosphere(0)) ==
+          approx(4 / std::sqrt(10 + 2 * std::sqrt(5.0)), 1e-14, 1e-6));
+}
+
+TEST_CASE("as many quarterings as an edge needs: none is longer than H, one less would not do") {
+    for (double H : {3.0, 0.7, 0.4, 0.36, 0.2, 0.17, 0.1, 0.083, 0.07})
+        for (double r : {1.0, 2.5}) {
+            CAPTURE(H);
+            CAPTURE(r);
+            const int k = quarterings(real(r), H * r);
+            CHECK(longest_edge(icosphere(k)) <= H);
+            // A spare of 5 %: an edge that is half as long at once is no shorter than that.
+            if (k > 2) CHECK(longest_edge(icosphere(k - 1)) * 1.05 > H);
+            CHECK(k >= 2);
+            CHECK(facets_of_sphere(real(r), H * r) == double(icosphere(k).size()));
+        }
+    for (int k = 2; k < 7; ++k) {
+        const double H = edge_of_facets(1, k);  // the shortest for which k will do
+        CHECK(quarterings(1, H) == k);
+        CHECK(quarterings(1, H * (1 - 1e-6)) == k + 1);
+        const double longest = longest_edge(icosphere(k));
+        CHECK(longest <= H);
+        CHECK(longest > 0.97 * H);
+    }
+    CHECK(quarterings(1, 1e-9) == 10);  // what is longer is cut as part of a mesh
+}
+
+TEST_CASE(
+    "the area that an icosphere lacks is what the warning says, a quarter at each quartering") {
+    double before = 0;
+    for (double H : {0.34, 0.17, 0.084, 0.042}) {
+        CAPTURE(H);
+        const Scene s = parsed("diffuse d .5 .5 .5\nsphere 1 2 3  2  d\npointlight 9 9 9  1 1 1\n");
+        const Faceted f = faceted(s, 2 * H);
+        const double less = 1 - area(f.scene) / (16 * std::numbers::pi);
+        char text[100];
+        std::snprintf(text, sizeof text,
+                      "3: the sphere becomes %zu triangles, whose area is %.2g %% less",
+                      f.scene.shapes.size(), 100 * less);
+        REQUIRE(f.warnings.size() == 1);
+        CHECK(f.warnings[0] == text);
+        CHECK(double(f.scene.shapes.size()) == facets_of_sphere(2, 2 * H));
+        // A facet of edge h lies h^2 / 8 or so deeper than its sphere: the error is of second
+        // order.
+        if (before > 0) CHECK(before / less == doctest::Approx(4).epsilon(0.02));
+        before = less;
+        const auto& t = f.scene.shapes;
+        CHECK(std::all_of(t.begin(), t.end(), [](const Shape& x) {
+            return dot(area_vector(x), x.a - vec3{1, 2, 3}) > 0 &&
+                   std::abs(length(x.b - vec3{1, 2, 3}) - 2) < 32 * ulp;
+        }));
+    }
+}
+
+TEST_CASE("lights stay with their shapes; a sphere's power falls as its area does") {
+    const Scene s = parsed(R"(
+diffuse d .5 .5 .5
+light a 1 2 3
+light b 5 5 5 twosided d
+sphere 0 0 0  1  a
+quad 4 0 0  1 0 0  0 1 0  b
+pointlight 9 9 9  7 7 7
+sphere 9 0 0  2  d
+triangle 0 4 0  1 4 0  0 5 0  a
+sphere 0 9 0  1  b
+)");
+    const Scene f = faceted(s, 0.6).scene;
+    const auto facets = size_t(facets_of_sphere(1, 0.6));
+    const auto large = size_t(facets_of_sphere(2, 0.6));
+    REQUIRE(f.shapes.size() == 2 * facets + 2 + large + 1);
+    REQUIRE(f.lights.size() == 2 * facets + 3);
+    REQUIRE(f.material_of.size() == f.shapes.size());
+    REQUIRE(f.line_of.size() == f.shapes.size());
+    REQUIRE(f.line_of_light.size() == f.lights.size());
+    std::vector<int> shapes_of(f.lights.size());
+    for (size_t i = 0; i < f.shapes.size(); ++i) {
+        const Material& m = f.materials[f.material_of[i]];
+        const int32_t k = f.light_of[i];
+        REQUIRE((k != no_light) == m.emits());
+        if (k == no_light) continue;
+        const Light& l = f.lights[size_t(k)];
+        ++shapes_of[size_t(k)];
+        CHECK(l.L == m.Le);
+        CHECK(l.twosided == m.twosided);
+        CHECK(f.line_of_light[size_t(k)] == f.line_of[i]);
+        const bool quad = f.line_of[i] == 7;
+        CHECK(l.kind == (quad ? Light::Kind::quad : Light::Kind::triangle));
+        if (!quad) {
+            CHECK(l.p == f.shapes[i].a);
+            CHECK(length(l.p + l.u - f.shapes[i].b) <= 8 * ulp * 20);
+            CHECK(length(l.p + l.v - f.shapes[i].c) <= 8 * ulp * 20);
+        }
+    }
+    for (size_t k = 0; k < f.lights.size(); ++k)
+        CHECK(shapes_of[k] == (f.lights[k].kind == Light::Kind::point  ? 0
+                               : f.lights[k].kind == Light::Kind::quad ? 2
+                                                                       : 1));
+    double small = 0;  // of a unit sphere's facets
+    for (size_t i = 0; i < facets; ++i) small += double(length(area_vector(f.shapes[i]))) / 2;
+    CHECK(small < 4 * std::numbers::pi);
+    const rgb power = emitted_power(f);  // a, b on both sides, the point, a
+    const double Pi = std::numbers::pi;
+    CHECK(double(power.x) == approx(Pi * (small + 10 + 2 * 5 * small + 4 * 7 + 0.5)));
+    CHECK(double(power.z) == approx(Pi * (3 * small + 10 + 2 * 5 * small + 4 * 7 + 1.5)));
+    // Lights are chosen by their power again.
+    double total = 0, picks = 0;
+    for (const Light& l : f.lights) total += ::power(l), picks += double(l.pick);
+    CHECK(picks == approx(1, 1e-13, 1e-4));
+    for (const Light& l : f.lights) CHECK(double(l.pick) == approx(::power(l) / total, 1e-9, 2e-2));
+}
+
+TEST_CASE("a scene without spheres is itself") {
+    const Scene s = parsed(
+        "diffuse d .5 .5 .5\nlight l 1 2 3\nbox 10 10 10  0  -5 -5 -5  d\n"
+        "pointlight 0 0 0  1 1 1\nquad -1 4 -1  2 0 0  0 0 2  l\n");
+    const Faceted f = faceted(s, 1);
+    CHECK(f.warnings.empty());
+    REQUIRE(f.scene.shapes.size() == s.shapes.size());
+    for (size_t i = 0; i < s.shapes.size(); ++i) {
+        CHECK(f.scene.shapes[i].c == s.shapes[i].c);
+        CHECK(f.scene.material_of[i] == s.material_of[i]);
+    }
+    CHECK(f.scene.light_of == s.light_of);
+    CHECK(f.scene.lights.size() == 2);
+    CHECK(f.scene.pick_cdf == s.pick_cdf);
+    const Ray ray{{}, unit({1, 2, 3})};
+    CHECK(f.scene.bvh.closest(ray)->t == s.bvh.closest(ray)->t);
+}
+
+TEST_CASE(
+    "what scatters otherwise than diffusely is refused by its line, and only if it is there") {
+    const std::string light = "light l 1 1 1\nquad 0 9 0  1 0 0  0 0 1  l\ndiffuse d .5 .5 .5\n";
+    const std::string end = ": illumination maps hold diffuse surfaces alone";
+    CHECK(complaint(light + "sphere 0 0 0  1  d\n") == "");
+    CHECK(complaint(light + "mirror m .9 .9 .9\nsphere 0 0 0  1  d\n") == "");
+    CHECK(complaint(light + "mirror m .9 .9 .9\nsphere 0 0 0  1  m\n") ==
+          "a.scene:6: 'm' is a mirror" + end);
+    CHECK(complaint(light + "glass g 1.5\nsphere 9 0 0  1  d\nsphere 0 0 0  1  g\n") ==
+          "a.scene:7: 'g' is glass" + end);
+    CHECK(complaint(light + "phong p .1 .1 .1  0 .4 0  7\nsphere 0 0 0  1  p\n") ==
+          "a.scene:6: 'p' is glossy" + end);
+    CHECK(complaint(light + "phong p .1 .1 .1  0 0 0  7\nsphere 0 0 0  1  p\n") == "");
+    CHECK(complaint(light + "phong p .1 .1 .1  0 .4 0  7\nlight k 1 1 1 twosided p\n"
+                            "quad 0 0 0  1 0 0  0 1 0  k\n") == "a.scene:7: 'k' is glossy" + end);
+}
