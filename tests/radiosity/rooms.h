@@ -1,0 +1,98 @@
+// radiosity/rooms.h  scenes and sums that the tests of illumination maps share
+#pragma once
+#include <doctest/doctest.h>
+
+#include "radiosity/map.h"
+
+namespace rooms {
+
+inline constexpr bool single = sizeof(real) == 4;
+
+inline doctest::Approx approx(double x, double in_double = 1e-12, double in_float = 2e-5) {
+    return doctest::Approx(x).epsilon(single ? in_float : in_double).scale(0);  // relative
+}
+
+inline Material diffuse(rgb kd, rgb Le = {}, bool twosided = false) {
+    Material m;
+    m.kd = kd, m.Le = Le, m.twosided = twosided;
+    return m;
+}
+inline rgb grey(double x) { return {real(x), real(x), real(x)}; }
+
+// Adds a material, and says where it is.
+inline uint32_t add(Scene& s, const Material& m) {
+    s.materials.push_back(m);
+    return uint32_t(s.materials.size()) - 1;
+}
+
+// The inside of a box between 0 and `size`: its six faces look inwards.  Face k has material
+// first + k % several.
+inline void add_room(Scene& s, vec3 size, uint32_t first, uint32_t several = 1) {
+    vec3 c[8];
+    for (int i = 0; i < 8; ++i)
+        c[i] = {size.x * real(i & 1), size.y * real(i >> 1 & 1), size.z * real(i >> 2)};
+    uint32_t k = 0;
+    for (auto [p, q, r, t] : {std::array{0, 1, 3, 2}, std::array{4, 6, 7, 5},   // -z, +z
+                              std::array{0, 4, 5, 1}, std::array{2, 3, 7, 6},   // -y, +y
+                              std::array{0, 2, 6, 4}, std::array{1, 5, 7, 3}})  // -x, +x
+        add_face(s, c[p], c[q], c[r], c[t], first + k++ % several);
+}
+inline Scene room(vec3 size, const Material& m) {
+    Scene s;
+    add_room(s, size, add(s, m));
+    prepare(s);
+    return s;
+}
+
+// Khodulev's theoretical case: see exact.h.
+inline Scene cube() {
+    Scene s;
+    const uint32_t wall = add(s, diffuse(grey(2.0 / 3)));
+    add_box(s, {10, 10, 10}, 0, {-5, -5, -5}, wall);
+    add_point_light(s, {}, grey(50000));
+    prepare(s);
+    return s;
+}
+
+// The parallelogram a, a + u, a + u + v, a + v, or the triangle a, a + u, a + v, in a scene alone.
+inline Scene one_quad(vec3 a, vec3 u, vec3 v) {
+    Scene s;
+    add_quad(s, a, u, v, add(s, diffuse(grey(0.5))));
+    prepare(s);
+    return s;
+}
+inline Scene one_triangle(vec3 a, vec3 u, vec3 v) {
+    Scene s;
+    add_triangle(s, a, a + u, a + v, add(s, diffuse(grey(0.5))));
+    prepare(s);
+    return s;
+}
+
+inline vec3 corner_of(const Mesh& mesh, uint32_t element, size_t k) {
+    return mesh.at[mesh.corners[element][k]];
+}
+inline real area_of(const Face& f) { return f.area() / real(f.elements()); }
+
+// Which face each element belongs to.
+inline std::vector<uint32_t> face_of_element(const Mesh& mesh) {
+    std::vector<uint32_t> face(mesh.elements());
+    for (uint32_t k = 0; k < mesh.faces.size(); ++k)
+        for (uint32_t e = 0; e < mesh.faces[k].elements(); ++e) face[mesh.faces[k].element + e] = k;
+    return face;
+}
+
+// The integral of a map over one side of a face.
+inline rgb integral(const Mesh& mesh, const Map& map, const Face& f, bool back) {
+    rgb sum;
+    for (uint32_t e = f.element; e < f.element + f.elements(); ++e)
+        for (uint32_t v : mesh.corners[e]) sum += map[2 * v + back] * (area_of(f) / 3);
+    return sum;
+}
+
+// The point of a shape that a hit names.
+inline vec3 point_of(const Scene& s, const Hit& hit) {
+    const Shape& t = s.shapes[hit.id];
+    return (1 - hit.v - hit.w) * t.a + hit.v * t.b + hit.w * t.c;
+}
+
+}  // namespace rooms
