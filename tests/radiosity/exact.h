@@ -31,6 +31,18 @@ inline double cube_direct(double x, double y) {
     return cube_intensity / (cube_half_width * cube_half_width) / std::pow(1 + x * x + y * y, 1.5);
 }
 
+// Integrals of E times the hats of 2 x 2 cells (lm), cut from (-1, -1) towards (1, 1): of vertices
+// 3 j + i at (i - 1, j - 1), a hat over so many triangles of 12.5 m^2.
+struct CubeHat {
+    std::vector<int> vertices;
+    int triangles;
+    double flux;
+};
+inline const std::array<CubeHat, 4> cube_hats = {{{{0, 8}, 2, 24009.1885},
+                                                  {{2, 6}, 1, 10738.5565},
+                                                  {{1, 3, 5, 7}, 3, 38863.1216},
+                                                  {{4}, 6, 89211.2888}}};
+
 // ---- Form factors -------------------------------------------------------------------------------
 
 // From the inside of a sphere of radius R to one of radius r within it, wherever it lies, and to

@@ -12,7 +12,8 @@ namespace {
 // A reflecting panel in the plane z = 0, seen from both sides, whose front emits; a triangle above.
 Scene panel(bool twosided) {
     Scene s;
-    add_quad(s, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, add(s, diffuse({real(0.2), real(0.5), 1}, {3, 4, 0}, twosided)));
+    add_quad(s, {0, 0, 0}, {2, 0, 0}, {0, 2, 0},
+             add(s, diffuse({real(0.2), real(0.5), 1}, {3, 4, 0}, twosided)));
     add_triangle(s, {0, 3, 0}, {2, 3, 0}, {0, 5, 0}, add(s, diffuse(grey(0.25))));
     s.size = {16, 12};
     s.camera = look_at({1, 1, 4}, {1, 1, 0}, 50);
@@ -147,9 +148,10 @@ TEST_CASE("a pixel is the mean of rays on a regular grid, whatever the threads")
             rgb l, e;
             for (int j = 0; j < K; ++j)
                 for (int i = 0; i < K; ++i) {
-                    const Seen seen = seen_along(
-                        s, mesh, map,
-                        camera_ray(s.camera, s.size, x + real(2 * i + 1) / 6, y + real(2 * j + 1) / 6));
+                    const Seen seen =
+                        seen_along(s, mesh, map,
+                                   camera_ray(s.camera, s.size, x + real(2 * i + 1) / 6,
+                                              y + real(2 * j + 1) / 6));
                     l += seen.L / 9, e += seen.E / 9;
                 }
             CHECK(off(L.at(x, y)[0], l.x) <= (single ? 2e-5 : 2e-7));

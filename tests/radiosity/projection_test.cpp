@@ -1,4 +1,5 @@
-// radiosity/projection_test.cpp  least squares: exact where they must be, of the order they are said
+// radiosity/projection_test.cpp  least squares: exact where they must be, of the order they are
+// said
 #include "radiosity/projection.h"
 
 #include "base/rng.h"
@@ -147,7 +148,8 @@ TEST_CASE("linear illuminance is projected onto itself, whatever the face and th
         }
 }
 
-TEST_CASE("the mean over a hat is that of the illuminance: of constants everywhere, within by symmetry") {
+TEST_CASE(
+    "the mean over a hat is that of the illuminance: of constants everywhere, within by symmetry") {
     for (const Scene& s : scenes) {
         const Mesh mesh = make_mesh(s, 0.4);
         const Projection onto(mesh, mesh.faces[0]);
@@ -168,7 +170,8 @@ TEST_CASE("the mean over a hat is that of the illuminance: of constants everywhe
     }
 }
 
-TEST_CASE("errors fall with the square of the mesh; of means, with its power 3/2, for their borders") {
+TEST_CASE(
+    "errors fall with the square of the mesh; of means, with its power 3/2, for their borders") {
     for (const Scene& s : scenes) {
         double before[2] = {};
         for (double H : {0.6, 0.3, 0.15}) {
@@ -268,8 +271,8 @@ TEST_CASE("square() is the integral of a map's square") {
         for (uint32_t e = 0; e < mesh.elements(); ++e)
             for (const At& at : rule()) {
                 const auto& v = mesh.corners[e];
-                const rgb E = real(1 - at.b - at.c) * x[v[0]] + real(at.b) * x[v[1]] +
-                              real(at.c) * x[v[2]];
+                const rgb E =
+                    real(1 - at.b - at.c) * x[v[0]] + real(at.b) * x[v[1]] + real(at.c) * x[v[2]];
                 sum += E * E * real(at.weight) * area_of(mesh.faces[0]);
             }
         const rgb square = onto.square(x);
