@@ -70,6 +70,11 @@ double mean_of(const Image& image) {
     return sum / double(image.pixels.size());
 }
 
+// Relative, whatever the value: doctest's own tolerance is that of 1 + the value.
+doctest::Approx about(double value, double relative) {
+    return doctest::Approx(value).epsilon(relative).scale(0);
+}
+
 // A folder with a scene.
 struct Place : Folder {
     explicit Place(const std::string& scene) { write("file.scene", scene); }
@@ -218,13 +223,12 @@ TEST_CASE("radiosity: three methods, one image, and that of the path tracer") {
     // Particles know the mean over a triangle, whatever its size (their mean has a standard
     // deviation of 0.2 %); vertices know E where they are, and the ceiling's are too few for the
     // lamp's glow.
-    CHECK(mean("2.5 --method particles --particles 300000") ==
-          doctest::Approx(truth).epsilon(0.01));
+    CHECK(mean("2.5 --method particles --particles 300000") == about(truth, 0.01));
     const double shooting = mean("2.5 --method shooting"), hierarchy = mean("2.5");
-    CHECK(shooting == doctest::Approx(truth).epsilon(0.1));
-    CHECK(hierarchy == doctest::Approx(shooting).epsilon(0.01));
+    CHECK(shooting == about(truth, 0.1));
+    CHECK(hierarchy == about(shooting, 0.01));
     const double coarse = mean("5");
-    CHECK(mean("5 --method hierarchy --unshot 1%") == doctest::Approx(coarse).epsilon(1e-12));
+    CHECK(mean("5 --method hierarchy --unshot 1%") == about(coarse, 1e-12));
     CHECK(mean("5 --unshot 1e-3") > coarse);
     CHECK(mean("5 --unshot 50%") < coarse);
 }
@@ -240,7 +244,7 @@ TEST_CASE("radiosity --view illuminance: pi L in a closed room that glows; its P
         // By particles of 10^6 on some 100 vertices: one of them is known within 1 %, 5 sigma.
         const double tolerance = method == "particles" ? 0.05 : 1e-5;
         for (const auto& pixel : image.pixels)
-            CHECK(double(pixel[0]) == doctest::Approx(0.18 * std::numbers::pi).epsilon(tolerance));
+            CHECK(double(pixel[0]) == about(0.18 * std::numbers::pi, tolerance));
         if (method == "particles") continue;
         const std::string png = folder.read("a.png");
         int w = 0, h = 0, n = 0;
@@ -273,7 +277,7 @@ TEST_CASE("radiosity --view mesh: lines over what is there, the more the finer i
     // 2 x 2 of a view of 2 x 5 tan 20 degrees: s = 35.2 pixels.  Two triangles have four sides and
     // a diagonal, which a path of steps to the right and down crosses once a row and once a column.
     const double s = 64 * 2 / (10 * std::tan(20 * std::numbers::pi / 180));
-    CHECK(lines("--mesh 9") == doctest::Approx(5 * s).epsilon(0.1));
+    CHECK(lines("--mesh 9") == about(5 * s, 0.1));
     // Four cells a side: 3 more lines across, 3 more down, 4 times as long diagonals ... minus
     // crossings, which count once.
     CHECK(lines("--mesh 0.8") > 2.5 * lines("--mesh 9"));
@@ -394,7 +398,7 @@ TEST_CASE("radiosity: SIGTERM writes the image of the particles so far, and its 
     expect_success(folder, "radiosity",
                    split("--mesh 2 --method particles --particles 100000 -o b.pfm file.scene"));
     CHECK(mean_of(read_pfm(folder / "a.pfm")) ==
-          doctest::Approx(mean_of(read_pfm(folder / "b.pfm"))).epsilon(tolerance));
+          about(mean_of(read_pfm(folder / "b.pfm")), tolerance));
 }
 
 TEST_CASE("radiosity: a bar shows what is left, in the method's own words, and goes") {
