@@ -108,11 +108,12 @@ Rendered developed(const Film<Pixel>& film, RunStats run, Value value, Variance 
 }
 
 inline Rendered render_means(const Job& job) {
-    const auto& [o, scene, pattern, passes] = job;
+    const Options& o = job.o;
+    const Scene& scene = job.scene;
     Film<MeanPixel> film(scene.size);
     const RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
         film.add_row(y, n, [&](int x, uint64_t i) {
-            return radiance(job, start(scene, pattern, x, y, i), rays);
+            return radiance(job, start(scene, job.pattern, x, y, i), rays);
         });
     });
     return developed(film, run, value_in(film), variance_in(film, variance_from(o)));
@@ -120,11 +121,12 @@ inline Rendered render_means(const Job& job) {
 
 // Direct light by ratio or regression.
 inline Rendered render_shadows(const Job& job) {
-    const auto& [o, scene, pattern, passes] = job;
+    const Options& o = job.o;
+    const Scene& scene = job.scene;
     Film<ShadowPixel> film(scene.size);
     const RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
         film.add_row(y, n, [&](int x, uint64_t i) {
-            const Start at = start(scene, pattern, x, y, i);
+            const Start at = start(scene, job.pattern, x, y, i);
             return shadow_Li(scene, o.technique, o.direct, at, counting(rays));
         });
     });
@@ -134,15 +136,16 @@ inline Rendered render_shadows(const Job& job) {
 
 // Samples weighted by the areas of their Voronoi cells.
 inline Rendered render_cells(const Job& job) {
-    const auto& [o, scene, pattern, passes] = job;
+    const Options& o = job.o;
+    const Scene& scene = job.scene;
     Film<MeanPixel> film(scene.size);
     std::atomic<uint64_t> redraws = 0, fallbacks = 0;
     RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
         auto L = [&](int x, uint64_t i) {
             if (interrupted) return rgb{};  // its pass will not count
-            return radiance(job, start(scene, pattern, x, y, i), rays);
+            return radiance(job, start(scene, job.pattern, x, y, i), rays);
         };
-        WeightedRow weighted(o.film, pattern, n, uint64_t(y) * uint64_t(scene.size.width), L);
+        WeightedRow weighted(o.film, job.pattern, n, uint64_t(y) * uint64_t(scene.size.width), L);
         film.add_row(y, n, [&](int x, uint64_t i) { return weighted(x, i); });
         redraws += weighted.weigher().redraws;
         fallbacks += weighted.weigher().fallbacks;

@@ -139,13 +139,13 @@ TEST_CASE("a corner between two others in line is a corner, wherever the polygon
 TEST_CASE("a concave face has at most 1000 corners: each may have to be tried as the fan's") {
     // A star about the origin, which is its last corner and the only one that sees all others.
     auto star = [](int n) {
-        std::vector<vec3> corners;
+        std::vector<vec3> tips;
         for (int i = 0; i < n; ++i) {
             const double angle = 1.5 * i / n, r = 1 + i % 2;
-            corners.push_back({real(r * std::cos(angle)), real(r * std::sin(angle)), 0});
+            tips.push_back({real(r * std::cos(angle)), real(r * std::sin(angle)), 0});
         }
-        corners.push_back({0, 0, 0});
-        return corners;
+        tips.push_back({0, 0, 0});
+        return tips;
     };
     const auto fan = fan_of(star(999));
     REQUIRE(fan);
