@@ -98,6 +98,17 @@ TEST_CASE("what is emitted is absorbed or escapes: coloured, open and closed, ev
         }
 }
 
+TEST_CASE("many particles are as exact as one: their sums do not lose what is small beside them") {
+    Scene s;
+    add_quad(s, {}, {1, 0, 0}, {0, 1, 0}, add(s, diffuse(grey(0), grey(1))));
+    prepare(s);
+    const Mesh mesh = make_mesh(s, 9);
+    Particles p(s, mesh, Particles::pattern(SamplerKind::independent, 1, 0));
+    p.add(0, 100000);
+    CHECK(double(p.balance().emitted.x) == approx(Pi, 1e-10, 1e-6));
+    CHECK(p.balance().escaped == p.balance().emitted);
+}
+
 TEST_CASE("power is what the lights have: the mean over particles, a channel at a time") {
     const Scene s = study(false);
     const Mesh mesh = make_mesh(s, 9);
