@@ -11,6 +11,8 @@
 // What became of the power: emitted = absorbed + escaped, but for rounding.
 struct Balance {
     rgb emitted, absorbed, escaped;
+    static constexpr rgb Balance::*parts[] = {&Balance::emitted, &Balance::absorbed,
+                                              &Balance::escaped};
 };
 
 // The numbers of a walk: five for its start, three a scattering.  Beyond `structured` scatterings
@@ -115,11 +117,13 @@ public:
         Batch& b = batch_[size_t(batch)];
         for (const uint64_t end = b.n + n; b.n < end && !interrupted; ++b.n) {
             const WalkNumbers u(pattern_, independent_, uint64_t(batch), b.n);
-            b.rays += walk(scene_, u, b.balance, [&](const Vertex& x, rgb power) {
+            Balance one;
+            b.rays += walk(scene_, u, one, [&](const Vertex& x, rgb power) {
                 const auto [vertex, weight] = between(mesh_, x.hit);
                 for (size_t k = 0; k < 3; ++k)
                     add_to(b.sums[2 * vertex[k] + (x.cos_o < 0)], power * weight[k]);
             });
+            for (size_t k = 0; k < 3; ++k) add_to(b.balance[k], one.*Balance::parts[k]);
         }
     }
 
@@ -137,11 +141,14 @@ public:
     }
     // Of all particles together, over their number.
     Balance balance() const {
-        Balance sum;
-        for (const Batch& b : batch_)
-            for (auto part : {&Balance::emitted, &Balance::absorbed, &Balance::escaped})
-                sum.*part += b.balance.*part / real(particles());
-        return sum;
+        Balance mean;
+        for (size_t k = 0; k < 3; ++k) {
+            Sum sum{};
+            for (const Batch& b : batch_)
+                for (size_t c = 0; c < 3; ++c) sum[c] += b.balance[k][c] / double(particles());
+            mean.*Balance::parts[k] = {real(sum[0]), real(sum[1]), real(sum[2])};
+        }
+        return mean;
     }
 
     IlluminationMap map(Functional functional = Functional::projection) const {
@@ -191,7 +198,7 @@ private:
     using Sum = std::array<double, 3>;
     struct Batch {
         std::vector<Sum> sums;  // of power times hat, for the sides of all vertices
-        Balance balance;
+        std::array<Sum, 3> balance;
         uint64_t n, rays;
     };
 

@@ -115,12 +115,14 @@ TEST_CASE(
         CHECK(double(f.scene.shapes.size()) == facets_of_sphere(2, 2 * H));
         // A facet of edge h lies h^2 / 8 or so deeper than its sphere: the error is of second
         // order.
+        CHECK(less > 0);
         if (before > 0) CHECK(before / less == doctest::Approx(4).epsilon(0.02));
         before = less;
         const auto& t = f.scene.shapes;
         CHECK(std::all_of(t.begin(), t.end(), [](const Shape& x) {
             return dot(area_vector(x), x.a - vec3{1, 2, 3}) > 0 &&
-                   std::abs(length(x.b - vec3{1, 2, 3}) - 2) < 32 * ulp;
+                   std::abs(length(x.b - vec3{1, 2, 3}) - 2) < 32 * ulp &&
+                   std::abs(length(x.c - vec3{1, 2, 3}) - 2) < 32 * ulp;
         }));
     }
 }

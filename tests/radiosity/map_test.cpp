@@ -24,8 +24,8 @@ Scene panel(bool twosided) {
 double off(float a, real b) { return std::abs(double(a) - double(b)) / std::max(1e-9, double(b)); }
 
 // Other numbers on every side of every vertex.
-Map random_map(const Mesh& mesh, Rng& rng) {
-    Map map(number_of_sides(mesh));
+IlluminationMap random_map(const Mesh& mesh, Rng& rng) {
+    IlluminationMap map(number_of_sides(mesh));
     for (rgb& E : map)
         for (auto a : axis) E.*a = real(rng.uniform());
     return map;
@@ -36,7 +36,7 @@ Map random_map(const Mesh& mesh, Rng& rng) {
 TEST_CASE("every vertex has a front and a back; between vertices both are linear") {
     const Scene s = panel(false);
     const Mesh mesh = make_mesh(s, 0.8);
-    Map map(number_of_sides(mesh));
+    IlluminationMap map(number_of_sides(mesh));
     REQUIRE(map.size() == 2 * mesh.vertices());
     auto front = [](vec3 p) { return rgb{p.x, 2 * p.y, 1}; };
     auto back = [](vec3 p) { return rgb{5 - p.y, p.x + p.y, 0}; };
@@ -64,7 +64,7 @@ TEST_CASE("radiance is what is emitted and rho E / pi, of the side that is seen"
         const Scene s = panel(twosided);
         const Mesh mesh = make_mesh(s, 0.8);
         Rng rng{seed_here()};
-        const Map map = random_map(mesh, rng);
+        const IlluminationMap map = random_map(mesh, rng);
         for (int k = 0; k < 400; ++k) {
             const vec3 to{real(2 * rng.uniform()), real(2 * rng.uniform()), 0};
             const vec3 eye{real(rng.uniform()), real(rng.uniform()), real(k % 2 ? -2 : 2)};
@@ -113,7 +113,7 @@ TEST_CASE("what is emitted: both sides, quads and triangles, points; a channel a
 TEST_CASE("a ray that meets nothing is black; so is an empty map but for what emits") {
     const Scene s = panel(false);
     const Mesh mesh = make_mesh(s, 0.8);
-    const Map dark(number_of_sides(mesh));
+    const IlluminationMap dark(number_of_sides(mesh));
     Rng rng{seed_here()};
     const Seen missed = seen_along(s, mesh, random_map(mesh, rng), {{0, 0, 1}, {0, 0, 1}});
     CHECK(missed.E == rgb{});
@@ -136,7 +136,7 @@ TEST_CASE("a pixel is the mean of rays on a regular grid, whatever the threads")
     const Scene s = panel(false);
     const Mesh mesh = make_mesh(s, 0.8);
     Rng rng{seed_here()};
-    const Map map = random_map(mesh, rng);
+    const IlluminationMap map = random_map(mesh, rng);
     const int K = 3;
     const Image L = radiance_image(s, mesh, map, K, 1), E = irradiance_image(s, mesh, map, K, 1);
     const Image again = radiance_image(s, mesh, map, K, 3);

@@ -254,7 +254,7 @@ TEST_CASE("what is projected has its integral: no light is lost, whatever the su
         const Face& f = mesh.faces[0];
         const Sums b = random_sums(mesh.vertices(), rng);
         const Sums x = Projection(mesh, f)(b, Functional::projection);
-        Map map(number_of_sides(mesh));
+        IlluminationMap map(number_of_sides(mesh));
         rgb sum;
         for (size_t v = 0; v < b.size(); ++v) map[2 * v] = x[v], sum += b[v];
         CHECK(double(max_abs(integral(mesh, map, f, false) - sum)) <= (single ? 1e-4 : 1e-12));

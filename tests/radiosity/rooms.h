@@ -82,7 +82,7 @@ inline std::vector<uint32_t> face_of_element(const Mesh& mesh) {
 }
 
 // The integral of a map over one side of a face.
-inline rgb integral(const Mesh& mesh, const Map& map, const Face& f, bool back) {
+inline rgb integral(const Mesh& mesh, const IlluminationMap& map, const Face& f, bool back) {
     rgb sum;
     for (uint32_t e = f.element; e < f.element + f.elements(); ++e)
         for (uint32_t v : mesh.corners[e]) sum += map[2 * v + back] * (area_of(f) / 3);

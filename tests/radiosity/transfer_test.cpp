@@ -38,7 +38,7 @@ struct Parts {
     // The integral over the front of a face of what it gets from another, over its radiance.
     template <class From>
     double flux(const Face& to, From irradiance) const {
-        Map map(number_of_sides(mesh));
+        IlluminationMap map(number_of_sides(mesh));
         for (uint32_t v = to.vertex; v < to.vertex + to.vertices(); ++v)
             map[2 * v] = grey(irradiance(receiver(mesh, to, v)));
         return double(integral(mesh, map, to, false).x);
@@ -84,10 +84,11 @@ TEST_CASE("in a closed box what a vertex sees sums to 1: within a face, on its e
             for (uint32_t k = 0; k < 6; ++k)
                 if (const Face& from = parts.mesh.faces[k]; &from != &f)
                     for (uint32_t e = from.element; e < from.element + from.elements(); ++e)
-                        whole += double(transfer
-                                            .from_whole(to, {from.n, from.error},
-                                                        parts.trees[parts.trees.leaf(e)], grey(1))
-                                            .y);
+                        whole +=
+                            double(transfer
+                                       .from_whole(to, {from.n, from.error},
+                                                   parts.trees[parts.trees.leaf(e)], grey(1), 4)
+                                       .y);
             CHECK(whole / Pi == approx(1, 1e-12, 2e-3));
         }
 }
@@ -221,42 +222,58 @@ TEST_CASE("a point light sends I cos / d^2, to what looks at it, if nothing is i
 TEST_CASE("what is hidden sends exactly nothing; by quarters, what is hidden in part") {
     Scene s;
     const uint32_t d = add(s, diffuse(grey(0.5)));
-    add_quad(s, {-1, -1, 4}, {2, 0, 0}, {0, 2, 0}, d);  // what sends, a root of its tree
+    add_quad(s, {-1, -1, 4}, {2, 0, 0}, {0, 2, 0}, d);                  // what sends
     add_quad(s, {real(-0.5), -1, 2}, {real(0.5), 0, 0}, {0, 2, 0}, d);  // hides x < 0 of it
-    add_quad(s, {20, -9, -9}, {0, 18, 0}, {0, 0, 18}, d);
     prepare(s);
     const Parts parts(s, 99);
     const Node& node = parts.trees[0];
     const Source from{{0, 0, -1}, parts.mesh.faces[0].error};
-    auto sent = [&](const Receiver& to, const Node& what) {
+    auto sent = [&](const Receiver& to, const Node& what, int rays) {
         Transfer transfer(s);
-        const double E = double(transfer.from_whole(to, from, what, grey(1)).x);
+        const double E = double(transfer.from_whole(to, from, what, grey(1), rays).x);
         return std::pair(E, transfer.rays);
     };
     const Receiver below = receiver({}, {0, 0, 1});
-    const double whole =
-        4 * std::atan(1 / std::sqrt(17)) / std::sqrt(17);  // C-11 of a quarter, x 4
-    CHECK(sent(below, node).first == approx(2 * whole / 2 / 2, 1e-9, 1e-4));
-    CHECK(sent(below, node).second == 4);
-    // Under the middle of the screen all is hidden, or nothing.
-    CHECK(sent(receiver({-20, 0, 0}, {0, 0, 1}), node).first > 0);
-    CHECK(sent(receiver({real(-0.5), 0, 0}, {0, 0, 1}), parts.trees[node.first]).first >= 0);
-    const Receiver hidden = receiver({real(-0.25), 0, real(1.9)}, {0, 0, 1});
-    Node left = node_of({vec3{-1, -1, 4}, {real(-0.5), -1, 4}, {real(-0.5), 1, 4}, {-1, 1, 4}}, 4);
-    CHECK(sent(hidden, left).first == 0);
-    CHECK(sent(hidden, left).second > 0);
-    // From afar, or of a part of an element, one ray to the centre says it all.
-    const Receiver far = receiver({0, 0, -90}, {0, 0, 1});
-    CHECK(sent(far, node).second == 1);
-    left.part = true;
-    CHECK(sent(below, left).second == 1);
-    // Behind the receiver: no ray.
-    CHECK(sent(receiver({}, {0, 0, -1}), node).second == 0);
-    CHECK(sent(receiver({}, {0, 0, -1}), node).first == 0);
-    // What is dark sends nothing, without a ray.
+    // C-11 of each quarter: 1/4 of the square's side is 1/4 of the height.
+    const double whole = 4 * (1 / std::sqrt(17) * std::atan(1 / std::sqrt(17)));
+    CHECK(sent(below, node, 4).first == approx(whole / 2, 1e-12, 1e-4));
+    CHECK(sent(below, node, 4).second == 4);
+    CHECK(sent(below, node, 1).second == 1);
+    const Receiver aside = receiver({real(-0.3), 0, 0}, {0, 0, 1});
+    CHECK(sent(aside, node, 1).first == 0);  // its centre is hidden
+    CHECK(sent(aside, node, 4).first > 0);
+    // All of it.
+    const Receiver under = receiver({real(-0.25), 0, real(1.9)}, {0, 0, 1});
+    for (int rays : {1, 4}) {
+        CHECK(sent(under, node, rays).first == 0);
+        CHECK(sent(under, node, rays).second == uint64_t(rays));
+    }
+    // Behind the receiver, or dark: no ray.
+    CHECK(sent(receiver({}, {0, 0, -1}), node, 4) == std::pair(0.0, uint64_t(0)));
     Transfer transfer(s);
-    CHECK(transfer.from_whole(below, from, node, {}) == rgb{});
+    CHECK(transfer.from_whole(below, from, node, {}, 4) == rgb{});
     CHECK(transfer.rays == 0);
+}
+
+TEST_CASE("an element gets four shadow rays within eight radii, one beyond; its parts one each") {
+    const Scene s = one_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const Parts parts(s, 9);
+    const Node& node = parts.trees[0];
+    const Corners one{{grey(1), grey(1), grey(1)}};
+    auto rays = [&](double radii) {
+        Transfer transfer(s);
+        const vec3 p = node.centre + vec3{0, 0, real(radii)} * node.radius;
+        transfer.from_element(receiver(p, {0, 0, -1}), {{0, 0, 1}, 0}, node, one);
+        return transfer.rays;
+    };
+    CHECK(rays(8.01) == 1);
+    CHECK(rays(7.99) == 4);
+    CHECK(rays(4.01) == 4);
+    CHECK(rays(3.99) == 4);  // four quarters, from afar
+    CHECK(rays(2.5) == 4);
+    CHECK(rays(1.5) == 16);
+    CHECK(rays(0.1) > 100);
+    CHECK(rays(1e-4) <= 4096);
 }
 
 TEST_CASE("what is cut by the horizon sends what is above it") {
@@ -269,7 +286,7 @@ TEST_CASE("what is cut by the horizon sends what is above it") {
         CAPTURE(z);
         Transfer transfer(s);
         const Receiver to = receiver({0, 0, real(z)}, {0, 0, 1});
-        const double E = double(transfer.from_whole(to, from, parts.trees[0], grey(1)).x);
+        const double E = double(transfer.from_whole(to, from, parts.trees[0], grey(1), 4).x);
         // The closed form's +y is our z.
         const double lo = -1 - z, hi = 3 - z;
         CHECK(E == approx(closed_forms::polygon_irradiance(
