@@ -3,11 +3,10 @@
 // Particles tell b_v = integral of E h_v over a face, h_v the hat function of vertex v: 1 there, 0
 // at all others, linear between.  Two maps follow from it, both linear in b, so that unbiased sums
 // make unbiased maps of these functionals of E:
-//   mean:        b_v over the hat's own integral.  At a border the hat lies on one side of its
-//   vertex,
-//                so the error is of first order in the mesh;
-//   projection:  the piecewise linear function nearest to E in the L2 norm, M x = b with M_vw = the
-//                integral of h_v h_w: of second order everywhere.
+//   mean: b_v over the hat's own integral.  At a border the hat lies on one side of its vertex, so
+//   the error is of first order in the mesh;
+//   projection: the piecewise linear function nearest to E in the L2 norm, M x = b with M_vw the
+//   integral of h_v h_w.  For a smooth E it is of second order everywhere.
 #pragma once
 #include "radiosity/map.h"
 
