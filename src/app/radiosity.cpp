@@ -85,7 +85,7 @@ double edge_length(const RadiosityOptions& o, const Scene& scene) {
     try {
         check_fits(scene, H, bytes_of(o), bytes_of_machine());
     } catch (const UserError& e) {
-        throw UserError("--mesh: " + std::string(e.what()));
+        throw UserError((o.mesh ? "--mesh: " : "--mesh, by default: ") + std::string(e.what()));
     }
     return H;
 }
@@ -158,7 +158,7 @@ Solution walk_all(const RadiosityOptions& o, const Stage& stage) {
     const Pattern pattern = Particles::pattern(o.sampler, o.seed, o.particles);
     Particles particles(stage.scene, stage.mesh, pattern);
     Walks walks(o, particles);
-    const uint64_t a_batch = (o.particles + Particles::batches - 1) / Particles::batches;
+    const uint64_t a_batch = Particles::of_each(o.particles);
     if (!stage.scene.lights.empty())
         render(
             walks, {{a_batch, o.seconds}, pattern.period(), o.threads},

@@ -63,12 +63,15 @@ inline const OptionTable<RadiosityOptions> radiosity_table = {
      "a 32nd of the scene's diagonal",
      [](RadiosityOptions& o, Text v) { o.mesh = option::positive(v); }},
     {"--unshot", "F",
-     "stop once this fraction of the power is unshot: 0.01, or 1%; not with particles",
+     "stop once this fraction of the emitted power is yet to be sent on (which is no error of the "
+     "picture): 0.01, or 1%; not with particles",
      "1%, unless --shots or --time is given",
      [](RadiosityOptions& o, Text v) { o.unshot = option::fraction(v); }},
     {"--shots", "N", "stop after N shots; not with particles", "",
      [](RadiosityOptions& o, Text v) { o.shots = parse_count(v, 1, uint64_t(1) << 40); }},
-    {"--particles", "N", "stop after N walks; needs --method particles",
+    {"--particles", "N",
+     "stop after N walks, a multiple of 16 batches, each one thread's work; needs --method "
+     "particles",
      "1000000, unless --time is given",
      [](RadiosityOptions& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
     CommonRows<RadiosityOptions>::time(

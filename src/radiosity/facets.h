@@ -21,6 +21,13 @@ inline void check_diffuse(const Scene& s, const std::string& name) {
                             ": illumination maps hold diffuse surfaces alone");
 }
 
+// The line of the first shape that absorbs nothing of a channel; 0: none.
+inline uint32_t line_of_white(const Scene& s) {
+    for (size_t i = 0; i < s.shapes.size(); ++i)
+        if (max_of(s.materials[s.material_of[i]].kd) >= 1) return s.line_of[i];
+    return 0;
+}
+
 // ---- Spheres ------------------------------------------------------------------------------------
 
 // No edge of an icosahedron that is quartered k times is longer.  Its own are 1.052 radii; halves
@@ -91,6 +98,7 @@ inline double add_facets(Scene& to, const Scene& from, size_t i, double H) {
     for (const auto& [a, b, c] : faces) {
         const Shape facet{sphere.a + sphere.r * a, sphere.a + sphere.r * b,
                           sphere.a + sphere.r * c};
+        if (!has_area(facet)) continue;  // too small for its place
         int32_t light = no_light;
         if (from.light_of[i] != no_light) {
             Light l = from.lights[size_t(from.light_of[i])];
@@ -132,8 +140,13 @@ inline Faceted faceted(const Scene& from, double H) {
         std::snprintf(less, sizeof less, "%.2g", 100 * (1 - area));
         result.warnings.push_back(std::to_string(from.line_of[i]) + ": the sphere becomes " +
                                   std::to_string(to.shapes.size() - before) +
-                                  " triangles, whose area is " + less + " % less");
+                                  " triangles, faces of their own, whose area" +
+                                  (own == no_light ? " is " : " and power are ") + less +
+                                  " % less");
     }
+    if (const uint32_t line = line_of_white(to))
+        result.warnings.push_back(std::to_string(line) +
+                                  ": reflects all light: in a closed room there is no end to it");
     prepare(to);
     return result;
 }

@@ -183,9 +183,11 @@ inline Sizes sizes(const Scene& s, double H) {
     return sum;
 }
 
-// What one face, element and vertex need: the mesh itself, and what a method keeps of them.
+// What one face, element and vertex need: the mesh itself, and what a method keeps of them; of a
+// face up to two shapes, in the scene and with their part of its tree, and a light, too.
 struct Bytes {
-    double face = sizeof(Face), element = 3 * sizeof(uint32_t), vertex = sizeof(vec3);
+    double face = sizeof(Face) + sizeof(Light) + 2 * (2 * sizeof(Shape) + 64),
+           element = 3 * sizeof(uint32_t), vertex = sizeof(vec3);
     double of(const Sizes& s) const {
         return s.faces * face + s.elements * element + s.vertices * vertex;
     }

@@ -60,7 +60,6 @@ inline Particle emit(const Scene& scene, const WalkNumbers& u) {
 // Calls hit(vertex, power) wherever the particle stops; returns the number of rays.
 template <class Hit>
 uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hit) {
-    constexpr real most = real(0.98);  // survive at most: white rooms end, too
     auto [ray, power] = emit(scene, u);
     balance.emitted += power;
     for (uint32_t k = 0;; ++k) {
@@ -71,7 +70,7 @@ uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hi
         }
         hit(*x, power);
         const rgb rho = x->material->kd;
-        const real survival = std::min(max_of(rho), most);
+        const real all = max_of(rho), survival = all < 1 ? all : real(0.98);  // white ends, too
         if (u.survival(k) >= survival) {
             balance.absorbed += power;
             return k + 1;
@@ -101,9 +100,12 @@ public:
           independent_(make_pattern(SamplerKind::independent, pattern.seed, false, 0, 0)),
           batch_(batches, Batch{std::vector<Sum>(number_of_sides(mesh)), {}, 0, 0}) {}
 
+    // Every batch has as many.
+    static uint64_t of_each(uint64_t samples) { return (samples + batches - 1) / batches; }
+
     // Pattern of as many dimensions as the numbers of a walk have.
     static Pattern pattern(SamplerKind kind, uint64_t seed, uint64_t samples) {
-        return make_pattern(kind, seed, false, 5, samples / batches);
+        return make_pattern(kind, seed, false, 5, of_each(samples));
     }
 
     // ---- As a film for render() of passes.h: rows are batches, samples particles of each --------
@@ -163,8 +165,9 @@ public:
     }
 
     // The standard error of the map by the batches' spread: in the quadratic mean over the surfaces
-    // and channels, relative to the quadratic mean of E.  Of its square the estimate is unbiased,
-    // if the batches are of one length.  NaN if a batch is empty.
+    // and channels, relative to the quadratic mean of E.  Both squares are estimated without bias,
+    // if the batches are of one length; their ratio is not.  NaN if a batch is empty, infinite if
+    // noise is all that there is.
     double error(Functional functional = Functional::projection) const {
         double spread = 0, whole = 0;
         for (const Batch& batch : batch_)
@@ -174,7 +177,7 @@ public:
             for (const Batch& batch : batch_)
                 add_sums(mean, batch, f, back, 1 / (double(batch.n) * batches));
             auto square = [&](const Sums& b) {
-                const rgb channels = onto.square(onto(b, functional));
+                const rgb channels = onto.square(onto(b, functional, real(1e-4)));
                 return double(channels.x) + double(channels.y) + double(channels.z);
             };
             whole += square(mean);
@@ -185,7 +188,8 @@ public:
                 spread += square(difference);
             }
         });
-        return std::sqrt(spread / (batches * (batches - 1)) / whole);
+        const double own = spread / (batches * (batches - 1));
+        return whole > own ? std::sqrt(own / (whole - own)) : double(INFINITY);
     }
 
     static Bytes bytes() {

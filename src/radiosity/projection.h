@@ -6,7 +6,9 @@
 //   mean: b_v over the hat's own integral.  At a border the hat lies on one side of its vertex, so
 //   the error is of first order in the mesh;
 //   projection: the piecewise linear function nearest to E in the L2 norm, M x = b with M_vw the
-//   integral of h_v h_w.  For a smooth E it is of second order everywhere.
+//   integral of h_v h_w.  For a smooth E it is of second order everywhere.  Beside a sharp border
+//   of light it overshoots, and noise does so, too: it may be negative, and to clamp it would be
+//   biased.
 #pragma once
 #include "radiosity/map.h"
 
@@ -27,8 +29,9 @@ public:
         });
     }
 
-    Sums operator()(const Sums& b, Functional f) const {
-        if (f == Functional::projection) return solve(b);
+    // The projection within a part `precise` of itself.
+    Sums operator()(const Sums& b, Functional f, real precise = ulp) const {
+        if (f == Functional::projection) return solve(b, precise);
         Sums x = b;
         for (size_t v = 0; v < x.size(); ++v) x[v] /= hat_[v];
         return x;
@@ -70,7 +73,7 @@ private:
     // Conjugate gradients (Hestenes, Stiefel 1952), preconditioned by the hats.  The eigenvalues of
     // the preconditioned M lie in [1/4, 1] whatever the mesh (Wathen 1987): every iteration divides
     // the error by 3.
-    Sums solve(const Sums& b) const {
+    Sums solve(const Sums& b, real precise) const {
         constexpr int iterations = std::numeric_limits<real>::digits * 2 / 3;
         auto over = [](rgb a, rgb by) {
             return rgb{by.x > 0 ? a.x / by.x : 0, by.y > 0 ? a.y / by.y : 0,
@@ -83,7 +86,7 @@ private:
         precondition();
         Sums p = z;
         rgb rz = dot_of(r, z);
-        const real enough = sqr(ulp) * max_of(rz);
+        const real enough = sqr(precise) * max_of(rz);
         for (int k = 0; k < iterations && max_of(rz) > enough; ++k) {
             const Sums q = apply(p);
             const rgb alpha = over(rz, dot_of(p, q));

@@ -2,7 +2,9 @@
 //
 // Radiosity (Goral et al. 1984) by shooting (Cohen, Chen, Wallace, Greenberg 1988): whatever sends
 // most light that it has not yet sent sends it to all vertices at once.  No random number is drawn.
-// Biased by the mesh and by the fixed pattern of shadow rays, and by what is not yet sent.
+// Biased: by what is not yet sent, which only makes it too dark; by the mesh, whose vertices on a
+// border receive a little inside of it; by the fixed pattern of shadow rays; and if whole faces
+// shoot, by parts that are taken for their mean.
 #pragma once
 #include <barrier>
 #include <numeric>
@@ -47,9 +49,7 @@ public:
         for (const Light& l : scene.lights)
             if (l.kind == Light::Kind::point) points_.push_back(&l);
         emitted_ = unsent();
-        double area = 0;
-        for (const Face& f : mesh.faces) area += 2 * double(f.area());
-        faint_ = shooter == Shooter::face ? real(faintest * emitted_ / area) : 0;
+        for (const Face& f : mesh.faces) area_ += 2 * double(f.area());
     }
 
     const IlluminationMap& map() const { return map_; }
@@ -61,11 +61,15 @@ public:
 
     // Shoots until the target is met, nothing is left or `interrupted`; may be called again for a
     // farther target.  The map is the same, bit for bit, for any number of threads: every vertex
-    // receives one shot after the other.  Calls show(*this) between shots.
+    // receives one shot after the other.  But time, or a signal, may cut the last shot short: what
+    // vertices had not received by then is lost.  Calls show(*this) between shots.
     template <class Show>
     void run(const ShootingTarget& target, Show show) {
         const auto start = std::chrono::steady_clock::now();
         const double before = seconds_;
+        const std::chrono::duration<double> left(target.seconds > 0 ? target.seconds - before
+                                                                    : 1e9);
+        deadline_ = start + std::chrono::duration_cast<std::chrono::nanoseconds>(left);
         bool enough = false;
         std::atomic<size_t> next = 0;
         std::atomic<uint64_t> rays = 0;
@@ -83,7 +87,11 @@ public:
                 for (size_t k; (k = next++) < order_.size();) rays += receive(order_[k]);
         };
         std::vector<std::jthread> others;
-        for (unsigned k = 1; k < threads_; ++k) others.emplace_back(work);
+        for (unsigned k = 1; k < threads_; ++k) try {
+                others.emplace_back(work);
+            } catch (const std::system_error&) {  // one that cannot start is not waited for
+                sync.arrive_and_drop();
+            }
         work();
     }
 
@@ -119,9 +127,8 @@ private:
     std::vector<uint32_t> order_;  // faces, the largest first, so that threads end together
     std::vector<const Light*> points_;
     size_t next_point_ = 0;
-    double emitted_ = 0, seconds_ = 0;
-    real faint_ = 0;                          // irradiance for which no node is opened
-    static constexpr double faintest = 1e-2;  // of the mean that lights alone would give
+    double emitted_ = 0, area_ = 0, seconds_ = 0;  // power; of both sides of all faces
+    std::chrono::steady_clock::time_point deadline_;
     uint64_t shots_ = 0, rays_ = 0;
 
     // Who shoots now: a point light, or a node of a side.
@@ -220,7 +227,9 @@ private:
             Receiver to{{{}, n, f.error}, frame(n)};
             bool changed = shoots;
             for (uint32_t v = f.vertex; !shoots && v < f.vertex + f.vertices(); ++v) {
+                if (v % 64 == 0 && cut_short()) return transfer.rays;
                 to.x.p = mesh_.at[v];
+                to.E = mean_of(map_[2 * v + back]);
                 const rgb E = point_ ? transfer.from_point(to, *point_) : from_side(to, transfer);
                 if (max_of(E) > 0) map_[2 * v + back] += E, changed = true;
             }
@@ -238,11 +247,16 @@ private:
     }
 
     // A node with children is taken as a whole if the vertex sees it under a small angle, or if it
-    // is faint (brightness-weighted refinement, Hanrahan et al. 1991).
+    // is faint beside what the vertex has (brightness-weighted refinement, Hanrahan et al. 1991).
+    // A vertex that is still dark may lie within a solid, so there a glance comes first.
     rgb from_node(const Receiver& to, const Source& from, uint32_t i, Transfer& transfer) const {
         const Node& node = tree_[i];
         const Corners& L = radiance_[i];
-        if (is_faint(to, node, L.mean())) return transfer.from_whole(to, from, node, L.mean(), 1);
+        if (behind(to, node)) return {};
+        if (shooter_ == Shooter::face && most_from(to, node, mean_of(L.mean())) < faint_to(to)) {
+            if (to.E > 0) return transfer.from_whole(to, from, node, L.mean(), 1);
+            if (transfer.visible_part(to, from, node, 4) == 0) return {};
+        }
         if (node.children == 0) return transfer.from_element(to, from, node, L);
         if (!near(to, node, 8)) return transfer.from_whole(to, from, node, L.mean(), 1);
         rgb E;
@@ -252,8 +266,16 @@ private:
     }
 
     // pi L (r / d)^2 is about the most that a node of radius r sends.
-    bool is_faint(const Receiver& to, const Node& node, rgb L) const {
+    static real most_from(const Receiver& to, const Node& node, real L) {
         const vec3 d = node.centre - to.x.p;
-        return pi * mean_of(L) * std::min(real(1), sqr(node.radius) / dot(d, d)) < faint_;
+        return pi * L * std::min(real(1), sqr(node.radius) / dot(d, d));
     }
+
+    // Irradiance that a vertex does not care about: of one that is dark, beside the scene's mean.
+    real faint_to(const Receiver& to) const {
+        constexpr real part = real(0.005);
+        return part * (to.E > 0 ? to.E : real(emitted_ / area_));
+    }
+
+    bool cut_short() const { return interrupted || std::chrono::steady_clock::now() > deadline_; }
 };

@@ -8,6 +8,7 @@
 struct Receiver {
     Surface x;
     Frame local;
+    real E = 0;  // irradiance so far
 };
 
 // The side of a face that sends it: its normal, and the error of points of it.
@@ -25,6 +26,11 @@ struct Corners : std::array<rgb, 3> {
 inline bool near(const Receiver& to, const Node& node, real radii) {
     const vec3 d = node.centre - to.x.p;
     return dot(d, d) < sqr(radii * node.radius);
+}
+
+// Whether all of a node is below the receiver's horizon.
+inline bool behind(const Receiver& to, const Node& node) {
+    return dot(node.centre - to.x.p, to.x.n) < -node.radius;
 }
 
 // A node as the receiver sees it.
@@ -52,6 +58,7 @@ public:
     rgb from_element(const Receiver& to, const Source& from, const Node& node, const Corners& L,
                      int depth = 0) {
         constexpr int deepest = 6;
+        if (behind(to, node)) return {};
         if (depth == deepest || !near(to, node, 4))
             return from_whole(to, from, node, L.mean(), depth == 0 && near(to, node, 8) ? 4 : 1);
         const auto& [a, b, c, unused] = node.corner;
@@ -68,17 +75,9 @@ public:
     // (Lambert's theorem) times the part of it that is visible, by one shadow ray or four.
     rgb from_whole(const Receiver& to, const Source& from, const Node& node, rgb L,
                    int shadow_rays) {
-        if (max_of(L) <= 0 || dot(node.centre - to.x.p, to.x.n) < -node.radius) return {};
+        if (max_of(L) <= 0 || behind(to, node)) return {};
         const real visible = visible_part(to, from, node, shadow_rays);
         return visible > 0 ? L * (visible * irradiance_polygon(seen_from(to, node))) : rgb{};
-    }
-
-private:
-    const Scene& scene_;
-
-    bool sees(const Receiver& to, const Surface& y) {
-        ++rays;
-        return !scene_.bvh.occluded(spawn_to(to.x, y));
     }
 
     // By shadow rays to the centre, or to the middles of four quarters.  None ends below the
@@ -94,6 +93,14 @@ private:
         for (uint32_t k = 0; shadow_rays == 4 && k < 4; ++k) look_at(middle_of_quarter(node, k));
         if (above == 0) look_at(middle_above(to, node));
         return above == 0 ? 0 : real(visible) / real(above);
+    }
+
+private:
+    const Scene& scene_;
+
+    bool sees(const Receiver& to, const Surface& y) {
+        ++rays;
+        return !scene_.bvh.occluded(spawn_to(to.x, y));
     }
 
     // Three quarters of a triangle have one of its corners, the fourth has its centre.
