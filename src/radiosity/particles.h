@@ -189,6 +189,7 @@ public:
             }
         });
         const double own = spread / (batches * (batches - 1));
+        if (own == 0) return 0;
         return whole > own ? std::sqrt(own / (whole - own)) : double(INFINITY);
     }
 
