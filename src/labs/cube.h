@@ -260,23 +260,23 @@ private:
 struct Point {
     double x, y;
 };
-// Of L (nit) times f(x, y) over a triangle of the face, whose area is 4: n^2 nodes that crowd
-// towards its sides, because these may lie on edges of the cube.  With n = 16 its error is 3e-5 for
-// half a face, and below 10^-8 for triangles of a grid of 4 x 4 and finer.
+// Of L (nit) times f(x, y), a number or rgb, over a triangle of the face, whose area is 4: n^2
+// nodes that crowd towards its sides, because these may lie on edges of the cube.  With n = 16 its
+// error is 3e-5 for half a face, and below 10^-8 for triangles of a grid of 4 x 4 and finer.
 template <class F>
-double integral(const Solution& room, const std::array<Point, 3>& corners, F f, int n = 16) {
+auto integral(const Solution& room, const std::array<Point, 3>& corners, F f, int n = 16) {
     const auto [a, b, c] = corners;
     const double twice_area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
     const std::vector<Graded> rule = graded(n);
-    double sum = 0;
+    decltype(f(0.0, 0.0) * 1.0) sum{};
     for (const Graded& u : rule)
         for (const Graded& v : rule) {
             const double of_b = u.at * v.rest, of_c = u.at * v.at;
             const Point p{u.rest * a.x + of_b * b.x + of_c * c.x,
                           u.rest * a.y + of_b * b.y + of_c * c.y};
-            sum += u.weight * u.at * v.weight * room.luminance(p.x, p.y) * f(p.x, p.y);
+            sum += f(p.x, p.y) * (u.weight * u.at * v.weight * room.luminance(p.x, p.y));
         }
-    return twice_area * sum;
+    return sum * twice_area;
 }
 
 }  // namespace cube
