@@ -29,7 +29,7 @@ PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows bench cells voronoi voronoi2d \
+.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity bench cells voronoi voronoi2d \
         extremes readme clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -92,6 +92,7 @@ techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation brin
 estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
 shadows: $(PENUMBRA)       ## four estimators of direct light on images (5 minutes)
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
+radiosity:                 ## illumination maps by shooting and by particles (6 minutes; FULL=1: an hour)
 voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
 bench:                     ## rays a second, beside Embree if libembree-dev is installed
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
@@ -100,6 +101,9 @@ voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 $(EXPERIMENTS): %: build/%$(SUFFIX)
 	build/$@$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
+# build/radiosity is a renderer.
+radiosity: $(PENUMBRA) build/illumination$(SUFFIX)
+	build/illumination$(SUFFIX) $(if $(QUICK),--quick) $(if $(FULL),--full)
 
 extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)
 	@for real in double float; do \

@@ -107,9 +107,10 @@ TEST_CASE(
         const Faceted f = faceted(s, 2 * H);
         const double less = 1 - area(f.scene) / (16 * std::numbers::pi);
         char text[100];
-        std::snprintf(text, sizeof text,
-                      "3: the sphere becomes %zu triangles, whose area is %.2g %% less",
-                      f.scene.shapes.size(), 100 * less);
+        std::snprintf(
+            text, sizeof text,
+            "3: the sphere becomes %zu triangles, faces of their own, whose area is %.2g %% less",
+            f.scene.shapes.size(), 100 * less);
         REQUIRE(f.warnings.size() == 1);
         CHECK(f.warnings[0] == text);
         CHECK(double(f.scene.shapes.size()) == facets_of_sphere(2, 2 * H));
@@ -217,4 +218,12 @@ TEST_CASE(
     CHECK(complaint(light + "phong p .1 .1 .1  0 0 0  7\nsphere 0 0 0  1  p\n") == "");
     CHECK(complaint(light + "phong p .1 .1 .1  0 .4 0  7\nlight k 1 1 1 twosided p\n"
                             "quad 0 0 0  1 0 0  0 1 0  k\n") == "a.scene:7: 'k' is glossy" + end);
+}
+
+TEST_CASE("a room whose walls absorb nothing is warned of, by its first line") {
+    const std::string text = "diffuse grey .5 .5 .5\ndiffuse white .3 1 .3\npointlight 0 0 1  1 1 1\n"
+                             "quad 0 0 0  1 0 0  0 1 0  grey\nquad 0 0 2  1 0 0  0 1 0  white\n";
+    const Faceted f = faceted(parsed(text), 1);
+    REQUIRE(f.warnings.size() == 1);
+    CHECK(f.warnings[0] == "5: reflects all light: in a closed room there is no end to it");
 }
