@@ -73,7 +73,7 @@ inline Svg cube_sheet(const CubeRuns& r) {
 
 inline void tell_cube_orders(Report& report, const CubeRuns& r) {
     report.say("### Discretisation: from the limit to the exact solution");
-    report.picture("illumination-cube", cube_sheet(r), "Discretisation errors in the cube");
+    report.picture("radiosity-cube", cube_sheet(r), "Discretisation errors in the cube");
     const size_t points[] = {0, 3, 5, 6};
     const size_t shown = r.plan.quick ? 1 : 2;
     const std::string at = text("at %u cells: ", r.walls[shown].n);

@@ -236,7 +236,7 @@ inline void tell_growth(Report& report, const Plan& plan, const std::string& pen
         "(`--method shooting`, `--method hierarchy`), over meshes; %u threads.",
         all_cores()));
     tell_costs(report, s);
-    report.picture("illumination-growth", sheet_of(s), "Shadow rays and seconds over elements");
+    report.picture("radiosity-growth", sheet_of(s), "Shadow rays and seconds over elements");
     tell_exponents(report, s);
     tell_apart(report, s);
     for (const Growth& g : s.growths)
