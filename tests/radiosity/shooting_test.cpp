@@ -432,3 +432,22 @@ TEST_CASE("faces that shoot as wholes come to another limit, less than 1 % from 
         CHECK(apart > 0);
     }
 }
+
+TEST_CASE("a dim room is lit as if it were alone, however bright another one is") {
+    const std::string dim =
+        "diffuse w .6 .6 .6\nlight dim 1 1 1\nlight bright 3000 3000 3000\n"
+        "box 4 3 4  0  -2 0 -2  w\nquad -.5 2.9 -.5  1 0 0  0 0 1  dim\nbox .8 .8 .8  20  -.4 .3 "
+        "-.4  w\n";
+    const std::string bright = "box 2 2 2  0  20 0 0  w\nquad 20.5 1.9 .5  1 0 0  0 0 1  bright\n";
+    auto mean = [&](const std::string& statements, double unshot) {
+        const Scene s = parse_scene("camera 0 0 0  0 0 1  40\n" + statements, "s").scene;
+        const Mesh mesh = make_mesh(s, 0.5);
+        const IlluminationMap map = shot(s, mesh, Shooter::face, {unshot, 0, 0});
+        double sum = 0;
+        for (size_t k = 0; k < 13; ++k)  // the faces of the first three statements
+            sum += double(integral(mesh, map, mesh.faces[k], true).x +
+                          integral(mesh, map, mesh.faces[k], false).x);
+        return sum;
+    };
+    CHECK(mean(dim + bright, 1e-7) == approx(mean(dim, 1e-3), 0.01, 0.01));
+}
