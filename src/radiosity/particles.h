@@ -22,7 +22,7 @@ public:
     static constexpr uint32_t pick = 0, point = 1, direction = 3, side = 5, structured = 8;
 
     WalkNumbers(const Pattern& pattern, const Pattern& independent, uint64_t batch, uint64_t i)
-        : first_(pattern, batch, i), rest_(independent, batch, i) {}
+        : first_(pattern, batch, i), independent_(independent), batch_(batch), i_(i) {}
 
     real start(uint32_t what) const { return first_.get(what); }
     vec2 start2(uint32_t what) const { return first_.get2(what); }
@@ -30,8 +30,12 @@ public:
     vec2 scattered(uint32_t k) const { return of(k).get2(7 + 3 * k); }
 
 private:
-    Sampler first_, rest_;
-    const Sampler& of(uint32_t k) const { return k < structured ? first_ : rest_; }
+    const Sampler first_;
+    const Pattern& independent_;
+    const uint64_t batch_, i_;
+    Sampler of(uint32_t k) const {
+        return k < structured ? first_ : Sampler(independent_, batch_, i_);
+    }
 };
 
 struct Particle {

@@ -202,6 +202,12 @@ TEST_CASE("a furnace is uniform within the reported error; 16 batches tell it wi
         }
 }
 
+TEST_CASE("where noise is all that there is, the reported error does not stop at 100 %") {
+    const Scene s = cube();
+    const Mesh mesh = make_mesh(s, 0.7);  // many more vertices than hits
+    CHECK(run(s, mesh, SamplerKind::independent, 32, 1).error() > 2);
+}
+
 TEST_CASE("plates: what a receiver gets, by closed forms, and each of its hats, by quadrature") {
     for (bool above : {true, false}) {
         // The receiver is one cell, s along y and t along x (above) or z (beside).
