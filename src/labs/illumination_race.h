@@ -22,6 +22,16 @@ inline Power power_through(const Curve& c) {
     return {std::exp(log_factor / double(c.error.size())), p};
 }
 
+// Between the points of a curve by powers; beyond them like 1 / sqrt(t), as independent numbers do.
+inline double error_at(const Curve& c, double t) {
+    const auto& s = c.seconds;
+    const size_t above = size_t(std::upper_bound(s.begin(), s.end(), t) - s.begin());
+    if (above == 0) return c.error.front() * std::sqrt(s.front() / t);
+    if (above == s.size()) return c.error.back() * std::sqrt(s.back() / t);
+    const double part = std::log(t / s[above - 1]) / std::log(s[above] / s[above - 1]);
+    return c.error[above - 1] * std::pow(c.error[above] / c.error[above - 1], part);
+}
+
 // ---- References whose error is inferred ---------------------------------------------------------
 
 // The error of an image is proportional to what a run reports of its map (Khodulev 1996, ch. 5).
@@ -84,6 +94,13 @@ struct Race {
     Proportion proportion;
     Curve independent, halton, references;  // errors of the references are inferred
     Deterministic flat, hierarchy;
+    // Of independent particles: the shorter runs, then the references; in time.
+    Curve particles() const {
+        Curve all = independent;
+        for (size_t i = 0; i < references.error.size(); ++i)
+            all.add(references.seconds[i], references.error[i]);
+        return all;
+    }
 };
 
 // Without the reference's own error, which is independent of it.
@@ -141,14 +158,13 @@ struct Ahead {
     double from = 0, to = 0, worst = 0, best = 0;  // seconds; errors of particles there
 };
 inline Ahead ahead(const Curve& particles, const Curve& deterministic) {
-    const Power fit = power_through(particles);
     Ahead a;
     for (size_t i = 0; i < deterministic.seconds.size(); ++i) {
         const double t = deterministic.seconds[i];
-        if (fit(t) >= deterministic.error[i]) continue;
-        if (!a.ever) a.from = t, a.worst = fit(t);
-        a.ever = true, a.to = t, a.best = fit(t),
-        a.to_the_end = i + 1 == deterministic.seconds.size();
+        const double own = error_at(particles, t);
+        if (own >= deterministic.error[i]) continue;
+        if (!a.ever) a.from = t, a.worst = own;
+        a.ever = true, a.to = t, a.best = own, a.to_the_end = i + 1 == deterministic.seconds.size();
     }
     return a;
 }

@@ -83,6 +83,16 @@ TEST_CASE(
     CHECK_FALSE(ahead(shooting, particles).to_the_end);
 }
 
+TEST_CASE("an error between two points of a curve lies on a power, beyond them on 1 / sqrt(t)") {
+    Curve c;
+    c.add(1, 0.8), c.add(4, 0.2), c.add(16, 0.1);
+    CHECK(error_at(c, 1) == doctest::Approx(0.8));
+    CHECK(error_at(c, 2) == doctest::Approx(0.4));
+    CHECK(error_at(c, 8) == doctest::Approx(0.1 * std::sqrt(2)));
+    CHECK(error_at(c, 64) == doctest::Approx(0.05));
+    CHECK(error_at(c, 0.25) == doctest::Approx(1.6));
+}
+
 TEST_CASE("cameras from which on a map is cheaper") {
     CHECK(cameras(10, 1, 3) == 5);  // 5 + 10 = 15
     CHECK(cameras(10, 1, 3.1) == 5);
