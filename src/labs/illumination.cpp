@@ -175,10 +175,11 @@ Test test_of(const Plan& plan) {
 
 // At 1 % of unshot power.
 void plot_by_mesh(Svg& sheet, const Comparison& c) {
-    std::vector<double> H, particles, total, realistic, optimistic;
+    std::vector<double> H, particles, total, realistic, optimistic, floor;
     for (const AtH& m : c.meshes) {
         H.push_back(m.H), particles.push_back(m.limit), total.push_back(m.total_at_1);
         realistic.push_back(m.realistic_at_1), optimistic.push_back(m.optimistic_at_1);
+        floor.push_back(m.floor);
     }
     Plot plot(sheet, {80, 40}, {330, 290},
               {"longest edge H", H.back() * 0.9, H.front() * 1.1, true, H},
@@ -189,6 +190,7 @@ void plot_by_mesh(Svg& sheet, const Comparison& c) {
     };
     curve(total, svg::colours[3], "total, hierarchy");
     curve(realistic, svg::colours[3], "realistic");
+    curve(floor, svg::colours[7], "floor of the realistic");
     curve(optimistic, svg::colours[5], "optimistic");
     curve(particles, svg::colours[1], "particles' limit");
 }
@@ -228,15 +230,15 @@ discretisation, too.)",
     plot_by_time(sheet, c);
     report.picture("radiosity-total", sheet, "Total errors over the mesh and over time");
     report.head({"triangles", "H", "particles' limit, total", "hierarchy at 1 % unshot: total",
-                 "realistic", "optimistic", "seconds", "a view", "path tracer, same error",
-                 "cameras from which on the map is cheaper"});
+                 "realistic", "its floor", "optimistic", "seconds", "a view",
+                 "path tracer, same error", "cameras from which on the map is cheaper"});
     for (const AtH& m : c.meshes) {
         const double traced = std::pow(m.total_at_1 / tracer.factor, 1 / tracer.exponent);
         const double n = cameras(m.seconds_at_1, m.view, traced);
         report.row({text("%zu", m.elements), text("%g", m.H), percent(m.limit),
-                    percent(m.total_at_1), percent(m.realistic_at_1), percent(m.optimistic_at_1),
-                    seconds(m.seconds_at_1), seconds(m.view), seconds(traced),
-                    std::isfinite(n) ? text("%.0f", n) : "never"});
+                    percent(m.total_at_1), percent(m.realistic_at_1), percent(m.floor),
+                    percent(m.optimistic_at_1), seconds(m.seconds_at_1), seconds(m.view),
+                    seconds(traced), std::isfinite(n) ? text("%.0f", n) : "never"});
     }
     report.end_of_table();
     std::vector<double> H, limit;

@@ -58,6 +58,7 @@ struct AtH {
     double H = 0;
     size_t elements = 0;
     double limit = 0;        // total error of the particles' limit: discretisation alone
+    double floor = 0;        // from that limit to shooting's: where the realistic error stops
     double view = 0;         // seconds to draw a camera's image of a map
     Deterministic shooting;  // the hierarchy: realistic and optimistic
     Curve total;             // its total error
@@ -75,7 +76,7 @@ inline double seconds_of_view(const Room& room, const IlluminationMap& map) {
 inline AtH at(const Test& t, double H, const Pair& truth) {
     const Room room = illumination::room(t.scene, H, t.size);
     const Eye eye(room);
-    AtH r{H, room.mesh.elements(), 0, 0, {}, {}, {}, 0, 0, 0, 0};
+    AtH r{H, room.mesh.elements(), 0, 0, 0, {}, {}, {}, 0, 0, 0, 0};
     auto run = [&](uint64_t seed, uint64_t n) {
         return fill(room, eye, SamplerKind::halton, seed, n);
     };
@@ -96,6 +97,7 @@ inline AtH at(const Test& t, double H, const Pair& truth) {
         const double realistic = without(d_rel(limit.mean, s.image), limit.own),
                      optimistic = d_rel(last.image, s.image);
         r.total.add(s.seconds, total(s.image));
+        r.floor = realistic;
         if (s.unshot > 0.01 || r.seconds_at_1 > 0) continue;
         r.total_at_1 = total(s.image), r.realistic_at_1 = realistic, r.optimistic_at_1 = optimistic;
         r.seconds_at_1 = s.seconds;
