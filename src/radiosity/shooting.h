@@ -87,11 +87,13 @@ public:
                 for (size_t k; (k = next++) < order_.size();) rays += receive(order_[k]);
         };
         std::vector<std::jthread> others;
-        for (unsigned k = 1; k < threads_; ++k) try {
+        for (unsigned k = 1; k < threads_; ++k) {
+            try {
                 others.emplace_back(work);
             } catch (const std::system_error&) {  // one that cannot start is not waited for
                 sync.arrive_and_drop();
             }
+        }
         work();
     }
 
