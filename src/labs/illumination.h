@@ -57,7 +57,7 @@ public:
         Image image(size_.width, size_.height);
         for (size_t i = 0; i < image.pixels.size(); ++i) {
             rgb sum;
-            for (const Look* l = &looks_[i * rays]; l < &looks_[(i + 1) * rays]; ++l) {
+            for (const Look* l = &looks_[i * rays]; l < looks_.data() + (i + 1) * rays; ++l) {
                 sum += l->Le;
                 for (size_t k = 0; k < 3; ++k) sum += l->rho * map[l->side[k]] * l->weight[k] / pi;
             }
