@@ -71,17 +71,11 @@ Bytes bytes_of(const RadiosityOptions& o) {
     return is_random(o) ? Particles::bytes() : Shooting::bytes();
 }
 
-double diagonal(const Scene& scene) {
-    Box box;
-    for (const Shape& s : scene.shapes) box.add(bounds(s));
-    return double(length(box.hi - box.lo));
-}
-
 // How long edges are; throws UserError if the scene is none for illumination maps, or its mesh none
 // for this machine.
 double edge_length(const RadiosityOptions& o, const Scene& scene) {
     check_diffuse(scene, o.scene);
-    const double H = o.mesh.value_or(diagonal(scene) / 32);
+    const double H = o.mesh.value_or(double(diagonal(scene)) / 32);
     try {
         check_fits(scene, H, bytes_of(o), bytes_of_machine());
     } catch (const UserError& e) {

@@ -22,7 +22,5 @@ inline real default_exposure(const Scene& scene, View view) {
     if (view == View::radiance || view == View::variance) return scene.exposure;
     if (view == View::bvh) return real(1) / 64;
     if (view != View::depth) return 1;
-    Box box;
-    for (const Shape& s : scene.shapes) box.add(bounds(s));
-    return 1 / length(box.hi - box.lo);
+    return 1 / diagonal(scene);
 }

@@ -18,6 +18,9 @@ inline double d_rel(const Image& f, const Image& g) {
     return std::sqrt(mse(f, g) * 3 * double(f.pixels.size()) / square);
 }
 
+inline std::string percent(double x) { return text(x < 0.001 ? "%.3f %%" : "%.2g %%", 100 * x); }
+inline std::string seconds(double s) { return text(s < 0.1 ? "%.2g s" : "%.3g s", s); }
+
 // ---- Rooms --------------------------------------------------------------------------------------
 
 // A scene and its triangles, no edge of them longer than H.

@@ -90,7 +90,7 @@ struct Deterministic {
 
 struct Race {
     std::string scene;
-    size_t elements = 0, faces = 0;
+    size_t elements = 0;
     Proportion proportion;
     Curve independent, halton, references;  // errors of the references are inferred
     Deterministic flat, hierarchy;
@@ -123,7 +123,7 @@ inline Deterministic race_of(const Room& room, const Eye& eye, Shooter shooter,
 inline Race run_race(const Course& course) {
     const Room room = illumination::room(course.scene, course.H);
     const Eye eye(room);
-    Race race{course.scene, room.mesh.elements(), room.mesh.faces.size(), {}, {}, {}, {}, {}, {}};
+    Race race{course.scene, room.mesh.elements(), {}, {}, {}, {}, {}, {}};
     auto run = [&](SamplerKind kind, uint64_t seed, uint64_t n) {
         return fill(room, eye, kind, seed, n);
     };
@@ -168,4 +168,5 @@ inline Ahead ahead(const Curve& particles, const Curve& deterministic) {
     }
     return a;
 }
+
 }  // namespace illumination

@@ -27,16 +27,6 @@ inline rgb emission(const Scene& s, const Face& f, bool back) {
                : emitted(s.materials[s.material_of[f.shape]], back ? real(-1) : real(1));
 }
 
-// Emitted power, a channel at a time (watts; lumen): pi L times the area, 4 pi I of a point.
-inline rgb emitted_power(const Scene& s) {
-    rgb power;
-    for (const Light& l : s.lights)
-        power += l.kind == Light::Kind::point
-                     ? 4 * pi * l.L
-                     : pi * length(l.area_vector()) * (l.twosided ? 2 : 1) * l.L;
-    return power;
-}
-
 // ---- Images -------------------------------------------------------------------------------------
 
 struct Seen {

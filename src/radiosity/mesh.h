@@ -46,7 +46,7 @@ struct Grid {
     double columns = 1, rows = 1;
 };
 inline Grid grid_of(const Face& f, double H) {
-    const double room = H * (1 + 1e-9);
+    const double room = H * (1 + 1e-9);  // for the rounding of an H that is a side over n
     auto longest = [](vec3 x, vec3 y) { return std::max(double(length(x)), double(length(y))); };
     if (!f.quad) {
         const double edge = std::max(longest(f.b - f.a, f.c - f.b), double(length(f.a - f.c)));
@@ -62,7 +62,7 @@ inline Grid grid_of(const Face& f, double H) {
     while (g.columns * g.rows < 1e12) {
         const vec3 x = part(u, g.columns), y = part(v, g.rows);
         if (std::max(longest(x, y), double(length(x + y))) <= room) break;
-        if (length(x) > length(y))
+        if (length(x) > length(y))  // one more; of thousands a thousandth, not to be long
             g.columns = std::max(g.columns + 1, std::ceil(g.columns * 1.001));
         else
             g.rows = std::max(g.rows + 1, std::ceil(g.rows * 1.001));

@@ -48,8 +48,8 @@ inline Particle emit(const Scene& scene, const WalkNumbers& u) {
     const Light& l = choose_light(scene, u.start(WalkNumbers::pick));
     const vec2 at = u.start2(WalkNumbers::point), d = u.start2(WalkNumbers::direction);
     if (l.kind == Light::Kind::point) {
-        const vec3 w = spherical(1 - 2 * d.x, 2 * std::sqrt(d.x * (1 - d.x)), 2 * pi * d.y);
-        return {{l.p, w}, 4 * pi * l.L / l.pick};
+        const vec3 w = sample_uniform_sphere(d);
+        return {{l.p, w}, l.L / (pdf_uniform_sphere() * l.pick)};
     }
     const vec3 area = l.area_vector();
     const vec3 on =
@@ -60,6 +60,9 @@ inline Particle emit(const Scene& scene, const WalkNumbers& u) {
     return {spawn({l.p + on, n, l.error}, w),
             pi * length(area) * (l.twosided ? 2 : 1) * l.L / l.pick};
 }
+
+// White walls absorb nothing, but walks have to end: one in fifty does, and the others weigh more.
+inline constexpr real white_survival = real(0.98);
 
 // Calls hit(vertex, power) wherever the particle stops; returns the number of rays.
 template <class Hit>
@@ -74,7 +77,7 @@ uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hi
         }
         hit(*x, power);
         const rgb rho = x->material->kd;
-        const real all = max_of(rho), survival = all < 1 ? all : real(0.98);  // white ends, too
+        const real all = max_of(rho), survival = all < 1 ? all : white_survival;
         if (u.survival(k) >= survival) {
             balance.absorbed += power;
             return k + 1;
@@ -181,7 +184,8 @@ public:
             for (const Batch& batch : batch_)
                 add_sums(mean, batch, f, back, 1 / (double(batch.n) * batches));
             auto square = [&](const Sums& b) {
-                const rgb channels = onto.square(onto(b, functional, real(1e-4)));
+                constexpr auto precise = real(1e-4);  // an error needs no more digits
+                const rgb channels = onto.square(onto(b, functional, precise));
                 return double(channels.x) + double(channels.y) + double(channels.z);
             };
             whole += square(mean);

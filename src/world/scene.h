@@ -56,6 +56,13 @@ struct Scene {
     const Material& material(const Hit& hit) const { return materials[material_of[hit.id]]; }
 };
 
+// Of the box about all shapes.
+inline real diagonal(const Scene& s) {
+    Box box;
+    for (const Shape& shape : s.shapes) box.add(bounds(shape));
+    return length(box.hi - box.lo);
+}
+
 inline void add_shape(Scene& s, const Shape& shape, uint32_t material, int32_t light) {
     s.shapes.push_back(shape);
     s.material_of.push_back(material);

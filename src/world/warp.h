@@ -16,6 +16,12 @@ inline vec3 sample_uniform_hemisphere(vec2 u) {
 }
 inline real pdf_uniform_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 / (2 * pi) : 0; }
 
+// Uniform over the sphere: z is uniform in [-1,1].
+inline vec3 sample_uniform_sphere(vec2 u) {
+    return spherical(1 - 2 * u.x, 2 * std::sqrt(u.x * (1 - u.x)), 2 * pi * u.y);
+}
+inline real pdf_uniform_sphere() { return 1 / (4 * pi); }
+
 // Density cos(theta)/pi: a uniform point of the disc, lifted to the hemisphere (Malley 1988).
 inline vec3 sample_cosine_hemisphere(vec2 u) {
     return spherical(std::sqrt(1 - u.x), std::sqrt(u.x), 2 * pi * u.y);

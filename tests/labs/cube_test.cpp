@@ -170,3 +170,35 @@ TEST_CASE("integrals over triangles of the face: they add up, and hats to the wh
                        cube::integral(room(), t, near_r),
                    cube::integral(room(), t, one)) < 1e-13);
 }
+
+TEST_CASE("integrals of E times the hats of 2 x 2 cells: the numbers of radiosity/exact.h") {
+    // Halves of the cells, each from one corner to the opposite one; n = 24: these are coarse.
+    for (const exact::CubeHat& hat : exact::cube_hats)
+        for (int vertex : hat.vertices) {
+            double nit = 0;  // over [-1,1]^2
+            for (double x : {-1, 0})
+                for (double y : {-1, 0})
+                    for (bool upper : {false, true}) {
+                        const std::array<cube::Point, 3> t = {
+                            {{x, y},
+                             upper ? cube::Point{x + 1, y + 1} : cube::Point{x + 1, y},
+                             upper ? cube::Point{x, y + 1} : cube::Point{x + 1, y + 1}}};
+                        const double px = vertex % 3 - 1, py = vertex / 3 - 1;
+                        for (size_t k = 0; k < 3; ++k) {
+                            if (t[k].x != px || t[k].y != py) continue;
+                            const cube::Point a = t[(k + 1) % 3], b = t[(k + 2) % 3];
+                            auto twice = [](cube::Point p, cube::Point q, double sx, double sy) {
+                                return (q.x - p.x) * (sy - p.y) - (q.y - p.y) * (sx - p.x);
+                            };
+                            nit += cube::integral(
+                                room(), t,
+                                [&](double sx, double sy) {
+                                    return twice(a, b, sx, sy) / twice(a, b, px, py);
+                                },
+                                24);
+                        }
+                    }
+            const double lumen = 25 * nit * cube::pi / cube::albedo;  // 10 m a side: 25 times
+            CHECK(lumen == doctest::Approx(hat.flux).epsilon(1e-7).scale(0));
+        }
+}

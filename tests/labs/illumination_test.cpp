@@ -109,7 +109,7 @@ TEST_CASE("what remains unshot is looked at by decades") {
 }
 
 TEST_CASE("the mean of two runs, and its error") {
-    const Pair p = pair_of(grey({3, 4}), grey({4, 4}), 2);
+    const Pair p = pair_of(grey({3, 4}), grey({4, 4}));
     CHECK(p.mean.at(0, 0)[0] == 3.5f);
     CHECK(p.own == doctest::Approx(0.1));
 }

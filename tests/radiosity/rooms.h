@@ -81,6 +81,16 @@ inline std::vector<uint32_t> face_of_element(const Mesh& mesh) {
     return face;
 }
 
+// Emitted power, a channel at a time (watts; lumen): pi L times the area, 4 pi I of a point.
+inline rgb emitted_power(const Scene& s) {
+    rgb power;
+    for (const Light& l : s.lights)
+        power += l.kind == Light::Kind::point
+                     ? 4 * pi * l.L
+                     : pi * length(l.area_vector()) * (l.twosided ? 2 : 1) * l.L;
+    return power;
+}
+
 // The integral of a map over one side of a face.
 inline rgb integral(const Mesh& mesh, const IlluminationMap& map, const Face& f, bool back) {
     rgb sum;

@@ -40,6 +40,17 @@ TEST_CASE("uniform hemisphere: p(w) = 1 / 2 pi, about any axis") {
                0.05);
 }
 
+TEST_CASE("uniform sphere: p(w) = 1 / 4 pi") {
+    oracle::Random random(seed_here());
+    EXPECT(oracle::expect_density(
+               random,
+               [](real u, real v) {
+                   return sample_uniform_sphere({u, v});
+               },
+               [](vec3) { return pdf_uniform_sphere(); }),
+           0.05);
+}
+
 TEST_CASE("cosine hemisphere: p(w) = cos(theta) / pi, about any axis") {
     oracle::Random random(seed_here());
     for (vec3 n : some_axes())
