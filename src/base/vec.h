@@ -62,7 +62,7 @@ inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
 }
 
 // Within 3.5 ulp, whatever the length.
-inline vec3 unit(vec3 a) {
+[[gnu::always_inline]] inline vec3 unit(vec3 a) {
     const real a2 = dot(a, a);
     if (!std::isnormal(a2)) [[unlikely]]
         return unit_of_extreme(a);

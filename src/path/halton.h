@@ -20,15 +20,34 @@ inline std::vector<uint32_t> first_primes(size_t n) {
     return primes;
 }
 
+// A prime, say, and what divides by it fast: of n, b < 2^32 the quotient floor(n / b) is
+// floor(n m / 2^64), m = floor(2^64 / b) + 1, for n (m b - 2^64) <= n b < 2^64 (Granlund,
+// Montgomery 1994).
+struct Base {
+    uint64_t b = 2;
+    uint64_t reciprocal = 0;  // m
+    uint64_t most = 0;        // powers of b above this have no next one
+
+    Base(uint32_t base) : b(base), reciprocal(UINT64_MAX / b + 1), most(UINT64_MAX / b) {}
+    operator uint32_t() const { return uint32_t(b); }
+
+    uint64_t quotient(uint64_t n) const {
+        if (n > UINT32_MAX) return n / b;
+        const uint64_t low = n * (reciprocal & UINT32_MAX);
+        return (n * (reciprocal >> 32) + (low >> 32)) >> 32;
+    }
+    uint64_t remainder(uint64_t n) const { return n - quotient(n) * b; }
+};
+
 // The digits of an index in a base, mirrored at the point: they gather here as digits / power, both
 // exact.  Digits after the 64th bit are below every rounding and are left out.
 struct MirroredDigits {
     uint64_t digits = 0, power = 1;
 
-    bool full(uint32_t base) const { return power > UINT64_MAX / base; }
-    void append(uint32_t base, uint64_t digit) {
-        digits = digits * base + digit;
-        power *= base;
+    bool full(const Base& base) const { return power > base.most; }
+    void append(const Base& base, uint64_t digit) {
+        digits = digits * base.b + digit;
+        power *= base.b;
     }
     // Plus a part of [0,1) of the last digit; never 1.
     real value(real rest) const {
@@ -38,30 +57,36 @@ struct MirroredDigits {
 
 // Radical inverse of i (van der Corput 1935; Halton 1960): i = sum d_k b^k becomes
 // sum d_k b^(-k-1).
-inline real radical_inverse(uint32_t base, uint64_t i) {
+inline real radical_inverse(const Base& base, uint64_t i) {
     MirroredDigits mirrored;
-    for (; i > 0 && !mirrored.full(base); i /= base) mirrored.append(base, i % base);
+    while (i > 0 && !mirrored.full(base)) {
+        const uint64_t rest = base.quotient(i);
+        mirrored.append(base, i - rest * base.b);
+        i = rest;
+    }
     return mirrored.value(0);
 }
 
 // The next digit of a fraction of 2^64ths, which is replaced by what follows that digit.
-inline uint64_t next_digit(uint32_t base, uint64_t& fraction) {
-    const uint64_t low = (fraction & UINT32_MAX) * base;
-    const uint64_t high = (fraction >> 32) * base + (low >> 32);
-    fraction *= base;
+inline uint64_t next_digit(const Base& base, uint64_t& fraction) {
+    const uint64_t low = (fraction & UINT32_MAX) * base.b;
+    const uint64_t high = (fraction >> 32) * base.b + (low >> 32);
+    fraction *= base.b;
     return high >> 32;
 }
 
 // The same with digits scrambled: d_k becomes (a d_k + c_k) mod b, 1 <= a < b, with the c_k the
 // digits of a uniform number (random linear scrambling: Matousek 1998, J. Complexity 14).  For
 // uniform random bits every point is uniform; any set of points stays as even as it was.
-inline real scrambled_radical_inverse(uint32_t base, uint64_t i, uint64_t shift_bits,
+inline real scrambled_radical_inverse(const Base& base, uint64_t i, uint64_t shift_bits,
                                       uint64_t factor_bits) {
-    const uint64_t factor = 1 + (factor_bits >> 32) * (base - 1) / (uint64_t(1) << 32);
+    const uint64_t factor = 1 + ((factor_bits >> 32) * (base.b - 1) >> 32);
     MirroredDigits mirrored;
-    for (; i > 0 && !mirrored.full(base); i /= base) {
+    while (i > 0 && !mirrored.full(base)) {
+        const uint64_t rest = base.quotient(i), digit = i - rest * base.b;
         const uint64_t shift = next_digit(base, shift_bits);
-        mirrored.append(base, (factor * (i % base) + shift) % base);
+        mirrored.append(base, base.remainder(factor * digit + shift));
+        i = rest;
     }
     return mirrored.value(to_unit(shift_bits));  // the zeros ahead of i, scrambled: c_k alone
 }

@@ -22,24 +22,33 @@ struct Technique {
     int roulette = 0;  // Russian roulette from this scattering on; 0: never
 };
 
+// A path's numbers stay in registers only if its loop is compiled as one function: its parts, which
+// are used in two or three places, are not inlined unless one insists.
+#define PART [[gnu::always_inline]] inline
+
 // ---- Where a ray stops --------------------------------------------------------------------------
 
 struct Vertex {
     Hit hit;
     Surface at;
-    const Material* material;
-    real cos_o;   // between the surface's own normal and wo; negative on its back
-    Frame local;  // z is the normal on the side of wo
-    vec3 wo;      // to where the ray came from, local
+    const Material* material = nullptr;
+    real cos_o = 0;  // between the surface's own normal and wo; negative on its back
+    Frame local;     // z is the normal on the side of wo
+    vec3 wo;         // to where the ray came from, local
 };
 
-inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
+PART std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
     const auto hit = scene.bvh.closest(ray);
     if (!hit) return {};
-    const Surface x = surface(scene.shapes[hit->id], ray, *hit);
-    const real cos_o = -dot(x.n, ray.d);
-    const Frame local = frame(cos_o > 0 ? x.n : -x.n);
-    return Vertex{*hit, x, &scene.material(*hit), cos_o, local, local.to_local(-ray.d)};
+    std::optional<Vertex> met;
+    Vertex& x = met.emplace();
+    x.hit = *hit;
+    x.at = scene.surface(ray, *hit);
+    x.material = &scene.material(*hit);
+    x.cos_o = -dot(x.at.n, ray.d);
+    x.local = frame(x.cos_o > 0 ? x.at.n : -x.at.n);
+    x.wo = x.local.to_local(-ray.d);
+    return met;
 }
 
 // ---- Light by aiming at it ----------------------------------------------------------------------
@@ -57,11 +66,13 @@ struct DirectLight {
 
 // By one light, chosen at random: f L cos / pdf where nothing is in the way.  Unbiased for the sum
 // of all lights; under MIS, for the weighted share of it.
-inline DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
-                                const Sampler& sampler, int vertex) {
+PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
+                              const Sampler& sampler, int vertex) {
     const Material& m = *x.material;
     if (t.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
-    const Light& light = choose_light(scene, sampler.get(dimension(vertex, Draw::pick)));
+    const bool one = scene.lights.size() == 1;
+    const real u_pick = one ? 0 : sampler.get(dimension(vertex, Draw::pick));
+    const Light& light = one ? scene.lights[0] : choose_light(scene, u_pick);
     const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
     if (!s) return {};
     const vec3 wi = x.local.to_local(s->wi);
@@ -89,14 +100,14 @@ struct Segment {
 
 // What happened where it stopped.  The path's radiance grows by beta (Le weight + direct.L).
 struct Step {
-    std::optional<Vertex> x;      // nothing: the ray left the scene
-    rgb Le;                       // emitted towards wo
-    real weight = 0;              // of Le, beside light samples
-    DirectLight direct;           // reflected towards wo
-    BsdfSample scattered;         // its wi is local
-    vec3 wi;                      // the same in world space
-    std::optional<Segment> next;  // nothing: the path ends, for this reason:
-    const char* end = nullptr;
+    std::optional<Vertex> x;    // nothing: the ray left the scene
+    rgb Le = {};                // emitted towards wo
+    real weight = 0;            // of Le, beside light samples
+    DirectLight direct = {};    // reflected towards wo
+    BsdfSample scattered = {};  // its wi is local
+    vec3 wi = {};               // the same in world space
+    const char* end = nullptr;  // why the path ends here; nothing: it goes on by
+    Segment next = {};
 };
 
 // Weight of emission that a ray met by chance.
@@ -113,13 +124,12 @@ inline real weight_of_emission(const Scene& scene, LightMode mode, const Segment
 // The rendering equation (Kajiya 1986) at one vertex x:
 //   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi,
 // the integral by one direction, the light that reaches x directly by one light sample as well.
-inline Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
-    Step e;
+PART Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
+    Step e{meet(scene, s.ray)};
     auto ends = [&e](bool here, const char* why) {
         if (here) e.end = why;
         return here;
     };
-    e.x = meet(scene, s.ray);
     if (ends(!e.x, "the ray leaves the scene")) return e;
     const Vertex& x = *e.x;
     const Material& m = *x.material;
@@ -132,7 +142,7 @@ inline Step step(const Scene& scene, const Technique& t, const Segment& s, const
     e.direct = direct_light(scene, t, x, sampler, s.k);
 
     const vec2 u = sampler.get2(dimension(s.k, Draw::wi_x));
-    const real u_lobe = sampler.get(dimension(s.k, Draw::lobe));
+    const real u_lobe = m.has_choice() ? sampler.get(dimension(s.k, Draw::lobe)) : 0;
     const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
     e.wi = x.local.to_world(b.wi);
     if (ends(max_of(b.f) <= 0, "nothing is reflected that way")) return e;
@@ -143,7 +153,7 @@ inline Step step(const Scene& scene, const Technique& t, const Segment& s, const
         if (ends(u_survival >= survival, "Russian roulette")) return e;
         beta /= survival;
     }
-    e.next = Segment{spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1};
+    e.next = {spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1};
     return e;
 }
 
@@ -159,12 +169,14 @@ template <class Account = NoAccount>
 rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
        Account account = {}) {
     rgb L;
-    for (std::optional<Segment> s = Segment{ray, ray.o}; s;) {
-        const Step e = step(scene, t, *s, sampler);
-        L += s->beta * e.Le * e.weight;
-        L += s->beta * e.direct.L;
-        account(*s, e);
+    for (Segment s{ray, ray.o};;) {
+        const Step e = step(scene, t, s, sampler);
+        L += s.beta * e.Le * e.weight;
+        L += s.beta * e.direct.L;
+        account(s, e);
+        if (e.end) return L;
         s = e.next;
     }
-    return L;
 }
+
+#undef PART

@@ -25,9 +25,9 @@ inline constexpr uint32_t dimension(int vertex, Draw what) {
 struct Pattern {
     SamplerKind kind = SamplerKind::halton;
     uint64_t seed = 0;
-    uint32_t halves = 1;               // 2: odd samples have a randomisation of their own
-    uint32_t columns = 1, rows = 1;    // stratified: of a grid
-    std::vector<uint32_t> bases = {};  // halton: one prime a dimension
+    uint32_t halves = 1;             // 2: odd samples have a randomisation of their own
+    uint32_t columns = 1, rows = 1;  // stratified: of a grid
+    std::vector<Base> bases = {};    // halton: one prime a dimension
 
     // Samples per pixel after which whole grids are complete.
     uint64_t period() const { return uint64_t(halves) * columns * rows; }
@@ -45,7 +45,9 @@ inline uint32_t rows_of_grid(uint64_t n) {
 // (unknown).  Before its last pass is complete the cells are still a fair, if random, choice.
 inline Pattern make_pattern(SamplerKind kind, uint64_t seed, bool halves, int depth, uint64_t spp) {
     Pattern p{kind, seed, halves && kind != SamplerKind::independent ? 2u : 1u};
-    if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
+    if (kind == SamplerKind::halton)
+        for (uint32_t prime : first_primes(dimension(depth, Draw::light_x)))
+            p.bases.emplace_back(prime);
     if (kind == SamplerKind::stratified) {
         p.columns = p.rows = 4;
         const uint64_t n = spp / p.halves;

@@ -101,9 +101,9 @@ inline double add_facets(Scene& to, const Scene& from, size_t i, double H) {
         if (!has_area(facet)) continue;  // too small for its place
         int32_t light = no_light;
         if (from.light_of[i] != no_light) {
-            Light l = from.lights[size_t(from.light_of[i])];
-            l.kind = Light::Kind::triangle;
-            l.p = facet.a, l.u = facet.b - facet.a, l.v = facet.c - facet.a;
+            const Light& ball = from.lights[size_t(from.light_of[i])];
+            Light l = triangle_light(facet.a, facet.b - facet.a, facet.c - facet.a);
+            l.L = ball.L, l.twosided = ball.twosided, l.error = ball.error;
             light = int32_t(to.lights.size());
             to.lights.push_back(l);
             to.line_of_light.push_back(from.line_of[i]);

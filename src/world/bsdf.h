@@ -19,6 +19,8 @@ struct Material {
 
     bool is_delta() const { return kind != Kind::rough; }  // scatters into single directions
     bool emits() const { return max_of(Le) > 0; }
+    // Whether a direction takes a third number: reflected or refracted, by the lobe or the cosine.
+    bool has_choice() const { return kind == Kind::glass || !(ks == rgb{}); }
 };
 
 // Radiance that a surface sends to a viewer whose direction has cosine `cosine` with its normal.
@@ -46,6 +48,7 @@ inline vec3 mirrored(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 // 0.
 inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
     if (m.is_delta() || wi.z <= 0) return {};
+    if (m.ks == rgb{}) return m.kd / pi;
     real cos_alpha = dot(mirrored(wo), wi);
     real lobe = cos_alpha > 0 ? (m.exponent + 2) / (2 * pi) * std::pow(cos_alpha, m.exponent) : 0;
     return m.kd / pi + m.ks * lobe;
@@ -53,6 +56,7 @@ inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
 
 // Part of the samples that follow the Phong lobe rather than the cosine.
 inline real lobe_probability(const Material& m) {
+    if (m.ks == rgb{}) return 0;
     real d = mean_of(m.kd), s = mean_of(m.ks);
     return s > 0 ? s / (d + s) : 0;
 }

@@ -11,13 +11,31 @@ struct Light {
     vec3 p = {};          // centre of a sphere, corner of a polygon, the point
     vec3 u = {}, v = {};  // edges of a polygon; it emits on the side of u x v
     real r = 0;           // radius of a sphere; it emits outwards
+    vec3 n = {};          // unit normal of a polygon
+    real pdf_area = 0;    // density of uniform points of a polygon, 1 / its area
     rgb L = {};           // radiance; of a point: intensity, radiance x length^2
     bool twosided = false;
-    bool by_angle = false;  // of a rectangle: sample the solid angle, not the area
-    real error = 0;         // of surface points, see Surface
-    real pick = 0;          // probability that the scene chooses this light
+    Rectangle rectangle = {};  // a quad, if its edges are perpendicular
+    bool by_angle = false;     // of a rectangle: sample the solid angle, not the area
+    real error = 0;            // of surface points, see Surface
+    real pick = 0;             // probability that the scene chooses this light
     vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
 };
+
+inline Light point_light(vec3 p, rgb intensity) {
+    Light l{Light::Kind::point, p};
+    l.L = intensity;
+    return l;
+}
+inline Light sphere_light(vec3 centre, real r) { return {Light::Kind::sphere, centre, {}, {}, r}; }
+inline Light triangle_light(vec3 p, vec3 u, vec3 v) {
+    return {Light::Kind::triangle, p, u, v, 0, unit(cross(u, v)), pdf_triangle_area(u, v)};
+}
+inline Light quad_light(vec3 p, vec3 u, vec3 v) {
+    Light l{Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
+    l.rectangle = rectangle(u, v);
+    return l;
+}
 
 // Emitted power of all directions, mean of the channels (watts); double, lest it overflow.
 inline double power(const Light& l) {
@@ -50,7 +68,7 @@ inline std::optional<real> sin2_subtended(const Light& l, vec3 p) {
 // The rectangle that p sees, if its solid angle is to be sampled and can be.
 inline std::optional<SeenRectangle> seen_rectangle(const Light& l, vec3 p) {
     if (!l.by_angle || l.kind != Light::Kind::quad) return {};
-    return see_rectangle(l.p - p, l.u, l.v);
+    return see_rectangle(l.rectangle, l.p - p);
 }
 
 // Density per solid angle of the direction from p to the point y, for uniform points of a polygon.
@@ -58,9 +76,7 @@ inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
     vec3 w = y.p - p;
     real d2 = dot(w, w);
     real cos_y = std::abs(dot(y.n, w)) / std::sqrt(d2);
-    real pdf_area =
-        l.kind == Light::Kind::quad ? pdf_quad_area(l.u, l.v) : pdf_triangle_area(l.u, l.v);
-    return cos_y > 0 ? pdf_area * d2 / cos_y : 0;
+    return cos_y > 0 ? l.pdf_area * d2 / cos_y : 0;
 }
 
 // Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  In radii, the
@@ -85,7 +101,7 @@ inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, ve
 inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, vec2 u) {
     const auto seen = seen_rectangle(l, p);
     vec3 on = l.kind == Light::Kind::quad ? sample_quad(u, l.u, l.v) : sample_triangle(u, l.u, l.v);
-    Surface y{seen ? p + sample_rectangle(*seen, u) : l.p + on, unit(cross(l.u, l.v)), l.error};
+    Surface y{seen ? p + sample_rectangle(*seen, u) : l.p + on, l.n, l.error};
     vec3 wi = unit(y.p - p);
     real cos_y = -dot(y.n, wi);
     if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};

@@ -51,9 +51,13 @@ struct Scene {
     std::vector<uint32_t> line_of, line_of_light;
 
     Bvh bvh;                       // from here on made by prepare
+    std::vector<Facing> facing;    // of each shape
     std::vector<double> pick_cdf;  // running sum of lights[i].pick
 
     const Material& material(const Hit& hit) const { return materials[material_of[hit.id]]; }
+    Surface surface(const Ray& ray, const Hit& hit) const {
+        return ::surface(shapes[hit.id], facing[hit.id], ray, hit);
+    }
 };
 
 // Of the box about all shapes.
@@ -82,8 +86,8 @@ inline int32_t add_light(Scene& s, Light light, uint32_t material, real error) {
 
 inline void add_sphere(Scene& s, vec3 centre, real r, uint32_t material) {
     Shape sphere{centre, {}, {}, r};
-    Light light{Light::Kind::sphere, centre, {}, {}, r};
-    add_shape(s, sphere, material, add_light(s, light, material, rounding_error(sphere)));
+    const int32_t light = add_light(s, sphere_light(centre, r), material, rounding_error(sphere));
+    add_shape(s, sphere, material, light);
 }
 
 // Whether a triangle has an area to be hit or sampled, and a normal: their square must neither
@@ -97,8 +101,9 @@ inline bool has_area(const Shape& s) {
 inline int add_triangle(Scene& s, vec3 a, vec3 b, vec3 c, uint32_t material) {
     Shape t{a, b, c};
     if (!has_area(t)) return 1;
-    Light light{Light::Kind::triangle, a, b - a, c - a};
-    add_shape(s, t, material, add_light(s, light, material, rounding_error(t)));
+    const int32_t light =
+        add_light(s, triangle_light(a, b - a, c - a), material, rounding_error(t));
+    add_shape(s, t, material, light);
     return 0;
 }
 
@@ -108,7 +113,7 @@ inline int add_face(Scene& s, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material)
     Shape first{a, b, c}, second{a, c, d};
     if (!has_area(first) || !has_area(second)) return 2;
     real error = std::max(rounding_error(first), rounding_error(second));
-    int32_t light = add_light(s, {Light::Kind::quad, a, b - a, d - a}, material, error);
+    int32_t light = add_light(s, quad_light(a, b - a, d - a), material, error);
     add_shape(s, first, material, light);
     add_shape(s, second, material, light);
     return 0;
@@ -140,15 +145,15 @@ inline int add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t materi
 }
 
 inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
-    Light light{Light::Kind::point, p};
-    light.L = intensity;
-    if (max_of(intensity) > 0) s.lights.push_back(light);
+    if (max_of(intensity) > 0) s.lights.push_back(point_light(p, intensity));
 }
 
 // Builds the tree, and lets lights be chosen in proportion to their power.  Random numbers are
 // multiples of ulp: so are the probabilities, exactly, and by a share dealt evenly none is 0.
 inline void prepare(Scene& s) {
     s.bvh = Bvh(s.shapes);
+    s.facing.clear();
+    for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
     const double n = double(s.lights.size()), even = std::min(0.5, 2 * n * double(ulp));
     double total = 0, sum = 0, before = 0;
     for (const Light& l : s.lights) total += power(l);

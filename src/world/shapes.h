@@ -169,16 +169,27 @@ inline std::optional<Hit> intersect(const Shape& s, const Ray& ray, const Shear&
 // Twice the area of a triangle, along its normal.
 inline vec3 area_vector(const Shape& s) { return cross(s.b - s.a, s.c - s.a); }
 
+// What is alike at all points of a shape: the unit normal, if it is a triangle, and Surface::error.
+struct Facing {
+    vec3 n;
+    real error = 0;
+};
+inline Facing facing(const Shape& s) {
+    return {s.is_sphere() ? vec3{} : unit(area_vector(s)), rounding_error(s)};
+}
+
 // The point hit, moved onto the shape itself: it is as exact far from the eye as near it.  So far
 // away that rounding leaves only a sphere's centre, it is the point towards the eye.
-inline Surface surface(const Shape& s, const Ray& ray, const Hit& hit) {
+inline Surface surface(const Shape& s, const Facing& f, const Ray& ray, const Hit& hit) {
     if (s.is_sphere()) {
         vec3 out = ray.o + hit.t * ray.d - s.a;
         vec3 n = out == vec3{} ? -ray.d : unit(out);
-        return {s.a + s.r * n, n, rounding_error(s)};
+        return {s.a + s.r * n, n, f.error};
     }
-    vec3 p = (1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c;
-    return {p, unit(area_vector(s)), rounding_error(s)};
+    return {(1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c, f.n, f.error};
+}
+inline Surface surface(const Shape& s, const Ray& ray, const Hit& hit) {
+    return surface(s, facing(s), ray, hit);
 }
 
 // The one place that owns the ray offset.  A ray leaves a surface from a point 2 errors off it,

@@ -4,6 +4,19 @@
 
 #include "base/vec.h"
 
+// A rectangle by the directions and the lengths of its edges; a = 0: the edges are not
+// perpendicular.
+struct Rectangle {
+    vec3 x, y, z;
+    real a = 0, b = 0;
+};
+inline Rectangle rectangle(vec3 u, vec3 v) {
+    const real a = length(u), b = length(v);
+    if (std::abs(dot(u, v)) > 16 * ulp * a * b) return {};
+    const vec3 x = u / a, y = v / b;
+    return {x, y, cross(x, y), a, b};
+}
+
 // A rectangle as seen from a point, in the frame of its edges: x0 ... x1 by y0 ... y1 in the plane
 // z = z0 < 0.  The solid angle is the excess of the angles between the planes through its sides
 // (Urena, Fajardo, King 2013, CGF 32(4)).
@@ -14,16 +27,13 @@ struct SeenRectangle {
     real solid_angle;
 };
 
-// Corner p relative to the point, edges u and v.  Nothing if the edges are not perpendicular, or if
-// the excess is so small that too few of its digits would be left.
-inline std::optional<SeenRectangle> see_rectangle(vec3 p, vec3 u, vec3 v) {
+// Corner p relative to the point.  Nothing if the edges are not perpendicular, or if the excess is
+// so small that too few of its digits would be left.
+inline std::optional<SeenRectangle> see_rectangle(const Rectangle& of, vec3 p) {
     constexpr real least = sizeof(real) == 4 ? real(4e-3) : real(1e-5);  // about ulp^(1/3)
-    const real a = length(u), b = length(v);
-    if (std::abs(dot(u, v)) > 16 * ulp * a * b) return {};
+    if (of.a == 0) return {};
     SeenRectangle r;
-    r.x = u / a;
-    r.y = v / b;
-    r.z = cross(r.x, r.y);
+    r.x = of.x, r.y = of.y, r.z = of.z;
     r.z0 = dot(p, r.z);
     if (r.z0 > 0) {
         r.z = -r.z;
@@ -31,8 +41,8 @@ inline std::optional<SeenRectangle> see_rectangle(vec3 p, vec3 u, vec3 v) {
     }
     r.x0 = dot(p, r.x);
     r.y0 = dot(p, r.y);
-    r.x1 = r.x0 + a;
-    r.y1 = r.y0 + b;
+    r.x1 = r.x0 + of.a;
+    r.y1 = r.y0 + of.b;
     // Normals of the four planes have z components -y0, x1, y1, -x0 over these lengths; neighbours
     // are perpendicular but for z.
     const real n0 = -r.y0 / std::hypot(r.z0, r.y0), n1 = r.x1 / std::hypot(r.z0, r.x1);

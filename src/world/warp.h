@@ -5,26 +5,52 @@
 #pragma once
 #include "base/vec.h"
 
-inline vec3 spherical(real cos_theta, real sin_theta, real phi) {
-    return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
+// The point at u turns of the unit circle, 0 <= u <= 1.  The nearest quarter of a turn is taken
+// off exactly; of what is left, |x| <= pi / 4, Taylor's polynomials are exact to rounding.
+inline vec2 turned(real u) {
+    const int quarter = int(4 * u + real(0.5));
+    const real x = 2 * pi * (u - real(quarter) / 4), y = x * x;
+    constexpr auto over = [](int n) constexpr {
+        double product = 1;
+        for (int i = 2; i <= n; ++i) product *= i;
+        return real(1 / product);
+    };
+    real c = over(16), s = over(15);
+    c = c * y - over(14), s = s * y - over(13);
+    c = c * y + over(12), s = s * y + over(11);
+    c = c * y - over(10), s = s * y - over(9);
+    c = c * y + over(8), s = s * y + over(7);
+    c = c * y - over(6), s = s * y - over(5);
+    c = c * y + over(4), s = s * y + over(3);
+    c = c * y - over(2), s = s * y - 1;
+    c = c * y + 1, s = -x * s;
+    const bool odd = quarter & 1;
+    const real sign_c = quarter == 1 || quarter == 2 ? -1 : 1, sign_s = quarter & 2 ? -1 : 1;
+    return {sign_c * (odd ? s : c), sign_s * (odd ? c : s)};
+}
+
+// At u turns about z.
+inline vec3 spherical(real cos_theta, real sin_theta, real u) {
+    const vec2 at = turned(u);
+    return {sin_theta * at.x, sin_theta * at.y, cos_theta};
 }
 
 // Uniform over the hemisphere z > 0: z = 1 - u is uniform (Archimedes).
 inline vec3 sample_uniform_hemisphere(vec2 u) {
     real z = 1 - u.x;
-    return spherical(z, std::sqrt(u.x * (1 + z)), 2 * pi * u.y);
+    return spherical(z, std::sqrt(u.x * (1 + z)), u.y);
 }
 inline real pdf_uniform_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 / (2 * pi) : 0; }
 
 // Uniform over the sphere: z is uniform in [-1,1].
 inline vec3 sample_uniform_sphere(vec2 u) {
-    return spherical(1 - 2 * u.x, 2 * std::sqrt(u.x * (1 - u.x)), 2 * pi * u.y);
+    return spherical(1 - 2 * u.x, 2 * std::sqrt(u.x * (1 - u.x)), u.y);
 }
 inline real pdf_uniform_sphere() { return 1 / (4 * pi); }
 
 // Density cos(theta)/pi: a uniform point of the disc, lifted to the hemisphere (Malley 1988).
 inline vec3 sample_cosine_hemisphere(vec2 u) {
-    return spherical(std::sqrt(1 - u.x), std::sqrt(u.x), 2 * pi * u.y);
+    return spherical(std::sqrt(1 - u.x), std::sqrt(u.x), u.y);
 }
 inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? cos_theta / pi : 0; }
 
@@ -32,7 +58,7 @@ inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? cos_t
 // Willems 1994).  cos(alpha) = (1-u)^(1/(n+1)); 1 - cos^2 by expm1 keeps its digits for large n.
 inline vec3 sample_phong_lobe(vec2 u, real n) {
     real log_cos = std::log1p(-u.x) / (n + 1);
-    return spherical(std::exp(log_cos), std::sqrt(-std::expm1(2 * log_cos)), 2 * pi * u.y);
+    return spherical(std::exp(log_cos), std::sqrt(-std::expm1(2 * log_cos)), u.y);
 }
 inline real pdf_phong_lobe(real cos_alpha, real n) {
     return cos_alpha > 0 ? (n + 1) / (2 * pi) * std::pow(cos_alpha, n) : 0;
@@ -47,7 +73,7 @@ inline real solid_angle_cone(real sin2_max) {
 // Uniform over that cone about z.  With x = 1 - cos(theta), sin^2(theta) = x (2 - x).
 inline vec3 sample_cone(vec2 u, real sin2_max) {
     real x = u.x * sin2_max / (1 + std::sqrt(1 - sin2_max));
-    return spherical(1 - x, std::sqrt(x * (2 - x)), 2 * pi * u.y);
+    return spherical(1 - x, std::sqrt(x * (2 - x)), u.y);
 }
 inline real pdf_cone(real sin2_max) { return 1 / solid_angle_cone(sin2_max); }
 

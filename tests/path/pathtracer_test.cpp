@@ -61,7 +61,7 @@ std::vector<Decision> decisions(const Scene& scene, const Technique& t, const Pa
                                 int x) {
     std::vector<Decision> path;
     radiance(scene, t, pattern, x, 0, 5, [&](const Segment&, const Step& e) {
-        path.push_back({e.direct.light, e.direct.sample.at.p, e.wi, e.next.has_value()});
+        path.push_back({e.direct.light, e.direct.sample.at.p, e.wi, e.end == nullptr});
     });
     return path;
 }
@@ -222,7 +222,7 @@ quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
 )");
     std::vector<real> cosines, on_the_lamp;
     radiance(scene, techniques[1], pattern, 0, 0, 0, [&](const Segment&, const Step& e) {
-        if (e.next) cosines.push_back(e.scattered.wi.z);
+        if (!e.end) cosines.push_back(e.scattered.wi.z);
         if (e.direct.light) on_the_lamp.push_back(e.direct.sample.at.p.x);
     });
     CHECK(cosines.size() == 60);

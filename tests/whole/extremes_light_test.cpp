@@ -4,8 +4,9 @@
 
 namespace {
 
-Light sphere_light(vec3 centre, real r) {
-    Light l{Light::Kind::sphere, centre, {}, {}, r, {1, 1, 1}};
+Light bright_sphere(vec3 centre, real r) {
+    Light l = sphere_light(centre, r);
+    l.L = {1, 1, 1};
     l.error = rounding_error(Shape{centre, {}, {}, r});
     l.pick = 1;
     return l;
@@ -48,7 +49,7 @@ double sphere_light_pdf(real d) {
     Dice random{{oracle::seed_of("pdf of a sphere light")}};
     Worst worst;
     for (int i = 0; i < 1000; ++i) {
-        const Light l = sphere_light(random.direction(), 1);
+        const Light l = bright_sphere(random.direction(), 1);
         const vec3 p = d * random.direction();
         const big3 f = big3(l.p) - p;
         const big sin2 = 1 / dot(f, f);
@@ -66,7 +67,7 @@ double sphere_light_normal(real d) {
     Dice random{{oracle::seed_of("normal of a sphere light")}};
     Worst worst;
     for (int i = 0; i < 20000; ++i) {
-        const Light l = sphere_light({}, real(0.01));
+        const Light l = bright_sphere({}, real(0.01));
         const vec3 p = d * l.r * random.direction();
         const vec2 u = random.pair();
         const auto s = sample_light(l, p, u);
@@ -86,16 +87,16 @@ double sphere_light_normal(real d) {
 
 // E = pi sin^2(sigma) under the middle of the light, h above whose surface the receiver is.
 double sphere_light_from(real r, real h) {
-    const Light l = sphere_light({0, 0, r + h}, r);
+    const Light l = bright_sphere({0, 0, r + h}, r);
     const big d = l.p.z;
     return relative(irradiance(l, {}, 64), big_pi * r * r / (d * d));
 }
 
 // k = cos / sin(sigma): E = s^3 (k acos(-k) + sqrt(1 - k^2) (2 + k^2) / 3) for small s (relative
 // error 1.4 s^2); 0 is half above the horizon.
-double clipped_sphere_light(real s, real k) {
+double clipped_bright_sphere(real s, real k) {
     const real c = k * s;
-    const Light l = sphere_light({std::sqrt(1 - c * c), 0, c}, s);
+    const Light l = bright_sphere({std::sqrt(1 - c * c), 0, c}, s);
     const big truth = big(s) * s * s *
                       (k * std::acos(-big(k)) + std::sqrt(1 - big(k) * k) * (2 + big(k) * k) / 3);
     return relative(irradiance(l, {}, 1024), truth);
@@ -111,7 +112,7 @@ double insane_on_a_light() {
     Dice random{{oracle::seed_of("on a light")}};
     int insane = 0;
     for (int i = 0; i < 20000; ++i) {
-        const Light l = sphere_light(random.direction(), random.decades(-3, 3));
+        const Light l = bright_sphere(random.direction(), random.decades(-3, 3));
         const real at[] = {l.r, std::nextafter(l.r, real(0)), std::nextafter(l.r, infinity),
                            l.r * random(0, 1), 0};
         const vec3 p = l.p + at[i % 5] * random.direction();
@@ -127,7 +128,8 @@ double insane_beside_a_light() {
     Dice random{{oracle::seed_of("beside a light")}};
     int insane = 0;
     for (int i = 0; i < 20000; ++i) {
-        Light l{Light::Kind::quad, {1, 2, 3}, {2, 0, 0}, {0, 0, 4}, 0, {1, 1, 1}, i % 2 == 0};
+        Light l = quad_light({1, 2, 3}, {2, 0, 0}, {0, 0, 4});
+        l.L = {1, 1, 1}, l.twosided = i % 2 == 0;
         const real heights[] = {0, std::numeric_limits<real>::denorm_min(), real(1e-30), -0.0};
         const vec3 p = l.p + random(0, 1) * l.u + vec3{0, heights[i / 2 % 4], 0};
         const vec2 u = random.pair();
@@ -143,7 +145,7 @@ double insane_beside_a_light() {
 // A quad seen at a grazing angle from h above its plane, point by point: cos / pdf is
 // x h A / d^4 for the normal +x.
 double edge_on(real h) {
-    const Light l{Light::Kind::quad, {1, real(-0.5), h}, {0, 1, 0}, {1, 0, 0}};
+    const Light l = quad_light({1, real(-0.5), h}, {0, 1, 0}, {1, 0, 0});
     Worst worst;
     each_cell(32, [&](vec2 u) {
         const auto s = sample_light(l, {}, u);
@@ -250,11 +252,11 @@ TEST_CASE("extremes of lights: no more error than they may have") {
          [] { return sphere_light_from(real(1e6), real(1e-3)); }},
         // 1024 midpoints of the square root of u: 0.3 / 1024^1.5 = 1e-5.
         {"sphere light of sine 10^-4, a third below the horizon: irradiance", 1e-5, 1e-4,
-         [] { return clipped_sphere_light(real(1e-4), real(0.4)); }},
+         [] { return clipped_bright_sphere(real(1e-4), real(0.4)); }},
         {"sphere light of sine 10^-5, half below: irradiance", 1e-5, 1e-4,
-         [] { return clipped_sphere_light(real(1e-5), 0); }},
+         [] { return clipped_bright_sphere(real(1e-5), 0); }},
         {"sphere light of sine 10^-5, nine tenths below: irradiance", 1e-5, 1e-4,
-         [] { return clipped_sphere_light(real(1e-5), real(-0.8)); }},
+         [] { return clipped_bright_sphere(real(1e-5), real(-0.8)); }},
         {"on the surface of a sphere light, and in it: samples not finite", 0, 0,
          insane_on_a_light},
         {"in the plane of a quad light, on its edge, its corner: samples not finite", 0, 0,

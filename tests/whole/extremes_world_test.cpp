@@ -67,7 +67,7 @@ double met_again() {
         const Frame f = frame(x.n);
         for (int k = 0; k < 16; ++k) {
             const real z = k % 2 ? random(0, 1) : random.decades(-12, 0);
-            const vec3 d = f.to_world(spherical(z, std::sqrt(1 - z * z), 2 * pi * random(0, 1)));
+            const vec3 d = f.to_world(spherical(z, std::sqrt(1 - z * z), random(0, 1)));
             if (dot(d, x.n) > 0) again += meet(s, spawn(x, d)).has_value();
         }
     }

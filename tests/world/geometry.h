@@ -16,7 +16,7 @@ struct Dice {
     vec2 pair(real lo = 0, real hi = 1) { return {(*this)(lo, hi), (*this)(lo, hi)}; }
     vec3 direction(real length = 1) {
         const vec2 u = pair();
-        return length * spherical(1 - 2 * u.x, 2 * std::sqrt(u.x * (1 - u.x)), 2 * pi * u.y);
+        return length * spherical(1 - 2 * u.x, 2 * std::sqrt(u.x * (1 - u.x)), u.y);
     }
     vec2 barycentrics() {
         const vec2 u = pair();
@@ -64,7 +64,7 @@ inline vec3 point(const Shape& s, vec2 u) { return s.a + u.x * (s.b - s.a) + u.y
 // From o, past the centre at a distance of x radii.
 inline Ray aimed(const Shape& s, vec3 o, real x, Dice& random) {
     const real sine = x * s.r / length(s.a - o);
-    const vec3 local = spherical(std::sqrt(1 - sine * sine), sine, random(0, 2 * pi));
+    const vec3 local = spherical(std::sqrt(1 - sine * sine), sine, random(0, 1));
     return {o, unit(frame(unit(s.a - o)).to_world(local))};
 }
 

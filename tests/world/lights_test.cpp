@@ -9,13 +9,13 @@ namespace {
 
 constexpr bool single = sizeof(real) == 4;
 
-Light sphere_light(vec3 centre, real r) {
-    Light l{Light::Kind::sphere, centre, {}, {}, r};
+Light sphere_of_light(vec3 centre, real r) {
+    Light l = sphere_light(centre, r);
     l.L = {1, 2, 3};
     return l;
 }
 Light polygon_light(Light::Kind kind, vec3 p, vec3 u, vec3 v) {
-    Light l{kind, p, u, v};
+    Light l = kind == Light::Kind::quad ? quad_light(p, u, v) : triangle_light(p, u, v);
     l.L = {1, 2, 3};
     return l;
 }
@@ -73,12 +73,11 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
 
 TEST_CASE("sphere light: points lie on the sphere and on the ray, on the near side") {
     oracle::Random random(seed_here());
-    const Light l = sphere_light({1, 2, 3}, real(0.5));
+    const Light l = sphere_of_light({1, 2, 3}, real(0.5));
     for (real d : {real(0.5005), real(0.6), real(2), real(100)})
         for (int i = 0; i < 2000; ++i) {
             const vec2 v{real(random()), real(random())}, u{real(random()), real(random())};
-            const vec3 p =
-                l.p + d * spherical(1 - 2 * v.x, 2 * std::sqrt(v.x * (1 - v.x)), 2 * pi * v.y);
+            const vec3 p = l.p + d * spherical(1 - 2 * v.x, 2 * std::sqrt(v.x * (1 - v.x)), v.y);
             const auto s = sample_light(l, p, u);
             REQUIRE(s);
             const real rounding = 32 * ulp * (d + length(l.p));
@@ -94,7 +93,7 @@ TEST_CASE("sphere light: points lie on the sphere and on the ray, on the near si
 }
 
 TEST_CASE("no sample from the inside of a sphere light, nor from its surface") {
-    const Light l = sphere_light({0, 0, 0}, 2);
+    const Light l = sphere_of_light({0, 0, 0}, 2);
     for (real d : {real(0), real(1), real(2)}) {
         CHECK(!sample_light(l, {0, d, 0}, {real(0.3), real(0.4)}));
         CHECK(pdf_light(l, {0, d, 0}, {{0, 2, 0}, {0, 1, 0}, 0}) == 0);
@@ -102,7 +101,7 @@ TEST_CASE("no sample from the inside of a sphere light, nor from its surface") {
 }
 
 TEST_CASE("no sample of a sphere light from within its rounding error of its surface") {
-    Light l{Light::Kind::sphere, {}, {}, {}, 1};
+    Light l = sphere_light({}, 1);
     l.error = real(1e-4);
     CHECK(!sample_light(l, {0, 0, 1 + real(0.9e-4)}, {real(0.5), real(0.5)}));
     CHECK(sample_light(l, {0, 0, 1 + real(1.1e-4)}, {real(0.5), real(0.5)}));
@@ -185,7 +184,7 @@ TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
 
 TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels") {
     const double pi_ = std::numbers::pi;
-    CHECK(power(sphere_light({}, real(0.5))) == doctest::Approx(2 * pi_ * pi_).epsilon(1e-6));
+    CHECK(power(sphere_of_light({}, real(0.5))) == doctest::Approx(2 * pi_ * pi_).epsilon(1e-6));
     Light quad = polygon_light(Light::Kind::quad, {}, {3, 0, 0}, {1, 2, 0});
     CHECK(power(quad) == doctest::Approx(2 * pi_ * 6).epsilon(1e-6));
     quad.twosided = true;

@@ -22,7 +22,7 @@ std::optional<Surface> seen(const Shape& s, Dice& random) {
 // On the side of n, as often near the horizon (down to a cosine of 1e-7) as anywhere.
 vec3 leaving(const Surface& x, Dice& random) {
     const real z = random.below(2) ? random(0, 1) : random.decades(-7, 0);
-    const vec3 d = frame(x.n).to_world(spherical(z, std::sqrt(1 - z * z), random(0, 2 * pi)));
+    const vec3 d = frame(x.n).to_world(spherical(z, std::sqrt(1 - z * z), random(0, 1)));
     return dot(d, x.n) < 0 ? -d : d;
 }
 
@@ -158,8 +158,7 @@ TEST_CASE("no light stands in its own way, near or far") {
     int blocked = 0, samples = 0;
     for (int i = 0; i < 100000; ++i) {
         const Shape t = random_triangle(random, 1), ball{{}, {}, {}, real(0.5)};
-        Light lights[] = {{Light::Kind::triangle, t.a, t.b - t.a, t.c - t.a},
-                          {Light::Kind::sphere, ball.a, {}, {}, ball.r}};
+        Light lights[] = {triangle_light(t.a, t.b - t.a, t.c - t.a), sphere_light(ball.a, ball.r)};
         lights[0].error = rounding_error(t), lights[1].error = rounding_error(ball);
         lights[0].twosided = true;
         const Shape floor = placed(random_triangle(random, 1), {1, random.decades(1, 5)}, random);

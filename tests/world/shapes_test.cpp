@@ -220,7 +220,7 @@ TEST_CASE("from a billionth of its radius above a sphere or below, rays go as fa
         const Shape s{{random(-10, 10) * r, -r, random(-10, 10) * r}, {}, {}, r};
         const vec3 aside = random.direction(h);
         const real z = random.decades(-3, 0) * random.sign();
-        const vec3 d = spherical(z, std::sqrt(1 - z * z), random(0, 2 * pi));
+        const vec3 d = spherical(z, std::sqrt(1 - z * z), random(0, 1));
         const Ray ray{{s.a.x + aside.x, i % 2 ? h : -h, s.a.z + aside.z}, {d.x, d.z, d.y}};
         const big y = ray.o.y, x0 = big(ray.o.x) - s.a.x, z0 = big(ray.o.z) - s.a.z;
         const big c = y * (y + 2 * big(r)) + x0 * x0 + z0 * z0;

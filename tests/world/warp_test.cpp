@@ -24,7 +24,7 @@ std::vector<vec3> some_axes() {
     Rng rng{seed_here()};
     for (int i = 0; i < 4; ++i) {
         const real z = 2 * to_unit(rng.bits()) - 1;
-        axes.push_back(spherical(z, std::sqrt(1 - z * z), 2 * pi * to_unit(rng.bits())));
+        axes.push_back(spherical(z, std::sqrt(1 - z * z), to_unit(rng.bits())));
     }
     return axes;
 }
