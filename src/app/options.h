@@ -21,7 +21,7 @@ struct PixelIndex {
 struct Options : CommonOptions {
     uint64_t spp = 0;  // 0: the scene's, unless seconds are given
     SamplerKind sampler = SamplerKind::halton;
-    Technique technique;
+    Technique technique{Direction::bsdf, LightMode::mis, real(0.25)};
     Estimator direct = Estimator::stochastic;
     Polygons polygons = Polygons::area;
     std::optional<int> depth;  // default: the scene's
@@ -85,13 +85,11 @@ inline const OptionTable<Options> option_table = {
         [](auto& o) -> auto& { return o.polygons; }),
     {"--depth", "N", "scatterings a path may have, 0: emission only", "the scene's",
      [](Options& o, Text v) { o.depth = int(parse_count(v, 0, option::most_scatterings)); }},
-    {"--roulette", "K", "Russian roulette from the K-th scattering on", "off",
-     [](Options& o, Text v) {
-         o.technique.roulette = int(parse_count(v, 1, option::most_scatterings));
-     },
-     [](const Options& o) {
-         return o.technique.roulette ? std::to_string(o.technique.roulette) : "null";
-     }},
+    {"--roulette", "T",
+     "Russian roulette: a path whose throughput (its greatest channel) has fallen below T goes on "
+     "with a probability of throughput / T; 0: no path ends so",
+     "0.25", [](Options& o, Text v) { o.technique.roulette = real(parse_fraction(v)); },
+     [](const Options& o) { return std::to_string(o.technique.roulette); }},
     CommonRows<Options>::seed(),
     CommonRows<Options>::threads(),
     CommonRows<Options>::size(),

@@ -19,7 +19,7 @@ enum class LightMode {
 struct Technique {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
-    int roulette = 0;  // Russian roulette from this scattering on; 0: never
+    real roulette = 0;  // Russian roulette for paths of a throughput below this; 0: never
 };
 
 // A path's numbers stay in registers only if its loop is compiled as one function: its parts, which
@@ -147,8 +147,9 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     e.wi = x.local.to_world(b.wi);
     if (ends(max_of(b.f) <= 0, "nothing is reflected that way")) return e;
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
-    if (t.roulette > 0 && s.k + 1 >= t.roulette) {
-        const real survival = std::min(real(1), max_of(beta));
+    // Ending the dim (Arvo, Kirk 1990); those that are left have at least t.roulette.
+    if (max_of(beta) < t.roulette) {
+        const real survival = max_of(beta) / t.roulette;
         const real u_survival = sampler.get(dimension(s.k, Draw::roulette));
         if (ends(u_survival >= survival, "Russian roulette")) return e;
         beta /= survival;

@@ -15,10 +15,10 @@ struct Light {
     real pdf_area = 0;    // density of uniform points of a polygon, 1 / its area
     rgb L = {};           // radiance; of a point: intensity, radiance x length^2
     bool twosided = false;
-    Rectangle rectangle = {};  // a quad, if its edges are perpendicular
-    bool by_angle = false;     // of a rectangle: sample the solid angle, not the area
-    real error = 0;            // of surface points, see Surface
-    real pick = 0;             // probability that the scene chooses this light
+    RectangleFrame rectangle = {};  // a quad, if its edges are perpendicular
+    bool by_angle = false;          // of a rectangle: sample the solid angle, not the area
+    real error = 0;                 // of surface points, see Surface
+    real pick = 0;                  // probability that the scene chooses this light
     vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
 };
 
@@ -33,7 +33,7 @@ inline Light triangle_light(vec3 p, vec3 u, vec3 v) {
 }
 inline Light quad_light(vec3 p, vec3 u, vec3 v) {
     Light l{Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
-    l.rectangle = rectangle(u, v);
+    l.rectangle = rectangle_frame(u, v);
     return l;
 }
 

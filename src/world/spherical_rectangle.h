@@ -6,11 +6,11 @@
 
 // A rectangle by the directions and the lengths of its edges; a = 0: the edges are not
 // perpendicular.
-struct Rectangle {
+struct RectangleFrame {
     vec3 x, y, z;
     real a = 0, b = 0;
 };
-inline Rectangle rectangle(vec3 u, vec3 v) {
+inline RectangleFrame rectangle_frame(vec3 u, vec3 v) {
     const real a = length(u), b = length(v);
     if (std::abs(dot(u, v)) > 16 * ulp * a * b) return {};
     const vec3 x = u / a, y = v / b;
@@ -29,7 +29,7 @@ struct SeenRectangle {
 
 // Corner p relative to the point.  Nothing if the edges are not perpendicular, or if the excess is
 // so small that too few of its digits would be left.
-inline std::optional<SeenRectangle> see_rectangle(const Rectangle& of, vec3 p) {
+inline std::optional<SeenRectangle> see_rectangle(const RectangleFrame& of, vec3 p) {
     constexpr real least = sizeof(real) == 4 ? real(4e-3) : real(1e-5);  // about ulp^(1/3)
     if (of.a == 0) return {};
     SeenRectangle r;

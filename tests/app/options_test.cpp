@@ -24,7 +24,7 @@ std::string complaint(const std::vector<std::string>& words) {
 
 TEST_CASE("every option sets what it is named after") {
     const Options o = parse({"--spp",     "7",          "--time", "2.5",     "--depth",
-                             "3",         "--roulette", "4",      "--seed",  "18446744073709551615",
+                             "3",         "--roulette", "0.5",    "--seed",  "18446744073709551615",
                              "--threads", "5",          "--size", "30x20",   "--exposure",
                              "0.5",       "--stats",    "s.json", "--pixel", "6,8",
                              "--sample",  "9",          "-o",     "a.pfm",   "-o",
@@ -33,7 +33,7 @@ TEST_CASE("every option sets what it is named after") {
     CHECK(o.spp == 7);
     CHECK(o.seconds == 2.5);
     CHECK(o.depth == 3);
-    CHECK(o.technique.roulette == 4);
+    CHECK(o.technique.roulette == real(0.5));
     CHECK(o.seed == UINT64_MAX);
     CHECK(o.threads == 5);
     CHECK(o.size->width == 30);
@@ -74,7 +74,7 @@ TEST_CASE("without options: Halton samples, importance-sampled, MIS") {
     CHECK(o.sampler == SamplerKind::halton);
     CHECK(o.technique.direction == Direction::bsdf);
     CHECK(o.technique.light == LightMode::mis);
-    CHECK(o.technique.roulette == 0);
+    CHECK(o.technique.roulette == real(0.25));
     CHECK(o.seed == 0);
     CHECK(!o.halves);
     CHECK(!o.depth);

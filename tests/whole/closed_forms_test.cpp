@@ -43,7 +43,7 @@ const char* why_empty(const Known& k, const Scene& scene, const Options& o, bool
     if (scene.depth == 0 && !first) return unscattered;
     if (o.technique.light == LightMode::none && k.no_none) return k.no_none;
     if (o.technique.light == LightMode::nee && k.no_nee) return k.no_nee;
-    if (o.technique.light == LightMode::nee && o.technique.roulette > 0 && scene.depth == 1)
+    if (o.technique.light == LightMode::nee && o.technique.roulette == 1 && scene.depth == 1)
         return idle;
     return nullptr;
 }

@@ -280,7 +280,6 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
     const std::map<std::string, int> counts = {// and the least of each
                                                {"--spp", 1},
                                                {"--depth", 0},
-                                               {"--roulette", 1},
                                                {"--seed", 0},
                                                {"--threads", 1}};
     for (auto [option, least] : counts)
@@ -296,7 +295,8 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
         {"--seed 18446744073709551616 file.scene", "--seed: '18446744073709551616' is n"});
     rows.push_back(
         {"--depth 4294967296 file.scene", "--depth: '4294967296' is not a whole number"});
-    rows.push_back({"--roulette 4294967297 file.scene", "--roulette: '4294967297' is not a whole"});
+    rows.push_back({"--roulette 1.1 file.scene", "--roulette: '1.1' is more than 100 %"});
+    rows.push_back({"--roulette -0.1 file.scene", "--roulette: '-0.1' is negative"});
     rows.push_back(
         {"--spp 18446744073709551615 file.scene", "--spp: '18446744073709551615' is no"});
 
@@ -323,7 +323,7 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
         {"--direct", {"stochastic", "stochastc"}},
         {"--polygons", {"angle", "angel"}},
         {"--depth", {"1", "-1"}},
-        {"--roulette", {"1", "0"}},
+        {"--roulette", {"1", "2"}},
         {"--seed", {"1", "one"}},
         {"--threads", {"1", "0"}},
         {"--size", {"2x2", "2"}},

@@ -17,15 +17,15 @@ double corner_angle(double a, double b, double h) {
 }  // namespace
 
 TEST_CASE("rectangle: solid angle of a corner, a frustum, any rectangle; either side") {
-    const auto corner = see_rectangle(rectangle({1, 0, 0}, {0, 3, 0}), {0, 0, -2});
+    const auto corner = see_rectangle(rectangle_frame({1, 0, 0}, {0, 3, 0}), {0, 0, -2});
     REQUIRE(corner);
     CHECK(double(corner->solid_angle) ==
           doctest::Approx(corner_angle(1, 3, 2)).epsilon(single ? 1e-5 : 1e-13).scale(0));
-    const auto frustum = see_rectangle(rectangle({6, 0, 0}, {0, 8, 0}), {-3, -4, 5});
+    const auto frustum = see_rectangle(rectangle_frame({6, 0, 0}, {0, 8, 0}), {-3, -4, 5});
     REQUIRE(frustum);
     CHECK(double(frustum->solid_angle) ==
           doctest::Approx(4 * corner_angle(3, 4, 5)).epsilon(single ? 1e-5 : 1e-13).scale(0));
-    const auto off = see_rectangle(rectangle({0, 4, 0}, {5, 0, 0}), {1, 2, 3});
+    const auto off = see_rectangle(rectangle_frame({0, 4, 0}, {5, 0, 0}), {1, 2, 3});
     REQUIRE(off);
     const double truth = corner_angle(6, 6, 3) - corner_angle(1, 6, 3) - corner_angle(6, 2, 3) +
                          corner_angle(1, 2, 3);
@@ -33,9 +33,9 @@ TEST_CASE("rectangle: solid angle of a corner, a frustum, any rectangle; either 
           doctest::Approx(truth).epsilon(single ? 1e-4 : 1e-12).scale(0));
     CHECK(pdf_rectangle(*off) == 1 / off->solid_angle);
     for (real skew : {real(0.1), real(-0.1)})
-        CHECK_FALSE(see_rectangle(rectangle({0, 4, 0}, {5, skew, 0}), {1, 2, 3}));
-    CHECK_FALSE(see_rectangle(rectangle({1, 0, 0}, {0, 1, 0}), {0, 0, 1000}));
-    CHECK_FALSE(see_rectangle(rectangle({1, 0, 0}, {0, 1, 0}), {1, 1, 0}));
+        CHECK_FALSE(see_rectangle(rectangle_frame({0, 4, 0}, {5, skew, 0}), {1, 2, 3}));
+    CHECK_FALSE(see_rectangle(rectangle_frame({1, 0, 0}, {0, 1, 0}), {0, 0, 1000}));
+    CHECK_FALSE(see_rectangle(rectangle_frame({1, 0, 0}, {0, 1, 0}), {1, 1, 0}));
 }
 
 TEST_CASE("rectangle: the solid angle that a step of u covers is the same everywhere") {
@@ -45,7 +45,7 @@ TEST_CASE("rectangle: the solid angle that a step of u covers is the same everyw
         const Frame f = frame(unit({number(), number(), number()}));
         const vec3 p{number(), number(), number()}, u = f.s * (2 * number()),
                                                     v = f.t * (2 * number());
-        const auto r = see_rectangle(rectangle(u, v), p);
+        const auto r = see_rectangle(rectangle_frame(u, v), p);
         if (!r) continue;
         for (int k = 0; k < 10; ++k) {
             const real h = single ? real(4e-3) : real(1e-5);
@@ -74,7 +74,7 @@ TEST_CASE("rectangle: samples lie on it, corners are reached") {
         const Frame f = frame(unit({number(), number(), number()}));
         const vec3 p{number(), number(), number()}, u = f.s * real(0.1 + random()),
                                                     v = f.t * real(0.1 + random());
-        const auto r = see_rectangle(rectangle(u, v), p);
+        const auto r = see_rectangle(rectangle_frame(u, v), p);
         if (!r) continue;
         const real slack = (single ? real(1e-3) : real(1e-8));
         for (vec2 c : {vec2{0, 0},
@@ -104,7 +104,7 @@ TEST_CASE("rectangle: from just above it rounding moves no sample off it") {
     for (double height : {1e-8, 1e-7, 1e-6, 1e-4, 1e-3})
         for (int i = 0; i < 1000; ++i) {
             const vec3 p{real(-random()), real(-random()), real(-height)};
-            const auto r = see_rectangle(rectangle({1, 0, 0}, {0, 1, 0}), p);
+            const auto r = see_rectangle(rectangle_frame({1, 0, 0}, {0, 1, 0}), p);
             if (!r) continue;
             ++seen;
             const vec3 q = sample_rectangle(*r, {real(random()), i % 2 ? 0 : below_one}) - p;
