@@ -195,7 +195,7 @@ TEST_CASE("what a light is made with: normal and density of a polygon, frame of 
     CHECK(triangle.rectangle.a == 0);
     CHECK(quad.kind == Light::Kind::quad);
     CHECK(quad.pdf_area == real(1) / 6);
-    const Rectangle& r = quad.rectangle;
+    const RectangleFrame& r = quad.rectangle;
     CHECK((r.x == vec3{1, 0, 0} && r.y == vec3{0, 0, -1} && r.z == vec3{0, 1, 0}));
     CHECK((r.a == 3 && r.b == 2));
     CHECK(quad_light(p, u, {real(1e-3), 0, -2}).rectangle.a == 0);
