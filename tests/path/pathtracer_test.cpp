@@ -46,7 +46,7 @@ constexpr Named techniques[] = {
     {{uniform, nee}, "uniform, nee"},
     {{uniform, none}, "uniform, none"},
     {{bsdf, mis, 1}, "bsdf, mis, roulette"},
-    {{bsdf, nee, 2}, "bsdf, nee, roulette"},
+    {{bsdf, nee, real(0.5)}, "bsdf, nee, roulette of the dim"},
     {{uniform, none, 1}, "uniform, none, roulette"},
 };
 
@@ -180,7 +180,7 @@ quad -9 0 -9  0 0 18  18 0 0  floor
 quad -1 1 -1  2 0 0  0 0 2  lamp
 )");
     const oracle::Estimate reference = image_mean(scene, {uniform, none}, 99, 400000);
-    for (int roulette : {0, 1}) {
+    for (real roulette : {real(0), real(1)}) {
         const Technique t{bsdf, none, roulette};
         EXPECT(oracle::expect_equal(image_mean(scene, t, seed_here(), 400000), reference), 0.04);
     }
@@ -249,7 +249,7 @@ quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
         const Scene scene = scene_of(
             (glossy ? "phong half 0.3 0.3 0.3  0.3 0.3 0.3  4\n" : "diffuse half 0.5 0.5 0.5\n") +
             room);
-        const Technique t{bsdf, mis, glossy ? 0 : 1};
+        const Technique t{bsdf, mis, real(glossy ? 0 : 1)};
         const Pattern pattern =
             make_pattern(SamplerKind::halton, seed_here(), false, scene.depth + 1, 64);
         for (uint32_t dim = dimension(0, Draw(0)); dim < pattern.bases.size(); ++dim) {
@@ -390,15 +390,18 @@ quad -5 0 -5  0 0 10  10 0 0  white
     CHECK(radiance(shadowed, t, {SamplerKind::independent}, 0, 0, 0).x == 0);
 }
 
-TEST_CASE("Russian roulette shortens paths to 1 / (1 - rho) scatterings") {
-    // Closed box, albedo 0.5, no light sampling: rays = 1 + survivors, a geometric sum of mean 2.
+TEST_CASE("Russian roulette keeps paths at its threshold T: log2(1 / T) + 2 rays of albedo 1/2") {
+    // Closed box, no light sampling.  log2(1 / T) scatterings lead to T, and from there one in two
+    // of any further ones: geometric, of mean 1.
     Scene scene = scene_of(furnace);
     scene.depth = 1000;
-    const Technique t{bsdf, none, 1};
     const Pattern pattern{SamplerKind::independent, seed_here()};
-    Moments rays;
-    for (uint64_t i = 0; i < 100000; ++i) rays.add(double(rays_of(scene, t, pattern, 1, 1, i)));
-    EXPECT(oracle::expect_mean(2, estimate(rays)), 0.02);
+    for (real threshold : {real(1), real(0.25)}) {
+        Moments rays;
+        for (uint64_t i = 0; i < 100000; ++i)
+            rays.add(double(rays_of(scene, {bsdf, none, threshold}, pattern, 1, 1, i)));
+        EXPECT(oracle::expect_mean(2 - std::log2(double(threshold)), estimate(rays)), 0.02);
+    }
 }
 
 TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^2))") {

@@ -94,7 +94,7 @@ double sphere_light_from(real r, real h) {
 
 // k = cos / sin(sigma): E = s^3 (k acos(-k) + sqrt(1 - k^2) (2 + k^2) / 3) for small s (relative
 // error 1.4 s^2); 0 is half above the horizon.
-double clipped_bright_sphere(real s, real k) {
+double clipped_sphere_light(real s, real k) {
     const real c = k * s;
     const Light l = bright_sphere({std::sqrt(1 - c * c), 0, c}, s);
     const big truth = big(s) * s * s *
@@ -252,11 +252,11 @@ TEST_CASE("extremes of lights: no more error than they may have") {
          [] { return sphere_light_from(real(1e6), real(1e-3)); }},
         // 1024 midpoints of the square root of u: 0.3 / 1024^1.5 = 1e-5.
         {"sphere light of sine 10^-4, a third below the horizon: irradiance", 1e-5, 1e-4,
-         [] { return clipped_bright_sphere(real(1e-4), real(0.4)); }},
+         [] { return clipped_sphere_light(real(1e-4), real(0.4)); }},
         {"sphere light of sine 10^-5, half below: irradiance", 1e-5, 1e-4,
-         [] { return clipped_bright_sphere(real(1e-5), 0); }},
+         [] { return clipped_sphere_light(real(1e-5), 0); }},
         {"sphere light of sine 10^-5, nine tenths below: irradiance", 1e-5, 1e-4,
-         [] { return clipped_bright_sphere(real(1e-5), real(-0.8)); }},
+         [] { return clipped_sphere_light(real(1e-5), real(-0.8)); }},
         {"on the surface of a sphere light, and in it: samples not finite", 0, 0,
          insane_on_a_light},
         {"in the plane of a quad light, on its edge, its corner: samples not finite", 0, 0,

@@ -182,6 +182,30 @@ TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
     CHECK(!sample_light(l, {1, 2, 3}, {}));
 }
 
+TEST_CASE("what a light is made with: normal and density of a polygon, frame of a rectangle") {
+    const vec3 p{1, 2, 3}, u{3, 0, 0}, v{0, 0, -2};
+    const Light triangle = triangle_light(p, u, v), quad = quad_light(p, u, v);
+    for (const Light& l : {triangle, quad}) {
+        CHECK((l.p == p && l.u == u && l.v == v));
+        CHECK(l.n == vec3{0, 1, 0});
+        CHECK((!l.by_angle && !l.twosided));
+    }
+    CHECK(triangle.kind == Light::Kind::triangle);
+    CHECK(triangle.pdf_area == real(1) / 3);
+    CHECK(triangle.rectangle.a == 0);
+    CHECK(quad.kind == Light::Kind::quad);
+    CHECK(quad.pdf_area == real(1) / 6);
+    const RectangleFrame& r = quad.rectangle;
+    CHECK((r.x == vec3{1, 0, 0} && r.y == vec3{0, 0, -1} && r.z == vec3{0, 1, 0}));
+    CHECK((r.a == 3 && r.b == 2));
+    CHECK(quad_light(p, u, {real(1e-3), 0, -2}).rectangle.a == 0);
+
+    const Light sphere = sphere_light(p, 4);
+    CHECK((sphere.kind == Light::Kind::sphere && sphere.p == p && sphere.r == 4));
+    const Light point = point_light(p, {1, 2, 3});
+    CHECK((point.kind == Light::Kind::point && point.p == p && point.L == rgb{1, 2, 3}));
+}
+
 TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels") {
     const double pi_ = std::numbers::pi;
     CHECK(power(sphere_of_light({}, real(0.5))) == doctest::Approx(2 * pi_ * pi_).epsilon(1e-6));

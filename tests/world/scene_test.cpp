@@ -80,6 +80,33 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     CHECK(s.lights[3].L == rgb{2, 2, 2});
 }
 
+TEST_CASE("the surface of a scene's hit is that of the shape hit, after a second prepare, too") {
+    Scene s = empty_scene();
+    add_triangle(s, {-1, -1, 0}, {0, -1, 0}, {-1, 0, real(0.5)}, grey);
+    prepare(s);
+    s.shapes.clear(), s.material_of.clear(), s.light_of.clear();
+    add_sphere(s, {real(0.5), real(0.5), -3}, real(0.5), lamp);
+    add_quad(s, {-1, 0, -1000}, {1, 0, 0}, {0, 1, 2}, panel);
+    add_triangle(s, {0, -1, -7}, {1, -1, -8}, {1, 0, -9}, grey);
+    prepare(s);
+    int hits[4] = {};
+    for (int i = 0; i < 400; ++i) {
+        const real x = real(i % 20) / 10 - real(0.95), y = real(i / 20) / 10 - real(0.97);
+        const Ray ray{{x, y, 5}, {0, 0, -1}};
+        const auto hit = s.bvh.closest(ray);
+        if (!hit) continue;
+        const Shape& shape = s.shapes.at(hit->id);
+        const Surface of_shape = surface(shape, ray, *hit), of_scene = s.surface(ray, *hit);
+        CHECK(of_scene.p == of_shape.p);
+        CHECK(of_scene.n == of_shape.n);
+        CHECK(of_scene.error == of_shape.error);
+        CHECK(of_scene.error == rounding_error(shape));
+        if (!shape.is_sphere()) CHECK(of_scene.n == unit(area_vector(shape)));
+        ++hits[hit->id];
+    }
+    for (int n : hits) CHECK(n > 10);
+}
+
 TEST_CASE("a quad is two triangles that share a diagonal and nothing else") {
     Scene s = empty_scene();
     add_quad(s, {1, 1, 0}, {2, 0, 0}, {0, 2, 0}, grey);

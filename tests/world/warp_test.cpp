@@ -7,7 +7,7 @@
 namespace {
 
 // The sampler as a map of (u, v), turned so that its axis is n.
-auto turned(vec3 n, auto sample) {
+auto about(vec3 n, auto sample) {
     const Frame f = frame(n);
     return [=](double u, double v) { return f.to_world(sample(vec2{real(u), real(v)})); };
 }
@@ -31,11 +31,34 @@ std::vector<vec3> some_axes() {
 
 }  // namespace
 
+TEST_CASE("u turns: within 2 ulp of 1 of cosine and sine, at quarters of a turn exactly") {
+    const vec2 quarters[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 0}};
+    for (int i = 0; i < 5; ++i) {
+        CHECK(turned(real(i) / 4).x == quarters[i].x);
+        CHECK(turned(real(i) / 4).y == quarters[i].y);
+    }
+    std::vector<real> turns{ulp, sqr(ulp), std::numeric_limits<real>::denorm_min(), below_one};
+    for (int i = 0; i <= 8; ++i)  // the polynomials' ends, and the middles of their ranges
+        for (real u : {real(i) / 8, std::nextafter(real(i) / 8, real(0)),
+                       std::nextafter(real(i) / 8, real(1))})
+            turns.push_back(u);
+    Rng rng{seed_here()};
+    for (int i = 0; i < 100000; ++i) turns.push_back(to_unit(rng.bits()));
+    double worst = 0;
+    for (real u : turns) {
+        const long double angle = 2 * std::numbers::pi_v<long double> * (long double)(u);
+        const vec2 at = turned(u);
+        worst = std::max({worst, double(std::abs((long double)(at.x) - std::cos(angle))),
+                          double(std::abs((long double)(at.y) - std::sin(angle)))});
+    }
+    CHECK(worst <= 2 * double(ulp));
+}
+
 TEST_CASE("uniform hemisphere: p(w) = 1 / 2 pi, about any axis") {
     oracle::Random random(seed_here());
     for (vec3 n : some_axes())
         EXPECT(oracle::expect_density(
-                   random, turned(n, sample_uniform_hemisphere),
+                   random, about(n, sample_uniform_hemisphere),
                    [&](vec3 w) { return pdf_uniform_hemisphere(dot(n, w)); }, about(n)),
                0.05);
 }
@@ -55,7 +78,7 @@ TEST_CASE("cosine hemisphere: p(w) = cos(theta) / pi, about any axis") {
     oracle::Random random(seed_here());
     for (vec3 n : some_axes())
         EXPECT(oracle::expect_density(
-                   random, turned(n, sample_cosine_hemisphere),
+                   random, about(n, sample_cosine_hemisphere),
                    [&](vec3 w) { return pdf_cosine_hemisphere(dot(n, w)); }, about(n)),
                0.05);
 }
@@ -97,7 +120,7 @@ TEST_CASE("Phong lobe: p(w) = (n+1)/(2 pi) cos^n(alpha), exponents 0 to 10^5") {
         for (vec3 z : {vec3{0, 0, 1}, unit({1, -2, real(-0.3)})}) {
             oracle::Options o = about(z);
             EXPECT(oracle::expect_density(
-                       random, turned(z, [&](vec2 u) { return sample_phong_lobe(u, n); }),
+                       random, about(z, [&](vec2 u) { return sample_phong_lobe(u, n); }),
                        [&](vec3 w) { return pdf_phong_lobe(dot(z, w), n); }, o),
                    0.05);
         }
@@ -142,7 +165,7 @@ TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 1
             return w.z >= 0 && sqr(w.x) + sqr(w.y) <= sin2 * (1 + 8 * ulp);
         };
         EXPECT(oracle::expect_density(
-                   random, turned({0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); }),
+                   random, about({0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); }),
                    [&](vec3 w) { return inside(w) ? pdf_cone(sin2) : 0; }, o)
                    .of(oracle::say("sin^2 = %g", double(sin2))),
                0.05);
