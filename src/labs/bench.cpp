@@ -1,4 +1,4 @@
-// labs/bench.cpp  4  how many rays a second?
+// labs/bench.cpp  5  how many rays a second?
 //
 //   build/bench [--quick]
 //
@@ -7,6 +7,7 @@
 // triangles, all rounded to float, since Embree knows nothing else.  They take turns, so that a
 // busy machine slows both, and the time is that of the processor.  Nothing here fails for being
 // slow.
+#include "labs/bench_paths.h"
 #include "labs/bench_rays.h"
 
 #if __has_include(<embree3/rtcore.h>)
@@ -250,6 +251,7 @@ int run(bool quick) {
     for (int n : {1000, 100000}) all.push_back(race(report, soup(n, effort.width), effort));
     report.end_of_table();
     tell_verdict(report, all);
+    race_all_paths(report, effort.rounds);
     report.say(made_by(quick ? "build/bench --quick" : "build/bench"));
     return report.finish();
 }

@@ -1,0 +1,103 @@
+// labs/seeds.h  3  error and time of renders over seeds, one choice beside another
+#pragma once
+#include "app/options.h"
+#include "labs/lab.h"
+
+// Images of one scene that differ in their seeds alone, and the processor seconds of each.
+struct Series {
+    std::vector<Image> images;
+    std::vector<double> seconds;
+};
+
+// ---- Error and efficiency -----------------------------------------------------------------------
+
+// Mean square of a series' mean image, over pixels and channels.
+inline double mean_square(const Series& s) {
+    double sum = 0;
+    const size_t pixels = s.images[0].pixels.size();
+    for (size_t i = 0; i < pixels; ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            Moments m;
+            for (const Image& image : s.images) m.add(double(image.pixels[i][c]));
+            sum += m.mean * m.mean;
+        }
+    return sum / (3 * double(pixels));
+}
+
+// Variance of a number between seeds, mean over pixels and channels, unbiased; without one seed.
+inline double variance_between(const Series& s, size_t without = SIZE_MAX) {
+    double sum = 0;
+    const size_t pixels = s.images[0].pixels.size();
+    for (size_t i = 0; i < pixels; ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            Moments m;
+            for (size_t k = 0; k < s.images.size(); ++k)
+                if (k != without) m.add(double(s.images[k].pixels[i][c]));
+            sum += m.variance();
+        }
+    return sum / (3 * double(pixels));
+}
+
+// Median; without one seed.
+inline double seconds_without(const Series& s, size_t without = SIZE_MAX) {
+    std::vector<double> seconds = s.seconds;
+    if (without < seconds.size()) seconds.erase(seconds.begin() + ptrdiff_t(without));
+    return median(seconds);
+}
+
+// A number of all seeds, and how far it would be from the truth: the standard error of its
+// logarithm, from what it is without each of the seeds (jackknife: Quenouille 1956, Tukey 1958).
+struct Estimate {
+    double value = 0, log_error = 0;
+};
+inline Estimate over_seeds(size_t seeds, const std::function<double(size_t without)>& number) {
+    Moments m;
+    for (size_t k = 0; k < seeds; ++k) m.add(std::log(number(k)));
+    return {number(SIZE_MAX), std::sqrt(double(seeds - 1) / double(seeds) * m.m2)};
+}
+inline std::string told(const Estimate& e, const char* format) {
+    return text("%s ± %s", text(format, e.value), text(format, e.value * e.log_error));
+}
+
+// ---- Choices ------------------------------------------------------------------------------------
+
+// Words that a user of penumbra adds to the default.
+struct Choice {
+    std::string name;
+    std::vector<std::string> words;
+};
+
+inline Choice choice_of(const std::string& name) {
+    std::istringstream in(name);
+    Choice choice{name, {}};
+    for (std::string word; in >> word;) choice.words.push_back(word);
+    return choice;
+}
+
+// Whether this penumbra knows all of the words.
+inline bool is_known(const Choice& choice) {
+    try {
+        (void)parse_words(option_table, choice.words);
+        return true;
+    } catch (const UserError&) {
+        return false;
+    }
+}
+
+// What can be said after an option that has a few words to choose from, but for the default.
+inline std::vector<Choice> alternatives(const std::string& name) {
+    std::vector<Choice> choices;
+    for (const auto& row : option_table)
+        if (row.name == name)
+            for (const std::string_view word : option::words_of(row.value))
+                if (word != row.otherwise)
+                    choices.push_back(choice_of(name + " " + std::string(word)));
+    return choices;
+}
+
+// Unbiased samplers beside the default.
+inline std::vector<Choice> samplers() {
+    std::vector<Choice> choices = alternatives("--sampler");
+    std::erase_if(choices, [](const Choice& c) { return c.words[1] == "halton-naive"; });
+    return choices;
+}
