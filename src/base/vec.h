@@ -66,7 +66,7 @@ inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
     const real a2 = dot(a, a);
     if (!std::isnormal(a2)) [[unlikely]]
         return unit_of_extreme(a);
-    return a / std::sqrt(a2);
+    return a * (1 / std::sqrt(a2));
 }
 
 inline bool is_finite(vec3 a) {

@@ -203,9 +203,9 @@ inline Ray spawn(const Surface& x, vec3 d) { return {offset(x, d), d}; }
 // The open segment between two surface points, to be asked whether it is occluded.  Seen from afar
 // the far end is only as exact as the distance.
 inline Ray spawn_to(const Surface& x, Surface y) {
-    y.error += 16 * ulp * length(y.p - x.p);
-    vec3 o = offset(x, y.p - x.p);
-    vec3 to = offset(y, x.p - y.p) - o;
-    real distance = length(to);
-    return {o, to / distance, distance};
+    const vec3 w = y.p - x.p;
+    y.error += 16 * ulp * (std::abs(w.x) + std::abs(w.y) + std::abs(w.z));
+    const vec3 o = offset(x, w), to = offset(y, -w) - o;
+    const real distance = length(to);
+    return {o, to * (1 / distance), distance};
 }
