@@ -176,7 +176,7 @@ double sliver_light(int narrow) {
 }
 
 // Point light at a distance of 1e-9 to 1e9: L d^2 = I.
-double point_light() {
+double light_of_a_point() {
     Dice random{{oracle::seed_of("point light")}};
     Light l;
     l.L = {1, 1, 1};
@@ -265,7 +265,7 @@ TEST_CASE("extremes of lights: no more error than they may have") {
          [] { return edge_on(real(1e-9)); }},
         {"light as thin as 10^-6 of its length: area", 8 * d_ulp, 8 * f_ulp,
          [] { return sliver_light(20); }},
-        {"point light 10^-9 ... 10^9 away: radiance", 8 * d_ulp, 8 * f_ulp, point_light},
+        {"point light 10^-9 ... 10^9 away: radiance", 8 * d_ulp, 8 * f_ulp, light_of_a_point},
         {"lights of powers 1 and 10^9: how often against how probable", 0, 0,
          [] { return choice_of_lights(1e9); }},
         {"lights of powers 1 and 10^30: how often against how probable", 0, 0,
