@@ -21,12 +21,12 @@ inline std::vector<uint32_t> first_primes(size_t n) {
 }
 
 // A prime, say, and what divides by it fast: of n, b < 2^32 the quotient floor(n / b) is
-// floor(n m / 2^64), m = floor(2^64 / b) + 1, for n (m b - 2^64) <= n b < 2^64 (Granlund,
-// Montgomery 1994).
+// floor(n m / 2^64), m = ceil(2^64 / b), for n (m b - 2^64) < n b < 2^64 (Granlund, Montgomery
+// 1994).
 struct Base {
-    uint64_t b = 2;
-    uint64_t reciprocal = 0;  // m
-    uint64_t most = 0;        // powers of b above this have no next one
+    uint64_t b;
+    uint64_t reciprocal;  // m
+    uint64_t most;        // powers of b above this have no next one
 
     Base(uint32_t base) : b(base), reciprocal(UINT64_MAX / b + 1), most(UINT64_MAX / b) {}
     operator uint32_t() const { return uint32_t(b); }

@@ -20,7 +20,9 @@ struct Material {
     bool is_delta() const { return kind != Kind::rough; }  // scatters into single directions
     bool emits() const { return max_of(Le) > 0; }
     // Whether a direction takes a third number: reflected or refracted, by the lobe or the cosine.
-    bool has_choice() const { return kind == Kind::glass || !(ks == rgb{}); }
+    bool has_choice() const {
+        return kind == Kind::glass || (kind == Kind::rough && !(ks == rgb{}));
+    }
 };
 
 // Radiance that a surface sends to a viewer whose direction has cosine `cosine` with its normal.

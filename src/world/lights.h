@@ -6,6 +6,7 @@
 #include "world/spherical_rectangle.h"
 #include "world/warp.h"
 
+// To be made by the functions below, which compute n and pdf_area.
 struct Light {
     enum class Kind { sphere, triangle, quad, point } kind = Kind::point;
     vec3 p = {};          // centre of a sphere, corner of a polygon, the point

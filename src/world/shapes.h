@@ -204,6 +204,7 @@ inline Ray spawn(const Surface& x, vec3 d) { return {offset(x, d), d}; }
 // the far end is only as exact as the distance.
 inline Ray spawn_to(const Surface& x, Surface y) {
     const vec3 w = y.p - x.p;
+    // The sum of the components' sizes is no less than the distance, and takes no root.
     y.error += 16 * ulp * (std::abs(w.x) + std::abs(w.y) + std::abs(w.z));
     const vec3 o = offset(x, w), to = offset(y, -w) - o;
     const real distance = length(to);

@@ -65,7 +65,8 @@ TEST_CASE("a base's digits are full when another power of it would not fit in 64
         const Base base{b};
         MirroredDigits mirrored;
         uint128 power = 1;
-        for (; !mirrored.full(base); power *= b) mirrored.append(base, b - 1);
+        for (; power <= UINT64_MAX && !mirrored.full(base); power *= b)
+            mirrored.append(base, b - 1);
         CHECK(power == mirrored.power);
         CHECK(mirrored.digits == mirrored.power - 1);
         CHECK(power * b > UINT64_MAX);
