@@ -12,7 +12,7 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 constexpr SamplerKind kinds[] = {SamplerKind::independent, SamplerKind::stratified,
-                                 SamplerKind::halton};
+                                 SamplerKind::halton, SamplerKind::sobol};
 
 // A whole run: n particles, and a seed of the test's name.
 Particles run(const Scene& s, const Mesh& mesh, SamplerKind kind, uint64_t n, uint64_t seed) {
