@@ -56,13 +56,13 @@ inline const OptionTable<Options> option_table = {
      [](Options& o, Text v) { o.spp = parse_count(v, 1, option::most_samples); }},
     CommonRows<Options>::time("stop after S seconds; with --spp, whichever comes first"),
     one_of<Options>(
-        "--sampler", "independent|stratified|halton|halton-naive",
+        "--sampler", "independent|stratified|halton|sobol|halton-naive",
         "where the random numbers come from; halton-naive is a lesson in what not to do, and "
         "biased",
         [](auto& o) -> auto& { return o.sampler; }),
     {"--halves", "",
-     "two independently randomised halves of stratified and halton samples, so "
-     "that their error can be estimated",
+     "two independently randomised halves of stratified, halton and sobol samples, so that their "
+     "error can be estimated",
      "", [](Options& o, Text) { o.halves = true; },
      [](const Options& o) { return std::string(o.halves ? "true" : "false"); }},
     one_of<Options>(

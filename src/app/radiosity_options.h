@@ -37,7 +37,7 @@ inline double fraction(std::string_view text) {
 
 inline SamplerKind unbiased_sampler(std::string_view text) {
     if (text == "halton-naive") throw UserError(in_quotes(text) + " is biased");
-    return SamplerKind(choice(text, "independent|stratified|halton"));
+    return SamplerKind(choice(text, "independent|stratified|halton|sobol"));
 }
 
 // What stands for a value in the statistics if the option says nothing to the method.
@@ -76,11 +76,11 @@ inline const OptionTable<RadiosityOptions> radiosity_table = {
      [](RadiosityOptions& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
     CommonRows<RadiosityOptions>::time(
         "stop after S seconds; with --unshot, --shots or --particles, whichever comes first"),
-    {"--sampler", "independent|stratified|halton",
+    {"--sampler", "independent|stratified|halton|sobol",
      "where the random numbers of particles come from", "halton",
      [](RadiosityOptions& o, Text v) { o.sampler = option::unbiased_sampler(v); },
      [](const RadiosityOptions& o) {
-         const char* names[] = {"\"independent\"", "\"stratified\"", "\"halton\""};
+         const char* names[] = {"\"independent\"", "\"stratified\"", "\"halton\"", "\"sobol\""};
          return option::if_any(is_random(o), names[int(o.sampler)]);
      }},
     {"--seed", "N", "another seed, another noise, of particles", "0",

@@ -5,11 +5,13 @@
 
 #include "base/rng.h"
 #include "path/halton.h"
+#include "path/sobol.h"
 
 enum class SamplerKind {
     independent,  // every number for itself
     stratified,   // jittered grids, shuffled
     halton,       // scrambled Halton points, every pixel its own randomisation
+    sobol,        // Sobol' points, every pixel and every pair of numbers its own randomisation
     halton_naive  // as often met: the same points in every pixel and at every bounce; biased.
                   // One number: base 2; two: bases 2, 3 (three would add 5: none are drawn here)
 };
@@ -86,6 +88,7 @@ public:
           index_(sample / pattern.halves),
           key_(hash(hash(hash(0, pattern.seed), pixel), sample % pattern.halves)) {
         if (pattern.kind == SamplerKind::independent) key_ = hash(key_, sample);
+        if (pattern.kind == SamplerKind::sobol) index_ = mirrored(index_);
     }
 
     real get(uint32_t dim) const {
@@ -100,6 +103,8 @@ public:
                 const uint64_t bits = random(dim);
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
             }
+            case SamplerKind::sobol:
+                return to_unit(shuffled_index(dim));
             default:
                 return radical_inverse(2, index_);
         }
@@ -107,6 +112,7 @@ public:
 
     // Dimensions dim and dim + 1.
     vec2 get2(uint32_t dim) const {
+        if (pattern_.kind == SamplerKind::sobol) return sobol_point(shuffled_index(dim));
         if (pattern_.kind == SamplerKind::halton_naive)
             return {radical_inverse(2, index_), radical_inverse(3, index_)};
         if (pattern_.kind == SamplerKind::stratified) {
@@ -125,10 +131,15 @@ public:
 
 private:
     const Pattern& pattern_;
-    uint64_t index_;  // within this half
+    uint64_t index_;  // within this half; sobol: mirrored
     uint64_t key_;    // of seed, pixel and half; independent: of the sample, too
 
     uint64_t random(uint32_t dim) const { return mix(key_ + (dim + 1) * golden); }
+
+    uint64_t shuffled_index(uint32_t dim) const {
+        const uint64_t bits = random(dim);
+        return shuffled(index_, bits, mix(bits));
+    }
 
     // The cell of this sample in its grid, and random bits for the place in it.
     struct Stratum {

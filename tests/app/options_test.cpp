@@ -54,6 +54,7 @@ TEST_CASE("words of choices mean what they say") {
         {"independent", SamplerKind::independent},
         {"stratified", SamplerKind::stratified},
         {"halton", SamplerKind::halton},
+        {"sobol", SamplerKind::sobol},
         {"halton-naive", SamplerKind::halton_naive}};
     for (const auto& [word, kind] : samplers) CHECK(parse({"--sampler", word}).sampler == kind);
     CHECK(parse({"--direction", "uniform"}).technique.direction == Direction::uniform);

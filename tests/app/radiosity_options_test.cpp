@@ -57,7 +57,9 @@ TEST_CASE("radiosity: every option sets what it is named after") {
     CHECK(p.seed == UINT64_MAX);
     CHECK(p.sampler == SamplerKind::stratified);
     const std::pair<const char*, SamplerKind> samplers[] = {
-        {"independent", SamplerKind::independent}, {"halton", SamplerKind::halton}};
+        {"independent", SamplerKind::independent},
+        {"halton", SamplerKind::halton},
+        {"sobol", SamplerKind::sobol}};
     for (const auto& [word, kind] : samplers)
         CHECK(parse({"--method", "particles", "--sampler", word}).sampler == kind);
     CHECK(parse({"--method", "hierarchy"}).method == Method::hierarchy);

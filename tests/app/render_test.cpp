@@ -10,8 +10,8 @@
 TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
     Scene scene = scene_of(shiny);
     scene.size = {6, 4};
-    for (SamplerKind kind :
-         {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton}) {
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
+                             SamplerKind::sobol}) {
         Options o;
         o.sampler = kind;
         o.spp = 4;
@@ -204,7 +204,8 @@ TEST_CASE("what may be said about a variance: by samples, by halves, or nothing"
         o.halves = halves;
         o.sampler = SamplerKind::independent;
         CHECK(variance_from(o) == VarianceFrom::samples);
-        for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton}) {
+        for (SamplerKind kind :
+             {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
             o.sampler = kind;
             CHECK(variance_from(o) == (halves ? VarianceFrom::halves : VarianceFrom::nothing));
         }

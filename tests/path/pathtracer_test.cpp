@@ -432,7 +432,7 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
     const Scene scene = scene_of(unequal);
     const Technique& t = techniques[0];
     const oracle::Estimate reference = image_mean(scene, t, ~seed_here(), 300);
-    for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton}) {
+    for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
         // A replicate is one randomisation of every pixel's whole point set.
         const auto replicate = [&, first = seed_here()](int k) {
             const Pattern pattern = make_pattern(kind, first + uint64_t(k), false, scene.depth, 16);

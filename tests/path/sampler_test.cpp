@@ -8,8 +8,8 @@
 namespace {
 
 constexpr SamplerKind kinds[] = {SamplerKind::independent, SamplerKind::stratified,
-                                 SamplerKind::halton};
-constexpr const char* names[] = {"independent", "stratified", "halton"};
+                                 SamplerKind::halton, SamplerKind::sobol};
+constexpr const char* names[] = {"independent", "stratified", "halton", "sobol"};
 constexpr int depth = 8;
 const uint32_t dimensions = dimension(depth, Draw::light_x);
 
@@ -79,10 +79,10 @@ TEST_CASE("every number of every sampler is uniform over [0,1)") {
     }
 }
 
-TEST_CASE("neighbouring dimensions and neighbouring pixels are uncorrelated") {
+TEST_CASE("dimensions of a path and neighbouring pixels are uncorrelated") {
     // One pooled check a sampler.  For independent u, v the products (u - 1/2)(v - 1/2) have mean 0
     // and variance 1/144; a replicate is the sum over one pixel, for its samples are not
-    // independent of each other.
+    // independent of each other.  Each dimension meets the next three, so each pair the next pair.
     for (SamplerKind kind : kinds) {
         const Pattern pattern = make_pattern(kind, seed_here(), false, depth, 16);
         Moments between_dimensions, between_pixels;
@@ -91,21 +91,47 @@ TEST_CASE("neighbouring dimensions and neighbouring pixels are uncorrelated") {
             for (uint64_t sample = 0; sample < 16; ++sample) {
                 const Sampler here(pattern, 2 * pixel, sample),
                     there(pattern, 2 * pixel + 1, sample);
-                real last = draw(here, 0);
+                real last[3] = {};
                 for (uint32_t dim = 0; dim < dimensions; ++dim) {
                     const real u = draw(here, dim), v = draw(there, dim);
                     pixels += (double(u) - 0.5) * (double(v) - 0.5);
-                    if (dim > 0) dims += (double(u) - 0.5) * (double(last) - 0.5);
-                    last = u;
+                    for (uint32_t back = 1; back <= std::min(dim, 3u); ++back)
+                        dims += (double(u) - 0.5) * (double(last[(dim - back) % 3]) - 0.5);
+                    last[dim % 3] = u;
                 }
             }
-            between_dimensions.add(dims / (16 * dimensions));
+            between_dimensions.add(dims / (3 * 16 * dimensions));
             between_pixels.add(pixels / (16 * dimensions));
         }
         // 1/12 is what full correlation would give: the bias is stated in its units.
         const std::string name = names[int(kind)];
         EXPECT(oracle::expect_mean(0, estimate(between_dimensions)).of(name), 0.02 / 12);
         EXPECT(oracle::expect_mean(0, estimate(between_pixels)).of(name), 0.02 / 12);
+    }
+}
+
+TEST_CASE("no two numbers of a path come in the same order") {
+    // The squared sum of products (u - 1/2)(v - 1/2) over the 16 samples of a pixel, relative to
+    // that of independent numbers.  One order for both would make it 3.2 or more on average: for
+    // v = u + c modulo 1 the mean product is B2(c) / 2, its square 1 / 720, times 16 * 144.
+    for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
+        const Pattern pattern = make_pattern(kind, seed_here(), false, depth, 16);
+        for (uint32_t dim : {film_x, film_y, dimension(0, Draw::light_x), dimension(1, Draw::pick),
+                             dimension(1, Draw::lobe)})
+            for (uint32_t other : {dimension(2, Draw::wi_x), dimension(3, Draw::light_y),
+                                   dimension(2, Draw::lobe)}) {
+                double squares = 0;
+                for (uint64_t pixel = 0; pixel < 2000; ++pixel) {
+                    double sum = 0;
+                    for (uint64_t sample = 0; sample < 16; ++sample) {
+                        const Sampler s(pattern, pixel, sample);
+                        sum += (double(draw(s, dim)) - 0.5) * (double(draw(s, other)) - 0.5);
+                    }
+                    squares += sum * sum * 144 / 16 / 2000;
+                }
+                INFO(std::string(names[int(kind)]), " ", dim, " ", other, ": ", squares);
+                CHECK(squares < 2);
+            }
     }
 }
 
@@ -119,6 +145,29 @@ TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
             ++boxes[part(2, u.x) * 3 + part(3, u.y)];
         }
         for (int b : boxes) REQUIRE(b == 1);
+    }
+}
+
+TEST_CASE("Sobol' points of one pixel fill every elementary interval, the halves each its own") {
+    for (bool halves : {false, true}) {
+        const Pattern pattern = make_pattern(SamplerKind::sobol, seed_here(), halves, depth, 0);
+        CHECK(pattern.period() == pattern.halves);
+        for (uint64_t pixel = 0; pixel < 100; ++pixel)
+            for (uint64_t half = 0; half < pattern.halves; ++half)
+                for (uint32_t dim :
+                     {film_x, dimension(0, Draw::light_x), dimension(4, Draw::wi_x)}) {
+                    int boxes[5][16] = {}, parts[16] = {};
+                    for (uint64_t i = 32; i < 48; ++i) {
+                        const Sampler s(pattern, pixel, i * pattern.halves + half);
+                        const vec2 u = s.get2(dim);
+                        for (uint64_t c : {0, 1, 2, 3, 4})  // 2^c columns
+                            ++boxes[c][(part(1u << c, u.x) << (4 - c)) + part(16u >> c, u.y)];
+                        ++parts[part(16, s.get(dimension(2, Draw::pick)))];
+                    }
+                    for (const auto& shape : boxes)
+                        for (int b : shape) REQUIRE(b == 1);
+                    for (int p : parts) REQUIRE(p == 1);
+                }
     }
 }
 
@@ -199,17 +248,19 @@ TEST_CASE("permute is as fair where it must walk: numbers that are no power of t
 }
 
 TEST_CASE("halves are randomised apart; without them odd and even samples are one point set") {
-    const Pattern whole = make_pattern(SamplerKind::halton, seed_here(), false, depth, 64);
-    const Pattern halves = make_pattern(SamplerKind::halton, seed_here(), true, depth, 64);
-    int equal = 0;
-    for (uint64_t pixel = 0; pixel < 100; ++pixel) {
-        // Samples 2k and 2k + 1 of a pair of halves are both number k of their own point set.
-        const real a = Sampler(halves, pixel, 6).get(2), b = Sampler(halves, pixel, 7).get(2);
-        equal += a == b;
-        const real c = Sampler(whole, pixel, 0).get(0), d = Sampler(whole, pixel, 1).get(0);
-        CHECK(part(2, c) != part(2, d));
+    for (SamplerKind kind : {SamplerKind::halton, SamplerKind::sobol}) {
+        const Pattern whole = make_pattern(kind, seed_here(), false, depth, 64);
+        const Pattern halves = make_pattern(kind, seed_here(), true, depth, 64);
+        int equal = 0;
+        for (uint64_t pixel = 0; pixel < 100; ++pixel) {
+            // Samples 2k and 2k + 1 of a pair of halves are both number k of their own point set.
+            const real a = Sampler(halves, pixel, 6).get(2), b = Sampler(halves, pixel, 7).get(2);
+            equal += a == b;
+            const real c = Sampler(whole, pixel, 0).get(0), d = Sampler(whole, pixel, 1).get(0);
+            CHECK(part(2, c) != part(2, d));
+        }
+        CHECK(equal < 3);
     }
-    CHECK(equal < 3);
 }
 
 TEST_CASE("halton-naive repeats itself: the same numbers in every pixel and at every vertex") {
@@ -222,7 +273,7 @@ TEST_CASE("halton-naive repeats itself: the same numbers in every pixel and at e
 
 TEST_CASE("samples 2^32 apart differ, whatever the sampler, in halves, too") {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
-                             SamplerKind::halton_naive})
+                             SamplerKind::sobol, SamplerKind::halton_naive})
         for (bool halves : {false, true}) {
             const Pattern pattern = make_pattern(kind, seed_here(), halves, depth, 64);
             int equal = 0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 constexpr SamplerKind kinds[] = {SamplerKind::independent, SamplerKind::stratified,
-                                 SamplerKind::halton};
+                                 SamplerKind::halton, SamplerKind::sobol};
 
 // A whole run: n particles, and a seed of the test's name.
 Particles run(const Scene& s, const Mesh& mesh, SamplerKind kind, uint64_t n, uint64_t seed) {
@@ -326,7 +326,7 @@ TEST_CASE("the reported error is right: its square is the mean of squares, whate
     for (SamplerKind kind : kinds)
         for (Functional f : {Functional::projection, Functional::mean}) {
             Moments actual, reported;
-            for (uint64_t r = 0; r < 96; ++r) {
+            for (uint64_t r = 0; r < 128; ++r) {
                 const Particles p = run(s, mesh, kind, 1600, r);
                 const IlluminationMap map = p.map(f);
                 double off = 0, size = 0;

@@ -15,7 +15,7 @@ namespace {
 
 // As the user says them: a new option is one more row.
 const char* const samplers[] = {"--sampler independent", "--sampler stratified", "--sampler halton",
-                                "--sampler halton-naive"};
+                                "--sampler sobol", "--sampler halton-naive"};
 const char* const techniques[] = {
     "--direction uniform --light none",
     "--direction uniform --light nee",

@@ -93,7 +93,7 @@ TEST_CASE("radiosity --help names every option on one page of stdout") {
         for (const char* word :
              {"radiosity [options] SCENE", "--method shooting|hierarchy|particles", "--mesh H",
               "--unshot F", "--shots N", "--particles N", "--time S",
-              "--sampler independent|stratified|halton", "--seed N", "--rays K",
+              "--sampler independent|stratified|halton|sobol", "--seed N", "--rays K",
               "--view luminance|illuminance|mesh", "--threads N", "--size WxH", "--exposure E",
               "-o FILE", "--stats FILE", "--quiet", "--help", "130 interrupted"}) {
             INFO(std::string(word));

@@ -1,0 +1,43 @@
+// path/sobol.h  1  Sobol' points in pairs: even at any number of samples, most even at powers of
+// two
+#pragma once
+#include <cstdint>
+
+#include "base/vec.h"
+
+// Words are binary fractions of [0,1): digit 0 is the highest bit.
+
+// The radical inverse of i in base 2 (van der Corput 1935): its bits in reverse order.
+inline uint64_t mirrored(uint64_t i) {
+    auto swap = [&i](int by, uint64_t low) { i = (i >> by & low) | (i & low) << by; };
+    swap(1, 0x5555555555555555);
+    swap(2, 0x3333333333333333);
+    swap(4, 0x0f0f0f0f0f0f0f0f);
+    return __builtin_bswap64(i);
+}
+
+// A mirrored index, shuffled: (t + a) b modulo 2^64, for random a and random, odd b.  The 2^k
+// indices from a multiple of 2^k on become 2^k others of that kind, anywhere, since carries run
+// from the last digit of t, which is the first of the index, to its first.  Of two indices that
+// have their first j digits in common, a makes one uniform, and b makes their difference uniform
+// among the odd multiples of 2^j: all later digits are independent.  That is the law of two indices
+// in a nested uniform shuffle (Owen 1995; Burley 2020, JCGT 9(4)), for one product; and the
+// variance of a mean depends on its samples two by two.
+inline uint64_t shuffled(uint64_t t, uint64_t a, uint64_t b) { return (t + a) * (b | 1); }
+
+// The second coordinate of the Sobol' point (1967) of which the first is x: its digit j is the sum
+// of C(k, j) times digit k of x modulo 2.  C(k, j) is odd if k has all the bits of j (Lucas 1878),
+// which is a step for every bit.  Of 2^k points from a multiple of 2^k on, each rectangle of area
+// 2^-k that halving the unit square cuts out holds one ((0,2)-sequence).
+inline uint64_t sobol_y(uint64_t x) {
+    x ^= (x & 0x5555555555555555) << 1;
+    x ^= (x & 0x3333333333333333) << 2;
+    x ^= (x & 0x0f0f0f0f0f0f0f0f) << 4;
+    x ^= (x & 0x00ff00ff00ff00ff) << 8;
+    x ^= (x & 0x0000ffff0000ffff) << 16;
+    return x ^ x << 32;
+}
+
+// The point of a shuffled index is as likely any of the first 2^64 as any other, and so uniform;
+// and pairs of other a and b can be put beside it.
+inline vec2 sobol_point(uint64_t x) { return {to_unit(x), to_unit(sobol_y(x))}; }

@@ -1,0 +1,211 @@
+// path/sobol_test.cpp  each elementary interval holds one point, each number has an order of its own
+#include "path/sobol.h"
+
+#include <vector>
+
+#include "base/moments.h"
+#include "base/rng.h"
+#include "oracle/expect.h"
+
+namespace {
+
+// The pairs of one randomisation, as they come.
+struct Points {
+    uint64_t a = 0, b = 0;
+    vec2 operator()(uint64_t i) const { return sobol_point(shuffled(mirrored(i), a, b)); }
+};
+Points random_points(Rng& rng) {
+    const uint64_t a = rng.bits(), b = rng.bits();
+    return {a, b};
+}
+
+// Of n equal parts of [0,1), the one of u.
+uint64_t part(uint64_t n, real u) {
+    REQUIRE((u >= 0 && u < 1));
+    return uint64_t(u * real(n));
+}
+
+// A nested uniform shuffle as it is defined: every aligned block of 2^j indices has a coin of its
+// own, which exchanges its halves or not.
+uint64_t textbook_shuffled(uint64_t i, int digits, uint64_t key) {
+    uint64_t result = 0;
+    for (int j = digits - 1; j >= 0; --j) {
+        const uint64_t block = i >> j >> 1, coin = hash(hash(key, uint64_t(j)), block) >> 63;
+        result = result * 2 + ((i >> j & 1) ^ coin);
+    }
+    return result;
+}
+
+real cubic(vec2 u) { return 4 * u.x * u.y * u.y * u.y + u.x; }              // mean 1
+real disc(vec2 u) { return u.x * u.x + u.y * u.y < 1 ? 4 / pi : real(0); }  // mean 1
+
+// The mean of f over the first n points.
+template <class F>
+double mean_over(const Points& points, uint64_t n, F f) {
+    double sum = 0;
+    for (uint64_t i = 0; i < n; ++i) sum += double(f(points(i)));
+    return sum / double(n);
+}
+
+}  // namespace
+
+TEST_CASE("the first points are Sobol's, where nothing is shuffled and shifted") {
+    const vec2 first[] = {{0, 0},         {.5, .5},       {.25, .75},    {.75, .25},
+                          {.125, .625},   {.625, .125},   {.375, .375},  {.875, .875},
+                          {.0625, .9375}, {.5625, .4375}, {.3125, .1875}};
+    for (uint64_t i = 0; i < std::size(first); ++i) {
+        CHECK(Points{}(i).x == first[i].x);
+        CHECK(Points{}(i).y == first[i].y);
+    }
+}
+
+TEST_CASE("an index is mirrored bit by bit") {
+    CHECK(mirrored(1) == uint64_t(1) << 63);
+    CHECK(mirrored(6) == uint64_t(3) << 61);
+    Rng rng{seed_here()};
+    for (int n = 0; n < 100; ++n) {
+        const uint64_t i = rng.bits(), m = mirrored(i);
+        for (int k = 0; k < 64; ++k) REQUIRE((m >> k & 1) == (i >> (63 - k) & 1));
+    }
+}
+
+TEST_CASE("the digits of y are sums of those of x by Pascal's triangle, modulo 2") {
+    uint64_t odd[64];  // bit j of row k: whether C(k, j) is odd
+    odd[0] = 1;
+    for (int k = 1; k < 64; ++k) odd[k] = odd[k - 1] ^ odd[k - 1] << 1;
+    Rng rng{seed_here()};
+    for (int n = 0; n < 100; ++n) {
+        const uint64_t x = rng.bits();
+        uint64_t y = 0;
+        for (int j = 0; j < 64; ++j)
+            for (int k = 0; k < 64; ++k) y ^= (odd[k] >> j & x >> (63 - k) & 1) << (63 - j);
+        REQUIRE(sobol_y(x) == y);
+    }
+}
+
+TEST_CASE("each elementary interval holds one of 2^k points that begin at a multiple of 2^k") {
+    Rng rng{seed_here()};
+    for (int n = 0; n < 20; ++n) {
+        const Points points = n == 0 ? Points{} : random_points(rng);
+        for (int k = 0; k <= 10; ++k)
+            for (uint64_t block : {uint64_t(0), uint64_t(1), uint64_t(6), uint64_t(1) << 36}) {
+                const uint64_t size = uint64_t(1) << k, start = block * size;
+                std::vector<int> held(size_t(k + 1) * size);
+                for (uint64_t i = start; i < start + size; ++i)
+                    for (int c = 0; c <= k; ++c) {  // 2^c columns, 2^(k-c) rows
+                        const uint64_t columns = uint64_t(1) << c, rows = size / columns;
+                        const uint64_t cell =
+                            part(columns, points(i).x) * rows + part(rows, points(i).y);
+                        ++held[size_t(c) * size + cell];
+                    }
+                for (int h : held) REQUIRE(h == 1);
+            }
+    }
+}
+
+TEST_CASE("single numbers: one in each of 2^k parts, for 2^k indices in a row") {
+    Rng rng{seed_here()};
+    for (int n = 0; n < 20; ++n)
+        for (uint64_t block : {uint64_t(0), uint64_t(3), uint64_t(1) << 35}) {
+            const uint64_t a = rng.bits(), b = rng.bits();
+            std::vector<int> held(64);
+            for (uint64_t i = 64 * block; i < 64 * (block + 1); ++i)
+                ++held[part(64, to_unit(shuffled(mirrored(i), a, b)))];
+            for (int h : held) REQUIRE(h == 1);
+        }
+}
+
+TEST_CASE("points are uniform over the square, in their first digits and in their last") {
+    Rng rng{seed_here()};
+    const std::vector<double> equal(256, 1 / 256.0);
+    constexpr int digits = std::numeric_limits<real>::digits;
+    const real last = real(uint64_t(1) << (digits - 4));  // leaves four digits
+    auto fraction = [&](real u) { return u * last - std::floor(u * last); };
+    for (uint64_t i : {uint64_t(0), uint64_t(1), uint64_t(77), uint64_t(1) << 40}) {
+        std::vector<uint64_t> first_digits(256), last_digits(256);
+        for (int n = 0; n < 60000; ++n) {
+            const vec2 u = random_points(rng)(i);
+            ++first_digits[part(16, u.x) * 16 + part(16, u.y)];
+            ++last_digits[part(16, fraction(u.x)) * 16 + part(16, fraction(u.y))];
+        }
+        EXPECT(oracle::expect_counts(first_digits, equal).of("first digits"), 0.2);
+        EXPECT(oracle::expect_counts(last_digits, equal).of("last digits"), 0.2);
+    }
+}
+
+TEST_CASE("two indices are shuffled as by a coin for every block") {
+    // The places of two of 16 indices: all 240 outcomes of a pair, counted.
+    Rng rng{seed_here()};
+    const std::pair<uint64_t, uint64_t> pairs[] = {{0, 1}, {0, 2}, {5, 6}, {3, 12}, {8, 15}};
+    for (auto [i, k] : pairs) {
+        std::vector<uint64_t> counts(256);
+        std::vector<double> expected(256);
+        for (int n = 0; n < 200000; ++n) {
+            const uint64_t a = rng.bits(), b = rng.bits();
+            auto place = [&](uint64_t at) { return mirrored(shuffled(mirrored(at), a, b)) & 15; };
+            ++counts[place(i) * 16 + place(k)];
+        }
+        // They part where they differ first, from the highest bit; what follows is independent.
+        const int first = int(std::bit_width(i ^ k)) - 1;  // of its bits, from below
+        for (uint64_t p = 0; p < 16; ++p)
+            for (uint64_t q = 0; q < 16; ++q)
+                if (int(std::bit_width(p ^ q)) - 1 == first)
+                    expected[p * 16 + q] = 1 / (16.0 * double(uint64_t(1) << first));
+        std::vector<uint64_t> possible;
+        std::vector<double> probabilities;
+        for (size_t c = 0; c < 256; ++c) {
+            if (expected[c] == 0) REQUIRE(counts[c] == 0);
+            if (expected[c] == 0) continue;
+            possible.push_back(counts[c]);
+            probabilities.push_back(expected[c]);
+        }
+        EXPECT(oracle::expect_counts(possible, probabilities), 0.1);
+    }
+}
+
+TEST_CASE("pairs of other words stand beside each other like pairs shuffled by coins") {
+    // The squared error of 16 samples for the integral of (u.x - 1/2)(v.x - 1/2) + (u.y - 1/2)(v.y
+    // - 1/2), by two pairs u and v, is on average the same with a textbook shuffle of v.
+    Rng rng{seed_here()};
+    auto squared_error = [&](bool textbook) {
+        const Points u = random_points(rng);
+        Points v = random_points(rng);
+        const uint64_t key = rng.bits(), n = 16;
+        if (textbook) v.a = 0;  // its order is that of the index
+        double sum = 0;
+        for (uint64_t i = 0; i < n; ++i) {
+            const vec2 p = u(i), q = v(textbook ? textbook_shuffled(i, 4, key) : i);
+            sum +=
+                (double(p.x) - .5) * (double(q.x) - .5) + (double(p.y) - .5) * (double(q.y) - .5);
+        }
+        return sqr(real(sum / double(n))) * 16 * 72;  // 1 for independent numbers
+    };
+    EXPECT(oracle::expect_equal([&] { return double(squared_error(false)); },
+                                [&] { return double(squared_error(true)); }, 200000),
+           0.05);
+}
+
+TEST_CASE("means over points are unbiased, at powers of two and between them") {
+    Rng rng{seed_here()};
+    for (uint64_t n : {1, 2, 3, 7, 16, 20}) {
+        auto replicate = [&](auto f) {
+            return [&, f](int) { return mean_over(random_points(rng), n, f); };
+        };
+        EXPECT(oracle::expect_replicates(1, 20000, replicate(cubic)).of("smooth"), 0.05);
+        EXPECT(oracle::expect_replicates(1, 20000, replicate(disc)).of("discontinuous"), 0.05);
+    }
+}
+
+TEST_CASE(
+    "the error falls faster than that of independent numbers, on smooth and other functions") {
+    // Four times the points: independent numbers halve the error, squared a quarter.  A smooth
+    // function's falls like (log n) / n, squared about a 16th; an edge leaves n^(3/4), an eighth.
+    Rng rng{seed_here()};
+    auto squared = [&](uint64_t n, auto f) {
+        Moments m;
+        for (int k = 0; k < 2000; ++k) m.add(mean_over(random_points(rng), n, f));
+        return m.variance();
+    };
+    CHECK(squared(256, cubic) < squared(16, cubic) / 100);
+    CHECK(squared(256, disc) < squared(16, disc) / 40);
+}
