@@ -20,7 +20,7 @@ struct PixelIndex {
 
 struct Options : CommonOptions {
     uint64_t spp = 0;  // 0: the scene's, unless seconds are given
-    SamplerKind sampler = SamplerKind::halton;
+    SamplerKind sampler = SamplerKind::sobol;
     Technique technique{Direction::bsdf, LightMode::mis, real(0.25)};
     Estimator direct = Estimator::stochastic;
     Polygons polygons = Polygons::area;

@@ -1,5 +1,6 @@
 // labs/bench_paths.h  4  how long a path takes, beside the textbook's tracer, for bench
 #pragma once
+#include "app/options.h"
 #include "labs/lab.h"
 #include "labs/textbook.h"
 #include "path/pathtracer.h"
@@ -16,7 +17,7 @@ struct PathRunner {
     uint64_t rays = 0;                                    // of all rounds
 };
 
-inline constexpr uint64_t path_samples = 4;  // a pixel and round
+inline constexpr uint64_t path_samples = 16;  // a pixel and round
 
 inline PathRunner textbook_runner(const Scene& scene) {
     auto trace = [&scene, room = textbook::room_of(scene)](int y, uint64_t seed) mutable {
@@ -56,7 +57,8 @@ inline void race_paths(Report& report, const std::string& name, int rounds) {
     std::vector<PathRunner> all = {
         textbook_runner(scene),
         path_runner("ours, the same technique", scene, nee, SamplerKind::independent),
-        path_runner("ours, the default", scene, {}, Pattern{}.kind)};
+        path_runner("ours, MIS and Halton points", scene, {}, SamplerKind::halton),
+        path_runner("ours, the default", scene, Options{}.technique, Options{}.sampler)};
     for (int round = 0; round < rounds; ++round) {
         for (PathRunner& r : all) r.seconds.push_back(0);
         for (int y = 0; y < scene.size.height; ++y)

@@ -105,7 +105,7 @@ inline void recommend(Report& report, const std::vector<Costs>& all) {
     report.say(text(
         "Which one, then?  With independent numbers choose regression, which is %.2f times as "
         "efficient as stochastic in the direct light of penumbra, %.2f and %.2f times in whole "
-        "renders of penumbra and coursework.  With Halton points, the default, and light from "
+        "renders of penumbra and coursework.  With Halton points and light from "
         "several bounces stay with stochastic: Halton has already taken the noise that U would "
         "take, and what is left is %.2f–%.2f for penumbra, coursework and cornell, less where U is "
         "dear: %.2f for lanterns, whose 32 lights cost every first hit as many closed forms.  "

@@ -25,7 +25,7 @@ inline constexpr uint32_t dimension(int vertex, Draw what) {
 
 // What the samplers of all paths share.
 struct Pattern {
-    SamplerKind kind = SamplerKind::halton;
+    SamplerKind kind = SamplerKind::sobol;
     uint64_t seed = 0;
     uint32_t halves = 1;             // 2: odd samples have a randomisation of their own
     uint32_t columns = 1, rows = 1;  // stratified: of a grid

@@ -68,11 +68,11 @@ TEST_CASE("words of choices mean what they say") {
     for (const auto& [word, view] : views) CHECK(parse({"--view", word}).view == view);
 }
 
-TEST_CASE("without options: Halton samples, importance-sampled, MIS") {
+TEST_CASE("without options: Sobol' samples, importance-sampled, MIS") {
     const Options o = parse({});
     CHECK(o.spp == 0);  // the scene's
     CHECK(o.seconds == 0);
-    CHECK(o.sampler == SamplerKind::halton);
+    CHECK(o.sampler == SamplerKind::sobol);
     CHECK(o.technique.direction == Direction::bsdf);
     CHECK(o.technique.light == LightMode::mis);
     CHECK(o.technique.roulette == real(0.25));
