@@ -18,8 +18,8 @@ public:
 
     // A vertex, as an account of Li.
     void operator()(const Segment& s, const Step& e) const {
-        if (!e.x) return;
-        const Vertex& x = *e.x;
+        if (!e.met) return;
+        const Vertex& x = e.x;
         std::fprintf(out_, "vertex %d: shape %u%s at distance %.17g\n", s.k, x.hit.id,
                      origin(x.hit.id).c_str(), double(x.hit.t));
         print("  p", x.at.p);

@@ -37,18 +37,20 @@ struct Vertex {
     vec3 wo;         // to where the ray came from, local
 };
 
-PART std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
-    const auto hit = scene.bvh.closest(ray);
-    if (!hit) return {};
-    std::optional<Vertex> met;
-    Vertex& x = met.emplace();
-    x.hit = *hit;
-    x.at = scene.surface(ray, *hit);
-    x.material = &scene.material(*hit);
+PART Vertex vertex(const Scene& scene, const Ray& ray, const Hit& hit) {
+    Vertex x;
+    x.hit = hit;
+    x.at = scene.surface(ray, hit);
+    x.material = &scene.material(hit);
     x.cos_o = -dot(x.at.n, ray.d);
     x.local = frame(x.cos_o > 0 ? x.at.n : -x.at.n);
     x.wo = x.local.to_local(-ray.d);
-    return met;
+    return x;
+}
+
+inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
+    const auto hit = scene.bvh.closest(ray);
+    return hit ? std::optional(vertex(scene, ray, *hit)) : std::nullopt;
 }
 
 // ---- Light by aiming at it ----------------------------------------------------------------------
@@ -100,7 +102,8 @@ struct Segment {
 
 // What happened where it stopped.  The path's radiance grows by beta (Le weight + direct.L).
 struct Step {
-    std::optional<Vertex> x;    // nothing: the ray left the scene
+    bool met = false;  // whether the ray stopped: at x
+    Vertex x = {};
     rgb Le = {};                // emitted towards wo
     real weight = 0;            // of Le, beside light samples
     DirectLight direct = {};    // reflected towards wo
@@ -125,13 +128,15 @@ inline real weight_of_emission(const Scene& scene, LightMode mode, const Segment
 //   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi,
 // the integral by one direction, the light that reaches x directly by one light sample as well.
 PART Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
-    Step e{meet(scene, s.ray)};
+    Step e;
     auto ends = [&e](bool here, const char* why) {
         if (here) e.end = why;
         return here;
     };
-    if (ends(!e.x, "the ray leaves the scene")) return e;
-    const Vertex& x = *e.x;
+    const auto hit = scene.bvh.closest(s.ray);
+    if (ends(!hit, "the ray leaves the scene")) return e;
+    e.met = true;
+    const Vertex& x = e.x = vertex(scene, s.ray, *hit);
     const Material& m = *x.material;
     if (m.emits()) {
         e.Le = emitted(m, x.cos_o);

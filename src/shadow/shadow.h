@@ -59,8 +59,8 @@ inline rgb unshadowed(const Scene& scene, const Material& m, const Surface& x, c
 
 // Of a path's first vertex.  Light samples must be all that brings direct light: LightMode::nee.
 inline Shadowed shadowed(const Scene& scene, const Step& e) {
-    if (!e.x || scene.depth == 0 || e.x->cos_o == 0 || e.x->material->is_delta()) return {};
-    const Vertex& x = *e.x;
+    if (!e.met || scene.depth == 0 || e.x.cos_o == 0 || e.x.material->is_delta()) return {};
+    const Vertex& x = e.x;
     const DirectLight& d = e.direct;
     Shadowed s;
     s.U = unshadowed(scene, *x.material, x.at, x.local);

@@ -13,7 +13,7 @@ TEST_CASE("the statistics are JSON: quoted, complete, null where nothing is know
     for (const char* line :
          {R"("scene": "a \"b\"\\\u000a")", R"("mean_radiance": [2, 2, 4])",
           R"("variance_of_mean": [1e-300, null, null])", R"("rays": 4000000)",
-          R"("mrays_per_second": 2,)", R"("samples_per_pixel": 64)", R"("sampler": "halton")",
+          R"("mrays_per_second": 2,)", R"("samples_per_pixel": 64)", R"("sampler": "sobol")",
           R"("depth": 5)", R"("roulette": 0.250000)", R"("non_finite": 0)"}) {
         INFO(text);
         INFO(std::string(line));

@@ -23,9 +23,9 @@ struct Receiver {
     Step sample(uint64_t i, uint64_t seed = 1) const {
         const Pattern pattern{SamplerKind::independent, seed};
         Step e;
-        e.x = Vertex{{}, x, &material, 1, local, {0, 0, 1}};
+        e.met = true, e.x = Vertex{{}, x, &material, 1, local, {0, 0, 1}};
         e.direct =
-            direct_light(scene, {Direction::bsdf, LightMode::nee}, *e.x, Sampler(pattern, 0, i), 0);
+            direct_light(scene, {Direction::bsdf, LightMode::nee}, e.x, Sampler(pattern, 0, i), 0);
         return e;
     }
     Shadowed shadowed_sample(uint64_t i, uint64_t seed = 1) const {

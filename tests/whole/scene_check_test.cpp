@@ -130,9 +130,9 @@ TEST_CASE("the house of atelier is closed, and only the fronts of its faces are 
         for (int x = 0; x < scene.size.width; ++x)
             radiance(scene, {Direction::bsdf, LightMode::none}, {SamplerKind::independent, 5}, x, y,
                      0, [&](const Segment&, const Step& e) {
-                         if (!e.x)
+                         if (!e.met)
                              ++escapes;
-                         else if (e.x->cos_o < 0)
+                         else if (e.x.cos_o < 0)
                              ++backs;
                      });
     if (!single) {
