@@ -396,14 +396,17 @@ TEST_CASE("a tree takes up 90 bytes a triangle at most in double, 54 in float") 
     }
 }
 
-TEST_CASE("what is 1e45 away is hit by rays almost along an axis, whose 1/d is beyond float") {
+TEST_CASE("triangles of 1e-30 are hit by rays so nearly along an axis that 1/d is beyond float") {
     if (sizeof(real) == 4) return;
-    const real far = real(1e15) * real(1e15) * real(1e15), slope = 1 / far;
+    const real distance = real(1e10), size = real(1e-30);
     Shapes scene;
-    for (int i = 0; i < 20; ++i)
-        scene.push_back({{far, real(i), -1}, {far, real(i + 1), -1}, {far, real(i), 1}});
+    for (int i = 0; i < 20; ++i) {
+        const real y = real(i) * size;
+        scene.push_back({{0, y, -size}, {0, y + size, -size}, {0, y, size}});
+    }
     Comparison c{scene};
-    for (int i = 0; i < 20; ++i) c.judge({{0, 0, 0}, {1, (real(i) + real(0.3)) * slope, 0}});
+    for (int i = 0; i < 20; ++i)
+        c.judge({{-distance, 0, 0}, {1, (real(i) + real(0.3)) * size / distance, 0}});
     CHECK(c.different == 0);
     CHECK(c.hits == 20);
 }
