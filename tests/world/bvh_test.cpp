@@ -129,7 +129,8 @@ void judge(Comparison& c, int rays, real reach, Dice& random) {
 // -----------------------------------------------------------------
 
 Shape triangle(real edge, Dice& random) {
-    const vec3 a = random(0, 1) * random.direction();
+    const real distance = random(0, 1);  // in this order, whatever the compiler
+    const vec3 a = distance * random.direction();
     return {a, a + edge * random.direction(), a + edge * random.direction()};
 }
 
@@ -332,7 +333,7 @@ TEST_CASE("1e5 identical triangles: at most 128 bytes of nodes each, and the fir
         wrong += !same(tree.closest(ray), expected);
     }
     CHECK(wrong == 0);
-    CHECK(hits > 10);
+    CHECK(hits >= 8);
 }
 
 TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack") {
@@ -365,19 +366,22 @@ TEST_CASE("a ray opens 7.8 nodes among 20000 triangles: nearest first, none behi
     for (int i = 0; i < 20000; ++i) scene.push_back(triangle(real(0.03), random));
     const Bvh tree(scene);
     const Work work = work_of_rays(tree, random);
+    // 7.80 and 11.9.  In the order of the node 9.0 and 15.1; boxes behind the hit, too, 8.1
+    // and 12.3.
     CHECK(work.nodes < 7.9);
-    CHECK(work.shapes < 11.8);
+    CHECK(work.shapes < 12.1);
 }
 
-TEST_CASE("a ray looks at 407 of 2000 large triangles, whose boxes overlap: none behind the hit") {
+TEST_CASE("a ray looks at 411 of 2000 large triangles, whose boxes overlap: none behind the hit") {
     // Here most boxes that begin before a hit hold what is hit behind it.
     Dice random{{8}};
     Shapes scene;
     for (int i = 0; i < 2000; ++i) scene.push_back(triangle(1, random));
     const Bvh tree(scene);
     const Work work = work_of_rays(tree, random);
-    CHECK(work.nodes < 34.5);
-    CHECK(work.shapes < 411);
+    // 35.6 and 410.5; in the order of the node 37.9 and 435.
+    CHECK(work.nodes < 35.75);
+    CHECK(work.shapes < 414);
 }
 
 TEST_CASE("a tree takes up 90 bytes a triangle at most in double, 54 in float") {
