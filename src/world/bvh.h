@@ -1,10 +1,12 @@
-// world/bvh.h  3  where rays stop: a bounding volume hierarchy of triangles and spheres
+// world/bvh.h  5  where rays stop: a bounding volume hierarchy of triangles and spheres
 #pragma once
-#include "world/bvh_build.h"
+#include "base/words.h"
+#include "world/bvh_collapse.h"
+#include "world/bvh_leaf.h"
+#include "world/bvh_node.h"
 
-// A tree of boxes, four children a node: a binary tree, collapsed (Dammertz et al. 2008).  Its
-// answers equal those of a loop over all shapes, bit for bit; of shapes hit at the same distance
-// the one with the smallest index wins.
+// A tree of boxes, up to eight children a node.  Its answers equal those of a loop over all shapes,
+// bit for bit; of shapes hit at the same distance the one with the smallest index wins.
 class Bvh {
 public:
     Bvh() = default;
@@ -12,39 +14,51 @@ public:
     // Time O(n log n).  Shape i keeps the index i in every answer.
     explicit Bvh(const std::vector<Shape>& shapes) {
         if (shapes.empty()) return;
+        demand_room(shapes.size() < bvh::Child::most_shapes);
         const bvh::BinaryTree tree = bvh::build(shapes);
-        collapse(tree.branches, 0);
-        for (const bvh::Item& item : tree.items) {
-            shapes_.push_back(shapes[item.id]);
-            ids_.push_back(item.id);
-        }
+        const bvh::Collapse collapse(tree, bvh::Leaves::largest);
+        leaves_.reserve(shapes.size());
+        add(shapes, tree, collapse, 0);
+        leaves_.finish();
+        nodes_.shrink_to_fit();
     }
 
     // The nearest hit, or nothing.
     std::optional<Hit> closest(const Ray& ray) const {
         Hit best{ray.tmax};
-        walk(
-            ray, best.t,
-            [&](const Shape& s, uint32_t id, const Shear& k) {
-                auto hit = intersect(s, ray, k, best.t);
-                if (hit && (hit->t < best.t || id < best.id)) {
-                    best = *hit;
-                    best.id = id;
-                }
-                return false;
-            },
-            [] {});
+        nearest_first(
+            ray, best, [] {}, [](bvh::Child) {});
         return best.id == UINT32_MAX ? std::nullopt : std::optional(best);
     }
 
-    // Whether anything is hit.
+    // Whether anything is hit.  The order of nodes does not matter: the first hit ends it all.
     bool occluded(const Ray& ray) const {
-        return walk(
-            ray, ray.tmax,
-            [&](const Shape& s, uint32_t, const Shear& k) {
-                return intersect(s, ray, k, ray.tmax).has_value();
-            },
-            [] {});
+        if (nodes_.empty()) return false;
+        const bvh::Probe probe(ray);
+        const Shear k = shear(ray.d);
+        const float end = float(ray.tmax);
+        std::array<AnyOrder, bvh::BinaryTree::depth> stack;
+        AnyOrder* top = stack.data();
+        const bvh::Node* node = nodes_.data();
+        bvh::Lanes rest = node->meet(probe, end).met();
+        for (;;) {
+            while (!rest.any()) {
+                if (top == stack.data()) return false;
+                --top;
+                node = top->node;
+                rest = top->rest;
+            }
+            const bvh::Child child = node->child[rest.first()];
+            rest.drop_first();
+            if (child.is_leaf()) {
+                if (leaves_.any(child, ray, k)) return true;
+                continue;
+            }
+            *top = {node, rest};
+            top += rest.any();
+            node = at(child);
+            rest = node->meet(probe, end).met();
+        }
     }
 
     // What closest(ray) costs.
@@ -53,166 +67,100 @@ public:
     };
     Work work(const Ray& ray) const {
         Work work;
-        real tmax = ray.tmax;
-        walk(
-            ray, tmax,
-            [&](const Shape& s, uint32_t, const Shear& k) {
-                ++work.shapes;
-                if (auto hit = intersect(s, ray, k, tmax)) tmax = hit->t;
-                return false;
-            },
-            [&] { ++work.nodes; });
+        Hit best{ray.tmax};
+        nearest_first(
+            ray, best, [&] { ++work.nodes; },
+            [&](bvh::Child leaf) { work.shapes += int(leaf.count()); });
         return work;
     }
 
-    size_t bytes() const {
-        return nodes_.size() * sizeof(Node) + shapes_.size() * (sizeof(Shape) + sizeof(uint32_t));
-    }
+    size_t bytes() const { return nodes_.capacity() * sizeof(bvh::Node) + leaves_.bytes(); }
 
 private:
-    static constexpr int width = 4;  // children a node
-    static constexpr int stack_size = bvh::BinaryTree::depth * (width - 1) + width;
+    std::vector<bvh::Node> nodes_;
+    bvh::Leaves leaves_;
 
-    // A number a child, in vector registers: GCC and Clang do arithmetic with such types, but
-    // neither makes them of a loop as tangled as walk's by itself.
-    typedef float Floats __attribute__((vector_size(width * sizeof(float))));
-    typedef real Reals __attribute__((vector_size(width * sizeof(real))));
+    // ---- Traversal ------------------------------------------------------------------------------
 
-    // Boxes are float, rounded outwards: half the memory; the answers come from the shapes.  An
-    // absent child has the empty box, which no ray meets.
-    struct Node {
-        Floats plane[2][3];     // [lower, upper][axis][child]
-        uint32_t first[width];  // child: index of a node or, in a leaf, of its first shape
-        uint32_t count[width];  // shapes in a leaf; 0: a node
+    // A node with children yet to be looked at: those left, or all and the key of the next.  There
+    // is never more than one of a level.
+    struct AnyOrder {
+        const bvh::Node* node;
+        bvh::Lanes rest;
+    };
+    struct Ordered {
+        bvh::Keys keys;
+        const bvh::Node* node;
+        int32_t key;
     };
 
-    std::vector<Node> nodes_;
-    std::vector<Shape> shapes_;  // in the order of the leaves
-    std::vector<uint32_t> ids_;  // their indices
+    const bvh::Node* at(bvh::Child c) const {
+        const auto* first = reinterpret_cast<const std::byte*>(nodes_.data());
+        return reinterpret_cast<const bvh::Node*>(first + c.bits);
+    }
 
-    // ---- Traversal ----------------------------------------------------------------------------
-
-    // A ray as boxes see it.
-    struct Probe {
-        vec3 o, inverse;  // 1 / d; of -0: -inf
-        size_t down[3];   // whether it meets a box's upper plane first
-        explicit Probe(const Ray& ray)
-            : o(ray.o),
-              inverse{1 / ray.d.x, 1 / ray.d.y, 1 / ray.d.z},
-              down{std::signbit(ray.d.x), std::signbit(ray.d.y), std::signbit(ray.d.z)} {}
-    };
-
-    // Children yet to be looked at, the nearest on top.
-    struct Stack {
-        struct Entry {
-            real t;  // where the ray enters the child's box
-            uint32_t first, count;
-        };
-        std::array<Entry, stack_size> entries;
-        int top = 0;
-        // Among those from bottom on, in order.
-        void insert(int bottom, const Entry& e) {
-            int j = top++;
-            for (; j > bottom && entries[size_t(j - 1)].t < e.t; --j)
-                entries[size_t(j)] = entries[size_t(j - 1)];
-            entries[size_t(j)] = e;
-        }
-    };
-
-    // Calls visit(shape, id, shear) for the shapes in every leaf whose box the ray meets at
-    // t <= tmax, nearest box first, and open() for every node on the way; tmax may shrink
-    // meanwhile.  Stops when visit returns true.
-    template <class Visit, class Open>
-    bool walk(const Ray& ray, const real& tmax, Visit visit, Open open) const {
-        // A ray that is not a number meets nothing.
-        if (nodes_.empty() || !std::isfinite(dot(ray.o, ray.d))) return false;
+    // Makes best the nearest hit of it and of all shapes.  Of a node's children the nearest comes
+    // first; none that begins behind best is opened.
+    template <class Open, class OpenLeaf>
+    [[gnu::always_inline]] void nearest_first(const Ray& ray, Hit& best, Open open,
+                                              OpenLeaf open_leaf) const {
+        if (nodes_.empty()) return;
+        const bvh::Probe probe(ray);
         const Shear k = shear(ray.d);
-        const Probe probe(ray);
-        Stack stack;
-        stack.insert(0, {0, 0, 0});
-        while (stack.top > 0) {
-            const auto entry = stack.entries[size_t(--stack.top)];
-            if (entry.t > tmax) continue;
-            if (entry.count == 0) {
-                open();
-                push_children(stack, nodes_[entry.first], probe, tmax);
+        float end = float(best.t);
+        std::array<Ordered, bvh::BinaryTree::depth> stack;
+        Ordered* top = stack.data();
+        const bvh::Node* node = nodes_.data();
+        open();
+        bvh::Keys keys = node->meet(probe, end).keys();
+        int32_t key = bvh::least(keys);
+        for (;;) {
+            while (key > bvh::Crossing::last_key(end)) {
+                if (top == stack.data()) return;
+                --top;
+                node = top->node;
+                keys = top->keys;
+                key = top->key;
+            }
+            const bvh::Child child = node->child[key & 7];
+            key = bvh::next(keys, key);
+            if (child.is_leaf()) {
+                open_leaf(child);
+                leaves_.nearest(child, ray, k, best);
+                end = float(best.t);
                 continue;
             }
-            for (uint32_t i = entry.first; i < entry.first + entry.count; ++i)
-                if (visit(shapes_[i], ids_[i], k)) return true;
+            *top = {keys, node, key};
+            top += key <= bvh::Crossing::last_key(end);
+            node = at(child);
+            open();
+            keys = node->meet(probe, end).keys();
+            key = bvh::least(keys);
         }
-        return false;
     }
 
-    // Slabs.  A ray within a slab's plane and parallel to it makes 0 * inf = NaN: the comparisons
-    // are written so that NaN leaves the interval as it is.
-    static void push_children(Stack& stack, const Node& node, const Probe& ray, real tmax) {
-        auto widen = [](const Floats& x, Reals& y) { y = Reals{x[0], x[1], x[2], x[3]}; };
-        Reals t0{}, t1 = t0 + tmax, n, f;
-        for (int a = 0; a < 3; ++a) {
-            const real o = ray.o.*axis[a], inverse = ray.inverse.*axis[a];
-            widen(node.plane[ray.down[a]][a], n);
-            widen(node.plane[1 - ray.down[a]][a], f);
-            n = (n - o) * inverse;
-            f = (f - o) * inverse;
-            t0 = n > t0 ? n : t0;
-            t1 = f < t1 ? f : t1;
-        }
-        // Each bound is 3 roundings from the truth (Ize 2013, JCGT 2(2)), and what a shape makes of
-        // a ray from afar about as many: widen by 16 on both sides.
-        t0 *= 1 - 16 * ulp;
-        t1 *= 1 + 16 * ulp;
-        const auto met = t0 <= t1;
-        const int bottom = stack.top;
-        for (int i = 0; i < width; ++i)
-            if (met[i]) stack.insert(bottom, {t0[i], node.first[i], node.count[i]});
+    // ---- Construction ---------------------------------------------------------------------------
+
+    static void demand_room(bool enough) {
+        if (!enough) throw UserError("so many shapes are too many for one scene");
     }
 
-    // ---- Construction -------------------------------------------------------------------------
-
-    // Adds the wide node of a branch and all below it; returns its index.
-    uint32_t collapse(const std::vector<bvh::Branch>& tree, uint32_t root) {
-        const std::vector<uint32_t> children = opened(tree, root);
-        const uint32_t index = uint32_t(nodes_.size());
+    // Adds the node that a branch becomes and all below it.
+    bvh::Child add(const std::vector<Shape>& shapes, const bvh::BinaryTree& tree,
+                   const bvh::Collapse& collapse, uint32_t root) {
+        const size_t index = nodes_.size(), offset = index * sizeof(bvh::Node);
+        demand_room(offset <= UINT32_MAX);
         nodes_.emplace_back();
-        for (uint32_t i = 0; i < width; ++i) {
-            const bvh::Branch branch =
-                i < children.size() ? tree[children[i]] : bvh::Branch{{}, 0, 0};
-            Node& node = nodes_[index];
-            for (int a = 0; a < 3; ++a) {
-                node.plane[0][a][i] = outwards(branch.box.lo.*axis[a], -HUGE_VALF);
-                node.plane[1][a][i] = outwards(branch.box.hi.*axis[a], HUGE_VALF);
-            }
-            node.first[i] = branch.first;
-            node.count[i] = branch.count;
+        const bvh::Children children = collapse.children(root);
+        for (size_t i = 0; i < children.count; ++i) {
+            const bvh::Branch& b = tree.branches[children.branch[i]];
+            nodes_[index].set(i, b.box);
+            if (collapse.is_leaf(children.branch[i]))
+                nodes_[index].child[i] = leaves_.add(shapes, {&tree.ids[b.first], b.count});
         }
-        for (uint32_t i = 0; i < children.size(); ++i) {
-            if (tree[children[i]].leaf()) continue;
-            const uint32_t child = collapse(tree, children[i]);
-            nodes_[index].first[i] = child;
-            nodes_[index].count[i] = 0;
-        }
-        return index;
-    }
-
-    // The children of a branch's wide node: opens the one with the largest box until there are
-    // four.
-    static std::vector<uint32_t> opened(const std::vector<bvh::Branch>& tree, uint32_t root) {
-        std::vector<uint32_t> children{root};
-        while (children.size() < width) {
-            auto area = [&](uint32_t i) { return tree[i].leaf() ? -1 : tree[i].box.half_area(); };
-            auto largest = std::max_element(children.begin(), children.end(),
-                                            [&](auto i, auto j) { return area(i) < area(j); });
-            const bvh::Branch& branch = tree[*largest];
-            if (branch.leaf()) break;
-            *largest = branch.left;
-            children.push_back(branch.right);
-        }
-        return children;
-    }
-
-    // Rounding to the nearest float is off by half an ulp at most; one ulp outwards covers it.
-    static float outwards(real x, float direction) {
-        return std::isinf(x) ? float(x) : std::nextafter(float(x), direction);
+        for (size_t i = 0; i < children.count; ++i)
+            if (!collapse.is_leaf(children.branch[i]))
+                nodes_[index].child[i] = add(shapes, tree, collapse, children.branch[i]);
+        return {uint32_t(offset)};
     }
 };

@@ -1,37 +1,62 @@
-// world/bvh_build.h  2  from shapes to a binary tree of boxes
+// world/bvh_build.h  3  from shapes to a binary tree of boxes
 #pragma once
 #include <array>
-#include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "world/shapes.h"
+#include "world/bvh_node.h"
 
 namespace bvh {
 
-// What the tree divides: a shape's bounds and its index.
+// ---- Boxes in float -----------------------------------------------------------------------------
+
+// The numbers -lo.x -lo.y -lo.z . hi.x hi.y hi.z . of a box: one maximum unites two.
+using Bounds = Floats;
+inline Bounds no_bounds() { return all(-HUGE_VALF); }
+
+// To the nearest float and outwards: by two ulp at least, one of which the origins of rays take.
+inline Bounds outwards(const Box& b) {
+    const Floats x{float(-b.lo.x), float(-b.lo.y), float(-b.lo.z), 0,
+                   float(b.hi.x),  float(b.hi.y),  float(b.hi.z),  0};
+    const Floats further = x + (larger(x, -x) * 0x1p-22f + std::numeric_limits<float>::min());
+    return larger(smaller(further, all(far_away)), all(-far_away));
+}
+
+// The same without the lanes left.
+using Planes = std::array<float, 6>;
+inline Planes planes(const Bounds& b) { return {b[0], b[1], b[2], b[4], b[5], b[6]}; }
+
+inline double half_area(const Planes& p) {
+    const double x = double(p[3]) + p[0], y = double(p[4]) + p[1], z = double(p[5]) + p[2];
+    return x * y + y * z + z * x;
+}
+
+// What the tree divides: a shape's bounds and, in the two lanes left, both halves of its index.
 struct Item {
-    Box box;
-    uint32_t id;
-    vec3 centroid() const { return (box.lo + box.hi) * real(0.5); }
+    Bounds box;
+
+    static Item of(const Shape& s, uint32_t id) {
+        Item item{outwards(bounds(s))};
+        item.box[3] = float(id & 0xffff), item.box[7] = float(id >> 16);
+        return item;
+    }
+    uint32_t id() const { return uint32_t(box[3]) | uint32_t(box[7]) << 16; }
+    // The centroid, twice.
+    float place(size_t a) const { return box[4 + a] - box[a]; }
+    Bounds places() const {
+        const float x = place(0), y = place(1), z = place(2);
+        return Bounds{-x, -y, -z, 0, x, y, z, 0};
+    }
 };
 
-// A node spans count items from first on; a leaf has no children (the root, at 0, is nobody's
-// child).
-struct Branch {
-    Box box;
-    uint32_t first, count;
-    uint32_t left = 0, right = 0;
-    bool leaf() const { return left == 0; }
-};
-
-struct BinaryTree {
-    std::vector<Branch> branches;
-    std::vector<Item> items;  // in the order of the leaves
-
-    static constexpr int leaf_size = 4;           // shapes a leaf holds at most
-    static constexpr int sah_depth = 32;          // below, split at the median: 32 levels more
-    static constexpr int depth = sah_depth + 32;  // at most
+// A set of items: their bounds and those of their places.
+struct Extent {
+    Bounds box = no_bounds(), places = no_bounds();
+    void add(const Item& item) {
+        box = larger(box, item.box);
+        places = larger(places, item.places());
+    }
 };
 
 // ---- Planes that could split a node -------------------------------------------------------------
@@ -39,108 +64,199 @@ struct BinaryTree {
 // The surface area heuristic, binned (Wald 2007, "On fast construction of SAH-based BVHs"): a ray
 // that meets a node meets a child's box with a probability in proportion to its area, and then all
 // its shapes.
-struct Bin {
-    Box box;
-    uint32_t count = 0;
-    void add(const Bin& b) {
-        box.add(b.box);
-        count += b.count;
+inline constexpr size_t most_bins = 32;  // an axis
+
+// Where bins lie: as many as pay for so many items.
+struct Grid {
+    size_t bins;
+    float low[3], scale[3];  // 0: too short an axis
+
+    Grid(const Bounds& places, size_t items) : bins(std::min(most_bins, 4 + items / 16)) {
+        for (size_t a = 0; a < 3; ++a) {
+            const float extent = places[4 + a] + places[a];
+            low[a] = -places[a];
+            scale[a] = extent > 0x1p-100f ? below_one_float * float(bins) / extent : 0;
+        }
     }
-    real cost() const { return box.half_area() * real(count); }
+    size_t bin(const Item& item, size_t a) const {
+        return size_t(int((item.place(a) - low[a]) * scale[a]));
+    }
+    static constexpr float below_one_float = 0.99999f;  // the last place falls into the last bin
 };
-inline constexpr size_t bin_count = 16;  // an axis
-using Bins = std::array<Bin, bin_count>;
+
+struct Bins {
+    Bounds box[3][most_bins];
+    uint32_t items[3][most_bins];
+
+    Bins(std::span<const Item> all_items, const Grid& grid) {
+        for (size_t a = 0; a < 3; ++a) {
+            std::fill_n(box[a], grid.bins, no_bounds());
+            std::fill_n(items[a], grid.bins, 0);
+        }
+        for (const Item& item : all_items)
+            for (size_t a = 0; a < 3; ++a) {
+                const size_t k = grid.bin(item, a);
+                box[a][k] = larger(box[a][k], item.box);
+                ++items[a][k];
+            }
+    }
+};
 
 // Items in bins below `bin` go left.  No axis: no plane has items on both sides.
 struct Plane {
-    real cost = infinity;
-    int axis = -1;
-    size_t bin = 0;
+    double cost = HUGE_VAL;
+    size_t axis = 3, bin = 0;
 };
 
-inline size_t bin_of(const Item& item, const Box& centroids, int a) {
-    const real lo = centroids.lo.*axis[a], extent = centroids.hi.*axis[a] - lo;
-    const real x = (item.centroid().*axis[a] - lo) / extent;
-    return std::min(size_t(x * bin_count), bin_count - 1);
-}
-
-inline Bins fill_bins(std::span<const Item> items, const Box& centroids, int a) {
-    Bins bins;
-    for (const Item& item : items) bins[bin_of(item, centroids, a)].add({item.box, 1});
-    return bins;
-}
-
-// The sum of both sides' costs at each plane between bins; the least wins.
-inline Plane sweep(const Bins& bins, int a) {
-    Bins above;  // bins k and up
-    Bin sum;
-    for (size_t k = bin_count - 1; k > 0; --k) {
-        sum.add(bins[k]);
-        above[k] = sum;
+// Takes the plane between bins of an axis with the least sum of both sides' costs, if it is better.
+inline void sweep(const Bins& bins, size_t a, size_t count, Plane& best) {
+    double above[most_bins];  // the cost of bins k and up
+    Bounds box = no_bounds();
+    uint32_t n = 0;
+    for (size_t k = count - 1; k > 0; --k) {
+        box = larger(box, bins.box[a][k]);
+        n += bins.items[a][k];
+        above[k] = n > 0 ? half_area(planes(box)) * n : HUGE_VAL;
     }
+    box = no_bounds();
+    n = 0;
+    for (size_t k = 1; k < count; ++k) {
+        box = larger(box, bins.box[a][k - 1]);
+        n += bins.items[a][k - 1];
+        if (n == 0) continue;
+        const double cost = half_area(planes(box)) * n + above[k];
+        if (cost < best.cost) best = {cost, a, k};
+    }
+}
+
+inline Plane best_plane(std::span<const Item> items, const Grid& grid) {
+    const Bins bins(items, grid);
     Plane best;
-    sum = {};
-    for (size_t k = 1; k < bin_count; ++k) {
-        sum.add(bins[k - 1]);
-        const real cost = sum.cost() + above[k].cost();
-        if (sum.count > 0 && above[k].count > 0 && cost < best.cost) best = {cost, a, k};
-    }
+    for (size_t a = 0; a < 3; ++a)
+        if (grid.scale[a] > 0) sweep(bins, a, grid.bins, best);
     return best;
 }
 
 // ---- The tree -----------------------------------------------------------------------------------
 
-// Orders the items of a node so that its first n go left, and returns n; 0: keep it a leaf.
-inline uint32_t split(std::span<Item> items, const Box& box, int depth) {
-    Box centroids;
-    for (const Item& item : items) centroids.add(item.centroid());
-    const vec3 extent = centroids.hi - centroids.lo;
-    Plane best;
-    for (int a = 0; a < 3; ++a) {
-        if (!(extent.*axis[a] > 0)) continue;
-        const Plane plane = sweep(fill_bins(items, centroids, a), a);
-        if (plane.cost < best.cost) best = plane;
-    }
-    // Visiting a node costs about as much as a shape, so a split must save one.
-    const bool may_be_leaf = items.size() <= BinaryTree::leaf_size;
-    if (may_be_leaf && !(best.cost < box.half_area() * real(items.size() - 1))) return 0;
-    if (best.axis >= 0 && depth < BinaryTree::sah_depth) {
-        auto goes_left = [&](const Item& i) { return bin_of(i, centroids, best.axis) < best.bin; };
-        return uint32_t(std::partition(items.begin(), items.end(), goes_left) - items.begin());
-    }
-    // All centroids alike, or the tree too deep: halves.
-    const int a =
-        extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
-    const size_t half = items.size() / 2;
-    std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(half), items.end(),
-                     [&](const Item& i, const Item& j) {
-                         return i.centroid().*axis[a] < j.centroid().*axis[a];
-                     });
-    return uint32_t(half);
-}
+// A branch spans count shapes from first on; a leaf has no children (the root, at 0, is nobody's
+// child), an inner branch two, one after the other.
+struct Branch {
+    Planes box;
+    uint32_t first, count, left = 0;
+    bool leaf() const { return left == 0; }
+};
 
-// Adds the node of these items and all below it; returns its index.
-inline uint32_t grow(BinaryTree& tree, uint32_t first, uint32_t count, int depth) {
-    const std::span<Item> items(&tree.items[first], count);
-    Branch branch{{}, first, count};
-    for (const Item& item : items) branch.box.add(item.box);
-    const uint32_t index = uint32_t(tree.branches.size());
-    tree.branches.push_back(branch);
-    const uint32_t left = split(items, branch.box, depth);
-    if (left == 0) return index;
-    uint32_t child = grow(tree, first, left, depth + 1);
-    tree.branches[index].left = child;
-    child = grow(tree, first + left, count - left, depth + 1);
-    tree.branches[index].right = child;
-    return index;
-}
+struct BinaryTree {
+    std::vector<Branch> branches;
+    std::vector<uint32_t> ids;  // of the shapes, in the order of the leaves
+    bool mixed;                 // the root has both triangles and spheres
+
+    static constexpr uint32_t leaf_size = 4;      // shapes a leaf holds at most
+    static constexpr int sah_depth = 32;          // below, split at the median: 32 levels more
+    static constexpr int depth = sah_depth + 32;  // at most
+};
+
+class Builder {
+public:
+    explicit Builder(const std::vector<Shape>& shapes)
+        : from_(std::make_unique_for_overwrite<Item[]>(shapes.size())),
+          to_(std::make_unique_for_overwrite<Item[]>(shapes.size())) {
+        // Triangles first.
+        Extent extent[2];
+        uint32_t n[2] = {};
+        for (bool spheres : {false, true})
+            for (uint32_t i = 0; i < shapes.size(); ++i) {
+                if (shapes[i].is_sphere() != spheres) continue;
+                const Item item = Item::of(shapes[i], i);
+                extent[spheres].add(item);
+                from_[n[0] + n[1]] = item;
+                ++n[spheres];
+            }
+        tree_.ids.resize(shapes.size());
+        tree_.branches.reserve(2 * shapes.size());
+        tree_.mixed = n[0] > 0 && n[1] > 0;
+        add(larger(extent[0].box, extent[1].box), 0, n[0] + n[1]);
+        if (tree_.mixed) {
+            add_children(0, extent, n[0]);
+            for (uint32_t i : {0, 1}) grow(1 + i, extent[i].places, 1, false);
+        } else {
+            grow(0, extent[n[0] == 0].places, 0, false);
+        }
+    }
+    BinaryTree tree() && { return std::move(tree_); }
+
+private:
+    BinaryTree tree_;
+    std::unique_ptr<Item[]> from_, to_;  // dividing a branch moves its items from one to the other
+
+    void add(const Bounds& b, uint32_t first, uint32_t count) {
+        tree_.branches.push_back({planes(b), first, count});
+    }
+    void add_children(uint32_t branch, const Extent* halves, uint32_t left) {
+        Branch& parent = tree_.branches[branch];
+        parent.left = uint32_t(tree_.branches.size());
+        const uint32_t first = parent.first, right = parent.count - left;
+        add(halves[0].box, first, left);
+        add(halves[1].box, first + left, right);
+    }
+
+    // Adds all below a branch, whose items are at the other place if they moved oddly often.
+    void grow(uint32_t index, const Bounds& places, int depth, bool moved) {
+        const Branch& branch = tree_.branches[index];
+        const uint32_t first = branch.first, count = branch.count;
+        const std::span<Item> items(&(moved ? to_ : from_)[first], count);
+        const Grid grid(places, count);
+        const Plane plane =
+            depth < BinaryTree::sah_depth && count > 1 ? best_plane(items, grid) : Plane{};
+        // A leaf costs a ray about as much as a node and one of its shapes.
+        const double area = half_area(branch.box);
+        if (count <= BinaryTree::leaf_size && !(plane.cost < area * (count - 1))) {
+            for (uint32_t i = 0; i < count; ++i) tree_.ids[first + i] = items[i].id();
+            return;
+        }
+        Extent halves[2];
+        uint32_t left;
+        if (plane.axis < 3) {
+            left = divide(items, &(moved ? from_ : to_)[first], grid, plane, halves);
+            moved = !moved;
+        } else {
+            left = halve(items, places, halves);
+        }
+        add_children(index, halves, left);
+        const uint32_t child = tree_.branches[index].left;
+        grow(child, halves[0].places, depth + 1, moved);
+        grow(child + 1, halves[1].places, depth + 1, moved);
+    }
+
+    // Moves the items, those on the left of the plane to the front; returns how many.
+    static uint32_t divide(std::span<const Item> items, Item* to, const Grid& grid,
+                           const Plane& plane, Extent* halves) {
+        uint32_t left = 0, right = uint32_t(items.size());
+        for (const Item& item : items) {
+            const bool goes_right = grid.bin(item, plane.axis) >= plane.bin;
+            right -= goes_right;
+            to[goes_right ? right : left] = item;
+            left += !goes_right;
+            halves[goes_right].add(item);
+        }
+        return left;
+    }
+
+    // For places all alike, or a tree too deep.
+    static uint32_t halve(std::span<Item> items, const Bounds& places, Extent* halves) {
+        auto extent = [&](size_t a) { return places[4 + a] + places[a]; };
+        const size_t longer = extent(0) > extent(1) ? 0 : 1;
+        const size_t a = extent(longer) > extent(2) ? longer : 2;
+        const size_t half = items.size() / 2;
+        std::nth_element(items.begin(), items.begin() + ptrdiff_t(half), items.end(),
+                         [&](const Item& i, const Item& j) { return i.place(a) < j.place(a); });
+        for (size_t i = 0; i < items.size(); ++i) halves[i >= half].add(items[i]);
+        return uint32_t(half);
+    }
+};
 
 // Of at least one shape.  Time O(n log n).
-inline BinaryTree build(const std::vector<Shape>& shapes) {
-    BinaryTree tree;
-    for (const Shape& s : shapes) tree.items.push_back({bounds(s), uint32_t(tree.items.size())});
-    grow(tree, 0, uint32_t(shapes.size()), 0);
-    return tree;
-}
+inline BinaryTree build(const std::vector<Shape>& shapes) { return Builder(shapes).tree(); }
 
 }  // namespace bvh

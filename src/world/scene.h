@@ -1,4 +1,4 @@
-// world/scene.h  4  what the world contains
+// world/scene.h  6  what the world contains
 #pragma once
 #include <string>
 #include <vector>

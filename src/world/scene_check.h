@@ -1,4 +1,4 @@
-// world/scene_check.h  5  what a scene's author may not see: covered lights, points on surfaces,
+// world/scene_check.h  7  what a scene's author may not see: covered lights, points on surfaces,
 // rounding
 #pragma once
 #include <map>

@@ -1,4 +1,4 @@
-// world/scene_file.h  6  reading scenes/NAME.scene
+// world/scene_file.h  8  reading scenes/NAME.scene
 #pragma once
 #include <map>
 #include <sstream>

@@ -1,5 +1,6 @@
 // world/shapes.h  1  rays, boxes, triangles, spheres, and where the next ray starts
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -83,20 +84,18 @@ inline Box bounds(const Shape& s) {
 // The shear that turns a ray into the z axis: kz is the longest component of d (Woop, Benthin,
 // Wald 2013, JCGT 2(1)).
 struct Shear {
-    real vec3::*kx = nullptr;
-    real vec3::*ky = nullptr;
-    real vec3::*kz = nullptr;
-    real sx = 0, sy = 0, sz = 0;
+    size_t x, y, z;  // axes of the sheared space, as indices of axis
+    real sx, sy, sz;
 };
 
 inline Shear shear(vec3 d) {
-    vec3 m{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
-    int k = m.x > m.y ? (m.x > m.z ? 0 : 2) : (m.y > m.z ? 1 : 2);
-    Shear s{axis[(k + 1) % 3], axis[(k + 2) % 3], axis[k]};
-    s.sz = 1 / d.*s.kz;
-    s.sx = d.*s.kx * s.sz;
-    s.sy = d.*s.ky * s.sz;
-    return s;
+    const vec3 m{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
+    const size_t longer = m.x > m.y ? 0 : 1;
+    const size_t z = std::max(m.x, m.y) > m.z ? longer : 2;
+    constexpr size_t after[] = {1, 2, 0, 1};
+    const size_t x = after[z], y = after[z + 1];
+    const real sz = 1 / d.*axis[z];
+    return {x, y, z, d.*axis[x] * sz, d.*axis[y] * sz, sz};
 }
 
 // Watertight: u, v, w are the edge functions of the sheared triangle.  Vertices that triangles
@@ -106,10 +105,11 @@ inline Shear shear(vec3 d) {
 // only while nothing else is fused.
 inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, const Shear& k,
                                              real tmax) {
-    real ox = ray.o.*k.kx, oy = ray.o.*k.ky, oz = ray.o.*k.kz;
-    real az = s.a.*k.kz - oz, ax = (s.a.*k.kx - ox) - k.sx * az, ay = (s.a.*k.ky - oy) - k.sy * az;
-    real bz = s.b.*k.kz - oz, bx = (s.b.*k.kx - ox) - k.sx * bz, by = (s.b.*k.ky - oy) - k.sy * bz;
-    real cz = s.c.*k.kz - oz, cx = (s.c.*k.kx - ox) - k.sx * cz, cy = (s.c.*k.ky - oy) - k.sy * cz;
+    const auto x = axis[k.x], y = axis[k.y], z = axis[k.z];
+    real ox = ray.o.*x, oy = ray.o.*y, oz = ray.o.*z;
+    real az = s.a.*z - oz, ax = (s.a.*x - ox) - k.sx * az, ay = (s.a.*y - oy) - k.sy * az;
+    real bz = s.b.*z - oz, bx = (s.b.*x - ox) - k.sx * bz, by = (s.b.*y - oy) - k.sy * bz;
+    real cz = s.c.*z - oz, cx = (s.c.*x - ox) - k.sx * cz, cy = (s.c.*y - oy) - k.sy * cz;
     real u = difference_of_products(cx, by, cy, bx);
     real v = difference_of_products(ax, cy, ay, cx);
     real w = difference_of_products(bx, ay, by, ax);

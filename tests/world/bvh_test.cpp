@@ -65,9 +65,8 @@ vec3 corner(const Shape& s, Dice& random) {
 
 // A plane of the box of a shape as the tree stores it.
 real box_plane(const Shape& s, size_t a, Dice& random) {
-    const Box box = bounds(s);
-    return random.below(2) ? real(std::nextafter(float(box.lo.*axis[a]), -HUGE_VALF))
-                           : real(std::nextafter(float(box.hi.*axis[a]), HUGE_VALF));
+    const bvh::Planes p = bvh::planes(bvh::outwards(bounds(s)));
+    return random.below(2) ? real(-p[a]) : real(p[3 + a]);
 }
 
 // A ray that has to do with the shape; distances are in units of `reach`.
@@ -100,7 +99,9 @@ Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
         target = s.a + random(0, real(0.5)) * e + random(0, real(0.5)) * f;
         d = unit(random(-1, 1) * e + random(-1, 1) * f);
     } else if (aim == near_axis) {
-        for (auto a : axis) d.*a *= random.decades(-8, 0);
+        // In double also where the inverse is beyond float.
+        const real least = sizeof(real) == 8 && random.below(3) == 0 ? -44 : -8;
+        for (auto a : axis) d.*a *= random.decades(least, 0);
         d.*axis[random.below(3)] += random.sign();
         d = unit(d);
     } else if (aim == across_axis || aim == along_axis) {  // zeros of both signs, box planes
@@ -128,7 +129,8 @@ void judge(Comparison& c, int rays, real reach, Dice& random) {
 // -----------------------------------------------------------------
 
 Shape triangle(real edge, Dice& random) {
-    const vec3 a = random(0, 1) * random.direction();
+    const real distance = random(0, 1);  // in this order, whatever the compiler
+    const vec3 a = distance * random.direction();
     return {a, a + edge * random.direction(), a + edge * random.direction()};
 }
 
@@ -318,7 +320,7 @@ TEST_CASE("1e5 identical triangles: at most 128 bytes of nodes each, and the fir
     const Shapes scene(100000, t);
     const Bvh tree(scene);
     CHECK(tree.bytes() < scene.size() * (sizeof(Shape) + 128));
-    CHECK(tree.bytes() >= scene.size() * sizeof(Shape));
+    CHECK(tree.bytes() >= scene.size() * 3 * sizeof(vec3));
     int wrong = 0, hits = 0;
     for (int i = 0; i < 60; ++i) {
         Ray ray = aimed(t, i % aims, 1, random);
@@ -331,7 +333,7 @@ TEST_CASE("1e5 identical triangles: at most 128 bytes of nodes each, and the fir
         wrong += !same(tree.closest(ray), expected);
     }
     CHECK(wrong == 0);
-    CHECK(hits > 10);
+    CHECK(hits >= 8);
 }
 
 TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack") {
@@ -358,27 +360,78 @@ TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack
     CHECK(c.hits > c.rays / 4);
 }
 
-TEST_CASE("a ray opens 15.3 nodes among 20000 triangles: nearest first, none behind the hit") {
+TEST_CASE("a ray opens 7.8 nodes among 20000 triangles: nearest first, none behind the hit") {
     Dice random{{8}};
     Shapes scene;
     for (int i = 0; i < 20000; ++i) scene.push_back(triangle(real(0.03), random));
     const Bvh tree(scene);
     const Work work = work_of_rays(tree, random);
-    // Farthest first opens 20.4; boxes behind the hit, too, 15.8; planes off by one bin 15.9.
-    CHECK(work.nodes < 15.5);
-    CHECK(work.shapes < 1);
+    // 7.80 and 11.9.  In the order of the node 9.0 and 15.1; boxes behind the hit, too, 8.1
+    // and 12.3.
+    CHECK(work.nodes < 7.9);
+    CHECK(work.shapes < 12.1);
 }
 
-TEST_CASE("a ray looks at 184 of 2000 large triangles, whose boxes overlap: none behind the hit") {
+TEST_CASE("a ray looks at 411 of 2000 large triangles, whose boxes overlap: none behind the hit") {
     // Here most boxes that begin before a hit hold what is hit behind it.
     Dice random{{8}};
     Shapes scene;
     for (int i = 0; i < 2000; ++i) scene.push_back(triangle(1, random));
     const Bvh tree(scene);
     const Work work = work_of_rays(tree, random);
-    // 120.7 and 183.8; if a hit behind the nearest one counts for it, 144.2 and 262.
-    CHECK(work.nodes < 124);
-    CHECK(work.shapes < 190);
+    // 35.6 and 410.5; in the order of the node 37.9 and 435.
+    CHECK(work.nodes < 35.75);
+    CHECK(work.shapes < 414);
+}
+
+TEST_CASE("a tree takes up 90 bytes a triangle at most in double, 54 in float") {
+    // 9 numbers, an index, and 14 bytes of nodes, which are as large in both.
+    const size_t most = 9 * sizeof(real) + 4 + 14;
+    Dice random{{10}};
+    Shapes small, large;
+    for (int i = 0; i < 20000; ++i) {
+        small.push_back(triangle(real(0.03), random));
+        large.push_back(triangle(1, random));
+    }
+    for (const Shapes& scene : {ball(6), grid(8), small, large}) {
+        CAPTURE(scene.size());
+        CHECK(Bvh(scene).bytes() < scene.size() * most);
+        CHECK(Bvh(scene).bytes() > scene.size() * (9 * sizeof(real) + 4));
+    }
+}
+
+TEST_CASE("triangles of 1e-30 are hit by rays so nearly along an axis that 1/d is beyond float") {
+    if (sizeof(real) == 4) return;
+    const real distance = real(1e10), size = real(1e-30);
+    Shapes scene;
+    for (int i = 0; i < 20; ++i) {
+        const real y = real(i) * size;
+        scene.push_back({{0, y, -size}, {0, y + size, -size}, {0, y, size}});
+    }
+    Comparison c{scene};
+    for (int i = 0; i < 20; ++i)
+        c.judge({{-distance, 0, 0}, {1, (real(i) + real(0.3)) * size / distance, 0}});
+    CHECK(c.different == 0);
+    CHECK(c.hits == 20);
+}
+
+TEST_CASE("rays from infinitely far, as floats see it, meet what there is and nothing else") {
+    // Absent children's boxes are empty, but such a ray meets even those.
+    Dice random{{11}};
+    const real far = sizeof(real) == 8 ? real(1e300) : real(1e38);
+    for (int n : {1, 3, 9, 20}) {
+        const Shapes scene = soup(n, n % 3, random);
+        Comparison c{scene};
+        for (int octant = 0; octant < 8; ++octant)
+            for (real size : {real(1), far}) {
+                const vec3 o =
+                    size * vec3{octant & 1 ? real(1) : real(-1), octant & 2 ? real(1) : real(-1),
+                                octant & 4 ? real(1) : real(-1)};
+                for (int i = 0; i < 50; ++i) c.judge({o, random.direction()});
+                c.judge({o, unit({-o.x / size, -o.y / size, -o.z / size})});
+            }
+        CHECK(c.different == 0);
+    }
 }
 
 TEST_CASE("an empty tree is missed, and a ray that is not a number misses every tree") {
@@ -433,7 +486,7 @@ TEST_CASE("below a depth of 32 nodes are halved, on spines to the left and to th
             const bvh::Branch& b = tree.branches[i];
             deepest = std::max(deepest, depth[i]);
             if (b.leaf()) continue;
-            depth[b.left] = depth[b.right] = depth[i] + 1;
+            depth[b.left] = depth[b.left + 1] = depth[i] + 1;
             if (depth[i] < bvh::BinaryTree::sah_depth) continue;
             ++halved;
             uneven += tree.branches[b.left].count != b.count / 2;
