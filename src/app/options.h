@@ -96,7 +96,7 @@ inline const OptionTable<Options> option_table = {
         "(unbiased); the same, the maps scaled to what paths find (unbiased); all but path need "
         "diffuse surfaces alone and cut spheres into triangles",
         [](auto& o) -> auto& { return o.indirect; }),
-    {"--mesh", "H", "longest edge of the triangles of maps", "a 32nd of the scene's diagonal",
+    {"--mesh", "H", "longest edge of the triangles of maps", "a 16th of the scene's diagonal",
      [](Options& o, Text v) { o.mesh = option::positive(v); }},
     {"--particles", "N", "walks that fill the maps, a multiple of 16",
      "one for every 16 samples of the image; of --time a 16th",

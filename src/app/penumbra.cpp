@@ -36,7 +36,9 @@ ParsedScene load(Options& o) {
         throw UserError("--pixel: outside the image");
     if (o.view == View::variance && target_of(o, scene).samples == 1)
         throw UserError("--view variance: needs --spp 2 or more");
-    if (has_maps(o)) o.mesh = edge_length(o.scene, scene, o.mesh, Particles::bytes());
+    // Coarser than build/radiosity's: after a bounce its triangles are not seen, noise is (by
+    // `make indirect`).
+    if (has_maps(o)) o.mesh = edge_length(o.scene, scene, o.mesh, 16, Particles::bytes());
     return parsed;
 }
 

@@ -170,7 +170,7 @@ int radiosity(const std::vector<std::string>& words) {
     ParsedScene parsed = read_scene(o.scene);
     parsed.scene.size = o.size.value_or(parsed.scene.size);
     parsed.scene.exposure = o.exposure.value_or(parsed.scene.exposure);
-    const double H = edge_length(o.scene, parsed.scene, o.mesh, bytes_of(o));
+    const double H = edge_length(o.scene, parsed.scene, o.mesh, 32, bytes_of(o));
     const std::vector<std::string> outputs = outputs_of(o, "-radiosity", parsed.files);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);

@@ -5,13 +5,13 @@
 
 // ---- The scene ----------------------------------------------------------------------------------
 
-// How long edges of the triangles are, 1/32 of the scene's diagonal unless --mesh says it; throws
+// How long edges of the triangles are, a part of the scene's diagonal unless --mesh says it; throws
 // UserError if the scene, read from `name`, is none for illumination maps, or its mesh none for
 // this machine.
 inline double edge_length(const std::string& name, const Scene& scene, std::optional<double> mesh,
-                          const Bytes& bytes) {
+                          int parts, const Bytes& bytes) {
     check_diffuse(scene, name);
-    const double H = mesh.value_or(double(diagonal(scene)) / 32);
+    const double H = mesh.value_or(double(diagonal(scene)) / parts);
     try {
         check_fits(scene, H, bytes, bytes_of_machine());
     } catch (const UserError& e) {
@@ -92,8 +92,11 @@ inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& patt
                        const WalksTarget& target, const CommonOptions& o) {
     Particles particles(scene, mesh, pattern);
     Walks walks(target, o.quiet, particles);
-    const Passes passes{
-        {Particles::of_each(target.particles), target.seconds}, pattern.period(), o.threads};
+    // Maps of fewer are nothing but noise.
+    constexpr uint64_t least = 256;
+    const Passes passes{{Particles::of_each(target.particles), target.seconds},
+                        least * pattern.period(),
+                        o.threads};
     if (!scene.lights.empty())
         render(
             walks, passes, [&](int batch, uint64_t n) { particles.add(batch, n); }, walks);

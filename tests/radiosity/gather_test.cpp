@@ -170,7 +170,7 @@ TEST_CASE("control sees what whole paths see in a room with lamps") {
     const IlluminationMap good = by_particles(s, mesh, 20000);
     constexpr int replicates = 64;
     constexpr uint64_t paths = 1024;
-    const Technique roulette{Direction::bsdf, LightMode::mis, 2};
+    const Technique roulette{Direction::bsdf, LightMode::mis, real(0.5)};
     std::vector<rgb> whole;
     for (int r = 0; r < replicates; ++r) {
         const Pattern p = EndlessNumbers::independent(hash(seed_here(), 99 + uint64_t(r)));
