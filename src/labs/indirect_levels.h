@@ -9,6 +9,8 @@ using illumination::Room;
 
 // ---- Ways ---------------------------------------------------------------------------------------
 
+constexpr real roulette = real(0.25);  // of whole paths, by default
+
 // Probabilities to go on: the same at every vertex, or at the first, after which a path is whole;
 // or the throughput over a threshold.
 template <int percent>
@@ -17,7 +19,8 @@ real always(const Segment&) {
 }
 template <int percent>
 real at_first(const Segment& s) {
-    return s.k == 1 ? real(percent) / 100 : 1;
+    const bool played = !(max_of(s.beta) > roulette);  // for the same number
+    return s.k == 1 && !played ? real(percent) / 100 : 1;
 }
 template <int percent>
 real over(const Segment& s) {
@@ -27,16 +30,16 @@ real over(const Segment& s) {
 struct Way {
     const char* name;
     GoOn go_on;              // nullptr: whole paths
-    real roulette = 0;       // of those
+    real ends = 0;           // Russian roulette of those, and of the rest after the first vertex
     bool scattered = false;  // as often as the scene says, not without end
 };
-inline constexpr Way ways[] = {{"whole paths, `--roulette 0.25`", nullptr, real(0.25), true},
+inline constexpr Way ways[] = {{"whole paths, `--roulette 0.25`", nullptr, roulette, true},
                                {"whole paths, `--roulette 0`", nullptr, 0, true},
                                {"whole paths, `--roulette 1`", nullptr, 1, true},
                                {"map", never},
-                               {"first vertex, q = 0.3", at_first<30>, real(0.25), true},
-                               {"first vertex, q = 0.5", at_first<50>, real(0.25), true},
-                               {"first vertex, q = 0.7", at_first<70>, real(0.25), true},
+                               {"first vertex, q = 0.3", at_first<30>, roulette, true},
+                               {"first vertex, q = 0.5", at_first<50>, roulette, true},
+                               {"first vertex, q = 0.7", at_first<70>, roulette, true},
                                {"every vertex, q = 0.5", always<50>},
                                {"every vertex, q = 0.7", always<70>},
                                {"every vertex, q = throughput / 2", over<200>},
@@ -104,7 +107,7 @@ public:
         if (!way.scattered) scene_.depth = std::numeric_limits<int>::max();
     }
     Size size() const { return scene_.size; }
-    Technique technique() const { return {Direction::bsdf, LightMode::mis, way_.roulette}; }
+    Technique technique() const { return {Direction::bsdf, LightMode::mis, way_.ends}; }
 
     rgb operator()(const Pattern& pattern, const Pattern& rest, int x, int y, uint64_t n) const {
         const Gather g{scene_, technique(), known_, way_.go_on};

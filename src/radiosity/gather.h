@@ -3,14 +3,13 @@
 // At a diffuse surface y the reflected radiance R(y) is known, but for noise and the mesh:
 // R_map(y) = rho E(y) / pi.  Where a path has scattered, one of three things follows.
 //
-// map         R_map(y) ends the path (final gathering; Reichert 1992).  Biased by the maps' error,
+// map:        R_map(y) ends the path (final gathering; Reichert 1992).  Biased by the maps' error,
 //             in the mean over what one bounce sees of it.
-// control     R_map(y) + [xi < q] / q (R^(y) - R_map(y)).  R^ is the path's own estimate, by a
-// light
-//             sample and one more bounce, where the same happens: Russian roulette whose end
+// control:    R_map(y) + [xi < q] / q (R^(y) - R_map(y)).  R^ is the path's own estimate, by a
+//             light sample and one more bounce, where the same happens: Russian roulette whose end
 //             returns what is known, and not 0 (Szecsi, Szirmay-Kalos, Kelemen 2003, Variance
 //             reduction for Russian roulette).  Unbiased, whatever the maps hold.
-// regression  A slope times R_map in both places.  Unbiased, for the slope is that of other paths.
+// regression: a slope times R_map in both places.  Unbiased, for the slope is that of other paths.
 //
 // Light is scattered without end, as in the maps: the scene's depth must be too large to be met.
 #pragma once
