@@ -91,15 +91,13 @@ inline const OptionTable<Options> option_table = {
         [](auto& o) -> auto& { return o.polygons; }),
     one_of<Options>(
         "--indirect", "path|map|control|regression",
-        "light from surface to surface, without end: by paths; by illumination maps after one "
-        "bounce (biased a little); by paths that Russian roulette ends on the maps' value "
-        "(unbiased); the same, the maps scaled to what paths find (unbiased); all but path need "
-        "diffuse surfaces alone and cut spheres into triangles",
+        "light between surfaces: by paths; by illumination maps after one bounce (biased a "
+        "little); by paths that end on maps (unbiased), or on multiples of them; maps need diffuse "
+        "surfaces alone, and scatter without end",
         [](auto& o) -> auto& { return o.indirect; }),
-    {"--mesh", "H", "longest edge of the triangles of maps", "a 16th of the scene's diagonal",
+    {"--mesh", "H", "longest edge of the maps' triangles", "diagonal / 16",
      [](Options& o, Text v) { o.mesh = option::positive(v); }},
-    {"--particles", "N", "walks that fill the maps, a multiple of 16",
-     "one for every 16 samples of the image; of --time a 16th",
+    {"--particles", "N", "walks that fill the maps", "samples / 16; or time / 16",
      [](Options& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
     {"--depth", "N", "scatterings a path may have, 0: emission only", "the scene's",
      [](Options& o, Text v) { o.depth = int(parse_count(v, 0, option::most_scatterings)); }},
