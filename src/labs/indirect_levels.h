@@ -47,7 +47,7 @@ inline constexpr Way ways[] = {{"whole paths, `--roulette 0.25`", nullptr, roule
                                {"**every vertex, q = throughput / (2/3)**", by_throughput},
                                {"every vertex, q = throughput / 0.4", over<40>},
                                {"every vertex, q = throughput / 0.25", over<25>}};
-inline constexpr size_t whole = 0, map = 3;
+inline constexpr size_t whole = 0, map = 3, control = 11;
 
 // ---- Measurement --------------------------------------------------------------------------------
 

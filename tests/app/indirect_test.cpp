@@ -23,7 +23,8 @@ quad -.5 1.49 -.5  1 0 0  0 0 1  lamp
 
 constexpr Indirect with_maps[] = {Indirect::map, Indirect::control, Indirect::regression};
 constexpr SamplerKind kinds[] = {SamplerKind::independent, SamplerKind::stratified,
-                                 SamplerKind::halton, SamplerKind::halton_naive};
+                                 SamplerKind::halton, SamplerKind::sobol,
+                                 SamplerKind::halton_naive};
 
 Options options(Indirect indirect, uint64_t seed = 1) {
     Options o;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 constexpr SamplerKind kinds[] = {SamplerKind::independent, SamplerKind::stratified,
-                                 SamplerKind::halton};
+                                 SamplerKind::halton, SamplerKind::sobol};
 
 Scene endless(Scene s) {
     s.depth = std::numeric_limits<int>::max();
