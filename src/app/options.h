@@ -14,6 +14,9 @@ enum class Polygons {
     angle  // uniform over the solid angle that it subtends
 };
 
+// How light is found that diffuse surfaces send to each other; see radiosity/gather.h.
+enum class Indirect { path, map, control, regression };
+
 struct PixelIndex {
     int x = 0, y = 0;
 };
@@ -24,8 +27,11 @@ struct Options : CommonOptions {
     Technique technique{Direction::bsdf, LightMode::mis, real(0.25)};
     Estimator direct = Estimator::stochastic;
     Polygons polygons = Polygons::area;
-    std::optional<int> depth;  // default: the scene's
-    bool halves = false;       // see Pattern
+    Indirect indirect = Indirect::path;
+    std::optional<double> mesh;  // longest edge of the maps' triangles; default: the scene's
+    uint64_t particles = 0;      // that fill the maps; 0: by the samples or the time
+    std::optional<int> depth;    // default: the scene's
+    bool halves = false;         // see Pattern
     View view = View::radiance;
     Weighting film = Weighting::mc;    // of a pixel's samples
     std::optional<PixelIndex> replay;  // instead of rendering, print the path of
@@ -83,6 +89,16 @@ inline const OptionTable<Options> option_table = {
         "--polygons", "area|angle",
         "points of rectangular lights: uniform over the area, or over the solid angle",
         [](auto& o) -> auto& { return o.polygons; }),
+    one_of<Options>(
+        "--indirect", "path|map|control|regression",
+        "light between surfaces: by paths; by illumination maps after one bounce (biased a "
+        "little); by paths that end on maps (unbiased), or on multiples of them; maps need diffuse "
+        "surfaces alone, and scatter without end",
+        [](auto& o) -> auto& { return o.indirect; }),
+    {"--mesh", "H", "longest edge of the maps' triangles", "diagonal / 16",
+     [](Options& o, Text v) { o.mesh = option::positive(v); }},
+    {"--particles", "N", "walks that fill the maps", "samples / 16; or time / 16",
+     [](Options& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
     {"--depth", "N", "scatterings a path may have, 0: emission only", "the scene's",
      [](Options& o, Text v) { o.depth = int(parse_count(v, 0, option::most_scatterings)); }},
     {"--roulette", "T",
@@ -117,12 +133,34 @@ inline const OptionTable<Options> option_table = {
 
 // ---- Words to options ---------------------------------------------------------------------------
 
+// Whether maps serve what is asked for.
+inline void check_maps(const Options& o) {
+    const std::string indirect = as_written(option_table, o, "--indirect");
+    if (o.indirect == Indirect::path) {
+        for (const Text name : {"--mesh", "--particles"})
+            if (is_given(o, name))
+                throw UserError(std::string(name) +
+                                ": needs --indirect map, control or regression");
+        return;
+    }
+    if (o.direct != Estimator::stochastic)
+        throw UserError(indirect + ": needs --direct stochastic");
+    if (o.film != Weighting::mc) throw UserError(indirect + ": needs --film mc");
+    if (o.view != View::radiance && o.view != View::variance)
+        throw UserError(indirect + ": needs --view radiance or variance");
+    for (const Text name : {"--depth", "--roulette"})
+        if (is_given(o, name))
+            throw UserError(indirect + ": has no " + std::string(name) +
+                            ": light is scattered without end");
+}
+
 // What single options do not tell.
 inline void check_together(const Options& o) {
     if (o.sample && !o.replay) throw UserError("--sample: goes with --pixel X,Y");
     if (o.direct != Estimator::stochastic && o.technique.light != LightMode::nee)
         throw UserError(as_written(option_table, o, "--direct") + ": needs --light nee");
     need_scene(o);
+    check_maps(o);
     if (o.film == Weighting::mc) return;
     const std::string film = as_written(option_table, o, "--film");
     if (o.sampler != SamplerKind::independent)

@@ -1,4 +1,4 @@
-// app/penumbra.cpp  6  the program: options in, images and statistics out
+// app/penumbra.cpp  7  the program: options in, images and statistics out
 #include "app/help.h"
 #include "app/outputs.h"
 #include "app/replay.h"
@@ -21,7 +21,7 @@ Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 )";
 
 // The scene that the user asks for; throws UserError if it is not to be had.
-ParsedScene load(const Options& o) {
+ParsedScene load(Options& o) {
     ParsedScene parsed = read_scene(o.scene);
     Scene& scene = parsed.scene;
     scene.size = o.size.value_or(scene.size);
@@ -36,7 +36,25 @@ ParsedScene load(const Options& o) {
         throw UserError("--pixel: outside the image");
     if (o.view == View::variance && target_of(o, scene).samples == 1)
         throw UserError("--view variance: needs --spp 2 or more");
+    // Coarser than build/radiosity's: after a bounce its triangles are not seen, noise is (by
+    // `make indirect`).
+    if (has_maps(o)) o.mesh = edge_length(o.scene, scene, o.mesh, 16, Particles::bytes());
     return parsed;
+}
+
+// What is rendered, and the maps on which its paths end, if they do.
+struct Stage {
+    Scene scene;
+    std::optional<Maps> maps;
+};
+
+Stage stage_of(const Options& o, const Scene& scene) {
+    if (!has_maps(o)) return {scene, {}};
+    auto [facets, warnings] = endless(scene, *o.mesh);
+    for (const std::string& w : warnings) tell(o, o.scene + ":" + w);
+    Stage stage{std::move(facets), {}};
+    stage.maps = maps_of(o, stage.scene);
+    return stage;
 }
 
 // Writes all that was asked for, and says so.
@@ -45,6 +63,7 @@ void write(const Options& o, const Scene& scene, const Rendered& rendered,
     const auto& [image, variance, run] = rendered;
     write_images(outputs, o.view == View::variance ? variance : image, scene.exposure);
     if (!o.stats.empty()) write_file(o.stats, encode_stats(o, scene.size, scene.depth, run));
+    if (run.maps) tell(o, summary(*run.maps));
     tell(o, summary(o.scene, run));
     tell_written(o, outputs);
     if (o.view == View::radiance && !scene.lights.empty() &&
@@ -54,19 +73,20 @@ void write(const Options& o, const Scene& scene, const Rendered& rendered,
 
 // The program; returns its exit status, throws UserError and SystemError.
 int penumbra(const std::vector<std::string>& words) {
-    const Options o = parse_options(words);
+    Options o = parse_options(words);
     if (o.help) {
         std::printf("%s%s%s", before_options, option_lines(option_table).c_str(), after_options);
         return 0;
     }
-    const auto [scene, warnings, inputs] = load(o);
-    const Job job = job_of(o, scene);
+    const auto [read, warnings, inputs] = load(o);
     std::vector<std::string> outputs;
     if (!o.replay) {
         outputs = outputs_of(o, "", inputs);
         catch_interrupt();
     }
     for (const std::string& w : warnings) tell(o, o.scene + ": warning: " + w);
+    const auto [scene, maps] = stage_of(o, read);
+    const Job job = maps ? job_of(o, scene, *maps) : job_of(o, scene);
     if (o.replay) {
         replay(job);
         return 0;

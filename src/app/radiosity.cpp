@@ -3,9 +3,8 @@
 #include "app/mesh_view.h"
 #include "app/outputs.h"
 #include "app/radiosity_options.h"
-#include "app/report.h"
+#include "app/walks.h"
 #include "base/program.h"
-#include "radiosity/particles.h"
 #include "radiosity/shooting.h"
 
 namespace {
@@ -35,18 +34,6 @@ struct Solution {
     bool empty() const { return shots == 0 && particles == 0; }
 };
 
-// "0.982 %"
-std::string percent(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g %%", 100 * x);
-    return text;
-}
-
-// How far it is, for the bar and for the line that stays.
-std::string walked(uint64_t particles, double error) {
-    return std::to_string(particles) + " particles" +
-           (std::isfinite(error) ? ", error " + percent(error) : "");
-}
 std::string shot(uint64_t shots, double unshot) {
     return std::to_string(shots) + " shots, " + percent(unshot) + " unshot";
 }
@@ -69,19 +56,6 @@ struct Stage {
 
 Bytes bytes_of(const RadiosityOptions& o) {
     return is_random(o) ? Particles::bytes() : Shooting::bytes();
-}
-
-// How long edges are; throws UserError if the scene is none for illumination maps, or its mesh none
-// for this machine.
-double edge_length(const RadiosityOptions& o, const Scene& scene) {
-    check_diffuse(scene, o.scene);
-    const double H = o.mesh.value_or(double(diagonal(scene)) / 32);
-    try {
-        check_fits(scene, H, bytes_of(o), bytes_of_machine());
-    } catch (const UserError& e) {
-        throw UserError((o.mesh ? "--mesh: " : "--mesh, by default: ") + std::string(e.what()));
-    }
-    return H;
 }
 
 Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
@@ -112,61 +86,16 @@ Solution shoot(const RadiosityOptions& o, const Stage& stage) {
     return s;
 }
 
-// Particles, as render() fills a film and shows how far it is.
-class Walks {
-public:
-    Walks(const RadiosityOptions& o, Particles& particles)
-        : quiet_(o.quiet), limit_(o.particles), particles_(particles), bar_(o.seconds, o.quiet) {}
-
-    const Size size{1, Particles::batches};
-    uint64_t samples() const { return particles_.samples(); }
-    uint64_t non_finite() const { return particles_.non_finite(); }
-
-    // The error takes time of its own: it is asked for when the particles have doubled.
-    void end_pass(uint64_t n) {
-        particles_.end_pass(n);
-        if (quiet_ || samples() < 2 * of_ || elapsed() < 1) return;
-        of_ = samples();
-        error_ = particles_.error();
-    }
-
-    double elapsed() const { return bar_.elapsed(); }
-
-    // In the meantime it falls like 1 / sqrt(n).
-    void show(double samples) {
-        const double n = samples * Particles::batches;
-        bar_.show(limit_ ? n / double(limit_) : 0,
-                  walked(uint64_t(n), error_ * std::sqrt(double(of_) / samples)));
-    }
-
-private:
-    const bool quiet_;
-    const uint64_t limit_;
-    Particles& particles_;
-    Progress bar_;
-    uint64_t of_ = 0;  // samples at which the error was that
-    double error_ = NAN;
-};
-
-Solution walk_all(const RadiosityOptions& o, const Stage& stage) {
+Solution walk(const RadiosityOptions& o, const Stage& stage) {
     const Pattern pattern = Particles::pattern(o.sampler, o.seed, o.particles);
-    Particles particles(stage.scene, stage.mesh, pattern);
-    Walks walks(o, particles);
-    const uint64_t a_batch = Particles::of_each(o.particles);
-    if (!stage.scene.lights.empty())
-        render(
-            walks, {{a_batch, o.seconds}, pattern.period(), o.threads},
-            [&](int batch, uint64_t n) { particles.add(batch, n); }, walks);
-    Solution s;
-    s.particles = particles.particles(), s.rays = particles.rays();
-    s.map = s.particles > 0 ? particles.map() : IlluminationMap(number_of_sides(stage.mesh));
-    s.error = particles.error();
-    s.seconds = walks.elapsed();
+    Walked w = walk_all(stage.scene, stage.mesh, pattern, {o.particles, o.seconds}, o);
+    Solution s{std::move(w.map)};
+    s.particles = w.particles, s.rays = w.rays, s.error = w.error, s.seconds = w.seconds;
     return s;
 }
 
 Solution solve(const RadiosityOptions& o, const Stage& stage) {
-    Solution s = is_random(o) ? walk_all(o, stage) : shoot(o, stage);
+    Solution s = is_random(o) ? walk(o, stage) : shoot(o, stage);
     s.signal = interrupted;
     return s;
 }
@@ -241,7 +170,7 @@ int radiosity(const std::vector<std::string>& words) {
     ParsedScene parsed = read_scene(o.scene);
     parsed.scene.size = o.size.value_or(parsed.scene.size);
     parsed.scene.exposure = o.exposure.value_or(parsed.scene.exposure);
-    const double H = edge_length(o, parsed.scene);
+    const double H = edge_length(o.scene, parsed.scene, o.mesh, 32, bytes_of(o));
     const std::vector<std::string> outputs = outputs_of(o, "-radiosity", parsed.files);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);

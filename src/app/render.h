@@ -1,19 +1,13 @@
-// app/render.h  4  from options to images: which samples, on which film
+// app/render.h  5  from options to images: which samples, on which film
 #pragma once
 #include <atomic>
 
-#include "app/summary.h"
+#include "app/indirect.h"
 #include "app/views.h"
 #include "shadow/shadow.h"
 #include "voronoi/weighted.h"
 
 // ---- What to render -----------------------------------------------------------------------------
-
-// The user's target, or the scene's number of samples.
-inline Target target_of(const Options& o, const Scene& scene) {
-    if (o.spp > 0 || o.seconds > 0) return {o.spp, o.seconds};
-    return {scene.samples, 0};
-}
 
 // What the user's samples allow to say about their variance.
 inline VarianceFrom variance_from(const Options& o) {
@@ -29,6 +23,8 @@ struct Job {
     const Scene& scene;
     const Pattern pattern;
     const Passes passes;
+    const Maps* maps = nullptr;  // on which paths end
+    const Pattern rest = {};     // of their later numbers
 };
 
 inline Job job_of(const Options& o, const Scene& scene) {
@@ -37,6 +33,16 @@ inline Job job_of(const Options& o, const Scene& scene) {
     // Voronoi weights need all of a pixel's samples at once.
     const uint64_t period = o.film == Weighting::mc ? pattern.period() : target.samples;
     return {o, scene, pattern, {target, period, o.threads}};
+}
+
+// Of an endless scene; what the maps took is taken off the time.
+inline Job job_of(const Options& o, const Scene& scene, const Maps& maps) {
+    Target target = target_of(o, scene);
+    const Pattern pattern = EndlessNumbers::pattern(o.sampler, o.seed, o.halves, target.samples);
+    if (target.seconds > 0) target.seconds = std::max(1e-3, target.seconds - maps.stats.seconds);
+    return {o,       scene,
+            pattern, {target, pattern.period(), o.threads},
+            &maps,   EndlessNumbers::independent(o.seed)};
 }
 
 // ---- Samples ------------------------------------------------------------------------------------
@@ -49,9 +55,18 @@ inline auto counting(uint64_t& rays) {
     return [&rays](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); };
 }
 
+// Sample i of pixel (x, y) by paths that end on maps.
+template <class Account>
+rgb mapped_Li(const Job& job, int x, int y, uint64_t i, Account account) {
+    const Start at = start(job.scene, job.pattern, x, y, i);
+    const uint64_t pixel = uint64_t(y) * uint64_t(job.scene.size.width) + uint64_t(x);
+    const EndlessNumbers u(at.sampler, Sampler(job.rest, pixel, i));
+    return Li(job.maps->gather(job.o, job.scene), at.ray, u, account);
+}
+
 // Unbiased for the pixel's mean, but for the scene's depth.
 inline rgb radiance(const Job& job, const Start& at, uint64_t& rays) {
-    const auto& [o, scene, pattern, passes] = job;
+    const auto& [o, scene, pattern, passes, maps, rest] = job;
     if (is_plain_view(o.view)) return ++rays, view_along(scene, o.view, at.ray);
     if (o.direct == Estimator::control)
         return shadow_Li(scene, o.technique, o.direct, at, counting(rays)).rest;
@@ -119,6 +134,21 @@ inline Rendered render_means(const Job& job) {
     return developed(film, run, value_in(film), variance_in(film, variance_from(o)));
 }
 
+// By paths that end on maps, whose time and rays count, too.
+inline Rendered render_mapped(const Job& job) {
+    Film<MeanPixel> film(job.scene.size);
+    RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
+        film.add_row(y, n, [&](int x, uint64_t i) {
+            return mapped_Li(job, x, y, i, [&rays](const Segment&, const Step& e, const Mapped&) {
+                rays += 1 + (e.direct.light != nullptr);
+            });
+        });
+    });
+    run.maps = job.maps->stats;
+    run.seconds += run.maps->seconds, run.rays += run.maps->rays;
+    return developed(film, run, value_in(film), variance_in(film, variance_from(job.o)));
+}
+
 // Direct light by ratio or regression.
 inline Rendered render_shadows(const Job& job) {
     const Options& o = job.o;
@@ -155,6 +185,7 @@ inline Rendered render_cells(const Job& job) {
 }
 
 inline Rendered rendered(const Job& job) {
+    if (job.maps) return render_mapped(job);
     if (job.o.film != Weighting::mc) return render_cells(job);
     const bool plain = is_plain_view(job.o.view) || !estimates_pixels(job.o.direct);
     return plain ? render_means(job) : render_shadows(job);

@@ -1,4 +1,4 @@
-// app/replay.h  5  one path in words (--pixel)
+// app/replay.h  6  one path in words (--pixel)
 #pragma once
 #include <cstdio>
 
@@ -36,6 +36,15 @@ public:
             print("  cosine", {std::abs(e.scattered.wi.z)});
             print("  pdf", {e.scattered.pdf});
         }
+    }
+
+    // The same where maps may end a path.
+    void operator()(const Segment& s, const Step& e, const Mapped& m) const {
+        (*this)(s, e);
+        if (!e.x || m.q == 1) return;
+        print("  reflected, by the maps", m.R);
+        print("  its weight", {m.weight});
+        print("  probability to go on", {m.q});
     }
 
     // What the estimators of direct light make of the first vertex.
@@ -82,7 +91,7 @@ private:
 
 // Prints one path of the image.
 inline void replay(const Job& job) {
-    const auto& [o, scene, pattern, passes] = job;
+    const auto& [o, scene, pattern, passes, maps, rest] = job;
     const PathLog log(scene, stdout);
     const Start at = start(scene, pattern, o.replay->x, o.replay->y, o.sample.value_or(0));
     log.film(at);
@@ -93,6 +102,12 @@ inline void replay(const Job& job) {
         log(s, e);
         why = e.end;
     };
+    if (maps)
+        return log.end(why, mapped_Li(job, o.replay->x, o.replay->y, o.sample.value_or(0),
+                                      [&](const Segment& s, const Step& e, const Mapped& m) {
+                                          log(s, e, m);
+                                          why = m.goes ? e.end : "the maps";
+                                      }));
     if (o.direct == Estimator::stochastic)
         return log.end(why, Li(scene, o.technique, at.ray, at.sampler, account));
     const ShadowSample sample = shadow_Li(scene, o.technique, o.direct, at, account);

@@ -3,6 +3,15 @@
 #include "app/options.h"
 #include "app/report.h"
 
+// The maps that paths end on; see app/indirect.h.
+struct MapStats {
+    double H = NAN;  // longest edge
+    size_t triangles = 0;
+    uint64_t particles = 0, rays = 0;
+    double error = NAN, seconds = 0;  // see Particles::error
+    rgb slope{1, 1, 1};
+};
+
 // What a run measured.
 struct RunStats {
     uint64_t spp = 0;
@@ -12,6 +21,7 @@ struct RunStats {
     bool interrupted = false;
     std::array<double, 3> mean_radiance{}, variance_of_mean{};  // a channel at a time
     uint64_t redraws = 0, fallbacks = 0;                        // of weights, see Weigher
+    std::optional<MapStats> maps;
 };
 
 // Of passes towards a target.
@@ -41,11 +51,31 @@ inline std::string summary(const std::string& scene, const RunStats& run) {
            (run.interrupted ? " (interrupted)" : "");
 }
 
+// What the maps took, and what they say of themselves.
+inline std::string summary(const MapStats& maps) {
+    char error[40];
+    std::snprintf(error, sizeof error, "%.3g %%", 100 * maps.error);
+    return "maps: " + std::to_string(maps.triangles) + " triangles, " +
+           std::to_string(maps.particles) + " particles, " +
+           (std::isfinite(maps.error) ? "error " + std::string(error) + ", " : "") +
+           fixed(maps.seconds, 2) + " s";
+}
+
 // One object.
 inline std::string encode_stats(const Options& o, Size size, int depth, const RunStats& run) {
     json::Object object = asked_for(o, option_table, size);
     auto count = [](auto n) { return std::to_string(n); };
-    object.add("depth", count(depth));
+    object.add("depth", run.maps ? "null" : count(depth));  // null: without end
+    if (run.maps) {
+        const auto& [H, triangles, particles, rays, error, seconds, slope] = *run.maps;
+        object.add("map_mesh", json::number(H));
+        object.add("map_triangles", count(triangles));
+        object.add("map_particles", count(particles));
+        object.add("map_error", json::number(error));
+        object.add("map_seconds", json::number(seconds));
+        object.add("map_rays", count(rays));
+        object.add("map_slope", json::numbers({double(slope.x), double(slope.y), double(slope.z)}));
+    }
     object.add("film_redraws", count(run.redraws));
     object.add("film_fallbacks", count(run.fallbacks));
     object.add("precision", sizeof(real) == 4 ? "\"float\"" : "\"double\"");

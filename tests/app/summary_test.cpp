@@ -6,7 +6,8 @@
 TEST_CASE("the statistics are JSON: quoted, complete, null where nothing is known") {
     Options o;
     o.scene = "a \"b\"\\\n";
-    RunStats run{64, 2, 4000000, 0, false};
+    RunStats run;
+    run.spp = 64, run.seconds = 2, run.rays = 4000000;
     run.mean_radiance = {2, 2, 4};
     run.variance_of_mean = {1e-300, NAN, INFINITY};
     const std::string text = encode_stats(o, {2, 1}, 5, run);
@@ -19,4 +20,26 @@ TEST_CASE("the statistics are JSON: quoted, complete, null where nothing is know
         INFO(std::string(line));
         CHECK(text.find(line) != text.npos);
     }
+}
+
+TEST_CASE(
+    "the statistics of maps: what they took; depth is none, for light is scattered without end") {
+    RunStats run;
+    CHECK(encode_stats({}, {2, 1}, 5, run).find("\"map_") == std::string::npos);
+    MapStats maps;
+    maps.H = 0.5, maps.triangles = 366, maps.particles = 4096, maps.rays = 9000;
+    maps.error = 0.125, maps.seconds = 0.25, maps.slope = {1, 2, 4};
+    run.maps = maps;
+    const std::string text = encode_stats({}, {2, 1}, 5, run);
+    for (const char* line :
+         {R"("depth": null)", R"("map_mesh": 0.5)", R"("map_triangles": 366)",
+          R"("map_particles": 4096)", R"("map_error": 0.125)", R"("map_seconds": 0.25)",
+          R"("map_rays": 9000)", R"("map_slope": [1, 2, 4])", R"("indirect": "path")"}) {
+        INFO(text);
+        INFO(std::string(line));
+        CHECK(text.find(line) != text.npos);
+    }
+    CHECK(summary(maps) == "maps: 366 triangles, 4096 particles, error 12.5 %, 0.25 s");
+    maps.error = INFINITY;  // noise is all that there is
+    CHECK(summary(maps) == "maps: 366 triangles, 4096 particles, 0.25 s");
 }

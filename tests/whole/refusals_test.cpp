@@ -314,6 +314,27 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
     rows.push_back({"--size 4x4 --pixel 4,0 file.scene", "--pixel: outside the image"});
     rows.push_back({"--pixel 1,2,3 file.scene", "--pixel: '2,3' is not a whole number"});
 
+    // Maps: what they do not go with, and the scenes that they cannot hold.
+    folder.write("glossy.scene",
+                 good + "phong gloss .1 .1 .1  .5 .5 .5  10\nsphere 0 1 0  1  gloss\n");
+    for (const std::string maps : {"--indirect map", "--indirect control", "--indirect regression"})
+        for (const auto& [more, why] : std::initializer_list<std::pair<std::string, std::string>>{
+                 {"--depth 3", "has no --depth: light is scattered without end"},
+                 {"--roulette 0.5", "has no --roulette: light is scattered without end"},
+                 {"--light nee --direct control", "needs --direct stochastic"},
+                 {"--sampler independent --spp 4 --film vor", "needs --film mc"},
+                 {"--view albedo", "needs --view radiance or variance"}}) {
+            rows.push_back({maps + " " + more + " file.scene", maps + ": " + why});
+            rows.push_back({more + " " + maps + " file.scene", maps + ": " + why});
+        }
+    rows.push_back({"--mesh 1 file.scene", "--mesh: needs --indirect map, control or regression"});
+    rows.push_back({"--particles 9 file.scene", "--particles: needs --indirect map, control or"});
+    rows.push_back(
+        {"--indirect map glossy.scene",
+         "glossy.scene:" + std::to_string(std::count(good.begin(), good.end(), '\n') + 2) +
+             ": 'gloss' is glossy: illumination maps hold diffuse surfaces alone"});
+    rows.push_back({"--indirect map --mesh 1e-9 file.scene", "--mesh: edges of 1e-09 would be "});
+
     // Every option: without its value; wrong, though a right one follows or goes before.
     const std::map<std::string, std::pair<std::string, std::string>> right_and_wrong = {
         {"-o", {"a.png", "a.gif"}},
@@ -322,6 +343,9 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
         {"--light", {"mis", "miss"}},
         {"--direct", {"stochastic", "stochastc"}},
         {"--polygons", {"angle", "angel"}},
+        {"--indirect", {"path", "maps"}},
+        {"--mesh", {"1", "0"}},
+        {"--particles", {"1", "0"}},
         {"--depth", {"1", "-1"}},
         {"--roulette", {"1", "2"}},
         {"--seed", {"1", "one"}},

@@ -1,0 +1,94 @@
+// whole/indirect_test.cpp  paths that end on maps meet the closed forms of diffuse triangles
+#include "app/render.h"
+#include "base/moments.h"
+#include "oracle/expect.h"
+#include "whole/known_scenes.h"
+#include "world/scene_file.h"
+
+using namespace closed_forms;
+
+namespace {
+
+// Of scenes that maps hold: what is known if light is scattered without end.  Most have nothing
+// that would scatter it twice.
+struct Endless {
+    std::string name;
+    Scene scene;
+    double truth;
+    const Known* known;
+};
+std::vector<Endless> endless_scenes(const std::vector<Known>& rows) {
+    std::vector<Endless> list;
+    for (const Known& k : rows) {
+        Scene s = parse_scene(k.text, k.name).scene;
+        const bool triangles =
+            std::none_of(s.shapes.begin(), s.shapes.end(), [](const Shape& x) { return x.r > 0; });
+        if (!triangles || s.depth == 0) continue;
+        check_diffuse(s, k.name);
+        const bool closed = std::string_view(k.name) == "closed room, point light";
+        const double more = closed ? 1 / (1 - 0.7) / geometric(0.7, 3) : 1;
+        s.depth = std::numeric_limits<int>::max();
+        list.push_back({k.name, std::move(s), k.truth * more, &k});
+    }
+    return list;
+}
+
+// Paths that end on maps of a wrong scale, 0 or one of particles.
+Maps maps_of(const Scene& scene, double scale) {
+    Mesh mesh = make_mesh(scene, double(diagonal(scene)) / 8);
+    constexpr uint64_t n = 4096;
+    Particles p(scene, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1), n));
+    for (int batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
+    IlluminationMap map = p.map();
+    for (rgb& E : map) E = E * real(scale);
+    Maps maps;
+    maps.known = known_light(scene, std::move(mesh), std::move(map));
+    return maps;
+}
+
+// One sample of what is known.
+double measure(const Endless& e, const Gather& g, const Pattern& pattern, const Pattern& rest,
+               uint64_t i) {
+    const Sampler first(pattern, 0, i);
+    const EndlessNumbers u(first, Sampler(rest, 0, i));
+    const vec2 film = first.get2(film_x);
+    const Ray ray = e.known->start ? e.known->start(film)
+                                   : camera_ray(e.scene.camera, e.scene.size, film.x, film.y);
+    return double(mean_of(Li(g, ray, u)));
+}
+
+}  // namespace
+
+TEST_CASE("control and regression meet every closed form of diffuse triangles") {
+    const std::vector<Known> rows = known_scenes();
+    const std::vector<Endless> scenes = endless_scenes(rows);
+    CHECK(scenes.size() >= 11);
+    for (const Endless& e : scenes)
+        for (double scale : {0.0, 1.0, 3.0})
+            for (SamplerKind kind :
+                 {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton}) {
+                const Maps maps = maps_of(e.scene, scale);
+                const bool nee = !e.known->no_nee && kind == SamplerKind::halton;
+                Gather g{e.scene, {}, maps.known};
+                g.technique.light = nee ? LightMode::nee : LightMode::mis;
+                // The slope is another run's.
+                if (scale == 3) g.slope = {real(0.3), real(0.3), real(0.4)};
+                CAPTURE(e.name);
+                CAPTURE(scale);
+                CAPTURE(int(kind));
+                EXPECT(oracle::expect_replicates(
+                           e.truth, 64,
+                           [&](int r) {
+                               const uint64_t n = 16 * uint64_t(e.known->aimed);
+                               const uint64_t seed = hash(seed_here(), uint64_t(r));
+                               const Pattern pattern =
+                                                 EndlessNumbers::pattern(kind, seed, false, n),
+                                             rest = EndlessNumbers::independent(seed);
+                               double sum = 0;
+                               for (uint64_t i = 0; i < n; ++i)
+                                   sum += measure(e, g, pattern, rest, i);
+                               return sum / double(n);
+                           }),
+                       0.3);
+            }
+}
