@@ -112,7 +112,7 @@ rgb radiance_along(const Gather& g, Segment first, const EndlessNumbers& u, Acco
         else
             now.k = g.scene.depth;
         const Step e = step(g.scene, g.technique, now, u[s.k]);
-        if (e.x && m.weight != 0) m.R = g.slope * g.known.at(*e.x);
+        if (e.met && m.weight != 0) m.R = g.slope * g.known.at(e.x);
         L += s.beta * (e.Le * e.weight + m.R * m.weight) + now.beta * e.direct.L;
         account(s, e, m);
         if (e.end) return L;
@@ -146,8 +146,8 @@ inline rgb slope_of(const Gather& g, const Pattern& pattern, uint64_t n) {
         rgb R_map, emitted;
         const rgb L =
             radiance_along(g, seen.next, u, [&](const Segment& s, const Step& e, const Mapped&) {
-                if (s.k > 1 || !e.x) return;
-                R_map = s.beta * g.known.at(*e.x);
+                if (s.k > 1 || !e.met) return;
+                R_map = s.beta * g.known.at(e.x);
                 emitted = s.beta * e.Le * e.weight;
             });
         for (size_t c = 0; c < 3; ++c) {
