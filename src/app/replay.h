@@ -41,7 +41,7 @@ public:
     // The same where maps may end a path.
     void operator()(const Segment& s, const Step& e, const Mapped& m) const {
         (*this)(s, e);
-        if (!e.x || m.q == 1) return;
+        if (!e.met || m.q == 1) return;
         print("  reflected, by the maps", m.R);
         print("  its weight", {m.weight});
         print("  probability to go on", {m.q});
