@@ -127,6 +127,13 @@ public:
         return {x, y};
     }
 
+    // The number that chooses the light, or the lobe, for which the pair of the vertex is.
+    real choice(int vertex, Draw what) const {
+        if (pattern_.kind != SamplerKind::sobol) return get(dimension(vertex, what));
+        const uint32_t pair = dimension(vertex, what == Draw::pick ? Draw::light_x : Draw::wi_x);
+        return sobol_third(index_, random(pair), random(pair + 1));
+    }
+
     // A number of that part of [0,1).
     static real between(uint32_t cell, uint32_t cells, uint64_t bits) {
         return std::min(below_one, (real(cell) + to_unit(bits)) / real(cells));
