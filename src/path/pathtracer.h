@@ -73,7 +73,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     const Material& m = *x.material;
     if (t.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
     const bool one = scene.lights.size() == 1;
-    const real u_pick = one ? 0 : sampler.get(dimension(vertex, Draw::pick));
+    const real u_pick = one ? 0 : sampler.choice(vertex, Draw::pick);
     const Light& light = one ? scene.lights[0] : choose_light(scene, u_pick);
     const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
     if (!s) return {};
@@ -147,7 +147,7 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     e.direct = direct_light(scene, t, x, sampler, s.k);
 
     const vec2 u = sampler.get2(dimension(s.k, Draw::wi_x));
-    const real u_lobe = m.has_choice() ? sampler.get(dimension(s.k, Draw::lobe)) : 0;
+    const real u_lobe = m.has_choice() ? sampler.choice(s.k, Draw::lobe) : 0;
     const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
     e.wi = x.local.to_world(b.wi);
     if (ends(max_of(b.f) <= 0, "nothing is reflected that way")) return e;

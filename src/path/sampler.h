@@ -103,8 +103,10 @@ public:
                 const uint64_t bits = random(dim);
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
             }
-            case SamplerKind::sobol:
-                return to_unit(shuffled_index(dim));
+            case SamplerKind::sobol: {
+                const uint64_t bits = random(dim);
+                return sobol_single(index_, bits, mix(bits));
+            }
             default:
                 return radical_inverse(2, index_);
         }
@@ -112,7 +114,8 @@ public:
 
     // Dimensions dim and dim + 1.
     vec2 get2(uint32_t dim) const {
-        if (pattern_.kind == SamplerKind::sobol) return sobol_point(shuffled_index(dim));
+        if (pattern_.kind == SamplerKind::sobol)
+            return sobol_pair(index_, random(dim), random(dim + 1));
         if (pattern_.kind == SamplerKind::halton_naive)
             return {radical_inverse(2, index_), radical_inverse(3, index_)};
         if (pattern_.kind == SamplerKind::stratified) {
@@ -122,6 +125,13 @@ public:
         }
         const real x = get(dim), y = get(dim + 1);
         return {x, y};
+    }
+
+    // The number that chooses the light, or the lobe, for which the pair of the vertex is.
+    real choice(int vertex, Draw what) const {
+        if (pattern_.kind != SamplerKind::sobol) return get(dimension(vertex, what));
+        const uint32_t pair = dimension(vertex, what == Draw::pick ? Draw::light_x : Draw::wi_x);
+        return sobol_third(index_, random(pair), random(pair + 1));
     }
 
     // A number of that part of [0,1).
@@ -135,11 +145,6 @@ private:
     uint64_t key_;    // of seed, pixel and half; independent: of the sample, too
 
     uint64_t random(uint32_t dim) const { return mix(key_ + (dim + 1) * golden); }
-
-    uint64_t shuffled_index(uint32_t dim) const {
-        const uint64_t bits = random(dim);
-        return shuffled(index_, bits, mix(bits));
-    }
 
     // The cell of this sample in its grid, and random bits for the place in it.
     struct Stratum {

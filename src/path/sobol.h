@@ -1,6 +1,7 @@
 // path/sobol.h  1  Sobol' points in pairs: even at any number of samples, most even at powers of
 // two
 #pragma once
+#include <bit>
 #include <cstdint>
 
 #include "base/vec.h"
@@ -38,6 +39,38 @@ inline uint64_t sobol_y(uint64_t x) {
     return x ^ x << 32;
 }
 
-// The point of a shuffled index is as likely any of the first 2^64 as any other, and so uniform;
-// and pairs of other a and b can be put beside it.
-inline vec2 sobol_point(uint64_t x) { return {to_unit(x), to_unit(sobol_y(x))}; }
+// The point of the index mirrored in t after its shuffle: any of the first 2^64 is as likely, so it
+// is uniform, and pairs of other a and b can be put beside it.  To a digit of x and of y, by coin,
+// the digit before it is added: of a random linear scrambling (Matousek 1998, J. Complexity 14) the
+// diagonal that matters most.  Without it edges at an angle to the axes have 20 % more variance at
+// 16 and 1024 points and 10 % less at 256, with it they come within 8 % of a whole scrambling.
+inline vec2 sobol_pair(uint64_t t, uint64_t a, uint64_t b) {
+    const uint64_t x = shuffled(t, a, b), y = sobol_y(x);
+    return {to_unit(x ^ (x >> 1 & b)), to_unit(y ^ (y >> 1 & std::rotl(b, 32)))};
+}
+
+// The third coordinate: the index, as a polynomial sum i_k X^k modulo 2, is written in base p = X^2
+// + X + 1, two bits a digit, and these are the digits of z (Niederreiter 1987).  First in base
+// p^16, then each half in base p^8, and so on: p^m = X^2m + X^m + 1 for powers m of 2.
+inline uint64_t sobol_z(uint64_t x) {
+    auto divide = [&x](int m, uint64_t upper) {  // by p^m what stands at X^2m and above
+        const uint64_t above = upper & upper >> m;
+        x ^= (x & above) << m;
+        x ^= (x & upper) << 2 * m ^ (x & (upper ^ above)) << m;
+    };
+    divide(16, 0x00000000ffffffff);
+    divide(8, 0x0000ffff0000ffff);
+    divide(4, 0x00ff00ff00ff00ff);
+    divide(2, 0x0f0f0f0f0f0f0f0f);
+    divide(1, 0x3333333333333333);
+    return x;
+}
+
+// A number beside the pair of the same words, for what the pair is chosen for: of 2^k points in a
+// row, a box of volume 2^(1-k) that halving the cube cuts out holds two ((1,3)-sequence).
+inline real sobol_third(uint64_t t, uint64_t a, uint64_t b) {
+    return to_unit(sobol_z(shuffled(t, a, b)));
+}
+
+// A single number: the points of 2^k indices are a grid, shifted.
+inline real sobol_single(uint64_t t, uint64_t a, uint64_t b) { return to_unit(shuffled(t, a, b)); }

@@ -13,10 +13,13 @@ constexpr const char* names[] = {"independent", "stratified", "halton", "sobol"}
 constexpr int depth = 8;
 const uint32_t dimensions = dimension(depth, Draw::light_x);
 
-// The numbers as the path tracer draws them: pairs where it wants pairs.
+// The numbers as the path tracer draws them: pairs where it wants pairs, and what chooses beside
+// them.
 real draw(const Sampler& s, uint32_t dim) {
     if (dim < 2) return dim == 0 ? s.get2(0).x : s.get2(0).y;
     const uint32_t k = (dim - 2) % uint32_t(Draw::count);
+    if (Draw(k) == Draw::pick || Draw(k) == Draw::lobe)
+        return s.choice(int((dim - 2) / uint32_t(Draw::count)), Draw(k));
     if (k < 4) return k % 2 == 0 ? s.get2(dim).x : s.get2(dim - 1).y;
     return s.get(dim);
 }
@@ -117,9 +120,9 @@ TEST_CASE("no two numbers of a path come in the same order") {
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
         const Pattern pattern = make_pattern(kind, seed_here(), false, depth, 16);
         for (uint32_t dim : {film_x, film_y, dimension(0, Draw::light_x), dimension(1, Draw::pick),
-                             dimension(1, Draw::lobe)})
+                             dimension(1, Draw::lobe), dimension(1, Draw::roulette)})
             for (uint32_t other : {dimension(2, Draw::wi_x), dimension(3, Draw::light_y),
-                                   dimension(2, Draw::lobe)}) {
+                                   dimension(2, Draw::lobe), dimension(3, Draw::roulette)}) {
                 double squares = 0;
                 for (uint64_t pixel = 0; pixel < 2000; ++pixel) {
                     double sum = 0;
@@ -156,17 +159,25 @@ TEST_CASE("Sobol' points of one pixel fill every elementary interval, the halves
             for (uint64_t half = 0; half < pattern.halves; ++half)
                 for (uint32_t dim :
                      {film_x, dimension(0, Draw::light_x), dimension(4, Draw::wi_x)}) {
-                    int boxes[5][16] = {}, parts[16] = {};
+                    int boxes[5][16] = {}, parts[16] = {}, cubes[2][8] = {};
                     for (uint64_t i = 32; i < 48; ++i) {
                         const Sampler s(pattern, pixel, i * pattern.halves + half);
                         const vec2 u = s.get2(dim);
                         for (uint64_t c : {0, 1, 2, 3, 4})  // 2^c columns
                             ++boxes[c][(part(1u << c, u.x) << (4 - c)) + part(16u >> c, u.y)];
-                        ++parts[part(16, s.get(dimension(2, Draw::pick)))];
+                        ++parts[part(16, draw(s, dimension(2, Draw::pick)))];
+                        for (Draw choice : {Draw::pick, Draw::lobe}) {
+                            const uint32_t k = choice == Draw::lobe;
+                            const vec2 v = s.get2(dimension(1, k ? Draw::wi_x : Draw::light_x));
+                            const uint64_t z = part(2, draw(s, dimension(1, choice)));
+                            ++cubes[k][part(2, v.x) * 4 + part(2, v.y) * 2 + z];
+                        }
                     }
                     for (const auto& shape : boxes)
                         for (int b : shape) REQUIRE(b == 1);
                     for (int p : parts) REQUIRE(p == 1);
+                    for (const auto& cube : cubes)
+                        for (int c : cube) REQUIRE(c == 2);
                 }
     }
 }

@@ -1,6 +1,9 @@
-// path/sobol_test.cpp  each elementary interval holds one point, each number has an order of its own
+// path/sobol_test.cpp  each elementary interval holds one point, each number has an order of its
+// own
 #include "path/sobol.h"
 
+#include <map>
+#include <set>
 #include <vector>
 
 #include "base/moments.h"
@@ -12,7 +15,8 @@ namespace {
 // The pairs of one randomisation, as they come.
 struct Points {
     uint64_t a = 0, b = 0;
-    vec2 operator()(uint64_t i) const { return sobol_point(shuffled(mirrored(i), a, b)); }
+    vec2 operator()(uint64_t i) const { return sobol_pair(mirrored(i), a, b); }
+    real third(uint64_t i) const { return sobol_third(mirrored(i), a, b); }
 };
 Points random_points(Rng& rng) {
     const uint64_t a = rng.bits(), b = rng.bits();
@@ -83,6 +87,50 @@ TEST_CASE("the digits of y are sums of those of x by Pascal's triangle, modulo 2
     }
 }
 
+TEST_CASE("the digits of z are those of the index, a polynomial modulo 2, in base X^2 + X + 1") {
+    Rng rng{seed_here()};
+    for (int n = 0; n < 100; ++n) {
+        const uint64_t i = rng.bits();
+        uint64_t z = 0, rest = i;
+        for (int k = 0; k < 64; k += 2) {  // divided by the base, again and again
+            uint64_t quotient = 0;
+            for (int d = 63; d >= 2; --d)
+                if (rest >> d & 1)
+                    rest ^= uint64_t(7) << (d - 2), quotient |= uint64_t(1) << (d - 2);
+            z |= rest << k;
+            rest = quotient;
+        }
+        REQUIRE(sobol_z(mirrored(i)) == mirrored(z));
+    }
+}
+
+TEST_CASE("each box of volume 2^(1-k) holds two of 2^k points in a row, each part of z one") {
+    Rng rng{seed_here()};
+    for (int n = 0; n < 20; ++n) {
+        const Points points = random_points(rng);
+        for (int k = 1; k <= 7; ++k)
+            for (uint64_t block : {uint64_t(0), uint64_t(5), uint64_t(1) << 36}) {
+                const uint64_t size = uint64_t(1) << k, start = block * size;
+                std::vector<int> parts(size);
+                for (uint64_t i = start; i < start + size; ++i)
+                    ++parts[part(size, points.third(i))];
+                for (int p : parts) REQUIRE(p == 1);
+                for (int c = 0; c < k; ++c)
+                    for (int d = 0; c + d < k; ++d) {
+                        const uint64_t rows = uint64_t(1) << d, layers = size / 2 >> c >> d;
+                        std::vector<int> boxes(size / 2);
+                        for (uint64_t i = start; i < start + size; ++i) {
+                            const vec2 u = points(i);
+                            const uint64_t column = part(uint64_t(1) << c, u.x);
+                            ++boxes[(column * rows + part(rows, u.y)) * layers +
+                                    part(layers, points.third(i))];
+                        }
+                        for (int b : boxes) REQUIRE(b == 2);
+                    }
+            }
+    }
+}
+
 TEST_CASE("each elementary interval holds one of 2^k points that begin at a multiple of 2^k") {
     Rng rng{seed_here()};
     for (int n = 0; n < 20; ++n) {
@@ -110,7 +158,7 @@ TEST_CASE("single numbers: one in each of 2^k parts, for 2^k indices in a row") 
             const uint64_t a = rng.bits(), b = rng.bits();
             std::vector<int> held(64);
             for (uint64_t i = 64 * block; i < 64 * (block + 1); ++i)
-                ++held[part(64, to_unit(shuffled(mirrored(i), a, b)))];
+                ++held[part(64, sobol_single(mirrored(i), a, b))];
             for (int h : held) REQUIRE(h == 1);
         }
 }
@@ -122,12 +170,19 @@ TEST_CASE("points are uniform over the square, in their first digits and in thei
     const real last = real(uint64_t(1) << (digits - 4));  // leaves four digits
     auto fraction = [&](real u) { return u * last - std::floor(u * last); };
     for (uint64_t i : {uint64_t(0), uint64_t(1), uint64_t(77), uint64_t(1) << 40}) {
-        std::vector<uint64_t> first_digits(256), last_digits(256);
+        std::vector<uint64_t> first_digits(256), last_digits(256), single(256), cubes(512);
         for (int n = 0; n < 60000; ++n) {
-            const vec2 u = random_points(rng)(i);
+            const Points points = random_points(rng);
+            const vec2 u = points(i);
+            ++cubes[part(8, u.x) * 64 + part(8, u.y) * 8 + part(8, points.third(i))];
             ++first_digits[part(16, u.x) * 16 + part(16, u.y)];
             ++last_digits[part(16, fraction(u.x)) * 16 + part(16, fraction(u.y))];
+            const uint64_t a = rng.bits(), b = rng.bits();
+            const real v = sobol_single(mirrored(i), a, b);
+            ++single[part(16, v) * 16 + part(16, fraction(v))];
         }
+        EXPECT(oracle::expect_counts(single, equal).of("single"), 0.2);
+        EXPECT(oracle::expect_counts(cubes, std::vector<double>(512, 1 / 512.0)).of("cube"), 0.2);
         EXPECT(oracle::expect_counts(first_digits, equal).of("first digits"), 0.2);
         EXPECT(oracle::expect_counts(last_digits, equal).of("last digits"), 0.2);
     }
@@ -161,6 +216,29 @@ TEST_CASE("two indices are shuffled as by a coin for every block") {
         }
         EXPECT(oracle::expect_counts(possible, probabilities), 0.1);
     }
+}
+
+TEST_CASE("the first four points are any four that can be, each equally often") {
+    // One in each row, column, half and quadrant of 4 x 4 cells, told by the rows.
+    auto is_net = [](const uint64_t(&row)[4]) {
+        return (row[0] < 2) != (row[1] < 2) && (row[2] < 2) != (row[3] < 2) &&
+               std::set<uint64_t>(row, row + 4).size() == 4;
+    };
+    std::map<uint64_t, uint64_t> counts;
+    for (uint64_t code = 0; code < 256; ++code)
+        if (is_net({code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6})) counts[code] = 0;
+    Rng rng{seed_here()};
+    for (int n = 0; n < 50000; ++n) {
+        const Points points = random_points(rng);
+        uint64_t code = 0;
+        for (uint64_t i = 0; i < 4; ++i) code |= part(4, points(i).y) << 2 * part(4, points(i).x);
+        REQUIRE(counts.count(code) == 1);
+        ++counts[code];
+    }
+    std::vector<uint64_t> seen;
+    for (const auto& [code, times] : counts) seen.push_back(times);
+    EXPECT(oracle::expect_counts(seen, std::vector<double>(seen.size(), 1 / double(seen.size()))),
+           0.1);
 }
 
 TEST_CASE("pairs of other words stand beside each other like pairs shuffled by coins") {
