@@ -125,6 +125,7 @@ TEST_CASE("--help names every option on one page of stdout") {
                                  "--light none|nee|mis",
                                  "--direct stochastic|control|ratio|regression",
                                  "--polygons area|angle",
+                                 "--pick power|place",
                                  "--film mc|vor|fvor|cvor|torus",
                                  "--depth N",
                                  "--roulette T",
