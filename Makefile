@@ -7,7 +7,8 @@ SIZE  ?=
 # What is begun and does not yet use all it has gets a warning, and no error.
 UNUSED   ?= parameter variable function but-set-variable but-set-parameter label local-typedefs
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
-FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
+# Nobody asks errno about a root: loops that take roots run in vectors.
+FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
             -Wall -Wextra -Wpedantic -Wshadow -Werror $(UNUSED:%=-Wno-error=unused-%)
 SANITISE := -O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all
 OPTIMISE := $(if $(SAN),$(SANITISE),$(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O3))

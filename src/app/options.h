@@ -99,6 +99,11 @@ inline const OptionTable<Options> option_table = {
      [](Options& o, Text v) { o.mesh = option::positive(v); }},
     {"--particles", "N", "walks that fill the maps", "samples / 16; or time / 16",
      [](Options& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
+    one_of<Options>(
+        "--pick", "power|place",
+        "which of several lights is aimed at: in proportion to its power, or to about what it "
+        "sends to the place (of more than 8 lights: to its power)",
+        [](auto& o) -> auto& { return o.technique.pick; }),
     {"--depth", "N", "scatterings a path may have, 0: emission only", "the scene's",
      [](Options& o, Text v) { o.depth = int(parse_count(v, 0, option::most_scatterings)); }},
     {"--roulette", "T",

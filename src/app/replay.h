@@ -73,7 +73,7 @@ private:
     void light(const DirectLight& d) const {
         constexpr const char* kinds[] = {"sphere", "triangle", "quad", "point"};
         std::fprintf(out_, "  light sample: %s light, chosen with probability %.17g, %s\n",
-                     kinds[int(d.light->kind)], double(d.light->pick),
+                     kinds[int(d.light->kind)], double(d.pdf / d.sample.pdf),
                      d.occluded ? "occluded" : "visible");
         print("    at", d.sample.at.p);
         print("    wi", d.sample.wi);

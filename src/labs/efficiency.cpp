@@ -26,8 +26,8 @@ struct Plan {
 
 std::vector<Choice> all_choices() {
     std::vector<Choice> all = samplers();
-    for (const char* words : {"--light nee", "--polygons angle", "--roulette 0", "--roulette 1",
-                              "--roulette 0.5", "--roulette 0.1"})
+    for (const char* words : {"--light nee", "--polygons angle", "--pick power", "--roulette 0",
+                              "--roulette 1", "--roulette 0.5", "--roulette 0.1"})
         all.push_back(choice_of(words));
     std::erase_if(all, [](const Choice& c) { return !is_known(c); });
     return all;

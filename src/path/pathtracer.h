@@ -20,6 +20,7 @@ struct Technique {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
     real roulette = 0;  // Russian roulette for paths of a throughput below this; 0: never
+    Pick pick = Pick::place;
 };
 
 // A path's numbers stay in registers only if its loop is compiled as one function: its parts, which
@@ -74,13 +75,15 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     if (t.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
     const bool one = scene.lights.size() == 1;
     const real u_pick = one ? 0 : sampler.choice(vertex, Draw::pick);
-    const Light& light = one ? scene.lights[0] : choose_light(scene, u_pick);
+    const LightPick chosen =
+        one ? LightPick{} : choose_light(scene, t.pick, x.at.p, x.local.n, u_pick);
+    const Light& light = scene.lights[chosen.light];
     const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
     if (!s) return {};
     const vec3 wi = x.local.to_local(s->wi);
     const rgb f = eval(m, x.wo, wi);
     if (max_of(f) <= 0) return {};
-    const real pdf_light = light.pick * s->pdf;
+    const real pdf_light = chosen.pick * s->pdf;
     const bool share = t.light == LightMode::mis && !s->delta;
     const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
     const bool occluded = scene.bvh.occluded(spawn_to(x.at, s->at));
@@ -98,6 +101,7 @@ struct Segment {
     real pdf = infinity;
     rgb beta{1, 1, 1};
     int k = 0;
+    vec3 n = {};  // normal of the surface at `from`, on the side of the ray
 };
 
 // What happened where it stopped.  The path's radiance grows by beta (Le weight + direct.L).
@@ -114,13 +118,14 @@ struct Step {
 };
 
 // Weight of emission that a ray met by chance.
-inline real weight_of_emission(const Scene& scene, LightMode mode, const Segment& s,
+inline real weight_of_emission(const Scene& scene, const Technique& t, const Segment& s,
                                const Vertex& x) {
-    if (mode == LightMode::none || std::isinf(s.pdf)) return 1;
-    const Light& light = scene.lights[size_t(scene.light_of[x.hit.id])];
-    const real pdf = light.pick * pdf_light(light, s.from, x.at);
+    if (t.light == LightMode::none || std::isinf(s.pdf)) return 1;
+    const size_t i = size_t(scene.light_of[x.hit.id]);
+    const real pick = pick_of(scene, t.pick, i, s.from, s.n);
+    const real pdf = pick * pdf_light(scene.lights[i], s.from, x.at);
     // 0 where light samples do not go: the inside of a two-sided sphere light.
-    if (mode == LightMode::nee) return pdf > 0 ? 0 : 1;
+    if (t.light == LightMode::nee) return pdf > 0 ? 0 : 1;
     return power_heuristic(s.pdf, pdf);
 }
 
@@ -140,7 +145,7 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     const Material& m = *x.material;
     if (m.emits()) {
         e.Le = emitted(m, x.cos_o);
-        e.weight = weight_of_emission(scene, t.light, s, x);
+        e.weight = weight_of_emission(scene, t, s, x);
     }
     if (ends(s.k == scene.depth, "the scene's depth")) return e;
     if (ends(x.cos_o == 0, "a ray within the surface")) return e;
@@ -159,7 +164,7 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
         if (ends(u_survival >= survival, "Russian roulette")) return e;
         beta /= survival;
     }
-    e.next = {spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1};
+    e.next = {spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1, x.local.n};
     return e;
 }
 

@@ -6,7 +6,7 @@
 #include "base/words.h"
 #include "world/bsdf.h"
 #include "world/bvh.h"
-#include "world/lights.h"
+#include "world/light_choice.h"
 
 // A pinhole; the axes are unit, tan_half is the tangent of half the vertical field of view.
 struct Camera {
@@ -53,6 +53,7 @@ struct Scene {
     Bvh bvh;                       // from here on made by prepare
     std::vector<Facing> facing;    // of each shape
     std::vector<double> pick_cdf;  // running sum of lights[i].pick
+    FewLights few;                 // the same lights, if they are weighed one by one
 
     const Material& material(const Hit& hit) const { return materials[material_of[hit.id]]; }
     Surface surface(const Ray& ray, const Hit& hit) const {
@@ -164,10 +165,25 @@ inline void prepare(Scene& s) {
         l.pick = real(s.pick_cdf.back() - before);
         before = s.pick_cdf.back();
     }
+    s.few = few_lights(s.lights);
 }
 
 // A light, with probability pick.  Only if there is one.
 inline const Light& choose_light(const Scene& s, real u) {
     auto i = std::upper_bound(s.pick_cdf.begin(), s.pick_cdf.end(), double(u));
     return s.lights[std::min(size_t(i - s.pick_cdf.begin()), s.lights.size() - 1)];
+}
+
+// The light to aim at from a surface at p whose normal, on the side of the eye, is m.
+inline LightPick choose_light(const Scene& s, Pick by, vec3 p, vec3 m, real u) {
+    if (by == Pick::place && s.few.n > 0)
+        if (const auto w = light_weights(s.few, p, m)) return choose_light(*w, u);
+    const Light& light = choose_light(s, u);
+    return {size_t(&light - s.lights.data()), light.pick};
+}
+// The probability that it is this one.
+inline real pick_of(const Scene& s, Pick by, size_t light, vec3 p, vec3 m) {
+    if (by == Pick::place && s.few.n > 0)
+        if (const auto w = light_weights(s.few, p, m)) return pick_of(*w, light);
+    return s.lights[light].pick;
 }

@@ -47,6 +47,7 @@ constexpr Named techniques[] = {
     {{uniform, none}, "uniform, none"},
     {{bsdf, mis, 1}, "bsdf, mis, roulette"},
     {{bsdf, nee, real(0.5)}, "bsdf, nee, roulette of the dim"},
+    {{bsdf, mis, 0, Pick::power}, "bsdf, mis, lights by power"},
     {{uniform, none, 1}, "uniform, none, roulette"},
 };
 
@@ -297,30 +298,61 @@ quad -2000 0 -2000  0 0 4000  4000 0 0  white
 sphere 0.3 0.5 0  0.2  ball
 sphere -0.5 0.4 0.2  0.1  ball
 )");
-    const Technique t{uniform, mis};
     const Pattern pattern{SamplerKind::independent, seed_here()};
     int hits = 0;
     real worst = 0;
-    for (int y = 0; y < 20; ++y)
-        for (int x = 0; x < 20; ++x) {
-            const Start at = start(scene, pattern, x, y, 0);
-            const auto ground = meet(scene, at.ray);
-            if (!ground || ground->material->emits()) continue;
-            const DirectLight aimed = direct_light(scene, t, *ground, at.sampler, 0);
-            if (!aimed.light) continue;
-            const vec3 wi = ground->local.to_local(aimed.sample.wi);
-            const real density = pdf(*ground->material, ground->wo, wi, t.direction);
-            const Segment s{
-                spawn(ground->at, aimed.sample.wi), ground->at.p, density, {1, 1, 1}, 1};
-            const auto lamp = meet(scene, s.ray);
-            if (!lamp || &scene.lights[size_t(scene.light_of[lamp->hit.id])] != aimed.light)
-                continue;
-            worst = std::max(
-                worst, std::abs(aimed.weight + weight_of_emission(scene, t.light, s, *lamp) - 1));
-            ++hits;
-        }
-    CHECK(hits > 200);
+    for (int i = 0; i < 800; ++i) {
+        const Technique t{uniform, mis, 0, i % 2 ? Pick::power : Pick::place};
+        const int x = i / 2 % 20, y = i / 40;
+        const Start at = start(scene, pattern, x, y, 0);
+        const auto ground = meet(scene, at.ray);
+        if (!ground || ground->material->emits()) continue;
+        const DirectLight aimed = direct_light(scene, t, *ground, at.sampler, 0);
+        if (!aimed.light) continue;
+        const vec3 wi = ground->local.to_local(aimed.sample.wi);
+        const real density = pdf(*ground->material, ground->wo, wi, t.direction);
+        const Segment s{spawn(ground->at, aimed.sample.wi),
+                        ground->at.p,
+                        density,
+                        {1, 1, 1},
+                        1,
+                        ground->local.n};
+        const auto lamp = meet(scene, s.ray);
+        if (!lamp || &scene.lights[size_t(scene.light_of[lamp->hit.id])] != aimed.light) continue;
+        worst =
+            std::max(worst, std::abs(aimed.weight + weight_of_emission(scene, t, s, *lamp) - 1));
+        ++hits;
+    }
+    CHECK(hits > 400);
     CHECK(worst <= 4 * ulp);
+}
+
+TEST_CASE("a path knows the normal that it left, on its own side") {
+    // Both floors face down.
+    const Scene scene = scene_of(R"(
+size 16 16
+camera 0 2 6  0 1 0  60
+depth 6
+diffuse white 0.8 0.8 0.8
+phong   gloss 0.2 0.2 0.2  0.6 0.6 0.6  8
+light   lamp  1 1 1 twosided white
+quad -9 0 -9  18 0 0  0 0 18  white
+quad -9 3 9  0 0 -18  18 0 0  gloss
+sphere 1 1 0  0.7  lamp
+)");
+    const Pattern pattern{SamplerKind::independent, seed_here()};
+    int steps = 0, wrong = 0;
+    for (int i = 0; i < 256; ++i)
+        radiance(scene, {bsdf, mis}, pattern, i % 16, i / 16, 0,
+                 [&](const Segment&, const Step& e) {
+                     if (e.end) return;
+                     const Surface& at = e.x->at;
+                     ++steps;
+                     wrong += !(dot(e.next.n, e.next.ray.d) > 0);
+                     wrong += e.next.n != at.n && e.next.n != -at.n;
+                 });
+    CHECK(steps > 500);
+    CHECK(wrong == 0);
 }
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {

@@ -144,8 +144,8 @@ TEST_CASE("direct: U is the mean of w, for every light, tilt, side and way to sa
     }
 }
 
-TEST_CASE("direct: the sphere at 75 and 105 degrees, with albedo, radiance and pick") {
-    // Two equal lights of which one is below the horizon: picked with probability 1/2 each.
+TEST_CASE("direct: the sphere at 75 and 105 degrees, with albedo and radiance") {
+    // A second light, below the horizon, sends nothing.
     Receiver r = receiver(sphere_at(75) + "sphere 0 -9 0  1  lamp\n", {0, 1, 0});
     const double E = 0.221200880053 / std::numbers::pi;
     const rgb U = r.shadowed_sample(0).U;

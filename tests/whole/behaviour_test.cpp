@@ -126,6 +126,7 @@ TEST_CASE("--help names every option on one page of stdout") {
                                  "--direct stochastic|control|ratio|regression",
                                  "--polygons area|angle",
                                  "--indirect path|map|control|regression",
+                                 "--pick power|place",
                                  "--film mc|vor|fvor|cvor|torus",
                                  "--depth N",
                                  "--roulette T",

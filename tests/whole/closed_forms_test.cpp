@@ -29,6 +29,8 @@ const char* const techniques[] = {
     "--direction bsdf --light none --roulette 1",
     "--direction bsdf --light nee --roulette 1",
     "--direction bsdf --light mis --roulette 1",
+    "--direction bsdf --light nee --pick power",
+    "--direction bsdf --light mis --pick power",
 };
 
 Options options_of(const std::string& said) {
@@ -41,6 +43,7 @@ Options options_of(const std::string& said) {
 const char* why_empty(const Known& k, const Scene& scene, const Options& o, bool first) {
     if (o.sampler == SamplerKind::halton_naive) return biased;
     if (scene.depth == 0 && !first) return unscattered;
+    if (o.technique.pick == Pick::power && scene.few.n == 0) return no_choice;
     if (o.technique.light == LightMode::none && k.no_none) return k.no_none;
     if (o.technique.light == LightMode::nee && k.no_nee) return k.no_nee;
     if (o.technique.light == LightMode::nee && o.technique.roulette == 1 && scene.depth == 1)

@@ -123,6 +123,7 @@ inline const char* const meeting = "infinite variance of light samples where emi
 inline const char* const rare = "fewer than one path in a hundred finds the light";
 inline const char* const idle = "roulette after the last scattering that counts changes nothing";
 inline const char* const unscattered = "no scattering: nothing but the sampler matters";
+inline const char* const no_choice = "one light, or so many that power decides anyhow";
 inline const char* const biased = "biased by design";
 
 struct Known {

@@ -1,0 +1,194 @@
+// world/light_choice_test.cpp  which of a few lights is worth a sample
+#include "world/light_choice.h"
+
+#include "oracle/expect.h"
+#include "world/geometry.h"
+#include "world/scene.h"
+
+namespace {
+
+constexpr bool single = sizeof(real) == 4;
+
+Light shining(Light l, real L, bool twosided = false) {
+    l.L = {L / 2, L, 3 * L / 2};
+    l.twosided = twosided;
+    return l;
+}
+
+// Of any kind, about the origin, as large as r.
+Light light_of(Dice& dice, Light::Kind kind, real r) {
+    const vec3 p = dice.direction(r), u = dice.direction(r), v = dice.direction(r);
+    const real L = dice.decades(-2, 2);
+    const bool twosided = dice.below(2);
+    if (kind == Light::Kind::point) return shining(point_light(p, {}), L);
+    if (kind == Light::Kind::sphere) return shining(sphere_light(p, r), L);
+    if (kind == Light::Kind::quad) return shining(quad_light(p, u, v), L, twosided);
+    return shining(triangle_light(p, u, v), L, twosided);
+}
+Light light_of(Dice& dice, real r) { return light_of(dice, Light::Kind(dice.below(4)), r); }
+
+// Irradiance by one light sample; nothing from below the horizon.
+real sends(const Light& l, vec3 p, vec3 m, vec2 u) {
+    const auto s = sample_light(l, p, u);
+    return s ? std::max(real(0), dot(s->wi, m)) * mean_of(s->L) / s->pdf : 0;
+}
+
+}  // namespace
+
+TEST_CASE("one of a few lights is chosen as often as is said") {
+    Dice dice;
+    for (size_t n : {2u, 3u, 8u})
+        for (int place = 0; place < 4; ++place) {
+            std::vector<Light> lights;
+            for (size_t i = 0; i < n; ++i) lights.push_back(light_of(dice, real(0.5)));
+            const FewLights few = few_lights(lights);
+            REQUIRE(few.n == n);
+            const auto w = light_weights(few, dice.direction(dice(0, 3)), dice.direction());
+            if (!w) continue;
+            real sum = 0;
+            for (size_t i = 0; i < n; ++i) sum += pick_of(*w, i);
+            CHECK(std::abs(sum - 1) < 8 * ulp);
+            for (real u : {real(0), dice(0, 1), below_one}) {
+                const LightPick chosen = choose_light(*w, u);
+                REQUIRE(chosen.light < n);
+                CHECK(chosen.pick > 0);
+                CHECK(chosen.pick == pick_of(*w, chosen.light));
+            }
+            oracle::Random random(seed_here());
+            EXPECT(oracle::expect_choice(
+                       random, [&](real u) { return choose_light(*w, u).light; },
+                       [&](int i) { return pick_of(*w, size_t(i)); }, n),
+                   0.05);
+        }
+}
+
+TEST_CASE("a light weighs nothing only where it sends nothing") {
+    Dice dice;
+    int sent = 0, lost = 0, below = 0, behind = 0, wasted = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const real r = dice.decades(-1, 1);
+        const std::vector<Light> lights{light_of(dice, r), shining(point_light({}, {}), 1)};
+        const vec3 p = dice.direction(dice(0, 4)), m = dice.direction();
+        const real weight = few_lights(lights).weights(p, m)[0];
+        real E = 0;
+        for (int k = 0; k < 8; ++k) E += sends(lights[0], p, m, dice.pair());
+        // So little is the error of a cosine near 0.
+        const bool sends_some = E > 64 * ulp * power(lights[0]);
+        sent += sends_some;
+        lost += sends_some && !(weight > 0);
+        // All of it lies below the horizon, or it is turned away.
+        const LightBounds b = bounds_of(lights[0]);
+        const bool is_below = dot(m, b.centre - p) < -b.r - 64 * ulp;
+        const bool is_behind = lights[0].n != vec3{} && !lights[0].twosided &&
+                               dot(lights[0].n, p - lights[0].p) < -64 * ulp * r;
+        below += is_below, behind += is_behind;
+        wasted += (is_below || is_behind) && weight > 0;
+    }
+    CHECK(sent > 10000);
+    CHECK(lost == 0);
+    CHECK(below > 2000);
+    CHECK(behind > 2000);
+    CHECK(wasted == 0);
+}
+
+TEST_CASE("far away, lights weigh what they send") {
+    Dice dice;
+    constexpr real far = single ? 300 : 3000;
+    Worst worst;
+    int seen = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const vec3 p = dice.direction(), m = dice.direction();
+        std::vector<Light> lights;
+        real E[2];
+        bool grazing = false;
+        for (size_t k : {0u, 1u}) {
+            const vec3 to = dice.direction(far * dice(1, 10));
+            Light l = light_of(dice, 1);
+            l.p = p + to + l.p;
+            lights.push_back(l);
+            E[k] = sends(l, p, m, {real(0.5), real(0.5)});
+            grazing |= dot(m, unit(to)) < real(0.25);
+            grazing |= l.n != vec3{} && std::abs(dot(l.n, unit(to))) < real(0.25);
+        }
+        if (grazing || !(E[0] > 0 && E[1] > 0)) continue;
+        const FewLights::Each w = few_lights(lights).weights(p, m);
+        worst.see(std::abs(w[0] / w[1] * (E[1] / E[0]) - 1));
+        ++seen;
+    }
+    CHECK(seen > 2000);
+    CHECK(worst.value < 32 / far);  // cosines of 1/4 and more, off by radii of at most 1
+}
+
+TEST_CASE("the sphere about a polygon holds its corners, and touches two of a quad's") {
+    Dice dice;
+    for (int i = 0; i < 1000; ++i)
+        for (Light::Kind kind : {Light::Kind::quad, Light::Kind::triangle}) {
+            const Light l = light_of(dice, kind, 1);
+            const LightBounds b = bounds_of(l);
+            std::vector<vec3> corners{l.p, l.p + l.u, l.p + l.v};
+            if (kind == Light::Kind::quad) corners.push_back(l.p + l.u + l.v);
+            real most = 0;
+            for (vec3 corner : corners) most = std::max(most, length(corner - b.centre));
+            CHECK(std::abs(most - b.r) < 16 * ulp);
+        }
+}
+
+TEST_CASE("near or far, strong or faint: probabilities add up to 1") {
+    Dice dice;
+    constexpr real range = single ? 8 : 70;
+    for (int i = 0; i < 20000; ++i) {
+        std::vector<Light> lights;
+        for (int k = 0; k < 4; ++k) {
+            lights.push_back(light_of(dice, dice.decades(-range, range) / 8));
+            lights.back().L = lights.back().L * dice.decades(-range / 4, range / 4);
+        }
+        const FewLights few = few_lights(lights);
+        const vec3 p = dice.below(8) ? dice.direction(dice.decades(-range, range)) : lights[0].p;
+        const auto w = light_weights(few, p, dice.direction());
+        if (!w) continue;
+        real sum = 0;
+        for (size_t k = 0; k < 4; ++k) sum += pick_of(*w, k);
+        REQUIRE(std::abs(sum - 1) < 8 * ulp);
+    }
+    // At the point itself; and where the square of a distance is infinite.
+    const std::vector<Light> lights{shining(point_light({}, {}), 1),
+                                    shining(sphere_light({1, 0, 0}, real(0.5)), 1)};
+    CHECK(light_weights(few_lights(lights), {}, {1, 0, 0}));
+    const real beyond = std::numeric_limits<real>::max() / 4;
+    CHECK(!light_weights(few_lights(lights), {beyond, 0, 0}, {0, 1, 0}));
+}
+
+TEST_CASE("a scene chooses by place if lights are few and of use, otherwise by power") {
+    Scene s;
+    Material lamp;
+    lamp.Le = {1, 1, 1};
+    s.materials.push_back(lamp);
+    add_sphere(s, {0, 0, 0}, 1, 0);
+    prepare(s);
+    CHECK(s.few.n == 0);
+    const vec3 p{1, 2, 3}, up{0, 1, 0}, down{0, -1, 0};
+    CHECK(pick_of(s, Pick::place, 0, p, up) == 1);
+    for (size_t n = 2; n <= FewLights::most + 1; ++n) {
+        s.pick_cdf.clear();
+        add_sphere(s, {real(n) * 4, real(n), 0}, real(1) / real(n), 0);
+        prepare(s);
+        CHECK(s.few.n == (n <= FewLights::most ? n : 0));
+        bool differs = false;
+        for (int i = 0; i < 100; ++i) {
+            const real u = (real(i) + real(0.5)) / 100;
+            const LightPick by_place = choose_light(s, Pick::place, p, down, u);
+            const LightPick by_power = choose_light(s, Pick::power, p, down, u);
+            CHECK(&s.lights[by_power.light] == &choose_light(s, u));
+            CHECK(by_power.pick == s.lights[by_power.light].pick);
+            CHECK(by_place.pick == pick_of(s, Pick::place, by_place.light, p, down));
+            CHECK(by_power.pick == pick_of(s, Pick::power, by_power.light, p, down));
+            differs |= by_place.light != by_power.light;
+            // All of them are below the horizon.
+            const LightPick blind = choose_light(s, Pick::place, {0, 99, 0}, up, u);
+            CHECK(blind.light == by_power.light);
+            CHECK(blind.pick == by_power.pick);
+            CHECK(blind.pick == pick_of(s, Pick::place, blind.light, {0, 99, 0}, up));
+        }
+        CHECK(differs == (n <= FewLights::most));
+    }
+}
