@@ -40,24 +40,25 @@ public:
         std::array<AnyOrder, bvh::BinaryTree::depth> stack;
         AnyOrder* top = stack.data();
         const bvh::Node* node = nodes_.data();
-        bvh::Lanes rest = node->meet(probe, end).met();
         for (;;) {
-            while (!rest.any()) {
-                if (top == stack.data()) return false;
-                --top;
-                node = top->node;
-                rest = top->rest;
-            }
-            const bvh::Child child = node->child[rest.first()];
-            rest.drop_first();
-            if (child.is_leaf()) {
+            bvh::Lanes rest = node->meet(probe, end).met();
+            for (;;) {
+                while (!rest.any()) {
+                    if (top == stack.data()) return false;
+                    --top;
+                    node = top->node;
+                    rest = top->rest;
+                }
+                const bvh::Child child = node->child[rest.first()];
+                rest.drop_first();
+                if (!child.is_leaf()) {
+                    *top = {node, rest};
+                    top += rest.any();
+                    node = at(child);
+                    break;
+                }
                 if (leaves_.any(child, ray, k)) return true;
-                continue;
             }
-            *top = {node, rest};
-            top += rest.any();
-            node = at(child);
-            rest = node->meet(probe, end).met();
         }
     }
 
@@ -100,7 +101,7 @@ private:
     }
 
     // Makes best the nearest hit of it and of all shapes.  Of a node's children the nearest comes
-    // first; none that begins behind best is opened.
+    // first; none that begins behind the best hit so far is opened.
     template <class Open, class OpenLeaf>
     [[gnu::always_inline]] void nearest_first(const Ray& ray, Hit& best, Open open,
                                               OpenLeaf open_leaf) const {
@@ -126,7 +127,7 @@ private:
             key = bvh::next(keys, key);
             if (child.is_leaf()) {
                 open_leaf(child);
-                leaves_.nearest(child, ray, k, best);
+                best = leaves_.nearest(child, ray, k, best);
                 end = float(best.t);
                 continue;
             }

@@ -73,9 +73,8 @@ public:
     // The last row is read beyond its end.
     void finish() { numbers_.resize(numbers_.size() + lane_count); }
 
-    // Makes best the nearest hit of it and of a leaf's; of equals the one with the smallest index.
-    [[gnu::always_inline]] void nearest(Child leaf, const Ray& ray, const Shear& k,
-                                        Hit& best) const {
+    // The nearest hit of best and of a leaf's; of equals the one with the smallest index.
+    [[gnu::always_inline]] Hit nearest(Child leaf, const Ray& ray, const Shear& k, Hit best) const {
         if (leaf.spheres()) [[unlikely]]
             return nearest_sphere(leaf, ray, best);
         Meeting m =
@@ -86,6 +85,7 @@ public:
             if (m.t[i] < best.t || (m.t[i] == best.t && id < best.id))
                 best = {m.t[i], id, m.v[i] / m.det[i], m.w[i] / m.det[i]};
         }
+        return best;
     }
 
     bool any(Child leaf, const Ray& ray, const Shear& k) const {
@@ -110,13 +110,14 @@ private:
         return {{x[0], x[1], x[2]}, {}, {}, x[3]};
     }
     // Apart, so that a scene of triangles pays nothing for them.
-    [[gnu::noinline]] void nearest_sphere(Child leaf, const Ray& ray, Hit& best) const {
+    [[gnu::noinline]] Hit nearest_sphere(Child leaf, const Ray& ray, Hit best) const {
         for (uint32_t i = leaf.first(); i < leaf.first() + leaf.count(); ++i) {
             const auto hit = intersect_sphere(sphere(i), ray, best.t);
             if (!hit || (hit->t == best.t && ids_[i] >= best.id)) continue;
             best = *hit;
             best.id = ids_[i];
         }
+        return best;
     }
     [[gnu::noinline]] bool any_sphere(Child leaf, const Ray& ray) const {
         for (uint32_t i = leaf.first(); i < leaf.first() + leaf.count(); ++i)
