@@ -34,16 +34,17 @@ inline double half_area(const Planes& p) {
 
 // What the tree divides: a shape's bounds and, in the two lanes left, both halves of its index.
 struct Item {
-    Bounds box;
+    std::array<float, lane_count> lanes;
 
     static Item of(const Shape& s, uint32_t id) {
-        Item item{outwards(bounds(s))};
-        item.box[3] = float(id & 0xffff), item.box[7] = float(id >> 16);
+        Item item{std::bit_cast<std::array<float, lane_count>>(outwards(bounds(s)))};
+        item.lanes[3] = float(id & 0xffff), item.lanes[7] = float(id >> 16);
         return item;
     }
-    uint32_t id() const { return uint32_t(box[3]) | uint32_t(box[7]) << 16; }
+    Bounds box() const { return std::bit_cast<Bounds>(lanes); }
+    uint32_t id() const { return uint32_t(lanes[3]) | uint32_t(lanes[7]) << 16; }
     // The centroid, twice.
-    float place(size_t a) const { return box[4 + a] - box[a]; }
+    float place(size_t a) const { return lanes[4 + a] - lanes[a]; }
     Bounds places() const {
         const float x = place(0), y = place(1), z = place(2);
         return Bounds{-x, -y, -z, 0, x, y, z, 0};
@@ -54,7 +55,7 @@ struct Item {
 struct Extent {
     Bounds box = no_bounds(), places = no_bounds();
     void add(const Item& item) {
-        box = larger(box, item.box);
+        box = larger(box, item.box());
         places = larger(places, item.places());
     }
 };
@@ -96,7 +97,7 @@ struct Bins {
         for (const Item& item : all_items)
             for (size_t a = 0; a < 3; ++a) {
                 const size_t k = grid.bin(item, a);
-                box[a][k] = larger(box[a][k], item.box);
+                box[a][k] = larger(box[a][k], item.box());
                 ++items[a][k];
             }
     }
