@@ -21,15 +21,15 @@ inline Faceted endless(const Scene& scene, double H) {
 }
 
 // What maps may cost: unless the user says how many particles, a sixteenth of the time, or one for
-// 16 paths, by measurement.  Noise of the maps, which all pixels share, is then little beside that
-// of the paths.
+// 16 paths, so that their noise, which all pixels share, is little beside that of the paths.  Paths
+// that go on need no more than a quarter of that (both by `make indirect`).
 inline WalksTarget walks_of(const Options& o, const Scene& scene) {
-    constexpr uint64_t share = 16;
+    const uint64_t share = o.indirect == Indirect::map ? 16 : 64;
     const Target target = target_of(o, scene);
     if (o.particles > 0) return {o.particles, target.seconds};
     const uint64_t pixels = uint64_t(scene.size.width) * uint64_t(scene.size.height);
     const double paths = double(pixels) * double(target.samples);
-    return {uint64_t(std::ceil(paths / share)), target.seconds / share};
+    return {uint64_t(std::ceil(paths / double(share))), target.seconds / double(share)};
 }
 
 // Maps, and how paths use them.

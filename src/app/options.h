@@ -97,7 +97,7 @@ inline const OptionTable<Options> option_table = {
         [](auto& o) -> auto& { return o.indirect; }),
     {"--mesh", "H", "longest edge of the maps' triangles", "diagonal / 16",
      [](Options& o, Text v) { o.mesh = option::positive(v); }},
-    {"--particles", "N", "walks that fill the maps", "samples / 16; or time / 16",
+    {"--particles", "N", "walks that fill the maps", "of map samples / 16, or time / 16; else / 64",
      [](Options& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
     one_of<Options>(
         "--pick", "power|place",

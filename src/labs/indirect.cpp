@@ -49,7 +49,7 @@ Pair pair_of(const Plan& plan, const Words& words, int first_seed) {
 // the two differences has no noise in its mean.
 struct Error {
     double noise2 = 0, bias2 = 0, bias2_error = 0;  // its standard error
-    double d_rel() const { return std::sqrt(std::max(0.0, noise2 + bias2)); }
+    double d_rel() const { return std::sqrt(noise2 + std::max(0.0, bias2)); }
     std::string bias() const {
         const double most = std::sqrt(std::max(0.0, bias2) + 2 * bias2_error);
         return bias2 > 2 * bias2_error ? percent(std::sqrt(bias2)) : "< " + percent(most);
@@ -88,8 +88,8 @@ void tell_levels(Report& report, const Plan& plan) {
 Variance (the mean over pixels and channels) and core time of one sample; efficiency is 1 / (variance × time)
 over that of whole paths, scattered as often as the scene says; medians of interleaved rounds, with the
 least and the greatest.  Sobol': of the mean of 16 samples, times 16.  At the first vertex alone there are
-two levels, what the map knows (v₁, c₁) and what whole paths add to it (v₂ = v − v₁, c₂ = c − c₁): no q
-does better than (√(v₁c₁) + √(v₂c₂))².)");
+two levels, what the map knows (v₁, c₁) and what whole paths add to it (v₂ = v − v₁, c₂ = c − c₁): as long
+as these do not depend on q, none does better than (√(v₁c₁) + √(v₂c₂))².)");
     const int rounds = plan.quick ? 2 : 5;
     for (const char* scene : scenes) {
         const Setup s = setup(scene, 300000);
@@ -106,8 +106,8 @@ does better than (√(v₁c₁) + √(v₂c₂))².)");
         const double bound = median(sobol.bound()), own = median(sobol.efficiency(control));
         report.claim(
             own >= 0.8 * bound,
-            text("Two levels come to %s at most, with Sobol' points to %s; `control`, at "
-                 "every vertex, to %.2f, which is at least .8 of it",
+            text("Two levels come to %s, with Sobol' points to %s; `control`, at every vertex, "
+                 "comes to %.2f, at least .8 of it",
                  with_range(independent.bound(), "%.2f"), with_range(sobol.bound(), "%.2f"), own));
     }
     report.say(
@@ -116,7 +116,8 @@ faster than light is lost, and variance has no bound; a rule that follows the th
 `control` takes a threshold of 2/3: of walls whose albedo is that or more nearly every path goes on once,
 then as often as light is not absorbed.  Two levels gain where variance and cost are spread unevenly over
 them; whole paths that Russian roulette ends in the dim spend on what follows the first bounce about as
-much, for its variance, as the map spends on its own, where the gain is 1.)");
+much, for its variance, as the map spends on its own, where the gain is 1.  In cube more is to be had, at
+the first vertex, too: survivors count for 1 / q, so that roulette, which returns 0 there, ends them later.)");
 }
 
 // ---- How fine -----------------------------------------------------------------------------------
@@ -190,10 +191,9 @@ std::string claims_of(Report& report, const std::string& scene, const std::vecto
     return text("* %s: `map` has 3 times the efficiency of whole paths or more (%.1f): %s.\n",
                 scene, times(1, 0), report.verdict(times(1, 0) >= 3)) +
            text(
-               "* %s: `control` has 1.3 times that of whole paths without Russian roulette, or "
-               "more "
-               "(%.2f; with it, as by default, %.2f): %s.\n",
-               scene, times(2, 4), times(2, 0), report.verdict(times(2, 4) >= 1.3)) +
+               "* %s: `control` has %.2f times that of whole paths, and %.2f times that of whole "
+               "paths without Russian roulette.\n",
+               scene, times(2, 0), times(2, 4)) +
            text("* %s: no bias of `control` or `regression` is seen: %s.", scene,
                 report.verdict(unseen(2) && unseen(3)));
 }
@@ -229,23 +229,26 @@ Efficiency is 1 / (d_rel² × core seconds), over that of whole paths.)",
 void tell_times(Report& report, const Plan& plan, const std::vector<Measured>& longest,
                 const Pair& reference) {
     Svg sheet(860, 400);
-    Plot plot(sheet, {80, 40}, {560, 300}, {"core seconds", 0.3, 15}, {"error (d_rel)", 0.005, 0.5},
-              "cornell36, 256 × 128 pixels");
     std::vector<Picture> pictures;
-    for (size_t k = 0; k < 4; ++k) {  // all but the last
-        std::vector<double> x, y;
-        for (const char* seconds : {"0.3", "1.2"}) {
-            const Measured m = measure(plan, "cornell36", methods[k], seconds, reference);
-            x.push_back(m.pair.core_seconds()), y.push_back(m.error.d_rel());
-            if (x.size() == 1)
-                pictures.push_back({m.pair.run[0].image, methods[k],
-                                    text("%.0f samples a pixel, %.2f core s, d_rel %s",
-                                         double(m.pair.run[0].samples()),
-                                         m.pair.run[0].core_seconds(), percent(y[0]))});
+    {
+        Plot plot(sheet, {80, 40}, {560, 300}, {"core seconds", 0.3, 15},
+                  {"error (d_rel)", 0.005, 0.5}, "cornell36, 256 × 128 pixels");
+        for (size_t k = 0; k < 4; ++k) {  // all but the last
+            std::vector<double> x, y;
+            for (const char* seconds : {"0.3", "1.2"}) {
+                const Measured m = measure(plan, "cornell36", methods[k], seconds, reference);
+                x.push_back(m.pair.core_seconds()), y.push_back(m.error.d_rel());
+                const Rendering& r = m.pair.run[0];
+                if (x.size() == 1 && k < 2)
+                    pictures.push_back(
+                        {r.image, methods[k],
+                         text("%.0f samples, %.2f core s, d_rel %s", double(r.samples()),
+                              r.core_seconds(), percent(y[0]))});
+            }
+            x.push_back(longest[k].pair.core_seconds()), y.push_back(longest[k].error.d_rel());
+            plot.curve(x, y, {.colour = svg::colours[k]}, methods[k]);
         }
-        x.push_back(longest[k].pair.core_seconds()), y.push_back(longest[k].error.d_rel());
-        plot.curve(x, y, {.colour = svg::colours[k]}, methods[k]);
-    }
+    }  // its labels are written
     report.picture("indirect-time", sheet, "Error over time");
     report.picture("indirect", contact_sheet(pictures, 2, 1), "After 0.3 seconds");
 }

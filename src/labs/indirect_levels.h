@@ -24,7 +24,7 @@ real at_first(const Segment& s) {
 }
 template <int percent>
 real over(const Segment& s) {
-    return std::min(real(0.98), max_of(s.beta) / (real(percent) / 100));
+    return std::min(real(1), max_of(s.beta) / (real(percent) / 100));
 }
 
 struct Way {

@@ -67,7 +67,8 @@ inline real never(const Segment&) { return 0; }
 // What the path still counts for over a threshold, the rule of step; two thirds by measurement
 // (`make indirect`).  But a path must end between white walls, too.
 inline real by_throughput(const Segment& s) {
-    constexpr real most = real(0.98), threshold = real(2) / 3;
+    constexpr real threshold = real(2) / 3;
+    const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
     return std::min(most, max_of(s.beta) / threshold);
 }
 

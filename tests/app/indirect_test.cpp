@@ -91,13 +91,18 @@ TEST_CASE("maps: what --pixel replays is what the image is made of, bit for bit"
     }
 }
 
-TEST_CASE("maps: one particle for 16 samples, a 16th of the time, or as many as are asked for") {
+TEST_CASE("maps: a particle for 16 samples, or a 16th of the time, or as many as are asked for") {
     const Scene scene = stage();
     Options o = options(Indirect::map);
     o.spp = 64;
     CHECK(walks_of(o, scene).particles == 12 * 8 * 4);
     CHECK(walks_of(o, scene).seconds == 0);
     CHECK(maps_of(o, scene).stats.particles == 12 * 8 * 4);
+    for (Indirect less : {Indirect::control, Indirect::regression}) {
+        o.indirect = less;
+        CHECK(walks_of(o, scene).particles == 12 * 8);
+    }
+    o.indirect = Indirect::map;
     o.spp = 0, o.seconds = 8;
     CHECK(walks_of(o, scene).particles == 0);
     CHECK(walks_of(o, scene).seconds == 0.5);

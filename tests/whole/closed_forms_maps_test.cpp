@@ -1,4 +1,4 @@
-// whole/indirect_test.cpp  paths that end on maps meet the closed forms of diffuse triangles
+// whole/closed_forms_maps_test.cpp  paths that end on maps meet closed forms of diffuse triangles
 #include "app/render.h"
 #include "base/moments.h"
 #include "oracle/expect.h"
@@ -65,8 +65,8 @@ TEST_CASE("control and regression meet every closed form of diffuse triangles") 
     CHECK(scenes.size() >= 11);
     for (const Endless& e : scenes)
         for (double scale : {0.0, 1.0, 3.0})
-            for (SamplerKind kind :
-                 {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton}) {
+            for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified,
+                                     SamplerKind::halton, SamplerKind::sobol}) {
                 const Maps maps = maps_of(e.scene, scale);
                 const bool nee = !e.known->no_nee && kind == SamplerKind::halton;
                 Gather g{e.scene, {}, maps.known};
