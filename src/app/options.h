@@ -102,7 +102,7 @@ inline const OptionTable<Options> option_table = {
     one_of<Options>(
         "--pick", "power|place",
         "which of several lights is aimed at: in proportion to its power, or to about what it "
-        "sends to the place (of more than 8 lights: to its power)",
+        "sends to the place (of more than 6 lights: to its power)",
         [](auto& o) -> auto& { return o.technique.pick; }),
     {"--depth", "N", "scatterings a path may have, 0: emission only", "the scene's",
      [](Options& o, Text v) { o.depth = int(parse_count(v, 0, option::most_scatterings)); }},

@@ -20,8 +20,9 @@ enum class Pick {
 // centre: a light weighs 0 only if all of it is below the horizon or turned away.  Whatever the
 // weights, the light found is unbiased as long as what weighs 0 sends nothing.
 struct FewLights {
-    static constexpr size_t most = 8;
-    using Each = std::array<real, most>;
+    // With 5 lights this pays; with 7 it takes more time than it gives.
+    static constexpr size_t most = 6, room = 8;
+    using Each = std::array<real, room>;
     size_t n = 0;             // 0: there is no choice, or lights are too many
     Each x{}, y{}, z{}, r{};  // centres and radii
     Each r2{};                // r^2, not 0
@@ -30,10 +31,17 @@ struct FewLights {
     Each round{};             // 1: a sphere or a point, whose cos_l is 1
     Each strength{};          // L A over that of the strongest; 0: no light
 
-    // For a surface at p whose normal, on the side of the eye, is m.
+    // Of the first n, for a surface at p whose normal, on the side of the eye, is m.
     Each weights(vec3 p, vec3 m) const {
         Each w;
-        for (size_t i = 0; i < most; ++i) {
+        n <= room / 2 ? weigh<room / 2>(w, p, m) : weigh<room>(w, p, m);
+        return w;
+    }
+
+private:
+    template <size_t count>  // fixed, so that compilers make vectors of it
+    void weigh(Each& w, vec3 p, vec3 m) const {
+        for (size_t i = 0; i < count; ++i) {
             const real fx = x[i] - p.x, fy = y[i] - p.y, fz = z[i] - p.z;
             const real d2 = fx * fx + fy * fy + fz * fz + r2[i], per_d2 = 1 / d2;
             const real top = m.x * fx + m.y * fy + m.z * fz + r[i];
@@ -42,7 +50,6 @@ struct FewLights {
                 std::max(std::max(front, -both[i] * front), round[i] * std::sqrt(d2));
             w[i] = strength[i] * (std::max(top, real(0)) * per_d2) * (facing * per_d2);
         }
-        return w;
     }
 };
 
@@ -86,15 +93,17 @@ inline FewLights few_lights(const std::vector<Light>& lights) {
     return few;
 }
 
-// Weights and their sum.  Nothing if no light is of use, or numbers cannot tell.
+// Weights and their running sums.  Nothing if no light is of use, or numbers cannot tell.
 struct LightWeights {
-    FewLights::Each of;
-    real sum;
+    size_t n;
+    FewLights::Each of, sums;
+    real sum() const { return sums[n - 1]; }
 };
 inline std::optional<LightWeights> light_weights(const FewLights& few, vec3 p, vec3 m) {
-    LightWeights w{few.weights(p, m), 0};
-    for (real weight : w.of) w.sum += weight;
-    if (!(w.sum > 0 && w.sum < infinity)) return {};
+    LightWeights w{few.n, few.weights(p, m), {}};
+    real sum = 0;
+    for (size_t i = 0; i < few.n; ++i) w.sums[i] = sum += w.of[i];
+    if (!(sum > 0 && sum < infinity)) return {};
     return w;
 }
 
@@ -104,10 +113,9 @@ struct LightPick {
     real pick = 1;
 };
 inline LightPick choose_light(const LightWeights& w, real u) {
-    const real mark = u * w.sum;  // less than the sum
-    real sum = 0;
+    const real mark = u * w.sum();  // less than the sum
     size_t chosen = 0;
-    for (size_t i = 0; i + 1 < w.of.size(); ++i) chosen += (sum += w.of[i]) <= mark;
-    return {chosen, w.of[chosen] / w.sum};
+    while (w.sums[chosen] <= mark) ++chosen;
+    return {chosen, w.of[chosen] / w.sum()};
 }
-inline real pick_of(const LightWeights& w, size_t light) { return w.of[light] / w.sum; }
+inline real pick_of(const LightWeights& w, size_t light) { return w.of[light] / w.sum(); }

@@ -37,7 +37,7 @@ real sends(const Light& l, vec3 p, vec3 m, vec2 u) {
 
 TEST_CASE("one of a few lights is chosen as often as is said") {
     Dice dice;
-    for (size_t n : {2u, 3u, 8u})
+    for (size_t n : {2u, 4u, 5u, 6u})
         for (int place = 0; place < 4; ++place) {
             std::vector<Light> lights;
             for (size_t i = 0; i < n; ++i) lights.push_back(light_of(dice, real(0.5)));
