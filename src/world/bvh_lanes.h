@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 #include "base/vec.h"
 
@@ -17,10 +18,16 @@ namespace bvh {
 inline constexpr size_t lane_count = 8;
 typedef float Floats __attribute__((vector_size(lane_count * sizeof(float))));
 typedef int32_t Keys __attribute__((vector_size(lane_count * sizeof(int32_t))));
-typedef real Reals __attribute__((vector_size(lane_count * sizeof(real))));
+
+// As many reals as a register holds: GCC keeps wider vectors in memory.
+#ifdef __AVX512F__
+inline constexpr size_t real_lanes = 8;
+#else
+inline constexpr size_t real_lanes = 32 / sizeof(real);
+#endif
+typedef real Reals __attribute__((vector_size(real_lanes * sizeof(real))));
 
 inline Floats all(float x) { return Floats{} + x; }
-inline Floats to_float(const Reals& x) { return __builtin_convertvector(x, Floats); }
 
 template <class Vector>
 Vector smaller(const Vector& a, const Vector& b) {
@@ -37,8 +44,10 @@ public:
     Lanes() = default;
     template <class Comparison>
     explicit Lanes(const Comparison& holds) {
-        typedef int8_t Bytes __attribute__((vector_size(lane_count)));
-        bytes_ = std::bit_cast<uint64_t>(__builtin_convertvector(holds, Bytes)) & ones;
+        constexpr size_t n = sizeof(holds) / sizeof(holds[0]);
+        typedef int8_t Bytes __attribute__((vector_size(n)));
+        using Word = std::conditional_t<n == 8, uint64_t, uint32_t>;
+        bytes_ = std::bit_cast<Word>(__builtin_convertvector(holds, Bytes)) & ones;
     }
     bool any() const { return bytes_ != 0; }
     size_t first() const { return size_t(std::countr_zero(bytes_)) / 8; }
@@ -59,7 +68,7 @@ inline Reals load(const real* x) {
 
 inline Reals fused(const Reals& a, const Reals& b, const Reals& c) {
     Reals y;
-    for (size_t i = 0; i < lane_count; ++i) y[i] = std::fma(a[i], b[i], c[i]);
+    for (size_t i = 0; i < real_lanes; ++i) y[i] = std::fma(a[i], b[i], c[i]);
     return y;
 }
 

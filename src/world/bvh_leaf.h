@@ -8,19 +8,26 @@
 
 namespace bvh {
 
-// What a ray meets of up to eight triangles: t and, times det, v and w, in the lanes of hit.
+// What a ray meets of some triangles: t and, times det, v and w, in the lanes of hit.
 struct Meeting {
     Lanes hit;
     Reals t, v, w, det;
 };
 
-// intersect_triangle, line by line, of count triangles.  Their numbers lie in rows: a.x of each,
-// a.y of each and so on.  A row is read as eight lanes; those from count on hold what follows it,
-// and nobody looks at them.
-inline Meeting intersect_triangles(const real* rows, size_t count, const Ray& ray, const Shear& k,
-                                   real tmax) {
+// Some of a leaf's triangles, from at on, as many as there are lanes.  Its numbers lie in rows: a.x
+// of each of count, a.y of each and so on.
+struct Rows {
+    const real* numbers;
+    size_t count, at;
+};
+
+// intersect_triangle, line by line, of several triangles.  Lanes beyond the last triangle hold what
+// follows the row, and nobody looks at them.
+inline Meeting intersect_triangles(const Rows& rows, const Ray& ray, const Shear& k, real tmax) {
     const real ox = ray.o.*axis[k.x], oy = ray.o.*axis[k.y], oz = ray.o.*axis[k.z];
-    const real *x = rows + k.x * count, *y = rows + k.y * count, *z = rows + k.z * count;
+    const size_t count = rows.count;
+    const real* first = rows.numbers + rows.at;
+    const real *x = first + k.x * count, *y = first + k.y * count, *z = first + k.z * count;
     const size_t b = 3 * count, c = 6 * count;
     const Reals az = load(z) - oz, bz = load(z + b) - oz, cz = load(z + c) - oz;
     const Reals ax = (load(x) - ox) - k.sx * az, ay = (load(y) - oy) - k.sy * az;
@@ -33,11 +40,11 @@ inline Meeting intersect_triangles(const real* rows, size_t count, const Ray& ra
     // Where det is 0 or a NaN is about, t is NaN.
     const auto inside = (smaller(smaller(u, v), w) >= 0) | (larger(larger(u, v), w) <= 0);
     Meeting m{Lanes(inside), {}, v, w, det};
-    m.hit.keep(count);
+    m.hit.keep(count - rows.at);
     if (!m.hit.any()) return m;
     m.t = (u * az + v * bz + w * cz) * k.sz / det;
     m.hit = Lanes(inside & (m.t > 0) & (m.t <= tmax));
-    m.hit.keep(count);
+    m.hit.keep(count - rows.at);
     return m;
 }
 
@@ -77,23 +84,27 @@ public:
     [[gnu::always_inline]] Hit nearest(Child leaf, const Ray& ray, const Shear& k, Hit best) const {
         if (leaf.spheres()) [[unlikely]]
             return nearest_sphere(leaf, ray, best);
-        Meeting m =
-            intersect_triangles(&numbers_[leaf.first() * numbers], leaf.count(), ray, k, best.t);
-        for (; m.hit.any(); m.hit.drop_first()) {
-            const size_t i = m.hit.first();
-            const uint32_t id = ids_[leaf.first() + i];
-            if (m.t[i] < best.t || (m.t[i] == best.t && id < best.id))
-                best = {m.t[i], id, m.v[i] / m.det[i], m.w[i] / m.det[i]};
-        }
+        Rows rows{&numbers_[leaf.first() * numbers], leaf.count(), 0};
+        do {
+            Meeting m = intersect_triangles(rows, ray, k, best.t);
+            for (; m.hit.any(); m.hit.drop_first()) {
+                const size_t i = m.hit.first();
+                const uint32_t id = ids_[leaf.first() + rows.at + i];
+                if (m.t[i] < best.t || (m.t[i] == best.t && id < best.id))
+                    best = {m.t[i], id, m.v[i] / m.det[i], m.w[i] / m.det[i]};
+            }
+        } while (has_more(rows));
         return best;
     }
 
     bool any(Child leaf, const Ray& ray, const Shear& k) const {
         if (leaf.spheres()) [[unlikely]]
             return any_sphere(leaf, ray);
-        return intersect_triangles(&numbers_[leaf.first() * numbers], leaf.count(), ray, k,
-                                   ray.tmax)
-            .hit.any();
+        Rows rows{&numbers_[leaf.first() * numbers], leaf.count(), 0};
+        do {
+            if (intersect_triangles(rows, ray, k, ray.tmax).hit.any()) return true;
+        } while (has_more(rows));
+        return false;
     }
 
     size_t bytes() const {
@@ -105,6 +116,10 @@ private:
     std::vector<real> numbers_;
     std::vector<uint32_t> ids_;  // their indices
 
+    // Moves on to the next lanes.
+    static bool has_more(Rows& rows) {
+        return real_lanes < largest && (rows.at += real_lanes) < rows.count;
+    }
     Shape sphere(uint32_t i) const {
         const real* x = &numbers_[i * numbers];
         return {{x[0], x[1], x[2]}, {}, {}, x[3]};

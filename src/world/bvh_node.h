@@ -23,10 +23,12 @@ struct Probe {
     explicit Probe(const Ray& ray) {
         constexpr real room = real(0x1p-21) + 32 * ulp;
         const Floats most = all(std::numeric_limits<float>::max());
-        const Reals inverse = 1 / Reals{ray.d.x, ray.d.y, ray.d.z};
+        const real x = 1 / ray.d.x, y = 1 / ray.d.y, z = 1 / ray.d.z;
+        const real less = 1 - room, more = 1 + room;
+        const Floats inside{float(x * less), float(y * less), float(z * less)};
+        const Floats outer{float(x * more), float(y * more), float(z * more)};
         // 1/d beyond float: the near plane is met at least there, the far one is not.
-        const Floats inner = larger(smaller(to_float(inverse * (1 - room)), most), -most);
-        const Floats outer = to_float(inverse * (1 + room));
+        const Floats inner = larger(smaller(inside, most), -most);
         for (size_t a = 0; a < 3; ++a) {
             o[a] = all(float(ray.o.*axis[a]));
             near_inverse[a] = all(inner[a]);

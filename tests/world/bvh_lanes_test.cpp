@@ -19,7 +19,7 @@ real awkward(Dice& random) {
 
 Reals awkward_lanes(Dice& random) {
     Reals x;
-    for (size_t i = 0; i < lane_count; ++i) x[i] = awkward(random);
+    for (size_t i = 0; i < real_lanes; ++i) x[i] = awkward(random);
     return x;
 }
 
@@ -35,7 +35,7 @@ TEST_CASE("lanes compute as single numbers do, NaN and infinities included") {
                     d = awkward_lanes(random);
         const Reals products = difference_of_products(a, b, c, d), sum = fused(a, b, c);
         const Reals low = smaller(a, b), high = larger(a, b);
-        for (size_t i = 0; i < lane_count; ++i) {
+        for (size_t i = 0; i < real_lanes; ++i) {
             different += !same(products[i], ::difference_of_products(real(a[i]), real(b[i]),
                                                                      real(c[i]), real(d[i])));
             different += !same(sum[i], std::fma(real(a[i]), real(b[i]), real(c[i])));
@@ -51,7 +51,7 @@ TEST_CASE("the lanes of a comparison come one by one, and those beyond a number 
     int wrong = 0;
     for (int trial = 0; trial < 20000; ++trial) {
         const Reals a = awkward_lanes(random), b = awkward_lanes(random);
-        const size_t kept = 1 + random.below(lane_count);
+        const size_t kept = 1 + random.below(real_lanes);
         Lanes less(a < b);
         less.keep(kept);
         for (size_t i = 0; i < kept; ++i) {
