@@ -120,9 +120,9 @@ rgb mean_of_paths(const Gather& g, SamplerKind kind, int r, uint64_t n, RayOf ra
 template <class RayOf>
 void expect_radiance(std::array<double, 3> truth, double seen, const Gather& g, SamplerKind kind,
                      RayOf ray_of) {
-    constexpr int replicates = 64;
+    constexpr int replicates = 512;
     std::vector<rgb> mean;
-    for (int r = 0; r < replicates; ++r) mean.push_back(mean_of_paths(g, kind, r, 256, ray_of));
+    for (int r = 0; r < replicates; ++r) mean.push_back(mean_of_paths(g, kind, r, 64, ray_of));
     for (size_t c = 0; c < 3; ++c) {
         CAPTURE(c);
         EXPECT(oracle::expect_replicates(truth[c], replicates,

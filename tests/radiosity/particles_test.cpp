@@ -263,14 +263,14 @@ TEST_CASE("the cube: sums over hats of 2 x 2 cells, against the exact solution")
     REQUIRE(mesh.vertices() == 54);
     for (SamplerKind kind : kinds) {
         std::vector<IlluminationMap> maps;
-        for (uint64_t r = 0; r < 64; ++r)
+        for (uint64_t r = 0; r < 96; ++r)
             maps.push_back(run(s, mesh, kind, 1600, r).map(Functional::mean));
         for (const exact::CubeHat& hat : exact::cube_hats) {
             CAPTURE(hat.triangles);
             // A hat's own integral: a third of its triangles, of 12.5 m^2.
             const double size = 12.5 * hat.triangles / 3;
             EXPECT(oracle::expect_replicates(
-                       hat.flux / size, 64,
+                       hat.flux / size, 96,
                        [&](int r) {
                            double sum = 0;
                            for (const Face& f : mesh.faces)
