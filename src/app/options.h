@@ -28,7 +28,7 @@ struct Options : CommonOptions {
     Estimator direct = Estimator::stochastic;
     Polygons polygons = Polygons::area;
     Indirect indirect = Indirect::path;
-    std::optional<double> mesh;  // longest edge of the maps' triangles; default: the scene's
+    std::optional<double> mesh;  // longest edge of the maps' triangles; default: diagonal / 16
     uint64_t particles = 0;      // that fill the maps; 0: by the samples or the time
     std::optional<int> depth;    // default: the scene's
     bool halves = false;         // see Pattern
@@ -97,7 +97,7 @@ inline const OptionTable<Options> option_table = {
         [](auto& o) -> auto& { return o.indirect; }),
     {"--mesh", "H", "longest edge of the maps' triangles", "diagonal / 16",
      [](Options& o, Text v) { o.mesh = option::positive(v); }},
-    {"--particles", "N", "walks that fill the maps", "of map samples / 16, or time / 16; else / 64",
+    {"--particles", "N", "walks that fill the maps", "map: paths / 16, or time / 16; else / 64",
      [](Options& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
     one_of<Options>(
         "--pick", "power|place",

@@ -92,7 +92,7 @@ inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& patt
                        const WalksTarget& target, const CommonOptions& o) {
     Particles particles(scene, mesh, pattern);
     Walks walks(target, o.quiet, particles);
-    // Maps of fewer are nothing but noise.
+    // Maps of fewer in a batch are nothing but noise.
     constexpr uint64_t least = 256;
     const Passes passes{{Particles::of_each(target.particles), target.seconds},
                         least * pattern.period(),

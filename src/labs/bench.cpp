@@ -233,7 +233,7 @@ times as many bounce rays and %.2f times as many shadow rays.  The two answer at
 of a kind differently.)",
             mean[primary], mean[bounce], mean[shadow], differ));
     report.say(
-        R"(Half of the time goes into boxes and the choice of the next child, most of the rest into triangles, eight
+        R"(Half of the time goes into boxes and the choice of the next child, most of the rest into triangles, several
 at once; in large scenes these wait for memory, 72 bytes each where floats take 36 (`perf record` says how
 much).)");
 }

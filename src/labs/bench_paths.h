@@ -20,8 +20,9 @@ struct PathRunner {
 inline constexpr uint64_t path_samples = 16;  // a pixel and round
 
 inline PathRunner textbook_runner(const Scene& scene) {
-    auto trace = [&scene, room = textbook::room_of(scene)](int y, uint64_t seed) mutable {
-        Image image(scene.size.width, scene.size.height);
+    auto trace = [&scene, room = textbook::room_of(scene),
+                  image = Image(scene.size.width, scene.size.height)](int y,
+                                                                      uint64_t seed) mutable {
         room.rays = 0;
         textbook::render_row(room, scene, seed, path_samples, y, image);
         return room.rays;
@@ -49,7 +50,7 @@ inline PathRunner path_runner(const std::string& name, const Scene& scene, const
     return {name, trace};
 }
 
-// Adds a table for one scene; the textbook's tracer knows but diffuse quadrangles.
+// Adds rows for one scene; the textbook's tracer knows but diffuse quadrangles.
 inline void race_paths(Report& report, const std::string& name, int rounds) {
     const Scene scene = read_scene("scenes/" + name + ".scene").scene;
     Technique nee;

@@ -29,7 +29,6 @@ std::vector<Choice> all_choices() {
     for (const char* words : {"--light nee", "--polygons angle", "--pick power", "--roulette 0",
                               "--roulette 1", "--roulette 0.5", "--roulette 0.1"})
         all.push_back(choice_of(words));
-    std::erase_if(all, [](const Choice& c) { return !is_known(c); });
     return all;
 }
 
@@ -67,6 +66,16 @@ double thread_seconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+// Other options change the samples, or what an image is: here they would be left out in silence.
+void check_choice(const Choice& c) {
+    for (size_t i = 0; i < c.words.size(); i += 2) {
+        constexpr const char* known[] = {"--sampler",  "--direction", "--light",
+                                         "--polygons", "--pick",      "--roulette"};
+        if (std::find(std::begin(known), std::end(known), c.words[i]) == std::end(known))
+            throw UserError("--choice: " + c.words[i] + " is none of a path's choices");
+    }
 }
 
 void render_row(Image& image, const Job& job, int y) {
@@ -222,6 +231,7 @@ void tell_overall(Report& report, const Plan& plan, const std::vector<Outcome>& 
 int run(Plan plan, const std::string& command) {
     if (plan.scenes.empty()) plan.scenes = all_scenes();
     if (plan.choices.empty()) plan.choices = all_choices();
+    for (const Choice& c : plan.choices) check_choice(c);
     Report report(report_folder(plan.quick), "efficiency");
     std::vector<Outcome> all;
     Steps steps(plan.scenes.size());

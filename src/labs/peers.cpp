@@ -109,7 +109,7 @@ void add_penumbra(Series& series, const std::string& program, const View& view,
     series.seconds.push_back(r.core_seconds());
 }
 
-// Those that this penumbra knows.  Light that ends on maps has a bias.
+// Light that ends on maps has a bias.
 bool is_biased(const Choice& choice) { return choice.name.find("map") != choice.name.npos; }
 
 std::vector<Choice> choices() {
@@ -117,7 +117,6 @@ std::vector<Choice> choices() {
     for (const Choice& c : samplers()) all.push_back(c);
     for (const char* words : {"--indirect map", "--indirect control", "--indirect regression"})
         all.push_back(choice_of(words));
-    std::erase_if(all, [](const Choice& c) { return !is_known(c); });
     return all;
 }
 
@@ -134,9 +133,10 @@ Reference reference(const std::string& program, const View& view, const Plan& pl
     const std::string stem =
         folder + "/" + view.name + "-reference-" + std::to_string(plan.reference_spp);
     const std::string pfm = stem + ".pfm", stats_file = stem + ".json";
-    const bool kept =
-        ::access(pfm.c_str(), R_OK) == 0 &&
-        std::filesystem::last_write_time(pfm) > std::filesystem::last_write_time(program);
+    auto older = [&](const std::string& file) {
+        return std::filesystem::last_write_time(file) < std::filesystem::last_write_time(pfm);
+    };
+    const bool kept = ::access(pfm.c_str(), R_OK) == 0 && older(program) && older(view.scene);
     if (!kept)
         execute({program, "--quiet", "--halves", "--depth", "64", "--seed", "1000000", "--spp",
                  std::to_string(plan.reference_spp), "--stats", stats_file, "-o", pfm, view.scene});
@@ -233,8 +233,8 @@ int run(const std::string& program, const Plan& plan) {
 Cycles renders the triangles of `cornell36` as it comes with Blender, on one thread of the processor,
 with neither denoiser nor adaptive sampling nor clamping; the tracer of `src/labs/textbook.h` and
 penumbra on one thread, too; all with %.0f samples a pixel and %.0f seeds, in turns.  Core seconds
-of Cycles are those of %.0f samples less those of one, so that starting and reading do not count; ours
-count from the start to the end of the program.  d_rel is the deviation between seeds over the quadratic
+of Cycles are those of %.0f samples less those of one, so that starting and reading do not count;
+penumbra's count from the start to the end of the program, the textbook's its rows alone.  d_rel is the deviation between seeds over the quadratic
 mean; where light ends on maps the bias counts, too, against %.0f samples.  Efficiency is
 1 / (d_rel² × core seconds).  ± is the standard error over seeds (jackknife).)",
                     double(plan.spp), double(plan.seeds), double(plan.spp + 1),

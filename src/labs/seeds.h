@@ -74,16 +74,6 @@ inline Choice choice_of(const std::string& name) {
     return choice;
 }
 
-// Whether this penumbra knows all of the words.
-inline bool is_known(const Choice& choice) {
-    try {
-        (void)parse_words(option_table, choice.words);
-        return true;
-    } catch (const UserError&) {
-        return false;
-    }
-}
-
 // What can be said after an option that has a few words to choose from, but for the default.
 inline std::vector<Choice> alternatives(const std::string& name) {
     std::vector<Choice> choices;

@@ -36,7 +36,8 @@ inline Room room_of(const Scene& scene) {
     for (size_t i = 0; i + 1 < scene.shapes.size(); i += 2) {
         const Shape &s = scene.shapes[i], &t = scene.shapes[i + 1];
         const Material& m = scene.materials[scene.material_of[i]];
-        if (!(s.a == t.a && s.c == t.b) || max_of(m.ks) > 0)
+        const bool pair = !s.is_sphere() && s.a == t.a && s.c == t.b;
+        if (!pair || m.is_delta() || max_of(m.ks) > 0 || scene.lights.size() != 1)
             throw UserError("the textbook tracer knows but diffuse quadrangles");
         if (m.emits()) room.light = room.quads.size();
         room.quads.push_back(quad_of(s.a, s.b - s.a, t.c - t.a, m));

@@ -106,7 +106,7 @@ struct Reference {
 // The image by the best that we have.  Its error: the variance of its mean, from its halves, is the
 // sum over pixels; how pixels share in it, an image of the variance of fewer samples tells.
 inline Reference read_reference(const std::string& name, Size size) {
-    const std::string options = text(" --seed 1000 --size %dx%d", size.width, size.height),
+    const std::string options = text(" --sampler halton --roulette 0 --seed 1000 --size %dx%d", size.width, size.height),
                       stem = text("reference/%s-%d", name, size.width), file = stem + ".pfm",
                       json = stem + ".json", variance = stem + "-variance.pfm",
                       scene = " scenes/" + name + ".scene";

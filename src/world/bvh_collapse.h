@@ -52,7 +52,8 @@ private:
         std::array<float, lane_count - 1> as;
         bool leaf;
     };
-    // Measured: a visit to a leaf takes half as long as to a node, and a little more for each shape
+    // Measured: a visit to a leaf takes half as long as to a node, and a little more for each
+    // shape.
     static constexpr float leaf_cost = 0.5f, shape_cost = 0.05f;
 
     const BinaryTree& tree_;

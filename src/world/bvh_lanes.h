@@ -19,7 +19,8 @@ inline constexpr size_t lane_count = 8;
 typedef float Floats __attribute__((vector_size(lane_count * sizeof(float))));
 typedef int32_t Keys __attribute__((vector_size(lane_count * sizeof(int32_t))));
 
-// As many reals as a register holds: GCC keeps wider vectors in memory.
+// As many reals as a register of AVX-512 or AVX2 holds (SSE2: two registers): GCC keeps wider
+// vectors in memory.
 #ifdef __AVX512F__
 inline constexpr size_t real_lanes = 8;
 #else

@@ -98,9 +98,9 @@ struct Node {
         }
     }
 
-    // Slabs, up to end.  A ray within a slab's plane and parallel to it makes 0 * inf = NaN, which
-    // leaves the interval as it is: comparisons with NaN fail, and take the second.  So where the
-    // ray enters is never NaN, nor -0.
+    // Slabs, up to end.  A ray within a slab's plane and parallel to it makes 0 * inf = NaN, with
+    // which a comparison fails and takes the second number: the interval is never too short, and
+    // where the ray enters is never NaN, nor -0.
     Crossing meet(const Probe& ray, float end) const {
         Floats n[3], f[3];
         for (size_t a = 0; a < 3; ++a) {

@@ -20,7 +20,7 @@ enum class Pick {
 // centre: a light weighs 0 only if all of it is below the horizon or turned away.  Whatever the
 // weights, the light found is unbiased as long as what weighs 0 sends nothing.
 struct FewLights {
-    // With 5 lights this pays; with 7 it takes more time than it gives.
+    // With 5 lights (atelier) this pays; with 7 (furnace) it takes more time than it gives.
     static constexpr size_t most = 6, room = 8;
     using Each = std::array<real, room>;
     size_t n = 0;             // 0: there is no choice, or lights are too many
@@ -33,7 +33,7 @@ struct FewLights {
 
     // Of the first n, for a surface at p whose normal, on the side of the eye, is m.
     Each weights(vec3 p, vec3 m) const {
-        Each w;
+        Each w{};
         n <= room / 2 ? weigh<room / 2>(w, p, m) : weigh<room>(w, p, m);
         return w;
     }
@@ -103,7 +103,8 @@ inline std::optional<LightWeights> light_weights(const FewLights& few, vec3 p, v
     LightWeights w{few.n, few.weights(p, m), {}};
     real sum = 0;
     for (size_t i = 0; i < few.n; ++i) w.sums[i] = sum += w.of[i];
-    if (!(sum > 0 && sum < infinity)) return {};
+    // Denormal, a part of it could be rounded to all of it.
+    if (!(sum >= std::numeric_limits<real>::min() && sum < infinity)) return {};
     return w;
 }
 

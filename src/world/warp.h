@@ -52,7 +52,9 @@ inline real pdf_uniform_sphere() { return 1 / (4 * pi); }
 inline vec3 sample_cosine_hemisphere(vec2 u) {
     return spherical(std::sqrt(1 - u.x), std::sqrt(u.x), u.y);
 }
-inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? cos_theta * (1 / pi) : 0; }
+inline real pdf_cosine_hemisphere(real cos_theta) {
+    return cos_theta > 0 ? cos_theta * (1 / pi) : 0;
+}
 
 // Density (n+1)/(2 pi) cos^n(alpha) about z, 0 for alpha >= 90 degrees (Phong 1975; Lafortune,
 // Willems 1994).  cos(alpha) = (1-u)^(1/(n+1)); 1 - cos^2 by expm1 keeps its digits for large n.

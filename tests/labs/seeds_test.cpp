@@ -53,10 +53,5 @@ TEST_CASE("choices are what the program knows, but for the default") {
     for (const Choice& c : samplers()) {
         CHECK(c.name != as_written(option_table, Options{}, "--sampler"));
         CHECK(c.name != "--sampler halton-naive");
-        CHECK(is_known(c));
     }
-    CHECK(is_known(choice_of("--light nee --roulette 0.5")));
-    CHECK(is_known({}));
-    CHECK_FALSE(is_known(choice_of("--light bright")));
-    CHECK_FALSE(is_known(choice_of("--no-such-option 3")));
 }

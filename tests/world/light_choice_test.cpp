@@ -192,3 +192,16 @@ TEST_CASE("a scene chooses by place if lights are few and of use, otherwise by p
         CHECK(differs == (n <= FewLights::most));
     }
 }
+
+TEST_CASE("where what shines is so faint that sums of it are denormal, power decides") {
+    FewLights few;
+    few.n = 2;
+    few.round = {1, 1}, few.r2 = {1, 1};
+    few.y = {-5, 5};  // the strong one is below the horizon
+    few.strength = {1, std::numeric_limits<real>::denorm_min() * 100};
+    CHECK_FALSE(light_weights(few, {}, {0, 1, 0}));
+    few.strength[1] = std::numeric_limits<real>::min() * 1000;
+    const auto weights = light_weights(few, {}, {0, 1, 0});
+    REQUIRE(weights);
+    for (real u : {real(0), below_one}) CHECK(choose_light(*weights, u).light == 1);
+}
