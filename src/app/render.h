@@ -39,7 +39,10 @@ inline Job job_of(const Options& o, const Scene& scene) {
 inline Job job_of(const Options& o, const Scene& scene, const Maps& maps) {
     Target target = target_of(o, scene);
     const Pattern pattern = EndlessNumbers::pattern(o.sampler, o.seed, o.halves, target.samples);
-    if (target.seconds > 0) target.seconds = std::max(1e-3, target.seconds - maps.stats.seconds);
+    // Of all limits the shortest: 0 would be none, and the first pass runs in any case.
+    constexpr double a_moment = 1e-3;
+    if (target.seconds > 0)
+        target.seconds = std::max(a_moment, target.seconds - maps.stats.seconds);
     return {o,       scene,
             pattern, {target, pattern.period(), o.threads},
             &maps,   EndlessNumbers::independent(o.seed)};

@@ -53,11 +53,9 @@ inline std::string summary(const std::string& scene, const RunStats& run) {
 
 // What the maps took, and what they say of themselves.
 inline std::string summary(const MapStats& maps) {
-    char error[40];
-    std::snprintf(error, sizeof error, "%.3g %%", 100 * maps.error);
     return "maps: " + std::to_string(maps.triangles) + " triangles, " +
            std::to_string(maps.particles) + " particles, " +
-           (std::isfinite(maps.error) ? "error " + std::string(error) + ", " : "") +
+           (std::isfinite(maps.error) ? "error " + percent(maps.error) + ", " : "") +
            fixed(maps.seconds, 2) + " s";
 }
 

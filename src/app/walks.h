@@ -22,13 +22,6 @@ inline double edge_length(const std::string& name, const Scene& scene, std::opti
 
 // ---- Particles ----------------------------------------------------------------------------------
 
-// "0.982 %"
-inline std::string percent(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g %%", 100 * x);
-    return text;
-}
-
 // How far it is, for the bar and for the line that stays.
 inline std::string walked(uint64_t particles, double error) {
     return std::to_string(particles) + " particles" +

@@ -322,7 +322,7 @@ TEST_CASE("1e5 identical triangles: at most 128 bytes of nodes each, and the fir
     CHECK(tree.bytes() < scene.size() * (sizeof(Shape) + 128));
     CHECK(tree.bytes() >= scene.size() * 3 * sizeof(vec3));
     int wrong = 0, hits = 0;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 120; ++i) {
         Ray ray = aimed(t, i % aims, 1, random);
         auto expected = nearest({t}, ray);
         wrong += !same(tree.closest(ray), expected);
@@ -333,7 +333,7 @@ TEST_CASE("1e5 identical triangles: at most 128 bytes of nodes each, and the fir
         wrong += !same(tree.closest(ray), expected);
     }
     CHECK(wrong == 0);
-    CHECK(hits >= 8);
+    CHECK(hits > 10);
 }
 
 TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack") {
