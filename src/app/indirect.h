@@ -6,8 +6,8 @@
 
 // The user's target, or the scene's number of samples.
 inline Target target_of(const Options& o, const Scene& scene) {
-    if (o.spp > 0 || o.seconds > 0) return {o.spp, o.seconds};
-    return {scene.samples, 0};
+    if (o.spp > 0 || o.seconds > 0 || o.error > 0) return {o.spp, o.seconds, o.error};
+    return {scene.samples};
 }
 
 inline bool has_maps(const Options& o) { return o.indirect != Indirect::path; }

@@ -22,20 +22,22 @@ struct PixelIndex {
 };
 
 struct Options : CommonOptions {
-    uint64_t spp = 0;  // 0: the scene's, unless seconds are given
+    uint64_t spp = 0;  // 0: the scene's, unless seconds or an error are given
+    double error = 0;  // d_rel to stop at; 0: none
     SamplerKind sampler = SamplerKind::sobol;
     Technique technique{Direction::bsdf, LightMode::mis, real(0.25)};
     Estimator direct = Estimator::stochastic;
     Polygons polygons = Polygons::area;
     Indirect indirect = Indirect::path;
-    std::optional<double> mesh;  // longest edge of the maps' triangles; default: diagonal / 16
-    uint64_t particles = 0;      // that fill the maps; 0: by the samples or the time
-    std::optional<int> depth;    // default: the scene's
-    bool halves = false;         // see Pattern
+    std::optional<double> mesh;    // longest edge of the maps' triangles; default: diagonal / 16
+    uint64_t particles = 0;        // that fill the maps; 0: by the samples or the time
+    std::optional<int> depth;      // default: the scene's
+    std::optional<uint32_t> sets;  // of samples, in every pixel; default: where noise is
     View view = View::radiance;
     Weighting film = Weighting::mc;    // of a pixel's samples
     std::optional<PixelIndex> replay;  // instead of rendering, print the path of
     std::optional<uint64_t> sample;    // this sample
+    std::optional<uint32_t> set;       // of this set
 };
 
 // ---- Values -------------------------------------------------------------------------------------
@@ -44,6 +46,17 @@ namespace option {
 
 constexpr uint64_t most_samples = uint64_t(1) << 40;
 constexpr uint64_t most_scatterings = 1000000;
+constexpr uint64_t most_sets = 1024;
+
+inline double error(std::string_view text) {
+    const double E = parse_fraction(text);
+    if (!(E > 0 && E < 1)) throw UserError(in_quotes(text) + " is not between 0 and 100 %");
+    return E;
+}
+
+inline uint32_t sets(std::string_view text, uint64_t least) {
+    return uint32_t(parse_count(text, least, most_sets));
+}
 
 inline PixelIndex pixel(std::string_view text) {
     size_t comma = text.find(',');
@@ -58,19 +71,25 @@ inline PixelIndex pixel(std::string_view text) {
 
 inline const OptionTable<Options> option_table = {
     CommonRows<Options>::output("out/NAME.png, out/NAME.pfm"),
-    {"--spp", "N", "stop after N samples per pixel", "the scene's, unless --time is given",
+    {"--spp", "N", "stop after N samples per pixel",
+     "the scene's, unless --time or --error is given",
      [](Options& o, Text v) { o.spp = parse_count(v, 1, option::most_samples); }},
     CommonRows<Options>::time("stop after S seconds; with --spp, whichever comes first"),
+    {"--error", "E",
+     "stop once the image's error d_rel, as estimated, is at most E, e.g. 1% or 0.01; with --spp "
+     "or --time, whichever comes first",
+     "", [](Options& o, Text v) { o.error = option::error(v); },
+     [](const Options& o) { return o.error > 0 ? std::to_string(o.error) : "null"; }},
     one_of<Options>(
         "--sampler", "independent|stratified|halton|sobol|halton-naive",
         "where the random numbers come from; halton-naive is a lesson in what not to do, and "
         "biased",
         [](auto& o) -> auto& { return o.sampler; }),
-    {"--halves", "",
-     "two independently randomised halves of stratified, halton and sobol samples, so that their "
-     "error can be estimated",
-     "", [](Options& o, Text) { o.halves = true; },
-     [](const Options& o) { return std::string(o.halves ? "true" : "false"); }},
+    {"--sets", "N",
+     "sets of samples of each pixel, randomised each on its own: from their spread comes the error "
+     "of the image",
+     "one, and up to 8 where noise is", [](Options& o, Text v) { o.sets = option::sets(v, 1); },
+     [](const Options& o) { return o.sets ? std::to_string(*o.sets) : "null"; }},
     one_of<Options>(
         "--direction", "uniform|bsdf",
         "directions at rough surfaces: uniform over the hemisphere, or importance-sampled",
@@ -119,7 +138,7 @@ inline const OptionTable<Options> option_table = {
         "--view", "radiance|normal|depth|albedo|bvh|variance",
         "what the image shows: radiance; (normal + 1) / 2; distance; albedo; nodes (red) and "
         "shapes (green) visited by a ray; variance of the pixels' means, which implies "
-        "--halves",
+        "--sets 2",
         [](auto& o) -> auto& { return o.view; }),
     one_of<Options>(
         "--film", "mc|vor|fvor|cvor|torus",
@@ -132,9 +151,21 @@ inline const OptionTable<Options> option_table = {
      [](Options& o, Text v) { o.replay = option::pixel(v); }},
     {"--sample", "I", "of this sample, with --pixel", "0",
      [](Options& o, Text v) { o.sample = parse_count(v, 0, option::most_samples); }},
+    {"--set", "K", "of this set, with --pixel", "0",
+     [](Options& o, Text v) { o.set = option::sets(v, 0); }},
     CommonRows<Options>::quiet(),
     CommonRows<Options>::help(),
 };
+
+// ---- Sets of samples ----------------------------------------------------------------------------
+
+inline constexpr uint32_t sets_by_noise = 0;
+
+// In every pixel, or by noise.
+inline uint32_t sets_of(const Options& o) {
+    if (o.sampler == SamplerKind::halton_naive) return 1;
+    return o.sets.value_or(o.view == View::variance ? 2 : sets_by_noise);
+}
 
 // ---- Words to options ---------------------------------------------------------------------------
 
@@ -159,11 +190,29 @@ inline void check_maps(const Options& o) {
                             ": light is scattered without end");
 }
 
+// Whether there is an error to stop at.
+inline void check_error(const Options& o) {
+    if (o.error == 0) return;
+    if (o.sampler == SamplerKind::halton_naive)
+        throw UserError("--error: --sampler halton-naive is not random: its error is not known");
+    if (o.sets == 1u) throw UserError("--error: needs --sets 2 or more, or none given");
+    if (o.film != Weighting::mc)
+        throw UserError(as_written(option_table, o, "--film") +
+                        ": needs --spp, not --error: all samples of a pixel at once");
+}
+
 // What single options do not tell.
 inline void check_together(const Options& o) {
     if (o.sample && !o.replay) throw UserError("--sample: goes with --pixel X,Y");
+    if (o.view == View::variance && o.sets == 1u)
+        throw UserError("--view variance: needs --sets 2 or more, or none given");
+    if (o.set && !o.replay) throw UserError("--set: goes with --pixel X,Y");
+    if (o.sampler == SamplerKind::halton_naive && (o.sets > 1u || o.view == View::variance))
+        throw UserError((o.sets ? std::string("--sets") : std::string("--view variance")) +
+                        ": --sampler halton-naive is not random: all sets of it are alike");
     if (o.direct != Estimator::stochastic && o.technique.light != LightMode::nee)
         throw UserError(as_written(option_table, o, "--direct") + ": needs --light nee");
+    check_error(o);
     need_scene(o);
     check_maps(o);
     if (o.film == Weighting::mc) return;
@@ -173,7 +222,6 @@ inline void check_together(const Options& o) {
     if (o.seconds > 0)
         throw UserError(film + ": needs --spp, not --time: all samples of a pixel at once");
     if (o.spp > (1 << 20)) throw UserError(film + ": at most 1048576 samples per pixel");
-    if (o.view == View::variance) throw UserError(film + ": its variance is not known");
     if (o.direct != Estimator::stochastic) throw UserError(film + ": needs --direct stochastic");
 }
 
@@ -181,7 +229,6 @@ inline void check_together(const Options& o) {
 inline Options parse_options(const std::vector<std::string>& words) {
     Options o = parse_words(option_table, words);
     if (o.help) return o;
-    if (o.view == View::variance) o.halves = true;
     check_together(o);
     return o;
 }

@@ -34,8 +34,6 @@ ParsedScene load(Options& o) {
                             ": --light none: rays never hit a point light");
     if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))
         throw UserError("--pixel: outside the image");
-    if (o.view == View::variance && target_of(o, scene).samples == 1)
-        throw UserError("--view variance: needs --spp 2 or more");
     // Coarser than build/radiosity's: after a bounce its triangles are not seen, noise is (by
     // `make indirect`).
     if (has_maps(o)) o.mesh = edge_length(o.scene, scene, o.mesh, 16, Particles::bytes());
@@ -64,7 +62,7 @@ void write(const Options& o, const Scene& scene, const Rendered& rendered,
     write_images(outputs, o.view == View::variance ? variance : image, scene.exposure);
     if (!o.stats.empty()) write_file(o.stats, encode_stats(o, scene.size, scene.depth, run));
     if (run.maps) tell(o, summary(*run.maps));
-    tell(o, summary(o.scene, run));
+    tell(o, summary(o, run));
     tell_written(o, outputs);
     if (o.view == View::radiance && !scene.lights.empty() &&
         run.mean_radiance == std::array<double, 3>{})
@@ -92,12 +90,10 @@ int penumbra(const std::vector<std::string>& words) {
         return 0;
     }
     const Rendered result = rendered(job);
-    if (o.view == View::variance && result.run.spp == 1)
-        throw UserError("--view variance: one sample has no variance; nothing was written");
     if (result.run.spp > 0)
         write(o, scene, result, outputs);
     else
-        tell(o, summary(o.scene, result.run));
+        tell(o, summary(o, result.run));
     return result.run.interrupted ? 128 + interrupted : 0;
 }
 

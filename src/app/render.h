@@ -4,19 +4,11 @@
 
 #include "app/indirect.h"
 #include "app/views.h"
+#include "film/error.h"
 #include "shadow/shadow.h"
 #include "voronoi/weighted.h"
 
 // ---- What to render -----------------------------------------------------------------------------
-
-// What the user's samples allow to say about their variance.
-inline VarianceFrom variance_from(const Options& o) {
-    if (o.film != Weighting::mc) return VarianceFrom::nothing;
-    const bool samples = o.sampler == SamplerKind::independent;
-    return samples    ? VarianceFrom::samples
-           : o.halves ? VarianceFrom::halves
-                      : VarianceFrom::nothing;
-}
 
 struct Job {
     const Options& o;
@@ -27,24 +19,29 @@ struct Job {
     const Pattern rest = {};     // of their later numbers
 };
 
+// Whole grids first, then all sets but the first of each pixel.
+inline Passes passes_of(const Options& o, const Target& target, uint64_t period) {
+    return {target, period, o.threads, (samples_before_sets + period - 1) / period * period};
+}
+
 inline Job job_of(const Options& o, const Scene& scene) {
     const Target target = target_of(o, scene);
-    const Pattern pattern = make_pattern(o.sampler, o.seed, o.halves, scene.depth, target.samples);
-    // Voronoi weights need all of a pixel's samples at once.
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, target.samples);
+    // Voronoi weights need all of a set's samples at once.
     const uint64_t period = o.film == Weighting::mc ? pattern.period() : target.samples;
-    return {o, scene, pattern, {target, period, o.threads}};
+    return {o, scene, pattern, passes_of(o, target, period)};
 }
 
 // Of an endless scene; what the maps took is taken off the time.
 inline Job job_of(const Options& o, const Scene& scene, const Maps& maps) {
     Target target = target_of(o, scene);
-    const Pattern pattern = EndlessNumbers::pattern(o.sampler, o.seed, o.halves, target.samples);
+    const Pattern pattern = EndlessNumbers::pattern(o.sampler, o.seed, target.samples);
     // Of all limits the shortest: 0 would be none, and the first pass runs in any case.
     constexpr double a_moment = 1e-3;
     if (target.seconds > 0)
         target.seconds = std::max(a_moment, target.seconds - maps.stats.seconds);
     return {o,       scene,
-            pattern, {target, pattern.period(), o.threads},
+            pattern, passes_of(o, target, pattern.period()),
             &maps,   EndlessNumbers::independent(o.seed)};
 }
 
@@ -58,12 +55,11 @@ inline auto counting(uint64_t& rays) {
     return [&rays](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); };
 }
 
-// Sample i of pixel (x, y) by paths that end on maps.
+// One sample by a path that ends on maps.
 template <class Account>
-rgb mapped_Li(const Job& job, int x, int y, uint64_t i, Account account) {
-    const Start at = start(job.scene, job.pattern, x, y, i);
-    const uint64_t pixel = uint64_t(y) * uint64_t(job.scene.size.width) + uint64_t(x);
-    const EndlessNumbers u(at.sampler, Sampler(job.rest, pixel, i));
+rgb mapped_Li(const Job& job, const PixelSample& s, Account account) {
+    const Start at = start(job.scene, job.pattern, s);
+    const EndlessNumbers u(at.sampler, Sampler(job.rest, pixel_number(job.scene, s), s.i, s.set));
     return Li(job.maps->gather(job.o, job.scene), at.ray, u, account);
 }
 
@@ -90,101 +86,132 @@ void check_finite(const Film<Pixel>& film) {
     const NonFinite& bad = film.first_non_finite();
     const std::string pixel = std::to_string(bad.x) + "," + std::to_string(bad.y);
     const std::string sample = std::to_string(bad.sample);
-    throw SystemError(std::to_string(film.non_finite()) +
-                      " samples were not finite, the first at pixel " + pixel + " sample " +
-                      sample + " (replay it by --pixel " + pixel + " --sample " + sample +
-                      "); nothing was written");
+    throw SystemError(
+        std::to_string(film.non_finite()) + " samples were not finite, the first at pixel " +
+        pixel + " sample " + sample + " (replay it by --pixel " + pixel + " --sample " + sample +
+        (bad.set ? " --set " + std::to_string(bad.set) : "") + "); nothing was written");
 }
 
-// Renders row by row, row(y, n, rays), which counts its rays.
-template <class Pixel, class Row>
-RunStats fill(Film<Pixel>& film, const Job& job, Row row) {
-    SampleProgress progress(job.passes.target, job.o.quiet);
+// Once, where noise is.
+template <class Pixel>
+void choose_sets(Film<Pixel>& film, uint64_t seed) {
+    if (film.has_sets() || film.samples() < 2) return;
+    film.add_sets(sets_where_noise_is(film.noise(), film.size, seed));
+}
+
+// What the film holds, and how far that is from the truth.
+template <class Pixel, class Value>
+Rendered developed(const Film<Pixel>& film, const Options& o, RunStats run, ErrorCourse course,
+                   Value value) {
+    const Image image = film.image_of(value);
+    run.mean_radiance = mean_of_pixels(image);
+    run.error = error_of(film, value);
+    run.sets = film.sets_per_pixel();
+    if (course.is_due(run.spp)) course.add(run.spp, run.error.d_rel());
+    run.exponent_of_cost = 1 / course.exponent();
+    return {image, o.view == View::variance ? variance_of(film, value) : Image(), run};
+}
+
+// Renders row by row, row(y, n, rays), which counts its rays; value_in(film) is what the pixels
+// say.
+template <class Pixel, class Row, class ValueIn>
+Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
+    const Target& target = job.passes.target;
+    SampleProgress progress(target, job.o.quiet);
     std::atomic<uint64_t> rays = 0;
     auto counted = [&](int y, uint64_t n) {
         uint64_t row_rays = 0;
         row(y, n, row_rays);
         rays += row_rays;
     };
-    render(film, job.passes, counted, progress);
+    ErrorCourse course;
+    bool enough = false;
+    if (sets_of(job.o) != sets_by_noise)
+        film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets_of(job.o)}));
+    render(film, job.passes, counted, progress, [&](const Film<Pixel>&) -> uint64_t {
+        if (film.samples() >= job.passes.pause) choose_sets(film, job.o.seed);
+        const bool look = target.error > 0 || course.is_due(film.samples());
+        if (film.samples() < samples_before_sets || !film.others_are_complete() || !look)
+            return UINT64_MAX;
+        const ImageError e = error_of(film, value_in(film));
+        course.add(film.samples(), e.d_rel());
+        if (target.error == 0) return UINT64_MAX;
+        const uint64_t more = samples_to_look(e, course, target.error, film.samples());
+        progress.expect(film.samples() + more);
+        enough = more == 0;
+        return more;
+    });
+    choose_sets(film, job.o.seed);
+    if (film.has_sets() && !film.others_are_complete() && film.samples() > 0 && !interrupted)
+        add_pass(film, 0, job.passes.threads, counted, progress);
     check_finite(film);
     RunStats run;
     run.spp = film.samples(), run.seconds = progress.elapsed(), run.rays = rays;
     run.non_finite = film.non_finite(), run.interrupted = interrupted;
-    return run;
-}
-
-// What the film holds.  Pixels are independent of each other: the variance of their mean is the
-// mean of their variances over their number.
-template <class Pixel, class Value, class Variance>
-Rendered developed(const Film<Pixel>& film, RunStats run, Value value, Variance variance) {
-    const Image image = film.image_of(value);
-    run.mean_radiance = mean_of_pixels(image);
-    run.variance_of_mean = film.mean_of(variance);
-    for (double& v : run.variance_of_mean) v /= double(image.pixels.size());
-    return {image, film.image_of(variance), run};
+    run.stopped_by = enough ? "error" : film.samples() == target.samples ? "samples" : "time";
+    if (run.interrupted) run.stopped_by = "interrupt";
+    return developed(film, job.o, run, course, value_in(film));
 }
 
 inline Rendered render_means(const Job& job) {
-    const Options& o = job.o;
-    const Scene& scene = job.scene;
-    Film<MeanPixel> film(scene.size);
-    const RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
-        film.add_row(y, n, [&](int x, uint64_t i) {
-            return radiance(job, start(scene, job.pattern, x, y, i), rays);
+    Film<MeanPixel> film(job.scene.size);
+    auto row = [&](int y, uint64_t n, uint64_t& rays) {
+        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
+            return radiance(job, start(job.scene, job.pattern, {x, y, i, set}), rays);
         });
-    });
-    return developed(film, run, value_in(film), variance_in(film, variance_from(o)));
+    };
+    return fill(film, job, row, [](const auto& f) { return value_in(f); });
 }
 
 // By paths that end on maps, whose time and rays count, too.
 inline Rendered render_mapped(const Job& job) {
     Film<MeanPixel> film(job.scene.size);
-    RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
-        film.add_row(y, n, [&](int x, uint64_t i) {
-            return mapped_Li(job, x, y, i, [&rays](const Segment&, const Step& e, const Mapped&) {
-                rays += 1 + (e.direct.light != nullptr);
-            });
+    auto row = [&](int y, uint64_t n, uint64_t& rays) {
+        auto count = [&rays](const Segment&, const Step& e, const Mapped&) {
+            rays += 1 + (e.direct.light != nullptr);
+        };
+        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
+            return mapped_Li(job, {x, y, i, set}, count);
         });
-    });
-    run.maps = job.maps->stats;
-    run.seconds += run.maps->seconds, run.rays += run.maps->rays;
-    return developed(film, run, value_in(film), variance_in(film, variance_from(job.o)));
+    };
+    Rendered r = fill(film, job, row, [](const auto& f) { return value_in(f); });
+    r.run.maps = job.maps->stats;
+    r.run.seconds += r.run.maps->seconds, r.run.rays += r.run.maps->rays;
+    return r;
 }
 
 // Direct light by ratio or regression.
 inline Rendered render_shadows(const Job& job) {
     const Options& o = job.o;
-    const Scene& scene = job.scene;
-    Film<ShadowPixel> film(scene.size);
-    const RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
-        film.add_row(y, n, [&](int x, uint64_t i) {
-            const Start at = start(scene, job.pattern, x, y, i);
-            return shadow_Li(scene, o.technique, o.direct, at, counting(rays));
+    Film<ShadowPixel> film(job.scene.size);
+    auto row = [&](int y, uint64_t n, uint64_t& rays) {
+        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
+            const Start at = start(job.scene, job.pattern, {x, y, i, set});
+            return shadow_Li(job.scene, o.technique, o.direct, at, counting(rays));
         });
-    });
-    return developed(film, run, value_in(film, o.direct),
-                     variance_in(film, o.direct, variance_from(o)));
+    };
+    return fill(film, job, row, [&](const auto& f) { return value_in(f, o.direct); });
 }
 
 // Samples weighted by the areas of their Voronoi cells.
 inline Rendered render_cells(const Job& job) {
-    const Options& o = job.o;
-    const Scene& scene = job.scene;
-    Film<MeanPixel> film(scene.size);
+    Film<MeanPixel> film(job.scene.size);
     std::atomic<uint64_t> redraws = 0, fallbacks = 0;
-    RunStats run = fill(film, job, [&](int y, uint64_t n, uint64_t& rays) {
-        auto L = [&](int x, uint64_t i) {
+    auto row = [&](int y, uint64_t n, uint64_t& rays) {
+        auto L = [&](int x, uint64_t i, uint32_t set) {
             if (interrupted) return rgb{};  // its pass will not count
-            return radiance(job, start(scene, job.pattern, x, y, i), rays);
+            return radiance(job, start(job.scene, job.pattern, {x, y, i, set}), rays);
         };
-        WeightedRow weighted(o.film, job.pattern, n, uint64_t(y) * uint64_t(scene.size.width), L);
-        film.add_row(y, n, [&](int x, uint64_t i) { return weighted(x, i); });
+        const uint64_t all = job.passes.target.samples,
+                       first = uint64_t(y) * uint64_t(film.size.width);
+        WeightedRow weighted(job.o.film, job.pattern, all, first, L);
+        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) { return weighted(x, i, set); });
         redraws += weighted.weigher().redraws;
         fallbacks += weighted.weigher().fallbacks;
-    });
-    run.redraws = redraws, run.fallbacks = fallbacks;
-    return developed(film, run, value_in(film), variance_in(film, VarianceFrom::nothing));
+    };
+    Rendered r = fill(film, job, row, [](const auto& f) { return value_in(f); });
+    r.run.redraws = redraws, r.run.fallbacks = fallbacks;
+    return r;
 }
 
 inline Rendered rendered(const Job& job) {

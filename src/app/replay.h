@@ -93,7 +93,8 @@ private:
 inline void replay(const Job& job) {
     const auto& [o, scene, pattern, passes, maps, rest] = job;
     const PathLog log(scene, stdout);
-    const Start at = start(scene, pattern, o.replay->x, o.replay->y, o.sample.value_or(0));
+    const PixelSample which{o.replay->x, o.replay->y, o.sample.value_or(0), o.set.value_or(0)};
+    const Start at = start(scene, pattern, which);
     log.film(at);
     if (is_plain_view(o.view))
         return log.end("a view, not radiance", view_along(scene, o.view, at.ray));
@@ -103,11 +104,11 @@ inline void replay(const Job& job) {
         why = e.end;
     };
     if (maps)
-        return log.end(why, mapped_Li(job, o.replay->x, o.replay->y, o.sample.value_or(0),
-                                      [&](const Segment& s, const Step& e, const Mapped& m) {
-                                          log(s, e, m);
-                                          why = m.goes ? e.end : "the maps";
-                                      }));
+        return log.end(why,
+                       mapped_Li(job, which, [&](const Segment& s, const Step& e, const Mapped& m) {
+                           log(s, e, m);
+                           why = m.goes ? e.end : "the maps";
+                       }));
     if (o.direct == Estimator::stochastic)
         return log.end(why, Li(scene, o.technique, at.ray, at.sampler, account));
     const ShadowSample sample = shadow_Li(scene, o.technique, o.direct, at, account);

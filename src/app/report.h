@@ -18,6 +18,13 @@ inline std::string percent(double x) {
     return text;
 }
 
+// With so many digits, wherever the point is.
+inline std::string significant(double x, int digits) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*g", digits, x);
+    return text;
+}
+
 inline std::string fixed(double x, int digits) {
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, x);

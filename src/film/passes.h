@@ -37,6 +37,7 @@ inline void catch_interrupt() {
 struct Target {
     uint64_t samples = 0;  // per pixel
     double seconds = 0;
+    double error = 0;  // d_rel; see StopByError
 };
 
 // Passes long enough to keep the threads busy, short enough to stop soon.
@@ -124,19 +125,38 @@ struct Passes {
     Target target;
     uint64_t period = 1;  // samples after which a pass may end
     unsigned threads = 1;
+    uint64_t pause = 0;  // samples after which one does
 };
 
-// Adds passes to the film until the target is met, `interrupted`, or a sample is not finite; row(y,
-// n) adds n samples to each pixel of row y.  A clock of seconds(); show(samples so far) while the
-// threads work.
+// Adds one pass to the film, unless `interrupted`, or a sample is not finite: then the answer is
+// false.  row(y, n) adds n samples to each pixel of row y; show(samples so far) while the threads
+// work.
+template <class Film, class Row, class Progress>
+bool add_pass(Film& film, uint64_t n, unsigned threads, Row row, Progress& progress) {
+    const bool complete = parallel_rows(
+        film.size.height, threads, [&](int y) { row(y, n); },
+        [&](double part) { progress.show(double(film.samples()) + part * double(n)); });
+    if (!complete || film.non_finite() > 0) return false;
+    film.end_pass(n);
+    return true;
+}
+
+// Adds passes to the film until the target is met, one could not be added, or at_most(film), which
+// says after each how many samples the next may bring, says 0.  A clock of seconds.
+template <class Film, class Row, class Progress, class AtMost>
+void render(Film& film, const Passes& passes, Row row, Progress& progress, AtMost at_most) {
+    Schedule schedule(passes.target, passes.period);
+    uint64_t most = UINT64_MAX;
+    while (uint64_t n = schedule.next(film.samples(), progress.elapsed())) {
+        if (film.samples() < passes.pause) n = std::min(n, passes.pause - film.samples());
+        if (n > most) n = std::max<uint64_t>(1, most / passes.period) * passes.period;
+        if (!add_pass(film, n, passes.threads, row, progress)) return;
+        most = at_most(film);
+        if (most == 0) return;
+    }
+}
+
 template <class Film, class Row, class Progress>
 void render(Film& film, const Passes& passes, Row row, Progress& progress) {
-    Schedule schedule(passes.target, passes.period);
-    while (const uint64_t n = schedule.next(film.samples(), progress.elapsed())) {
-        const bool complete = parallel_rows(
-            film.size.height, passes.threads, [&](int y) { row(y, n); },
-            [&](double part) { progress.show(double(film.samples()) + part * double(n)); });
-        if (!complete || film.non_finite() > 0) return;
-        film.end_pass(n);
-    }
+    render(film, passes, row, progress, [](const Film&) { return UINT64_MAX; });
 }

@@ -33,7 +33,7 @@ inline PathRunner textbook_runner(const Scene& scene) {
 inline PathRunner path_runner(const std::string& name, const Scene& scene, const Technique& t,
                               SamplerKind kind) {
     auto trace = [&scene, t, kind](int y, uint64_t seed) {
-        const Pattern pattern = make_pattern(kind, seed, false, scene.depth, path_samples);
+        const Pattern pattern = make_pattern(kind, seed, scene.depth, path_samples);
         uint64_t rays = 0;
         rgb sum;
         auto count = [&](const Segment&, const Step& e) {
@@ -41,7 +41,7 @@ inline PathRunner path_runner(const std::string& name, const Scene& scene, const
         };
         for (int x = 0; x < scene.size.width; ++x)
             for (uint64_t i = 0; i < path_samples; ++i) {
-                const Start s = start(scene, pattern, x, y, i);
+                const Start s = start(scene, pattern, {x, y, i});
                 sum += Li(scene, t, s.ray, s.sampler, count);
             }
         if (!is_finite(sum)) throw SystemError("a sample was not finite");

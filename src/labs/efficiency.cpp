@@ -83,7 +83,7 @@ void render_row(Image& image, const Job& job, int y) {
         rgb sum;
         uint64_t rays = 0;
         for (uint64_t i = 0; i < job.o.spp; ++i)
-            sum += radiance(job, start(job.scene, job.pattern, x, y, i), rays);
+            sum += radiance(job, start(job.scene, job.pattern, {x, y, i}), rays);
         for (size_t c = 0; c < 3; ++c) image.at(x, y)[c] = float(sum.*axis[c] / real(job.o.spp));
     }
 }

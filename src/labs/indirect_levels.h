@@ -114,7 +114,7 @@ public:
         const uint64_t pixel = uint64_t(y) * uint64_t(scene_.size.width) + uint64_t(x);
         rgb sum;
         for (uint64_t i = 0; i < n; ++i) {
-            const Start at = start(scene_, pattern, x, y, i);
+            const Start at = start(scene_, pattern, {x, y, i});
             sum += way_.go_on ? Li(g, at.ray, {at.sampler, Sampler(rest, pixel, i)})
                               : Li(scene_, technique(), at.ray, at.sampler);
         }
@@ -136,7 +136,7 @@ inline Level measure(const Setup& setup, const Way& way, SamplerKind kind, uint6
     double samples = 0, pixels = 0;
     std::vector<Pattern> patterns, rest;
     for (uint64_t k = 0; k < means; ++k) {
-        patterns.push_back(make_pattern(kind, hash(round, k), false, setup.room.scene.depth, n));
+        patterns.push_back(make_pattern(kind, hash(round, k), setup.room.scene.depth, n));
         rest.push_back(EndlessNumbers::independent(hash(round, k)));
     }
     const double begin = processor_seconds();

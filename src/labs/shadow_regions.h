@@ -47,7 +47,7 @@ inline Stage load(const std::string& name, Polygons polygons, int shrink) {
 
 // Direct light that the camera sees by sample i of a pixel.
 inline Shadowed first_light(const Stage& v, PixelIndex p, uint64_t i) {
-    const Start at = start(v.scene, v.pattern, p.x, p.y, i);
+    const Start at = start(v.scene, v.pattern, {p.x, p.y, i});
     return shadowed(v.scene, step(v.scene, v.technique, {at.ray, at.ray.o}, at.sampler));
 }
 

@@ -66,7 +66,7 @@ struct Samples {
 inline Samples draw_samples(const Scene& scene, const Pattern& pattern, PixelIndex p, uint64_t n) {
     Samples s;
     for (uint64_t i = 0; i < n; ++i) {
-        const Start at = start(scene, pattern, p.x, p.y, i);
+        const Start at = start(scene, pattern, {p.x, p.y, i});
         s.places.push_back({double(at.u.x), double(at.u.y)});
         s.L.push_back(Li(scene, technique, at.ray, at.sampler));
     }
@@ -91,7 +91,7 @@ inline Mean weighted(Weigher& weigher, size_t t, const Samples& s, SampleSet set
                          s.L.data() + set.first);
 }
 inline Mean by_strata(const Scene& scene, uint64_t seed, PixelIndex p, uint64_t n) {
-    const Pattern strata = make_pattern(SamplerKind::stratified, seed, false, scene.depth, n);
+    const Pattern strata = make_pattern(SamplerKind::stratified, seed, scene.depth, n);
     const Samples s = draw_samples(scene, strata, p, n);
     return weighted_mean(std::vector<double>(n, 1 / double(n)), s.L.data());
 }

@@ -27,12 +27,11 @@ inline constexpr uint32_t dimension(int vertex, Draw what) {
 struct Pattern {
     SamplerKind kind = SamplerKind::sobol;
     uint64_t seed = 0;
-    uint32_t halves = 1;             // 2: odd samples have a randomisation of their own
     uint32_t columns = 1, rows = 1;  // stratified: of a grid
     std::vector<Base> bases = {};    // halton: one prime a dimension
 
     // Samples per pixel after which whole grids are complete.
-    uint64_t period() const { return uint64_t(halves) * columns * rows; }
+    uint64_t period() const { return uint64_t(columns) * rows; }
 };
 
 // The most square grid of n cells.
@@ -45,17 +44,16 @@ inline uint32_t rows_of_grid(uint64_t n) {
 // For paths of up to `depth` scatterings.  A grid has at most 256 cells, divides the samples
 // without rest and is at most twice as wide as high: 16 cells if nothing fits, or spp is 0
 // (unknown).  Before its last pass is complete the cells are still a fair, if random, choice.
-inline Pattern make_pattern(SamplerKind kind, uint64_t seed, bool halves, int depth, uint64_t spp) {
-    Pattern p{kind, seed, halves && kind != SamplerKind::independent ? 2u : 1u};
+inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth, uint64_t spp) {
+    Pattern p{kind, seed};
     if (kind == SamplerKind::halton)
         for (uint32_t prime : first_primes(dimension(depth, Draw::light_x)))
             p.bases.emplace_back(prime);
     if (kind == SamplerKind::stratified) {
         p.columns = p.rows = 4;
-        const uint64_t n = spp / p.halves;
-        for (uint64_t cells = std::min<uint64_t>(n, 256); cells > 1; --cells) {
+        for (uint64_t cells = std::min<uint64_t>(spp, 256); cells > 1; --cells) {
             const uint32_t rows = rows_of_grid(cells);
-            if (n % cells || cells > 2 * uint64_t(rows) * rows) continue;
+            if (spp % cells || cells > 2 * uint64_t(rows) * rows) continue;
             p.columns = uint32_t(cells / rows);
             p.rows = rows;
             break;
@@ -79,14 +77,13 @@ inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
     return uint32_t((i + (mix(key) >> 32) * n / (uint64_t(1) << 32)) % n);
 }
 
-// The numbers of [0,1) of one sample of one pixel, a function of (seed, pixel, sample, dimension)
-// alone: any thread may draw any path at any time.
+// The numbers of [0,1) of one sample of one pixel, a function of (seed, pixel, set, sample,
+// dimension) alone: any thread may draw any path at any time.  Each set of a pixel's samples has a
+// randomisation of its own.
 class Sampler {
 public:
-    Sampler(const Pattern& pattern, uint64_t pixel, uint64_t sample)
-        : pattern_(pattern),
-          index_(sample / pattern.halves),
-          key_(hash(hash(hash(0, pattern.seed), pixel), sample % pattern.halves)) {
+    Sampler(const Pattern& pattern, uint64_t pixel, uint64_t sample, uint32_t set = 0)
+        : pattern_(pattern), index_(sample), key_(hash(hash(hash(0, pattern.seed), pixel), set)) {
         if (pattern.kind == SamplerKind::independent) key_ = hash(key_, sample);
         if (pattern.kind == SamplerKind::sobol) index_ = mirrored(index_);
     }
@@ -141,8 +138,8 @@ public:
 
 private:
     const Pattern& pattern_;
-    uint64_t index_;  // within this half; sobol: mirrored
-    uint64_t key_;    // of seed, pixel and half; independent: of the sample, too
+    uint64_t index_;  // of the sample; sobol: mirrored
+    uint64_t key_;    // of seed, pixel and set; independent: of the sample, too
 
     uint64_t random(uint32_t dim) const { return mix(key_ + (dim + 1) * golden); }
 

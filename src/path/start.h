@@ -3,16 +3,26 @@
 #include "path/sampler.h"
 #include "world/scene.h"
 
-// Sample i of pixel (x, y): the numbers of its path, its place in the pixel, its ray.
+// Sample i of a set of pixel (x, y).
+struct PixelSample {
+    int x, y;
+    uint64_t i;
+    uint32_t set = 0;
+};
+
+// The numbers of its path, its place in the pixel, its ray.
 struct Start {
     Sampler sampler;
     vec2 u;
     Ray ray;
 };
 
-inline Start start(const Scene& scene, const Pattern& pattern, int x, int y, uint64_t i) {
-    const uint64_t pixel = uint64_t(y) * uint64_t(scene.size.width) + uint64_t(x);
-    const Sampler sampler(pattern, pixel, i);
+inline uint64_t pixel_number(const Scene& scene, const PixelSample& s) {
+    return uint64_t(s.y) * uint64_t(scene.size.width) + uint64_t(s.x);
+}
+
+inline Start start(const Scene& scene, const Pattern& pattern, const PixelSample& s) {
+    const Sampler sampler(pattern, pixel_number(scene, s), s.i, s.set);
     const vec2 u = sampler.get2(film_x);
-    return {sampler, u, camera_ray(scene.camera, scene.size, real(x) + u.x, real(y) + u.y)};
+    return {sampler, u, camera_ray(scene.camera, scene.size, real(s.x) + u.x, real(s.y) + u.y)};
 }

@@ -40,11 +40,11 @@ inline KnownLight known_light(const Scene& s, Mesh mesh, IlluminationMap map) {
 class EndlessNumbers {
 public:
     static constexpr int structured = 8;
-    static Pattern pattern(SamplerKind kind, uint64_t seed, bool halves, uint64_t spp) {
-        return make_pattern(kind, seed, halves, structured, spp);
+    static Pattern pattern(SamplerKind kind, uint64_t seed, uint64_t spp) {
+        return make_pattern(kind, seed, structured, spp);
     }
     static Pattern independent(uint64_t seed) {
-        return make_pattern(SamplerKind::independent, seed, false, 0, 0);
+        return make_pattern(SamplerKind::independent, seed, 0, 0);
     }
 
     EndlessNumbers(const Sampler& first, const Sampler& rest) : first_(first), rest_(rest) {}

@@ -104,7 +104,7 @@ public:
         : scene_(scene),
           mesh_(mesh),
           pattern_(pattern),
-          independent_(make_pattern(SamplerKind::independent, pattern.seed, false, 0, 0)),
+          independent_(make_pattern(SamplerKind::independent, pattern.seed, 0, 0)),
           batch_(batches, Batch{std::vector<Sum>(number_of_sides(mesh)), {}, 0, 0}) {}
 
     // Every batch has as many.
@@ -112,7 +112,7 @@ public:
 
     // Pattern of as many dimensions as the numbers of a walk have.
     static Pattern pattern(SamplerKind kind, uint64_t seed, uint64_t samples) {
-        return make_pattern(kind, seed, false, 5, of_each(samples));
+        return make_pattern(kind, seed, 5, of_each(samples));
     }
 
     // ---- As a film for render() of passes.h: rows are batches, samples particles of each --------

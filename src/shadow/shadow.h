@@ -95,12 +95,12 @@ ShadowSample shadow_Li(const Scene& scene, const Technique& t, Estimator estimat
 
 // ---- Pixels -------------------------------------------------------------------------------------
 
-// For Film.  Ratio and regression need the moments of all samples of a pixel: the mean of the
-// ratios of single samples would never converge.
+// For Film.  Ratio and regression need the moments of all samples of a set: the mean of the ratios
+// of single samples would never converge.
 struct ShadowPixel {
     using Sample = ShadowSample;
-    MeanPixel rest;
-    std::array<std::array<ShadowMoments, 3>, 2> shadowed;  // of even and odd samples, by channel
+    MeanPixel rest;                  // and the spread of the plain estimate
+    ShadowMoments shadowed[3] = {};  // a channel at a time
 
     static ShadowPixel unwritten() { return {MeanPixel::unwritten(), {}}; }
     static bool fits(const ShadowSample& s) {
@@ -109,38 +109,28 @@ struct ShadowPixel {
     void add(uint64_t i, const ShadowSample& s) {
         rest.add(i, s.rest);
         for (size_t c = 0; c < 3; ++c)
-            shadowed[i % 2][c].add(double(s.first.U.*axis[c]), double(s.first.w.*axis[c]),
-                                   double(s.first.wV.*axis[c]));
+            shadowed[c].add(double(s.first.U.*axis[c]), double(s.first.w.*axis[c]),
+                            double(s.first.wV.*axis[c]));
+    }
+
+    // What shadows leave to be found counts as if V were a coin that falls anew for every sample.
+    double noise(uint64_t n) const {
+        double sum = rest.noise(n);
+        for (const ShadowMoments& m : shadowed) {
+            const double R = visible_part(m);
+            sum += n < 2 ? 0 : (m.bb / double(n - 1) + m.w * m.w) * R * (1 - R) / double(n);
+        }
+        return sum;
     }
 };
 
-// What the samples of both halves, or of one of them, say; n samples in all.
-inline float value_of(const ShadowPixel& p, Estimator e, uint64_t n, size_t c) {
-    const auto& [even, odd] = p.shadowed;
-    return float(p.rest.sum(c) / double(n)) + float(estimate(e, merge(even[c], odd[c])));
-}
-inline double value_of_half(const ShadowPixel& p, Estimator e, uint64_t n, size_t c, size_t half) {
-    const double samples = double(half ? n / 2 : n - n / 2);
-    return p.rest.half[half][c] / samples + estimate(e, p.shadowed[half][c]);
-}
-
+// What n samples say.
 inline auto value_in(const Film<ShadowPixel>& film, Estimator e) {
-    return [e, n = film.samples()](const ShadowPixel& p, size_t c) { return value_of(p, e, n, c); };
-}
-
-// Ratio and regression are no means of samples: the spread of samples says nothing about them.  The
-// difference of two halves does, with an error of its own that falls as their bias does.
-inline auto variance_in(const Film<ShadowPixel>& film, Estimator e, VarianceFrom from) {
-    return [e, from, n = film.samples()](const ShadowPixel& p, size_t c) {
-        if (n < 2 || from == VarianceFrom::nothing) return double(NAN);
-        return variance_of_halves(value_of_half(p, e, n, c, 0), value_of_half(p, e, n, c, 1), n);
+    return [e, n = double(film.samples())](const ShadowPixel& p, size_t c) {
+        return p.rest.sum[c] / n + estimate(e, p.shadowed[c]);
     };
 }
 
 inline Image image_of(const Film<ShadowPixel>& film, Estimator e) {
     return film.image_of(value_in(film, e));
-}
-
-inline Image variance_of(const Film<ShadowPixel>& film, Estimator e, VarianceFrom from) {
-    return film.image_of(variance_in(film, e, from));
 }

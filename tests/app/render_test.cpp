@@ -119,7 +119,7 @@ TEST_CASE("direct: every estimator finds the same image; its parts are those of 
         const Pattern pattern{SamplerKind::independent, 5};
         for (uint64_t i = 0; i < 200; ++i) {
             const int x = int(i % 16), y = int(i % 8);
-            const Start at = start(scene, pattern, x, y, i);
+            const Start at = start(scene, pattern, {x, y, i});
             const Technique nee{Direction::bsdf, LightMode::nee};
             const rgb plain = Li(scene, nee, at.ray, at.sampler);
             auto sample = [&](Estimator e) { return shadow_Li(scene, nee, e, at, NoAccount{}); };
@@ -190,7 +190,7 @@ TEST_CASE("direct: ratio and regression do not depend on threads or passes, and 
         const Pattern pattern = job_of(o, scene).pattern;
         ShadowMoments m;
         for (uint64_t i = 0; i < 48; ++i) {
-            const Start at = start(scene, pattern, 2, 1, i);
+            const Start at = start(scene, pattern, {2, 1, i});
             const Shadowed s = shadow_Li(scene, o.technique, e, at, NoAccount{}).first;
             m.add(double(s.U.z), double(s.w.z), double(s.wV.z));
         }

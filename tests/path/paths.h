@@ -12,7 +12,7 @@
 template <class Account = NoAccount>
 rgb radiance(const Scene& scene, const Technique& t, const Pattern& pattern, int x, int y,
              uint64_t i, Account account = {}) {
-    const Start at = start(scene, pattern, x, y, i);
+    const Start at = start(scene, pattern, {x, y, i});
     return Li(scene, t, at.ray, at.sampler, account);
 }
 

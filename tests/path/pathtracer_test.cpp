@@ -206,7 +206,7 @@ TEST_CASE("every pixel has random numbers of its own, and every bounce, and ever
     std::vector<real> across, down;
     for (int y = 0; y < 5; ++y)
         for (int x = 0; x < 9; ++x) {
-            const vec2 u = start(scene, pattern, x, y, 0).u;
+            const vec2 u = start(scene, pattern, {x, y, 0}).u;
             across.push_back(u.x);
             down.push_back(u.y);
         }
@@ -252,7 +252,7 @@ quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
             room);
         const Technique t{bsdf, mis, real(glossy ? 0 : 1)};
         const Pattern pattern =
-            make_pattern(SamplerKind::halton, seed_here(), false, scene.depth + 1, 64);
+            make_pattern(SamplerKind::halton, seed_here(), scene.depth + 1, 64);
         for (uint32_t dim = dimension(0, Draw(0)); dim < pattern.bases.size(); ++dim) {
             const Draw what = Draw((dim - dimension(0, Draw(0))) % uint32_t(Draw::count));
             const size_t k = (dim - dimension(0, Draw(0))) / uint32_t(Draw::count);
@@ -304,7 +304,7 @@ sphere -0.5 0.4 0.2  0.1  ball
     for (int i = 0; i < 800; ++i) {
         const Technique t{uniform, mis, 0, i % 2 ? Pick::power : Pick::place};
         const int x = i / 2 % 20, y = i / 40;
-        const Start at = start(scene, pattern, x, y, 0);
+        const Start at = start(scene, pattern, {x, y, 0});
         const auto ground = meet(scene, at.ray);
         if (!ground || ground->material->emits()) continue;
         const DirectLight aimed = direct_light(scene, t, *ground, at.sampler, 0);
@@ -467,7 +467,7 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
         // A replicate is one randomisation of every pixel's whole point set.
         const auto replicate = [&, first = seed_here()](int k) {
-            const Pattern pattern = make_pattern(kind, first + uint64_t(k), false, scene.depth, 16);
+            const Pattern pattern = make_pattern(kind, first + uint64_t(k), scene.depth, 16);
             double sum = 0;
             for (int y = 0; y < scene.size.height; ++y)
                 for (int x = 0; x < scene.size.width; ++x)

@@ -41,8 +41,8 @@ TEST_CASE("every number of a path has a dimension of its own, in the order of th
 
 TEST_CASE("seed, pixel, sample, dimension: whichever is another, the number is another") {
     for (SamplerKind kind : kinds) {
-        const Pattern pattern = make_pattern(kind, 5, false, depth, 64);
-        const Pattern reseeded = make_pattern(kind, 6, false, depth, 64);
+        const Pattern pattern = make_pattern(kind, 5, depth, 64);
+        const Pattern reseeded = make_pattern(kind, 6, depth, 64);
         int equal = 0;
         for (uint64_t pixel = 0; pixel < 100; ++pixel)
             for (uint32_t dim : {0u, 2u, 7u}) {
@@ -69,7 +69,7 @@ TEST_CASE("every number of every sampler is uniform over [0,1)") {
     // Over pixels, whose numbers are independent: sample i of each, whatever i is.
     const std::vector<double> equal(16, 1 / 16.0);
     for (SamplerKind kind : kinds) {
-        const Pattern pattern = make_pattern(kind, seed_here(), false, depth, 64);
+        const Pattern pattern = make_pattern(kind, seed_here(), depth, 64);
         for (uint32_t dim = 0; dim < dimensions; ++dim)
             for (uint64_t sample : {0, 1, 5, 63}) {
                 std::vector<uint64_t> cells(16);
@@ -87,7 +87,7 @@ TEST_CASE("dimensions of a path and neighbouring pixels are uncorrelated") {
     // and variance 1/144; a replicate is the sum over one pixel, for its samples are not
     // independent of each other.  Each dimension meets the next three, so each pair the next pair.
     for (SamplerKind kind : kinds) {
-        const Pattern pattern = make_pattern(kind, seed_here(), false, depth, 16);
+        const Pattern pattern = make_pattern(kind, seed_here(), depth, 16);
         Moments between_dimensions, between_pixels;
         for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
             double dims = 0, pixels = 0;
@@ -118,7 +118,7 @@ TEST_CASE("no two numbers of a path come in the same order") {
     // that of independent numbers.  One order for both would make it 3.2 or more on average: for
     // v = u + c modulo 1 the mean product is B2(c) / 2, its square 1 / 720, times 16 * 144.
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
-        const Pattern pattern = make_pattern(kind, seed_here(), false, depth, 16);
+        const Pattern pattern = make_pattern(kind, seed_here(), depth, 16);
         for (uint32_t dim : {film_x, film_y, dimension(0, Draw::light_x), dimension(1, Draw::pick),
                              dimension(1, Draw::lobe), dimension(1, Draw::roulette)})
             for (uint32_t other : {dimension(2, Draw::wi_x), dimension(3, Draw::light_y),
@@ -140,7 +140,7 @@ TEST_CASE("no two numbers of a path come in the same order") {
 
 TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
     // The first 2 * 3 samples: one in each of 2 x 3 boxes of the film, in every pixel.
-    const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), false, depth, 64);
+    const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), depth, 64);
     for (uint64_t pixel = 0; pixel < 1000; ++pixel) {
         int boxes[6] = {};
         for (uint64_t i = 0; i < 6; ++i) {
@@ -153,7 +153,7 @@ TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
 
 TEST_CASE("Sobol' points of one pixel fill every elementary interval, the halves each its own") {
     for (bool halves : {false, true}) {
-        const Pattern pattern = make_pattern(SamplerKind::sobol, seed_here(), halves, depth, 0);
+        const Pattern pattern = make_pattern(SamplerKind::sobol, seed_here(), depth, 0);
         CHECK(pattern.period() == pattern.halves);
         for (uint64_t pixel = 0; pixel < 100; ++pixel)
             for (uint64_t half = 0; half < pattern.halves; ++half)
@@ -186,7 +186,7 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
     for (uint64_t spp : {1, 2, 7, 16, 48, 64, 100, 1024, 1000})
         for (bool halves : {false, true}) {
             const Pattern p =
-                make_pattern(SamplerKind::stratified, seed_here(), halves, depth, spp);
+                make_pattern(SamplerKind::stratified, seed_here(), depth, spp);
             const uint64_t period = p.period(), cells = p.columns * p.rows;
             CHECK(cells <= 256);
             CHECK(p.columns <= 2 * p.rows);
@@ -203,14 +203,14 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
                     for (uint64_t c = 0; c < cells; ++c) REQUIRE((film[c] == 1 && pick[c] == 1));
                 }
         }
-    CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 64).columns == 8);
-    CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 48).columns == 8);
-    CHECK(make_pattern(SamplerKind::stratified, 0, false, 1, 48).rows == 6);
-    CHECK(make_pattern(SamplerKind::stratified, 0, true, 1, 64).period() == 64);
+    CHECK(make_pattern(SamplerKind::stratified, 0, 1, 64).columns == 8);
+    CHECK(make_pattern(SamplerKind::stratified, 0, 1, 48).columns == 8);
+    CHECK(make_pattern(SamplerKind::stratified, 0, 1, 48).rows == 6);
+    CHECK(make_pattern(SamplerKind::stratified, 0, 1, 64).period() == 64);
 }
 
 TEST_CASE("every pass shuffles its cells anew") {
-    const Pattern p = make_pattern(SamplerKind::stratified, 3, false, depth, 16);
+    const Pattern p = make_pattern(SamplerKind::stratified, 3, depth, 16);
     int alike = 0;  // passes of the same order: by chance 1 in 16!
     for (uint64_t pixel = 0; pixel < 100; ++pixel) {
         bool same = true;
@@ -260,8 +260,8 @@ TEST_CASE("permute is as fair where it must walk: numbers that are no power of t
 
 TEST_CASE("halves are randomised apart; without them odd and even samples are one point set") {
     for (SamplerKind kind : {SamplerKind::halton, SamplerKind::sobol}) {
-        const Pattern whole = make_pattern(kind, seed_here(), false, depth, 64);
-        const Pattern halves = make_pattern(kind, seed_here(), true, depth, 64);
+        const Pattern whole = make_pattern(kind, seed_here(), depth, 64);
+        const Pattern halves = make_pattern(kind, seed_here(), depth, 64);
         int equal = 0;
         for (uint64_t pixel = 0; pixel < 100; ++pixel) {
             // Samples 2k and 2k + 1 of a pair of halves are both number k of their own point set.
@@ -275,7 +275,7 @@ TEST_CASE("halves are randomised apart; without them odd and even samples are on
 }
 
 TEST_CASE("halton-naive repeats itself: the same numbers in every pixel and at every vertex") {
-    const Pattern p = make_pattern(SamplerKind::halton_naive, seed_here(), false, depth, 64);
+    const Pattern p = make_pattern(SamplerKind::halton_naive, seed_here(), depth, 64);
     const Sampler a(p, 3, 11), b(p, 900, 11);
     CHECK(a.get2(film_x).x == b.get2(dimension(2, Draw::wi_x)).x);
     CHECK(a.get2(film_x).x == radical_inverse(2, 11));
@@ -286,7 +286,7 @@ TEST_CASE("samples 2^32 apart differ, whatever the sampler, in halves, too") {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
                              SamplerKind::sobol, SamplerKind::halton_naive})
         for (bool halves : {false, true}) {
-            const Pattern pattern = make_pattern(kind, seed_here(), halves, depth, 64);
+            const Pattern pattern = make_pattern(kind, seed_here(), depth, 64);
             int equal = 0;
             for (uint64_t i = 0; i < 100; ++i)
                 for (uint64_t far : {uint64_t(1) << 32, uint64_t(1) << 33}) {
@@ -301,7 +301,7 @@ TEST_CASE("samples 2^32 apart differ, whatever the sampler, in halves, too") {
 
 TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in every pixel") {
     // The first digit of sample 1 is 1, that of sample 0 is 0: scrambled they differ by the factor.
-    const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), false, depth, 64);
+    const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), depth, 64);
     auto factor = [&](uint64_t pixel, uint32_t dim) {
         const uint32_t base = pattern.bases[dim];
         auto digit = [&](uint64_t i) {

@@ -105,7 +105,7 @@ IlluminationMap of_glow(const Mesh& mesh) {
 template <class RayOf>
 rgb mean_of_paths(const Gather& g, SamplerKind kind, int r, uint64_t n, RayOf ray_of) {
     const uint64_t seed = hash(seed_here(), uint64_t(r));
-    const Pattern pattern = EndlessNumbers::pattern(kind, seed, false, n),
+    const Pattern pattern = EndlessNumbers::pattern(kind, seed, n),
                   rest = EndlessNumbers::independent(seed);
     rgb sum;
     for (uint64_t i = 0; i < n; ++i) {

@@ -48,7 +48,7 @@ double late_samples() {
     const uint64_t late = uint64_t(1) << 40;
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
                              SamplerKind::sobol, SamplerKind::halton_naive}) {
-        const Pattern pattern = make_pattern(kind, oracle::seed_of("late samples"), false, 4, 16);
+        const Pattern pattern = make_pattern(kind, oracle::seed_of("late samples"), 4, 16);
         for (uint32_t dim : {film_x, dimension(3, Draw::wi_x)}) {
             int cells[16] = {};
             for (uint64_t i = late; i < late + 16; ++i) {
