@@ -92,13 +92,6 @@ void check_finite(const Film<Pixel>& film) {
         (bad.set ? " --set " + std::to_string(bad.set) : "") + "); nothing was written");
 }
 
-// Once, where noise is.
-template <class Pixel>
-void choose_sets(Film<Pixel>& film, uint64_t seed) {
-    if (film.has_sets() || film.samples() < 2) return;
-    film.add_sets(sets_where_noise_is(film.noise(), film.size, seed));
-}
-
 // What the film holds, and how far that is from the truth.
 template <class Pixel, class Value>
 Rendered developed(const Film<Pixel>& film, const Options& o, RunStats run, ErrorCourse course,
@@ -124,15 +117,20 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
         row(y, n, row_rays);
         rays += row_rays;
     };
-    ErrorCourse course;
-    bool enough = false;
+    // Once, where noise is.
+    auto choose_sets = [&] {
+        if (film.has_sets() || film.samples() < 2 || interrupted) return;
+        film.add_sets(sets_where_noise_is(film.noise(), film.size, job.o.seed));
+        add_pass(film, 0, job.passes.threads, counted, progress);
+    };
     if (sets_of(job.o) != sets_by_noise)
         film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets_of(job.o)}));
+    ErrorCourse course;
+    bool enough = false;
     render(film, job.passes, counted, progress, [&](const Film<Pixel>&) -> uint64_t {
-        if (film.samples() >= job.passes.pause) choose_sets(film, job.o.seed);
-        const bool look = target.error > 0 || course.is_due(film.samples());
-        if (film.samples() < samples_before_sets || !film.others_are_complete() || !look)
-            return UINT64_MAX;
+        if (film.samples() < job.passes.pause) return UINT64_MAX;
+        choose_sets();
+        if (target.error == 0 && !course.is_due(film.samples())) return UINT64_MAX;
         const ImageError e = error_of(film, value_in(film));
         course.add(film.samples(), e.d_rel());
         if (target.error == 0) return UINT64_MAX;
@@ -141,9 +139,7 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
         enough = more == 0;
         return more;
     });
-    choose_sets(film, job.o.seed);
-    if (film.has_sets() && !film.others_are_complete() && film.samples() > 0 && !interrupted)
-        add_pass(film, 0, job.passes.threads, counted, progress);
+    choose_sets();
     check_finite(film);
     RunStats run;
     run.spp = film.samples(), run.seconds = progress.elapsed(), run.rays = rays;
