@@ -115,12 +115,12 @@ inline bool is_small_enough(const ImageError& e, double asked) {
     return e.d_rel() + 0.5 * e.standard_error() <= asked;
 }
 
-// How many more samples to take before the next look, of `samples` so far: most of what the law
-// says are missing.
+// How many more samples to take before the next look, after `samples`: what the law says are
+// missing, but at most as many again, for the estimate may be far off; 0: enough.
 inline uint64_t samples_to_look(const ImageError& e, const ErrorCourse& course, double asked,
                                 uint64_t samples) {
     const double now = e.d_rel() + 0.5 * e.standard_error();
     if (!(now > asked)) return 0;
     const double more = double(samples) * (course.cost_of(now / asked) - 1);
-    return std::max<uint64_t>(1, uint64_t(std::min(more, 1e15)));
+    return std::max<uint64_t>(1, uint64_t(std::min(more, double(samples))));
 }
