@@ -17,6 +17,9 @@ enum class Polygons {
 // How light is found that diffuse surfaces send to each other; see radiosity/gather.h.
 enum class Indirect { path, map, control, regression };
 
+// Sets of samples: one, and more where noise is.
+inline constexpr uint32_t sets_by_noise = 0;
+
 struct PixelIndex {
     int x = 0, y = 0;
 };
@@ -29,10 +32,10 @@ struct Options : CommonOptions {
     Estimator direct = Estimator::stochastic;
     Polygons polygons = Polygons::area;
     Indirect indirect = Indirect::path;
-    std::optional<double> mesh;    // longest edge of the maps' triangles; default: diagonal / 16
-    uint64_t particles = 0;        // that fill the maps; 0: by the samples or the time
-    std::optional<int> depth;      // default: the scene's
-    std::optional<uint32_t> sets;  // of samples, in every pixel; default: where noise is
+    std::optional<double> mesh;     // longest edge of the maps' triangles; default: diagonal / 16
+    uint64_t particles = 0;         // that fill the maps; 0: by the samples or the time
+    std::optional<int> depth;       // default: the scene's
+    uint32_t sets = sets_by_noise;  // of samples, in every pixel
     View view = View::radiance;
     Weighting film = Weighting::mc;    // of a pixel's samples
     std::optional<PixelIndex> replay;  // instead of rendering, print the path of
@@ -85,11 +88,11 @@ inline const OptionTable<Options> option_table = {
         "where the random numbers come from; halton-naive is a lesson in what not to do, and "
         "biased",
         [](auto& o) -> auto& { return o.sampler; }),
-    {"--sets", "N",
-     "sets of samples of each pixel, randomised each on its own: from their spread comes the error "
-     "of the image",
-     "one, and up to 8 where noise is", [](Options& o, Text v) { o.sets = option::sets(v, 1); },
-     [](const Options& o) { return o.sets ? std::to_string(*o.sets) : "null"; }},
+    {"--sets", "N|noise",
+     "how many sets of samples a pixel has, each randomised on its own, whose spread tells the "
+     "error; noise: one, and up to 8 where there is noise",
+     "noise", [](Options& o, Text v) { o.sets = v == "noise" ? 0 : option::sets(v, 1); },
+     [](const Options& o) { return o.sets ? std::to_string(o.sets) : "\"noise\""; }},
     one_of<Options>(
         "--direction", "uniform|bsdf",
         "directions at rough surfaces: uniform over the hemisphere, or importance-sampled",
@@ -159,12 +162,11 @@ inline const OptionTable<Options> option_table = {
 
 // ---- Sets of samples ----------------------------------------------------------------------------
 
-inline constexpr uint32_t sets_by_noise = 0;
-
 // In every pixel, or by noise.
 inline uint32_t sets_of(const Options& o) {
     if (o.sampler == SamplerKind::halton_naive) return 1;
-    return o.sets.value_or(o.view == View::variance ? 2 : sets_by_noise);
+    if (o.view == View::variance && o.sets == sets_by_noise) return 2;
+    return o.sets;
 }
 
 // ---- Words to options ---------------------------------------------------------------------------
@@ -195,7 +197,7 @@ inline void check_error(const Options& o) {
     if (o.error == 0) return;
     if (o.sampler == SamplerKind::halton_naive)
         throw UserError("--error: --sampler halton-naive is not random: its error is not known");
-    if (o.sets == 1u) throw UserError("--error: needs --sets 2 or more, or none given");
+    if (o.sets == 1) throw UserError("--error: needs --sets 2 or more, or noise");
     if (o.film != Weighting::mc)
         throw UserError(as_written(option_table, o, "--film") +
                         ": needs --spp, not --error: all samples of a pixel at once");
@@ -204,11 +206,11 @@ inline void check_error(const Options& o) {
 // What single options do not tell.
 inline void check_together(const Options& o) {
     if (o.sample && !o.replay) throw UserError("--sample: goes with --pixel X,Y");
-    if (o.view == View::variance && o.sets == 1u)
-        throw UserError("--view variance: needs --sets 2 or more, or none given");
+    if (o.view == View::variance && o.sets == 1)
+        throw UserError("--view variance: needs --sets 2 or more, or noise");
     if (o.set && !o.replay) throw UserError("--set: goes with --pixel X,Y");
-    if (o.sampler == SamplerKind::halton_naive && (o.sets > 1u || o.view == View::variance))
-        throw UserError((o.sets ? std::string("--sets") : std::string("--view variance")) +
+    if (o.sampler == SamplerKind::halton_naive && (o.sets > 1 || o.view == View::variance))
+        throw UserError((o.sets > 1 ? std::string("--sets") : std::string("--view variance")) +
                         ": --sampler halton-naive is not random: all sets of it are alike");
     if (o.direct != Estimator::stochastic && o.technique.light != LightMode::nee)
         throw UserError(as_written(option_table, o, "--direct") + ": needs --light nee");

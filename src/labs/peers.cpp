@@ -102,9 +102,9 @@ Rendering penumbra(const std::string& program, const View& view, const Choice& c
 
 void add_penumbra(Series& series, const std::string& program, const View& view,
                   const Choice& choice, uint64_t spp, uint64_t seed) {
-    const Rendering r =
-        penumbra(program, view, choice,
-                 {"--threads", "1", "--spp", std::to_string(spp), "--seed", std::to_string(seed)});
+    const Rendering r = penumbra(program, view, choice,
+                                 {"--threads", "1", "--sets", "noise", "--spp", std::to_string(spp),
+                                  "--seed", std::to_string(seed)});
     series.images.push_back(r.image);
     series.seconds.push_back(r.core_seconds());
 }
@@ -138,8 +138,9 @@ Reference reference(const std::string& program, const View& view, const Plan& pl
     };
     const bool kept = ::access(pfm.c_str(), R_OK) == 0 && older(program) && older(view.scene);
     if (!kept)
-        execute({program, "--quiet", "--halves", "--depth", "64", "--seed", "1000000", "--spp",
-                 std::to_string(plan.reference_spp), "--stats", stats_file, "-o", pfm, view.scene});
+        execute({program, "--quiet", "--sets", "2", "--depth", "64", "--seed", "1000000", "--spp",
+                 std::to_string(plan.reference_spp / 2), "--stats", stats_file, "-o", pfm,
+                 view.scene});
     const Rendering r = read_rendering(pfm);
     double variance = 0;
     for (double v : stats(r.stats, "variance_of_mean"))

@@ -103,16 +103,17 @@ struct Reference {
     Mean mean{};         // of noise, a channel each
 };
 
-// The image by the best that we have.  Its error: the variance of its mean, from its halves, is the
+// The image by the best that we have.  Its error: the variance of its mean, from its sets, is the
 // sum over pixels; how pixels share in it, an image of the variance of fewer samples tells.
 inline Reference read_reference(const std::string& name, Size size) {
-    const std::string options = text(" --sampler halton --roulette 0 --seed 1000 --size %dx%d", size.width, size.height),
+    const std::string options = text(" --sampler halton --roulette 0 --seed 1000 --size %dx%d",
+                                     size.width, size.height),
                       stem = text("reference/%s-%d", name, size.width), file = stem + ".pfm",
                       json = stem + ".json", variance = stem + "-variance.pfm",
                       scene = " scenes/" + name + ".scene";
     for (const std::string& needed : {file, json, variance})
         if (!std::filesystem::exists(needed))
-            throw UserError(needed + ": missing; make it by\n  build/penumbra --halves --spp 8192" +
+            throw UserError(needed + ": missing; make it by\n  build/penumbra --sets 2 --spp 4096" +
                             options + " -o " + file + " --stats " + json + scene +
                             "\n  build/penumbra --view variance --spp 512" + options + " -o " +
                             variance + scene);
