@@ -1,5 +1,7 @@
 // app/options.h  2  what the user asks of penumbra
 #pragma once
+#include <sstream>
+
 #include "app/option.h"
 #include "path/pathtracer.h"
 #include "shadow/estimators.h"
@@ -82,7 +84,9 @@ inline const OptionTable<Options> option_table = {
      "stop once the image's error d_rel, as estimated, is at most E, e.g. 1% or 0.01; with --spp "
      "or --time, whichever comes first",
      "", [](Options& o, Text v) { o.error = option::error(v); },
-     [](const Options& o) { return o.error > 0 ? std::to_string(o.error) : "null"; }},
+     [](const Options& o) {
+         return o.error > 0 ? (std::ostringstream() << o.error).str() : "null";
+     }},
     one_of<Options>(
         "--sampler", "independent|stratified|halton|sobol|halton-naive",
         "where the random numbers come from; halton-naive is a lesson in what not to do, and "

@@ -127,15 +127,18 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
         film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets_of(job.o)}));
     ErrorCourse course;
     bool enough = false;
+    uint64_t look = 0;  // at so many samples, however passes divide them
     render(film, job.passes, counted, progress, [&](const Film<Pixel>&) -> uint64_t {
         if (film.samples() < job.passes.pause) return UINT64_MAX;
         choose_sets();
+        if (film.samples() < look) return look - film.samples();
         if (target.error == 0 && !course.is_due(film.samples())) return UINT64_MAX;
         const ImageError e = error_of(film, value_in(film));
         course.add(film.samples(), e.d_rel());
         if (target.error == 0) return UINT64_MAX;
         const uint64_t more = samples_to_look(e, course, target.error, film.samples());
-        progress.expect(film.samples() + more);
+        look = film.samples() + more;
+        progress.expect(look);
         enough = more == 0;
         return more;
     });

@@ -67,6 +67,7 @@ inline std::string why_no_error(const Options& o, const RunStats& run) {
     if (sets_of(o) == 1) return "one set of samples";
     if (run.spp == 1 && run.sets == 1) return "one sample";
     if (!std::isfinite(run.error.d2())) return "interrupted early";
+    if (run.error.d2() > 0 && run.error.norm == 0) return "the image is black";
     return "";
 }
 
@@ -140,8 +141,9 @@ inline std::string encode_stats(const Options& o, Size size, int depth, const Ru
     object.add("sets_per_pixel", json::number(run.sets));
     object.add("d_rel", json::number(run.error.d_rel()));
     object.add("d_rel_standard_error", json::number(run.error.standard_error()));
+    const bool falls = run.error.d2() > 0;  // or is 0, or not known
     object.add("seconds_to_half_d_rel",
-               json::number(run.seconds * std::pow(2, run.exponent_of_cost)));
+               json::number(falls ? run.seconds * std::pow(2, run.exponent_of_cost) : double(NAN)));
     object.add("bias", json::string(bias_class(o)));
     object.add("stopped_by", json::string(run.stopped_by));
     object.add("non_finite", count(run.non_finite));

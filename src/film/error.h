@@ -36,9 +36,10 @@ struct ImageError {
     double greatest = NAN;                        // part of d^2 that comes from one pixel, at most
 
     double d2() const { return (square[0] + square[1] + square[2]) / 3; }
-    double d_rel() const { return norm > 0 ? std::sqrt(d2()) / norm : d2() > 0 ? NAN : 0; }
+    // Of a black image that has an error infinite.
+    double d_rel() const { return d2() == 0 ? 0 : std::sqrt(d2()) / norm; }
     // Of d_rel, by the slope of the root.
-    double standard_error() const { return d2() > 0 ? d_rel() * spread / d2() / 2 : 0; }
+    double standard_error() const { return d2() == 0 ? 0 : d_rel() * spread / d2() / 2; }
 };
 
 // Unbiased for d^2: a pixel that was measured with a chance of p stands for 1/p pixels (Horvitz,
@@ -110,17 +111,15 @@ private:
 };
 
 // The rule of --error: stop once the estimate, raised by half its standard error, is no more than
-// asked for.  `margin` for what stopping at a good look spoils; both by `make calibration`.
-inline bool is_small_enough(const ImageError& e, double asked) {
-    return e.d_rel() + 0.5 * e.standard_error() <= asked;
-}
-
+// asked for.  The margin makes up for what stopping at a good look spoils (by `make calibration`).
+//
 // How many more samples to take before the next look, after `samples`: what the law says are
-// missing, but at most as many again, for the estimate may be far off; 0: enough.
+// missing, but at most as many again, for the estimate may be far off; 0: enough.  An error that is
+// not known is not small.
 inline uint64_t samples_to_look(const ImageError& e, const ErrorCourse& course, double asked,
                                 uint64_t samples) {
     const double now = e.d_rel() + 0.5 * e.standard_error();
-    if (!(now > asked)) return 0;
+    if (now <= asked) return 0;
     const double more = double(samples) * (course.cost_of(now / asked) - 1);
-    return std::max<uint64_t>(1, uint64_t(std::min(more, double(samples))));
+    return std::max<uint64_t>(1, uint64_t(std::min(double(samples), more)));
 }

@@ -37,7 +37,7 @@ inline void catch_interrupt() {
 struct Target {
     uint64_t samples = 0;  // per pixel
     double seconds = 0;
-    double error = 0;  // d_rel; see StopByError
+    double error = 0;  // d_rel; see film/error.h
 };
 
 // Passes long enough to keep the threads busy, short enough to stop soon.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/rng.h"
+#include "base/vec.h"
 #include "base/words.h"
 
 struct Sets {
@@ -44,14 +45,17 @@ inline std::vector<Sets> sets_where_noise_is(const std::vector<double>& noise, S
                                              uint64_t seed) {
     constexpr double most = 8, least_measured = 64;
     const double least_chance = std::max(1.0 / 32, least_measured / double(noise.size()));
-    double sum = 0;
-    for (double v : noise) sum += v;
-    const double others = std::max<double>(1, double(noise.size()) - 1);
+    // Sums before each pixel and after it: the sum of all less its own would depend on it by
+    // rounding.
+    double before = 0;
+    std::vector<double> after(noise.size() + 1);
+    for (size_t i = noise.size(); i > 0; --i) after[i - 1] = after[i] + noise[i - 1];
+    const double sum = after[0], others = std::max<double>(1, double(noise.size()) - 1);
     std::vector<Sets> sets(noise.size());
-    for (size_t i = 0; i < noise.size(); ++i) {
+    for (size_t i = 0; i < noise.size(); before += noise[i++]) {
         const int x = int(i % size_t(size.width)), y = int(i / size_t(size.width));
         const double around = mean_around(noise, size, x, y);
-        const double elsewhere = std::max(0.0, sum - noise[i]) / others;
+        const double elsewhere = (before + after[i + 1]) / others;
         if (around > 0)
             sets[i].shown = uint32_t(std::clamp(std::sqrt(around / elsewhere) + 0.5, 1.0, most));
         if (sets[i].shown > 1) continue;
