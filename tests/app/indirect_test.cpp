@@ -4,6 +4,7 @@
 #include "app/render.h"
 #include "app/replay.h"
 #include "base/moments.h"
+#include "film/spread.h"
 #include "oracle/expect.h"
 #include "path/scenes.h"
 
@@ -50,9 +51,10 @@ TEST_CASE("maps: an image is a function of its options and its seed, whatever th
     const Scene scene = stage();
     for (Indirect indirect : with_maps)
         for (SamplerKind kind : kinds)
-            for (bool halves : {false, true}) {
+            for (uint32_t sets : {3u, sets_by_noise}) {
+                if (kind == SamplerKind::halton_naive && sets == 3) continue;
                 Options o = options(indirect);
-                o.sampler = kind, o.halves = halves;
+                o.sampler = kind, o.sets = sets;
                 const Image one = render_of(o, scene).image;
                 o.threads = 3;
                 CHECK(render_of(o, scene).image.pixels == one.pixels);
@@ -64,7 +66,8 @@ TEST_CASE("maps: an image is a function of its options and its seed, whatever th
 TEST_CASE("maps: what --pixel replays is what the image is made of, bit for bit") {
     const Scene scene = stage();
     for (Indirect indirect : with_maps) {
-        const Options o = options(indirect);
+        Options o = options(indirect);
+        o.sets = 2;
         const Maps maps = maps_of(o, scene);
         const Job job = job_of(o, scene, maps);
         const Image image = rendered(job).image;
@@ -73,16 +76,16 @@ TEST_CASE("maps: what --pixel replays is what the image is made of, bit for bit"
         bool ended = false, went_on = false;
         for (int y = 0; y < scene.size.height; ++y)
             for (int x = 0; x < scene.size.width; ++x) {
-                double even = 0, odd = 0;  // as the film adds them
-                for (uint64_t i = 0; i < 4; ++i) {
-                    const rgb L = mapped_Li(job, x, y, i,
-                                            [&](const Segment& s, const Step& e, const Mapped& m) {
-                                                log(s, e, m);
-                                                (m.goes ? went_on : ended) |= s.k > 0;
-                                            });
-                    (i % 2 ? odd : even) += double(L.y);
-                }
-                CHECK(image.at(x, y)[1] == float((even + odd) / 4));
+                double sum[2] = {};  // as the film adds them
+                for (uint32_t set : {0u, 1u})
+                    for (uint64_t i = 0; i < 4; ++i) {
+                        auto account = [&](const Segment& s, const Step& e, const Mapped& m) {
+                            log(s, e, m);
+                            (m.goes ? went_on : ended) |= s.k > 0;
+                        };
+                        sum[set] += double(mapped_Li(job, {x, y, i, set}, account).y);
+                    }
+                CHECK(image.at(x, y)[1] == float((sum[0] / 4 + sum[1] / 4) / 2));
             }
         CHECK(ended);
         CHECK(went_on == (indirect != Indirect::map));
@@ -109,6 +112,11 @@ TEST_CASE("maps: a particle for 16 samples, or a 16th of the time, or as many as
     o.particles = 1000;
     CHECK(walks_of(o, scene).particles == 1000);
     CHECK(walks_of(o, scene).seconds == 8);
+    // Where an error alone ends the image, the scene's samples count: walks end in any case.
+    o.particles = 0, o.seconds = 0, o.error = 0.01;
+    CHECK(walks_of(o, scene).particles == 12 * 8 * scene.samples / 16);
+    o.spp = 32;
+    CHECK(walks_of(o, scene).particles == 12 * 8 * 2);
 }
 
 TEST_CASE("maps: their time and their rays count") {
@@ -149,7 +157,7 @@ TEST_CASE("maps: control and regression see what whole paths see") {
     Moments truth;
     for (uint64_t seed = 0; seed < 48; ++seed) {
         Options o = options(Indirect::path, hash(seed_here(), seed));
-        o.spp = 16;
+        o.spp = 16, o.sets = 1;
         truth.add(mean_of_pixels(rendered(job_of(o, whole)).image)[0]);
     }
     for (Indirect indirect : {Indirect::control, Indirect::regression})
@@ -157,7 +165,7 @@ TEST_CASE("maps: control and regression see what whole paths see") {
             Moments means;
             for (uint64_t seed = 0; seed < 48; ++seed) {
                 Options o = options(indirect, hash(seed_here(), seed));
-                o.sampler = kind, o.spp = 16;
+                o.sampler = kind, o.spp = 16, o.sets = 1;
                 means.add(mean_of_pixels(render_of(o, scene).image)[0]);
             }
             CAPTURE(int(indirect));
@@ -165,23 +173,22 @@ TEST_CASE("maps: control and regression see what whole paths see") {
         }
 }
 
-TEST_CASE("maps: the statistics' variance is that of the mean from seed to seed") {
+TEST_CASE("maps: the stated error is the spread of images on the same maps, from seed to seed") {
     const Scene scene = stage();
-    for (bool halves : {false, true}) {
-        Options o = options(Indirect::control);
-        o.sampler = halves ? SamplerKind::halton : SamplerKind::independent;
-        o.halves = halves;
-        o.particles = 4096;
-        // Of images on the same maps: what maps differ by, their pixels share.
-        const Maps maps = maps_of(o, scene);
-        Moments means, predicted;
-        for (int run = 0; run < 300; ++run, ++o.seed) {
-            const RunStats stats = rendered(job_of(o, scene, maps)).run;
-            means.add(stats.mean_radiance[1]);
-            predicted.add(stats.variance_of_mean[1]);
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::halton})
+        for (uint32_t sets : {2u, sets_by_noise}) {
+            Options o = options(Indirect::control, seed_here());
+            o.sampler = kind, o.sets = sets;
+            o.particles = 4096;
+            // What maps differ by, their pixels share.
+            const Maps maps = maps_of(o, scene);
+            Spread spread;
+            for (int run = 0; run < 200; ++run, ++o.seed) {
+                const Rendered r = rendered(job_of(o, scene, maps));
+                spread.add(r.image, r.run.error.d2());
+            }
+            const std::string name =
+                "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
+            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.5);
         }
-        const double ratio = means.variance() / predicted.mean;
-        INFO("measured over predicted ", ratio);
-        CHECK(std::abs(ratio - 1) < 4.9 * std::sqrt(2.0 / 299));
-    }
 }

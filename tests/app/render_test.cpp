@@ -3,6 +3,7 @@
 
 #include "app/replay.h"
 #include "base/moments.h"
+#include "film/spread.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
 #include "path/scenes.h"
@@ -15,6 +16,7 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
         Options o;
         o.sampler = kind;
         o.spp = 4;
+        o.sets = 2;
         o.quiet = true;
         o.seed = seed_here();
         const Job job = job_of(o, scene);
@@ -23,43 +25,265 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
         const PathLog log(scene, out);
         for (int y = 0; y < 4; ++y)
             for (int x = 0; x < 6; ++x) {
-                double even = 0, odd = 0;  // as the film adds them
-                for (uint64_t i = 0; i < 4; ++i) {
-                    const rgb L = radiance(scene, o.technique, job.pattern, x, y, i, log);
-                    (i % 2 ? odd : even) += double(L.y);
-                }
-                CHECK(image.at(x, y)[1] == float((even + odd) / 4));
+                double sum[2] = {};  // as the film adds them
+                for (uint32_t set : {0u, 1u})
+                    for (uint64_t i = 0; i < 4; ++i) {
+                        const Start at = start(scene, job.pattern, {x, y, i, set});
+                        sum[set] += double(Li(scene, o.technique, at.ray, at.sampler, log).y);
+                    }
+                CHECK(image.at(x, y)[1] == float((sum[0] / 4 + sum[1] / 4) / 2));
             }
         CHECK(std::ftell(out) > 10000);
         std::fclose(out);
     }
 }
 
-TEST_CASE("the statistics' variance is that of the mean from seed to seed") {
-    Scene scene = scene_of(unequal);
-    scene.size = {24, 12};
-    for (bool halves : {false, true}) {
-        Options o;
-        o.scene = "a \"scene\"";
-        o.sampler = halves ? SamplerKind::halton : SamplerKind::independent;
-        o.halves = halves;
-        o.seed = seed_here();
-        o.spp = 8;
-        o.threads = 1;
-        o.quiet = true;
-        Moments means, predicted;
-        for (int run = 0; run < 300; ++run, ++o.seed) {
-            const auto [image, variance, stats] = rendered(job_of(o, scene));
-            means.add(mean_of_pixels(image)[1]);
-            predicted.add(stats.variance_of_mean[1]);
-            CHECK(mean_of_pixels(variance)[1] / double(variance.pixels.size()) ==
-                  doctest::Approx(stats.variance_of_mean[1]).epsilon(1e-6).scale(0));
+// ---- Sets of samples, and the error that they tell ----------------------------------------------
+
+namespace {
+
+Scene small(const char* text, Size size) {
+    Scene scene = scene_of(text);
+    scene.size = size;
+    return scene;
+}
+
+Options quick(SamplerKind kind, uint64_t spp) {
+    Options o;
+    o.scene = "a \"scene\"";
+    o.sampler = kind;
+    o.seed = seed_here();
+    o.spp = spp;
+    o.threads = 1;
+    o.quiet = true;
+    return o;
+}
+
+}  // namespace
+
+TEST_CASE("the stated error is the spread of images from seed to seed, and the mean's variance") {
+    const Scene scene = small(unequal, {24, 12});
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
+        for (uint32_t sets : {2u, sets_by_noise}) {
+            const int runs = sets == sets_by_noise ? 150 : 300;
+            Options o = quick(kind, sets == sets_by_noise ? 18 : 6);
+            o.sets = sets;
+            Spread spread;
+            Moments means, stated;
+            for (int run = 0; run < runs; ++run, ++o.seed) {
+                const Rendered r = rendered(job_of(o, scene));
+                spread.add(r.image, r.run.error.d2());
+                means.add(r.run.mean_radiance[1]);
+                stated.add(r.run.error.square[1] / (24 * 12));
+                CHECK(r.run.mean_radiance == mean_of_pixels(r.image));
+            }
+            const std::string name =
+                "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
+            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.5);
+            // A variance from 150 means is known within sqrt(2 / 149) = 12 % (normal means), the
+            // mean of what is stated far better.
+            INFO(name, ": ", means.variance() / stated.mean);
+            CHECK(std::abs(means.variance() / stated.mean - 1) < 4.9 * std::sqrt(2.0 / (runs - 1)));
         }
-        // A variance from 300 means is known within sqrt(2 / 299) = 8 % (normal means); 4.9 of
-        // those are 40 %.
-        const double ratio = means.variance() / predicted.mean;
-        INFO("measured over predicted ", ratio);
-        CHECK(std::abs(ratio - 1) < 4.9 * std::sqrt(2.0 / 299));
+}
+
+TEST_CASE("one set is set 0 alone, bit for bit, and all sets by noise have it among them") {
+    const Scene scene = small(unequal, {24, 12});
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        Options o = quick(kind, 20);
+        o.sets = 1;
+        const Job job = job_of(o, scene);
+        const Rendered one = rendered(job);
+        CHECK(one.run.sets == 1);
+        CHECK(std::isnan(one.run.error.d_rel()));
+        o.sets = sets_by_noise;
+        const Rendered noisy = rendered(job_of(o, scene));
+        CHECK(noisy.run.sets > 1.05);
+        CHECK(noisy.run.sets < 2.5);
+        CHECK(noisy.run.error.d_rel() > 0);
+        CHECK(noisy.run.rays > one.run.rays);
+        int alike = 0, pixels = 24 * 12;
+        for (int i = 0; i < pixels; ++i) {
+            double sum = 0;
+            for (uint64_t k = 0; k < 20; ++k)
+                sum += double(radiance(scene, o.technique, job.pattern, i % 24, i / 24, k).x);
+            CHECK(one.image.pixels[size_t(i)][0] == float(sum / 20));
+            alike += noisy.image.pixels[size_t(i)] == one.image.pixels[size_t(i)];
+        }
+        CHECK(alike > pixels / 5);  // where there is little noise
+        CHECK(alike < pixels - pixels / 20);
+    }
+}
+
+TEST_CASE(
+    "sets by noise: an image is the same whatever the threads, and however passes divide it") {
+    const Scene scene = small(unequal, {24, 12});
+    for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
+        Options o = quick(kind, 48);
+        const Rendered one = rendered(job_of(o, scene));
+        o.threads = 3;
+        const Rendered three = rendered(job_of(o, scene));
+        CHECK(three.image.pixels == one.image.pixels);
+        CHECK(three.run.error.d2() == one.run.error.d2());
+        CHECK(three.run.error.spread == one.run.error.spread);
+        CHECK(three.run.sets == one.run.sets);
+        // By passes of another size: the sets are chosen after as many samples.
+        const Job job = job_of(o, scene);
+        Film<MeanPixel> film(scene.size);
+        auto add = [&](uint64_t n) {
+            for (int y = scene.size.height; y-- > 0;)
+                film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
+                    uint64_t rays = 0;
+                    return radiance(job, start(scene, job.pattern, {x, y, i, set}), rays);
+                });
+            film.end_pass(n);
+        };
+        const uint64_t pause = job.passes.pause;
+        CHECK(pause >= samples_before_sets);
+        CHECK(pause % job.pattern.period() == 0);
+        for (uint64_t n = 0; n < pause; n += 4) add(4);
+        film.add_sets(sets_where_noise_is(film.noise(), film.size, o.seed));
+        add(0);
+        while (film.samples() < 48) add(1);
+        CHECK(image_of(film).pixels == one.image.pixels);
+    }
+}
+
+TEST_CASE("at fewer than 16 samples sets are chosen all the same, but not of one sample") {
+    const Scene scene = small(unequal, {24, 12});
+    for (uint64_t spp : {1, 2, 5}) {
+        const Rendered r = rendered(job_of(quick(SamplerKind::sobol, spp), scene));
+        CHECK(r.run.spp == spp);
+        CHECK((r.run.sets > 1) == (spp > 1));
+        CHECK(std::isnan(r.run.error.d_rel()) == (spp == 1));
+        CHECK(first_non_finite(r.image) == std::nullopt);
+    }
+}
+
+TEST_CASE("an image without noise has an error of 0, and one set, which another one measures") {
+    const Scene scene = scene_of(R"(
+size 8 4
+camera 0 0 0  0 0 -1  60
+diffuse half 0.5 0.5 0.5
+box 4 4 4  0  -2 -2 -2  half
+)");
+    Options o = quick(SamplerKind::sobol, 32);
+    o.view = View::albedo;
+    const Rendered r = rendered(job_of(o, scene));
+    CHECK(r.image.at(3, 2) == std::array<float, 3>{0.5f, 0.5f, 0.5f});
+    CHECK(r.run.error.d_rel() == 0);
+    CHECK(r.run.error.standard_error() == 0);
+    CHECK(r.run.sets == 2);  // of 32 pixels all are measured
+}
+
+// ---- Until the error is small enough ------------------------------------------------------------
+
+TEST_CASE("--error: an image ends once its stated error is small enough, and says what ended it") {
+    const Scene scene = small(unequal, {24, 12});
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::sobol})
+        for (double E : {0.5, 0.1, 0.04}) {
+            Options o = quick(kind, 0);
+            o.error = E;
+            const Rendered r = rendered(job_of(o, scene));
+            CAPTURE(int(kind));
+            CAPTURE(E);
+            CHECK(r.run.stopped_by == "error");
+            CHECK(r.run.error.d_rel() <= E);
+            CHECK(r.run.error.d_rel() + r.run.error.standard_error() / 2 <= E);
+            CHECK(r.run.spp >= samples_before_sets);
+            CHECK(r.run.spp % job_of(o, scene).pattern.period() == 0);
+            // No more than it costs: at the last look but one it was larger.
+            if (r.run.spp > samples_before_sets) CHECK(r.run.error.d_rel() > E / 3);
+            // The number of samples follows from options and seed, not from time or threads.
+            o.threads = 3;
+            const Rendered again = rendered(job_of(o, scene));
+            CHECK(again.run.spp == r.run.spp);
+            CHECK(again.image.pixels == r.image.pixels);
+            // As an image of as many samples that were asked for.
+            o.error = 0, o.spp = r.run.spp;
+            if (kind != SamplerKind::stratified)  // its grids follow from --spp
+                CHECK(rendered(job_of(o, scene)).image.pixels == r.image.pixels);
+        }
+}
+
+TEST_CASE("--error with limits: whichever comes first ends the image, and is said") {
+    const Scene scene = small(unequal, {24, 12});
+    Options o = quick(SamplerKind::sobol, 40);
+    CHECK(rendered(job_of(o, scene)).run.stopped_by == "samples");
+    o.error = 1e-6;
+    const Rendered samples = rendered(job_of(o, scene));
+    CHECK(samples.run.stopped_by == "samples");
+    CHECK(samples.run.spp == 40);
+    CHECK(samples.run.error.d_rel() > 1e-6);
+    o.spp = 8;  // before the first look
+    o.error = 0.9;
+    CHECK(rendered(job_of(o, scene)).run.stopped_by == "samples");
+    o.spp = 1 << 20, o.error = 0.3, o.seconds = 1e6;
+    const Rendered error = rendered(job_of(o, scene));
+    CHECK(error.run.stopped_by == "error");
+    CHECK(error.run.spp < 100);
+    o.error = 1e-6, o.seconds = 0.05;
+    const Rendered time = rendered(job_of(o, scene));
+    CHECK(time.run.stopped_by == "time");
+    CHECK(time.run.spp < 1 << 20);
+}
+
+TEST_CASE("--error looks seldom: the last two looks are at most a factor of two apart") {
+    // By the rule itself, applied to films of each number of samples.
+    const Scene scene = small(unequal, {24, 12});
+    Options o = quick(SamplerKind::independent, 0);
+    o.error = 0.05;
+    const Rendered r = rendered(job_of(o, scene));
+    std::vector<uint64_t> looks;
+    ErrorCourse course;
+    uint64_t samples = job_of(o, scene).passes.pause, more = 1;
+    o.error = 0;
+    while (more > 0 && looks.size() < 50) {
+        o.spp = samples;
+        const ImageError e = rendered(job_of(o, scene)).run.error;
+        course.add(samples, e.d_rel());
+        looks.push_back(samples);
+        more = samples_to_look(e, course, 0.05, samples);
+        samples += more;
+    }
+    CHECK(looks.back() == r.run.spp);
+    CHECK(looks.size() >= 3);
+    CHECK(looks.size() <= 10);
+    for (size_t i = 1; i < looks.size(); ++i) CHECK(looks[i] <= 2 * looks[i - 1]);
+}
+
+TEST_CASE("a black image has an error of 0 if its sets agree, and none if it has one set") {
+    const Scene scene =
+        small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
+    Options o = quick(SamplerKind::sobol, 0);
+    o.error = 0.01;
+    const Rendered black = rendered(job_of(o, scene));
+    CHECK(black.run.stopped_by == "error");
+    CHECK(black.run.error.d_rel() == 0);
+    o.error = 0, o.spp = 16, o.sets = 1;
+    CHECK(std::isnan(rendered(job_of(o, scene)).run.error.d_rel()));
+    o.sampler = SamplerKind::halton_naive, o.sets = sets_by_noise;
+    CHECK(std::isnan(rendered(job_of(o, scene)).run.error.d_rel()));
+}
+
+TEST_CASE("an interrupted image says so; its error is known if its sets were complete") {
+    const Scene scene = small(unequal, {24, 12});
+    Options o = quick(SamplerKind::sobol, 1 << 20);
+    o.error = 1e-6;
+    std::jthread user([] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        interrupted = SIGINT;
+    });
+    const Rendered r = rendered(job_of(o, scene));
+    user.join();
+    interrupted = 0;
+    CHECK(r.run.interrupted);
+    CHECK(r.run.stopped_by == "interrupt");
+    REQUIRE(r.run.spp > 0);
+    // The same number of samples, asked for, gives the same image.
+    if (r.run.sets > 1 && std::isfinite(r.run.error.d_rel())) {
+        o.error = 0, o.spp = r.run.spp;
+        CHECK(rendered(job_of(o, scene)).image.pixels == r.image.pixels);
     }
 }
 
@@ -79,6 +303,11 @@ Options direct_options(Estimator e, uint64_t seed, uint64_t spp) {
     o.spp = spp;
     o.threads = 1;
     o.quiet = true;
+    return o;
+}
+
+Options one_set(Options o) {
+    o.sets = 1;
     return o;
 }
 
@@ -108,7 +337,8 @@ TEST_CASE("direct: every estimator finds the same image; its parts are those of 
             Moments means;
             for (uint64_t seed = 0; seed < 20; ++seed)
                 means.add(mean_of_pixels(
-                    render(scene, direct_options(e, 100 * uint64_t(e) + seed, 64)).image)[1]);
+                    render(scene, one_set(direct_options(e, 100 * uint64_t(e) + seed, 64)))
+                        .image)[1]);
             const oracle::Estimate mean{means.mean, means.standard_error(), 19};
             if (e == Estimator::stochastic) reference = mean;
             const oracle::Verdict v = oracle::expect_equal(mean, reference);
@@ -157,19 +387,43 @@ TEST_CASE("direct: what is fully lit or fully dark has no noise at all") {
     }
 }
 
-TEST_CASE("direct: the variance that a run states is that from seed to seed, for ratio by halves") {
+TEST_CASE("direct: the error that a run states is the spread from seed to seed, for ratio, too") {
     // A lobe, too: light beside that of the closed form.
     std::string text = half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 0 0  wall\n");
     text.replace(text.find("diffuse grey 0.5 0.25 0.75"), 26,
                  "phong grey 0.5 0.25 0.75 .2 .2 .2 2");
     const Scene scene = scene_of(text);
-    for (Estimator e : direct_estimators) {
-        Moments values, stated;
+    for (Estimator e : direct_estimators)
+        for (uint32_t sets : {2u, sets_by_noise}) {
+            Spread spread;
+            for (uint64_t seed = 0; seed < 120; ++seed) {
+                Options o = direct_options(e, hash(seed_here(), seed), 32);
+                o.sets = sets;
+                const Rendered r = render(scene, o);
+                spread.add(r.image, r.run.error.d2());
+            }
+            const std::string name =
+                "estimator " + std::to_string(int(e)) + ", sets " + std::to_string(sets);
+            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.4);
+        }
+}
+
+TEST_CASE("--view variance is that of the image of as many sets, a pixel at a time") {
+    std::string text = half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 0 0  wall\n");
+    const Scene scene = scene_of(text);
+    for (Estimator e : {Estimator::stochastic, Estimator::ratio}) {
+        Moments values, stated;  // every pixel sees the same point
         for (uint64_t seed = 0; seed < 60; ++seed) {
-            const Rendered r = render(scene, direct_options(e, seed, 64));
+            Options o = direct_options(e, hash(seed_here(), seed), 32);
+            o.sets = 2;
+            const Rendered r = render(scene, o);
+            CHECK(r.variance.pixels.empty());
+            o.view = View::variance, o.sets = sets_by_noise;
+            const Rendered v = render(scene, o);
+            CHECK(v.image.pixels == r.image.pixels);
             for (size_t i = 0; i < r.image.pixels.size(); ++i) {
                 values.add(double(r.image.pixels[i][1]));
-                stated.add(double(r.variance.pixels[i][1]));
+                stated.add(double(v.variance.pixels[i][1]));
             }
         }
         // 1920 values: their variance is known within 3.2 %, the mean of as many squares as well.
@@ -183,9 +437,11 @@ TEST_CASE("direct: ratio and regression do not depend on threads or passes, and 
     const Scene scene = scene_of(half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 0 0  wall\n"));
     for (Estimator e : {Estimator::ratio, Estimator::regression}) {
         Options o = direct_options(e, 1, 48);
-        const Image one = render(scene, o).image;
+        const Image noisy = render(scene, o).image;
         o.threads = 3;
-        CHECK(render(scene, o).image.pixels == one.pixels);
+        CHECK(render(scene, o).image.pixels == noisy.pixels);
+        o.sets = 1;
+        const Image one = render(scene, o).image;
         // By hand, from the samples of one pixel.
         const Pattern pattern = job_of(o, scene).pattern;
         ShadowMoments m;
@@ -195,19 +451,5 @@ TEST_CASE("direct: ratio and regression do not depend on threads or passes, and 
             m.add(double(s.U.z), double(s.w.z), double(s.wV.z));
         }
         CHECK(double(one.at(2, 1)[2]) == doctest::Approx(estimate(e, m)).epsilon(1e-6));
-    }
-}
-
-TEST_CASE("what may be said about a variance: by samples, by halves, or nothing") {
-    Options o;
-    for (bool halves : {false, true}) {
-        o.halves = halves;
-        o.sampler = SamplerKind::independent;
-        CHECK(variance_from(o) == VarianceFrom::samples);
-        for (SamplerKind kind :
-             {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
-            o.sampler = kind;
-            CHECK(variance_from(o) == (halves ? VarianceFrom::halves : VarianceFrom::nothing));
-        }
     }
 }

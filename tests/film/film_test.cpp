@@ -23,7 +23,8 @@ TEST_CASE("a film is the mean of its samples, however passes divide them") {
     auto film_of = [&](const std::vector<uint64_t>& passes) {
         MeanFilm film({3, 2});
         for (uint64_t n : passes) {
-            for (int y : {1, 0}) film.add_row(y, n, [&](int x, uint64_t i) { return L(x, y, i); });
+            for (int y : {1, 0})
+                film.add_row(y, n, [&](int x, uint64_t i, uint32_t) { return L(x, y, i); });
             film.end_pass(n);
         }
         CHECK(film.samples() == 12);
@@ -42,7 +43,7 @@ TEST_CASE("a pass that is not complete leaves no trace in the image") {
     MeanFilm film({2, 2});
     auto pass = [&](int rows, real value) {
         for (int y = 0; y < rows; ++y)
-            film.add_row(y, 2, [&](int, uint64_t) { return rgb{value, value, value}; });
+            film.add_row(y, 2, [&](int, uint64_t, uint32_t) { return rgb{value, value, value}; });
     };
     pass(1, 5);
     CHECK(film.samples() == 0);
@@ -57,7 +58,7 @@ TEST_CASE("a pass that is not complete leaves no trace in the image") {
 TEST_CASE("a pixel that nobody wrote is no number in the image, even if the pass is ended") {
     MeanFilm film({2, 2});
     for (int pass = 0; pass < 2; ++pass) {
-        film.add_row(0, 1, [](int, uint64_t) { return rgb{1, 1, 1}; });
+        film.add_row(0, 1, [](int, uint64_t, uint32_t) { return rgb{1, 1, 1}; });
         film.end_pass(1);
         CHECK(image_of(film).at(0, 0) == Pixel{1, 1, 1});
         CHECK(first_non_finite(image_of(film)) == "0,1");
@@ -67,27 +68,13 @@ TEST_CASE("a pixel that nobody wrote is no number in the image, even if the pass
 TEST_CASE("a row takes no more samples once the run is interrupted") {
     MeanFilm film({8, 1});
     int samples = 0;
-    film.add_row(0, 100, [&](int x, uint64_t i) {
+    film.add_row(0, 100, [&](int x, uint64_t i, uint32_t) {
         interrupted = x == 2 && i == 7;
         ++samples;
         return rgb{};
     });
     interrupted = 0;
     CHECK(samples == 208);
-}
-
-TEST_CASE("means over pixels are of doubles, whatever float holds") {
-    MeanFilm film({2, 1});
-    CHECK(std::isnan(film.mean_of([](const MeanPixel&, size_t) { return 1.0; })[0]));
-    film.add_row(0, 2, [](int x, uint64_t i) {
-        return rgb{i && x ? real(1e30) : 0, i ? real(1e-30) : 0, 0};
-    });
-    film.end_pass(2);
-    const std::array<double, 3> mean = film.mean_of(variance_in(film, VarianceFrom::halves));
-    CHECK(mean[0] == doctest::Approx(1e60 / 4 / 2));
-    CHECK(mean[1] / 1e-60 == doctest::Approx(1 / 4.0));
-    CHECK(mean[2] == 0);
-    CHECK(std::isinf(variance_of(film, VarianceFrom::halves).at(1, 0)[0]));
 }
 
 TEST_CASE("samples that no file can hold are counted, and the first by sample, row, column told") {
@@ -98,12 +85,12 @@ TEST_CASE("samples that no file can hold are counted, and the first by sample, r
                                                    {{5, 1, 0}, {infinity, 1, nan}}};
     for (bool downwards : {false, true}) {
         MeanFilm film({3, 3});
-        film.add_row(0, 0, [](int, uint64_t) { return rgb{}; });
+        film.add_row(0, 0, [](int, uint64_t, uint32_t) { return rgb{}; });
         film.end_pass(0);
         CHECK(film.non_finite() == 0);
         for (int row = 0; row < 3; ++row) {
             const int y = downwards ? 2 - row : row;
-            film.add_row(y, 8, [&](int x, uint64_t i) {
+            film.add_row(y, 8, [&](int x, uint64_t i, uint32_t) {
                 auto found = bad.find({int(i), y, x});
                 return found == bad.end() ? rgb{1, 1, 1} : found->second;
             });
@@ -114,13 +101,13 @@ TEST_CASE("samples that no file can hold are counted, and the first by sample, r
         CHECK(film.first_non_finite().x == 2);
     }
     MeanFilm film({1, 1});  // finite, but the file's numbers are float
-    film.add_row(0, 1, [](int, uint64_t) { return rgb{1, real(1e30) * real(1e10), 1}; });
+    film.add_row(0, 1, [](int, uint64_t, uint32_t) { return rgb{1, real(1e30) * real(1e10), 1}; });
     CHECK(film.non_finite() == 1);
 }
 
 TEST_CASE("a film adds up in double: 2^24 ones and more, beside numbers of 1e-9") {
     MeanFilm film({1, 1});
-    film.add_row(0, 1000, [](int, uint64_t i) {
+    film.add_row(0, 1000, [](int, uint64_t i, uint32_t) {
         const real tiny = i % 2 ? real(1e-9) : 0;
         return rgb{i < 2 ? real(1 << 24) : 1, i < 2 ? 1 : tiny, 0};
     });
@@ -129,43 +116,131 @@ TEST_CASE("a film adds up in double: 2^24 ones and more, beside numbers of 1e-9"
     CHECK(image_of(film).at(0, 0)[1] == float((2 + 499e-9) / 1000));
 }
 
-TEST_CASE("variances of few numbers, by hand") {
-    // 1, 5, 3: mean 3, squared distances 8; even ones 1, 3, of mean 2; the odd one 5.
-    const auto variance = [](VarianceFrom from) {
+// ---- Noise --------------------------------------------------------------------------------------
+
+TEST_CASE("noise of few numbers, by hand") {
+    // 1, 5, 3: mean 3, squared distances 8, twice as far in green.
+    const auto noise = [](uint64_t n) {
         MeanFilm film({1, 1});
-        film.add_row(0, 3, [](int, uint64_t i) {
-            return rgb{real(i == 0 ? 1 : i == 1 ? 5 : 3), 0, 0};
+        film.add_row(0, n, [](int, uint64_t i, uint32_t) {
+            const real x = real(i == 0 ? 1 : i == 1 ? 5 : 3);
+            return rgb{x, 2 * x, 0};
         });
-        film.end_pass(3);
-        return variance_of(film, from).at(0, 0)[0];
+        film.end_pass(n);
+        return film.noise();
     };
-    CHECK(variance(VarianceFrom::samples) == float(8.0 / 2 / 3));
-    CHECK(variance(VarianceFrom::halves) == float(9 * 2.0 / 9));
-    CHECK(std::isnan(variance(VarianceFrom::nothing)));
+    CHECK(noise(1) == std::vector<double>{0});
+    CHECK(noise(2) == std::vector<double>{5 * 8.0 / 1 / 2});
+    CHECK(noise(3)[0] == doctest::Approx(5 * 8.0 / 2 / 3).epsilon(1e-15).scale(0));
 }
 
-TEST_CASE("the film's variances are those of the means: independent samples, and halves") {
-    // Pixel values u^2: variance of one sample 1/5 - 1/9 = 4/45.
-    for (bool independent : {true, false}) {
-        MeanFilm film({400, 250});
-        const uint64_t n = 7;  // uneven, in passes of 1, 2, 4
-        for (uint64_t pass : {1, 2, 4}) {
-            for (int y = 0; y < film.size.height; ++y)
-                film.add_row(y, pass, [&](int x, uint64_t i) {
-                    const real u = to_unit(hash(hash(uint64_t(y), uint64_t(x)), i));
-                    return rgb{u * u, 1000 + u * u, 0};
-                });
-            film.end_pass(pass);
-        }
-        CHECK(film.samples() == n);
-        const Image variance =
-            variance_of(film, independent ? VarianceFrom::samples : VarianceFrom::halves);
-        Moments m;
-        for (const auto& p : variance.pixels) m.add(double(p[0]));
-        EXPECT(oracle::expect_mean(4 / 45.0 / double(n), estimate(m)), 0.05);
-        // No cancellation far from zero, no variance where there is none.
-        const float offset_error = sizeof(real) == 4 ? 0.02f : 1e-6f;
-        CHECK(std::abs(variance.at(7, 7)[1] / variance.at(7, 7)[0] - 1) < offset_error);
-        CHECK(variance.at(3, 3)[2] == 0);
+TEST_CASE("noise is the variance of the mean of independent samples, all channels together") {
+    // Pixel values u^2: variance of one sample 1/5 - 1/9 = 4/45, the same far from zero.
+    MeanFilm film({400, 250});
+    const uint64_t n = 7;  // uneven, in passes of 1, 2, 4
+    for (uint64_t pass : {1, 2, 4}) {
+        for (int y = 0; y < film.size.height; ++y)
+            film.add_row(y, pass, [&](int x, uint64_t i, uint32_t) {
+                const real u = to_unit(hash(hash(uint64_t(y), uint64_t(x)), i));
+                return rgb{u * u, 1000 + u * u, 0};
+            });
+        film.end_pass(pass);
     }
+    CHECK(film.samples() == n);
+    Moments m;
+    for (double v : film.noise()) m.add(v);
+    EXPECT(oracle::expect_mean(2 * 4 / 45.0 / double(n), estimate(m, double(ulp))), 0.05);
+    // No cancellation far from zero, no noise where there is none.
+    const MeanPixel& p = film.pixel(7, 0);
+    const double offset_error = sizeof(real) == 4 ? 0.02 : 1e-6;
+    CHECK(std::abs(p.m2[1] / p.m2[0] - 1) < offset_error);
+    CHECK(p.m2[2] == 0);
+}
+
+// ---- Sets of samples ----------------------------------------------------------------------------
+
+namespace {
+
+// A number for every sample of every set.
+rgb numbered(int x, int y, uint64_t i, uint32_t set) {
+    const uint64_t bits = hash(hash(hash(uint64_t(y), uint64_t(x)), set), i);
+    return {to_unit(bits), to_unit(mix(bits)), real(set)};
+}
+
+void add(MeanFilm& film, uint64_t n) {
+    for (int y = 0; y < film.size.height; ++y)
+        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) { return numbered(x, y, i, set); });
+    film.end_pass(n);
+}
+
+const std::vector<Sets> of_four_pixels = {{1, 0}, {3, 0}, {1, 0.25}, {2, 0}};
+
+}  // namespace
+
+TEST_CASE("a pixel is the mean of its sets that are shown, whenever they were added") {
+    for (uint64_t before : {0, 1, 4, 9}) {
+        MeanFilm film({2, 2});
+        if (before > 0) add(film, before);
+        CHECK(!film.has_sets());
+        CHECK(film.sets_per_pixel() == 1);
+        film.add_sets(of_four_pixels);
+        CHECK(film.has_sets());
+        CHECK(film.sets_per_pixel() == 2);  // (1 + 3 + 2 + 2) / 4
+        for (uint64_t n : {0, 2, 1}) add(film, n);
+        const uint64_t n = before + 3;
+        CHECK(film.samples() == n);
+        const Image image = image_of(film);
+        for (size_t i = 0; i < 4; ++i) {
+            const uint32_t shown = of_four_pixels[i].shown;
+            CHECK(film.sets(i).count() == std::vector<uint32_t>{1, 3, 2, 2}[i]);
+            double sum = 0;
+            for (uint32_t set = 0; set < film.sets(i).count(); ++set) {
+                double of_set = 0;
+                for (uint64_t k = 0; k < n; ++k)
+                    of_set += double(numbered(int(i % 2), int(i / 2), k, set).x);
+                CHECK(film.pixel(i, set).sum[0] == of_set);
+                if (set < shown) sum += of_set / double(n);
+            }
+            CHECK(image.pixels[i][0] == float(sum / shown));
+            CHECK(image.pixels[i][2] == float(shown - 1) / 2);
+        }
+    }
+}
+
+TEST_CASE("until the others have caught up, a pixel is its first set") {
+    MeanFilm film({2, 2});
+    add(film, 5);
+    const Image one = image_of(film);
+    film.add_sets(of_four_pixels);
+    CHECK(!film.others_are_complete());
+    CHECK(image_of(film).pixels == one.pixels);
+    film.add_row(0, 0, [](int, uint64_t, uint32_t) { return rgb{9, 9, 9}; });  // and no more
+    CHECK(image_of(film).pixels == one.pixels);
+    add(film, 0);
+    CHECK(film.others_are_complete());
+    CHECK(image_of(film).pixels != one.pixels);
+    CHECK(image_of(film).pixels[0] == one.pixels[0]);
+}
+
+TEST_CASE("one set each is the film without sets, bit for bit; noise is that of the first set") {
+    MeanFilm plain({2, 2}), one({2, 2}), more({2, 2});
+    one.add_sets(std::vector<Sets>(4, {1, 0}));
+    more.add_sets(of_four_pixels);
+    for (MeanFilm* film : {&plain, &one, &more})
+        for (uint64_t n : {1, 6, 4}) add(*film, n);
+    CHECK(image_of(one).pixels == image_of(plain).pixels);
+    CHECK(more.noise() == plain.noise());
+}
+
+TEST_CASE("of samples that do not fit the first by sample, then by set is told, with its set") {
+    MeanFilm film({2, 1});
+    film.add_sets({{3, 0}, {3, 0}});
+    film.add_row(0, 4, [](int x, uint64_t i, uint32_t set) {
+        const bool bad = i == 2 && x != int(set) && set > 0;
+        return rgb{bad ? real(NAN) : 1, 1, 1};
+    });
+    CHECK(film.non_finite() == 3);
+    CHECK(film.first_non_finite().sample == 2);
+    CHECK(film.first_non_finite().set == 1);
+    CHECK(film.first_non_finite().x == 0);
 }

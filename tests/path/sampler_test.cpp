@@ -39,7 +39,7 @@ TEST_CASE("every number of a path has a dimension of its own, in the order of th
             CHECK(dimension(vertex, Draw(what)) == next++);
 }
 
-TEST_CASE("seed, pixel, sample, dimension: whichever is another, the number is another") {
+TEST_CASE("seed, pixel, set, sample, dimension: whichever is another, the number is another") {
     for (SamplerKind kind : kinds) {
         const Pattern pattern = make_pattern(kind, 5, depth, 64);
         const Pattern reseeded = make_pattern(kind, 6, depth, 64);
@@ -50,9 +50,10 @@ TEST_CASE("seed, pixel, sample, dimension: whichever is another, the number is a
                 equal += u == Sampler(reseeded, pixel, 3).get(dim);
                 equal += u == Sampler(pattern, pixel + 1, 3).get(dim);
                 equal += u == Sampler(pattern, pixel, 4).get(dim);
+                equal += u == Sampler(pattern, pixel, 3, 1).get(dim);
                 equal += u == Sampler(pattern, pixel, 3).get(dim + 1);
             }
-        // 1200 pairs; numbers of 24 bits are equal by chance with probability 7e-5 in all.
+        // 1500 pairs; numbers of 24 bits are equal by chance with probability 9e-5 in all.
         INFO(std::string(names[int(kind)]));
         CHECK(equal < 2);
     }
@@ -151,58 +152,54 @@ TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
     }
 }
 
-TEST_CASE("Sobol' points of one pixel fill every elementary interval, the halves each its own") {
-    for (bool halves : {false, true}) {
-        const Pattern pattern = make_pattern(SamplerKind::sobol, seed_here(), depth, 0);
-        CHECK(pattern.period() == pattern.halves);
-        for (uint64_t pixel = 0; pixel < 100; ++pixel)
-            for (uint64_t half = 0; half < pattern.halves; ++half)
-                for (uint32_t dim :
-                     {film_x, dimension(0, Draw::light_x), dimension(4, Draw::wi_x)}) {
-                    int boxes[5][16] = {}, parts[16] = {}, cubes[2][8] = {};
-                    for (uint64_t i = 32; i < 48; ++i) {
-                        const Sampler s(pattern, pixel, i * pattern.halves + half);
-                        const vec2 u = s.get2(dim);
-                        for (uint64_t c : {0, 1, 2, 3, 4})  // 2^c columns
-                            ++boxes[c][(part(1u << c, u.x) << (4 - c)) + part(16u >> c, u.y)];
-                        ++parts[part(16, draw(s, dimension(2, Draw::pick)))];
-                        for (Draw choice : {Draw::pick, Draw::lobe}) {
-                            const uint32_t k = choice == Draw::lobe;
-                            const vec2 v = s.get2(dimension(1, k ? Draw::wi_x : Draw::light_x));
-                            const uint64_t z = part(2, draw(s, dimension(1, choice)));
-                            ++cubes[k][part(2, v.x) * 4 + part(2, v.y) * 2 + z];
-                        }
+TEST_CASE("Sobol' points of one pixel fill every elementary interval, every set's its own") {
+    const Pattern pattern = make_pattern(SamplerKind::sobol, seed_here(), depth, 0);
+    CHECK(pattern.period() == 1);
+    for (uint64_t pixel = 0; pixel < 100; ++pixel)
+        for (uint32_t set : {0u, 1u, 7u})
+            for (uint32_t dim : {film_x, dimension(0, Draw::light_x), dimension(4, Draw::wi_x)}) {
+                int boxes[5][16] = {}, parts[16] = {}, cubes[2][8] = {};
+                for (uint64_t i = 32; i < 48; ++i) {
+                    const Sampler s(pattern, pixel, i, set);
+                    const vec2 u = s.get2(dim);
+                    for (uint64_t c : {0, 1, 2, 3, 4})  // 2^c columns
+                        ++boxes[c][(part(1u << c, u.x) << (4 - c)) + part(16u >> c, u.y)];
+                    ++parts[part(16, draw(s, dimension(2, Draw::pick)))];
+                    for (Draw choice : {Draw::pick, Draw::lobe}) {
+                        const uint32_t k = choice == Draw::lobe;
+                        const vec2 v = s.get2(dimension(1, k ? Draw::wi_x : Draw::light_x));
+                        const uint64_t z = part(2, draw(s, dimension(1, choice)));
+                        ++cubes[k][part(2, v.x) * 4 + part(2, v.y) * 2 + z];
                     }
-                    for (const auto& shape : boxes)
-                        for (int b : shape) REQUIRE(b == 1);
-                    for (int p : parts) REQUIRE(p == 1);
-                    for (const auto& cube : cubes)
-                        for (int c : cube) REQUIRE(c == 2);
                 }
-    }
+                for (const auto& shape : boxes)
+                    for (int b : shape) REQUIRE(b == 1);
+                for (int p : parts) REQUIRE(p == 1);
+                for (const auto& cube : cubes)
+                    for (int c : cube) REQUIRE(c == 2);
+            }
 }
 
 TEST_CASE("stratified samples put one into every cell of every grid, whatever the number") {
-    for (uint64_t spp : {1, 2, 7, 16, 48, 64, 100, 1024, 1000})
-        for (bool halves : {false, true}) {
-            const Pattern p =
-                make_pattern(SamplerKind::stratified, seed_here(), depth, spp);
-            const uint64_t period = p.period(), cells = p.columns * p.rows;
-            CHECK(cells <= 256);
-            CHECK(p.columns <= 2 * p.rows);
-            CHECK((spp % period == 0 || cells == 16));  // or nothing fits
-            for (uint64_t pixel = 0; pixel < 20; ++pixel)
-                for (uint64_t half = 0; half < p.halves; ++half) {
-                    std::vector<int> film(cells), pick(cells);
-                    for (uint64_t i = 5 * period + half; i < 6 * period; i += p.halves) {
-                        const Sampler s(p, pixel, i);
-                        const vec2 u = s.get2(film_x);
-                        ++film[part(p.rows, u.y) * p.columns + part(p.columns, u.x)];
-                        ++pick[part(cells, s.get(dimension(3, Draw::pick)))];
-                    }
-                    for (uint64_t c = 0; c < cells; ++c) REQUIRE((film[c] == 1 && pick[c] == 1));
+    for (uint64_t spp : {1, 2, 7, 16, 48, 64, 100, 1024, 1000}) {
+        const Pattern p = make_pattern(SamplerKind::stratified, seed_here(), depth, spp);
+        const uint64_t period = p.period(), cells = p.columns * p.rows;
+        CHECK(period == cells);
+        CHECK(cells <= 256);
+        CHECK(p.columns <= 2 * p.rows);
+        CHECK((spp % period == 0 || cells == 16));  // or nothing fits
+        for (uint64_t pixel = 0; pixel < 20; ++pixel)
+            for (uint32_t set : {0u, 1u, 7u}) {
+                std::vector<int> film(cells), pick(cells);
+                for (uint64_t i = 5 * period; i < 6 * period; ++i) {
+                    const Sampler s(p, pixel, i, set);
+                    const vec2 u = s.get2(film_x);
+                    ++film[part(p.rows, u.y) * p.columns + part(p.columns, u.x)];
+                    ++pick[part(cells, s.get(dimension(3, Draw::pick)))];
                 }
-        }
+                for (uint64_t c = 0; c < cells; ++c) REQUIRE((film[c] == 1 && pick[c] == 1));
+            }
+    }
     CHECK(make_pattern(SamplerKind::stratified, 0, 1, 64).columns == 8);
     CHECK(make_pattern(SamplerKind::stratified, 0, 1, 48).columns == 8);
     CHECK(make_pattern(SamplerKind::stratified, 0, 1, 48).rows == 6);
@@ -258,19 +255,41 @@ TEST_CASE("permute is as fair where it must walk: numbers that are no power of t
         }
 }
 
-TEST_CASE("halves are randomised apart; without them odd and even samples are one point set") {
-    for (SamplerKind kind : {SamplerKind::halton, SamplerKind::sobol}) {
-        const Pattern whole = make_pattern(kind, seed_here(), depth, 64);
-        const Pattern halves = make_pattern(kind, seed_here(), depth, 64);
+TEST_CASE("every set of a pixel's samples is randomised on its own, whatever the sampler") {
+    for (SamplerKind kind : kinds) {
+        const Pattern pattern = make_pattern(kind, seed_here(), depth, 64);
         int equal = 0;
         for (uint64_t pixel = 0; pixel < 100; ++pixel) {
-            // Samples 2k and 2k + 1 of a pair of halves are both number k of their own point set.
-            const real a = Sampler(halves, pixel, 6).get(2), b = Sampler(halves, pixel, 7).get(2);
-            equal += a == b;
-            const real c = Sampler(whole, pixel, 0).get(0), d = Sampler(whole, pixel, 1).get(0);
+            for (uint32_t set : {1u, 2u, 7u})
+                equal +=
+                    Sampler(pattern, pixel, 6, 0).get(2) == Sampler(pattern, pixel, 6, set).get(2);
+            CHECK(Sampler(pattern, pixel, 6).get(2) == Sampler(pattern, pixel, 6, 0).get(2));
+            // Of one set the samples are one point set.
+            if (kind != SamplerKind::halton && kind != SamplerKind::sobol) continue;
+            const real c = Sampler(pattern, pixel, 0, 3).get(0),
+                       d = Sampler(pattern, pixel, 1, 3).get(0);
             CHECK(part(2, c) != part(2, d));
         }
         CHECK(equal < 3);
+    }
+}
+
+TEST_CASE("means over a set are uncorrelated with those of the pixel's other sets") {
+    // Products (mean - 1/2)(mean of another set - 1/2), over the root mean square of the means:
+    // 1 if both had one randomisation.
+    for (SamplerKind kind : kinds) {
+        const Pattern pattern = make_pattern(kind, seed_here(), depth, 16);
+        Moments products, squares;
+        for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
+            double mean[2] = {};
+            for (uint32_t set : {0u, 1u})
+                for (uint64_t i = 0; i < 5; ++i)  // of a net of 16: they are not the same for all
+                    mean[set] += (double(draw(Sampler(pattern, pixel, i, set), 2)) - 0.5) / 5;
+            products.add(mean[0] * mean[1]);
+            squares.add(mean[0] * mean[0]);
+        }
+        const std::string name = names[int(kind)];
+        EXPECT(oracle::expect_mean(0, estimate(products)).of(name), 0.15 * squares.mean);
     }
 }
 
@@ -282,19 +301,19 @@ TEST_CASE("halton-naive repeats itself: the same numbers in every pixel and at e
     CHECK(a.get2(film_x).y == radical_inverse(3, 11));
 }
 
-TEST_CASE("samples 2^32 apart differ, whatever the sampler, in halves, too") {
+TEST_CASE("samples 2^32 apart differ, whatever the sampler, in every set") {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
                              SamplerKind::sobol, SamplerKind::halton_naive})
-        for (bool halves : {false, true}) {
+        for (uint32_t set : {0u, 1u}) {
             const Pattern pattern = make_pattern(kind, seed_here(), depth, 64);
             int equal = 0;
             for (uint64_t i = 0; i < 100; ++i)
                 for (uint64_t far : {uint64_t(1) << 32, uint64_t(1) << 33}) {
-                    const Sampler near(pattern, 7, i), beyond(pattern, 7, i + far);
+                    const Sampler near(pattern, 7, i, set), beyond(pattern, 7, i + far, set);
                     // Base 3: in base 2 the samples' digits differ from the 33rd on.
                     equal += near.get2(film_x).y == beyond.get2(film_x).y;
                 }
-            INFO("sampler ", int(kind), ", halves ", halves);
+            INFO("sampler ", int(kind), ", set ", set);
             CHECK(equal < 2);
         }
 }

@@ -2,10 +2,9 @@
 // forms
 #include "shadow/shadow.h"
 
-#include <doctest/doctest.h>
-
 #include "base/moments.h"
-#include "oracle/oracle.h"
+#include "film/error.h"
+#include "oracle/expect.h"
 #include "world/scene_file.h"
 
 namespace {
@@ -303,11 +302,12 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
     CHECK(dark.shadowed_sample(0).U == rgb{});
 }
 
-TEST_CASE("direct: a film of moments counts whole passes, and all samples of a pixel together") {
+TEST_CASE("direct: a film of moments counts whole passes, and all samples of a set together") {
     oracle::Random random(oracle::seed_of("shadow film"));
     Film<ShadowPixel> film({2, 2});
-    std::array<ShadowMoments, 3> all, even, odd;
-    auto draw = [&](int x, int y, uint64_t i) {
+    film.add_sets({{1, 0}, {2, 0}, {1, 0}, {1, 0.5}});
+    std::array<std::array<ShadowMoments, 3>, 2> sets;
+    auto draw = [&](int x, int y, uint32_t set) {
         ShadowSample sample{{1, 1, 1}, {}};
         for (size_t c = 0; c < 3; ++c) {
             auto& [U, w, wV] = sample.first;
@@ -316,43 +316,71 @@ TEST_CASE("direct: a film of moments counts whole passes, and all samples of a p
             wV.*axis[c] = random() < 0.5 ? w.*axis[c] : 0;
             if (x != 1 || y != 0) continue;
             const double u = double(U.*axis[c]), W = double(w.*axis[c]), V = double(wV.*axis[c]);
-            all[c].add(u, W, V);
-            (i % 2 ? odd : even)[c].add(u, W, V);
+            sets[set][c].add(u, W, V);
         }
         return sample;
     };
     for (uint64_t n : {1, 3, 8}) {
         for (int y = 0; y < 2; ++y)
-            film.add_row(y, n, [&](int x, uint64_t i) { return draw(x, y, i); });
+            film.add_row(y, n, [&](int x, uint64_t, uint32_t set) { return draw(x, y, set); });
         film.end_pass(n);
     }
     // A pass that is not finished.
-    film.add_row(0, 1, [](int, uint64_t) {
+    film.add_row(0, 1, [](int, uint64_t, uint32_t) {
         return ShadowSample{{9, 9, 9}, {{9, 9, 9}, {9, 9, 9}, {9, 9, 9}}};
     });
     for (Estimator e : {Estimator::ratio, Estimator::regression}) {
-        const Image variance = variance_of(film, e, VarianceFrom::halves);
+        const Image variance = variance_of(film, value_in(film, e));
         for (size_t c = 0; c < 3; ++c) {
-            CHECK(double(image_of(film, e).at(1, 0)[c]) ==
-                  doctest::Approx(1 + estimate(e, all[c])));
-            const double halves = estimate(e, even[c]) - estimate(e, odd[c]);
+            const double a = estimate(e, sets[0][c]), b = estimate(e, sets[1][c]);
+            CHECK(double(image_of(film, e).at(1, 0)[c]) == doctest::Approx(1 + (a + b) / 2));
+            // (a - b)^2 / 2 is the variance of one of them, of which two are shown.
             CHECK(double(variance.at(1, 0)[c]) ==
-                  doctest::Approx(halves * halves / 4).epsilon(1e-4).scale(0));
+                  doctest::Approx((a - b) * (a - b) / 4).epsilon(1e-4).scale(0));
         }
-        CHECK(std::isnan(variance_of(film, e, VarianceFrom::nothing).at(1, 0)[0]));
+        CHECK(std::isnan(variance.at(0, 0)[0]));
     }
 }
 
-TEST_CASE("halves that float cannot tell apart have a variance of their own") {
-    // Even samples 1 and 1 + 2^-23, of mean 1 + 2^-24, which float rounds to 1; odd ones 1.
+TEST_CASE("sets that float cannot tell apart have a variance of their own") {
+    // Samples 1 and 1 + 2^-23 of one set, of mean 1 + 2^-24, which float rounds to 1; 1 of another.
     Film<ShadowPixel> film({1, 1});
-    film.add_row(0, 4, [](int, uint64_t i) {
-        const real x = i == 2 ? 1 + std::ldexp(real(1), -23) : 1;
+    film.add_sets({{2, 0}});
+    film.add_row(0, 2, [](int, uint64_t i, uint32_t set) {
+        const real x = i == 1 && set == 0 ? 1 + std::ldexp(real(1), -23) : 1;
         return ShadowSample{{x, x, x}, {}};
     });
-    film.end_pass(4);
-    const Image variance = variance_of(film, Estimator::ratio, VarianceFrom::halves);
+    film.end_pass(2);
+    const Image variance = variance_of(film, value_in(film, Estimator::ratio));
     CHECK(variance.at(0, 0)[0] == std::ldexp(1.0f, -48) / 4);
+}
+
+TEST_CASE("direct: the noise of a pixel is that of light and of shadows as if they were coins") {
+    // Independent samples: U is 1, w is uniform over [1/2, 3/2] (variance 1/12), V a coin of R =
+    // 1/4, the rest uniform over [0, 1].  Shadows: E[w^2] R (1 - R), E[w^2] = 13/12.
+    oracle::Random random(seed_here());
+    Moments noise;
+    const uint64_t n = 16;
+    for (int trial = 0; trial < 12000; ++trial) {
+        ShadowPixel p;
+        for (uint64_t i = 0; i < n; ++i) {
+            const real w = real(0.5 + random()), V = random() < 0.25, rest = real(random());
+            p.add(i, {{rest, 0, 0}, {{1, 0, 0}, {w, 0, 0}, {w * V, 0, 0}}});
+        }
+        noise.add(p.noise(n) * double(n));
+    }
+    // R (1 - R) of R from n samples is smaller by R (1 - R) / n, and a little for the spread of w.
+    const double R1R = 0.25 * 0.75, shadows = 13 / 12.0 * R1R * (1 - 1.1 / double(n));
+    EXPECT(oracle::expect_mean(1 / 12.0 + shadows, estimate(noise, double(ulp))), 0.02);
+    ShadowPixel lit, dark;
+    for (uint64_t i = 0; i < n; ++i) {
+        const real w = real(0.5 + random());
+        lit.add(i, {{}, {{1, 1, 1}, {w, w, w}, {w, w, w}}});
+        dark.add(i, {{}, {{1, 1, 1}, {w, w, w}, {}}});
+    }
+    CHECK(lit.noise(n) == 0);
+    CHECK(dark.noise(n) == 0);
+    CHECK(ShadowPixel().noise(1) == 0);
 }
 
 TEST_CASE("direct: a sample whose moments are no numbers does not fit a film") {

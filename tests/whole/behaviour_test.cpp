@@ -334,13 +334,66 @@ TEST_CASE("the statistics' variance is right however bright the light: 2^70 and 
         return std::strtod(stats.c_str() + stats.find(key) + key.size(), nullptr);
     };
     for (const char* options :
-         {"--sampler independent", "--halves", "--halves --light nee --direct ratio"}) {
+         {"--sampler independent", "", "--sets 3", "--light nee --direct ratio"}) {
         INFO(std::string(options));
         const double one = variance("1", options);
         CHECK(one > 0);
         CHECK(variance("1180591620717411303424", options) == std::ldexp(one, 140));
         CHECK(variance("8.470329472543003390683225006796419620513916015625e-22", options) ==
               std::ldexp(one, -140));
+    }
+}
+
+// ---- What an image's error is ------------------------------------------------------------------
+
+TEST_CASE("the summary states the error, or why it is not known; --error says what ended it") {
+    const Folder folder;
+    folder.write("file.scene", good + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
+    auto told = [&](const std::string& options) {
+        const Outcome o =
+            expect_success(folder, "penumbra", split("-o a.pfm " + options + " file.scene"));
+        INFO(o.err);
+        CHECK(summary(o.err).found);
+        return summary(o.err);
+    };
+    for (const char* options : {"", "--sampler halton", "--sets 2", "--view normal"}) {
+        INFO(std::string(options));
+        CHECK(told(options).error.starts_with("d_rel "));
+        CHECK(contains(told(options).error, " % ± "));
+        CHECK(contains(told(options).error, " % needs "));
+        CHECK(told(options).stopped_by == "");
+    }
+    CHECK(contains(told("--light nee --direct ratio").error, " without its bias (consistent)"));
+    CHECK(told("--sets 1").error == "error not known: one set of samples");
+    CHECK(told("--spp 1").error == "error not known: one sample");
+    CHECK(told("--sampler halton-naive").error == "error not known: halton-naive is not random");
+    const Summary error = told("--error 10%"), samples = told("--error 1e-5 --spp 20"),
+                  time = told("--error 1e-6 --time 0.05 --spp 1000000000");
+    CHECK(error.stopped_by == "error");
+    CHECK(error.samples >= 16);
+    CHECK(samples.stopped_by == "samples");
+    CHECK(samples.samples == 20);
+    CHECK(time.stopped_by == "time");
+    CHECK(time.samples < 1000000000);
+}
+
+TEST_CASE("--pixel replays a sample of any set: the mean of two is the pixel") {
+    const Folder folder;
+    folder.write("file.scene", good + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
+    for (const std::string more : {"", "--light nee --direct control "}) {
+        const std::string line = more + "--size 6x6 --seed 4 ";
+        expect_success(folder, "penumbra", split(line + "--spp 1 --sets 2 -o a.pfm file.scene"));
+        auto L = [&](const std::string& set) {
+            const Outcome o =
+                run(folder, "penumbra", split(line + "--pixel 1,5" + set + " file.scene"));
+            CHECK(o.status == 0);
+            const size_t at = o.out.rfind("\nL: ");
+            REQUIRE(at != o.out.npos);
+            return std::strtod(o.out.c_str() + at + 4, nullptr);
+        };
+        CHECK(L("") == L(" --set 0"));
+        CHECK(L(" --set 0") != L(" --set 1"));
+        CHECK(read_pfm(folder / "a.pfm").at(1, 5)[0] == float((L(" --set 0") + L(" --set 1")) / 2));
     }
 }
 

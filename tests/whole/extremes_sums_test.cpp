@@ -76,20 +76,19 @@ double merged_billion() {
     return std::max(relative(all.mean, 499.5), relative(all.variance(), truth));
 }
 
-// The film's mean and variance of 1e9 samples of one pixel, 0.1 and 0.3 by turns, one by one.
+// The film's mean and noise of 1e9 samples of one pixel, 0.1 and 0.3 by turns, one by one.
 double billion_one_by_one() {
     Film<MeanPixel> film({1, 1});
     const real low = real(0.1), high = real(0.3);
-    film.add_row(0, 1000000000, [&](int, uint64_t i) {
+    film.add_row(0, 1000000000, [&](int, uint64_t i, uint32_t) {
         const real L = i % 2 ? high : low;
         return rgb{L, L, L};
     });
     film.end_pass(1000000000);
     const double mean = (double(low) + double(high)) / 2, half = (double(high) - double(low)) / 2;
-    // Both are stored as float: rounded once more, by 6e-8.
+    // The image is stored as float: rounded once more, by 6e-8.
     const double off = relative(image_of(film).at(0, 0)[0], mean);
-    const Image variance = variance_of(film, VarianceFrom::samples);
-    return std::max(off, relative(variance.at(0, 0)[0], half * half / (1e9 - 1)));
+    return std::max(off, relative(film.noise()[0], 3 * half * half / (1e9 - 1)));
 }
 
 // Mean 1e8, sigma 1: moments of doubles.
@@ -102,12 +101,12 @@ double variance_far_from_zero() {
 // The same as radiance, in the film.
 double film_far_from_zero() {
     Film<MeanPixel> film({1, 1});
-    film.add_row(0, 100000, [](int, uint64_t i) {
+    film.add_row(0, 100000, [](int, uint64_t i, uint32_t) {
         const real L = real(1e8) + (i % 2 ? real(1) : real(-1));
         return rgb{L, L, L};
     });
     film.end_pass(100000);
-    return relative(variance_of(film, VarianceFrom::samples).at(0, 0)[0], 1 / (1e5 - 1));
+    return relative(film.noise()[0], 3 / (1e5 - 1));
 }
 
 // P(|z| > 20), and Student's t far out: P(|t| > x) -> 2 / (pi x) for one degree of freedom.

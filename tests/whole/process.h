@@ -237,6 +237,7 @@ struct Summary {
     std::string scene;
     unsigned long long samples = 0, non_finite = 1;
     double seconds = -1, speed = -1;
+    std::string error, stopped_by;  // as they are told
     bool interrupted = false, found = false;
 };
 
@@ -255,8 +256,18 @@ inline Summary summary(const std::string& err) {
     const int read =
         std::sscanf(line.c_str(), ": %llu samples per pixel, %lf s, %lf Mrays/s, %llu non-finite%n",
                     &s.samples, &s.seconds, &s.speed, &s.non_finite, &read_to);
-    s.interrupted = line.substr(size_t(read_to)) == " (interrupted)";
-    s.found = read == 4 && (size_t(read_to) == line.size() || s.interrupted);
+    line.erase(0, size_t(read_to));
+    auto cut = [&](const std::string& end) {
+        const bool has = line.ends_with(end);
+        if (has) line.erase(line.size() - end.size());
+        return has;
+    };
+    s.interrupted = cut(" (interrupted)");
+    for (const char* by : {"samples", "time", "error"})
+        if (cut(" (stopped by " + std::string(by) + ")")) s.stopped_by = by;
+    if (line.starts_with(", ")) s.error = line.substr(2);
+    const bool told = s.error.starts_with("d_rel ") || s.error.starts_with("error not known: ");
+    s.found = read == 4 && (s.samples > 0 ? told : line.empty());
     return s;
 }
 

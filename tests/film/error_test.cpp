@@ -1,0 +1,334 @@
+// film/error_test.cpp  d^2 as images state it, beside what it is; its course, and when it is small
+#include "film/error.h"
+
+#include <memory>
+
+#include "film/spread.h"
+#include "oracle/expect.h"
+#include "path/sampler.h"
+#include "shadow/shadow.h"
+#include "voronoi/weighted.h"
+
+namespace {
+
+using MeanFilm = Film<MeanPixel>;
+
+constexpr uint32_t by_noise = 0;
+
+// As renders do: in every pixel, or chosen by noise after some samples.
+template <class Pixel, class L>
+void fill(Film<Pixel>& film, uint32_t sets, uint64_t seed, uint64_t n, L sample) {
+    auto add = [&](uint64_t more) {
+        for (int y = 0; y < film.size.height; ++y)
+            film.add_row(y, more,
+                         [&](int x, uint64_t i, uint32_t set) { return sample(x, y, i, set); });
+        film.end_pass(more);
+    };
+    if (sets != by_noise) film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets}));
+    add(samples_before_sets);
+    if (sets == by_noise) {
+        film.add_sets(sets_where_noise_is(film.noise(), film.size, seed));
+        add(0);
+    }
+    add(n - samples_before_sets);
+}
+
+// An image whose noise differs by 100 from left to right, smooth in places, with an edge in others.
+rgb heteroscedastic(int x, int y, vec2 u) {
+    const real scale = real(std::exp2(-0.3 * x));
+    const real v = y % 3 == 0 ? real(u.x + u.y < real(0.7)) : u.x * u.y;
+    return scale * rgb{v, 2 * v, u.x} + rgb{1, 0, 0};
+}
+
+// A normal number (Box, Muller 1958).
+double normal(Rng& rng) {
+    const double r = std::sqrt(-2 * std::log1p(-rng.uniform())), phi = 2 * 3.141592653589793;
+    return r * std::cos(phi * rng.uniform());
+}
+
+}  // namespace
+
+// ---- What images state --------------------------------------------------------------------------
+
+TEST_CASE("d^2 and the variance of a pixel, by hand") {
+    // Pixels of values 1, 5, 3 (variance 4, of which three are shown), of 2 and 6 (variance 8, one
+    // shown, measured by a chance of 1/4), of 7 alone; green twice, blue without noise.
+    MeanFilm film({3, 1});
+    film.add_sets({{3, 0}, {1, 0.25}, {1, 0}});
+    film.add_row(0, 2, [](int x, uint64_t, uint32_t set) {
+        constexpr real values[3][3] = {{1, 5, 3}, {2, 6, 0}, {7, 0, 0}};
+        return rgb{values[x][set], 2 * values[x][set], 1};
+    });
+    film.end_pass(2);
+    const ImageError e = error_of(film, value_in(film));
+    const double red = (4 / 3.0 + 8 / 0.25) / 3;
+    CHECK(e.square[0] == doctest::Approx(red).epsilon(1e-15).scale(0));
+    CHECK(e.square[1] == doctest::Approx(4 * red).epsilon(1e-15).scale(0));
+    CHECK(e.square[2] == 0);
+    CHECK(e.d2() == doctest::Approx(5 * red / 3).epsilon(1e-15).scale(0));
+    // Shown: 3, 2, 7 in red.
+    CHECK(e.norm == doctest::Approx(std::sqrt((5 * (9 + 4 + 49) + 3) / 9.0)).epsilon(1e-15));
+    CHECK(e.d_rel() == doctest::Approx(std::sqrt(e.d2()) / e.norm).epsilon(1e-15).scale(0));
+    const double terms[2] = {4 / 3.0 * 5 / 9, 8 / 0.25 * 5 / 9};
+    CHECK(e.greatest == doctest::Approx(terms[1]).epsilon(1e-15).scale(0));
+    // E[T]^2 = p (n - 1) / (n + 1) E[T^2]: 1/2 of three sets, 1/4 1/3 of two.
+    const double spread = std::sqrt(std::pow(terms[0], 2) / 2 + std::pow(terms[1], 2) * 11 / 12);
+    CHECK(e.spread == doctest::Approx(spread).epsilon(1e-15).scale(0));
+    // d(sqrt(s)) = ds / (2 sqrt(s)).
+    CHECK(e.standard_error() ==
+          doctest::Approx(e.spread / (2 * std::sqrt(e.d2()) * e.norm)).epsilon(1e-15).scale(0));
+    const Image variance = variance_of(film, value_in(film));
+    CHECK(variance.at(0, 0) == std::array<float, 3>{float(4 / 3.0), float(16 / 3.0), 0});
+    CHECK(variance.at(1, 0) == std::array<float, 3>{8, 32, 0});
+    CHECK(std::isnan(variance.at(2, 0)[0]));
+}
+
+TEST_CASE("an error that is not known is no number; that of an image without noise is 0") {
+    auto film_of = [](const std::vector<Sets>& sets, auto value) {
+        auto film = std::make_unique<MeanFilm>(Size{2, 1});
+        if (!sets.empty()) film->add_sets(sets);
+        film->add_row(0, 3, [&](int x, uint64_t, uint32_t set) {
+            const real v = value(x, set);
+            return rgb{v, v, v};
+        });
+        film->end_pass(3);
+        return film;
+    };
+    auto error = [](const std::unique_ptr<MeanFilm>& film) {
+        return error_of(*film, value_in(*film));
+    };
+    const std::vector<Sets> one(2, {1, 0}), two(2, {2, 0}), measured(2, {1, 0.5});
+    for (real level : {real(0), real(3)})
+        for (const auto& sets : {std::vector<Sets>(), one}) {
+            const ImageError e = error(film_of(sets, [&](int, uint32_t) { return level; }));
+            CHECK(std::isnan(e.d2()));
+            CHECK(std::isnan(e.d_rel()));
+            CHECK(std::isnan(e.standard_error()));
+            CHECK(e.norm == double(level));
+        }
+    for (real level : {real(0), real(3)}) {
+        const ImageError e = error(film_of(two, [&](int, uint32_t) { return level; }));
+        CHECK(e.d2() == 0);
+        CHECK(e.d_rel() == 0);
+        CHECK(e.standard_error() == 0);
+    }
+    // Black, but for what only measures it.
+    const ImageError e = error(film_of(measured, [](int, uint32_t set) { return real(set); }));
+    CHECK(e.d_rel() == HUGE_VAL);
+    CHECK(ErrorCourse().cost_of(HUGE_VAL) == HUGE_VAL);
+    CHECK(samples_to_look(e, {}, 0.5, 16) == 16);
+    // Before any sample; while the others catch up.
+    MeanFilm film({1, 1});
+    CHECK(std::isnan(error_of(film, value_in(film)).d_rel()));
+    film.add_sets({{2, 0}});
+    CHECK(std::isnan(error_of(film, value_in(film)).d_rel()));
+    MeanFilm late({1, 1});
+    late.add_row(0, 4, [](int, uint64_t, uint32_t) { return rgb{2, 2, 2}; });
+    late.end_pass(4);
+    late.add_sets({{2, 0}});
+    CHECK(std::isnan(error_of(late, value_in(late)).d_rel()));
+    CHECK(error_of(late, value_in(late)).norm == 2);
+    CHECK(std::isnan(variance_of(late, value_in(late)).at(0, 0)[0]));
+}
+
+TEST_CASE("what float cannot hold: d_rel at radiance 2^-80 and 2^93 is that at 1, to the bit") {
+    auto error = [](int exponent) {
+        MeanFilm film({12, 12});
+        fill(film, by_noise, 1, 40, [&](int x, int y, uint64_t i, uint32_t set) {
+            const uint64_t bits = hash(hash(hash(7, uint64_t(12 * y + x)), set), i);
+            const rgb v = heteroscedastic(x, y, {to_unit(bits), to_unit(mix(bits))});
+            return v * std::ldexp(real(1), exponent);
+        });
+        CHECK(film.non_finite() == 0);
+        return error_of(film, value_in(film));
+    };
+    const ImageError one = error(0);
+    CHECK(one.d_rel() > 0.01);
+    CHECK(one.standard_error() > 0);
+    for (int exponent : {-80, 93}) {
+        const ImageError e = error(exponent);
+        CHECK(e.d_rel() == one.d_rel());
+        CHECK(e.standard_error() == one.standard_error());
+        CHECK(e.d2() == std::ldexp(one.d2(), 2 * exponent));
+    }
+}
+
+// ---- Against replicates -------------------------------------------------------------------------
+
+TEST_CASE("the stated d^2 is that from seed to seed: every sampler, two and three sets, by noise") {
+    // By noise 576 pixels are measured with a chance of 1/9 or more.
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
+                             SamplerKind::sobol})
+        for (uint32_t sets : {2u, 3u, by_noise}) {
+            const Size size = sets == by_noise ? Size{24, 24} : Size{12, 9};
+            Spread spread;
+            for (uint64_t r = 0; r < (sets == by_noise ? 240 : 800); ++r) {
+                const uint64_t seed = hash(seed_here(), r);
+                const Pattern pattern = make_pattern(kind, seed, 1, 24);
+                MeanFilm film(size);
+                fill(film, sets, seed, 24, [&](int x, int y, uint64_t i, uint32_t set) {
+                    const uint64_t pixel = uint64_t(y * size.width + x);
+                    return heteroscedastic(x % 12, y, Sampler(pattern, pixel, i, set).get2(film_x));
+                });
+                spread.add(image_of(film), error_of(film, value_in(film)).d2());
+            }
+            const std::string name =
+                "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
+            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.25);
+        }
+}
+
+TEST_CASE("the stated d^2 of ratio and regression is that from seed to seed") {
+    for (Estimator e : {Estimator::ratio, Estimator::regression})
+        for (uint32_t sets : {2u, by_noise}) {
+            Spread spread;
+            for (uint64_t r = 0; r < 240; ++r) {
+                const uint64_t seed = hash(seed_here(), r);
+                Film<ShadowPixel> film({12, 12});
+                fill(film, sets, seed, 24, [&](int x, int y, uint64_t i, uint32_t set) {
+                    Rng rng{hash(hash(hash(seed, uint64_t(12 * y + x)), set), i)};
+                    const real U = real(std::exp2(-0.3 * x)), w = U * real(0.5 + rng.uniform()),
+                               V = rng.uniform() < (y + 0.5) / 12,
+                               rest = U * real(rng.uniform()) / 8;
+                    const rgb grey{1, 1, 1};
+                    return ShadowSample{rest * grey, {U * grey, w * grey, w * V * grey}};
+                });
+                spread.add(image_of(film, e), error_of(film, value_in(film, e)).d2());
+            }
+            const std::string name =
+                "estimator " + std::to_string(int(e)) + ", sets " + std::to_string(sets);
+            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.25);
+        }
+}
+
+TEST_CASE("the stated d^2 of Voronoi-weighted films is that from seed to seed") {
+    for (Weighting weighting : {Weighting::vor, Weighting::cvor, Weighting::torus}) {
+        Spread spread;
+        for (uint64_t r = 0; r < 600; ++r) {
+            const uint64_t seed = hash(seed_here(), r);
+            const Pattern pattern{SamplerKind::independent, seed};
+            MeanFilm film({6, 6});
+            film.add_sets(std::vector<Sets>(36, {2}));
+            for (int y = 0; y < 6; ++y) {
+                auto L = [&](int x, uint64_t i, uint32_t set) {
+                    return heteroscedastic(
+                        x, y, Sampler(pattern, uint64_t(6 * y + x), i, set).get2(film_x));
+                };
+                WeightedRow row(weighting, pattern, 12, uint64_t(6 * y), L);
+                film.add_row(y, 12,
+                             [&](int x, uint64_t i, uint32_t set) { return row(x, i, set); });
+            }
+            film.end_pass(12);
+            spread.add(image_of(film), error_of(film, value_in(film)).d2());
+        }
+        const std::string name = "weighting " + std::to_string(int(weighting));
+        EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.4);
+    }
+}
+
+TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
+    // Grey pixels of normal numbers, 1 to 10 large; with sets 2, 3, or measured by chances of 1/4.
+    for (const Sets& sets : {Sets{2, 0}, Sets{3, 0}, Sets{8, 0}, Sets{1, 0.25}}) {
+        Moments d2, spread2;
+        double truth = 0;
+        for (int x = 0; x < 100; ++x) truth += std::pow(1 + x % 10, 2) / sets.shown / 100;
+        Rng rng{hash(seed_here(), sets.count())};
+        for (int r = 0; r < 3000; ++r) {
+            std::vector<Sets> drawn(100, sets);
+            for (Sets& s : drawn)
+                if (rng.uniform() >= s.chance && s.chance > 0) s.chance = 0;
+            MeanFilm film({100, 1});
+            film.add_sets(drawn);
+            film.add_row(0, 1, [&](int x, uint64_t, uint32_t) {
+                const real v = real((1 + x % 10) * normal(rng));
+                return rgb{v, v, v};
+            });
+            film.end_pass(1);
+            const ImageError e = error_of(film, value_in(film));
+            d2.add(e.d2());
+            spread2.add(e.spread * e.spread);
+        }
+        INFO("sets ", sets.shown, ", chance ", sets.chance);
+        EXPECT(oracle::expect_mean(truth, estimate(d2, double(ulp))), 0.07);
+        // Both are known within 3 %: the fourth moment of a sum of a hundred terms is about 3.3.
+        const double ratio = spread2.mean / d2.variance();
+        CAPTURE(ratio);
+        CHECK(std::abs(ratio - 1) <
+              4.9 * std::hypot(std::sqrt(2.5 / 3000), spread2.standard_error() / spread2.mean));
+        CHECK(spread2.standard_error() < 0.05 * spread2.mean);
+    }
+}
+
+// ---- How it falls, and when it is small enough --------------------------------------------------
+
+TEST_CASE("the course of an error: exponents of known laws, from 1/2 to 1") {
+    CHECK(ErrorCourse().exponent() == 0.5);
+    CHECK(ErrorCourse().cost_of(2) == 4);
+    for (const auto& [gamma, found] : std::initializer_list<std::pair<double, double>>{
+             {0.5, 0.5}, {0.75, 0.75}, {1, 1}, {1.5, 1}, {0.2, 0.5}, {-1, 0.5}}) {
+        ErrorCourse course;
+        for (uint64_t n : {16, 40, 90, 200}) course.add(n, 3 * std::pow(double(n), -gamma));
+        CAPTURE(gamma);
+        CHECK(course.exponent() == doctest::Approx(found).epsilon(1e-12).scale(0));
+        CHECK(course.cost_of(4) == doctest::Approx(std::pow(4, 1 / found)).epsilon(1e-12).scale(0));
+    }
+}
+
+TEST_CASE("the course looks back to half the samples, no nearer and no farther than it must") {
+    ErrorCourse course;
+    CHECK(course.is_due(1));
+    course.add(16, 8);
+    CHECK(!course.is_due(31));
+    CHECK(course.is_due(32));
+    CHECK(course.exponent() == 0.5);
+    course.add(20, 1);  // not twice as many
+    CHECK(course.exponent() == 0.5);
+    course.add(32, 8 * std::pow(2, -0.75));  // beside 16, not 20
+    CHECK(course.exponent() == doctest::Approx(0.75).epsilon(1e-12));
+    course.add(64, 8 * std::pow(2, -0.75) / std::pow(2, 0.6));  // beside 32, not 16
+    CHECK(course.exponent() == doctest::Approx(0.6).epsilon(1e-12));
+}
+
+TEST_CASE("an error that vanishes, grows or is not known leaves an exponent that can be used") {
+    for (const auto& [a, b] : std::initializer_list<std::pair<double, double>>{
+             {0, 0}, {1, 0}, {0, 1}, {NAN, 1}, {1, NAN}, {HUGE_VAL, 1}, {1, HUGE_VAL}}) {
+        ErrorCourse course;
+        course.add(16, a);
+        course.add(32, b);
+        CAPTURE(a);
+        CAPTURE(b);
+        CHECK(course.exponent() >= 0.5);
+        CHECK(course.exponent() <= 1);
+    }
+}
+
+TEST_CASE("the rule of --error: raised by half its standard error, at most twice the samples") {
+    auto error = [](double d_rel, double standard_error) {
+        ImageError e;
+        e.norm = 2;
+        e.square.fill(std::pow(d_rel * e.norm, 2));
+        e.spread = d_rel > 0 ? standard_error * 2 * e.d2() / d_rel : 0;
+        REQUIRE(e.d_rel() == doctest::Approx(d_rel));
+        REQUIRE(e.standard_error() == doctest::Approx(standard_error));
+        return e;
+    };
+    ErrorCourse half, one;
+    one.add(10, 10), one.add(100, 1);
+    // Enough: only with its margin.
+    CHECK(samples_to_look(error(0.0099, 0.0001), half, 0.01, 100) == 0);
+    CHECK(samples_to_look(error(0.0100, 0.0002), half, 0.01, 100) > 0);
+    CHECK(samples_to_look(error(0.0096, 0.0010), half, 0.01, 100) > 0);
+    CHECK(samples_to_look(error(0.0094, 0.0010), half, 0.01, 100) == 0);
+    CHECK(samples_to_look(error(0, 0), half, 0.01, 100) == 0);
+    // What the law says is missing: (1.2)^2 - 1 = 0.44, or 1.2 - 1.
+    CHECK(samples_to_look(error(0.0115, 0.0010), half, 0.01, 1000) ==
+          doctest::Approx(440).epsilon(.01));
+    CHECK(samples_to_look(error(0.0115, 0.0010), one, 0.01, 1000) ==
+          doctest::Approx(200).epsilon(.01));
+    // As many again at most, and one at least.
+    for (const ErrorCourse& course : {half, one}) {
+        CHECK(samples_to_look(error(0.5, 0.1), course, 0.01, 1000) == 1000);
+        CHECK(samples_to_look(error(0.01 * (1 + 1e-9), 0), course, 0.01, 16) == 1);
+        CHECK(samples_to_look(ImageError(), course, 0.01, 16) == 16);  // not known
+    }
+}

@@ -1,0 +1,194 @@
+// film/sets_test.cpp  where a pixel has more sets of samples, and where it is measured by chance
+#include "film/sets.h"
+
+#include <doctest/doctest.h>
+
+#include "base/moments.h"
+#include "film/film.h"
+#include "oracle/expect.h"
+
+namespace {
+
+// 1 everywhere but at some places.
+std::vector<double> noise_of(Size size, const std::vector<std::pair<size_t, double>>& at) {
+    std::vector<double> noise(size_t(size.width) * size_t(size.height), 1);
+    for (const auto& [i, v] : at) noise[i] = v;
+    return noise;
+}
+
+std::vector<uint32_t> shown(const std::vector<Sets>& sets) {
+    std::vector<uint32_t> n;
+    for (const Sets& s : sets) n.push_back(s.shown);
+    return n;
+}
+
+}  // namespace
+
+TEST_CASE("the mean around a pixel is that of its neighbours, of three in a corner, without it") {
+    const std::vector<double> v = {1,  2,   4,   //
+                                   8,  16,  32,  //
+                                   64, 128, 256};
+    CHECK(mean_around(v, {3, 3}, 1, 1) == (1 + 2 + 4 + 8 + 32 + 64 + 128 + 256) / 8.0);
+    CHECK(mean_around(v, {3, 3}, 0, 0) == (2 + 8 + 16) / 3.0);
+    CHECK(mean_around(v, {3, 3}, 2, 2) == (16 + 32 + 128) / 3.0);
+    CHECK(mean_around(v, {3, 3}, 1, 0) == (1 + 4 + 8 + 16 + 32) / 5.0);
+    CHECK(mean_around(v, {9, 1}, 8, 0) == 128);
+    CHECK(mean_around(v, {1, 9}, 0, 4) == (8 + 32) / 2.0);
+    CHECK(mean_around({5}, {1, 1}, 0, 0) == 0);
+}
+
+TEST_CASE("sets are the root of the noise around over that elsewhere, rounded, from 1 to 8") {
+    // A row of 101 pixels: the two neighbours of pixel 50 have noise v, the other 98 have 1.
+    auto sets = [](double v) {
+        const Size row{101, 1};
+        return sets_where_noise_is(noise_of(row, {{49, v}, {51, v}}), row, 1)[50].shown;
+    };
+    auto by_hand = [](double v) { return std::sqrt(v / ((98 + 2 * v) / 100)); };
+    for (const auto& [v, n] : std::initializer_list<std::pair<double, uint32_t>>{
+             {0, 1}, {1, 1}, {2.2, 1}, {2.4, 2}, {6, 2}, {7.1, 3}, {13.3, 3}, {20, 4}, {1e9, 7}}) {
+        CAPTURE(v);
+        CHECK(sets(v) == n);
+        CHECK(std::abs(double(n) - std::max(1.0, by_hand(v))) <= 0.5);
+    }
+    // In a larger image the root is greater: 10, of which 8.
+    const Size large{201, 1};
+    CHECK(sets_where_noise_is(noise_of(large, {{49, 1e9}, {51, 1e9}}), large, 1)[50].shown == 8);
+}
+
+TEST_CASE("where noise is alike, or there is none, every pixel has one set") {
+    const Size size{16, 9};
+    for (double v : {0.0, 1e-300, 1.0, 1e300}) {
+        const std::vector<double> noise(16 * 9, v);
+        CHECK(shown(sets_where_noise_is(noise, size, 1)) == std::vector<uint32_t>(16 * 9, 1));
+    }
+    CHECK(sets_where_noise_is({7}, {1, 1}, 1)[0].shown == 1);
+}
+
+TEST_CASE("a pixel's own samples have no say in its sets, however large they are") {
+    const Size size{7, 5};
+    std::vector<double> noise(35);
+    Rng rng{seed_here()};
+    for (double& v : noise) v = std::exp(8 * double(rng.uniform()));
+    bool matters = false;
+    for (size_t i : {size_t(0), size_t(6), size_t(17), size_t(34)}) {
+        std::vector<std::vector<uint32_t>> seen;
+        for (double own : {0.0, 1e-30, 1.0, 1e4, 1e30, 1e200}) {
+            noise[i] = own;
+            seen.push_back(shown(sets_where_noise_is(noise, size, 3)));
+            CHECK(seen.back()[i] == seen.front()[i]);
+            matters = matters || seen.back() != seen.front();
+        }
+    }
+    CHECK(matters);  // to others
+}
+
+// ---- Sets that only measure ---------------------------------------------------------------------
+
+TEST_CASE("a pixel of one set is measured by chance, the more likely the noisier it is") {
+    // 4096 pixels: 1/32 at least; of 15 times the mean noise half the time, of 600 times always.
+    const Size size{64, 64};
+    auto chance_of = [&](double noise) {
+        const std::vector<double> all = noise_of(size, {{7, noise}});
+        double sum = 0;
+        for (double v : all) sum += v;
+        return std::min(1.0, (1 + noise * 4096 / sum) / 32);
+    };
+    for (double noise : {0.0, 1.0, 15.0, 600.0}) {
+        const double chance = chance_of(noise);
+        CAPTURE(chance);
+        int drawn = 0, tried = 0;
+        for (uint64_t seed = 0; seed < 300; ++seed) {
+            const auto sets = sets_where_noise_is(noise_of(size, {{7, noise}}), size, seed);
+            CHECK(sets[7].shown == 1);
+            ++tried, drawn += sets[7].count() == 2;
+            CHECK(sets[7].chance == (sets[7].count() == 2 ? doctest::Approx(chance) : 0));
+        }
+        CHECK(std::abs(drawn - chance * tried) <=
+              4.9 * std::sqrt(chance * (1 - chance) * tried) + (chance < 1 ? 0.5 : 0));
+    }
+    CHECK(chance_of(0) == 1 / 32.0);
+    CHECK(chance_of(600) == 1);
+}
+
+TEST_CASE("which pixels are measured differs from pixel to pixel and from seed to seed") {
+    const Size size{64, 64};
+    const std::vector<double> noise(4096, 1);
+    const double chance = 2 / 32.0;
+    Moments measured;
+    for (uint64_t seed = 0; seed < 200; ++seed) {
+        int n = 0;
+        for (const Sets& s : sets_where_noise_is(noise, size, hash(seed_here(), seed)))
+            n += s.count() == 2;
+        measured.add(n / 4096.0);
+    }
+    EXPECT(oracle::expect_mean(chance, estimate(measured)), 0.04);
+    // As many as of independent coins.
+    const double ratio = measured.variance() / (chance * (1 - chance) / 4096);
+    CHECK(std::abs(ratio - 1) < 4.9 * std::sqrt(2.0 / 199));
+}
+
+TEST_CASE("all of up to 64 pixels are measured, and none that shows several sets by chance") {
+    for (Size size : {Size{1, 1}, Size{8, 8}})
+        for (double v : {0.0, 3.0}) {
+            const std::vector<double> noise(size_t(size.width) * size_t(size.height), v);
+            for (const Sets& s : sets_where_noise_is(noise, size, 5)) CHECK(s.chance == 1);
+        }
+    const Size size{32, 32};
+    std::vector<double> noise(1024);
+    for (size_t i = 0; i < noise.size(); ++i) noise[i] = i % 32 < 4 ? 100 : 1;
+    int several = 0;
+    for (const Sets& s : sets_where_noise_is(noise, size, 5)) {
+        several += s.shown > 1;
+        CHECK((s.shown == 1 || s.chance == 0));
+        CHECK(s.count() == s.shown + (s.chance > 0));
+    }
+    CHECK(several >= 128);
+    CHECK(several < 300);
+}
+
+// ---- The image stays unbiased -------------------------------------------------------------------
+
+TEST_CASE("sets by noise leave every pixel's mean unbiased, that of rare outliers, too") {
+    // The middle of 9 x 9 is 1000 in one sample of 50, else 0; its neighbours 40 in one of 4, else
+    // 0; the others up to 35.  Were a pixel's own samples to choose its sets, those that found an
+    // outlier early would be averaged with more that did not: 14 instead of 20.
+    const Size size{9, 9};
+    const size_t middle = 40;
+    auto value = [&](size_t pixel, uint64_t bits) {
+        const real u = to_unit(bits);
+        if (pixel == middle) return u < real(0.02) ? real(1000) : real(0);
+        const bool near = std::abs(int(pixel % 9) - 4) < 2 && std::abs(int(pixel / 9) - 4) < 2;
+        if (near) return u < real(0.25) ? real(40) : real(0);
+        return 35 * u;
+    };
+    Moments outlier, neighbour, pooled, sets;
+    for (uint64_t r = 0; r < 5000; ++r) {
+        const uint64_t seed = hash(seed_here(), r);
+        Film<MeanPixel> film(size);
+        auto add = [&](uint64_t n) {
+            for (int y = 0; y < 9; ++y)
+                film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
+                    const size_t pixel = size_t(9 * y + x);
+                    const real v = value(pixel, hash(hash(hash(seed, pixel), set), i));
+                    return rgb{v, v, v};
+                });
+            film.end_pass(n);
+        };
+        add(samples_before_sets);
+        film.add_sets(sets_where_noise_is(film.noise(), size, seed));
+        add(0);
+        add(8);
+        const Image image = image_of(film);
+        outlier.add(double(image.pixels[middle][0]));
+        neighbour.add(double(image.pixels[middle - 9][0]));
+        double sum = 0;
+        for (const auto& p : image.pixels) sum += double(p[0]);
+        pooled.add(sum / 81);
+        sets.add(film.sets(middle).shown);
+    }
+    CHECK(sets.variance() > 0);
+    const double unit = 0x1p-24;
+    EXPECT(oracle::expect_mean(20, estimate(outlier, unit)), 0.15);
+    EXPECT(oracle::expect_mean(10, estimate(neighbour, unit)), 0.04);
+    EXPECT(oracle::expect_mean((20 + 8 * 10 + 72 * 17.5) / 81, estimate(pooled, unit)), 0.04);
+}
