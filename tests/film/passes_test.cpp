@@ -124,6 +124,66 @@ TEST_CASE("progress is told in samples a pixel; a sample that is no number ends 
     CHECK(broken.n == 8);
 }
 
+namespace {
+
+// Counts, in passes, what is added to it.
+struct Counting {
+    struct {
+        int height = 2;
+    } size;
+    uint64_t n = 0;
+    std::vector<uint64_t> ends = {};  // of passes
+    uint64_t samples() const { return n; }
+    uint64_t non_finite() const { return 0; }
+    void end_pass(uint64_t more) { ends.push_back(n += more); }
+};
+
+struct Stopped {
+    double elapsed() const { return 0; }  // passes may grow and grow
+    void show(double) {}
+};
+
+}  // namespace
+
+TEST_CASE("a pass ends at the pause, whatever its size, and others do as they like") {
+    for (uint64_t pause : {1, 5, 16, 63, 100}) {
+        Counting film;
+        Stopped clock;
+        render(
+            film, {{64, 0}, 1, 1, pause}, [](int, uint64_t) {}, clock);
+        CAPTURE(pause);
+        CHECK(film.n == 64);
+        CHECK(std::count(film.ends.begin(), film.ends.end(), pause) == (pause <= 64));
+        CHECK(film.ends.size() < 12);
+    }
+}
+
+TEST_CASE("no pass brings more samples than the last look allows, but for whole grids; 0: enough") {
+    for (uint64_t period : {1, 6}) {
+        Counting film;
+        Stopped clock;
+        // Looks at 20, 50 and 51 samples.
+        std::vector<uint64_t> seen;
+        auto look = [&](const Counting& f) -> uint64_t {
+            seen.push_back(f.samples());
+            for (uint64_t at : {20, 50, 51})
+                if (f.samples() < at) return at - f.samples();
+            return 0;
+        };
+        render(
+            film, {{0, 0}, period, 1}, [](int, uint64_t) {}, clock, look);
+        CAPTURE(period);
+        auto ended_at = [&](uint64_t n) {
+            return std::find(film.ends.begin(), film.ends.end(), n) != film.ends.end();
+        };
+        CHECK(seen == film.ends);
+        CHECK(ended_at(period == 1 ? 20 : 24));
+        CHECK(ended_at(period == 1 ? 50 : 54));
+        CHECK(film.n == (period == 1 ? 51 : 54));
+        for (uint64_t end : film.ends) CHECK(end % period == 0);
+    }
+}
+
 TEST_CASE("every row is rendered once, by any number of threads") {
     for (int height : {1, 2, 100})
         for (unsigned threads : {1u, 2u, 7u, 300u}) {

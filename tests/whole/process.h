@@ -257,9 +257,9 @@ inline Summary summary(const std::string& err) {
         std::sscanf(line.c_str(), ": %llu samples per pixel, %lf s, %lf Mrays/s, %llu non-finite%n",
                     &s.samples, &s.seconds, &s.speed, &s.non_finite, &read_to);
     line.erase(0, size_t(read_to));
-    auto cut = [&](const std::string& end) {
-        const bool has = line.ends_with(end);
-        if (has) line.erase(line.size() - end.size());
+    auto cut = [&](const std::string& words) {
+        const bool has = line.ends_with(words);
+        if (has) line.erase(line.size() - words.size());
         return has;
     };
     s.interrupted = cut(" (interrupted)");
