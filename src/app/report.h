@@ -18,17 +18,17 @@ inline std::string percent(double x) {
     return text;
 }
 
-// With so many digits, wherever the point is.
-inline std::string significant(double x, int digits) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*g", digits, x);
-    return text;
-}
-
 inline std::string fixed(double x, int digits) {
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, x);
     return text;
+}
+
+// With so many digits, wherever the point is: "0.02", and as many as there are before it: "234".
+inline std::string significant(double x, int digits) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*g", digits, x);
+    return std::string_view(text).find("e+") == std::string_view::npos ? text : fixed(x, 0);
 }
 
 // ---- Progress -----------------------------------------------------------------------------------
