@@ -81,8 +81,8 @@ inline const OptionTable<Options> option_table = {
      [](Options& o, Text v) { o.spp = parse_count(v, 1, option::most_samples); }},
     CommonRows<Options>::time("stop after S seconds; with --spp, whichever comes first"),
     {"--error", "E",
-     "stop once the image's error d_rel, as estimated, is at most E, e.g. 1% or 0.01; with --spp "
-     "or --time, whichever comes first",
+     "stop once the error d_rel, as estimated, is at most E, e.g. 1%; with --spp or --time, "
+     "whichever comes first",
      "", [](Options& o, Text v) { o.error = option::error(v); },
      [](const Options& o) {
          return o.error > 0 ? (std::ostringstream() << o.error).str() : "null";

@@ -120,6 +120,9 @@ TEST_CASE("--help names every option on one page of stdout") {
                                  "-o FILE",
                                  "--spp N",
                                  "--time S",
+                                 "--error E",
+                                 "--sets N|noise",
+                                 "--set K",
                                  "uniform|bsdf",
                                  "--direction",
                                  "--light none|nee|mis",
@@ -322,25 +325,41 @@ TEST_CASE("a variance that no image can hold: exit status 1, told where, nothing
     expect_success(folder, "penumbra", split("--spp 16 -o a.pfm file.scene"));
 }
 
-TEST_CASE("the statistics' variance is right however bright the light: 2^70 and 2^-70 times") {
+TEST_CASE("variance and error are right however bright the light: 2^93 and 2^-80 times") {
     const Folder folder;
-    auto variance = [&](const std::string& light, const std::string& options) {
+    struct Stated {
+        double variance, d_rel, standard_error;
+    };
+    auto stated = [&](const std::string& light, const std::string& options) -> Stated {
         std::string scene = good;
         scene.replace(scene.find("1 1 1"), 5, light + " " + light + " " + light);
         folder.write("file.scene", scene + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
         expect_success(folder, "penumbra",
                        split("--spp 8 --stats s.json -o a.pfm file.scene " + options));
-        const std::string stats = folder.read("s.json"), key = "\"variance_of_mean\": [";
-        return std::strtod(stats.c_str() + stats.find(key) + key.size(), nullptr);
+        const std::string stats = folder.read("s.json");
+        auto number = [&](const std::string& key) {
+            const size_t at = stats.find(key);
+            REQUIRE(at != stats.npos);
+            return std::strtod(stats.c_str() + at + key.size(), nullptr);
+        };
+        return {number("\"variance_of_mean\": ["), number("\"d_rel\": "),
+                number("\"d_rel_standard_error\": ")};
     };
     for (const char* options :
          {"--sampler independent", "", "--sets 3", "--light nee --direct ratio"}) {
         INFO(std::string(options));
-        const double one = variance("1", options);
-        CHECK(one > 0);
-        CHECK(variance("1180591620717411303424", options) == std::ldexp(one, 140));
-        CHECK(variance("8.470329472543003390683225006796419620513916015625e-22", options) ==
-              std::ldexp(one, -140));
+        const Stated one = stated("1", options);
+        CHECK(one.variance > 0);
+        CHECK(one.d_rel > 0.001);
+        CHECK(one.standard_error > 0);
+        for (const auto& [light, exponent] : std::initializer_list<std::pair<const char*, int>>{
+                 {"9903520314283042199192993792", 93},
+                 {"8.27180612553027674871408692069962853565812110900878906250e-25", -80}}) {
+            const Stated other = stated(light, options);
+            CHECK(other.variance == std::ldexp(one.variance, 2 * exponent));
+            CHECK(other.d_rel == one.d_rel);
+            CHECK(other.standard_error == one.standard_error);
+        }
     }
 }
 

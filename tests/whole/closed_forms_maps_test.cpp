@@ -81,8 +81,7 @@ TEST_CASE("control and regression meet every closed form of diffuse triangles") 
                            [&](int r) {
                                const uint64_t n = 16 * uint64_t(e.known->aimed);
                                const uint64_t seed = hash(seed_here(), uint64_t(r));
-                               const Pattern pattern =
-                                                 EndlessNumbers::pattern(kind, seed, n),
+                               const Pattern pattern = EndlessNumbers::pattern(kind, seed, n),
                                              rest = EndlessNumbers::independent(seed);
                                double sum = 0;
                                for (uint64_t i = 0; i < n; ++i)
