@@ -264,11 +264,12 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
 TEST_CASE("the course of an error: exponents of known laws, from 1/2 to 1") {
     CHECK(ErrorCourse().exponent() == 0.5);
     CHECK(ErrorCourse().cost_of(2) == 4);
-    for (const auto& [gamma, found] : std::initializer_list<std::pair<double, double>>{
+    for (const auto& row : std::initializer_list<std::pair<double, double>>{
              {0.5, 0.5}, {0.75, 0.75}, {1, 1}, {1.5, 1}, {0.2, 0.5}, {-1, 0.5}}) {
+        const auto [gamma, found] = row;
         ErrorCourse course;
         for (uint64_t n : {16, 40, 90, 200}) course.add(n, 3 * std::pow(double(n), -gamma));
-        CAPTURE(gamma);
+        CAPTURE(row.first);
         CHECK(course.exponent() == doctest::Approx(found).epsilon(1e-12).scale(0));
         CHECK(course.cost_of(4) == doctest::Approx(std::pow(4, 1 / found)).epsilon(1e-12).scale(0));
     }
@@ -290,13 +291,13 @@ TEST_CASE("the course looks back to half the samples, no nearer and no farther t
 }
 
 TEST_CASE("an error that vanishes, grows or is not known leaves an exponent that can be used") {
-    for (const auto& [a, b] : std::initializer_list<std::pair<double, double>>{
+    for (const auto& row : std::initializer_list<std::pair<double, double>>{
              {0, 0}, {1, 0}, {0, 1}, {NAN, 1}, {1, NAN}, {HUGE_VAL, 1}, {1, HUGE_VAL}}) {
         ErrorCourse course;
-        course.add(16, a);
-        course.add(32, b);
-        CAPTURE(a);
-        CAPTURE(b);
+        course.add(16, row.first);
+        course.add(32, row.second);
+        CAPTURE(row.first);
+        CAPTURE(row.second);
         CHECK(course.exponent() >= 0.5);
         CHECK(course.exponent() <= 1);
     }

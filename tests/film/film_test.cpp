@@ -236,11 +236,11 @@ TEST_CASE("of samples that do not fit the first by sample, then by set is told, 
     MeanFilm film({2, 1});
     film.add_sets({{3, 0}, {3, 0}});
     film.add_row(0, 4, [](int x, uint64_t i, uint32_t set) {
-        const bool bad = i == 2 && x != int(set) && set > 0;
+        const bool bad = i == 2 ? set > 0 && x == 2 - int(set) : i == 3 && set == 0;
         return rgb{bad ? real(NAN) : 1, 1, 1};
     });
-    CHECK(film.non_finite() == 3);
+    CHECK(film.non_finite() == 4);
     CHECK(film.first_non_finite().sample == 2);
     CHECK(film.first_non_finite().set == 1);
-    CHECK(film.first_non_finite().x == 0);
+    CHECK(film.first_non_finite().x == 1);
 }

@@ -44,9 +44,10 @@ TEST_CASE("sets are the root of the noise around over that elsewhere, rounded, f
         return sets_where_noise_is(noise_of(row, {{49, v}, {51, v}}), row, 1)[50].shown;
     };
     auto by_hand = [](double v) { return std::sqrt(v / ((98 + 2 * v) / 100)); };
-    for (const auto& [v, n] : std::initializer_list<std::pair<double, uint32_t>>{
+    for (const auto& row : std::initializer_list<std::pair<double, uint32_t>>{
              {0, 1}, {1, 1}, {2.2, 1}, {2.4, 2}, {6, 2}, {7.1, 3}, {13.3, 3}, {20, 4}, {1e9, 7}}) {
-        CAPTURE(v);
+        const auto [v, n] = row;
+        CAPTURE(row.first);
         CHECK(sets(v) == n);
         CHECK(std::abs(double(n) - std::max(1.0, by_hand(v))) <= 0.5);
     }
