@@ -61,9 +61,10 @@ Options quick(SamplerKind kind, uint64_t spp) {
 
 }  // namespace
 
-TEST_CASE("the stated error is the spread of images from seed to seed, and the mean's variance") {
+TEST_CASE("the stated error is the spread of images from seed to seed; sets do not move the mean") {
     const Scene scene = small(unequal, {24, 12});
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        Moments of_two;
         for (uint32_t sets : {2u, sets_by_noise}) {
             const int runs = sets == sets_by_noise ? 150 : 300;
             Options o = quick(kind, sets == sets_by_noise ? 18 : 6);
@@ -84,7 +85,14 @@ TEST_CASE("the stated error is the spread of images from seed to seed, and the m
             // mean of what is stated far better.
             INFO(name, ": ", means.variance() / stated.mean);
             CHECK(std::abs(means.variance() / stated.mean - 1) < 4.9 * std::sqrt(2.0 / (runs - 1)));
+            if (sets != sets_by_noise)
+                of_two = means;
+            else
+                EXPECT(oracle::expect_equal(estimate(means, 0x1p-24), estimate(of_two, 0x1p-24))
+                           .of(name),
+                       0.05);
         }
+    }
 }
 
 TEST_CASE("one set is set 0 alone, bit for bit, and all sets by noise have it among them") {
@@ -250,6 +258,35 @@ TEST_CASE("--error looks seldom: the last two looks are at most a factor of two 
     CHECK(looks.size() >= 3);
     CHECK(looks.size() <= 10);
     for (size_t i = 1; i < looks.size(); ++i) CHECK(looks[i] <= 2 * looks[i - 1]);
+}
+
+TEST_CASE("--error looks when it said it would, and not after every pass") {
+    // Passes that take a tenth of a second do not grow: one sample each.  An error that is far off
+    // is looked at whenever the samples have doubled, here from 2 to 8.
+    const Scene scene = small(unequal, {4, 3});
+    Options o = quick(SamplerKind::independent, 8);
+    o.error = 1e-6;
+    const Job of_options = job_of(o, scene);
+    Passes passes = of_options.passes;
+    passes.pause = 2;
+    const Job job{o, scene, of_options.pattern, passes};
+    Film<MeanPixel> film(scene.size);
+    int ends = 0, looks = 0;
+    const Rendered r = fill(
+        film, job,
+        [&](int y, uint64_t n, uint64_t& rays) {
+            if (y == 0 && n > 0) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(110));
+                ++ends;
+            }
+            film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
+                return radiance(job, start(scene, job.pattern, {x, y, i, set}), rays);
+            });
+        },
+        [&](const Film<MeanPixel>& f) { return ++looks, value_in(f); });
+    CHECK(r.run.spp == 8);
+    CHECK(ends == 8);
+    CHECK(looks == 4);  // at 2, 4 and 8 samples, and at the end
 }
 
 TEST_CASE("a black image has an error of 0 if its sets agree, and none if it has one set") {
