@@ -37,13 +37,14 @@ inline double mean_around(const std::vector<double>& values, Size size, int x, i
 
 // From the noise of every pixel: the variance of its first set's mean, as far as its samples tell
 // it.  The time to a squared error is least where samples are in proportion to the root of their
-// variance (Neyman 1934): sqrt(noise around / noise elsewhere) sets are shown, rounded, at most 8.
+// variance (Neyman 1934): sqrt(noise around / noise elsewhere) sets are shown, times a factor by
+// measurement (`make calibration`), since elsewhere noise falls as well; rounded, at most 8.
 // A pixel's own samples have no say in that, so that its mean stays unbiased.  They do have one in
 // whether it is measured: by chance, and the more likely the noisier it is (Horvitz, Thompson
 // 1952).
 inline std::vector<Sets> sets_where_noise_is(const std::vector<double>& noise, Size size,
                                              uint64_t seed) {
-    constexpr double most = 8, least_measured = 64;
+    constexpr double factor = 1.25, most = 8, least_measured = 64;
     const double least_chance = std::max(1.0 / 32, least_measured / double(noise.size()));
     // Sums before each pixel and after it: the sum of all less its own would depend on it by
     // rounding.
@@ -57,7 +58,8 @@ inline std::vector<Sets> sets_where_noise_is(const std::vector<double>& noise, S
         const double around = mean_around(noise, size, x, y);
         const double elsewhere = (before + after[i + 1]) / others;
         if (around > 0)
-            sets[i].shown = uint32_t(std::clamp(std::sqrt(around / elsewhere) + 0.5, 1.0, most));
+            sets[i].shown =
+                uint32_t(std::clamp(factor * std::sqrt(around / elsewhere) + 0.5, 1.0, most));
         if (sets[i].shown > 1) continue;
         const double relative = sum > 0 ? noise[i] * double(noise.size()) / sum : 0;
         const double chance = std::min(1.0, least_chance * (1 + relative));

@@ -1,7 +1,7 @@
-// film/spread.h  whether images state their own spread from seed to seed
+// film/spread.h  images of films whose spread from seed to seed is known, or is measured
 #pragma once
 #include "base/moments.h"
-#include "film/image.h"
+#include "film/film.h"
 
 // Two images of different seeds differ by both their errors, whatever bias they share: half the
 // mean square of their difference is what both state in the mean.
@@ -33,3 +33,34 @@ private:
     Image last_;
     double last_d2_ = 0;
 };
+
+// ---- Films as renders fill them -----------------------------------------------------------------
+
+using MeanFilm = Film<MeanPixel>;
+
+inline constexpr uint32_t by_noise = 0;
+
+// As renders do: in every pixel, or chosen by noise after some samples.
+template <class Pixel, class L>
+void fill(Film<Pixel>& film, uint32_t sets, uint64_t seed, uint64_t n, L sample) {
+    auto add = [&](uint64_t more) {
+        for (int y = 0; y < film.size.height; ++y)
+            film.add_row(y, more,
+                         [&](int x, uint64_t i, uint32_t set) { return sample(x, y, i, set); });
+        film.end_pass(more);
+    };
+    if (sets != by_noise) film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets}));
+    add(samples_before_sets);
+    if (sets == by_noise) {
+        film.add_sets(sets_where_noise_is(film.noise(), film.size, seed));
+        add(0);
+    }
+    add(n - samples_before_sets);
+}
+
+// An image whose noise differs by 100 from left to right, smooth in places, with an edge in others.
+inline rgb heteroscedastic(int x, int y, vec2 u) {
+    const real scale = real(std::exp2(-0.3 * x));
+    const real v = y % 3 == 0 ? real(u.x + u.y < real(0.7)) : u.x * u.y;
+    return scale * rgb{v, 2 * v, u.x} + rgb{1, 0, 0};
+}
