@@ -32,7 +32,7 @@ PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity indirect bench cells peers \
+.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench cells peers \
         efficiency voronoi voronoi2d extremes readme clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -96,13 +96,14 @@ estimators1d:              ## four estimators of a shadowed integral in 1D (a mi
 shadows: $(PENUMBRA)       ## four estimators of direct light on images (5 minutes)
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
 radiosity:                 ## illumination maps by shooting and by particles (6 minutes; FULL=1: an hour)
+radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
 indirect: $(PENUMBRA)      ## paths that end on illumination maps, beside whole ones (4 minutes)
 voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
 bench:                     ## rays a second, beside Embree if libembree-dev is installed, and the time of a path
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
-EXPERIMENTS := techniques estimators1d shadows indirect voronoi2d voronoi bench peers efficiency cells
+EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d voronoi bench peers efficiency cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 peers: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
@@ -172,7 +173,7 @@ $(SUITE): $(TESTS:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/main.o
 
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
 # vector is told so.
-HEAVY := app/render labs/cube oracle/mistakes oracle/oracle path/pathtracer radiosity/gather radiosity/mesh radiosity/particles \
+HEAVY := app/render app/walks labs/cube oracle/mistakes oracle/oracle path/pathtracer radiosity/gather radiosity/mesh radiosity/particles \
          radiosity/shooting radiosity/transfer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms \
          world/bsdf world/bvh world/shapes
 $(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS

@@ -29,8 +29,9 @@ writing the image of the light found so far.
 struct Solution {
     IlluminationMap map;
     uint64_t shots = 0, particles = 0, rays = 0;
-    double unshot = NAN, error = NAN, seconds = 0;
-    int signal = 0;  // that cut it short
+    double unshot = NAN, seconds = 0;
+    MapError stated = {};  // of shooting, at most that
+    int signal = 0;        // that cut it short
     bool empty() const { return shots == 0 && particles == 0; }
 };
 
@@ -38,11 +39,33 @@ std::string shot(uint64_t shots, double unshot) {
     return std::to_string(shots) + " shots, " + percent(unshot) + " unshot";
 }
 
-std::string summary(const std::string& scene, const Mesh& mesh, const Solution& s) {
-    return scene + ": " + std::to_string(mesh.elements()) + " triangles, " +
-           (std::isnan(s.unshot) ? walked(s.particles, s.error) : shot(s.shots, s.unshot)) + ", " +
-           fixed(s.seconds, 2) + " s, " + fixed(double(s.rays) / s.seconds * 1e-6, 2) + " Mrays/s" +
-           (s.signal ? " (interrupted)" : "");
+// What ended the run; "": there was no light left, or none at all.
+std::string stopped_by(const RadiosityOptions& o, const Solution& s) {
+    if (s.signal) return "signal";
+    if (o.error > 0 &&
+        (is_random(o) ? ErrorTarget(o.error).met(s.stated) : s.stated.error <= o.error))
+        return "--error";
+    if (o.unshot > 0 && s.unshot <= o.unshot) return "--unshot";
+    if (o.shots > 0 && s.shots >= o.shots) return "--shots";
+    if (o.particles > 0 && s.particles >= o.particles) return "--particles";
+    return o.seconds > 0 && s.seconds >= o.seconds ? "--time" : "";
+}
+
+std::string words_of_error(const RadiosityOptions& o, const Solution& s) {
+    if (!std::isfinite(s.stated.error)) return ", error not known";
+    const std::string own = o.error > 0 ? " without that of the triangles" : "";
+    return (is_random(o) ? "" : ", error at most " + percent(s.stated.error)) + own;
+}
+
+std::string summary(const RadiosityOptions& o, const Mesh& mesh, const Solution& s) {
+    const std::string what = stopped_by(o, s);
+    const std::string by = s.signal                       ? " (interrupted)"
+                           : o.error > 0 && !what.empty() ? " (stopped by " + what + ")"
+                                                          : "";
+    return o.scene + ": " + std::to_string(mesh.elements()) + " triangles, " +
+           (is_random(o) ? walked(s.particles, s.stated) : shot(s.shots, s.unshot)) +
+           words_of_error(o, s) + ", " + fixed(s.seconds, 2) + " s, " +
+           fixed(double(s.rays) / s.seconds * 1e-6, 2) + " Mrays/s" + by;
 }
 
 // ---- The scene ----------------------------------------------------------------------------------
@@ -66,31 +89,41 @@ Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
     return stage;
 }
 
+// Throws UserError if Shooting::error would stay 1 whatever is shot.
+void check_bounded(const std::string& name, const Scene& scene) {
+    if (const uint32_t line = line_of_white(scene))
+        throw UserError("--error: " + name + ":" + std::to_string(line) +
+                        ": reflects all light, so nothing bounds what is not yet sent: say "
+                        "--method particles");
+}
+
 // ---- Methods ------------------------------------------------------------------------------------
 
 Solution shoot(const RadiosityOptions& o, const Stage& stage) {
     const Shooter shooter = o.method == Method::shooting ? Shooter::element : Shooter::face;
     Shooting solver(stage.scene, stage.mesh, shooter, o.threads);
     Progress progress(o.seconds, o.quiet);
-    solver.run({o.unshot, o.seconds, o.shots}, [&](const Shooting& now) {
+    solver.run({o.unshot, o.seconds, o.shots, o.error}, [&](const Shooting& now) {
         const double unshot = now.unshot();
         // It falls by about the same factor from shot to shot.
         double done = o.shots ? double(now.shots()) / double(o.shots) : 0;
         if (o.unshot > 0 && o.unshot < 1 && unshot > 0)
             done = std::max(done, std::log(unshot) / std::log(o.unshot));
+        if (o.error > 0) done = std::max(done, std::log(now.error()) / std::log(o.error));
         progress.show(done, shot(now.shots(), unshot));
     });
     Solution s{solver.map()};
     s.shots = solver.shots(), s.rays = solver.rays(), s.unshot = solver.unshot();
+    s.stated.error = solver.error();
     s.seconds = progress.elapsed();
     return s;
 }
 
 Solution walk(const RadiosityOptions& o, const Stage& stage) {
     const Pattern pattern = Particles::pattern(o.sampler, o.seed, o.particles);
-    Walked w = walk_all(stage.scene, stage.mesh, pattern, {o.particles, o.seconds}, o);
+    Walked w = walk_all(stage.scene, stage.mesh, pattern, {o.particles, o.seconds, o.error}, o);
     Solution s{std::move(w.map)};
-    s.particles = w.particles, s.rays = w.rays, s.error = w.error, s.seconds = w.seconds;
+    s.particles = w.particles, s.rays = w.rays, s.stated = w.stated, s.seconds = w.seconds;
     return s;
 }
 
@@ -138,7 +171,11 @@ std::string encode_stats(const RadiosityOptions& o, const Stage& stage, const So
     object.add("shots", count(s.shots));
     object.add("unshot", json::number(s.unshot));
     object.add("particles", count(s.particles));
-    object.add("error", json::number(s.error));
+    object.add("error", json::number(s.stated.error));
+    object.add("error_uncertainty", json::number(s.stated.uncertainty));
+    object.add("error_asked", o.error > 0 ? json::number(o.error) : "null");
+    const std::string by = stopped_by(o, s);
+    object.add("stopped_by", by.empty() ? "null" : json::string(by));
     object.add("seconds", json::number(s.seconds));
     object.add("cpu_seconds", json::number(cpu_seconds()));
     object.add("rays", count(s.rays));
@@ -155,7 +192,7 @@ void write(const RadiosityOptions& o, const Stage& stage, Solution& s,
     const real exposure = stage.scene.exposure;
     write_images(outputs, picture, o.view == MapView::illuminance ? exposure / pi : exposure);
     if (!o.stats.empty()) write_file(o.stats, encode_stats(o, stage, s, mean));
-    tell(o, summary(o.scene, stage.mesh, s));
+    tell(o, summary(o, stage.mesh, s));
     tell_written(o, outputs);
     if (!stage.scene.lights.empty() && mean == std::array<double, 3>{}) tell_black(o);
 }
@@ -170,6 +207,7 @@ int radiosity(const std::vector<std::string>& words) {
     ParsedScene parsed = read_scene(o.scene);
     parsed.scene.size = o.size.value_or(parsed.scene.size);
     parsed.scene.exposure = o.exposure.value_or(parsed.scene.exposure);
+    if (o.error > 0 && !is_random(o)) check_bounded(o.scene, parsed.scene);
     const double H = edge_length(o.scene, parsed.scene, o.mesh, 32, bytes_of(o));
     const std::vector<std::string> outputs = outputs_of(o, "-radiosity", parsed.files);
     catch_interrupt();
@@ -177,7 +215,7 @@ int radiosity(const std::vector<std::string>& words) {
     const Stage stage = stage_of(o, parsed.scene, H);
     Solution s = solve(o, stage);
     if (s.empty() && s.signal)
-        tell(o, summary(o.scene, stage.mesh, s));
+        tell(o, summary(o, stage.mesh, s));
     else
         write(o, stage, s, outputs);
     return s.signal ? 128 + s.signal : 0;

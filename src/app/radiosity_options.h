@@ -19,6 +19,7 @@ struct RadiosityOptions : CommonOptions {
     double unshot = 0;           // fraction of all power; 0: no limit
     uint64_t shots = 0;          // 0: no limit
     uint64_t particles = 0;      // 0: no limit
+    double error = 0;            // of the maps; 0: none is asked for
     SamplerKind sampler = SamplerKind::halton;
     int rays = 2;  // squared, of a pixel
     MapView view = MapView::luminance;
@@ -32,6 +33,13 @@ inline double fraction(std::string_view text) {
     const double x = parse_fraction(text);
     if (x == 0) throw UserError(in_quotes(text) + " is never reached");
     if (x > 1) throw UserError(in_quotes(text) + " is more than 100 %");
+    return x;
+}
+
+inline double relative_error(std::string_view text) {
+    const double x = parse_fraction(text);
+    if (x == 0) throw UserError(in_quotes(text) + " is never reached");
+    if (x >= 1) throw UserError(in_quotes(text) + " is the error of darkness, or more");
     return x;
 }
 
@@ -65,17 +73,23 @@ inline const OptionTable<RadiosityOptions> radiosity_table = {
     {"--unshot", "F",
      "stop once this fraction of the emitted power is yet to be sent on (which is no error of the "
      "picture): 0.01, or 1%; not with particles",
-     "1%, unless --shots or --time is given",
+     "1%, unless --error, --shots or --time is given",
      [](RadiosityOptions& o, Text v) { o.unshot = option::fraction(v); }},
     {"--shots", "N", "stop after N shots; not with particles", "",
      [](RadiosityOptions& o, Text v) { o.shots = parse_count(v, 1, uint64_t(1) << 40); }},
     {"--particles", "N",
      "stop after N walks, a multiple of 16 batches, each one thread's work; needs --method "
      "particles",
-     "1000000, unless --time is given",
+     "1000000, unless --error or --time is given",
      [](RadiosityOptions& o, Text v) { o.particles = parse_count(v, 1, uint64_t(1) << 40); }},
-    CommonRows<RadiosityOptions>::time(
-        "stop after S seconds; with --unshot, --shots or --particles, whichever comes first"),
+    {"--error", "E",
+     "stop once the illumination maps' error is at most E: 0.05, or 5%; it is the quadratic mean "
+     "over all surfaces relative to that of their light, and leaves out what the triangles cost; "
+     "that of particles is estimated by their spread, that of the other methods bounded by what is "
+     "unshot",
+     "", [](RadiosityOptions& o, Text v) { o.error = option::relative_error(v); }},
+    CommonRows<RadiosityOptions>::time("stop after S seconds; with --error, --unshot, --shots or "
+                                       "--particles, whichever comes first"),
     {"--sampler", "independent|stratified|halton|sobol",
      "where the random numbers of particles come from", "halton",
      [](RadiosityOptions& o, Text v) { o.sampler = option::unbiased_sampler(v); },
@@ -116,7 +130,8 @@ inline RadiosityOptions parse_radiosity(const std::vector<std::string>& words) {
         if (!is_random(o) && is_given(o, name))
             throw UserError(std::string(name) + ": needs --method particles");
     need_scene(o);
-    if (!is_random(o) && !o.unshot && !o.shots && !(o.seconds > 0)) o.unshot = default_unshot;
-    if (is_random(o) && !o.particles && !(o.seconds > 0)) o.particles = default_particles;
+    const bool ends = o.error > 0 || o.seconds > 0;
+    if (!is_random(o) && !ends && !o.unshot && !o.shots) o.unshot = default_unshot;
+    if (is_random(o) && !ends && !o.particles) o.particles = default_particles;
     return o;
 }

@@ -21,6 +21,12 @@ inline rgb irradiance(const Mesh& mesh, const IlluminationMap& map, const Hit& h
 
 // What the side of a face reflects, and the radiance that it emits.
 inline rgb albedo(const Scene& s, const Face& f) { return s.materials[s.material_of[f.shape]].kd; }
+inline rgb greatest_albedo(const Scene& s, const Mesh& mesh) {  // a channel at a time
+    rgb most;
+    for (const Face& f : mesh.faces)
+        for (auto c : axis) most.*c = std::max(most.*c, albedo(s, f).*c);
+    return most;
+}
 inline rgb emission(const Scene& s, const Face& f, bool back) {
     return s.light_of[f.shape] == no_light
                ? rgb{}

@@ -90,6 +90,50 @@ uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hi
     }
 }
 
+// ---- The error that batches tell ----------------------------------------------------------------
+
+// Of a map: in the quadratic mean over surfaces and channels, relative to the quadratic mean of E.
+struct MapError {
+    double error = NAN;
+    double uncertainty = NAN;  // standard error of `error`
+};
+
+// Integrals over all surfaces and channels, of batches of one length: of the square of their mean;
+// of the square of what batch b is off the mean, and of that times the mean.
+template <int batches>
+struct BatchSquares {
+    double whole = 0;
+    std::array<double, batches> off{}, along{};
+
+    // The spread tells the variance of the mean without bias, hence the square of the light, too;
+    // their ratio is biased.  Infinite if noise is all that there is.  Its own standard error is
+    // that of the jackknife, which leaves out one batch after the other (Tukey 1958).
+    MapError stated() const {
+        double spread = 0, sum = 0, squares = 0;
+        for (double x : off) spread += x;
+        const double all = relative(whole, spread / (batches - 1), batches);
+        if (!(all > 0) || std::isinf(all)) return {all, all};
+        for (size_t b = 0; b < batches; ++b) {
+            constexpr double n = batches - 1;  // that are left
+            const double rest = whole - 2 * along[b] / n + off[b] / (n * n);
+            const double without =
+                relative(rest, (spread - off[b] * batches / n) / (n - 1), batches - 1);
+            sum += without - all, squares += (without - all) * (without - all);
+        }
+        // Of the variance of normal numbers it says (n - 1) / (n - 2) times too much.
+        const double variance = (squares - sum * sum / batches) * (batches - 2) / batches;
+        return {all, std::sqrt(std::max(0.0, variance))};
+    }
+
+private:
+    // The error of the mean of all batches, by the mean of n of them and the variance of one.
+    static double relative(double square, double variance, int n) {
+        const double light = square - variance / n;
+        if (variance <= 0) return 0;
+        return light > 0 ? std::sqrt(variance / batches / light) : double(INFINITY);
+    }
+};
+
 // ---- All of them --------------------------------------------------------------------------------
 
 class Particles {
@@ -171,34 +215,33 @@ public:
         return map;
     }
 
-    // The standard error of the map by the batches' spread: in the quadratic mean over the surfaces
-    // and channels, relative to the quadratic mean of E.  Both squares are estimated without bias,
-    // if the batches are of one length; their ratio is not.  NaN if a batch is empty, infinite if
-    // noise is all that there is.
-    double error(Functional functional = Functional::projection) const {
-        double spread = 0, whole = 0;
+    // The standard error of the map by the batches' spread, see BatchSquares.  NaN if a batch is
+    // empty.
+    MapError stated(Functional functional = Functional::projection) const {
         for (const Batch& batch : batch_)
-            if (batch.n == 0) return NAN;
+            if (batch.n == 0) return {};
+        BatchSquares<batches> squares;
         for_each_side([&](const Projection& onto, const Face& f, bool back) {
+            constexpr auto precise = real(1e-4);  // an error needs no more digits
             Sums mean(f.vertices());
             for (const Batch& batch : batch_)
                 add_sums(mean, batch, f, back, 1 / (double(batch.n) * batches));
-            auto square = [&](const Sums& b) {
-                constexpr auto precise = real(1e-4);  // an error needs no more digits
-                const rgb channels = onto.square(onto(b, functional, precise));
-                return double(channels.x) + double(channels.y) + double(channels.z);
-            };
-            whole += square(mean);
-            for (const Batch& batch : batch_) {
+            const Sums E = onto(mean, functional, precise);
+            squares.whole += sum_of(onto.square(E));
+            for (size_t k = 0; k < batches; ++k) {
+                const Batch& batch = batch_[k];
                 Sums difference(f.vertices());
                 add_sums(difference, batch, f, back, 1 / double(batch.n));
                 for (size_t v = 0; v < mean.size(); ++v) difference[v] += -mean[v];
-                spread += square(difference);
+                const Sums off = onto(difference, functional, precise);
+                squares.off[k] += sum_of(onto.square(off));
+                squares.along[k] += sum_of(onto.product(off, E));
             }
         });
-        const double own = spread / (batches * (batches - 1));
-        if (own == 0) return 0;
-        return whole > own ? std::sqrt(own / (whole - own)) : double(INFINITY);
+        return squares.stated();
+    }
+    double error(Functional functional = Functional::projection) const {
+        return stated(functional).error;
     }
 
     static Bytes bytes() {
@@ -221,6 +264,7 @@ private:
     std::vector<Batch> batch_;
     uint64_t samples_ = 0;
 
+    static double sum_of(rgb x) { return double(x.x) + double(x.y) + double(x.z); }
     static void add_to(Sum& sum, rgb x) {
         for (size_t c = 0; c < 3; ++c) sum[c] += double(x.*axis[c]);
     }

@@ -37,8 +37,9 @@ public:
         return x;
     }
 
-    // Integral of the square of a map (a channel at a time): x M x.
-    rgb square(const Sums& x) const { return dot_of(x, apply(x)); }
+    // Integral of the product of two maps (a channel at a time): x M y.
+    rgb product(const Sums& x, const Sums& y) const { return dot_of(x, apply(y)); }
+    rgb square(const Sums& x) const { return product(x, x); }
 
 private:
     const Mesh& mesh_;

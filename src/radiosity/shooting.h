@@ -8,8 +8,9 @@
 #pragma once
 #include <barrier>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
+#include "radiosity/missing.h"
 #include "radiosity/transfer.h"
 
 // Whichever comes first; 0: no limit.
@@ -17,6 +18,7 @@ struct ShootingTarget {
     double unshot = 0;   // of the emitted power
     double seconds = 0;  // of all runs together
     uint64_t shots = 0;
+    double error = 0;  // see Shooting::error
 };
 
 // What shoots at once.
@@ -40,7 +42,8 @@ public:
           sent_(2 * mesh.elements()),
           radiance_(tree_.first(mesh.faces.size())),
           best_(2 * mesh.faces.size()),
-          order_(mesh.faces.size()) {
+          order_(mesh.faces.size()),
+          most_reflected_(greatest_albedo(scene, mesh)) {
         for (uint32_t side = 0; side < best_.size(); ++side) best_[side] = candidate(side);
         std::iota(order_.begin(), order_.end(), 0u);
         std::stable_sort(order_.begin(), order_.end(), [&](uint32_t a, uint32_t b) {
@@ -59,6 +62,15 @@ public:
     // What has not yet been sent, over what is emitted.
     double unshot() const { return emitted_ > 0 ? unsent() / emitted_ : 0; }
 
+    // At most, see missing.h; a point that has not shot has no exitance.
+    double error() const {
+        if (next_point_ < points_.size()) return 1;
+        Missing all;
+        for (const Candidate& c : best_) all.add(c.missing);
+        all.lose(lost_);
+        return all.error(most_reflected_);
+    }
+
     // Shoots until the target is met, nothing is left or `interrupted`; may be called again for a
     // farther target.  The map is the same, bit for bit, for any number of threads: every vertex
     // receives one shot after the other.  But time, or a signal, may cut the last shot short: what
@@ -74,6 +86,7 @@ public:
         std::atomic<size_t> next = 0;
         std::atomic<uint64_t> rays = 0;
         auto between_shots = [&]() noexcept {
+            if (const Missing shot = std::exchange(flying_, {}); cut_short()) lost_.lose(shot);
             const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
             seconds_ = before + took.count();
             rays_ += rays.exchange(0);
@@ -113,7 +126,8 @@ private:
         double all = 0, power = 0;  // means of the channels: of the side, of the node
         uint32_t node = 0;
         bool emits = false;  // light of its own, not yet sent
-        auto rank() const { return std::tuple(emits, power); }
+        Missing missing;
+        auto rank() const { return std::pair(emits, power); }
     };
 
     const Scene& scene_;
@@ -127,9 +141,11 @@ private:
     std::vector<Corners> radiance_;  // of the nodes of the side that shoots
     std::vector<Candidate> best_;
     std::vector<uint32_t> order_;  // faces, the largest first, so that threads end together
+    const rgb most_reflected_;     // of all faces
     std::vector<const Light*> points_;
     size_t next_point_ = 0;
     double emitted_ = 0, area_ = 0, seconds_ = 0;  // power; of both sides of all faces
+    Missing flying_, lost_;  // at most: what the shot under way sends; what was cut short
     std::chrono::steady_clock::time_point deadline_;
     static constexpr double lifetime = 1e9;  // seconds: no limit
     uint64_t shots_ = 0, rays_ = 0;
@@ -149,9 +165,6 @@ private:
         for (size_t k = 0; k < 3; ++k) M[k] = own + rho * map_[2 * v[k] + back];
         return M;
     }
-    double mean_exitance(const Face& f, uint32_t element, bool back) const {
-        return double(mean_of(exitance(f, element, back).mean()));
-    }
 
     Candidate candidate(uint32_t side) const {
         const uint32_t face = side / 2;
@@ -162,10 +175,17 @@ private:
         Candidate best;
         for (uint32_t e = f.element; e < f.element + f.elements(); ++e) {
             const double sent = sent_[2 * size_t(e) + back];
-            const double power = area * (mean_exitance(f, e, back) - sent);
-            const Candidate c{0, power, tree_.leaf(e), lamp && sent == 0};
+            const Corners M = exitance(f, e, back);
+            const double power = area * (double(mean_of(M.mean())) - sent);
             best.all += power;
-            if (power > 0 && c.rank() > best.rank()) best = {best.all, c.power, c.node, c.emits};
+            const auto& v = mesh_.corners[e];
+            const Corners& shot = shot_[2 * size_t(e) + back];
+            best.missing.add(area,
+                             {map_[2 * v[0] + back], map_[2 * v[1] + back], map_[2 * v[2] + back]},
+                             {M[0] - shot[0], M[1] - shot[1], M[2] - shot[2]});
+            const auto rank = std::pair(lamp && sent == 0, power);
+            if (power > 0 && rank > best.rank())
+                best.power = power, best.node = tree_.leaf(e), best.emits = lamp && sent == 0;
         }
         if (shooter_ == Shooter::face) best.power = best.all, best.node = tree_.first(face);
         return best;
@@ -181,17 +201,19 @@ private:
 
     bool met(const ShootingTarget& t) const {
         return (t.shots && shots_ >= t.shots) || (t.seconds > 0 && seconds_ >= t.seconds) ||
-               unshot() <= t.unshot;
+               unshot() <= t.unshot || (t.error > 0 && error() <= t.error);
     }
 
     // Lights first, then whoever has most.  Returns whether there is one.
     bool choose() {
         point_ = next_point_ < points_.size() ? points_[next_point_++] : nullptr;
+        if (point_) flying_.unsent.fill(double(INFINITY));
         if (!point_) {
             const auto best = std::max_element(
                 best_.begin(), best_.end(), [](auto& a, auto& b) { return a.rank() < b.rank(); });
             if (best == best_.end() || !(best->power > 0)) return false;
             side_ = uint32_t(best - best_.begin()), node_ = best->node;
+            flying_ = best->missing;
             load(node_);
         }
         ++shots_;
@@ -209,7 +231,7 @@ private:
             const Corners M = exitance(f, n.first, side_ % 2);
             for (size_t k = 0; k < 3; ++k) L[k] = (M[k] - shot_[own][k]) / pi;
             shot_[own] = M;
-            sent_[own] = mean_exitance(f, n.first, side_ % 2);
+            sent_[own] = double(mean_of(M.mean()));
             return L.mean();
         }
         rgb sum;
@@ -266,12 +288,6 @@ private:
         for (uint32_t k = node.first; k < node.first + node.children; ++k)
             E += from_node(to, from, k, transfer);
         return E;
-    }
-
-    // pi L (r / d)^2 is about the most that a node of radius r sends.
-    static real most_from(const Receiver& to, const Node& node, real L) {
-        const vec3 d = node.centre - to.x.p;
-        return pi * L * std::min(real(1), sqr(node.radius) / dot(d, d));
     }
 
     // Irradiance that a vertex does not care about: of one that is dark, beside the scene's mean.

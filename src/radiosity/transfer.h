@@ -28,6 +28,12 @@ inline bool near(const Receiver& to, const Node& node, real radii) {
     return dot(d, d) < sqr(radii * node.radius);
 }
 
+// pi L (r / d)^2 is about the most that a node of radius r sends.
+inline real most_from(const Receiver& to, const Node& node, real L) {
+    const vec3 d = node.centre - to.x.p;
+    return pi * L * std::min(real(1), sqr(node.radius) / dot(d, d));
+}
+
 // Whether all of a node is below the receiver's horizon.
 inline bool behind(const Receiver& to, const Node& node) {
     return dot(node.centre - to.x.p, to.x.n) < -node.radius;

@@ -79,6 +79,13 @@ TEST_CASE("radiosity: a run ends by what was asked for, and by what is usual if 
     CHECK(parse({"--method", "particles"}).unshot == 0);
     CHECK(parse({"--method", "particles", "--time", "2"}).particles == 0);
     CHECK(parse({"--method", "particles", "--particles", "2", "--time", "2"}).particles == 2);
+    CHECK(parse({}).error == 0);
+    CHECK(parse({"--error", "5%"}).error == 0.05);
+    CHECK(parse({"--error", "5e-2"}).error == 0.05);
+    CHECK(parse({"--error", "5%"}).unshot == 0);
+    CHECK(parse({"--error", "5%", "--unshot", "1%"}).unshot == 0.01);
+    CHECK(parse({"--error", "5%", "--method", "particles"}).particles == 0);
+    CHECK(parse({"--error", "5%", "--method", "particles", "--particles", "3"}).particles == 3);
 }
 
 TEST_CASE("radiosity: what says nothing to the method is refused, wherever it stands") {
@@ -105,6 +112,14 @@ TEST_CASE("radiosity: what says nothing to the method is refused, wherever it st
     CHECK(complaint({"--unshot", "0"}) == "--unshot: '0' is never reached");
     CHECK(complaint({"--unshot", "101%"}) == "--unshot: '101%' is more than 100 %");
     CHECK(complaint({"--unshot", "5"}) == "--unshot: '5' is more than 100 %; for percent say 5%");
+    CHECK(complaint({"--error", "0"}) == "--error: '0' is never reached");
+    CHECK(complaint({"--error", "0%"}) == "--error: '0%' is never reached");
+    CHECK(complaint({"--error", "-1%"}) == "--error: '-1%' is negative");
+    CHECK(complaint({"--error", "1"}) == "--error: '1' is the error of darkness, or more");
+    CHECK(complaint({"--error", "200%"}) == "--error: '200%' is the error of darkness, or more");
+    CHECK(complaint({"--error", "5"}) == "--error: '5' is more than 100 %; for percent say 5%");
+    CHECK(complaint({"--error", "99.9%"}) == "");
+    CHECK(complaint({"--error", "small"}) == "--error: 'small' is not a number");
     CHECK(complaint({"--mesh", "0"}) == "--mesh: '0' is not positive");
     CHECK(complaint({"--spp", "4"}).starts_with("unknown option '--spp'"));
     CHECK(complaint({"b.scene"}) == "two scenes: 'b.scene' and 'a.scene'");

@@ -1,6 +1,8 @@
 // radiosity/particles_test.cpp  particles are unbiased for their functionals, and know their error
 #include "radiosity/particles.h"
 
+#include <random>
+
 #include "base/moments.h"
 #include "oracle/expect.h"
 #include "radiosity/exact.h"
@@ -342,6 +344,70 @@ TEST_CASE("the reported error is right: its square is the mean of squares, whate
             }
             EXPECT(oracle::expect_equal(estimate(actual), estimate(reported)), 0.3);
         }
+}
+
+// Checks that the mean square of what is stated is the variance of the errors.
+static void expect_uncertainty(const std::vector<MapError>& stated, double largest) {
+    Moments errors, actual, claimed;
+    for (const MapError& e : stated) errors.add(e.error);
+    for (const auto& [error, uncertainty] : stated)
+        actual.add((error - errors.mean) * (error - errors.mean)),
+            claimed.add(uncertainty * uncertainty);
+    EXPECT(oracle::expect_equal(estimate(actual), estimate(claimed)), largest);
+}
+
+TEST_CASE("the stated error's own uncertainty is its spread, of batches that are normal numbers") {
+    std::mt19937_64 random(seed_here());
+    std::normal_distribution<double> normal;
+    std::vector<MapError> stated;
+    for (int r = 0; r < 4000; ++r) {
+        constexpr int n = 16, dimensions = 30;
+        BatchSquares<n> b;
+        for (int d = 0; d < dimensions; ++d) {
+            double x[n], mean = 0;
+            for (double& each : x) each = 1 + normal(random), mean += each / n;
+            b.whole += mean * mean;
+            for (size_t k = 0; k < n; ++k)
+                b.off[k] += (x[k] - mean) * (x[k] - mean), b.along[k] += (x[k] - mean) * mean;
+        }
+        stated.push_back(b.stated());
+    }
+    expect_uncertainty(stated, 0.22);
+}
+
+TEST_CASE("the stated error's own uncertainty is its spread from run to run") {
+    const Scene s = room({2, 3, 1}, diffuse({real(0.5), real(0.2), real(0.7)}, {1, 2, real(0.6)}));
+    const Mesh mesh = make_mesh(s, 1);
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::halton}) {
+        std::vector<MapError> stated;
+        for (uint64_t r = 0; r < 400; ++r) stated.push_back(run(s, mesh, kind, 1600, r).stated());
+        expect_uncertainty(stated, 0.7);
+    }
+}
+
+TEST_CASE("batches that differ in one thing tell its error, and twice as much is twice the error") {
+    // 16 batches of one number, 1 + x or 1 - x: variance of the mean x^2 / 15.
+    auto of = [](double x) {
+        BatchSquares<16> b;
+        b.whole = 1;
+        for (size_t k = 0; k < 16; ++k) b.off[k] = x * x, b.along[k] = k % 2 ? x : -x;
+        return b.stated();
+    };
+    CHECK(of(0).error == 0);
+    CHECK(of(0).uncertainty == 0);
+    for (double x : {0.1, 0.2}) {
+        const double own = x * x / 15;
+        CHECK(of(x).error == doctest::Approx(std::sqrt(own / (1 - own))).epsilon(1e-12));
+    }
+    // All are alike off the mean: without one of them the variance falls or rises by as much.
+    CHECK(of(0.1).uncertainty < 0.05 * of(0.1).error);
+    BatchSquares<16> one;  // that alone is off (but for the mean, which is beside it)
+    one.whole = 1, one.off.fill(1e-4 / 225), one.off[3] = 1e-4;
+    CHECK(one.stated().error ==
+          doctest::Approx(std::sqrt(1e-4 * (1 + 1 / 15.0) / 240)).epsilon(1e-4));
+    CHECK(one.stated().uncertainty > 0.9 * one.stated().error);
+    CHECK(std::isinf(of(4).error));
+    CHECK(std::isinf(of(4).uncertainty));
 }
 
 TEST_CASE("walls that reflect all light end, too, and what is emitted is absorbed") {

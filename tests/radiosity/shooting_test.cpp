@@ -3,6 +3,7 @@
 
 #include "oracle/expect.h"
 #include "radiosity/exact.h"
+#include "radiosity/projection.h"
 #include "radiosity/rooms.h"
 
 using namespace rooms;
@@ -19,6 +20,20 @@ IlluminationMap shot(const Scene& s, const Mesh& mesh, Shooter shooter,
     Shooting shooting(s, mesh, shooter, 1);
     shooting.run(target, silent);
     return shooting.map();
+}
+
+// Of the difference of two maps, over all surfaces and channels.
+double square(const Mesh& mesh, const IlluminationMap& a, const IlluminationMap& b) {
+    double sum = 0;
+    for (const Face& f : mesh.faces)
+        for (const bool back : {false, true}) {
+            Sums x;
+            for (uint32_t v = 2 * f.vertex + back; v < 2 * (f.vertex + f.vertices()); v += 2)
+                x.push_back(a[v] - b[v]);
+            const rgb s = Projection(mesh, f).square(x);
+            sum += double(s.x + s.y + s.z);
+        }
+    return sum;
 }
 
 // A room without symmetry, coloured: a lamp, a point light, a screen whose both sides reflect.
@@ -273,6 +288,62 @@ TEST_CASE("shooting stops: at a part that is unshot, a number of shots, a time, 
     Scene black = room({1, 1, 1}, diffuse(grey(0.5)));
     Shooting none(black, make_mesh(black, 1), Shooter::face, 1);
     CHECK(none.unshot() == 0);
+}
+
+TEST_CASE("the stated error is a bound, and close where walls are alike and return most light") {
+    Scene bright;  // one wall of six glows
+    add_room(bright, {1, 1, 1}, add(bright, diffuse(grey(0.8), grey(1))), 6);
+    for (int k = 0; k < 5; ++k) add(bright, diffuse(grey(0.8)));
+    prepare(bright);
+    for (const Scene& s : {bright, study()})
+        for (Shooter shooter : shooters) {
+            const Mesh mesh = make_mesh(s, 0.7);
+            const IlluminationMap limit = shot(s, mesh, shooter, {single ? 1e-4 : 1e-8, 0, 0});
+            const double whole = square(mesh, limit, IlluminationMap(limit.size()));
+            Shooting run(s, mesh, shooter, 1);
+            CHECK(run.error() == 1);
+            double worst = 0;
+            for (double error : {0.7, 0.5, 0.2, 0.1, 0.05, 0.02}) {
+                double before = 1;
+                run.run({0, 0, 0, error}, [&](const Shooting& now) {
+                    if (now.error() > error) before = now.error();
+                });
+                CAPTURE(error);
+                CHECK(run.error() <= error);
+                CHECK(before > error);
+                CHECK(run.error() > 0.3 * error);
+                const double off = std::sqrt(square(mesh, limit, run.map()) / whole);
+                CHECK(off <= run.error());
+                worst = std::max(worst, off / run.error());
+            }
+            CAPTURE(worst);
+            CHECK(worst > (s.shapes.size() == bright.shapes.size() ? 0.7 : 0.2));
+        }
+    const Scene pointed = cube();  // whose only light has no area
+    const Mesh mesh = make_mesh(pointed, 8);
+    CHECK(Shooting(pointed, mesh, Shooter::face, 1).error() == 1);
+}
+
+TEST_CASE("light of a shot that is cut short is part of the stated error for good") {
+    const Scene s = study();
+    const Mesh mesh = make_mesh(s, 1.5);
+    const ShootingTarget end = {1e-5, 0, 0};
+    for (Shooter shooter : shooters) {
+        const IlluminationMap limit = shot(s, mesh, shooter, end);
+        const double whole = square(mesh, limit, IlluminationMap(limit.size()));
+        for (uint64_t cut : {1, 2, 6}) {
+            CAPTURE(cut);
+            Shooting run(s, mesh, shooter, 1);
+            run.run(end, [&](const Shooting& now) {
+                if (now.shots() == cut) interrupted = 1;
+            });
+            interrupted = 0;
+            run.run(end, silent);
+            const double off = std::sqrt(square(mesh, limit, run.map()) / whole);
+            CHECK(off > 1e-3);
+            CHECK(run.error() >= off);
+        }
+    }
 }
 
 TEST_CASE("a point light: I cos / d^2 at every vertex that sees it, exactly 0 at all others") {

@@ -90,12 +90,26 @@ TEST_CASE("radiosity --help names every option on one page of stdout") {
         const Outcome o = run(folder, "radiosity", split(line));
         CHECK(o.status == 0);
         CHECK(o.err == "");
-        for (const char* word :
-             {"radiosity [options] SCENE", "--method shooting|hierarchy|particles", "--mesh H",
-              "--unshot F", "--shots N", "--particles N", "--time S",
-              "--sampler independent|stratified|halton|sobol", "--seed N", "--rays K",
-              "--view luminance|illuminance|mesh", "--threads N", "--size WxH", "--exposure E",
-              "-o FILE", "--stats FILE", "--quiet", "--help", "130 interrupted"}) {
+        for (const char* word : {"radiosity [options] SCENE",
+                                 "--method shooting|hierarchy|particles",
+                                 "--mesh H",
+                                 "--unshot F",
+                                 "--shots N",
+                                 "--particles N",
+                                 "--error E",
+                                 "--time S",
+                                 "--sampler independent|stratified|halton|sobol",
+                                 "--seed N",
+                                 "--rays K",
+                                 "--view luminance|illuminance|mesh",
+                                 "--threads N",
+                                 "--size WxH",
+                                 "--exposure E",
+                                 "-o FILE",
+                                 "--stats FILE",
+                                 "--quiet",
+                                 "--help",
+                                 "130 interrupted"}) {
             INFO(std::string(word));
             CHECK(contains(o.out, word));
         }
@@ -140,16 +154,64 @@ TEST_CASE(
         const bool walks = method == "particles";
         CHECK(number_of(stats, walks ? "particles" : "shots") == double(s.found));
         CHECK(number_of(stats, walks ? "shots" : "particles") == 0);
-        CHECK(std::isnan(number_of(stats, walks ? "unshot" : "error")));
+        CHECK(std::isnan(number_of(stats, walks ? "unshot" : "error_uncertainty")));
+        CHECK(std::isnan(number_of(stats, "error_asked")));
+        CHECK(contains(stats,
+                       walks ? "\"stopped_by\": \"--particles\"" : "\"stopped_by\": \"--unshot\""));
+        CHECK(!contains(o.err, "(stopped by"));
         if (walks) {
             CHECK(s.found == 1000000);
             CHECK(number_of(stats, "error") > 0);
             CHECK(number_of(stats, "error") < 0.1);
+            CHECK(number_of(stats, "error_uncertainty") > 0);
+            CHECK(number_of(stats, "error_uncertainty") < 0.1 * number_of(stats, "error"));
         } else {
             CHECK(number_of(stats, "unshot") <= 0.01);
             CHECK(number_of(stats, "unshot") > 0);
+            CHECK(number_of(stats, "error") > 0.003);
+            CHECK(number_of(stats, "error") < 0.1);
         }
     }
+}
+
+TEST_CASE("radiosity --error: what came first ends the run, and is said") {
+    const Place folder(room);
+    struct Row {
+        std::string options, stopped_by;
+    };
+    const std::string walks = "--method particles ";
+    const Row rows[] = {
+        {walks + "--mesh 5 --error 20% --particles 1000000 --time 1000", "--error"},
+        {walks + "--mesh 5 --error 1e-9 --particles 1600 --time 1000", "--particles"},
+        {walks + "--mesh 5 --error 1e-9 --particles 1099511627776 --time 0.2", "--time"},
+        {"--mesh 5 --error 20% --shots 1000000 --time 1000 --unshot 1e-9", "--error"},
+        {"--mesh 5 --error 1e-9 --shots 1 --time 1000 --unshot 1e-8", "--shots"},
+        {"--mesh 5 --error 1e-9 --time 1000 --unshot 20%", "--unshot"},
+        {"--mesh 0.5 --method shooting --error 1e-9 --time 0.2", "--time"},
+        {"--mesh 5 --method shooting --error 20%", "--error"}};
+    for (const auto& [options, stopped_by] : rows) {
+        INFO(options);
+        const Outcome o = expect_success(folder, "radiosity",
+                                         split("-o a.pfm --stats s.json file.scene " + options));
+        INFO(o.err);
+        const std::string stats = folder.read("s.json");
+        CHECK(contains(stats, "\"stopped_by\": \"" + stopped_by + "\""));
+        CHECK(contains(o.err, " Mrays/s (stopped by " + stopped_by + ")\n"));
+        CHECK(contains(o.err, " without that of the triangles, "));
+        CHECK(contains(o.err, ", error at most ") == !contains(options, "particles"));
+        const double asked = number_of(stats, "error_asked"), error = number_of(stats, "error");
+        CHECK(asked ==
+              (contains(options, "20% ") || options.ends_with("--error 20%") ? 0.2 : 1e-9));
+        CHECK((error <= asked) == (stopped_by == "--error"));
+    }
+    // Where nothing walks, nothing tells an error.
+    folder.write("dark.scene", room.substr(0, room.find("quad")));
+    const Outcome o = expect_success(
+        folder, "radiosity", split("-o a.pfm --stats s.json dark.scene --error 5% " + walks));
+    INFO(o.err);
+    CHECK(contains(o.err, " 0 particles, error not known, "));
+    CHECK(contains(folder.read("s.json"), "\"stopped_by\": null"));
+    CHECK(std::isnan(number_of(folder.read("s.json"), "error")));
 }
 
 TEST_CASE("radiosity --quiet prints nothing; -o and its files; the scene may come through a pipe") {
@@ -299,6 +361,7 @@ TEST_CASE("radiosity refuses, in one line, what it cannot do, and touches no fil
     folder.write("glass.scene", lines + "quad 0 0 0 1 0 0 0 1 0 q\nquad 0 0 0 1 0 0 0 1 0 g\n");
     folder.write("phong.scene", lines + "triangle 0 0 0 1 0 0 0 1 0 p\n");
     folder.write("light.scene", lines + "triangle 0 0 0 1 0 0 0 1 0 k\n");
+    folder.write("white.scene", lines + "diffuse w 1 .5 .5\nquad 0 0 0 1 0 0 0 1 0 w\n");
     folder.write("fine.scene", lines + "triangle 0 0 0 1 0 0 0 1 0 q\n");
     const std::pair<std::string, std::string> rows[] = {
         {"", "no scene given"},
@@ -315,6 +378,11 @@ TEST_CASE("radiosity refuses, in one line, what it cannot do, and touches no fil
         {"--method nee file.scene", "--method: unknown value 'nee'"},
         {"--unshot 0 file.scene", "--unshot: '0' is never reached"},
         {"--unshot 2 file.scene", "--unshot: '2' is more than 100 %; for percent say 2%"},
+        {"--error 0 file.scene", "--error: '0' is never reached"},
+        {"--error 1 --method particles file.scene",
+         "--error: '1' is the error of darkness, or more"},
+        {"--error 5 file.scene", "--error: '5' is more than 100 %; for percent say 5%"},
+        {"--error 5% white.scene", "--error: white.scene:15: reflects all light, so nothing"},
         {"--unshot 1% --method particles file.scene",
          "--unshot: needs --method shooting or hierarchy"},
         {"--shots 1 --method particles file.scene", "--shots: needs --method shooting or hier"},

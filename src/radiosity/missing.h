@@ -1,0 +1,54 @@
+// radiosity/missing.h  4  how far a map is from its limit at most, by what is not yet sent
+//
+// What is missing is F U + F rho F U + ..., U the exitance that is not yet sent, F its transport.
+// The kernel of F is symmetric, and nobody sees more than a hemisphere, so F makes no quadratic
+// mean larger (Schur's test), and the sum is at most b = |U| / (1 - greatest rho).  As nothing that
+// is missing is negative, limit^2 >= E^2 + missing^2.  Both hold but for the discretisation of F.
+#pragma once
+#include <array>
+
+#include "base/vec.h"
+
+// Integrals over surfaces: of the square of E, all channels together, and of that of U.
+struct Missing {
+    double light = 0;
+    std::array<double, 3> unsent{};
+
+    void add(const Missing& other) {
+        light += other.light;
+        for (size_t k = 0; k < 3; ++k) unsent[k] += other.unsent[k];
+    }
+
+    // An element of corners E and U: the integral of the square of what is linear between them is
+    // A / 12 ((a + b + c)^2 + a^2 + b^2 + c^2).
+    void add(double area, const std::array<rgb, 3>& E, const std::array<rgb, 3>& U) {
+        auto square = [](const std::array<rgb, 3>& x) {
+            const rgb sum = x[0] + x[1] + x[2];
+            return sum * sum + x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+        };
+        const rgb ofE = square(E), ofU = square(U);
+        for (size_t k = 0; k < 3; ++k) {
+            light += area / 12 * double(ofE.*axis[k]);
+            unsent[k] += area / 12 * double(ofU.*axis[k]);
+        }
+    }
+
+    // Exitance that is missing as well, wherever it is: |U + V| <= |U| + |V|.
+    void lose(const Missing& other) {
+        for (size_t k = 0; k < 3; ++k) {
+            const double sum = std::sqrt(unsent[k]) + std::sqrt(other.unsent[k]);
+            unsent[k] = sum * sum;
+        }
+    }
+
+    // What is missing at most, relative to the limit, in the quadratic mean over surfaces and
+    // channels: 1 while E is 0.
+    double error(rgb most_reflected) const {
+        double b2 = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            const double absorbed = 1 - double(most_reflected.*axis[k]);
+            if (unsent[k] > 0) b2 += unsent[k] / (absorbed * absorbed);
+        }
+        return b2 == 0 ? 0 : std::isinf(b2) ? 1 : std::sqrt(b2 / (light + b2));
+    }
+};
