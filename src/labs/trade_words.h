@@ -21,7 +21,7 @@ inline std::string told_seconds(double seconds) {
 }
 
 // d_rel: "0.3 %", "12.3 %".
-inline std::string told_error(double error) {
+inline std::string told_percent(double error) {
     if (!std::isfinite(error)) return told_nothing;
     return text(error < 1 ? "%.3g %%" : "%.0f %%", 100 * error);
 }
@@ -31,11 +31,14 @@ inline std::string told_ratio(double ratio) {
     return std::isfinite(ratio) ? told_number(ratio, 3) + "×" : told_nothing;
 }
 
-// "0.021 t^−0.51": what error is left after t seconds of a core.
+// "2.1 % · t^−0.51": what error is left after t seconds of a core.
 inline std::string told_law(const TradeSetting& s) {
     if (!std::isfinite(s.c) || !std::isfinite(s.gamma)) return told_nothing;
-    return told_error(s.c) + " · t^" + text(s.gamma < 0 ? "%.2f" : "−%.2f", std::abs(s.gamma));
+    return told_percent(s.c) + " · t^" + text(s.gamma < 0 ? "%.2f" : "−%.2f", std::abs(s.gamma));
 }
+
+// "4 %": by how much the points' errors differ from their law.
+inline std::string told_spread(const TradeSetting& s) { return told_percent(std::expm1(s.spread)); }
 
 inline const char* told_precision(bool is_float) { return is_float ? "float" : "double"; }
 
