@@ -6,8 +6,10 @@
 
 #include "film/image.h"
 
-// One sample count of one setting.  The error is d_rel (Khodulev 1996, ch. 5), bias included where
-// the setting is biased; seconds are of one core, for the whole image.
+// One sample count of one setting (of `radiosity` the particles, or 1 / unshot).  The error is
+// d_rel (Khodulev 1996, ch. 5), bias included where the setting is biased, NAN if it is smaller
+// than what the reference shows; seconds are of one core, for an image of the size that the file
+// gives.
 struct TradePoint {
     double spp = 0, seconds = 0, error = 0, error_se = 0;
 };
@@ -39,7 +41,7 @@ struct TradeAnswer {
 
 struct TradeScene {
     std::string name, remark = "";
-    int width = 0, height = 0;  // of the images that were measured
+    int width = 0, height = 0;  // of the images whose errors were measured
     double exposure = 1;        // of the scene's file
     std::vector<TradeSetting> settings = {};
     std::vector<TradeAnswer> answers = {};

@@ -1,0 +1,97 @@
+// labs/trade.cpp  7  error over time, by every setting: what to choose
+//
+//   build/trade [--float PROGRAM] [--scene NAME] [--full] [--quick] [--page]
+//
+// Every scene by all samplers, --light, --direct, --indirect and both precisions, at five sample
+// counts, in a tournament; and by the methods of build/radiosity.  Writes a report, and what was
+// measured into out/trade/, from which --page writes report and page again.
+#include "labs/trade_file.h"
+#include "labs/trade_report.h"
+#include "labs/trade_study.h"
+
+namespace {
+
+using namespace trade;
+
+const std::string folder = "out/trade";
+
+// But cornell36obj, which is cornell36 again.
+std::vector<std::string> all_scenes() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator("scenes"))
+        if (entry.path().extension() == ".scene" && entry.path().stem() != "cornell36obj")
+            names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Trade measured(Plan plan, const std::string& command) {
+    if (plan.scenes.empty()) plan.scenes = all_scenes();
+    Trade t;
+    t.default_words = written({});
+    t.command = made_by(command);
+    Steps steps(plan.scenes.size());
+    for (const std::string& name : plan.scenes) {
+        steps.next(name);
+        t.scenes.push_back(study(plan, name));
+        write_trade(t, folder);  // what is there, should the rest fail
+    }
+    t.candidates = candidates_of(t.scenes);
+    write_trade(t, folder);
+    return t;
+}
+
+int report_of(const Trade& t, bool quick) {
+    Report report(report_folder(quick), "trade");
+    tell(report, t);
+    report.say(t.command);
+    return report.finish();
+}
+
+void make_quick(Plan& plan) {
+    plan.quick = true;
+    plan.counts = {4, 16, 64};
+    plan.seeds = 2;
+    plan.pixels = 512;
+    plan.tournament = 4, plan.reference = 1, plan.radiosity = 0.5;
+}
+
+void make_full(Plan& plan) {
+    plan.seeds = 5;
+    plan.pixels = 8192;
+    plan.tournament *= 6, plan.reference *= 6, plan.radiosity *= 6;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Plan plan;
+    bool page = false;
+    std::string list;
+    const Lab lab{
+        "trade",
+        "Measures error over time by every setting, on every scene.",
+        {{"--float", "PROGRAM", "this lab in float, for the other precision",
+          [&](auto& program) { plan.float_program = program; }},
+         {"--scene", "NAME", "only this one; may be repeated, writes into out/",
+          [&](auto& name) {
+              plan.quick = true;
+              plan.scenes.push_back(name);
+          }},
+         {"--full", "", "more pixels, seeds and time", [&](auto&) { make_full(plan); }},
+         {"--quick", "", "fewer runs, into out/", [&](auto&) { make_quick(plan); }},
+         {"--page", "", "write report and page from what was measured",
+          [&](auto&) { page = true; }},
+         {"--render", "FILE", "only what this file lists, for the lab in the other precision",
+          [&](auto& file) { list = file; }}}};
+    return lab_main(argc, argv, lab, [&] {
+        std::filesystem::create_directories(folder);
+        if (!list.empty()) {
+            render_listed(list);
+            return 0;
+        }
+        std::string command = "build/trade";
+        for (int k = 1; k < argc; ++k) command += std::string(" ") + argv[k];
+        return report_of(page ? read_trade(folder) : measured(plan, command), plan.quick);
+    });
+}

@@ -1,0 +1,230 @@
+// labs/trade_study.h  6  the measurement: a scene's reference, its tournament, its pictures
+#pragma once
+#include "labs/trade_law.h"
+#include "labs/trade_radiosity.h"
+
+namespace trade {
+
+struct Plan {
+    bool quick = false;
+    std::string float_program;
+    std::vector<std::string> scenes = {};  // none: all
+    std::vector<uint64_t> counts = {4, 16, 64, 256, 1024};
+    uint64_t seeds = 3;
+    double pixels = 2048;
+    // Core seconds a scene may take: the tournament; each of two references; and by the clock, a
+    // method of radiosity.
+    double tournament = 130, reference = 22, radiosity = 6;
+};
+
+// Seeds of runs, pictures and references: none is used twice.
+inline constexpr uint64_t first_seed = 1, picture_seed = 500, reference_seed = 1000;
+
+// ---- References ---------------------------------------------------------------------------------
+
+// Eight runs of the default, of as many samples as the seconds allow, a power of two.
+struct Long {
+    Reference reference;
+    TradePoint one;  // of the eight
+};
+inline Long long_run(const Ground& g, double core_seconds) {
+    constexpr uint64_t runs = 8, pilot = 8;
+    Renderer render(g);
+    const std::string words = written({});
+    const double each = render({words, pilot, 0}).seconds / double(pilot);
+    uint64_t spp = pilot;
+    while (2 * double(spp) * each * double(runs) <= core_seconds) spp *= 2;
+    Series series;
+    for (uint64_t k = 0; k < runs; ++k) {
+        Taken t = render({words, spp, reference_seed + k});
+        series.images.push_back(std::move(t.image)), series.seconds.push_back(t.seconds);
+    }
+    const Reference f = reference_of(series);
+    return {f, {double(spp), median(series.seconds), f.error * std::sqrt(double(runs)), 0}};
+}
+
+// ---- A tournament -------------------------------------------------------------------------------
+
+// Settings of both precisions, and where they stand.
+struct Tournament {
+    const Plan& plan;
+    const Ground& ground;
+    const Reference& reference;
+    std::vector<TradeSetting> settings = {};
+    std::vector<Entrant> entrants = {};
+    double spent = 0;
+
+    void enter(const std::vector<TradeSetting>& more) {
+        for (const TradeSetting& s : more) {
+            settings.push_back(s);
+            Entrant e;
+            e.candidate = is_candidate(s), e.kept = s.words == written({});
+            entrants.push_back(e);
+        }
+    }
+};
+
+// Of those who are alive, in turn from another one on: all runs of one seed, in one precision.
+inline std::vector<size_t> turn(const Tournament& t, bool is_float, uint64_t seed) {
+    std::vector<size_t> who;
+    for (size_t k = 0; k < t.settings.size(); ++k)
+        if (t.entrants[k].alive && t.settings[k].is_float == is_float) who.push_back(k);
+    if (!who.empty())
+        std::rotate(who.begin(), who.begin() + ptrdiff_t(seed * who.size() / 3 % who.size()),
+                    who.end());
+    return who;
+}
+
+// A series for each setting; seconds are those of the whole image.
+inline std::vector<Series> play(Tournament& t, uint64_t spp) {
+    std::vector<Series> series(t.settings.size());
+    for (Entrant& e : t.entrants) e.next_cost = 0;
+    for (uint64_t seed = first_seed; seed < first_seed + t.plan.seeds; ++seed)
+        for (const bool is_float : {false, true}) {
+            const std::vector<size_t> who = turn(t, is_float, seed);
+            std::vector<Task> tasks;
+            for (size_t k : who) tasks.push_back({t.settings[k].words, spp, seed});
+            std::vector<Taken> taken =
+                is_float ? rendered_by(t.plan.float_program, t.ground, tasks, t.plan.pixels)
+                         : rendered_here(t.ground, tasks);
+            for (size_t i = 0; i < who.size(); ++i) {
+                Series& s = series[who[i]];
+                s.images.push_back(std::move(taken[i].image));
+                s.seconds.push_back(taken[i].of_whole(t.ground));
+                // Four samplers share what is fixed.
+                t.entrants[who[i]].next_cost += taken[i].seconds + taken[i].fixed / 4;
+            }
+        }
+    return series;
+}
+
+// All at one count; then the hopeless go, and who does not fit into the budget of the next.
+inline void round_of(Tournament& t, uint64_t spp, uint64_t next) {
+    const std::vector<Series> series = play(t, spp);
+    for (size_t k = 0; k < t.settings.size(); ++k) {
+        if (series[k].images.empty()) continue;
+        const Error e = error_of(series[k].images, t.reference);
+        const TradePoint p{double(spp), median(series[k].seconds), e.value, e.standard_error};
+        t.settings[k].points.push_back(p);
+        t.spent += t.entrants[k].next_cost;
+        t.entrants[k].efficiency = efficiency_of(p);
+        t.entrants[k].next_cost *= double(next) / double(spp);
+    }
+    if (next == 0) return;
+    // After the first count errors say little of what low discrepancy will bring.
+    if (t.settings[0].points.size() > 1) drop_hopeless(t.entrants, double(spp));
+    const double left = t.plan.tournament - t.spent;
+    drop_for_budget(t.entrants, double(spp), next == t.plan.counts.back() ? left : 0.4 * left);
+}
+
+inline std::vector<TradeSetting> tournament(const Plan& plan, const Ground& g, const Reference& f) {
+    Tournament t{plan, g, f};
+    t.enter(settings_of(g, false));
+    if (!plan.float_program.empty()) t.enter(settings_of(g, true));
+    for (size_t i = 0; i < plan.counts.size(); ++i)
+        round_of(t, plan.counts[i], i + 1 < plan.counts.size() ? plan.counts[i + 1] : 0);
+    for (size_t k = 0; k < t.settings.size(); ++k) t.settings[k].dropped = t.entrants[k].dropped;
+    return t.settings;
+}
+
+// ---- Pictures at equal time ---------------------------------------------------------------------
+
+// What is shown: the default in both precisions, the cheapest at 3 %, and lessons.
+inline std::vector<std::pair<std::string, bool>> shown(const TradeScene& s) {
+    std::vector<std::pair<std::string, bool>> list = {{written({}), false}};
+    auto add = [&](const TradeSetting& t) {
+        const std::pair<std::string, bool> one{t.words, t.is_float};
+        if (!is_radiosity(t) && std::find(list.begin(), list.end(), one) == list.end())
+            list.push_back(one);
+    };
+    auto add_cheapest = [&](auto may) {
+        const TradeAnswer a = cheapest(s, 0.03, may);
+        if (a.setting != SIZE_MAX) add(s.settings[a.setting]);
+    };
+    add_cheapest([](const TradeSetting& t) { return !t.is_float; });
+    for (const char* kind : {"--direct ratio", "--indirect map", "--indirect control"})
+        add_cheapest([&](const TradeSetting& t) {
+            return !t.is_float && t.words.find(kind) != t.words.npos;
+        });
+    for (const char* words :
+         {"--sampler independent --light none", "--sampler independent --light nee",
+          "--sampler halton-naive --light nee"})
+        if (const size_t k = index_of(s, words); k != SIZE_MAX) add(s.settings[k]);
+    if (const size_t k = index_of(s, written({}), true); k != SIZE_MAX) add(s.settings[k]);
+    return list;
+}
+
+// Seconds a picture takes: as many as the default needs for 3 %, in reason.
+inline double seconds_of_pictures(const TradeScene& s) {
+    const size_t own = index_of(s, written({}));
+    const double t = own == SIZE_MAX ? NAN : seconds_for(s.settings[own], 0.03);
+    return std::isnan(t) ? 1 : std::clamp(t, 0.1, 1.0);
+}
+
+inline TradePicture picture(const Plan& plan, const Ground& g, const TradeSetting& s,
+                            double seconds) {
+    const TradePoint& last = s.points.back();
+    const auto spp = uint64_t(std::max(1.0, std::round(seconds * last.spp / last.seconds)));
+    const std::vector<Task> task = {{s.words, spp, picture_seed}};
+    std::vector<Taken> t =
+        s.is_float ? rendered_by(plan.float_program, g, task, 0) : rendered_here(g, task);
+    return {s.words, s.is_float, t[0].of_whole(g), NAN, std::move(t[0].image)};
+}
+
+inline void add_pictures(const Plan& plan, const Ground& g, const Reference& f,
+                         const std::vector<Method>& methods, TradeScene& s) {
+    const double seconds = seconds_of_pictures(s);
+    for (const auto& [words, is_float] : shown(s)) {
+        const TradeSetting& setting = s.settings[index_of(s, words, is_float)];
+        if (!setting.points.empty()) s.pictures.push_back(picture(plan, g, setting, seconds));
+    }
+    for (const Method& m : methods) {  // the one nearest in time
+        auto off = [&](const Look& l) { return std::abs(std::log(l.point.seconds / seconds)); };
+        const auto l = std::min_element(m.looks.begin(), m.looks.end(),
+                                        [&](auto& a, auto& b) { return off(a) < off(b); });
+        if (l != m.looks.end())
+            s.pictures.push_back({m.setting.words, false, l->point.seconds, NAN, l->image});
+    }
+    for (TradePicture& p : s.pictures) p.error = error_of({p.image}, f).value;
+}
+
+// ---- A scene ------------------------------------------------------------------------------------
+
+// What the law of small images says of large ones, and what is seen.
+inline std::string at_full_size(const TradeScene& s, const TradePoint& seen) {
+    const size_t own = index_of(s, written({}));
+    if (own == SIZE_MAX) return "";
+    const TradeSetting& d = s.settings[own];
+    return text(
+        "The default at full size, %.0f samples: %.3g core s, error %.3g %%; by its law %.3g %%.",
+        seen.spp, seen.seconds, 100 * seen.error, 100 * d.c * std::pow(seen.seconds, -d.gamma));
+}
+
+inline std::string remark(const Ground& g) {
+    if (!g.diffuse) return "";
+    std::string words =
+        text("Diffuse: light is scattered up to %d times, whatever the file says. ", without_end);
+    if (!g.faceted.empty())
+        words += "--indirect and radiosity take its spheres for icospheres, which is their bias. ";
+    return words;
+}
+
+inline TradeScene study(const Plan& plan, const std::string& name) {
+    const Ground g = ground_of(name, plan.pixels), full = ground_of(name, 0);
+    const Long reference = long_run(g, plan.reference), large = long_run(full, plan.reference);
+    TradeScene s{name, remark(g)};
+    s.width = g.scene.size.width, s.height = g.scene.size.height;
+    s.exposure = double(g.scene.exposure);
+    s.reference = large.reference.image, s.reference_error = large.reference.error;
+    s.settings = tournament(plan, g, reference.reference);
+    for (TradeSetting& setting : s.settings) fit(setting);
+    std::vector<Method> methods;
+    if (g.diffuse) methods = by_radiosity(full, large.reference, plan.radiosity);
+    for (Method& m : methods) fit(m.setting), s.settings.push_back(m.setting);
+    s.answers = answers_of(s, written({}));
+    add_pictures(plan, full, large.reference, methods, s);
+    s.remark += at_full_size(s, large.one);
+    return s;
+}
+
+}  // namespace trade
