@@ -32,8 +32,8 @@ PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench cells peers \
-        efficiency voronoi voronoi2d extremes readme clean help layers packages always
+.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
+        cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -102,13 +102,20 @@ voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes;
 bench:                     ## rays a second, beside Embree if libembree-dev is installed, and the time of a path
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
+trade: build/knot.obj build/trade-float$(VARIANT)  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 3 hours)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
-EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d voronoi bench peers efficiency cells
+EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d voronoi bench peers efficiency trade cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
+trade: LAB_FLAGS := --float build/trade-float$(VARIANT) $(if $(FULL),--full)
 peers: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
 $(EXPERIMENTS): %: build/%$(SUFFIX)
 	build/$@$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
+# Both precisions are measured side by side.
+ifeq ($(REAL),double)
+build/trade-float$(VARIANT): always
+	@$(MAKE) --no-print-directory REAL=float $@
+endif
 # build/radiosity is a renderer.
 radiosity: $(PENUMBRA) build/illumination$(SUFFIX)
 	build/illumination$(SUFFIX) $(if $(QUICK),--quick) $(if $(FULL),--full)

@@ -1,4 +1,4 @@
-// labs/trade.cpp  7  error over time, by every setting: what to choose
+// labs/trade.cpp  8  error over time, by every setting: what to choose
 //
 //   build/trade [--float PROGRAM] [--scene NAME] [--full] [--quick] [--page]
 //
@@ -6,6 +6,7 @@
 // counts, in a tournament; and by the methods of build/radiosity.  Writes a report, and what was
 // measured into out/trade/, from which --page writes report and page again.
 #include "labs/trade_file.h"
+#include "labs/trade_page.h"
 #include "labs/trade_report.h"
 #include "labs/trade_study.h"
 
@@ -29,7 +30,7 @@ Trade measured(Plan plan, const std::string& command) {
     if (plan.scenes.empty()) plan.scenes = all_scenes();
     Trade t;
     t.default_words = written({});
-    t.command = made_by(command);
+    t.command = command;
     Steps steps(plan.scenes.size());
     for (const std::string& name : plan.scenes) {
         steps.next(name);
@@ -44,7 +45,9 @@ Trade measured(Plan plan, const std::string& command) {
 int report_of(const Trade& t, bool quick) {
     Report report(report_folder(quick), "trade");
     tell(report, t);
-    report.say(t.command);
+    report.say(made_by(t.command));
+    write_file(folder + "/index.html", trade_page(t));
+    std::fprintf(stderr, "wrote %s/index.html\n", folder.c_str());
     return report.finish();
 }
 

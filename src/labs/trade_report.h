@@ -1,6 +1,7 @@
 // labs/trade_report.h  4  a trade as tables and plots
 #pragma once
 #include "labs/trade_law.h"
+#include "labs/trade_words.h"
 
 namespace trade {
 
@@ -16,14 +17,6 @@ inline std::string short_name(const std::string& words, bool is_float) {
     return name + (is_float ? ", float" : "");
 }
 inline std::string short_name(const TradeSetting& s) { return short_name(s.words, s.is_float); }
-
-// "0.12 s", "–".
-inline std::string told_seconds(double s) {
-    return std::isnan(s) ? "–" : text(s < 0.1 ? "%.2g s" : "%.3g s", s);
-}
-inline std::string told_percent(double e) {
-    return std::isnan(e) ? "–" : text(e < 0.01 ? "%.2g %%" : "%.3g %%", 100 * e);
-}
 
 // ---- Plots --------------------------------------------------------------------------------------
 
@@ -88,7 +81,7 @@ inline Svg curves(const Trade& t) {
 
 inline std::string cell(const TradeScene& s, const TradeAnswer& a) {
     const std::string own = "; default " + told_seconds(a.default_seconds);
-    if (a.setting == SIZE_MAX) return "–" + own;
+    if (a.setting == SIZE_MAX) return told_nothing + own;
     return told_seconds(a.seconds) + ": " + short_name(s.settings[a.setting]) + own;
 }
 

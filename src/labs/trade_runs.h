@@ -83,7 +83,9 @@ inline std::optional<Options> options_of(const Ground& g, const std::string& lin
     words.push_back(g.file());
     try {
         Options o = parse_options(words);
-        if (has_maps(o) && (!g.diffuse || o.sampler == SamplerKind::halton_naive)) return {};
+        const bool lesson = o.sampler == SamplerKind::halton_naive;  // by paths is enough
+        if (lesson && (has_maps(o) || o.direct != Estimator::stochastic)) return {};
+        if (has_maps(o) && !g.diffuse) return {};
         if (g.point_lights && o.technique.light == LightMode::none) return {};
         return o;
     } catch (const UserError&) {

@@ -200,6 +200,17 @@ inline std::string at_full_size(const TradeScene& s, const TradePoint& seen) {
         seen.spp, seen.seconds, 100 * seen.error, 100 * d.c * std::pow(seen.seconds, -d.gamma));
 }
 
+// Where rounding is an error of its own, beyond the noise.
+inline std::string of_float(const TradeScene& s) {
+    const size_t d = index_of(s, written({})), f = index_of(s, written({}), true);
+    if (d == SIZE_MAX || f == SIZE_MAX) return "";
+    const double in_double = s.settings[d].points.back().error,
+                 in_float = s.settings[f].points.back().error;
+    if (!(in_float > 1.25 * in_double)) return "";
+    return text(" In float the default's error is %.2g %% where it is %.2g %% in double: rounding.",
+                100 * in_float, 100 * in_double);
+}
+
 inline std::string remark(const Ground& g) {
     if (!g.diffuse) return "";
     std::string words =
@@ -223,7 +234,7 @@ inline TradeScene study(const Plan& plan, const std::string& name) {
     for (Method& m : methods) fit(m.setting), s.settings.push_back(m.setting);
     s.answers = answers_of(s, written({}));
     add_pictures(plan, full, large.reference, methods, s);
-    s.remark += at_full_size(s, large.one);
+    s.remark += at_full_size(s, large.one) + of_float(s);
     return s;
 }
 
