@@ -17,7 +17,7 @@ inline std::string section(const Trade& trade, const TradeScene& scene) {
                "<section class=\"scene\" id=\"scene-%s\" data-name=\"%s\" data-width=\"%d\" "
                "data-height=\"%d\" data-mean=\"%.9g\">\n<h2>%s</h2>\n",
                name, name, scene.reference.width, scene.reference.height,
-               scene.pictures.empty() ? 0 : quadratic_mean(scene.reference), name) +
+               quadratic_mean(scene.reference), name) +
            (scene.remark.empty() ? "" : "<p><strong>" + escaped(scene.remark) + "</strong></p>\n") +
            answers(scene) + curves(trade, scene) +
            text("<details><summary>All %zu settings</summary>\n%s</details>\n",

@@ -8,12 +8,12 @@
 
 #include "labs/maps.h"
 
-// |f|: of all channels of all pixels.
+// |f|, of all channels of all pixels; 1 if all are black, so that nothing is divided by it.
 inline double quadratic_mean(const Image& f) {
     double sum = 0;
     for (const auto& pixel : f.pixels)
         for (float channel : pixel) sum += double(channel) * double(channel);
-    return std::sqrt(sum / (3 * double(f.pixels.size())));
+    return sum > 0 ? std::sqrt(sum / (3 * double(f.pixels.size()))) : 1;
 }
 
 // ---- Error maps --------------------------------------------------------------------------------

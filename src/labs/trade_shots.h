@@ -84,7 +84,7 @@ inline std::string pictures(const TradeScene& scene) {
     if (scene.pictures.empty()) return "";
     check_picture(scene, scene.reference);
     for (const TradePicture& p : scene.pictures) check_picture(scene, p.image);
-    const double norm = quadratic_mean(scene.reference), mean = norm > 0 ? norm : 1;
+    const double mean = quadratic_mean(scene.reference);
     std::string out = text(
         "<h3>Pictures at equal time</h3>\n"
         "<p>Below each picture is its error map: the error of each pixel, in parts of the "

@@ -24,7 +24,7 @@ p, ol { max-width: 46rem; }
 a { color: var(--link); }
 :focus-visible { outline: 3px solid var(--focus); outline-offset: 2px; }
 code { font: .92em ui-monospace, Menlo, Consolas, monospace; overflow-wrap: anywhere; }
-code span { white-space: nowrap; }
+code span, .law { white-space: nowrap; }
 nav ul { display: flex; flex-wrap: wrap; gap: .3rem 1rem; padding: 0; list-style: none; }
 nav a { display: inline-block; padding: .2rem 0; }
 .scene, #compare { border-top: 1px solid var(--line); margin-top: 2rem; }
@@ -34,13 +34,14 @@ html:not(.scripted) .scripted { display: none; }
 .scroll { overflow-x: auto; max-width: 100%; margin: .5rem 0 1rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 caption { text-align: left; color: var(--soft); padding-bottom: .3rem; }
+caption span { display: inline-block; max-width: calc(100vw - 2rem); }
+small { color: var(--soft); }
 th, td { padding: .25rem .7rem .25rem 0; text-align: left; vertical-align: top;
          border-bottom: 1px solid var(--line); }
 .number { text-align: right; }
 tbody .number { white-space: nowrap; }
 th { font-weight: 600; }
-tbody th { font-weight: 400; min-width: 11rem; }
-tbody th.number, #values th { min-width: 0; }
+tbody th { font-weight: 400; }
 summary { cursor: pointer; padding: .3rem 0; }
 
 .curves svg { display: block; width: 100%; max-width: 640px; height: auto; }

@@ -1,5 +1,8 @@
 // labs/trade_tables.h  6  a trade's answers and curves in HTML
 #pragma once
+#include <functional>
+#include <set>
+
 #include "labs/trade_curves.h"
 #include "labs/trade_shots.h"
 
@@ -17,7 +20,7 @@ inline std::string table(const std::string& caption, const std::vector<Column>& 
                          const std::vector<std::vector<std::string>>& rows) {
     std::string out = text(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"%s\">\n<table>"
-        "<caption>%s</caption>\n<thead><tr>",
+        "<caption><span>%s</span></caption>\n<thead><tr>",
         escaped(caption), escaped(caption));
     auto kind = [&](size_t k) { return columns[k].number ? " class=\"number\"" : ""; };
     for (size_t k = 0; k < columns.size(); ++k)
@@ -37,15 +40,16 @@ inline std::string answers(const TradeScene& scene) {
     for (const TradeAnswer& a : scene.answers) {
         const bool known = a.setting < scene.settings.size() && std::isfinite(a.seconds);
         const TradeSetting* s = known ? &scene.settings[a.setting] : nullptr;
-        rows.push_back({told_percent(a.E), s ? code(s->words) : "none measured gets there",
-                        s ? told_kind(*s) : told_nothing, told_seconds(a.seconds),
+        const std::string setting =
+            s ? text("%s<br><small>%s</small>", code(s->words), told_kind(*s))
+              : "none measured gets there";
+        rows.push_back({told_percent(a.E), setting, told_seconds(a.seconds),
                         told_seconds(a.default_seconds),
                         told_ratio(a.default_seconds / a.seconds)});
     }
     return table("The cheapest setting for an error on " + scene.name,
                  {{"Error"},
                   {"Cheapest setting", false},
-                  {"Numbers, bias", false},
                   {"Its time"},
                   {"The default's time"},
                   {"Default over cheapest"}},
@@ -73,20 +77,28 @@ inline std::string settings(const TradeScene& scene) {
                  rows);
 }
 
-// Every scene in a row, every error in a column.
+// "2.1 s · 1.3×": the cheapest setting's time, and the default's over it.
+inline std::string told_answer(const TradeAnswer& a) {
+    return std::isfinite(a.seconds)
+               ? told_seconds(a.seconds) + " · " + told_ratio(a.default_seconds / a.seconds)
+               : told_nothing;
+}
+
+// Every scene in a row, every error that any was asked for in a column, the largest first.
 inline std::string overview(const Trade& trade) {
+    std::set<double, std::greater<>> asked;
+    for (const TradeScene& scene : trade.scenes)
+        for (const TradeAnswer& a : scene.answers) asked.insert(a.E);
     std::vector<Column> columns = {{"Scene", false}};
-    for (const TradeAnswer& a : trade.scenes[0].answers) columns.push_back({told_percent(a.E)});
+    for (double E : asked) columns.push_back({told_percent(E)});
     std::vector<std::vector<std::string>> rows;
     for (const TradeScene& scene : trade.scenes) {
-        rows.push_back(
-            {text("<a href=\"#scene-%s\">%s</a>", escaped(scene.name), escaped(scene.name))});
-        for (size_t k = 1; k < columns.size(); ++k) {
-            const TradeAnswer a = k <= scene.answers.size() ? scene.answers[k - 1] : TradeAnswer{};
-            rows.back().push_back(std::isfinite(a.seconds)
-                                      ? told_seconds(a.seconds) + " · " +
-                                            told_ratio(a.default_seconds / a.seconds)
-                                      : told_nothing);
+        const std::string name = escaped(scene.name);
+        rows.push_back({text("<a href=\"#scene-%s\">%s</a>", name, name)});
+        for (double E : asked) {
+            const auto a = std::find_if(scene.answers.begin(), scene.answers.end(),
+                                        [&](const TradeAnswer& answer) { return answer.E == E; });
+            rows.back().push_back(a == scene.answers.end() ? told_nothing : told_answer(*a));
         }
     }
     return table("Time of the cheapest setting · how many times that the default takes", columns,
@@ -124,11 +136,12 @@ inline std::string curves(const Trade& trade, const TradeScene& scene) {
         escaped(scene.name), file.substr(before.size()), scene.width, scene.height);
     for (size_t k = 0; k < named.size(); ++k) {
         const TradeSetting& s = scene.settings[named[k]];
-        out +=
-            text("<li><b style=\"background:%s;color:%s\">%zu</b><span>%s%s (%s): %s</span></li>\n",
-                 svg::colours[k], k < 2 ? "#fff" : "#000", k + 1, code(s.words),
-                 s.words == trade.default_words ? ", the default" : "", told_kind(s),
-                 escaped(told_law(s)));
+        out += text(
+            "<li><b style=\"background:%s;color:%s\">%zu</b><span>%s%s (%s): <span "
+            "class=\"law\">%s</span></span></li>\n",
+            svg::colours[k], k < 2 ? "#fff" : "#000", k + 1, code(s.words),
+            s.words == trade.default_words ? ", the default" : "", told_kind(s),
+            escaped(told_law(s)));
     }
     return out + "</ol></figure>\n";
 }
