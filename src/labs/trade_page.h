@@ -13,16 +13,18 @@ using svg::escaped;
 
 inline std::string section(const Trade& trade, const TradeScene& scene) {
     const std::string name = escaped(scene.name);
-    return text(
-               "<section class=\"scene\" id=\"scene-%s\" data-name=\"%s\" data-width=\"%d\" "
-               "data-height=\"%d\" data-mean=\"%.9g\">\n<h2>%s</h2>\n",
-               name, name, scene.reference.width, scene.reference.height,
-               quadratic_mean(scene.reference), name) +
-           (scene.remark.empty() ? "" : "<p><strong>" + escaped(scene.remark) + "</strong></p>\n") +
-           answers(scene) + curves(trade, scene) +
-           text("<details><summary>All %zu settings</summary>\n%s</details>\n",
-                scene.settings.size(), settings(scene)) +
-           pictures(scene) + "</section>\n";
+    const double mean = quadratic_mean(scene.reference);
+    const TradeScene shown = small(scene);
+    std::string out = text(
+        "<section class=\"scene\" id=\"scene-%s\" data-name=\"%s\" data-width=\"%d\" "
+        "data-height=\"%d\" data-mean=\"%.9g\">\n<h2>%s</h2>\n",
+        name, name, shown.reference.width, shown.reference.height, mean, name);
+    if (!scene.remark.empty()) out += "<p>" + escaped(scene.remark) + "</p>\n";
+    out += answers(scene) + curves(trade, scene);
+    out += text("<details><summary>All %zu settings</summary>\n%s</details>\n",
+                scene.settings.size(), settings(scene));
+    if (!scene.pictures.empty()) out += pictures(shown, mean, thinning(scene.reference));
+    return out + "</section>\n";
 }
 
 inline std::string lens(const char* id, const char* words) {
@@ -92,7 +94,8 @@ inline std::string introduction(const Trade& trade) {
         "<p>Which setting of Penumbra reaches an error in the least time, and what does it cost "
         "not "
         "to choose?  An error is d<sub>rel</sub>: the quadratic mean of an image's error over the "
-        "reference's quadratic mean.  Times are seconds of one core.  The default is %s.</p>\n",
+        "reference's quadratic mean.  Times are those of one core, for an image of the size that "
+        "the scene's file gives.  The default is %s.</p>\n",
         code(trade.default_words));
     if (!trade.candidates.empty()) {
         const TradeCandidate& best = trade.candidates[0];

@@ -102,8 +102,7 @@ inline std::string error_png(int width, int height, const std::vector<int>& leve
            png_chunk("IDAT", data) + png_chunk("IEND", "");
 }
 
-inline std::string error_map(const Image& reference, const Image& picture) {
-    const double mean = quadratic_mean(reference);
+inline std::string error_map(const Image& reference, const Image& picture, double mean) {
     std::vector<int> levels;
     for (size_t i = 0; i < picture.pixels.size(); ++i)
         levels.push_back(error_level(pixel_error(reference.pixels[i], picture.pixels[i], mean)));
@@ -154,4 +153,22 @@ inline std::string packed_pixels(const Image& picture, const Image& reference, d
 
 inline Image black(int width, int height) {
     return painted(width, height, [](int, int) { return Colour{0, 0, 0}; });
+}
+
+// ---- Fewer pixels ------------------------------------------------------------------------------
+
+// So many pixels of a picture are on the page, at most.
+inline constexpr int most_pixels = 8192;
+
+// Every how many-th pixel of every so many-th row that leaves.
+inline int thinning(const Image& image) {
+    int n = 1;
+    while ((image.width / n) * (image.height / n) > most_pixels) ++n;
+    return n;
+}
+
+// Those pixels, as they are: an average of pixels would have less noise than was measured.
+inline Image thinned(const Image& image, int n) {
+    return painted(image.width / n, image.height / n,
+                   [&](int x, int y) { return image.at(n * x + n / 2, n * y + n / 2); });
 }

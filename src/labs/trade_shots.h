@@ -69,7 +69,7 @@ inline std::string shot(const TradeScene& scene, const TradePicture& p, double m
         escaped(name), values,
         img("picture", p.image, scene.name + " by " + name, encode_png(p.image, scene.exposure)),
         img("map", p.image, "error map of " + scene.name + " by " + name,
-            error_map(scene.reference, p.image)),
+            error_map(scene.reference, p.image, mean)),
         code(p.words), kind, result);
 }
 
@@ -80,17 +80,26 @@ inline void check_picture(const TradeScene& scene, const Image& image) {
         throw UserError(scene.name + ": no number in a picture's pixel " + *pixel);
 }
 
-inline std::string pictures(const TradeScene& scene) {
-    if (scene.pictures.empty()) return "";
+// The same scene with pictures of as many pixels as a page can hold.
+inline TradeScene small(TradeScene scene) {
     check_picture(scene, scene.reference);
     for (const TradePicture& p : scene.pictures) check_picture(scene, p.image);
-    const double mean = quadratic_mean(scene.reference);
+    const int n = thinning(scene.reference);
+    scene.reference = thinned(scene.reference, n);
+    for (TradePicture& p : scene.pictures) p.image = thinned(p.image, n);
+    return scene;
+}
+
+// mean: of the whole reference.
+inline std::string pictures(const TradeScene& scene, double mean, int n) {
+    const std::string part =
+        n == 1 ? "" : text("  Of every %d×%d pixels of a picture one is shown.", n, n);
     std::string out = text(
         "<h3>Pictures at equal time</h3>\n"
         "<p>Below each picture is its error map: the error of each pixel, in parts of the "
-        "reference's quadratic mean.\n<a class=\"scripted\" href=\"#scene=%s\">Compare two of "
-        "them pixel by pixel</a></p>\n%s<div class=\"shots\">\n",
-        escaped(scene.name), error_scale());
+        "reference's quadratic mean.%s\n<a class=\"scripted\" href=\"#scene=%s\">Compare two "
+        "of them pixel by pixel</a></p>\n%s<div class=\"shots\">\n",
+        part, escaped(scene.name), error_scale());
     out += reference_shot(scene, mean);
     for (const TradePicture& p : scene.pictures) out += shot(scene, p, mean);
     return out + "</div>\n";

@@ -56,7 +56,8 @@ inline std::string answers(const TradeScene& scene) {
                  rows);
 }
 
-// All that was measured, the last point of each.
+// All that was measured, the last point of each.  An error below what the reference shows has no
+// number.
 inline std::string settings(const TradeScene& scene) {
     std::vector<std::vector<std::string>> rows;
     for (const TradeSetting& s : scene.settings) {
@@ -70,7 +71,7 @@ inline std::string settings(const TradeScene& scene) {
                   {"Numbers, bias", false},
                   {"Error after t s"},
                   {"Points off this law by"},
-                  {"Samples a pixel"},
+                  {"Samples a pixel, or particles"},
                   {"Time"},
                   {"Error"},
                   {"Dropped", false}},
@@ -131,7 +132,8 @@ inline std::string curves(const Trade& trade, const TradeScene& scene) {
         "axes "
         "logarithmic; the numbers are in the table of all settings\"%s"
         "<figcaption>Points were measured; lines are their laws, the error after t seconds, dashed "
-        "in float; all other settings are grey.  Images of %d×%d pixels.</figcaption>\n"
+        "in float; all other settings are grey.  Errors were measured on "
+        "%d×%d pixels.</figcaption>\n"
         "<ol class=\"legend\">\n",
         escaped(scene.name), file.substr(before.size()), scene.width, scene.height);
     for (size_t k = 0; k < named.size(); ++k) {

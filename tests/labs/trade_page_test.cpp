@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/rng.h"
+#include "labs/trade_report.h"
 #include "labs/trade_sample.h"
 
 namespace {
@@ -45,6 +46,21 @@ TEST_CASE("the answers on the page are the measured ones") {
     CHECK(all == Rows{{"Scene", "10 %", "3 %", "1 %", "0.3 %"},
                       {"first", "0.0151 s · 2.65×", "0.400 s · 1.11×", "1.51 s · 2.64×", "–"},
                       {"second", "0.0151 s · 2.65×", "0.400 s · 1.11×", "1.51 s · 2.64×", "–"}});
+}
+
+TEST_CASE("the page's numbers are those of the report's table") {
+    const Trade trade = sample_trade();
+    const Html page(trade_page(trade));
+    for (const TradeScene& scene : trade.scenes) {
+        const Rows rows = page.table("The cheapest setting for an error on " + scene.name);
+        REQUIRE(rows.size() == scene.answers.size() + 1);
+        for (size_t k = 0; k < scene.answers.size(); ++k) {
+            const std::string cell = trade::cell(scene, scene.answers[k]);
+            const std::vector<std::string>& row = rows[k + 1];
+            CHECK_MESSAGE(cell.starts_with(row[2]), cell);
+            CHECK_MESSAGE(cell.ends_with("default " + row[3]), cell);
+        }
+    }
 }
 
 TEST_CASE("a scene that was asked for other errors has its answers in their columns") {
@@ -119,7 +135,7 @@ TEST_CASE("whatever words a trade has, they are words on the page") {
     const Html page(trade_page(trade));  // well-formed
     for (const Element& e : page.all("b")) CHECK(e.words != "\"R&D\"");
     CHECK(page.by_id("scene-" + words).of("data-name") == words);
-    for (const char* tag : {"h2", "strong", "td", "th", "a", "code", "li", "figcaption"}) {
+    for (const char* tag : {"h2", "p", "td", "th", "a", "code", "li", "figcaption"}) {
         const std::vector<Element> all = page.all(tag);
         CHECK_MESSAGE(std::any_of(all.begin(), all.end(),
                                   [&](const Element& e) { return contains(e.words, words); }),
@@ -227,6 +243,24 @@ TEST_CASE("a picture of another size, or with what is no number, is refused") {
     trade = sample_trade();
     trade.scenes[0].pictures[1].image.at(3, 2)[1] = NAN;
     CHECK_THROWS_WITH_AS(trade_page(trade), "first: no number in a picture's pixel 3,2", UserError);
+}
+
+TEST_CASE("pictures of many pixels are thinned; errors stay in parts of all the reference's mean") {
+    Trade trade = sample_trade();
+    TradeScene& scene = trade.scenes[0];
+    scene.reference = sample_image(256, 64, 0);
+    for (TradePicture& p : scene.pictures) p.image = sample_image(256, 64, 1);
+    const Html page(trade_page(trade));
+    const Element section = page.by_id("scene-first");
+    CHECK(section.of("data-width") == "128");
+    CHECK(section.of("data-height") == "32");
+    CHECK(std::stod(section.of("data-mean")) ==
+          doctest::Approx(quadratic_mean(scene.reference)).epsilon(1e-6));
+    CHECK(contains(section.words, "Of every 2×2 pixels of a picture one is shown."));
+    CHECK(!contains(page.by_id("scene-second").words, "one is shown"));
+    for (const Element& e : page.all("img"))
+        if (e.of("class") == "picture")
+            CHECK(e.of("width") == (e.of("alt").starts_with("first") ? "128" : "9"));
 }
 
 TEST_CASE("a trade without pictures, answers, points or scenes has a page, too") {

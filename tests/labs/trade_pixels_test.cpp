@@ -63,7 +63,7 @@ TEST_CASE("a black reference divides nothing by zero") {
     black.pixels = {{0, 0, 0}, {0, 0, 0}};
     CHECK(quadratic_mean(black) == 1);
     CHECK(quadratic_mean(Image()) == 1);
-    CHECK(decoded(error_map(black, black)).pixels[0] == error_colours()[0]);
+    CHECK(decoded(error_map(black, black, 1)).pixels[0] == error_colours()[0]);
 }
 
 TEST_CASE("levels of errors: a third of them a decade, the ends for all beyond") {
@@ -117,7 +117,7 @@ TEST_CASE("a map shows where a picture is wrong, top row first") {
     g = f;
     g.at(2, 0) = {1.1f, 1.1f, 1.1f};
     g.at(0, 1) = {4, 1, 1};
-    const Decoded d = decoded(error_map(f, g));
+    const Decoded d = decoded(error_map(f, g, 1));
     const auto colours = error_colours();
     CHECK(d.pixels[0] == colours[0]);
     CHECK(d.pixels[2] == colours[size_t(error_level(0.1))]);
@@ -163,4 +163,19 @@ TEST_CASE("pictures are packed as differences, four bytes a pixel, the lowest fi
     uint32_t word = 0;
     for (size_t k = 4; k-- > 0;) word = word << 8 | uint8_t(bytes[4 + k]);
     CHECK(unpack_pixel(word) == Channels{1, 0, -0.5});
+}
+
+TEST_CASE("what is too large for a page is thinned, and no pixel is changed") {
+    CHECK(thinning(Image(128, 64)) == 1);
+    CHECK(thinning(Image(256, 128)) == 2);
+    CHECK(thinning(Image(129, 64)) == 2);
+    CHECK(thinning(Image(256, 256)) == 3);
+    CHECK(thinning(Image()) == 1);
+    const Image all = painted(7, 5, [](int x, int y) { return Colour{float(x), float(y), 0}; });
+    const Image half = thinned(all, 2);
+    REQUIRE(half.width == 3);
+    REQUIRE(half.height == 2);
+    CHECK(half.at(0, 0) == all.at(1, 1));
+    CHECK(half.at(2, 1) == all.at(5, 3));
+    CHECK(thinned(all, 1).pixels == all.pixels);
 }
