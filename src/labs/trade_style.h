@@ -103,6 +103,7 @@ canvas { display: block; width: 9rem; max-width: 28vw; background: var(--card); 
 @media (max-width: 40rem) {
     #stage[data-mode=side], #stage[data-mode=error] { grid-template-columns: 1fr; }
     #stage[data-mode=side] > *, #stage[data-mode=error] > * { grid-column: 1; grid-row: auto; }
-    #values th, #values td { padding-right: .5rem; font-size: .9rem; }
+    th, td { padding-right: .45rem; font-size: .85rem; }
+    td.number > span { display: block; }
 }
 )css";

@@ -78,11 +78,12 @@ inline std::string settings(const TradeScene& scene) {
                  rows);
 }
 
-// "2.1 s · 1.3×": the cheapest setting's time, and the default's over it.
+// "2.1 s · 1.3×": the cheapest setting's time, and the default's over it, where there is no room
+// one below the other.
 inline std::string told_answer(const TradeAnswer& a) {
-    return std::isfinite(a.seconds)
-               ? told_seconds(a.seconds) + " · " + told_ratio(a.default_seconds / a.seconds)
-               : told_nothing;
+    if (!std::isfinite(a.seconds)) return told_nothing;
+    return text("<span>%s</span> <span>· %s</span>", told_seconds(a.seconds),
+                told_ratio(a.default_seconds / a.seconds));
 }
 
 // Every scene in a row, every error that any was asked for in a column, the largest first.
