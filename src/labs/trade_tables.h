@@ -34,6 +34,12 @@ inline std::string table(const std::string& caption, const std::vector<Column>& 
     return out + "</tbody></table></div>\n";
 }
 
+// "2.1 s · 1.3×": a time, and how many times another it is; one below the other on telephones.
+inline std::string told_times(double seconds, double ratio) {
+    if (!std::isfinite(seconds)) return told_nothing;
+    return text("<span>%s</span> <span>· %s</span>", told_seconds(seconds), told_ratio(ratio));
+}
+
 // What an error costs at least, and by default.
 inline std::string answers(const TradeScene& scene) {
     std::vector<std::vector<std::string>> rows;
@@ -44,16 +50,11 @@ inline std::string answers(const TradeScene& scene) {
             s ? text("%s<br><small>%s</small>", code(s->words), told_kind(*s))
               : "none measured gets there";
         rows.push_back({told_percent(a.E), setting, told_seconds(a.seconds),
-                        told_seconds(a.default_seconds),
-                        told_ratio(a.default_seconds / a.seconds)});
+                        told_times(a.default_seconds, a.default_seconds / a.seconds)});
     }
-    return table("The cheapest setting for an error on " + scene.name,
-                 {{"Error"},
-                  {"Cheapest setting", false},
-                  {"Its time"},
-                  {"The default's time"},
-                  {"Default over cheapest"}},
-                 rows);
+    return table("The cheapest setting for an error on " + scene.name +
+                     ", and how many times its time the default takes",
+                 {{"Error"}, {"Cheapest setting", false}, {"Its time"}, {"The default's"}}, rows);
 }
 
 // All that was measured, the last point of each.  An error below what the reference shows has no
@@ -63,7 +64,7 @@ inline std::string settings(const TradeScene& scene) {
     for (const TradeSetting& s : scene.settings) {
         const TradePoint last = s.points.empty() ? TradePoint{NAN, NAN, NAN, NAN} : s.points.back();
         rows.push_back({code(s.words), told_kind(s), escaped(told_law(s)), told_spread(s),
-                        told_number(last.spp, 3), told_seconds(last.seconds),
+                        told_number(last.spp, 1), told_seconds(last.seconds),
                         told_percent(last.error), s.dropped.empty() ? "" : escaped(s.dropped)});
     }
     return table("All settings on " + scene.name + ", each with the last count that was measured",
@@ -76,14 +77,6 @@ inline std::string settings(const TradeScene& scene) {
                   {"Error"},
                   {"Dropped", false}},
                  rows);
-}
-
-// "2.1 s · 1.3×": the cheapest setting's time, and the default's over it, where there is no room
-// one below the other.
-inline std::string told_answer(const TradeAnswer& a) {
-    if (!std::isfinite(a.seconds)) return told_nothing;
-    return text("<span>%s</span> <span>· %s</span>", told_seconds(a.seconds),
-                told_ratio(a.default_seconds / a.seconds));
 }
 
 // Every scene in a row, every error that any was asked for in a column, the largest first.
@@ -100,11 +93,15 @@ inline std::string overview(const Trade& trade) {
         for (double E : asked) {
             const auto a = std::find_if(scene.answers.begin(), scene.answers.end(),
                                         [&](const TradeAnswer& answer) { return answer.E == E; });
-            rows.back().push_back(a == scene.answers.end() ? told_nothing : told_answer(*a));
+            rows.back().push_back(a == scene.answers.end()
+                                      ? told_nothing
+                                      : told_times(a->seconds, a->default_seconds / a->seconds));
         }
     }
-    return table("Time of the cheapest setting · how many times that the default takes", columns,
-                 rows);
+    return table(
+        "Time of the cheapest setting · how many times that the default takes; –: nothing "
+        "measured gets there",
+        columns, rows);
 }
 
 inline std::string candidates(const Trade& trade) {
