@@ -55,13 +55,13 @@ void make_quick(Plan& plan) {
     plan.quick = true;
     plan.counts = {4, 16, 64};
     plan.seeds = 2;
-    plan.pixels = 512;
+    plan.rows = 2;
     plan.tournament = 4, plan.reference = 1, plan.radiosity = 0.5;
 }
 
 void make_full(Plan& plan) {
     plan.seeds = 5;
-    plan.pixels = 8192;
+    plan.rows = 32;
     plan.tournament *= 6, plan.reference *= 6, plan.radiosity *= 6;
 }
 
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
               plan.quick = true;
               plan.scenes.push_back(name);
           }},
-         {"--full", "", "more pixels, seeds and time", [&](auto&) { make_full(plan); }},
+         {"--full", "", "more rows, seeds and time", [&](auto&) { make_full(plan); }},
          {"--quick", "", "fewer runs, into out/", [&](auto&) { make_quick(plan); }},
          {"--page", "", "write report and page from what was measured",
           [&](auto&) { page = true; }},

@@ -11,7 +11,7 @@ struct Plan {
     std::vector<std::string> scenes = {};  // none: all
     std::vector<uint64_t> counts = {4, 16, 64, 256, 1024};
     uint64_t seeds = 3;
-    double pixels = 2048;
+    int rows = 8;  // of each image
     // Core seconds a scene may take: the tournament; each of two references; and by the clock, a
     // method of radiosity.
     double tournament = 130, reference = 22, radiosity = 6;
@@ -84,9 +84,8 @@ inline std::vector<Series> play(Tournament& t, uint64_t spp) {
             const std::vector<size_t> who = turn(t, is_float, seed);
             std::vector<Task> tasks;
             for (size_t k : who) tasks.push_back({t.settings[k].words, spp, seed});
-            std::vector<Taken> taken =
-                is_float ? rendered_by(t.plan.float_program, t.ground, tasks, t.plan.pixels)
-                         : rendered_here(t.ground, tasks);
+            std::vector<Taken> taken = is_float ? rendered_by(t.plan.float_program, t.ground, tasks)
+                                                : rendered_here(t.ground, tasks);
             for (size_t i = 0; i < who.size(); ++i) {
                 Series& s = series[who[i]];
                 s.images.push_back(std::move(taken[i].image));
@@ -127,9 +126,20 @@ inline std::vector<TradeSetting> tournament(const Plan& plan, const Ground& g, c
     return t.settings;
 }
 
+// Where rounding is an error of its own, beyond the noise.
+inline std::string of_float(const TradeScene& s) {
+    const size_t d = index_of(s, written({})), f = index_of(s, written({}), true);
+    if (d == SIZE_MAX || f == SIZE_MAX) return "";
+    const double in_double = s.settings[d].points.back().error,
+                 in_float = s.settings[f].points.back().error;
+    if (!(in_float > 1.25 * in_double)) return "";
+    return text(" In float the default's error is %.2g %% where it is %.2g %% in double: rounding.",
+                100 * in_float, 100 * in_double);
+}
+
 // ---- Pictures at equal time ---------------------------------------------------------------------
 
-// What is shown: the default in both precisions, the cheapest at 3 %, and lessons.
+// What is shown: the default, the cheapest at 3 %, and lessons; float where that is one.
 inline std::vector<std::pair<std::string, bool>> shown(const TradeScene& s) {
     std::vector<std::pair<std::string, bool>> list = {{written({}), false}};
     auto add = [&](const TradeSetting& t) {
@@ -142,7 +152,7 @@ inline std::vector<std::pair<std::string, bool>> shown(const TradeScene& s) {
         if (a.setting != SIZE_MAX) add(s.settings[a.setting]);
     };
     add_cheapest([](const TradeSetting& t) { return !t.is_float; });
-    for (const char* kind : {"--direct ratio", "--indirect map", "--indirect control"})
+    for (const char* kind : {"--direct ratio", "--indirect map"})
         add_cheapest([&](const TradeSetting& t) {
             return !t.is_float && t.words.find(kind) != t.words.npos;
         });
@@ -150,7 +160,8 @@ inline std::vector<std::pair<std::string, bool>> shown(const TradeScene& s) {
          {"--sampler independent --light none", "--sampler independent --light nee",
           "--sampler halton-naive --light nee"})
         if (const size_t k = index_of(s, words); k != SIZE_MAX) add(s.settings[k]);
-    if (const size_t k = index_of(s, written({}), true); k != SIZE_MAX) add(s.settings[k]);
+    if (const size_t k = index_of(s, written({}), true); k != SIZE_MAX && !of_float(s).empty())
+        add(s.settings[k]);
     return list;
 }
 
@@ -167,7 +178,7 @@ inline TradePicture picture(const Plan& plan, const Ground& g, const TradeSettin
     const auto spp = uint64_t(std::max(1.0, std::round(seconds * last.spp / last.seconds)));
     const std::vector<Task> task = {{s.words, spp, picture_seed}};
     std::vector<Taken> t =
-        s.is_float ? rendered_by(plan.float_program, g, task, 0) : rendered_here(g, task);
+        s.is_float ? rendered_by(plan.float_program, g, task) : rendered_here(g, task);
     return {s.words, s.is_float, t[0].of_whole(g), NAN, std::move(t[0].image)};
 }
 
@@ -190,25 +201,17 @@ inline void add_pictures(const Plan& plan, const Ground& g, const Reference& f,
 
 // ---- A scene ------------------------------------------------------------------------------------
 
-// What the law of small images says of large ones, and what is seen.
-inline std::string at_full_size(const TradeScene& s, const TradePoint& seen) {
+// Whether rows stand for the image: the default's seconds and errors by rows, over those of the
+// whole image, at the same number of samples.
+inline std::string by_rows(const TradeScene& s, const TradePoint& whole) {
     const size_t own = index_of(s, written({}));
-    if (own == SIZE_MAX) return "";
+    if (own == SIZE_MAX || s.settings[own].points.empty()) return "";
     const TradeSetting& d = s.settings[own];
+    const TradePoint& last = d.points.back();
+    const double seconds = last.seconds * whole.spp / last.spp;
     return text(
-        "The default at full size, %.0f samples: %.3g core s, error %.3g %%; by its law %.3g %%.",
-        seen.spp, seen.seconds, 100 * seen.error, 100 * d.c * std::pow(seen.seconds, -d.gamma));
-}
-
-// Where rounding is an error of its own, beyond the noise.
-inline std::string of_float(const TradeScene& s) {
-    const size_t d = index_of(s, written({})), f = index_of(s, written({}), true);
-    if (d == SIZE_MAX || f == SIZE_MAX) return "";
-    const double in_double = s.settings[d].points.back().error,
-                 in_float = s.settings[f].points.back().error;
-    if (!(in_float > 1.25 * in_double)) return "";
-    return text(" In float the default's error is %.2g %% where it is %.2g %% in double: rounding.",
-                100 * in_float, 100 * in_double);
+        "Rows over the whole image, by default with %.0f samples: seconds %.2f, error %.2f.",
+        whole.spp, seconds / whole.seconds, d.c * std::pow(seconds, -d.gamma) / whole.error);
 }
 
 inline std::string remark(const Ground& g) {
@@ -221,10 +224,10 @@ inline std::string remark(const Ground& g) {
 }
 
 inline TradeScene study(const Plan& plan, const std::string& name) {
-    const Ground g = ground_of(name, plan.pixels), full = ground_of(name, 0);
+    const Ground g = ground_of(name, plan.rows), full = ground_of(name, 0);
     const Long reference = long_run(g, plan.reference), large = long_run(full, plan.reference);
     TradeScene s{name, remark(g)};
-    s.width = g.scene.size.width, s.height = g.scene.size.height;
+    s.width = g.scene.size.width, s.height = g.rows;
     s.exposure = double(g.scene.exposure);
     s.reference = large.reference.image, s.reference_error = large.reference.error;
     s.settings = tournament(plan, g, reference.reference);
@@ -234,7 +237,7 @@ inline TradeScene study(const Plan& plan, const std::string& name) {
     for (Method& m : methods) fit(m.setting), s.settings.push_back(m.setting);
     s.answers = answers_of(s, written({}));
     add_pictures(plan, full, large.reference, methods, s);
-    s.remark += at_full_size(s, large.one) + of_float(s);
+    s.remark += by_rows(s, large.one) + of_float(s);
     return s;
 }
 
