@@ -53,15 +53,14 @@ int report_of(const Trade& t, bool quick) {
 
 void make_quick(Plan& plan) {
     plan.quick = true;
-    plan.counts = {4, 16, 64};
-    plan.seeds = 2;
-    plan.rows = 2;
-    plan.tournament = 4, plan.reference = 1, plan.radiosity = 0.5;
+    plan.counts = {1, 4, 16};
+    plan.part = 4;
+    plan.tournament = 5, plan.reference = 1, plan.radiosity = 0.5;
 }
 
 void make_full(Plan& plan) {
-    plan.seeds = 5;
-    plan.rows = 32;
+    plan.counts.push_back(1024);
+    plan.seeds = 2;
     plan.tournament *= 6, plan.reference *= 6, plan.radiosity *= 6;
 }
 
@@ -81,7 +80,7 @@ int main(int argc, char** argv) {
               plan.quick = true;
               plan.scenes.push_back(name);
           }},
-         {"--full", "", "more rows, seeds and time", [&](auto&) { make_full(plan); }},
+         {"--full", "", "more samples, seeds and time", [&](auto&) { make_full(plan); }},
          {"--quick", "", "fewer runs, into out/", [&](auto&) { make_quick(plan); }},
          {"--page", "", "write report and page from what was measured",
           [&](auto&) { page = true; }},

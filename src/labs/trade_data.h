@@ -41,7 +41,7 @@ struct TradeAnswer {
 
 struct TradeScene {
     std::string name, remark = "";
-    int width = 0, height = 0;  // of what of the image was measured
+    int width = 0, height = 0;  // of its image
     double exposure = 1;        // of the scene's file
     std::vector<TradeSetting> settings = {};
     std::vector<TradeAnswer> answers = {};

@@ -190,9 +190,8 @@ inline void tell(Report& report, const Trade& t) {
 
 What error takes what time, by each setting, so that a user may choose.  Errors are
 d_rel = √(1/N Σ(f−g)²) / √(1/N Σf²) (Khodulev 1996, ch. 5) against long runs f whose own error is known and
-taken off; bias is in them.  Seconds are core seconds of an image of the scene's size, without reading the
-scene: some rows of it are rendered, and time grows with the pixels, but for what maps take, which have the
-particles of the whole image.  Differences of a few per cent between settings are noise.  Where all is diffuse light is scattered without end, as maps do it.
+taken off; bias is in them.  Seconds are core seconds of whole images, without
+reading the scene.  Differences of a few per cent between settings are noise.  Where all is diffuse light is scattered without end, as maps do it.
 Settings are named by what stands after their options, "maps" after --indirect, "float" the other precision.)");
     tell_answers(report, t);
     report.picture("trade", curves(t), "Error over core seconds; grey: all other settings");

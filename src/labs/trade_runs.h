@@ -18,29 +18,27 @@ inline std::vector<std::string> words_of(const std::string& line) {
 
 // ---- Scenes -------------------------------------------------------------------------------------
 
-// A scene, and what of it is measured: some rows of its image, or all of it; all else as in its
-// file, but where all is diffuse light is scattered without end, so that paths and maps have one
-// truth.
+// A scene as it is measured: as in its file, or some times narrower and lower; but where all is
+// diffuse light is scattered without end, so that paths and maps have one truth.
 struct Ground {
     std::string name;
     Scene scene;
-    int rows = 0;  // 0: all
+    int part = 1;
     bool diffuse = true, point_lights = false;
     std::optional<double> H = {};           // longest edge of maps' triangles, if diffuse
     std::vector<std::string> faceted = {};  // warnings about what maps change
 
     std::string file() const { return "scenes/" + name + ".scene"; }
-    // The image's pixels over those measured.
-    double scale() const { return rows ? double(scene.size.height) / rows : 1; }
 };
 
 // (3/4)^64 = 1e-8 of the light is left.
 inline constexpr int without_end = 64;
 
-inline Ground ground_of(const std::string& name, int rows) {
-    Ground g{name, {}, rows};
+inline Ground ground_of(const std::string& name, int part) {
+    Ground g{name, {}, part};
     g.scene = read_scene(g.file()).scene;
     Scene& s = g.scene;
+    s.size = {std::max(1, s.size.width / part), std::max(1, s.size.height / part)};
     for (const Light& l : s.lights) g.point_lights |= l.kind == Light::Kind::point;
     for (size_t i = 0; i < s.shapes.size(); ++i)
         g.diffuse &= !other_than_diffuse(s.materials[s.material_of[i]]);
@@ -49,27 +47,6 @@ inline Ground ground_of(const std::string& name, int rows) {
     g.H = edge_length(g.file(), s, {}, 16, Particles::bytes());
     g.faceted = faceted(s, *g.H).warnings;
     return g;
-}
-
-// Row y of the image, as an image of its own: the same pixels, for a camera's forward need not be
-// of length 1.
-inline Scene row_of(const Scene& whole, int y) {
-    Scene row = whole;
-    Camera& c = row.camera;
-    const double height = whole.size.height;
-    c.forward += c.up * real((height - 1 - 2 * y) / height * double(c.tan_half));
-    c.tan_half /= real(height);
-    row.size.height = 1;
-    return row;
-}
-
-// All, or rows at even distances, each from the middle of its part of the image.
-inline std::vector<Scene> parts_of(const Scene& whole, int rows) {
-    if (rows == 0) return {whole};
-    std::vector<Scene> parts;
-    for (int k = 0; k < rows; ++k)
-        parts.push_back(row_of(whole, (2 * k + 1) * whole.size.height / (2 * rows)));
-    return parts;
 }
 
 // ---- Settings -----------------------------------------------------------------------------------
@@ -139,42 +116,40 @@ struct Task {
     uint64_t spp = 1, seed = 0;
 };
 
-// An image, and core seconds: of maps, whatever the number of pixels, and of the pixels.
+// An image, and core seconds: of maps, and of the rest.
 struct Taken {
     Image image = {};
-    double fixed = 0, seconds = 0;
-    double of_whole(const Ground& g) const { return fixed + g.scale() * seconds; }
+    double maps = 0, rest = 0;
+    double seconds() const { return maps + rest; }
 };
-
-// An image below others of its width.
-inline void append(Image& image, const Image& below) {
-    image.width = below.width, image.height += below.height;
-    image.pixels.insert(image.pixels.end(), below.pixels.begin(), below.pixels.end());
-}
 
 // Renders tasks one after the other on all cores, as the program does.
 class Renderer {
 public:
-    explicit Renderer(const Ground& g) : g_(g), parts_(parts_of(g.scene, g.rows)) {}
+    explicit Renderer(const Ground& g) : g_(g) {}
 
     Taken operator()(const Task& task) {
         Options o = parse_options(all_words(task));
-        if (has_maps(o)) return by_maps(o);
-        return images(o, parts_, [](const Options& own, const Scene& part) {
-            return rendered(job_of(own, part)).image;
-        });
+        if (!has_maps(o)) return timed([&] { return rendered(job_of(o, g_.scene)).image; });
+        o.mesh = g_.H;
+        const std::string of = as_written(option_table, o, "--indirect") +
+                               as_written(option_table, o, "--light") + std::to_string(o.seed) +
+                               " " + std::to_string(o.spp);
+        if (!known_ || known_->of != of) fill(of, o);
+        Taken taken = timed([&] { return rendered(job_of(o, known_->scene, known_->maps)).image; });
+        taken.maps = known_->seconds;
+        return taken;
     }
 
 private:
-    // Of as many particles as the whole image has: samplers share them.
+    // Samplers share maps, each of which is charged for them.
     struct Known {
         std::string of;
-        std::vector<Scene> parts;
+        Scene scene;
         Maps maps;
         double seconds = 0;
     };
     const Ground& g_;
-    const std::vector<Scene> parts_;
     std::optional<Known> known_;
 
     std::vector<std::string> all_words(const Task& task) const {
@@ -186,47 +161,21 @@ private:
         return words;
     }
 
-    // The parts at once, each on one core and with numbers of its own.
     template <class Render>
-    static Taken images(const Options& o, const std::vector<Scene>& parts, Render render) {
+    static Taken timed(Render render) {
         const double before = processor_seconds();
-        std::vector<Image> of(parts.size());
-        auto part = [&](int k) {
-            Options own = o;
-            if (parts.size() > 1) own.threads = 1, own.seed = hash(o.seed, uint64_t(k));
-            of[size_t(k)] = render(own, parts[size_t(k)]);
-        };
-        if (parts.size() == 1)
-            part(0);
-        else
-            parallel_rows(int(parts.size()), all_cores(), part, [](double) {});
-        Taken taken;
-        taken.seconds = processor_seconds() - before;
-        for (const Image& image : of) append(taken.image, image);
-        return taken;
-    }
-
-    Taken by_maps(Options& o) {
-        o.mesh = g_.H;
-        o.particles = walks_of(o, g_.scene).particles;
-        const std::string of = as_written(option_table, o, "--indirect") +
-                               as_written(option_table, o, "--light") + std::to_string(o.seed) +
-                               " " + std::to_string(o.spp);
-        if (!known_ || known_->of != of) fill(of, o);
-        Taken taken = images(o, known_->parts, [&](const Options& own, const Scene& part) {
-            return rendered(job_of(own, part, known_->maps)).image;
-        });
-        taken.fixed = known_->seconds;
+        Taken taken{render()};
+        taken.rest = processor_seconds() - before;
         return taken;
     }
 
     void fill(const std::string& of, const Options& o) {
         const double before = processor_seconds();
-        const Scene scene = endless(g_.scene, *o.mesh).scene;
+        Scene scene = endless(g_.scene, *o.mesh).scene;
         Maps maps = maps_of(o, scene);
         const double seconds = processor_seconds() - before;
         known_.reset();
-        known_.emplace(Known{of, parts_of(scene, g_.rows), std::move(maps), seconds});
+        known_.emplace(Known{of, std::move(scene), std::move(maps), seconds});
     }
 };
 
@@ -242,10 +191,10 @@ inline std::vector<Taken> rendered_here(const Ground& g, const std::vector<Task>
 
 // ---- The other precision ------------------------------------------------------------------------
 
-// The lab itself, built with other numbers, renders what a file lists: the scene and its rows,
+// The lab itself, built with other numbers, renders what a file lists: the scene and its part,
 // then a task a row.  It writes FILE.K.pfm, and FILE.seconds.
 inline std::string encode_tasks(const Ground& g, const std::vector<Task>& tasks) {
-    std::string list = text("%s %d\n", g.name, g.rows);
+    std::string list = text("%s %d\n", g.name, g.part);
     for (const Task& t : tasks)
         list += std::to_string(t.spp) + " " + std::to_string(t.seed) + " " + t.words + "\n";
     return list;
@@ -254,15 +203,15 @@ inline std::string encode_tasks(const Ground& g, const std::vector<Task>& tasks)
 inline void render_listed(const std::string& file) {
     std::istringstream list(read_file(file));
     std::string name, words, seconds;
-    int rows = 0;
-    list >> name >> rows;
-    const Ground g = ground_of(name, rows);
+    int part = 1;
+    list >> name >> part;
+    const Ground g = ground_of(name, part);
     std::vector<Task> tasks;
     for (Task t; list >> t.spp >> t.seed && std::getline(list, t.words);) tasks.push_back(t);
     const std::vector<Taken> all = rendered_here(g, tasks);
     for (size_t k = 0; k < all.size(); ++k) {
         write_file(text("%s.%zu.pfm", file, k), encode_pfm(all[k].image));
-        seconds += text("%.17g %.17g\n", all[k].fixed, all[k].seconds);
+        seconds += text("%.17g %.17g\n", all[k].maps, all[k].rest);
     }
     write_file(file + ".seconds", seconds);
 }
@@ -279,7 +228,7 @@ inline std::vector<Taken> rendered_by(const std::string& program, const Ground& 
     for (size_t k = 0; k < all.size(); ++k) {
         const std::string pfm = text("%s.%zu.pfm", file, k);
         all[k].image = read_pfm(pfm);
-        seconds >> all[k].fixed >> all[k].seconds;
+        seconds >> all[k].maps >> all[k].rest;
         std::filesystem::remove(pfm);
     }
     std::filesystem::remove(file);

@@ -9,12 +9,12 @@ struct Plan {
     bool quick = false;
     std::string float_program;
     std::vector<std::string> scenes = {};  // none: all
-    std::vector<uint64_t> counts = {4, 16, 64, 256, 1024};
-    uint64_t seeds = 3;
-    int rows = 8;  // of each image
-    // Core seconds a scene may take: the tournament; each of two references; and by the clock, a
-    // method of radiosity.
-    double tournament = 130, reference = 22, radiosity = 6;
+    std::vector<uint64_t> counts = {1, 4, 16, 64, 256};
+    uint64_t seeds = 1;
+    int part = 1;  // of the scenes' widths and heights
+    // Core seconds a scene may take: the tournament, the reference; and by the clock, a method of
+    // radiosity.
+    double tournament = 150, reference = 30, radiosity = 5;
 };
 
 // Seeds of runs, pictures and references: none is used twice.
@@ -23,24 +23,19 @@ inline constexpr uint64_t first_seed = 1, picture_seed = 500, reference_seed = 1
 // ---- References ---------------------------------------------------------------------------------
 
 // Eight runs of the default, of as many samples as the seconds allow, a power of two.
-struct Long {
-    Reference reference;
-    TradePoint one;  // of the eight
-};
-inline Long long_run(const Ground& g, double core_seconds) {
+inline Reference long_run(const Ground& g, double core_seconds) {
     constexpr uint64_t runs = 8, pilot = 8;
     Renderer render(g);
     const std::string words = written({});
-    const double each = render({words, pilot, 0}).seconds / double(pilot);
+    const double each = render({words, pilot, 0}).seconds() / double(pilot);
     uint64_t spp = pilot;
     while (2 * double(spp) * each * double(runs) <= core_seconds) spp *= 2;
     Series series;
     for (uint64_t k = 0; k < runs; ++k) {
         Taken t = render({words, spp, reference_seed + k});
-        series.images.push_back(std::move(t.image)), series.seconds.push_back(t.seconds);
+        series.images.push_back(std::move(t.image)), series.seconds.push_back(t.seconds());
     }
-    const Reference f = reference_of(series);
-    return {f, {double(spp), median(series.seconds), f.error * std::sqrt(double(runs)), 0}};
+    return reference_of(series);
 }
 
 // ---- A tournament -------------------------------------------------------------------------------
@@ -75,7 +70,7 @@ inline std::vector<size_t> turn(const Tournament& t, bool is_float, uint64_t see
     return who;
 }
 
-// A series for each setting; seconds are those of the whole image.
+// A series for each setting.
 inline std::vector<Series> play(Tournament& t, uint64_t spp) {
     std::vector<Series> series(t.settings.size());
     for (Entrant& e : t.entrants) e.next_cost = 0;
@@ -89,9 +84,9 @@ inline std::vector<Series> play(Tournament& t, uint64_t spp) {
             for (size_t i = 0; i < who.size(); ++i) {
                 Series& s = series[who[i]];
                 s.images.push_back(std::move(taken[i].image));
-                s.seconds.push_back(taken[i].of_whole(t.ground));
-                // Four samplers share what is fixed.
-                t.entrants[who[i]].next_cost += taken[i].seconds + taken[i].fixed / 4;
+                s.seconds.push_back(taken[i].seconds());
+                // Four samplers share maps.
+                t.entrants[who[i]].next_cost += taken[i].rest + taken[i].maps / 4;
             }
         }
     return series;
@@ -179,7 +174,7 @@ inline TradePicture picture(const Plan& plan, const Ground& g, const TradeSettin
     const std::vector<Task> task = {{s.words, spp, picture_seed}};
     std::vector<Taken> t =
         s.is_float ? rendered_by(plan.float_program, g, task) : rendered_here(g, task);
-    return {s.words, s.is_float, t[0].of_whole(g), NAN, std::move(t[0].image)};
+    return {s.words, s.is_float, t[0].seconds(), NAN, std::move(t[0].image)};
 }
 
 inline void add_pictures(const Plan& plan, const Ground& g, const Reference& f,
@@ -201,43 +196,30 @@ inline void add_pictures(const Plan& plan, const Ground& g, const Reference& f,
 
 // ---- A scene ------------------------------------------------------------------------------------
 
-// Whether rows stand for the image: the default's seconds and errors by rows, over those of the
-// whole image, at the same number of samples.
-inline std::string by_rows(const TradeScene& s, const TradePoint& whole) {
-    const size_t own = index_of(s, written({}));
-    if (own == SIZE_MAX || s.settings[own].points.empty()) return "";
-    const TradeSetting& d = s.settings[own];
-    const TradePoint& last = d.points.back();
-    const double seconds = last.seconds * whole.spp / last.spp;
-    return text(
-        "Rows over the whole image, by default with %.0f samples: seconds %.2f, error %.2f.",
-        whole.spp, seconds / whole.seconds, d.c * std::pow(seconds, -d.gamma) / whole.error);
-}
-
 inline std::string remark(const Ground& g) {
     if (!g.diffuse) return "";
     std::string words =
-        text("Diffuse: light is scattered up to %d times, whatever the file says. ", without_end);
+        text("Diffuse: light is scattered up to %d times, whatever the file says.", without_end);
     if (!g.faceted.empty())
-        words += "--indirect and radiosity take its spheres for icospheres, which is their bias. ";
+        words += " --indirect and radiosity take its spheres for icospheres, which is their bias.";
     return words;
 }
 
 inline TradeScene study(const Plan& plan, const std::string& name) {
-    const Ground g = ground_of(name, plan.rows), full = ground_of(name, 0);
-    const Long reference = long_run(g, plan.reference), large = long_run(full, plan.reference);
+    const Ground g = ground_of(name, plan.part);
+    const Reference reference = long_run(g, plan.reference);
     TradeScene s{name, remark(g)};
-    s.width = g.scene.size.width, s.height = g.rows;
+    s.width = g.scene.size.width, s.height = g.scene.size.height;
     s.exposure = double(g.scene.exposure);
-    s.reference = large.reference.image, s.reference_error = large.reference.error;
-    s.settings = tournament(plan, g, reference.reference);
+    s.reference = reference.image, s.reference_error = reference.error;
+    s.settings = tournament(plan, g, reference);
     for (TradeSetting& setting : s.settings) fit(setting);
     std::vector<Method> methods;
-    if (g.diffuse) methods = by_radiosity(full, large.reference, plan.radiosity);
+    if (g.diffuse) methods = by_radiosity(g, reference, plan.radiosity);
     for (Method& m : methods) fit(m.setting), s.settings.push_back(m.setting);
     s.answers = answers_of(s, written({}));
-    add_pictures(plan, full, large.reference, methods, s);
-    s.remark += by_rows(s, large.one) + of_float(s);
+    add_pictures(plan, g, reference, methods, s);
+    s.remark += of_float(s);
     return s;
 }
 

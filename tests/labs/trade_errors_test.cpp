@@ -1,4 +1,4 @@
-// labs/trade_errors_test.cpp  errors against a noisy reference, and rows that stand for an image
+// labs/trade_errors_test.cpp  errors against a noisy reference, and the settings of a scene
 #include "labs/trade_errors.h"
 
 #include <doctest/doctest.h>
@@ -48,29 +48,9 @@ TEST_CASE("an error is that of the images, bias included, without the reference'
     CHECK(std::isnan(trade::error_of({noisy(3, 1e-4)}, f).value));
 }
 
-TEST_CASE("rows are those of the image: the same rays, from the middle of its parts") {
-    Scene whole;
-    whole.size = {12, 9};
-    whole.camera = look_at({1, 2, 3}, {0, 0, -4}, 50);
-    const std::vector<Scene> rows = trade::parts_of(whole, 3);
-    REQUIRE(rows.size() == 3);
-    const int y[] = {1, 4, 7};
-    for (size_t k = 0; k < 3; ++k) {
-        CHECK(rows[k].size.width == 12);
-        CHECK(rows[k].size.height == 1);
-        for (const vec2 u : {vec2{0.2, 0.1}, vec2{7.7, 0.9}}) {
-            const Ray a = camera_ray(rows[k].camera, rows[k].size, u.x, u.y),
-                      b = camera_ray(whole.camera, whole.size, u.x, real(y[k]) + u.y);
-            CHECK(double(length(a.d - b.d)) < 4 * double(std::numeric_limits<real>::epsilon()));
-        }
-    }
-    CHECK(trade::parts_of(whole, 0).size() == 1);
-    CHECK(trade::parts_of(whole, 0)[0].size.height == 9);
-}
-
 TEST_CASE("settings: all that the renderer takes for a scene, each once, and what they are") {
-    const trade::Ground g = trade::ground_of("cornell36", 8),
-                        glass = trade::ground_of("cornell", 8), point = trade::ground_of("cube", 8);
+    const trade::Ground g = trade::ground_of("cornell36", 4),
+                        glass = trade::ground_of("cornell", 4), point = trade::ground_of("cube", 4);
     CHECK(g.diffuse);
     CHECK(!glass.diffuse);
     CHECK(point.point_lights);
