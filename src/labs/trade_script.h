@@ -20,24 +20,21 @@ const picture = who => (mode() === "error" && shot(who).querySelector(".map")) |
     shot(who).querySelector(".picture");
 
 // ---- Values: three mantissas of 9 bits with signs, and an exponent (pack_pixel) ----
-const unpacked = new Map();
-function words(figure) {
-    if (!unpacked.has(figure)) {
-        const bytes = Uint8Array.from(atob(figure.dataset.values), c => c.charCodeAt(0));
-        unpacked.set(figure, new DataView(bytes.buffer));
-    }
-    return unpacked.get(figure);
-}
-function stored(figure) {
-    const word = words(figure).getInt32(4 * (at.y * width() + at.x), true);
+function stored(figure) {  // four letters of base64 are three bytes
+    const first = 4 * (at.y * width() + at.x), group = Math.floor(first / 3);
+    const bytes = atob(figure.dataset.values.slice(4 * group, 4 * group + 8));
+    const word = [3, 2, 1, 0].reduce((w, k) => w << 8 | bytes.charCodeAt(first - 3 * group + k), 0);
     return [23, 14, 5].map(left => (word << left >> 23) * 2 ** ((word >>> 27) - 27));
 }
 // Of a picture its difference to the reference is stored, over the reference's quadratic mean.
 const error = who => shot(who) === shot("r") ? 0 : Math.hypot(...stored(shot(who))) / Math.sqrt(3);
-function value(who) {
-    const reference = stored(shot("r")), mine = stored(shot(who));
-    const sum = shot(who) === shot("r") ? mine : mine.map((x, c) => x + reference[c]);
-    return sum.map(x => x * scene().dataset.mean);
+const value = who => stored(shot(who)).map((x, c) =>
+    (x + (shot(who) === shot("r") ? 0 : stored(shot("r"))[c])) * scene().dataset.mean);
+// Three digits of the largest channel, and as many decimals of all: more is not stored.
+function digits(values, largest) {
+    if (!(largest > 1e-5 && largest < 1e4)) return values.map(x => x.toExponential(2));
+    const decimals = Math.max(2 - Math.floor(Math.log10(largest)), 0);
+    return values.map(x => (+x.toFixed(decimals) || 0).toFixed(decimals));  // and no -0
 }
 const percent = x => +(100 * x).toPrecision(3) + " %";
 
@@ -62,7 +59,8 @@ function enlarge(who) {  // nine pixels by nine, at in their middle
 function tell() {
     for (const who of ["r", "a", "b"]) {
         const cells = $("row-" + who).querySelectorAll("td");
-        value(who).forEach((x, c) => { cells[c].textContent = x.toPrecision(3); });
+        digits(value(who), Math.max(...[...value("r"), ...value(who)].map(Math.abs)))
+            .forEach((word, c) => { cells[c].textContent = word; });
         cells[3].textContent = who === "r" ? "–" : percent(error(who));
     }
     $("live").textContent = (mode() === "flip" ? `Picture ${shown.toUpperCase()}. ` : "") +

@@ -11,8 +11,8 @@ inline Image sample_image(int width, int height, int picture) {
     return painted(width, height, [&](int x, int y) {
         const int n = (7 * x + 5 * y + 3 * picture) % 11;
         const float off = picture == 0 ? 0 : 0.01f * float(n * picture);
-        return Colour{0.05f + 0.06f * float(x) + off, 0.05f + 0.1f * float(y) - off / 2,
-                      0.2f + off};
+        const float blue = picture == 3 && x == 8 ? 0 : 0.2f + off;
+        return Colour{0.05f + 0.06f * float(x) + off, 0.05f + 0.1f * float(y) - off / 2, blue};
     });
 }
 

@@ -117,6 +117,22 @@ say("focus", document.activeElement.id);
     }
 }
 
+TEST_CASE("values have as many decimals as are known, and none a minus before zero") {
+    if (browser().empty()) return;
+    const Element root = driven("#scene=first&a=0&b=3&at=8,2", R"js(
+say("reference", cells("a").join(" "));
+say("dark", cells("b").slice(0, 3).join(" "));
+say("ends", [digits([1e-7, 0, -1], 1), digits([-1e-9, 20, 99], 99), digits([12345, 1, 0], 12345),
+             digits([0, 0, 0], 0)].join(" "));
+)js");
+    const TradeScene scene = sample_trade().scenes[0];
+    CHECK(root.of("data-reference").ends_with(" 0 %"));
+    CHECK(near(root.of("data-dark"), scene.pictures[2].image.at(8, 2)));
+    CHECK(root.of("data-dark").ends_with(" 0.000"));
+    CHECK(root.of("data-ends") ==
+          "0.00,0.00,-1.00 0.0,20.0,99.0 1.23e+4,1.00e+0,0.00e+0 0.00e+0,0.00e+0,0.00e+0");
+}
+
 TEST_CASE("arrow keys move the examined pixel, no farther than the border") {
     if (browser().empty()) return;
     const Element root = driven("#scene=first&at=5,2", R"js(
