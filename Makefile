@@ -33,7 +33,7 @@ PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
-        cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always
+        cells peers efficiency trade voronoi voronoi2d extremes readme clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 

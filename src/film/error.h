@@ -116,10 +116,10 @@ private:
 // How many more samples to take before the next look, after `samples`: what the law says are
 // missing, but at most as many again, for the estimate may be far off; 0: enough.  An error that is
 // not known is not small.
-inline uint64_t samples_to_look(const ImageError& e, const ErrorCourse& course, double asked,
+inline uint64_t samples_to_look(const ImageError& e, const ErrorCourse& course, double wanted,
                                 uint64_t samples) {
     const double now = e.d_rel() + 0.5 * e.standard_error();
-    if (now <= asked) return 0;
-    const double more = double(samples) * (course.cost_of(now / asked) - 1);
+    if (now <= wanted) return 0;
+    const double more = double(samples) * (course.cost_of(now / wanted) - 1);
     return std::max<uint64_t>(1, uint64_t(std::min(double(samples), more)));
 }
