@@ -64,7 +64,7 @@ inline std::vector<std::string> values_of(const std::string& option) {
 inline std::string written(const Options& o) {
     std::string words =
         as_written(option_table, o, "--sampler") + " " + as_written(option_table, o, "--light");
-    for (const char* name : {"--direct", "--indirect"})
+    for (const char* name : {"--direct", "--indirect", "--sets"})
         if (const std::string own = as_written(option_table, o, name);
             own != as_written(option_table, Options{}, name))
             words += " " + own;
@@ -95,7 +95,8 @@ inline TradeSetting setting_of(const Ground& g, const Options& o, bool is_float)
     return s;
 }
 
-// All samplers x --light x --direct x --indirect that the scene allows.
+// All samplers x --light x --direct x --indirect that the scene allows, and the default without
+// more samples where noise is.
 inline std::vector<TradeSetting> settings_of(const Ground& g, bool is_float) {
     std::vector<TradeSetting> all;
     for (const std::string& indirect : values_of("--indirect"))
@@ -106,6 +107,7 @@ inline std::vector<TradeSetting> settings_of(const Ground& g, bool is_float) {
                             options_of(g, "--sampler " + sampler + " --light " + light +
                                               " --direct " + direct + " --indirect " + indirect))
                         all.push_back(setting_of(g, *o, is_float));
+    if (const auto o = options_of(g, "--sets 1")) all.push_back(setting_of(g, *o, is_float));
     return all;
 }
 
