@@ -109,9 +109,9 @@ inline void tell_default(Report& report, const Trade& t) {
 
 Unbiased settings that take every scene, in double: their seconds over those of the cheapest of them at equal
 error (geometric mean over the errors asked for; then over the scenes), and the scene where this is most.)");
-    report.head({"setting", "times the seconds of the best", "most", "where", ""});
+    report.head({"setting", "seconds over the best's", "most", "where", ""});
     for (const TradeCandidate& c : t.candidates)
-        report.row({"`" + c.words + "`", text("%.2f", c.mean_ratio), text("%.2f", c.worst_ratio),
+        report.row({"`" + c.words + "`", told_ratio(c.mean_ratio), told_ratio(c.worst_ratio),
                     c.worst_scene, c.words == t.default_words ? "today's default" : ""});
     report.end_of_table();
     if (t.candidates.empty()) return;
