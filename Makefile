@@ -33,7 +33,7 @@ PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
-        cells peers efficiency trade voronoi voronoi2d extremes readme clean help layers packages always
+        cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -103,9 +103,12 @@ bench:                     ## rays a second, beside Embree if libembree-dev is i
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 trade: build/knot.obj build/trade-float$(VARIANT)  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 3 hours)
+calibration: build/knot.obj  ## does --error stop where it says? (half an hour; FULL=1: all seeds at 1 %)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
-EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d voronoi bench peers efficiency trade cells
+EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d voronoi bench peers efficiency trade \
+               calibration cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
+calibration: LAB_FLAGS := $(if $(FULL),--full)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 trade: LAB_FLAGS := --float build/trade-float$(VARIANT) $(if $(FULL),--full)
 peers: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))

@@ -110,16 +110,19 @@ private:
     std::vector<Point> points_;
 };
 
+// Standard errors that are added to an estimate before it is small enough.
+inline constexpr double margin_of_error = 0.5;
+
 // The rule of --error: stop once the estimate, raised by half its standard error, is no more than
 // asked for.  The margin makes up for what stopping at a good look spoils (by `make calibration`).
 //
 // How many more samples to take before the next look, after `samples`: what the law says are
 // missing, but at most as many again, for the estimate may be far off; 0: enough.  An error that is
 // not known is not small.
-inline uint64_t samples_to_look(const ImageError& e, const ErrorCourse& course, double wanted,
+inline uint64_t samples_to_look(const ImageError& e, const ErrorCourse& course, double asked,
                                 uint64_t samples) {
-    const double now = e.d_rel() + 0.5 * e.standard_error();
-    if (now <= wanted) return 0;
-    const double more = double(samples) * (course.cost_of(now / wanted) - 1);
+    const double now = e.d_rel() + margin_of_error * e.standard_error();
+    if (now <= asked) return 0;
+    const double more = double(samples) * (course.cost_of(now / asked) - 1);
     return std::max<uint64_t>(1, uint64_t(std::min(double(samples), more)));
 }

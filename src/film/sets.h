@@ -22,6 +22,13 @@ struct Sets {
     uint32_t count() const { return shown + (chance > 0); }
 };
 
+// How sets are shared out; by `make calibration`.
+struct Allocation {
+    double factor = 1.25;        // of sqrt(noise around / noise elsewhere)
+    double most = 8;             // sets of a pixel
+    double least_measured = 64;  // pixels, were they all alike
+};
+
 // Samples of the first set after which the others are chosen.
 inline constexpr uint64_t samples_before_sets = 16;
 
@@ -43,9 +50,8 @@ inline double mean_around(const std::vector<double>& values, Size size, int x, i
 // whether it is measured: by chance, and the more likely the noisier it is (Horvitz, Thompson
 // 1952).
 inline std::vector<Sets> sets_where_noise_is(const std::vector<double>& noise, Size size,
-                                             uint64_t seed) {
-    constexpr double factor = 1.25, most = 8, least_measured = 64;
-    const double least_chance = std::max(1.0 / 32, least_measured / double(noise.size()));
+                                             uint64_t seed, const Allocation& by = {}) {
+    const double least_chance = std::max(1.0 / 32, by.least_measured / double(noise.size()));
     // Sums before each pixel and after it: the sum of all less its own would depend on it by
     // rounding.
     double before = 0;
@@ -59,7 +65,7 @@ inline std::vector<Sets> sets_where_noise_is(const std::vector<double>& noise, S
         const double elsewhere = (before + after[i + 1]) / others;
         if (around > 0)
             sets[i].shown =
-                uint32_t(std::clamp(factor * std::sqrt(around / elsewhere) + 0.5, 1.0, most));
+                uint32_t(std::clamp(by.factor * std::sqrt(around / elsewhere) + 0.5, 1.0, by.most));
         if (sets[i].shown > 1) continue;
         const double relative = sum > 0 ? noise[i] * double(noise.size()) / sum : 0;
         const double chance = std::min(1.0, least_chance * (1 + relative));

@@ -32,16 +32,6 @@ std::vector<Choice> all_choices() {
     return all;
 }
 
-// But cornell36obj, which is cornell36 again.
-std::vector<std::string> all_scenes() {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator("scenes"))
-        if (entry.path().extension() == ".scene" && entry.path().stem() != "cornell36obj")
-            names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 // A scene by one choice; which scene it is, is the same for all.
 struct Contender {
     Options o;
@@ -59,13 +49,6 @@ Contender contender(const std::string& name, const Choice& choice, const Plan& p
     Series series{std::vector<Image>(plan.seeds, Image(s.size.width, s.size.height)),
                   std::vector<double>(plan.seeds)};
     return {o, std::move(s), std::move(series)};
-}
-
-// Of this thread.
-double thread_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 // Other options change the samples, or what an image is: here they would be left out in silence.
@@ -169,21 +152,6 @@ Outcome outcome(const std::string& name, const Plan& plan) {
 using Which = Estimate Gain::*;
 
 std::string cell(const Gain& g, Which which) { return g.same ? "=" : told(g.*which, "%.2f"); }
-
-// Over the scenes that the choice concerns: geometric mean, least and greatest.
-struct Overall {
-    double log_sum = 0, log_variance = 0, n = 0;
-    std::pair<double, std::string> least = {HUGE_VAL, ""}, greatest = {0, ""};
-
-    void add(double value, double log_error, const std::string& scene) {
-        log_sum += std::log(value);
-        log_variance += log_error * log_error;
-        ++n;
-        least = std::min(least, {value, scene});
-        greatest = std::max(greatest, {value, scene});
-    }
-    Estimate mean() const { return {std::exp(log_sum / n), std::sqrt(log_variance) / n}; }
-};
 
 Overall overall(const std::vector<Outcome>& all, size_t choice, Which which) {
     Overall sum;

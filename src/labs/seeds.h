@@ -9,6 +9,23 @@ struct Series {
     std::vector<double> seconds;
 };
 
+// Of this thread.
+inline double thread_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+// But cornell36obj, which is cornell36 again.
+inline std::vector<std::string> all_scenes() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator("scenes"))
+        if (entry.path().extension() == ".scene" && entry.path().stem() != "cornell36obj")
+            names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
 // ---- Error and efficiency -----------------------------------------------------------------------
 
 // Mean square of a series' mean image, over pixels and channels.
@@ -58,6 +75,21 @@ inline Estimate over_seeds(size_t seeds, const std::function<double(size_t witho
 inline std::string told(const Estimate& e, const char* format) {
     return text("%s ± %s", text(format, e.value), text(format, e.value * e.log_error));
 }
+
+// Of many scenes: geometric mean, least and greatest.
+struct Overall {
+    double log_sum = 0, log_variance = 0, n = 0;
+    std::pair<double, std::string> least = {HUGE_VAL, ""}, greatest = {0, ""};
+
+    void add(double value, double log_error, const std::string& scene) {
+        log_sum += std::log(value);
+        log_variance += log_error * log_error;
+        ++n;
+        least = std::min(least, {value, scene});
+        greatest = std::max(greatest, {value, scene});
+    }
+    Estimate mean() const { return {std::exp(log_sum / n), std::sqrt(log_variance) / n}; }
+};
 
 // ---- Choices ------------------------------------------------------------------------------------
 

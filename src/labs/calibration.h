@@ -1,0 +1,136 @@
+// labs/calibration.h  3  whether --error keeps its word: rules of stopping, and what they did
+#pragma once
+#include "film/error.h"
+#include "labs/lab.h"
+
+// ---- When to stop -------------------------------------------------------------------------------
+
+// What an error is raised by before the rule of --error sees it.
+struct Guard {
+    std::string name;
+    double margin = margin_of_error;  // standard errors of d_rel
+    double unseen = 0;                // times the part of d^2 that comes from the greatest pixel
+    uint64_t least = 0;               // samples
+    bool careful = false;  // no step is longer than it would be if d_rel fell like 1 / samples
+};
+
+inline ImageError guarded(const Guard& guard, ImageError e) {
+    const double before = e.d2();
+    for (double& s : e.square) s += guard.unseen * e.greatest;
+    e.spread *= guard.margin / margin_of_error;
+    if (before == 0) e.square = {0, 0, 0};  // there is no greatest
+    return e;
+}
+
+// One E and one guard, on a run that many share: they look when they would if they were alone.
+class Stopper {
+public:
+    Stopper(Guard guard, double asked, uint64_t first)
+        : guard_(std::move(guard)), asked_(asked), next_(first) {}
+
+    bool stopped() const { return stopped_; }
+    uint64_t next() const { return next_; }  // samples at the next look
+
+    // Whether to stop here; it is asked at its next look, and not later.
+    bool stops(const ImageError& e, uint64_t samples) {
+        if (stopped_ || samples < next_) return false;
+        course_.add(samples, e.d_rel());
+        const ImageError raised = guarded(guard_, e);
+        uint64_t more = samples_to_look(raised, course_, asked_, samples);
+        if (guard_.careful && more > 0) more = std::min(more, careful_step(raised, samples));
+        stopped_ = more == 0 && samples >= guard_.least;
+        next_ = more > 0 ? samples + more : guard_.least;
+        return stopped_;
+    }
+
+private:
+    Guard guard_;
+    double asked_;
+    ErrorCourse course_;
+    uint64_t next_;
+    bool stopped_ = false;
+
+    // And a 32nd of them at least.
+    uint64_t careful_step(const ImageError& e, uint64_t samples) const {
+        const double now = e.d_rel() + margin_of_error * e.standard_error();
+        const double more = double(samples) * std::max(now / asked_ - 1, 1.0 / 32);
+        return std::max<uint64_t>(1, uint64_t(std::min(more, double(samples))));
+    }
+};
+
+// ---- What they did ------------------------------------------------------------------------------
+
+// A look at an image whose truth is known.
+struct Look {
+    uint64_t samples = 0;
+    double seconds = 0;    // of the processor
+    double estimate2 = 0;  // d^2, as estimated
+    double stated = 0;     // standard error of d_rel over d_rel, as estimated
+    double truth2 = 0;     // d^2 itself
+    double norm = 0;       // of the truth
+    double true_d() const { return truth2 > 0 ? std::sqrt(truth2) / norm : 0; }
+    double estimated_d() const { return std::sqrt(estimate2) / norm; }
+};
+
+using Looks = std::vector<Look>;
+
+template <class Number>
+std::vector<double> each(const Looks& looks, Number number) {
+    std::vector<double> x;
+    for (const Look& l : looks) x.push_back(number(l));
+    return x;
+}
+
+inline double share_above(const std::vector<double>& x, double limit) {
+    size_t n = 0;
+    for (double v : x) n += v > limit;
+    return double(n) / double(x.size());
+}
+
+// Standard deviation over mean.
+inline double scatter(const std::vector<double>& x) {
+    Moments m;
+    for (double v : x) m.add(v);
+    return std::sqrt(m.variance()) / m.mean;
+}
+
+// Where runs stopped that were asked for E.
+struct Kept {
+    double samples = 0, seconds = 0;  // medians
+    double median = 0, high = 0, above = 0,
+           scatter = 0;  // of true d_rel / E: median, 95 % quantile,
+                         // share above 1.05, s.d. over mean
+    double stated = 0;   // median
+    // Where as few samples as there may be are enough, E is only to be kept.
+    bool at_least = false;
+    bool holds() const {
+        return at_least ? median <= 1 && high <= 1.05
+                        : median >= 0.95 && median <= 1 && high <= 1.05;
+    }
+};
+
+inline Kept kept(const Looks& stops, double asked) {
+    const std::vector<double> ratio = each(stops, [&](const Look&l) { return l.true_d() / asked; }),
+                              samples = each(stops, [](const Look&l) { return double(l.samples); });
+    Kept k;
+    k.samples = median(samples);
+    k.seconds = median(each(stops, [](const Look& l) { return l.seconds; }));
+    k.median = median(ratio), k.high = quantile(ratio, 0.95), k.above = share_above(ratio, 1.05);
+    k.scatter = scatter(ratio);
+    k.stated = median(each(stops, [](const Look& l) { return l.stated; }));
+    k.at_least = k.samples <= double(samples_before_sets);
+    return k;
+}
+
+// Mean of estimate^2 over mean of truth^2: 1 of an unbiased estimate at a number of samples fixed
+// before.  The error of the ratio: by the slope (Cochran 1977).
+struct Bias {
+    double ratio = 0, error = 0;
+};
+inline Bias bias_of(const Looks& looks) {
+    double estimate = 0, truth = 0, squares = 0;
+    for (const Look& l : looks) estimate += l.estimate2, truth += l.truth2;
+    const double ratio = estimate / truth, n = double(looks.size());
+    for (const Look& l : looks) squares += std::pow(l.estimate2 - ratio * l.truth2, 2);
+    return {ratio, std::sqrt(squares * n / (n - 1)) / truth};
+}
