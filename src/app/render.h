@@ -136,9 +136,11 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
         const ImageError e = error_of(film, value_in(film));
         course.add(film.samples(), e.d_rel());
         if (target.error == 0) return UINT64_MAX;
-        const uint64_t more = samples_to_look(e, course, target.error, film.samples());
+        const uint64_t more = samples_to_look(e, target.error, film.samples());
         look = film.samples() + more;
-        progress.expect(look);
+        const double all =
+            double(film.samples()) * course.cost_of(std::max(1.0, e.d_rel() / target.error));
+        progress.expect(std::max(look, all < 1e18 ? uint64_t(all) : 0));
         enough = more == 0;
         return more;
     });

@@ -116,13 +116,13 @@ inline constexpr double margin_of_error = 0.5;
 // The rule of --error: stop once the estimate, raised by half its standard error, is no more than
 // asked for.  The margin makes up for what stopping at a good look spoils (by `make calibration`).
 //
-// How many more samples to take before the next look, after `samples`: what the law says are
-// missing, but at most as many again, for the estimate may be far off; 0: enough.  An error that is
-// not known is not small.
-inline uint64_t samples_to_look(const ImageError& e, const ErrorCourse& course, double asked,
-                                uint64_t samples) {
+// How many more samples to take before the next look, after `samples`; 0: enough.  No more than
+// would do if the error fell like 1 / samples, for nobody has it fall faster and a look is cheap;
+// but a 32nd of them at least, and at most as many again, for the estimate may be far off.  An
+// error that is not known is not small.
+inline uint64_t samples_to_look(const ImageError& e, double asked, uint64_t samples) {
     const double now = e.d_rel() + margin_of_error * e.standard_error();
     if (now <= asked) return 0;
-    const double more = double(samples) * (course.cost_of(now / asked) - 1);
-    return std::max<uint64_t>(1, uint64_t(std::min(double(samples), more)));
+    const double part = std::clamp(now / asked - 1, 1.0 / 32, 1.0);
+    return std::max<uint64_t>(1, uint64_t(part < 1 ? part * double(samples) : double(samples)));
 }

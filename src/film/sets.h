@@ -24,9 +24,9 @@ struct Sets {
 
 // How sets are shared out; by `make calibration`.
 struct Allocation {
-    double factor = 1.25;        // of sqrt(noise around / noise elsewhere)
-    double most = 8;             // sets of a pixel
-    double least_measured = 64;  // pixels, were they all alike
+    double factor = 1.25;   // of sqrt(noise around / noise elsewhere)
+    double most = 8;        // sets of a pixel
+    double measured = 512;  // pixels, at least, were all alike: their error is known to 3 %
 };
 
 // Samples of the first set after which the others are chosen.
@@ -51,7 +51,7 @@ inline double mean_around(const std::vector<double>& values, Size size, int x, i
 // 1952).
 inline std::vector<Sets> sets_where_noise_is(const std::vector<double>& noise, Size size,
                                              uint64_t seed, const Allocation& by = {}) {
-    const double least_chance = std::max(1.0 / 32, by.least_measured / double(noise.size()));
+    const double least_chance = std::max(1.0 / 32, by.measured / 2 / double(noise.size()));
     // Sums before each pixel and after it: the sum of all less its own would depend on it by
     // rounding.
     double before = 0;

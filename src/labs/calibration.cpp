@@ -135,9 +135,9 @@ int main(int argc, char** argv) {
           [&](auto& name) { plan.quick = true, plan.scenes.push_back(name); }},
          {"--size", "WxH", "of the images (64x32); writes into out/",
           [&](auto& words) { plan.quick = true, plan.size = option::size(words); }},
-         {"--measured", "N", "pixels whose error is measured, at least (as penumbra); into out/",
+         {"--measured", "N", "pixels whose error is measured (as penumbra); into out/",
           [&](auto& n) {
-              plan.quick = true, plan.by.least_measured = double(parse_count(n, 1, 1 << 25));
+              plan.quick = true, plan.by.measured = double(parse_count(n, 1, 1 << 25));
           }},
          {"--quick", "", "fewer runs, into out/",
           [&](auto&) {

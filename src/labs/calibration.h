@@ -11,7 +11,7 @@ struct Guard {
     double margin = margin_of_error;  // standard errors of d_rel
     double unseen = 0;                // times the part of d^2 that comes from the greatest pixel
     uint64_t least = 0;               // samples
-    bool careful = false;  // no step is longer than it would be if d_rel fell like 1 / samples
+    bool by_course = false;           // to the next look goes what the course says is missing
 };
 
 inline ImageError guarded(const Guard& guard, ImageError e) {
@@ -36,8 +36,8 @@ public:
         if (stopped_ || samples < next_) return false;
         course_.add(samples, e.d_rel());
         const ImageError raised = guarded(guard_, e);
-        uint64_t more = samples_to_look(raised, course_, asked_, samples);
-        if (guard_.careful && more > 0) more = std::min(more, careful_step(raised, samples));
+        uint64_t more = samples_to_look(raised, asked_, samples);
+        if (guard_.by_course && more > 0) more = std::max(more, missing(raised, samples));
         stopped_ = more == 0 && samples >= guard_.least;
         next_ = more > 0 ? samples + more : guard_.least;
         return stopped_;
@@ -50,11 +50,11 @@ private:
     uint64_t next_;
     bool stopped_ = false;
 
-    // And a 32nd of them at least.
-    uint64_t careful_step(const ImageError& e, uint64_t samples) const {
+    // By the course; as many again at most.
+    uint64_t missing(const ImageError& e, uint64_t samples) const {
         const double now = e.d_rel() + margin_of_error * e.standard_error();
-        const double more = double(samples) * std::max(now / asked_ - 1, 1.0 / 32);
-        return std::max<uint64_t>(1, uint64_t(std::min(more, double(samples))));
+        const double part = course_.cost_of(now / asked_) - 1;
+        return part < 1 ? uint64_t(part * double(samples)) : samples;
     }
 };
 

@@ -22,9 +22,7 @@ inline const std::vector<Guard> guards = {
     {"no margin but the greatest pixel", 0, 1},
     {"at least 32 samples", margin_of_error, 0, 32},
     {"at least 64 samples", margin_of_error, 0, 64},
-    {"smaller steps", margin_of_error, 0, 0, true},
-    {"no margin, smaller steps", 0, 0, 0, true},
-    {"a whole standard error, smaller steps", 1, 0, 0, true},
+    {"steps by the course", margin_of_error, 0, 0, true},
 };
 
 // ---- Runs ---------------------------------------------------------------------------------------

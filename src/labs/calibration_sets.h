@@ -13,12 +13,13 @@ inline std::vector<Rule> all_rules() {
     return {{"two everywhere", {}},
             {"by noise", Allocation{}},
             {"factor 0.8", Allocation{.factor = 0.8}},
-            {"factor 1.25", Allocation{.factor = 1.25}},
+            {"factor 1", Allocation{.factor = 1}},
             {"at most 4", Allocation{.most = 4}},
             {"at most 16", Allocation{.most = 16}},
-            {"128 measured", Allocation{.least_measured = 128}},
-            {"256 measured", Allocation{.least_measured = 256}},
-            {"512 measured", Allocation{.least_measured = 512}}};
+            {"factor 1.5", Allocation{.factor = 1.5}},
+            {"128 measured", Allocation{.measured = 128}},
+            {"256 measured", Allocation{.measured = 256}},
+            {"1024 measured", Allocation{.measured = 1024}}};
 }
 
 // A film that has all sets that any rule asks for: the sets of a pixel are the same by every rule,

@@ -1,0 +1,108 @@
+// whole/stopping_test.cpp  --error stops at what was asked for, on films whose truth is known
+#include <cmath>
+
+#include "film/error.h"
+#include "oracle/expect.h"
+#include "path/sampler.h"
+
+namespace {
+
+constexpr Size size = {48, 32};
+
+// Noise of 1 to 1/8 from left to right, by an edge in every third row, smooth elsewhere.
+rgb L(int x, int y, vec2 u) {
+    const real v = y % 3 == 0 ? real(u.x + u.y < real(0.7)) : u.x * u.y;
+    return rgb{1, 1, 1} + std::exp2(-real(x) / 16) * rgb{v, 2 * v, u.x};
+}
+rgb truth(int x, int y) {
+    const real v = y % 3 == 0 ? real(0.245) : real(0.25);
+    return rgb{1, 1, 1} + std::exp2(-real(x) / 16) * rgb{v, 2 * v, real(0.5)};
+}
+
+struct Stop {
+    double ratio;  // true d_rel / E
+    uint64_t samples;
+};
+
+// As renders with --error do.
+Stop stop_of(SamplerKind kind, uint64_t seed, double asked) {
+    const Pattern pattern = make_pattern(kind, seed, 1, 0);
+    Film<MeanPixel> film(size);
+    auto add = [&](uint64_t n) {
+        for (int y = 0; y < size.height; ++y)
+            film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
+                const uint64_t pixel = uint64_t(y) * uint64_t(size.width) + uint64_t(x);
+                return L(x, y, Sampler(pattern, pixel, i, set).get2(0));
+            });
+        film.end_pass(n);
+    };
+    add(samples_before_sets);
+    film.add_sets(sets_where_noise_is(film.noise(), size, seed));
+    add(0);
+    for (;;) {
+        const ImageError e = error_of(film, value_in(film));
+        const uint64_t more = samples_to_look(e, asked, film.samples());
+        if (more == 0) break;
+        add(more);
+    }
+    double square = 0, norm = 0;
+    for (size_t i = 0; i < film.number_of_pixels(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            const rgb f = truth(int(i % size_t(size.width)), int(i / size_t(size.width)));
+            square += std::pow(film.shown(i, c, value_in(film)) - double(f.*axis[c]), 2);
+            norm += std::pow(double(f.*axis[c]), 2);
+        }
+    return {std::sqrt(square / norm) / asked, film.samples()};
+}
+
+// P(at least k of n), each with a probability of p.
+double tail(int k, int n, double p) {
+    double sum = 0;
+    for (int i = k; i <= n; ++i)
+        sum += std::exp(std::lgamma(n + 1) - std::lgamma(i + 1) - std::lgamma(n - i + 1) +
+                        i * std::log(p) + (n - i) * std::log1p(-p));
+    return sum;
+}
+
+// That no more than a part p of all runs is so, of which `count` of n were.
+void expect_at_most(const std::string& what, int count, int n, double p) {
+    constexpr double significance = 1e-6;
+    int seen = 0;  // the least that would be refused
+    while (tail(seen, n, p) > significance) ++seen;
+    double power = p;  // the part of which that many are seen with 99.9 %
+    while (tail(seen, n, power) < 0.999) power += 0.001;
+    INFO(what, ": ", count, " of ", n, ", expected at most ", 100 * p, " %; from ", seen,
+         " on refused, which finds ", 100 * power, " % with 99.9 % power");
+    CHECK(count < seen);
+    CHECK(power < 1);
+}
+
+}  // namespace
+
+TEST_CASE("a binomial tail, by hand") {
+    CHECK(tail(0, 3, 0.3) == doctest::Approx(1));
+    CHECK(tail(3, 3, 0.5) == doctest::Approx(0.125));
+    CHECK(tail(2, 3, 0.25) == doctest::Approx(3 * 0.0625 * 0.75 + 0.015625));
+}
+
+TEST_CASE("true d_rel / E at a stop: median in [0.95, 1], 95 % of runs below 1.05") {
+    constexpr int runs = 200;
+    struct Asked {
+        SamplerKind kind;
+        double E;
+    };
+    for (const auto& [kind, E] :
+         {Asked{SamplerKind::independent, 0.02}, Asked{SamplerKind::halton, 0.004},
+          Asked{SamplerKind::sobol, 0.004}}) {
+        CAPTURE(int(kind));
+        int low = 0, high = 0, above = 0;
+        for (uint64_t seed = 1; seed <= runs; ++seed) {
+            const Stop s = stop_of(kind, seed, E);
+            REQUIRE(s.samples > samples_before_sets);
+            low += s.ratio<0.95, high += s.ratio> 1, above += s.ratio > 1.05;
+        }
+        expect_at_most("below 0.95", low, runs, 0.5);
+        expect_at_most("above 1", high, runs, 0.5);
+        expect_at_most("above 1.05", above, runs, 0.05);
+    }
+}
