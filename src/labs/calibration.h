@@ -103,9 +103,11 @@ struct Kept {
     double stated = 0;   // median
     // Where as few samples as there may be are enough, E is only to be kept.
     bool at_least = false;
-    bool holds() const {
-        return at_least ? median <= 1 && high <= 1.05
-                        : median >= 0.95 && median <= 1 && high <= 1.05;
+    std::string verdict() const {
+        if (median > 1) return "exceeded";
+        if (high > 1.05) return "scatters";
+        if (at_least) return "kept, at the least samples";
+        return median < 0.95 ? "too careful" : "kept";
     }
 };
 

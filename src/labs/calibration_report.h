@@ -70,12 +70,6 @@ struct Results {
     std::vector<Case> cases;
 };
 
-inline std::string verdict_of(const Kept& k) {
-    if (k.holds()) return k.at_least ? "kept, at the least samples" : "kept";
-    if (k.high > 1.05) return k.median > 1 ? "exceeded" : "scatters";
-    return "too careful";
-}
-
 inline void tell_case(Report& report, const Plan& plan, const Case& c, const Study& study) {
     for (size_t a = 0; a < plan.asked.size(); ++a) {
         const Looks stops = stops_of(c.runs, stopper_number(a, 0));
@@ -93,7 +87,7 @@ inline void tell_case(Report& report, const Plan& plan, const Case& c, const Stu
         for (const std::string& cell :
              {text("%.0f", k.samples), text("%.2f", k.seconds), text("%.3f", k.median),
               text("%.3f", k.high), text("%.0f %%", 100 * k.above), text("%.3f", k.scatter),
-              text("%.3f", truth), text("%.3f", told), text("%.3f", k.stated), verdict_of(k)})
+              text("%.3f", truth), text("%.3f", told), text("%.3f", k.stated), k.verdict()})
             cells.push_back(cell);
         report.row(cells);
     }

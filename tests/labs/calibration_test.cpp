@@ -79,16 +79,16 @@ TEST_CASE("what runs did: median, quantile, share above 1.05, verdict") {
     // Of equally spaced numbers: h sqrt(n (n + 1) / 12).
     CHECK(k.scatter == doctest::Approx(0.001 * std::sqrt(100 * 101 / 12.0) / 0.9905));
     CHECK(k.stated == doctest::Approx(0.1));
-    CHECK(k.holds());
+    CHECK(k.verdict() == "kept");
     CHECK(kept(stops, 0.0899).above == doctest::Approx(0.97).epsilon(1e-12));  // of 0.094395
-    CHECK_FALSE(kept(stops, 0.09).holds());
-    CHECK_FALSE(kept(stops, 0.105).holds());  // too careful
+    CHECK(kept(stops, 0.09).verdict() == "exceeded");
+    CHECK(kept(stops, 0.105).verdict() == "too careful");
     for (Look& l : stops) l.samples = samples_before_sets;
-    CHECK(kept(stops, 0.105).holds());  // fewer samples there are not
-    CHECK_FALSE(kept(stops, 0.09).holds());
-    for (int i = 0; i < 10; ++i) stops[size_t(i)].truth2 = 0.04;
+    CHECK(kept(stops, 0.105).verdict() == "kept, at the least samples");
+    CHECK(kept(stops, 0.09).verdict() == "exceeded");
+    for (size_t i = 90; i < 100; ++i) stops[i].truth2 = 0.04;
     CHECK(kept(stops, 0.1).above == doctest::Approx(0.1).epsilon(1e-12));
-    CHECK_FALSE(kept(stops, 0.1).holds());
+    CHECK(kept(stops, 0.1).verdict() == "scatters");
 }
 
 TEST_CASE("the bias of an estimate is one of squares, and knows its error") {
