@@ -120,9 +120,9 @@ inline constexpr double margin_of_error = 0.5;
 // would do if the error fell like 1 / samples, for nobody has it fall faster and a look is cheap;
 // but a 32nd of them at least, and at most as many again, for the estimate may be far off.  An
 // error that is not known is not small.
-inline uint64_t samples_to_look(const ImageError& e, double asked, uint64_t samples) {
+inline uint64_t samples_to_look(const ImageError& e, double wanted, uint64_t samples) {
     const double now = e.d_rel() + margin_of_error * e.standard_error();
-    if (now <= asked) return 0;
-    const double part = std::clamp(now / asked - 1, 1.0 / 32, 1.0);
+    if (now <= wanted) return 0;
+    const double part = std::clamp(now / wanted - 1, 1.0 / 32, 1.0);
     return std::max<uint64_t>(1, uint64_t(part < 1 ? part * double(samples) : double(samples)));
 }
