@@ -15,7 +15,7 @@ namespace {
 // From the 5 % to the 95 % quantile of true d_rel / E, with the median, a line for each sampler and
 // E; a panel for each scene.
 Svg picture_of(const Plan& plan, const Results& all) {
-    constexpr double width = 190, gap = 90, line = 14;
+    constexpr double width = 190, gap = 160, line = 14;
     const double height = line * double(plan.samplers.size() * plan.asked.size() + 1);
     constexpr size_t columns = 4;
     const size_t rows = (all.studies.size() + columns - 1) / columns;
@@ -43,7 +43,7 @@ Svg picture_of(const Plan& plan, const Results& all) {
                 plot.curve({quantile(ratio, 0.05), quantile(ratio, 0.95)}, {at, at},
                            {.colour = colour, .dots = false, .width = 3});
                 plot.curve({median(ratio)}, {at}, {.colour = colour, .width = 0, .radius = 4},
-                           text("%s, %g %%", c.sampler.substr(0, 4), 100 * plan.asked[a]));
+                           text("%s, %g %%", c.sampler, 100 * plan.asked[a]));
             }
         }
     }
