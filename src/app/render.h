@@ -117,10 +117,13 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
         row(y, n, row_rays);
         rays += row_rays;
     };
-    // Once, where noise is.
+    // Once, where noise is; if hardly any time is left, only those that measure.
     auto choose_sets = [&] {
-        if (film.has_sets() || film.samples() < 2 || interrupted) return;
-        film.add_sets(sets_where_noise_is(film.noise(), film.size, job.o.seed));
+        if (film.has_sets() || film.samples() < 2 || interrupted || film.non_finite() > 0) return;
+        const double left = target.seconds - progress.elapsed();
+        const bool late = target.seconds > 0 && left < progress.elapsed() / 3;
+        const Allocation by = late ? Allocation{.most = 1} : Allocation();
+        film.add_sets(sets_where_noise_is(film.noise(), film.size, job.o.seed, by));
         add_pass(film, 0, job.passes.threads, counted, progress);
     };
     if (sets_of(job.o) != sets_by_noise)
@@ -131,6 +134,7 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
     render(film, job.passes, counted, progress, [&](const Film<Pixel>&) -> uint64_t {
         if (film.samples() < job.passes.pause) return UINT64_MAX;
         choose_sets();
+        if (film.non_finite() > 0) return 0;
         if (film.samples() < look) return look - film.samples();
         if (target.error == 0 && !course.is_due(film.samples())) return UINT64_MAX;
         const ImageError e = error_of(film, value_in(film));

@@ -33,11 +33,14 @@ struct ImageError {
     std::array<double, 3> square{NAN, NAN, NAN};  // a channel at a time
     double spread = NAN;                          // standard error of d^2
     double norm = NAN;                            // |f|, the image's own quadratic mean
-    double greatest = NAN;                        // part of d^2 that comes from one pixel, at most
+    double greatest = NAN;                        // part of d^2 that comes from the worst pixel
 
     double d2() const { return (square[0] + square[1] + square[2]) / 3; }
     // Of a black image that has an error infinite.
     double d_rel() const { return d2() == 0 ? 0 : std::sqrt(d2()) / norm; }
+    // The same if there were another pixel like the worst, in which light that is rare was not
+    // seen.
+    double d_rel_and_unseen() const { return d2() == 0 ? 0 : std::sqrt(d2() + greatest) / norm; }
     // Of d_rel, by the slope of the root.
     double standard_error() const { return d2() == 0 ? 0 : d_rel() * spread / d2() / 2; }
 };
@@ -113,15 +116,16 @@ private:
 // Standard errors that are added to an estimate before it is small enough.
 inline constexpr double margin_of_error = 0.5;
 
-// The rule of --error: stop once the estimate, raised by half its standard error, is no more than
-// asked for.  The margin makes up for what stopping at a good look spoils (by `make calibration`).
+// The rule of --error: stop once the estimate, with another pixel like the worst and half its
+// standard error, is no more than asked for.  The margin makes up for what stopping at a good look
+// spoils, the pixel for some of the light that was not seen (both by `make calibration`).
 //
 // How many more samples to take before the next look, after `samples`; 0: enough.  No more than
 // would do if the error fell like 1 / samples, for nobody has it fall faster and a look is cheap;
 // but a 32nd of them at least, and at most as many again, for the estimate may be far off.  An
 // error that is not known is not small.
 inline uint64_t samples_to_look(const ImageError& e, double wanted, uint64_t samples) {
-    const double now = e.d_rel() + margin_of_error * e.standard_error();
+    const double now = e.d_rel_and_unseen() + margin_of_error * e.standard_error();
     if (now <= wanted) return 0;
     const double part = std::clamp(now / wanted - 1, 1.0 / 32, 1.0);
     return std::max<uint64_t>(1, uint64_t(part < 1 ? part * double(samples) : double(samples)));

@@ -9,7 +9,7 @@
 struct Guard {
     std::string name;
     double margin = margin_of_error;  // standard errors of d_rel
-    double unseen = 0;                // times the part of d^2 that comes from the greatest pixel
+    double unseen = 0;                // times more than the rule, another pixel like the worst
     uint64_t least = 0;               // samples
     bool by_course = false;           // to the next look goes what the course says is missing
 };
@@ -52,7 +52,7 @@ private:
 
     // By the course; as many again at most.
     uint64_t missing(const ImageError& e, uint64_t samples) const {
-        const double now = e.d_rel() + margin_of_error * e.standard_error();
+        const double now = e.d_rel_and_unseen() + margin_of_error * e.standard_error();
         const double part = course_.cost_of(now / asked_) - 1;
         return part < 1 ? uint64_t(part * double(samples)) : samples;
     }

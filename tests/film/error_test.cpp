@@ -207,6 +207,7 @@ TEST_CASE(
         e.norm = 2;
         e.square.fill(std::pow(d_rel * e.norm, 2));
         e.spread = d_rel > 0 ? standard_error * 2 * e.d2() / d_rel : 0;
+        e.greatest = 0;
         REQUIRE(e.d_rel() == doctest::Approx(d_rel));
         REQUIRE(e.standard_error() == doctest::Approx(standard_error));
         return e;
@@ -217,6 +218,12 @@ TEST_CASE(
     CHECK(samples_to_look(error(0.0096, 0.0010), 0.01, 100) > 0);
     CHECK(samples_to_look(error(0.0094, 0.0010), 0.01, 100) == 0);
     CHECK(samples_to_look(error(0, 0), 0.01, 100) == 0);
+    // And only if another pixel like the worst would not be too much: .0099 and a quarter of d^2.
+    ImageError spotted = error(0.009, 0);
+    CHECK(samples_to_look(spotted, 0.01, 100) == 0);
+    spotted.greatest = spotted.d2() / 4;
+    CHECK(samples_to_look(spotted, 0.01, 100) > 0);
+    CHECK(samples_to_look(spotted, 0.0101, 100) == 0);
     // What is missing if the error falls like 1 / samples: 1.2 - 1.
     CHECK(samples_to_look(error(0.0115, 0.0010), 0.01, 1000) == doctest::Approx(200).epsilon(.01));
     // As many again at most, a 32nd and one at least.
