@@ -15,7 +15,7 @@ std::string value_of(const Option<Options>& o) {
     if (o.value == "FILE") return "a.png";
     if (o.value == "WxH") return "3x2";
     if (o.value == "X,Y") return "1,1";
-    return o.value == "T" ? "0.5" : "7";
+    return o.value == "T" || o.value == "E" ? "0.5" : "7";
 }
 
 std::string between(const std::string& text, const std::string& name) {

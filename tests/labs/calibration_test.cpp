@@ -47,21 +47,22 @@ TEST_CASE("a guard raises what it says") {
 TEST_CASE("a stopper looks when the rule of --error says, and stops at what was asked for") {
     // 0.4 / sqrt(n): 0.01 at 1600 samples; steps by the course are its, and at most doublings.
     Guard by_course;
-    by_course.by_course = true;
+    by_course.by_course = true, by_course.unseen = -1;
     CHECK(looks_of(by_course, 0.01, 0.4) ==
           std::vector<uint64_t>{16, 32, 64, 128, 256, 512, 1024, 1600});
     // Else as if the error fell like 1 / samples: 512 to 512 * 4 / sqrt(5.12) ...
-    const std::vector<uint64_t> looks = looks_of({}, 0.01, 0.4);
+    const Guard plain{"", margin_of_error, -1};
+    const std::vector<uint64_t> looks = looks_of(plain, 0.01, 0.4);
     REQUIRE(looks.size() > 6);
     CHECK(std::vector<uint64_t>(looks.begin(), looks.begin() + 6) ==
           std::vector<uint64_t>{16, 32, 64, 128, 256, 512});
     CHECK(looks[6] == uint64_t(512 * 0.4 / std::sqrt(512.0) / 0.01));
     CHECK(looks.back() >= 1600);
     CHECK(looks.back() <= 1650);
-    CHECK(looks_of({}, 0.1, 0.4) == std::vector<uint64_t>{16});
-    CHECK(looks_of({"", margin_of_error, 0, 50}, 0.1, 0.4) == std::vector<uint64_t>{16, 50});
+    CHECK(looks_of(plain, 0.1, 0.4) == std::vector<uint64_t>{16});
+    CHECK(looks_of({"", margin_of_error, -1, 50}, 0.1, 0.4) == std::vector<uint64_t>{16, 50});
     // The greatest pixel's tenth twice: 1.2 times the squared error.
-    CHECK(looks_of({"", 0, 2}, 0.1, 0.4) == std::vector<uint64_t>{16, 17, 18, 19, 20});
+    CHECK(looks_of({"", 0, 1}, 0.1, 0.4) == std::vector<uint64_t>{16, 17, 18, 19, 20});
     Stopper s({}, 0.1, 16);
     CHECK(s.stops(error(0.05), 16));
     CHECK(s.stopped());
