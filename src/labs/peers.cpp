@@ -102,9 +102,9 @@ Rendering penumbra(const std::string& program, const View& view, const Choice& c
 
 void add_penumbra(Series& series, const std::string& program, const View& view,
                   const Choice& choice, uint64_t spp, uint64_t seed) {
-    const Rendering r = penumbra(program, view, choice,
-                                 {"--threads", "1", "--sets", "noise", "--spp", std::to_string(spp),
-                                  "--seed", std::to_string(seed)});
+    const Rendering r =
+        penumbra(program, view, choice,
+                 {"--threads", "1", "--spp", std::to_string(spp), "--seed", std::to_string(seed)});
     series.images.push_back(r.image);
     series.seconds.push_back(r.core_seconds());
 }
