@@ -5,6 +5,7 @@
 // Every scene by all samplers, --light, --direct, --indirect and both precisions, at five sample
 // counts, in a tournament; and by the methods of build/radiosity.  Writes a report, and what was
 // measured into out/trade/, from which --page writes report and page again.
+#include "labs/seeds.h"
 #include "labs/trade_file.h"
 #include "labs/trade_page.h"
 #include "labs/trade_report.h"
@@ -15,16 +16,6 @@ namespace {
 using namespace trade;
 
 const std::string folder = "out/trade";
-
-// But cornell36obj, which is cornell36 again.
-std::vector<std::string> all_scenes() {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator("scenes"))
-        if (entry.path().extension() == ".scene" && entry.path().stem() != "cornell36obj")
-            names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
 
 Trade measured(Plan plan, const std::string& command) {
     if (plan.scenes.empty()) plan.scenes = all_scenes();
