@@ -89,15 +89,15 @@ TEST_CASE("a pixel's own samples have no say in its sets, however large they are
 // ---- Sets that only measure ---------------------------------------------------------------------
 
 TEST_CASE("a pixel of one set is measured by chance, the more likely the noisier it is") {
-    // 4096 pixels: 1/32 at least; of 15 times the mean noise half the time, of 600 times always.
+    // 4096 pixels: 1/16 at least; of 7 times the mean noise half the time, of 600 times always.
     const Size size{64, 64};
     auto chance_of = [&](double noise) {
         const std::vector<double> all = noise_of(size, {{7, noise}});
         double sum = 0;
         for (double v : all) sum += v;
-        return std::min(1.0, (1 + noise * 4096 / sum) / 32);
+        return std::min(1.0, (1 + noise * 4096 / sum) / 16);
     };
-    for (double noise : {0.0, 1.0, 15.0, 600.0}) {
+    for (double noise : {0.0, 1.0, 7.0, 600.0}) {
         const double chance = chance_of(noise);
         CAPTURE(chance);
         int drawn = 0, tried = 0;
@@ -110,14 +110,14 @@ TEST_CASE("a pixel of one set is measured by chance, the more likely the noisier
         CHECK(std::abs(drawn - chance * tried) <=
               4.9 * std::sqrt(chance * (1 - chance) * tried) + (chance < 1 ? 0.5 : 0));
     }
-    CHECK(chance_of(0) == 1 / 32.0);
+    CHECK(chance_of(0) == 1 / 16.0);
     CHECK(chance_of(600) == 1);
 }
 
 TEST_CASE("which pixels are measured differs from pixel to pixel and from seed to seed") {
     const Size size{64, 64};
     const std::vector<double> noise(4096, 1);
-    const double chance = 2 / 32.0;
+    const double chance = 2 / 16.0;
     Moments measured;
     for (uint64_t seed = 0; seed < 200; ++seed) {
         int n = 0;
@@ -131,8 +131,8 @@ TEST_CASE("which pixels are measured differs from pixel to pixel and from seed t
     CHECK(std::abs(ratio - 1) < 4.9 * std::sqrt(2.0 / 199));
 }
 
-TEST_CASE("all of up to 64 pixels are measured, and none that shows several sets by chance") {
-    for (Size size : {Size{1, 1}, Size{8, 8}})
+TEST_CASE("all of up to 256 pixels are measured, and none that shows several sets by chance") {
+    for (Size size : {Size{1, 1}, Size{16, 16}})
         for (double v : {0.0, 3.0}) {
             const std::vector<double> noise(size_t(size.width) * size_t(size.height), v);
             for (const Sets& s : sets_where_noise_is(noise, size, 5)) CHECK(s.chance == 1);
@@ -153,8 +153,8 @@ TEST_CASE("all of up to 64 pixels are measured, and none that shows several sets
 // ---- The image stays unbiased -------------------------------------------------------------------
 
 TEST_CASE("sets by noise leave every pixel's mean unbiased, that of rare outliers, too") {
-    // The middle of 9 x 9 is 1000 in one sample of 50, else 0; its neighbours 40 in one of 4, else
-    // 0; the others up to 24.  Were a pixel's own samples to choose its sets, those that found an
+    // The middle of 9 x 9 is 1000 in one sample of 50, else 0; its neighbours 30 in one of 4, else
+    // 0; the others up to 35.  Were a pixel's own samples to choose its sets, those that found an
     // outlier early would be averaged with more that did not: 14 instead of 20.
     const Size size{9, 9};
     const size_t middle = 40;
@@ -162,8 +162,8 @@ TEST_CASE("sets by noise leave every pixel's mean unbiased, that of rare outlier
         const real u = to_unit(bits);
         if (pixel == middle) return u < real(0.02) ? real(1000) : real(0);
         const bool near = std::abs(int(pixel % 9) - 4) < 2 && std::abs(int(pixel / 9) - 4) < 2;
-        if (near) return u < real(0.25) ? real(40) : real(0);
-        return 24 * u;
+        if (near) return u < real(0.25) ? real(30) : real(0);
+        return 35 * u;
     };
     Moments outlier, neighbour, pooled, sets;
     for (uint64_t r = 0; r < 5000; ++r) {
@@ -193,6 +193,6 @@ TEST_CASE("sets by noise leave every pixel's mean unbiased, that of rare outlier
     CHECK(sets.variance() > 0);
     const double unit = 0x1p-24;
     EXPECT(oracle::expect_mean(20, estimate(outlier, unit)), 0.15);
-    EXPECT(oracle::expect_mean(10, estimate(neighbour, unit)), 0.04);
-    EXPECT(oracle::expect_mean((20 + 8 * 10 + 72 * 12.0) / 81, estimate(pooled, unit)), 0.04);
+    EXPECT(oracle::expect_mean(7.5, estimate(neighbour, unit)), 0.04);
+    EXPECT(oracle::expect_mean((20 + 8 * 7.5 + 72 * 17.5) / 81, estimate(pooled, unit)), 0.04);
 }
