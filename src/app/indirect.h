@@ -28,8 +28,8 @@ inline WalksTarget walks_of(const Options& o, const Scene& scene) {
     const Target target = target_of(o, scene);
     if (o.particles > 0) return {o.particles, target.seconds};
     const uint64_t pixels = uint64_t(scene.size.width) * uint64_t(scene.size.height);
-    // Of an image that only its error ends nobody knows the samples: as many as the scene's.
-    const bool unknown = target.samples == 0 && target.seconds == 0;
+    // Of an image that its error ends nobody knows the samples: as many as the scene's at most.
+    const bool unknown = o.error > 0 && (target.samples == 0 || target.samples > scene.samples);
     const double paths = double(pixels) * double(unknown ? scene.samples : target.samples);
     return {uint64_t(std::ceil(paths / double(share))), target.seconds / double(share)};
 }

@@ -24,9 +24,12 @@ inline Passes passes_of(const Options& o, const Target& target, uint64_t period)
     return {target, period, o.threads, (samples_before_sets + period - 1) / period * period};
 }
 
+// Samples that will be taken, not only at most; 0: not known.
+inline uint64_t planned(const Target& target) { return target.error > 0 ? 0 : target.samples; }
+
 inline Job job_of(const Options& o, const Scene& scene) {
     const Target target = target_of(o, scene);
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, target.samples);
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, planned(target));
     // Voronoi weights need all of a set's samples at once.
     const uint64_t period = o.film == Weighting::mc ? pattern.period() : target.samples;
     return {o, scene, pattern, passes_of(o, target, period)};
@@ -35,7 +38,7 @@ inline Job job_of(const Options& o, const Scene& scene) {
 // Of an endless scene; what the maps took is taken off the time.
 inline Job job_of(const Options& o, const Scene& scene, const Maps& maps) {
     Target target = target_of(o, scene);
-    const Pattern pattern = EndlessNumbers::pattern(o.sampler, o.seed, target.samples);
+    const Pattern pattern = EndlessNumbers::pattern(o.sampler, o.seed, planned(target));
     // Of all limits the shortest: 0 would be none, and the first pass runs in any case.
     constexpr double a_moment = 1e-3;
     if (target.seconds > 0)
@@ -120,10 +123,12 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
     // Once, where noise is; if hardly any time is left, only those that measure.
     auto choose_sets = [&] {
         if (film.has_sets() || film.samples() < 2 || interrupted || film.non_finite() > 0) return;
-        const double left = target.seconds - progress.elapsed();
-        const bool late = target.seconds > 0 && left < progress.elapsed() / 3;
-        const Allocation by = late ? Allocation{.most = 1} : Allocation();
-        film.add_sets(sets_where_noise_is(film.noise(), film.size, job.o.seed, by));
+        const std::vector<double> noise = film.noise();
+        std::vector<Sets> sets = sets_where_noise_is(noise, film.size, job.o.seed);
+        const double elapsed = progress.elapsed(), left = target.seconds - elapsed;
+        if (target.seconds > 0 && (mean_count(sets) - 1) * elapsed > left)
+            sets = sets_where_noise_is(noise, film.size, job.o.seed, {.most = 1});
+        film.add_sets(std::move(sets));
         add_pass(film, 0, job.passes.threads, counted, progress);
     };
     if (sets_of(job.o) != sets_by_noise)
@@ -140,7 +145,8 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
         const ImageError e = error_of(film, value_in(film));
         course.add(film.samples(), e.d_rel());
         if (target.error == 0) return UINT64_MAX;
-        const uint64_t more = samples_to_look(e, target.error, film.samples());
+        const bool dark = job.scene.lights.empty();  // and will stay so
+        const uint64_t more = dark ? 0 : samples_to_look(e, target.error, film.samples());
         look = film.samples() + more;
         const double all =
             double(film.samples()) * course.cost_of(std::max(1.0, e.d_rel() / target.error));

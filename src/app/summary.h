@@ -66,8 +66,9 @@ inline std::string why_no_error(const Options& o, const RunStats& run) {
     if (o.sampler == SamplerKind::halton_naive) return "halton-naive is not random";
     if (sets_of(o) == 1) return "one set of samples";
     if (run.spp == 1 && run.sets == 1) return "one sample";
-    if (!std::isfinite(run.error.d2())) return "interrupted early";
-    if (run.error.d2() > 0 && run.error.norm == 0) return "the image is black";
+    if (run.error.norm == 0) return "the image is black";
+    if (!std::isfinite(run.error.d_rel()))
+        return run.interrupted ? "interrupted early" : "its sets are not finite";
     return "";
 }
 

@@ -36,11 +36,13 @@ struct ImageError {
     double greatest = NAN;                        // part of d^2 that comes from the worst pixel
 
     double d2() const { return (square[0] + square[1] + square[2]) / 3; }
-    // Of a black image that has an error infinite.
-    double d_rel() const { return d2() == 0 ? 0 : std::sqrt(d2()) / norm; }
+    // Of a black image not known: light may have been missed by all samples.
+    double d_rel() const { return norm > 0 ? std::sqrt(d2()) / norm : double(NAN); }
     // The same if there were another pixel like the worst, in which light that is rare was not
     // seen.
-    double d_rel_and_unseen() const { return d2() == 0 ? 0 : std::sqrt(d2() + greatest) / norm; }
+    double d_rel_and_unseen() const {
+        return d_rel() * std::sqrt(d2() > 0 ? 1 + greatest / d2() : 1);
+    }
     // Of d_rel, by the slope of the root.
     double standard_error() const { return d2() == 0 ? 0 : d_rel() * spread / d2() / 2; }
 };
@@ -121,7 +123,7 @@ inline constexpr double margin_of_error = 0.5;
 // spoils, the pixel for some of the light that was not seen (both by `make calibration`).
 //
 // How many more samples to take before the next look, after `samples`; 0: enough.  No more than
-// would do if the error fell like 1 / samples, for nobody has it fall faster and a look is cheap;
+// would do if the error fell like 1 / samples, which few do, and a look is cheap;
 // but a 32nd of them at least, and at most as many again, for the estimate may be far off.  An
 // error that is not known is not small.
 inline uint64_t samples_to_look(const ImageError& e, double wanted, uint64_t samples) {

@@ -87,7 +87,7 @@ public:
     }
 
     double sets_per_pixel() const {
-        return has_sets() ? double(pixels_.size()) / double(number_of_pixels()) : 1;
+        return others_are_complete() ? double(pixels_.size()) / double(number_of_pixels()) : 1;
     }
 
     size_t number_of_pixels() const { return size_t(size.width) * size_t(size.height); }

@@ -22,6 +22,13 @@ struct Sets {
     uint32_t count() const { return shown + (chance > 0); }
 };
 
+// Of a pixel.
+inline double mean_count(const std::vector<Sets>& sets) {
+    double sum = 0;
+    for (const Sets& s : sets) sum += s.count();
+    return sum / double(sets.size());
+}
+
 // How sets are shared out; by `make calibration`.
 struct Allocation {
     double factor = 1.25;   // of sqrt(noise around / noise elsewhere)
@@ -63,7 +70,7 @@ inline std::vector<Sets> sets_where_noise_is(const std::vector<double>& noise, S
         const int x = int(i % size_t(size.width)), y = int(i / size_t(size.width));
         const double around = mean_around(noise, size, x, y);
         const double elsewhere = (before + after[i + 1]) / others;
-        if (around > 0)
+        if (around > 0 && std::isfinite(around))
             sets[i].shown =
                 uint32_t(std::clamp(by.factor * std::sqrt(around / elsewhere) + 0.5, 1.0, by.most));
         if (sets[i].shown > 1) continue;

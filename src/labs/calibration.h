@@ -15,10 +15,8 @@ struct Guard {
 };
 
 inline ImageError guarded(const Guard& guard, ImageError e) {
-    const double before = e.d2();
-    for (double& s : e.square) s += guard.unseen * e.greatest;
+    e.greatest *= 1 + guard.unseen;
     e.spread *= guard.margin / margin_of_error;
-    if (before == 0) e.square = {0, 0, 0};  // there is no greatest
     return e;
 }
 
@@ -66,7 +64,7 @@ struct Look {
     double seconds = 0;    // of the processor
     double estimate2 = 0;  // d^2, as estimated
     double stated = 0;     // standard error of d_rel over d_rel, as estimated
-    double truth2 = 0;     // d^2 itself
+    double truth2 = 0;     // d^2 itself, but for what is not known of the truth
     double norm = 0;       // of the truth
     double true_d() const { return truth2 > 0 ? std::sqrt(truth2) / norm : 0; }
     double estimated_d() const { return std::sqrt(estimate2) / norm; }

@@ -77,17 +77,27 @@ inline void tell_case(Report& report, const Plan& plan, const Case& c, const Stu
         std::vector<std::string> cells = {study.name, c.sampler, text("%g %%", 100 * plan.asked[a]),
                                           text("%zu", stops.size())};
         if (unreached) cells.back() += text(" (%zu not)", size_t(unreached));
-        if (stops.size() < 3) continue;
+        if (stops.size() < 3) {
+            cells.resize(13, "–");
+            cells.push_back("not reached");
+            report.row(cells);
+            continue;
+        }
         const Kept k = kept(stops, plan.asked[a]);
         uint64_t before = samples_before_sets;
-        while (4 * double(before) <= k.samples) before *= 4;
+        while (4 * double(before) <= k.samples && !at_fixed(c.runs, 4 * before).empty())
+            before *= 4;
         const Looks fixed = at_fixed(c.runs, before);
         const double truth = scatter(each(fixed, [](const Look&l) { return l.true_d(); })),
                      told = scatter(each(fixed, [](const Look&l) { return l.estimated_d(); }));
+        const bool is_known = study.own_error() < plan.asked[a] / 2;
+        const std::string verdict = unreached  ? "not reached by all"
+                                    : is_known ? k.verdict()
+                                               : "the truth is not known so well";
         for (const std::string& cell :
              {text("%.0f", k.samples), text("%.2f", k.seconds), text("%.3f", k.median),
               text("%.3f", k.high), text("%.0f %%", 100 * k.above), text("%.3f", k.scatter),
-              text("%.3f", truth), text("%.3f", told), text("%.3f", k.stated), k.verdict()})
+              text("%.3f", truth), text("%.3f", told), text("%.3f", k.stated), verdict})
             cells.push_back(cell);
         report.row(cells);
     }

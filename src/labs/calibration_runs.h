@@ -140,11 +140,11 @@ inline Looks stops_of(const std::vector<Run>& runs, size_t stopper) {
     return stops;
 }
 
-// At so many samples; of the runs that went so far.
+// At so many samples, if all runs went so far: those that did not had stopped for what they saw.
 inline Looks at_fixed(const std::vector<Run>& runs, uint64_t samples) {
     Looks looks;
     for (const Run& r : runs)
         for (const Look& l : r.fixed)
             if (l.samples == samples) looks.push_back(l);
-    return looks;
+    return looks.size() == runs.size() ? looks : Looks();
 }

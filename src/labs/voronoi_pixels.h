@@ -115,7 +115,7 @@ inline Reference read_reference(const std::string& name, Size size) {
         if (!std::filesystem::exists(needed))
             throw UserError(needed + ": missing; make it by\n  build/penumbra --sets 2 --spp 4096" +
                             options + " -o " + file + " --stats " + json + scene +
-                            "\n  build/penumbra --view variance --spp 512" + options + " -o " +
+                            "\n  build/penumbra --view variance --spp 256" + options + " -o " +
                             variance + scene);
     Reference r{read_pfm(file), read_pfm(variance)};
     for (const Image* image : {&r.image, &r.noise})

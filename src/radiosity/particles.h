@@ -122,7 +122,7 @@ struct BatchSquares {
         }
         // Of the variance of normal numbers it says (n - 1) / (n - 2) times too much.
         const double variance = (squares - sum * sum / batches) * (batches - 2) / batches;
-        return {all, std::sqrt(std::max(0.0, variance))};
+        return {all, std::sqrt(std::max(variance, 0.0))};
     }
 
 private:

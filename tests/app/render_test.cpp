@@ -287,14 +287,24 @@ TEST_CASE("--error looks when it said it would, and not after every pass") {
     CHECK(looks == 4);  // at 2, 4 and 8 samples, and at the end
 }
 
-TEST_CASE("a black image has an error of 0 if its sets agree, and none if it has one set") {
+TEST_CASE("of a black image no error is known: light may have been missed, if there is any") {
     const Scene scene =
         small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
     Options o = quick(SamplerKind::sobol, 0);
     o.error = 0.01;
     const Rendered black = rendered(job_of(o, scene));
-    CHECK(black.run.stopped_by == "error");
-    CHECK(black.run.error.d_rel() == 0);
+    CHECK(black.run.stopped_by == "error");  // without lights it stays black
+    CHECK(black.run.spp == 16);
+    CHECK(std::isnan(black.run.error.d_rel()));
+    const Scene turned = small(
+        "camera 0 0 5  0 0 0  40\nlight l 1 1 1\n"
+        "quad -1 -1 0  0 2 0  2 0 0  l\n",
+        {9, 9});
+    o.spp = 40;
+    const Rendered unlit = rendered(job_of(o, turned));
+    CHECK(unlit.run.stopped_by == "samples");
+    CHECK(unlit.run.error.norm == 0);
+    CHECK(std::isnan(unlit.run.error.d_rel()));
     o.error = 0, o.spp = 16, o.sets = 1;
     CHECK(std::isnan(rendered(job_of(o, scene)).run.error.d_rel()));
     o.sampler = SamplerKind::halton_naive, o.sets = sets_by_noise;

@@ -140,6 +140,7 @@ TEST_CASE("where there is no error to state, the reason is said") {
     run.spp = 64;
     CHECK(told(naive, run) == "error not known: halton-naive is not random");
     CHECK(told(one_set, run) == "error not known: one set of samples");
+    run.interrupted = true;
     CHECK(told(o, run) == "error not known: interrupted early");
     run.spp = 1;
     CHECK(told(o, run) == "error not known: one sample");

@@ -77,12 +77,13 @@ TEST_CASE("an error that is not known is no number; that of an image without noi
     for (real level : {real(0), real(3)}) {
         const ImageError e = error(film_of(two, [&](int, uint32_t) { return level; }));
         CHECK(e.d2() == 0);
-        CHECK(e.d_rel() == 0);
+        CHECK((level > 0 ? e.d_rel() == 0 : std::isnan(e.d_rel())));
         CHECK(e.standard_error() == 0);
     }
     // Black, but for what only measures it.
     const ImageError e = error(film_of(measured, [](int, uint32_t set) { return real(set); }));
-    CHECK(e.d_rel() == HUGE_VAL);
+    CHECK(e.d2() > 0);
+    CHECK(std::isnan(e.d_rel()));
     CHECK(ErrorCourse().cost_of(HUGE_VAL) == HUGE_VAL);
     CHECK(samples_to_look(e, 0.5, 16) == 16);
     // Before any sample; while the others catch up.

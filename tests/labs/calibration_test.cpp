@@ -37,7 +37,7 @@ TEST_CASE("a guard raises what it says") {
     CHECK(guarded({}, e).d2() == doctest::Approx(0.01).epsilon(1e-14));
     CHECK(guarded({}, e).spread == doctest::Approx(0.002).epsilon(1e-14));
     CHECK(guarded({"", 2 * margin_of_error}, e).spread == doctest::Approx(0.004).epsilon(1e-14));
-    CHECK(guarded({"", 0, 3}, e).d2() == doctest::Approx(0.01 + 3 * 0.001).epsilon(1e-14));
+    CHECK(guarded({"", 0, 3}, e).greatest == doctest::Approx(4 * 0.001).epsilon(1e-14).scale(0));
     CHECK(guarded({"", 0, 3}, e).spread == 0);
     // No pixel has a part of nothing.
     ImageError none{{0, 0, 0}, 0, 1, NAN};
