@@ -287,6 +287,22 @@ TEST_CASE("--error looks when it said it would, and not after every pass") {
     CHECK(looks == 4);  // at 2, 4 and 8 samples, and at the end
 }
 
+TEST_CASE(
+    "a limit is no plan: grids and maps of an image that its error ends are no larger for it") {
+    Scene scene = small(unequal, {24, 12});
+    scene.samples = 64;
+    Options o = quick(SamplerKind::stratified, 65536);
+    CHECK(job_of(o, scene).pattern.period() == 256);
+    o.error = 0.1;
+    CHECK(job_of(o, scene).pattern.period() == 16);
+    o.indirect = Indirect::map;
+    CHECK(walks_of(o, scene).particles == 24 * 12 * 64 / 16);
+    o.spp = 32;
+    CHECK(walks_of(o, scene).particles == 24 * 12 * 32 / 16);
+    o.error = 0, o.spp = 65536;
+    CHECK(walks_of(o, scene).particles == 24 * 12 * 65536 / 16);
+}
+
 TEST_CASE("of a black image no error is known: light may have been missed, if there is any") {
     const Scene scene =
         small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
