@@ -132,6 +132,23 @@ inline std::string of_float(const TradeScene& s) {
                 100 * in_float, 100 * in_double);
 }
 
+// The default in float beside double: the median ratio of pixels, which hardly any noise moves.
+inline std::string bias_of_float(const Plan& plan, const Ground& g) {
+    if (plan.float_program.empty()) return "";
+    const std::vector<Task> task = {{written({}), 64, picture_seed}};
+    const Image in_double = rendered_here(g, task)[0].image,
+                in_float = rendered_by(plan.float_program, g, task)[0].image;
+    std::vector<double> ratios;
+    for (size_t i = 0; i < in_double.pixels.size(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            if (in_double.pixels[i][c] > 0)
+                ratios.push_back(double(in_float.pixels[i][c]) / double(in_double.pixels[i][c]));
+    const double more = median(ratios) - 1;
+    if (!(std::abs(more) > 0.01)) return "";
+    return text(" In float half of all pixels are more than %.1f %% too %s: rounding.",
+                100 * std::abs(more), more > 0 ? "bright" : "dark");
+}
+
 // ---- Pictures at equal time ---------------------------------------------------------------------
 
 // What is shown: the default, the cheapest at 3 %, and lessons; float where that is one.
@@ -219,7 +236,13 @@ inline TradeScene study(const Plan& plan, const std::string& name) {
     for (Method& m : methods) fit(m.setting), s.settings.push_back(m.setting);
     s.answers = answers_of(s, written({}));
     add_pictures(plan, g, reference, methods, s);
-    s.remark += of_float(s);
+    s.remark += of_float(s) + bias_of_float(plan, g);
+    constexpr double coarse = 0.05;
+    if (reference.error > coarse)
+        s.remark += text(
+            " Light is rare: the reference itself is known to %.0f %%, and no better "
+            "errors can be told.",
+            100 * reference.error);
     return s;
 }
 

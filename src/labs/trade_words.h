@@ -28,7 +28,9 @@ inline std::string told_percent(double error) {
 
 // "1.32×"
 inline std::string told_ratio(double ratio) {
-    return std::isfinite(ratio) ? told_number(ratio, 3) + "×" : told_nothing;
+    if (!std::isfinite(ratio)) return told_nothing;
+    return ratio > 1000 ? "> 1000×"
+                        : told_number(ratio, 3) + "×";  // by laws far beyond their points
 }
 
 // "2.1 % · t^−0.51": what error is left after t seconds of a core.
