@@ -1,5 +1,8 @@
 // labs/trade_report.h  4  a trade as tables and plots
 #pragma once
+#include <map>
+
+#include "base/stats.h"
 #include "labs/trade_law.h"
 #include "labs/trade_words.h"
 
@@ -105,6 +108,40 @@ no setting is cheaper than one sample a pixel.)",
     report.end_of_table();
 }
 
+// The default beside itself with one set of samples, at every count that both took.
+inline void tell_sets(Report& report, const Trade& t) {
+    report.say(R"(## What more samples where noise is bring
+
+1 / (error² × core seconds) of the default over that with --sets 1, which states no error; at equal samples a
+set.  The geometric mean is of the scenes where both were measured.)");
+    report.head({"scene", "4 samples", "16", "64", "256"});
+    std::map<double, Moments> logs;
+    for (const TradeScene& s : t.scenes) {
+        const size_t own = index_of(s, t.default_words),
+                     one = index_of(s, t.default_words + " --sets 1");
+        if (own == SIZE_MAX || one == SIZE_MAX) continue;
+        std::vector<std::string> cells = {s.name};
+        for (const double spp : {4, 16, 64, 256}) {
+            auto efficiency = [&](size_t k) -> double {
+                for (const TradePoint& p : s.settings[k].points)
+                    if (p.spp == spp && p.error > 0) return 1 / (p.error * p.error * p.seconds);
+                return 0;
+            };
+            const double gain = efficiency(one) > 0 ? efficiency(own) / efficiency(one) : 0;
+            if (gain > 0) logs[spp].add(std::log(gain));
+            cells.push_back(gain > 0 ? text("%.2f", gain) : told_nothing);
+        }
+        report.row(cells);
+    }
+    std::vector<std::string> cells = {"geometric mean"};
+    for (const double spp : {4, 16, 64, 256})
+        cells.push_back(logs[spp].n
+                            ? text("%.2f of %.0f", std::exp(logs[spp].mean), double(logs[spp].n))
+                            : told_nothing);
+    report.row(cells);
+    report.end_of_table();
+}
+
 inline void tell_default(Report& report, const Trade& t) {
     report.say(R"(## One default
 
@@ -198,6 +235,7 @@ scattered without end, as maps do it.  Settings are named by what stands after t
     tell_answers(report, t);
     report.picture("trade", curves(t), "Error over core seconds; grey: all other settings");
     tell_default(report, t);
+    tell_sets(report, t);
     tell_float(report, t);
     tell_laws(report, t);
     tell_dropped(report, t);

@@ -132,21 +132,27 @@ inline std::string of_float(const TradeScene& s) {
                 100 * in_float, 100 * in_double);
 }
 
-// The default in float beside double: the median ratio of pixels, which hardly any noise moves.
+// The default in float beside double: sums over all pixels but the brightest hundredth, whose noise
+// would hide a bias.
 inline std::string bias_of_float(const Plan& plan, const Ground& g) {
     if (plan.float_program.empty()) return "";
     const std::vector<Task> task = {{written({}), 64, picture_seed}};
     const Image in_double = rendered_here(g, task)[0].image,
                 in_float = rendered_by(plan.float_program, g, task)[0].image;
-    std::vector<double> ratios;
-    for (size_t i = 0; i < in_double.pixels.size(); ++i)
-        for (size_t c = 0; c < 3; ++c)
-            if (in_double.pixels[i][c] > 0)
-                ratios.push_back(double(in_float.pixels[i][c]) / double(in_double.pixels[i][c]));
-    const double more = median(ratios) - 1;
+    auto sum = [](const auto& pixel) {
+        return double(pixel[0]) + double(pixel[1]) + double(pixel[2]);
+    };
+    std::vector<double> sums;
+    for (const auto& pixel : in_double.pixels) sums.push_back(sum(pixel));
+    const double bright = quantile(sums, 0.99);
+    double one = 0, other = 0;
+    for (size_t i = 0; i < sums.size(); ++i)
+        if (sums[i] < bright) one += sums[i], other += sum(in_float.pixels[i]);
+    const double more = other / one - 1;
     if (!(std::abs(more) > 0.01)) return "";
-    return text(" In float half of all pixels are more than %.1f %% too %s: rounding.",
-                100 * std::abs(more), more > 0 ? "bright" : "dark");
+    return text(
+        " In float the image is %.1f %% too %s, its brightest hundredth left out: rounding.",
+        100 * std::abs(more), more > 0 ? "bright" : "dark");
 }
 
 // ---- Pictures at equal time ---------------------------------------------------------------------

@@ -185,8 +185,9 @@ TEST_CASE("a pixel is the mean of its sets that are shown, whenever they were ad
         CHECK(film.sets_per_pixel() == 1);
         film.add_sets(of_four_pixels);
         CHECK(film.has_sets());
-        CHECK(film.sets_per_pixel() == 2);  // (1 + 3 + 2 + 2) / 4
+        CHECK(film.sets_per_pixel() == (before > 0 ? 1 : 2));  // until the others have caught up
         for (uint64_t n : {0, 2, 1}) add(film, n);
+        CHECK(film.sets_per_pixel() == 2);  // (1 + 3 + 2 + 2) / 4
         const uint64_t n = before + 3;
         CHECK(film.samples() == n);
         const Image image = image_of(film);
