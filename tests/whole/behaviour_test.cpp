@@ -219,7 +219,7 @@ TEST_CASE("a picture that is black, though there are lights, gets a hint") {
     CHECK(contains(err("turned.scene"), "turned.scene: all is black: no light reaches the camera"));
     CHECK(err("--quiet turned.scene") == "");
     CHECK_FALSE(contains(err("faces.scene"), "black"));
-    CHECK_FALSE(contains(err("--view albedo turned.scene"), "black"));
+    CHECK_FALSE(contains(err("--view albedo turned.scene"), "all is black"));
 }
 
 TEST_CASE("--pixel names the material and the line of what a path meets") {
