@@ -62,14 +62,16 @@ inline Svg curves(const Trade& t) {
     constexpr double width = 620, height = 330;
     const size_t columns = 2, rows = (t.scenes.size() + columns - 1) / columns;
     Svg sheet(width * double(columns), height * double(rows));
-    for (size_t i = 0; i < t.scenes.size(); ++i) {
-        const TradeScene& s = t.scenes[i];
+    size_t drawn = 0;
+    for (const TradeScene& s : t.scenes) {
         Range x, y;
         for (const TradeSetting& setting : s.settings)
             for (const TradePoint& p : setting.points)
                 if (p.error > 0) x.add(p.seconds), y.add(p.error);
         if (!(x.hi > 0)) continue;
-        Plot plot(sheet, {width * double(i % columns) + 70, height * double(i / columns) + 40},
+        const size_t place = drawn++;
+        Plot plot(sheet,
+                  {width * double(place % columns) + 70, height * double(place / columns) + 40},
                   {340, height - 110}, x.axis("core seconds"), y.axis("error (d_rel)"), s.name);
         for (const TradeSetting& setting : s.settings)
             add_curve(plot, setting, {.colour = "#cccccc", .dots = false, .width = 0.7}, "");
