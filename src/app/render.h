@@ -145,7 +145,7 @@ Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
         const ImageError e = error_of(film, value_in(film));
         course.add(film.samples(), e.d_rel());
         if (target.error == 0) return UINT64_MAX;
-        const bool dark = job.scene.lights.empty();  // and will stay so
+        const bool dark = e.norm == 0 && job.scene.lights.empty();  // and will stay so
         const uint64_t more = dark ? 0 : samples_to_look(e, target.error, film.samples());
         look = film.samples() + more;
         const double all =

@@ -312,6 +312,12 @@ TEST_CASE("of a black image no error is known: light may have been missed, if th
     CHECK(black.run.stopped_by == "error");  // without lights it stays black
     CHECK(black.run.spp == 16);
     CHECK(std::isnan(black.run.error.d_rel()));
+    Options normals = o;  // a view is not dark without lights
+    normals.view = View::normal;
+    const Rendered view = rendered(job_of(normals, scene));
+    CHECK(view.run.stopped_by == "error");
+    CHECK(view.run.spp > 16);
+    CHECK(view.run.error.d_rel() < 0.01);
     const Scene turned = small(
         "camera 0 0 5  0 0 0  40\nlight l 1 1 1\n"
         "quad -1 -1 0  0 2 0  2 0 0  l\n",
