@@ -131,6 +131,25 @@ TEST_CASE("power is what the lights have: the mean over particles, a channel at 
                 0.02);
 }
 
+TEST_CASE("a point sends a sixth of its power to every wall of a cube around it") {
+    Scene s;
+    add_room(s, {2, 2, 2}, add(s, diffuse(grey(0))));
+    add_point_light(s, {1, 1, 1}, grey(1));
+    prepare(s);
+    const Mesh mesh = make_mesh(s, 3);
+    for (SamplerKind kind : kinds) {
+        std::vector<IlluminationMap> maps;
+        for (uint64_t r = 0; r < 64; ++r) maps.push_back(run(s, mesh, kind, 3200, r).map());
+        for (size_t face = 0; face < 6; ++face)
+            EXPECT(oracle::expect_replicates(4 * Pi / 6, 64,
+                                             [&](int r) {
+                                                 return flux(mesh, maps[size_t(r)], face, false) +
+                                                        flux(mesh, maps[size_t(r)], face, true);
+                                             }),
+                   0.06);
+    }
+}
+
 TEST_CASE("the sums are the same, bit for bit, for any number of threads and passes") {
     const Scene s = study(true);
     const Mesh mesh = make_mesh(s, 1);
