@@ -232,7 +232,7 @@ packages:
 
 # Folders by floor; those of one floor do not know each other.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle.
-FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 radiosity:4 app:5 labs:6 oracle:7 whole:7
+FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 radiosity:4 app:5 labs:6 course:6 oracle:7 whole:7
 
 layers:  ## check that every file includes only from floors below
 	@awk -v floors='$(FLOORS)' ' \

@@ -48,13 +48,22 @@ inline vec3 sample_uniform_sphere(vec2 u) {
 }
 inline real pdf_uniform_sphere() { return 1 / (4 * pi); }
 
-// Density cos(theta)/pi: a uniform point of the disc, lifted to the hemisphere (Malley 1988).
+// Density cos(theta)/pi over the hemisphere z > 0.
+// BEGIN SOLUTION 2.2  directions that follow the cosine, and their density
+// A uniform point of the disc, lifted to the hemisphere (Malley 1988).
 inline vec3 sample_cosine_hemisphere(vec2 u) {
     return spherical(std::sqrt(1 - u.x), std::sqrt(u.x), u.y);
 }
 inline real pdf_cosine_hemisphere(real cos_theta) {
     return cos_theta > 0 ? cos_theta * (1 / pi) : 0;
 }
+// STUB  steps of equal angle
+// inline vec3 sample_cosine_hemisphere(vec2 u) {
+//     const real theta = u.x * pi / 2;
+//     return spherical(std::cos(theta), std::sin(theta), u.y);
+// }
+// inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 / (2 * pi) : 0; }
+// END SOLUTION
 
 // Density (n+1)/(2 pi) cos^n(alpha) about z, 0 for alpha >= 90 degrees (Phong 1975; Lafortune,
 // Willems 1994).  cos(alpha) = (1-u)^(1/(n+1)); 1 - cos^2 by expm1 keeps its digits for large n.

@@ -1,0 +1,306 @@
+// course/judge.h  the judge of an exercise: asks a program that holds the student's code, and
+// decides
+//
+//     judge_2 [--mistakes FILE] [--json FILE] [--seed N] [--patience S] 2.2 -- PROGRAM [WORD...]
+//
+// PROGRAM answers questions over its stdin and stdout (answers.h).  Nothing of it is ever loaded
+// here: whatever it does, the verdict rests on numbers that came over a pipe.  Exit status: 0
+// right, 1 wrong, 3 the stub is still there, 2 the judge itself cannot work.
+#pragma once
+#include <bit>
+#include <functional>
+#include <unordered_map>
+
+#include "course/program.h"
+#include "oracle/oracle.h"
+
+namespace course {
+
+// One thing that was looked at.
+struct Item {
+    std::string what;
+    bool statistical = false;
+    bool right = false;
+    std::string seen;  // what was expected and what came, or what the oracle says
+};
+
+// a equals b up to a relative error, or an absolute one below 1; NaN equals nothing.
+inline bool near(double a, double b, double tolerance) {
+    return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b));
+}
+
+// A function of the program's, as a check of the oracle calls it: with one question after the
+// other. Some are asked at once; what is asked beyond `budget` is put off, to be asked in a batch.
+struct Known {
+    struct Hash {
+        size_t operator()(const Out& x) const {
+            uint64_t h = 0;
+            for (double d : x)
+                h = (h ^ std::bit_cast<uint64_t>(d)) * 0x9e3779b97f4a7c15, h ^= h >> 29;
+            return h;
+        }
+    };
+    Program* program;
+    std::string question;
+    std::unordered_map<Out, Out, Hash> answers = {};
+    Rows put_off = {};
+    int budget = 0;
+
+    // The answer; or `meanwhile`, and then the whole check is run again.
+    const Out& operator()(const Out& in, const Out& meanwhile) {
+        const auto found = answers.find(in);
+        if (found != answers.end()) return found->second;
+        if (budget-- > 0) return answers[in] = program->ask(question, Rows(in)).numbers;
+        put_off.add(in);
+        return answers[in] = meanwhile;
+    }
+    // Whether there was nothing to be asked.
+    bool catch_up() {
+        budget = 4096;
+        if (put_off.numbers.empty()) return true;
+        const Rows out = program->ask(question, put_off);
+        for (size_t i = 0; i < put_off.size(); ++i) {
+            const auto in = put_off[i], row = out[i];
+            answers[Out(in.begin(), in.end())] = Out(row.begin(), row.end());
+        }
+        put_off = {};
+        return false;
+    }
+};
+
+class Judge {
+public:
+    oracle::Random random;
+    std::vector<Item> items;
+    Out fingerprint;  // answers to probes: by them known mistakes are told
+    double epsilon;   // of the student's `real`: 2^-53 or 2^-24
+
+    Judge(Program& program, uint64_t seed)
+        : random(seed), epsilon(program.is_float() ? 0x1p-24 : 0x1p-53), program_(program) {}
+
+    // The answers to a batch of questions, row by row; throws Silence if they do not come.
+    Rows ask(const std::string& question, const Rows& in) { return program_.ask(question, in); }
+    // To one.
+    Out ask(const std::string& question, const Out& in) {
+        return program_.ask(question, Rows(in)).numbers;
+    }
+    // To questions that are always the same, and so tell which mistake it is.
+    Rows probe(const std::string& question, const Rows& in) {
+        Rows out = program_.ask(question, in);
+        fingerprint.insert(fingerprint.end(), out.numbers.begin(), out.numbers.end());
+        return out;
+    }
+
+    // A check of the oracle calls functions one by one: check(random, functions) is run with what
+    // is known so far, and again with the same random numbers, until nothing was put off.
+    template <class Check>
+    oracle::Verdict batched(const std::vector<std::string>& questions, Check check) {
+        std::vector<Known> known;
+        for (const std::string& q : questions) known.push_back({&program_, q});
+        for (;;) {
+            oracle::Random same = random;
+            const oracle::Verdict verdict = check(same, known);
+            bool complete = true;
+            for (Known& k : known) complete &= k.catch_up();
+            if (!complete) continue;
+            random = same;
+            return verdict;
+        }
+    }
+
+    // What holds to the last digits or not at all.
+    void exact(const std::string& what, bool right, const std::string& seen = "") {
+        items.push_back({what, false, right, seen});
+    }
+    // A number; `of` says of which question.
+    void number(const std::string& what, double came, double expected, double tolerance) {
+        exact(what, near(came, expected, tolerance),
+              oracle::say("%.9g expected, %.9g came", expected, came));
+    }
+    void statistical(const std::string& what, const oracle::Verdict& v) {
+        std::string seen = v.text.substr(0, v.text.find('\n'));
+        if (v.pass)
+            seen = oracle::say("p = %.2g; errors above %.2g %% are seen", v.p, 100 * v.delta_min);
+        items.push_back({what, true, v.pass, seen});
+    }
+
+private:
+    Program& program_;
+};
+
+using Judging = std::function<void(Judge&)>;
+
+// ---- Known mistakes -----------------------------------------------------------------------------
+
+// A line of mistakes.txt, between tabs: exercise, name ("stub": the starter's), what it is in the
+// student's terms, where to read, the answers to the judge's probes.
+struct KnownMistake {
+    std::string exercise, name, says, read;
+    Out fingerprint;
+};
+
+inline std::vector<KnownMistake> read_mistakes(const std::string& path) {
+    std::vector<KnownMistake> mistakes;
+    std::ifstream file(path);
+    if (!file) throw std::runtime_error("cannot read " + path);
+    for (std::string line; std::getline(file, line);) {
+        if (line.empty() || line[0] == '#') continue;
+        std::istringstream fields(line);
+        KnownMistake m;
+        for (std::string* field : {&m.exercise, &m.name, &m.says, &m.read})
+            std::getline(fields, *field, '\t');
+        for (std::string word; fields >> word;)
+            m.fingerprint.push_back(std::strtod(word.c_str(), nullptr));
+        mistakes.push_back(m);
+    }
+    return mistakes;
+}
+
+// The mistake whose answers these are.  Float has seven digits, of which a path may lose some.
+inline const KnownMistake* mistake_of(const std::vector<KnownMistake>& mistakes,
+                                      const std::string& exercise, const Judge& j) {
+    const double tolerance = j.epsilon > 0x1p-50 ? 1e-4 : 1e-8;
+    for (const KnownMistake& m : mistakes) {
+        if (m.exercise != exercise || m.fingerprint.size() != j.fingerprint.size()) continue;
+        bool same = !m.fingerprint.empty();
+        for (size_t i = 0; same && i < m.fingerprint.size(); ++i) {
+            const double a = j.fingerprint[i], b = m.fingerprint[i];
+            same = a == b || near(a, b, tolerance) || (std::isnan(a) && std::isnan(b));
+        }
+        if (same) return &m;
+    }
+    return nullptr;
+}
+
+// ---- The program --------------------------------------------------------------------------------
+
+struct Judgement {
+    std::string exercise, state;  // right, wrong, open, silent
+    std::vector<Item> items;
+    std::string silence;  // why answers ended, if they did
+    std::optional<KnownMistake> named;
+    Out fingerprint;
+    size_t right() const {
+        return size_t(
+            std::count_if(items.begin(), items.end(), [](const Item& i) { return i.right; }));
+    }
+    // In [0,1]: every item weighs the same; one that no answer came to is wrong.
+    double score() const {
+        if (state == "open" || items.empty()) return 0;
+        return double(right()) / double(items.size());
+    }
+};
+
+inline Judgement judge_one(const std::string& exercise, const Judging& judging,
+                           const std::vector<KnownMistake>& mistakes, uint64_t seed,
+                           Program& program) {
+    Judge j(program, seed);
+    Judgement result{exercise, "right", {}, {}, {}, {}};
+    try {
+        judging(j);
+    } catch (const Silence& e) {
+        result.silence = e.what();
+        j.items.push_back({"all questions are answered", false, false, e.what()});
+    }
+    result.items = j.items;
+    result.fingerprint = j.fingerprint;
+    if (result.right() == result.items.size() && !result.items.empty()) return result;
+    result.state = result.silence.empty() ? "wrong" : "silent";
+    if (const KnownMistake* m = mistake_of(mistakes, exercise, j)) {
+        result.named = *m;
+        if (m->name == "stub") result.state = "open";
+    }
+    return result;
+}
+
+// The verdict in a line, then what was looked at.
+inline void print(const Judgement& r) {
+    const Item* first = nullptr;
+    for (const Item& i : r.items)
+        if (!i.right && !first) first = &i;
+    const std::string sheet = r.exercise.substr(0, r.exercise.find('.'));
+    if (r.state == "right")
+        std::printf("%s right: %zu of %zu\n", r.exercise.c_str(), r.right(), r.items.size());
+    else if (r.state == "open")
+        std::printf("%s open: the stub is still there\n", r.exercise.c_str());
+    else if (r.named)
+        std::printf("%s wrong: %s; read \"%s\" in sheet %s\n", r.exercise.c_str(),
+                    r.named->says.c_str(), r.named->read.c_str(), sheet.c_str());
+    else if (!r.silence.empty())
+        std::printf("%s wrong: %s\n", r.exercise.c_str(), r.silence.c_str());
+    else if (first)
+        std::printf("%s wrong: %s: %s\n", r.exercise.c_str(), first->what.c_str(),
+                    first->seen.c_str());
+    for (const Item& i : r.items)
+        std::printf("  %-5s  %-11s  %s%s%s\n", i.right ? "right" : "WRONG",
+                    i.statistical ? "statistical" : "exact", i.what.c_str(),
+                    i.seen.empty() || (i.right && !i.statistical) ? "" : ": ",
+                    i.right && !i.statistical ? "" : i.seen.c_str());
+}
+
+inline std::string json_text(const std::string& text) {
+    std::string quoted = "\"";
+    for (char c : text)
+        if (c == '"' || c == '\\')
+            quoted += '\\', quoted += c;
+        else if (static_cast<unsigned char>(c) < ' ')
+            quoted += ' ';
+        else
+            quoted += c;
+    return quoted + '"';
+}
+
+inline void write_json(const std::string& path, const Judgement& r) {
+    std::ofstream file(path);
+    file << "{\"exercise\": " << json_text(r.exercise) << ", \"state\": " << json_text(r.state)
+         << ", \"score\": " << r.score()
+         << ",\n \"named\": " << json_text(r.named ? r.named->name : "")
+         << ", \"says\": " << json_text(r.named ? r.named->says : r.silence)
+         << ", \"read\": " << json_text(r.named ? r.named->read : "") << ",\n \"items\": [";
+    for (size_t i = 0; i < r.items.size(); ++i)
+        file << (i ? ",\n  " : "\n  ") << "{\"what\": " << json_text(r.items[i].what)
+             << ", \"kind\": \"" << (r.items[i].statistical ? "statistical" : "exact")
+             << "\", \"right\": " << (r.items[i].right ? "true" : "false")
+             << ", \"seen\": " << json_text(r.items[i].seen) << "}";
+    file << "],\n \"fingerprint\": [";
+    for (size_t i = 0; i < r.fingerprint.size(); ++i)
+        file << (i ? ", " : "") << json_text(oracle::say("%.13g", r.fingerprint[i]));
+    file << "]}\n";
+    if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+inline int judge(int argc, char** argv, const std::map<std::string, Judging>& exercises) try {
+    std::string mistakes, json, exercise;
+    uint64_t seed = oracle::seed_of("course");
+    double patience = 5;
+    int i = 1;
+    for (; i < argc && std::string(argv[i]) != "--"; ++i) {
+        const std::string word = argv[i];
+        if (word.starts_with("--") && i + 1 == argc) throw std::runtime_error(word + ": of what?");
+        if (word == "--mistakes")
+            mistakes = argv[++i];
+        else if (word == "--json")
+            json = argv[++i];
+        else if (word == "--seed")
+            seed = std::strtoull(argv[++i], nullptr, 10);
+        else if (word == "--patience")
+            patience = std::strtod(argv[++i], nullptr);
+        else
+            exercise = word;
+    }
+    const auto found = exercises.find(exercise);
+    if (found == exercises.end()) throw std::runtime_error("no exercise '" + exercise + "' here");
+    if (i + 1 >= argc) throw std::runtime_error("say -- and the program that answers");
+    Program program(argv + i + 1, patience);
+    const Judgement r = judge_one(
+        exercise, found->second,
+        mistakes.empty() ? std::vector<KnownMistake>{} : read_mistakes(mistakes), seed, program);
+    print(r);
+    if (!json.empty()) write_json(json, r);
+    return r.state == "right" ? 0 : r.state == "open" ? 3 : 1;
+} catch (const std::exception& e) {
+    std::fprintf(stderr, "judge: %s\n", e.what());
+    return 2;
+}
+
+}  // namespace course
