@@ -33,7 +33,8 @@ PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
-        cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always
+        cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
+        starter mistakes
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -152,7 +153,7 @@ clean:  ## remove build/ and out/
 
 help:  ## print this
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
-	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST)) $(wildcard src/course/course.mk)
 
 # ---- Building ------------------------------------------------------------------------------------
 
@@ -204,6 +205,17 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 	$(CXX) $(FLAGS) $(OPTIMISE) -c -o $@ $<
 
 -include $(wildcard $(OBJECTS)/*/*.d $(OBJECTS)/tests/*/*.d)
+
+# ---- The classroom -------------------------------------------------------------------------------
+
+include src/course/course.mk
+
+starter:  ## what students get, as build/starter/ and .tar.gz; WEEKS=1-3: of these weeks, those before come solved
+	@src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
+starter: build/draw$(SUFFIX)
+
+mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
+	@src/course/mistakes.py $(if $(EX),--only '$(EX)')
 
 # ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
 
