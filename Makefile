@@ -211,11 +211,11 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 include src/course/course.mk
 
 starter:  ## what students get, as build/starter/ and .tar.gz; WEEKS=1-3: of these weeks, those before come solved
-	@src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
+	@python3 src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
 starter: build/draw$(SUFFIX)
 
 mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
-	@src/course/mistakes.py $(if $(EX),--only '$(EX)')
+	@python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
 
 # ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
 

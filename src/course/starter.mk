@@ -1,0 +1,34 @@
+# course/starter.mk  5  the Makefile of a starter: `make` draws pictures, `make check` says what is right
+CXX      ?= g++
+REAL     ?= double
+FLAGS    := -std=c++20 -march=native -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
+            -Wall -Wextra -Wpedantic -Wshadow
+SUFFIX   := $(if $(filter float,$(REAL)),-float)
+SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
+ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
+  MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
+endif
+
+.PHONY: all clean help packages
+.DELETE_ON_ERROR:
+.SECONDARY:
+
+all: build/draw$(SUFFIX)  ## draw every scene into out/ (default)
+	@mkdir -p out; for s in $(SCENES); do build/draw$(SUFFIX) -o out/$$s.png scenes/$$s.scene || exit 1; done
+
+out/%.png: scenes/%.scene build/draw$(SUFFIX)  ## out/NAME.png: draw scenes/NAME.scene; ARGS="--spp 64": build/draw --help has more
+	@mkdir -p out; build/draw$(SUFFIX) $(ARGS) -o $@ $<
+
+clean:  ## remove build/ and out/
+	rm -rf build out
+
+help:  ## print this
+	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float]"
+	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' Makefile src/course/course.mk
+
+# stb_image_write writes PNG files.
+packages:
+	@printf '\043include <stb/stb_image_write.h>\n' | $(CXX) -x c++ -fsyntax-only - 2>/dev/null || \
+	    { echo "install stb (stb/stb_image_write.h); on Debian or Ubuntu: sudo apt-get install libstb-dev" >&2; exit 1; }
+
+include src/course/course.mk

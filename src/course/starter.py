@@ -1,0 +1,202 @@
+# course/starter.py  6  makes a starter: what students get, generated from the solution
+"""starter.py [--weeks 1-3,V] [--solved] [--no-pictures] FOLDER
+
+Writes FOLDER and FOLDER.tar.gz.  Exercises of these weeks are open: their stubs stand between
+`// BEGIN N.M` and `// END N.M`.  Those of earlier weeks come solved, those of later ones are stubs that
+nobody is asked to replace, so that no solution is given away.  --solved: all come solved, for whoever
+wants to look for a planted bug.
+"""
+import argparse
+import io
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+
+import regions
+from regions import ROOT
+
+WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
+FOLDERS = ['base', 'world', 'path', 'film']
+TREE = ['bvh_build.h', 'bvh_collapse.h', 'bvh_lanes.h', 'bvh_leaf.h', 'bvh_node.h', 'bvh.h']
+COURSE = ['bvh.h', 'draw.h', 'draw.cpp', 'course.mk']  # of src/course
+KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'pictures.txt']  # of tests/course
+HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
+Leave these lines as they are.'''
+
+
+class Plan:
+    """Which weeks are open, which exercises, and what becomes of each region."""
+
+    def __init__(self, words, solved=False):
+        self.all = regions.exercises()
+        weeks = list(dict.fromkeys(e.week for e in self.all))
+        self.weeks = []
+        for part in words.split(','):
+            ends = part.split('-')
+            if len(ends) > 2 or not all(w in weeks for w in ends) or weeks.index(ends[0]) > weeks.index(ends[-1]):
+                raise SystemExit(f'starter: WEEKS={words}: say weeks of {" ".join(weeks)}, such as 1-3 or 2 or 1-6,V')
+            self.weeks += weeks[weeks.index(ends[0]):weeks.index(ends[-1]) + 1]
+        self.weeks = [w for w in weeks if w in self.weeks]
+        first = weeks.index(self.weeks[0])
+        numbered = [w for w in weeks if w.isdigit()]
+        # An optional project alone comes after the whole course.
+        before = weeks[:first] if self.weeks[0].isdigit() else numbered
+        self.solved_weeks = [w for w in before if w not in self.weeks]
+        self.solved = solved
+        self.open = [e for e in self.all if e.week in self.weeks]
+        self.wings = [wing for week, wing in WINGS.items() if week in self.weeks + self.solved_weeks]
+
+    def replacement(self, region):
+        """Lines in place of a region; None: its solution."""
+        week = region.number.split('.')[0]
+        if self.solved or week in self.solved_weeks:
+            return None
+        return region.open(region.stub) if week in self.weeks else region.stub
+
+
+def write(path, text, executable=False):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    path.chmod(0o755 if executable else 0o644)
+
+
+def write_sources(plan, to):
+    """src: the folders that the weeks need, and the tree that a student can read in place of ours."""
+    for folder in FOLDERS + plan.wings:
+        for path in sorted((ROOT / 'src' / folder).iterdir()):
+            if folder == 'world' and path.name in TREE:
+                continue
+            name = f'src/{folder}/{path.name}'
+            write(to / name, regions.rewrite(path.read_text(), name, plan.replacement))
+    names = COURSE + sorted({pathlib.Path(e.file).name for e in plan.open if e.file.startswith('course/')})
+    for file in dict.fromkeys(names):
+        name = f'src/course/{file}'
+        write(to / name, regions.rewrite((ROOT / name).read_text(), name, plan.replacement))
+    write(to / 'src/world/bvh.h', '// world/bvh.h  5  where rays stop: the tree of course/bvh.h\n#pragma once\n'
+          '#include "course/bvh.h"\n\nusing Bvh = BinaryBvh;\n')
+
+
+def rows(text, keep):
+    """Lines of a table whose first field is kept, and comments."""
+    return ''.join(line + '\n' for line in text.splitlines()
+                   if line.startswith('#') or keep(re.split(r'[\t|]', line)[0].strip()))
+
+
+def write_checks(plan, to):
+    """tests/course: the kit, and answers, judges, exercises and known mistakes of the open weeks."""
+    course = ROOT / 'tests/course'
+    numbers = {e.number for e in plan.open}
+    for file in KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]:
+        if (course / file).exists():
+            write(to / 'tests/course' / file, (course / file).read_text(), file == 'check')
+            # What they include of tests/course.
+            for header in re.findall(r'^#include "course/(\w+\.h)"', (course / file).read_text(), re.M):
+                if (course / header).exists():
+                    write(to / 'tests/course' / header, (course / header).read_text())
+    write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
+    write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
+    write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
+    write(to / 'tests/oracle/README.md', (ROOT / 'tests/oracle/README.md').read_text())
+
+
+def sheet_of(week):
+    """The sheet of a week, if there is one."""
+    names = {'V': 'voronoi', 'R': 'radiosity'}
+    found = sorted((ROOT / 'reference/course').glob(f'{names[week]}.md' if week in names else f'{week}-*.md'))
+    return found[0] if found else None
+
+
+def write_rest(plan, to):
+    """Scenes, sheets, Makefile, README, licence."""
+    for path in sorted((ROOT / 'scenes').iterdir()):
+        if path.suffix in ('.scene', '.obj', '.mtl') and 'build/' not in path.read_text():
+            write(to / 'scenes' / path.name, path.read_text())
+    sheets = []
+    for week in plan.weeks:
+        sheet = sheet_of(week)
+        if sheet:
+            text = sheet.read_text()
+            for picture in re.findall(r'!\[[^]]*\]\(([\w.-]+\.(?:png|svg))\)', text):
+                (to / 'sheets').mkdir(exist_ok=True)
+                shutil.copy(sheet.parent / picture, to / 'sheets' / picture)
+            write(to / 'sheets' / sheet.name, text)
+            sheets.append((week, sheet.name, text.split('\n', 1)[0].lstrip('# ')))
+    makefile = (ROOT / 'src/course/starter.mk').read_text()
+    write(to / 'Makefile', makefile)
+    points = sum(e.points for e in plan.open)
+    hours = sum(e.hours for e in plan.open)
+    write(to / 'README.md', '# A course with Penumbra\n\n'
+          '    make                 # draws every scene into out/\n'
+          '    make check EX=%s    # is this exercise right?\n'
+          '    make check           # what is right, and what is to do\n\n' % plan.open[0].number +
+          'You need make, g++ 12 or clang++ 15, and stb (Debian, Ubuntu: `libstb-dev`).  Start with the sheet of the\n'
+          f'week.  {len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
+          ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in sheets) +
+          '\nAn exercise is what stands between `// BEGIN 2.2 ...` and `// END 2.2` in `src`: replace it.  What is there is\n'
+          'wrong, but it compiles, and pictures can be drawn from the first day.\n\n' +
+          HAND_IN + '\n\n'
+          '| exercise | | file | points | hours |\n|---|---|---|---|---|\n' +
+          ''.join(f'| {e.number} | {e.title} | src/{e.file} | {e.points} | {e.hours:g} |\n' for e in plan.open))
+    write(to / 'LICENSE', (ROOT / 'LICENSE').read_text())
+
+
+def draw_expected(plan, to, draw):
+    """expected/: what the solution draws, by more samples."""
+    for line in (ROOT / 'tests/course/pictures.txt').read_text().splitlines():
+        key, _, order = (part.strip() for part in line.partition('|'))
+        if key.split('.')[0] not in plan.weeks or not order:
+            continue
+        (to / 'expected').mkdir(exist_ok=True)
+        samples = re.sub(r'--spp \d+', '--spp 256', order)
+        subprocess.run([draw, *samples.split(), '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT,
+                       stdout=subprocess.DEVNULL)
+
+
+def pack(folder):
+    """FOLDER.tar.gz, the same bytes for the same content."""
+    def plain(info):
+        info.uid = info.gid = info.mtime = 0
+        info.uname = info.gname = ''
+        return info
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode='w') as tar:
+        for path in sorted(folder.rglob('*')):
+            tar.add(path, pathlib.Path('penumbra-starter') / path.relative_to(folder), recursive=False, filter=plain)
+    import gzip
+    with open(f'{folder}.tar.gz', 'wb') as file, gzip.GzipFile(filename='', fileobj=file, mode='wb', mtime=0) as packed:
+        packed.write(buffer.getvalue())
+
+
+def make_starter(plan, to, draw=None):
+    """Writes the folder anew."""
+    shutil.rmtree(to, ignore_errors=True)
+    for step in (write_sources, write_checks, write_rest):
+        step(plan, to)
+    if draw:
+        draw_expected(plan, to, draw)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n', 1)[0])
+    parser.add_argument('--weeks', default='1-6')
+    parser.add_argument('--solved', action='store_true')
+    parser.add_argument('--no-pictures', action='store_true')
+    parser.add_argument('folder', type=pathlib.Path)
+    words = parser.parse_args()
+    plan = Plan(words.weeks, words.solved)
+    draw = None if words.no_pictures else str(ROOT / ('build/draw' + os.environ.get('SUFFIX', '')))
+    folder = words.folder.resolve()
+    make_starter(plan, folder, draw)
+    pack(folder)
+    print(f'{words.folder}, {words.folder}.tar.gz: {len(plan.open)} exercises of weeks {" ".join(plan.weeks)}')
+
+
+if __name__ == '__main__':
+    try:
+        main()
+    except regions.Malformed as error:
+        sys.exit(f'starter: {error}')
