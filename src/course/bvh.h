@@ -1,0 +1,248 @@
+// course/bvh.h  1  where rays stop: a plain binary tree of boxes
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "world/shapes.h"
+
+// A ray as boxes see it; inverse is 1 / d, component by component.
+struct Probe {
+    Ray ray;
+    vec3 inverse;
+    explicit Probe(const Ray& r) : ray(r), inverse{1 / r.d.x, 1 / r.d.y, 1 / r.d.z} {}
+};
+
+// How far along the ray it enters a box: 0 if it starts inside.  Nothing if it meets none of the
+// box up to tmax.  The tree's boxes are wider than what they hold, by more than rounding, so that
+// nothing depends on rays that run within a face.
+inline std::optional<real> enter_box(const Box& b, const Probe& p) {
+    // BEGIN SOLUTION 1.4  where a ray enters a box
+    real enter = 0, leave = p.ray.tmax;
+    for (auto k : axis) {
+        const real lo = (b.lo.*k - p.ray.o.*k) * p.inverse.*k;
+        const real hi = (b.hi.*k - p.ray.o.*k) * p.inverse.*k;
+        enter = std::max(enter, std::min(lo, hi));
+        leave = std::min(leave, std::max(lo, hi));
+    }
+    return enter <= leave ? std::optional(enter) : std::nullopt;
+    // STUB  a ball about the box
+    // const vec3 to = (b.lo + b.hi) / 2 - p.ray.o;
+    // const real t = dot(to, p.ray.d), r = length(b.hi - b.lo) / 2;
+    // return t + r < 0 ? std::nullopt : std::optional(std::max(real(0), t - r));
+    // END SOLUTION
+}
+
+// A leaf holds count shapes from first on; an inner node (count = 0) has the children first and
+// first + 1.  The root is node 0.
+struct TreeNode {
+    Box box;
+    uint32_t first = 0, count = 0;
+    bool is_leaf() const { return count > 0; }
+};
+
+inline constexpr int tree_depth = 64;  // at most; so many nodes never wait at once
+
+// The nearest of `best` and all hits in the leaves.  enter(box): where the ray enters it, or
+// nothing.  look(leaf, best): the nearest of best and the leaf's own hits.
+template <class Enter, class Look>
+inline Hit nearest_hit(std::span<const TreeNode> nodes, Hit best, Enter enter, Look look) {
+    // BEGIN SOLUTION 1.5  the nearest hit, with as little work as possible
+    struct Waiting {
+        uint32_t node;
+        real enter;
+    };
+    std::array<Waiting, tree_depth + 2> stack;
+    size_t waiting = 0;
+    if (const auto t = enter(nodes[0].box)) stack[waiting++] = {0, *t};
+    while (waiting > 0) {
+        const Waiting next = stack[--waiting];
+        if (next.enter > best.t) continue;
+        const TreeNode& node = nodes[next.node];
+        if (node.is_leaf()) {
+            best = look(node, best);
+            continue;
+        }
+        const uint32_t left = node.first, right = left + 1;
+        const auto l = enter(nodes[left].box), r = enter(nodes[right].box);
+        const bool right_first = l && r && *r < *l;
+        if (l && right_first) stack[waiting++] = {left, *l};
+        if (r) stack[waiting++] = {right, *r};
+        if (l && !right_first) stack[waiting++] = {left, *l};
+    }
+    return best;
+    // STUB  every leaf that the ray enters, one after the other
+    // for (const TreeNode& node : nodes)
+    //     if (node.is_leaf() && enter(node.box)) best = look(node, best);
+    // return best;
+    // END SOLUTION
+}
+
+// Boxes in a row are divided before number `left`.  The cost is what a ray that meets them all is
+// expected to look at, times half the area of the box about them.
+struct Division {
+    real cost = infinity;
+    size_t left = 0;
+};
+
+// The cheapest division of two or more boxes that leaves some on both sides (the surface area
+// heuristic; Goldsmith, Salmon 1987, IEEE CG&A 7(5)).  Time O(n).
+inline Division best_division(std::span<const Box> boxes) {
+    // BEGIN SOLUTION 1.6  where to divide a row of boxes
+    std::vector<real> right(boxes.size());  // half the area about the boxes from i on
+    Box box;
+    for (size_t i = boxes.size(); i-- > 0;) {
+        box.add(boxes[i]);
+        right[i] = box.half_area();
+    }
+    box = {};
+    Division best;
+    for (size_t i = 1; i < boxes.size(); ++i) {
+        box.add(boxes[i - 1]);
+        const real cost = box.half_area() * real(i) + right[i] * real(boxes.size() - i);
+        if (cost < best.cost) best = {cost, i};
+    }
+    return best;
+    // STUB  as many to the left as to the right
+    // Box left, right;
+    // const size_t half = boxes.size() / 2;
+    // for (size_t i = 0; i < boxes.size(); ++i) (i < half ? left : right).add(boxes[i]);
+    // return {(left.half_area() + right.half_area()) * real(half), half};
+    // END SOLUTION
+}
+
+// Its answers equal those of a loop over all shapes, bit for bit; of shapes hit at the same
+// distance the one with the smallest index wins.
+class BinaryBvh {
+public:
+    BinaryBvh() = default;
+
+    // Shape i keeps the index i in every answer.
+    explicit BinaryBvh(const std::vector<Shape>& shapes) {
+        if (shapes.empty()) return;
+        std::vector<Item> items;
+        for (uint32_t i = 0; i < shapes.size(); ++i) {
+            const Box b = bounds(shapes[i]);
+            items.push_back({b, b.lo + b.hi, i});
+        }
+        nodes_.emplace_back();
+        grow(0, items, 0);
+        for (uint32_t id : ids_) shapes_.push_back(shapes[id]);
+    }
+
+    // The nearest hit, or nothing.
+    std::optional<Hit> closest(const Ray& ray) const { return nearest(ray, nullptr); }
+
+    // Whether anything is hit.  The order does not matter: the first hit ends it all.
+    bool occluded(const Ray& ray) const {
+        if (nodes_.empty()) return false;
+        const Probe probe(ray);
+        const Shear k = shear(ray.d);
+        const real room = rounding(ray);
+        std::array<uint32_t, tree_depth + 2> stack{0};
+        for (size_t waiting = 1; waiting > 0;) {
+            const TreeNode& node = nodes_[stack[--waiting]];
+            if (!enter_box(wider(node.box, room), probe)) continue;
+            for (uint32_t i = node.first; i < node.first + node.count; ++i)
+                if (intersect(shapes_[i], ray, k, ray.tmax)) return true;
+            if (node.is_leaf()) continue;
+            stack[waiting++] = node.first;
+            stack[waiting++] = node.first + 1;
+        }
+        return false;
+    }
+
+    // What closest(ray) costs: boxes and shapes looked at.  Without a tree: all shapes.
+    struct Work {
+        int boxes = 0, shapes = 0;
+    };
+    Work work(const Ray& ray) const {
+        Work work;
+        nearest(ray, &work);
+        return work;
+    }
+
+private:
+    std::vector<TreeNode> nodes_;
+    std::vector<Shape> shapes_;  // in the order of the leaves
+    std::vector<uint32_t> ids_;  // their indices
+
+    std::optional<Hit> nearest(const Ray& ray, Work* work) const {
+        if (nodes_.empty()) return {};
+        const Probe probe(ray);
+        const Shear k = shear(ray.d);
+        const real room = rounding(ray);
+        auto enter = [&](const Box& box) {
+            if (work) ++work->boxes;
+            return enter_box(wider(box, room), probe);
+        };
+        auto look = [&](const TreeNode& leaf, Hit best) {
+            if (work) work->shapes += int(leaf.count);
+            for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+                const auto hit = intersect(shapes_[i], ray, k, best.t);
+                if (!hit || (hit->t == best.t && ids_[i] > best.id)) continue;
+                best = *hit;
+                best.id = ids_[i];
+            }
+            return best;
+        };
+        const Hit hit = nearest_hit(nodes_, Hit{ray.tmax}, enter, look);
+        return hit.id == UINT32_MAX ? std::nullopt : std::optional(hit);
+    }
+
+    // What a hit and a plane of a box are off by if the ray comes from afar.
+    static real rounding(const Ray& ray) { return 32 * ulp * max_abs(ray.o); }
+    static Box wider(const Box& b, real e) { return {b.lo - vec3{e, e, e}, b.hi + vec3{e, e, e}}; }
+
+    // ---- Construction ---------------------------------------------------------------------------
+
+    struct Item {
+        Box box;
+        vec3 centre;  // twice
+        uint32_t id;
+    };
+    static constexpr size_t leaf_size = 4;  // shapes at most
+    static constexpr int halved_from = 32;  // a level from which on the tree is balanced
+
+    // Makes a node of these items, and all below it.
+    void grow(size_t index, std::span<Item> items, int depth) {
+        Box box;
+        for (const Item& item : items) box.add(item.box);
+        const Division d = divide(items, depth);
+        // A leaf costs a ray about as much as a node and one of its shapes.
+        if (items.size() <= leaf_size && !(d.cost < box.half_area() * real(items.size() - 1))) {
+            nodes_[index] = {box, uint32_t(ids_.size()), uint32_t(items.size())};
+            for (const Item& item : items) ids_.push_back(item.id);
+            return;
+        }
+        const size_t left = nodes_.size();
+        nodes_[index] = {box, uint32_t(left)};
+        nodes_.resize(left + 2);
+        grow(left, items.first(d.left), depth + 1);
+        grow(left + 1, items.subspan(d.left), depth + 1);
+    }
+
+    // Sorts the items along the axis that is divided best.
+    static Division divide(std::span<Item> items, int depth) {
+        Division best{infinity, items.size() / 2};
+        if (items.size() < 2 || depth >= halved_from) return best;
+        auto best_axis = axis[0];
+        std::vector<Box> boxes;
+        for (auto k : axis) {
+            sort(items, k);
+            if (items.front().centre.*k == items.back().centre.*k) continue;
+            boxes.clear();
+            for (const Item& item : items) boxes.push_back(item.box);
+            const Division d = best_division(boxes);
+            if (d.left == 0 || d.left >= items.size() || !(d.cost < best.cost)) continue;
+            best = d;
+            best_axis = k;
+        }
+        sort(items, best_axis);
+        return best;
+    }
+    static void sort(std::span<Item> items, real vec3::*k) {
+        std::sort(items.begin(), items.end(),
+                  [k](const Item& a, const Item& b) { return a.centre.*k < b.centre.*k; });
+    }
+};
