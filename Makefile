@@ -209,13 +209,15 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 # ---- The classroom -------------------------------------------------------------------------------
 
 include src/course/course.mk
+JUDGES := $(patsubst tests/course/%.cpp,$(COURSE)/%,$(wildcard tests/course/judge_*.cpp))
 
 starter:  ## what students get, as build/starter/ and .tar.gz; WEEKS=1-3: of these weeks, those before come solved
 	@python3 src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
 starter: build/draw$(SUFFIX)
 
 mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
-	@python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
+	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
+mistakes: $(JUDGES)
 
 # ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
 

@@ -62,7 +62,7 @@ inline real pdf_cosine_hemisphere(real cos_theta) {
 //     const real theta = u.x * pi / 2;
 //     return spherical(std::cos(theta), std::sin(theta), u.y);
 // }
-// inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 / (2 * pi) : 0; }
+// inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 / pi : 0; }
 // END SOLUTION
 
 // Density (n+1)/(2 pi) cos^n(alpha) about z, 0 for alpha >= 90 degrees (Phong 1975; Lafortune,
