@@ -34,7 +34,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
-        starter mistakes
+        starter starter-check mistakes handout
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -218,6 +218,13 @@ starter: build/draw$(SUFFIX)
 mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
 mistakes: $(JUDGES)
+
+handout:  ## sheets of the course as HTML, and as PDF where that can be made: build/handout/index.html
+	@python3 src/course/handout.py build/handout
+
+starter-check:  ## does the starter keep its promises?  FULL=1: each pair of stubs, too
+	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full)
+starter-check: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%) build/draw$(SUFFIX)
 
 # ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
 
