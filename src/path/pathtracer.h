@@ -62,13 +62,13 @@ struct DirectLight {
     const Light* light = nullptr;
     LightSample sample = {};
     real cosine = 0;  // between the normal and the direction to the light
-    real pdf = 0;     // of that direction (1/sr), the choice of the light included
+    real pdf = 0;     // of all choices that led to it (1/sr)
     real weight = 0;  // beside light found by hitting it
     bool occluded = false;
 };
 
-// By one light, chosen at random: f L cos / pdf where nothing is in the way.  Unbiased for the sum
-// of all lights; under MIS, for the weighted share of it.
+// By one light, chosen at random.  Unbiased for the sum of all lights; under MIS, for the weighted
+// share of it.
 PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
                               const Sampler& sampler, int vertex) {
     const Material& m = *x.material;
@@ -83,18 +83,29 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     const vec3 wi = x.local.to_local(s->wi);
     const rgb f = eval(m, x.wo, wi);
     if (max_of(f) <= 0) return {};
+    // BEGIN SOLUTION 3.3  what arrives by one light sample, and goes on to wo
+    // f L cos / pdf where nothing is in the way; pdf is of the light and of the point on it.
     const real pdf_light = chosen.pick * s->pdf;
     const bool share = t.light == LightMode::mis && !s->delta;
     const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
     const bool occluded = scene.bvh.occluded(spawn_to(x.at, s->at));
     const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
     return {L, &light, *s, wi.z, pdf_light, weight, occluded};
+    // STUB  shines through everything, and counts as if each light were a steradian
+    // const real pdf_light = 1;
+    // const bool share = t.light == LightMode::mis && !s->delta;
+    // const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
+    // const bool occluded = false;
+    // const rgb L = f * s->L * wi.z;
+    // return {L, &light, *s, wi.z, pdf_light, weight, occluded};
+    // END SOLUTION
 }
 
 // ---- One vertex ---------------------------------------------------------------------------------
 
 // The path so far: its last ray, drawn from the point `from` with density pdf (infinite: from the
-// camera, a mirror or glass), after k scatterings; beta is the product of f |cos| / pdf over them.
+// camera, a mirror or glass), after k scatterings.  Of radiance L that comes along this ray the eye
+// gets beta L.
 struct Segment {
     Ray ray;
     vec3 from;
@@ -104,7 +115,7 @@ struct Segment {
     vec3 n = {};  // normal of the surface at `from`, on the side of the ray
 };
 
-// What happened where it stopped.  The path's radiance grows by beta (Le weight + direct.L).
+// What happened where it stopped.
 struct Step {
     bool met = false;  // whether the ray stopped: at x
     Vertex x = {};
@@ -117,9 +128,10 @@ struct Step {
     Segment next = {};
 };
 
-// Weight of emission that a ray met by chance.
+// Weight of emission that a ray met by chance, beside light found by aiming.
 inline real weight_of_emission(const Scene& scene, const Technique& t, const Segment& s,
                                const Vertex& x) {
+    // BEGIN SOLUTION 3.4  the weight of light that is met by chance
     if (t.light == LightMode::none || std::isinf(s.pdf)) return 1;
     const size_t i = size_t(scene.light_of[x.hit.id]);
     const real pick = pick_of(scene, t.pick, i, s.from, s.n);
@@ -127,6 +139,10 @@ inline real weight_of_emission(const Scene& scene, const Technique& t, const Seg
     // 0 where light samples do not go: the inside of a two-sided sphere light.
     if (t.light == LightMode::nee) return pdf > 0 ? 0 : 1;
     return power_heuristic(s.pdf, pdf);
+    // STUB  half of it, wherever the light could be aimed at
+    // const bool aimed_at = t.light != LightMode::none && s.k > 0 && !scene.lights.empty();
+    // return aimed_at && x.material->emits() ? real(0.5) : 1;
+    // END SOLUTION
 }
 
 // The rendering equation (Kajiya 1986) at one vertex x:
@@ -156,14 +172,23 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
     e.wi = x.local.to_world(b.wi);
     if (ends(max_of(b.f) <= 0, "nothing is reflected that way")) return e;
+    // BEGIN SOLUTION 3.2  what the eye gets of light that comes along the next ray
+    // The product of f |cos| / pdf over all scatterings.
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
-    // Ending the dim (Arvo, Kirk 1990); those that are left have at least t.roulette.
+    // STUB  half of what it got before, whatever the surface
+    // rgb beta = s.beta * real(0.5);
+    // END SOLUTION
+    // BEGIN SOLUTION 3.5  ending the dim, and paying for it
+    // Arvo, Kirk 1990.  Those that are left have at least t.roulette.
     if (max_of(beta) < t.roulette) {
         const real survival = max_of(beta) / t.roulette;
         const real u_survival = sampler.get(dimension(s.k, Draw::roulette));
         if (ends(u_survival >= survival, "Russian roulette")) return e;
         beta /= survival;
     }
+    // STUB  ends all that are dim: what they would have brought is lost
+    // if (ends(max_of(beta) < t.roulette, "Russian roulette")) return e;
+    // END SOLUTION
     e.next = {spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1, x.local.n};
     return e;
 }
@@ -179,6 +204,7 @@ struct NoAccount {
 template <class Account = NoAccount>
 rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
        Account account = {}) {
+    // BEGIN SOLUTION 3.1  the radiance of a path, from vertex to vertex
     rgb L;
     for (Segment s{ray, ray.o};;) {
         const Step e = step(scene, t, s, sampler);
@@ -188,6 +214,12 @@ rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sa
         if (e.end) return L;
         s = e.next;
     }
+    // STUB  the first vertex alone: what it emits, and what lights that are aimed at send there
+    // const Segment s{ray, ray.o};
+    // const Step e = step(scene, t, s, sampler);
+    // account(s, e);
+    // return e.Le + e.direct.L;
+    // END SOLUTION
 }
 
 #undef PART
