@@ -1,0 +1,154 @@
+// course/answers_3.cpp  answers of week 3: the path
+//
+// The judge says which scene: this program only builds it, and asks the path tracer.
+#include <stdexcept>
+
+#include "course/answers.h"
+#include "path/pathtracer.h"
+
+using course::In, course::Out, course::numbers, course::vec3_of;
+
+namespace {
+
+Scene scene;  // the one that was asked for last
+
+// 13 numbers: kind, kd, ks, exponent, ior, Le, whether two-sided.
+Material material_of(In x) {
+    Material m;
+    m.kind = Material::Kind(int(x[0]));
+    m.kd = vec3_of(x, 1), m.ks = vec3_of(x, 4);
+    m.exponent = real(x[7]), m.ior = real(x[8]);
+    m.Le = vec3_of(x, 9), m.twosided = x[12] != 0;
+    return m;
+}
+
+// 23 numbers: 0 and a centre and a radius, or 1 and a corner and two edges, or 2 and the place and
+// the intensity of a point light; from the tenth on a material.
+void add(In x) {
+    const uint32_t material = uint32_t(scene.materials.size());
+    scene.materials.push_back(material_of(x.subspan(10)));
+    if (x[0] == 0) add_sphere(scene, vec3_of(x, 1), real(x[4]), material);
+    if (x[0] == 1) add_quad(scene, vec3_of(x, 1), vec3_of(x, 4), vec3_of(x, 7), material);
+    if (x[0] == 2) add_point_light(scene, vec3_of(x, 1), vec3_of(x, 4));
+}
+
+Out build(In x) {
+    scene = {};
+    scene.depth = int(x[0]);
+    for (size_t at = 1; at + 23 <= x.size(); at += 23) add(x.subspan(at, 23));
+    prepare(scene);
+    return {double(scene.shapes.size()), double(scene.lights.size())};
+}
+
+// The numbers of path `seed`.
+Sampler sampler(double seed) {
+    static const Pattern pattern{SamplerKind::independent, 3};
+    return {pattern, 0, uint64_t(seed)};
+}
+
+// 4 numbers: how light is found, how directions are chosen, the threshold of roulette, how lights
+// are picked.
+Technique technique(In x) {
+    return {Direction(int(x[1])), LightMode(int(x[0])), real(x[2]), Pick(int(x[3]))};
+}
+
+// 17 numbers.
+Segment segment(In x) {
+    return {{vec3_of(x, 0), vec3_of(x, 3)},
+            vec3_of(x, 6),
+            real(x[9]),
+            vec3_of(x, 10),
+            int(x[13]),
+            vec3_of(x, 14)};
+}
+
+void append(Out& out, vec3 v) {
+    const Out x = numbers(v);
+    out.insert(out.end(), x.begin(), x.end());
+}
+
+Out take_step(In x) {
+    const Sampler numbers_of_path = sampler(x[4]);
+    const Step e = step(scene, technique(x), segment(x.subspan(5)), numbers_of_path);
+    const bool goes_on = e.end == nullptr;
+    Out out{double(e.met), double(goes_on), double(e.weight)};
+    for (vec3 v : {e.Le, e.direct.L, e.wi, e.x.local.n}) append(out, v);
+    const Segment& s = e.next;
+    append(out, s.ray.o), append(out, s.ray.d), append(out, s.from);
+    out.push_back(double(s.pdf));
+    append(out, goes_on ? s.beta : rgb{});
+    out.push_back(s.k);
+    append(out, s.n);
+    return out;
+}
+
+// Of the ray that goes on; 0 if none does.
+Out throughput(In x) {
+    const Sampler numbers_of_path = sampler(x[4]);
+    const Step e = step(scene, technique(x), segment(x.subspan(5)), numbers_of_path);
+    return numbers(e.end ? rgb{} : e.next.beta);
+}
+
+Out found_by_aiming(In x) {
+    const Sampler numbers_of_path = sampler(x[4]);
+    const auto at = meet(scene, {vec3_of(x, 5), vec3_of(x, 8)});
+    if (!at) throw std::runtime_error("the ray meets nothing");
+    return numbers(direct_light(scene, technique(x), *at, numbers_of_path, 0).L);
+}
+
+// A light's shape, a point of it and the normal there: 7 numbers.
+Vertex on_a_light(In x) {
+    Vertex y;
+    y.hit.id = uint32_t(x[0]);
+    y.at = {vec3_of(x, 1), vec3_of(x, 4)};
+    y.material = &scene.material(y.hit);
+    return y;
+}
+
+Out weight(In x) {
+    return {double(
+        weight_of_emission(scene, technique(x), segment(x.subspan(4)), on_a_light(x.subspan(21))))};
+}
+
+// How likely a light sample from there is to choose that light, and the density of its point.
+Out likelihood(In x) {
+    const Technique t = technique(x);
+    const Segment s = segment(x.subspan(4));
+    const Vertex y = on_a_light(x.subspan(21));
+    const size_t light = size_t(scene.light_of[y.hit.id]);
+    return {double(pick_of(scene, t.pick, light, s.from, s.n)),
+            double(pdf_light(scene.lights[light], s.from, y.at))};
+}
+
+Out glass(In x) {
+    Material m;
+    m.kind = Material::Kind::glass;
+    m.ior = real(x[0]);
+    const BsdfSample b = sample_glass(m, vec3_of(x, 3), x[1] != 0, real(x[2]));
+    Out out = numbers(b.wi);
+    append(out, b.f);
+    out.push_back(double(b.pdf));
+    return out;
+}
+
+}  // namespace
+
+int main() {
+    return course::answer_all({
+        {"scene", 0, build},
+        {"Li", 11,
+         [](In x) {
+             return numbers(Li(scene, technique(x), {vec3_of(x, 5), vec3_of(x, 8)}, sampler(x[4])));
+         }},
+        {"step", 22, take_step},
+        {"throughput", 22, throughput},
+        {"direct_light", 11, found_by_aiming},
+        {"weight_of_emission", 28, weight},
+        {"likelihood", 28, likelihood},
+        {"sample_glass", 6, glass},
+        {"number", 3,
+         [](In x) {
+             return Out{double(sampler(x[0]).get(dimension(int(x[1]), Draw(int(x[2])))))};
+         }},
+    });
+}

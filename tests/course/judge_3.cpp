@@ -1,0 +1,622 @@
+// course/judge_3.cpp  judges week 3: the path
+//
+// Scenes stand here, beside what is known of them; the program that answers only builds them.
+#include "course/judge.h"
+
+using course::In, course::Judge, course::Out, course::Rows, oracle::Triple;
+
+namespace {
+
+// ---- Scenes -------------------------------------------------------------------------------------
+
+struct Stuff {
+    enum Kind { rough, mirror, glass } kind = rough;
+    Triple kd{}, ks{};
+    double exponent = 0, ior = 1;
+    Triple Le{};
+    bool twosided = false;
+};
+
+void append(Out& out, const auto& numbers) {
+    out.insert(out.end(), std::begin(numbers), std::end(numbers));
+}
+
+Out thing(double kind, const Triple& a, const Triple& b, const Triple& c, const Stuff& m) {
+    Out out{kind};
+    for (const Triple& v : {a, b, c}) append(out, v);
+    out.push_back(m.kind);
+    append(out, m.kd), append(out, m.ks);
+    out.push_back(m.exponent), out.push_back(m.ior);
+    append(out, m.Le);
+    out.push_back(m.twosided);
+    return out;
+}
+Out ball(const Triple& centre, double r, const Stuff& m) {
+    return thing(0, centre, {r, 0, 0}, {}, m);
+}
+Out quad(const Triple& p, const Triple& u, const Triple& v, const Stuff& m) {
+    return thing(1, p, u, v, m);
+}
+Out point_light(const Triple& p, const Triple& intensity) { return thing(2, p, intensity, {}, {}); }
+
+void build(Judge& j, int depth, const std::vector<Out>& things) {
+    Out all{double(depth)};
+    for (const Out& t : things) append(all, t);
+    j.ask("scene", all);
+}
+
+// ---- Questions ----------------------------------------------------------------------------------
+
+enum Light { by_chance, by_aiming, by_both };
+enum Directions { uniform, by_bsdf };
+enum Pick { by_power, by_place };
+
+struct Technique {
+    Light light = by_chance;
+    Directions directions = by_bsdf;
+    double roulette = 0;
+    Pick pick = by_place;
+};
+
+constexpr size_t segment_size = 17;
+
+// A path's ray that was drawn with density pdf after k scatterings, n being the normal it left.
+Out segment(const Triple& o, const Triple& d, const Triple& beta = {1, 1, 1}, int k = 0,
+            double pdf = oracle::infinity, const Triple& n = {}) {
+    Out s;
+    append(s, o), append(s, d), append(s, o);
+    s.push_back(pdf);
+    append(s, beta);
+    s.push_back(k);
+    append(s, n);
+    return s;
+}
+
+Out question(const Technique& t, const Out& more) {
+    Out q{double(t.light), double(t.directions), t.roulette, double(t.pick)};
+    append(q, more);
+    return q;
+}
+// The same, of path `seed`.
+Out question(const Technique& t, uint64_t seed, const Out& more) {
+    Out q = question(t, Out{double(seed)});
+    append(q, more);
+    return q;
+}
+Out ray(const Triple& o, const Triple& d) {
+    Out q;
+    append(q, o), append(q, d);
+    return q;
+}
+
+Triple triple(In x, size_t at = 0) { return {x[at], x[at + 1], x[at + 2]}; }
+Triple operator*(double s, const Triple& a) { return {s * a[0], s * a[1], s * a[2]}; }
+Triple operator*(const Triple& a, const Triple& b) {
+    return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
+}
+Triple operator+(const Triple& a, const Triple& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+bool near(const Triple& a, const Triple& b, double tolerance) {
+    return course::near(a[0], b[0], tolerance) && course::near(a[1], b[1], tolerance) &&
+           course::near(a[2], b[2], tolerance);
+}
+// A colour.
+void colour(Judge& j, const std::string& what, const Triple& came, const Triple& expected) {
+    j.exact(what, near(came, expected, 1e4 * j.epsilon),
+            oracle::say("(%.6g, %.6g, %.6g) expected, (%.6g, %.6g, %.6g) came", expected[0],
+                        expected[1], expected[2], came[0], came[1], came[2]));
+}
+
+// What happened at a vertex.
+struct Step {
+    bool goes_on;
+    double weight;
+    Triple Le, direct, wi, n, beta;
+    Out next;
+};
+Step step(In x) {
+    return {x[1] != 0,    x[2],          triple(x, 3),  triple(x, 6),
+            triple(x, 9), triple(x, 12), triple(x, 25), Out(x.begin() + 15, x.begin() + 32)};
+}
+Step take_step(Judge& j, const Technique& t, uint64_t seed, const Out& from) {
+    return step(j.ask("step", question(t, seed, from)));
+}
+
+// ---- 3.1 The sum over a path --------------------------------------------------------------------
+
+// Within a ball that emits Le and mirrors half of what meets it, radiance is Le (2 - 2^-depth).
+void within_a_hall_of_mirrors(Judge& j) {
+    const Triple Le{0.4, 0.3, 0.2};
+    Stuff mirror{Stuff::mirror, {}, {0.5, 0.5, 0.5}};
+    mirror.Le = Le, mirror.twosided = true;
+    for (int depth : {0, 1, 7}) {
+        build(j, depth, {ball({0, 0, 0}, 2, mirror)});
+        const Rows L =
+            j.probe("Li", Rows(question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64}))));
+        colour(j, oracle::say("within mirrors that glow, %d reflections", depth), triple(L[0]),
+               (2 - std::ldexp(1, -depth)) * Le);
+    }
+}
+
+// A rough ball below a point light, seen straight on and by a mirror that takes half.
+void a_lit_ball_and_its_image(Judge& j) {
+    const Stuff moon{Stuff::rough, {0.2, 0.5, 0.8}}, mirror{Stuff::mirror, {}, {0.5, 0.5, 0.5}};
+    build(j, 2,
+          {ball({0, 0, 0}, 1, moon), ball({0, 0, 6}, 1, mirror),
+           point_light({4, 1, 3}, {30, 20, 10})});
+    const Technique t{by_aiming};
+    const Out straight = ray({0, 0, 4.5}, {0, 0, -1}), image = ray({0, 0.1, 4}, {0, 0, 1});
+    const Rows L = j.probe("Li", {question(t, 1, straight), question(t, 1, image)});
+    const Step first = take_step(j, t, 1, segment({0, 0, 4.5}, {0, 0, -1}));
+    colour(j, "light found by aiming counts in full where the eye looks", triple(L[0]),
+           first.direct);
+    const Step mirrored = take_step(j, t, 1, segment({0, 0.1, 4}, {0, 0, 1}));
+    const Step seen = take_step(j, t, 1, mirrored.next);
+    colour(j, "and half of it in a mirror that takes half", triple(L[1]), 0.5 * seen.direct);
+}
+
+// From a floor many rays meet the large lamp above it.
+void a_lamp_is_met(Judge& j) {
+    Stuff lamp;
+    lamp.Le = {1, 2, 3};
+    build(j, 1, {ball({0, 0, -10}, 10, {Stuff::rough, {0.5, 0.5, 0.5}}), ball({0, 0, 3}, 2, lamp)});
+    const Technique t{by_both};
+    const Triple eye{8, 0, 4}, d{-2 / std::sqrt(5), 0, -1 / std::sqrt(5)};
+    j.probe("Li", {question(t, 1, ray(eye, d)), question(t, 4, ray(eye, d))});
+    int met = 0;
+    for (uint64_t seed = 0; seed < 64 && met < 8; ++seed) {
+        const Step floor = take_step(j, t, seed, segment(eye, d));
+        if (!floor.goes_on) continue;
+        const Step then = take_step(j, t, seed, floor.next);
+        if (then.Le[0] == 0) continue;
+        const Triple L = triple(j.ask("Li", question(t, seed, ray(eye, d))));
+        const Triple both = floor.direct + then.weight * floor.beta * then.Le;
+        if (++met == 8 || !near(L, both, 1e4 * j.epsilon))
+            return colour(j, "light found by chance counts by its weight, beside that by aiming", L,
+                          both);
+    }
+    j.exact("a lamp that fills half of the sky is met", false, "no ray meets it");
+}
+
+void sum_over_a_path(Judge& j) {
+    within_a_hall_of_mirrors(j);
+    a_lit_ball_and_its_image(j);
+    a_lamp_is_met(j);
+}
+
+// ---- 3.2 Throughput -----------------------------------------------------------------------------
+
+const Triple towards{0.48, 0.6, 0.64};  // unit: where the eye is, seen from the ball's centre
+
+// The throughput of paths that were (1, 1, 1), or `before`, and met a ball of that stuff: the
+// normal there is `towards`, and with aside > 0 the eye looks at it from the side.
+Out towards_a_ball(double aside = 0, const Triple& before = {1, 1, 1}, int k = 0) {
+    const Triple o = 5 * towards + aside * Triple{0.64, 0, -0.48};
+    const Triple to = towards + -1 * o;
+    const double length = std::sqrt(oracle::dot(to, to));
+    return segment(o, (1 / length) * to, before, k);
+}
+
+void of_a_mirror(Judge& j) {
+    const Triple ks{0.3, 0.6, 0.9}, before{0.5, 0.25, 2};
+    build(j, 8, {ball({0, 0, 0}, 1, {Stuff::mirror, {}, ks})});
+    const Rows b = j.probe("throughput", {question({}, 1, towards_a_ball(2)),
+                                          question({}, 1, towards_a_ball(2, before, 3))});
+    colour(j, "a mirror of reflectance (0.3, 0.6, 0.9)", triple(b[0]), ks);
+    colour(j, "the same at the end of a path of throughput (0.5, 0.25, 2)", triple(b[1]),
+           ks * before);
+}
+
+void of_a_rough_ball(Judge& j) {
+    const Triple kd{0.2, 0.5, 0.8};
+    build(j, 8, {ball({0, 0, 0}, 1, {Stuff::rough, kd})});
+    const Technique by_cosine{}, evenly{by_chance, uniform};
+    const Rows b = j.probe("throughput", {question(by_cosine, 1, towards_a_ball(2)),
+                                          question(evenly, 1, towards_a_ball(2))});
+    colour(j, "a rough surface's albedo, if directions follow the cosine", triple(b[0]), kd);
+    bool right = true;
+    Triple came{}, expected{};
+    for (uint64_t seed = 1; seed <= 16 && right; ++seed) {
+        const Step s = take_step(j, evenly, seed, towards_a_ball(2));
+        came = s.beta, expected = 2 * oracle::dot(s.n, s.wi) * kd;
+        right = near(came, expected, 1e4 * j.epsilon);
+    }
+    colour(j, "twice albedo and cosine, if directions are uniform", came, expected);
+}
+
+// A lamp that reflects, too, is hit by a path that was drawn in order to do so.
+void of_a_lamp(Judge& j) {
+    Stuff lamp{Stuff::rough, {0.5, 0.5, 0.5}};
+    lamp.Le = {3, 2, 1};
+    build(j, 8, {ball({0, 0, 0}, 1, lamp)});
+    Out from = towards_a_ball(2, {1, 1, 1}, 1);
+    from[9] = 0.3;
+    const Rows b = j.probe("throughput", Rows(question({by_aiming}, 1, from)));
+    colour(j, "a lamp's albedo, whatever its light weighs", triple(b[0]), {0.5, 0.5, 0.5});
+}
+
+void of_clear_glass(Judge& j) {
+    build(j, 8, {ball({0, 0, 0}, 1, {Stuff::glass})});
+    const Rows b = j.probe("throughput", Rows(question({}, 1, towards_a_ball(2))));
+    colour(j, "glass of index 1 lets all light through", triple(b[0]), {1, 1, 1});
+}
+
+void of_a_glossy_ball(Judge& j) {
+    build(j, 8, {ball({0, 0, 0}, 1, {Stuff::rough, {0.2, 0.2, 0.2}, {0.5, 0.5, 0.5}, 12})});
+    Rows ask;
+    for (int i = 0; i < 200000; ++i)
+        ask.add(question({by_chance, uniform}, j.random.bits() >> 32, towards_a_ball()));
+    const Rows b = j.ask("throughput", ask);
+    size_t i = 0;
+    j.statistical("mean of a glossy surface: all that it reflects",
+                  oracle::expect_mean(0.7, b.size(), [&] { return b[i++][0]; }));
+}
+
+void throughput(Judge& j) {
+    of_a_mirror(j);
+    of_a_rough_ball(j);
+    of_a_lamp(j);
+    of_clear_glass(j);
+    of_a_glossy_ball(j);
+}
+
+// ---- 3.3 Light by aiming at it ------------------------------------------------------------------
+
+const Triple albedo{0.2, 0.5, 0.8};
+const Out ground = ball({0, 0, -10}, 10, {Stuff::rough, albedo});
+
+// The eye looks down at the origin, where the ground's normal is z.
+Out aimed(const Technique& t, uint64_t seed) {
+    return question(t, seed, ray({0, 0, 0.5}, {0, 0, -1}));
+}
+
+void from_a_point(Judge& j) {
+    const Triple I{3, 2, 1}, at{1, 2, 2};  // 3 away, by a cosine of 2/3
+    const Stuff rough{Stuff::rough, albedo};
+    const Triple truth = (2 / 27.0 / oracle::pi) * albedo * I;
+    build(j, 4, {ground, point_light(at, I)});
+    const Rows L = j.probe("direct_light", {aimed({by_aiming}, 1), aimed({by_both}, 1)});
+    colour(j, "a point light's intensity, distance and cosine", triple(L[0]), truth);
+    build(j, 4, {ground, point_light(at, I), ball({0.5, 1, 1}, 0.2, rough)});
+    const Rows hidden = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
+    build(j, 4, {ground, point_light(at, I), ball({1.5, 3, 3}, 0.2, rough)});
+    const Rows beyond = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
+    colour(j, "nothing of it behind an obstacle", triple(hidden[0]), {0, 0, 0});
+    colour(j, "all of it before an obstacle", triple(beyond[0]), triple(L[0]));
+    colour(j, "no share of it is left to rays that cannot meet it", triple(L[1]), truth);
+}
+
+// A lamp far above a ball: seen from a point of its upper side.
+void no_surface_shades_itself(Judge& j) {
+    const double far = 1e4;
+    build(
+        j, 4,
+        {ball({0, 0, 0}, 1, {Stuff::rough, albedo}), point_light({0, 0, far}, {far * far, 0, 0})});
+    const auto from = [](const Triple& n) { return question({by_aiming}, 1, ray(3 * n, -1 * n)); };
+    const auto on_the_ball = [](double z, double turns) {
+        const double r = std::sqrt(1 - z * z), phi = 2 * oracle::pi * turns;
+        return Triple{r * std::cos(phi), r * std::sin(phi), z};
+    };
+    Rows some, ask;
+    for (int i = 0; i < 3; ++i) some.add(from(on_the_ball(0.3 + 0.2 * i, 0.1 + 0.37 * i)));
+    j.probe("direct_light", some);
+    for (int i = 0; i < 400; ++i) ask.add(from(on_the_ball(0.1 + 0.9 * j.random(), j.random())));
+    const Rows L = j.ask("direct_light", ask);
+    int dark = 0;
+    for (size_t i = 0; i < L.size(); ++i) dark += L[i][0] <= 0;
+    j.exact("no surface is in its own way", dark == 0,
+            oracle::say("%d of 400 points are dark in broad light", dark));
+}
+
+// The eye aims at one of two; each is worth 1 over the chance to be aimed at.
+void from_two_points(Judge& j) {
+    const Triple a = (2 / 27.0 / oracle::pi) * Triple{3, 2, 1} * albedo;    // 3 away
+    const Triple b = (2 / 108.0 / oracle::pi) * Triple{4, 8, 16} * albedo;  // 6 away
+    build(j, 4, {ground, point_light({1, 2, 2}, {3, 2, 1}), point_light({-4, 2, 4}, {4, 8, 16})});
+    const Technique place{by_aiming}, power{by_aiming, by_bsdf, 0, by_power};
+    j.probe("direct_light", {aimed(place, 1), aimed(place, 2), aimed(power, 1), aimed(power, 2)});
+    Rows ask;
+    for (int i = 0; i < 4000; ++i) ask.add(aimed(place, j.random.bits() >> 32));
+    const Rows L = j.ask("direct_light", ask);
+    double chances = 0, chance_of_a = 0, chance_of_b = 0;
+    for (size_t i = 0; i < L.size(); ++i)
+        (L[i][0] * a[2] > L[i][2] * a[0] * 0.99 ? chance_of_a : chance_of_b) =
+            L[i][0] * a[2] > L[i][2] * a[0] * 0.99 ? a[0] / L[i][0] : b[0] / L[i][0];
+    chances = chance_of_a + chance_of_b;
+    j.number("chances by which two lights' samples are divided add up to", chances, 1,
+             1e4 * j.epsilon);
+    size_t i = 0;
+    j.statistical("mean of one of two lights: their sum",
+                  oracle::expect_mean(a[1] + b[1], L.size(), [&] { return L[i++][1]; }));
+}
+
+// It shows 0.64 of what the whole sky would be; seen in the cone of cosine 0.6.
+void from_a_lamp(Judge& j) {
+    Stuff lamp;
+    lamp.Le = {1, 2, 3};
+    build(j, 4, {ground, ball({0, 0, 4}, 3.2, lamp)});
+    const Technique alone{by_aiming, uniform}, shared{by_both, uniform};
+    j.probe("direct_light", {aimed(alone, 1), aimed(shared, 1)});
+    Rows ask, ask_shared;
+    for (int i = 0; i < 4000; ++i) {
+        const uint64_t seed = j.random.bits() >> 32;
+        ask.add(aimed(alone, seed)), ask_shared.add(aimed(shared, seed));
+    }
+    const Rows L = j.ask("direct_light", ask), part = j.ask("direct_light", ask_shared);
+    j.number("a lamp's share beside rays that may meet it", part[0][1] / L[0][1], 1 / 1.16,
+             1e4 * j.epsilon);
+    size_t i = 0;
+    j.statistical("mean of a lamp that fills 0.64 of the sky",
+                  oracle::expect_mean(0.64, L.size(), [&] { return L[i++][1]; }));
+}
+
+void light_by_aiming(Judge& j) {
+    from_a_point(j);
+    no_surface_shades_itself(j);
+    from_two_points(j);
+    from_a_lamp(j);
+}
+
+// ---- 3.4 Both, weighted -------------------------------------------------------------------------
+
+// A light's shape, a point of it and the light's normal there, met by a ray from the origin.
+struct Place {
+    double shape;
+    Triple p, n;
+    double k = 1;
+};
+
+Out met(const Technique& t, double pdf, const Place& y) {
+    const double length = std::sqrt(oracle::dot(y.p, y.p));
+    Out q =
+        question(t, segment({0, 0, 0}, (1 / length) * y.p, {1, 1, 1}, int(y.k), pdf, {0, 0, 1}));
+    q.push_back(y.shape);
+    append(q, y.p), append(q, y.n);
+    return q;
+}
+
+double weight(Judge& j, const Technique& t, double pdf, const Place& y) {
+    return j.probe("weight_of_emission", Rows(met(t, pdf, y))).numbers[0];
+}
+
+// The density with which light samples go there, as the program itself says.
+double density(Judge& j, const Technique& t, const Place& y) {
+    const Out both = j.ask("likelihood", met(t, 1, y));
+    return both[0] * both[1];
+}
+
+// The worst of weights that should be 1/2, since the ray was as likely as the light sample.
+double off_half(Judge& j, const Technique& t, const std::vector<Place>& places) {
+    double worst = 0;
+    for (const Place& y : places) {
+        const Out w = j.ask("weight_of_emission", met(t, density(j, t, y), y));
+        worst = std::abs(w[0] - 0.5) <= worst ? worst : std::abs(w[0] - 0.5);
+    }
+    return worst;
+}
+
+void of_one_lamp(Judge& j) {
+    Stuff lamp;
+    lamp.Le = {1, 1, 1};
+    build(j, 4, {ball({0, 0, 4}, 2, lamp)});
+    const Place y{0, {0, 0, 2}, {0, 0, -1}}, seen{0, {0, 0, 2}, {0, 0, -1}, 0};
+    j.number("the weight where nobody aims", weight(j, {by_chance}, 0.3, y), 1, 0);
+    const double eye = weight(j, {by_aiming}, oracle::infinity, seen),
+                 in_mirror = weight(j, {by_aiming}, oracle::infinity, y),
+                 both = weight(j, {by_both}, oracle::infinity, y);
+    j.exact("lamps that the eye sees, straight or in a mirror, weigh 1",
+            eye == 1 && in_mirror == 1 && both == 1,
+            oracle::say("they weigh %.6g and %.6g", eye, in_mirror));
+    j.number("the weight where light is found by aiming alone", weight(j, {by_aiming}, 0.3, y), 0,
+             0);
+    weight(j, {by_both}, 0.3, y), weight(j, {by_both}, 5, y);
+    const double q = density(j, {by_both}, y);
+    const auto of = [&](double p) { return j.ask("weight_of_emission", met({by_both}, p, y))[0]; };
+    j.number("the weight of a ray three times as likely as the light sample", of(3 * q), 0.9,
+             64 * j.epsilon);
+    j.number("the weight of a ray a third as likely", of(q / 3), 0.1, 64 * j.epsilon);
+}
+
+// Samples of a ball's light do not go to its inside: who stands there meets it by chance alone.
+void within_a_lamp(Judge& j) {
+    Stuff lamp;
+    lamp.Le = {1, 1, 1}, lamp.twosided = true;
+    build(j, 4, {ball({0, 0, 0}, 5, lamp)});
+    const Place y{0, {0, 0, 5}, {0, 0, 1}};
+    const double aiming = weight(j, {by_aiming}, 0.3, y), both = weight(j, {by_both}, 0.3, y);
+    j.exact("a light that cannot be aimed at from there weighs 1",
+            course::near(aiming, 1, 4 * j.epsilon) && course::near(both, 1, 4 * j.epsilon),
+            oracle::say("it weighs %.6g, and %.6g where both ways are used", aiming, both));
+}
+
+void of_two_lamps(Judge& j) {
+    Stuff dim, bright;
+    dim.Le = {1, 1, 1}, bright.Le = {5, 5, 5};
+    build(j, 4, {ball({3, 0, 4}, 1, dim), quad({-3, -1, 3}, {0, 2, 0}, {2, 0, 0}, bright)});
+    const std::vector<Place> places = {{0, {2.4, 0, 3.2}, {-0.6, 0, -0.8}},
+                                       {1, {-2.5, 0.5, 3}, {0, 0, -1}}};
+    const Technique place{by_both}, power{by_both, by_bsdf, 0, by_power};
+    for (const Technique& t : {place, power})
+        for (const Place& y : places) weight(j, t, 0.3, y);
+    for (const Technique& t : {power, place}) {
+        const double off = off_half(j, t, places);
+        j.exact(std::string("of two lamps, chosen by ") + (t.pick == by_power ? "power" : "place") +
+                    ": 1/2 where both ways are as likely",
+                off <= 64 * j.epsilon, oracle::say("off by %.6g", off));
+    }
+}
+
+void both_weighted(Judge& j) {
+    of_one_lamp(j);
+    of_two_lamps(j);
+    within_a_lamp(j);
+}
+
+// ---- 3.5 Russian roulette -----------------------------------------------------------------------
+
+// A mirror, which takes part of the path's throughput and no random number.
+void roulette(Judge& j) {
+    const double T = 0.5;
+    const Triple before{0.1, 0.3, 0.4};
+    build(j, 8, {ball({0, 0, 0}, 1, {Stuff::mirror, {}, {0.5, 0.5, 0.5}})});
+    const Out from = towards_a_ball(2, before, 2);
+    const auto asked = [&](double threshold, int n, uint64_t first) {
+        Rows rows;
+        for (int i = 0; i < n; ++i)
+            rows.add(question({by_chance, by_bsdf, threshold}, first + uint64_t(i), from));
+        return rows;
+    };
+    j.probe("throughput", asked(T, 6, 1));
+    j.probe("throughput", asked(0.05, 1, 1));
+    const Triple whole = triple(j.ask("throughput", question({}, 1, from)));
+    const double chance = whole[2] / T;
+
+    const Rows bright = j.ask("throughput", asked(0.9 * whole[2], 64, 1));
+    bool untouched = true;
+    for (size_t i = 0; i < bright.size(); ++i) untouched &= triple(bright[i]) == whole;
+    j.exact("what is brighter than the threshold goes on as it is", untouched,
+            "a path of 1.1 times the threshold was ended, or changed");
+
+    const uint64_t first = j.random.bits() >> 32;
+    const int n = 100000;
+    const Rows beta = j.ask("throughput", asked(T, n, first));
+    Rows which;
+    for (int i = 0; i < n; ++i) which.add({double(first + uint64_t(i)), 2, 6});
+    const Rows u = j.ask("number", which);
+    double alive = 0, highest_alive = 0, lowest_alive = 1, highest_dead = 0, lowest_dead = 1;
+    Triple survivor{};
+    for (size_t i = 0; i < beta.size(); ++i) {
+        const bool lives = beta[i][2] > 0;
+        alive += lives;
+        if (lives) survivor = triple(beta[i]);
+        double& high = lives ? highest_alive : highest_dead;
+        double& low = lives ? lowest_alive : lowest_dead;
+        high = std::max(high, u[i][0]), low = std::min(low, u[i][0]);
+    }
+    colour(j, "who survives has the threshold in its largest channel, and its colour", survivor,
+           (1 / chance) * whole);
+    j.exact(
+        "the number that roulette draws decides, and nothing else",
+        alive > 0 && alive < n && (highest_alive <= lowest_dead || highest_dead <= lowest_alive),
+        oracle::say("of %d paths %.0f survive, with numbers of %.3g to %.3g", n, alive,
+                    lowest_alive, highest_alive));
+    size_t i = 0;
+    j.statistical("share of paths that survive",
+                  oracle::expect_mean(chance, n, [&] { return beta[i++][2] > 0 ? 1.0 : 0.0; }));
+    i = 0;
+    j.statistical("mean throughput, the dead counted as 0",
+                  oracle::expect_mean(whole[0], n, [&] { return beta[i++][0]; }));
+}
+
+// ---- 3.6 Glass ----------------------------------------------------------------------------------
+
+// Asks for a way of light at glass; the direction to the eye has that cosine.
+Out at_glass(double ior, bool outside, double u, double cosine) {
+    const double sine = std::sqrt(1 - cosine * cosine);
+    return {ior, double(outside), u, 0.6 * sine, 0.8 * sine, cosine};
+}
+
+// The weights f |cos| and probabilities of both ways, and where they lead: from answers to many u.
+struct Ways {
+    double reflected = 0, refracted = 0, pdf_reflected = 0, pdf_refracted = 0;
+    Triple mirror{}, through{};
+    int n_reflected = 0, n = 0;
+};
+Ways ways(Judge& j, double ior, bool outside, double cosine) {
+    Rows ask;
+    for (int i = 0; i < 512; ++i) ask.add(at_glass(ior, outside, (i + 0.5) / 512, cosine));
+    const Rows b = j.ask("sample_glass", ask);
+    Ways w;
+    for (size_t i = 0; i < b.size(); ++i, ++w.n) {
+        const Triple wi = triple(b[i]);
+        const double weight = b[i][3] * std::abs(wi[2]);
+        if (wi[2] > 0)
+            w.reflected = weight, w.pdf_reflected = b[i][6], w.mirror = wi, ++w.n_reflected;
+        else
+            w.refracted = weight, w.pdf_refracted = b[i][6], w.through = wi;
+    }
+    return w;
+}
+
+void directions_of_glass(Judge& j) {
+    bool mirror = true, through = true;
+    Triple seen{}, wanted{};
+    // At 60 degrees: the sine divided by 1.5, and times 1.5 from within at a cosine of 0.8.
+    for (const auto& [outside, cosine, sine] :
+         {std::tuple{true, 0.5, 1 / std::sqrt(3)}, std::tuple{false, 0.8, 0.9}}) {
+        const Ways w = ways(j, 1.5, outside, cosine);
+        const double s = std::sqrt(1 - cosine * cosine);
+        mirror &= near(w.mirror, {-0.6 * s, -0.8 * s, cosine}, 64 * j.epsilon);
+        wanted = {-0.6 * sine, -0.8 * sine, -std::sqrt(1 - sine * sine)}, seen = w.through;
+        if (through) through = near(seen, wanted, 64 * j.epsilon);
+        if (!through) break;
+    }
+    j.exact("some is mirrored", mirror, "not in the mirror direction, or nothing is");
+    j.exact("the sine of what is refracted is that of Snell's law, to the other side", through,
+            oracle::say("(%.4f, %.4f, %.4f) expected, (%.4f, %.4f, %.4f) came", wanted[0],
+                        wanted[1], wanted[2], seen[0], seen[1], seen[2]));
+}
+
+// Reflectances of index 1.5, in numbers.
+void reflectance_of_glass(Judge& j) {
+    struct Known {
+        bool outside;
+        double cosine, reflectance;
+    };
+    const double brewster = 1 / std::sqrt(3.25);
+    double worst = 0;
+    Known at{};
+    for (const Known& k :
+         {Known{true, 1, 0.04}, Known{true, 0.5, 0.0891867128022121},
+          Known{true, brewster, 0.0739644970414201}, Known{false, 0.8, 0.1141411002213539},
+          Known{true, 0.001, 0.9942055725085013}}) {
+        const double off = std::abs(ways(j, 1.5, k.outside, k.cosine).reflected - k.reflectance);
+        if (!(off <= worst)) worst = off, at = k;
+    }
+    j.exact("it reflects as much as Fresnel's law says", worst <= 1e4 * j.epsilon,
+            oracle::say("off by %.6g where %.6g is reflected, at a cosine of %.4g %s", worst,
+                        at.reflectance, at.cosine, at.outside ? "from outside" : "from inside"));
+}
+
+void glass(Judge& j) {
+    j.probe("sample_glass", {at_glass(1.5, true, 0.01, 0.5), at_glass(1.5, true, 0.9, 0.5),
+                             at_glass(1.5, false, 0.9, 0.8), at_glass(1.5, false, 0.7, 0.5)});
+    directions_of_glass(j);
+    reflectance_of_glass(j);
+    const Ways total = ways(j, 1.5, false, 0.5);
+    j.exact("beyond the critical angle it reflects all, always",
+            total.n_reflected == total.n && course::near(total.reflected, 1, 64 * j.epsilon) &&
+                course::near(total.pdf_reflected, 1, 64 * j.epsilon),
+            oracle::say("%d of %d times, a share of %.6g", total.n_reflected, total.n,
+                        total.reflected));
+    const Ways in = ways(j, 1.5, true, 1), out = ways(j, 1.5, false, 1);
+    j.exact("radiance that is refracted: (1 - R) over or times the index squared",
+            course::near(in.refracted, 0.96 / 2.25, 64 * j.epsilon) &&
+                course::near(out.refracted, 0.96 * 2.25, 1e3 * j.epsilon),
+            oracle::say("straight on, %.6g expected, %.6g came; and %.6g expected, %.6g came",
+                        0.96 / 2.25, in.refracted, 0.96 * 2.25, out.refracted));
+    const Ways slanted = ways(j, 1.5, true, 0.3);
+    j.number("probabilities of both ways add up to", slanted.pdf_reflected + slanted.pdf_refracted,
+             1, 64 * j.epsilon);
+    Rows ask;
+    for (int i = 0; i < 100000; ++i) ask.add(at_glass(1.5, true, j.random(), 0.3));
+    const Rows b = j.ask("sample_glass", ask);
+    size_t i = 0;
+    j.statistical(
+        "it reflects as often as it says",
+        oracle::expect_mean(slanted.pdf_reflected, b.size(), [&] { return b[i++][2] > 0; }));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return course::judge(argc, argv,
+                         {{"3.1", sum_over_a_path},
+                          {"3.2", throughput},
+                          {"3.3", light_by_aiming},
+                          {"3.4", both_weighted},
+                          {"3.5", roulette},
+                          {"3.6", glass}});
+}
