@@ -147,12 +147,12 @@ void a_lit_ball_and_its_image(Judge& j) {
           {ball({0, 0, 0}, 1, moon), ball({0, 0, 6}, 1, mirror),
            point_light({4, 1, 3}, {30, 20, 10})});
     const Technique t{by_aiming};
-    const Out straight = ray({0, 0, 4.5}, {0, 0, -1}), image = ray({0, 0.1, 4}, {0, 0, 1});
+    const Out straight = ray({0, 0, 4.5}, {0, 0, -1}), image = ray({0, 0.02, 4}, {0, 0, 1});
     const Rows L = j.probe("Li", {question(t, 1, straight), question(t, 1, image)});
     const Step first = take_step(j, t, 1, segment({0, 0, 4.5}, {0, 0, -1}));
     colour(j, "light found by aiming counts in full where the eye looks", triple(L[0]),
            first.direct);
-    const Step mirrored = take_step(j, t, 1, segment({0, 0.1, 4}, {0, 0, 1}));
+    const Step mirrored = take_step(j, t, 1, segment({0, 0.02, 4}, {0, 0, 1}));
     const Step seen = take_step(j, t, 1, mirrored.next);
     colour(j, "and half of it in a mirror that takes half", triple(L[1]), 0.5 * seen.direct);
 }
