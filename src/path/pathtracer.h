@@ -91,12 +91,12 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     const bool occluded = scene.bvh.occluded(spawn_to(x.at, s->at));
     const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
     return {L, &light, *s, wi.z, pdf_light, weight, occluded};
-    // STUB  shines through everything, and counts as if each light were a steradian
-    // const real pdf_light = 1;
+    // STUB  shines through everything, and gives a tenth of its radiance, however small it is
+    // const real pdf_light = 10;
     // const bool share = t.light == LightMode::mis && !s->delta;
     // const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
     // const bool occluded = false;
-    // const rgb L = f * s->L * wi.z;
+    // const rgb L = f * s->L * (wi.z * real(0.1));
     // return {L, &light, *s, wi.z, pdf_light, weight, occluded};
     // END SOLUTION
 }

@@ -146,7 +146,7 @@ void a_lit_ball_and_its_image(Judge& j) {
     build(j, 2,
           {ball({0, 0, 0}, 1, moon), ball({0, 0, 6}, 1, mirror),
            point_light({4, 1, 3}, {30, 20, 10})});
-    const Technique t{by_aiming};
+    const Technique t{by_aiming, uniform};
     const Out straight = ray({0, 0, 4.5}, {0, 0, -1}), image = ray({0, 0.02, 4}, {0, 0, 1});
     const Rows L = j.probe("Li", {question(t, 1, straight), question(t, 1, image)});
     const Step first = take_step(j, t, 1, segment({0, 0, 4.5}, {0, 0, -1}));
@@ -267,9 +267,9 @@ void throughput(Judge& j) {
 const Triple albedo{0.2, 0.5, 0.8};
 const Out ground = ball({0, 0, -10}, 10, {Stuff::rough, albedo});
 
-// The eye looks down at the origin, where the ground's normal is z.
+// The eye looks from the side at the origin, where the ground's normal is z.
 Out aimed(const Technique& t, uint64_t seed) {
-    return question(t, seed, ray({0, 0, 0.5}, {0, 0, -1}));
+    return question(t, seed, ray({-0.3, 0, 0.4}, {0.6, 0, -0.8}));
 }
 
 void from_a_point(Judge& j) {
