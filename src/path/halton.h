@@ -39,32 +39,23 @@ struct Base {
     uint64_t remainder(uint64_t n) const { return n - quotient(n) * b; }
 };
 
-// The digits of an index in a base, mirrored at the point: they gather here as digits / power, both
-// exact.  Digits after the 64th bit are below every rounding and are left out.
-struct MirroredDigits {
-    uint64_t digits = 0, power = 1;
-
-    bool full(const Base& base) const { return power > base.most; }
-    void append(const Base& base, uint64_t digit) {
-        digits = digits * base.b + digit;
-        power *= base.b;
-    }
-    // Plus a part of [0,1) of the last digit; never 1.
-    real value(real rest) const {
-        return std::min(below_one, real((double(digits) + double(rest)) / double(power)));
-    }
-};
-
 // Radical inverse of i (van der Corput 1935; Halton 1960): i = sum d_k b^k becomes
-// sum d_k b^(-k-1).
+// sum d_k b^(-k-1), which is never 1.
 inline real radical_inverse(const Base& base, uint64_t i) {
-    MirroredDigits mirrored;
-    while (i > 0 && !mirrored.full(base)) {
+    // BEGIN SOLUTION 4.1  the digits of an index, mirrored at the point
+    // They gather as digits / power, both exact; those after the 64th bit are below every rounding
+    // and are left out.
+    uint64_t digits = 0, power = 1;
+    while (i > 0 && power <= base.most) {
         const uint64_t rest = base.quotient(i);
-        mirrored.append(base, i - rest * base.b);
+        digits = digits * base.b + (i - rest * base.b);
+        power *= base.b;
         i = rest;
     }
-    return mirrored.value(0);
+    return std::min(below_one, real(double(digits) / double(power)));
+    // STUB  the last digit alone: no more points than the base has digits
+    // return real(base.remainder(i)) / real(base.b);
+    // END SOLUTION
 }
 
 // The next digit of a fraction of 2^64ths, which is replaced by what follows that digit.
@@ -75,18 +66,25 @@ inline uint64_t next_digit(const Base& base, uint64_t& fraction) {
     return high >> 32;
 }
 
-// The same with digits scrambled: d_k becomes (a d_k + c_k) mod b, 1 <= a < b, with the c_k the
-// digits of a uniform number (random linear scrambling: Matousek 1998, J. Complexity 14).  For
-// uniform random bits every point is uniform; any set of points stays as even as it was.
+// The same with digits scrambled at random.  For uniform random bits every point is uniform; any
+// set of points stays as even as it was.
 inline real scrambled_radical_inverse(const Base& base, uint64_t i, uint64_t shift_bits,
                                       uint64_t factor_bits) {
+    // BEGIN SOLUTION 4.2  digits scrambled at random, the endless zeros ahead of an index, too
+    // d_k becomes (a d_k + c_k) mod b, 1 <= a < b, with the c_k the digits of a uniform number
+    // (random linear scrambling: Matousek 1998, J. Complexity 14).
     const uint64_t factor = 1 + ((factor_bits >> 32) * (base.b - 1) >> 32);
-    MirroredDigits mirrored;
-    while (i > 0 && !mirrored.full(base)) {
+    uint64_t digits = 0, power = 1;
+    while (i > 0 && power <= base.most) {
         const uint64_t rest = base.quotient(i), digit = i - rest * base.b;
         const uint64_t shift = next_digit(base, shift_bits);
-        mirrored.append(base, base.remainder(factor * digit + shift));
+        digits = digits * base.b + base.remainder(factor * digit + shift);
+        power *= base.b;
         i = rest;
     }
-    return mirrored.value(to_unit(shift_bits));  // the zeros ahead of i, scrambled: c_k alone
+    const double zeros = double(to_unit(shift_bits));  // those ahead of i, scrambled: c_k alone
+    return std::min(below_one, real((double(digits) + zeros) / double(power)));
+    // STUB  steps of a random length from a random place: every point uniform, none even
+    // return to_unit(shift_bits + i * (factor_bits | base.b));
+    // END SOLUTION
 }

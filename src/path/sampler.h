@@ -77,6 +77,24 @@ inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
     return uint32_t((i + (mix(key) >> 32) * n / (uint64_t(1) << 32)) % n);
 }
 
+// Strata: a number of part `part` of [0,1), of `parts` equal ones; and a point of cell `cell` of a
+// grid of the unit square, cell 0 ... columns * rows - 1.  The bits are random.
+// BEGIN SOLUTION 4.4  a random number in its stratum, a random point in its cell
+inline real in_part(uint32_t part, uint32_t parts, uint64_t bits) {
+    return std::min(below_one, (real(part) + to_unit(bits)) / real(parts));
+}
+inline vec2 in_cell(uint32_t cell, uint32_t columns, uint32_t rows, uint64_t bits) {
+    return {in_part(cell % columns, columns, bits), in_part(cell / columns, rows, mix(bits))};
+}
+// STUB  anywhere, whatever the stratum
+// inline real in_part(uint32_t part, uint32_t parts, uint64_t bits) {
+//     return part < parts ? to_unit(bits) : 0;
+// }
+// inline vec2 in_cell(uint32_t cell, uint32_t columns, uint32_t rows, uint64_t bits) {
+//     return {in_part(cell % columns, columns, bits), in_part(cell, columns * rows, mix(bits))};
+// }
+// END SOLUTION
+
 // The numbers of [0,1) of one sample of one pixel, a function of (seed, pixel, set, sample,
 // dimension) alone: any thread may draw any path at any time.  Each set of a pixel's samples has a
 // randomisation of its own.
@@ -94,11 +112,15 @@ public:
                 return to_unit(random(dim));
             case SamplerKind::stratified: {
                 const auto [cell, jitter] = stratum(dim);
-                return between(cell, pattern_.columns * pattern_.rows, jitter);
+                return in_part(cell, pattern_.columns * pattern_.rows, jitter);
             }
             case SamplerKind::halton: {
+                // BEGIN SOLUTION 4.3  numbers of its own for every pixel and dimension
                 const uint64_t bits = random(dim);
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
+                // STUB  two numbers for everything, the same in every pixel
+                // return radical_inverse(pattern_.bases[dim % 2], index_);
+                // END SOLUTION
             }
             case SamplerKind::sobol: {
                 const uint64_t bits = random(dim);
@@ -117,8 +139,7 @@ public:
             return {radical_inverse(2, index_), radical_inverse(3, index_)};
         if (pattern_.kind == SamplerKind::stratified) {
             const auto [cell, jitter] = stratum(dim);
-            return {between(cell % pattern_.columns, pattern_.columns, jitter),
-                    between(cell / pattern_.columns, pattern_.rows, mix(jitter))};
+            return in_cell(cell, pattern_.columns, pattern_.rows, jitter);
         }
         const real x = get(dim), y = get(dim + 1);
         return {x, y};
@@ -129,11 +150,6 @@ public:
         if (pattern_.kind != SamplerKind::sobol) return get(dimension(vertex, what));
         const uint32_t pair = dimension(vertex, what == Draw::pick ? Draw::light_x : Draw::wi_x);
         return sobol_third(index_, random(pair), random(pair + 1));
-    }
-
-    // A number of that part of [0,1).
-    static real between(uint32_t cell, uint32_t cells, uint64_t bits) {
-        return std::min(below_one, (real(cell) + to_unit(bits)) / real(cells));
     }
 
 private:

@@ -74,16 +74,20 @@ inline std::optional<SeenRectangle> seen_rectangle(const Light& l, vec3 p) {
 
 // Density per solid angle of the direction from p to the point y, for uniform points of a polygon.
 inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
+    // BEGIN SOLUTION 2.6  from a density per area to one per solid angle
     vec3 w = y.p - p;
     real d2 = dot(w, w);
     real cos_y = std::abs(dot(y.n, w)) / std::sqrt(d2);
     return cos_y > 0 ? l.pdf_area * d2 / cos_y : 0;
+    // STUB  the density per area as it is, as if the light were a part of the unit sphere
+    // return y.p == p ? 0 : l.pdf_area;
+    // END SOLUTION
 }
 
 // Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  In radii, the
 // ray passes the centre at a distance of sin(beta) = sin(theta) / sin(sigma) and meets the sphere
-// cos(beta) before, cos^2(beta) = (1 - u) (cos(theta) + cos(sigma)) / (1 + cos(sigma)): as exact
-// far away and at the limb as it is close by.
+// cos(beta) before; with the u of that direction its square is as exact far away and at the limb as
+// it is close by.
 inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, vec2 u) {
     auto sin2_max = sin2_subtended(l, p);
     if (!sin2_max) return {};

@@ -63,12 +63,9 @@ TEST_CASE("quotients and remainders by a base are exact: by any, of any number")
 TEST_CASE("a base's digits are full when another power of it would not fit in 64 bits") {
     for (uint32_t b : {2u, 3u, 541u, 65536u, 4294967291u}) {
         const Base base{b};
-        MirroredDigits mirrored;
         uint128 power = 1;
-        for (; power <= UINT64_MAX && !mirrored.full(base); power *= b)
-            mirrored.append(base, b - 1);
-        CHECK(power == mirrored.power);
-        CHECK(mirrored.digits == mirrored.power - 1);
+        while (power <= base.most) power *= b;
+        CHECK(power <= UINT64_MAX);
         CHECK(power * b > UINT64_MAX);
     }
 }

@@ -63,8 +63,8 @@ TEST_CASE("seed, pixel, set, sample, dimension: whichever is another, the number
 
 TEST_CASE("a number of the last cell never rounds to 1") {
     for (uint32_t cells : {1u, 3u, 16u, 256u}) {
-        CHECK(Sampler::between(cells - 1, cells, UINT64_MAX) < 1);
-        CHECK(Sampler::between(0, cells, 0) == 0);
+        CHECK(in_part(cells - 1, cells, UINT64_MAX) < 1);
+        CHECK(in_part(0, cells, 0) == 0);
     }
 }
 
