@@ -9,7 +9,7 @@
 
 #include "base/rng.h"
 #include "labs/lab.h"
-#include "shadow/estimators.h"
+#include "shadow/population.h"
 
 namespace {
 

@@ -2,15 +2,14 @@
 //
 // Wanted: S = E[w V].  Samples bring w, the light that a sample stands for, and w V, what remains
 // of it where something is in the way; U = E[w] is known, as a number or at every sample.  With
-// R = S / E[w], all four are mean(w V) - beta mean(w - U) (Heitz, Hill, McGuire 2018; supplement):
+// R = S / E[w], for many samples (Heitz, Hill, McGuire 2018; supplement):
 //
 // clang-format off
-//   estimator   beta                  class       N variance             N bias
-//   stochastic  0                     unbiased    Var(w V)               0
-//   control     1                     unbiased    Var(w (1 - V))         0
-//   ratio       R estimated           consistent  Var(w (V - R))         -E[w^2 (V - R)] / W
-//   regression  Cov(w V, w) / Var(w)  consistent  (1 - corr^2) Var(w V)  -E[(w - W)^2 e] / Var(w)
-//               estimated                                                e the residual
+//   estimator   class       N variance             N bias
+//   stochastic  unbiased    Var(w V)               0
+//   control     unbiased    Var(w (1 - V))         0
+//   ratio       consistent  Var(w (V - R))         -E[w^2 (V - R)] / W
+//   regression  consistent  (1 - corr^2) Var(w V)  -E[(w - W)^2 e] / Var(w), e the residual
 // clang-format on
 #pragma once
 #include <cstdint>
@@ -29,7 +28,9 @@ struct ShadowMoments {
     double bb = 0;                // sum of (b - mean)^2
     double b_wV = 0, b_U = 0;     // of (b - mean) (w V - mean), of (b - mean) (U - mean)
 
-    // Welford 1962.  Equal numbers have equal means: w and w V agree to the last bit where V is 1.
+    // In one pass (Welford 1962), and of two parts (Chan, Golub, LeVeque 1983).  Equal numbers have
+    // equal means: w and w V agree to the last bit where V is 1.
+    // BEGIN SOLUTION 5.4  one more sample, and the moments of two parts together
     void add(double new_U, double new_w, double new_wV) {
         const double to_U = new_U - U, to_w = new_w - w, to_wV = new_wV - wV, to_b = to_w - to_U;
         const double before = double(n), step = 1 / double(++n);
@@ -40,22 +41,31 @@ struct ShadowMoments {
         b_wV += to_b * to_wV * (before * step);
         b_U += to_b * to_U * (before * step);
     }
+    friend ShadowMoments merge(const ShadowMoments& x, const ShadowMoments& y) {
+        if (x.n == 0) return y;
+        const double N = double(x.n) + double(y.n), part = double(y.n) / N;
+        const double to_U = y.U - x.U, to_w = y.w - x.w, to_wV = y.wV - x.wV, to_b = to_w - to_U;
+        const double both = double(x.n) * part;
+        return {x.n + y.n,
+                x.U + to_U * part,
+                x.w + to_w * part,
+                x.wV + to_wV * part,
+                x.bb + y.bb + to_b * to_b * both,
+                x.b_wV + y.b_wV + to_b * to_wV * both,
+                x.b_U + y.b_U + to_b * to_U * both};
+    }
+    // STUB  means alone, and of two parts the larger
+    // void add(double new_U, double new_w, double new_wV) {
+    //     ++n;
+    //     U += (new_U - U) / double(n);
+    //     w += (new_w - w) / double(n);
+    //     wV += (new_wV - wV) / double(n);
+    // }
+    // friend ShadowMoments merge(const ShadowMoments& x, const ShadowMoments& y) {
+    //     return x.n > y.n ? x : y;
+    // }
+    // END SOLUTION
 };
-
-// Of both (Chan, Golub, LeVeque 1983).
-inline ShadowMoments merge(const ShadowMoments& x, const ShadowMoments& y) {
-    if (x.n == 0) return y;
-    const double n = double(x.n) + double(y.n), part = double(y.n) / n;
-    const double to_U = y.U - x.U, to_w = y.w - x.w, to_wV = y.wV - x.wV, to_b = to_w - to_U;
-    const double both = double(x.n) * part;
-    return {x.n + y.n,
-            x.U + to_U * part,
-            x.w + to_w * part,
-            x.wV + to_wV * part,
-            x.bb + y.bb + to_b * to_b * both,
-            x.b_wV + y.b_wV + to_b * to_wV * both,
-            x.b_U + y.b_U + to_b * to_U * both};
-}
 
 // The same where U is one number W: sums about it, which is all that keeps them from cancelling.
 struct SumsAbout {
@@ -81,23 +91,42 @@ struct SumsAbout {
 // Unbiased.
 inline double stochastic(const ShadowMoments& m) { return m.wV; }
 
-// Unbiased.  Exactly U where nothing is in the way.
-inline double control(const ShadowMoments& m) { return m.U - (m.w - m.wV); }
+// Of one sample, or of the means of many; of numbers or of colours.  Unbiased.  Exactly U where
+// nothing is in the way.
+template <class T>
+T control(const T& U, const T& w, const T& wV) {
+    // BEGIN SOLUTION 5.1  make use of U, which is known, and stay unbiased
+    return U - (w - wV);
+    // STUB  what was sampled, and nothing of what is known
+    // (void)U, (void)w;
+    // return wV;
+    // END SOLUTION
+}
+inline double control(const ShadowMoments& m) { return control(m.U, m.w, m.wV); }
 
-// R from these samples; 0 if none of them found any light.
+// visible_part: R from these samples; 0 if none of them found any light.  ratio: consistent;
+// exactly U where nothing is in the way, and 0 where everything is.
+// BEGIN SOLUTION 5.2  the part of the light that is visible, and an estimate of S by it
 inline double visible_part(const ShadowMoments& m) { return m.w > 0 ? m.wV / m.w : 0; }
-
-// Consistent.  Exactly U where nothing is in the way, and 0 where everything is.
 inline double ratio(const ShadowMoments& m) { return m.U * visible_part(m); }
+// STUB  all of the light or none; and what was sampled
+// inline double visible_part(const ShadowMoments& m) { return m.wV > 0 ? 1 : 0; }
+// inline double ratio(const ShadowMoments& m) { return m.wV; }
+// END SOLUTION
 
-// Consistent.  Where U differs from sample to sample it is no news that w V follows it: beta is
-// the slope of w V - R U on b, which leaves fully lit and fully dark pixels as free of noise as
-// ratio does.  Written as a correction of ratio: mean(w V) = R mean(w).  Of a few samples beta has
-// no variance; then it is R.
+// Consistent.  Exact, as ratio is, where all is lit and where nothing is.
 inline double regression(const ShadowMoments& m) {
+    // BEGIN SOLUTION 5.3  as much of the correction as these samples suggest
+    // Where U differs from sample to sample it is no news that w V follows it: beta is the slope of
+    // w V - R U on b, which leaves fully lit and fully dark pixels as free of noise as ratio does.
+    // Written as a correction of ratio: mean(w V) = R mean(w).  Of a few samples beta has no
+    // variance; then it is R.
     if (m.n < 8 || !(m.bb > 0)) return ratio(m);
     const double R = visible_part(m), beta = (m.b_wV - R * m.b_U) / m.bb;
     return m.U * R + (R - beta) * (m.w - m.U);
+    // STUB  no correction
+    // return ratio(m);
+    // END SOLUTION
 }
 
 inline double estimate(Estimator e, const ShadowMoments& m) {
@@ -112,38 +141,3 @@ inline double estimate(Estimator e, const ShadowMoments& m) {
             return regression(m);
     }
 }
-
-// What is to be expected: moments of the population, for visibility that is 0 or 1.
-struct ShadowPopulation {
-    double W, S;     // E[w], E[w V]
-    double ww, wwV;  // E[w^2], E[w^2 V]
-    double www, wwwV;
-
-    double R() const { return S / W; }
-    double beta(Estimator e) const {
-        switch (e) {
-            case Estimator::stochastic:
-                return 0;
-            case Estimator::control:
-                return 1;
-            case Estimator::ratio:
-                return R();
-            default:
-                return (wwV - S * W) / (ww - W * W);
-        }
-    }
-    // N times the variance, that of w V - beta w: exactly 0 where it is.
-    double variance(Estimator e) const {
-        const double b = beta(e), lit = 1 - b, mean = S - b * W;
-        return lit * lit * wwV + b * b * (ww - wwV) - mean * mean;
-    }
-    // N times the bias, for large N.
-    double bias(Estimator e) const {
-        if (e == Estimator::ratio) return -(wwV - R() * ww) / W;
-        if (e != Estimator::regression) return 0;
-        // E[(w - W)^2 (w V - S - beta (w - W))] / Var(w)
-        const double var = ww - W * W, third = www - 3 * W * ww + 2 * W * W * W;
-        const double with_wV = wwwV - 2 * W * wwV + W * W * S - S * var;
-        return -(with_wV - beta(e) * third) / var;
-    }
-};

@@ -59,22 +59,6 @@ inline Polygon above_horizon(const Polygon& p) {
     return above;
 }
 
-// Lambert's theorem: E / L = 1/2 |sum over edges of Theta (Gamma)_z|, Theta the angle under which
-// an edge is seen and Gamma the unit normal of its plane with the receiver (Arvo 1995, thesis, sec.
-// 3). The sum cancels: its error is some ulp over the angle.
-inline real irradiance_lambert(const Polygon& p) {
-    real sum = 0;
-    const vec3 first = unit(p.at(0));
-    vec3 a = first;
-    for (int i = 1; i <= p.n; ++i) {
-        const vec3 b = i < p.n ? unit(p.at(i)) : first, c = cross(a, b);
-        const real sine = length(c);
-        if (sine > 0) sum += std::atan2(sine, dot(a, b)) * (c.z / sine);
-        a = b;
-    }
-    return std::abs(sum) / 2;
-}
-
 // Small ones: the integral of cos cos' / r^2 over the area, on each triangle of a fan by the
 // middles of its sides, which is exact to second order: its error is the angle cubed.
 inline real irradiance_by_area(const Polygon& p) {
@@ -87,6 +71,27 @@ inline real irradiance_by_area(const Polygon& p) {
         }
     }
     return sum / 6;
+}
+
+// By a sum over the edges, exact for polygons of any size (Lambert 1760; Arvo 1995, thesis, sec.
+// 3). The sum cancels: its error is some ulp over the angle.
+inline real irradiance_lambert(const Polygon& p) {
+    // BEGIN SOLUTION 5.5  a sum over the edges
+    // E / L = 1/2 |sum of Theta (Gamma)_z|, Theta the angle under which an edge is seen and Gamma
+    // the unit normal of its plane with the receiver.
+    real sum = 0;
+    const vec3 first = unit(p.at(0));
+    vec3 a = first;
+    for (int i = 1; i <= p.n; ++i) {
+        const vec3 b = i < p.n ? unit(p.at(i)) : first, c = cross(a, b);
+        const real sine = length(c);
+        if (sine > 0) sum += std::atan2(sine, dot(a, b)) * (c.z / sine);
+        a = b;
+    }
+    return std::abs(sum) / 2;
+    // STUB  as if all polygons were small
+    // return irradiance_by_area(p);
+    // END SOLUTION
 }
 
 // A polygon of three or four corners, whichever side it shows; each formula where it is the better.

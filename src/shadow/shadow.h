@@ -87,7 +87,8 @@ ShadowSample shadow_Li(const Scene& scene, const Technique& t, Estimator estimat
         rest += s.beta * e.Le * e.weight;
         if (s.k == 0) first = shadowed(scene, e);
         rest += s.k == 0 ? e.direct.L - first.wV : s.beta * e.direct.L;
-        if (s.k == 0 && estimator == Estimator::control) rest += first.U - (first.w - first.wV);
+        if (s.k == 0 && estimator == Estimator::control)
+            rest += control(first.U, first.w, first.wV);
         account(s, e);
     });
     return sample;

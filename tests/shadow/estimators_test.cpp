@@ -7,6 +7,7 @@
 
 #include "base/moments.h"
 #include "oracle/expect.h"
+#include "shadow/population.h"
 
 namespace {
 

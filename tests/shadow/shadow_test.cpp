@@ -5,6 +5,7 @@
 #include "base/moments.h"
 #include "film/error.h"
 #include "oracle/expect.h"
+#include "shadow/population.h"
 #include "world/scene_file.h"
 
 namespace {

@@ -1,0 +1,401 @@
+// course/judge_5.cpp  judges week 5: estimators of shadowed light
+#include <numeric>
+
+#include "course/judge.h"
+
+using course::Judge, course::Out, course::Rows;
+
+namespace {
+
+constexpr double unit = 0x1p-53;  // moments are double, whatever `real` is
+
+// ---- Samples, and their moments in two passes ---------------------------------------------------
+
+struct LightSample {
+    double U, w, wV;
+};
+using Samples = std::vector<LightSample>;
+
+template <class Of>
+long double mean_of(const Samples& samples, Of of) {
+    long double sum = 0;
+    for (const LightSample& s : samples) sum += of(s);
+    return samples.empty() ? 0 : sum / (long double)(samples.size());
+}
+template <class F, class G>
+long double comoment(const Samples& samples, F f, G g) {
+    const long double f0 = mean_of(samples, f), g0 = mean_of(samples, g);
+    long double sum = 0;
+    for (const LightSample& s : samples) sum += (f(s) - f0) * (g(s) - g0);
+    return sum;
+}
+constexpr auto of_U = [](const LightSample& s) { return (long double)(s.U); };
+constexpr auto of_w = [](const LightSample& s) { return (long double)(s.w); };
+constexpr auto of_wV = [](const LightSample& s) { return (long double)(s.wV); };
+constexpr auto of_b = [](const LightSample& s) { return (long double)(s.w) - s.U; };
+
+// n, U, w, wV, bb, b_wV, b_U: what the exercises are asked with.
+Out moments_of(const Samples& s) {
+    return {double(s.size()),
+            double(mean_of(s, of_U)),
+            double(mean_of(s, of_w)),
+            double(mean_of(s, of_wV)),
+            double(comoment(s, of_b, of_b)),
+            double(comoment(s, of_b, of_wV)),
+            double(comoment(s, of_b, of_U))};
+}
+
+// U differs from sample to sample; some light is hidden.
+Samples pixel(int n, double nothing_hidden_below = 0.3) {
+    Samples samples;
+    for (int i = 0; i < n; ++i) {
+        const double U = 1 + 0.5 * (i % 3), w = U + 0.125 * ((7 * i) % 11) - 0.5,
+                     at = (5 * i % 8) / 8.0;
+        samples.push_back({U, w, at < nothing_hidden_below ? 0 : w});
+    }
+    return samples;
+}
+
+Samples changed(Samples samples, const std::function<void(LightSample&)>& change) {
+    for (LightSample& s : samples) change(s);
+    return samples;
+}
+void light_up(LightSample& s) { s.wV = s.w; }
+void darken(LightSample& s) { s.wV = 0; }
+
+// Integrals over [0,1]: w = 2x, half of the interval hidden, W = 1, S = 1/4.
+LightSample ramp(oracle::Random& random) {
+    const double x = random();
+    return {1, 2 * x, x < 0.5 ? 2 * x : 0};
+}
+// w = 3x^2, visible below 4/5: W = 1, S = .512.
+LightSample parabola(oracle::Random& random) {
+    const double x = random();
+    return {1, 3 * x * x, x < 0.8 ? 3 * x * x : 0};
+}
+
+// `trials` estimates, each of n samples of the ramp.
+Out estimates(Judge& j, const std::string& question, size_t n, size_t trials) {
+    Rows rows;
+    Samples samples(n);
+    for (size_t t = 0; t < trials; ++t) {
+        for (LightSample& s : samples) s = ramp(j.random);
+        rows.add(moments_of(samples));
+    }
+    return j.ask(question, rows).numbers;
+}
+
+// One number after the other, for expect_mean.
+auto one_by_one(Out numbers) {
+    return [numbers = std::move(numbers), i = size_t(0)]() mutable { return numbers.at(i++); };
+}
+// Means of 32, whose tails are shorter.
+Out in_groups(const Out& numbers) {
+    Out means;
+    for (size_t i = 0; i + 32 <= numbers.size(); i += 32)
+        means.push_back(
+            std::accumulate(numbers.begin() + long(i), numbers.begin() + long(i) + 32, 0.0) / 32);
+    return means;
+}
+Out squared_errors(const Out& numbers, double truth, double factor) {
+    Out squares;
+    for (double x : numbers) squares.push_back((x - truth) * (x - truth) * factor);
+    return squares;
+}
+
+// Greatest difference of two lists, in units of the greater, or of 1.
+double apart(const Out& a, const Out& b) {
+    double most = 0;
+    for (size_t i = 0; i < b.size(); ++i)
+        most = std::max(most, i < a.size() ? std::abs(a[i] - b[i]) / std::max(1.0, std::abs(b[i]))
+                                           : oracle::infinity);
+    return std::isnan(most) || std::any_of(a.begin(), a.end(), [](double x) { return x != x; })
+               ? oracle::infinity
+               : most;
+}
+void same(Judge& j, const std::string& what, const Out& came, const Out& expected,
+          double tolerance) {
+    size_t at = 0;
+    for (size_t i = 0; i < expected.size(); ++i)
+        if (apart({came.at(i)}, {expected[i]}) > apart({came.at(at)}, {expected[at]})) at = i;
+    j.exact(what, apart(came, expected) <= tolerance,
+            oracle::say("%.9g expected, %.9g came", expected[at], came.at(at)));
+}
+
+// ---- 5.1 ----------------------------------------------------------------------------------------
+
+void control_variate(Judge& j) {
+    const Rows p = j.probe("control", {{2, 5, 0}, {2, 5, 5}, {3, 1, 0.25}, {0.5, 8, 7}});
+    same(j, "control(2, 5, 0) = -3, control(3, 1, 1/4) = 2.25", {p.numbers[0], p.numbers[2]},
+         {-3, 2.25}, 8 * unit);
+    Rows lit, more;
+    Out U, light;
+    for (int i = 0; i < 32; ++i) {
+        const double w = 4 * j.random();
+        U.push_back(4 * j.random());
+        light.push_back(j.random());
+        lit.add({U.back(), w, w});
+        more.add({U.back(), w, w + light.back()});
+    }
+    const Out is_lit = j.ask("control", lit).numbers;
+    same(j, "where nothing is in the way it is U", is_lit, U, 32 * unit);
+    Out gained = j.ask("control", more).numbers;
+    for (size_t i = 0; i < gained.size(); ++i) gained[i] -= is_lit[i];
+    same(j, "light that comes through counts as it is", gained, light, 64 * unit);
+    constexpr size_t n = 100000;
+    Rows rows;
+    for (size_t i = 0; i < n; ++i) {
+        const auto [U_, w, wV] = parabola(j.random);
+        rows.add({U_, w, wV});
+    }
+    const Out one = j.ask("control", rows).numbers;
+    j.statistical("w = 3x^2, visible below x = 4/5: the mean is .512",
+                  oracle::expect_mean(0.512, n, one_by_one(one)));
+    j.statistical("its variance is .972, as computed in the sheet",
+                  oracle::expect_mean(0.972032, n, one_by_one(squared_errors(one, 0.512, 1))));
+}
+
+// ---- 5.2 ----------------------------------------------------------------------------------------
+
+void ratio(Judge& j) {
+    // n, U, w, wV and moments, of which ratio needs none.
+    const Rows asked = {{3, 2.5, 3, 2, 3.5, 3.5, 1.5},
+                        {4, 2, 5, 5, 1, 1, 0},
+                        {4, 2, 5, 0, 1, 0, 0},
+                        {4, 2, 0, 0, 0, 0, 0}};
+    const Out visible = j.probe("visible", asked).numbers, by = j.probe("ratio", asked).numbers;
+    same(j, "U = 2.5, w = 3, w V = 2: two thirds come through", {visible[0], by[0]},
+         {2 / 3.0, 5 / 3.0}, 8 * unit);
+    same(j, "where nothing is in the way it is U", {visible[1], by[1]}, {1, 2}, 8 * unit);
+    same(j, "where everything is, it is 0", {visible[2], by[2]}, {0, 0}, 0);
+    same(j, "it is 0 if no sample found any light", {visible[3], by[3]}, {0, 0}, 0);
+    const double scale = 1 + 9 * j.random(), U = 1 + j.random(), w = 1 + j.random(),
+                 wV = j.random();
+    const Out of = j.ask("ratio", {{4, U, w, wV, 1, 1, 1},
+                                   {4, U, scale * w, scale * wV, 1, 1, 1},
+                                   {4, scale * U, w, wV, 1, 1, 1}})
+                       .numbers;
+    same(j, "w and w V twice as large change nothing, U twice as large doubles it", {of[1], of[2]},
+         {of[0], scale * of[0]}, 64 * unit);
+    const Out single = estimates(j, "ratio", 1, 40000);
+    j.statistical("of one sample it is biased: for the sheet's w = 2x the mean is 1/2, not 1/4",
+                  oracle::expect_mean(0.5, single.size(), one_by_one(single)));
+    constexpr size_t n = 512;
+    const Out many = estimates(j, "ratio", n, 19200);
+    j.statistical("of 512 the bias is gone but for 1/6 n",
+                  oracle::expect_mean(0.25 + 1.0 / 6 / double(n), many.size(), one_by_one(many)));
+    const Out spread = in_groups(squared_errors(many, 0.25, double(n)));
+    j.statistical("and n times its variance is 1/6",
+                  oracle::expect_mean(1.0 / 6, spread.size(), one_by_one(spread)));
+}
+
+// ---- 5.3 ----------------------------------------------------------------------------------------
+
+void regression(Judge& j) {
+    auto of = [&](const Samples& s) { return j.ask("regression", moments_of(s))[0]; };
+    const Samples sixteen = pixel(16);
+    j.probe("regression", {moments_of(sixteen), moments_of(pixel(7)), moments_of(pixel(8, 0.7)),
+                           moments_of(changed(sixteen, light_up)),
+                           moments_of(changed(sixteen, [](LightSample& s) { s.wV = 0.3 * s.w; })),
+                           moments_of(Samples(20, {2, 3, 1.5}))});
+    double lit = 0, dark = 0, grey = 0, line = 0;
+    for (int k = 0; k < 16; ++k) {
+        Samples random(8 + size_t(k));
+        for (LightSample& s : random)
+            s.U = 1 + j.random(), s.w = s.U * (0.5 + j.random()), s.wV = s.w * j.random();
+        const double U = double(mean_of(random, of_U)), part = j.random(), S = j.random(),
+                     slope = 2 * j.random() - 1;
+        lit = std::max(lit, apart({of(changed(random, light_up))}, {U}));
+        dark = std::max(dark, std::abs(of(changed(random, darken))));
+        grey = std::max(
+            grey,
+            apart({of(changed(random, [&](LightSample& s) { s.wV = part * s.w; }))}, {part * U}));
+        line = std::max(line, apart({of(changed(random,
+                                                [&](LightSample& s) {
+                                                    s.U = 1.25, s.wV = S + slope * (s.w - 1.25);
+                                                }))},
+                                    {S}));
+    }
+    auto off = [](double by) { return oracle::say("it is off by %.3g", by); };
+    j.exact("where nothing is in the way it is U, and 0 where everything is",
+            lit < 1e-12 && dark < 1e-12, off(std::max(lit, dark)));
+    j.exact("behind grey glass it is that part of U, though U varies", grey < 1e-12, off(grey));
+    j.exact("points (w, w V) on a line: its value at w = U", line < 1e-11, off(line));
+    j.number("of seven samples it is what ratio says",
+             j.ask("regression", Out{7, 2.5, 3, 2, 3.5, 3.5, 1.5}).at(0), 5 / 3.0, 16 * unit);
+    j.number("where w does not vary, too", of(Samples(20, {2, 3, 1.5})), 1, 16 * unit);
+    constexpr size_t n = 1024;
+    const Out many = estimates(j, "regression", n, 19200);
+    j.statistical("of 1024 samples of w = 2x the bias is gone but for 1/8 n",
+                  oracle::expect_mean(0.25 + 1.0 / 8 / double(n), many.size(), one_by_one(many)));
+    const Out spread = in_groups(squared_errors(many, 0.25, double(n)));
+    j.statistical("and n times its variance is 1/12, half of what ratio has",
+                  oracle::expect_mean(1.0 / 12, spread.size(), one_by_one(spread)));
+}
+
+// ---- 5.4 ----------------------------------------------------------------------------------------
+
+Out flat(const Samples& samples) {
+    Out numbers;
+    for (const auto& [U, w, wV] : samples) numbers.insert(numbers.end(), {U, w, wV});
+    return numbers;
+}
+Out merged(Judge& j, const Samples& samples, size_t first, bool probe = false) {
+    Out numbers = flat(samples);
+    numbers.insert(numbers.begin(), double(first));
+    return probe ? j.probe("merged", Rows(numbers)).numbers : j.ask("merged", numbers);
+}
+Out part(const Out& m, size_t from, size_t to) {
+    return {m.begin() + long(from), m.begin() + long(to)};
+}
+
+void moments(Judge& j) {
+    const Samples three = {{2, 1, 1}, {2, 3, 0}, {3.5, 5, 5}}, twelve = pixel(12);
+    const Out by_hand = j.probe("moments", Rows(flat(three))).numbers,
+              in_parts = merged(j, twelve, 5, true);
+    same(j, "three samples by hand: the means", part(by_hand, 0, 4), {3, 2.5, 3, 2}, 16 * unit);
+    same(j, "and the moments 3.5, 3.5, 1.5", part(by_hand, 4, 7), {3.5, 3.5, 1.5}, 16 * unit);
+    const Out one = j.ask("moments", Out{2, 3, 1});
+    same(j, "one sample is its own mean, and has no spread", one, {1, 2, 3, 1, 0, 0, 0}, 0);
+    const Out expected = moments_of(twelve);
+    same(j, "twelve samples agree with two passes", j.ask("moments", flat(twelve)), expected,
+         1e-13);
+    same(j, "five and seven merged are all twelve", in_parts, expected, 1e-13);
+    same(j, "a part without samples changes nothing, first or last",
+         {apart(merged(j, twelve, 0), expected), apart(merged(j, twelve, 12), expected)}, {0, 0},
+         1e-13);
+    // Far from 0, where sums of squares have lost all their digits.
+    Samples far;
+    for (int i = 0; i < 300; ++i) {
+        const double U = 1e8 + i % 7, w = U + 2 * j.random() - 1;
+        far.push_back({U, w, j.random() < 0.3 ? 0 : w});
+    }
+    const Out there = j.ask("moments", flat(far)), truth = moments_of(far);
+    const double most_wV = std::sqrt(truth[4] * double(comoment(far, of_wV, of_wV))),
+                 most_U = std::sqrt(truth[4] * double(comoment(far, of_U, of_U)));
+    same(j, "at 1e8 six digits are left",
+         {there[4] / truth[4], (there[5] - truth[5]) / most_wV, (there[6] - truth[6]) / most_U},
+         {1, 0, 0}, 1e-6);
+    const Out lit = j.ask("moments", flat(changed(far, light_up)));
+    j.exact("equal numbers have equal means, to the last bit", lit.at(2) == lit.at(3),
+            oracle::say("%.17g and %.17g", lit.at(2), lit.at(3)));
+}
+
+// ---- 5.5 ----------------------------------------------------------------------------------------
+
+using Vertices = std::vector<oracle::Triple>;
+
+Out corners(const Vertices& p) {
+    Out numbers;
+    for (const oracle::Triple& v : p) numbers.insert(numbers.end(), v.begin(), v.end());
+    return numbers;
+}
+
+// The 24 places and weights of Gauss and Legendre on [0,1] (Newton's iteration).
+const std::vector<std::pair<double, double>>& gauss() {
+    static const std::vector<std::pair<double, double>> table = [] {
+        constexpr int n = 24;
+        std::vector<std::pair<double, double>> places;
+        for (int i = 0; i < n; ++i) {
+            double x = std::cos(oracle::pi * (i + 0.75) / (n + 0.5)), slope = 1;
+            for (int k = 0; k < 50; ++k) {
+                double p = 1, before = 0;
+                for (int m = 1; m <= n; ++m)
+                    before = std::exchange(p, ((2 * m - 1) * x * p - (m - 1) * before) / m);
+                slope = n * (x * p - before) / (x * x - 1);
+                x -= p / slope;
+            }
+            places.push_back({(1 + x) / 2, 1 / ((1 - x * x) * slope * slope)});
+        }
+        return places;
+    }();
+    return table;
+}
+
+// The integral of cos cos' / r^2 over a triangle's area, cut into 4^cuts alike.
+double by_quadrature(const Vertices& t, int cuts = 0) {
+    double sum = 0;
+    if (cuts > 0) {
+        Vertices m;
+        for (size_t i = 0; i < 3; ++i) {
+            const oracle::Triple &a = t[i], &b = t[(i + 1) % 3];
+            m.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+        }
+        for (const Vertices& part : {Vertices{t[0], m[0], m[2]}, Vertices{m[0], t[1], m[1]},
+                                     Vertices{m[2], m[1], t[2]}, m})
+            sum += by_quadrature(part, cuts - 1);
+        return sum;
+    }
+    for (auto [s, weight_s] : gauss())
+        for (auto [u, weight_u] : gauss()) {
+            oracle::Triple p, e, f;
+            for (size_t k = 0; k < 3; ++k) {
+                e[k] = t[1][k] - t[0][k], f[k] = t[2][k] - t[0][k];
+                p[k] = t[0][k] + s * ((1 - u) * e[k] + u * f[k]);
+            }
+            const double volume = p[0] * (e[1] * f[2] - e[2] * f[1]) +
+                                  p[1] * (e[2] * f[0] - e[0] * f[2]) +
+                                  p[2] * (e[0] * f[1] - e[1] * f[0]);
+            const double r2 = oracle::dot(p, p);
+            sum += weight_s * weight_u * s * std::abs(volume) * p[2] / (r2 * r2);
+        }
+    return sum;
+}
+
+// Multiples of 1/64, which float has exactly.
+Vertices random_triangle(oracle::Random& random) {
+    auto number = [&](double from, double to) {
+        return std::round(64 * (from + (to - from) * random())) / 64;
+    };
+    const double x = number(-2, 2), y = number(-2, 2), z = number(0.5, 2);
+    return {{x, y, z},
+            {x + number(0.5, 1.5), y + number(-0.25, 0.25), z + number(0, 1)},
+            {x + number(-0.25, 0.25), y + number(0.5, 1.5), z + number(0, 1)}};
+}
+
+void lambert(Judge& j) {
+    const double digits = 64 * j.epsilon;
+    const Vertices square = {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+    const Rows four = j.probe("lambert", Rows(corners(square)));
+    const Rows three = j.probe("lambert", {corners({{-3, 0, 0.5}, {3, 0, 0.5}, {0, 2, 1}}),
+                                           corners({{1, 0.5, 1}, {2, 0.5, 1.5}, {1.5, 2, 1}})});
+    j.number("the sheet's square of side 2 at height 1", four.numbers[0], 1.7408395027342063,
+             digits);
+    j.number("a triangle with an edge seen under 160 degrees", three.numbers[0],
+             by_quadrature({{-3, 0, 0.5}, {3, 0, 0.5}, {0, 2, 1}}, 3), std::max(1e-9, digits));
+    const Vertices turned(square.rbegin(), square.rend());
+    j.number("seen from behind it sends as much", j.ask("lambert", corners(turned)).at(0),
+             four.numbers[0], digits);
+    const double halves = j.ask("lambert", corners({square[0], square[1], square[2]})).at(0) +
+                          j.ask("lambert", corners({square[0], square[2], square[3]})).at(0);
+    j.number("two halves are the whole", halves, 1.7408395027342063, digits);
+    Vertices far = square;
+    for (size_t i = 0; i < 4; ++i)
+        for (double& x : far[i]) x *= double(i + 2);
+    j.number("only directions count: corners moved along their rays",
+             j.ask("lambert", corners(far)).at(0), 1.7408395027342063, digits);
+    j.number(
+        "a ceiling without end sends pi",
+        j.ask("lambert", corners({{-1e6, -1e6, 1}, {1e6, -1e6, 1}, {1e6, 1e6, 1}, {-1e6, 1e6, 1}}))
+            .at(0),
+        oracle::pi, std::max(1e-5, digits));
+    double off = 0;
+    for (int k = 0; k < 24; ++k) {
+        const Vertices t = random_triangle(j.random);
+        const double came = j.ask("lambert", corners(t)).at(0), truth = by_quadrature(t);
+        off = came == came ? std::max(off, std::abs(came - truth)) : oracle::infinity;
+    }
+    j.exact("triangles at random are what quadrature says", off < std::max(1e-9, digits),
+            oracle::say("one is off by %.3g", off));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return course::judge(argc, argv,
+                         {{"5.1", control_variate},
+                          {"5.2", ratio},
+                          {"5.3", regression},
+                          {"5.4", moments},
+                          {"5.5", lambert}});
+}
