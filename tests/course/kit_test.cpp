@@ -1,4 +1,4 @@
-// course/judge_test.cpp  the judge: right, wrong, open and silent; whatever the program does
+// course/kit_test.cpp  the judge: right, wrong, open and silent; whatever the program does
 #include "course/judge.h"
 
 #include <doctest/doctest.h>
