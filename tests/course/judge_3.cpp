@@ -468,7 +468,7 @@ void roulette(Judge& j) {
             rows.add(question({by_chance, by_bsdf, threshold}, first + uint64_t(i), from));
         return rows;
     };
-    j.probe("throughput", asked(T, 6, 1));
+    j.probe("throughput", asked(T / 2, 6, 1));
     j.probe("throughput", asked(0.05, 1, 1));
     const Triple whole = triple(j.ask("throughput", question({}, 1, from)));
     const double chance = whole[2] / T;
