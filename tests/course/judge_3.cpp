@@ -458,8 +458,8 @@ void both_weighted(Judge& j) {
 
 // A mirror, which takes part of the path's throughput and no random number.
 void roulette(Judge& j) {
-    const double T = 0.5;
-    const Triple before{0.1, 0.3, 0.4};
+    const double T = 2;
+    const Triple before{0.4, 1.2, 1.6};
     build(j, 8, {ball({0, 0, 0}, 1, {Stuff::mirror, {}, {0.5, 0.5, 0.5}})});
     const Out from = towards_a_ball(2, before, 2);
     const auto asked = [&](double threshold, int n, uint64_t first) {
@@ -468,7 +468,7 @@ void roulette(Judge& j) {
             rows.add(question({by_chance, by_bsdf, threshold}, first + uint64_t(i), from));
         return rows;
     };
-    j.probe("throughput", asked(T / 2, 6, 1));
+    j.probe("throughput", asked(0.7 * T, 6, 1));
     j.probe("throughput", asked(0.05, 1, 1));
     const Triple whole = triple(j.ask("throughput", question({}, 1, from)));
     const double chance = whole[2] / T;
