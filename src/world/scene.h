@@ -24,10 +24,17 @@ inline Camera look_at(vec3 eye, vec3 target, real fov) {
 // Through the point (x, y) of the image plane, in pixels from its top left corner.  Pixels are
 // square: a wider image sees more, never stretches.
 inline Ray camera_ray(const Camera& c, Size size, real x, real y) {
+    // BEGIN SOLUTION 1.1  a ray for every place of the image
     real pixel = 2 * c.tan_half / real(size.height);
     vec3 d = c.forward + c.right * ((x - real(size.width) / 2) * pixel) +
              c.up * ((real(size.height) / 2 - y) * pixel);
     return {c.eye, unit(d)};
+    // STUB  a fisheye, which bends straight lines
+    // const real across = (x / real(size.width) - real(0.5)) * pi / 2;
+    // const real upwards = (real(0.5) - y / real(size.height)) * pi / 2;
+    // const vec3 level = c.forward * std::cos(across) + c.right * std::sin(across);
+    // return {c.eye, level * std::cos(upwards) + c.up * std::sin(upwards)};
+    // END SOLUTION
 }
 
 inline constexpr int32_t no_light = -1;

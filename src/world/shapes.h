@@ -98,13 +98,16 @@ inline Shear shear(vec3 d) {
     return {x, y, z, d.*axis[x] * sz, d.*axis[y] * sz, sz};
 }
 
-// Watertight: u, v, w are the edge functions of the sheared triangle.  Vertices that triangles
-// share are sheared to the same numbers, and an edge function is never rounded to the wrong sign or
-// to 0; a 0 counts as inside.  So a ray between two triangles always meets one of them.  Its error
-// is relative, so that even in a sliver (1-v-w) a + v b + w c is where the ray is.  All this holds
-// only while nothing else is fused.
+// Where a ray meets a triangle, from either side, at 0 < t <= tmax.  k is shear(ray.d), for those
+// who want it.
 inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, const Shear& k,
                                              real tmax) {
+    // BEGIN SOLUTION 1.3  where a ray meets a triangle
+    // Watertight: u, v, w are the edge functions of the sheared triangle.  Vertices that triangles
+    // share are sheared to the same numbers, and an edge function is never rounded to the wrong
+    // sign or to 0; a 0 counts as inside.  So a ray between two triangles always meets one of them.
+    // Its error is relative, so that even in a sliver (1-v-w) a + v b + w c is where the ray is.
+    // All this holds only while nothing else is fused.
     const auto x = axis[k.x], y = axis[k.y], z = axis[k.z];
     real ox = ray.o.*x, oy = ray.o.*y, oz = ray.o.*z;
     real az = s.a.*z - oz, ax = (s.a.*x - ox) - k.sx * az, ay = (s.a.*y - oy) - k.sy * az;
@@ -119,6 +122,13 @@ inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, con
     real t = (u * az + v * bz + w * cz) * k.sz / det;
     if (!(t > 0 && t <= tmax)) return {};
     return Hit{t, 0, v / det, w / det};
+    // STUB  a disc about the centroid that faces the ray
+    // const vec3 m = (s.a + s.b + s.c) / 3 - ray.o, e = s.b - s.a;
+    // const real z = m.*axis[k.z], t = z * k.sz, third = real(1) / 3;
+    // const real x = m.*axis[k.x] - k.sx * z, y = m.*axis[k.y] - k.sy * z;
+    // if (x * x + y * y > dot(e, e) / 6 || !(t > 0 && t <= tmax)) return {};
+    // return Hit{t, 0, third, third};
+    // END SOLUTION
 }
 
 // ---- Spheres ----------------------------------------------------------------------------------
@@ -138,11 +148,14 @@ inline real power_of_point(vec3 o, const Shape& s) {
     return sum + errors;
 }
 
-// Roots of |f + t d|^2 = r^2, f = o - a, without cancellation, from q = b +- sqrt and c / q.  The
-// discriminant is that of the vector between the centre and its foot on the ray, which is exact
-// from afar (Haines, Gunther, Akenine-Moller 2019, Ray Tracing Gems ch. 7), but near the surface,
-// where c vanishes and decides, b^2 - c is.  Comparisons are written so that NaN misses.
+// The nearest point of the sphere on a ray, at 0 < t <= tmax, from outside or from inside.
 inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real tmax) {
+    // BEGIN SOLUTION 1.2  where a ray meets a sphere
+    // Roots of |f + t d|^2 = r^2, f = o - a, without cancellation, from q = b +- sqrt and c / q.
+    // The discriminant is that of the vector between the centre and its foot on the ray, which is
+    // exact from afar (Haines, Gunther, Akenine-Moller 2019, Ray Tracing Gems ch. 7), but near the
+    // surface, where c vanishes and decides, b^2 - c is.  Comparisons are written so that NaN
+    // misses.
     const vec3 f = ray.o - s.a;
     const real b = -dot(f, ray.d), r2 = s.r * s.r;
     const vec3 foot = f + b * ray.d;
@@ -158,6 +171,12 @@ inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real 
     real t = near > 0 ? near : far;
     if (!(t > 0 && t <= tmax)) return {};
     return Hit{t};
+    // STUB  a disc about the centre that faces the ray
+    // const real t = dot(s.a - ray.o, ray.d);
+    // const vec3 off = ray.o + t * ray.d - s.a;
+    // if (dot(off, off) > s.r * s.r || !(t > 0 && t <= tmax)) return {};
+    // return Hit{t};
+    // END SOLUTION
 }
 
 // ---- Any shape --------------------------------------------------------------------------------

@@ -1,5 +1,5 @@
-// course/bvh_test.cpp  the starter's tree answers as the renderer's and as a loop over all shapes
-// do
+// course/binary_bvh_test.cpp  the starter's tree answers as the renderer's and a loop over all
+// shapes do do
 #include "course/bvh.h"
 
 #include <doctest/doctest.h>
@@ -152,6 +152,55 @@ TEST_CASE("an empty starter's tree is missed, and a ray that is not a number mis
         CHECK(!tree.closest(bad));
         CHECK(!tree.occluded(bad));
     }
+}
+
+TEST_CASE("boxes are entered where a point within comes first, or missed if none does") {
+    // Of points along the ray, which are in the box and which are not.
+    Dice random{{7}};
+    int wrong = 0, met = 0;
+    for (int i = 0; i < 3000; ++i) {
+        Box b;
+        for (int k = 0; k < 2; ++k) b.add(random.direction(random(0, 2)));
+        const vec3 o = random.direction(random(0, 3)), to = random.direction(random(0, 2));
+        const Ray ray{o, unit(to - o), random(0, 6)};
+        const auto t = enter_box(b, Probe(ray));
+        met += t.has_value();
+        auto depth = [&](real s) {  // how far outside the box the point at s is
+            const vec3 p = ray.o + s * ray.d;
+            return std::max({b.lo.x - p.x, p.x - b.hi.x, b.lo.y - p.y, p.y - b.hi.y, b.lo.z - p.z,
+                             p.z - b.hi.z});
+        };
+        const real close = 64 * ulp;
+        for (int k = 0; k <= 100; ++k) {
+            const real s = ray.tmax * real(k) / 100;
+            wrong += depth(s) < -close && !(t && *t <= s + close);
+        }
+        if (t) wrong += !(*t >= 0 && *t <= ray.tmax && depth(*t) < close);
+        if (t && *t > 0) wrong += depth(*t) < -close;
+    }
+    CHECK(wrong == 0);
+    CHECK(met > 1000);
+    CHECK(met < 2700);
+}
+
+TEST_CASE("nearest_hit looks for what is nearer than the best that it is given, and at that only") {
+    std::vector<TreeNode> nodes(3);
+    nodes[0].first = 1;
+    nodes[1].box.lo.x = 1, nodes[1].count = 1;
+    nodes[2].box.lo.x = 2, nodes[2].count = 1;
+    int seen = 0;
+    auto enter = [](const Box& b) { return std::optional(std::min(b.lo.x, real(2))); };
+    auto look = [&](const TreeNode& leaf, Hit best) {
+        ++seen;
+        return best.t < leaf.box.lo.x + 1 ? best : Hit{leaf.box.lo.x + 1, uint32_t(leaf.box.lo.x)};
+    };
+    nodes[0].box.lo.x = 0;
+    CHECK(nearest_hit(nodes, Hit{}, enter, look).id == 1);
+    CHECK(seen == 2);  // the second begins where the first hit is
+    CHECK(nearest_hit(nodes, Hit{real(1.5)}, enter, look).t == real(1.5));
+    CHECK(seen == 3);
+    CHECK(nearest_hit(nodes, Hit{real(0.5)}, enter, look).t == real(0.5));
+    CHECK(seen == 3);
 }
 
 TEST_CASE("boxes are divided where areas times numbers are least, in any order of sizes") {

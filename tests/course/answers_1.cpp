@@ -1,0 +1,92 @@
+// course/answers_1.cpp  answers of week 1: intersections and the tree
+#include "course/answers.h"
+#include "course/bvh.h"
+#include "world/scene.h"
+
+using course::In, course::Out, course::vec3_of;
+
+namespace {
+
+// Whether something is hit, and the numbers of the hit.
+Out hit_of(const std::optional<Hit>& hit) {
+    if (!hit) return {0, 0, 0, 0};
+    return {1, double(hit->t), double(hit->v), double(hit->w)};
+}
+
+// Eye, target, field of view, width, height, x, y: the ray's origin and direction.
+Out ask_camera(In x) {
+    const Camera camera = look_at(vec3_of(x, 0), vec3_of(x, 3), real(x[6]));
+    const Ray ray = camera_ray(camera, {int(x[7]), int(x[8])}, real(x[9]), real(x[10]));
+    return {double(ray.o.x), double(ray.o.y), double(ray.o.z),
+            double(ray.d.x), double(ray.d.y), double(ray.d.z)};
+}
+
+// Origin, direction, tmax; centre, radius.
+Out ask_sphere(In x) {
+    const Shape s{vec3_of(x, 7), {}, {}, real(x[10])};
+    return hit_of(intersect_sphere(s, {vec3_of(x, 0), vec3_of(x, 3), real(x[6])}, real(x[6])));
+}
+
+// Origin, direction, tmax; corners.
+Out ask_triangle(In x) {
+    const Ray ray{vec3_of(x, 0), vec3_of(x, 3), real(x[6])};
+    const Shape s{vec3_of(x, 7), vec3_of(x, 10), vec3_of(x, 13)};
+    return hit_of(intersect_triangle(s, ray, shear(ray.d), ray.tmax));
+}
+
+// Origin, direction, tmax; lower and upper corner of a box.
+Out ask_box(In x) {
+    const Probe probe({vec3_of(x, 0), vec3_of(x, 3), real(x[6])});
+    const auto t = enter_box({vec3_of(x, 7), vec3_of(x, 10)}, probe);
+    return {t ? 1.0 : 0.0, t ? double(*t) : 0};
+}
+
+// Lower and upper corners of boxes: the cost of the best division, and how many are on the left.
+Out ask_division(In x) {
+    std::vector<Box> boxes;
+    for (size_t i = 0; i + 6 <= x.size(); i += 6)
+        boxes.push_back({vec3_of(x, i), vec3_of(x, i + 3)});
+    const Division d = best_division(boxes);
+    return {double(d.cost), double(d.left)};
+}
+
+// tmax, then four numbers a node: its first, its count, where a ray enters it and where it meets
+// what is in the leaf; -1: it does not.  A box holds no more than its node's number.  The hit, how
+// many boxes were asked and how many leaves looked at, and the first six of these.
+Out ask_tree(In x) {
+    const size_t n = (x.size() - 1) / 4;
+    std::vector<TreeNode> nodes(n);
+    for (size_t i = 0; i < n; ++i) {
+        nodes[i].box.lo.x = nodes[i].box.hi.x = real(i);
+        nodes[i].first = uint32_t(x[1 + 4 * i]), nodes[i].count = uint32_t(x[2 + 4 * i]);
+    }
+    double boxes = 0, leaves = 0;
+    Out seen(6, -1);
+    auto enter = [&](const Box& b) -> std::optional<real> {
+        ++boxes;
+        const double t = x[3 + 4 * size_t(b.lo.x)];
+        return t < 0 ? std::nullopt : std::optional(real(t));
+    };
+    auto look = [&](const TreeNode& leaf, Hit best) {
+        if (leaves < 6) seen[size_t(leaves)] = double(leaf.box.lo.x);
+        ++leaves;
+        const double t = x[4 + 4 * size_t(leaf.box.lo.x)];
+        return t < 0 || real(t) > best.t ? best : Hit{real(t), uint32_t(leaf.box.lo.x)};
+    };
+    const Hit hit = nearest_hit(nodes, Hit{real(x[0])}, enter, look);
+    const bool any = hit.id != UINT32_MAX;
+    Out out{any ? double(hit.t) : -1, any ? double(hit.id) : -1, boxes, leaves};
+    out.insert(out.end(), seen.begin(), seen.end());
+    return out;
+}
+
+}  // namespace
+
+int main() {
+    return course::answer_all({{"camera_ray", 11, ask_camera},
+                               {"intersect_sphere", 11, ask_sphere},
+                               {"intersect_triangle", 16, ask_triangle},
+                               {"enter_box", 13, ask_box},
+                               {"best_division", 0, ask_division},
+                               {"nearest_hit", 0, ask_tree}});
+}
