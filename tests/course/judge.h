@@ -72,8 +72,9 @@ class Judge {
 public:
     oracle::Random random;
     std::vector<Item> items;
-    Out fingerprint;  // answers to probes: by them known mistakes are told
-    double epsilon;   // of the student's `real`: 2^-53 or 2^-24
+    Out fingerprint;               // answers to probes: by them known mistakes are told
+    double epsilon;                // of the student's `real`: 2^-53 or 2^-24
+    std::optional<double> credit;  // in [0,1], where it is not the part of the items that is right
 
     Judge(Program& program, uint64_t seed)
         : random(seed), epsilon(program.is_float() ? 0x1p-24 : 0x1p-53), program_(program) {}
@@ -180,13 +181,16 @@ struct Judgement {
     std::string silence;  // why answers ended, if they did
     std::optional<KnownMistake> named;
     Out fingerprint;
+    std::optional<double> credit = {};
     size_t right() const {
         return size_t(
             std::count_if(items.begin(), items.end(), [](const Item& i) { return i.right; }));
     }
-    // In [0,1]: every item weighs the same; one that no answer came to is wrong.
+    // In [0,1]: every item weighs the same unless the judge says otherwise; one that no answer came
+    // to is wrong.
     double score() const {
         if (state == "open" || items.empty()) return 0;
+        if (credit) return *credit;
         return double(right()) / double(items.size());
     }
 };
@@ -204,6 +208,7 @@ inline Judgement judge_one(const std::string& exercise, const Judging& judging,
     }
     result.items = j.items;
     result.fingerprint = j.fingerprint;
+    result.credit = j.credit;
     if (result.right() == result.items.size() && !result.items.empty()) return result;
     result.state = result.silence.empty() ? "wrong" : "silent";
     if (const KnownMistake* m = mistake_of(mistakes, exercise, j)) {

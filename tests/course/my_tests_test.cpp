@@ -1,0 +1,59 @@
+// course/my_tests_test.cpp  the tests of week 6 find what is wrong, published or hidden, and
+// nothing else.
+#include "course/my_tests.h"
+
+#include "course/hidden_subjects.h"
+#include "course/trial.h"
+#include "oracle/expect.h"
+
+using namespace course;
+
+namespace {
+
+// All wrong subjects are refused in all of a few runs; right ones pass in nearly all of many: one
+// false alarm in a thousand runs is what a test may have.
+template <class Subject, class Test>
+void expect_judgement(const Lineup<Subject>& lineup, Test test, int runs) {
+    oracle::pictures = "";
+    oracle::Random random(seed_here());
+    for (const Named<Subject>& s : lineup.wrong)
+        for (int i = 0; i < 3; ++i) {
+            INFO("wrong: ", s.name);
+            CHECK_FALSE(test(s.subject, random.bits()));
+        }
+    double alarms = 0, all = 0;
+    for (const Named<Subject>& s : lineup.right)
+        for (int i = 0; i < runs; ++i, ++all) alarms += !test(s.subject, random.bits());
+    INFO(alarms, " false alarms in ", all, " runs");
+    CHECK(oracle::p_at_least(alarms, all, 1e-3) > 1e-6);
+}
+
+}  // namespace
+
+TEST_CASE("a test of samplers finds wrong ones, and lets right ones pass") {
+    expect_judgement(practice_samplers(), sampler_passes, 20);
+    expect_judgement(hidden_samplers(), sampler_passes, 10);
+}
+
+TEST_CASE("a test of estimators finds wrong ones, and lets right ones pass") {
+    expect_judgement(practice_estimators(), estimator_passes, 300);
+    expect_judgement(hidden_estimators(), estimator_passes, 300);
+}
+
+TEST_CASE("a test of intersectors finds wrong ones, and lets right ones pass") {
+    expect_judgement(practice_intersectors(), intersector_passes, 300);
+    expect_judgement(hidden_intersectors(), intersector_passes, 300);
+}
+
+TEST_CASE("tests draw what follows from their seeds") {
+    for (const Trial& t : {trial_of_samplers(practice_samplers(), sampler_passes),
+                           trial_of_estimators(practice_estimators(), estimator_passes),
+                           trial_of_intersectors(practice_intersectors(), intersector_passes)}) {
+        const Out looks = t.looks(1);
+        CHECK(looks == t.looks(1));
+        CHECK(looks[0] != t.looks(2)[0]);
+        CHECK(looks[0] != t.looks(3)[0]);
+        // They look at all that there is.
+        for (size_t i = 1; i < looks.size(); ++i) CHECK(looks[i] == 1);
+    }
+}

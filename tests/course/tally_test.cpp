@@ -1,0 +1,114 @@
+// course/tally_test.cpp  a test gets points for what it finds, and loses them by false alarms
+#include "course/tally.h"
+
+#include <set>
+
+#include "oracle/expect.h"
+
+using namespace course;
+
+namespace {
+
+// A student's test of 12 wrong subjects and 7 right ones, without the student: refuses(subject)
+// says what it does.
+template <class Refuses>
+struct Played {
+    oracle::Random random;
+    Refuses refuses;
+    double seconds = 0.01;
+    size_t wrong = 12, right = 7;
+    std::set<std::pair<double, bool>> places = {};  // asked for, and whether wrong
+    std::set<double> seeds = {};
+
+    Out ask(const std::string& question, const Out& in) {
+        if (question == "count") return {double(wrong), double(right)};
+        const size_t subject = shuffled(in.at(1), wrong + right).at(size_t(in.at(2)));
+        places.emplace(in[2], subject < wrong);
+        seeds.insert(in.at(3));
+        return {refuses(subject) ? 0.0 : 1.0, seconds};
+    }
+};
+template <class Refuses>
+Played<Refuses> played(Refuses refuses) {
+    return {oracle::Random(seed_here()), refuses};
+}
+
+}  // namespace
+
+TEST_CASE("whoever finds all that is wrong, and nothing else, gets all points") {
+    auto j = played([](size_t subject) { return subject < 12; });
+    const Tally t = tally(j, 1);
+    CHECK(t.credit() == 1);
+    CHECK(t.found() == 12);
+    CHECK(t.runs == 12 * 3 + 7 * 17);
+    CHECK(t.right_runs >= 100);
+    CHECK(t.alarms == 0);
+    CHECK(t.quiet());
+    CHECK(t.in_time());
+    CHECK(j.seeds.size() == t.runs);
+}
+
+TEST_CASE("whoever says yes to all, or no to all, gets none") {
+    auto yes = played([](size_t) { return false; });
+    auto no = played([](size_t) { return true; });
+    CHECK(tally(yes, 1).credit() == 0);
+    CHECK(tally(yes, 1).quiet());
+    const Tally t = tally(no, 1);
+    CHECK(t.credit() == 0);
+    CHECK(t.found() == 12);
+    CHECK(t.alarms == 7 * 17);
+    CHECK_FALSE(t.quiet());
+}
+
+TEST_CASE("whoever guesses gets none") {
+    oracle::Random coin(seed_here());
+    for (double p : {0.3, 0.5, 0.9}) {
+        auto j = played([&](size_t) { return coin() < p; });
+        CHECK(tally(j, 1).credit() == 0);
+    }
+}
+
+TEST_CASE("half of what is wrong is half of the points") {
+    auto j = played([](size_t subject) { return subject < 6; });
+    CHECK(tally(j, 1).credit() == 0.5);
+}
+
+TEST_CASE("a false alarm that chance explains costs nothing, more cost five times their share") {
+    for (int alarms : {1, 2, 3, 12}) {
+        int left = alarms;
+        auto j = played([&](size_t subject) { return subject < 12 || left-- > 0; });
+        const Tally t = tally(j, 1);
+        CHECK(t.alarms == size_t(alarms));
+        CHECK(t.quiet() == (alarms <= 2));
+        CHECK(t.credit() == doctest::Approx(alarms <= 2 ? 1 : 1 - 5.0 * alarms / (7 * 17)));
+    }
+}
+
+TEST_CASE("what is refused now and then is not found") {
+    std::vector<int> runs(19);
+    auto j = played([&](size_t subject) { return subject < 12 && runs[subject]++ == 0; });
+    CHECK(tally(j, 1).found() == 0);
+}
+
+TEST_CASE("when time is up no more is asked") {
+    auto j = played([](size_t subject) { return subject < 12; });
+    j.seconds = 1;
+    const Tally t = tally(j, 1);
+    CHECK(t.runs == 16);  // 155 runs have 15.5 s
+    CHECK_FALSE(t.in_time());
+    CHECK(t.credit() < 1);
+}
+
+TEST_CASE("nothing follows from a subject's place") {
+    auto j = played([](size_t subject) { return subject < 12; });
+    for (int i = 0; i < 3; ++i) (void)tally(j, 1);
+    CHECK(j.places.size() == 2 * 19);
+    // Every subject comes to every place alike.
+    std::vector<double> counts(19);
+    for (double key = 0; key < 19000; ++key) {
+        const auto order = shuffled(key, 19);
+        CHECK(std::set<size_t>(order.begin(), order.end()).size() == 19);
+        ++counts[size_t(std::find(order.begin(), order.end(), 5u) - order.begin())];
+    }
+    EXPECT(oracle::expect_counts(counts, std::vector<double>(19, 1 / 19.0)), 0.073);
+}

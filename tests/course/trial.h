@@ -1,0 +1,161 @@
+// course/trial.h  a student's tests on trial: what they say of subjects, and what they look at
+//
+// All subjects look alike from outside: whoever takes a function apart finds the same type.
+#pragma once
+#include <ctime>
+
+#include "course/answers.h"
+#include "course/practice.h"
+#include "course/shuffle.h"
+
+namespace course {
+
+inline Sampler sealed(const Sampler& s) {
+    return {[s](double u, double v) { return s.sample(u, v); }, [s](vec3 w) { return s.pdf(w); }};
+}
+inline Estimator sealed(const Estimator& s) {
+    return {[s](uint64_t seed, int n) { return s.estimate(seed, n); }, s.truth, s.unbiased};
+}
+inline Intersector sealed(const Intersector& s) {
+    return {[s](const Body& body, const Beam& beam) { return s.meet(body, beam); }};
+}
+
+// A test of one exercise without the type of its subjects: wrong ones come first.
+struct Trial {
+    size_t wrong = 0, right = 0;
+    std::function<bool(size_t index, uint64_t seed)> passes;
+    std::function<Out(uint64_t seed)> looks;  // at what the test looks, from one run on a spy
+};
+
+// What a spy has seen: of all that was asked, in its order, and some features by name.
+struct Seen {
+    uint64_t all = 0;
+    std::vector<bool> features;
+    void number(double x) { all = hash(all, std::bit_cast<uint64_t>(x)); }
+    Out out() const {
+        Out numbers{double(all >> 11)};
+        for (bool f : features) numbers.push_back(f);
+        return numbers;
+    }
+};
+
+template <class Subject, class Test>
+Trial trial(const Lineup<Subject>& lineup, Test test, std::function<Out(uint64_t)> looks) {
+    std::vector<Subject> all;
+    for (const auto* side : {&lineup.wrong, &lineup.right})
+        for (const Named<Subject>& s : *side) all.push_back(sealed(s.subject));
+    return {lineup.wrong.size(), lineup.right.size(),
+            [=](size_t index, uint64_t seed) { return bool(test(all[index], seed)); }, looks};
+}
+
+// Samples and densities, and many of them.
+template <class Test>
+Trial trial_of_samplers(const Lineup<Sampler>& lineup, Test test) {
+    return trial(lineup, test, [test](uint64_t seed) {
+        const Sampler right = practice_samplers().right[0].subject;
+        Seen seen{0, {false, false, false}};
+        size_t asked = 0;
+        test({[&](double u, double v) {
+                  seen.number(u), seen.number(v);
+                  seen.features[0] = true, seen.features[2] = ++asked >= 1000;
+                  return right.sample(u, v);
+              },
+              [&](vec3 w) {
+                  seen.features[1] = true;
+                  return right.pdf(w);
+              }},
+             seed);
+        return seen.out();
+    });
+}
+
+// Many estimates, several numbers of samples, and what is said of a subject of either class.
+template <class Test>
+Trial trial_of_estimators(const Lineup<Estimator>& lineup, Test test) {
+    return trial(lineup, test, [test](uint64_t seed) {
+        Seen seen{0, {false, false, false}};
+        int first = 0;
+        size_t asked = 0;
+        for (bool unbiased : {true, false})
+            test({[&](uint64_t of, int n) {
+                      if (first == 0) first = n;
+                      seen.number(double(of >> 11)), seen.number(n);
+                      seen.features[0] = ++asked >= 200;
+                      seen.features[1] = seen.features[1] || n != first;
+                      seen.features[2] = seen.features[2] || n >= 32;
+                      return mean_of_exp(of, n);
+                  },
+                  std::numbers::e - 1, unbiased},
+                 seed);
+        return seen.out();
+    });
+}
+
+// Spheres, triangles, beams that end, and beams that begin within.
+template <class Test>
+Trial trial_of_intersectors(const Lineup<Intersector>& lineup, Test test) {
+    return trial(lineup, test, [test](uint64_t seed) {
+        Seen seen{0, {false, false, false, false}};
+        const Intersector right = practice_intersectors().right[0].subject;
+        test({[&](const Body& s, const Beam& beam) {
+                 for (double x : {beam.o.x, beam.o.y, beam.o.z, beam.d.x, beam.d.y, beam.d.z})
+                     seen.number(x);
+                 const bool features[] = {s.r > 0, s.r == 0,
+                                          beam.tmax<infinity, s.r> 0 && length(beam.o - s.a) < s.r};
+                 for (size_t i = 0; i < 4; ++i) seen.features[i] = seen.features[i] || features[i];
+                 return right.meet(s, beam);
+             }},
+             seed);
+        return seen.out();
+    });
+}
+
+inline double seconds_of_cpu() { return double(std::clock()) / CLOCKS_PER_SEC; }
+
+// The answers: trials[e] is that of exercise 6.e.  `practice` are those of the published subjects.
+inline int on_trial(const std::vector<Trial>& trials, const std::vector<Trial>& practice) {
+    auto run = [](const Trial& t, size_t index, double seed) {
+        const double begun = seconds_of_cpu();
+        const bool passes = t.passes(index, uint64_t(seed));
+        return Out{double(passes), seconds_of_cpu() - begun};
+    };
+    auto at = [](const std::vector<Trial>& all, double e) { return all.at(size_t(e) - 1); };
+    return answer_all({
+        // Exercise: how many subjects are wrong, and how many are right.
+        {"count", 1,
+         [=](In x) {
+             const Trial t = at(trials, x[0]);
+             return Out{double(t.wrong), double(t.right)};
+         }},
+        // Exercise, key, place, seed: whether the subject at this place passes, and its seconds.
+        {"test", 4,
+         [=](In x) {
+             const Trial t = at(trials, x[0]);
+             return run(t, shuffled(x[1], t.wrong + t.right).at(size_t(x[2])), x[3]);
+         }},
+        // Exercise, index: whether this published subject passes; of right ones, how many of ten
+        // runs do: all, some, few.
+        {"practice", 2,
+         [=](In x) {
+             const Trial t = at(practice, x[0]);
+             const auto index = size_t(x[1]);
+             if (index < t.wrong) return Out{double(t.passes(index, 1))};
+             int passed = 0;
+             for (uint64_t seed = 1; seed <= 10; ++seed) passed += t.passes(index, seed);
+             return Out{passed == 10 ? 2.0 : passed > 5 ? 1.0 : 0.0};
+         }},
+        // Exercise: whether a seed gives the same questions again, another one others, and what
+        // they look at.
+        {"looks", 1,
+         [=](In x) {
+             const Trial t = at(practice, x[0]);
+             Out first = t.looks(1);
+             const double same = first[0] == t.looks(1)[0], other = first[0] != t.looks(2)[0];
+             first[0] = other;
+             first.insert(first.begin(), same);
+             return first;
+         }},
+    });
+}
+
+}  // namespace course
