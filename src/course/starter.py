@@ -64,6 +64,16 @@ def write(path, text, executable=False):
     path.chmod(0o755 if executable else 0o644)
 
 
+def with_headers(folder, files):
+    """Files of a folder that there are, and what they include of it, in turn."""
+    found = list(dict.fromkeys(f for f in files if (folder / f).exists()))
+    for file in found:
+        for header in re.findall(r'^#include "course/(\w+\.h)"', (folder / file).read_text(), re.M):
+            if header not in found and (folder / header).exists():
+                found.append(header)
+    return found
+
+
 def write_sources(plan, to):
     """src: the folders that the weeks need, and the tree that a student can read in place of ours."""
     for folder in FOLDERS + plan.wings:
@@ -73,7 +83,7 @@ def write_sources(plan, to):
             name = f'src/{folder}/{path.name}'
             write(to / name, regions.rewrite(path.read_text(), name, plan.replacement))
     names = COURSE + sorted({pathlib.Path(e.file).name for e in plan.open if e.file.startswith('course/')})
-    for file in dict.fromkeys(names):
+    for file in with_headers(ROOT / 'src/course', names):
         name = f'src/course/{file}'
         write(to / name, regions.rewrite((ROOT / name).read_text(), name, plan.replacement))
     write(to / 'src/world/bvh.h', '// world/bvh.h  5  where rays stop: the tree of course/bvh.h\n#pragma once\n'
@@ -90,13 +100,9 @@ def write_checks(plan, to):
     """tests/course: the kit, and answers, judges, exercises and known mistakes of the open weeks."""
     course = ROOT / 'tests/course'
     numbers = {e.number for e in plan.open}
-    for file in KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]:
-        if (course / file).exists():
-            write(to / 'tests/course' / file, (course / file).read_text(), file == 'check')
-            # What they include of tests/course.
-            for header in re.findall(r'^#include "course/(\w+\.h)"', (course / file).read_text(), re.M):
-                if (course / header).exists():
-                    write(to / 'tests/course' / header, (course / header).read_text())
+    files = KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]
+    for file in with_headers(course, files):
+        write(to / 'tests/course' / file, (course / file).read_text(), file == 'check')
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
