@@ -34,7 +34,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
-        starter starter-check mistakes handout
+        starter starter-check mistakes handout grade
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -214,6 +214,13 @@ JUDGES := $(patsubst tests/course/%.cpp,$(COURSE)/%,$(wildcard tests/course/judg
 starter:  ## what students get, as build/starter/ and .tar.gz; WEEKS=1-3: of these weeks, those before come solved
 	@python3 src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
 starter: build/draw$(SUFFIX)
+
+# Students' code is compiled and run in bubblewrap alone.
+grade: packages  ## grade what students handed in: SUBMISSIONS=FOLDER; OUT=out/grades, WEEKS=1-3, SEED=N, JOBS=2
+	@$(if $(SUBMISSIONS),,echo "make grade SUBMISSIONS=FOLDER: a folder or a .tar.gz for each student" >&2; exit 2;) \
+	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/grade.py \
+	    $(if $(OUT),--out '$(OUT)') $(if $(WEEKS),--weeks '$(WEEKS)') $(if $(SEED),--seed $(SEED)) \
+	    $(if $(JOBS),--jobs $(JOBS)) '$(SUBMISSIONS)'
 
 mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')

@@ -17,7 +17,7 @@ TOKEN = re.compile(r'''
   | (?P<raw>     (?<![A-Za-z0-9_])(?:u8|[uUL])?R" )
   | (?P<literal> "(?:[^"\\\n]|\\[^\n])*" | '(?:[^'\\\n]|\\[^\n])+' )
   | (?P<number>  \.?[0-9](?:'?[0-9A-Za-z_]|[eEpP][+-]|\.)* )
-  | (?P<name>    [A-Za-z_\x80-\xff][0-9A-Za-z_\x80-\xff]* )
+  | (?P<name>    [A-Za-z_]\w* | [^\x00-\x7f]+ )
   | (?P<space>   [ \t\n]+ )
   | (?P<other>   /\* | %: | \?\?= | . )''', re.X | re.S)
 
@@ -41,7 +41,7 @@ def region(data, exercise, file):
     """The region of the exercise in the bytes of a file; a Problem if there is not exactly one."""
     if b'\0' in data:
         raise Problem(f'{file} holds NUL bytes: is it text in UTF-8?')
-    text = data.decode('latin-1').replace('\r\n', '\n')
+    text = data.decode('utf-8', 'surrogateescape').replace('\r\n', '\n')
     marks = [(m.group(1), m.group(2), m.start(), m.end()) for m in MARK.finditer(text)]
     begins = [i for i, m in enumerate(marks) if m[:2] == ('BEGIN', exercise)]
     ends = [i for i, m in enumerate(marks) if m[:2] == ('END', exercise)]

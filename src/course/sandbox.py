@@ -6,6 +6,7 @@
 # write its pipes: a list of what is allowed (seccomp), so that whatever is not on it fails.
 import os
 import platform
+import re
 import shutil
 import signal
 import struct
@@ -39,6 +40,7 @@ class Built:
     ok: bool
     messages: str   # what the compiler said
     ended: str      # '' or how it was stopped
+    seconds: float  # of processor time
 
 
 # ---- What the machine must have ------------------------------------------------------------------
@@ -102,35 +104,47 @@ def compile_command(tree, out, command, cpu, headers=None):
 
 def build(tree, out, command, cpu=20, headers=None):
     """Runs a compiler on untrusted text.  No more than 64 kB of what it says is kept."""
-    with subprocess.Popen(compile_command(tree, out, command, cpu, headers), env=environment(), stdin=subprocess.DEVNULL,
-                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True) as process:
-        timer = Alarm(process, 3 * cpu + 5)
-        said = process.stderr.read(1 << 16)
+    process = subprocess.Popen(compile_command(tree, out, command, cpu, headers), env=environment(),
+                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                               start_new_session=True)
+    alarm = Alarm(process, 3 * cpu + 5)
+    with process.stderr:
+        said = process.stderr.read(1 << 16).decode('utf-8', 'replace')
         while process.stderr.read(1 << 16):
             pass
-        status = process.wait()
-        late = timer.cancel()
-    said = said.decode('utf-8', 'replace')
-    if late or status in (-signal.SIGXCPU, 128 + signal.SIGXCPU, -signal.SIGKILL, 128 + signal.SIGKILL) or \
+    status, seconds = cpu_of(process)
+    return Built(status == 0, said, alarm.cancel() or how_it_ended(status, said, cpu), seconds)
+
+
+def cpu_of(process):
+    """Waits; its exit status and the processor seconds of all that it waited for."""
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, used.ru_utime + used.ru_stime
+
+
+def how_it_ended(status, said, cpu):
+    """Which limit a compiler met, by its last words."""
+    if status in (-signal.SIGXCPU, 128 + signal.SIGXCPU, -signal.SIGKILL, 128 + signal.SIGKILL) or \
             'CPU time limit exceeded' in said or 'Killed signal' in said:
-        return Built(False, said, f'the compiler was stopped after {cpu} s')
-    if 'out of memory' in said or 'Cannot allocate memory' in said or 'bad_alloc' in said:
-        return Built(False, said, f'the compiler needed more than {COMPILER_MEMORY >> 20} MB')
-    if 'File size limit exceeded' in said or 'File too large' in said or 'No space left' in said:
-        return Built(False, said, f'the program would have more than {OUTPUT >> 20} MB')
-    return Built(status == 0, said, '')
+        return f'the compiler was stopped after {cpu} s'
+    if re.search('out of memory|Cannot allocate memory|bad_alloc', said):
+        return f'the compiler needed more than {COMPILER_MEMORY >> 20} MB'
+    if re.search('File size limit exceeded|File too large|No space left', said):
+        return f'the program would have more than {OUTPUT >> 20} MB'
+    return ''
 
 
 class Alarm:
     """Kills a process group after so many seconds by the clock."""
     def __init__(self, process, seconds):
-        self.process, self.late = process, False
+        self.process, self.seconds, self.said = process, seconds, ''
         self.timer = threading.Timer(seconds, self.ring)
         self.timer.daemon = True
         self.timer.start()
 
     def ring(self):
-        self.late = True
+        self.said = f'the compiler was stopped after {self.seconds} s'
         try:
             os.killpg(self.process.pid, signal.SIGKILL)
         except ProcessLookupError:
@@ -138,7 +152,7 @@ class Alarm:
 
     def cancel(self):
         self.timer.cancel()
-        return self.late
+        return self.said
 
 
 # ---- Running -------------------------------------------------------------------------------------

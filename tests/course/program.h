@@ -144,10 +144,15 @@ private:
     [[noreturn]] void gone() {
         ::usleep(100000);  // its end may come a moment after that of its pipe
         const int status = end();
-        if (WIFSIGNALED(status) && WTERMSIG(status) != SIGKILL)
-            throw Silence(asked_ + " crashes: " + ::strsignal(WTERMSIG(status)));
-        if (WIFSIGNALED(status))
+        // A shell and a sandbox tell of signals by exit statuses above 128.
+        const int signal = WIFSIGNALED(status)         ? WTERMSIG(status)
+                           : WEXITSTATUS(status) > 128 ? WEXITSTATUS(status) - 128
+                                                       : 0;
+        if (signal == SIGKILL)
             throw Silence(asked_ + " was ended: it used too much, or closed its pipe");
+        if (signal == SIGXCPU)
+            throw Silence(asked_ + " used up its processor time: an endless loop?");
+        if (signal != 0) throw Silence(asked_ + " crashes: " + ::strsignal(signal));
         throw Silence(asked_ + " ends the program, with exit status " +
                       std::to_string(WEXITSTATUS(status)));
     }

@@ -1,0 +1,216 @@
+# course/grade.py  15  grades what students handed in
+"""grade.py [--weeks 1-3] [--seed N] [--jobs N] [--out FOLDER] SUBMISSIONS
+
+Every folder or .tar.gz in SUBMISSIONS is what one student handed in.  Of it only the regions of the
+exercises are taken.  Each is put alone into the solution, then all together; both are compiled and
+run in bubblewrap, and judged by numbers that come over a pipe.  Writes FOLDER/students/NAME/grade.md
+and grade.json, and FOLDER/grades.csv.  Whoever has a grade.json of the same hand-in, seed and solution
+is not graded again: what was stopped goes on.
+"""
+import argparse
+import concurrent.futures
+import fcntl
+import os
+import pathlib
+import secrets
+import shutil
+import sys
+import tempfile
+import threading
+import time
+from dataclasses import replace
+
+import regions
+import reports
+import sandbox
+import submission
+from region import canonical, region, without_comments
+from starter import Plan
+from submission import Problem
+from workshop import Broken, Workshop, digest_of
+
+BUDGET = 200  # seconds of processor time for one submission, of which what comes to an end uses the half
+
+
+class Student:
+    """One submission: his regions, or what is wrong with them, and his verdicts."""
+
+    def __init__(self, name, path, shop, numbers):
+        self.name, self.shop, self.numbers = name, shop, numbers
+        self.verdicts, self.texts, self.original, self.spent = {}, {}, {}, 0.0
+        self.lock = threading.Lock()
+        files = submission.read(path, list(dict.fromkeys(shop.solutions[n][0] for n in numbers)))
+        for number in numbers:
+            self.take(number, files)
+        self.key = digest_of([shop.key, str(shop.seed), name,
+                              *(f'{n} {self.original[n].text if n in self.original else self.verdicts[n]}' for n in numbers)])
+
+    def take(self, number, files):
+        """His region, if it is one that may be compiled."""
+        file, solution = self.shop.solutions[number]
+        try:
+            if isinstance(files[file], Problem):
+                raise files[file]
+            self.original[number] = region(files[file], number, file)
+        except Problem as problem:
+            self.verdicts[number] = verdict('missing', str(problem))
+            return
+        if canonical(self.original[number].text) == canonical('\n'.join(solution.stub)):
+            self.verdicts[number] = verdict('open')
+            return
+        try:
+            self.texts[number] = replace(self.original[number], text=without_comments(self.original[number]))
+        except Problem as problem:
+            self.verdicts[number] = verdict('refused', str(problem))
+
+    def judge(self, number, texts, scratch):
+        """One judgement, unless the submission has used up its time."""
+        with self.lock:
+            if self.spent > BUDGET:
+                return verdict('not judged', f'the submission had used up its {BUDGET} s of processor time')
+        try:
+            found = self.shop.judged(number, texts, scratch)
+        except OSError as error:
+            return verdict('not judged', f'on this machine: {error}')
+        with self.lock:
+            self.spent += found['seconds'] + found.get('compile seconds', 0)
+        return found
+
+    def grade(self, pool, scratch, worth):
+        """Each exercise alone, then all that may be compiled together."""
+        alone = {n: pool.submit(self.judge, n, {n: self.texts[n]}, scratch) for n in self.texts}
+        alone = {n: future.result() for n, future in alone.items()}
+        fit = {n: self.texts[n] for n in self.texts if alone[n]['state'] in ('right', 'wrong')}
+        together = {n: pool.submit(self.judge, n, fit, scratch) for n in fit}
+        together = {n: future.result() for n, future in together.items()}
+        self.shop.forget(scratch)
+        self.verdicts.update(alone)
+        parts = {n: self.part(n, together.get(n), worth[n]) for n in self.numbers}
+        return {'student': reports.plain(self.name), 'key': self.key, 'seed': self.shop.seed, 'course': self.shop.key,
+                'sum': round(sum(p['points'] for p in parts.values()), 6), 'of': sum(p['of'] for p in parts.values()),
+                'exercises': parts}
+
+    def part(self, number, together, worth):
+        """What the reports say of an exercise."""
+        exercise, found = self.shop.exercises[number], self.verdicts[number]
+        items = [{'what': reports.plain(i['what']), 'kind': i['kind'], 'right': i['right'], 'seen': reports.plain(i['seen'])}
+                 for i in found['items']]
+        messages = []
+        if found['state'] == 'not compiled':
+            messages = reports.own_messages(found['compiler'], self.original[number]) or [
+                'no error lies in your own lines: is a brace, a bracket or a semicolon missing, or one too many?']
+        return {'title': exercise.title, 'points': round(exercise.points * reports.share(found, *worth), 6),
+                'of': exercise.points, 'state': found['state'], 'line': reports.headline(number, found), 'items': items,
+                'compiler': messages, 'together': together['state'] if together else ''}
+
+
+def verdict(state, says=''):
+    return {'state': state, 'says': says, 'items': [], 'seconds': 0}
+
+
+# ---- The work ------------------------------------------------------------------------------------
+
+def duration(seconds):
+    minutes = int(seconds) // 60
+    return f'{seconds:.0f} s' if minutes < 2 else f'{minutes} min' if minutes < 120 else f'{minutes // 60} h {minutes % 60} min'
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def seed_of(words, out):
+    """The given one; that of a grading that was stopped; or a fresh one."""
+    path = out / 'seed'
+    if words.seed is None:
+        try:
+            return int(path.read_text())
+        except (OSError, ValueError):
+            words.seed = secrets.randbelow(1 << 62)
+    reports.write(str(path), f'{words.seed}\n')
+    return words.seed
+
+
+def grade_all(words, out):
+    """Every student who is not graded yet; the table after each, so that it holds all that is known."""
+    shop = Workshop(words.cache, seed_of(words, out))
+    numbers = [e.number for e in Plan(words.weeks or every_week()).open if e.number in shop.solutions]
+    if not numbers:
+        raise Broken('no exercise of these weeks has a region, answers and a judge')
+    shop.prepare(words.jobs)
+    work = out / '.work'
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir()
+    work.chmod(0o755)
+    with scratch_in(work) as scratch:
+        worth = shop.weigh(words.jobs, scratch)
+    handed_in = submission.submissions(words.submissions)
+    say(f'{len(handed_in)} submissions, {len(numbers)} exercises, seed {shop.seed}')
+    grades, began, fresh = [], time.monotonic(), 0
+    with concurrent.futures.ThreadPoolExecutor(words.jobs) as pool:
+        for count, (name, path) in enumerate(handed_in, 1):
+            student = Student(name, path, shop, numbers)
+            folder = str(out / 'students' / name)
+            grade = reports.load(folder)
+            if not grade or grade.get('key') != student.key:
+                start = time.monotonic()
+                with scratch_in(work) as scratch:
+                    grade = student.grade(pool, scratch, worth)
+                reports.save(folder, grade)
+                fresh += 1
+                now = time.monotonic()
+                left = (now - began) / fresh * (len(handed_in) - count)
+                say(f'{count} of {len(handed_in)}  {grade["student"]}: {reports.points(grade["sum"])} of {grade["of"]} points, '
+                    f'{now - start:.1f} s; {duration(left)} left')
+            grades.append(grade)
+    reports.table(str(out / 'grades.csv'), numbers, grades)
+    say(f'{out}/grades.csv: {len(grades)} students, {fresh} of them graded now')
+
+
+def every_week():
+    return ','.join(dict.fromkeys(e.week for e in regions.exercises()))
+
+
+class scratch_in:
+    """A folder for what one submission builds, removed at the end."""
+    def __init__(self, work):
+        self.work = work
+
+    def __enter__(self):
+        self.path = tempfile.mkdtemp(dir=self.work)
+        os.chmod(self.path, 0o755)
+        return self.path
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.path, ignore_errors=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n', 1)[0])
+    parser.add_argument('--weeks')
+    parser.add_argument('--seed', type=int)
+    parser.add_argument('--jobs', type=int, default=os.cpu_count() or 2)
+    parser.add_argument('--out', type=pathlib.Path, default=pathlib.Path('out/grades'))
+    parser.add_argument('--cache', type=pathlib.Path, default=regions.ROOT / 'build/grade')
+    parser.add_argument('submissions')
+    words = parser.parse_args()
+    if not os.path.isdir(words.submissions):
+        raise Broken(f'{words.submissions} is no folder of submissions')
+    sandbox.demand()
+    out = words.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    with open(out / '.lock', 'w') as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise Broken(f'somebody grades into {out} already') from None
+        grade_all(words, out)
+
+
+if __name__ == '__main__':
+    try:
+        main()
+    except (Broken, sandbox.Missing, regions.Malformed) as error:
+        sys.exit(f'grade: {error}')
+    except KeyboardInterrupt:
+        sys.exit('grade: stopped; the same command goes on')

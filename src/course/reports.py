@@ -1,0 +1,130 @@
+# course/reports.py  14  what becomes of verdicts: points, grade.json and grade.md, grades.csv
+#
+# What students wrote, and what a compiler says of it, is shown as text: no marks of Markdown or HTML,
+# no formulas of a spreadsheet.  Of compilers only words about the student's own lines are shown, since
+# others could quote a solution.
+import csv
+import json
+import os
+import re
+
+MOST_MESSAGES = 5
+
+
+def plain(text, most=300):
+    """One line of printable text."""
+    text = ''.join(c if c.isprintable() else ' ' for c in text)
+    return text if len(text) <= most else text[:most] + ' ...'
+
+
+def marked(text, most=300):
+    """The same, with nothing that Markdown or HTML would take for more than text."""
+    return re.sub(r'([\\`*_{}\[\]()#+!|~$-])', r'\\\1', plain(text, most)).replace('&', '&amp;').replace('<', '&lt;')
+
+
+def own_messages(said, region):
+    """Errors of the compiler in the region's own lines, by the lines of the student's file."""
+    kept = []
+    for line in said.split('\n'):
+        found = re.match(r'student/%s:(\d+):(?:\d+:)? (?:fatal )?error: (.*)$' % re.escape(region.exercise), line)
+        if found and 1 <= int(found[1]) <= region.text.count('\n'):
+            kept.append(f'{region.file}:{region.line + int(found[1]) - 1}: {plain(found[2], 200)}')
+    return list(dict.fromkeys(kept))[:MOST_MESSAGES]
+
+
+def share(verdict, items, stub):
+    """The part of an exercise's points: items right, beyond those that its stub has right."""
+    if verdict['state'] == 'right':
+        return 1.0
+    if verdict['state'] not in ('wrong', 'silent'):
+        return 0.0
+    right = sum(item['right'] for item in verdict['items'])
+    return max(0.0, (right - stub) / max(items - stub, len(verdict['items']) - stub, 1))
+
+
+def headline(number, verdict):
+    """A verdict in a sentence."""
+    state, items = verdict['state'], verdict['items']
+    wrong = next((f'{i["what"]}: {i["seen"]}' for i in items if not i['right']), '')
+    sentence = {
+        'right': f'right: {len(items)} of {len(items)}',
+        'open': 'open: the stub is still there',
+        'missing': f'not judged: {verdict["says"]}',
+        'refused': f'refused: {verdict["says"]}',
+        'not compiled': f'does not compile{": " + verdict["says"] if verdict["says"] else ""}',
+        'not judged': f'not judged: {verdict["says"]}',
+        'silent': f'wrong: {verdict["says"]}',
+        'wrong': f'wrong: {verdict["says"] or wrong}',
+    }[state]
+    if verdict.get('read') and state == 'wrong':
+        sentence += f'; read "{verdict["read"]}" in sheet {number.split(".")[0]}'
+    return plain(sentence)
+
+
+def write(path, text):
+    """By a new name first: whoever reads it finds all or nothing."""
+    with open(path + '.partial', 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(path + '.partial', path)
+
+
+def points(number):
+    return f'{number:.2f}'.rstrip('0').rstrip('.')
+
+
+def sheet(grade):
+    """grade.md: a table, then what was looked at."""
+    lines = [f'# {marked(grade["student"])}: {points(grade["sum"])} of {points(grade["of"])} points', '',
+             '| exercise | | points | of | verdict | all together |', '|---|---|---|---|---|---|']
+    for number, e in grade['exercises'].items():
+        lines.append(f'| {number} | {marked(e["title"])} | {points(e["points"])} | {e["of"]} | {marked(e["line"])} | '
+                     f'{marked(e["together"])} |')
+    lines += ['', 'Points are those of each exercise alone, in a solution that is right elsewhere.  "All together" is what',
+              'becomes of it when all that was handed in stands in the same program; it counts for nothing.',
+              f'Seed {grade["seed"]}, solution {grade["course"][:16]}.', '']
+    for number, e in grade['exercises'].items():
+        if not e['items'] and not e['compiler']:
+            continue
+        lines += [f'## {number} {marked(e["title"])}', '']
+        for item in e['items']:
+            seen = f': {marked(item["seen"])}' if item['seen'] and not item['right'] else ''
+            lines.append(f'* {"right" if item["right"] else "**wrong**"}, {item["kind"]}: {marked(item["what"])}{seen}')
+        lines += [f'* {marked(message)}' for message in e['compiler']]
+        lines.append('')
+    return '\n'.join(lines)
+
+
+def cell(text):
+    """A cell that no spreadsheet takes for a formula."""
+    text = plain(str(text))
+    return "'" + text if text[:1] in ('=', '+', '-', '@') and not re.fullmatch(r'-?[0-9.]+', text) else text
+
+
+def table(path, numbers, grades):
+    """grades.csv: a line a student."""
+    with open(path + '.partial', 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
+        rows = csv.writer(file)
+        rows.writerow(['student', *numbers, 'sum', 'of', 'look at'])
+        for g in grades:
+            parts = g['exercises']
+            rows.writerow([cell(g['student']), *(points(parts[n]['points']) if n in parts else '' for n in numbers),
+                           points(g['sum']), points(g['of']),
+                           cell(' '.join(n for n, e in parts.items() if e['state'] == 'not judged'))])
+    os.replace(path + '.partial', path)
+
+
+def save(folder, grade):
+    """grade.md, then grade.json, which says that the student is done."""
+    os.makedirs(folder, exist_ok=True)
+    write(os.path.join(folder, 'grade.md'), sheet(grade))
+    write(os.path.join(folder, 'grade.json'), json.dumps(grade, indent=1) + '\n')
+
+
+def load(folder):
+    try:
+        with open(os.path.join(folder, 'grade.json'), encoding='utf-8') as file:
+            return json.load(file)
+    except (OSError, ValueError):
+        return None
