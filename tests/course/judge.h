@@ -300,6 +300,7 @@ inline int judge(int argc, char** argv, const std::map<std::string, Judging>& ex
         else
             exercise = word;
     }
+    if (!std::getenv("ORACLE_PICTURES")) oracle::pictures = "";  // draws none where nobody looks
     const auto found = exercises.find(exercise);
     if (found == exercises.end()) throw std::runtime_error("no exercise '" + exercise + "' here");
     if (i + 1 >= argc) throw std::runtime_error("say -- and the program that answers");
