@@ -1,0 +1,47 @@
+// course/answers_4.cpp  answers of week 4: Halton's points, scrambled; strata
+#include "course/answers.h"
+#include "path/sampler.h"
+
+using course::In, course::Out;
+
+namespace {
+
+// Two halves of 32 bits: doubles hold no more than 53.
+uint64_t bits_of(In x, size_t at) { return uint64_t(x[at]) << 32 | uint64_t(x[at + 1]); }
+
+// Base, index, bits of shift and factor.
+Out scrambled(In x) {
+    return {double(scrambled_radical_inverse(Base(uint32_t(x[0])), bits_of(x, 1), bits_of(x, 3),
+                                             bits_of(x, 5)))};
+}
+
+// Seed, pixel, sample: all numbers that a path of so many vertices may draw, the film's first.
+constexpr int depth = 8;
+Out path(In x) {
+    static Pattern pattern = make_pattern(SamplerKind::halton, 0, depth, 64);
+    pattern.seed = uint64_t(x[0]);
+    const Sampler sampler(pattern, uint64_t(x[1]), uint64_t(x[2]));
+    Out all{double(sampler.get(film_x)), double(sampler.get(film_y))};
+    for (int vertex = 0; vertex < depth; ++vertex)
+        for (uint32_t what = 0; what < uint32_t(Draw::count); ++what)
+            all.push_back(double(sampler.get(dimension(vertex, Draw(what)))));
+    return all;
+}
+
+}  // namespace
+
+int main() {
+    return course::answer_all({
+        {"radical_inverse", 3,
+         [](In x) { return Out{double(radical_inverse(Base(uint32_t(x[0])), bits_of(x, 1)))}; }},
+        {"scrambled_radical_inverse", 7, scrambled},
+        {"path", 3, path},
+        {"in_part", 4,
+         [](In x) { return Out{double(in_part(uint32_t(x[0]), uint32_t(x[1]), bits_of(x, 2)))}; }},
+        {"in_cell", 5,
+         [](In x) {
+             const vec2 at = in_cell(uint32_t(x[0]), uint32_t(x[1]), uint32_t(x[2]), bits_of(x, 3));
+             return Out{double(at.x), double(at.y)};
+         }},
+    });
+}
