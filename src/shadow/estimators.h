@@ -124,8 +124,8 @@ inline double regression(const ShadowMoments& m) {
     if (m.n < 8 || !(m.bb > 0)) return ratio(m);
     const double R = visible_part(m), beta = (m.b_wV - R * m.b_U) / m.bb;
     return m.U * R + (R - beta) * (m.w - m.U);
-    // STUB  no correction
-    // return ratio(m);
+    // STUB  what was sampled
+    // return m.wV;
     // END SOLUTION
 }
 
