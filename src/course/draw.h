@@ -49,8 +49,8 @@ inline rgb pixel_in_shadow(const Scene& scene, const Drawing& d, const Pattern& 
                            int y) {
     ShadowPixel pixel{};
     for (uint64_t i = 0; i < d.samples; ++i)
-        pixel.add(i, shadow_Li(scene, d.technique, *d.direct, start(scene, pattern, {x, y, i}),
-                               NoAccount{}));
+        pixel.add(i, shadow_Li(scene, d.technique, Estimator::stochastic,  // counts control once
+                               start(scene, pattern, {x, y, i}), NoAccount{}));
     rgb value;
     for (size_t c = 0; c < 3; ++c)
         value.*axis[c] =

@@ -22,6 +22,7 @@ from regions import ROOT
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
 FOLDERS = ['base', 'world', 'path', 'film']
 TREE = ['bvh_build.h', 'bvh_collapse.h', 'bvh_lanes.h', 'bvh_leaf.h', 'bvh_node.h', 'bvh.h']
+UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
 COURSE = ['bvh.h', 'draw.h', 'draw.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
@@ -49,6 +50,8 @@ class Plan:
         self.solved = solved
         self.open = [e for e in self.all if e.week in self.weeks]
         self.wings = [wing for week, wing in WINGS.items() if week in self.weeks + self.solved_weeks]
+        if 'radiosity' in self.wings and 'shadow' not in self.wings:
+            self.wings.insert(0, 'shadow')  # its form factors
 
     def replacement(self, region):
         """Lines in place of a region; None: its solution."""
@@ -81,6 +84,8 @@ def write_sources(plan, to):
             if folder == 'world' and path.name in TREE:
                 continue
             name = f'src/{folder}/{path.name}'
+            if name in UNTOLD:
+                continue
             write(to / name, regions.rewrite(path.read_text(), name, plan.replacement))
     names = COURSE + sorted({pathlib.Path(e.file).name for e in plan.open if e.file.startswith('course/')})
     for file in with_headers(ROOT / 'src/course', names):
