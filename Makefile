@@ -34,7 +34,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
-        starter starter-check mistakes handout grade
+        starter starter-check mistakes handout grade plant hunted
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -222,6 +222,15 @@ grade: packages  ## grade what students handed in: SUBMISSIONS=FOLDER; OUT=out/g
 	    $(if $(OUT),--out '$(OUT)') $(if $(WEEKS),--weeks '$(WEEKS)') $(if $(SEED),--seed $(SEED)) \
 	    $(if $(JOBS),--jobs $(JOBS)) '$(SUBMISSIONS)'
 
+plant:  ## find the bug: a solved copy with a mutant in it, unnamed, as build/plant/N/ and .tar.gz; M=NAME or M=random, WEEKS=1-3
+	@$(if $(M),,echo "make plant M=NAME: which of tests/mutants/?  M=random draws one" >&2; exit 2;) \
+	CXX='$(CXX)' SUFFIX=$(SUFFIX) python3 src/course/plant.py --mutant '$(M)' $(if $(WEEKS),--weeks '$(WEEKS)') build/plant
+plant: build/draw$(SUFFIX)
+
+hunted: packages  ## was the bug found?  N=3: of the copy build/plant/3, HUNT=FILE: the test that was handed in
+	@$(if $(and $(N),$(HUNT)),,echo "make hunted N=NUMBER HUNT=FILE: which copy, and its test?" >&2; exit 2;) \
+	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/hunted.py 'build/plant/$(N)' '$(HUNT)'
+
 mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
 mistakes: $(JUDGES)
@@ -281,4 +290,4 @@ layers:  ## check that every file includes only from floors below
 	              if (!(to[i] in number) || (test[to[i]] && !test[from[i]] && f g != "courseoracle") || !below) \
 	                  { print at[i] ": " from[i] " is not above " to[i]; bad = 1 } } \
 	          if (!bad) print n " includes, all downwards"; exit bad }' \
-	    $(wildcard src/*/* tests/*/*.h tests/*/*.cpp)
+	    $(filter-out %/__pycache__,$(wildcard src/*/* tests/*/*.h tests/*/*.cpp))
