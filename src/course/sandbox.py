@@ -61,7 +61,7 @@ def demand():
 
 
 def environment():
-    return {'PATH': '/usr/bin:/bin', 'LC_ALL': 'C'}
+    return {'PATH': '/usr/bin:/bin', 'LC_ALL': 'C', 'ORACLE_PICTURES': ''}
 
 
 def prefix():

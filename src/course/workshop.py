@@ -88,7 +88,7 @@ class Workshop:
         self.solutions = {n: s for n, s in self.solutions.items()
                           if n.split('.')[0] in self.programs and s[0] in self.closure[n.split('.')[0]]}
         self.key = self.digest()
-        self.cache = pathlib.Path(cache) / self.key[:16]
+        self.cache = pathlib.Path(cache).resolve() / self.key[:16]
         self.cache.mkdir(parents=True, exist_ok=True)
         self.cache.chmod(0o755)
         (self.cache / 'rules').write_bytes(sandbox.filter_program())

@@ -1,0 +1,206 @@
+// course/classroom.h  a house of three exercises, whose grader is ours, and students who hand in
+//
+// 1.1 twice(x), 2 points; 1.2 square(x), 4 points; 1.3 cube(x), by square, 6 points.
+#pragma once
+#include "base/folder.h"
+
+namespace classroom {
+
+inline const std::string twice_right = "inline double twice(double x) { return x + x; }\n";
+inline const std::string twice_stub = "inline double twice(double x) { return x; }\n";
+inline const std::string square_right =
+    "inline double square(double x) {\n    const double cipher = x;\n    return cipher * x;\n}\n";
+inline const std::string square_stub = "inline double square(double x) { return x; }\n";
+inline const std::string cube_right = "    return x * square(x);\n";
+inline const std::string cube_stub = "    return square(x);\n";
+
+inline std::string commented(const std::string& code) {
+    std::string text;
+    for (size_t at = 0, end; at < code.size(); at = end + 1) {
+        end = code.find('\n', at);
+        text += "// " + code.substr(at, end - at) + "\n";
+    }
+    return text;
+}
+
+// A region as it stands in the solution.
+inline std::string solved(const std::string& number, const std::string& solution,
+                          const std::string& stub) {
+    return "// BEGIN SOLUTION " + number + "  what it is\n" + solution +
+           "// STUB  something else\n" + commented(stub) + "// END SOLUTION\n";
+}
+// And as it is handed in.
+inline std::string open(const std::string& number, const std::string& code) {
+    return "// BEGIN " + number + "  what it is\n" + code + "// END " + number + "\n";
+}
+inline std::string numbers_h(const std::string& twice, const std::string& square) {
+    return "// world/numbers.h  1  numbers\n#pragma once\n#include \"base/vec.h\"\n\n" + twice +
+           "\n" + square;
+}
+inline std::string cube_h(const std::string& cube) {
+    return "// path/cube.h  1  cubes\n#pragma once\n#include \"world/numbers.h\"\n\n"
+           "inline double cube(double x) {\n" +
+           cube + "}\n";
+}
+
+using Regions = std::map<std::string, std::string>;
+
+inline const char* answers = R"(
+#include "course/answers.h"
+#include "path/cube.h"
+
+int main() {
+    return course::answer_all({
+        {"twice", 1, [](course::In x) { return course::Out{twice(x[0])}; }},
+        {"square", 1, [](course::In x) { return course::Out{square(x[0])}; }},
+        {"cube", 1, [](course::In x) { return course::Out{cube(x[0])}; }},
+    });
+}
+)";
+inline const char* judge = R"(
+#include "course/judge.h"
+
+// Of a function's answers: at 0, at 1, at -3, and at numbers that the seed draws.
+course::Judging answers_like(const std::string& name, double (*truth)(double)) {
+    return [=](course::Judge& j) {
+        const course::Rows came = j.probe(name, {{0}, {1}, {-3}});
+        j.number("at 0", came.numbers[0], truth(0), 1e-12);
+        j.number("at 1", came.numbers[1], truth(1), 1e-12);
+        j.number("at -3", came.numbers[2], truth(-3), 1e-12);
+        course::Rows drawn;
+        for (int i = 0; i < 20; ++i) drawn.add({10 * j.random()});
+        const course::Rows answers = j.ask(name, drawn);
+        bool right = true;
+        for (size_t i = 0; i < drawn.size(); ++i)
+            right = right && course::near(answers[i][0], truth(drawn[i][0]), 1e-12);
+        j.exact("at numbers of the seed", right);
+    };
+}
+
+int main(int argc, char** argv) {
+    return course::judge(argc, argv, {{"1.1", answers_like("twice", [](double x) { return 2 * x; })},
+                                      {"1.2", answers_like("square", [](double x) { return x * x; })},
+                                      {"1.3", answers_like("cube", [](double x) { return x * x * x; })}});
+}
+)";
+
+// What a grader said of one exercise.
+struct Verdict {
+    std::string line, state, together;
+    double points = -1;
+    bool says(const std::string& part) const { return line.find(part) != line.npos; }
+};
+
+struct Said {
+    int status = -1;
+    std::string out;
+    bool has(const std::string& part) const { return out.find(part) != out.npos; }
+};
+
+// The house is built once for all test cases: its cache is kept.
+struct House {
+    Folder folder;
+    House() {
+        fs::create_directories(folder / "src");
+        fs::create_directories(folder / "tests");
+        for (const char* part : {"src/base", "tests/oracle"})
+            fs::copy(part, folder / part, fs::copy_options::recursive);
+        fs::create_directories(folder / "src/course");
+        for (const auto& entry : fs::directory_iterator("src/course"))
+            if (entry.path().extension() == ".py")
+                folder.write("src/course/" + entry.path().filename().string(),
+                             read_file(entry.path().string()));
+        for (const char* name : {"bvh.h", "draw.h", "draw.cpp", "course.mk"})
+            folder.write(std::string("src/course/") + name, "// nothing\n");
+        folder.write("src/film/nothing.h", "// film/nothing.h  1  nothing\n");
+        folder.write("src/world/numbers.h", numbers_h(solved("1.1", twice_right, twice_stub),
+                                                      solved("1.2", square_right, square_stub)));
+        folder.write("src/path/cube.h", cube_h(solved("1.3", cube_right, cube_stub)));
+        for (const char* name : {"answers.h", "judge.h", "program.h"})
+            folder.write(std::string("tests/course/") + name,
+                         read_file(std::string("tests/course/") + name));
+        folder.write("tests/course/answers_1.cpp", answers);
+        folder.write("tests/course/judge_1.cpp", judge);
+        folder.write("tests/course/mistakes.txt",
+                     "1.2\tlinear\tthis is no square\tSquares\t0\t1\t-3.5\n");
+        folder.write(
+            "tests/course/exercises.txt",
+            "1.1 | Twice | world/numbers.h | | 2 | 1\n1.2 | Square | world/numbers.h | | 4 | 1\n"
+            "1.3 | Cube | path/cube.h | 1.2 | 6 | 1\n");
+    }
+    // python3 src/course/grade.py with these words.
+    Said grade(const std::string& words, const std::string& path = "$PATH") const {
+        const std::string command =
+            "cd '" + folder.path.string() + "' && PATH=\"" + path +
+            "\" CXX=g++ FLAGS='-std=c++20 -DREAL=double -Isrc -Itests -w -O0 -pthread' "
+            "python3 src/course/grade.py --cache cache --jobs 2 " +
+            words + " >said 2>&1";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read("said")};
+    }
+};
+inline const House& house() {
+    static const House one;
+    return one;
+}
+
+// Whether programs can be confined here; says so where not.
+inline bool sandboxed() {
+    static const bool can =
+        std::system(
+            "python3 -c 'import sys; sys.path.insert(0, \"src/course\"); import sandbox; "
+            "sandbox.demand()' >/dev/null 2>&1") == 0;
+    if (!can) MESSAGE("not tested: bubblewrap is missing, or may not make namespaces here");
+    return can;
+}
+
+// A folder of submissions, in the house.
+struct Course {
+    std::string in, out;
+    Said said;
+
+    explicit Course(const std::string& name) : in("in " + name), out("out-" + name) {
+        fs::remove_all(house().folder / in);
+        fs::remove_all(house().folder / out);
+        fs::create_directories(house().folder / in);
+    }
+    // src/ of a student who replaced these regions; the others are stubs.
+    void hand_in(const std::string& student, Regions regions, const std::string& root = "") const {
+        regions.insert({{"1.1", twice_stub}, {"1.2", square_stub}, {"1.3", cube_stub}});
+        write(student, root + "src/world/numbers.h",
+              numbers_h(open("1.1", regions["1.1"]), open("1.2", regions["1.2"])));
+        write(student, root + "src/path/cube.h", cube_h(open("1.3", regions["1.3"])));
+    }
+    void write(const std::string& student, const std::string& file,
+               const std::string& bytes) const {
+        house().folder.write(in + "/" + student + "/" + file, bytes);
+    }
+    std::string path(const std::string& student, const std::string& file) const {
+        return house().folder / (in + "/" + student + "/" + file);
+    }
+    const Said& grade(const std::string& words = "") {
+        return said = house().grade(words + " --out " + out + " '" + in + "'");
+    }
+    bool graded(const std::string& student) const {
+        return house().folder.has(out + "/students/" + student + "/grade.json");
+    }
+    std::string report(const std::string& student, const std::string& end = "md") const {
+        return house().folder.read(out + "/students/" + student + "/grade." + end);
+    }
+    std::string csv() const { return house().folder.read(out + "/grades.csv"); }
+    Verdict verdict(const std::string& student, const std::string& exercise) const {
+        const std::string json = report(student, "json");
+        const size_t at = json.find("\"" + exercise + "\": {");
+        REQUIRE(at != json.npos);
+        const auto value = [&](const std::string& key) {
+            const size_t begin = json.find("\"" + key + "\": ", at) + key.size() + 4;
+            const std::string text = json.substr(begin, json.find('\n', begin) - begin);
+            const size_t comma = text.back() == ',' ? 1 : 0;
+            return text[0] == '"' ? text.substr(1, text.size() - 2 - comma)
+                                  : text.substr(0, text.size() - comma);
+        };
+        return {value("line"), value("state"), value("together"), std::stod(value("points"))};
+    }
+};
+
+}  // namespace classroom
