@@ -47,7 +47,7 @@ using Regions = std::map<std::string, std::string>;
 
 inline const char* answers = R"(
 #include "course/answers.h"
-#include "path/cube.h"
+#include <path/cube.h>
 
 int main() {
     return course::answer_all({

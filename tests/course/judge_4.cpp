@@ -81,17 +81,17 @@ void radical_inverse(Judge& j) {
 
     const Rows large = j.probe(
         "radical_inverse", {inverse(2, (uint64_t(1) << 40) + 1), inverse(3, 50031545098999707u + 2),
-                            inverse(10, 4000000000000000000u)});
+                            inverse(10, 4000000000000000000u), inverse(10, UINT64_MAX)});
     off = 0;
-    for (size_t i = 0; i < 3; ++i) {
-        const double truth[3] = {0.5, 2 / 3.0, 4e-19};
+    for (size_t i = 0; i < 4; ++i) {
+        const double truth[4] = {0.5, 2 / 3.0, 4e-19, 0.51615590737044764};
         const double error = std::abs(large.numbers[i] / truth[i] - 1);
         off = error <= off ? off : error;
     }
     j.exact("indices beyond 32 bits keep all their digits", off < 1e-6,
-            oracle::say("2^40 + 1 in base 2 becomes %.9g, 3^35 + 2 in base 3 %.9g, 4 10^18 in base "
-                        "10 %.3g",
-                        large.numbers[0], large.numbers[1], large.numbers[2]));
+            oracle::say("2^40 + 1 in base 2 becomes %.9g, 3^35 + 2 in base 3 %.9g, in base 10 "
+                        "4 10^18 %.3g and 18446744073709551615 %.9g",
+                        large.numbers[0], large.numbers[1], large.numbers[2], large.numbers[3]));
     // Of all nines and the like: 1 - b^-k, which rounds to 1; with 65 digits they do not fit.
     const Rows near_one =
         j.ask("radical_inverse", {inverse(2, UINT64_MAX), inverse(3, 12157665459056928800u),
