@@ -140,6 +140,13 @@ int main() {
          [](In x) {
              return numbers(Li(scene, technique(x), {vec3_of(x, 5), vec3_of(x, 8)}, sampler(x[4])));
          }},
+        {"accounts", 11,
+         [](In x) {
+             double calls = 0;
+             Li(scene, technique(x), {vec3_of(x, 5), vec3_of(x, 8)}, sampler(x[4]),
+                [&](const Segment&, const Step&) { ++calls; });
+             return Out{calls};
+         }},
         {"step", 22, take_step},
         {"throughput", 22, throughput},
         {"direct_light", 11, found_by_aiming},
