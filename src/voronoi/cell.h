@@ -1,34 +1,13 @@
-// voronoi/cell.h  2  one Voronoi cell, from its bisectors with the sites around
+// voronoi/cell.h  3  one Voronoi cell, from its bisectors with the sites around
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "voronoi/plane.h"
-
-// A corner of a cell, from its site; the edge from there to the next corner, counterclockwise, is
-// due to that neighbour (-1: the window).
-struct Corner {
-    Site p;
-    int32_t neighbour = -1;
-    bool stays = false;  // no site is nearer to it
-};
-using Outline = std::span<const Corner>;
-
-// Points v with d v <= h, from the site.  The neighbour at d leaves those that are not nearer to
-// it, h = d d / 2.  Differences d are exact, so that both sites see the same line.
-struct HalfPlane {
-    Site d;
-    double h = 0;
-    int32_t neighbour = -1;
-};
-inline HalfPlane bisector(Site d, uint32_t neighbour) {
-    return {d, (d.x * d.x + d.y * d.y) * 0.5, int32_t(neighbour)};
-}
+#include "voronoi/polygon.h"
 
 // A box around the cell's flower: the discs about its corners through the site.  No site outside
 // the flower can cut the cell (Calka 2002).
@@ -246,54 +225,3 @@ private:
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
-
-// ---- Any number of neighbours: a polygon is cut -------------------------------------------------
-
-// By one after the other (Sutherland, Hodgman 1974).  Keeps its memory for the next cell.
-class ConvexPolygon {
-public:
-    void start(const Rectangle& box) {
-        corners_.clear();
-        corners_.push_back({box.lo});
-        corners_.push_back({{box.hi.x, box.lo.y}});
-        corners_.push_back({box.hi});
-        corners_.push_back({{box.lo.x, box.hi.y}});
-    }
-
-    void cut(const HalfPlane& by) {
-        excess_.clear();
-        bool any = false;
-        for (const Corner& c : corners_) {
-            excess_.push_back(by.d.x * c.p.x + by.d.y * c.p.y - by.h);
-            any = any || excess_.back() > 0;
-        }
-        if (!any) return;
-        next_.clear();
-        for (size_t k = 0; k < corners_.size(); ++k) {
-            const size_t l = k + 1 < corners_.size() ? k + 1 : 0;
-            const Corner &c = corners_[k], &d = corners_[l];
-            const bool out = excess_[k] > 0, leaves = excess_[l] > 0;
-            if (!out) next_.push_back(c);
-            if (out == leaves) continue;
-            const double t = excess_[k] / (excess_[k] - excess_[l]);
-            next_.push_back({{c.p.x + t * (d.p.x - c.p.x), c.p.y + t * (d.p.y - c.p.y)},
-                             leaves ? by.neighbour : c.neighbour});
-        }
-        if (next_.size() < 3) return;  // rounding alone: the site itself stays
-        corners_.swap(next_);
-        next_.reserve(corners_.capacity());  // alike, so that their memory is enough next time
-    }
-
-    Outline outline() const { return corners_; }
-
-    // The next corner that is not known to stay, if there is one.
-    Corner* open_corner() {
-        const auto open = std::find_if(corners_.begin(), corners_.end(),
-                                       [](const Corner& c) { return !c.stays; });
-        return open == corners_.end() ? nullptr : &*open;
-    }
-
-private:
-    std::vector<Corner> corners_, next_;
-    std::vector<double> excess_;
-};

@@ -1,4 +1,4 @@
-// voronoi/voronoi.h  3  the areas of Voronoi cells in a window of the plane
+// voronoi/voronoi.h  4  the areas of Voronoi cells in a window of the plane
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,43 +11,6 @@
 #include "voronoi/cell.h"
 #include "voronoi/sites.h"
 #include "voronoi/window.h"
-
-// The points of the window that are nearer to one site than to all others; lengths and areas in
-// units of the window's own.
-struct VoronoiCell {
-    double area = 0;
-    Site rim;     // sum over its edges on the window's border: length x outward normal
-    Site offset;  // of the centroid, from the site
-    // In a stretched window and on a torus; where many sites are within rounding of each other,
-    // they may be false for want of digits.
-    bool bounded = true;  // reaches not beyond twice the domain's size around it
-    bool inside = true;   // is all in the domain
-    bool settled = true;  // no site outside the domain could change it
-    uint32_t copies = 1;  // sites at the same place share area and rim equally
-};
-
-namespace voronoi {
-
-// Area and centroid by triangles (site, corner, next corner).
-inline VoronoiCell measured(Outline corners) {
-    VoronoiCell cell;
-    double twice = 0, six_x = 0, six_y = 0;
-    Corner c = corners.back();
-    for (const Corner& next : corners) {
-        const double cross = c.p.x * next.p.y - next.p.x * c.p.y;
-        twice += cross;
-        six_x += cross * (c.p.x + next.p.x);
-        six_y += cross * (c.p.y + next.p.y);
-        if (c.neighbour < 0)
-            cell.rim = {cell.rim.x + next.p.y - c.p.y, cell.rim.y - next.p.x + c.p.x};
-        c = next;
-    }
-    cell.area = twice / 2;
-    if (twice > 0) cell.offset = {six_x / (3 * twice), six_y / (3 * twice)};
-    return cell;
-}
-
-}  // namespace voronoi
 
 // Cells of sites in a window, each by itself: its border is wrapped from the bisectors with the
 // sites around, which come ring by ring of a grid of buckets, until no other site could reach it; a

@@ -1,4 +1,4 @@
-// voronoi/weighted.h  5  a row of pixels whose samples weigh as much as their Voronoi cells
+// voronoi/weighted.h  6  a row of pixels whose samples weigh as much as their Voronoi cells
 #pragma once
 #include "path/sampler.h"
 #include "voronoi/weights.h"

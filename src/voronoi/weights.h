@@ -1,4 +1,4 @@
-// voronoi/weights.h  4  samples of a square weighted by their Voronoi cells
+// voronoi/weights.h  5  samples of a square weighted by their Voronoi cells
 #pragma once
 #include <algorithm>
 #include <cmath>
