@@ -11,22 +11,8 @@
 #include <utility>
 
 #include "radiosity/missing.h"
+#include "radiosity/target.h"
 #include "radiosity/transfer.h"
-
-// Whichever comes first; 0: no limit.
-struct ShootingTarget {
-    double unshot = 0;   // of the emitted power
-    double seconds = 0;  // of all runs together
-    uint64_t shots = 0;
-    double error = 0;  // see Shooting::error
-};
-
-// What shoots at once.
-enum class Shooter {
-    element,  // one triangle of the mesh: as published
-    face      // a whole face, in parts that are small as a vertex sees them, after the links of
-              // Hanrahan, Salzman, Aupperle (1991)
-};
 
 class Shooting {
 public:
@@ -225,6 +211,7 @@ private:
     rgb load(uint32_t i) {
         const Node& n = tree_[i];
         Corners& L = radiance_[i];
+        // BEGIN SOLUTION R.1  what is yet to be sent
         if (n.children == 0) {
             const Face& f = mesh_.faces[side_ / 2];
             const size_t own = 2 * size_t(n.first) + side_ % 2;
@@ -238,6 +225,18 @@ private:
         for (uint32_t k = n.first; k < n.first + n.children; ++k) sum += load(k) * tree_[k].area;
         L.fill(sum / n.area);
         return L[0];
+        // STUB  light of its own is sent once, and what is reflected never
+        // const Face& f = mesh_.faces[side_ / 2];
+        // const size_t own = 2 * size_t(n.first) + side_ % 2;
+        // L = {};
+        // if (n.children == 0) {
+        //     if (sent_[own] == 0) L.fill(emission(scene_, f, side_ % 2));
+        //     shot_[own] = exitance(f, n.first, side_ % 2);
+        //     sent_[own] = double(mean_of(shot_[own].mean()));
+        // }
+        // for (uint32_t k = 0; k < n.children; ++k) L.fill(L[0] + load(n.first + k) / n.children);
+        // return L[0];
+        // END SOLUTION
     }
 
     // ---- Who receives ---------------------------------------------------------------------------
