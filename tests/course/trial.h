@@ -158,4 +158,19 @@ inline int on_trial(const std::vector<Trial>& trials, const std::vector<Trial>& 
     });
 }
 
+// For whoever wants to see what a test does: `answers_6 6.1 2` runs that of 6.1 on the second
+// subject of practice.h, wrong ones first, and leaves the oracle's pictures in out/check/.
+inline int show(const std::vector<Trial>& practice, const std::string& exercise, size_t number) {
+    const size_t e = exercise.size() == 3 ? size_t(exercise[2] - '1') : practice.size();
+    if (e >= practice.size() || number < 1 || number > practice[e].wrong + practice[e].right) {
+        std::fprintf(stderr, "say an exercise and a number, e.g. 6.1 2\n");
+        return 2;
+    }
+    oracle::pictures = "out/check";
+    const bool is_wrong = number <= practice[e].wrong, passes = practice[e].passes(number - 1, 1);
+    std::printf("a %s subject %s\n", is_wrong ? "wrong" : "right",
+                passes ? "passes" : "is refused");
+    return passes == is_wrong;
+}
+
 }  // namespace course
