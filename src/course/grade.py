@@ -29,7 +29,7 @@ from starter import Plan
 from submission import Problem
 from workshop import Broken, Workshop, digest_of
 
-BUDGET = 200  # seconds of processor time for one submission, of which what comes to an end uses the half
+WASTE = 100  # seconds of processor time of a submission that its endless loops may use up
 
 
 class Student:
@@ -37,7 +37,7 @@ class Student:
 
     def __init__(self, name, path, shop, numbers):
         self.name, self.shop, self.numbers = name, shop, numbers
-        self.verdicts, self.texts, self.original, self.spent = {}, {}, {}, 0.0
+        self.verdicts, self.texts, self.original, self.wasted = {}, {}, {}, 0
         self.lock = threading.Lock()
         files = submission.read(path, list(dict.fromkeys(shop.solutions[n][0] for n in numbers)))
         for number in numbers:
@@ -64,16 +64,16 @@ class Student:
             self.verdicts[number] = verdict('refused', str(problem))
 
     def judge(self, number, texts, scratch):
-        """One judgement, unless the submission has used up its time."""
+        """One judgement, unless too much time was wasted before."""
         with self.lock:
-            if self.spent > BUDGET:
-                return verdict('not judged', f'the submission had used up its {BUDGET} s of processor time')
+            if self.wasted > WASTE:
+                return verdict('not judged', f'others of the submission had to be stopped, after {self.wasted} s in all')
         try:
             found = self.shop.judged(number, texts, scratch)
         except OSError as error:
             return verdict('not judged', f'on this machine: {error}')
         with self.lock:
-            self.spent += found['seconds'] + found.get('compile seconds', 0)
+            self.wasted += found.get('wasted', 0)
         return found
 
     def grade(self, pool, scratch, worth):
@@ -105,7 +105,7 @@ class Student:
 
 
 def verdict(state, says=''):
-    return {'state': state, 'says': says, 'items': [], 'seconds': 0}
+    return {'state': state, 'says': says, 'items': []}
 
 
 # ---- The work ------------------------------------------------------------------------------------
@@ -137,6 +137,7 @@ def grade_all(words, out):
     numbers = [e.number for e in Plan(words.weeks or every_week()).open if e.number in shop.solutions]
     if not numbers:
         raise Broken('no exercise of these weeks has a region, answers and a judge')
+    say('the solution and its stubs are judged first')
     shop.prepare(words.jobs)
     work = out / '.work'
     shutil.rmtree(work, ignore_errors=True)

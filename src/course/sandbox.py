@@ -12,6 +12,7 @@ import signal
 import struct
 import subprocess
 import threading
+import time
 from dataclasses import dataclass
 
 PACKAGE = 'bubblewrap'
@@ -40,7 +41,7 @@ class Built:
     ok: bool
     messages: str   # what the compiler said
     ended: str      # '' or how it was stopped
-    seconds: float  # of processor time
+    seconds: float  # by the clock
 
 
 # ---- What the machine must have ------------------------------------------------------------------
@@ -104,6 +105,7 @@ def compile_command(tree, out, command, cpu, headers=None):
 
 def build(tree, out, command, cpu=20, headers=None):
     """Runs a compiler on untrusted text.  No more than 64 kB of what it says is kept."""
+    began = time.monotonic()
     process = subprocess.Popen(compile_command(tree, out, command, cpu, headers), env=environment(),
                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                start_new_session=True)
@@ -112,15 +114,9 @@ def build(tree, out, command, cpu=20, headers=None):
         said = process.stderr.read(1 << 16).decode('utf-8', 'replace')
         while process.stderr.read(1 << 16):
             pass
-    status, seconds = cpu_of(process)
-    return Built(status == 0, said, alarm.cancel() or how_it_ended(status, said, cpu), seconds)
-
-
-def cpu_of(process):
-    """Waits; its exit status and the processor seconds of all that it waited for."""
-    _, status, used = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, used.ru_utime + used.ru_stime
+    status = process.wait()
+    ended = alarm.cancel() or how_it_ended(status, said, cpu)
+    return Built(status == 0 and not ended, said, ended, time.monotonic() - began)
 
 
 def how_it_ended(status, said, cpu):

@@ -26,7 +26,8 @@ UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only expe
 COURSE = ['bvh.h', 'draw.h', 'draw.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
-Leave these lines as they are.'''
+Leave these lines as they are, and write between them plain C++: no `#include`, `#define`, `asm` or names with two
+underscores, which graders refuse.'''
 
 
 class Plan:

@@ -164,7 +164,7 @@ def inflated(path):
             while len(self.ready) < size and not self.machine.eof:
                 packed = self.machine.unconsumed_tail or self.file.read(1 << 14)
                 if not packed:
-                    break
+                    raise EOFError('the archive is cut off')
                 self.ready += self.machine.decompress(packed, 1 << 18)
             taken, self.ready = self.ready[:size], self.ready[size:]
             return taken

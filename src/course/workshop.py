@@ -9,9 +9,11 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import tempfile
 import threading
+import time
 
 import regions
 import sandbox
@@ -21,7 +23,6 @@ from regions import ROOT
 
 STATIC = ['-static', '-fno-diagnostics-show-caret', '-fdiagnostics-color=never', '-fmax-errors=20']
 PATIENCE = 20       # seconds by the clock for one answer: what computes is stopped by its processor time
-LONGEST = 40        # seconds by the clock for a judge
 
 
 class Broken(Exception):
@@ -106,7 +107,11 @@ class Workshop:
     # ---- Judges and headers, which come from the solution alone ----
 
     def prepare(self, jobs):
-        """Compiles what all students need, unless it was done before."""
+        """Compiles what all students need, unless it was done before.  What others left a week ago is removed."""
+        os.utime(self.cache)
+        for other in self.cache.parent.iterdir():
+            if other.stat().st_mtime < time.time() - 7 * 86400:
+                shutil.rmtree(other, ignore_errors=True)
         orders = [self.header_order()]
         for week in self.programs:
             name = f'judge_{week}'
@@ -153,7 +158,7 @@ class Workshop:
             to.write_bytes(text.encode('utf-8', 'surrogateescape'))
 
     def build(self, week, texts, out, cpu):
-        """The program, or None, and what happened: (path, Built, seconds)."""
+        """The program, or None, and what the compiler said: (path, Built)."""
         with tempfile.TemporaryDirectory(dir=self.cache) as top:
             os.chmod(top, 0o755)
             tree = pathlib.Path(top) / 'tree'
@@ -202,37 +207,38 @@ class Workshop:
         program, built = self.once(self.built, (scratch, week, what), lambda: self.build(week, texts, out, compile_limit))
         if not program:
             return {'state': 'not compiled', 'says': built.ended, 'compiler': built.messages[:1 << 14], 'items': [],
-                    'seconds': built.seconds}
+                    'wasted': compile_limit if built.ended else 0}
+        began = time.monotonic()
         verdict = self.ask(number, program, run_limit)
-        verdict['compile seconds'] = built.seconds
+        verdict.update({'compile': built.seconds, 'run': time.monotonic() - began})
+        if verdict['state'] == 'not judged' or 'processor time' in verdict['says']:
+            verdict['wasted'] = run_limit
         return verdict
 
     def ask(self, number, program, cpu):
         """What the judge says; the program's own words and exit status count for nothing."""
         with tempfile.TemporaryDirectory(dir=self.cache) as folder:
             answer = os.path.join(folder, 'verdict.json')
-            command = ['timeout', '-k', '1', str(LONGEST), str(self.cache / f'judge_{number.split(".")[0]}'),
+            command = ['timeout', '-k', '1', str(PATIENCE + 4 * cpu), str(self.cache / f'judge_{number.split(".")[0]}'),
                        '--mistakes', str(ROOT / 'tests/course/mistakes.txt'), '--json', answer, '--seed', str(self.seed),
                        '--patience', str(PATIENCE), number, '--', *sandbox.run_command(program, str(self.cache / 'rules'), cpu)]
             with open(os.path.join(folder, 'stderr'), 'w+b') as words:
                 process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=words,
                                            env=sandbox.environment(), cwd=folder, start_new_session=True)
-                status, seconds = sandbox.cpu_of(process)
+                status = process.wait()
                 words.seek(0)
                 said = words.read(1 << 12).decode('utf-8', 'replace').strip()
             try:
                 with open(answer, encoding='utf-8', errors='replace') as file:
                     verdict = json.load(file)
             except (OSError, ValueError):
-                return {'state': 'not judged', 'says': f'the judge ended with status {status}: {said}', 'items': [],
-                        'seconds': seconds}
-        return {'state': verdict['state'], 'says': verdict['says'], 'read': verdict['read'], 'items': verdict['items'],
-                'seconds': seconds}
+                return {'state': 'not judged', 'says': f'the judge ended with status {status}: {said}', 'items': []}
+        return {name: verdict[name] for name in ('state', 'says', 'read', 'items')}
 
     # ---- What solution and stub are worth ----
 
     def weigh(self, jobs, scratch):
-        """number -> (items, of which the stub has right); limits of time follow from the solution's.
+        """number -> (items, of which the stub has right); limits of processor time follow from the solution's time.
 
         The solution must have all right by this seed, and no stub may; else nobody can be graded.
         """
@@ -244,7 +250,7 @@ class Workshop:
             partial.write_text(json.dumps(worth))
             partial.rename(path)
         worth = json.loads(path.read_text())
-        self.limits = {n: (5 + 4 * int(w['compile'] + 1), 2 + 4 * int(w['run'] + 1)) for n, w in worth.items()}
+        self.limits = {n: (5 + int(4 * w['compile']), 3 + int(3 * w['run'])) for n, w in worth.items()}
         return {n: (w['items'], w['stub']) for n, w in worth.items()}
 
     def weigh_one(self, number, scratch):
@@ -257,4 +263,4 @@ class Workshop:
         if stub['state'] in ('right', 'not compiled', 'not judged'):
             raise Broken(f'{number}: the stub is {stub["state"]}: {stub["says"]}')
         return {'items': len(solution['items']), 'stub': sum(i['right'] for i in stub['items']),
-                'compile': solution['compile seconds'], 'run': solution['seconds']}
+                'compile': solution['compile'], 'run': solution['run']}

@@ -133,7 +133,7 @@ struct House {
         const std::string command =
             "cd '" + folder.path.string() + "' && PATH=\"" + path +
             "\" CXX=g++ FLAGS='-std=c++20 -DREAL=double -Isrc -Itests -w -O0 -pthread' "
-            "python3 src/course/grade.py --cache cache --jobs 2 " +
+            "timeout -k 5 280 python3 src/course/grade.py --cache cache --jobs 2 " +
             words + " >said 2>&1";
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read("said")};

@@ -69,7 +69,7 @@ public:
         ::close(in[0]), ::close(out[1]);
         to_ = in[1], from_ = out[0];
         ::fcntl(to_, F_SETFL, O_NONBLOCK);
-        asked_ = "anything";
+        asked_ = "its start";
         deadline_ = now() + patience_;
         const std::string hello = line();
         if (hello != "double" && hello != "float")
