@@ -46,8 +46,8 @@ inline std::string cube_h(const std::string& cube) {
 using Regions = std::map<std::string, std::string>;
 
 inline const char* answers = R"(
-#include "course/answers.h"
-#include <path/cube.h>
+ #include "course/answers.h"
+ #include "path/cube.h"
 
 int main() {
     return course::answer_all({
@@ -58,7 +58,7 @@ int main() {
 }
 )";
 inline const char* judge = R"(
-#include "course/judge.h"
+ #include "course/judge.h"
 
 // Of a function's answers: at 0, at 1, at -3, and at numbers that the seed draws.
 course::Judging answers_like(const std::string& name, double (*truth)(double)) {
