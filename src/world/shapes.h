@@ -122,11 +122,11 @@ inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, con
     real t = (u * az + v * bz + w * cz) * k.sz / det;
     if (!(t > 0 && t <= tmax)) return {};
     return Hit{t, 0, v / det, w / det};
-    // STUB  a disc about the centroid that faces the ray
-    // const vec3 m = (s.a + s.b + s.c) / 3 - ray.o, e = s.b - s.a;
+    // STUB  a small disc about the centroid that faces the ray
+    // const vec3 m = (s.a + s.b + s.c) / 3 - ray.o, n = cross(s.b - s.a, s.c - s.a);
     // const real z = m.*axis[k.z], t = z * k.sz, third = real(1) / 3;
     // const real x = m.*axis[k.x] - k.sx * z, y = m.*axis[k.y] - k.sy * z;
-    // if (x * x + y * y > dot(e, e) / 6 || !(t > 0 && t <= tmax)) return {};
+    // if (x * x + y * y > length(n) / 24 || !(t > 0 && t <= tmax)) return {};
     // return Hit{t, 0, third, third};
     // END SOLUTION
 }

@@ -391,6 +391,24 @@ TEST_CASE("a triangle is hit where a long double reference hits it, from both si
     CHECK(t_error.value < 1);
 }
 
+TEST_CASE("a ray past any edge of a triangle misses it, from both sides") {
+    Dice random{{10}};
+    int hits = 0;
+    for (int i = 0; i < 30000; ++i) {
+        const Shape s = random_triangle(random, 1);
+        const vec3 n = area_vector(s);
+        if (length(n) < real(0.1)) continue;
+        // One of the weights of the target is negative.
+        const real out = random(real(-0.5), real(-0.001)), along = random(0, 1);
+        const vec2 weights[] = {{out, along}, {along, out}, {along, 1 - along - out}};
+        const vec3 target = point(s, weights[i % 3]);
+        vec3 d = random.direction();
+        if (std::abs(dot(d, n)) < real(0.2) * length(n)) d = unit(n);
+        hits += meet(s, {target - random(real(0.1), 10) * d, d}).has_value();
+    }
+    CHECK(hits == 0);
+}
+
 TEST_CASE("every hit of a triangle lies on its ray, however thin the triangle") {
     // The shear moves corners by 5 ulp of their distance M, the weights (products 1.5 ulp, sum 2,
     // division 1) and sums add 7 ulp, in two coordinates; t loses 16 ulp along the ray.
