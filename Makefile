@@ -233,7 +233,7 @@ hunted: packages  ## was the bug found?  N=3: of the copy build/plant/3, HUNT=FI
 
 mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
-mistakes: $(JUDGES)
+mistakes: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%)
 
 handout:  ## sheets of the course as HTML, and as PDF where that can be made: build/handout/index.html
 	@python3 src/course/handout.py build/handout

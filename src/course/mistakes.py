@@ -6,7 +6,7 @@ A known mistake is a mutant (tests/mutants/) with three more lines in its head:
     says: what it is, in the student's terms
     read: a heading of the sheet
 Each is planted, alone, and the judge's probes are asked; so is each stub.  Refused are mistakes that the
-judge takes for right, two with the same answers, and headings that no sheet has.  --only: of the others
+judge takes for right, those with the answers of the solution or of another, and headings that no sheet has.  --only: of the others
 the lines stay as they are.
 """
 import argparse
@@ -99,6 +99,7 @@ def main():
         fields = line.split('\t')
         if len(fields) == 5 and (fields[0], fields[1]) in names:
             lines[fields[0], fields[1]] = line
+    right = {n: trial.answers_of_solution(n) for n in sorted({k.exercise for k in chosen})}
     failed = 0
     for known, numbers, wrong in trial.in_parallel(fingerprint, chosen):
         try:
@@ -110,6 +111,9 @@ def main():
             failed += 1
             continue
         row = known.row(numbers)
+        if numbers == right[known.exercise]:
+            print(f'{known.exercise}: {known.name} has the answers of the solution', file=sys.stderr)
+            failed += 1
         for other, line in lines.items():
             if other[0] == known.exercise and line.split('\t')[4] == row.split('\t')[4]:
                 print(f'{known.exercise}: {known.name} and {other[1]} have the same answers', file=sys.stderr)

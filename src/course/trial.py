@@ -25,6 +25,14 @@ def judge_of(exercise):
     return ROOT / f'build/course{SUFFIX}/judge_{exercise.split(".")[0]}'
 
 
+def answers_of_solution(exercise):
+    """Its answers to the judge's probes, by the program that make has built."""
+    with tempfile.NamedTemporaryFile(suffix='.json') as report:
+        subprocess.run([str(judge_of(exercise)), '--json', report.name, exercise, '--',
+                        str(judge_of(exercise)).replace('judge_', 'answers_')], capture_output=True, check=False)
+        return json.loads(pathlib.Path(report.name).read_text())['fingerprint']
+
+
 def planted(mutant_text, file_text):
     """file_text with the wrong lines of a mutant, whose right ones are there exactly once."""
     _, old, new = re.split(r'^---\n', mutant_text, flags=re.M)

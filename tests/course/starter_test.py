@@ -1,0 +1,247 @@
+# course/starter_test.py  tests of the generator: python3 tests/course/starter_test.py [NAME...]
+"""Each function test_... is a test; starter_test.cpp runs them one by one."""
+import pathlib
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
+import mistakes
+import regions
+import starter
+import starter_check
+import trial
+
+FILE = '''// x.h
+int before;
+    // BEGIN SOLUTION 2.1  add
+    return a + b;
+    // STUB  the first alone
+    // // of two
+    // return a;
+    //
+    // END SOLUTION
+int after;
+'''
+
+
+def expect(good, *what):
+    if not good:
+        raise AssertionError(' '.join(str(w) for w in what))
+
+
+def refused(call, *part):
+    """call() must be refused, and say this."""
+    try:
+        call()
+    except (regions.Malformed, SystemExit) as error:
+        for p in part:
+            expect(p in str(error), f'{p!r} is not in {str(error)!r}')
+        return
+    raise AssertionError(f'not refused: {part}')
+
+
+# ---- Regions ---------------------------------------------------------------------------------------
+
+def test_a_region_has_a_solution_and_a_stub():
+    [r] = regions.regions(FILE, 'x.h')
+    expect((r.number, r.title) == ('2.1', 'add'), r.number, r.title)
+    expect(r.solution == ['    return a + b;'], r.solution)
+    expect(r.stub == ['    // of two', '    return a;', ''], r.stub)
+
+
+def test_an_open_region_is_its_stub_between_markers():
+    text = regions.rewrite(FILE, 'x.h', lambda r: r.open(r.stub))
+    expect(text == '// x.h\nint before;\n    // BEGIN 2.1  add\n    // of two\n    return a;\n\n    // END 2.1\nint after;\n', text)
+
+
+def test_a_solved_region_has_no_markers():
+    text = regions.rewrite(FILE, 'x.h', lambda r: None)
+    expect(text == '// x.h\nint before;\n    return a + b;\nint after;\n', text)
+
+
+def test_two_regions_keep_what_is_between_them():
+    twice = FILE + FILE.replace('2.1', '2.2')
+    text = regions.rewrite(twice, 'x.h', lambda r: [r.number])
+    expect(text == '// x.h\nint before;\n2.1\nint after;\n// x.h\nint before;\n2.2\nint after;\n', text)
+
+
+def test_what_is_not_well_formed_is_refused_with_its_line():
+    begin, stub, end = '// BEGIN SOLUTION 2.1  add\n', '// STUB  none\n', '// END SOLUTION\n'
+    for text, part in ((begin + begin, 'begins within'), (begin + 'x', 'does not end'), (begin + end, 'without a STUB'),
+                       (end, 'without a BEGIN'), (begin + stub + stub, 'twice'), (stub, 'not in a region'),
+                       (begin + stub + 'return a;\n' + end, 'must begin with //'),
+                       ('// BEGIN SOLUTION 2.1 add\n', 'no marker'), ('// END SOLUTION 2.1\n', 'no marker'),
+                       ('// BEGIN 2.1  add\n', 'no marker'), (begin + '//STUB\n', 'no marker')):
+        refused(lambda: regions.regions(text, 'x.h'), 'x.h', part)
+
+
+def test_every_exercise_is_a_region_of_its_file():
+    found = regions.solution_files()
+    listed = {e.number: e for e in regions.exercises()}
+    for e in listed.values():
+        expect(e.number in found, f'{e.number} is in no file')
+        expect(found[e.number][0] == f'src/{e.file}', e.number, found[e.number][0], e.file)
+        expect(0 < len(found[e.number][1].solution) <= 30, f'{e.number}: {len(found[e.number][1].solution)} lines')
+        expect(set(e.needs) <= set(listed), f'{e.number} needs {e.needs}')
+        expect(e.points > 0 and e.hours > 0, e.number)
+    expect(set(found) == set(listed), set(found) ^ set(listed))
+
+
+# ---- The starter -----------------------------------------------------------------------------------
+
+def test_weeks_are_what_was_asked_for():
+    for words, weeks, solved in (('1-6', '123456', ''), ('1-3', '123', ''), ('3', '3', '12'), ('2-3', '23', '1'),
+                                 ('V', 'V', '123456'), ('1-2,V', '12V', ''), ('2,R', '2R', '1')):
+        plan = starter.Plan(words)
+        expect((''.join(plan.weeks), ''.join(plan.solved_weeks)) == (weeks, solved), words, plan.weeks, plan.solved_weeks)
+    for words in ('', '9', '3-1', '1-2-3', 'x', '1,'):
+        refused(lambda: starter.Plan(words), words, 'say weeks')
+
+
+def test_wings_come_with_their_weeks_alone():
+    for words, wings in (('1-4', []), ('1-5', ['shadow']), ('6', ['shadow']), ('V', ['shadow', 'voronoi']),
+                         ('1,R', ['radiosity'])):
+        expect(starter.Plan(words).wings == wings, words, starter.Plan(words).wings)
+
+
+class Made:
+    """A starter of weeks 2 and 3, without pictures."""
+
+    def __enter__(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name) / 'starter'
+        self.plan = starter.Plan('2-3')
+        starter.make_starter(self.plan, self.folder)
+        return self
+
+    def __exit__(self, *_):
+        self.temporary.cleanup()
+
+    def sources(self):
+        return '\n'.join(p.read_text() for p in sorted((self.folder / 'src').rglob('*.h')))
+
+
+def test_earlier_weeks_are_solved_these_open_later_ones_stubs():
+    with Made() as made:
+        text, found = made.sources(), regions.solution_files()
+        for e in regions.exercises():
+            region = found[e.number][1]
+            if e.week not in '1234':
+                continue
+            solution = '\n'.join(region.solution) in text
+            stub = '\n'.join(region.stub) in text
+            marked = f'// BEGIN {e.number}  {region.title}\n' in text and f'// END {e.number}\n' in text
+            expect((solution, stub, marked) == (e.week == '1', e.week != '1', e.week in '23'), e.number, solution, stub, marked)
+        expect('SOLUTION' not in text and 'STUB' not in text, 'markers of the solution are left')
+
+
+def test_a_starter_has_what_its_weeks_need_and_no_more():
+    with Made() as made:
+        folders = sorted(p.name for p in (made.folder / 'src').iterdir())
+        expect(folders == ['base', 'course', 'film', 'path', 'world'], folders)
+        names = sorted(p.name for p in (made.folder / 'tests/course').iterdir())
+        expect(not [n for n in names if n.endswith('_test.cpp') or n.endswith('.py') or 'hidden' in n], names)
+        expect([n for n in names if n.startswith('judge_')] == ['judge_2.cpp', 'judge_3.cpp'], names)
+        expect(not list(made.folder.rglob('*.mutant')), 'mutants')
+        for table in ('exercises.txt', 'mistakes.txt'):
+            rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
+            expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
+        expect('BinaryBvh' in (made.folder / 'src/world/bvh.h').read_text(), 'the tree')
+        expect(not (made.folder / 'src/world/bvh_leaf.h').exists(), 'our tree')
+
+
+def test_a_solved_copy_has_all_solutions():
+    with tempfile.TemporaryDirectory() as temporary:
+        starter.make_starter(starter.Plan('1-6,V,R', solved=True), pathlib.Path(temporary) / 's')
+        text = '\n'.join(p.read_text() for p in sorted(pathlib.Path(temporary).rglob('*.h')))
+        for number, (_, region) in regions.solution_files().items():
+            expect('\n'.join(region.solution) in text, number)
+
+
+def test_the_archive_is_the_same_for_the_same_content():
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary) / 's'
+        bytes_of = []
+        for _ in range(2):
+            (folder / 'sub').mkdir(parents=True, exist_ok=True)
+            (folder / 'sub/x').write_text('x')
+            starter.pack(folder)
+            bytes_of.append((pathlib.Path(temporary) / 's.tar.gz').read_bytes())
+            (folder / 'sub/x').unlink()
+        expect(bytes_of[0] == bytes_of[1], 'two archives of the same content differ')
+        import tarfile
+        with tarfile.open(pathlib.Path(temporary) / 's.tar.gz') as tar:
+            expect(tar.getnames() == ['penumbra-starter/sub', 'penumbra-starter/sub/x'], tar.getnames())
+
+
+# ---- Checks of it, and known mistakes --------------------------------------------------------------
+
+def test_a_leak_is_seen():
+    found = regions.solution_files()
+    numbers = {e.number for e in regions.exercises() if e.week != '1'}
+    for where, comment in (('src/world/warp.h', ''), ('src/path/start.h', '// '), ('sheets/1.md', '')):
+        with Made() as made:
+            starter_check.failures.clear()
+            starter_check.check_leaks(found, made.folder, numbers)
+            expect(not starter_check.failures, starter_check.failures)
+            path = made.folder / where
+            path.parent.mkdir(exist_ok=True)
+            old = path.read_text() if path.exists() else ''
+            line = max((s for s in found['2.2'][1].solution), key=lambda s: len(s.split('//')[0]))
+            path.write_text(old + '\n' + comment + '  ' + line.strip() + '\n')
+            starter_check.check_leaks(found, made.folder, numbers)
+            expect(starter_check.failures, where, 'a solution was not found')
+            starter_check.failures.clear()
+
+
+def test_random_subsets_meet_every_pair_in_every_state():
+    numbers = [str(n) for n in range(34)]
+    for seed in ('a', 'b'):
+        chosen = starter_check.subsets(numbers, seed)
+        expect(len(chosen) == 50, len(chosen))
+        for i, a in enumerate(numbers):
+            for b in numbers[:i]:
+                states = {(a in s, b in s) for s in chosen}
+                expect(len(states) == 4, a, b, states)
+
+
+def test_a_mistake_is_planted_once_or_refused():
+    mutant = 'what: x\n---\n    return a + b;\n---\n    return a - b;\n'
+    expect('return a - b;' in trial.planted(mutant, FILE), 'not planted')
+    refused(lambda: trial.planted(mutant, FILE + FILE), 'exactly once')
+    refused(lambda: trial.planted(mutant, 'none'), 'exactly once')
+
+
+def test_a_mistake_changes_its_region_and_nothing_else():
+    mistakes.within('m', 'x.h', FILE, FILE.replace('a + b', 'a - b'), '2.1')
+    refused(lambda: mistakes.within('m', 'x.h', FILE, FILE.replace('int before', 'int earlier'), '2.1'), 'more than the region')
+    refused(lambda: mistakes.within('m', 'x.h', FILE, FILE.replace('a + b', 'a - b'), '2.2'), 'more than the region')
+
+
+def test_every_exercise_has_four_known_mistakes_whose_rows_are_there():
+    rows = [r.split('\t') for r in (regions.ROOT / 'tests/course/mistakes.txt').read_text().splitlines() if not r.startswith('#')]
+    known = mistakes.known_mistakes()
+    expect([(k.exercise, k.name, k.says, k.read) for k in known] == [tuple(r[:4]) for r in rows],
+           'tests/course/mistakes.txt is old: make mistakes')
+    for e in regions.exercises():
+        count = sum(k.exercise == e.number and k.name != 'stub' for k in known)
+        expect(count >= 4, f'{e.number} has {count}')
+    expect(len(known) - len(regions.exercises()) >= 100, len(known))
+    prints = [(r[0], r[4]) for r in rows]
+    expect(len(set(prints)) == len(prints), 'two mistakes have the same answers')
+    for k in known:
+        mistakes.check_heading(k)
+
+
+def main():
+    names = sys.argv[1:] or [n for n in globals() if n.startswith('test_')]
+    if names == ['--list']:
+        print('\n'.join(n for n in globals() if n.startswith('test_')))
+        return 0
+    for name in names:
+        globals()[name]()
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
