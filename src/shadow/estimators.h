@@ -96,7 +96,8 @@ inline double stochastic(const ShadowMoments& m) { return m.wV; }
 template <class T>
 T control(const T& U, const T& w, const T& wV) {
     // BEGIN SOLUTION 5.1  make use of U, which is known, and stay unbiased
-    return U - (w - wV);
+    const T in_shadow = w - wV;
+    return U - in_shadow;
     // STUB  what was sampled, and nothing of what is known
     // (void)U, (void)w;
     // return wV;
