@@ -239,7 +239,7 @@ handout:  ## sheets of the course as HTML, and as PDF where that can be made: bu
 	@python3 src/course/handout.py build/handout
 
 starter-check:  ## does the starter keep its promises?  FULL=1: each pair of stubs, too
-	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full)
+	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full) $(if $(DRAW),--draw '$(DRAW)')
 starter-check: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%) build/draw$(SUFFIX)
 
 # ---- Packages: doctest and stb_image_write, from the system ---------------------------------------

@@ -1,9 +1,9 @@
 # course/starter_check.py  8  does the starter keep its promises?
-"""starter_check.py [--full]
+"""starter_check.py [--full] [--draw WORD]
 
 1. The solution: every exercise is judged right.
 2. The stub of each exercise alone: its judge says that the stub is still there, and no other exercise is
-   wrong but those that need it.
+   wrong but those that need it.  --draw: of other weeks that could be, one is drawn for each stub.
 3. Regions compile in any combination, without a warning, by this compiler: each alone, all, and 50 random
    subsets in which every pair is met as stub and stub, stub and solution, solution and solution.  --full:
    each pair alone as well.
@@ -73,7 +73,7 @@ def judged(stubs, weeks, numbers, solved=None):
         return states, programs
 
 
-def check_verdicts(exercises, found):
+def check_verdicts(exercises, found, draw):
     numbers = [e.number for e in exercises]
     needs = needs_of(exercises)
     solved = judged(set(), sorted({n.split('.')[0] for n in numbers}), numbers)
@@ -84,7 +84,11 @@ def check_verdicts(exercises, found):
             fail(f'the solution of {n} is judged: {line}')
 
     def of_stub(n):
-        return n, judged({n}, weeks_that_see(found[n][0]), numbers, solved)
+        own, weeks = n.split('.')[0], weeks_that_see(found[n][0])
+        others = [w for w in weeks if w != own]
+        if draw and others:
+            weeks = [own, random.Random(draw + n).choice(others)]
+        return n, judged({n}, weeks, numbers, solved)
     for n, states in trial.in_parallel(of_stub, numbers):
         if isinstance(states, str):
             fail(f'with the stub of {n}: {states}')
@@ -196,7 +200,8 @@ def check_starter(exercises, found):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('--full', action='store_true')
-    full = parser.parse_args().full
+    parser.add_argument('--draw', default='')
+    words = parser.parse_args()
     exercises, found = regions.exercises(), regions.solution_files()
     for e in exercises:
         if e.number not in found or found[e.number][0] != f'src/{e.file}':
@@ -207,8 +212,8 @@ def main():
         if n not in {e.number for e in exercises}:
             fail(f'{n} is not in exercises.txt')
     exercises = [e for e in exercises if e.number in found]
-    check_verdicts(exercises, found)
-    check_combinations(exercises, found, full)
+    check_verdicts(exercises, found, words.draw)
+    check_combinations(exercises, found, words.full)
     check_starter(exercises, found)
     print(f'{len(exercises)} exercises, {len(failures)} wrong')
     return 1 if failures else 0
