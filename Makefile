@@ -216,7 +216,7 @@ starter:  ## what students get, as build/starter/ and .tar.gz; WEEKS=1-3: of the
 starter: build/draw$(SUFFIX)
 
 # Students' code is compiled and run in bubblewrap alone.
-grade: packages  ## grade what students handed in: SUBMISSIONS=FOLDER; OUT=out/grades, WEEKS=1-3, SEED=N, JOBS=2
+grade: packages  ## grade what students handed in: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WEEKS=1-3, SEED=N, JOBS=2
 	@$(if $(SUBMISSIONS),,echo "make grade SUBMISSIONS=FOLDER: a folder or a .tar.gz for each student" >&2; exit 2;) \
 	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/grade.py \
 	    $(if $(OUT),--out '$(OUT)') $(if $(WEEKS),--weeks '$(WEEKS)') $(if $(SEED),--seed $(SEED)) \

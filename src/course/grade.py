@@ -4,7 +4,7 @@
 Every folder or .tar.gz in SUBMISSIONS is what one student handed in.  Of it only the regions of the
 exercises are taken.  Each is put alone into the solution, then all together; both are compiled and
 run in bubblewrap, and judged by numbers that come over a pipe.  Writes FOLDER/students/NAME/grade.md
-and grade.json, and FOLDER/grades.csv.  Whoever has a grade.json of the same hand-in, seed and solution
+and grade.json, and FOLDER/grades.csv; FOLDER is SUBMISSIONS-grades unless it is said.  Whoever has a grade.json of the same hand-in, seed and solution
 is not graded again: what was stopped goes on.
 """
 import argparse
@@ -191,14 +191,14 @@ def main():
     parser.add_argument('--weeks')
     parser.add_argument('--seed', type=int)
     parser.add_argument('--jobs', type=int, default=os.cpu_count() or 2)
-    parser.add_argument('--out', type=pathlib.Path, default=pathlib.Path('out/grades'))
+    parser.add_argument('--out', type=pathlib.Path)
     parser.add_argument('--cache', type=pathlib.Path, default=regions.ROOT / 'build/grade')
     parser.add_argument('submissions')
     words = parser.parse_args()
     if not os.path.isdir(words.submissions):
         raise Broken(f'{words.submissions} is no folder of submissions')
     sandbox.demand()
-    out = words.out.resolve()
+    out = (words.out or pathlib.Path(words.submissions.rstrip('/') + '-grades')).resolve()
     out.mkdir(parents=True, exist_ok=True)
     with open(out / '.lock', 'w') as lock:
         try:

@@ -120,9 +120,9 @@ class Workshop:
             list(pool.map(lambda order: self.trusted(*order), orders))
 
     def header_order(self):
-        """What the programs include of the system, compiled once."""
+        """What the programs include of the standard library, compiled once."""
         names = sorted({h for files in self.closure.values() for f in files
-                        for h in re.findall(r'^#include (<[^>]+>)', self.tree[f], re.M)})
+                        for h in re.findall(r'^#include (<[a-z]+>)', self.tree[f], re.M)})
         headers = self.cache / 'headers'
         headers.mkdir(exist_ok=True)
         (headers / 'all.h').write_text(''.join(f'#include {name}\n' for name in names))
