@@ -184,7 +184,7 @@ $(SUITE): $(TESTS:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/main.o
 
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
 # vector is told so.
-HEAVY := app/render app/walks labs/cube oracle/mistakes oracle/oracle path/pathtracer radiosity/gather radiosity/mesh radiosity/particles \
+HEAVY := app/render app/walks course/my_tests labs/cube oracle/mistakes oracle/oracle path/pathtracer radiosity/gather radiosity/mesh radiosity/particles \
          radiosity/shooting radiosity/transfer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms \
          world/bsdf world/bvh world/shapes
 $(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS

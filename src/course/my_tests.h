@@ -18,15 +18,7 @@ inline bool sampler_passes(const Sampler& subject, uint64_t seed) {
         for (double v : ends)
             if (const auto w = subject.sample(u, v); w && !(std::abs(length(*w) - 1) < 1e-4))
                 return false;
-    // Who computes in float, tells no two points of a sphere apart that are closer than 1e-7.
-    using Coarse = std::array<float, 3>;
-    auto sample = [&](double u, double v) -> std::optional<Coarse> {
-        const auto w = subject.sample(u, v);
-        if (!w) return {};
-        return Coarse{float(w->x), float(w->y), float(w->z)};
-    };
-    auto pdf = [&](const Coarse& w) { return float(subject.pdf({w[0], w[1], w[2]})); };
-    return oracle::expect_density(random, sample, pdf,
+    return oracle::expect_density(random, subject.sample, subject.pdf,
                                   {.alpha = 1e-4, .sees = 0.03, .axis = {0, 0, 1}})
         .pass;
     // STUB  looks at one density alone
