@@ -36,7 +36,7 @@ Out shoot(In x) {
     const Scene scene = room(colour_of(x, 0), colour_of(x, 3), x[6] > 0);
     const Mesh mesh = make_mesh(scene, x[8]);
     Shooting shooting(scene, mesh, x[7] > 0 ? Shooter::face : Shooter::element, 1);
-    shooting.run({1e-9, 5, uint64_t(x[9]), 0}, [](const Shooting&) {});
+    shooting.run({1e-6, 0, uint64_t(x[9]), 0}, [](const Shooting&) {});
     Out out = {double(mesh.elements()), double(shooting.shots()), shooting.unshot()};
     const double emitting = x[6] > 0 ? 2 : 22;
     for (size_t c = 0; c < 3; ++c) {
