@@ -75,6 +75,12 @@ struct Known {
     }
 };
 
+// The larger of two errors; what is not a number is no small one.
+inline double worse(double a, double b) {
+    return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN()
+                                          : std::max(a, b);
+}
+
 class Judge {
 public:
     oracle::Random random;

@@ -182,7 +182,7 @@ void triangle(Judge& j) {
         const Triple x{points[i][0], points[i][1], points[i][2]};
         const auto [s, part] = t.coordinates(x);
         const double of[3] = {1 - s, s * (1 - part), s * part};
-        off = std::max(off, length(minus(x, t.at({s, part}))));
+        off = course::worse(off, length(minus(x, t.at({s, part}))));
         for (size_t k = 0; k < 3; ++k) {
             outside = of[k] >= outside ? outside : of[k];
             nearest[k] = std::max(nearest[k], of[k]);

@@ -107,8 +107,9 @@ Out squared_errors(const Out& numbers, double truth, double factor) {
 double apart(const Out& a, const Out& b) {
     double most = 0;
     for (size_t i = 0; i < b.size(); ++i)
-        most = std::max(most, i < a.size() ? std::abs(a[i] - b[i]) / std::max(1.0, std::abs(b[i]))
-                                           : oracle::infinity);
+        most =
+            course::worse(most, i < a.size() ? std::abs(a[i] - b[i]) / std::max(1.0, std::abs(b[i]))
+                                             : oracle::infinity);
     return std::isnan(most) || std::any_of(a.begin(), a.end(), [](double x) { return x != x; })
                ? oracle::infinity
                : most;
@@ -205,16 +206,17 @@ void regression(Judge& j) {
             s.U = 1 + j.random(), s.w = s.U * (0.5 + j.random()), s.wV = s.w * j.random();
         const double U = double(mean_of(random, of_U)), part = j.random(), S = j.random(),
                      slope = 2 * j.random() - 1;
-        lit = std::max(lit, apart({of(changed(random, light_up))}, {U}));
-        dark = std::max(dark, std::abs(of(changed(random, darken))));
-        grey = std::max(
+        lit = course::worse(lit, apart({of(changed(random, light_up))}, {U}));
+        dark = course::worse(dark, std::abs(of(changed(random, darken))));
+        grey = course::worse(
             grey,
             apart({of(changed(random, [&](LightSample& s) { s.wV = part * s.w; }))}, {part * U}));
-        line = std::max(line, apart({of(changed(random,
-                                                [&](LightSample& s) {
-                                                    s.U = 1.25, s.wV = S + slope * (s.w - 1.25);
-                                                }))},
-                                    {S}));
+        line = course::worse(
+            line,
+            apart(
+                {of(changed(random,
+                            [&](LightSample& s) { s.U = 1.25, s.wV = S + slope * (s.w - 1.25); }))},
+                {S}));
     }
     auto off = [](double by) { return oracle::say("it is off by %.3g", by); };
     j.exact("where nothing is in the way it is U, and 0 where everything is",

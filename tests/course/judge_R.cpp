@@ -64,7 +64,7 @@ void shooting(Judge& j) {
     const Shot lit = shot_of(of_lamp[0]), by_faces = shot_of(of_whole[0]);
     double apart = 0;
     for (size_t c = 0; c < 3; ++c)
-        apart = std::max(apart, std::abs(by_faces.part[c] / lit.part[c] - 1));
+        apart = course::worse(apart, std::abs(by_faces.part[c] / lit.part[c] - 1));
     // Between black walls the lamp's elements are all that shoots.
     Room alone = lamp;
     alone.rho[0] = alone.rho[1] = alone.rho[2] = 0;
@@ -139,7 +139,7 @@ void walking(Judge& j) {
             const double e = coloured[i][emitted + c];
             const double left = e - coloured[i][absorbed + c] - coloured[i][escaped + c];
             lost = left == left ? std::max(lost, std::abs(left / e)) : oracle::infinity;
-            growth = std::max(growth, coloured[i][greatest + c] / e);
+            growth = course::worse(growth, coloured[i][greatest + c] / e);
         }
     j.exact("of every particle, emitted = absorbed + escaped", lost < 1e4 * j.epsilon, off(lost));
     j.exact("no particle gains power on walls that reflect 4/5 at most",

@@ -44,7 +44,7 @@ double farthest(const Places& a, const Places& b) {
     for (Place p : a) {
         double nearest = oracle::infinity;
         for (Place q : b) nearest = std::min(nearest, distance(p, q));
-        most = std::max(most, nearest);
+        most = course::worse(most, nearest);
     }
     return most;
 }
@@ -93,7 +93,7 @@ double edges_off(const Answer& a, const Lines& lines) {
         if (n >= 0 && n < int(lines.size())) nearest = off(lines[size_t(n)]);
         for (const Line& w : walls)
             if (n == -1) nearest = std::min(nearest, off(w));
-        most = std::max(most, nearest);
+        most = course::worse(most, nearest);
     }
     return a.corners.empty() ? oracle::infinity : most;
 }
@@ -130,11 +130,11 @@ void cutting(Judge& j) {
     for (int k = 0; k < 50; ++k) {
         Lines lines = random_lines(j.random, 3 + k % 8);
         const Answer a = cut(j, lines);
-        corners_off = std::max(corners_off, apart(a.corners, corners_by_force(lines)));
-        edges = std::max(edges, edges_off(a, lines));
+        corners_off = course::worse(corners_off, apart(a.corners, corners_by_force(lines)));
+        edges = course::worse(edges, edges_off(a, lines));
         turn = std::min(turn, least_turn(a.corners));
         std::reverse(lines.begin(), lines.end());
-        order = std::max(order, apart(a.corners, cut(j, lines).corners));
+        order = course::worse(order, apart(a.corners, cut(j, lines).corners));
     }
     j.exact("cells of 3 to 10 neighbours: their corners by trying all pairs of lines",
             corners_off < 1e-11, off(corners_off));
