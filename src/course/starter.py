@@ -50,6 +50,12 @@ class Plan:
         self.solved_weeks = [w for w in before if w not in self.weeks]
         self.solved = solved
         self.open = [e for e in self.all if e.week in self.weeks]
+        given = self.weeks + self.solved_weeks
+        for e in self.open:
+            for need in e.needs:
+                if need.split('.')[0] not in given:
+                    raise SystemExit(f'starter: WEEKS={words}: {e.number} needs {need}: add week {need.split(".")[0]}, '
+                                     f'or give week {e.week} alone')
         self.wings = [wing for week, wing in WINGS.items() if week in self.weeks + self.solved_weeks]
         if 'radiosity' in self.wings and 'shadow' not in self.wings:
             self.wings.insert(0, 'shadow')  # its form factors
@@ -160,14 +166,13 @@ def write_rest(plan, to):
 
 
 def draw_expected(plan, to, draw):
-    """expected/: what the solution draws, by more samples."""
+    """expected/: what the solution draws, by the same random numbers."""
     for line in (ROOT / 'tests/course/pictures.txt').read_text().splitlines():
         key, _, order = (part.strip() for part in line.partition('|'))
         if key.split('.')[0] not in plan.weeks or not order:
             continue
         (to / 'expected').mkdir(exist_ok=True)
-        samples = re.sub(r'--spp \d+', '--spp 256', order)
-        subprocess.run([draw, *samples.split(), '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT,
+        subprocess.run([draw, *order.split(), '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT,
                        stdout=subprocess.DEVNULL)
 
 

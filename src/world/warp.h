@@ -56,7 +56,7 @@ inline real pdf_uniform_sphere() { return 1 / (4 * pi); }
 // inline real pdf_uniform_sphere() { return 1; }
 // END SOLUTION
 
-// Density cos(theta)/pi over the hemisphere z > 0.
+// Directions of the hemisphere z > 0, dense where their cosine is large.
 // BEGIN SOLUTION 2.2  directions that follow the cosine, and their density
 // A uniform point of the disc, lifted to the hemisphere (Malley 1988).
 inline vec3 sample_cosine_hemisphere(vec2 u) {
@@ -85,12 +85,12 @@ inline vec3 sample_phong_lobe(vec2 u, real n) {
 inline real pdf_phong_lobe(real cos_alpha, real n) {
     return cos_alpha > 0 ? (n + 1) / (2 * pi) * std::pow(cos_alpha, n) : 0;
 }
-// STUB  the same wide lobe, however large n is
+// STUB  directions through a square, however large n is
 // inline vec3 sample_phong_lobe(vec2 u, real n) {
-//     return n < 0 ? vec3{0, 0, 1} : sample_cosine_hemisphere(u);
+//     return unit(vec3{u.x - real(0.5), u.y - real(0.5), n < 0 ? 2 : 1});
 // }
 // inline real pdf_phong_lobe(real cos_alpha, real n) {
-//     return n < 0 ? 1 : pdf_cosine_hemisphere(cos_alpha);
+//     return cos_alpha > real(0.8) && n >= 0 ? 1 : 0;
 // }
 // END SOLUTION
 

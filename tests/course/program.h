@@ -125,7 +125,7 @@ private:
             std::snprintf(number, sizeof number, "%s%.6g", i ? ", " : "", in.numbers[i]);
             text += number;
         }
-        return text + (in.width > 6 ? ", ...)" : ")") + (in.size() > 1 ? " and others" : "");
+        return text + (in.width > 6 ? ", ...)" : ")") + (in.size() > 1 ? ", ..." : "");
     }
 
     int end() {

@@ -91,11 +91,12 @@ def test_every_exercise_is_a_region_of_its_file():
 
 def test_weeks_are_what_was_asked_for():
     for words, weeks, solved in (('1-6', '123456', ''), ('1-3', '123', ''), ('3', '3', '12'), ('2-3', '23', '1'),
-                                 ('V', 'V', '123456'), ('1-2,V', '12V', ''), ('2,R', '2R', '1')):
+                                 ('V', 'V', '123456'), ('1-2,V', '12V', ''), ('2-5,R', '2345R', '1')):
         plan = starter.Plan(words)
         expect((''.join(plan.weeks), ''.join(plan.solved_weeks)) == (weeks, solved), words, plan.weeks, plan.solved_weeks)
     for words in ('', '9', '3-1', '1-2-3', 'x', '1,'):
         refused(lambda: starter.Plan(words), words, 'say weeks')
+    refused(lambda: starter.Plan('1-3,R'), 'R.1 needs 5.5', 'add week 5')
 
 
 def test_wings_come_with_their_weeks_alone():
