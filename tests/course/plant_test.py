@@ -77,6 +77,17 @@ def test_the_copy_has_the_wrong_line_in_place_of_the_right_one():
         expect(squeezed in ''.join(text.split()), 'the wrong lines are not there')
 
 
+def test_the_key_tells_lines_of_the_copy():
+    longer = UNIFORM.replace('{ return 1 / length(cross(e, f)); }',
+                             '{\n    const real area = 2 * length(cross(e, f));\n    return 1 / area;\n}')
+    expect(longer.count('\n') == 4, longer)
+    with Copy(file='src/world/warp.h', old=UNIFORM, new=longer) as copy:
+        text = (copy.folder / 'src/world/warp.h').read_text().split('\n')
+        first = 1 + next(i for i, line in enumerate(text) if 'pdf_quad_area' in line)
+        key = hunted.read_key(pathlib.Path(f'{copy.folder}.key'))
+        expect(key['lines'] == f'{first}-{first + 3}', key['lines'], first)
+
+
 def test_all_else_is_the_solution():
     plan = starter.Plan('1-5', solved=True)
     with Copy(BUG) as copy, tempfile.TemporaryDirectory() as other:
