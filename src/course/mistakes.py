@@ -84,7 +84,7 @@ def fingerprint(known):
             return known, None, 'is judged right'
         if said['state'] == 'silent':
             return known, None, 'is silent: ' + said['says']
-        return known, said['fingerprint'], ''
+        return known, said['fingerprint'] + (said['of_stub'] if known.name == 'stub' else []), ''
 
 
 def main():

@@ -142,8 +142,8 @@ def squeezed(text):
 
 
 def solution_lines(found, numbers):
-    """Lines of solutions that are nowhere else in src, nor in stubs: squeezed text -> exercise."""
-    elsewhere = ''
+    """Lines of solutions that are nowhere else in src, nor in stubs or the oracle: squeezed text -> exercise."""
+    elsewhere = squeezed((ROOT / 'tests/oracle/oracle.h').read_text())
     for path in sorted((ROOT / 'src').rglob('*.h')) + sorted((ROOT / 'src').rglob('*.cpp')):
         name = str(path.relative_to(ROOT))
         elsewhere += squeezed(regions.rewrite(path.read_text(), name, lambda r: r.stub if r.number in numbers else None))

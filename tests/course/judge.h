@@ -87,6 +87,7 @@ public:
     std::vector<Item> items;
     Out fingerprint;               // answers to probes: by them known mistakes are told
     double epsilon;                // of the student's `real`: 2^-53 or 2^-24
+    Out of_stub;                   // answers to further probes, by which the stub is told
     std::optional<double> credit;  // in [0,1], where it is not the part of the items that is right
 
     Judge(Program& program, uint64_t seed)
@@ -120,6 +121,13 @@ public:
             random = same;
             return verdict;
         }
+    }
+
+    // To questions whose answers mistakes do not share, but the stub always has: it is told by
+    // these as well, so that nothing else is taken for it.
+    void probe_stub(const std::string& question, const Rows& in) {
+        const Out out = program_.ask(question, in).numbers;
+        of_stub.insert(of_stub.end(), out.begin(), out.end());
     }
 
     // What holds to the last digits or not at all.
@@ -175,10 +183,12 @@ inline const KnownMistake* mistake_of(const std::vector<KnownMistake>& mistakes,
                                       const std::string& exercise, const Judge& j) {
     const double tolerance = j.epsilon > 0x1p-50 ? 1e-4 : 1e-8;
     for (const KnownMistake& m : mistakes) {
-        if (m.exercise != exercise || m.fingerprint.size() != j.fingerprint.size()) continue;
+        Out print = j.fingerprint;
+        if (m.name == "stub") print.insert(print.end(), j.of_stub.begin(), j.of_stub.end());
+        if (m.exercise != exercise || m.fingerprint.size() != print.size()) continue;
         bool same = !m.fingerprint.empty();
         for (size_t i = 0; same && i < m.fingerprint.size(); ++i) {
-            const double a = j.fingerprint[i], b = m.fingerprint[i];
+            const double a = print[i], b = m.fingerprint[i];
             same = a == b || near(a, b, tolerance) || (std::isnan(a) && std::isnan(b));
         }
         if (same) return &m;
@@ -195,6 +205,7 @@ struct Judgement {
     std::optional<KnownMistake> named;
     Out fingerprint;
     std::optional<double> credit = {};
+    Out of_stub = {};
     size_t right() const {
         return size_t(
             std::count_if(items.begin(), items.end(), [](const Item& i) { return i.right; }));
@@ -221,6 +232,7 @@ inline Judgement judge_one(const std::string& exercise, const Judging& judging,
     }
     result.items = j.items;
     result.fingerprint = j.fingerprint;
+    result.of_stub = j.of_stub;
     result.credit = j.credit;
     if (result.right() == result.items.size() && !result.items.empty()) return result;
     result.state = result.silence.empty() ? "wrong" : "silent";
@@ -280,9 +292,13 @@ inline void write_json(const std::string& path, const Judgement& r) {
              << ", \"kind\": \"" << (r.items[i].statistical ? "statistical" : "exact")
              << "\", \"right\": " << (r.items[i].right ? "true" : "false")
              << ", \"seen\": " << json_text(r.items[i].seen) << "}";
-    file << "],\n \"fingerprint\": [";
-    for (size_t i = 0; i < r.fingerprint.size(); ++i)
-        file << (i ? ", " : "") << json_text(oracle::say("%.13g", r.fingerprint[i]));
+    auto write = [&](const char* name, const Out& numbers) {
+        file << "],\n \"" << name << "\": [";
+        for (size_t i = 0; i < numbers.size(); ++i)
+            file << (i ? ", " : "") << json_text(oracle::say("%.13g", numbers[i]));
+    };
+    write("fingerprint", r.fingerprint);
+    write("of_stub", r.of_stub);
     file << "]}\n";
     if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }

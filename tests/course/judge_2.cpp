@@ -120,6 +120,10 @@ void uniform(Judge& j) {
     expect_unit(j, "all directions",
                 together({upper, all, j.ask("sample_uniform_hemisphere", edge),
                           j.ask("sample_uniform_sphere", edge)}));
+    double lowest = 1;
+    for (size_t i = 0; i < upper.size(); ++i) lowest = -course::worse(-lowest, -upper[i][2]);
+    j.exact("directions of the hemisphere are above the horizon", lowest >= 0,
+            oracle::say("one has z = %.6g", lowest));
     j.number("the hemisphere's density integrates to 1",
              over_hemisphere(j, "pdf_uniform_hemisphere"), 1, 1e-4);
     j.exact("it is the same at every height, and 0 below the horizon",

@@ -607,6 +607,8 @@ void glass(Judge& j) {
             oracle::say("straight on, %.6g expected, %.6g came; and %.6g expected, %.6g came",
                         0.96 / 2.25, in.refracted, 0.96 * 2.25, out.refracted));
     const Ways slanted = ways(j, 1.5, true, 0.3);
+    j.number("at a cosine of 0.3, what is refracted is (1 - R) over the index squared",
+             slanted.refracted, (1 - slanted.pdf_reflected) / 2.25, tolerance(j, 1e3));
     j.number("probabilities of both ways add up to", slanted.pdf_reflected + slanted.pdf_refracted,
              1, tolerance(j, 64));
     Rows ask;

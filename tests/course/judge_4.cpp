@@ -168,6 +168,8 @@ void scrambled_digits(Judge& j) {
     for (uint64_t bits : {uint64_t(0), UINT64_MAX})
         for (uint64_t index : {uint64_t(0), uint64_t(1), UINT64_MAX})
             for (double base : {2.0, 3.0, 541.0}) extremes.add(scrambled(base, index, bits, bits));
+    j.probe_stub(question, {scrambled(10, 1234, 0x123456789abcdef, 0xfedcba987654321),
+                            scrambled(3, 5, 0x3141592653589793, 0x2718281828459045)});
     double first = 0;
     const bool in = in_range(j.ask(question, extremes), first);
     size_t holes = 0;

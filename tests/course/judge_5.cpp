@@ -266,6 +266,7 @@ void moments(Judge& j) {
     same(j, "a part without samples changes nothing, first or last",
          {apart(merged(j, twelve, 0), expected), apart(merged(j, twelve, 12), expected)}, {0, 0},
          1e-13);
+    same(j, "two parts without samples are none", merged(j, {}, 0), Out(7), 0);
     // Far from 0, where sums of squares have lost all their digits.
     Samples far;
     for (int i = 0; i < 300; ++i) {
@@ -372,6 +373,10 @@ void lambert(Judge& j) {
     const double halves = j.ask("lambert", corners({square[0], square[1], square[2]})).at(0) +
                           j.ask("lambert", corners({square[0], square[2], square[3]})).at(0);
     j.number("two halves are the whole", halves, 1.7408395027342063, digits);
+    j.number(
+        "a corner that is there twice changes nothing",
+        j.ask("lambert", corners({square[0], square[0], square[1], square[2], square[3]})).at(0),
+        1.7408395027342063, digits);
     Vertices far = square;
     for (size_t i = 0; i < 4; ++i)
         for (double& x : far[i]) x *= double(i + 2);

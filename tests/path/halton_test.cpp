@@ -103,6 +103,7 @@ TEST_CASE("digits that do not fit are cut off, never wrapped round") {
 
 TEST_CASE("no radical inverse is 1, scrambled or not") {
     CHECK(radical_inverse(2, UINT64_MAX) == below_one);  // 1 - 2^-64 would round to 1
+    CHECK(scrambled_radical_inverse(2, UINT64_MAX, 0, 0) < 1);
     CHECK(radical_inverse(2, 33554431) < 1);
     CHECK(radical_inverse(3, 3188645) < 1);
     for (uint32_t base : {2u, 3u, 541u})
