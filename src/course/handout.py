@@ -20,7 +20,7 @@ h1, h2, h3, nav { font-family: system-ui, sans-serif; line-height: 1.2 } h2 { ma
 pre { background: #f4f4f0; padding: .6em 1em; overflow-x: auto; font-size: 14px } code { font-size: 90% }
 details { border-left: 3px solid #c90; margin: .5em 0; padding: .1em 1em } summary { cursor: pointer; color: #850 }
 table { border-collapse: collapse } td, th { border-bottom: 1px solid #ddd; padding: .2em .7em; text-align: left }
-img { max-width: 100% } math[display=block] { overflow-x: auto; margin: .7em 0 }
+img { max-width: 100% } math[display=block] { margin: .7em 0 }
 @media print { body { font-size: 11pt; margin: 0 } details { display: none } h2 { break-after: avoid } pre { white-space: pre-wrap } }
 </style>
 '''
@@ -79,7 +79,7 @@ def main():
     head = to / 'head.html'
     head.write_text(STYLE)
     pages, printed = [], ''
-    for sheet in sorted(SHEETS.glob('*.md')):
+    for sheet in (s for s in sorted(SHEETS.glob('*.md')) if s.name != 'README.md'):  # which is the instructor's
         page, text, title = html_of(sheet, to, str(head))
         printed = pdf_of(page, text, to)
         pages.append((page.name, title))
