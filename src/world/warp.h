@@ -87,7 +87,7 @@ inline real pdf_phong_lobe(real cos_alpha, real n) {
 }
 // STUB  directions through a square, however large n is
 // inline vec3 sample_phong_lobe(vec2 u, real n) {
-//     return unit(vec3{u.x - real(0.5), u.y - real(0.5), n < 0 ? 2 : 1});
+//     return unit(vec3{u.x - real(0.5), u.y - real(0.5), real(n < 0 ? 2 : 1)});
 // }
 // inline real pdf_phong_lobe(real cos_alpha, real n) {
 //     return cos_alpha > real(0.8) && n >= 0 ? 1 : 0;
