@@ -8,7 +8,8 @@
 
 namespace course {
 
-// Whether directions and density may belong together.
+// Whether directions and density may belong together.  Lengths count as 1 within 1e-4, far above
+// what float loses.
 inline bool sampler_passes(const Sampler& subject, uint64_t seed) {
     // BEGIN SOLUTION 6.1  refuse what is no sampler with its density
     oracle::Random random(seed);
@@ -51,7 +52,8 @@ inline bool estimator_passes(const Estimator& subject, uint64_t seed) {
     // END SOLUTION
 }
 
-// Whether beams may meet bodies where they ought to.
+// Whether beams may meet bodies where they ought to: within 1e-3 of the distance, far above what
+// float loses.
 inline bool intersector_passes(const Intersector& subject, uint64_t seed) {
     // BEGIN SOLUTION 6.3  refuse what misses, or meets what is not there
     oracle::Random random(seed);

@@ -13,13 +13,10 @@ import plant
 import regions
 import sandbox
 import starter
+import testing
+from testing import expect
 
 BUG = 'warp_cosine_density_of_half'
-
-
-def expect(good, *what):
-    if not good:
-        raise AssertionError(' '.join(str(w) for w in what))
 
 
 def mutant_of(folder, file, old, new, more=''):
@@ -227,15 +224,5 @@ def test_nothing_is_run_without_a_sandbox():
         expect(done.returncode == 1 and 'bubblewrap' in done.stderr, done.stderr)
 
 
-def main():
-    names = sys.argv[1:] or [n for n in globals() if n.startswith('test_')]
-    if names == ['--list']:
-        print('\n'.join(n for n in globals() if n.startswith('test_')))
-        return 0
-    for name in names:
-        globals()[name]()
-    return 0
-
-
 if __name__ == '__main__':
-    sys.exit(main())
+    testing.run(globals())

@@ -9,7 +9,9 @@ import mistakes
 import regions
 import starter
 import starter_check
+import testing
 import trial
+from testing import expect
 
 FILE = '''// x.h
 int before;
@@ -22,11 +24,6 @@ int before;
     // END SOLUTION
 int after;
 '''
-
-
-def expect(good, *what):
-    if not good:
-        raise AssertionError(' '.join(str(w) for w in what))
 
 
 def refused(call, *part):
@@ -234,15 +231,5 @@ def test_every_exercise_has_four_known_mistakes_whose_rows_are_there():
         mistakes.check_heading(k)
 
 
-def main():
-    names = sys.argv[1:] or [n for n in globals() if n.startswith('test_')]
-    if names == ['--list']:
-        print('\n'.join(n for n in globals() if n.startswith('test_')))
-        return 0
-    for name in names:
-        globals()[name]()
-    return 0
-
-
 if __name__ == '__main__':
-    sys.exit(main())
+    testing.run(globals())
