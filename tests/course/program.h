@@ -174,6 +174,8 @@ private:
                 done += size_t(n);
             else if (errno == EAGAIN)
                 wait(to_, POLLOUT);
+            else if (errno == EPIPE)
+                return;  // it has ended: what it said before is still to be read
             else if (errno != EINTR)
                 gone();
         }
