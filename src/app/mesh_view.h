@@ -36,5 +36,5 @@ inline void draw_mesh(Image& image, const Scene& scene, const Mesh& mesh, int K,
             pixel = {float(c.x), float(c.y), float(c.z)};
         }
     };
-    parallel_rows(image.height, threads, row, [](double) {});
+    in_parallel(image.height, threads, row, [](double) {});
 }

@@ -58,8 +58,8 @@ Stage stage_of(const Options& o, const Scene& scene) {
 // Writes all that was asked for, and says so.
 void write(const Options& o, const Scene& scene, const Rendered& rendered,
            const std::vector<std::string>& outputs) {
-    const auto& [image, variance, run] = rendered;
-    write_images(outputs, o.view == View::variance ? variance : image, scene.exposure);
+    const auto& [image, run] = rendered;
+    write_images(outputs, image, scene.exposure);
     if (!o.stats.empty()) write_file(o.stats, encode_stats(o, scene.size, scene.depth, run));
     if (run.maps) tell(o, summary(*run.maps));
     tell(o, summary(o, run));

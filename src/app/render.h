@@ -53,9 +53,12 @@ inline Job job_of(const Options& o, const Scene& scene, const Maps& maps) {
 // Whether the image shows something that takes no path.
 inline bool is_plain_view(View v) { return v != View::radiance && v != View::variance; }
 
-// An account of Li that counts the path's rays.
+// An account of Li that counts the path's rays, and leaves a path for which nobody waits any more.
 inline auto counting(uint64_t& rays) {
-    return [&rays](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); };
+    return [&rays](const Segment&, const Step& e) {
+        if (interrupted) throw Interrupted();
+        rays += 1 + (e.direct.light != nullptr);
+    };
 }
 
 // One sample by a path that ends on maps.
@@ -78,7 +81,7 @@ inline rgb radiance(const Job& job, const Start& at, uint64_t& rays) {
 // ---- Images -------------------------------------------------------------------------------------
 
 struct Rendered {
-    Image image, variance;
+    Image image;  // of what --view asks for
     RunStats run;
 };
 
@@ -95,97 +98,132 @@ void check_finite(const Film<Pixel>& film) {
         (bad.set ? " --set " + std::to_string(bad.set) : "") + "); nothing was written");
 }
 
-// What the film holds, and how far that is from the truth.
-template <class Pixel, class Value>
-Rendered developed(const Film<Pixel>& film, const Options& o, RunStats run, ErrorCourse course,
-                   Value value) {
-    const Image image = film.image_of(value);
-    run.mean_radiance = mean_of_pixels(image);
-    run.error = error_of(film, value);
-    run.sets = film.sets_per_pixel();
-    if (course.is_due(run.spp)) course.add(run.spp, run.error.d_rel());
-    run.exponent_of_cost = 1 / course.exponent();
-    return {image, o.view == View::variance ? variance_of(film, value) : Image(), run};
+// Picks the sets of a film's pixels by its noise; if hardly any time is left, only those that
+// measure.
+template <class Pixel>
+std::vector<Sets> sets_by_film(const Film<Pixel>& film, const Job& job, double elapsed) {
+    std::vector<Sets> sets = sets_where_noise_is(film.noise(), film.size, job.o.seed);
+    const double limit = job.passes.target.seconds;
+    if (limit > 0 && (mean_count(sets) - 1) * elapsed > limit - elapsed)
+        sets = sets_where_noise_is(film.noise(), film.size, job.o.seed, {.most = 1});
+    return sets;
 }
 
-// Renders row by row, row(y, n, rays), which counts its rays; value_in(film) is what the pixels
-// say.
-template <class Pixel, class Row, class ValueIn>
-Rendered fill(Film<Pixel>& film, const Job& job, Row row, ValueIn value_in) {
-    const Target& target = job.passes.target;
-    SampleProgress progress(target, job.o.quiet);
-    std::atomic<uint64_t> rays = 0;
-    auto counted = [&](int y, uint64_t n) {
-        uint64_t row_rays = 0;
-        row(y, n, row_rays);
-        rays += row_rays;
-    };
-    // Once, where noise is; if hardly any time is left, only those that measure.
-    auto choose_sets = [&] {
-        if (film.has_sets() || film.samples() < 2 || interrupted || film.non_finite() > 0) return;
-        const std::vector<double> noise = film.noise();
-        std::vector<Sets> sets = sets_where_noise_is(noise, film.size, job.o.seed);
-        const double elapsed = progress.elapsed(), left = target.seconds - elapsed;
-        if (target.seconds > 0 && (mean_count(sets) - 1) * elapsed > left)
-            sets = sets_where_noise_is(noise, film.size, job.o.seed, {.most = 1});
-        film.add_sets(std::move(sets));
-        add_pass(film, 0, job.passes.threads, counted, progress);
-    };
-    if (sets_of(job.o) != sets_by_noise)
-        film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets_of(job.o)}));
-    ErrorCourse course;
-    bool enough = false;
-    uint64_t look = 0;  // at so many samples, however passes divide them
-    render(film, job.passes, counted, progress, [&](const Film<Pixel>&) -> uint64_t {
-        if (film.samples() < job.passes.pause) return UINT64_MAX;
+// A film on its way to the target: what happens between its passes.
+template <class Pixel, class Add>
+class Filling {
+public:
+    Filling(Film<Pixel>& film, const Job& job, Add add)
+        : film_(film), job_(job), add_(add), progress_(job.passes.target, job.o.quiet) {}
+
+    void fill() {
+        if (sets_of(job_.o) != sets_by_noise && !film_.has_sets())
+            film_.add_sets(std::vector<Sets>(film_.number_of_pixels(), {sets_of(job_.o)}));
+        render(film_, job_.passes, add_, progress_,
+               [&](const Film<Pixel>&) { return film_.samples() ? between() : UINT64_MAX; });
         choose_sets();
-        if (film.non_finite() > 0) return 0;
-        if (film.samples() < look) return look - film.samples();
-        if (target.error == 0 && !course.is_due(film.samples())) return UINT64_MAX;
-        const ImageError e = error_of(film, value_in(film));
-        course.add(film.samples(), e.d_rel());
-        if (target.error == 0) return UINT64_MAX;
-        const bool dark = e.norm == 0 && job.scene.lights.empty();  // and will stay so
-        const uint64_t more = dark ? 0 : samples_to_look(e, target.error, film.samples());
-        look = film.samples() + more;
-        const double all =
-            double(film.samples()) * course.cost_of(std::max(1.0, e.d_rel() / target.error));
-        progress.expect(std::max(look, all < 1e18 ? uint64_t(all) : 0));
-        enough = more == 0;
-        return more;
-    });
-    choose_sets();
+    }
+
+    RunStats stats() {
+        const Target& target = job_.passes.target;
+        RunStats run;
+        run.spp = film_.samples(), run.seconds = progress_.elapsed();
+        run.non_finite = film_.non_finite(), run.interrupted = interrupted;
+        run.stopped_by = enough_ ? "error" : run.spp == target.samples ? "samples" : "time";
+        if (run.interrupted) run.stopped_by = "interrupt";
+        const ErrorTerms terms = film_.terms();
+        for (size_t c = 0; c < 3; ++c) run.mean_radiance[c] = terms.sum[c] / double(terms.pixels);
+        run.error = terms.error();
+        run.sets = film_.sets_per_pixel();
+        if (course_.is_due(run.spp)) course_.add(run.spp, run.error.d_rel());
+        run.exponent_of_cost = 1 / course_.exponent();
+        return run;
+    }
+
+private:
+    Film<Pixel>& film_;
+    const Job& job_;
+    const Add add_;
+    SampleProgress progress_;
+    ErrorCourse course_;
+    bool enough_ = false;
+
+    // Once, where noise is.
+    void choose_sets() {
+        if (film_.has_sets() || film_.samples() < 2 || interrupted || film_.non_finite() > 0)
+            return;
+        film_.add_sets(sets_by_film(film_, job_, progress_.elapsed()));
+        add_pass(film_, 0, job_.passes.threads, add_, progress_);
+    }
+
+    // How many samples the next pass may bring.
+    uint64_t between() {
+        const auto& [target, period, threads, pause] = job_.passes;
+        const uint64_t samples = film_.samples();
+        if (samples < pause) return UINT64_MAX;
+        choose_sets();
+        if (film_.non_finite() > 0) return 0;
+        const bool looks = target.error > 0 && next_look(samples - 1, pause, period) == samples;
+        if (looks || course_.is_due(samples)) look(error_of(film_), looks);
+        if (enough_) return 0;
+        return target.error > 0 ? next_look(samples, pause, period) - samples : UINT64_MAX;
+    }
+
+    void look(const ImageError& e, bool may_be_enough) {
+        const double wanted = job_.passes.target.error;
+        const uint64_t samples = film_.samples();
+        course_.add(samples, e.d_rel());
+        if (!may_be_enough) return;
+        enough_ = is_small_enough(e, wanted);
+        // It is dark, and will stay so.
+        if (e.norm == 0 && job_.scene.lights.empty()) enough_ = true;
+        const double all = double(samples) * course_.cost_of(std::max(1.0, e.d_rel() / wanted));
+        progress_.expect(std::max(samples, all < 1e18 ? uint64_t(all) : 0));
+    }
+};
+
+// Renders into a film of that kind of pixel: radiance_of_block() is an L(sample, rays), which
+// counts its rays.
+template <class Pixel, class RadianceOfBlock>
+Rendered fill(const Job& job, const typename Pixel::Value& value,
+              RadianceOfBlock radiance_of_block) {
+    const Shows shows = job.o.view == View::variance ? Shows::variances : Shows::values;
+    Film<Pixel> film(job.scene.size, value, shows);
+    std::atomic<uint64_t> rays = 0;
+    auto add = [&](size_t block, uint64_t n) {
+        uint64_t rays_of_block = 0;
+        auto L = radiance_of_block();
+        film.add_block(block, n, [&](int x, int y, uint64_t i, uint32_t set) {
+            return L(PixelSample{x, y, i, set}, rays_of_block);
+        });
+        rays += rays_of_block;
+    };
+    Filling filling(film, job, add);
+    filling.fill();
     check_finite(film);
-    RunStats run;
-    run.spp = film.samples(), run.seconds = progress.elapsed(), run.rays = rays;
-    run.non_finite = film.non_finite(), run.interrupted = interrupted;
-    run.stopped_by = enough ? "error" : film.samples() == target.samples ? "samples" : "time";
-    if (run.interrupted) run.stopped_by = "interrupt";
-    return developed(film, job.o, run, course, value_in(film));
+    RunStats run = filling.stats();
+    run.rays = rays;
+    return {film.take_image(), run};
 }
 
 inline Rendered render_means(const Job& job) {
-    Film<MeanPixel> film(job.scene.size);
-    auto row = [&](int y, uint64_t n, uint64_t& rays) {
-        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
-            return radiance(job, start(job.scene, job.pattern, {x, y, i, set}), rays);
-        });
-    };
-    return fill(film, job, row, [](const auto& f) { return value_in(f); });
+    return fill<MeanPixel>(job, {}, [&] {
+        return [&](const PixelSample& s, uint64_t& rays) {
+            return radiance(job, start(job.scene, job.pattern, s), rays);
+        };
+    });
 }
 
 // By paths that end on maps, whose time and rays count, too.
 inline Rendered render_mapped(const Job& job) {
-    Film<MeanPixel> film(job.scene.size);
-    auto row = [&](int y, uint64_t n, uint64_t& rays) {
-        auto count = [&rays](const Segment&, const Step& e, const Mapped&) {
-            rays += 1 + (e.direct.light != nullptr);
+    Rendered r = fill<MeanPixel>(job, {}, [&] {
+        return [&](const PixelSample& s, uint64_t& rays) {
+            auto count = counting(rays);
+            return mapped_Li(job, s, [&](const Segment& segment, const Step& e, const Mapped&) {
+                count(segment, e);
+            });
         };
-        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
-            return mapped_Li(job, {x, y, i, set}, count);
-        });
-    };
-    Rendered r = fill(film, job, row, [](const auto& f) { return value_in(f); });
+    });
     r.run.maps = job.maps->stats;
     r.run.seconds += r.run.maps->seconds, r.run.rays += r.run.maps->rays;
     return r;
@@ -194,33 +232,32 @@ inline Rendered render_mapped(const Job& job) {
 // Direct light by ratio or regression.
 inline Rendered render_shadows(const Job& job) {
     const Options& o = job.o;
-    Film<ShadowPixel> film(job.scene.size);
-    auto row = [&](int y, uint64_t n, uint64_t& rays) {
-        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
-            const Start at = start(job.scene, job.pattern, {x, y, i, set});
+    return fill<ShadowPixel>(job, {o.direct}, [&] {
+        return [&](const PixelSample& s, uint64_t& rays) {
+            const Start at = start(job.scene, job.pattern, s);
             return shadow_Li(job.scene, o.technique, o.direct, at, counting(rays));
-        });
-    };
-    return fill(film, job, row, [&](const auto& f) { return value_in(f, o.direct); });
+        };
+    });
 }
 
 // Samples weighted by the areas of their Voronoi cells.
 inline Rendered render_cells(const Job& job) {
-    Film<MeanPixel> film(job.scene.size);
     std::atomic<uint64_t> redraws = 0, fallbacks = 0;
-    auto row = [&](int y, uint64_t n, uint64_t& rays) {
-        auto L = [&](int x, uint64_t i, uint32_t set) {
-            if (interrupted) return rgb{};  // its pass will not count
-            return radiance(job, start(job.scene, job.pattern, {x, y, i, set}), rays);
+    const uint64_t all = job.passes.target.samples;
+    Rendered r = fill<MeanPixel>(job, {}, [&] {
+        return [&, weighted = WeightedPixels(job.o.film, job.pattern, all)](
+                   const PixelSample& s, uint64_t& rays) mutable {
+            const Weigher& weigher = weighted.weigher();
+            const uint64_t redrawn = weigher.redraws, fallen = weigher.fallbacks;
+            auto L = [&](uint64_t i) {
+                if (interrupted) throw Interrupted();
+                return radiance(job, start(job.scene, job.pattern, {s.x, s.y, i, s.set}), rays);
+            };
+            const rgb value = weighted(pixel_number(job.scene, s), s.set, s.i, L);
+            redraws += weigher.redraws - redrawn, fallbacks += weigher.fallbacks - fallen;
+            return value;
         };
-        const uint64_t all = job.passes.target.samples,
-                       first = uint64_t(y) * uint64_t(film.size.width);
-        WeightedRow weighted(job.o.film, job.pattern, all, first, L);
-        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) { return weighted(x, i, set); });
-        redraws += weighted.weigher().redraws;
-        fallbacks += weighted.weigher().fallbacks;
-    };
-    Rendered r = fill(film, job, row, [](const auto& f) { return value_in(f); });
+    });
     r.run.redraws = redraws, r.run.fallbacks = fallbacks;
     return r;
 }

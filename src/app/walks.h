@@ -79,10 +79,11 @@ public:
     Walks(const WalksTarget& target, bool quiet, Particles& particles)
         : quiet_(quiet), target_(target), particles_(particles), bar_(target.seconds, quiet) {}
 
-    const Size size{1, Particles::batches};
+    size_t blocks() const { return particles_.blocks(); }
     uint64_t samples() const { return particles_.samples(); }
     uint64_t non_finite() const { return particles_.non_finite(); }
 
+    void begin_pass(uint64_t n) { particles_.begin_pass(n); }
     // The error takes time of its own: it is asked for when the particles have doubled.
     void end_pass(uint64_t n) {
         particles_.end_pass(n);
@@ -134,7 +135,7 @@ inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& patt
     auto walk_to = [&](uint64_t samples) {
         render(
             walks, {{samples, target.seconds}, least, o.threads},
-            [&](int batch, uint64_t n) { particles.add(batch, n); }, walks);
+            [&](size_t batch, uint64_t n) { particles.add(batch, n); }, walks);
         return walks.samples() == samples;
     };
     // Whole grids, but for the limit.

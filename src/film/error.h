@@ -1,29 +1,9 @@
-// film/error.h  4  how far an image is from the truth, by the spread of its sets
+// film/error.h  3  how far an image is from the truth, by the spread of its sets
 #pragma once
+#include <array>
+
 #include "base/stats.h"
-#include "film/film.h"
-
-// ---- One pixel ----------------------------------------------------------------------------------
-
-// Variance of a pixel's value in a channel, from n >= 2 sets of which `shown` make it.  Unbiased.
-template <class Pixel, class Value>
-double variance_of_pixel(const Film<Pixel>& film, size_t index, size_t c, Value value) {
-    const Sets sets = film.sets(index);
-    Moments m;
-    for (uint32_t set = 0; set < sets.count(); ++set) m.add(value(film.pixel(index, set), c));
-    return m.variance() / sets.shown;
-}
-
-// NaN where a pixel has one set.
-template <class Pixel, class Value>
-Image variance_of(const Film<Pixel>& film, Value value) {
-    Image image(film.size.width, film.size.height);
-    for (size_t i = 0; i < film.number_of_pixels() && film.others_are_complete(); ++i)
-        if (film.sets(i).count() > 1)
-            for (size_t c = 0; c < 3; ++c)
-                image.pixels[i][c] = float(variance_of_pixel(film, i, c, value));
-    return image;
-}
+#include "film/sets.h"
 
 // ---- The image ----------------------------------------------------------------------------------
 
@@ -47,38 +27,55 @@ struct ImageError {
     double standard_error() const { return d2() == 0 ? 0 : d_rel() * spread / d2() / 2; }
 };
 
-// Unbiased for d^2: a pixel that was measured with a chance of p stands for 1/p pixels (Horvitz,
-// Thompson 1952).  Its term T then varies by E[T^2] - E[T]^2, and E[T]^2 = p (n - 1) / (n + 1)
-// E[T^2] if n sets of a pixel are normally distributed; the three channels vary as one.
-template <class Pixel, class Value>
-ImageError error_of(const Film<Pixel>& film, Value value) {
-    ImageError e;
-    const size_t pixels = film.number_of_pixels();
-    double norm2 = 0;
-    for (size_t i = 0; i < pixels && film.samples() > 0; ++i)
-        for (size_t c = 0; c < 3; ++c) norm2 += std::pow(film.shown(i, c, value), 2);
-    e.norm = film.samples() > 0 ? std::sqrt(norm2 / 3 / double(pixels)) : double(NAN);
-    if (!film.others_are_complete()) return e;
-    e.square = {0, 0, 0};
-    double terms2 = 0;
-    size_t measured = 0;
-    for (size_t i = 0; i < pixels; ++i) {
-        const Sets sets = film.sets(i);
-        if (sets.count() < 2) continue;
+// What pixels add to that, and to the image's mean: sums over pixels, which parts of an image add
+// up to those of the whole.
+struct ErrorTerms {
+    uint64_t pixels = 0, measured = 0;  // measured: of two sets or more
+    std::array<double, 3> sum{};        // of values, a channel at a time
+    double norm2 = 0;                   // of squares of values
+    std::array<double, 3> square{};     // of variances
+    double terms2 = 0, greatest = 0;    // of squares of a pixel's terms, the greatest of these
+
+    // A pixel's value.
+    void add(const std::array<double, 3>& value) {
+        ++pixels;
+        for (size_t c = 0; c < 3; ++c) sum[c] += value[c], norm2 += value[c] * value[c];
+    }
+
+    // The variance of that, which sets tell.  Unbiased: a pixel that was measured with a chance of
+    // p stands for 1/p pixels (Horvitz, Thompson 1952).  Its term T then varies by E[T^2] - E[T]^2,
+    // and E[T]^2 = p (n - 1) / (n + 1) E[T^2] if n sets of a pixel are normally distributed; the
+    // three channels vary as one.
+    void add_variance(const std::array<double, 3>& variance, const Sets& sets) {
         ++measured;
-        const double chance = sets.chance > 0 ? sets.chance : 1, n = sets.count();
+        const double chance = sets.chance > 0 ? double(sets.chance) : 1, n = sets.count();
         double term = 0;
         for (size_t c = 0; c < 3; ++c) {
-            const double v = variance_of_pixel(film, i, c, value) / chance;
-            e.square[c] += v / double(pixels);
-            term += v / 3 / double(pixels);
+            square[c] += variance[c] / chance;
+            term += variance[c] / chance / 3;
         }
         terms2 += term * term * (1 - chance * (n - 1) / (n + 1));
-        e.greatest = std::fmax(e.greatest, term);
+        greatest = std::fmax(greatest, term);
     }
-    e.spread = std::sqrt(terms2);
-    return measured > 0 ? e : ImageError{.norm = e.norm};
-}
+
+    ErrorTerms& operator+=(const ErrorTerms& t) {
+        pixels += t.pixels, measured += t.measured, norm2 += t.norm2, terms2 += t.terms2;
+        for (size_t c = 0; c < 3; ++c) sum[c] += t.sum[c], square[c] += t.square[c];
+        greatest = std::fmax(greatest, t.greatest);
+        return *this;
+    }
+
+    ImageError error() const {
+        const double n = double(pixels);
+        ImageError e;
+        e.norm = pixels > 0 ? std::sqrt(norm2 / 3 / n) : double(NAN);
+        if (measured == 0) return e;
+        e.square = {square[0] / n, square[1] / n, square[2] / n};
+        e.spread = std::sqrt(terms2) / n;
+        e.greatest = greatest / n;
+        return e;
+    }
+};
 
 // ---- How it falls, and when it is small enough --------------------------------------------------
 
@@ -120,15 +117,17 @@ inline constexpr double margin_of_error = 0.5;
 
 // The rule of --error: stop once the estimate, with another pixel like the worst and half its
 // standard error, is no more than asked for.  The margin makes up for what stopping at a good look
-// spoils, the pixel for some of the light that was not seen (both by `make calibration`).
-//
-// How many more samples to take before the next look, after `samples`; 0: enough.  No more than
-// would do if the error fell like 1 / samples, which few do, and a look is cheap;
-// but a 32nd of them at least, and at most as many again, for the estimate may be far off.  An
-// error that is not known is not small.
-inline uint64_t samples_to_look(const ImageError& e, double wanted, uint64_t samples) {
-    const double now = e.d_rel_and_unseen() + margin_of_error * e.standard_error();
-    if (now <= wanted) return 0;
-    const double part = std::clamp(now / wanted - 1, 1.0 / 32, 1.0);
-    return std::max<uint64_t>(1, uint64_t(part < 1 ? part * double(samples) : double(samples)));
+// spoils, the pixel for some of the light that was not seen (both by `make calibration`).  An error
+// that is not known is not small.
+inline bool is_small_enough(const ImageError& e, double wanted) {
+    return e.d_rel_and_unseen() + margin_of_error * e.standard_error() <= wanted;
+}
+
+// When to look, whatever is wanted, so that a run which is resumed stops where it would have
+// stopped: first after some samples, then whenever there are a 32nd more, in whole periods.  The
+// first look after `samples`.
+inline uint64_t next_look(uint64_t samples, uint64_t first, uint64_t period) {
+    uint64_t look = first;
+    while (look <= samples) look += (look / 32 / period + 1) * period;
+    return look;
 }

@@ -1,14 +1,14 @@
-// film/film.h  3  where samples gather
+// film/film.h  4  where samples gather
 #pragma once
 #include <atomic>
 #include <mutex>
 #include <tuple>
 
+#include "film/error.h"
 #include "film/image.h"
 #include "film/passes.h"
-#include "film/sets.h"
 
-// ---- A film of any kind of pixel ----------------------------------------------------------------
+// ---- What a film holds --------------------------------------------------------------------------
 
 // A sample that no image can hold.
 struct NonFinite {
@@ -17,85 +17,199 @@ struct NonFinite {
     uint32_t set = 0;
 };
 
-// Pixels that take their samples in order: the image is the same however passes and threads divide
-// them.  A pass adds to a copy, which counts only once it is complete.  Each set of a pixel's
-// samples has a Pixel of its own: it has a type Sample, add(i, sample) for sample i, fits(sample),
-// whether that is finite and stays so in a file, noise(n), the variance of the mean as n samples
-// tell it, and unwritten(), which is no number: a pixel that nobody wrote is an error and not a
-// black dot.
+// What the image of a film shows: the pixels' values, or their variances as sets tell them, NaN
+// where a pixel has one set.
+enum class Shows { values, variances };
+
+// Pixels row by row, in blocks of equal size that threads take; the last one may be shorter.
+struct Blocks {
+    size_t pixels = 0;
+
+    // Small enough that a picture of one row, or a small one, has work for all threads.
+    size_t size() const { return std::clamp<size_t>(pixels / 256, 1, 256); }
+    size_t count() const { return (pixels + size() - 1) / size(); }
+    size_t begin(size_t block) const { return block * size(); }
+    size_t end(size_t block) const { return std::min(pixels, begin(block) + size()); }
+};
+
+// All that a film is between two passes, or when one was interrupted.
+template <class Pixel>
+struct FilmState {
+    uint64_t samples = 0, samples_of_others = 0;  // of first sets, of the other sets
+    uint64_t pass = 0;                            // samples of the running pass
+    std::vector<Pixel> first;                     // set 0 of each pixel
+    std::vector<double> spread;     // of its samples, see Pixel::spread; until sets are known
+    std::vector<Sets> sets;         // of each pixel; empty: one
+    std::vector<Pixel> others;      // the other sets of pixel 0, those of pixel 1 ...
+    std::vector<size_t> others_of;  // where those of a block begin
+    std::vector<char> ahead;        // blocks that have the running pass
+    std::vector<ErrorTerms> terms;  // of each block, before the running pass
+    Image image;                    // of those that are ahead, without the running pass
+};
+
+// The sets of a pixel that have samples.
+template <class Pixel>
+struct SetsOfPixel {
+    Sets sets;
+    const Pixel *first, *others;
+    const Pixel& operator[](uint32_t set) const { return set > 0 ? others[set - 1] : *first; }
+};
+
+// The mean of what n samples of each shown set say, and the variance of that as at least two sets
+// tell it.  Both unbiased.
+template <class Pixel>
+double shown(const SetsOfPixel<Pixel>& pixel, const typename Pixel::Value& value, uint64_t n,
+             size_t c) {
+    double sum = 0;
+    for (uint32_t set = 0; set < pixel.sets.shown; ++set) sum += value(pixel[set], n, c);
+    return sum / pixel.sets.shown;
+}
+template <class Pixel>
+double variance_of_shown(const SetsOfPixel<Pixel>& pixel, const typename Pixel::Value& value,
+                         uint64_t n, size_t c) {
+    Moments m;
+    for (uint32_t set = 0; set < pixel.sets.count(); ++set) m.add(value(pixel[set], n, c));
+    return m.variance() / pixel.sets.shown;
+}
+
+template <class Pixel>
+ErrorTerms terms_of(const SetsOfPixel<Pixel>& pixel, const typename Pixel::Value& value,
+                    uint64_t n) {
+    std::array<double, 3> values{};
+    ErrorTerms terms;
+    for (size_t c = 0; c < 3; ++c) values[c] = shown(pixel, value, n, c);
+    terms.add(values);
+    if (pixel.sets.count() < 2) return terms;
+    for (size_t c = 0; c < 3; ++c) values[c] = variance_of_shown(pixel, value, n, c);
+    terms.add_variance(values, pixel.sets);
+    return terms;
+}
+
+template <class Pixel>
+std::array<float, 3> picture_of(const SetsOfPixel<Pixel>& pixel, const typename Pixel::Value& value,
+                                uint64_t n, Shows shows) {
+    std::array<float, 3> picture{NAN, NAN, NAN};
+    for (size_t c = 0; c < 3 && n > 0; ++c)
+        if (shows == Shows::values)
+            picture[c] = float(shown(pixel, value, n, c));
+        else if (pixel.sets.count() > 1)
+            picture[c] = float(variance_of_shown(pixel, value, n, c));
+    return picture;
+}
+
+// ---- A film of any kind of pixel ----------------------------------------------------------------
+
+// Pixels take their samples in order: the image is the same however passes and threads divide them.
+// A pass adds in place, block by block; until it is complete the image and its error are those
+// without it.  Each set of a pixel's samples is a Pixel of its own: it has a type Sample,
+// add(i, sample) for sample i, fits(sample), whether that is finite and stays so in a file,
+// spread(i, sample), by how much the squared distances of samples to their mean grow with sample i,
+// noise(n, spread), the variance of the mean as n samples and the sum of that tell it, and a Value:
+// value(pixel, n, channel) is what n samples say.
 template <class Pixel>
 class Film {
 public:
     using Sample = typename Pixel::Sample;
-    explicit Film(Size s)
+    using Value = typename Pixel::Value;
+
+    explicit Film(Size s, Value value = {}, Shows shows = Shows::values)
         : size(s),
-          pixels_(size_t(s.width) * size_t(s.height), Pixel::unwritten()),
-          next_(pixels_) {}
-
-    const Size size;
-    uint64_t samples() const { return samples_; }  // of every set
-
-    // Row y of the pass that brings n more samples: L(x, i, set) is sample i of a set of pixel
-    // (x, y).  Sets that were added since the last pass begin with sample 0.  Once `interrupted`
-    // the rest is left out, and the pass must not end.
-    template <class Radiance>
-    void add_row(int y, uint64_t n, Radiance L) {
-        for (int x = 0; x < size.width; ++x) {
-            const size_t index = size_t(y) * size_t(size.width) + size_t(x), at = first(index);
-            for (uint32_t set = 0; set < sets(index).count(); ++set) {
-                const uint64_t before = set > 0 ? samples_of_others_ : samples_;
-                Pixel pixel = before > 0 ? pixels_[at + set] : Pixel();
-                for (uint64_t i = before; i < samples_ + n; ++i) {
-                    if (interrupted) return;
-                    const Sample value = L(x, i, set);
-                    if (!Pixel::fits(value)) report({i, x, y, set});
-                    pixel.add(i, value);
-                }
-                next_[at + set] = pixel;
-            }
-        }
+          value_(value),
+          shows_(shows),
+          blocks_{size_t(s.width) * size_t(s.height)},
+          next_terms_(blocks_.count()) {
+        state_.first.assign(blocks_.pixels, Pixel());
+        state_.spread.resize(blocks_.pixels);
+        state_.others_of.resize(blocks_.count());
+        state_.ahead.resize(blocks_.count());
+        state_.terms.resize(blocks_.count());
+        state_.image = Image(s.width, s.height);
     }
 
+    const Size size;
+    size_t number_of_pixels() const { return blocks_.pixels; }
+    size_t blocks() const { return blocks_.count(); }
+    uint64_t samples() const { return state_.samples; }  // of every set
+
+    // ---- Passes ----
+
+    void begin_pass(uint64_t n) { state_.pass = n; }
+
+    // n more samples for block b: L(x, y, i, set) is sample i of a set of pixel (x, y).  Sets that
+    // were added since the last pass begin with sample 0.  Once `interrupted`, or if L throws, the
+    // block stays as it was, and the pass must not end.
+    template <class Radiance>
+    void add_block(size_t b, uint64_t n, Radiance L) {
+        if (state_.ahead[b]) return;
+        Changed block = copy_of(b);
+        for (size_t i = blocks_.begin(b), k = 0; i < blocks_.end(b); ++i)
+            for (uint32_t set = 0; set < sets(i).count(); ++set) {
+                const bool is_first = set == 0;
+                Pixel& pixel = is_first ? block.first[i - blocks_.begin(b)] : block.others[k++];
+                double* spread =
+                    is_first && has_spread() ? &block.spread[i - blocks_.begin(b)] : nullptr;
+                if (!add_samples(pixel, spread, i, set, n, L)) return;
+            }
+        develop(b);
+        put_back(b, block);
+        next_terms_[b] = terms_of_block(b, state_.samples + n, true);
+        state_.ahead[b] = true;
+    }
+
+    // A block that nobody wrote has no number in any pixel, which is an error and no black dot.
     void end_pass(uint64_t n) {
-        pixels_.swap(next_);
-        samples_ += n;
-        samples_of_others_ = samples_;
+        for (size_t b = 0; b < blocks(); ++b)
+            if (!state_.ahead[b])
+                for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i)
+                    state_.first[i] = Pixel::unwritten();
+        state_.terms = next_terms_;
+        state_.ahead.assign(blocks(), false);
+        state_.samples += n;
+        state_.samples_of_others = state_.samples;
+        state_.pass = 0;
     }
 
     // ---- Sets ----
 
-    bool has_sets() const { return !sets_.empty(); }
+    bool has_sets() const { return !state_.sets.empty(); }
 
     // From now on; once, between passes.  Until the next pass ends there is only the first of each.
     void add_sets(std::vector<Sets> sets) {
-        sets_ = std::move(sets);
-        first_.assign(1, 0);
-        for (const Sets& s : sets_) first_.push_back(first_.back() + s.count());
-        std::vector<Pixel> pixels(first_.back(), Pixel::unwritten());
-        for (size_t i = 0; i < sets_.size(); ++i) pixels[first_[i]] = pixels_[i];
-        pixels_ = std::move(pixels);
-        next_ = pixels_;
-        samples_of_others_ = 0;
+        size_t others = 0;
+        for (size_t b = 0; b < blocks(); ++b) {
+            state_.others_of[b] = others;
+            for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i)
+                others += sets[i].count() - 1;
+        }
+        state_.sets = std::move(sets);
+        state_.spread = std::vector<double>();  // with its memory
+        state_.others.assign(others, Pixel::unwritten());
+        state_.samples_of_others = 0;
     }
 
     // What sets_where_noise_is() is told.
     std::vector<double> noise() const {
         std::vector<double> noise;
+        noise.reserve(number_of_pixels());
         for (size_t i = 0; i < number_of_pixels(); ++i)
-            noise.push_back(pixels_[first(i)].noise(samples_));
+            noise.push_back(state_.first[i].noise(samples(), state_.spread[i]));
         return noise;
     }
 
     double sets_per_pixel() const {
-        return others_are_complete() ? double(pixels_.size()) / double(number_of_pixels()) : 1;
+        const double others = others_are_complete() ? double(state_.others.size()) : 0;
+        return 1 + others / double(number_of_pixels());
     }
 
-    size_t number_of_pixels() const { return size_t(size.width) * size_t(size.height); }
-
-    // The sets of pixel number `index` that have samples; pixel(index, set) is one of them.
-    Sets sets(size_t index) const { return has_sets() ? sets_[index] : Sets{}; }
-    bool others_are_complete() const { return has_sets() && samples_of_others_ == samples_; }
-    const Pixel& pixel(size_t index, uint32_t set) const { return pixels_[first(index) + set]; }
+    // Of pixel number `index`; pixel(index, set) is one of them.
+    Sets sets(size_t index) const { return has_sets() ? state_.sets[index] : Sets{}; }
+    bool others_are_complete() const { return has_sets() && state_.samples_of_others == samples(); }
+    const Pixel& pixel(size_t index, uint32_t set) const {
+        const size_t b = index / blocks_.size();
+        size_t other = state_.others_of[b];
+        for (size_t i = blocks_.begin(b); i < index; ++i) other += sets(i).count() - 1;
+        return set > 0 ? state_.others[other + set - 1] : state_.first[index];
+    }
 
     // ---- What it holds ----
 
@@ -103,34 +217,103 @@ public:
     uint64_t non_finite() const { return non_finite_; }
     const NonFinite& first_non_finite() const { return first_non_finite_; }
 
-    // The image of value(pixel, channel), the mean of it over the sets that are shown; NaN before
-    // the first pass.
-    template <class Value>
-    Image image_of(Value value) const {
-        Image image(size.width, size.height);
-        for (size_t i = 0; i < number_of_pixels() && samples_ > 0; ++i)
-            for (size_t c = 0; c < 3; ++c) image.pixels[i][c] = float(shown(i, c, value));
-        return image;
+    // After the last pass that was ended; NaN before the first.
+    const Image& image() {
+        for (size_t b = 0; b < blocks(); ++b)
+            if (!state_.ahead[b]) develop(b);
+        return state_.image;
+    }
+    Image take_image() {
+        image();
+        return std::move(state_.image);
+    }
+    ErrorTerms terms() const {
+        ErrorTerms sum;
+        for (const ErrorTerms& t : state_.terms) sum += t;
+        return sum;
     }
 
-    template <class Value>
-    double shown(size_t index, size_t c, Value value) const {
-        const uint32_t n = others_are_complete() ? sets(index).shown : 1;
-        double sum = 0;
-        for (uint32_t set = 0; set < n; ++set) sum += value(pixel(index, set), c);
-        return sum / n;
-    }
+    const Value& value() const { return value_; }
+    const FilmState<Pixel>& state() const { return state_; }
 
 private:
-    std::vector<Pixel> pixels_, next_;
-    std::vector<Sets> sets_;     // of each pixel; empty: one
-    std::vector<size_t> first_;  // where they begin in pixels_
-    uint64_t samples_ = 0, samples_of_others_ = 0;
+    const Value value_;
+    const Shows shows_;
+    const Blocks blocks_;
+    FilmState<Pixel> state_;
+    std::vector<ErrorTerms> next_terms_;  // of blocks that are ahead
     std::atomic<uint64_t> non_finite_ = 0;
     NonFinite first_non_finite_;
     std::mutex mutex_;
 
-    size_t first(size_t index) const { return has_sets() ? first_[index] : index; }
+    bool has_spread() const { return !state_.spread.empty(); }
+
+    // ---- A block of a pass ----
+
+    struct Changed {
+        std::vector<Pixel> first, others;
+        std::vector<double> spread;
+    };
+    size_t end_of_others(size_t b) const {
+        return b + 1 < blocks() ? state_.others_of[b + 1] : state_.others.size();
+    }
+    Changed copy_of(size_t b) const {
+        auto part = [](const auto& all, size_t from, size_t to) {
+            return std::decay_t<decltype(all)>(all.begin() + ptrdiff_t(from),
+                                               all.begin() + ptrdiff_t(to));
+        };
+        Changed c{part(state_.first, blocks_.begin(b), blocks_.end(b)),
+                  part(state_.others, state_.others_of[b], end_of_others(b)),
+                  {}};
+        if (has_spread()) c.spread = part(state_.spread, blocks_.begin(b), blocks_.end(b));
+        return c;
+    }
+    void put_back(size_t b, const Changed& c) {
+        auto put = [](const auto& part, auto& all, size_t at) {
+            std::copy(part.begin(), part.end(), all.begin() + ptrdiff_t(at));
+        };
+        put(c.first, state_.first, blocks_.begin(b));
+        put(c.others, state_.others, state_.others_of[b]);
+        put(c.spread, state_.spread, blocks_.begin(b));
+    }
+
+    // Answers false once `interrupted`.
+    template <class Radiance>
+    bool add_samples(Pixel& pixel, double* spread, size_t index, uint32_t set, uint64_t n,
+                     Radiance& L) {
+        const int x = int(index % size_t(size.width)), y = int(index / size_t(size.width));
+        const uint64_t before = set > 0 ? state_.samples_of_others : state_.samples;
+        if (before == 0) pixel = Pixel();
+        for (uint64_t i = before; i < state_.samples + n; ++i) {
+            if (interrupted) return false;
+            const Sample value = L(x, y, i, set);
+            if (!Pixel::fits(value)) report({i, x, y, set});
+            if (spread) *spread += pixel.spread(i, value);
+            pixel.add(i, value);
+        }
+        return true;
+    }
+
+    // Calls see(index, sets of that pixel) for the block's pixels; without others: of the first.
+    template <class See>
+    void look(size_t b, bool with_others, See see) const {
+        const Pixel* others = state_.others.data() + state_.others_of[b];
+        for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i) {
+            const Sets all = with_others ? sets(i) : Sets{};
+            see(i, SetsOfPixel<Pixel>{all, &state_.first[i], others});
+            others += all.count() - 1;
+        }
+    }
+    void develop(size_t b) {
+        look(b, others_are_complete(), [&](size_t i, const auto& pixel) {
+            state_.image.pixels[i] = picture_of(pixel, value_, samples(), shows_);
+        });
+    }
+    ErrorTerms terms_of_block(size_t b, uint64_t n, bool with_others) const {
+        ErrorTerms sum;
+        look(b, with_others, [&](size_t, const auto& pixel) { sum += terms_of(pixel, value_, n); });
+        return sum;
+    }
 
     void report(const NonFinite& bad) {
         std::lock_guard lock(mutex_);
@@ -139,6 +322,19 @@ private:
         if (order(bad) < order(first_non_finite_)) first_non_finite_ = bad;
     }
 };
+
+template <class Pixel>
+ImageError error_of(const Film<Pixel>& film) {
+    return film.terms().error();
+}
+
+// What its samples say of a pixel, in a channel.
+template <class Pixel>
+auto value_in(const Film<Pixel>& film) {
+    return [value = film.value(), n = film.samples()](const Pixel& p, size_t c) {
+        return value(p, n, c);
+    };
+}
 
 // ---- Means --------------------------------------------------------------------------------------
 
@@ -152,29 +348,31 @@ struct MeanPixel {
     using Sample = rgb;
     using Sums = std::array<double, 3>;  // one a channel
     Sums sum{};
-    Sums m2{};  // of squared distances to the mean (Welford 1962)
 
-    static MeanPixel unwritten() { return {{NAN, NAN, NAN}, {}}; }
+    static MeanPixel unwritten() { return {{NAN, NAN, NAN}}; }
     static bool fits(rgb L) { return fits_float(L); }
-    void add(uint64_t i, rgb L) {
-        for (size_t c = 0; c < 3; ++c) {
-            const double value = double(L.*axis[c]), n = double(i);
-            if (i > 0) m2[c] += sqr(value - sum[c] / n) * (n / (n + 1));
-            sum[c] += value;
-        }
+    void add(uint64_t, rgb L) {
+        for (size_t c = 0; c < 3; ++c) sum[c] += double(L.*axis[c]);
     }
 
-    // Variance of the mean of n independent samples, all channels together.
-    double noise(uint64_t n) const {
-        return n < 2 ? 0 : (m2[0] + m2[1] + m2[2]) / double(n - 1) / double(n);
+    // Of all channels together (Welford 1962).
+    double spread(uint64_t i, rgb L) const {
+        const double n = double(i);
+        double squares = 0;
+        for (size_t c = 0; c < 3 && i > 0; ++c) squares += sqr(double(L.*axis[c]) - sum[c] / n);
+        return squares * (n / (n + 1));
     }
+    // Variance of the mean of n independent samples.
+    double noise(uint64_t n, double spread) const {
+        return n < 2 ? 0 : spread / double(n - 1) / double(n);
+    }
+
+    struct Value {
+        double operator()(const MeanPixel& p, uint64_t n, size_t c) const {
+            return p.sum[c] / double(n);
+        }
+    };
 
 private:
     static double sqr(double x) { return x * x; }
 };
-
-inline auto value_in(const Film<MeanPixel>& film) {
-    return [n = double(film.samples())](const MeanPixel& p, size_t c) { return p.sum[c] / n; };
-}
-
-inline Image image_of(const Film<MeanPixel>& film) { return film.image_of(value_in(film)); }

@@ -79,23 +79,27 @@ private:
 
 inline unsigned all_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
 
-// Calls row(y) for every y < height from several threads, and meanwhile() from this one ten times
-// a second.  Returns early, with rows missing, once `interrupted`; then the answer is false.  What
-// row throws, it throws.
-template <class Row, class Meanwhile>
-bool parallel_rows(int height, unsigned threads, Row row, Meanwhile meanwhile) {
-    std::atomic<int> next = 0, done = 0;
+// Thrown out of work that nobody waits for: its part of a pass does not count.
+struct Interrupted {};
+
+// Calls work(k) for every k < count from several threads, and meanwhile() from this one ten times a
+// second.  Returns early, with some left out, once `interrupted`; then the answer is false.  What
+// work throws, it throws.
+template <class Work, class Meanwhile>
+bool in_parallel(size_t count, unsigned threads, Work work, Meanwhile meanwhile) {
+    std::atomic<size_t> next = 0, done = 0;
     std::mutex mutex;
     std::condition_variable finished;
     std::exception_ptr failure;
-    unsigned running = std::min(threads, unsigned(height));
-    auto work = [&] {
-        try {  // a row that was cut short does not count
-            for (int y; !interrupted && (y = next++) < height; done += !interrupted) row(y);
+    unsigned running = unsigned(std::min<size_t>(threads, count));
+    auto run = [&] {
+        try {  // what was cut short does not count
+            for (size_t k; !interrupted && (k = next++) < count; done += !interrupted) work(k);
+        } catch (const Interrupted&) {
         } catch (...) {
             std::lock_guard lock(mutex);
             failure = std::current_exception();
-            next = height;
+            next = count;
         }
         std::lock_guard lock(mutex);
         --running;
@@ -104,18 +108,18 @@ bool parallel_rows(int height, unsigned threads, Row row, Meanwhile meanwhile) {
     {
         std::vector<std::jthread> workers;
         struct Stop {  // before they are waited for, whatever is thrown here
-            std::atomic<int>& next;
-            const int end;
+            std::atomic<size_t>& next;
+            const size_t end;
             ~Stop() { next = end; }
-        } stop{next, height};
-        for (unsigned i = running; i > 0; --i) workers.emplace_back(work);
+        } stop{next, count};
+        for (unsigned i = running; i > 0; --i) workers.emplace_back(run);
         std::unique_lock lock(mutex);
         while (!finished.wait_for(lock, std::chrono::milliseconds(100), [&] { return !running; }))
-            meanwhile(double(done) / height);
+            meanwhile(double(done) / double(count));
     }
     if (failure) std::rethrow_exception(failure);
-    meanwhile(double(done) / height);
-    return done == height;
+    meanwhile(double(done) / double(count));
+    return done == count;
 }
 
 // ---- Passes -------------------------------------------------------------------------------------
@@ -129,34 +133,34 @@ struct Passes {
 };
 
 // Adds one pass to the film, unless `interrupted`, or a sample is not finite: then the answer is
-// false.  row(y, n) adds n samples to each pixel of row y; show(samples so far) while the threads
+// false.  add(k, n) adds n samples to each pixel of block k; show(samples so far) while the threads
 // work.
-template <class Film, class Row, class Progress>
-bool add_pass(Film& film, uint64_t n, unsigned threads, Row row, Progress& progress) {
-    const bool complete = parallel_rows(
-        film.size.height, threads, [&](int y) { row(y, n); },
+template <class Film, class Add, class Progress>
+bool add_pass(Film& film, uint64_t n, unsigned threads, Add add, Progress& progress) {
+    film.begin_pass(n);
+    const bool complete = in_parallel(
+        film.blocks(), threads, [&](size_t k) { add(k, n); },
         [&](double part) { progress.show(double(film.samples()) + part * double(n)); });
     if (!complete || film.non_finite() > 0) return false;
     film.end_pass(n);
     return true;
 }
 
-// Adds passes to the film until the target is met, one could not be added, or at_most(film), which
-// says after each how many samples the next may bring, says 0.  A clock of seconds.
-template <class Film, class Row, class Progress, class AtMost>
-void render(Film& film, const Passes& passes, Row row, Progress& progress, AtMost at_most) {
+// Adds passes to the film until the target is met, one could not be added, or between(film), which
+// says before each how many samples it may bring, says 0.  The progress is a clock of seconds.
+template <class Film, class Add, class Progress, class Between>
+void render(Film& film, const Passes& passes, Add add, Progress& progress, Between between) {
     Schedule schedule(passes.target, passes.period);
-    uint64_t most = UINT64_MAX;
-    while (uint64_t n = schedule.next(film.samples(), progress.elapsed())) {
+    while (const uint64_t most = between(film)) {
+        uint64_t n = schedule.next(film.samples(), progress.elapsed());
+        if (n == 0) return;
         if (film.samples() < passes.pause) n = std::min(n, passes.pause - film.samples());
         if (n > most) n = std::max<uint64_t>(1, most / passes.period) * passes.period;
-        if (!add_pass(film, n, passes.threads, row, progress)) return;
-        most = at_most(film);
-        if (most == 0) return;
+        if (!add_pass(film, n, passes.threads, add, progress)) return;
     }
 }
 
-template <class Film, class Row, class Progress>
-void render(Film& film, const Passes& passes, Row row, Progress& progress) {
-    render(film, passes, row, progress, [](const Film&) { return UINT64_MAX; });
+template <class Film, class Add, class Progress>
+void render(Film& film, const Passes& passes, Add add, Progress& progress) {
+    render(film, passes, add, progress, [](const Film&) { return UINT64_MAX; });
 }

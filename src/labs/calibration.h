@@ -34,10 +34,11 @@ public:
         if (stopped_ || samples < next_) return false;
         course_.add(samples, e.d_rel());
         const ImageError raised = guarded(guard_, e);
-        uint64_t more = samples_to_look(raised, asked_, samples);
-        if (guard_.by_course && more > 0) more = std::max(more, missing(raised, samples));
-        stopped_ = more == 0 && samples >= guard_.least;
-        next_ = more > 0 ? samples + more : guard_.least;
+        const bool enough = is_small_enough(raised, asked_);
+        stopped_ = enough && samples >= guard_.least;
+        next_ = next_look(samples, samples_before_sets, 1);
+        if (guard_.by_course && !enough) next_ = std::max(next_, samples + missing(raised, samples));
+        if (enough) next_ = guard_.least;
         return stopped_;
     }
 

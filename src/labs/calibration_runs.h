@@ -16,17 +16,17 @@ struct Silent {
 // n more samples of every set of the film.
 inline void add_samples(Film<MeanPixel>& film, const Job& job, uint64_t n, unsigned threads) {
     Silent silent;
-    auto row = [&](int y, uint64_t more) {
-        film.add_row(y, more, [&](int x, uint64_t i, uint32_t set) {
+    auto add = [&](size_t block, uint64_t more) {
+        film.add_block(block, more, [&](int x, int y, uint64_t i, uint32_t set) {
             uint64_t rays = 0;
             return radiance(job, start(job.scene, job.pattern, {x, y, i, set}), rays);
         });
     };
     if (threads > 1) {
-        add_pass(film, n, threads, row, silent);
+        add_pass(film, n, threads, add, silent);
         return;
     }
-    for (int y = 0; y < film.size.height; ++y) row(y, n);
+    for (size_t block = 0; block < film.blocks(); ++block) add(block, n);
     film.end_pass(n);
 }
 
@@ -82,9 +82,9 @@ inline Study study(const std::string& name, Size size, double enough, uint64_t m
     ImageError e;
     for (uint64_t n = first; !(e.d_rel() <= enough) && film.samples() < most; n = film.samples()) {
         add_samples(film, job, n, all_cores());
-        e = error_of(film, value_in(film));
+        e = error_of(film);
     }
-    s.image = image_of(film), s.samples = film.samples();
+    s.image = film.image(), s.samples = film.samples();
     s.norm = e.norm, s.square = e.d2(), s.greatest = e.greatest / e.d2();
     return s;
 }
@@ -98,12 +98,12 @@ struct Run {
     Looks fixed;
 };
 
-inline Look look_at(const Film<MeanPixel>& film, const ImageError& e, const Study& study) {
+inline Look look_at(Film<MeanPixel>& film, const ImageError& e, const Study& study) {
     return {film.samples(),
             0,
             e.d2(),
             e.d2() > 0 ? e.spread / e.d2() / 2 : 0,
-            study.truth2(image_of(film)),
+            study.truth2(film.image()),
             study.norm};
 }
 
@@ -118,7 +118,7 @@ inline Run run_until(const Study& study, const Options& o, std::vector<Stopper> 
     add_samples(film, job, 0, 1);
     Run run{std::vector<std::optional<Look>>(stoppers.size()), {}};
     for (uint64_t fixed = samples_before_sets;;) {
-        const ImageError e = error_of(film, value_in(film));
+        const ImageError e = error_of(film);
         Look look = look_at(film, e, study);
         look.seconds = thread_seconds() - before;
         if (look.samples == fixed) run.fixed.push_back(look), fixed *= 4;

@@ -112,7 +112,7 @@ inline Squares squares_of(const Study& study, const std::vector<Rule>& rules, ui
     for (uint64_t n = 8; n <= 4 * counts[most - 1]; n *= 2) {
         add_samples(one, job, n - one.samples(), 1);
         s.one.samples.push_back(double(n));
-        s.one.square.push_back(study.truth2(image_of(one)));
+        s.one.square.push_back(study.truth2(one.image()));
     }
     add_samples(all, job, counts[0], 1);
     const Union u = union_of(rules, all, seed);

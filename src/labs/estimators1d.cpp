@@ -117,7 +117,7 @@ Rows experiment(const Case& c, uint64_t trials) {
         const uint64_t b = uint64_t(block);
         parts[b] = run_trials(c, key, trials * b / blocks, trials * (b + 1) / blocks);
     };
-    parallel_rows(blocks, all_cores(), run, [](double) {});
+    in_parallel(blocks, all_cores(), run, [](double) {});
     Rows all;
     for (const Rows& part : parts)
         for (size_t k = 0; k < steps; ++k) all[k].merge(part[k]);

@@ -53,7 +53,7 @@ public:
                     return rgb{};
                 });
         };
-        parallel_rows(size_.height, all_cores(), row, [](double) {});
+        in_parallel(size_.height, all_cores(), row, [](double) {});
     }
 
     Image operator()(const IlluminationMap& map) const {

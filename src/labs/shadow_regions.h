@@ -60,7 +60,7 @@ inline void add(ShadowMoments& m, const Shadowed& s, real rgb::*channel = &rgb::
 template <class One>
 void in_parallel(size_t count, One one) {
     if (count > 0)
-        parallel_rows(
+        in_parallel(
             int(count), all_cores(), [&](int k) { one(size_t(k)); }, [](double) {});
 }
 

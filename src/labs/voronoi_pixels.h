@@ -244,7 +244,7 @@ inline Result measure(const std::string& name, const Plan& plan) {
         for (size_t k = 0; k < mine.size(); ++k)
             for (size_t t = 0; t < techniques; ++t) r.of[k][t].merge(mine[k][t]);
     };
-    parallel_rows(plan.size.height / plan.every, all_cores(), row,
+    in_parallel(plan.size.height / plan.every, all_cores(), row,
                   [&](double part) { progress.show(part * double(plan.most)); });
     return r;
 }

@@ -69,7 +69,7 @@ Image image_of_rays(const Scene& scene, int K, unsigned threads, Value value) {
             image.at(x, y) = {float(c.x), float(c.y), float(c.z)};
         }
     };
-    parallel_rows(image.height, threads, row, [](double) {});
+    in_parallel(image.height, threads, row, [](double) {});
     return image;
 }
 

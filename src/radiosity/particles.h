@@ -123,15 +123,16 @@ public:
         return make_pattern(kind, seed, 5, of_each(samples));
     }
 
-    // ---- As a film for render() of passes.h: rows are batches, samples particles of each --------
-    const Size size{1, batches};
+    // ---- As a film for render() of passes.h: blocks are batches, samples particles of each ------
+    size_t blocks() const { return batches; }
     uint64_t samples() const { return samples_; }
     uint64_t non_finite() const { return 0; }
+    void begin_pass(uint64_t) {}
     void end_pass(uint64_t n) { samples_ += n; }
 
     // Walks n more particles of a batch; all but those for which there is no time after Ctrl-C.
-    void add(int batch, uint64_t n) {
-        Batch& b = batch_[size_t(batch)];
+    void add(size_t batch, uint64_t n) {
+        Batch& b = batch_[batch];
         for (const uint64_t end = b.n + n; b.n < end && !interrupted; ++b.n) {
             const WalkNumbers u(pattern_, independent_, uint64_t(batch), b.n);
             Balance one;

@@ -100,7 +100,7 @@ ShadowSample shadow_Li(const Scene& scene, const Technique& t, Estimator estimat
 // of single samples would never converge.
 struct ShadowPixel {
     using Sample = ShadowSample;
-    MeanPixel rest;                  // and the spread of the plain estimate
+    MeanPixel rest;
     ShadowMoments shadowed[3] = {};  // a channel at a time
 
     static ShadowPixel unwritten() { return {MeanPixel::unwritten(), {}}; }
@@ -114,24 +114,22 @@ struct ShadowPixel {
                             double(s.first.wV.*axis[c]));
     }
 
+    double spread(uint64_t i, const ShadowSample& s) const { return rest.spread(i, s.rest); }
     // What shadows leave to be found counts as if V were a coin that falls anew for every sample.
-    double noise(uint64_t n) const {
-        double sum = rest.noise(n);
+    double noise(uint64_t n, double spread) const {
+        double sum = rest.noise(n, spread);
         for (const ShadowMoments& m : shadowed) {
             const double R = visible_part(m);
             sum += n < 2 ? 0 : (m.bb / double(n - 1) + m.w * m.w) * R * (1 - R) / double(n);
         }
         return sum;
     }
-};
 
-// What n samples say.
-inline auto value_in(const Film<ShadowPixel>& film, Estimator e) {
-    return [e, n = double(film.samples())](const ShadowPixel& p, size_t c) {
-        return p.rest.sum[c] / n + estimate(e, p.shadowed[c]);
+    // By an estimator that needs all samples.
+    struct Value {
+        Estimator estimator = Estimator::ratio;
+        double operator()(const ShadowPixel& p, uint64_t n, size_t c) const {
+            return p.rest.sum[c] / double(n) + estimate(estimator, p.shadowed[c]);
+        }
     };
-}
-
-inline Image image_of(const Film<ShadowPixel>& film, Estimator e) {
-    return film.image_of(value_in(film, e));
-}
+};

@@ -49,13 +49,13 @@ TEST_CASE("passes are whole grids, and shrink when samples take longer") {
 
 TEST_CASE("an interrupted pass is told to be incomplete") {
     auto row = [](int y) { interrupted = y == 1; };
-    CHECK(!parallel_rows(100, 1, row, [](double) {}));
+    CHECK(!in_parallel(100, 1, row, [](double) {}));
     interrupted = 0;
 }
 
 TEST_CASE("a last row that is cut short is no end of the pass") {
     auto row = [](int y) { interrupted = y == 9; };
-    CHECK(!parallel_rows(10, 1, row, [](double) {}));
+    CHECK(!in_parallel(10, 1, row, [](double) {}));
     interrupted = 0;
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("what a row throws reaches the caller, and nobody begins another row")
             ++rows;
             if (y == 5) throw std::bad_alloc();
         };
-        CHECK_THROWS_AS(parallel_rows(1 << 20, threads, row, [](double) {}), std::bad_alloc);
+        CHECK_THROWS_AS(in_parallel(1 << 20, threads, row, [](double) {}), std::bad_alloc);
         CHECK(rows < 1 << 20);
     }
     std::atomic<int> rows = 0;
@@ -75,7 +75,7 @@ TEST_CASE("what a row throws reaches the caller, and nobody begins another row")
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
     };
     auto meanwhile = [](double) { throw std::bad_alloc(); };
-    CHECK_THROWS_AS(parallel_rows(100, 1, slow, meanwhile), std::bad_alloc);
+    CHECK_THROWS_AS(in_parallel(100, 1, slow, meanwhile), std::bad_alloc);
     CHECK(rows < 100);
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("who waits is told what part of the rows is done") {
         parts.push_back(part);
         ++calls;
     };
-    CHECK(parallel_rows(4, 1, row, meanwhile));
+    CHECK(in_parallel(4, 1, row, meanwhile));
     REQUIRE(parts.size() >= 3);
     CHECK(parts[parts.size() - 2] == 0.75);
     CHECK(parts.back() == 1);
@@ -196,7 +196,7 @@ TEST_CASE("every row is rendered once, by any number of threads") {
                 else
                     ++done[size_t(y)];
             };
-            CHECK(parallel_rows(height, threads, row, [&](double p) { part = p; }));
+            CHECK(in_parallel(height, threads, row, [&](double p) { part = p; }));
             CHECK_FALSE(outside);
             CHECK(part == 1);
             for (const auto& times : done) CHECK(times == 1);
