@@ -11,33 +11,72 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "base/words.h"
 
 // ---- Reading ------------------------------------------------------------------------------------
 
-// The bytes of a regular file or, if asked for, of whatever has that name: a pipe may keep us
-// waiting, a device may never end.  Throws UserError if it cannot be opened.
+// A regular file or, if asked for, whatever has that name, from its start to its end: a pipe may
+// keep us waiting, a device may never end.  Throws UserError if it cannot be opened.
+class InputFile {
+public:
+    explicit InputFile(const std::string& path, bool of_any_kind = false)
+        : path_(path), fd_(open(path, of_any_kind)) {}
+    InputFile(const InputFile&) = delete;
+    ~InputFile() { ::close(fd_); }
+
+    uint64_t size() const { return uint64_t(status().st_size); }  // bytes, of a regular file
+
+    // Returns how many bytes there were: fewer than asked for only at the end.
+    size_t read(void* bytes, size_t size) const {
+        size_t done = 0;
+        while (done < size) {
+            const ssize_t n = ::read(fd_, static_cast<char*>(bytes) + done, size - done);
+            if (n < 0 && errno != EINTR)
+                throw SystemError(path_ + ": cannot read: " + std::strerror(errno));
+            if (n == 0) break;
+            if (n > 0) done += size_t(n);
+        }
+        return done;
+    }
+
+    // The next byte to be read, counted from the start.
+    void go_to(uint64_t byte) const {
+        if (::lseek(fd_, off_t(byte), SEEK_SET) < 0)
+            throw SystemError(path_ + ": cannot read: " + std::strerror(errno));
+    }
+
+private:
+    const std::string path_;
+    const int fd_;
+
+    static int open(const std::string& path, bool of_any_kind) {
+        const int at_once = of_any_kind ? 0 : O_NONBLOCK;  // do not wait for who writes into a pipe
+        const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | at_once);
+        if (fd < 0) throw UserError(path + ": cannot open: " + std::strerror(errno));
+        struct stat status {};
+        ::fstat(fd, &status);
+        const bool folder = S_ISDIR(status.st_mode), regular = S_ISREG(status.st_mode);
+        if (!folder && (regular || of_any_kind)) return fd;
+        ::close(fd);
+        throw UserError(path + (folder ? ": is a directory" : ": is no regular file"));
+    }
+    struct stat status() const {
+        struct stat status {};
+        ::fstat(fd_, &status);
+        return status;
+    }
+};
+
 inline std::string read_file(const std::string& path, bool of_any_kind = false) {
-    struct Input {
-        const int fd;
-        ~Input() { ::close(fd); }
-    };
-    const int at_once = of_any_kind ? 0 : O_NONBLOCK;  // do not wait for who writes into a pipe
-    const Input in{::open(path.c_str(), O_RDONLY | O_CLOEXEC | at_once)};
-    if (in.fd < 0) throw UserError(path + ": cannot open: " + std::strerror(errno));
-    struct stat status {};
-    ::fstat(in.fd, &status);
-    if (S_ISDIR(status.st_mode)) throw UserError(path + ": is a directory");
-    if (!S_ISREG(status.st_mode) && !of_any_kind) throw UserError(path + ": is no regular file");
+    const InputFile in(path, of_any_kind);
     std::string bytes;
     std::array<char, 1 << 16> buffer;
-    while (const ssize_t n = ::read(in.fd, buffer.data(), buffer.size())) {
-        if (n < 0 && errno != EINTR)
-            throw SystemError(path + ": cannot read: " + std::strerror(errno));
-        if (n > 0) bytes.append(buffer.data(), size_t(n));
-    }
+    while (const size_t n = in.read(buffer.data(), buffer.size())) bytes.append(buffer.data(), n);
     return bytes;
 }
 
@@ -115,15 +154,105 @@ inline void check_writable(const std::string& path) {
     if (!ok) throw UserError(path + ": cannot write: " + std::strerror(errno));
 }
 
-// Writes beside `path` and renames, so that a reader never sees half a file.
+// Whether a file survives the loss of power, which costs the time that the disk takes.
+enum class Durable { no, yes };
+
+// A file on its way: written beside `path`, and renamed by commit(), so that a reader never sees
+// half a file.  What was not committed goes, and leaves the old file as it was.  A stream is
+// written to directly.  Throws SystemError at whatever goes wrong.
+class OutputFile {
+public:
+    explicit OutputFile(const std::string& path)
+        : path_(path),
+          stream_(is_stream(path)),
+          part_(stream_ ? path : aside(path)),
+          fd_(::open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (stream_ ? O_APPEND : O_TRUNC),
+                     0666)) {
+        if (fd_ < 0) fail();
+    }
+    OutputFile(const OutputFile&) = delete;
+    ~OutputFile() {
+        if (fd_ >= 0) ::close(fd_);
+        if (!stream_ && !renamed_) ::unlink(part_.c_str());
+    }
+
+    // Appends.
+    void write(const void* bytes, size_t size) {
+        if (waiting_.size() + size > most_waiting) flush();
+        if (size > most_waiting)
+            put({static_cast<const char*>(bytes), size}, {});
+        else
+            waiting_.append(static_cast<const char*>(bytes), size);
+    }
+
+    // Writes in any place of what will be a regular file; what is not written is zero.
+    void write_at(uint64_t offset, const void* bytes, size_t size) {
+        if (stream_) throw SystemError(path_ + ": cannot write: is no regular file");
+        flush();
+        put({static_cast<const char*>(bytes), size}, offset);
+    }
+
+    // Gives the file its name.  To survive the loss of power, its bytes have to be on the disk
+    // before its name is, and the folder's entry before we say that it is written.
+    void commit(Durable durable = Durable::no) {
+        const bool sync = durable == Durable::yes && !stream_;
+        flush();
+        if (sync && synchronised(fd_) != 0) fail();
+        const bool closed = ::close(std::exchange(fd_, -1)) == 0 || errno == EINTR;
+        if (!closed) fail();
+        if (stream_) return;
+        if (std::rename(part_.c_str(), behind_links(path_).c_str()) != 0) fail();
+        renamed_ = true;
+        if (sync) synchronise_folder();
+    }
+
+private:
+    static constexpr size_t most_waiting = 1 << 20;  // bytes
+    const std::string path_;
+    const bool stream_;
+    const std::string part_;
+    int fd_;
+    bool renamed_ = false;
+    std::string waiting_;  // until they are worth a call of the system
+
+    [[noreturn]] void fail() const {
+        throw SystemError(path_ + ": cannot write: " + std::strerror(errno));
+    }
+    void flush() {
+        put(waiting_, {});
+        waiting_.clear();
+    }
+    void put(std::string_view bytes, std::optional<uint64_t> offset) const {
+        while (!bytes.empty()) {
+            const ssize_t n = offset ? ::pwrite(fd_, bytes.data(), bytes.size(), off_t(*offset))
+                                     : ::write(fd_, bytes.data(), bytes.size());
+            if (n < 0 && errno == EINTR) continue;
+            if (n <= 0) fail();
+            bytes.remove_prefix(size_t(n));
+            if (offset) *offset += uint64_t(n);
+        }
+    }
+    // No second try: it would succeed, though what the first could not write is lost (fsync(2)).
+    static int synchronised(int fd) {
+        while (::fsync(fd) != 0)
+            if (errno != EINTR) return errno;
+        return 0;
+    }
+    // What was renamed may be lost until its folder is on the disk.  A file system that cannot do
+    // this says EINVAL.
+    void synchronise_folder() const {
+        const auto folder = std::filesystem::path(part_).parent_path();
+        const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (fd < 0) fail();
+        const int failed = synchronised(fd);
+        ::close(fd);
+        errno = failed;
+        if (failed != 0 && failed != EINVAL) fail();
+    }
+};
+
 inline void write_file(const std::string& path, const std::string& bytes) {
-    const bool stream = is_stream(path);
-    const std::string part = stream ? path : aside(path);
-    std::FILE* file = std::fopen(part.c_str(), stream ? "ab" : "wb");
-    bool ok = file && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    if (file) ok = std::fclose(file) == 0 && ok;
-    if (ok && (stream || std::rename(part.c_str(), behind_links(path).c_str()) == 0)) return;
-    const std::string why = std::strerror(errno);
-    if (!stream) std::remove(part.c_str());
-    throw SystemError(path + ": cannot write: " + why);
+    OutputFile file(path);
+    file.write(bytes.data(), bytes.size());
+    file.commit();
 }

@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "base/folder.h"
+#include "base/system_calls.h"
 
 namespace {
 
@@ -167,6 +168,100 @@ TEST_CASE("a file that cannot be written whole leaves the old one, and nothing b
     fs::create_directory(aside(path));  // the first step fails
     CHECK_THROWS_AS(write_file(path, "x"), SystemError);
     CHECK(read_file(path) == "new and longer");
+}
+
+TEST_CASE("what is written in pieces, small or large, in their order or not, is one file") {
+    const Folder folder;
+    std::string expected;
+    OutputFile file(folder / "a");
+    for (size_t size : {1, 1000000, 1, 70000, 2000000, 0, 3}) {
+        const std::string piece(size, char('a' + expected.size() % 26));
+        file.write(piece.data(), piece.size());
+        expected += piece;
+    }
+    file.write_at(2, "2nd", 3);
+    expected.replace(2, 3, "2nd");
+    file.write("end", 3);
+    expected += "end";
+    file.write_at(expected.size() + 2, "!", 1);
+    expected += std::string(2, '\0') + "!";
+    CHECK_FALSE(folder.has("a"));
+    file.commit();
+    CHECK(folder.read("a") == expected);
+    CHECK(folder.files() == 1);
+}
+
+TEST_CASE("there are no places in a stream") {
+    OutputFile null("/dev/null");
+    CHECK(complaint<SystemError>([&] { null.write_at(0, "x", 1); }) ==
+          "/dev/null: cannot write: is no regular file");
+    OutputFile full("/dev/full");
+    full.write("x", 1);
+    CHECK(complaint<SystemError>([&] { full.commit(Durable::yes); }) ==
+          "/dev/full: cannot write: No space left on device");
+    CHECK(fs::is_character_file("/dev/full"));
+}
+
+TEST_CASE("what is not committed goes, and the old file stays") {
+    const Folder folder;
+    folder.write("a", "old");
+    {
+        OutputFile file(folder / "a");
+        file.write_at(0, "new", 3);
+        CHECK(folder.files() == 2);
+    }
+    CHECK(folder.files() == 1);
+    CHECK(folder.read("a") == "old");
+}
+
+TEST_CASE("to be durable is: bytes on the disk, then the name, then the folder") {
+    const Folder folder;
+    auto write = [&](Durable durable) {
+        return calls_of({}, [&] {
+            OutputFile file(folder / "a");
+            file.write("bytes", 5);
+            file.commit(durable);
+        });
+    };
+    using Calls = std::vector<std::string>;
+    CHECK(write(Durable::yes) ==
+          Calls{"write", "fsync 5", "close", "rename", "fsync folder", "close"});
+    CHECK(write(Durable::no) == Calls{"write", "close", "rename"});
+}
+
+TEST_CASE("whatever fails on the way to a file is an error with its name") {
+    const Folder folder;
+    const std::string path = folder / "a";
+    for (const char* call : {"write", "pwrite", "fsync 5", "close", "rename", "fsync folder"}) {
+        folder.write("a", "old");
+        INFO(call);
+        auto work = [&] {
+            OutputFile file(path);
+            file.write("byt", 3);
+            file.write_at(3, "es", 2);
+            file.commit(Durable::yes);
+        };
+        auto with = [&](int error) {
+            return complaint<SystemError>([&] { calls_of({{}, call, error}, work); });
+        };
+        CHECK(with(EIO) == path + ": cannot write: Input/output error");
+        const bool late = std::string(call) == "fsync folder";  // it has its name by then
+        CHECK(folder.read("a") == (late ? "bytes" : "old"));
+        CHECK(folder.files() == 1);
+        if (std::string(call) != "rename") CHECK(with(EINTR) == "");  // it is asked again
+        if (late) CHECK(with(EINVAL) == "");
+    }
+}
+
+TEST_CASE("a call that writes less than it was given is followed by another") {
+    const Folder folder;
+    calls_of({{}, "", 0, 2}, [&] {
+        OutputFile file(folder / "a");
+        file.write("hello", 5);
+        file.write_at(1, "ipp", 3);
+        file.commit();
+    });
+    CHECK(folder.read("a") == "hippo");
 }
 
 TEST_CASE("asking whether a file can be written changes nothing") {
