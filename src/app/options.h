@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "app/option.h"
+#include "film/sets.h"
 #include "path/pathtracer.h"
 #include "shadow/estimators.h"
 #include "voronoi/weights.h"
@@ -26,6 +27,16 @@ struct PixelIndex {
     int x = 0, y = 0;
 };
 
+// From the first to the last of some numbers.
+struct Range {
+    uint64_t first = 0, last = 0;
+
+    uint64_t count() const { return last - first + 1; }
+};
+inline std::string as_text(const Range& r) {
+    return std::to_string(r.first) + "-" + std::to_string(r.last);
+}
+
 struct Options : CommonOptions {
     uint64_t spp = 0;  // 0: the scene's, unless seconds or an error are given
     double error = 0;  // d_rel to stop at; 0: none
@@ -40,6 +51,10 @@ struct Options : CommonOptions {
     uint32_t sets = sets_by_noise;  // of samples, in every pixel
     View view = View::radiance;
     Weighting film = Weighting::mc;    // of a pixel's samples
+    std::string checkpoint, resume;    // files, or empty
+    double every = 60;                 // seconds between checkpoints
+    std::optional<Range> rows;         // of the picture; default: all
+    std::optional<Range> samples;      // of each set of a pixel; default: all
     std::optional<PixelIndex> replay;  // instead of rendering, print the path of
     std::optional<uint64_t> sample;    // this sample
     std::optional<uint32_t> set;       // of this set
@@ -51,7 +66,6 @@ namespace option {
 
 constexpr uint64_t most_samples = uint64_t(1) << 40;
 constexpr uint64_t most_scatterings = 1000000;
-constexpr uint64_t most_sets = 1024;
 
 inline double error(std::string_view text) {
     const double E = parse_fraction(text);
@@ -61,6 +75,21 @@ inline double error(std::string_view text) {
 
 inline uint32_t sets(std::string_view text, uint64_t least) {
     return uint32_t(parse_count(text, least, most_sets));
+}
+
+// "10-19"
+inline Range range(std::string_view text, uint64_t most) {
+    const size_t dash = text.find('-');
+    if (dash == text.npos) throw UserError(in_quotes(text) + " is not FIRST-LAST");
+    const Range r{parse_count(text.substr(0, dash), 0, most),
+                  parse_count(text.substr(dash + 1), 0, most)};
+    if (r.last < r.first) throw UserError(in_quotes(text) + " ends before it begins");
+    return r;
+}
+
+inline std::string film(std::string_view text) {
+    if (!text.ends_with(".film")) throw UserError(in_quotes(text) + " does not end in .film");
+    return std::string(text);
 }
 
 inline PixelIndex pixel(std::string_view text) {
@@ -154,6 +183,21 @@ inline const OptionTable<Options> option_table = {
         "pixel, or on a torus; all but mc need --sampler independent and --spp",
         [](auto& o) -> auto& { return o.film; }),
     CommonRows<Options>::stats(),
+    {"--checkpoint", "FILE.film",
+     "write what is needed to go on, now and then, when interrupted, and in the end", "",
+     [](Options& o, Text v) { o.checkpoint = option::film(v); }},
+    {"--every", "S", "seconds between checkpoints, at least 100 times what one takes", "60",
+     [](Options& o, Text v) { o.every = option::positive(v); }},
+    {"--resume", "FILE.film",
+     "go on from a checkpoint of the same scene and options; the image is that of a run without a "
+     "break",
+     "", [](Options& o, Text v) { o.resume = option::film(v); }},
+    {"--rows", "A-B", "render these rows alone, from 0 at the top, for build/merge", "all",
+     [](Options& o, Text v) { o.rows = option::range(v, INT32_MAX); },
+     [](const Options& o) { return o.rows ? '"' + as_text(*o.rows) + '"' : "null"; }},
+    {"--samples", "A-B", "take these of --spp N samples alone, from 0, for build/merge", "all",
+     [](Options& o, Text v) { o.samples = option::range(v, option::most_samples); },
+     [](const Options& o) { return o.samples ? '"' + as_text(*o.samples) + '"' : "null"; }},
     {"--pixel", "X,Y", "instead of rendering, print every vertex of one path", "",
      [](Options& o, Text v) { o.replay = option::pixel(v); }},
     {"--sample", "I", "of this sample, with --pixel", "0",
@@ -171,70 +215,4 @@ inline uint32_t sets_of(const Options& o) {
     if (o.sampler == SamplerKind::halton_naive) return 1;
     if (o.view == View::variance && o.sets == sets_by_noise) return 2;
     return o.sets;
-}
-
-// ---- Words to options ---------------------------------------------------------------------------
-
-// Whether maps serve what is asked for.
-inline void check_maps(const Options& o) {
-    const std::string indirect = as_written(option_table, o, "--indirect");
-    if (o.indirect == Indirect::path) {
-        for (const Text name : {"--mesh", "--particles"})
-            if (is_given(o, name))
-                throw UserError(std::string(name) +
-                                ": needs --indirect map, control or regression");
-        return;
-    }
-    if (o.direct != Estimator::stochastic)
-        throw UserError(indirect + ": needs --direct stochastic");
-    if (o.film != Weighting::mc) throw UserError(indirect + ": needs --film mc");
-    if (o.view != View::radiance && o.view != View::variance)
-        throw UserError(indirect + ": needs --view radiance or variance");
-    for (const Text name : {"--depth", "--roulette"})
-        if (is_given(o, name))
-            throw UserError(indirect + ": has no " + std::string(name) +
-                            ": light is scattered without end");
-}
-
-// Whether there is an error to stop at.
-inline void check_error(const Options& o) {
-    if (o.error == 0) return;
-    if (o.sampler == SamplerKind::halton_naive)
-        throw UserError("--error: --sampler halton-naive is not random: its error is not known");
-    if (o.sets == 1) throw UserError("--error: needs --sets 2 or more, or noise");
-    if (o.film != Weighting::mc)
-        throw UserError(as_written(option_table, o, "--film") +
-                        ": needs --spp, not --error: all samples of a pixel at once");
-}
-
-// What single options do not tell.
-inline void check_together(const Options& o) {
-    if (o.sample && !o.replay) throw UserError("--sample: goes with --pixel X,Y");
-    if (o.view == View::variance && o.sets == 1)
-        throw UserError("--view variance: needs --sets 2 or more, or noise");
-    if (o.set && !o.replay) throw UserError("--set: goes with --pixel X,Y");
-    if (o.sampler == SamplerKind::halton_naive && (o.sets > 1 || o.view == View::variance))
-        throw UserError((o.sets > 1 ? std::string("--sets") : std::string("--view variance")) +
-                        ": --sampler halton-naive is not random: all sets of it are alike");
-    if (o.direct != Estimator::stochastic && o.technique.light != LightMode::nee)
-        throw UserError(as_written(option_table, o, "--direct") + ": needs --light nee");
-    check_error(o);
-    need_scene(o);
-    check_maps(o);
-    if (o.film == Weighting::mc) return;
-    const std::string film = as_written(option_table, o, "--film");
-    if (o.sampler != SamplerKind::independent)
-        throw UserError(film + ": needs --sampler independent");
-    if (o.seconds > 0)
-        throw UserError(film + ": needs --spp, not --time: all samples of a pixel at once");
-    if (o.spp > (1 << 20)) throw UserError(film + ": at most 1048576 samples per pixel");
-    if (o.direct != Estimator::stochastic) throw UserError(film + ": needs --direct stochastic");
-}
-
-// Throws UserError about the first word that cannot be used.
-inline Options parse_options(const std::vector<std::string>& words) {
-    Options o = parse_words(option_table, words);
-    if (o.help) return o;
-    check_together(o);
-    return o;
 }

@@ -51,10 +51,11 @@ inline void write_images(const std::vector<std::string>& paths, const Image& pic
 }
 
 // Says which files were written.
-inline void tell_written(const CommonOptions& o, const std::vector<std::string>& images) {
+inline void tell_written(const CommonOptions& o, std::vector<std::string> files) {
+    if (!o.stats.empty()) files.push_back(o.stats);
     std::string names;
-    for (const std::string& path : images) names += (names.empty() ? "" : ", ") + path;
-    tell(o, "wrote " + names + (o.stats.empty() ? "" : ", " + o.stats));
+    for (const std::string& path : files) names += (names.empty() ? "" : ", ") + path;
+    tell(o, "wrote " + names);
 }
 
 // A hint at the most frequent reason.

@@ -1,6 +1,8 @@
-// app/penumbra.cpp  7  the program: options in, images and statistics out
+// app/penumbra.cpp  10  the program: options in, images and statistics out
 #include "app/help.h"
+#include "app/option_checks.h"
 #include "app/outputs.h"
+#include "app/render.h"
 #include "app/replay.h"
 #include "base/program.h"
 #include "world/scene_file.h"
@@ -58,15 +60,31 @@ Stage stage_of(const Options& o, const Scene& scene) {
 // Writes all that was asked for, and says so.
 void write(const Options& o, const Scene& scene, const Rendered& rendered,
            const std::vector<std::string>& outputs) {
-    const auto& [image, run] = rendered;
+    const auto& [image, run, not_kept] = rendered;
     write_images(outputs, image, scene.exposure);
     if (!o.stats.empty()) write_file(o.stats, encode_stats(o, scene.size, scene.depth, run));
     if (run.maps) tell(o, summary(*run.maps));
     tell(o, summary(o, run));
-    tell_written(o, outputs);
+    std::vector<std::string> files = outputs;
+    if (!o.checkpoint.empty() && not_kept.empty()) files.push_back(o.checkpoint);
+    tell_written(o, files);
     if (o.view == View::radiance && !scene.lights.empty() &&
         run.mean_radiance == std::array<double, 3>{})
         tell_black(o);
+}
+
+// Images to write, unless it is a part that is for build/merge alone.
+std::vector<std::string> outputs_for(const Options& o, std::vector<std::string> inputs) {
+    if (!o.checkpoint.empty()) {
+        check_film(o.checkpoint);
+        check_names({}, o.checkpoint, inputs);
+        inputs.push_back(o.checkpoint);
+    }
+    const bool is_part = (o.rows || o.samples) && o.outputs.empty();
+    if (!is_part) return outputs_of(o, "", inputs);
+    check_names({}, o.stats, inputs);
+    if (!o.stats.empty()) check_writable(o.stats);
+    return {};
 }
 
 // The program; returns its exit status, throws UserError and SystemError.
@@ -79,7 +97,7 @@ int penumbra(const std::vector<std::string>& words) {
     const auto [read, warnings, inputs] = load(o);
     std::vector<std::string> outputs;
     if (!o.replay) {
-        outputs = outputs_of(o, "", inputs);
+        outputs = outputs_for(o, inputs);
         catch_interrupt();
     }
     for (const std::string& w : warnings) tell(o, o.scene + ": warning: " + w);
@@ -89,11 +107,14 @@ int penumbra(const std::vector<std::string>& words) {
         replay(job);
         return 0;
     }
-    const Rendered result = rendered(job);
+    const bool is_kept = !o.checkpoint.empty() || !o.resume.empty();
+    const Rendered result =
+        rendered(job, is_kept ? identity_of(job, sum_of_files(inputs)) : FilmHeader());
     if (result.run.spp > 0)
         write(o, scene, result, outputs);
     else
         tell(o, summary(o, result.run));
+    if (!result.not_kept.empty()) throw SystemError(result.not_kept);
     return result.run.interrupted ? 128 + interrupted : 0;
 }
 

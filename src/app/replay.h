@@ -1,8 +1,8 @@
-// app/replay.h  6  one path in words (--pixel)
+// app/replay.h  7  one path in words (--pixel)
 #pragma once
 #include <cstdio>
 
-#include "app/render.h"
+#include "app/job.h"
 
 // Writes down what happens on a path, a line an event, with every digit: what it prints is what
 // the image was made of.
@@ -91,7 +91,7 @@ private:
 
 // Prints one path of the image.
 inline void replay(const Job& job) {
-    const auto& [o, scene, pattern, passes, maps, rest] = job;
+    const auto& [o, scene, pattern, passes, part, maps, rest] = job;
     const PathLog log(scene, stdout);
     const PixelSample which{o.replay->x, o.replay->y, o.sample.value_or(0), o.set.value_or(0)};
     const Start at = start(scene, pattern, which);

@@ -37,16 +37,18 @@ inline std::string significant(double x, int digits) {
 // then; on stderr.
 class Progress {
 public:
-    // Of a run that ends after so many seconds; 0: no limit.
-    Progress(double limit, bool quiet)
-        : limit_(limit), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+    // Of a run that ends after so many seconds, of which some were before; 0: no limit.
+    Progress(double limit, bool quiet, double before = 0)
+        : limit_(limit), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), before_(before) {}
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     ~Progress() {
         if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
     }
 
-    double elapsed() const { return std::chrono::duration<double>(clock::now() - start_).count(); }
+    double elapsed() const {
+        return before_ + std::chrono::duration<double>(clock::now() - start_).count();
+    }
 
     // `done` is the fraction of all work, 0 if the clock alone ends it; `words` say it in its unit.
     void show(double done, const std::string& words) {
@@ -73,6 +75,7 @@ private:
     const double limit_;
     const bool quiet_;
     const bool terminal_;
+    const double before_;
     const clock::time_point start_ = clock::now();
     double next_ = terminal_ ? 0.1 : 2.0;
     bool shown_ = false;

@@ -16,7 +16,7 @@ struct MapStats {
 // What a run measured.
 struct RunStats {
     uint64_t spp = 0;
-    double seconds = 0;
+    double seconds = 0, cpu_seconds = 0;
     uint64_t rays = 0;
     uint64_t non_finite = 0;
     bool interrupted = false;
@@ -32,8 +32,9 @@ struct RunStats {
 // Of passes towards a target.
 class SampleProgress {
 public:
-    SampleProgress(const Target& target, bool quiet)
-        : samples_(target.samples), bar_(target.seconds, quiet) {}
+    // After `before` seconds of runs that this one goes on from.
+    explicit SampleProgress(const Target& target, bool quiet, double before = 0)
+        : samples_(target.samples), bar_(target.seconds, quiet, before) {}
 
     // That so many samples are likely to be enough.
     void expect(uint64_t samples) { expected_ = samples_ ? std::min(samples_, samples) : samples; }
@@ -132,7 +133,7 @@ inline std::string encode_stats(const Options& o, Size size, int depth, const Ru
     object.add("interrupted", json::truth(run.interrupted));
     object.add("samples_per_pixel", count(run.spp));
     object.add("seconds", json::number(run.seconds));
-    object.add("cpu_seconds", json::number(cpu_seconds()));
+    object.add("cpu_seconds", json::number(run.cpu_seconds));
     object.add("rays", count(run.rays));
     object.add("mrays_per_second", json::number(double(run.rays) / run.seconds * 1e-6));
     object.add("mean_radiance", json::numbers(run.mean_radiance));

@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <tuple>
 
 #include "film/error.h"
@@ -36,6 +37,7 @@ struct Blocks {
 template <class Pixel>
 struct FilmState {
     uint64_t samples = 0, samples_of_others = 0;  // of first sets, of the other sets
+    uint64_t sets_after = 0;                      // samples after which these were chosen
     uint64_t pass = 0;                            // samples of the running pass
     std::vector<Pixel> first;                     // set 0 of each pixel
     std::vector<double> spread;     // of its samples, see Pixel::spread; until sets are known
@@ -131,7 +133,27 @@ public:
     size_t blocks() const { return blocks_.count(); }
     uint64_t samples() const { return state_.samples; }  // of every set
 
+    // Goes on from what another film of this size was, a complete pass or not.
+    void restore(FilmState<Pixel> state) {
+        state_ = std::move(state);
+        state_.image.width = size.width, state_.image.height = size.height;
+        state_.image.pixels.resize(number_of_pixels(), {NAN, NAN, NAN});
+        count_others();
+        for (size_t b = 0; b < blocks(); ++b)
+            if (state_.ahead[b])
+                next_terms_[b] = terms_of_block(b, samples() + state_.pass, true);
+            else if (samples() > 0)
+                state_.terms[b] = terms_of_block(b, samples(), others_are_complete());
+    }
+
     // ---- Passes ----
+
+    // Of a pass that was interrupted when some blocks had its samples.
+    std::optional<uint64_t> unfinished_pass() const {
+        const auto& ahead = state_.ahead;
+        if (std::find(ahead.begin(), ahead.end(), true) == ahead.end()) return {};
+        return state_.pass;
+    }
 
     void begin_pass(uint64_t n) { state_.pass = n; }
 
@@ -175,15 +197,10 @@ public:
 
     // From now on; once, between passes.  Until the next pass ends there is only the first of each.
     void add_sets(std::vector<Sets> sets) {
-        size_t others = 0;
-        for (size_t b = 0; b < blocks(); ++b) {
-            state_.others_of[b] = others;
-            for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i)
-                others += sets[i].count() - 1;
-        }
         state_.sets = std::move(sets);
+        state_.sets_after = samples();
         state_.spread = std::vector<double>();  // with its memory
-        state_.others.assign(others, Pixel::unwritten());
+        state_.others.assign(count_others(), Pixel::unwritten());
         state_.samples_of_others = 0;
     }
 
@@ -245,6 +262,18 @@ private:
     std::atomic<uint64_t> non_finite_ = 0;
     NonFinite first_non_finite_;
     std::mutex mutex_;
+
+    // How many there are; notes where those of blocks begin.
+    size_t count_others() {
+        size_t others = 0;
+        state_.others_of.resize(blocks());
+        for (size_t b = 0; b < blocks(); ++b) {
+            state_.others_of[b] = others;
+            for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i)
+                others += sets(i).count() - 1;
+        }
+        return others;
+    }
 
     bool has_spread() const { return !state_.spread.empty(); }
 
@@ -345,6 +374,7 @@ inline bool fits_float(rgb L) {
 
 // Sums of samples.
 struct MeanPixel {
+    static constexpr const char* name = "means";
     using Sample = rgb;
     using Sums = std::array<double, 3>;  // one a channel
     Sums sum{};

@@ -14,6 +14,9 @@
 #include "base/vec.h"
 #include "base/words.h"
 
+// In a pixel, at most.
+inline constexpr uint64_t most_sets = 1024;
+
 struct Sets {
     uint32_t shown = 1;  // the pixel is the mean of these
     // Of one set: the probability that another one was drawn to measure it; 0: none was drawn.

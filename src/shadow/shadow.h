@@ -99,6 +99,7 @@ ShadowSample shadow_Li(const Scene& scene, const Technique& t, Estimator estimat
 // For Film.  Ratio and regression need the moments of all samples of a set: the mean of the ratios
 // of single samples would never converge.
 struct ShadowPixel {
+    static constexpr const char* name = "shadows";
     using Sample = ShadowSample;
     MeanPixel rest;
     ShadowMoments shadowed[3] = {};  // a channel at a time

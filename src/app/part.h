@@ -1,0 +1,33 @@
+// app/part.h  5  the part of a picture that one run renders: some of its rows, some of its samples
+#pragma once
+#include "app/indirect.h"
+
+struct Part {
+    Size picture;
+    int first_row = 0, rows = 0;
+    uint64_t first_sample = 0, samples = 0;  // of each set; samples 0: not known before
+    uint64_t total = 0;                      // samples of the picture; 0: not known before
+
+    Size size() const { return {picture.width, rows}; }
+    bool is_whole() const { return rows == picture.height && samples == total; }
+    Range row_range() const { return {uint64_t(first_row), uint64_t(first_row + rows - 1)}; }
+    Range sample_range() const { return {first_sample, first_sample + samples - 1}; }
+};
+
+// Throws UserError if there is no such part.
+inline Part part_of(const Options& o, const Scene& scene, uint64_t total) {
+    Part part{scene.size, 0, scene.size.height, 0, total, total};
+    if (o.rows) {
+        if (o.rows->last >= uint64_t(scene.size.height))
+            throw UserError("--rows " + as_text(*o.rows) + ": the picture has rows 0-" +
+                            std::to_string(scene.size.height - 1));
+        part.first_row = int(o.rows->first), part.rows = int(o.rows->count());
+    }
+    if (o.samples) {
+        if (o.samples->last >= total)
+            throw UserError("--samples " + as_text(*o.samples) + ": a pixel has samples 0-" +
+                            std::to_string(total - 1));
+        part.first_sample = o.samples->first, part.samples = o.samples->count();
+    }
+    return part;
+}
