@@ -195,6 +195,8 @@ O parse_words(const OptionTable<O>& table, const std::vector<std::string>& words
             }
         } else if (word.starts_with('-')) {
             throw UserError(unknown("option", word, known));
+        } else if constexpr (requires { o.parts; }) {
+            o.parts.push_back(word);
         } else if (!o.scene.empty()) {
             throw UserError("two scenes: " + in_quotes(o.scene) + " and " + in_quotes(word));
         } else {

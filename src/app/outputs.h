@@ -23,10 +23,16 @@ inline void check_names(const std::vector<std::string>& images, const std::strin
     if (!stats.empty()) check(stats, "the statistics");
 }
 
+// Throws UserError if a picture of this size has no room in one of the images.
+inline void check_size(const std::vector<std::string>& images, Size size) {
+    for (const std::string& path : images)
+        if (path.ends_with(".png")) check_png(path, size);
+}
+
 // Images to write, out/NAMEsuffix.png and .pfm unless others were asked for; throws UserError if
-// one of the files cannot be written.
+// one of the files cannot be written, or has no room for the picture.
 inline std::vector<std::string> outputs_of(const CommonOptions& o, const std::string& suffix,
-                                           const std::vector<std::string>& inputs) {
+                                           const std::vector<std::string>& inputs, Size size) {
     std::vector<std::string> outputs = o.outputs;
     std::error_code failed;
     if (outputs.empty()) {
@@ -35,6 +41,7 @@ inline std::vector<std::string> outputs_of(const CommonOptions& o, const std::st
         if (std::filesystem::create_directories("out", failed), failed)
             throw UserError("out: cannot make this directory: " + failed.message());
     }
+    check_size(outputs, size);
     check_names(outputs, o.stats, inputs);
     for (const std::string& path : outputs) check_writable(path);
     if (!o.stats.empty()) check_writable(o.stats);

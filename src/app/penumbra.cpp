@@ -74,14 +74,15 @@ void write(const Options& o, const Scene& scene, const Rendered& rendered,
 }
 
 // Images to write, unless it is a part that is for build/merge alone.
-std::vector<std::string> outputs_for(const Options& o, std::vector<std::string> inputs) {
+std::vector<std::string> outputs_for(const Options& o, std::vector<std::string> inputs, Size size) {
     if (!o.checkpoint.empty()) {
         check_film(o.checkpoint);
         check_names({}, o.checkpoint, inputs);
         inputs.push_back(o.checkpoint);
     }
     const bool is_part = (o.rows || o.samples) && o.outputs.empty();
-    if (!is_part) return outputs_of(o, "", inputs);
+    if (!is_part)
+        return outputs_of(o, "", inputs, o.rows ? Size{size.width, int(o.rows->count())} : size);
     check_names({}, o.stats, inputs);
     if (!o.stats.empty()) check_writable(o.stats);
     return {};
@@ -97,7 +98,7 @@ int penumbra(const std::vector<std::string>& words) {
     const auto [read, warnings, inputs] = load(o);
     std::vector<std::string> outputs;
     if (!o.replay) {
-        outputs = outputs_for(o, inputs);
+        outputs = outputs_for(o, inputs, read.size);
         catch_interrupt();
     }
     for (const std::string& w : warnings) tell(o, o.scene + ": warning: " + w);

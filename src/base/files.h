@@ -251,7 +251,7 @@ private:
     }
 };
 
-inline void write_file(const std::string& path, const std::string& bytes) {
+inline void write_file(const std::string& path, std::string_view bytes) {
     OutputFile file(path);
     file.write(bytes.data(), bytes.size());
     file.commit();

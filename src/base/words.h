@@ -88,7 +88,7 @@ struct Size {
     int width = 0, height = 0;
 };
 inline Size parse_size(std::string_view width, std::string_view height) {
-    constexpr uint64_t longest = 1 << 16, most = 1 << 25;
+    constexpr uint64_t longest = 1 << 16, most = 1 << 30;
     uint64_t w = parse_count(width, 1, longest), h = parse_count(height, 1, longest);
     if (w * h > most)
         throw UserError("an image of " + std::to_string(w) + "x" + std::to_string(h) +

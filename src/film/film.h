@@ -385,6 +385,11 @@ struct MeanPixel {
         for (size_t c = 0; c < 3; ++c) sum[c] += double(L.*axis[c]);
     }
 
+    // Of further samples.
+    void add(const MeanPixel& p) {
+        for (size_t c = 0; c < 3; ++c) sum[c] += p.sum[c];
+    }
+
     // Of all channels together (Welford 1962).
     double spread(uint64_t i, rgb L) const {
         const double n = double(i);

@@ -115,6 +115,11 @@ struct ShadowPixel {
                             double(s.first.wV.*axis[c]));
     }
 
+    void add(const ShadowPixel& p) {
+        rest.add(p.rest);
+        for (size_t c = 0; c < 3; ++c) shadowed[c] = merge(shadowed[c], p.shadowed[c]);
+    }
+
     double spread(uint64_t i, const ShadowSample& s) const { return rest.spread(i, s.rest); }
     // What shadows leave to be found counts as if V were a coin that falls anew for every sample.
     double noise(uint64_t n, double spread) const {

@@ -205,11 +205,12 @@ TEST_CASE("nothing of a damaged film is read, though nobody asked whether it is 
     Sample film;
     film.bytes.back() ^= 1;
     film.folder.write("a.film", film.bytes);
-    FilmReader reader(film.folder / "a.film");
+    const std::string path = film.folder / "a.film",
+                      why = path + ": is damaged (its checksum differs)";
     char first = '?';
-    CHECK_THROWS_AS(reader.read(&first, 1), UserError);
+    CHECK_THROWS_WITH_AS(FilmReader(path).read(&first, 1), why.c_str(), UserError);
     CHECK(first == '?');
-    CHECK_THROWS_AS(FilmReader(film.folder / "a.film").read<char>(1), UserError);
+    CHECK_THROWS_WITH_AS(FilmReader(path).read<char>(1), why.c_str(), UserError);
 }
 
 TEST_CASE("a film that cannot be written whole leaves the old one, and nothing beside it") {

@@ -3,10 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <sys/resource.h>
+
 #include <cstdlib>
 #include <map>
 
 #include "base/folder.h"
+#include "base/system_calls.h"
 #include "film/film.h"
 #include "film/png.h"
 
@@ -158,4 +161,80 @@ TEST_CASE("a PNG holds exposure times radiance in sRGB, from the top left, and n
         CHECK(png.at(4, 0, 1) == 0);
         CHECK(png.at(4, 0, 2) == 255);
     }
+}
+
+TEST_CASE("a PFM is written in pieces, for which no second picture is needed") {
+    const Folder folder;
+    const Image image = variegated(600, 400);  // 2.9 MB, in pieces of up to 1 MiB
+    const auto calls = calls_of({}, [&] { write_image(folder / "a.pfm", image, 1); });
+    CHECK(std::count(calls.begin(), calls.end(), "write") == 3);
+    CHECK(folder.read("a.pfm") == encode_pfm(image));
+}
+
+TEST_CASE("a picture that a PNG cannot hold is refused, before there is one") {
+    auto refusal = [](Size size) -> std::string {
+        try {
+            check_png("a.png", size);
+        } catch (const UserError& e) {
+            return e.what();
+        }
+        return "";
+    };
+    // Rows of 2^16 bytes with that of their filter: 21845 of them are less than 1431655760 bytes.
+    CHECK(refusal({21845, 21845}) == "");
+    CHECK(refusal({21845, 21846}) ==
+          "a.png: 21845x21846 pixels are too many for a PNG, which holds 477218586; "
+          "say -o FILE.pfm");
+    CHECK(refusal({65536, 7281}) == "");
+    CHECK(refusal({65536, 7282}) != "");
+    CHECK(refusal({32768, 16384}) != "");
+    CHECK(refusal({INT32_MAX, INT32_MAX}) != "");
+    CHECK(refusal({1, 357913940}) == "");  // 4 bytes a row
+    CHECK(refusal({1, 357913941}) != "");
+}
+
+TEST_CASE("a PNG for which there is no memory is an error, and no end of the program") {
+#ifdef __SANITIZE_ADDRESS__
+    MESSAGE("the address sanitizer needs more memory than that: not tested");
+#else
+    Image image(500, 700);
+    float k = 0;
+    for (Pixel& pixel : image.pixels)  // noise, which nothing compresses
+        for (float& channel : pixel) k = channel = std::fmod(k * 997 + 0.123f, 1.f);
+    rlimit old_limit;
+    REQUIRE(::getrlimit(RLIMIT_AS, &old_limit) == 0);
+    auto allow_more = [&](rlim_t bytes) {  // than the process has now
+        std::ifstream statm("/proc/self/statm");
+        rlim_t pages = 0;
+        statm >> pages;
+        const rlim_t all = pages * rlim_t(::sysconf(_SC_PAGESIZE)) + bytes;
+        const rlimit limit{all, old_limit.rlim_max};
+        ::setrlimit(RLIMIT_AS, &limit);
+    };
+    const std::string expected = encode_png(image, 1);
+    int written = 0, refused = 0;
+    for (rlim_t room = 0; room < 8 << 20; room += 1 << 18) {
+        std::vector<std::unique_ptr<char[]> > taken;  // what was freed before is room, too
+        taken.reserve(100000);
+        allow_more(0);
+        try {
+            while (taken.size() < 100000) taken.push_back(std::make_unique<char[]>(1 << 16));
+        } catch (const std::bad_alloc&) {
+        }
+        allow_more(room);
+        std::string bytes;
+        try {
+            bytes = encode_png(image, 1);
+        } catch (const std::bad_alloc&) {
+            ++refused;
+        }
+        ::setrlimit(RLIMIT_AS, &old_limit);
+        const bool right = bytes == expected;
+        written += right;
+        CHECK((right || bytes.empty()));
+    }
+    MESSAGE(refused, " refused, ", written, " written");
+    CHECK(refused > 4);
+    CHECK(written > 4);
+#endif
 }
