@@ -14,6 +14,16 @@ struct Part {
     Range sample_range() const { return {first_sample, first_sample + samples - 1}; }
 };
 
+// Throws UserError if the film of a part would not fit into so many bytes of memory.
+inline void check_memory(const Part& part, double memory) {
+    constexpr double bytes_of_pixel = 64;  // at most, by default
+    const double bytes = bytes_of_pixel * double(part.picture.width) * double(part.rows);
+    if (bytes <= memory) return;
+    throw UserError(std::to_string(part.picture.width) + "x" + std::to_string(part.rows) +
+                    " pixels take about " + fixed(bytes * 1e-9, 0) + " GB, and this machine has " +
+                    fixed(memory * 1e-9, 0) + ": render fewer rows at a time (--rows)");
+}
+
 // Throws UserError if there is no such part.
 inline Part part_of(const Options& o, const Scene& scene, uint64_t total) {
     Part part{scene.size, 0, scene.size.height, 0, total, total};

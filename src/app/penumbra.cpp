@@ -34,6 +34,8 @@ ParsedScene load(Options& o) {
         if (scene.lights[i].kind == Light::Kind::point && o.technique.light == LightMode::none)
             throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
                             ": --light none: rays never hit a point light");
+    if (!o.replay)
+        check_memory(part_of(o, scene, target_of(o, scene).samples), bytes_of_machine());
     if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))
         throw UserError("--pixel: outside the image");
     // Coarser than build/radiosity's: after a bounce its triangles are not seen, noise is (by
