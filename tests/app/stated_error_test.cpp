@@ -23,7 +23,7 @@ TEST_CASE("the stated d^2 is that from seed to seed: every sampler, two and thre
                     const uint64_t pixel = uint64_t(y * size.width + x);
                     return heteroscedastic(x % 12, y, Sampler(pattern, pixel, i, set).get2(film_x));
                 });
-                spread.add(image_of(film), error_of(film, value_in(film)).d2());
+                spread.add(film.image(), error_of(film).d2());
             }
             const std::string name =
                 "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
@@ -37,7 +37,7 @@ TEST_CASE("the stated d^2 of ratio and regression is that from seed to seed") {
             Spread spread;
             for (uint64_t r = 0; r < 240; ++r) {
                 const uint64_t seed = hash(seed_here(), r);
-                Film<ShadowPixel> film({12, 12});
+                Film<ShadowPixel> film({12, 12}, {e});
                 fill(film, sets, seed, 24, [&](int x, int y, uint64_t i, uint32_t set) {
                     Rng rng{hash(hash(hash(seed, uint64_t(12 * y + x)), set), i)};
                     const real U = real(std::exp2(-0.3 * x)), w = U * real(0.5 + rng.uniform()),
@@ -46,7 +46,7 @@ TEST_CASE("the stated d^2 of ratio and regression is that from seed to seed") {
                     const rgb grey{1, 1, 1};
                     return ShadowSample{rest * grey, {U * grey, w * grey, w * V * grey}};
                 });
-                spread.add(image_of(film, e), error_of(film, value_in(film, e)).d2());
+                spread.add(film.image(), error_of(film).d2());
             }
             const std::string name =
                 "estimator " + std::to_string(int(e)) + ", sets " + std::to_string(sets);
@@ -62,17 +62,14 @@ TEST_CASE("the stated d^2 of Voronoi-weighted films is that from seed to seed") 
             const Pattern pattern{SamplerKind::independent, seed};
             MeanFilm film({6, 6});
             film.add_sets(std::vector<Sets>(36, {2}));
-            for (int y = 0; y < 6; ++y) {
-                auto L = [&](int x, uint64_t i, uint32_t set) {
-                    return heteroscedastic(
-                        x, y, Sampler(pattern, uint64_t(6 * y + x), i, set).get2(film_x));
-                };
-                WeightedRow row(weighting, pattern, 12, uint64_t(6 * y), L);
-                film.add_row(y, 12,
-                             [&](int x, uint64_t i, uint32_t set) { return row(x, i, set); });
-            }
-            film.end_pass(12);
-            spread.add(image_of(film), error_of(film, value_in(film)).d2());
+            WeightedPixels weighted(weighting, pattern, 12);
+            whole_pass(film, 12, [&](int x, int y, uint64_t i, uint32_t set) {
+                const uint64_t pixel = uint64_t(6 * y + x);
+                return weighted(pixel, set, i, [&](uint64_t k) {
+                    return heteroscedastic(x, y, Sampler(pattern, pixel, k, set).get2(film_x));
+                });
+            });
+            spread.add(film.image(), error_of(film).d2());
         }
         const std::string name = "weighting " + std::to_string(int(weighting));
         EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.4);

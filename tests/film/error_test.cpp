@@ -21,14 +21,20 @@ double normal(Rng& rng) {
 TEST_CASE("d^2 and the variance of a pixel, by hand") {
     // Pixels of values 1, 5, 3 (variance 4, of which three are shown), of 2 and 6 (variance 8, one
     // shown, measured by a chance of 1/4), of 7 alone; green twice, blue without noise.
-    MeanFilm film({3, 1});
-    film.add_sets({{3, 0}, {1, 0.25}, {1, 0}});
-    film.add_row(0, 2, [](int x, uint64_t, uint32_t set) {
+    auto L = [](int x, int, uint64_t, uint32_t set) {
         constexpr real values[3][3] = {{1, 5, 3}, {2, 6, 0}, {7, 0, 0}};
         return rgb{values[x][set], 2 * values[x][set], 1};
-    });
-    film.end_pass(2);
-    const ImageError e = error_of(film, value_in(film));
+    };
+    MeanFilm film({3, 1}), variances({3, 1}, {}, Shows::variances);
+    for (MeanFilm* f : {&film, &variances}) {
+        f->add_sets({{3, 0}, {1, 0.25}, {1, 0}});
+        whole_pass(*f, 2, L);
+    }
+    const ImageError e = error_of(film);
+    CHECK(film.terms().pixels == 3);
+    CHECK(film.terms().measured == 2);
+    CHECK(film.terms().sum == std::array<double, 3>{12, 24, 3});
+    CHECK(error_of(variances).d_rel() == e.d_rel());
     const double red = (4 / 3.0 + 8 / 0.25) / 3;
     CHECK(e.square[0] == doctest::Approx(red).epsilon(1e-15).scale(0));
     CHECK(e.square[1] == doctest::Approx(4 * red).epsilon(1e-15).scale(0));
@@ -45,7 +51,7 @@ TEST_CASE("d^2 and the variance of a pixel, by hand") {
     // d(sqrt(s)) = ds / (2 sqrt(s)).
     CHECK(e.standard_error() ==
           doctest::Approx(e.spread / (2 * std::sqrt(e.d2()) * e.norm)).epsilon(1e-15).scale(0));
-    const Image variance = variance_of(film, value_in(film));
+    const Image& variance = variances.image();
     CHECK(variance.at(0, 0) == std::array<float, 3>{float(4 / 3.0), float(16 / 3.0), 0});
     CHECK(variance.at(1, 0) == std::array<float, 3>{8, 32, 0});
     CHECK(std::isnan(variance.at(2, 0)[0]));
@@ -55,16 +61,13 @@ TEST_CASE("an error that is not known is no number; that of an image without noi
     auto film_of = [](const std::vector<Sets>& sets, auto value) {
         auto film = std::make_unique<MeanFilm>(Size{2, 1});
         if (!sets.empty()) film->add_sets(sets);
-        film->add_row(0, 3, [&](int x, uint64_t, uint32_t set) {
+        whole_pass(*film, 3, [&](int x, int, uint64_t, uint32_t set) {
             const real v = value(x, set);
             return rgb{v, v, v};
         });
-        film->end_pass(3);
         return film;
     };
-    auto error = [](const std::unique_ptr<MeanFilm>& film) {
-        return error_of(*film, value_in(*film));
-    };
+    auto error = [](const std::unique_ptr<MeanFilm>& film) { return error_of(*film); };
     const std::vector<Sets> one(2, {1, 0}), two(2, {2, 0}), measured(2, {1, 0.5});
     for (real level : {real(0), real(3)})
         for (const auto& sets : {std::vector<Sets>(), one}) {
@@ -85,19 +88,20 @@ TEST_CASE("an error that is not known is no number; that of an image without noi
     CHECK(e.d2() > 0);
     CHECK(std::isnan(e.d_rel()));
     CHECK(ErrorCourse().cost_of(HUGE_VAL) == HUGE_VAL);
-    CHECK(samples_to_look(e, 0.5, 16) == 16);
+    CHECK(!is_small_enough(e, 0.5));
     // Before any sample; while the others catch up.
     MeanFilm film({1, 1});
-    CHECK(std::isnan(error_of(film, value_in(film)).d_rel()));
+    CHECK(std::isnan(error_of(film).d_rel()));
     film.add_sets({{2, 0}});
-    CHECK(std::isnan(error_of(film, value_in(film)).d_rel()));
-    MeanFilm late({1, 1});
-    late.add_row(0, 4, [](int, uint64_t, uint32_t) { return rgb{2, 2, 2}; });
-    late.end_pass(4);
-    late.add_sets({{2, 0}});
-    CHECK(std::isnan(error_of(late, value_in(late)).d_rel()));
-    CHECK(error_of(late, value_in(late)).norm == 2);
-    CHECK(std::isnan(variance_of(late, value_in(late)).at(0, 0)[0]));
+    CHECK(std::isnan(error_of(film).d_rel()));
+    for (Shows shows : {Shows::values, Shows::variances}) {
+        MeanFilm late({1, 1}, {}, shows);
+        whole_pass(late, 4, [](int, int, uint64_t, uint32_t) { return rgb{2, 2, 2}; });
+        late.add_sets({{2, 0}});
+        CHECK(std::isnan(error_of(late).d_rel()));
+        CHECK(error_of(late).norm == 2);
+        CHECK(std::isnan(late.image().at(0, 0)[0]) == (shows == Shows::variances));
+    }
 }
 
 TEST_CASE("what float cannot hold: d_rel at radiance 2^-80 and 2^93 is that at 1, to the bit") {
@@ -109,7 +113,7 @@ TEST_CASE("what float cannot hold: d_rel at radiance 2^-80 and 2^93 is that at 1
             return v * std::ldexp(real(1), exponent);
         });
         CHECK(film.non_finite() == 0);
-        return error_of(film, value_in(film));
+        return error_of(film);
     };
     const ImageError one = error(0);
     CHECK(one.d_rel() > 0.01);
@@ -137,12 +141,11 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
                 if (rng.uniform() >= s.chance && s.chance > 0) s.chance = 0;
             MeanFilm film({100, 1});
             film.add_sets(drawn);
-            film.add_row(0, 1, [&](int x, uint64_t, uint32_t) {
+            whole_pass(film, 1, [&](int x, int, uint64_t, uint32_t) {
                 const real v = real((1 + x % 10) * normal(rng));
                 return rgb{v, v, v};
             });
-            film.end_pass(1);
-            const ImageError e = error_of(film, value_in(film));
+            const ImageError e = error_of(film);
             d2.add(e.d2());
             spread2.add(e.spread * e.spread);
         }
@@ -202,7 +205,7 @@ TEST_CASE("an error that vanishes, grows or is not known leaves an exponent that
 }
 
 TEST_CASE(
-    "the rule of --error: raised by half its standard error, in steps that do not go too far") {
+    "the rule of --error: raised by half its standard error and another pixel like the worst") {
     auto error = [](double d_rel, double standard_error) {
         ImageError e;
         e.norm = 2;
@@ -214,22 +217,41 @@ TEST_CASE(
         return e;
     };
     // Enough: only with its margin.
-    CHECK(samples_to_look(error(0.0099, 0.0001), 0.01, 100) == 0);
-    CHECK(samples_to_look(error(0.0100, 0.0002), 0.01, 100) > 0);
-    CHECK(samples_to_look(error(0.0096, 0.0010), 0.01, 100) > 0);
-    CHECK(samples_to_look(error(0.0094, 0.0010), 0.01, 100) == 0);
-    CHECK(samples_to_look(error(0, 0), 0.01, 100) == 0);
+    CHECK(is_small_enough(error(0.0099, 0.0001), 0.01));
+    CHECK(!is_small_enough(error(0.0100, 0.0002), 0.01));
+    CHECK(!is_small_enough(error(0.0096, 0.0010), 0.01));
+    CHECK(is_small_enough(error(0.0094, 0.0010), 0.01));
+    CHECK(is_small_enough(error(0, 0), 0.01));
+    CHECK(!is_small_enough(ImageError(), 0.01));  // not known
     // And only if another pixel like the worst would not be too much: .0099 and a quarter of d^2.
     ImageError spotted = error(0.009, 0);
-    CHECK(samples_to_look(spotted, 0.01, 100) == 0);
+    CHECK(is_small_enough(spotted, 0.01));
     spotted.greatest = spotted.d2() / 4;
-    CHECK(samples_to_look(spotted, 0.01, 100) > 0);
-    CHECK(samples_to_look(spotted, 0.0101, 100) == 0);
-    // What is missing if the error falls like 1 / samples: 1.2 - 1.
-    CHECK(samples_to_look(error(0.0115, 0.0010), 0.01, 1000) == doctest::Approx(200).epsilon(.01));
-    // As many again at most, a 32nd and one at least.
-    CHECK(samples_to_look(error(0.5, 0.1), 0.01, 1000) == 1000);
-    CHECK(samples_to_look(error(0.01 * (1 + 1e-9), 0), 0.01, 3200) == 100);
-    CHECK(samples_to_look(error(0.01 * (1 + 1e-9), 0), 0.01, 16) == 1);
-    CHECK(samples_to_look(ImageError(), 0.01, 16) == 16);  // not known
+    CHECK(!is_small_enough(spotted, 0.01));
+    CHECK(is_small_enough(spotted, 0.0101));
+}
+
+TEST_CASE("looks are a lattice: whole periods, about a 32nd apart, wherever one asks from") {
+    struct Lattice {
+        uint64_t first, period;
+    };
+    for (const auto& [first, period] :
+         {Lattice{16, 1}, Lattice{18, 6}, Lattice{256, 256}, Lattice{25, 25}, Lattice{1, 1}}) {
+        CAPTURE(first);
+        std::vector<uint64_t> looks = {first};
+        while (looks.back() < 200000) looks.push_back(next_look(looks.back(), first, period));
+        for (uint64_t n = 0; n < first; ++n) CHECK(next_look(n, first, period) == first);
+        for (size_t k = 1; k < looks.size(); ++k) {
+            const uint64_t step = looks[k] - looks[k - 1], part = looks[k - 1] / 32;
+            CHECK(step > 0);
+            CHECK(step % period == 0);
+            CHECK(step > part);  // seldom enough
+            CHECK(step <= part + period);
+            // From anywhere between two of them: the one ahead.
+            for (uint64_t n : {looks[k - 1], looks[k - 1] + step / 2, looks[k] - 1})
+                CHECK(next_look(n, first, period) == looks[k]);
+        }
+    }
+    CHECK(next_look(16, 16, 1) == 17);
+    CHECK(next_look(64, 16, 1) == 67);
 }

@@ -5,6 +5,7 @@
 
 #include "base/moments.h"
 #include "base/rng.h"
+#include "film/fill.h"
 #include "oracle/expect.h"
 
 namespace {
@@ -23,13 +24,15 @@ TEST_CASE("a film is the mean of its samples, however passes divide them") {
     auto film_of = [&](const std::vector<uint64_t>& passes) {
         MeanFilm film({3, 2});
         for (uint64_t n : passes) {
-            for (int y : {1, 0})
-                film.add_row(y, n, [&](int x, uint64_t i, uint32_t) { return L(x, y, i); });
+            film.begin_pass(n);
+            for (size_t b = film.blocks(); b-- > 0;)
+                film.add_block(b, n,
+                               [&](int x, int y, uint64_t i, uint32_t) { return L(x, y, i); });
             film.end_pass(n);
         }
         CHECK(film.samples() == 12);
         CHECK(film.non_finite() == 0);
-        return image_of(film);
+        return film.take_image();
     };
     const Image whole = film_of({12});
     double sum = 0;
@@ -41,34 +44,39 @@ TEST_CASE("a film is the mean of its samples, however passes divide them") {
 
 TEST_CASE("a pass that is not complete leaves no trace in the image") {
     MeanFilm film({2, 2});
-    auto pass = [&](int rows, real value) {
-        for (int y = 0; y < rows; ++y)
-            film.add_row(y, 2, [&](int, uint64_t, uint32_t) { return rgb{value, value, value}; });
+    auto grey = [](real value) {
+        return [=](int, int, uint64_t, uint32_t) { return rgb{value, value, value}; };
     };
-    pass(1, 5);
+    REQUIRE(film.blocks() == 4);
+    film.begin_pass(2);
+    add_blocks(film, 0, 2, 2, grey(3));
     CHECK(film.samples() == 0);
-    CHECK(std::isnan(image_of(film).at(0, 0)[0]));
-    pass(2, 3);
+    for (const Pixel& pixel : film.image().pixels) CHECK(std::isnan(pixel[0]));
+    add_blocks(film, 2, 4, 2, grey(3));
     film.end_pass(2);
-    pass(1, 100);
+    film.begin_pass(2);
+    add_blocks(film, 0, 2, 2, grey(100));
     CHECK(film.samples() == 2);
-    for (const Pixel& pixel : image_of(film).pixels) CHECK(pixel == Pixel{3, 3, 3});
+    for (const Pixel& pixel : film.image().pixels) CHECK(pixel == Pixel{3, 3, 3});
 }
 
 TEST_CASE("a pixel that nobody wrote is no number in the image, even if the pass is ended") {
     MeanFilm film({2, 2});
     for (int pass = 0; pass < 2; ++pass) {
-        film.add_row(0, 1, [](int, uint64_t, uint32_t) { return rgb{1, 1, 1}; });
+        film.begin_pass(1);
+        add_blocks(film, 0, 2, 1, [](int, int, uint64_t, uint32_t) { return rgb{1, 1, 1}; });
         film.end_pass(1);
-        CHECK(image_of(film).at(0, 0) == Pixel{1, 1, 1});
-        CHECK(first_non_finite(image_of(film)) == "0,1");
+        CHECK(film.image().at(0, 0) == Pixel{1, 1, 1});
+        CHECK(first_non_finite(film.image()) == "0,1");
     }
 }
 
-TEST_CASE("a row takes no more samples once the run is interrupted") {
-    MeanFilm film({8, 1});
+TEST_CASE("a block takes no more samples once the run is interrupted") {
+    MeanFilm film({1024, 2});
+    REQUIRE(film.blocks() == 256);  // of eight pixels
     int samples = 0;
-    film.add_row(0, 100, [&](int x, uint64_t i, uint32_t) {
+    film.begin_pass(100);
+    film.add_block(0, 100, [&](int x, int, uint64_t i, uint32_t) {
         interrupted = x == 2 && i == 7;
         ++samples;
         return rgb{};
@@ -85,35 +93,35 @@ TEST_CASE("samples that no file can hold are counted, and the first by sample, r
                                                    {{5, 1, 0}, {infinity, 1, nan}}};
     for (bool downwards : {false, true}) {
         MeanFilm film({3, 3});
-        film.add_row(0, 0, [](int, uint64_t, uint32_t) { return rgb{}; });
-        film.end_pass(0);
+        whole_pass(film, 0, [](int, int, uint64_t, uint32_t) { return rgb{}; });
         CHECK(film.non_finite() == 0);
-        for (int row = 0; row < 3; ++row) {
-            const int y = downwards ? 2 - row : row;
-            film.add_row(y, 8, [&](int x, uint64_t i, uint32_t) {
-                auto found = bad.find({int(i), y, x});
-                return found == bad.end() ? rgb{1, 1, 1} : found->second;
-            });
-        }
+        film.begin_pass(8);
+        for (size_t k = 0; k < film.blocks(); ++k)
+            film.add_block(downwards ? film.blocks() - 1 - k : k, 8,
+                           [&](int x, int y, uint64_t i, uint32_t) {
+                               auto found = bad.find({int(i), y, x});
+                               return found == bad.end() ? rgb{1, 1, 1} : found->second;
+                           });
         CHECK(film.non_finite() == 4);
         CHECK(film.first_non_finite().sample == 4);
         CHECK(film.first_non_finite().y == 1);
         CHECK(film.first_non_finite().x == 2);
     }
     MeanFilm film({1, 1});  // finite, but the file's numbers are float
-    film.add_row(0, 1, [](int, uint64_t, uint32_t) { return rgb{1, real(1e30) * real(1e10), 1}; });
+    film.add_block(0, 1, [](int, int, uint64_t, uint32_t) {
+        return rgb{1, real(1e30) * real(1e10), 1};
+    });
     CHECK(film.non_finite() == 1);
 }
 
 TEST_CASE("a film adds up in double: 2^24 ones and more, beside numbers of 1e-9") {
     MeanFilm film({1, 1});
-    film.add_row(0, 1000, [](int, uint64_t i, uint32_t) {
+    whole_pass(film, 1000, [](int, int, uint64_t i, uint32_t) {
         const real tiny = i % 2 ? real(1e-9) : 0;
         return rgb{i < 2 ? real(1 << 24) : 1, i < 2 ? 1 : tiny, 0};
     });
-    film.end_pass(1000);
-    CHECK(image_of(film).at(0, 0)[0] == float((2.0 * (1 << 24) + 998) / 1000));
-    CHECK(image_of(film).at(0, 0)[1] == float((2 + 499e-9) / 1000));
+    CHECK(film.image().at(0, 0)[0] == float((2.0 * (1 << 24) + 998) / 1000));
+    CHECK(film.image().at(0, 0)[1] == float((2 + 499e-9) / 1000));
 }
 
 // ---- Noise --------------------------------------------------------------------------------------
@@ -122,11 +130,10 @@ TEST_CASE("noise of few numbers, by hand") {
     // 1, 5, 3: mean 3, squared distances 8, twice as far in green.
     const auto noise = [](uint64_t n) {
         MeanFilm film({1, 1});
-        film.add_row(0, n, [](int, uint64_t i, uint32_t) {
+        whole_pass(film, n, [](int, int, uint64_t i, uint32_t) {
             const real x = real(i == 0 ? 1 : i == 1 ? 5 : 3);
             return rgb{x, 2 * x, 0};
         });
-        film.end_pass(n);
         return film.noise();
     };
     CHECK(noise(1) == std::vector<double>{0});
@@ -138,23 +145,30 @@ TEST_CASE("noise is the variance of the mean of independent samples, all channel
     // Pixel values u^2: variance of one sample 1/5 - 1/9 = 4/45, the same far from zero.
     MeanFilm film({400, 250});
     const uint64_t n = 7;  // uneven, in passes of 1, 2, 4
-    for (uint64_t pass : {1, 2, 4}) {
-        for (int y = 0; y < film.size.height; ++y)
-            film.add_row(y, pass, [&](int x, uint64_t i, uint32_t) {
-                const real u = to_unit(hash(hash(uint64_t(y), uint64_t(x)), i));
-                return rgb{u * u, 1000 + u * u, 0};
-            });
-        film.end_pass(pass);
-    }
+    for (uint64_t pass : {1, 2, 4})
+        whole_pass(film, pass, [&](int x, int y, uint64_t i, uint32_t) {
+            const real u = to_unit(hash(hash(uint64_t(y), uint64_t(x)), i));
+            return rgb{u * u, 1000 + u * u, 0};
+        });
     CHECK(film.samples() == n);
     Moments m;
     for (double v : film.noise()) m.add(v);
     EXPECT(oracle::expect_mean(2 * 4 / 45.0 / double(n), estimate(m, double(ulp))), 0.05);
     // No cancellation far from zero, no noise where there is none.
-    const MeanPixel& p = film.pixel(7, 0);
+    auto noise_of = [](auto value) {
+        MeanFilm one({1, 1});
+        whole_pass(one, 7, [&](int, int, uint64_t i, uint32_t) { return value(to_unit(mix(i))); });
+        return one.noise()[0];
+    };
+    const double near = noise_of([](real u) {
+        return rgb{u * u, 0, 0};
+    }),
+                 far = noise_of([](real u) {
+                     return rgb{0, 1000 + u * u, 0};
+                 });
     const double offset_error = sizeof(real) == 4 ? 0.02 : 1e-6;
-    CHECK(std::abs(p.m2[1] / p.m2[0] - 1) < offset_error);
-    CHECK(p.m2[2] == 0);
+    CHECK(std::abs(far / near - 1) < offset_error);
+    CHECK(noise_of([](real) { return rgb{1, 2, 3}; }) == 0);
 }
 
 // ---- Sets of samples ----------------------------------------------------------------------------
@@ -167,11 +181,7 @@ rgb numbered(int x, int y, uint64_t i, uint32_t set) {
     return {to_unit(bits), to_unit(mix(bits)), real(set)};
 }
 
-void add(MeanFilm& film, uint64_t n) {
-    for (int y = 0; y < film.size.height; ++y)
-        film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) { return numbered(x, y, i, set); });
-    film.end_pass(n);
-}
+void add(MeanFilm& film, uint64_t n) { whole_pass(film, n, numbered); }
 
 const std::vector<Sets> of_four_pixels = {{1, 0}, {3, 0}, {1, 0.25}, {2, 0}};
 
@@ -190,7 +200,7 @@ TEST_CASE("a pixel is the mean of its sets that are shown, whenever they were ad
         CHECK(film.sets_per_pixel() == 2);  // (1 + 3 + 2 + 2) / 4
         const uint64_t n = before + 3;
         CHECK(film.samples() == n);
-        const Image image = image_of(film);
+        const Image& image = film.image();
         for (size_t i = 0; i < 4; ++i) {
             const uint32_t shown = of_four_pixels[i].shown;
             CHECK(film.sets(i).count() == std::vector<uint32_t>{1, 3, 2, 2}[i]);
@@ -211,32 +221,32 @@ TEST_CASE("a pixel is the mean of its sets that are shown, whenever they were ad
 TEST_CASE("until the others have caught up, a pixel is its first set") {
     MeanFilm film({2, 2});
     add(film, 5);
-    const Image one = image_of(film);
+    const Image one = film.image();
     film.add_sets(of_four_pixels);
     CHECK(!film.others_are_complete());
-    CHECK(image_of(film).pixels == one.pixels);
-    film.add_row(0, 0, [](int, uint64_t, uint32_t) { return rgb{9, 9, 9}; });  // and no more
-    CHECK(image_of(film).pixels == one.pixels);
+    CHECK(film.image().pixels == one.pixels);
+    film.begin_pass(0);
+    add_blocks(film, 0, 2, 0, numbered);  // and no more
+    CHECK(film.image().pixels == one.pixels);
     add(film, 0);
     CHECK(film.others_are_complete());
-    CHECK(image_of(film).pixels != one.pixels);
-    CHECK(image_of(film).pixels[0] == one.pixels[0]);
+    CHECK(film.image().pixels != one.pixels);
+    CHECK(film.image().pixels[0] == one.pixels[0]);
 }
 
-TEST_CASE("one set each is the film without sets, bit for bit; noise is that of the first set") {
-    MeanFilm plain({2, 2}), one({2, 2}), more({2, 2});
+TEST_CASE("one set each is the film without sets, bit for bit") {
+    MeanFilm plain({2, 2}), one({2, 2});
     one.add_sets(std::vector<Sets>(4, {1, 0}));
-    more.add_sets(of_four_pixels);
-    for (MeanFilm* film : {&plain, &one, &more})
+    for (MeanFilm* film : {&plain, &one})
         for (uint64_t n : {1, 6, 4}) add(*film, n);
-    CHECK(image_of(one).pixels == image_of(plain).pixels);
-    CHECK(more.noise() == plain.noise());
+    CHECK(one.image().pixels == plain.image().pixels);
+    CHECK(one.terms().norm2 == plain.terms().norm2);
 }
 
 TEST_CASE("of samples that do not fit the first by sample, then by set is told, with its set") {
     MeanFilm film({2, 1});
     film.add_sets({{3, 0}, {3, 0}});
-    film.add_row(0, 4, [](int x, uint64_t i, uint32_t set) {
+    add_blocks(film, 0, 2, 4, [](int x, int, uint64_t i, uint32_t set) {
         const bool bad = i == 2 ? set > 0 && x == 2 - int(set) : i == 3 && set == 0;
         return rgb{bad ? real(NAN) : 1, 1, 1};
     });

@@ -1,4 +1,4 @@
-// film/passes_test.cpp  when to stop, and rows by several threads
+// film/passes_test.cpp  when to stop, and work by several threads
 #include "film/passes.h"
 
 #include <doctest/doctest.h>
@@ -48,50 +48,63 @@ TEST_CASE("passes are whole grids, and shrink when samples take longer") {
 }
 
 TEST_CASE("an interrupted pass is told to be incomplete") {
-    auto row = [](int y) { interrupted = y == 1; };
-    CHECK(!in_parallel(100, 1, row, [](double) {}));
+    auto work = [](size_t k) { interrupted = k == 1; };
+    CHECK(!in_parallel(100, 1, work, [](double) {}));
     interrupted = 0;
 }
 
-TEST_CASE("a last row that is cut short is no end of the pass") {
-    auto row = [](int y) { interrupted = y == 9; };
-    CHECK(!in_parallel(10, 1, row, [](double) {}));
+TEST_CASE("last work that is cut short is no end of the pass") {
+    auto work = [](size_t k) { interrupted = k == 9; };
+    CHECK(!in_parallel(10, 1, work, [](double) {}));
     interrupted = 0;
 }
 
-TEST_CASE("what a row throws reaches the caller, and nobody begins another row") {
+TEST_CASE("work that nobody waits for any more leaves its thread, and is no failure") {
+    std::atomic<int> begun = 0;
+    auto work = [&](size_t k) {
+        ++begun;
+        if (k != 5) return;
+        interrupted = SIGINT;
+        throw Interrupted();
+    };
+    CHECK(!in_parallel(1 << 20, 1, work, [](double) {}));
+    interrupted = 0;
+    CHECK(begun == 6);
+}
+
+TEST_CASE("what work throws reaches the caller, and nobody begins another piece") {
     for (unsigned threads : {1u, 3u}) {
-        std::atomic<int> rows = 0;
-        auto row = [&](int y) {
-            ++rows;
-            if (y == 5) throw std::bad_alloc();
+        std::atomic<int> begun = 0;
+        auto work = [&](size_t k) {
+            ++begun;
+            if (k == 5) throw std::bad_alloc();
         };
-        CHECK_THROWS_AS(in_parallel(1 << 20, threads, row, [](double) {}), std::bad_alloc);
-        CHECK(rows < 1 << 20);
+        CHECK_THROWS_AS(in_parallel(1 << 20, threads, work, [](double) {}), std::bad_alloc);
+        CHECK(begun < 1 << 20);
     }
-    std::atomic<int> rows = 0;
-    auto slow = [&](int) {
-        ++rows;
+    std::atomic<int> begun = 0;
+    auto slow = [&](size_t) {
+        ++begun;
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
     };
     auto meanwhile = [](double) { throw std::bad_alloc(); };
     CHECK_THROWS_AS(in_parallel(100, 1, slow, meanwhile), std::bad_alloc);
-    CHECK(rows < 100);
+    CHECK(begun < 100);
 }
 
-TEST_CASE("who waits is told what part of the rows is done") {
+TEST_CASE("who waits is told what part of the work is done") {
     std::atomic<int> calls = 0;
     std::vector<double> parts;
-    auto row = [&](int y) {
-        if (y != 3) return;
-        // The call under way may have looked before row 2 was done, the one after it has not.
+    auto work = [&](size_t k) {
+        if (k != 3) return;
+        // The call under way may have looked before piece 2 was done, the one after it has not.
         for (const int before = calls; calls < before + 2;) std::this_thread::yield();
     };
     auto meanwhile = [&](double part) {
         parts.push_back(part);
         ++calls;
     };
-    CHECK(in_parallel(4, 1, row, meanwhile));
+    CHECK(in_parallel(4, 1, work, meanwhile));
     REQUIRE(parts.size() >= 3);
     CHECK(parts[parts.size() - 2] == 0.75);
     CHECK(parts.back() == 1);
@@ -99,10 +112,9 @@ TEST_CASE("who waits is told what part of the rows is done") {
 
 TEST_CASE("progress is told in samples a pixel; a sample that is no number ends it at its pass") {
     struct Samples {
-        struct {
-            int height = 3;
-        } size;
         uint64_t n = 0, bad = 0;
+        size_t blocks() const { return 3; }
+        void begin_pass(uint64_t) {}
         uint64_t samples() const { return n; }
         uint64_t non_finite() const { return bad; }
         void end_pass(uint64_t more) { n += more; }
@@ -114,13 +126,13 @@ TEST_CASE("progress is told in samples a pixel; a sample that is no number ends 
     } progress;
     Samples film;
     render(
-        film, {{24, 0}, 8, 1}, [](int, uint64_t) {}, progress);  // 8, and twice as many
+        film, {{24, 0}, 8, 1}, [](size_t, uint64_t) {}, progress);  // 8, and twice as many
     CHECK(film.n == 24);
     CHECK(std::find(progress.shown.begin(), progress.shown.end(), 8) != progress.shown.end());
     CHECK(progress.shown.back() == 24);
     Samples broken;
     render(
-        broken, {{24, 0}, 8, 1}, [&](int, uint64_t n) { broken.bad = n == 16; }, progress);
+        broken, {{24, 0}, 8, 1}, [&](size_t, uint64_t n) { broken.bad = n == 16; }, progress);
     CHECK(broken.n == 8);
 }
 
@@ -128,14 +140,17 @@ namespace {
 
 // Counts, in passes, what is added to it.
 struct Counting {
-    struct {
-        int height = 2;
-    } size;
     uint64_t n = 0;
     std::vector<uint64_t> ends = {};  // of passes
+    uint64_t begun = 0;               // samples of the running pass
+    size_t blocks() const { return 2; }
     uint64_t samples() const { return n; }
     uint64_t non_finite() const { return 0; }
-    void end_pass(uint64_t more) { ends.push_back(n += more); }
+    void begin_pass(uint64_t more) { begun = more; }
+    void end_pass(uint64_t more) {
+        CHECK(more == begun);
+        ends.push_back(n += more);
+    }
 };
 
 struct Stopped {
@@ -150,7 +165,7 @@ TEST_CASE("a pass ends at the pause, whatever its size, and others do as they li
         Counting film;
         Stopped clock;
         render(
-            film, {{64, 0}, 1, 1, pause}, [](int, uint64_t) {}, clock);
+            film, {{64, 0}, 1, 1, pause}, [](size_t, uint64_t) {}, clock);
         CAPTURE(pause);
         CHECK(film.n == 64);
         CHECK(std::count(film.ends.begin(), film.ends.end(), pause) == (pause <= 64));
@@ -162,7 +177,7 @@ TEST_CASE("no pass brings more samples than the last look allows, but for whole 
     for (uint64_t period : {1, 6}) {
         Counting film;
         Stopped clock;
-        // Looks at 20, 50 and 51 samples.
+        // Asked before each pass; looks at 20, 50 and 51 samples.
         std::vector<uint64_t> seen;
         auto look = [&](const Counting& f) -> uint64_t {
             seen.push_back(f.samples());
@@ -171,12 +186,14 @@ TEST_CASE("no pass brings more samples than the last look allows, but for whole 
             return 0;
         };
         render(
-            film, {{0, 0}, period, 1}, [](int, uint64_t) {}, clock, look);
+            film, {{0, 0}, period, 1}, [](size_t, uint64_t) {}, clock, look);
         CAPTURE(period);
         auto ended_at = [&](uint64_t n) {
             return std::find(film.ends.begin(), film.ends.end(), n) != film.ends.end();
         };
-        CHECK(seen == film.ends);
+        std::vector<uint64_t> asked = {0};
+        asked.insert(asked.end(), film.ends.begin(), film.ends.end());
+        CHECK(seen == asked);
         CHECK(ended_at(period == 1 ? 20 : 24));
         CHECK(ended_at(period == 1 ? 50 : 54));
         CHECK(film.n == (period == 1 ? 51 : 54));
@@ -184,19 +201,19 @@ TEST_CASE("no pass brings more samples than the last look allows, but for whole 
     }
 }
 
-TEST_CASE("every row is rendered once, by any number of threads") {
-    for (int height : {1, 2, 100})
+TEST_CASE("every piece of work is done once, by any number of threads") {
+    for (size_t count : {size_t(1), size_t(2), size_t(100)})
         for (unsigned threads : {1u, 2u, 7u, 300u}) {
-            std::vector<std::atomic<int>> done(static_cast<size_t>(height));
+            std::vector<std::atomic<int>> done(count);
             std::atomic<bool> outside = false;
             double part = -1;
-            auto row = [&](int y) {
-                if (y < 0 || y >= height)
+            auto work = [&](size_t k) {
+                if (k >= count)
                     outside = true;
                 else
-                    ++done[size_t(y)];
+                    ++done[k];
             };
-            CHECK(in_parallel(height, threads, row, [&](double p) { part = p; }));
+            CHECK(in_parallel(count, threads, work, [&](double p) { part = p; }));
             CHECK_FALSE(outside);
             CHECK(part == 1);
             for (const auto& times : done) CHECK(times == 1);

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "base/moments.h"
-#include "film/film.h"
+#include "film/fill.h"
 #include "oracle/expect.h"
 
 namespace {
@@ -28,13 +28,21 @@ TEST_CASE("the mean around a pixel is that of its neighbours, of three in a corn
     const std::vector<double> v = {1,  2,   4,   //
                                    8,  16,  32,  //
                                    64, 128, 256};
-    CHECK(mean_around(v, {3, 3}, 1, 1) == (1 + 2 + 4 + 8 + 32 + 64 + 128 + 256) / 8.0);
-    CHECK(mean_around(v, {3, 3}, 0, 0) == (2 + 8 + 16) / 3.0);
-    CHECK(mean_around(v, {3, 3}, 2, 2) == (16 + 32 + 128) / 3.0);
-    CHECK(mean_around(v, {3, 3}, 1, 0) == (1 + 4 + 8 + 16 + 32) / 5.0);
-    CHECK(mean_around(v, {9, 1}, 8, 0) == 128);
-    CHECK(mean_around(v, {1, 9}, 0, 4) == (8 + 32) / 2.0);
-    CHECK(mean_around({5}, {1, 1}, 0, 0) == 0);
+    auto around = [&](Size size, int x, int y) {
+        return mean_around({size, 0, size.height, v}, x, y);
+    };
+    CHECK(around({3, 3}, 1, 1) == (1 + 2 + 4 + 8 + 32 + 64 + 128 + 256) / 8.0);
+    CHECK(around({3, 3}, 0, 0) == (2 + 8 + 16) / 3.0);
+    CHECK(around({3, 3}, 2, 2) == (16 + 32 + 128) / 3.0);
+    CHECK(around({3, 3}, 1, 0) == (1 + 4 + 8 + 16 + 32) / 5.0);
+    CHECK(around({9, 1}, 8, 0) == 128);
+    CHECK(around({1, 9}, 0, 4) == (8 + 32) / 2.0);
+    CHECK(mean_around({{1, 1}, 0, 1, {5}}, 0, 0) == 0);
+    // Rows 4 to 6 of a picture: what is not known of the others does not count.
+    auto of_rows = [&](int x, int y) { return mean_around({{3, 9}, 4, 3, v}, x, y); };
+    CHECK(of_rows(1, 5) == (1 + 2 + 4 + 8 + 32 + 64 + 128 + 256) / 8.0);
+    CHECK(of_rows(2, 6) == (16 + 32 + 128) / 3.0);
+    CHECK(of_rows(0, 4) == (2 + 8 + 16) / 3.0);
 }
 
 TEST_CASE(
@@ -169,20 +177,16 @@ TEST_CASE("sets by noise leave every pixel's mean unbiased, that of rare outlier
     for (uint64_t r = 0; r < 5000; ++r) {
         const uint64_t seed = hash(seed_here(), r);
         Film<MeanPixel> film(size);
-        auto add = [&](uint64_t n) {
-            for (int y = 0; y < 9; ++y)
-                film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
-                    const size_t pixel = size_t(9 * y + x);
-                    const real v = value(pixel, hash(hash(hash(seed, pixel), set), i));
-                    return rgb{v, v, v};
-                });
-            film.end_pass(n);
+        auto L = [&](int x, int y, uint64_t i, uint32_t set) {
+            const size_t pixel = size_t(9 * y + x);
+            const real v = value(pixel, hash(hash(hash(seed, pixel), set), i));
+            return rgb{v, v, v};
         };
-        add(samples_before_sets);
+        whole_pass(film, samples_before_sets, L);
         film.add_sets(sets_where_noise_is(film.noise(), size, seed));
-        add(0);
-        add(8);
-        const Image image = image_of(film);
+        whole_pass(film, 0, L);
+        whole_pass(film, 8, L);
+        const Image& image = film.image();
         outlier.add(double(image.pixels[middle][0]));
         neighbour.add(double(image.pixels[middle - 9][0]));
         double sum = 0;

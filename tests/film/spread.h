@@ -1,7 +1,7 @@
 // film/spread.h  images of films whose spread from seed to seed is known, or is measured
 #pragma once
 #include "base/moments.h"
-#include "film/film.h"
+#include "film/fill.h"
 
 // Two images of different seeds differ by both their errors, whatever bias they share: half the
 // mean square of their difference is what both state in the mean.
@@ -43,19 +43,13 @@ inline constexpr uint32_t by_noise = 0;
 // As renders do: in every pixel, or chosen by noise after some samples.
 template <class Pixel, class L>
 void fill(Film<Pixel>& film, uint32_t sets, uint64_t seed, uint64_t n, L sample) {
-    auto add = [&](uint64_t more) {
-        for (int y = 0; y < film.size.height; ++y)
-            film.add_row(y, more,
-                         [&](int x, uint64_t i, uint32_t set) { return sample(x, y, i, set); });
-        film.end_pass(more);
-    };
     if (sets != by_noise) film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets}));
-    add(samples_before_sets);
+    whole_pass(film, samples_before_sets, sample);
     if (sets == by_noise) {
         film.add_sets(sets_where_noise_is(film.noise(), film.size, seed));
-        add(0);
+        whole_pass(film, 0, sample);
     }
-    add(n - samples_before_sets);
+    whole_pass(film, n - samples_before_sets, sample);
 }
 
 // An image whose noise differs by 100 from left to right, smooth in places, with an edge in others.

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "film/fill.h"
+
 TEST_CASE("a curve is a power between its points, and goes on beyond them") {
     const Curve c{{8, 16, 32}, {1, 0.25, 0.125}};
     CHECK(c.at(8) == doctest::Approx(1));
@@ -16,10 +18,9 @@ TEST_CASE("a curve is a power between its points, and goes on beyond them") {
 TEST_CASE("an image by a rule: the mean of the sets that it shows; hidden ones are paid, too") {
     Film<MeanPixel> film({2, 1});
     film.add_sets({{3}, {2}});
-    film.add_row(0, 4, [](int x, uint64_t, uint32_t set) {
+    whole_pass(film, 4, [](int x, int, uint64_t, uint32_t set) {
         return rgb{real(10 * x + int(set)), 1, 0};
     });
-    film.end_pass(4);
     const Paid p = paid(film, {{2}, {1, 0.5}}, {3, 1});
     CHECK(p.image.pixels[0] == std::array<float, 3>{0.5f, 1, 0});
     CHECK(p.image.pixels[1] == std::array<float, 3>{10, 1, 0});
@@ -29,11 +30,9 @@ TEST_CASE("an image by a rule: the mean of the sets that it shows; hidden ones a
 
 TEST_CASE("all sets that any rule asks for, and two at least") {
     Film<MeanPixel> film({8, 8});
-    for (int y = 0; y < 8; ++y)
-        film.add_row(y, 16, [&](int x, uint64_t i, uint32_t) {
-            return real(i % 2) * (x < 2 ? rgb{50, 50, 50} : rgb{1, 1, 1});
-        });
-    film.end_pass(16);
+    whole_pass(film, 16, [&](int x, int, uint64_t i, uint32_t) {
+        return real(i % 2) * (x < 2 ? rgb{50, 50, 50} : rgb{1, 1, 1});
+    });
     const std::vector<Rule> rules = all_rules();
     const Union u = union_of(rules, film, 1);
     REQUIRE(u.by_rule.size() == rules.size());

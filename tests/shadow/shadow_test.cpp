@@ -3,7 +3,7 @@
 #include "shadow/shadow.h"
 
 #include "base/moments.h"
-#include "film/error.h"
+#include "film/fill.h"
 #include "oracle/expect.h"
 #include "shadow/population.h"
 #include "world/scene_file.h"
@@ -305,10 +305,8 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
 
 TEST_CASE("direct: a film of moments counts whole passes, and all samples of a set together") {
     oracle::Random random(oracle::seed_of("shadow film"));
-    Film<ShadowPixel> film({2, 2});
-    film.add_sets({{1, 0}, {2, 0}, {1, 0}, {1, 0.5}});
     std::array<std::array<ShadowMoments, 3>, 2> sets;
-    auto draw = [&](int x, int y, uint32_t set) {
+    auto draw = [&](int x, int y, uint64_t, uint32_t set) {
         ShadowSample sample{{1, 1, 1}, {}};
         for (size_t c = 0; c < 3; ++c) {
             auto& [U, w, wV] = sample.first;
@@ -321,20 +319,25 @@ TEST_CASE("direct: a film of moments counts whole passes, and all samples of a s
         }
         return sample;
     };
-    for (uint64_t n : {1, 3, 8}) {
-        for (int y = 0; y < 2; ++y)
-            film.add_row(y, n, [&](int x, uint64_t, uint32_t set) { return draw(x, y, set); });
-        film.end_pass(n);
-    }
-    // A pass that is not finished.
-    film.add_row(0, 1, [](int, uint64_t, uint32_t) {
-        return ShadowSample{{9, 9, 9}, {{9, 9, 9}, {9, 9, 9}, {9, 9, 9}}};
-    });
+    auto moments_of = [&](Film<ShadowPixel>& film) {
+        sets = {};
+        film.add_sets({{1, 0}, {2, 0}, {1, 0}, {1, 0.5}});
+        for (uint64_t n : {1, 3, 8}) whole_pass(film, n, draw);
+        // A pass that is not finished.
+        film.begin_pass(1);
+        add_blocks(film, 0, 2, 1, [](int, int, uint64_t, uint32_t) {
+            return ShadowSample{{9, 9, 9}, {{9, 9, 9}, {9, 9, 9}, {9, 9, 9}}};
+        });
+        return sets;
+    };
     for (Estimator e : {Estimator::ratio, Estimator::regression}) {
-        const Image variance = variance_of(film, value_in(film, e));
+        Film<ShadowPixel> values({2, 2}, {e}), variances({2, 2}, {e}, Shows::variances);
+        const auto of_values = moments_of(values), of_variances = moments_of(variances);
+        const Image &image = values.image(), &variance = variances.image();
         for (size_t c = 0; c < 3; ++c) {
-            const double a = estimate(e, sets[0][c]), b = estimate(e, sets[1][c]);
-            CHECK(double(image_of(film, e).at(1, 0)[c]) == doctest::Approx(1 + (a + b) / 2));
+            const double sum = estimate(e, of_values[0][c]) + estimate(e, of_values[1][c]);
+            CHECK(double(image.at(1, 0)[c]) == doctest::Approx(1 + sum / 2));
+            const double a = estimate(e, of_variances[0][c]), b = estimate(e, of_variances[1][c]);
             // (a - b)^2 / 2 is the variance of one of them, of which two are shown.
             CHECK(double(variance.at(1, 0)[c]) ==
                   doctest::Approx((a - b) * (a - b) / 4).epsilon(1e-4).scale(0));
@@ -345,15 +348,13 @@ TEST_CASE("direct: a film of moments counts whole passes, and all samples of a s
 
 TEST_CASE("sets that float cannot tell apart have a variance of their own") {
     // Samples 1 and 1 + 2^-23 of one set, of mean 1 + 2^-24, which float rounds to 1; 1 of another.
-    Film<ShadowPixel> film({1, 1});
+    Film<ShadowPixel> film({1, 1}, {Estimator::ratio}, Shows::variances);
     film.add_sets({{2, 0}});
-    film.add_row(0, 2, [](int, uint64_t i, uint32_t set) {
+    whole_pass(film, 2, [](int, int, uint64_t i, uint32_t set) {
         const real x = i == 1 && set == 0 ? 1 + std::ldexp(real(1), -23) : 1;
         return ShadowSample{{x, x, x}, {}};
     });
-    film.end_pass(2);
-    const Image variance = variance_of(film, value_in(film, Estimator::ratio));
-    CHECK(variance.at(0, 0)[0] == std::ldexp(1.0f, -48) / 4);
+    CHECK(film.image().at(0, 0)[0] == std::ldexp(1.0f, -48) / 4);
 }
 
 TEST_CASE("direct: the noise of a pixel is that of light and of shadows as if they were coins") {
@@ -364,11 +365,14 @@ TEST_CASE("direct: the noise of a pixel is that of light and of shadows as if th
     const uint64_t n = 16;
     for (int trial = 0; trial < 12000; ++trial) {
         ShadowPixel p;
+        double spread = 0;
         for (uint64_t i = 0; i < n; ++i) {
             const real w = real(0.5 + random()), V = random() < 0.25, rest = real(random());
-            p.add(i, {{rest, 0, 0}, {{1, 0, 0}, {w, 0, 0}, {w * V, 0, 0}}});
+            const ShadowSample sample{{rest, 0, 0}, {{1, 0, 0}, {w, 0, 0}, {w * V, 0, 0}}};
+            spread += p.spread(i, sample);
+            p.add(i, sample);
         }
-        noise.add(p.noise(n) * double(n));
+        noise.add(p.noise(n, spread) * double(n));
     }
     // R (1 - R) of R from n samples is smaller by R (1 - R) / n, and a little for the spread of w.
     const double R1R = 0.25 * 0.75, shadows = 13 / 12.0 * R1R * (1 - 1.1 / double(n));

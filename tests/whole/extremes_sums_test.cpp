@@ -1,6 +1,6 @@
 // whole/extremes_sums_test.cpp  numbers of paths, and sums over them
 #include "base/stats.h"
-#include "film/film.h"
+#include "film/fill.h"
 #include "path/sampler.h"
 #include "whole/extremes.h"
 
@@ -80,14 +80,13 @@ double merged_billion() {
 double billion_one_by_one() {
     Film<MeanPixel> film({1, 1});
     const real low = real(0.1), high = real(0.3);
-    film.add_row(0, 1000000000, [&](int, uint64_t i, uint32_t) {
+    whole_pass(film, 1000000000, [&](int, int, uint64_t i, uint32_t) {
         const real L = i % 2 ? high : low;
         return rgb{L, L, L};
     });
-    film.end_pass(1000000000);
     const double mean = (double(low) + double(high)) / 2, half = (double(high) - double(low)) / 2;
     // The image is stored as float: rounded once more, by 6e-8.
-    const double off = relative(image_of(film).at(0, 0)[0], mean);
+    const double off = relative(film.image().at(0, 0)[0], mean);
     return std::max(off, relative(film.noise()[0], 3 * half * half / (1e9 - 1)));
 }
 
@@ -101,11 +100,10 @@ double variance_far_from_zero() {
 // The same as radiance, in the film.
 double film_far_from_zero() {
     Film<MeanPixel> film({1, 1});
-    film.add_row(0, 100000, [](int, uint64_t i, uint32_t) {
+    whole_pass(film, 100000, [](int, int, uint64_t i, uint32_t) {
         const real L = real(1e8) + (i % 2 ? real(1) : real(-1));
         return rgb{L, L, L};
     });
-    film.end_pass(100000);
     return relative(film.noise()[0], 3 / (1e5 - 1));
 }
 

@@ -1,7 +1,7 @@
 // whole/stopping_test.cpp  --error stops at what was asked for, on films whose truth is known
 #include <cmath>
 
-#include "film/error.h"
+#include "film/fill.h"
 #include "oracle/expect.h"
 #include "path/sampler.h"
 
@@ -29,27 +29,22 @@ Stop stop_of(SamplerKind kind, uint64_t seed, double asked) {
     const Pattern pattern = make_pattern(kind, seed, 1, 0);
     Film<MeanPixel> film(size);
     auto add = [&](uint64_t n) {
-        for (int y = 0; y < size.height; ++y)
-            film.add_row(y, n, [&](int x, uint64_t i, uint32_t set) {
-                const uint64_t pixel = uint64_t(y) * uint64_t(size.width) + uint64_t(x);
-                return L(x, y, Sampler(pattern, pixel, i, set).get2(0));
-            });
-        film.end_pass(n);
+        whole_pass(film, n, [&](int x, int y, uint64_t i, uint32_t set) {
+            const uint64_t pixel = uint64_t(y) * uint64_t(size.width) + uint64_t(x);
+            return L(x, y, Sampler(pattern, pixel, i, set).get2(0));
+        });
     };
     add(samples_before_sets);
     film.add_sets(sets_where_noise_is(film.noise(), size, seed));
     add(0);
-    for (;;) {
-        const ImageError e = error_of(film, value_in(film));
-        const uint64_t more = samples_to_look(e, asked, film.samples());
-        if (more == 0) break;
-        add(more);
-    }
+    while (!is_small_enough(error_of(film), asked))
+        add(next_look(film.samples(), samples_before_sets, 1) - film.samples());
+    const Image& image = film.image();
     double square = 0, norm = 0;
     for (size_t i = 0; i < film.number_of_pixels(); ++i)
         for (size_t c = 0; c < 3; ++c) {
             const rgb f = truth(int(i % size_t(size.width)), int(i / size_t(size.width)));
-            square += std::pow(film.shown(i, c, value_in(film)) - double(f.*axis[c]), 2);
+            square += std::pow(double(image.pixels[i][c]) - double(f.*axis[c]), 2);
             norm += std::pow(double(f.*axis[c]), 2);
         }
     return {std::sqrt(square / norm) / asked, film.samples()};
