@@ -51,10 +51,11 @@ public:
     uint64_t next(uint64_t samples, double elapsed) {
         if (samples > 0) {
             const double took = elapsed - started_;
-            if (took < shortest) size_ *= 2;
+            const bool was_full = samples - before_ >= size_ * period_;  // others may cut it short
+            if (took < shortest && was_full) size_ *= 2;
             if (took > 2 * shortest) size_ = std::max<uint64_t>(1, size_ / 2);
         }
-        started_ = elapsed;
+        started_ = elapsed, before_ = samples;
         uint64_t periods = size_;
         if (target_.seconds > 0 && samples > 0) {
             const double left = target_.seconds - elapsed;
@@ -73,6 +74,7 @@ private:
     const uint64_t period_;
     uint64_t size_ = 1;  // periods a pass
     double started_ = 0;
+    uint64_t before_ = 0;  // samples
 };
 
 // ---- Threads ------------------------------------------------------------------------------------

@@ -47,6 +47,17 @@ TEST_CASE("passes are whole grids, and shrink when samples take longer") {
     CHECK(last == 18);  // 0.18 s
 }
 
+TEST_CASE("passes that others cut short do not let the next ones grow without end") {
+    Schedule schedule({}, 1);
+    uint64_t samples = 0;
+    for (int pass = 0; pass < 200; ++pass) {
+        const uint64_t n = schedule.next(samples, 1e-6 * pass);
+        CHECK(n > 0);
+        CHECK(n <= 4);
+        samples += std::min<uint64_t>(n, 2);  // there is a look
+    }
+}
+
 TEST_CASE("an interrupted pass is told to be incomplete") {
     auto work = [](size_t k) { interrupted = k == 1; };
     CHECK(!in_parallel(100, 1, work, [](double) {}));
