@@ -154,11 +154,11 @@ private:
     void choose_sets(uint64_t n) {
         if (film_.has_sets() || n < 2 || interrupted || film_.non_finite() > 0) return;
         const Part& part = job_.part;
-        const auto [around, elsewhere] = noise(n);
+        const auto seen = noise(n);
         if (interrupted) return;
         auto by = [&](const Allocation& a) {
-            return sets_where_noise_is(around, part.first_row, part.rows, elsewhere, job_.o.seed,
-                                       a);
+            return sets_where_noise_is(seen.first, part.first_row, part.rows, seen.second,
+                                       job_.o.seed, a);
         };
         std::vector<Sets> sets = by({});
         // If hardly any time is left, those alone that measure.
