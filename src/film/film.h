@@ -303,7 +303,7 @@ private:
         };
         put(c.first, state_.first, blocks_.begin(b));
         put(c.others, state_.others, state_.others_of[b]);
-        put(c.spread, state_.spread, blocks_.begin(b));
+        if (has_spread()) put(c.spread, state_.spread, blocks_.begin(b));
     }
 
     // Answers false once `interrupted`.
