@@ -4,7 +4,9 @@
 // emitter is seen, theta from the receiver's normal.  A diffuse surface sends rho / pi of it to the
 // eye.  What is below the receiver's horizon counts as clipped away.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <optional>
 
 #include "base/vec.h"
 
@@ -106,4 +108,75 @@ inline real irradiance_polygon(const Polygon& whole) {
     }
     if (p.n < 3) return 0;
     return side2 < sqr(small) * nearest2 ? irradiance_by_area(p) : irradiance_lambert(p);
+}
+
+// ---- Needles ----------------------------------------------------------------------------------
+
+// x - sin(x) for x >= 0 without cancellation.
+inline real x_minus_sin(real x) {
+    if (x > real(0.5)) return x - std::sin(x);
+    real sum = 0, term = x * x * x / 6;
+    for (real k = 4; std::abs(term) > sum * ulp / 4; k += 2) {
+        sum += term;
+        term *= -x * x / (k * (k + 1));
+    }
+    return sum;
+}
+
+// A triangle that widens from a to a side with the middle m = a + d, short beside its distance: the
+// irradiance over twice its area times the distance of its plane is the integral of s z / r^4 for s
+// from 0 to 1 along a + s d, where that is above the horizon.  By angles psi from a towards m,
+// whose directions have z = a_z / |a| cos(psi) + t_z sin(psi), it is that of
+// sin(psi) z |a| / |a x d|^2.
+inline real along_needle(vec3 a, vec3 d) {
+    const real a2 = dot(a, a), ad = dot(a, d), r = std::sqrt(a2), crossed = length(cross(a, d));
+    if (!(crossed > 0)) return 0;  // seen from its end
+    const real m_z = a.z + d.z, a_z = a.z / r, t_z = (d.z * a2 - a.z * ad) / (r * crossed);
+    if (a.z <= 0 && m_z <= 0) return 0;
+    const real horizon = a.z < 0 ? std::atan2(-a_z, t_z) : std::atan2(a_z, -t_z);
+    auto twice_integral = [&](real psi) {  // from 0
+        return a_z * sqr(std::sin(psi)) + t_z * x_minus_sin(2 * psi) / 2;
+    };
+    const real lower = a.z < 0 ? twice_integral(horizon) : 0;
+    const real upper = twice_integral(m_z < 0 ? horizon : std::atan2(crossed, a2 + ad));
+    return (upper - lower) * r / (2 * sqr(crossed));
+}
+
+// The triangle a, a + u, a + v if it is thin beside its distance, by the lines in its middle: its
+// error is the square of the angle of its height.  A sum over edges would lose what the edges have
+// in common, and corners, rounded to ulp of their distance, the height itself.
+inline std::optional<real> irradiance_needle(vec3 a, vec3 u, vec3 v) {
+    constexpr real thin = sizeof(real) == 4 ? real(4e-3) : real(6e-6);  // ulp^(1/3)
+    const vec3 w = v - u, twice_area = cross(u, v);
+    const real uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
+    // From one end of its longest side, that side and the one to the third corner.
+    vec3 p = a, e = u, f = v;
+    if (ww > uu && ww > vv) p = a + u, e = w, f = -u;
+    if (vv >= uu && vv >= ww) e = v, f = u;
+    const real ee = dot(e, e), nearest = std::clamp(-dot(p, e) / ee, real(0), real(1));
+    const real distance = length(p + e * nearest), height = length(twice_area / std::sqrt(ee));
+    if (!(height < thin * distance)) return {};
+    const real foot = dot(e, f) / ee, unit_ = 1 / distance;  // of the height on that side
+    p = p * unit_, e = e * unit_, f = f * unit_;
+    const vec3 to_middle = (f + e * foot) / 2;  // of the height
+    return std::abs(dot(twice_area * unit_ * unit_, p)) *
+           (foot * along_needle(p, to_middle) + (1 - foot) * along_needle(p + e, to_middle - e));
+}
+
+// ---- Triangles and parallelograms -------------------------------------------------------------
+
+// By a corner and two edges.
+inline real irradiance_triangle(vec3 a, vec3 u, vec3 v) {
+    if (const auto thin = irradiance_needle(a, u, v)) return *thin;
+    Polygon p;
+    for (vec3 corner : {a, a + u, a + v}) p.add(corner);
+    return irradiance_polygon(p);
+}
+
+inline real irradiance_quad(vec3 a, vec3 u, vec3 v) {
+    const auto half = irradiance_needle(a, u, v), other = irradiance_needle(a + u + v, -u, -v);
+    if (half && other) return *half + *other;
+    Polygon p;
+    for (vec3 corner : {a, a + u, a + u + v, a + v}) p.add(corner);
+    return irradiance_polygon(p);
 }

@@ -39,12 +39,8 @@ inline rgb unshadowed_light(const Light& l, const Surface& x, const Frame& local
     }
     if (!l.twosided && dot(cross(l.u, l.v), p) >= 0) return {};  // its dark side
     const vec3 a = local.to_local(p), u = local.to_local(l.u), v = local.to_local(l.v);
-    Polygon corners;
-    corners.add(a);
-    corners.add(a + u);
-    if (l.kind == Light::Kind::quad) corners.add(a + u + v);
-    corners.add(a + v);
-    return l.L * (irradiance_polygon(corners) / pi);
+    const bool quad = l.kind == Light::Kind::quad;
+    return l.L * ((quad ? irradiance_quad(a, u, v) : irradiance_triangle(a, u, v)) / pi);
 }
 
 inline rgb unshadowed(const Scene& scene, const Material& m, const Surface& x, const Frame& local) {

@@ -117,6 +117,10 @@ TEST_CASE("direct: U is the mean of w, for every light, tilt, side and way to sa
          "light lamp 2 1 1\ntriangle 1 0 0  1 1.5 -0.4  0.7 0.4 0.9  lamp\n",
          {0, 1, 0},
          true},
+        {"a tube",
+         "light lamp 1e6 1e6 1e6\nquad -.4 1 0  .8 0 0  0 0 1e-6  lamp\n",
+         {0, 1, 0.1},
+         false},
         {"many", many, {0, 1, 0.2}, false},
         {"many by angle", many, {0.2, 1, 0.2}, true},
     };
