@@ -47,17 +47,6 @@ TEST_CASE("passes are whole grids, and shrink when samples take longer") {
     CHECK(last == 18);  // 0.18 s
 }
 
-TEST_CASE("passes that others cut short do not let the next ones grow without end") {
-    Schedule schedule({}, 1);
-    uint64_t samples = 0;
-    for (int pass = 0; pass < 200; ++pass) {
-        const uint64_t n = schedule.next(samples, 1e-6 * pass);
-        CHECK(n > 0);
-        CHECK(n <= 4);
-        samples += std::min<uint64_t>(n, 2);  // there is a look
-    }
-}
-
 TEST_CASE("an interrupted pass is told to be incomplete") {
     auto work = [](size_t k) { interrupted = k == 1; };
     CHECK(!in_parallel(100, 1, work, [](double) {}));
@@ -210,6 +199,18 @@ TEST_CASE("no pass brings more samples than the last look allows, but for whole 
         CHECK(film.n == (period == 1 ? 51 : 54));
         for (uint64_t end : film.ends) CHECK(end % period == 0);
     }
+}
+
+TEST_CASE("many passes that looks cut short do not end a render") {
+    Counting film;
+    Stopped clock;
+    auto look = [](const Counting& f) -> uint64_t { return f.samples() < 1000 ? 1 : 0; };
+    render(
+        film, {{5000, 0}, 1, 1}, [](size_t, uint64_t) {}, clock, look);
+    CHECK(film.n == 1000);
+    // And those after them are short enough to be interrupted.
+    Schedule schedule({}, 1);
+    for (uint64_t n = 0; n < 1000; ++n) CHECK(schedule.next(n, 0) <= 2);
 }
 
 TEST_CASE("every piece of work is done once, by any number of threads") {

@@ -382,14 +382,18 @@ TEST_CASE("direct: the noise of a pixel is that of light and of shadows as if th
     const double R1R = 0.25 * 0.75, shadows = 13 / 12.0 * R1R * (1 - 1.1 / double(n));
     EXPECT(oracle::expect_mean(1 / 12.0 + shadows, estimate(noise, double(ulp))), 0.02);
     ShadowPixel lit, dark;
+    double of_lit = 0, of_dark = 0;  // how far their light without shadows spreads
     for (uint64_t i = 0; i < n; ++i) {
         const real w = real(0.5 + random());
-        lit.add(i, {{}, {{1, 1, 1}, {w, w, w}, {w, w, w}}});
-        dark.add(i, {{}, {{1, 1, 1}, {w, w, w}, {}}});
+        const ShadowSample seen{{}, {{1, 1, 1}, {w, w, w}, {w, w, w}}},
+            hidden{{}, {{1, 1, 1}, {w, w, w}, {}}};
+        of_lit += lit.spread(i, seen), of_dark += dark.spread(i, hidden);
+        lit.add(i, seen);
+        dark.add(i, hidden);
     }
-    CHECK(lit.noise(n) == 0);
-    CHECK(dark.noise(n) == 0);
-    CHECK(ShadowPixel().noise(1) == 0);
+    CHECK(lit.noise(n, of_lit) == 0);
+    CHECK(dark.noise(n, of_dark) == 0);
+    CHECK(ShadowPixel().noise(1, 0) == 0);
 }
 
 TEST_CASE("direct: a sample whose moments are no numbers does not fit a film") {
