@@ -38,10 +38,11 @@ inline std::vector<std::string> outputs_of(const CommonOptions& o, const std::st
     if (outputs.empty()) {
         const std::string stem = "out/" + std::filesystem::path(o.scene).stem().string() + suffix;
         outputs = {stem + ".png", stem + ".pfm"};
-        if (std::filesystem::create_directories("out", failed), failed)
-            throw UserError("out: cannot make this directory: " + failed.message());
     }
     check_size(outputs, size);
+    if (o.outputs.empty())
+        if (std::filesystem::create_directories("out", failed), failed)
+            throw UserError("out: cannot make this directory: " + failed.message());
     check_names(outputs, o.stats, inputs);
     for (const std::string& path : outputs) check_writable(path);
     if (!o.stats.empty()) check_writable(o.stats);

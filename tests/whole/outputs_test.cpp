@@ -75,6 +75,19 @@ TEST_CASE("two things never get one file, nor does anything the file of the scen
     expect_success(folder, "penumbra", split("--spp 1 -o a.pfm -o ./a.pfm -o a.pfm file.scene"));
 }
 
+TEST_CASE("a picture too large for a PNG is refused before it is rendered; a PFM has room for it") {
+    const Folder folder;
+    folder.write("file.scene", good);
+    const std::string why = "32768x16384 pixels are too many for a PNG, which holds 477218586; say";
+    const std::string line = "--size 32768x16384 file.scene";
+    // build/penumbra says the same, on a machine that has memory for the film.
+    expect_refusal(folder, "radiosity", split("-o a.pfm -o a.png " + line), "a.png: " + why);
+    expect_refusal(folder, "radiosity", split(line), "out/file-radiosity.png: " + why);
+    // Nothing is wrong with the size of a PFM, so that another thing is.
+    expect_refusal(folder, "radiosity", split("-o file.scene/a.pfm " + line),
+                   "file.scene/a.pfm: cannot write: ");
+}
+
 TEST_CASE("what stdout does not take is an error") {
     const Folder folder;
     folder.write("file.scene", good);
