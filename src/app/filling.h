@@ -179,15 +179,15 @@ private:
             return scouted(n, size_t(to - from) * width,
                            [&](size_t k) { return size_t(from) * width + k; });
         };
-        NoiseOfRows around{picture, first, end - first, scouted_rows(first, part.first_row)};
-        auto append = [&](const std::vector<double>& more) {
-            around.noise.insert(around.noise.end(), more.begin(), more.end());
-        };
         const int below = part.first_row + part.rows;
-        around.noise.reserve(size_t(end - first) * width);
-        append(needs_scouts() ? scouted_rows(part.first_row, below) : film_.noise());
-        append(scouted_rows(below, end));
-        return {std::move(around), elsewhere(around, n)};
+        NoiseOfRows around{
+            picture, first, end - first,
+            needs_scouts() ? scouted_rows(part.first_row, below) : film_.noise(2 * width)};
+        const auto next = scouted_rows(below, end), before = scouted_rows(first, part.first_row);
+        around.noise.insert(around.noise.end(), next.begin(), next.end());
+        around.noise.insert(around.noise.begin(), before.begin(), before.end());
+        NoiseElsewhere known = elsewhere(around, n);
+        return {std::move(around), std::move(known)};
     }
     NoiseElsewhere elsewhere(const NoiseOfRows& around, uint64_t n) {
         const Survey survey(around.picture);

@@ -204,10 +204,10 @@ public:
         state_.samples_of_others = 0;
     }
 
-    // What sets_where_noise_is() is told.
-    std::vector<double> noise() const {
+    // What sets_where_noise_is() is told; with room for that of more pixels.
+    std::vector<double> noise(size_t more = 0) const {
         std::vector<double> noise;
-        noise.reserve(number_of_pixels());
+        noise.reserve(number_of_pixels() + more);
         for (size_t i = 0; i < number_of_pixels(); ++i)
             noise.push_back(state_.first[i].noise(samples(), state_.spread[i]));
         return noise;
