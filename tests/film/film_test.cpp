@@ -1,6 +1,7 @@
 // film/film_test.cpp  sums, variances and counts of samples
 #include "film/film.h"
 
+#include <bit>
 #include <map>
 
 #include "base/moments.h"
@@ -254,4 +255,139 @@ TEST_CASE("of samples that do not fit the first by sample, then by set is told, 
     CHECK(film.first_non_finite().sample == 2);
     CHECK(film.first_non_finite().set == 1);
     CHECK(film.first_non_finite().x == 1);
+}
+
+// ---- Blocks, and passes that are cut short ------------------------------------------------------
+
+TEST_CASE("a film keeps 24 bytes of a set of samples, and 8 of how many there are") {
+    CHECK(sizeof(MeanPixel) == 24);
+    CHECK(sizeof(Sets) == 8);
+}
+
+TEST_CASE("blocks are all pixels, each once; a row and a small picture have work for all threads") {
+    for (Size size : {Size{1, 1}, Size{16384, 1}, Size{33, 17}, Size{2048, 1024}, Size{1, 509}}) {
+        const Blocks blocks{size_t(size.width) * size_t(size.height)};
+        CAPTURE(blocks.pixels);
+        size_t next = 0;
+        for (size_t b = 0; b < blocks.count(); ++b) {
+            CHECK(blocks.begin(b) == next);
+            CHECK(blocks.end(b) > next);
+            CHECK(blocks.end(b) - next <= 256);
+            next = blocks.end(b);
+        }
+        CHECK(next == blocks.pixels);
+        CHECK(blocks.count() >= std::min<size_t>(blocks.pixels, 256));
+    }
+}
+
+TEST_CASE("a pass takes each sample of each pixel once") {
+    for (Size size : {Size{1, 1}, Size{2000, 1}, Size{33, 17}, Size{1, 509}}) {
+        MeanFilm film(size);
+        std::vector<int> taken(film.number_of_pixels());
+        uint64_t out_of_order = 0;
+        for (uint64_t n : {2, 3})
+            whole_pass(film, n, [&](int x, int y, uint64_t i, uint32_t set) {
+                int& of_pixel = taken[size_t(y) * size_t(size.width) + size_t(x)];
+                out_of_order += i != uint64_t(of_pixel) || set != 0;
+                ++of_pixel;
+                return rgb{1, 1, 1};
+            });
+        CHECK(taken == std::vector<int>(taken.size(), 5));
+        CHECK(out_of_order == 0);
+    }
+}
+
+namespace {
+
+// All that a film tells, to the bit.
+std::vector<uint64_t> told(MeanFilm& film) {
+    std::vector<uint64_t> bits = {film.samples(), film.others_are_complete()};
+    for (const Pixel& pixel : film.image().pixels)
+        for (float channel : pixel) bits.push_back(std::bit_cast<uint32_t>(channel));
+    const ErrorTerms t = film.terms();
+    for (double x : {t.sum[0], t.sum[1], t.sum[2], t.norm2, t.square[0], t.square[1], t.square[2],
+                     t.terms2, t.greatest, film.sets_per_pixel()})
+        bits.push_back(std::bit_cast<uint64_t>(x));
+    bits.insert(bits.end(), {t.pixels, t.measured});
+    return bits;
+}
+
+// How a pass may be cut short, in the middle of a pixel.
+enum class Cut { by_signal, by_leaving, by_failure };
+
+void cut_short(MeanFilm& film, uint64_t n, size_t blocks, Cut cut) {
+    film.begin_pass(n);
+    add_blocks(film, 0, blocks, n, numbered);
+    uint64_t taken = 0;
+    auto stopped = [&](int x, int y, uint64_t i, uint32_t set) {
+        if (++taken == 8) {
+            if (cut == Cut::by_failure) throw std::bad_alloc();
+            interrupted = SIGINT;
+            if (cut == Cut::by_leaving) throw Interrupted();
+        }
+        return numbered(x, y, i, set);
+    };
+    try {
+        film.add_block(blocks, n, stopped);
+    } catch (const Interrupted&) {
+        CHECK(cut == Cut::by_leaving);
+    } catch (const std::bad_alloc&) {
+        CHECK(cut == Cut::by_failure);
+    }
+    interrupted = 0;
+    REQUIRE(taken == 8);
+}
+
+std::vector<Sets> of_all_kinds(size_t pixels) {
+    std::vector<Sets> sets(pixels);
+    for (size_t i = 0; i < pixels; ++i) sets[i] = of_four_pixels[i % 4];
+    return sets;
+}
+
+}  // namespace
+
+TEST_CASE("a pass that is cut short leaves image and error as they were; begun anew it goes on") {
+    // Blocks of four pixels, the last of one.
+    const Size size{1025, 1};
+    struct Course {
+        std::vector<uint64_t> before;  // passes, up to the sets if there are any
+        int sets;                      // -1: none; 0: none of their samples; 1: a pass of them
+        uint64_t n;                    // of the pass that is cut short
+    };
+    const std::vector<Course> courses = {{{}, -1, 4},    {{}, 0, 4},     {{2, 3}, -1, 4},
+                                         {{2, 3}, 0, 0}, {{2, 3}, 0, 2}, {{2, 3}, 1, 4}};
+    for (Shows shows : {Shows::values, Shows::variances})
+        for (const Course& course : courses)
+            for (Cut cut : {Cut::by_signal, Cut::by_leaving, Cut::by_failure}) {
+                INFO("passes ", course.before.size(), ", sets ", course.sets, ", samples ",
+                     course.n, ", cut ", int(cut));
+                MeanFilm film(size, {}, shows), whole(size, {}, shows);
+                for (MeanFilm* f : {&film, &whole}) {
+                    REQUIRE(f->blocks() == 257);
+                    for (uint64_t n : course.before) add(*f, n);
+                    if (course.sets >= 0) f->add_sets(of_all_kinds(1025));
+                    if (course.sets > 0) add(*f, 1);
+                }
+                CHECK(!film.unfinished_pass());
+                const std::vector<uint64_t> before = told(film);
+                cut_short(film, course.n, 100, cut);
+                CHECK(told(film) == before);
+                CHECK(film.unfinished_pass() == course.n);
+                cut_short(film, course.n, 200, cut);  // and once more
+                CHECK(told(film) == before);
+                // What blocks have they do not take again.
+                film.begin_pass(course.n);
+                add_blocks(film, 0, 200, course.n, [](int, int, uint64_t, uint32_t) {
+                    FAIL_CHECK("a sample that the film had");
+                    return rgb{};
+                });
+                add_blocks(film, 200, 257, course.n, numbered);
+                film.end_pass(course.n);
+                CHECK(!film.unfinished_pass());
+                add(whole, course.n);
+                CHECK(told(film) == told(whole));
+                CHECK(told(film) != before);
+                for (MeanFilm* f : {&film, &whole}) add(*f, 3);
+                CHECK(told(film) == told(whole));
+            }
 }

@@ -158,6 +158,126 @@ TEST_CASE("all of up to 256 pixels are measured, and none that shows several set
     CHECK(several < 300);
 }
 
+// ---- Large pictures, and parts of them ----------------------------------------------------------
+
+TEST_CASE(
+    "a survey is of all pixels of a small picture, of one in each equal part of a large one") {
+    for (Size size : {Size{1, 1}, Size{3, 5}, Size{256, 128}}) {
+        const Survey survey(size);
+        const size_t all = size_t(size.width) * size_t(size.height);
+        REQUIRE(survey.count() == all);
+        size_t wrong = 0;
+        for (size_t i = 0; i < all; ++i)
+            wrong += survey.pixel(i) != i || survey.nearest(i) != i || !survey.has(i);
+        CHECK(wrong == 0);
+    }
+    struct Case {
+        Size size;
+        size_t most;
+    };
+    for (const auto& [size, most] :
+         {Case{{31, 17}, 100}, Case{{7, 9}, 62}, Case{{10, 10}, 99}, Case{{127, 3}, 1},
+          Case{{181, 182}, 32768}, Case{{16385, 7}, 32768}, Case{{1021, 769}, 1000}}) {
+        const Survey survey(size, most);
+        const size_t all = size_t(size.width) * size_t(size.height);
+        REQUIRE(survey.count() == most);
+        // Parts in order, of a size that differs by one at most; each has one pixel.
+        size_t begin = 0, wrong = 0;
+        for (size_t k = 0; k < most; ++k) {
+            const size_t end = begin + all / most + (k < all % most), its = survey.pixel(k);
+            wrong += its < begin || its >= end;
+            for (size_t i = begin; i < end; ++i)
+                wrong += survey.nearest(i) != k || survey.has(i) != (i == its);
+            begin = end;
+        }
+        CAPTURE(all);
+        CHECK(begin == all);
+        CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("a survey finds pixels by chance, wherever they are in their parts") {
+    // 32768 parts of 16 pixels.
+    const Size size{1024, 512};
+    const Survey survey(size);
+    std::vector<double> places(16), noise, of_all(1024 * 512);
+    for (size_t k = 0; k < survey.count(); ++k) ++places[survey.pixel(k) % 16];
+    EXPECT(oracle::expect_counts(places, std::vector<double>(16, 1 / 16.0)), 1);
+    // So that noise which hangs on the column, as of a picket fence, is found as it is.
+    Moments found;
+    for (size_t k = 0; k < survey.count(); ++k) found.add(survey.pixel(k) % 4 == 0);
+    EXPECT(oracle::expect_mean(0.25, estimate(found)), 0.08);
+    // Neighbouring parts do not agree on a place.
+    int alike = 0;
+    for (size_t k = 0; k + 1 < survey.count(); ++k)
+        alike += survey.pixel(k + 1) == survey.pixel(k) + 16;
+    CHECK(std::abs(alike - 32767 / 16.0) < 4.9 * std::sqrt(32767 / 16.0));
+}
+
+TEST_CASE("in a large picture, too, a pixel's own samples have no say in its sets") {
+    const Size size{300, 200};
+    const Survey survey(size);
+    REQUIRE(survey.count() == 32768);
+    std::vector<double> noise(60000);
+    Rng rng{seed_here()};
+    for (double& v : noise) v = std::exp(2 * double(rng.uniform()));
+    const size_t surveyed = survey.pixel(survey.nearest(31234));
+    REQUIRE(!survey.has(surveyed + 1));
+    for (size_t i : {surveyed, surveyed + 1}) {
+        std::vector<uint32_t> own, others;
+        const double before = noise[i];
+        for (double v : {0.0, 1e4, 1e200}) {
+            noise[i] = v;
+            const auto sets = sets_where_noise_is(noise, size, 3);
+            own.push_back(sets[i].shown);
+            others.push_back(uint32_t(std::count_if(sets.begin(), sets.end(),
+                                                    [](const Sets& s) { return s.shown > 1; })));
+        }
+        noise[i] = before;
+        CHECK(own == std::vector<uint32_t>(3, own[0]));
+        CHECK((others[2] < others[0] / 2) == survey.has(i));  // all is quiet beside it
+    }
+}
+
+TEST_CASE("the sets of some rows are those of the whole picture, to the bit") {
+    struct Case {
+        Size size;
+        std::vector<int> bands;  // where they begin
+    };
+    for (const auto& [size, bands] : {Case{{37, 23}, {0, 1, 2, 11, 22}}, Case{{1, 64}, {0, 31, 63}},
+                                      Case{{64, 1}, {0}}, Case{{300, 200}, {0, 99, 100, 199}}}) {
+        const size_t width = size_t(size.width), pixels = width * size_t(size.height);
+        std::vector<double> noise(pixels), found;
+        Rng rng{seed_here()};
+        for (size_t i = 0; i < pixels; ++i)
+            noise[i] = std::exp((i / width % 20 < 4 ? 9 : 3) * double(rng.uniform()));
+        const auto whole = sets_where_noise_is(noise, size, 7);
+        const Survey survey(size);
+        for (size_t k = 0; k < survey.count(); ++k) found.push_back(noise[survey.pixel(k)]);
+        size_t next = 0, different = 0, several = 0;
+        for (size_t b = 0; b < bands.size(); ++b) {
+            const int first = bands[b], end = b + 1 < bands.size() ? bands[b + 1] : size.height;
+            const int above = std::max(0, first - 1), below = std::min(size.height, end + 1);
+            const NoiseOfRows around{size,
+                                     above,
+                                     below - above,
+                                     {noise.begin() + ptrdiff_t(size_t(above) * width),
+                                      noise.begin() + ptrdiff_t(size_t(below) * width)}};
+            const auto sets =
+                sets_where_noise_is(around, first, end - first, NoiseElsewhere(survey, found), 7);
+            REQUIRE(sets.size() == size_t(end - first) * width);
+            for (const Sets& s : sets) {
+                const Sets& same = whole[next++];
+                different += s.shown != same.shown || s.chance != same.chance;
+                several += s.shown > 1;
+            }
+        }
+        CHECK(next == pixels);
+        CHECK(different == 0);
+        CHECK((several > 0 || pixels < 100));
+    }
+}
+
 // ---- The image stays unbiased -------------------------------------------------------------------
 
 TEST_CASE("sets by noise leave every pixel's mean unbiased, that of rare outliers, too") {
