@@ -361,6 +361,61 @@ TEST_CASE("an interrupted image says so; its error is known if its sets were com
     }
 }
 
+// ---- Ctrl-C inside a path -----------------------------------------------------------------------
+
+namespace {
+
+// Paths that end after 10^6 mirrors alone.
+const char* const mirrors = R"(
+size 1 1
+camera 0 0 5  0 0 0  40
+depth 1000000
+mirror m 1 1 1
+box 20 20 20  7  -10 -10 -10  m
+)";
+
+}  // namespace
+
+TEST_CASE("a path is left at once: after Ctrl-C it takes no further step") {
+    const Scene scene = scene_of(mirrors);
+    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const Start at = start(scene, pattern, {0, 0, 0, 0});
+    uint64_t rays = 0;
+    int steps = 0;
+    auto count = counting(rays);
+    CHECK_THROWS_AS(Li(scene, {}, at.ray, at.sampler,
+                       [&](const Segment& segment, const Step& e) {
+                           if (++steps == 1000) interrupted = SIGINT;
+                           count(segment, e);
+                       }),
+                    Interrupted);
+    interrupted = 0;
+    CHECK(steps == 1000);
+    CHECK(rays == 999);
+}
+
+TEST_CASE("samples whose path was left do not count: neither they nor their rays") {
+    const Scene scene = scene_of(mirrors);
+    for (Estimator e : {Estimator::stochastic, Estimator::control, Estimator::ratio}) {
+        Options o = quick(SamplerKind::independent, 1);
+        o.technique.light = LightMode::nee;
+        o.direct = e, o.sets = 1;
+        const uint64_t of_sample = rendered(job_of(o, scene)).run.rays;
+        CHECK(of_sample > 1000000);
+        o.spp = 1 << 20;
+        std::jthread user([] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            interrupted = SIGINT;
+        });
+        const RunStats run = rendered(job_of(o, scene)).run;
+        user.join();
+        interrupted = 0;
+        CAPTURE(int(e));
+        CHECK(run.interrupted);
+        CHECK(run.rays == run.spp * of_sample);
+    }
+}
+
 // ---- Four estimators of direct light ------------------------------------------------------------
 
 namespace {
