@@ -1,0 +1,186 @@
+# labs/farm.sh  1  a picture in parts, rendered by many machines: the plan, one part, the merge
+#
+#   bash src/labs/farm.sh plan --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
+#   bash src/labs/farm.sh part FOLDER NUMBER [THREADS]   renders a part, from its checkpoint if there is one
+#   bash src/labs/farm.sh merge FOLDER                   joins the parts, or says which are missing
+#
+# farm_slurm.sh and farm_parallel.sh do these three, and say what the options are; another engine needs no
+# more.  FOLDER holds all of a farm's files: farm.plan (what is rendered, and into which parts it is cut),
+# part-N.film and part-N.log, from 1.
+set -u
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+fail() { echo "farm: $*" >&2; exit 2; }
+
+# A path that means the same in every folder.
+absolute() { case $1 in /*) printf '%s' "$1" ;; *) printf '%s/%s' "$PWD" "$1" ;; esac; }
+
+# Values of a key of the plan, a line each.
+planned() { sed -n "s/^$2 //p" "$1/farm.plan"; }  # FOLDER KEY
+
+film() { printf '%s/part-%04d.film' "$1" "$2"; }  # FOLDER NUMBER
+log()  { printf '%s/part-%04d.log' "$1" "$2"; }
+
+# The head of a film is text, up to an empty line.
+finished() {  # FOLDER NUMBER
+    [ -e "$(film "$1" "$2")" ] && [ "$(LC_ALL=C sed -n '/^$/q; s/^complete //p' "$(film "$1" "$2")")" = yes ]
+}
+
+# Numbers of the parts that are still to be rendered, a line each.
+unfinished() {  # FOLDER
+    local number
+    for ((number = 1; number <= $(planned "$1" part | wc -l); ++number)); do
+        finished "$1" "$number" || echo "$number"
+    done
+}
+
+# ---- The plan -----------------------------------------------------------------------------------
+
+# Part I of N of 0 .. COUNT - 1, as FIRST-LAST.
+range() { echo "$(($3 * $1 / $2))-$(($3 * ($1 + 1) / $2 - 1))"; }  # I N COUNT
+
+# Lines of the plan: bands from the top, of each one its samples.
+parts() {  # HEIGHT BANDS SPP RANGES
+    local band range
+    for ((band = 0; band < $2; ++band)); do
+        for ((range = 0; range < $4; ++range)); do
+            printf 'part --rows %s%s\n' "$(range "$band" "$2" "$1")" \
+                "$([ "$4" = 1 ] || echo " --samples $(range "$range" "$4" "$3")")"
+        done
+    done
+}
+
+count() {  # OPTION VALUE
+    case $2 in '' | 0* | *[!0-9]*) fail "$1 '$2': a number, 1 or more" ;; esac
+}
+
+# An engine that has options of its own reads them, and returns 0.
+engine_option() { return 1; }
+
+# Reads the words of a farm into global variables.
+read_words() {
+    folder='' bands=1 ranges=1 program=$here/../../build size='' spp=''
+    outputs=() options=()
+    while [ $# -gt 0 ] && [ "$1" != -- ]; do
+        [ $# -gt 1 ] || fail "$1: its value is missing"
+        case $1 in
+            --folder) folder=$(absolute "$2") ;;
+            --bands) count "$1" "$2"; bands=$2 ;;
+            --ranges) count "$1" "$2"; ranges=$2 ;;
+            --build) program=$2 ;;
+            -o | --stats) outputs+=("$1" "$(absolute "$2")") ;;
+            *) engine_option "$1" "$2" || fail "$1: no option of a farm; those of penumbra stand behind --" ;;
+        esac
+        shift 2
+    done
+    [ $# -gt 1 ] || fail "say: -- OPTIONS OF PENUMBRA SCENE"
+    shift
+    while [ $# -gt 1 ]; do
+        case $1 in
+            --rows | --samples | --checkpoint | --resume | --threads | -o | --stats) fail "$1: the farm says it to every part" ;;
+            --size) size=$2 ;;
+            --spp) spp=$2 ;;
+        esac
+        options+=("$1"); shift
+    done
+    scene=$(absolute "$1")
+    program=$(cd "$program" 2>/dev/null && pwd) || fail "--build: no such folder"
+    check_words
+    check_render
+}
+
+check_words() {
+    local at='^[1-9][0-9]*x[1-9][0-9]*$' which
+    [ -n "$folder" ] || fail "--folder: where all machines find the parts?"
+    [[ $size =~ $at ]] || fail "--size WxH: bands are cut from it, behind --"
+    count --spp "$spp"
+    [ "$bands" -le "${size#*x}" ] || fail "--bands $bands: the picture has ${size#*x} rows"
+    [ "$ranges" -le "$spp" ] || fail "--ranges $ranges: a pixel has $spp samples"
+    [ ${#outputs[@]} -gt 0 ] || fail "-o FILE: where to write the picture?"
+    for which in penumbra merge; do
+        [ -x "$program/$which" ] || fail "$program/$which: build it first: make programs"
+    done
+    case "$folder ${outputs[*]} ${options[*]} $scene" in *$'\n'*) fail "no word may have a line break in it" ;; esac
+}
+
+# Renders a sample of a row: what penumbra refuses, it refuses before a hundred machines do.
+check_render() {
+    local words=("${options[@]}") i
+    for ((i = 0; i < ${#words[@]}; ++i)); do [ "${words[i]}" != --spp ] || words[i + 1]=1; done
+    mkdir -p "$folder" || exit 1
+    "$program/penumbra" "${words[@]}" --rows 0-0 --checkpoint "$folder/check.film" --quiet "$scene" || exit
+    rm -f "$folder/check.film"
+}
+
+# A plan in the folder; one that is there already is gone on with if it is the same.
+write_plan() {
+    local plan
+    plan=$(echo "penumbra farm 1"
+           printf 'build %s\n' "$program"
+           printf 'option %s\n' "${options[@]}"
+           printf 'scene %s\n' "$scene"
+           printf 'output %s\n' "${outputs[@]}"
+           parts "${size#*x}" "$bands" "$spp" "$ranges")
+    if [ -e "$folder/farm.plan" ]; then
+        [ "$plan" = "$(cat "$folder/farm.plan")" ] ||
+            fail "$folder: holds the parts of another picture: choose another --folder"
+        return
+    fi
+    printf '%s\n' "$plan" >"$folder/farm.plan.new" && mv "$folder/farm.plan.new" "$folder/farm.plan" || exit 1
+}
+
+# The comment at the head of a script, from its command on.
+usage() { sed -n '3,/^[^#]/ { s/^# \{0,1\}//p; }' "$1"; }
+
+# ---- One part -----------------------------------------------------------------------------------
+
+# Runs penumbra until it has ended, and returns its exit status; signals to stop are handed on, and it
+# writes its checkpoint.  `stopped` names the last one.
+stopped=''
+render() {  # FOLDER NUMBER THREADS
+    local words resume=() child='' status=0 caught
+    mapfile -t words < <(planned "$1" option)
+    [ ! -e "$(film "$1" "$2")" ] || resume=(--resume "$(film "$1" "$2")")
+    pass() {
+        stopped=$1 caught=1
+        echo "farm: stops, for $1" >&2
+        [ -z "$child" ] || kill -TERM "$child" 2>/dev/null
+    }
+    for signal in TERM INT HUP USR1; do trap "pass $signal" "$signal"; done
+    # shellcheck disable=SC2046  # a part is options without blanks in them
+    "$(planned "$1" build)/penumbra" "${words[@]}" $(planned "$1" part | sed -n "$2p") --threads "$3" \
+        --checkpoint "$(film "$1" "$2")" "${resume[@]}" "$(planned "$1" scene)" &
+    child=$!
+    [ -z "$stopped" ] || kill -TERM "$child"
+    # What was caught ends the wait, and not penumbra.
+    while caught='' status=0; wait "$child" 2>/dev/null || status=$?; [ -n "$caught" ]; do :; done
+    [ "$status" -le 128 ] || echo "farm: penumbra was ended by signal $((status - 128))" >&2
+    return "$status"
+}
+
+# ---- The merge ----------------------------------------------------------------------------------
+
+merge() {  # FOLDER
+    local words films=() missing number
+    missing=$(unfinished "$1")
+    for number in $missing; do
+        echo "farm: $(film "$1" "$number"): not finished ($(planned "$1" part | sed -n "${number}p")):" \
+            "$(tail -n 1 "$(log "$1" "$number")" 2>/dev/null)" >&2
+    done
+    if [ -n "$missing" ]; then
+        echo "farm: $(echo "$missing" | wc -l) of $(planned "$1" part | wc -l) parts are missing, and no picture was" \
+            "written; the same command again renders those alone" >&2
+        return 1
+    fi
+    for ((number = 1; number <= $(planned "$1" part | wc -l); ++number)); do films+=("$(film "$1" "$number")"); done
+    mapfile -t words < <(planned "$1" output)
+    "$(planned "$1" build)/merge" "${words[@]}" "${films[@]}"
+}
+
+[ "${BASH_SOURCE[0]}" = "$0" ] || return 0
+case "${1-} $#" in
+    plan*) shift; read_words "$@"; write_plan ;;
+    'part 3' | 'part 4') render "$2" "$3" "${4:-$(nproc)}" >>"$(log "$2" "$3")" 2>&1 ;;
+    'merge 2') merge "$2" ;;
+    *) usage "$0"; exit 2 ;;
+esac

@@ -1,0 +1,81 @@
+# labs/farm_slurm.sh  2  renders a picture as a Slurm job array, and joins its parts by a job behind it
+#
+#   bash src/labs/farm_slurm.sh --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
+#
+#     --folder FOLDER   for the parts and their logs; all machines see it under this name
+#     -o FILE           the picture, .pfm or .png; may be repeated
+#     --stats FILE      what was measured, as JSON
+#     --bands N         cut the picture into N bands of rows                                       1
+#     --ranges N        and the samples of each into N ranges                                      1
+#     --cpus N          processors, and threads, of a part                                         1
+#     --sbatch WORD     for sbatch, e.g. --sbatch --partition=long; may be repeated
+#     --grace S         seconds before a limit of time at which a part stops and queues again    120
+#     --retries N       how often a part queues again that was killed                              5
+#     --build FOLDER    where penumbra and merge are                                 build/, beside src/
+#
+# OPTIONS OF PENUMBRA have --size and --spp among them.  The same command again goes on with what is not
+# finished.  Exit status: 0 the jobs were submitted, 1 they could not be, 2 an option cannot be used.
+. "$(dirname "${BASH_SOURCE[0]}")/farm.sh"
+
+cpus=1 grace=120 retries=5 words=()
+engine_option() {
+    case $1 in
+        --sbatch) words+=("$2") ;;
+        --cpus | --grace) count "$1" "$2"; printf -v "${1#--}" %s "$2" ;;
+        --retries) case $2 in '' | *[!0-9]*) fail "--retries '$2': a number" ;; esac; retries=$2 ;;
+        *) return 1 ;;
+    esac
+}
+
+# The command of a job, quoted once for its shell.  Signals for the job reach that shell alone: exec.
+job() { printf 'exec bash'; printf ' %q' "$@"; }
+
+submit() {
+    local numbers array merger
+    [ ! -e "$folder/farm.job" ] || [ -z "$(squeue --noheader --job "$(cat "$folder/farm.job")" 2>/dev/null)" ] ||
+        fail "$folder: job $(cat "$folder/farm.job") is at work on it: wait, or scancel it"
+    numbers=$(unfinished "$folder" | paste -sd,)
+    words=(--parsable --requeue --open-mode=append "${words[@]}")
+    if [ -n "$numbers" ]; then
+        # USR1 and no TERM: TERM is also what comes when a job is cancelled, which must not queue again.
+        array=$(sbatch "${words[@]}" --job-name=penumbra --array="$numbers" --cpus-per-task="$cpus" \
+            --signal="B:USR1@$grace" --output="$folder/part-%4a.log" \
+            --wrap "$(job "$here/farm_slurm.sh" part "$folder" "$retries")") || exit 1
+        echo "$array" >"$folder/farm.job"
+        # Not afterok: the merge would never run, and nobody would say which part is missing.
+        words+=(--dependency="afterany:${array%%;*}")
+    fi
+    merger=$(sbatch "${words[@]}" --job-name=penumbra-merge --output="$folder/merge.log" \
+        --wrap "$(job "$here/farm.sh" merge "$folder")") || exit 1
+    echo "farm: ${array:+job $array renders parts $numbers, }job $merger merges: $folder/merge.log"
+}
+
+# A part on its node.  One that a limit of time stopped, or that was killed by whoever is not Slurm, queues
+# again; Slurm itself queues those again that it takes a node from, or whose node fails.
+part() {  # FOLDER RETRIES
+    local status=0 again=''
+    render "$1" "$SLURM_ARRAY_TASK_ID" "${SLURM_CPUS_PER_TASK:-1}" || status=$?
+    [ "$status" -gt 128 ] || return "$status"
+    sleep 1  # Slurm may tell penumbra first, and then this shell
+    case $stopped in
+        USR1) again=yes ;;
+        '') [ "${SLURM_RESTART_COUNT:-0}" -ge "$2" ] || again=yes ;;
+    esac
+    if [ -n "$again" ]; then
+        echo "farm: queues again" >&2
+        scontrol requeue "$SLURM_JOB_ID" && sleep 60  # and is ended by Slurm
+    fi
+    return "$status"
+}
+
+case ${1-} in
+    -h | --help) usage "$0" ;;
+    part) part "$2" "$3" ;;
+    *)
+        command -v sbatch >/dev/null || fail "no sbatch: this machine has no Slurm"
+        read_words "$@"
+        case $folder in *[%\\]*) fail "--folder: Slurm takes % and \\ in names of files for something else" ;; esac
+        write_plan
+        submit
+        ;;
+esac

@@ -1,0 +1,46 @@
+# farm/ssh.sh  machines to be reached by ssh: one sshd each, on the loopback, with keys of their own
+#
+# Each is this machine, by another port: parts that run there have no connection with the test but ssh.
+
+sshd_of() { echo "$work/ssh/$1"; }  # NAME
+
+start_ssh() {  # NAME...
+    local name folder port
+    mkdir -p "$work/ssh" && [ "$(id -u)" != 0 ] || mkdir -p /run/sshd
+    [ -e "$work/ssh/key" ] || ssh-keygen -q -t ed25519 -N '' -f "$work/ssh/key"
+    for name; do
+        folder=$(sshd_of "$name") port=$(port_that_is_free)
+        mkdir -p "$folder"
+        ssh-keygen -q -t ed25519 -N '' -f "$folder/host"
+        cat >"$folder/sshd_config" <<END
+ListenAddress 127.0.0.1
+Port $port
+HostKey $folder/host
+PidFile $folder/pid
+AuthorizedKeysFile $work/ssh/key.pub
+PermitRootLogin yes
+PasswordAuthentication no
+KbdInteractiveAuthentication no
+UsePAM no
+StrictModes no
+END
+        "$(command -v sshd)" -f "$folder/sshd_config" -E "$folder/log" || return 1
+        cat >>"$work/ssh/config" <<END
+Host $name
+    HostName 127.0.0.1
+    Port $port
+    User $(id -un)
+    IdentityFile $work/ssh/key
+    IdentitiesOnly yes
+    StrictHostKeyChecking no
+    UserKnownHostsFile $work/ssh/known
+    LogLevel ERROR
+END
+        await 20 "sshd of $name" ssh -F "$work/ssh/config" "$name" true
+    done
+}
+
+stop_ssh() {
+    local pid
+    for pid in "$work"/ssh/*/pid; do [ ! -e "$pid" ] || kill "$(cat "$pid")"; done
+}
