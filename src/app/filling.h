@@ -45,7 +45,7 @@ public:
         if (!film_.has_sets() && sets_of(job_.o) != sets_by_noise)
             film_.add_sets(std::vector<Sets>(film_.number_of_pixels(), {sets_of(job_.o)}));
         if (!film_.has_sets() && needs_scouts()) choose_sets(samples_to_choose(job_));
-        const auto unfinished = film_.unfinished_pass();
+        const auto unfinished = unfinished_pass();
         if (!unfinished || add(*unfinished))
             render(film_, job_.passes, adder(), progress_,
                    [&](const Film<Pixel>&) { return between(); });
@@ -91,6 +91,12 @@ private:
             add_block(film_, block, n, [&](auto... at) { return in_picture(job_.part, at...); });
         };
     }
+    // Sets that were added and have no samples yet are one, too, of no samples more.
+    std::optional<uint64_t> unfinished_pass() const {
+        const auto pass = film_.unfinished_pass();
+        const bool lacks_others = film_.has_sets() && !film_.others_are_complete();
+        return lacks_others && !pass ? 0 : pass;
+    }
     bool add(uint64_t n) { return add_pass(film_, n, job_.passes.threads, adder(), progress_); }
 
     // How many samples the next pass may bring.
@@ -99,7 +105,7 @@ private:
         const uint64_t samples = film_.samples();
         if (samples >= pause) {
             choose_sets(samples);
-            if (film_.non_finite() > 0) return 0;
+            if (film_.non_finite() > 0 || interrupted) return 0;
             const bool looks = target.error > 0 && next_look(samples - 1, pause, period) == samples;
             if (looks || course_.is_due(samples)) look(error_of(film_), looks);
         }
