@@ -24,6 +24,8 @@ inline constexpr std::array options_of_samples = {
     "--sampler",  "--sets", "--direction", "--light", "--direct", "--polygons",
     "--indirect", "--pick", "--seed",      "--view",  "--film"};
 
+inline constexpr const char* precision = sizeof(real) == 4 ? "float" : "double";
+
 // All that two films must share to be of one picture, and their parts of it.  What follows from the
 // samples of the picture is here, if samples depend on it.
 inline FilmHeader identity_of(const Job& job, const std::string& sum_of_scene) {
@@ -35,7 +37,7 @@ inline FilmHeader identity_of(const Job& job, const std::string& sum_of_scene) {
         return std::string(text);
     };
     h.set("scene", sum_of_scene);
-    h.set("precision", sizeof(real) == 4 ? "float" : "double");
+    h.set("precision", precision);
     h.set("size",
           std::to_string(job.part.picture.width) + "x" + std::to_string(job.part.picture.height));
     for (const char* name : options_of_samples)
@@ -78,23 +80,57 @@ inline void set_run(FilmHeader& h, const RunStats& run, bool complete) {
     set_count(h, "rays", run.rays);
     set_count(h, "redraws", run.redraws);
     set_count(h, "fallbacks", run.fallbacks);
+    if (!run.maps) return;
+    const auto& [H, triangles, particles, rays, error, seconds, slope] = *run.maps;
+    h.set("map-triangles", std::to_string(triangles));
+    set_count(h, "map-particles", particles);
+    set_count(h, "map-rays", rays);
+    h.set("map-error", json::number(error));
+    h.set("map-seconds", json::number(seconds));
+    for (size_t c = 0; c < 3; ++c)
+        h.set("map-slope-" + std::to_string(c), json::number(double(slope.*axis[c])));
+}
+
+// Throws UserError, of the file, if there is no such number; NaN is "null".
+inline double number_in(const FilmHeader& h, const std::string& key, const std::string& path) {
+    const std::string text = h.find(key).value_or("");
+    if (text == "null") return NAN;
+    try {
+        return parse_number(text);
+    } catch (const UserError& e) {
+        throw UserError(path + ": " + key + ": " + e.what());
+    }
+}
+
+inline MapStats maps_in(const FilmHeader& h, const std::string& path) {
+    MapStats maps;
+    maps.H = number_in(h, "mesh", path);
+    maps.triangles = size_t(count_in(h, "map-triangles", path));
+    maps.particles = count_in(h, "map-particles", path);
+    maps.rays = count_in(h, "map-rays", path);
+    maps.error = number_in(h, "map-error", path);
+    maps.seconds = number_in(h, "map-seconds", path);
+    for (size_t c = 0; c < 3; ++c)
+        maps.slope.*axis[c] = real(number_in(h, "map-slope-" + std::to_string(c), path));
+    return maps;
 }
 
 inline RunStats run_in(const FilmHeader& h, const std::string& path) {
     RunStats run;
-    try {
-        run.seconds = parse_number(h.find("seconds").value_or(""));
-        run.cpu_seconds = parse_number(h.find("cpu-seconds").value_or(""));
-    } catch (const UserError& e) {
-        throw UserError(path + ": seconds: " + e.what());
-    }
+    run.seconds = number_in(h, "seconds", path);
+    run.cpu_seconds = number_in(h, "cpu-seconds", path);
     run.rays = count_in(h, "rays", path);
     run.redraws = count_in(h, "redraws", path);
     run.fallbacks = count_in(h, "fallbacks", path);
+    if (h.find("mesh")) run.maps = maps_in(h, path);
     return run;
 }
 
 // ---- When ---------------------------------------------------------------------------------------
+
+// Seconds from a checkpoint that took so many to the next one: all of them take less than a
+// hundredth of the time.
+inline double until_next(double every, double took) { return std::max(every, 100 * took); }
 
 // The files of one run.
 class Checkpoints {
@@ -110,7 +146,7 @@ public:
     const FilmHeader& identity() const { return identity_; }
     bool are_wanted() const { return !path_.empty(); }
 
-    // After so many seconds of this run: they take less than a hundredth of it.
+    // After so many seconds of this run.
     bool is_due(double seconds) const { return are_wanted() && seconds >= next_; }
 
     // A disk that is full is no reason to stop: the file stays as it was, and the next one may fit.
@@ -123,7 +159,7 @@ public:
             std::fprintf(stderr, "%s; the render goes on\n", printable(e.what()).c_str());
         }
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        next_ = seconds + took.count() + std::max(every_, 100 * took.count());
+        next_ = seconds + took.count() + until_next(every_, took.count());
     }
 
     template <class Pixel>

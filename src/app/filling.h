@@ -25,15 +25,17 @@ void check_finite(const Film<Pixel>& film, InPicture in_picture) {
                       (s.set ? " --set " + std::to_string(s.set) : "") + "); nothing was written");
 }
 
-// radiance_of_block() is an L(sample, rays) for one thread, which counts its rays.
-template <class Pixel, class RadianceOfBlock>
+// radiance_of_block() is an L(sample, rays) for one thread, which counts its rays; count(run) adds
+// what else it counts.
+template <class Pixel, class RadianceOfBlock, class Count>
 class Filling {
 public:
     Filling(const Job& job, const FilmHeader& identity, const typename Pixel::Value& value,
-            RadianceOfBlock radiance_of_block)
+            RadianceOfBlock radiance_of_block, Count count)
         : job_(job),
           value_(value),
           radiance_of_block_(radiance_of_block),
+          count_(count),
           film_(job.part.size(), value,
                 job.o.view == View::variance ? Shows::variances : Shows::values),
           checkpoints_(job, identity),
@@ -66,6 +68,7 @@ private:
     const Job& job_;
     const typename Pixel::Value value_;
     RadianceOfBlock radiance_of_block_;
+    Count count_;
     Film<Pixel> film_;
     Checkpoints checkpoints_;
     const RunStats before_;  // what runs before this one measured
@@ -134,6 +137,7 @@ private:
         RunStats run = before_;
         run.spp = film_.samples(), run.seconds = progress_.elapsed(), run.rays = rays_;
         run.cpu_seconds += cpu_seconds();
+        count_(run);
         run.non_finite = film_.non_finite(), run.interrupted = interrupted;
         run.stopped_by = enough_ ? "error" : run.spp == target.samples ? "samples" : "time";
         if (run.interrupted) run.stopped_by = "interrupt";
@@ -250,7 +254,13 @@ private:
         FilmReader file(o.resume);
         file.check();
         check_identity(o.resume, file.header(), checkpoints_.identity());
-        FilmState<Pixel> state = read_film<Pixel>(file, o.resume, job_.part.size());
+        const RunStats run = run_in(file.header(), o.resume);
+        film_.restore([&] { return read_film<Pixel>(file, o.resume, job_.part.size()); });
+        check_samples(film_.state());
+        return run;
+    }
+    void check_samples(const FilmState<Pixel>& state) const {
+        const Options& o = job_.o;
         const uint64_t samples = state.samples + state.pass, wanted = job_.passes.target.samples;
         const std::string has = o.resume + ": has " + std::to_string(samples) + " samples";
         if (wanted > 0 && samples > wanted)
@@ -261,8 +271,6 @@ private:
                             std::to_string(state.sets_after) + " samples, not " +
                             std::to_string(samples_to_choose(job_)) +
                             " as for so many: give the same --spp");
-        film_.restore(std::move(state));
         tell(o, has + ", goes on");
-        return run_in(file.header(), o.resume);
     }
 };

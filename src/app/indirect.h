@@ -26,7 +26,9 @@ inline Faceted endless(const Scene& scene, double H) {
 inline WalksTarget walks_of(const Options& o, const Scene& scene) {
     const uint64_t share = o.indirect == Indirect::map ? 16 : 64;
     const Target target = target_of(o, scene);
-    if (o.particles > 0) return {o.particles, target.seconds};
+    // Who goes on has to have the same maps, which those that the time ends are not.
+    const bool is_kept = !o.checkpoint.empty() || !o.resume.empty();
+    if (o.particles > 0) return {o.particles, is_kept ? 0 : target.seconds};
     const uint64_t pixels = uint64_t(scene.size.width) * uint64_t(scene.size.height);
     // Of an image that its error ends nobody knows the samples: as many as the scene's at most.
     const bool unknown = o.error > 0 && (target.samples == 0 || target.samples > scene.samples);

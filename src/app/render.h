@@ -3,10 +3,15 @@
 #include "app/filling.h"
 #include "voronoi/weighted.h"
 
-template <class Pixel, class RadianceOfBlock>
+struct CountNothing {
+    void operator()(RunStats&) const {}
+};
+
+template <class Pixel, class RadianceOfBlock, class Count = CountNothing>
 Rendered fill(const Job& job, const FilmHeader& identity, const typename Pixel::Value& value,
-              RadianceOfBlock radiance_of_block) {
-    return Filling<Pixel, RadianceOfBlock>(job, identity, value, radiance_of_block).fill();
+              RadianceOfBlock radiance_of_block, Count count = {}) {
+    Filling<Pixel, RadianceOfBlock, Count> filling(job, identity, value, radiance_of_block, count);
+    return filling.fill();
 }
 
 inline Rendered render_means(const Job& job, const FilmHeader& identity) {
@@ -19,15 +24,16 @@ inline Rendered render_means(const Job& job, const FilmHeader& identity) {
 
 // By paths that end on maps, whose time and rays count, too.
 inline Rendered render_mapped(const Job& job, const FilmHeader& identity) {
-    Rendered r = fill<MeanPixel>(job, identity, {}, [&] {
+    auto L = [&] {
         return [&](const PixelSample& s, uint64_t& rays) {
             auto count = counting(rays);
             return mapped_Li(job, s, [&](const Segment& segment, const Step& e, const Mapped&) {
                 count(segment, e);
             });
         };
-    });
-    r.run.maps = job.maps->stats;
+    };
+    Rendered r =
+        fill<MeanPixel>(job, identity, {}, L, [&](RunStats& run) { run.maps = job.maps->stats; });
     r.run.seconds += r.run.maps->seconds, r.run.rays += r.run.maps->rays;
     return r;
 }
@@ -47,7 +53,7 @@ inline Rendered render_shadows(const Job& job, const FilmHeader& identity) {
 inline Rendered render_cells(const Job& job, const FilmHeader& identity) {
     std::atomic<uint64_t> redraws = 0, fallbacks = 0;
     const uint64_t all = job.passes.target.samples;
-    Rendered r = fill<MeanPixel>(job, identity, {}, [&] {
+    auto weighted_L = [&] {
         return [&, weighted = WeightedPixels(job.o.film, job.pattern, all)](
                    const PixelSample& s, uint64_t& rays) mutable {
             const Weigher& weigher = weighted.weigher();
@@ -60,9 +66,10 @@ inline Rendered render_cells(const Job& job, const FilmHeader& identity) {
             redraws += weigher.redraws - redrawn, fallbacks += weigher.fallbacks - fallen;
             return value;
         };
+    };
+    return fill<MeanPixel>(job, identity, {}, weighted_L, [&](RunStats& run) {
+        run.redraws += redraws, run.fallbacks += fallbacks;
     });
-    r.run.redraws += redraws, r.run.fallbacks += fallbacks;
-    return r;
 }
 
 // identity: of checkpoints, see identity_of().

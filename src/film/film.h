@@ -133,9 +133,12 @@ public:
     size_t blocks() const { return blocks_.count(); }
     uint64_t samples() const { return state_.samples; }  // of every set
 
-    // Goes on from what another film of this size was, a complete pass or not.
-    void restore(FilmState<Pixel> state) {
-        state_ = std::move(state);
+    // Goes on from what another film of this size was, a complete pass or not: state() is that. Two
+    // are never in memory at once.
+    template <class State>
+    void restore(State state) {
+        state_ = {};
+        state_ = state();
         state_.image.width = size.width, state_.image.height = size.height;
         state_.image.pixels.resize(number_of_pixels(), {NAN, NAN, NAN});
         count_others();
