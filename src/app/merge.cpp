@@ -15,7 +15,8 @@ constexpr const char* before_options =
 
 constexpr const char* after_options = R"(
 Exit status: 0 done; 1 a file could not be written; 2 the parts are not those of
-one picture, or one of them is damaged, not complete, missing or there twice.
+one picture, or one of them is damaged, not complete, missing or there twice;
+130 interrupted (Ctrl-C; 143 SIGTERM, 129 SIGHUP), which leaves no file.
 )";
 
 struct MergeOptions : CommonOptions {
@@ -48,6 +49,15 @@ Options options_in(const PartFile& part) {
     return o;
 }
 
+// Each part has filled the same ones.
+void maps_of_all(RunStats& all, const MapStats& maps) {
+    const double seconds = all.maps ? all.maps->seconds : 0;
+    const uint64_t rays = all.maps ? all.maps->rays : 0;
+    all.maps = maps;
+    all.maps->seconds += seconds, all.maps->rays += rays;
+    all.seconds += maps.seconds, all.rays += maps.rays;
+}
+
 RunStats run_of(const std::vector<Band>& bands, const Merged& merged) {
     RunStats all;
     for (const Band& band : bands)
@@ -55,6 +65,7 @@ RunStats run_of(const std::vector<Band>& bands, const Merged& merged) {
             all.seconds += p.run.seconds, all.cpu_seconds += p.run.cpu_seconds;
             all.rays += p.run.rays;
             all.redraws += p.run.redraws, all.fallbacks += p.run.fallbacks;
+            if (p.run.maps) maps_of_all(all, *p.run.maps);
         }
     all.spp = bands.front().front().spp;
     all.stopped_by = "samples";
@@ -67,7 +78,10 @@ RunStats run_of(const std::vector<Band>& bands, const Merged& merged) {
 
 Merged merge_into(ImageFiles& files, const std::vector<Band>& bands, const Options& o) {
     const Shows shows = o.view == View::variance ? Shows::variances : Shows::values;
-    auto row = [&](int y, const auto& pixels) { files.add(y, pixels); };
+    auto row = [&](int y, const auto& pixels) {
+        if (interrupted) throw Interrupted();
+        files.add(y, pixels);
+    };
     const bool plain = is_plain_view(o.view) || !estimates_pixels(o.direct);
     return plain ? merge<MeanPixel>(bands, {}, shows, row)
                  : merge<ShadowPixel>(bands, {o.direct}, shows, row);
@@ -85,7 +99,7 @@ int merge_program(const std::vector<std::string>& words) {
     const PartFile& any = bands.front().front();
     const Options rendered = options_in(any);
     o.scene = rendered.scene;
-    const auto outputs = outputs_of(o, "", o.parts, any.picture);
+    const auto outputs = outputs_of(o, "", {{o.parts, "a part of the picture"}}, any.picture);
     catch_interrupt();
     const double exposure =
         o.exposure ? double(*o.exposure) : parse_number(any.header.find("exposure").value_or("1"));
@@ -94,6 +108,7 @@ int merge_program(const std::vector<std::string>& words) {
     files.commit();
     const int depth = int(count_in(any.header, "depth", any.path));
     if (!o.stats.empty()) write_file(o.stats, encode_stats(rendered, any.picture, depth, run));
+    if (run.maps) tell(o, summary(*run.maps));
     tell(o, summary(rendered, run));
     tell_written(o, outputs);
     return 0;
@@ -102,5 +117,11 @@ int merge_program(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return exit_status([&] { return merge_program({argv + 1, argv + argc}); });
+    return exit_status([&] {
+        try {
+            return merge_program({argv + 1, argv + argc});
+        } catch (const Interrupted&) {  // no file was written
+            return 128 + interrupted;
+        }
+    });
 }

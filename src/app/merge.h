@@ -36,6 +36,9 @@ inline PartFile part_file(const std::string& path) {
         part.samples =
             samples == "all" ? Range{0, taken - 1} : option::range(samples, part.spp - 1);
         if (part.samples.count() != taken) throw UserError("has other samples than it says");
+        if (h.find("precision") != precision)
+            throw UserError("its precision is " + h.find("precision").value_or("not known") +
+                            ", not " + precision);
     } catch (const UserError& e) {
         throw UserError(std::string(e.what()).starts_with(path) ? e.what()
                                                                 : path + ": " + e.what());

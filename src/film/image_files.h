@@ -1,6 +1,7 @@
 // film/image_files.h  2  one picture in several files, row by row, so that memory need not hold it
 #pragma once
 #include <memory>
+#include <set>
 
 #include "film/image.h"
 
@@ -9,9 +10,9 @@ public:
     // By the endings of `paths`: .pfm, of which no row is kept, or .png, which keeps 3 bytes a
     // pixel.
     ImageFiles(const std::vector<std::string>& paths, Size size, double exposure)
-        : paths_(paths), size_(size), exposure_(exposure) {
+        : paths_(different(paths)), size_(size), exposure_(exposure) {
         const std::string header = pfm_header(size);
-        for (const std::string& path : paths)
+        for (const std::string& path : paths_)
             if (path.ends_with(".pfm")) {
                 pfm_.push_back(std::make_unique<OutputFile>(path));
                 pfm_.back()->write_at(0, header.data(), header.size());
@@ -49,4 +50,13 @@ private:
     const double exposure_;
     std::vector<std::unique_ptr<OutputFile>> pfm_;
     std::vector<uint8_t> rgb8_;
+
+    // One file may have two names, or be asked for twice.
+    static std::vector<std::string> different(const std::vector<std::string>& paths) {
+        std::set<std::string> names;
+        std::vector<std::string> once;
+        for (const std::string& path : paths)
+            if (names.insert(true_name(path)).second) once.push_back(path);
+        return once;
+    }
 };
