@@ -7,17 +7,24 @@ inline void tell(const CommonOptions& o, const std::string& line) {
     if (!o.quiet) std::fprintf(stderr, "%s\n", printable(line).c_str());
 }
 
+// Files of a program, and what they are to it.
+struct UsedFiles {
+    std::vector<std::string> paths;
+    std::string use = "part of the scene";
+};
+
 // Throws UserError if two different things would have the name of one file, or one would replace
-// what the scene is read from.
+// what is used otherwise.
 inline void check_names(const std::vector<std::string>& images, const std::string& stats,
-                        const std::vector<std::string>& inputs) {
+                        const std::vector<UsedFiles>& used) {
     std::map<std::string, std::string> use;  // of a file
-    for (const std::string& path : inputs) use[true_name(path)] = "part of the scene";
     auto check = [&](const std::string& path, const std::string& as) {
         const auto [place, is_new] = use.try_emplace(true_name(path), as);
         if (!is_new && place->second != as)
             throw UserError(path + ": cannot be both " + place->second + " and " + as);
     };
+    for (const UsedFiles& files : used)
+        for (const std::string& path : files.paths) check(path, files.use);
     for (const std::string& path : images)
         check(path, "a " + path.substr(path.size() - 4) + " image");
     if (!stats.empty()) check(stats, "the statistics");
@@ -32,7 +39,7 @@ inline void check_size(const std::vector<std::string>& images, Size size) {
 // Images to write, out/NAMEsuffix.png and .pfm unless others were asked for; throws UserError if
 // one of the files cannot be written, or has no room for the picture.
 inline std::vector<std::string> outputs_of(const CommonOptions& o, const std::string& suffix,
-                                           const std::vector<std::string>& inputs, Size size) {
+                                           const std::vector<UsedFiles>& used, Size size) {
     std::vector<std::string> outputs = o.outputs;
     std::error_code failed;
     if (outputs.empty()) {
@@ -43,7 +50,7 @@ inline std::vector<std::string> outputs_of(const CommonOptions& o, const std::st
     if (o.outputs.empty())
         if (std::filesystem::create_directories("out", failed), failed)
             throw UserError("out: cannot make this directory: " + failed.message());
-    check_names(outputs, o.stats, inputs);
+    check_names(outputs, o.stats, used);
     for (const std::string& path : outputs) check_writable(path);
     if (!o.stats.empty()) check_writable(o.stats);
     return outputs;

@@ -34,8 +34,7 @@ ParsedScene load(Options& o) {
         if (scene.lights[i].kind == Light::Kind::point && o.technique.light == LightMode::none)
             throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
                             ": --light none: rays never hit a point light");
-    if (!o.replay)
-        check_memory(part_of(o, scene, target_of(o, scene).samples), bytes_of_machine());
+    if (!o.replay) check_memory(part_of(o, scene, target_of(o, scene).samples), bytes_of_machine());
     if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))
         throw UserError("--pixel: outside the image");
     // Coarser than build/radiosity's: after a bounce its triangles are not seen, noise is (by
@@ -64,28 +63,29 @@ void write(const Options& o, const Scene& scene, const Rendered& rendered,
            const std::vector<std::string>& outputs) {
     const auto& [image, run, not_kept] = rendered;
     write_images(outputs, image, scene.exposure);
-    if (!o.stats.empty()) write_file(o.stats, encode_stats(o, scene.size, scene.depth, run));
+    const Size size = {image.width, image.height};
+    if (!o.stats.empty()) write_file(o.stats, encode_stats(o, size, scene.depth, run));
     if (run.maps) tell(o, summary(*run.maps));
     tell(o, summary(o, run));
     std::vector<std::string> files = outputs;
     if (!o.checkpoint.empty() && not_kept.empty()) files.push_back(o.checkpoint);
     tell_written(o, files);
-    if (o.view == View::radiance && !scene.lights.empty() &&
+    if (o.view == View::radiance && !o.rows && !scene.lights.empty() &&
         run.mean_radiance == std::array<double, 3>{})
         tell_black(o);
 }
 
 // Images to write, unless it is a part that is for build/merge alone.
-std::vector<std::string> outputs_for(const Options& o, std::vector<std::string> inputs, Size size) {
-    if (!o.checkpoint.empty()) {
-        check_film(o.checkpoint);
-        check_names({}, o.checkpoint, inputs);
-        inputs.push_back(o.checkpoint);
-    }
+std::vector<std::string> outputs_for(const Options& o, const std::vector<std::string>& inputs,
+                                     Size size) {
+    std::vector<UsedFiles> used{{inputs}, {{}, "a checkpoint"}};
+    for (const std::string& film : {o.checkpoint, o.resume})
+        if (!film.empty()) used.back().paths.push_back(film);
+    check_names(o.outputs, o.stats, used);
+    if (!o.checkpoint.empty()) check_film(o.checkpoint);
     const bool is_part = (o.rows || o.samples) && o.outputs.empty();
     if (!is_part)
-        return outputs_of(o, "", inputs, o.rows ? Size{size.width, int(o.rows->count())} : size);
-    check_names({}, o.stats, inputs);
+        return outputs_of(o, "", used, o.rows ? Size{size.width, int(o.rows->count())} : size);
     if (!o.stats.empty()) check_writable(o.stats);
     return {};
 }

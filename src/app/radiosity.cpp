@@ -210,7 +210,7 @@ int radiosity(const std::vector<std::string>& words) {
     if (o.error > 0 && !is_random(o)) check_bounded(o.scene, parsed.scene);
     const double H = edge_length(o.scene, parsed.scene, o.mesh, 32, bytes_of(o));
     const std::vector<std::string> outputs =
-        outputs_of(o, "-radiosity", parsed.files, parsed.scene.size);
+        outputs_of(o, "-radiosity", {{parsed.files}}, parsed.scene.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     const Stage stage = stage_of(o, parsed.scene, H);
