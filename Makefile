@@ -34,7 +34,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
-        starter starter-check mistakes handout grade plant hunted
+        survival starter starter-check mistakes handout grade plant hunted
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -144,6 +144,9 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	@rm -f $@; for part in $(EXTREMES); do \
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
+
+survival: $(PENUMBRA)  ## memory a pixel, what checkpoints cost, 200 kills, Ctrl-C: reference/survival.md (8 minutes)
+	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
 readme: build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
 	build/readme$(SUFFIX)

@@ -1,0 +1,151 @@
+# labs/survival.py  1  what it costs to survive: reference/survival.md, by `make survival`
+"""Measures build/penumbra: memory a pixel, what checkpoints cost, how soon Ctrl-C is heard, and
+renders that are killed 200 times.  --quick: less of each, into out/."""
+import json
+import os
+import random
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+QUICK = '--quick' in sys.argv
+FOLDER = tempfile.mkdtemp(prefix='survival.')
+PENUMBRA = os.path.abspath('build/penumbra')
+
+
+def path(name):
+    return os.path.join(FOLDER, name)
+
+
+def scene(name):
+    return os.path.abspath(f'scenes/{name}.scene')
+
+
+def words(*options):
+    return [PENUMBRA, '--quiet', '-o', path('a.pfm'), '--stats', path('a.json'), *map(str, options)]
+
+
+def render(*options):
+    """Statistics of a render, and the seconds of its whole process."""
+    begun = time.monotonic()
+    # A child of a small shell: the peak of a process begins with the memory of whoever started it.
+    subprocess.run(['sh', '-c', '"$@"; exit $?', 'sh', *words(*options)], check=True)
+    with open(path('a.json'), encoding='utf8') as file:
+        return json.load(file) | {'whole': time.monotonic() - begun}
+
+
+def bits(name):
+    with open(path(name), 'rb') as file:
+        return file.read()
+
+
+def table(heads, rows):
+    lines = ['| ' + ' | '.join(heads) + ' |', '|' + '---|' * len(heads)]
+    return '\n'.join(lines + ['| ' + ' | '.join(map(str, row)) + ' |' for row in rows]) + '\n\n'
+
+
+def memory():
+    rows = []
+    for name in ['penumbra', 'cornell36', 'cube']:
+        none = render('--size', '16x8', '--spp', 17, scene(name))['peak_memory_bytes']
+        for size in ['512x256', '1024x512'] if QUICK else ['512x256', '2048x1024']:
+            run = render('--size', size, '--spp', 17, scene(name))
+            width, height = map(int, size.split('x'))
+            rows.append([name, size, f"{run['sets_per_pixel']:.2f}",
+                         f"{run['peak_memory_bytes'] / 1e6:.0f} MB",
+                         f"{(run['peak_memory_bytes'] - none) / (width * height):.1f}"])
+    return ('## Memory\n\nPeak of the process, files written included, by `--stats`; a pixel: less what a picture of '
+            '16x8 takes.\nOne set of samples takes 24 bytes, an image 12, how many sets there are 8, their choice 16 for a moment.\n\n'
+            + table(['scene', 'size', 'sets a pixel', 'peak', 'bytes a pixel'], rows))
+
+
+def cost():
+    rows = []
+    sizes = [('256x128', 64), ('256x128', 512), ('1024x512', 64), ('4096x2048', 2)]
+    for size, spp in sizes[:1] if QUICK else sizes:
+        ratios, film = [], 0
+        for _ in range(3 if QUICK else 5):
+            base = ('--size', size, '--spp', spp, scene('cornell36'))
+            without = render(*base)['whole']
+            kept = render('--checkpoint', path('a.film'), '--every', 1, *base)['whole']
+            film = os.path.getsize(path('a.film'))
+            ratios.append(kept / without - 1)
+        rows.append([size, spp, f'{without:.1f} s', f'{film / 1e6:.1f} MB',
+                     f'{100 * statistics.median(ratios):+.1f} %',
+                     f'{100 * min(ratios):+.1f} … {100 * max(ratios):+.1f} %'])
+    return ('## What checkpoints cost\n\n`--checkpoint a.film --every 1`, and so at least one at the end, over the same command without: '
+            'whole processes,\nin turn. At size 256x128 and 64 samples the one at the end is all of it.\n\n'
+            + table(['size', 'samples', 'takes', 'file', 'more time, median', 'least … most'], rows))
+
+
+def ctrl_c():
+    with open(path('mirrors.scene'), 'w', encoding='utf8') as file:
+        file.write('size 64 32\ncamera 0 0 0  0 0 1  60\ndepth 1000000\nmirror m 1 1 1\n'
+                   'sphere 0 0 0 10 m\n')
+    rows = []
+    for what, options in [('paths of 10⁶ scatterings', ['--roulette', 0, path('mirrors.scene')]),
+                          ('cornell36, 16384x1', ['--size', '16384x1', '--spp', 10 ** 6, scene('cornell36')])]:
+        took = []
+        for _ in range(5 if QUICK else 40):
+            process = subprocess.Popen(words(*options))
+            time.sleep(random.uniform(0.2, 0.7))
+            begun = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            process.wait()
+            took.append(1e3 * (time.monotonic() - begun))
+            assert process.returncode == 130, process.returncode
+        rows.append([what, len(took), f'{statistics.median(took):.0f} ms', f'{max(took):.0f} ms'])
+    return ('## Ctrl-C\n\nFrom the signal to the end of the process, which writes the passes completed so far.\n\n'
+            + table(['in', 'signals', 'median', 'most'], rows))
+
+
+def kills():
+    kills_wanted = 20 if QUICK else 200
+    options = ['--size', '64x32', '--spp', 1024, '--seed', 1, scene('cornell36')]
+    whole = render(*options)
+    expected, done, chains = bits('a.pfm'), 0, 0
+    every = 0.02
+    while done < kills_wanted:
+        if os.path.exists(path('k.film')):
+            os.remove(path('k.film'))
+        chains += 1
+        while True:
+            resume = ['--resume', path('k.film')] if os.path.exists(path('k.film')) else []
+            process = subprocess.Popen(words('--checkpoint', path('k.film'), '--every', every, *resume, *options))
+            try:
+                process.wait(random.uniform(0.02, 0.6))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                done += 1
+                continue
+            assert process.returncode == 0, process.returncode
+            break
+        assert bits('a.pfm') == expected, 'another picture'
+        left = [name for name in os.listdir(FOLDER) if '.part' in name]
+        assert not left, left
+    return (f'## kill -9\n\ncornell36 at 64x32 with 1024 samples ({whole["seconds"]:.1f} s), killed at random moments '
+            f'and resumed until it was done: **{done} kills** in\n{chains} chains of runs; every picture is that of a run without a break, '
+            f'bit by bit; no file was damaged, none was left over.\n\n')
+
+
+def cores():
+    rows = []
+    for threads in [1, os.cpu_count()]:
+        run = render('--size', '16384x1', '--spp', 256, '--threads', threads, scene('cornell36'))
+        rows.append([threads, f"{run['seconds']:.2f} s", f"{run['cpu_seconds'] / run['seconds']:.2f}"])
+    return '## A picture of one row\n\n16384x1, 256 samples.\n\n' + table(['threads', 'time', 'cores in use'], rows)
+
+
+report = ('# What it costs to survive\n\nWritten by `make survival`'
+          + (' (`QUICK=1`)' if QUICK else '') + f', on {os.cpu_count()} cores.\n\n'
+          + memory() + cost() + ctrl_c() + kills() + cores())
+where = 'out/survival.md' if QUICK else 'reference/survival.md'
+os.makedirs(os.path.dirname(where), exist_ok=True)
+with open(where, 'w', encoding='utf8') as file:
+    file.write(report.rstrip('\n') + '\n')
+subprocess.run(['rm', '-rf', FOLDER], check=True)
+print(f'wrote {where}')
