@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <map>
+#include <memory>
 
 #include "base/moments.h"
 #include "base/rng.h"
@@ -186,15 +187,24 @@ void add(MeanFilm& film, uint64_t n) { whole_pass(film, n, numbered); }
 
 const std::vector<Sets> of_four_pixels = {{1, 0}, {3, 0}, {1, 0.25}, {2, 0}};
 
+std::vector<Sets> of_all_kinds(size_t pixels) {
+    std::vector<Sets> sets(pixels);
+    for (size_t i = 0; i < pixels; ++i) sets[i] = of_four_pixels[i % 4];
+    return sets;
+}
+
 }  // namespace
 
 TEST_CASE("a pixel is the mean of its sets that are shown, whenever they were added") {
-    for (uint64_t before : {0, 1, 4, 9}) {
-        MeanFilm film({2, 2});
+    // Blocks of one pixel, and of six.
+    for (const auto& [size, before] : std::initializer_list<std::pair<Size, uint64_t>>{
+             {{2, 2}, 0}, {{2, 2}, 1}, {{2, 2}, 4}, {{2, 2}, 9}, {{1600, 1}, 0}, {{1600, 1}, 2}}) {
+        MeanFilm film(size);
+        const size_t pixels = film.number_of_pixels(), width = size_t(size.width);
         if (before > 0) add(film, before);
         CHECK(!film.has_sets());
         CHECK(film.sets_per_pixel() == 1);
-        film.add_sets(of_four_pixels);
+        film.add_sets(of_all_kinds(pixels));
         CHECK(film.has_sets());
         CHECK(film.sets_per_pixel() == (before > 0 ? 1 : 2));  // until the others have caught up
         for (uint64_t n : {0, 2, 1}) add(film, n);
@@ -202,14 +212,14 @@ TEST_CASE("a pixel is the mean of its sets that are shown, whenever they were ad
         const uint64_t n = before + 3;
         CHECK(film.samples() == n);
         const Image& image = film.image();
-        for (size_t i = 0; i < 4; ++i) {
-            const uint32_t shown = of_four_pixels[i].shown;
-            CHECK(film.sets(i).count() == std::vector<uint32_t>{1, 3, 2, 2}[i]);
+        for (size_t i = 0; i < pixels; ++i) {
+            const uint32_t shown = of_four_pixels[i % 4].shown;
+            CHECK(film.sets(i).count() == std::vector<uint32_t>{1, 3, 2, 2}[i % 4]);
             double sum = 0;
             for (uint32_t set = 0; set < film.sets(i).count(); ++set) {
                 double of_set = 0;
                 for (uint64_t k = 0; k < n; ++k)
-                    of_set += double(numbered(int(i % 2), int(i / 2), k, set).x);
+                    of_set += double(numbered(int(i % width), int(i / width), k, set).x);
                 CHECK(film.pixel(i, set).sum[0] == of_set);
                 if (set < shown) sum += of_set / double(n);
             }
@@ -338,10 +348,14 @@ void cut_short(MeanFilm& film, uint64_t n, size_t blocks, Cut cut) {
     REQUIRE(taken == 8);
 }
 
-std::vector<Sets> of_all_kinds(size_t pixels) {
-    std::vector<Sets> sets(pixels);
-    for (size_t i = 0; i < pixels; ++i) sets[i] = of_four_pixels[i % 4];
-    return sets;
+// A film that goes on from what a file holds of another one.
+std::unique_ptr<MeanFilm> gone_on(const MeanFilm& film, Shows shows) {
+    FilmState<MeanPixel> state = film.state();
+    state.others_of = {};
+    if (!film.unfinished_pass()) state.image = {}, state.terms.assign(film.blocks(), {});
+    auto next = std::make_unique<MeanFilm>(film.size, MeanPixel::Value{}, shows);
+    next->restore(std::move(state));
+    return next;
 }
 
 }  // namespace
@@ -369,25 +383,33 @@ TEST_CASE("a pass that is cut short leaves image and error as they were; begun a
                     if (course.sets > 0) add(*f, 1);
                 }
                 CHECK(!film.unfinished_pass());
-                const std::vector<uint64_t> before = told(film);
+                // Of the other film: nobody has seen this one's image yet.
+                const std::vector<uint64_t> before = told(whole);
+                CHECK(told(*gone_on(film, shows)) == before);
                 cut_short(film, course.n, 100, cut);
                 CHECK(told(film) == before);
                 CHECK(film.unfinished_pass() == course.n);
                 cut_short(film, course.n, 200, cut);  // and once more
                 CHECK(told(film) == before);
+                const std::unique_ptr<MeanFilm> next = gone_on(film, shows);
+                CHECK(told(*next) == before);
                 // What blocks have they do not take again.
-                film.begin_pass(course.n);
-                add_blocks(film, 0, 200, course.n, [](int, int, uint64_t, uint32_t) {
-                    FAIL_CHECK("a sample that the film had");
-                    return rgb{};
-                });
-                add_blocks(film, 200, 257, course.n, numbered);
-                film.end_pass(course.n);
-                CHECK(!film.unfinished_pass());
+                for (MeanFilm* f : {&film, next.get()}) {
+                    f->begin_pass(course.n);
+                    add_blocks(*f, 0, 200, course.n, [](int, int, uint64_t, uint32_t) {
+                        FAIL_CHECK("a sample that the film had");
+                        return rgb{};
+                    });
+                    add_blocks(*f, 200, 257, course.n, numbered);
+                    f->end_pass(course.n);
+                    CHECK(!f->unfinished_pass());
+                }
                 add(whole, course.n);
                 CHECK(told(film) == told(whole));
+                CHECK(told(*next) == told(whole));
                 CHECK(told(film) != before);
-                for (MeanFilm* f : {&film, &whole}) add(*f, 3);
+                for (MeanFilm* f : {&film, next.get(), &whole}) add(*f, 3);
                 CHECK(told(film) == told(whole));
+                CHECK(told(*next) == told(whole));
             }
 }
