@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/options.h"
+#include "app/option_checks.h"
 #include "app/radiosity_options.h"
 #include "base/files.h"
 

@@ -1,5 +1,5 @@
 // app/options_test.cpp  what words mean, and which are refused
-#include "app/options.h"
+#include "app/option_checks.h"
 
 #include <doctest/doctest.h>
 
