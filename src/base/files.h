@@ -29,6 +29,7 @@ public:
     InputFile(const InputFile&) = delete;
     ~InputFile() { ::close(fd_); }
 
+    bool is_regular() const { return S_ISREG(status().st_mode); }
     uint64_t size() const { return uint64_t(status().st_size); }  // bytes, of a regular file
 
     // Returns how many bytes there were: fewer than asked for only at the end.
@@ -72,11 +73,22 @@ private:
     }
 };
 
+// All of it.  Some files of /proc go on after the length that they tell, others tell one that no
+// memory holds, and what is no file may never end: these are refused.
 inline std::string read_file(const std::string& path, bool of_any_kind = false) {
+    constexpr uint64_t most_of_a_file = uint64_t(1) << 32, most_of_a_stream = uint64_t(1) << 28;
     const InputFile in(path, of_any_kind);
+    auto refuse = [&](const char* why, uint64_t most) {
+        throw UserError(path + why + std::to_string(most) + " bytes");
+    };
+    if (in.is_regular() && in.size() > most_of_a_file) refuse(": is longer than ", most_of_a_file);
+    const uint64_t most = in.is_regular() ? in.size() : most_of_a_stream;
     std::string bytes;
     std::array<char, 1 << 16> buffer;
-    while (const size_t n = in.read(buffer.data(), buffer.size())) bytes.append(buffer.data(), n);
+    while (const size_t n = in.read(buffer.data(), buffer.size())) {
+        bytes.append(buffer.data(), n);
+        if (bytes.size() > most) refuse(": does not end after ", most);
+    }
     return bytes;
 }
 

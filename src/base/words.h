@@ -96,6 +96,18 @@ inline Size parse_size(std::string_view width, std::string_view height) {
     return {int(w), int(h)};
 }
 
+// The words of a line before a comment, as white space parts them.
+inline std::vector<std::string> words_before(std::string_view line, char comment) {
+    constexpr std::string_view space = " \t\n\v\f\r";
+    line = line.substr(0, line.find(comment));
+    std::vector<std::string> words;
+    for (size_t end = 0, start; (start = line.find_first_not_of(space, end)) != line.npos;) {
+        end = std::min(line.find_first_of(space, start), line.size());
+        words.emplace_back(line.substr(start, end - start));
+    }
+    return words;
+}
+
 // Number of single-letter edits from a to b (Levenshtein 1966).
 inline size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<size_t> row(b.size() + 1);

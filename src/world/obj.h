@@ -23,6 +23,7 @@ struct ObjMesh {
     std::vector<Material> materials;
     std::vector<Face> faces;
     std::vector<std::string> files;  // that it was read from
+    uint64_t bytes = 0;              // of them
 };
 
 // Reads `v` and `f` (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative,
@@ -48,14 +49,14 @@ private:
 
     template <class Statement>
     void each_line(const std::string& path, Statement read_words) {
-        std::istringstream in(read_file(path));
+        const std::string bytes = read_file(path);
+        mesh_.bytes += bytes.size();
+        std::istringstream in(bytes);
         mesh_.files.push_back(path);
         int line = 0;
         for (std::string text; std::getline(in, text);) {
             line_ = ++line;
-            std::istringstream words(text.substr(0, text.find('#')));
-            words_.clear();
-            for (std::string word; words >> word;) words_.push_back(word);
+            words_ = words_before(text, '#');
             try {
                 if (!words_.empty()) read_words();
             } catch (const UserError& e) {
@@ -138,11 +139,17 @@ private:
     }
 };
 
-// The polygon's corners, turned so that the triangles (0, i, i+1) all face the same way; nothing
-// if there is no such corner to start from.  Convex polygons always have one, and are not turned.
-// Others may have to try every corner, in n^2 steps: not with more than `most_concave`.
+// A polygon's corners, turned so that the triangles (0, i, i+1) all face the same way; how many
+// were tried as the first, in as many steps each as there are corners.
+struct Fan {
+    std::vector<vec3> corners;
+    size_t tried;
+};
+
+// Nothing if there is no such corner to start from.  Convex polygons always have one, and are not
+// turned.  Others may have to try every corner, in n^2 steps: not with more than `most_concave`.
 inline constexpr size_t most_concave = 1000;
-inline std::optional<std::vector<vec3>> fan_of(std::vector<vec3> corners) {
+inline std::optional<Fan> fan_of(std::vector<vec3> corners) {
     const size_t n = corners.size();
     vec3 normal;  // twice the area (Newell)
     for (size_t i = 1; i + 1 < n; ++i)
@@ -158,7 +165,27 @@ inline std::optional<std::vector<vec3>> fan_of(std::vector<vec3> corners) {
     for (size_t start = 0; start < (n <= most_concave ? n : 1); ++start)
         if (fair_from(start)) {
             std::rotate(corners.begin(), corners.begin() + std::ptrdiff_t(start), corners.end());
-            return corners;
+            return Fan{std::move(corners), start + 1};
         }
     return {};
 }
+
+// ---- Meshes that are repeated -------------------------------------------------------------------
+
+// What files may ask for: a number that takes half a second, and more in proportion to their bytes.
+// A mesh that is placed once never asks for more; 15 bytes that place it again do.
+struct Allowance {
+    const char* what;
+    uint64_t of_any, a_byte;
+
+    // `bytes`: of all files, each once.
+    void check(uint64_t n, uint64_t bytes) const {
+        if (n <= of_any + a_byte * bytes) return;
+        throw UserError("meshes are repeated too often: more than " + std::to_string(of_any) + " " +
+                        what + ", and " + std::to_string(a_byte) + " for each of the " +
+                        std::to_string(bytes) + " bytes read");
+    }
+};
+inline constexpr Allowance most_shapes{"shapes", 1 << 18, 8};
+inline constexpr Allowance most_materials{"materials", 1 << 16, 8};
+inline constexpr Allowance most_fan_steps{"steps to cut up concave faces", 1 << 25, 256};

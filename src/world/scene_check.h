@@ -2,6 +2,7 @@
 // rounding
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 
 #include "world/scene.h"
@@ -30,7 +31,8 @@ inline std::map<ShapeKey, uint32_t> first_in_place(const Scene& s) {
 }
 
 // No ray ever meets a light whose shapes all come after others in the same places; light samples
-// must not find it either.  Takes such lights away; returns the lines of each and of its cover.
+// must not find it either.  Takes such lights away; returns their lines, each once, and of each
+// line that of a cover.
 inline std::vector<std::array<uint32_t, 2>> drop_covered_lights(Scene& s) {
     const auto first = first_in_place(s);
     std::vector<int> seen(s.lights.size());        // shapes of each that rays can meet
@@ -42,14 +44,20 @@ inline std::vector<std::array<uint32_t, 2>> drop_covered_lights(Scene& s) {
         if (before < i) cover[size_t(s.light_of[i])] = s.line_of[before];
     }
     std::vector<std::array<uint32_t, 2>> dropped;
-    for (size_t k = s.lights.size(); k-- > 0;) {
-        if (seen[k] > 0 || s.lights[k].kind == Light::Kind::point) continue;
-        dropped.push_back({s.line_of_light[k], cover[k]});
-        s.lights.erase(s.lights.begin() + std::ptrdiff_t(k));
-        s.line_of_light.erase(s.line_of_light.begin() + std::ptrdiff_t(k));
-        for (int32_t& light : s.light_of)
-            light = light == int32_t(k) ? no_light : light > int32_t(k) ? light - 1 : light;
+    std::vector<int32_t> number(s.lights.size(), no_light);  // from now on
+    size_t n = 0;
+    for (size_t k = 0; k < s.lights.size(); ++k) {
+        const uint32_t line = s.line_of_light[k];
+        if (seen[k] == 0 && s.lights[k].kind != Light::Kind::point) {
+            if (dropped.empty() || dropped.back()[0] != line) dropped.push_back({line, cover[k]});
+            continue;
+        }
+        s.lights[n] = s.lights[k], s.line_of_light[n] = line;
+        number[k] = int32_t(n++);
     }
+    s.lights.resize(n), s.line_of_light.resize(n);
+    for (int32_t& light : s.light_of)
+        if (light != no_light) light = number[size_t(light)];
     return dropped;
 }
 
@@ -57,10 +65,10 @@ inline std::vector<std::array<uint32_t, 2>> drop_covered_lights(Scene& s) {
 
 // Whether p lies on the shape but for rounding, so that chance would decide on which side it is: by
 // a quarter of what rounding_error allows, which is what the intersectors do lose.
-inline bool lies_on(const Shape& s, vec3 p) {
-    const real error = rounding_error(s) / 4 + 4 * ulp * max_abs(p);
+inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
+    const real error = f.error / 4 + 4 * ulp * max_abs(p);
     if (s.is_sphere()) return std::abs(length(p - s.a) - s.r) <= error;
-    const vec3 n = unit(area_vector(s)), corner[] = {s.a, s.b, s.c};
+    const vec3 n = f.n, corner[] = {s.a, s.b, s.c};
     if (!(std::abs(dot(n, p - s.a)) <= error)) return false;
     for (size_t k = 0; k < 3; ++k) {
         const vec3 edge = corner[(k + 1) % 3] - corner[k];
@@ -69,11 +77,29 @@ inline bool lies_on(const Shape& s, vec3 p) {
     return true;
 }
 
-// The line of the shape that the point light k lies on; 0: none.
-inline uint32_t surface_of(const Scene& s, size_t k) {
-    for (size_t i = 0; i < s.shapes.size() && s.lights[k].kind == Light::Kind::point; ++i)
-        if (lies_on(s.shapes[i], s.lights[k].p)) return s.line_of[i];
-    return 0;
+// The first point light that lies on a shape, and the first such shape, by their lines.
+struct OnSurface {
+    uint32_t line_of_light, line;
+};
+inline std::optional<OnSurface> light_on_surface(const Scene& s) {
+    struct Point {
+        vec3 p;
+        uint32_t line;
+    };
+    std::vector<Point> points;  // that might come before those found
+    for (size_t k = 0; k < s.lights.size(); ++k)
+        if (s.lights[k].kind == Light::Kind::point)
+            points.push_back({s.lights[k].p, s.line_of_light[k]});
+    std::optional<OnSurface> found;
+    for (size_t i = 0; i < s.shapes.size() && !points.empty(); ++i) {
+        const Facing f = facing(s.shapes[i]);
+        for (size_t k = 0; k < points.size(); ++k)
+            if (lies_on(s.shapes[i], f, points[k].p)) {
+                found = {points[k].line, s.line_of[i]};
+                points.resize(k);
+            }
+    }
+    return found;
 }
 
 // ---- Rounding -----------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // world/scene_file.h  8  reading scenes/NAME.scene
 #pragma once
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "world/grammar.h"
@@ -20,9 +21,8 @@ public:
     explicit Parser(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     void statement(const std::string& text, int line) {
-        words_.clear();
-        std::istringstream in(text.substr(0, text.find('#')));
-        for (std::string word; in >> word;) words_.push_back(word);
+        bytes_ += text.size() + 1;
+        words_ = words_before(text, '#');
         if (words_.empty()) return;
         next_ = 1;
         line_ = line;
@@ -63,12 +63,11 @@ private:
         for (const auto& [line, cover] : drop_covered_lights(scene_))
             warnings.push_back("line " + std::to_string(line) + ": this light is dark: line " +
                                std::to_string(cover) + " covers it, which comes first");
-        for (size_t k = 0; k < scene_.lights.size(); ++k)
-            if (const uint32_t line = surface_of(scene_, k)) {
-                line_ = int(scene_.line_of_light[k]);
-                throw UserError("this point light lies on the surface of line " +
-                                std::to_string(line) + ": move it off");
-            }
+        if (const auto on = light_on_surface(scene_)) {
+            line_ = int(on->line_of_light);
+            throw UserError("this point light lies on the surface of line " +
+                            std::to_string(on->line) + ": move it off");
+        }
         const Coarse c = coarsest(scene_);
         if (c.part > real(0.01))
             warnings.push_back(
@@ -98,6 +97,8 @@ private:
     std::vector<std::string> words_;
     size_t next_ = 0;  // word to read
     int line_ = 0, dropped_ = 0;
+    std::set<std::string> meshes_;        // that were read
+    uint64_t bytes_ = 0, fan_steps_ = 0;  // of all files, each once; that concave faces took
 
     // ---- Statements ---------------------------------------------------------------------------
 
@@ -195,6 +196,7 @@ private:
         std::optional<uint32_t> given;
         if (next_ < words_.size()) given = material();
         const ObjMesh mesh = ObjReader::read(path);
+        if (meshes_.insert(true_name(path)).second) bytes_ += mesh.bytes;
         files_.insert(files_.end(), mesh.files.begin(), mesh.files.end());
         const auto first = uint32_t(scene_.materials.size());
         for (const ObjMesh::Material& m : mesh.materials) {
@@ -204,6 +206,7 @@ private:
             scene_.materials.push_back(material);
             scene_.names.push_back(m.name);
         }
+        most_materials.check(scene_.materials.size(), bytes_);
         for (const ObjMesh::Face& face : mesh.faces) {
             try {
                 if (face.material < 0 && !given)
@@ -214,6 +217,8 @@ private:
             } catch (const UserError& e) {
                 throw UserError(path + ":" + std::to_string(face.line) + ": " + e.what());
             }
+            most_shapes.check(scene_.shapes.size(), bytes_);
+            most_fan_steps.check(fan_steps_, bytes_);
         }
     }
 
@@ -225,7 +230,8 @@ private:
             throw UserError("concave, with more than " + std::to_string(most_concave) +
                             " corners: cut this polygon up");
         if (!fan) throw UserError("no corner sees all others: cut this polygon up");
-        const std::vector<vec3>& c = *fan;
+        const std::vector<vec3>& c = fan->corners;
+        if (fan->tried > 1) fan_steps_ += fan->tried * c.size();
         if (c.size() == 4 && c[0] + c[2] == c[1] + c[3])
             dropped_ += add_face(scene_, c[0], c[1], c[2], c[3], m);
         else

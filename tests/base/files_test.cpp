@@ -51,6 +51,21 @@ TEST_CASE("a file is read to its end; an error on the way is none") {
           }).ends_with("/b: cannot open: No such file or directory"));
 }
 
+TEST_CASE("what does not end is refused once it is longer than it says, or than a stream may be") {
+    const Folder folder;
+    // Of many gigabytes, and of length 0.
+    CHECK(complaint<UserError>([] { read_file("/proc/self/pagemap"); }) ==
+          "/proc/self/pagemap: does not end after 0 bytes");
+    CHECK(complaint<UserError>([] { read_file("/dev/zero", true); }) ==
+          "/dev/zero: does not end after 268435456 bytes");
+    // As long as all memory, for a file that takes none: nothing of it is read.
+    folder.write("long", "");
+    fs::resize_file(folder / "long", (uint64_t(1) << 32) + 1);
+    CHECK(complaint<UserError>([&] {
+              read_file(folder / "long");
+          }).ends_with("/long: is longer than 4294967296 bytes"));
+}
+
 TEST_CASE("only regular files are read: a pipe would keep us waiting, a device never end") {
     const Folder folder;
     REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);

@@ -71,6 +71,16 @@ TEST_CASE("a size has 1 to 65536 pixels a side and at most 2^25 in all") {
     CHECK(about_size("1", "65537") == "'65537' is not a whole number from 1 to 65536");
 }
 
+TEST_CASE("the words of a line end at white space of any kind and at a comment") {
+    using Words = std::vector<std::string>;
+    CHECK(words_before("a bc  d", '#') == Words{"a", "bc", "d"});
+    CHECK(words_before(" \t\v\f\r a\tb\r", '#') == Words{"a", "b"});
+    CHECK(words_before("a b#c d", '#') == Words{"a", "b"});
+    CHECK(words_before("#a", '#') == Words{});
+    CHECK(words_before("", '#') == Words{});
+    CHECK(words_before(std::string("a\0b c", 5), '#') == Words{std::string("a\0b", 3), "c"});
+}
+
 TEST_CASE("the nearest word is the one with the fewest edits") {
     CHECK(edit_distance("", "abc") == 3);
     CHECK(edit_distance("abc", "abc") == 0);
