@@ -87,11 +87,17 @@ public:
             err.from = -1;
             open_[1] = false;
         }
+        // A signal that comes at once is the program's, and nothing to do for handlers of ours.
+        sigset_t all, before;
+        ::sigfillset(&all);
+        ::sigprocmask(SIG_SETMASK, &all, &before);
         pid_ = ::fork();
+        if (pid_ != 0) ::sigprocmask(SIG_SETMASK, &before, nullptr);
         REQUIRE(pid_ >= 0);
         if (pid_ == 0) {
             for (int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ})
                 std::signal(s, s == setting.ignored ? SIG_IGN : SIG_DFL);
+            ::sigprocmask(SIG_SETMASK, &before, nullptr);
             limit(RLIMIT_FSIZE, setting.largest_file);
             limit(RLIMIT_AS, setting.memory);
             if (::chdir(folder.path.c_str()) == 0 && ::dup2(in.from, 0) == 0 &&
