@@ -354,7 +354,7 @@ std::unique_ptr<MeanFilm> gone_on(const MeanFilm& film, Shows shows) {
     state.others_of = {};
     if (!film.unfinished_pass()) state.image = {}, state.terms.assign(film.blocks(), {});
     auto next = std::make_unique<MeanFilm>(film.size, MeanPixel::Value{}, shows);
-    next->restore(std::move(state));
+    next->restore([&] { return state; });
     return next;
 }
 
