@@ -1,4 +1,4 @@
-// film/checkpoint.h  5  films in files: to go on from, or to be merged with others
+// film/checkpoint.h  6  films in files: to go on from, or to be merged with others
 #pragma once
 #include <type_traits>
 
