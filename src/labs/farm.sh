@@ -28,11 +28,9 @@ finished() {  # FOLDER NUMBER
 
 # Numbers of the parts that are still to be rendered, a line each.
 unfinished() {  # FOLDER
-    local number
-    for ((number = 1; number <= $(planned "$1" part | wc -l); ++number)); do
-        finished "$1" "$number" || echo "$number"
-    done
+    for number in $(seq "$(count_of_parts "$1")"); do finished "$1" "$number" || echo "$number"; done
 }
+count_of_parts() { planned "$1" part | wc -l; }  # FOLDER
 
 # ---- The plan -----------------------------------------------------------------------------------
 
@@ -168,11 +166,11 @@ merge() {  # FOLDER
             "$(tail -n 1 "$(log "$1" "$number")" 2>/dev/null)" >&2
     done
     if [ -n "$missing" ]; then
-        echo "farm: $(echo "$missing" | wc -l) of $(planned "$1" part | wc -l) parts are missing, and no picture was" \
+        echo "farm: $(echo "$missing" | wc -l) of $(count_of_parts "$1") parts are missing, and no picture was" \
             "written; the same command again renders those alone" >&2
         return 1
     fi
-    for ((number = 1; number <= $(planned "$1" part | wc -l); ++number)); do films+=("$(film "$1" "$number")"); done
+    for number in $(seq "$(count_of_parts "$1")"); do films+=("$(film "$1" "$number")"); done
     mapfile -t words < <(planned "$1" output)
     "$(planned "$1" build)/merge" "${words[@]}" "${films[@]}"
 }
