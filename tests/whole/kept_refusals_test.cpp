@@ -1,5 +1,6 @@
 // whole/kept_refusals_test.cpp  films that are not gone on from, and names that are not written to
 #include "whole/kept.h"
+#include "whole/process.h"
 
 namespace {
 
@@ -91,7 +92,7 @@ TEST_CASE("another scene, by one byte of any of its files") {
     const Kept folder;
     folder.keep("a.film", "--spp 2");
     for (const char* name : {"file.scene", "m.obj", "m.mtl"}) {
-        CAPTURE(name);
+        INFO(std::string(name));
         const std::string bytes = folder.read(name);
         folder.write(name, bytes + "\n");
         folder.expect_refused("--spp 2 --resume a.film", "a.film: its scene is another one\n");

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "oracle/expect.h"
 #include "whole/kept.h"
+#include "whole/process.h"
 
 namespace {
 
@@ -49,7 +50,7 @@ TEST_CASE("with more samples than before: the same image as at once, by any numb
                         {"--indirect regression --particles 3000", true}};
     const Scenes folder;
     for (const Row& row : rows) {
-        CAPTURE(row.options);
+        INFO(std::string(row.options));
         const Words words = split(row.options) + scene_of(row);
         expect_success(folder, "penumbra", split("--spp 37") + outputs("whole") + words);
         std::string resume;
@@ -94,7 +95,7 @@ TEST_CASE("interrupted at random moments, mostly in a pass: the same image in th
     const uint64_t seed = seed_here();
     int interruptions = 0, unfinished = 0;
     for (const Row& row : rows) {
-        CAPTURE(row.options);
+        INFO(std::string(row.options));
         const Words words = split(row.options) + scene_of(row);
         const auto start = std::chrono::steady_clock::now();
         expect_success(folder, "penumbra", outputs("whole") + words);
