@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "app/option_checks.h"
 #include "app/render.h"
 #include "labs/lab.h"
 #include "labs/trade_data.h"
