@@ -141,7 +141,7 @@ public:
     void commit() {
         const std::string first = film_file::first_lines(bytes_, checksum_.value());
         file_.write_at(0, first.data(), first.size());
-        file_.commit(Durable::yes);
+        file_.commit();
     }
 
 private:

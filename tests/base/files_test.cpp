@@ -212,7 +212,7 @@ TEST_CASE("there are no places in a stream") {
           "/dev/null: cannot write: is no regular file");
     OutputFile full("/dev/full");
     full.write("x", 1);
-    CHECK(complaint<SystemError>([&] { full.commit(Durable::yes); }) ==
+    CHECK(complaint<SystemError>([&] { full.commit(); }) ==
           "/dev/full: cannot write: No space left on device");
     CHECK(fs::is_character_file("/dev/full"));
 }
@@ -231,17 +231,9 @@ TEST_CASE("what is not committed goes, and the old file stays") {
 
 TEST_CASE("to be durable is: bytes on the disk, then the name, then the folder") {
     const Folder folder;
-    auto write = [&](Durable durable) {
-        return calls_of({}, [&] {
-            OutputFile file(folder / "a");
-            file.write("bytes", 5);
-            file.commit(durable);
-        });
-    };
+    const auto calls = calls_of({}, [&] { write_file(folder / "a", "bytes"); });
     using Calls = std::vector<std::string>;
-    CHECK(write(Durable::yes) ==
-          Calls{"write", "fsync 5", "close", "rename", "fsync folder", "close"});
-    CHECK(write(Durable::no) == Calls{"write", "close", "rename"});
+    CHECK(calls == Calls{"write", "fsync 5", "close", "rename", "fsync folder", "close"});
 }
 
 TEST_CASE("whatever fails on the way to a file is an error with its name") {
@@ -254,7 +246,7 @@ TEST_CASE("whatever fails on the way to a file is an error with its name") {
             OutputFile file(path);
             file.write("byt", 3);
             file.write_at(3, "es", 2);
-            file.commit(Durable::yes);
+            file.commit();
         };
         auto with = [&](int error) {
             return complaint<SystemError>([&] { calls_of({{}, call, error}, work); });
