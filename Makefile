@@ -88,8 +88,8 @@ $(TESTS:%=$(OBJECTS)/tests/%.ready): %.ready: %.exe always
 mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
 
-soak: $(SUITE)  ## run the random tests with fresh seeds for 10 minutes; SECONDS=60: shorter
-	@tests/soak $(SUITE) $(SECONDS)
+soak: $(if $(FAULTS),$(PENUMBRA),$(SUITE))  ## run the random tests with fresh seeds for 10 minutes; FAULTS=1: renders under faults, for an hour; SECONDS=60
+	@CXX='$(CXX)' tests/soak $(if $(FAULTS),--faults $(PENUMBRA),$(SUITE)) $(SECONDS)
 
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
 techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)
@@ -272,7 +272,7 @@ packages:
 
 # Folders by floor; those of one floor do not know each other.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 radiosity:4 app:5 labs:6 course:6 oracle:7 whole:7
+FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 radiosity:4 app:5 labs:6 course:6 oracle:7 whole:7 faults:7
 
 layers:  ## check that every file includes only from floors below
 	@awk -v floors='$(FLOORS)' ' \

@@ -1,0 +1,31 @@
+// whole/faults_test.cpp  renders while disk, clock and power fail: right to the bit, or absent
+#include <doctest/doctest.h>
+
+#include "course/python.h"
+
+namespace {
+
+// What soak.py finds; build/penumbra is what it runs.
+void expect_nothing_wrong(const std::string& options) {
+    const char *seed = std::getenv("TEST_SEED"), *suffix = std::getenv("PROGRAM_SUFFIX");
+    const Printed printed = output_of("python3 tests/faults/soak.py --seed faults_test" +
+                                      std::string(seed ? seed : "") + " " + options +
+                                      " build/penumbra" + (suffix ? suffix : ""));
+    INFO(printed.text);
+    CHECK(printed.status == 0);
+}
+
+}  // namespace
+
+TEST_CASE("each call of a small render fails in each way, and the power before each") {
+    expect_nothing_wrong("--each");
+}
+
+TEST_CASE("twenty renders under random faults, and one that is killed and resumed") {
+    expect_nothing_wrong("--runs 20 --jobs 2");
+    expect_nothing_wrong("--runs 1 --only 'killed and resumed'");
+}
+
+TEST_CASE("no damaged checkpoint is gone on from") {
+    expect_nothing_wrong("--runs 20 --jobs 2 --only 'damaged checkpoint'");
+}
