@@ -102,6 +102,11 @@ TEST_CASE("bands make up the picture, bit by bit, and all that is said of it") {
             expect_same_run(folder, "whole", "parts");
             CHECK(folder.same("whole.png", "parts.png"));
         }
+        if (row.diffuse)
+            for (const char* key :
+                 {"map_mesh", "map_triangles", "map_particles", "map_error", "map_slope", "depth"})
+                CHECK(stated(folder.read("whole.json"), key) ==
+                      stated(folder.read("parts.json"), key));
         merge_parts(folder, words, {""}, "one");
         expect_same_run(folder, "whole", "one");
         CHECK(folder.same("whole.png", "one.png"));

@@ -224,3 +224,45 @@ TEST_CASE("a disk that is full costs checkpoints, and no image") {
     const bool untouched = folder.read("a.film") == film;
     CHECK(untouched);
 }
+
+TEST_CASE("going on takes no more memory than beginning") {
+    const Scenes folder;
+    folder.write("dark.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
+    const Words words = split("--size 2048x1024 --depth 0 dark.scene");
+    expect_success(folder, "penumbra", split("--spp 2") + outputs("whole") + words);
+    expect_success(folder, "penumbra", split("--spp 1 -o x.pfm --checkpoint a.film") + words);
+    expect_success(folder, "penumbra", split("--spp 2 --resume a.film") + outputs("parts") + words);
+    expect_same_run(folder, "whole", "parts");
+    const double whole = std::stod(stated(folder.read("whole.json"), "peak_memory_bytes")),
+                 parts = std::stod(stated(folder.read("parts.json"), "peak_memory_bytes"));
+    CHECK(parts < whole + 4e6);  // 2 bytes a pixel
+}
+
+TEST_CASE("what weights fell back to is counted in all runs together") {
+    const Scenes folder;
+    const Words words =
+        split("--size 40x30 --spp 2 --sampler independent --film fvor --sets 2 unequal.scene");
+    expect_success(folder, "penumbra", outputs("whole") + words);
+    const std::string whole = stated(folder.read("whole.json"), "film_fallbacks");
+    REQUIRE(std::stoi(whole) > 0);
+    for (const char* rows : {"0-9", "10-29"})
+        expect_success(
+            folder, "penumbra",
+            split("--rows " + std::string(rows) + " --checkpoint " + rows + ".film") + words);
+    expect_success(folder, "merge", split("0-9.film 10-29.film") + outputs("parts"));
+    CHECK(stated(folder.read("parts.json"), "film_fallbacks") == whole);
+    expect_success(folder, "penumbra", split("-o x.pfm --checkpoint a.film") + words);
+    expect_success(folder, "penumbra", split("--resume a.film") + outputs("again") + words);
+    CHECK(stated(folder.read("again.json"), "film_fallbacks") == whole);
+}
+
+TEST_CASE("maps of a run that is kept have all their particles, whatever the time") {
+    const Scenes folder;
+    const Words words = split("--size 4x3 --indirect map --particles 300000 diffuse.scene");
+    expect_success(folder, "penumbra",
+                   split("--spp 1 --checkpoint a.film") + outputs("whole") + words);
+    expect_success(folder, "penumbra",
+                   split("--time 0.001 --spp 1 --resume a.film") + outputs("parts") + words);
+    for (const char* key : {"map_particles", "map_error", "map_slope"})
+        CHECK(stated(folder.read("whole.json"), key) == stated(folder.read("parts.json"), key));
+}
