@@ -93,6 +93,7 @@ void expect_chains(Options o, const Scene& scene, uint64_t step, Render render) 
             REQUIRE(r.not_kept.empty());
             if (!r.run.interrupted) break;
             o.resume = o.checkpoint;
+            CHECK(FilmReader(o.resume).header().find("complete") == "no");
             unfinished += FilmReader(o.resume).header().find("unfinished") == "yes";
         }
         if (!same(r, whole) && ++wrong == 1) first_wrong = at;
