@@ -62,11 +62,11 @@ TEST_CASE("a count is a whole number from the least to the most") {
               }).ends_with(" is not a whole number from 3 to 5"));
 }
 
-TEST_CASE("a size has 1 to 65536 pixels a side and at most 2^25 in all") {
-    CHECK(parse_size("65536", "512").width == 65536);
-    CHECK(parse_size("512", "65536").height == 65536);
-    for (const auto& [width, height] : {std::pair{"65536", "65536"}, {"65536", "513"}})
-        CHECK(about_size(width, height).ends_with("has more than 33554432 pixels"));
+TEST_CASE("a size has 1 to 65536 pixels a side and at most 2^30 in all") {
+    CHECK(parse_size("65536", "16384").width == 65536);
+    CHECK(parse_size("16384", "65536").height == 65536);
+    for (const auto& [width, height] : {std::pair{"65536", "65536"}, {"65536", "16385"}})
+        CHECK(about_size(width, height).ends_with("has more than 1073741824 pixels"));
     CHECK(about_size("0", "1") == "'0' is not a whole number from 1 to 65536");
     CHECK(about_size("1", "65537") == "'65537' is not a whole number from 1 to 65536");
 }
