@@ -58,9 +58,10 @@ TEST_CASE("a signal that was ignored from the start stays ignored") {
     CHECK(folder.has("a.pfm"));
 }
 
-TEST_CASE("Ctrl-C is heard within a row, too") {
+TEST_CASE("Ctrl-C is heard within a path, too") {
     const Folder folder;
-    folder.write("file.scene", hall_of_mirrors("8192 1", 100000));  // minutes a row, 20 ms a sample
+    folder.write("file.scene",
+                 hall_of_mirrors("8192 1", 1000000));  // an hour a pass, 0.2 s a sample
     const auto before = folder.all();
     for (const char* film : {"", "--film cvor --sampler independent --spp 1000"}) {
         Process process(folder, "penumbra", split(std::string(film) + " -o a.pfm file.scene"));
@@ -79,7 +80,8 @@ TEST_CASE("Ctrl-C is heard within a row, too") {
 
 TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no terminal is, no bar") {
     const Folder folder;
-    folder.write("file.scene", hall_of_mirrors("64 4096", 5000));  // minutes a pass, 50 ms a row
+    folder.write("file.scene",
+                 hall_of_mirrors("1024 1024", 1000));  // minutes a pass, 40 ms a block
     folder.write("out/file.png", "old");
     const auto before = folder.all();
     Process process(folder, "penumbra", split("--threads 1 file.scene"));
@@ -103,12 +105,12 @@ TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no ter
 
 TEST_CASE("a second Ctrl-C kills at once, and leaves no file") {
     const Folder folder;
-    folder.write("file.scene", hall_of_mirrors("1000 1", 1000000));  // minutes a row
+    folder.write("file.scene", hall_of_mirrors("1000 1", 1000000));  // minutes a pass
     const auto before = folder.all();
     auto never = [](const Outcome&) { return false; };
     Outcome o;
     double seconds = 0;
-    // A busy machine may not have begun the row, or end a path at once: then again, with more
+    // A busy machine may not have begun the pass, or end a path at once: then again, with more
     // patience.
     for (double patience = 0.1; patience < 20 && o.signal == 0; patience *= 3) {
         Process process(folder, "penumbra", split("-o a.pfm file.scene"));
