@@ -91,6 +91,21 @@ mutants: packages  ## plant every wrong line of tests/mutants/: a test must see 
 soak: $(if $(FAULTS),$(PENUMBRA),$(SUITE))  ## run the random tests with fresh seeds for 10 minutes; FAULTS=1: renders under faults, for an hour; SECONDS=60
 	@CXX='$(CXX)' tests/soak $(if $(FAULTS),--faults $(PENUMBRA),$(SUITE)) $(SECONDS)
 
+.PHONY: fuzz
+fuzz: build/fuzz/fuzz$(SUFFIX)  ## files, options and small scenes that clang's libFuzzer makes up, for 10 minutes; SECONDS=60: shorter
+	@tests/fuzz/run $< $(SECONDS)
+
+# Whatever CXX is: no other compiler has it.
+FUZZ_CXX   ?= clang++
+FUZZ_FLAGS := $(SANITISE) -fsanitize=fuzzer
+build/fuzz/fuzz$(SUFFIX): tests/fuzz/fuzz.cpp Makefile | packages
+	@mkdir -p $(@D)
+	@echo 'extern "C" int LLVMFuzzerTestOneInput() { return 0; }' | \
+	    $(FUZZ_CXX) $(FUZZ_FLAGS) -x c++ -o $@ - 2>/dev/null || \
+	    { echo "penumbra: make fuzz needs clang++ and its libFuzzer; run: sudo apt-get install clang libclang-rt-14-dev" >&2; exit 1; }
+	$(FUZZ_CXX) $(FLAGS) $(FUZZ_FLAGS) -Itests -MF $@.d -o $@ $<
+-include $(wildcard build/fuzz/*.d)
+
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
 techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)
 estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
@@ -272,7 +287,7 @@ packages:
 
 # Folders by floor; those of one floor do not know each other.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 radiosity:4 app:5 labs:6 course:6 oracle:7 whole:7 faults:7
+FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 radiosity:4 app:5 labs:6 course:6 oracle:7 whole:7 faults:7 fuzz:7
 
 layers:  ## check that every file includes only from floors below
 	@awk -v floors='$(FLOORS)' ' \

@@ -1,0 +1,146 @@
+// fuzz/drawn.h  bytes to a scene that is well-formed, and to options that go together
+#pragma once
+#include <cmath>
+#include <vector>
+
+#include "base/vec.h"
+#include "fuzz/input.h"
+
+// A scene, and how to render it.
+struct Drawn {
+    std::string scene;
+    std::vector<std::string> options;
+    bool moderate = true;  // nothing in it is so large or so small that a sample might overflow
+};
+
+// ---- Options ------------------------------------------------------------------------------------
+
+// Of few samples, by one thread; some of them do not go together, which is refused.
+inline std::vector<std::string> drawn_options(Choices& c) {
+    std::vector<std::string> words = {"--quiet", "--threads", "1"};
+    auto say = [&](const std::string& name, const std::string& value) {
+        words.push_back(name), words.push_back(value);
+    };
+    say("--size", c.of({"8x4", "1x1", "5x3", "1x9"}));
+    say("--spp", c.of({"2", "3", "1", "4"}));
+    say("--depth", c.of({"3", "0", "1", "8"}));
+    const std::string light = c.of({"mis", "nee", "none"});
+    say("--light", light);
+    if (light == "nee") say("--direct", c.of({"stochastic", "control", "ratio", "regression"}));
+    const std::string sampler =
+        c.of({"sobol", "independent", "stratified", "halton", "halton-naive"});
+    say("--sampler", sampler);
+    if (sampler == "independent") say("--film", c.of({"mc", "vor", "fvor", "cvor", "torus"}));
+    say("--direction", c.of({"bsdf", "uniform"}));
+    say("--polygons", c.of({"area", "angle"}));
+    say("--pick", c.of({"place", "power"}));
+    say("--roulette", c.of({"0.25", "0", "1", "1e-9"}));
+    say("--seed", std::to_string(c.byte()));
+    if (c.rarely()) say("--view", c.of({"normal", "depth", "albedo", "bvh", "variance"}));
+    if (c.rarely()) say("--sets", c.of({"2", "3", "1"}));
+    if (c.rarely()) say("--rows", "0-0"), say("-o", "a.pfm");
+    return words;
+}
+
+// ---- Scenes -------------------------------------------------------------------------------------
+
+class SceneWriter {
+public:
+    SceneWriter(Choices& choices, bool moderate) : c_(choices), moderate_(moderate) {}
+
+    std::string text() {
+        camera();
+        do material();
+        while (materials_ < 6 && c_.below(3) != 0);
+        do content();
+        while (shapes_++ < 40 && !c_.empty());
+        return text_;
+    }
+
+private:
+    Choices& c_;
+    const bool moderate_;
+    std::string text_;
+    unsigned materials_ = 0, shapes_ = 0;
+
+    void word(const std::string& w) {
+        text_ += (text_.empty() || text_.back() == '\n' ? "" : " ") + w;
+    }
+    void word(double x) {
+        char digits[40];
+        std::snprintf(digits, sizeof digits, "%.9g", x);
+        word(std::string(digits));
+    }
+    void end() { text_ += '\n'; }
+
+    // On a grid, so that much of it coincides; or of any size.
+    double power() {
+        const int most = sizeof(real) == 4 ? 9 : 30;
+        return std::pow(10, int(c_.byte()) % (2 * most + 1) - most);
+    }
+    double number() {
+        if (!moderate_ && c_.rarely()) return power() * (c_.below(2) ? 1 : -1);
+        return (double(c_.byte()) - 128) / 16;
+    }
+    double length() {
+        if (!moderate_ && c_.rarely()) return power();
+        return (1 + double(c_.byte())) / 16;
+    }
+    void point() {
+        for (int k = 0; k < 3; ++k) word(number());
+    }
+    void colour(double most) {
+        for (int k = 0; k < 3; ++k) word(most * c_.below(8) / 7);
+    }
+    void radiance() {
+        for (int k = 0; k < 3; ++k) word(!moderate_ && c_.rarely() ? power() : double(c_.below(8)));
+    }
+
+    void camera() {
+        word("camera");
+        point(), point();
+        word(1 + c_.below(178));
+        end();
+    }
+
+    void material() {
+        const std::string keyword = c_.of({"diffuse", "light", "phong", "mirror", "glass"});
+        word(keyword), word("m" + std::to_string(materials_));
+        if (keyword == "diffuse" || keyword == "mirror") colour(1);
+        if (keyword == "phong")
+            colour(0.5), colour(0.5), word(c_.of({"10", "0", "1", "1e6", "0.5"}));
+        if (keyword == "glass") word(c_.of({"1.5", "1", "0.5", "1e-3", "1e3"}));
+        if (keyword == "light") {
+            radiance();
+            if (c_.below(2)) word("twosided");
+            if (materials_ > 0 && c_.below(2)) any_material();
+        }
+        ++materials_;
+        end();
+    }
+    void any_material() { word("m" + std::to_string(c_.below(materials_))); }
+
+    void content() {
+        const std::string keyword = c_.of({"sphere", "quad", "triangle", "box", "pointlight"});
+        word(keyword);
+        if (keyword == "sphere") point(), word(length());
+        if (keyword == "triangle" || keyword == "quad") point(), point(), point();
+        if (keyword == "pointlight") point(), radiance();
+        if (keyword == "box") {
+            for (int k = 0; k < 3; ++k) word(length());
+            word(number() * 15);
+            point();
+        }
+        if (keyword != "pointlight") any_material();
+        end();
+    }
+};
+
+inline Drawn drawn(std::string_view bytes) {
+    Choices c(bytes);
+    Drawn d;
+    d.moderate = !c.rarely();
+    d.options = drawn_options(c);
+    d.scene = SceneWriter(c, d.moderate).text();
+    return d;
+}

@@ -1,0 +1,76 @@
+// fuzz/invariants.h  what holds of every scene, mesh and image that a program accepts
+#pragma once
+#include "film/image.h"
+#include "fuzz/input.h"
+#include "world/obj.h"
+#include "world/scene.h"
+
+inline void check_mesh(const ObjMesh& mesh) {
+    demand(!mesh.faces.empty(), "a mesh without faces");
+    for (const ObjMesh::Face& face : mesh.faces) {
+        demand(face.corners.size() >= 3, "a face of less than three corners");
+        for (uint32_t corner : face.corners)
+            demand(corner < mesh.vertices.size(), "a corner that is no vertex");
+        demand(face.material >= -1 && face.material < int(mesh.materials.size()),
+               "a face of no material");
+        demand(face.line > 0, "a face of no line");
+    }
+    for (const ObjMesh::Material& m : mesh.materials)
+        demand(max_of(m.kd) <= 1 && is_finite(m.ke), "a material that cannot be");
+}
+
+inline void check_shape(const Shape& s) {
+    demand(is_finite(s.a) && is_finite(s.b) && is_finite(s.c) && std::isfinite(s.r),
+           "a shape that is not finite");
+    demand(s.is_sphere() || has_area(s), "a triangle without area");
+}
+
+inline void check_scene(const Scene& s) {
+    const size_t n = s.shapes.size();
+    demand(n > 0, "an empty scene");
+    for (size_t other :
+         {s.material_of.size(), s.light_of.size(), s.line_of.size(), s.facing.size()})
+        demand(other == n, "lists of other lengths than shapes");
+    demand(s.line_of_light.size() == s.lights.size(), "lights without lines");
+    demand(s.pick_cdf.size() == s.lights.size(), "lights without probabilities");
+    demand(s.names.size() == s.materials.size(), "materials without names");
+    demand(is_finite(s.camera.eye) && is_finite(s.camera.right) && is_finite(s.camera.up) &&
+               is_finite(s.camera.forward) && s.camera.tan_half > 0,
+           "a camera that sees nothing");
+    for (size_t i = 0; i < n; ++i) {
+        check_shape(s.shapes[i]);
+        demand(s.material_of[i] < s.materials.size(), "a shape of no material");
+        const int32_t k = s.light_of[i];
+        demand(k == no_light || size_t(k) < s.lights.size(), "a shape that is no light");
+    }
+    double before = 0;
+    for (size_t k = 0; k < s.lights.size(); ++k) {
+        demand(s.lights[k].pick >= 0 && s.pick_cdf[k] >= before, "a light of no probability");
+        before = s.pick_cdf[k];
+    }
+    demand(s.lights.empty() || before == 1, "probabilities of lights do not add up");
+}
+
+// The tree's answers are those of a loop over all shapes, bit for bit.
+inline void check_ray(const Scene& s, const Ray& ray) {
+    const Shear k = shear(ray.d);
+    Hit nearest{ray.tmax};
+    for (uint32_t i = 0; i < s.shapes.size(); ++i)
+        if (const auto hit = intersect(s.shapes[i], ray, k, ray.tmax))
+            if (nearest.id == UINT32_MAX || hit->t < nearest.t)
+                nearest = {hit->t, i, hit->v, hit->w};
+    const auto found = s.bvh.closest(ray);
+    demand(found.has_value() == (nearest.id != UINT32_MAX), "the tree misses, or hits nothing");
+    if (found)
+        demand(found->id == nearest.id && found->t == nearest.t && found->v == nearest.v &&
+                   found->w == nearest.w,
+               "the tree finds another hit");
+    demand(s.bvh.occluded(ray) == found.has_value(), "the tree finds another shadow");
+}
+
+inline void check_image(const Image& image, Size size, bool positive) {
+    demand(image.width == size.width && image.height == size.height, "an image of another size");
+    demand(!first_non_finite(image), "a pixel that is no number");
+    for (const auto& pixel : image.pixels)
+        for (float channel : pixel) demand(!positive || channel >= 0, "negative light");
+}

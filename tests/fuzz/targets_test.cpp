@@ -1,0 +1,170 @@
+// fuzz/targets_test.cpp  every input that was ever found to break something, and those that fuzzers
+// begin with; and that targets see what is broken
+#include "fuzz/targets.h"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a target makes of a file: "" if nothing is wrong.
+std::string complaint(const fuzz::Target& target, const std::string& input) {
+    try {
+        target.run(input);
+        return "";
+    } catch (const std::exception& e) {
+        return e.what();
+    }
+}
+
+// Files of a folder for a target; none if there is no such folder.
+std::vector<std::string> files_in(const fs::path& folder) {
+    std::vector<std::string> files;
+    if (fs::exists(folder))
+        for (const auto& entry : fs::directory_iterator(folder))
+            files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+Scene scene_of(const std::string& text) {
+    return parse_scene("camera 0 0 5  0 0 0  40\ndiffuse d .5 .5 .5\nlight l 1 1 1\n" + text,
+                       "s.scene")
+        .scene;
+}
+
+}  // namespace
+
+TEST_CASE("what fuzzers found, and what they begin with, breaks nothing") {
+    for (const fuzz::Target& target : fuzz::targets) {
+        int seeds = 0;
+        for (const char* kind : {"tests/fuzz/seeds", "tests/fuzz/regressions"})
+            for (const std::string& file : files_in(fs::path(kind) / target.name)) {
+                INFO("build/fuzz/fuzz --target=", target.name, " ", file);
+                CHECK(complaint(target, read_file(file)) == "");
+                ++seeds;
+            }
+        INFO(target.name);
+        CHECK(seeds > 0);
+    }
+}
+
+TEST_CASE("seeds are accepted: fuzzers begin with what is right") {
+    for (const std::string& file : files_in("tests/fuzz/seeds/scene")) {
+        const std::string input = read_file(file);
+        const Bundle files = bundle(input, "s.scene");
+        write_meshes(files);
+        CHECK_NOTHROW(parse_scene(std::string(files.at("s.scene")), place() / "s.scene"));
+    }
+    for (const std::string& file : files_in("tests/fuzz/seeds/obj")) {
+        const std::string input = read_file(file);
+        write_meshes(bundle(input, "m.obj"));
+        CHECK_NOTHROW(ObjReader::read(place() / "m.obj"));
+    }
+    for (const std::string& file : files_in("tests/fuzz/seeds/pfm")) CHECK_NOTHROW(read_pfm(file));
+    for (unsigned kind = 0; kind < fuzz::SmallFilm::kinds; ++kind) {
+        place().write("f.film", fuzz::small_film(kind));
+        CHECK_NOTHROW(fuzz::go_on(place() / "f.film", kind));
+    }
+}
+
+TEST_CASE("an input's files are parted at their marks") {
+    const Bundle files = bundle("a\nb\n=== m.obj\n=== m.mtl\nnewmtl === x\n=== no\nend", "s.scene");
+    CHECK(files ==
+          Bundle{{"s.scene", "a\nb\n"}, {"m.obj", ""}, {"m.mtl", "newmtl === x\n"}, {"no", "end"}});
+    CHECK(bundle("", "a") == Bundle{{"a", ""}});
+    CHECK(bundle("=== a", "a") == Bundle{{"a", ""}});
+}
+
+// Of many draws most are scenes: a fuzzer that draws what is refused finds nothing.
+TEST_CASE(
+    "drawn scenes are well-formed, of every kind of shape and material, and most are accepted") {
+    std::string all;
+    int accepted = 0, moderate = 0;
+    constexpr int draws = 400;
+    for (uint64_t k = 0; k < draws; ++k) {
+        std::string bytes;
+        for (uint64_t i = 0; i < 120; ++i) bytes += char(mix(1000 * k + i) & 0xff);
+        const Drawn d = drawn(bytes);
+        all += d.scene;
+        for (const std::string& word : d.options) all += " " + word;
+        moderate += d.moderate;
+        try {
+            const auto parsed = parse_scene(d.scene, "s.scene");
+            check_scene(parsed.scene);
+            ++accepted;
+        } catch (const UserError& e) {
+            // What only the numbers can tell.
+            bool expected = false;
+            const std::string why = e.what();
+            for (const char* reason : {"the camera is inside", "camera must look",
+                                       "point light lies", "empty scene", "too small", "too large"})
+                expected = expected || why.find(reason) != why.npos;
+            INFO(why, "\n", d.scene);
+            CHECK(expected);
+        }
+    }
+    CHECK(accepted > draws / 2);
+    CHECK(moderate > draws / 2);
+    CHECK(moderate < draws);
+    for (const Statement& s : grammar)
+        if (s.kind != Statement::setting && s.keyword != "mesh")
+            CHECK(all.find(std::string(s.keyword) + " ") != all.npos);
+    for (const char* word :
+         {"halton-naive", "cvor", "regression", "angle", "uniform", "variance", "--rows"})
+        CHECK(all.find(word) != all.npos);
+}
+
+TEST_CASE("broken scenes are told") {
+    const Scene good = scene_of("sphere 0 0 0  1  d\nquad 3 0 0  1 0 0  0 1 0  l\n");
+    CHECK_NOTHROW(check_scene(good));
+    auto broken = [&](auto change) {
+        Scene s = good;
+        change(s);
+        CHECK_THROWS_AS(check_scene(s), Broken);
+    };
+    broken([](Scene& s) { s.shapes[0].r = infinity; });
+    broken([](Scene& s) { s.shapes[1].c = s.shapes[1].a; });
+    broken([](Scene& s) { s.material_of[0] = 2; });
+    broken([](Scene& s) { s.light_of[1] = 1; });
+    broken([](Scene& s) { s.line_of.pop_back(); });
+    broken([](Scene& s) { s.line_of_light.push_back(1); });
+    broken([](Scene& s) { s.pick_cdf[0] = 0.5; });
+    broken([](Scene& s) { s.camera.right.x = NAN; });
+}
+
+TEST_CASE("a tree that errs is told") {
+    const Scene good = scene_of("sphere 0 0 0  1  d\nsphere 3 0 0  1  d\nsphere 0 3 0  1  d\n");
+    const Ray rays[] = {{{5, 0, 0}, {-1, 0, 0}}, {{0, 0, 5}, {0, 0, -1}}, {{5, 5, 5}, {1, 0, 0}}};
+    for (const Ray& ray : rays) CHECK_NOTHROW(check_ray(good, ray));
+    Scene other = good;  // its tree is of other shapes
+    std::swap(other.shapes[0], other.shapes[1]);
+    CHECK_THROWS_AS(check_ray(other, rays[0]), Broken);
+    other.shapes.resize(1);
+    CHECK_THROWS_AS(check_ray(other, rays[1]), Broken);
+}
+
+TEST_CASE("broken meshes, images and options are told") {
+    ObjMesh mesh;
+    CHECK_THROWS_AS(check_mesh(mesh), Broken);
+    mesh.vertices.resize(3);
+    mesh.faces.push_back({{0, 1, 2}, -1, 1});
+    CHECK_NOTHROW(check_mesh(mesh));
+    mesh.faces[0].corners[2] = 3;
+    CHECK_THROWS_AS(check_mesh(mesh), Broken);
+
+    Image image(2, 1);
+    CHECK_THROWS_AS(check_image(image, {2, 1}, true), Broken);
+    image.pixels.assign(2, {0, 0, -1});
+    CHECK_THROWS_AS(check_image(image, {2, 1}, true), Broken);
+    CHECK_NOTHROW(check_image(image, {2, 1}, false));
+    CHECK_THROWS_AS(check_image(image, {1, 1}, false), Broken);
+
+    Options o;
+    CHECK_THROWS_AS(fuzz::check_options(option_table, o), Broken);
+    o.scene = "s";
+    CHECK_NOTHROW(fuzz::check_options(option_table, o));
+    o.threads = 0;
+    CHECK_THROWS_AS(fuzz::check_options(option_table, o), Broken);
+}
