@@ -6,6 +6,8 @@
 #include "base/vec.h"
 #include "fuzz/input.h"
 
+namespace fuzz {
+
 // A scene, and how to render it.
 struct Drawn {
     std::string scene;
@@ -144,3 +146,5 @@ inline Drawn drawn(std::string_view bytes) {
     d.scene = SceneWriter(c, d.moderate).text();
     return d;
 }
+
+}  // namespace fuzz

@@ -11,6 +11,8 @@
 
 #include "base/words.h"
 
+namespace fuzz {
+
 // What no input may bring about.  Nobody catches it: a fuzzer takes it for a crash, a test fails.
 struct Broken : std::logic_error {
     using std::logic_error::logic_error;
@@ -102,3 +104,5 @@ public:
 private:
     std::string_view rest_;
 };
+
+}  // namespace fuzz

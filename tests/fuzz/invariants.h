@@ -5,6 +5,8 @@
 #include "world/obj.h"
 #include "world/scene.h"
 
+namespace fuzz {
+
 inline void check_mesh(const ObjMesh& mesh) {
     demand(!mesh.faces.empty(), "a mesh without faces");
     for (const ObjMesh::Face& face : mesh.faces) {
@@ -74,3 +76,5 @@ inline void check_image(const Image& image, Size size, bool positive) {
     for (const auto& pixel : image.pixels)
         for (float channel : pixel) demand(!positive || channel >= 0, "negative light");
 }
+
+}  // namespace fuzz

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+using namespace fuzz;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,7 +39,7 @@ Scene scene_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("what fuzzers found, and what they begin with, breaks nothing") {
-    for (const fuzz::Target& target : fuzz::targets) {
+    for (const fuzz::Target& target : targets) {
         int seeds = 0;
         for (const char* kind : {"tests/fuzz/seeds", "tests/fuzz/regressions"})
             for (const std::string& file : files_in(fs::path(kind) / target.name)) {
@@ -63,9 +65,9 @@ TEST_CASE("seeds are accepted: fuzzers begin with what is right") {
         CHECK_NOTHROW(ObjReader::read(place() / "m.obj"));
     }
     for (const std::string& file : files_in("tests/fuzz/seeds/pfm")) CHECK_NOTHROW(read_pfm(file));
-    for (unsigned kind = 0; kind < fuzz::SmallFilm::kinds; ++kind) {
-        place().write("f.film", fuzz::small_film(kind));
-        CHECK_NOTHROW(fuzz::go_on(place() / "f.film", kind));
+    for (unsigned kind = 0; kind < SmallFilm::kinds; ++kind) {
+        place().write("f.film", small_film(kind));
+        CHECK_NOTHROW(go_on(place() / "f.film", kind));
     }
 }
 
@@ -162,9 +164,9 @@ TEST_CASE("broken meshes, images and options are told") {
     CHECK_THROWS_AS(check_image(image, {1, 1}, false), Broken);
 
     Options o;
-    CHECK_THROWS_AS(fuzz::check_options(option_table, o), Broken);
+    CHECK_THROWS_AS(check_options(option_table, o), Broken);
     o.scene = "s";
-    CHECK_NOTHROW(fuzz::check_options(option_table, o));
+    CHECK_NOTHROW(check_options(option_table, o));
     o.threads = 0;
-    CHECK_THROWS_AS(fuzz::check_options(option_table, o), Broken);
+    CHECK_THROWS_AS(check_options(option_table, o), Broken);
 }
