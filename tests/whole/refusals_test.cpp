@@ -102,7 +102,8 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
         {good + "sphere 0 0 1e31 1 m\n", "7: '1e31' is too large"},
         // Sizes, before anything is allocated.
         {"size 1000000 1000000\n" + camera, "1: '1000000' is not a whole number from 1 to 65536"},
-        {"size 65536 65536\n" + camera, "1: an image of 65536x65536 has more than 1073741824 pixels"},
+        {"size 65536 65536\n" + camera,
+         "1: an image of 65536x65536 has more than 1073741824 pixels"},
         {"size 65536 16385\n" + camera, "1: an image of 65536x16385 has more than"},
         {"size 65537 1\n" + camera, "1: '65537' is not a whole number from 1 to 65536"},
         {"size 0 4\n" + camera, "1: '0' is not a whole number from 1"},
@@ -266,7 +267,8 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
         {"-o a.png -o a.txt file.scene", "-o: 'a.txt' ends neither"},
         // Sizes.
         {"--size 1000000x1000000 file.scene", "--size: '1000000' is not a whole number from 1 to"},
-        {"--size 65536x65536 file.scene", "--size: an image of 65536x65536 has more than 1073741824"},
+        {"--size 65536x65536 file.scene",
+         "--size: an image of 65536x65536 has more than 1073741824"},
         {"--size 65536x16385 file.scene", "--size: an image of 65536x16385 has more than"},
         {"--size 65537x1 file.scene", "--size: '65537' is not a whole number"},
         {"--size 4 file.scene", "--size: '4' is not WIDTHxHEIGHT"},
