@@ -91,10 +91,9 @@ class Soak:
     def run(self, words, folder, conditions=Conditions(), draw=0, bare=False):
         """bare: on the disk that there is."""
         beside = os.path.join(self.folder, os.path.basename(folder))  # its own disk may be full
-        log, err = beside + '.log', beside + '.err'
-        for path in log, err:
-            if os.path.exists(path):
-                os.remove(path)
+        log, said = beside + '.log', []
+        if os.path.exists(log):
+            os.remove(log)
         environment = dict(os.environ, ASAN_OPTIONS='verify_asan_link_order=0:' + os.environ.get('ASAN_OPTIONS', ''))
         if not bare:
             environment['LD_PRELOAD'] = self.disk
@@ -107,9 +106,10 @@ class Soak:
             limits += 'ulimit -f %d && ' % conditions.largest
         start = time.monotonic()
         command = ['bash', '-c', limits + 'exec "$0" "$@"'] if limits else []
-        with open(err, 'wb') as file:
-            process = subprocess.Popen([*command, self.program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
-                                       stdout=file, stderr=file, start_new_session=True)
+        process = subprocess.Popen([*command, self.program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+        listener = threading.Thread(target=lambda: said.append(process.stdout.read()))
+        listener.start()
         try:
             for wait, what in conditions.signals:
                 try:
@@ -122,13 +122,16 @@ class Soak:
             process.kill()
             process.wait()
             raise Wrong('it did not end within two minutes')
+        finally:
+            listener.join()
+            process.stdout.close()
         faults = collections.Counter()
         for line in (read(log) or b'').decode('utf-8', 'replace').splitlines():
             call, what, path = line.split(' ', 2)
             faults['%s %s' % (call, what)] += 1
         code = process.returncode
         return Outcome(code if code >= 0 else None, -code if code < 0 else None,
-                       (read(err) or b'').decode('utf-8', 'replace'), faults, time.monotonic() - start)
+                       said[0].decode('utf-8', 'replace'), faults, time.monotonic() - start)
 
     def truth(self, picture, samples, sets=None):
         """{suffix: content} of a run without faults, or None if there is none of so many samples."""
@@ -265,6 +268,8 @@ def verdict(soak, picture, folder, names, before, conditions, outcome):
         cut = outcome.killed_by == signal.SIGKILL and outcome.faults['power CUT']
         if not cut and not conditions.sent(outcome.killed_by):
             raise Wrong('it died of signal %d' % outcome.killed_by)
+        if not cut and sent and outcome.killed_by == signal.SIGKILL:
+            raise Wrong('it did not end within a minute of %s' % sent)
     right = check_files(soak, picture, folder, names, before, outcome, sent)
     tidy = outcome.killed_by is None and not outcome.faults['unlink EIO'] and not outcome.faults['power CUT']
     if tidy and parts(folder):
@@ -612,7 +617,7 @@ def attempt(soak, tally, number, kind=None):
             tally.add(kind, 'wrong', {})
             print('WRONG, run %d of seed %s (%s), kept in %s: %s' % (number, soak.seed, kind, kept, wrong), flush=True)
     shutil.rmtree(folder, ignore_errors=True)
-    for s in 'command', 'outcome', 'log', 'err':
+    for s in 'command', 'outcome', 'log':
         if os.path.exists(folder + '.' + s):
             os.remove(folder + '.' + s)
 
