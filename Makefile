@@ -32,7 +32,7 @@ PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
+.PHONY: all programs test test-farm mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
         survival starter starter-check mistakes handout grade plant hunted
 .DELETE_ON_ERROR:
@@ -105,6 +105,9 @@ build/fuzz/fuzz$(SUFFIX): tests/fuzz/fuzz.cpp Makefile | packages
 	    { echo "penumbra: make fuzz needs clang++ and its libFuzzer; run: sudo apt-get install clang libclang-rt-14-dev" >&2; exit 1; }
 	$(FUZZ_CXX) $(FLAGS) $(FUZZ_FLAGS) -Itests -MF $@.d -o $@ $<
 -include $(wildcard build/fuzz/*.d)
+
+test-farm: build/penumbra build/merge build/compare  ## farms on a Slurm of one node, by GNU parallel, over ssh: installed, removed (10 minutes); CASE=slurm_killed
+	@tests/farm/run $(CASE)
 
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
 techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)

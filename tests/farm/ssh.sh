@@ -2,11 +2,14 @@
 #
 # Each is this machine, by another port: parts that run there have no connection with the test but ssh.
 
+made_run_sshd=''
 sshd_of() { echo "$work/ssh/$1"; }  # NAME
 
 start_ssh() {  # NAME...
     local name folder port
-    mkdir -p "$work/ssh" && [ "$(id -u)" != 0 ] || mkdir -p /run/sshd
+    mkdir -p "$work/ssh"
+    # As root it insists on a folder, which its package makes when a machine starts.
+    if [ "$(id -u)" = 0 ] && [ ! -e /run/sshd ]; then mkdir /run/sshd && made_run_sshd=yes; fi
     [ -e "$work/ssh/key" ] || ssh-keygen -q -t ed25519 -N '' -f "$work/ssh/key"
     for name; do
         folder=$(sshd_of "$name") port=$(port_that_is_free)
@@ -43,4 +46,5 @@ END
 stop_ssh() {
     local pid
     for pid in "$work"/ssh/*/pid; do [ ! -e "$pid" ] || kill "$(cat "$pid")"; done
+    [ -z "$made_run_sshd" ] || rmdir /run/sshd
 }

@@ -164,7 +164,7 @@ TEST_CASE("whoever stops a part stops penumbra, and waits until it has written i
     CHECK(yard.plan("").status == 0);
     yard.script("build/penumbra",
                 "trap 'sleep .3; echo written >checkpoint; exit 143' TERM\n"
-                "touch begun; while :; do sleep .05; done\n");
+                "touch begun; for n in {1..400}; do sleep .05; done\n");
     const Said said = yard.run(
         "farm.sh part farm 1 & part=$!; until [ -e begun ]; do sleep .05; done; kill -TERM $part; "
         "wait $part");
@@ -201,7 +201,8 @@ struct Slurm : Yard {
         return folder.has("asked") && folder.read("asked") == "requeue 77\n";
     }
 };
-const std::string works = "trap 'exit 143' TERM; touch begun; while :; do sleep .05; done\n";
+const std::string works =
+    "trap 'exit 143' TERM; touch begun; for n in {1..400}; do sleep .05; done\n";
 
 }  // namespace
 
