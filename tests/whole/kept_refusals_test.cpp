@@ -40,7 +40,7 @@ TEST_CASE("a film of other samples is refused by what differs, and nothing is to
         {"--indirect map --quiet", "indirect is path, not map"},
         {"--pick power", "pick is place, not power"},
         {"--depth 3", "depth is 8, not 3"},
-        {"--roulette 0.26", "roulette is 0.25, not 0.26"},
+        {"--roulette 0.5", "roulette is 0.25, not 0.5"},
         {"--seed 1", "seed is 0, not 1"},
         {"--view normal", "view is radiance, not normal"},
         {"--sampler independent --film cvor", "sampler is sobol, not independent"},
