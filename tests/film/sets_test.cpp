@@ -214,6 +214,17 @@ TEST_CASE("a survey finds pixels by chance, wherever they are in their parts") {
     CHECK(std::abs(alike - 32767 / 16.0) < 4.9 * std::sqrt(32767 / 16.0));
 }
 
+TEST_CASE("the noise elsewhere is without that of a pixel, if it was surveyed") {
+    const Survey survey({5, 3}, 4);
+    const NoiseElsewhere elsewhere(survey, {1, 10, 100, 1000});
+    CHECK(elsewhere.mean() == 1111 / 4.0);
+    for (size_t i = 0; i < 15; ++i) {
+        const double own = std::pow(10, double(survey.nearest(i)));
+        CHECK(elsewhere.mean_without(i) == (survey.has(i) ? (1111 - own) / 3 : 1111 / 4.0));
+    }
+    CHECK(NoiseElsewhere(Survey({1, 1}), {5}).mean_without(0) == 0);
+}
+
 TEST_CASE("in a large picture, too, a pixel's own samples have no say in its sets") {
     const Size size{300, 200};
     const Survey survey(size);
