@@ -582,15 +582,16 @@ class Tally:
     def add(self, kind, result, faults):
         self.rows[kind]['runs'] += 1
         self.rows[kind][result] += 1
-        self.rows[kind]['bitten'] += bool(faults)
-        self.faults.update(faults)
+        self.rows[kind]['bitten'] += any(faults.values())
+        self.faults.update(+collections.Counter(faults))
 
     def show(self):
         print('%-22s %7s %7s %s' % ('fault', 'runs', 'bitten', ' '.join('%7s' % c for c in self.COLUMNS)))
         total = collections.Counter()
         for kind, row in self.rows.items():
             total.update(row)
-        for kind, row in [*self.rows.items(), ('all', total)]:
+        rows = sorted(self.rows.items(), key=lambda row: [*KINDS, *EACH].index(row[0]))
+        for kind, row in [*rows, ('all', total)]:
             print('%-22s %7d %7d %s' % (kind, row['runs'], row['bitten'], ' '.join('%7d' % row[c] for c in self.COLUMNS)))
         print('faults: ' + ', '.join('%s %d' % f for f in sorted(self.faults.items())))
         return total
