@@ -106,7 +106,7 @@ build/fuzz/fuzz$(SUFFIX): tests/fuzz/fuzz.cpp Makefile | packages
 	$(FUZZ_CXX) $(FLAGS) $(FUZZ_FLAGS) -Itests -MF $@.d -o $@ $<
 -include $(wildcard build/fuzz/*.d)
 
-test-farm: build/penumbra build/merge build/compare  ## farms on a Slurm of one node, by GNU parallel, over ssh: installed, removed (10 minutes); CASE=slurm_killed
+test-farm: build/penumbra build/merge build/compare  ## farms on a real Slurm and GNU parallel, installed and removed again (10 minutes); CASE=slurm_killed: that one
 	@tests/farm/run $(CASE)
 
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.

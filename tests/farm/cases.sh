@@ -187,7 +187,7 @@ case_slurm_time_limit() {
 
 case_slurm_full_disk() {
     : "the folder's disk is full: parts fail, the merge names them; with room again the same command ends it"
-    small_disk 64k && folder=$disk/farm || return
+    small_disk 64k && folder=$disk/farm || return 0
     by_slurm --bands 4 || return
     merged 300
     is_absent "$folder.pfm"
@@ -292,7 +292,7 @@ case_parallel_damaged() {
 
 case_parallel_full_disk() {
     : "the folder's disk is full: parts are named; with room again the same command ends it"
-    small_disk 64k && folder=$disk/farm || return
+    small_disk 64k && folder=$disk/farm || return 0
     by_parallel --bands 4 --slots 2 2>/dev/null && bad 'exit status 0'
     is_absent "$folder.pfm"
     more_disk 64m
@@ -304,7 +304,9 @@ case_parallel_full_disk() {
 # ---- A disk that fills --------------------------------------------------------------------------
 
 small_disk() {
-    mkdir -p "$disk" && $as mount -t tmpfs -o "size=$1,mode=777" farm "$disk" || { bad "cannot mount a small disk"; return 1; }
+    mkdir -p "$disk" && $as mount -t tmpfs -o "size=$1,mode=777" farm "$disk" 2>/dev/null && return
+    echo '    left out: only root may mount a small disk'
+    return 1
 }
 more_disk() { $as mount -o "remount,size=$1" "$disk"; }
 release_disk() { ! mountpoint -q "$disk" || $as umount "$disk"; }
