@@ -30,7 +30,8 @@ merge_failed() { [ "$(state_of "$merge_job")" = FAILED ] || bad "the merge: $(st
 in_mid_run() {
     local number
     for number in $(parts_in "$job" RUNNING); do
-        [ -n "$(process_of "$number")" ] && [ -e "$(film "$folder" "$number")" ] && ! finished "$folder" "$number" || continue
+        [ -n "$(process_of "$number")" ] && [ -e "$(film "$folder" "$number")" ] || continue
+        ! finished "$folder" "$number" || continue
         part=$number
         return 0
     done
@@ -51,7 +52,8 @@ case_slurm_whole() {
 case_slurm_samples() {
     : "bands and ranges of samples, the same to rounding"
     by_slurm --bands 2 --ranges 3 --cpus 2 || return
-    merged && "$build/compare" --limit 0.0001% "$work/whole.pfm" "$folder.pfm" >"$folder.compared" || bad "$(cat "$folder.compared")"
+    merged || return
+    "$build/compare" --limit 0.0001% "$work/whole.pfm" "$folder.pfm" >"$folder.compared" || bad "$(cat "$folder.compared")"
 }
 
 case_slurm_requeued() {

@@ -83,7 +83,10 @@ no_job_runs() { [ -z "$(squeue --noheader --states=running,completing 2>/dev/nul
 node_is() { [ "$(sinfo --noheader --Node --format=%T --partition=farm)" = "$1" ]; }
 
 # Numbers of the array's parts in a state: RUNNING, PENDING, COMPLETED, FAILED, CANCELLED ...
-parts_in() { squeue --noheader --array --states=all --job "$1" --format='%K %T' | awk -v state="$2" '$2 == state { print $1 }'; }  # JOB STATE
-job_of() { cat "$1/farm.job"; }  # FOLDER
+parts_in() {  # JOB STATE
+    squeue --noheader --array --states=all --job "$1" --format='%K %T' | awk -v state="$2" '$2 == state { print $1 }'
+}
 state_of() { squeue --noheader --states=all --job "$1" --format=%T; }  # JOB
-ended() { case $(state_of "$1") in COMPLETED | FAILED | CANCELLED | TIMEOUT | NODE_FAIL) ;; *) return 1 ;; esac; }  # JOB
+ended() {  # JOB
+    case $(state_of "$1") in COMPLETED | FAILED | CANCELLED | TIMEOUT | NODE_FAIL) ;; *) return 1 ;; esac
+}
