@@ -13,6 +13,8 @@ namespace {
 std::string value_of(const Option<Options>& o) {
     if (o.value.find('|') != o.value.npos) return std::string(option::words_of(o.value).back());
     if (o.value == "FILE") return "a.png";
+    if (o.value == "F.film") return "a.film";
+    if (o.value == "A-B") return "1-2";
     if (o.value == "WxH") return "3x2";
     if (o.value == "X,Y") return "1,1";
     return o.value == "T" || o.value == "E" ? "0.5" : "7";
