@@ -145,6 +145,7 @@ public:
 
     const FilmHeader& identity() const { return identity_; }
     bool are_wanted() const { return !path_.empty(); }
+    bool are_there() const { return std::filesystem::exists(path_); }
 
     // After so many seconds of this run.
     bool is_due(double seconds) const { return are_wanted() && seconds >= next_; }

@@ -55,7 +55,10 @@ public:
         check_finite(film_, [&](auto... at) { return in_picture(job_.part, at...); });
         Rendered r{{}, stats(), {}};
         try {
-            if (checkpoints_.are_wanted())
+            // A film without samples replaces none.
+            const bool is_empty = film_.samples() == 0 && !film_.unfinished_pass();
+            const bool is_worth_it = !is_empty || !checkpoints_.are_there();
+            if (checkpoints_.are_wanted() && is_worth_it)
                 checkpoints_.write(film_.state(), r.run, !r.run.interrupted);
         } catch (const SystemError& e) {
             r.not_kept = e.what();
@@ -171,9 +174,12 @@ private:
                                        job_.o.seed, a);
         };
         std::vector<Sets> sets = by({});
-        // If hardly any time is left, those alone that measure.
+        // If hardly any time is left, those alone that measure; but a film that is kept has those
+        // of a run without a break.
         const double limit = job_.passes.target.seconds, elapsed = progress_.elapsed();
-        if (limit > 0 && (mean_count(sets) - 1) * elapsed > limit - elapsed) sets = by({.most = 1});
+        if (!checkpoints_.are_wanted() && limit > 0 &&
+            (mean_count(sets) - 1) * elapsed > limit - elapsed)
+            sets = by({.most = 1});
         film_.add_sets(std::move(sets));
         if (film_.samples() > 0) add(0);
     }

@@ -57,7 +57,7 @@ inline void check_part(const Options& o) {
     if (o.samples)
         throw UserError("--samples: " + as_written(option_table, o, "--film") +
                         " needs all samples of a pixel at once");
-    if (o.sets == sets_by_noise)
+    if (sets_of(o) == sets_by_noise)
         throw UserError("--rows: " + as_written(option_table, o, "--film") + " needs --sets N");
 }
 

@@ -17,14 +17,15 @@
 inline std::atomic<int> interrupted = 0;
 
 // The first Ctrl-C, or another signal to end, asks for an end after the passes completed so far; a
-// second one kills.  What whoever started us ignores stays ignored.  A stderr that nobody reads is
-// no reason to lose an image, and a file that grows too large is an error of its own.
+// second Ctrl-C kills.  What whoever started us ignores stays ignored.  A stderr that nobody reads
+// is no reason to lose an image, and a file that grows too large is an error of its own.
 inline void catch_interrupt() {
     for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
         struct sigaction action {};
         struct sigaction before {};
         action.sa_handler = [](int caught) { interrupted = caught; };
-        action.sa_flags = int(SA_RESETHAND);
+        // What stops a job may be sent to it twice, by its engine and by a script.
+        action.sa_flags = signal == SIGINT ? int(SA_RESETHAND) : 0;
         sigaction(signal, nullptr, &before);
         if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
     }

@@ -95,6 +95,13 @@ check_words() {
     [ "$bands" -le "${size#*x}" ] || fail "--bands $bands: the picture has ${size#*x} rows"
     [ "$ranges" -le "$spp" ] || fail "--ranges $ranges: a pixel has $spp samples"
     [ ${#outputs[@]} -gt 0 ] || fail "-o FILE: where to write the picture?"
+    for ((which = 0; which < ${#outputs[@]}; which += 2)); do
+        case ${outputs[which]}${outputs[which + 1]} in
+            -o*.pfm | -o*.png | --stats*) ;;
+            *) fail "-o ${outputs[which + 1]}: ends neither in .png nor in .pfm" ;;
+        esac
+        [ -d "$(dirname "${outputs[which + 1]}")" ] || fail "${outputs[which + 1]}: there is no such folder"
+    done
     for which in penumbra merge; do
         [ -x "$program/$which" ] || fail "$program/$which: build it first: make programs"
     done
@@ -105,8 +112,11 @@ check_words() {
 check_render() {
     local words=("${options[@]}") i
     for ((i = 0; i < ${#words[@]}; ++i)); do [ "${words[i]}" != --spp ] || words[i + 1]=1; done
+    [ "$ranges" = 1 ] || words+=(--samples 0-0)
     mkdir -p "$folder" || exit 1
     "$program/penumbra" "${words[@]}" --rows 0-0 --checkpoint "$folder/check.film" --quiet "$scene" || exit
+    # A plan is of the scene as it is now, and not of its name.
+    sum=$(LC_ALL=C sed -n '/^$/q; s/^scene //p' "$folder/check.film" 2>/dev/null)
     rm -f "$folder/check.film"
 }
 
@@ -117,6 +127,7 @@ write_plan() {
            printf 'build %s\n' "$program"
            printf 'option %s\n' "${options[@]}"
            printf 'scene %s\n' "$scene"
+           printf 'sum %s\n' "$sum"
            printf 'output %s\n' "${outputs[@]}"
            parts "${size#*x}" "$bands" "$spp" "$ranges")
     if [ -e "$folder/farm.plan" ]; then
@@ -152,7 +163,7 @@ render() {  # FOLDER NUMBER THREADS
     [ -z "$stopped" ] || kill -TERM "$child"
     # What was caught ends the wait, and not penumbra.
     while caught='' status=0; wait "$child" 2>/dev/null || status=$?; [ -n "$caught" ]; do :; done
-    [ "$status" -le 128 ] || echo "farm: penumbra was ended by signal $((status - 128))" >&2
+    [ "$status" -le 128 ] || [ -n "$stopped" ] || echo "farm: penumbra was ended by signal $((status - 128))" >&2
     return "$status"
 }
 

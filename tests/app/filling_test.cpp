@@ -84,6 +84,7 @@ void expect_chains(Options o, const Scene& scene, uint64_t step, Render render) 
     uint64_t wrong = 0, unfinished = 0, first_wrong = 0;
     for (uint64_t at = 1; at < all.seen; at += step) {
         o.resume = "";
+        std::filesystem::remove(o.checkpoint);
         Rendered r;
         for (uint64_t runs = 0;; ++runs) {
             REQUIRE(runs < 2 * all.seen);
@@ -123,6 +124,22 @@ TEST_CASE("interrupted anywhere, also while other sets are brought, and resumed:
         CAPTURE(spp);
         expect_chains(options_for(SamplerKind::sobol, spp), scene, 11, means_run);
     }
+}
+
+TEST_CASE("a film without samples replaces none") {
+    const Scene scene = small(unequal);
+    const Folder folder;
+    Options o = options_for(SamplerKind::sobol, 16);
+    o.checkpoint = folder / "a.film";
+    Calls all, one{0, 1};
+    means_run(o, scene, all);
+    const std::string before = read_file(o.checkpoint);
+    const Rendered r = means_run(o, scene, one);
+    CHECK(r.run.interrupted);
+    CHECK(r.run.spp == 0);
+    CHECK(r.not_kept.empty());
+    const bool same_bytes = read_file(o.checkpoint) == before;
+    CHECK(same_bytes);
 }
 
 TEST_CASE("so with sets that are there from the start, on grids, and until the error is small") {
