@@ -163,7 +163,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
 
-survival: $(PENUMBRA)  ## memory a pixel, what checkpoints cost, 200 kills, Ctrl-C: reference/survival.md (8 minutes)
+survival: $(PENUMBRA)  ## memory a pixel, what checkpoints cost, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
 	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
 readme: build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
