@@ -135,9 +135,9 @@ def kills():
 def cores():
     rows = []
     for threads in [1, os.cpu_count()]:
-        run = render('--size', '16384x1', '--spp', 256, '--threads', threads, scene('cornell36'))
+        run = render('--size', '16384x1', '--spp', 2048, '--threads', threads, scene('cornell36'))
         rows.append([threads, f"{run['seconds']:.2f} s", f"{run['cpu_seconds'] / run['seconds']:.2f}"])
-    return '## A picture of one row\n\n16384x1, 256 samples.\n\n' + table(['threads', 'time', 'cores in use'], rows)
+    return '## A picture of one row\n\n16384x1, 2048 samples.\n\n' + table(['threads', 'time', 'cores in use'], rows)
 
 
 report = ('# What it costs to survive\n\nWritten by `make survival`'
