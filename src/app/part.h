@@ -9,9 +9,7 @@ struct Part {
     uint64_t total = 0;                      // samples of the picture; 0: not known before
 
     Size size() const { return {picture.width, rows}; }
-    bool is_whole() const { return rows == picture.height && samples == total; }
     Range row_range() const { return {uint64_t(first_row), uint64_t(first_row + rows - 1)}; }
-    Range sample_range() const { return {first_sample, first_sample + samples - 1}; }
 };
 
 // Throws UserError if the film of a part would not fit into so many bytes of memory.

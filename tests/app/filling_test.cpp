@@ -126,6 +126,22 @@ TEST_CASE("interrupted anywhere, also while other sets are brought, and resumed:
     }
 }
 
+TEST_CASE("a film that is kept has the sets of a run without a break, however short its time was") {
+    const Scene scene = small(unequal);
+    const Folder folder;
+    Calls all;
+    Options o = options_for(SamplerKind::stratified, 16);
+    const Rendered whole = means_run(o, scene, all);
+    o.spp = 0, o.seconds = 1e-9;  // ends after its first grid of 16
+    const Rendered hurried = means_run(o, scene, all);
+    o.checkpoint = folder / "a.film";
+    const Rendered kept = means_run(o, scene, all);
+    CHECK(kept.run.spp == 16);
+    CHECK(kept.run.sets == whole.run.sets);
+    CHECK(kept.image.pixels == whole.image.pixels);
+    CHECK(hurried.image.pixels != whole.image.pixels);
+}
+
 TEST_CASE("a film without samples replaces none") {
     const Scene scene = small(unequal);
     const Folder folder;
