@@ -1,6 +1,7 @@
 # Penumbra.  `make help` lists what it can do.
 CXX   ?= g++
 REAL  ?= double
+TREE  ?= wide
 ARCH  ?= native
 SIZE  ?=
 
@@ -8,26 +9,32 @@ SIZE  ?=
 UNUSED   ?= parameter variable function but-set-variable but-set-parameter label local-typedefs
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
 # Nobody asks errno about a root: loops that take roots run in vectors.
-FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
+FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) $(if $(filter wide,$(TREE)),-DTREE_WIDE) -Isrc -MMD -MP \
             -Wall -Wextra -Wpedantic -Wshadow -Werror $(UNUSED:%=-Wno-error=unused-%)
 SANITISE := -O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all
 # A program is one file, and GCC stops inlining when a file has grown by 40 %: paths took 1.13 times as long.
 INLINE   := $(if $(findstring clang,$(CXX)),,--param inline-unit-growth=300)
 OPTIMISE := $(if $(SAN),$(SANITISE),$(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O3 $(INLINE)))
 VARIANT  := $(if $(SAN),-san,$(if $(DEBUG),-debug))
-SUFFIX   := $(if $(filter float,$(REAL)),-float)$(VARIANT)
-OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(VARIANT)
+PLAIN    := $(if $(filter plain,$(TREE)),-plain)
+SUFFIX   := $(if $(filter float,$(REAL)),-float)$(PLAIN)$(VARIANT)
+OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(PLAIN)$(VARIANT)
 LINK     := -pthread $(if $(SAN),$(SANITISE))
 
 ifeq ($(filter double float,$(REAL)),)
   $(error REAL is double or float, not '$(REAL)')
 endif
+ifeq ($(filter wide plain,$(TREE)),)
+  $(error TREE is wide or plain, not '$(TREE)')
+endif
 ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
   MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
 endif
 
+# A program is a .cpp of its own name; those of the core and of the wings render.
+RENDERERS := $(wildcard $(patsubst %,src/%/*.cpp,app keep shadow voronoi radiosity))
 LABS     := $(patsubst src/labs/%.cpp,%,$(wildcard src/labs/*.cpp))
-APPS     := $(patsubst src/app/%.cpp,%,$(wildcard src/app/*.cpp))
+APPS     := $(basename $(notdir $(RENDERERS)))
 PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
@@ -44,7 +51,7 @@ all: $(PENUMBRA) build/compare$(SUFFIX)  ## build the renderer, and render every
 
 penumbra: $(PENUMBRA)  ## build the renderer alone: build/penumbra
 
-programs: $(PROGRAMS)  ## build the renderers (build/penumbra, build/radiosity) and every lab
+programs: $(PROGRAMS)  ## build the renderers (build/penumbra, shadow, voronoi, radiosity) and every lab
 
 # A render that is interrupted leaves what it has in out/unfinished/, and nothing that make takes for done.
 out/%.png: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
@@ -112,19 +119,19 @@ test-farm: build/penumbra build/merge build/compare  ## farms on a real Slurm an
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
 techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)
 estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
-shadows: $(PENUMBRA)       ## four estimators of direct light on images (5 minutes)
+shadows: build/shadow$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
 radiosity:                 ## illumination maps by shooting and by particles (6 minutes; FULL=1: an hour)
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
-indirect: $(PENUMBRA)      ## paths that end on illumination maps, beside whole ones (4 minutes)
+indirect:                  ## paths that end on illumination maps, beside whole ones (4 minutes)
 voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
-bench:                     ## rays a second, beside Embree if libembree-dev is installed, and the time of a path
+bench:                     ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 trade: build/knot.obj build/trade-float$(VARIANT)  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 3 hours)
 calibration: build/knot.obj  ## does --error stop where it says? (half an hour; FULL=1: all seeds at 1 %)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
-EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d voronoi bench peers efficiency trade \
+EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
                calibration cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
 calibration: LAB_FLAGS := $(if $(FULL),--full)
@@ -138,9 +145,15 @@ ifeq ($(REAL),double)
 build/trade-float$(VARIANT): always
 	@$(MAKE) --no-print-directory REAL=float $@
 endif
-# build/radiosity is a renderer.
+# build/radiosity and build/voronoi are renderers.
 radiosity: $(PENUMBRA) build/illumination$(SUFFIX)
 	build/illumination$(SUFFIX) $(if $(QUICK),--quick) $(if $(FULL),--full)
+# How pixels share in the error of the references.
+out/%-256.film: $(PENUMBRA) scenes/%.scene
+	$(PENUMBRA) --quiet --sampler halton --roulette 0 --seed 1000 --size 256x256 --sets 2 --spp 256 --keep $@ -o out/$*-256.png scenes/$*.scene
+voronoi: out/cornell-256.film out/cornellglossy-256.film
+voronoi: build/voronoi_weights$(SUFFIX)
+	build/voronoi_weights$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
 
 extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)
 	@for real in double float; do \
@@ -173,7 +186,7 @@ clean:  ## remove build/ and out/
 	rm -rf build out
 
 help:  ## print this
-	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
+	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [TREE=wide|plain] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST)) $(wildcard src/course/course.mk)
 
 # ---- Building ------------------------------------------------------------------------------------
@@ -182,9 +195,10 @@ help:  ## print this
 build/%$(SUFFIX): $(OBJECTS)/%.exe always
 	@cmp -s $< $@ || cp $< $@
 
-# A program of src/app and one of src/labs never have the same name.
-$(APPS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/app/%.o
+# No two programs have the same name.
+$(APPS:%=$(OBJECTS)/%.exe):
 	$(CXX) $(LINK) -o $@ $^
+$(foreach cpp,$(RENDERERS),$(eval $(OBJECTS)/$(basename $(notdir $(cpp))).exe: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(cpp))))
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
 	$(CXX) $(LINK) -o $@ $^ $(LIBRARIES)
@@ -205,9 +219,9 @@ $(SUITE): $(TESTS:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/main.o
 
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
 # vector is told so.
-HEAVY := app/render app/walks course/my_tests labs/cube oracle/mistakes oracle/oracle path/pathtracer radiosity/gather radiosity/mesh radiosity/particles \
+HEAVY := app/render labs/indirect_paths radiosity/walks shadow/estimates course/my_tests labs/cube oracle/mistakes oracle/oracle path/pathtracer radiosity/mesh radiosity/particles \
          radiosity/shooting radiosity/transfer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms \
-         world/bsdf world/bvh world/shapes
+         wide/wide_bvh world/bsdf world/bvh world/shapes
 $(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 $(HEAVY:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
 $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
@@ -288,15 +302,33 @@ packages:
 
 # ---- The house: include only from floors below ----------------------------------------------------
 
-# Folders by floor; those of one floor do not know each other.  Tests may include all of their folder
+# Folders by floor; those of one floor do not know each other.  Programs (.cpp) stand above app.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-FLOORS := base:0 world:1 path:2 film:2 shadow:3 voronoi:3 radiosity:4 app:5 labs:6 course:6 oracle:7 whole:7 faults:7 fuzz:7
+FLOORS := base:0 world:1 wide:2 path:2 film:3 keep:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
+# The core names no wing, but in two headers: one says which tree, one whether films are kept.  Nor do
+# tests of the core.  A wing's program stands above the app.
+CORE  := base world path film app
+WINGS := wide keep shadow voronoi radiosity
+DOORS := world/tree.h:wide app/keep.h:keep
+# Of a folder that is named here, a wing includes these headers alone.
+NEEDS := wide:world/shapes.h
+
+# In a folder that has nothing else: the core must not miss what it does not name.
+.PHONY: core
+core: packages  ## the core alone: compile the renderer without any wing, and count its lines
+	@rm -rf build/core && mkdir -p build/core/src && cp -r $(CORE:%=src/%) build/core/src
+	$(CXX) $(filter-out -M% -DTREE_WIDE -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
+	build/core/penumbra --size 32x16 --spp 4 --quiet -o build/core/cornell.png scenes/cornell.scene
+	@echo "$$(cat $(CORE:%=src/%/*) | wc -l) lines of core: $(CORE)"
 
 layers:  ## check that every file includes only from floors below
-	@awk -v floors='$(FLOORS)' ' \
+	@awk -v floors='$(FLOORS)' -v core='$(CORE)' -v wings='$(WINGS)' -v doors='$(DOORS)' -v needs='$(NEEDS)' ' \
+	    function set(words, of,    list, i) { split(words, list, " "); for (i in list) of[list[i]] } \
 	    function folder(file) { return substr(file, 1, index(file, "/") - 1) } \
 	    BEGIN { split(floors, list, " "); \
-	            for (i in list) { split(list[i], pair, ":"); floor[pair[1]] = pair[2] } } \
+	            for (i in list) { split(list[i], pair, ":"); floor[pair[1]] = pair[2] }; \
+	            set(core, in_core); set(wings, wing); set(doors, door); set(needs, need); \
+	            for (i in need) limited[substr(i, 1, index(i, "/"))] } \
 	    FNR == 1 { name = FILENAME; sub(/^(src|tests)\//, "", name); test[name] = FILENAME ~ /^tests/; \
 	               number[name] = test[name] ? 0 : $$3; \
 	               if (!(folder(name) in floor)) { print FILENAME ": no such folder in FLOORS"; bad = 1 } \
@@ -306,9 +338,13 @@ layers:  ## check that every file includes only from floors below
 	    END { for (i = 1; i <= n; ++i) { \
 	              if (!(to[i] ~ /\//)) to[i] = folder(from[i]) "/" to[i]; \
 	              f = folder(from[i]); g = folder(to[i]); \
-	              below = f != g ? floor[g] < floor[f] : test[from[i]] || number[to[i]] < number[from[i]]; \
+	              if (!test[from[i]] && from[i] ~ /\.cpp$$/ && f != g && floor[f] < 6) floor_of = 6; else floor_of = floor[f]; \
+	              below = f != g ? floor[g] < floor_of : test[from[i]] || number[to[i]] < number[from[i]]; \
 	              if (g == "oracle") below = 1; \
+	              if (f in wing && from[i] ~ /\.cpp$$/ && g == "app") below = 1; \
+	              if (f in in_core && g in wing) below = (from[i] ":" g) in door; \
+	              if (!test[from[i]] && (f ":" g "/") in limited && !((f ":" to[i]) in need)) below = 0; \
 	              if (!(to[i] in number) || (test[to[i]] && !test[from[i]] && f g != "courseoracle") || !below) \
 	                  { print at[i] ": " from[i] " is not above " to[i]; bad = 1 } } \
 	          if (!bad) print n " includes, all downwards"; exit bad }' \
-	    $(filter-out %/__pycache__,$(wildcard src/*/* tests/*/*.h tests/*/*.cpp))
+	    $(filter-out %/__pycache__ src/course/stubs,$(wildcard src/*/* tests/*/*.h tests/*/*.cpp))

@@ -1,11 +1,7 @@
-// app/penumbra.cpp  10  the program: options in, images and statistics out
-#include "app/help.h"
-#include "app/option_checks.h"
-#include "app/outputs.h"
+// app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
 #include "app/replay.h"
 #include "base/program.h"
-#include "world/scene_file.h"
 
 namespace {
 
@@ -19,110 +15,72 @@ A .pfm holds linear radiance; a .png holds exposure times radiance, clamped to
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
-129 SIGHUP), after writing the image of the passes completed so far.
+129 SIGHUP), after writing the image of the samples so far.
 )";
 
-// The scene that the user asks for; throws UserError if it is not to be had.
-ParsedScene load(Options& o) {
-    ParsedScene parsed = read_scene(o.scene);
-    Scene& scene = parsed.scene;
-    scene.size = o.size.value_or(scene.size);
-    scene.depth = o.depth.value_or(scene.depth);
-    scene.exposure = o.exposure.value_or(default_exposure(scene, o.view));
-    for (Light& l : scene.lights) l.by_angle = o.polygons == Polygons::angle;
-    for (size_t i = 0; i < scene.lights.size(); ++i)
-        if (scene.lights[i].kind == Light::Kind::point && o.technique.light == LightMode::none)
-            throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
-                            ": --light none: rays never hit a point light");
-    if (!o.replay) check_memory(part_of(o, scene, target_of(o, scene).samples), bytes_of_machine());
-    if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))
-        throw UserError("--pixel: outside the image");
-    // Coarser than build/radiosity's: after a bounce its triangles are not seen, noise is (by
-    // `make indirect`).
-    if (has_maps(o)) o.mesh = edge_length(o.scene, scene, o.mesh, 16, Particles::bytes());
-    return parsed;
+// The samples of one pixel after the other.  A path ends early once nobody waits for it.
+Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern) {
+    return [&](const PixelSample& s, uint64_t& rays) {
+        const Start at = start(scene, pattern, s);
+        if (o.view != View::radiance) return ++rays, view_along(scene, o.view, at.ray);
+        return Li(scene, o.technique, at.ray, at.sampler, [&](const Segment&, const Step& e) {
+            if (interrupted) throw Interrupted();
+            rays += 1 + (e.direct.light != nullptr);
+        });
+    };
 }
 
-// What is rendered, and the maps on which its paths end, if they do.
-struct Stage {
-    Scene scene;
-    std::optional<Maps> maps;
-};
-
-Stage stage_of(const Options& o, const Scene& scene) {
-    if (!has_maps(o)) return {scene, {}};
-    auto [facets, warnings] = endless(scene, *o.mesh);
-    for (const std::string& w : warnings) tell(o, o.scene + ":" + w);
-    Stage stage{std::move(facets), {}};
-    stage.maps = maps_of(o, stage.scene);
-    return stage;
-}
-
-// Writes all that was asked for, and says so.
-void write(const Options& o, const Scene& scene, const Rendered& rendered,
-           const std::vector<std::string>& outputs) {
-    const auto& [image, run, not_kept] = rendered;
-    write_images(outputs, image, scene.exposure);
-    const Size size = {image.width, image.height};
-    if (!o.stats.empty()) write_file(o.stats, encode_stats(o, size, scene.depth, run));
-    if (run.maps) tell(o, summary(*run.maps));
-    tell(o, summary(o, run));
-    std::vector<std::string> files = outputs;
-    if (!o.checkpoint.empty() && not_kept.empty()) files.push_back(o.checkpoint);
-    tell_written(o, files);
-    if (o.view == View::radiance && !o.rows && !scene.lights.empty() &&
-        run.mean_radiance == std::array<double, 3>{})
-        tell_black(o);
-}
-
-// Images to write, unless it is a part that is for build/merge alone.
-std::vector<std::string> outputs_for(const Options& o, const std::vector<std::string>& inputs,
-                                     Size size) {
-    std::vector<UsedFiles> used{{inputs}, {{}, "a checkpoint"}};
-    for (const std::string& film : {o.checkpoint, o.resume})
-        if (!film.empty()) used.back().paths.push_back(film);
-    check_names(o.outputs, o.stats, used);
-    if (!o.checkpoint.empty()) check_film(o.checkpoint);
-    const bool is_part = (o.rows || o.samples) && o.outputs.empty();
-    if (!is_part)
-        return outputs_of(o, "", used, o.rows ? Size{size.width, int(o.rows->count())} : size);
-    if (!o.stats.empty()) check_writable(o.stats);
-    return {};
+// What must agree when a film is gone on with, or merged with others.
+FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, const Plan& plan,
+               const Pattern& p) {
+    const Scene& scene = parsed.scene;
+    auto pair = [](auto a, char between, auto b) {
+        return std::to_string(a) + between + std::to_string(b);
+    };
+    const Rows rows = o.rows.value_or(Rows{0, scene.size.height - 1});
+    FilmOf what{parsed.files, {}, {}};
+    what.samples = {{"precision", sizeof(real) == 4 ? "float" : "double"},
+                    {"size", pair(scene.size.width, 'x', scene.size.height)},
+                    {"depth", std::to_string(scene.depth)}};
+    for (const Text name : {"--sampler", "--direction", "--light", "--roulette", "--view"})
+        what.samples.push_back({std::string(name.substr(2)), row(table, name).json()});
+    what.samples.push_back({"sets", plan.sets ? std::to_string(plan.sets) : "adaptive"});
+    if (o.sampler == SamplerKind::stratified)
+        what.samples.push_back({"grid", pair(p.columns, 'x', p.rows)});
+    what.samples.push_back({"seed", std::to_string(o.seed)});
+    what.samples.push_back({"rows", pair(rows.first, '-', rows.last)});
+    what.notes = {{"name", printable(o.scene)}, {"exposure", json::number(double(scene.exposure))}};
+    return what;
 }
 
 // The program; returns its exit status, throws UserError and SystemError.
 int penumbra(const std::vector<std::string>& words) {
-    Options o = parse_options(words);
+    Options o;
+    OptionTable table = option_table(o);
+    parse_options(table, o, words);
     if (o.help) {
-        std::printf("%s%s%s", before_options, option_lines(option_table).c_str(), after_options);
+        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
         return 0;
     }
-    const auto [read, warnings, inputs] = load(o);
-    std::vector<std::string> outputs;
-    if (!o.replay) {
-        outputs = outputs_for(o, inputs, read.size);
-        catch_interrupt();
-    }
-    for (const std::string& w : warnings) tell(o, o.scene + ": warning: " + w);
-    const auto [scene, maps] = stage_of(o, read);
-    const Job job = maps ? job_of(o, scene, *maps) : job_of(o, scene);
-    if (o.replay) {
-        replay(job);
-        return 0;
-    }
-    const bool is_kept = !o.checkpoint.empty() || !o.resume.empty();
-    const Rendered result =
-        rendered(job, is_kept ? identity_of(job, sum_of_files(inputs)) : FilmHeader());
-    if (result.run.spp > 0)
-        write(o, scene, result, outputs);
-    else
-        tell(o, summary(o, result.run));
-    if (!result.not_kept.empty()) throw SystemError(result.not_kept);
-    return result.run.interrupted ? 128 + interrupted : 0;
+    const ParsedScene parsed = load(o);
+    const Scene& scene = parsed.scene;
+    Plan plan = plan_of(o, scene);
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples());
+    plan.period = pattern.period();
+    if (o.replay) return replay(o, scene, pattern), 0;
+    const auto outputs = outputs_of(o, parsed, "", plan.size);
+    catch_interrupt();
+    for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
+    const Radiance L = radiance_of(o, scene, pattern);
+    const FilmOf what = film_of(table, o, parsed, plan, pattern);
+    const Picture picture = render(o, plan, L, what);  // film and bar end here
+    return write_picture(o, table, scene, outputs, picture);
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return exit_status([&] { return penumbra({argv + 1, argv + argc}); });
+int main(int argc, char** argv) try {
+    return finished(penumbra({argv + 1, argv + argc}));
+} catch (...) {
+    return failed();
 }

@@ -1,81 +1,149 @@
-// app/render.h  9  from options to images: by which paths, on which film
+// app/render.h  3  from options to an image: a film, its target, its error, its file
 #pragma once
-#include "app/filling.h"
-#include "voronoi/weighted.h"
+#include "app/keep.h"
+#include "app/options.h"
+#include "app/outputs.h"
+#include "app/views.h"
+#include "base/program.h"
+#include "path/start.h"
+#include "world/scene_file.h"
 
-struct CountNothing {
-    void operator()(RunStats&) const {}
+// ---- The scene ----------------------------------------------------------------------------------
+
+// The scene as the user wants it; throws UserError if it is not to be had.
+inline ParsedScene load(const Options& o) {
+    ParsedScene parsed = read_scene(o.scene);
+    Scene& scene = parsed.scene;
+    scene.size = o.size.value_or(scene.size);
+    scene.depth = o.depth.value_or(scene.depth);
+    scene.exposure = o.exposure ? real(*o.exposure) : default_exposure(scene, o.view);
+    for (size_t i = 0; i < scene.lights.size(); ++i)
+        if (scene.lights[i].kind == Light::Kind::point && o.technique.light == LightMode::none)
+            throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
+                            ": --light none: rays never hit a point light");
+    if (o.rows && o.rows->last >= scene.size.height)
+        throw UserError("--rows: the picture has rows 0-" + std::to_string(scene.size.height - 1));
+    if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))
+        throw UserError("--pixel: outside the image");
+    return parsed;
+}
+
+// ---- A picture ----------------------------------------------------------------------------------
+
+// A scene without light is black, whatever error is asked for.
+inline Plan plan_of(const Options& o, const Scene& scene) {
+    const double error = scene.lights.empty() && o.view == View::radiance ? 0 : o.error;
+    const bool ends = o.spp > 0 || o.seconds > 0 || error > 0;
+    const uint64_t N = ends ? o.spp : scene.samples;
+    Plan plan{{samples_each(o, N), o.seconds, error}, 1, o.threads, bytes_of_machine(), scene.size};
+    plan.sets = N == 1 && o.sets == 0 ? 1 : o.sets;
+    if (o.rows) plan.size.height = o.rows->count(), plan.first_row = o.rows->first;
+    return plan;
+}
+
+// A film that memory has room for; throws UserError if it has none.
+inline Film film_for(const Plan& plan) {
+    if (bytes_of(plan.size, std::max(2u, plan.sets)) > plan.memory)
+        throw UserError(std::to_string(plan.size.width) + "x" + std::to_string(plan.size.height) +
+                        " pixels do not fit into the " + fixed(plan.memory * 1e-9, 0) +
+                        " GB of this machine: render fewer rows at a time (--rows)");
+    return make_film(plan.size, plan.sets, plan.first_row);
+}
+
+// A NaN is an error and no black dot.
+inline void check_finite(const NonFinite& bad) {
+    if (bad.count == 0) return;
+    throw SystemError(std::to_string(bad.count) + " samples were not finite, the first at " +
+                      in_words(bad.first) + " (replay it by " +
+                      in_words(bad.first, "--pixel ", " --sample ") + "); nothing was written");
+}
+
+// What a film tells.
+inline Run run_of(const Film& film, const Plan& plan, const Spent& spent,
+                  const ErrorChecks& checks) {
+    Run run;
+    static_cast<Spent&>(run) = spent;
+    const bool all = film.pilot + film.least_taken() > 0;  // pixels have samples
+    run.spp = all ? film.total() / double(film.pixels()) * double(plan.at_once) : 0;
+    run.interrupted = interrupted;
+    const bool all_taken = plan.target.samples > 0 && film.least_taken() == plan.target.samples;
+    run.stopped_by = run.interrupted      ? "interrupt"
+                     : checks.is_enough() ? "error"
+                     : all_taken          ? "samples"
+                                          : "time";
+    run.error = error_of(film);
+    run.sets = film.sets_per_pixel();
+    run.exponent_of_cost = 1 / checks.course().exponent();
+    return run;
+}
+
+struct Picture {
+    Image image;
+    Run run;
+    std::string not_kept;  // why the film was not written, if it should have been
 };
 
-template <class Pixel, class RadianceOfBlock, class Count = CountNothing>
-Rendered fill(const Job& job, const FilmHeader& identity, const typename Pixel::Value& value,
-              RadianceOfBlock radiance_of_block, Count count = {}) {
-    Filling<Pixel, RadianceOfBlock, Count> filling(job, identity, value, radiance_of_block, count);
-    return filling.fill();
-}
-
-inline Rendered render_means(const Job& job, const FilmHeader& identity) {
-    return fill<MeanPixel>(job, identity, {}, [&] {
-        return [&](const PixelSample& s, uint64_t& rays) {
-            return radiance(job, start(job.scene, job.pattern, s), rays);
-        };
-    });
-}
-
-// By paths that end on maps, whose time and rays count, too.
-inline Rendered render_mapped(const Job& job, const FilmHeader& identity) {
-    auto L = [&] {
-        return [&](const PixelSample& s, uint64_t& rays) {
-            auto count = counting(rays);
-            return mapped_Li(job, s, [&](const Segment& segment, const Step& e, const Mapped&) {
-                count(segment, e);
-            });
-        };
+// Fills a film until the plan's target is met.
+inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
+                      const FilmOf& what = {}) {
+    Film film = film_for(plan);
+    Keeper keeper(o.keep, what);
+    const Spent before = keeper.restore(film);
+    Progress progress(plan.target.seconds, o.quiet, before.seconds);
+    ErrorChecks checks(plan.target.error, plan.period);
+    Watch watch;
+    Loop loop(film, plan, L, watch);
+    auto spent = [&] {
+        return Spent{progress.elapsed(), before.cpu_seconds + cpu_seconds(),
+                     before.rays + loop.rays()};
     };
-    Rendered r =
-        fill<MeanPixel>(job, identity, {}, L, [&](RunStats& run) { run.maps = job.maps->stats; });
-    r.run.seconds += r.run.maps->seconds, r.run.rays += r.run.maps->rays;
-    return r;
-}
-
-// Direct light by ratio or regression.
-inline Rendered render_shadows(const Job& job, const FilmHeader& identity) {
-    const Options& o = job.o;
-    return fill<ShadowPixel>(job, identity, {o.direct}, [&] {
-        return [&](const PixelSample& s, uint64_t& rays) {
-            const Start at = start(job.scene, job.pattern, s);
-            return shadow_Li(job.scene, o.technique, o.direct, at, counting(rays));
-        };
-    });
-}
-
-// Samples weighted by the areas of their Voronoi cells.
-inline Rendered render_cells(const Job& job, const FilmHeader& identity) {
-    std::atomic<uint64_t> redraws = 0, fallbacks = 0;
-    const uint64_t all = job.passes.target.samples;
-    auto weighted_L = [&] {
-        return [&, weighted = WeightedPixels(job.o.film, job.pattern, all)](
-                   const PixelSample& s, uint64_t& rays) mutable {
-            const Weigher& weigher = weighted.weigher();
-            const uint64_t redrawn = weigher.redraws, fallen = weigher.fallbacks;
-            auto L = [&](uint64_t i) {
-                if (interrupted) throw Interrupted();
-                return radiance(job, start(job.scene, job.pattern, {s.x, s.y, i, s.set}), rays);
-            };
-            const rgb value = weighted(pixel_number(job.scene, s), s.set, s.i, L);
-            redraws += weigher.redraws - redrawn, fallbacks += weigher.fallbacks - fallen;
-            return value;
-        };
+    watch.elapsed = [&] { return progress.elapsed(); };
+    watch.between = [&](const Film& f) {
+        if (!interrupted) keeper.write_now_and_then(f, spent());
+        return checks.next(f);
     };
-    return fill<MeanPixel>(job, identity, {}, weighted_L, [&](RunStats& run) {
-        run.redraws += redraws, run.fallbacks += fallbacks;
-    });
+    watch.show = [&](double now, double all) {
+        if (all == 0) all = HUGE_VAL;
+        all = std::min(all, checks.expected() * film.sets_per_pixel());
+        progress.show(now / all, fixed(now * double(plan.at_once), 1) + " samples per pixel");
+    };
+    loop.run();
+    check_finite(loop.non_finite());
+    if (loop.most_sets_chosen() < Allocation().most)
+        tell(o, "a pixel has at most " + std::to_string(loop.most_sets_chosen()) +
+                    " replications: more do not fit into memory");
+    const Run run =
+        run_of(film, plan, spent(), checks);  // asks once: a signal may come at any time
+    return {image_of(film), run, keeper.write(film, run, !run.interrupted)};
 }
 
-// identity: of checkpoints, see identity_of().
-inline Rendered rendered(const Job& job, const FilmHeader& identity = {}) {
-    if (job.maps) return render_mapped(job, identity);
-    if (job.o.film != Weighting::mc) return render_cells(job, identity);
-    const bool plain = is_plain_view(job.o.view) || !estimates_pixels(job.o.direct);
-    return plain ? render_means(job, identity) : render_shadows(job, identity);
+// ---- A program that renders ---------------------------------------------------------------------
+
+// Writes all that was asked for, and says so.  Returns the exit status.
+inline int write_picture(const Options& o, const OptionTable& table, const Scene& scene,
+                         const std::vector<std::string>& outputs, const Picture& picture) {
+    const auto& [image, run, not_kept] = picture;
+    if (run.spp > 0) {
+        write_images(outputs, image, double(scene.exposure));
+        json::Object stats = asked_for(table, o.scene, {image.width, image.height});
+        stats.add("depth", std::to_string(scene.depth));
+        add_run(stats, run, {image.width, image.height});
+        if (!o.stats.empty()) write_file(o.stats, stats.text());
+    }
+    tell(o, summary(o.scene, run, o.error > 0));
+    std::vector<std::string> files = outputs;
+    if (!o.keep.empty() && not_kept.empty()) files.push_back(o.keep);
+    if (run.spp > 0) tell_written(o, files);
+    if (o.view == View::radiance && !o.rows && !scene.lights.empty() && run.error.norm == 0)
+        tell_black(o);
+    if (!not_kept.empty()) throw SystemError(not_kept);
+    return run.interrupted ? 128 + interrupted : 0;
+}
+
+// Images to write: none by default if it is a band, which is for build/merge.
+inline std::vector<std::string> outputs_of(const Options& o, const ParsedScene& parsed,
+                                           const std::string& suffix, Size size) {
+    std::vector<std::string> kept;
+    if (!o.keep.empty()) kept.push_back(o.keep);
+    return outputs_of(o, o.rows ? "" : "out/NAME" + suffix, parsed.files, kept, size);
 }

@@ -1,8 +1,9 @@
-// app/replay.h  7  one path in words (--pixel)
+// app/replay.h  4  one path in words (--pixel)
 #pragma once
 #include <cstdio>
 
-#include "app/job.h"
+#include "app/views.h"
+#include "path/start.h"
 
 // Writes down what happens on a path, a line an event, with every digit: what it prints is what
 // the image was made of.
@@ -16,7 +17,7 @@ public:
         print("ray towards", at.ray.d);
     }
 
-    // A vertex, as an account of Li.
+    // A vertex, as a visitor of Li.
     void operator()(const Segment& s, const Step& e) const {
         if (!e.met) return;
         const Vertex& x = e.x;
@@ -36,22 +37,6 @@ public:
             print("  cosine", {std::abs(e.scattered.wi.z)});
             print("  pdf", {e.scattered.pdf});
         }
-    }
-
-    // The same where maps may end a path.
-    void operator()(const Segment& s, const Step& e, const Mapped& m) const {
-        (*this)(s, e);
-        if (!e.met || m.q == 1) return;
-        print("  reflected, by the maps", m.R);
-        print("  its weight", {m.weight});
-        print("  probability to go on", {m.q});
-    }
-
-    // What the estimators of direct light make of the first vertex.
-    void shadowed(const Shadowed& s) const {
-        print("first vertex without shadows, exact", s.U);
-        print("first vertex without shadows, as sampled", s.w);
-        print("first vertex as sampled, with shadows", s.wV);
     }
 
     void end(const char* why, rgb L) const {
@@ -90,28 +75,16 @@ private:
 };
 
 // Prints one path of the image.
-inline void replay(const Job& job) {
-    const auto& [o, scene, pattern, passes, part, maps, rest] = job;
+inline void replay(const Options& o, const Scene& scene, const Pattern& pattern) {
     const PathLog log(scene, stdout);
-    const PixelSample which{o.replay->x, o.replay->y, o.sample.value_or(0), o.set.value_or(0)};
-    const Start at = start(scene, pattern, which);
+    const Start at = start(scene, pattern, *o.replay);
     log.film(at);
-    if (is_plain_view(o.view))
+    if (o.view != View::radiance)
         return log.end("a view, not radiance", view_along(scene, o.view, at.ray));
     const char* why = nullptr;
-    auto account = [&](const Segment& s, const Step& e) {
+    const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
         log(s, e);
         why = e.end;
-    };
-    if (maps)
-        return log.end(why,
-                       mapped_Li(job, which, [&](const Segment& s, const Step& e, const Mapped& m) {
-                           log(s, e, m);
-                           why = m.goes ? e.end : "the maps";
-                       }));
-    if (o.direct == Estimator::stochastic)
-        return log.end(why, Li(scene, o.technique, at.ray, at.sampler, account));
-    const ShadowSample sample = shadow_Li(scene, o.technique, o.direct, at, account);
-    log.shadowed(sample.first);
-    log.end(why, sample.rest);
+    });
+    log.end(why, L);
 }

@@ -1,34 +1,15 @@
-// app/report.h  2  what runs tell: progress on stderr, statistics in JSON
+// app/report.h  1  what a run tells: progress and a summary on stderr, statistics in JSON
 #pragma once
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <array>
-#include <chrono>
-#include <cstdio>
-#include <string>
+#include <ctime>
 
-#include "app/option.h"
-#include "film/image.h"
+#include "base/option.h"
+#include "film/passes.h"
 
-// "0.982 %"
-inline std::string percent(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g %%", 100 * x);
-    return text;
-}
-
-inline std::string fixed(double x, int digits) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*f", digits, x);
-    return text;
-}
-
-// With so many digits, wherever the point is: "0.02", and as many as there are before it: "234".
-inline std::string significant(double x, int digits) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*g", digits, x);
-    return std::string_view(text).find("e+") == std::string_view::npos ? text : fixed(x, 0);
+inline void tell(const CommonOptions& o, const std::string& line) {
+    if (!o.quiet) std::fprintf(stderr, "%s\n", printable(line).c_str());
 }
 
 // ---- Progress -----------------------------------------------------------------------------------
@@ -37,11 +18,10 @@ inline std::string significant(double x, int digits) {
 // then; on stderr.
 class Progress {
 public:
-    // Of a run that ends after so many seconds, of which some were before; 0: no limit.
+    // Of a run that ends after so many seconds, `before` of them in earlier runs; 0: no limit.
     Progress(double limit, bool quiet, double before = 0)
-        : limit_(limit), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), before_(before) {}
+        : limit_(limit), quiet_(quiet), before_(before) {}
     Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
     ~Progress() {
         if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
     }
@@ -54,51 +34,48 @@ public:
     void show(double done, const std::string& words) {
         const double now = elapsed();
         if (quiet_ || now < next_) return;
-        next_ = now + (terminal_ ? 0.1 : 2.0);
+        next_ = now + interval_;
         if (limit_ > 0) done = std::max(done, now / limit_);
         done = std::min(done, 1.0);
-        std::string left = done > 0 ? fixed(now / done - now, 1) + " s left" : "";
-        std::string text = words + ", " + fixed(now, 1) + " s elapsed, " + left;
-        if (terminal_) {
-            std::string bar(size_t(24 * done), '#');
-            bar.resize(24, '.');
-            std::fprintf(stderr, "\r[%s] %3.0f %%  %s\033[K", bar.c_str(), 100 * done,
-                         text.c_str());
-        } else {
-            std::fprintf(stderr, "%3.0f %%  %s\n", 100 * done, text.c_str());
-        }
+        std::string line =
+            fixed(100 * done, 0) + " %  " + words + ", " + fixed(now, 1) + " s elapsed";
+        if (done > 0) line += ", " + fixed(now / done - now, 1) + " s left";
+        std::string bar(size_t(24 * done), '#');
+        bar.resize(24, '.');
+        if (terminal_)
+            std::fprintf(stderr, "\r[%s] %s\033[K", bar.c_str(), line.c_str());
+        else
+            std::fprintf(stderr, "%s\n", line.c_str());
         shown_ = true;
     }
 
 private:
     using clock = std::chrono::steady_clock;
     const double limit_;
-    const bool quiet_;
-    const bool terminal_;
-    const double before_;
+    const bool quiet_, terminal_ = ::isatty(STDERR_FILENO) == 1;
+    const double before_, interval_ = terminal_ ? 0.1 : 2.0;
     const clock::time_point start_ = clock::now();
-    double next_ = terminal_ ? 0.1 : 2.0;
+    double next_ = interval_;
     bool shown_ = false;
 };
 
-// ---- Statistics (--stats) -----------------------------------------------------------------------
+// ---- What a run measured ------------------------------------------------------------------------
 
-// Mean over an image, a channel at a time; NaN stays NaN.
-inline std::array<double, 3> mean_of_pixels(const Image& image) {
-    std::array<double, 3> sum{};
-    for (const auto& pixel : image.pixels)
-        for (size_t c = 0; c < 3; ++c) sum[c] += double(pixel[c]);
-    for (double& s : sum) s /= double(image.pixels.size());
-    return sum;
-}
+struct Run : Spent {
+    double spp = 0;  // samples a pixel, in the mean; 0: some pixel has none
+    bool interrupted = false;
+    std::string stopped_by;  // "samples", "time", "error" or "interrupt"
+    ImageError error;
+    double sets = 1;                // replications a pixel, in the mean
+    double exponent_of_cost = 2;    // seconds ~ d_rel^-this
+    std::string bias = "unbiased";  // class of the estimator
+    Facts more;                     // of this program alone: keys and JSON values
+
+    double mrays_per_second() const { return double(rays) / seconds * 1e-6; }
+};
 
 // CPU time of all threads so far, in seconds.
-inline double cpu_seconds() {
-    rusage use{};
-    getrusage(RUSAGE_SELF, &use);
-    return double(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
-           1e-6 * double(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
-}
+inline double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 inline int64_t peak_memory_bytes() {
     rusage use{};
@@ -106,61 +83,62 @@ inline int64_t peak_memory_bytes() {
     return int64_t(use.ru_maxrss) * 1024;
 }
 
-namespace json {
+// ---- In words -----------------------------------------------------------------------------------
 
-inline std::string string(std::string_view text) {
-    std::string out = "\"";
-    for (char c : text) {
-        char escaped[8];
-        std::snprintf(escaped, sizeof escaped, "\\u%04x", unsigned(static_cast<unsigned char>(c)));
-        if (c == '"' || c == '\\')
-            out += '\\', out += c;
-        else if (static_cast<unsigned char>(c) < ' ')
-            out += escaped;
-        else
-            out += c;
-    }
-    return out + '"';
+// Why there is no error to state; "": there is.
+inline std::string why_no_error(const Run& run) {
+    if (run.spp <= 1) return "one sample";
+    if (run.sets == 1) return run.interrupted ? "interrupted early" : "one replication";
+    if (run.error.norm == 0) return "the image is black";
+    if (std::isfinite(run.error.d_rel())) return "";
+    return run.interrupted ? "interrupted early" : "too little time";
 }
 
-// JSON has no NaN: what is not known is null.
-inline std::string number(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", x);
-    return std::isfinite(x) ? text : "null";
+// "d_rel 2.1 % ± 0.1 %; 1 % needs 34 s"
+inline std::string told_error(const Run& run) {
+    if (const std::string why = why_no_error(run); !why.empty()) return "error not known: " + why;
+    const double d = run.error.d_rel();
+    std::string words = "d_rel " + significant(100 * d, 2) + " % ± " +
+                        significant(100 * run.error.standard_error(), 1) + " %";
+    if (run.bias != "unbiased") words += " without its bias (" + run.bias + ")";
+    if (d == 0) return words;
+    const double unit = std::pow(10, std::floor(std::log10(d / 2)));
+    const double half = std::round(d / 2 / unit) * unit;
+    return words + "; " + significant(100 * half, 1) + " % needs " +
+           significant(run.seconds * std::pow(d / half, run.exponent_of_cost), 2) + " s";
 }
 
-inline std::string numbers(std::array<double, 3> x) {
-    std::string text = "[";
-    text += number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ']';
-    return text;
+// The line that stays.
+inline std::string summary(const std::string& scene, const Run& run, bool wants_error) {
+    std::string line = scene + ": " + significant(run.spp, 3) + " samples per pixel, " +
+                       fixed(run.seconds, 2) + " s, " + fixed(run.mrays_per_second(), 2) +
+                       " Mrays/s";
+    if (run.spp > 0) line += ", " + told_error(run);
+    if (wants_error && !run.interrupted) line += " (stopped by " + run.stopped_by + ")";
+    return line + (run.interrupted ? " (interrupted)" : "");
 }
 
-inline std::string truth(bool b) { return b ? "true" : "false"; }
-
-// An object of one member a line.
-class Object {
-public:
-    void add(const std::string& key, const std::string& value) {
-        text_ += (text_.empty() ? "  \"" : ",\n  \"") + key + "\": " + value;
-    }
-    std::string text() const { return "{\n" + text_ + "\n}\n"; }
-
-private:
-    std::string text_;
-};
-
-}  // namespace json
-
-// What was asked for: the statistics begin with it.
-template <class O>
-json::Object asked_for(const O& o, const OptionTable<O>& table, Size size) {
-    json::Object object;
-    object.add("scene", json::string(o.scene));
-    object.add("width", std::to_string(size.width));
-    object.add("height", std::to_string(size.height));
-    for (const Option<O>& row : table)
-        if (const std::string value = row.stats(o); !value.empty())
-            object.add(std::string(row.name.substr(2)), value);
-    return object;
+// Adds it to what was asked for.
+inline void add_run(json::Object& object, const Run& run, Size size) {
+    object.add("precision", sizeof(real) == 4 ? "\"float\"" : "\"double\"");
+    object.add("interrupted", json::truth(run.interrupted));
+    object.add("samples_per_pixel", json::number(run.spp));
+    object.add("seconds", json::number(run.seconds));
+    object.add("cpu_seconds", json::number(run.cpu_seconds));
+    object.add("rays", std::to_string(run.rays));
+    object.add("mrays_per_second", json::number(run.mrays_per_second()));
+    object.add("mean_radiance", json::numbers(run.error.mean));
+    std::array<double, 3> of_mean = run.error.square;
+    for (double& v : of_mean) v /= double(size.width) * double(size.height);
+    object.add("variance_of_mean", json::numbers(of_mean));
+    object.add("sets_per_pixel", json::number(run.sets));
+    object.add("d_rel", json::number(run.error.d_rel()));
+    object.add("d_rel_standard_error", json::number(run.error.standard_error()));
+    const bool falls = run.error.d2() > 0;  // or is 0, or not known
+    object.add("seconds_to_half_d_rel",
+               json::number(falls ? run.seconds * std::pow(2, run.exponent_of_cost) : double(NAN)));
+    object.add("bias", json::string(run.bias));
+    object.add("stopped_by", json::string(run.stopped_by));
+    for (const auto& [key, value] : run.more) object.add(key, value);
+    object.add("peak_memory_bytes", std::to_string(peak_memory_bytes()));
 }

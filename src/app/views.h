@@ -1,11 +1,11 @@
-// app/views.h  3  other things to look at than radiance (--view)
+// app/views.h  2  other things to look at than radiance (--view)
 #pragma once
 #include "app/options.h"
 
 // What a ray sees; black where it meets nothing.
 inline rgb view_along(const Scene& scene, View view, const Ray& ray) {
     if (view == View::bvh) {
-        const Bvh::Work work = scene.bvh.work(ray);
+        const Tree::Work work = scene.bvh.work(ray);
         return {real(work.nodes), real(work.shapes), 0};
     }
     const auto x = meet(scene, ray);
@@ -19,7 +19,7 @@ inline rgb view_along(const Scene& scene, View view, const Ray& ray) {
 // Factor to PNG: a scene's own is meant for radiance.  Depth reaches white at the diagonal of the
 // scene's box, work at 64 visits.
 inline real default_exposure(const Scene& scene, View view) {
-    if (view == View::radiance || view == View::variance) return scene.exposure;
+    if (view == View::radiance) return scene.exposure;
     if (view == View::bvh) return real(1) / 64;
     if (view != View::depth) return 1;
     return 1 / diagonal(scene);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -97,15 +97,36 @@ inline Size parse_size(std::string_view width, std::string_view height) {
 }
 
 // The words of a line before a comment, as white space parts them.
-inline std::vector<std::string> words_before(std::string_view line, char comment) {
+using Words = std::vector<std::string>;
+inline Words words_before(std::string_view line, char comment) {
     constexpr std::string_view space = " \t\n\v\f\r";
     line = line.substr(0, line.find(comment));
-    std::vector<std::string> words;
+    Words words;
     for (size_t end = 0, start; (start = line.find_first_not_of(space, end)) != line.npos;) {
         end = std::min(line.find_first_of(space, start), line.size());
         words.emplace_back(line.substr(start, end - start));
     }
     return words;
+}
+
+inline UserError error_at(const std::string& file, uint32_t line, const std::string& why) {
+    return UserError(file + ":" + std::to_string(line) + ": " + why);
+}
+
+// Calls read(words, line) for every line of a file's text that has words; '#' begins a comment.
+// UserErrors get the name of the file and the line.
+template <class Read>
+void read_lines(const std::string& text, const std::string& file, Read read) {
+    std::istringstream in(text);
+    uint32_t number = 0;
+    for (std::string line; std::getline(in, line);) {
+        ++number;
+        try {
+            if (const Words words = words_before(line, '#'); !words.empty()) read(words, number);
+        } catch (const UserError& e) {
+            throw error_at(file, number, e.what());
+        }
+    }
 }
 
 // Number of single-letter edits from a to b (Levenshtein 1966).
@@ -123,45 +144,29 @@ inline size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-// Without leading dashes, in small letters.
-inline std::string letters_of(std::string_view word) {
-    std::string letters(word.substr(std::min(word.find_first_not_of('-'), word.size())));
-    for (char& c : letters)
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-    return letters;
-}
-
-// " (did you mean 'nearest'?)", or nothing if every known word is far: more than half of the longer
-// one's letters would change.  What a word begins with is near.
-inline std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
-    const std::string letters = letters_of(word);
+// "unknown WHAT 'word'", and " (did you mean 'nearest'?)" if any known word is near: what the word
+// begins, or what at most half of the longer one's letters change into.  Of long words the first
+// letters decide.
+inline std::string unknown(std::string_view what, std::string_view word,
+                           const std::vector<std::string_view>& known) {
     std::string_view nearest;
     size_t least = SIZE_MAX;
     for (std::string_view k : known) {
-        const std::string other = letters_of(k);
-        const size_t longer = std::max(letters.size(), other.size());
-        const bool begun =
-            !letters.empty() && other.size() > letters.size() && other.starts_with(letters);
-        // A word of a million letters is not worth the time.
-        const size_t edits = begun ? 1 : longer > 1000 ? longer : edit_distance(letters, other);
-        if (2 * edits <= longer && edits < least) least = edits, nearest = k;
+        const std::string_view a = word.substr(0, 100), b = k.substr(0, 100);
+        const size_t edits = !a.empty() && b.starts_with(a) ? 1 : edit_distance(a, b);
+        if (2 * edits <= std::max(a.size(), b.size()) && edits < least) least = edits, nearest = k;
     }
-    return nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)";
+    return "unknown " + std::string(what) + " " + in_quotes(word) +
+           (nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)");
 }
 
-// "unknown WHAT 'word' (did you mean 'nearest'?)"
-inline std::string unknown(std::string_view what, std::string_view word,
-                           const std::vector<std::string_view>& known) {
-    return "unknown " + std::string(what) + " " + in_quotes(word) + did_you_mean(word, known);
-}
-
-// What has this name; throws UserError "undefined WHAT 'name' (did you mean 'other'?)".
+// What has this name; throws UserError "unknown WHAT 'name' (did you mean 'other'?)".
 template <class Value>
 const Value& look_up(const std::map<std::string, Value>& defined, const std::string& name,
-                     const std::string& what) {
+                     std::string_view what) {
     const auto found = defined.find(name);
     if (found != defined.end()) return found->second;
     std::vector<std::string_view> known;
     for (const auto& [other, value] : defined) known.push_back(other);
-    throw UserError("undefined " + what + " " + in_quotes(name) + did_you_mean(name, known));
+    throw UserError(unknown(what, name, known));
 }

@@ -3,116 +3,57 @@
 
 #include <chrono>
 
+#include "base/option.h"
 #include "base/program.h"
+#include "keep/read_pfm.h"
 #include "world/scene_file.h"
 
 namespace {
 
-constexpr const char* usage = R"(usage: draw [options] SCENE
-
-  -o FILE              .png or .pfm; may be repeated (default out/SCENE.png)
-  --view V             radiance, normal, or occlusion (how open a place is)
-  --spp N              samples a pixel (default 16)
-  --size WxH           pixels (default: the scene's)
-  --sampler S          independent, stratified, halton or sobol (default independent)
-  --light L            none, nee or mis: found by hitting it, by aiming at it, by both (default mis)
-  --direct E           stochastic, control, ratio or regression: of light in shadow (week 5)
-  --roulette T         throughput below which Russian roulette is played (default 0.25)
-  --depth N            scatterings a path may have (default: the scene's)
-  --seed N             another noise (default 0)
-  --beside FILE.pfm    beside it what is expected, and the difference, doubled, about grey
-)";
-
-struct Order {
+struct Order : CommonOptions {
     Drawing drawing;
-    std::vector<std::string> outputs;
-    std::string scene, beside;
-    std::optional<Size> size;
-    std::optional<int> depth;
+    std::optional<int> depth;  // default: the scene's
+    std::string beside;        // a picture, or empty
 };
 
-template <class Value>
-Value one_of(const std::string& option, const std::string& word,
-             const std::map<std::string, Value>& values) {
-    const auto found = values.find(word);
-    if (found != values.end()) return found->second;
-    std::string names;
-    for (const auto& [name, value] : values) names += (names.empty() ? "" : ", ") + name;
-    throw UserError(option + ": " + in_quotes(word) + " is none of " + names);
-}
-
-Size size_of(const std::string& word) {
-    const size_t x = word.find('x');
-    if (x == word.npos) throw UserError("--size: say WxH, e.g. 256x128");
-    return parse_size(word.substr(0, x), word.substr(x + 1));
-}
-
-void choose_direct(Drawing& d, const std::string& word) {
+// Of light in shadow.
+Option direct_row([[maybe_unused]] Drawing& d) {
+    Option row{
+        "--direct", "stochastic|control|ratio|regression", "of light in shadow (week 5)", "", {}};
 #if __has_include("shadow/shadow.h")
-    d.direct = one_of<Estimator>("--direct", word,
-                                 {{"stochastic", Estimator::stochastic},
-                                  {"control", Estimator::control},
-                                  {"ratio", Estimator::ratio},
-                                  {"regression", Estimator::regression}});
-    d.technique.light = LightMode::nee;
+    row.set = [&d, words = row.value](Text v) {
+        d.technique.light = LightMode::nee;
+        one_of("--direct", words, "", d.direct.emplace()).set(v);
+    };
 #else
-    (void)d;
-    throw UserError("--direct " + word + ": light in shadow comes in a later week");
+    row.set = [](Text) { throw UserError("light in shadow comes in a later week"); };
 #endif
+    return row;
 }
 
-void take(Order& o, const std::string& option, const std::string& word) {
+OptionTable table_of(Order& o) {
     Drawing& d = o.drawing;
-    if (option == "-o")
-        o.outputs.push_back(word);
-    else if (option == "--view")
-        d.picture = one_of<Picture>(option, word,
-                                    {{"normal", Picture::normal},
-                                     {"occlusion", Picture::occlusion},
-                                     {"radiance", Picture::radiance}});
-    else if (option == "--sampler")
-        d.sampler = one_of<SamplerKind>(option, word,
-                                        {{"independent", SamplerKind::independent},
-                                         {"stratified", SamplerKind::stratified},
-                                         {"halton", SamplerKind::halton},
-                                         {"sobol", SamplerKind::sobol}});
-    else if (option == "--light")
-        d.technique.light = one_of<LightMode>(
-            option, word,
-            {{"none", LightMode::none}, {"nee", LightMode::nee}, {"mis", LightMode::mis}});
-    else if (option == "--direct")
-        choose_direct(d, word);
-    else if (option == "--spp")
-        d.samples = parse_count(word, 1, 1 << 20);
-    else if (option == "--size")
-        o.size = size_of(word);
-    else if (option == "--roulette")
-        d.technique.roulette = real(parse_number(word));
-    else if (option == "--depth")
-        o.depth = int(parse_count(word, 0, 1000));
-    else if (option == "--seed")
-        d.seed = parse_count(word, 0, UINT64_MAX);
-    else if (option == "--beside")
-        o.beside = word;
-    else
-        throw UserError("what is " + in_quotes(option) + "?  See --help");
-}
-
-Order order_of(const std::vector<std::string>& words) {
-    Order o;
-    o.drawing.technique.roulette = real(0.25);
-    for (size_t i = 0; i < words.size(); ++i) {
-        if (!words[i].starts_with("-")) {
-            if (!o.scene.empty()) throw UserError("two scenes: " + o.scene + " and " + words[i]);
-            o.scene = words[i];
-            continue;
-        }
-        if (i + 1 == words.size()) throw UserError(words[i] + ": of what?");
-        take(o, words[i], words[i + 1]);
-        ++i;
-    }
-    if (o.scene.empty()) throw UserError("which scene?  See --help");
-    return o;
+    d.technique.roulette = real(0.25);
+    OptionTable table = {output_row(o, "out/SCENE.png"),
+                         one_of("--view", "normal|occlusion|radiance",
+                                "what it shows; occlusion: how open a place is", d.picture),
+                         whole_number("--spp", "samples a pixel", "16", d.samples, 1, 1 << 20),
+                         one_of("--sampler", "independent|stratified|halton|sobol",
+                                "where random numbers come from", d.sampler),
+                         one_of("--light", "none|nee|mis",
+                                "found by hitting it, by aiming at it, by both", d.technique.light),
+                         direct_row(d),
+                         {"--roulette", "T", "throughput below which Russian roulette is played",
+                          "0.25", [&d](Text v) { d.technique.roulette = real(parse_number(v)); }},
+                         {"--depth", "N", "scatterings a path may have", "the scene's",
+                          [&o](Text v) { o.depth = int(parse_count(v, 0, 1000)); }},
+                         {"--beside", "FILE.pfm",
+                          "beside it what is expected, and the difference, doubled, about grey", "",
+                          [&o](Text v) { o.beside = v; }}};
+    for (const Option& r :
+         without(common_rows(o), {"--threads", "--exposure", "--stats", "--quiet"}))
+        table.push_back(r);
+    return table;
 }
 
 // Yours, what is expected, and grey plus twice the difference: grey is equal.
@@ -144,11 +85,14 @@ double relative_error(const Image& f, const Image& F) {
 }
 
 int run(const std::vector<std::string>& words) {
-    if (words.empty() || words[0] == "--help" || words[0] == "-h") {
-        std::fputs(usage, words.empty() ? stderr : stdout);
-        return words.empty() ? 2 : 0;
+    Order o;
+    OptionTable table = table_of(o);
+    parse_words(table, words, o);
+    if (o.help) {
+        std::printf("usage: draw [options] SCENE\n\n%s", option_lines(table).c_str());
+        return 0;
     }
-    Order o = order_of(words);
+    o.drawing.seed = o.seed;
     ParsedScene parsed = read_scene(o.scene);
     Scene& scene = parsed.scene;
     scene.size = o.size.value_or(scene.size);
@@ -183,6 +127,6 @@ int run(const std::vector<std::string>& words) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return exit_status([&] { return run({argv + 1, argv + argc}); });
+int main(int argc, char** argv) try { return finished(run({argv + 1, argv + argc})); } catch (...) {
+    return failed();
 }

@@ -22,7 +22,7 @@ struct Drawing {
     SamplerKind sampler = SamplerKind::independent;
     uint64_t samples = 16;  // a pixel
     uint64_t seed = 0;
-    Technique technique = {};
+    Technique technique = {Direction::bsdf, LightMode::mis, 0};
 #if __has_include("shadow/shadow.h")
     std::optional<Estimator> direct = {};  // of light in shadow; nothing: as paths find it
 #endif
@@ -47,15 +47,10 @@ inline rgb occlusion_seen(const Scene& scene, const Start& at, real far) {
 // The mean of paths, and what the estimator makes of all light samples of the pixel.
 inline rgb pixel_in_shadow(const Scene& scene, const Drawing& d, const Pattern& pattern, int x,
                            int y) {
-    ShadowPixel pixel{};
+    ShadowPixel pixel;
     for (uint64_t i = 0; i < d.samples; ++i)
-        pixel.add(i, shadow_Li(scene, d.technique, Estimator::stochastic,  // counts control once
-                               start(scene, pattern, {x, y, i}), NoAccount{}));
-    rgb value;
-    for (size_t c = 0; c < 3; ++c)
-        value.*axis[c] =
-            real(pixel.rest.sum[c] / double(d.samples) + estimate(*d.direct, pixel.shadowed[c]));
-    return value;
+        pixel.add(shadow_Li(scene, d.technique, start(scene, pattern, {x, y, i}), NoAccount{}));
+    return pixel.value(*d.direct);
 }
 #endif
 

@@ -11,7 +11,7 @@ namespace course {
 // Whether directions and density may belong together.  Lengths count as 1 within 1e-4, far above
 // what float loses.
 inline bool sampler_passes(const Sampler& subject, uint64_t seed) {
-    // BEGIN SOLUTION 6.1  refuse what is no sampler with its density
+    // exercise 6.1
     oracle::Random random(seed);
     // At the borders of the square a logarithm or a root may have no value.
     const double last = 1 - 0x1p-24, ends[] = {0, 0x1p-24, random(), last};
@@ -22,15 +22,12 @@ inline bool sampler_passes(const Sampler& subject, uint64_t seed) {
     return oracle::expect_density(random, subject.sample, subject.pdf,
                                   {.alpha = 1e-4, .sees = 0.03, .axis = {0, 0, 1}})
         .pass;
-    // STUB  looks at one density alone
-    // (void)seed;
-    // return subject.pdf({0, 0, 1}) >= 0;
-    // END SOLUTION
+    // end
 }
 
 // Whether the estimates may have the mean that their class promises.
 inline bool estimator_passes(const Estimator& subject, uint64_t seed) {
-    // BEGIN SOLUTION 6.2  refuse what is off its declared mean, or does not converge
+    // exercise 6.2
     oracle::Random random(seed);
     const oracle::Options sure{.alpha = 1e-4};
     auto run = [&](int n) { return subject.estimate(random.bits(), n); };
@@ -47,15 +44,13 @@ inline bool estimator_passes(const Estimator& subject, uint64_t seed) {
     const double few = oracle::draw(2000, [&] { return run(16); }).variance();
     const double many = oracle::draw(2000, [&] { return run(64); }).variance();
     return std::sqrt(many) <= 0.7 * std::sqrt(few) + 1e-12 * std::abs(subject.truth);
-    // STUB  one estimate that is not far off will do
-    // return std::abs(subject.estimate(seed, 100) - subject.truth) < 1 + std::abs(subject.truth);
-    // END SOLUTION
+    // end
 }
 
 // Whether beams may meet bodies where they ought to: within 1e-3 of the distance, far above what
 // float loses.
 inline bool intersector_passes(const Intersector& subject, uint64_t seed) {
-    // BEGIN SOLUTION 6.3  refuse what misses, or meets what is not there
+    // exercise 6.3
     oracle::Random random(seed);
     auto in = [&](double a, double b) { return real(a + (b - a) * random()); };
     auto somewhere = [&] { return vec3{in(-1, 1), in(-1, 1), in(-1, 1)}; };
@@ -86,10 +81,7 @@ inline bool intersector_passes(const Intersector& subject, uint64_t seed) {
         if (!good) return false;
     }
     return true;
-    // STUB  one sphere is met
-    // (void)seed;
-    // return subject.meet({{0, 0, 5}, {}, {}, 1}, {{0, 0, 0}, {0, 0, 1}}).has_value();
-    // END SOLUTION
+    // end
 }
 
 }  // namespace course

@@ -1,11 +1,15 @@
 # course/regions.py  1  exercises: the regions of src that a student writes, and their stubs
-"""A region of the solution:
+"""A region of the solution, in src:
 
-    // BEGIN SOLUTION 2.2  title
+    // exercise 2.2
     the solution
-    // STUB  what it does instead
-    // the stub, commented out
-    // END SOLUTION
+    // end
+
+Its stub, in src/course/stubs/2.2:
+
+    // 2.2  title
+    // instead: what it does instead
+    the stub, indented as in src
 
 In a starter, where it is open:
 
@@ -17,62 +21,60 @@ import pathlib
 import re
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+STUBS = 'src/course/stubs'
 
-BEGIN = re.compile(r'^(\s*)// BEGIN SOLUTION (\w+\.\d+)  (\S.*)$')
-STUB = re.compile(r'^\s*// STUB  (\S.*)$')
-END = re.compile(r'^\s*// END SOLUTION$')
-MARKER = re.compile(r'^\s*//\s*(BEGIN|END)\s+(SOLUTION|[\w]+\.\d+)\b|^\s*//\s*STUB\b')
+BEGIN = re.compile(r'^([ \t]*)// exercise (\w+\.\d+)$', re.M)
+END = re.compile(r'^[ \t]*// end$', re.M)
+MARKLIKE = re.compile(r'//\s*(?:(?:exercise|begin|end)\s+\w+\.\d|(?:exercise|end)(?:\s+\w)?\s*$)', re.I)
+HEAD = re.compile(r'// (\S+)  (\S.*)\n// instead: \S.*\n')
 
 
 class Malformed(Exception):
-    """A file whose regions cannot be told apart."""
+    """A file whose regions cannot be told apart, or have no stub."""
 
 
 class Region:
-    """An exercise's lines in a file: first and last are those of its markers, from 0."""
+    """An exercise's lines in a file: first and last are those of its marks, from 0."""
 
-    def __init__(self, number, title, indent, first):
-        self.number, self.title, self.indent, self.first = number, title, indent, first
+    def __init__(self, number, indent, first, root):
+        self.number, self.indent, self.first = number, indent, first
         self.last = first
-        self.solution, self.stub = [], []
+        self.solution = []
+        name = f'{STUBS}/{number}'
+        if not (root / name).is_file():
+            raise Malformed(f'there is no stub {name}')
+        text = (root / name).read_text()
+        head = HEAD.match(text)
+        if not head or head[1] != number:
+            raise Malformed(f'{name} must begin with "// {number}  title" and "// instead: what it does"')
+        self.title, self.stub = head[2], text[head.end():].removesuffix('\n').split('\n')
 
     def open(self, lines):
         """The region as a student gets it, or hands it in, around these lines."""
         return [f'{self.indent}// BEGIN {self.number}  {self.title}', *lines, f'{self.indent}// END {self.number}']
 
 
-def uncommented(line, where):
-    """A line of a stub as code: '    // x' becomes '    x'."""
-    found = re.match(r'^(\s*)//(?: (.*)|)$', line)
-    if not found:
-        raise Malformed(f'{where}: a line of a stub must begin with //')
-    return (found[1] + (found[2] or '')).rstrip()
-
-
-def regions(text, name):
+def regions(text, name, root=ROOT):
     """The regions of a file of the solution, in order."""
-    found, region, in_stub = [], None, False
+    found, region = [], None
     for i, line in enumerate(text.split('\n')):
         where = f'{name}:{i + 1}'
         begin = BEGIN.match(line)
         if begin:
             if region:
                 raise Malformed(f'{where}: {begin[2]} begins within {region.number}')
-            region, in_stub = Region(begin[2], begin[3], begin[1], i), False
+            try:
+                region = Region(begin[2], begin[1], i, root)
+            except Malformed as error:
+                raise Malformed(f'{where}: {error}')
         elif END.match(line):
-            if not region or not in_stub:
-                raise Malformed(f'{where}: END SOLUTION without a ' + ('STUB' if region else 'BEGIN'))
+            if not region:
+                raise Malformed(f'{where}: an end without an exercise')
             region.last = i
             found.append(region)
             region = None
-        elif STUB.match(line):
-            if not region or in_stub:
-                raise Malformed(f'{where}: STUB is not in a region, or twice')
-            in_stub = True
-        elif MARKER.match(line):
-            raise Malformed(f'{where}: this is no marker, but looks like one')
-        elif region and in_stub:
-            region.stub.append(uncommented(line, where))
+        elif MARKLIKE.search(line):
+            raise Malformed(f'{where}: this is no mark, but looks like one')
         elif region:
             region.solution.append(line)
     if region:
@@ -80,10 +82,10 @@ def regions(text, name):
     return found
 
 
-def rewrite(text, name, replace):
-    """The file with replace(region), lines, in place of each region; None: the solution without markers."""
+def rewrite(text, name, replace, root=ROOT):
+    """The file with replace(region), lines, in place of each region; None: the solution without marks."""
     lines, out, at = text.split('\n'), [], 0
-    for r in regions(text, name):
+    for r in regions(text, name, root):
         new = replace(r)
         out += lines[at:r.first] + (r.solution if new is None else new)
         at = r.last + 1
@@ -110,11 +112,16 @@ def exercises(root=ROOT):
 
 def solution_files(root=ROOT):
     """Files of src that hold regions, by exercise: number -> (path relative to root, region)."""
-    found = {}
+    found, listed = {}, {e.number for e in exercises(root)}
     for path in sorted((root / 'src').rglob('*.h')):
         name = str(path.relative_to(root))
-        for r in regions(path.read_text(), name):
+        for r in regions(path.read_text(), name, root):
             if r.number in found:
                 raise Malformed(f'{name}: {r.number} is in {found[r.number][0]}, too')
+            if r.number not in listed:
+                raise Malformed(f'{name}: {r.number} is not in exercises.txt')
             found[r.number] = (name, r)
+    for path in sorted((root / STUBS).iterdir()):
+        if path.name not in found:
+            raise Malformed(f'{STUBS}/{path.name} is the stub of no region')
     return found

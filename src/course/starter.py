@@ -21,10 +21,9 @@ from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
 FOLDERS = ['base', 'world', 'path', 'film']
-TREE = ['bvh_build.h', 'bvh_collapse.h', 'bvh_lanes.h', 'bvh_leaf.h', 'bvh_node.h', 'bvh.h']
-UNTOLD = ['src/shadow/population.h',  # formulas of an exercise, which only experiments need
-          'src/film/checkpoint.h', 'src/film/film_file.h', 'src/film/image_files.h']  # for renders of hours
-COURSE = ['bvh.h', 'draw.h', 'draw.cpp', 'course.mk']  # of src/course
+ALSO = ['src/keep/read_pfm.h']  # build/draw compares pictures
+UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
+COURSE = ['draw.h', 'draw.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
 Leave these lines as they are, and write between them plain C++: no `#include`, `#define`, `asm` or names with two
@@ -85,22 +84,28 @@ def with_headers(folder, files):
     return found
 
 
+def needs_app(path):
+    """Whether a file includes a header of src/app, itself or by others: a starter draws by build/draw alone."""
+    names = re.findall(r'^#include "(\w+/\w+\.h)"', path.read_text(), re.M)
+    return any(name.startswith('app/') or needs_app(ROOT / 'src' / name) for name in names)
+
+
 def write_sources(plan, to):
-    """src: the folders that the weeks need, and the tree that a student can read in place of ours."""
+    """src: of the folders that the weeks need what needs no app, and the plain tree alone."""
     for folder in FOLDERS + plan.wings:
         for path in sorted((ROOT / 'src' / folder).iterdir()):
-            if folder == 'world' and path.name in TREE:
-                continue
             name = f'src/{folder}/{path.name}'
-            if name in UNTOLD:
+            if name in UNTOLD or needs_app(path):
                 continue
             write(to / name, regions.rewrite(path.read_text(), name, plan.replacement))
+    for name in ALSO:
+        write(to / name, (ROOT / name).read_text())
     names = COURSE + sorted({pathlib.Path(e.file).name for e in plan.open if e.file.startswith('course/')})
     for file in with_headers(ROOT / 'src/course', names):
         name = f'src/course/{file}'
         write(to / name, regions.rewrite((ROOT / name).read_text(), name, plan.replacement))
-    write(to / 'src/world/bvh.h', '// world/bvh.h  5  where rays stop: the tree of course/bvh.h\n#pragma once\n'
-          '#include "course/bvh.h"\n\nusing Bvh = BinaryBvh;\n')
+    write(to / 'src/world/tree.h', '// world/tree.h  5  the tree of a scene\n#pragma once\n'
+          '#include "world/bvh.h"\n\nusing Tree = Bvh;\n')
 
 
 def rows(text, keep):

@@ -154,12 +154,13 @@ def solution_lines(found, numbers):
 def check_leaks(found, folder, numbers):
     lines = solution_lines(found, numbers)
     for path in (p for p in sorted(folder.rglob('*')) if p.is_file() and p.suffix not in ('.pfm', '.png')):
-        text = re.sub(r'\s+', '', path.read_text())
+        text = path.read_text()
+        squeezed_text = re.sub(r'\s+', '', text)
         for line, n in lines.items():
-            if line in text:
+            if line in squeezed_text:
                 fail(f'{path.relative_to(folder)} holds a line of the solution of {n}: {line}')
-        if 'SOLUTION' in text and path.suffix in ('.h', '.cpp'):
-            fail(f'{path.relative_to(folder)} speaks of a SOLUTION')
+        if regions.BEGIN.search(text) or regions.END.search(text):
+            fail(f'{path.relative_to(folder)} has a mark of the solution')
     shown = {n for n in numbers if n not in lines.values()}
     if shown:
         fail(f'no line by which a leak of {" ".join(sorted(shown))} would be known')
@@ -208,9 +209,6 @@ def main():
             fail(f'{e.number}: no region in src/{e.file}')
         elif len(found[e.number][1].solution) > 30:
             fail(f'{e.number}: more than 30 lines')
-    for n in found:
-        if n not in {e.number for e in exercises}:
-            fail(f'{n} is not in exercises.txt')
     exercises = [e for e in exercises if e.number in found]
     check_verdicts(exercises, found, words.draw)
     check_combinations(exercises, found, words.full)

@@ -79,7 +79,7 @@ class Workshop:
         self.seed = seed
         self.tree = solved_tree()
         self.exercises = {e.number: e for e in regions.exercises()}
-        self.solutions = {n: found for n, found in regions.solution_files().items() if n in self.exercises}
+        self.solutions = regions.solution_files()
         self.programs = {}    # week -> the answers' source
         for week in dict.fromkeys(n.split('.')[0] for n in self.solutions):
             hidden, shown = (f'tests/course/answers_{week}{end}.cpp' for end in ('_hidden', ''))
@@ -100,7 +100,7 @@ class Workshop:
         """Of all that a verdict depends on, but the student and the seed."""
         said = subprocess.run([*self.cxx, '--version'], capture_output=True, text=True).stdout
         parts = [said, ' '.join(self.cxx + self.flags + STATIC), *(f'{p}\n{t}' for p, t in sorted(self.tree.items()))]
-        for path in sorted([*(ROOT / 'tests/course').glob('*'), *(ROOT / 'src/course').glob('*.py')]):
+        for path in sorted([*(ROOT / 'tests/course').glob('*'), *(ROOT / 'src/course').glob('*.py'), *(ROOT / regions.STUBS).iterdir()]):
             parts.append(path.read_text() if path.is_file() else '')
         return digest_of(parts)
 

@@ -1,25 +1,22 @@
-// film/error.h  3  how far an image is from the truth, by the spread of its sets
+// film/error.h  3  the error of an image, by the spread of its replications
 #pragma once
-#include <array>
+#include <utility>
 
-#include "base/stats.h"
-#include "film/sets.h"
+#include "film/film.h"
 
-// ---- The image ----------------------------------------------------------------------------------
-
-// Of an image f of a truth F that sets scatter about: d^2 = mean over pixels and channels of
-// (f - F)^2, in expectation, without any bias of f.  NaN: not known.
+// Of an image f of a truth F: d^2 = mean over pixels and channels of (f - F)^2, in expectation and
+// without the bias of f.  NaN: not known.
 struct ImageError {
-    std::array<double, 3> square{NAN, NAN, NAN};  // a channel at a time
+    std::array<double, 3> mean{};                 // of the image, a channel at a time
+    std::array<double, 3> square{NAN, NAN, NAN};  // d^2, a channel at a time
     double spread = NAN;                          // standard error of d^2
     double norm = NAN;                            // |f|, the image's own quadratic mean
     double greatest = NAN;                        // part of d^2 that comes from the worst pixel
 
     double d2() const { return (square[0] + square[1] + square[2]) / 3; }
-    // Of a black image not known: light may have been missed by all samples.
+    // Of a black image not known: all samples may have missed the light.
     double d_rel() const { return norm > 0 ? std::sqrt(d2()) / norm : double(NAN); }
-    // The same if there were another pixel like the worst, in which light that is rare was not
-    // seen.
+    // The same if there were another pixel like the worst, in which rare light was not seen.
     double d_rel_and_unseen() const {
         return d_rel() * std::sqrt(d2() > 0 ? 1 + greatest / d2() : 1);
     }
@@ -27,79 +24,78 @@ struct ImageError {
     double standard_error() const { return d2() == 0 ? 0 : d_rel() * spread / d2() / 2; }
 };
 
-// What pixels add to that, and to the image's mean: sums over pixels, which parts of an image add
-// up to those of the whole.
+// Sums over pixels.  A pixel's term T is the mean variance of its channels.  T varies by
+// E[T^2] - E[T]^2, and E[T]^2 = E[T^2] (K - 1) / (K + 1) if its K replications are normally
+// distributed and the channels vary as one.
 struct ErrorTerms {
-    uint64_t pixels = 0, measured = 0;  // measured: of two sets or more
-    std::array<double, 3> sum{};        // of values, a channel at a time
-    double norm2 = 0;                   // of squares of values
-    std::array<double, 3> square{};     // of variances
-    double terms2 = 0, greatest = 0;    // of squares of a pixel's terms, the greatest of these
+    uint64_t pixels = 0, measured = 0;  // measured: by two replications or more
+    std::array<double, 3> sum{}, square{};
+    double norm2 = 0, terms2 = 0, greatest = 0;
 
-    // A pixel's value.
-    void add(const std::array<double, 3>& value) {
+    void add(const Pixel& p) { add(std::span(&p, 1)); }
+
+    // Of independent pictures f_s, weighed by their samples: Var(sum w_s f_s) = sum w_s^2 Var(f_s).
+    // Returns the pixel.
+    std::array<double, 3> add(std::span<const Pixel> pictures) {
+        std::array<double, 3> value{}, variance{};
+        double all = 0, spread2 = 0;
+        bool is_measured = true;
+        for (const Pixel& p : pictures) all += p.samples();
+        for (const Pixel& p : pictures) {
+            const double w = p.samples() / all, K = double(p.count());
+            double term = 0;
+            for (size_t c = 0; c < 3; ++c) {
+                const double of_p = p.variance(c);
+                value[c] += w * p.value(c), variance[c] += w * w * of_p, term += w * w * of_p / 3;
+            }
+            spread2 += term * term * 2 / (K + 1);
+            is_measured = is_measured && K > 1;
+        }
         ++pixels;
         for (size_t c = 0; c < 3; ++c) sum[c] += value[c], norm2 += value[c] * value[c];
-    }
-
-    // The variance of that, which sets tell.  Unbiased: a pixel that was measured with a chance of
-    // p stands for 1/p pixels (Horvitz, Thompson 1952).  Its term T then varies by E[T^2] - E[T]^2,
-    // and E[T]^2 = p (n - 1) / (n + 1) E[T^2] if n sets of a pixel are normally distributed; the
-    // three channels vary as one.
-    void add_variance(const std::array<double, 3>& variance, const Sets& sets) {
+        if (!is_measured) return value;
         ++measured;
-        const double chance = sets.chance > 0 ? double(sets.chance) : 1, n = sets.count();
-        double term = 0;
-        for (size_t c = 0; c < 3; ++c) {
-            square[c] += variance[c] / chance;
-            term += variance[c] / chance / 3;
-        }
-        terms2 += term * term * (1 - chance * (n - 1) / (n + 1));
-        greatest = std::fmax(greatest, term);
-    }
-
-    ErrorTerms& operator+=(const ErrorTerms& t) {
-        pixels += t.pixels, measured += t.measured, norm2 += t.norm2, terms2 += t.terms2;
-        for (size_t c = 0; c < 3; ++c) sum[c] += t.sum[c], square[c] += t.square[c];
-        greatest = std::fmax(greatest, t.greatest);
-        return *this;
+        for (size_t c = 0; c < 3; ++c) square[c] += variance[c];
+        terms2 += spread2;
+        greatest = std::fmax(greatest, (variance[0] + variance[1] + variance[2]) / 3);
+        return value;
     }
 
     ImageError error() const {
         const double n = double(pixels);
         ImageError e;
-        e.norm = pixels > 0 ? std::sqrt(norm2 / 3 / n) : double(NAN);
-        if (measured == 0) return e;
-        e.square = {square[0] / n, square[1] / n, square[2] / n};
+        for (size_t c = 0; c < 3; ++c) e.mean[c] = sum[c] / n;
+        e.norm = std::sqrt(norm2 / 3 / n);
+        if (measured < pixels) return e;
+        for (size_t c = 0; c < 3; ++c) e.square[c] = square[c] / n;
         e.spread = std::sqrt(terms2) / n;
         e.greatest = greatest / n;
         return e;
     }
 };
 
+inline ErrorTerms terms_of(const Film& film) {
+    ErrorTerms terms;
+    for_each_pixel(film, [&](size_t, const Pixel& p) { terms.add(p); });
+    return terms;
+}
+inline ImageError error_of(const Film& film) { return terms_of(film).error(); }
+
 // ---- How it falls, and when it is small enough --------------------------------------------------
 
-// d_rel of an image whose samples grow: c n^-gamma.
+// The fitted rate: d_rel = c n^-gamma by the last two of errors whose samples double.
 class ErrorCourse {
 public:
-    void add(uint64_t samples, double d_rel) { points_.push_back({double(samples), d_rel}); }
-
-    // Whether the samples have doubled since the last point, or there is none.
-    bool is_due(uint64_t samples) const {
-        return points_.empty() || double(samples) >= 2 * points_.back().samples;
+    bool is_due(uint64_t samples) const { return double(samples) >= 2 * last_.samples; }
+    void add(uint64_t samples, double d_rel) {
+        if (is_due(samples)) before_ = std::exchange(last_, {double(samples), d_rel});
     }
 
-    // gamma, from the last point and the last one of at most half its samples; 1/2, which is that
-    // of independent samples, if there is none, and at most 1.
+    // gamma; 1/2, which is that of independent samples, if it is less or not known, and at most 1.
     double exponent() const {
-        for (auto p = points_.rbegin(); p != points_.rend(); ++p) {
-            const Point& last = points_.back();
-            if (2 * p->samples > last.samples) continue;
-            const double gamma =
-                std::log(p->d_rel / last.d_rel) / std::log(last.samples / p->samples);
-            return gamma > 0.5 ? std::min(gamma, 1.0) : 0.5;
-        }
-        return 0.5;
+        const double gamma =
+            std::log(before_.d_rel / last_.d_rel) / std::log(last_.samples / before_.samples);
+        return gamma > 0.5 ? std::min(gamma, 1.0) : 0.5;
     }
 
     // How many times as much it takes to divide the last error by x.
@@ -107,27 +103,59 @@ public:
 
 private:
     struct Point {
-        double samples, d_rel;
-    };
-    std::vector<Point> points_;
+        double samples = 0, d_rel = NAN;
+    } before_, last_;
 };
 
-// Standard errors that are added to an estimate before it is small enough.
-inline constexpr double margin_of_error = 0.5;
-
 // The rule of --error: stop once the estimate, with another pixel like the worst and half its
-// standard error, is no more than asked for.  The margin makes up for what stopping at a good look
-// spoils, the pixel for some of the light that was not seen (both by `make calibration`).  An error
-// that is not known is not small.
+// standard error, is no more than asked for.  The margin makes up for stopping at a look that errs,
+// the pixel for some of the light that was not seen (both by `make calibration`).  An error that is
+// not known is not small.
 inline bool is_small_enough(const ImageError& e, double wanted) {
-    return e.d_rel_and_unseen() + margin_of_error * e.standard_error() <= wanted;
+    constexpr double margin = 0.5;  // standard errors
+    return e.d_rel_and_unseen() + margin * e.standard_error() <= wanted;
 }
 
-// When to look, whatever is wanted, so that a run which is resumed stops where it would have
-// stopped: first after some samples, then whenever there are a 32nd more, in whole periods.  The
-// first look after `samples`.
-inline uint64_t next_look(uint64_t samples, uint64_t first, uint64_t period) {
-    uint64_t look = first;
-    while (look <= samples) look += (look / 32 / period + 1) * period;
-    return look;
+// Samples of the first check after `samples`.  They do not depend on the error that is asked for:
+// a run that goes on stops where one run would have stopped.
+inline uint64_t next_check(uint64_t samples, uint64_t first, uint64_t period) {
+    uint64_t check = first;
+    while (check <= samples) check += (check / 32 / period + 1) * period;
+    return check;
 }
+
+// Looks at a film's error now and then, until it is at most `wanted`; 0: for its course alone.
+class ErrorChecks {
+public:
+    ErrorChecks(double wanted, uint64_t period) : wanted_(wanted), period_(period) {}
+
+    // Samples up to which the film may go before it looks again; as many as it has: enough.
+    uint64_t next(const Film& film) {
+        const uint64_t n = film.least_taken();
+        const uint64_t first = (first_check + period_ - 1) / period_ * period_;
+        if (film.sets.empty()) return UINT64_MAX;
+        const bool is_even = n > 0 && n == film.most_taken();  // no film that was interrupted
+        const bool checks = wanted_ > 0 && is_even && next_check(n - 1, first, period_) == n;
+        if (checks || (is_even && course_.is_due(n))) {
+            const ImageError e = error_of(film);
+            course_.add(n, e.d_rel());
+            is_enough_ = checks && is_small_enough(e, wanted_);
+            const double too_much = std::isfinite(e.d_rel()) ? e.d_rel() / wanted_ : HUGE_VAL;
+            expected_ = double(n) * course_.cost_of(std::max(1.0, too_much));
+        }
+        return is_enough_ ? n : wanted_ > 0 ? next_check(n, first, period_) : UINT64_MAX;
+    }
+
+    bool is_enough() const { return is_enough_; }
+    const ErrorCourse& course() const { return course_; }
+    // Samples of each replication in the end, by the last look; infinite: not known.
+    double expected() const { return wanted_ > 0 ? expected_ : HUGE_VAL; }
+
+private:
+    static constexpr uint64_t first_check = 8;  // samples; fewer tell little of a spread
+    const double wanted_;
+    const uint64_t period_;
+    ErrorCourse course_;
+    bool is_enough_ = false;
+    double expected_ = HUGE_VAL;
+};

@@ -1,283 +1,277 @@
-// film/film.h  5  where samples gather
+// film/film.h  2  a film: sums of samples, in independent replications of each pixel
+//
+// A replication is n samples with a randomisation of their own.  The mean of a pixel's replications
+// is its value, and their spread tells its error.  Pixels whose neighbours are noisy have more.
 #pragma once
-#include <atomic>
-#include <mutex>
-#include <optional>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <span>
 #include <tuple>
+#include <vector>
 
-#include "film/passes.h"
-#include "film/pixels.h"
+#include "base/stats.h"
+#include "film/image.h"
+#include "path/sampler.h"
 
-// A sample that no image can hold.
-struct NonFinite {
-    uint64_t sample = UINT64_MAX;
-    int x = 0, y = 0;
-    uint32_t set = 0;
-};
+// The radiance of a sample; counts the rays that it takes.  Calls come from several threads.
+using Radiance = std::function<rgb(const PixelSample&, uint64_t& rays)>;
 
-// Pixels take their samples in order: the image is the same however passes and threads divide them.
-// A pass adds in place, block by block; until it is complete the image and its error are those
-// without it.  Each set of a pixel's samples is a Pixel of its own: it has a type Sample,
-// add(i, sample) for sample i, fits(sample), whether that is finite and stays so in a file,
-// spread(i, sample), by how much the squared distances of samples to their mean grow with sample i,
-// noise(n, spread), the variance of the mean as n samples and the sum of that tell it, and a Value:
-// value(pixel, n, channel) is what n samples say.
-template <class Pixel>
-class Film {
-public:
-    using Sample = typename Pixel::Sample;
-    using Value = typename Pixel::Value;
-
-    explicit Film(Size s, Value value = {}, Shows shows = Shows::values)
-        : size(s),
-          value_(value),
-          shows_(shows),
-          blocks_{size_t(s.width) * size_t(s.height)},
-          next_terms_(blocks_.count()) {
-        state_.first.assign(blocks_.pixels, Pixel());
-        state_.spread.resize(blocks_.pixels);
-        state_.others_of.resize(blocks_.count());
-        state_.ahead.resize(blocks_.count());
-        state_.terms.resize(blocks_.count());
-        state_.image = Image(s.width, s.height);
-    }
-
-    const Size size;
-    size_t number_of_pixels() const { return blocks_.pixels; }
-    size_t blocks() const { return blocks_.count(); }
-    uint64_t samples() const { return state_.samples; }  // of every set
-
-    // Goes on from what another film of this size was, a complete pass or not: state() is that. Two
-    // are never in memory at once.
-    template <class State>
-    void restore(State state) {
-        state_ = {};
-        state_ = state();
-        state_.image.width = size.width, state_.image.height = size.height;
-        state_.image.pixels.resize(number_of_pixels(), {NAN, NAN, NAN});
-        count_others();
-        for (size_t b = 0; b < blocks(); ++b)
-            if (state_.ahead[b])
-                next_terms_[b] = terms_of_block(b, samples() + state_.pass, true);
-            else if (samples() > 0)
-                state_.terms[b] = terms_of_block(b, samples(), others_are_complete());
-    }
-
-    // ---- Passes ----
-
-    // Of a pass that was interrupted when some blocks had its samples.
-    std::optional<uint64_t> unfinished_pass() const {
-        const auto& ahead = state_.ahead;
-        if (std::find(ahead.begin(), ahead.end(), true) == ahead.end()) return {};
-        return state_.pass;
-    }
-
-    void begin_pass(uint64_t n) { state_.pass = n; }
-
-    // n more samples for block b: L(x, y, i, set) is sample i of a set of pixel (x, y).  Sets that
-    // were added since the last pass begin with sample 0.  Once `interrupted`, or if L throws, the
-    // block stays as it was, and the pass must not end.
-    template <class Radiance>
-    void add_block(size_t b, uint64_t n, Radiance L) {
-        if (state_.ahead[b]) return;
-        Changed block = copy_of(b);
-        for (size_t i = blocks_.begin(b), k = 0; i < blocks_.end(b); ++i)
-            for (uint32_t set = 0; set < sets(i).count(); ++set) {
-                const bool is_first = set == 0;
-                Pixel& pixel = is_first ? block.first[i - blocks_.begin(b)] : block.others[k++];
-                double* spread =
-                    is_first && has_spread() ? &block.spread[i - blocks_.begin(b)] : nullptr;
-                if (!add_samples(pixel, spread, i, set, n, L)) return;
-            }
-        develop(b);
-        put_back(b, block);
-        next_terms_[b] = terms_of_block(b, state_.samples + n, true);
-        state_.ahead[b] = true;
-    }
-
-    // A block that nobody wrote has no number in any pixel, which is an error and no black dot.
-    void end_pass(uint64_t n) {
-        for (size_t b = 0; b < blocks(); ++b)
-            if (!state_.ahead[b])
-                for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i)
-                    state_.first[i] = Pixel::unwritten();
-        state_.terms = next_terms_;
-        state_.ahead.assign(blocks(), false);
-        state_.samples += n;
-        state_.samples_of_others = state_.samples;
-        state_.pass = 0;
-    }
-
-    // ---- Sets ----
-
-    bool has_sets() const { return !state_.sets.empty(); }
-
-    // From now on; once, between passes.  Until the next pass ends there is only the first of each.
-    void add_sets(std::vector<Sets> sets) {
-        state_.sets = std::move(sets);
-        state_.sets_after = samples();
-        state_.spread = std::vector<double>();  // with its memory
-        state_.others.assign(count_others(), Pixel::unwritten());
-        state_.samples_of_others = 0;
-    }
-
-    // What sets_where_noise_is() is told; with room for that of more pixels.
-    std::vector<double> noise(size_t more = 0) const {
-        std::vector<double> noise;
-        noise.reserve(number_of_pixels() + more);
-        for (size_t i = 0; i < number_of_pixels(); ++i)
-            noise.push_back(state_.first[i].noise(samples(), state_.spread[i]));
-        return noise;
-    }
-
-    double sets_per_pixel() const {
-        const double others = others_are_complete() ? double(state_.others.size()) : 0;
-        return 1 + others / double(number_of_pixels());
-    }
-
-    // Of pixel number `index`; pixel(index, set) is one of them.
-    Sets sets(size_t index) const { return has_sets() ? state_.sets[index] : Sets{}; }
-    bool others_are_complete() const { return has_sets() && state_.samples_of_others == samples(); }
-    const Pixel& pixel(size_t index, uint32_t set) const {
-        const size_t b = index / blocks_.size();
-        size_t other = state_.others_of[b];
-        for (size_t i = blocks_.begin(b); i < index; ++i) other += sets(i).count() - 1;
-        return set > 0 ? state_.others[other + set - 1] : state_.first[index];
-    }
-
-    // ---- What it holds ----
-
-    // How many samples did not fit, and the first of them.
-    uint64_t non_finite() const { return non_finite_; }
-    const NonFinite& first_non_finite() const { return first_non_finite_; }
-
-    // After the last pass that was ended; NaN before the first.
-    const Image& image() {
-        for (size_t b = 0; b < blocks(); ++b)
-            if (!state_.ahead[b]) develop(b);
-        return state_.image;
-    }
-    Image take_image() {
-        image();
-        return std::move(state_.image);
-    }
-    ErrorTerms terms() const {
-        ErrorTerms sum;
-        for (const ErrorTerms& t : state_.terms) sum += t;
-        return sum;
-    }
-
-    const Value& value() const { return value_; }
-    const FilmState<Pixel>& state() const { return state_; }
-
-private:
-    const Value value_;
-    const Shows shows_;
-    const Blocks blocks_;
-    FilmState<Pixel> state_;
-    std::vector<ErrorTerms> next_terms_;  // of blocks that are ahead
-    std::atomic<uint64_t> non_finite_ = 0;
-    NonFinite first_non_finite_;
-    std::mutex mutex_;
-
-    // How many there are; notes where those of blocks begin.
-    size_t count_others() {
-        size_t others = 0;
-        state_.others_of.resize(blocks());
-        for (size_t b = 0; b < blocks(); ++b) {
-            state_.others_of[b] = others;
-            for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i)
-                others += sets(i).count() - 1;
-        }
-        return others;
-    }
-
-    bool has_spread() const { return !state_.spread.empty(); }
-
-    // ---- A block of a pass ----
-
-    struct Changed {
-        std::vector<Pixel> first, others;
-        std::vector<double> spread;
-    };
-    size_t end_of_others(size_t b) const {
-        return b + 1 < blocks() ? state_.others_of[b + 1] : state_.others.size();
-    }
-    Changed copy_of(size_t b) const {
-        auto part = [](const auto& all, size_t from, size_t to) {
-            return std::decay_t<decltype(all)>(all.begin() + ptrdiff_t(from),
-                                               all.begin() + ptrdiff_t(to));
-        };
-        Changed c{part(state_.first, blocks_.begin(b), blocks_.end(b)),
-                  part(state_.others, state_.others_of[b], end_of_others(b)),
-                  {}};
-        if (has_spread()) c.spread = part(state_.spread, blocks_.begin(b), blocks_.end(b));
-        return c;
-    }
-    void put_back(size_t b, const Changed& c) {
-        auto put = [](const auto& part, auto& all, size_t at) {
-            std::copy(part.begin(), part.end(), all.begin() + ptrdiff_t(at));
-        };
-        put(c.first, state_.first, blocks_.begin(b));
-        put(c.others, state_.others, state_.others_of[b]);
-        if (has_spread()) put(c.spread, state_.spread, blocks_.begin(b));
-    }
-
-    // Answers false once `interrupted`.
-    template <class Radiance>
-    bool add_samples(Pixel& pixel, double* spread, size_t index, uint32_t set, uint64_t n,
-                     Radiance& L) {
-        const int x = int(index % size_t(size.width)), y = int(index / size_t(size.width));
-        const uint64_t before = set > 0 ? state_.samples_of_others : state_.samples;
-        if (before == 0) pixel = Pixel();
-        for (uint64_t i = before; i < state_.samples + n; ++i) {
-            if (interrupted) return false;
-            const Sample value = L(x, y, i, set);
-            if (!Pixel::fits(value)) report({i, x, y, set});
-            if (spread) *spread += pixel.spread(i, value);
-            pixel.add(i, value);
-        }
-        return true;
-    }
-
-    // Calls see(index, sets of that pixel) for the block's pixels; without others: of the first.
-    template <class See>
-    void look(size_t b, bool with_others, See see) const {
-        const Pixel* others = state_.others.data() + state_.others_of[b];
-        for (size_t i = blocks_.begin(b); i < blocks_.end(b); ++i) {
-            const Sets all = with_others ? sets(i) : Sets{};
-            see(i, SetsOfPixel<Pixel>{all, &state_.first[i], others});
-            others += all.count() - 1;
-        }
-    }
-    void develop(size_t b) {
-        look(b, others_are_complete(), [&](size_t i, const auto& pixel) {
-            state_.image.pixels[i] = picture_of(pixel, value_, samples(), shows_);
-        });
-    }
-    ErrorTerms terms_of_block(size_t b, uint64_t n, bool with_others) const {
-        ErrorTerms sum;
-        look(b, with_others, [&](size_t, const auto& pixel) { sum += terms_of(pixel, value_, n); });
-        return sum;
-    }
-
-    void report(const NonFinite& bad) {
-        std::lock_guard lock(mutex_);
-        ++non_finite_;
-        auto order = [](const NonFinite& b) { return std::tuple(b.sample, b.set, b.y, b.x); };
-        if (order(bad) < order(first_non_finite_)) first_non_finite_ = bad;
+// A channel at a time.
+struct Sum {
+    std::array<double, 3> L{};
+    void add(rgb sample) {
+        for (size_t c = 0; c < 3; ++c) L[c] += double(sample.*axis[c]);
     }
 };
 
-template <class Pixel>
-ImageError error_of(const Film<Pixel>& film) {
-    return film.terms().error();
+inline constexpr uint64_t most_sets = 1024;
+
+// The file of a film is these arrays.  Before sets are chosen a pixel has one replication, the
+// pilot, which is later the first.
+struct Film {
+    Size size;
+    int first_row = 0;            // of the picture that it holds a band of
+    uint64_t pilot = 0;           // samples that the first replications had when sets were chosen
+    std::vector<uint16_t> sets;   // replications of each pixel; empty: not yet chosen
+    std::vector<Sum> sum;         // of each replication: those of pixel 0, those of pixel 1 ...
+    std::vector<uint64_t> taken;  // samples that each replication of a block's pixels has
+    std::vector<float> spread;  // of each pixel's pilot: root of the squared distances to its mean
+
+    size_t pixels() const { return size_t(size.width) * size_t(size.height); }
+    uint32_t sets_of(size_t pixel) const { return sets.empty() ? 1 : sets[pixel]; }
+    double sets_per_pixel() const { return double(sum.size()) / double(pixels()); }
+
+    // Threads take pixels in blocks, small enough that a small picture has work for all of them.
+    size_t block_size() const { return std::clamp<size_t>(pixels() / 256, 1, 256); }
+    size_t begin(size_t block) const { return block * block_size(); }
+    size_t end(size_t block) const { return std::min(pixels(), begin(block) + block_size()); }
+
+    // Samples of a replication.
+    uint64_t samples(size_t block, uint32_t set) const {
+        return set == 0 ? std::max(taken[block], pilot) : taken[block];
+    }
+    uint64_t least_taken() const { return *std::min_element(taken.begin(), taken.end()); }
+    uint64_t most_taken() const { return *std::max_element(taken.begin(), taken.end()); }
+    // Samples of all pixels together, once each replication has n or more.
+    double total(uint64_t n = 0) const {
+        double all = 0;
+        for (size_t b = 0; b < taken.size(); ++b)
+            for (size_t i = begin(b); i < end(b); ++i)
+                all += double(std::max(n, samples(b, 0))) +
+                       double(std::max(n, taken[b])) * double(sets_of(i) - 1);
+        return all;
+    }
+};
+
+// Of `sets` replications a pixel; 0: yet to be chosen.
+inline Film make_film(Size size, uint32_t sets, int first_row = 0) {
+    Film f;
+    f.size = size, f.first_row = first_row;
+    const size_t n = f.pixels();
+    f.taken.assign((n + f.block_size() - 1) / f.block_size(), 0);
+    f.sum.resize(n * std::max<uint32_t>(1, sets));
+    if (sets > 0)
+        f.sets.assign(n, uint16_t(sets));
+    else
+        f.spread.resize(n);
+    return f;
 }
 
-// What its samples say of a pixel, in a channel.
-template <class Pixel>
-auto value_in(const Film<Pixel>& film) {
-    return [value = film.value(), n = film.samples()](const Pixel& p, size_t c) {
-        return value(p, n, c);
+// What its file says of it: keys and values.
+using Facts = std::vector<std::array<std::string, 2>>;
+struct FilmOf {
+    std::vector<std::string> files;  // of the scene
+    Facts samples, notes;            // what the samples depend on, and other things to know
+};
+
+// What it took so far.
+struct Spent {
+    double seconds = 0, cpu_seconds = 0;
+    uint64_t rays = 0;
+};
+
+// ---- Pixels -------------------------------------------------------------------------------------
+
+// What the replications of a pixel tell.
+struct Pixel {
+    std::span<const Sum> sum;
+    uint64_t first, others;  // samples of the first, of each other
+
+    double samples() const { return double(first) + double(others) * double(sum.size() - 1); }
+    // Replications that have samples.
+    size_t count() const { return others > 0 ? sum.size() : first > 0 ? 1 : 0; }
+    double mean_of(size_t set, size_t c) const {
+        return sum[set].L[c] / double(set == 0 ? first : others);
+    }
+    // Their mean: unbiased, whether they have as many samples or not.  NaN: there is none.
+    double value(size_t c) const {
+        double all = 0;
+        for (size_t set = 0; set < count(); ++set) all += mean_of(set, c);
+        return all / double(count());
+    }
+    // The variance of that, unbiased as well; NaN: fewer than two tell nothing.
+    double variance(size_t c) const {
+        Moments m;
+        for (size_t set = 0; set < count(); ++set) m.add(mean_of(set, c));
+        return m.n > 1 ? m.variance() / double(m.n) : double(NAN);
+    }
+};
+
+// Where the replications of each block begin in `sum`.
+inline std::vector<size_t> offsets(const Film& f) {
+    std::vector<size_t> at{0};
+    for (size_t b = 0; b < f.taken.size(); ++b) {
+        at.push_back(at.back());
+        for (size_t i = f.begin(b); i < f.end(b); ++i) at.back() += f.sets_of(i);
+    }
+    return at;
+}
+
+// Calls see(i, pixel i) for all pixels in order.
+template <class See>
+void for_each_pixel(const Film& f, See see) {
+    const Sum* sum = f.sum.data();
+    for (size_t b = 0; b < f.taken.size(); ++b)
+        for (size_t i = f.begin(b); i < f.end(b); sum += f.sets_of(i++))
+            see(i, Pixel{{sum, f.sets_of(i)}, f.samples(b, 0), f.taken[b]});
+}
+
+// NaN where a pixel has no sample.
+inline Image image_of(const Film& f) {
+    Image image(f.size.width, f.size.height);
+    for_each_pixel(f, [&](size_t i, const Pixel& p) {
+        for (size_t c = 0; c < 3; ++c) image.pixels[i][c] = float(p.value(c));
+    });
+    return image;
+}
+
+// ---- Samples ------------------------------------------------------------------------------------
+
+// Samples that an image file cannot hold, and the first of them.
+struct NonFinite {
+    uint64_t count = 0;
+    PixelSample first;
+
+    void add(const NonFinite& other) {
+        auto order = [](const PixelSample& s) { return std::tuple(s.i, s.set, s.y, s.x); };
+        if (other.count == 0) return;
+        if (count == 0 || order(other.first) < order(first)) first = other.first;
+        count += other.count;
+    }
+};
+
+// "pixel 3,4 sample 5,1", or as options have it.
+inline std::string in_words(const PixelSample& s, const char* pixel = "pixel ",
+                            const char* sample = " sample ") {
+    const std::string words =
+        pixel + std::to_string(s.x) + "," + std::to_string(s.y) + sample + std::to_string(s.i);
+    return s.set > 0 ? words + "," + std::to_string(s.set) : words;
+}
+
+inline bool fits_float(rgb L) {
+    return std::isfinite(float(L.x)) && std::isfinite(float(L.y)) && std::isfinite(float(L.z));
+}
+
+// Brings the replications of a block, which begin at `offset`, to n samples, in order: the image
+// is the same however passes and threads divide them.  If L throws, the block stays as it was.
+inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, const Radiance& L,
+                             uint64_t& rays) {
+    const size_t from = f.begin(block), to = f.end(block), width = size_t(f.size.width);
+    NonFinite bad;
+    std::vector<Sum> sums;
+    std::vector<float> spread;
+    sums.reserve(16 * (to - from)), spread.reserve(to - from);
+    for (size_t i = from, k = offset; i < to; ++i) {
+        float root = f.spread.empty() ? 0 : f.spread[i];
+        for (uint32_t set = 0; set < f.sets_of(i); ++set) {
+            Sum sum = f.sum[k++];
+            for (uint64_t s = f.samples(block, set); s < n; ++s) {
+                const PixelSample which{int(i % width), f.first_row + int(i / width), s, set};
+                const rgb sample = L(which, rays);
+                if (!fits_float(sample)) bad.add({1, which});
+                double squares = double(root) * double(root);
+                for (size_t c = 0; c < 3 && s > 0 && !f.spread.empty(); ++c) {
+                    const double m = double(s), d = double(sample.*axis[c]) - sum.L[c] / m;
+                    squares += d * d * (m / (m + 1));  // Welford 1962
+                }
+                root = float(std::sqrt(squares));
+                sum.add(sample);
+            }
+            sums.push_back(sum);
+        }
+        spread.push_back(root);
+    }
+    std::copy(sums.begin(), sums.end(), f.sum.begin() + ptrdiff_t(offset));
+    if (!f.spread.empty())
+        std::copy(spread.begin(), spread.end(), f.spread.begin() + ptrdiff_t(from));
+    f.taken[block] = std::max(f.taken[block], n);
+    return bad;
+}
+
+// ---- Replications where noise is ----------------------------------------------------------------
+
+// The most of a pixel, and the factor of the rule below; by `make calibration`.
+struct Allocation {
+    double factor = 3.5;
+    uint32_t most = 32;
+};
+
+// Samples of the pilot.
+inline constexpr uint64_t pilot_samples = 8;
+
+// The time to a squared error is least where samples are in proportion to the root of their
+// variance (Neyman 1934): factor sqrt(noise of the neighbours / mean noise of all pixels of the
+// other colour of a checkerboard), at least 2.  A pixel's own samples have no say in that, so that
+// its mean stays unbiased.  `spread`: standard deviation of samples, up to a factor.
+inline std::vector<uint16_t> sets_where_noise_is(const std::vector<float>& spread, Size size,
+                                                 const Allocation& by = {}) {
+    const int w = size.width, h = size.height;
+    auto at = [&](int x, int y) {
+        const double v = double(spread[size_t(y) * size_t(w) + size_t(x)]);
+        return v * v;
     };
+    double sum[2] = {}, count[2] = {};
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) sum[(x + y) & 1] += at(x, y), ++count[(x + y) & 1];
+    std::vector<uint16_t> sets(spread.size(), 2);
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+            double around = 0, neighbours = 0;
+            for (int v = std::max(0, y - 1); v <= std::min(h - 1, y + 1); ++v)
+                for (int u = std::max(0, x - 1); u <= std::min(w - 1, x + 1); ++u)
+                    if (u != x || v != y) around += at(u, v), ++neighbours;
+            const size_t other = size_t(x + y + 1) & 1;
+            const double ratio = around / neighbours / (sum[other] / count[other]);
+            if (!(ratio > 0)) continue;  // no noise, or no neighbour
+            const double K = by.factor * std::sqrt(ratio) + 0.5;
+            sets[size_t(y) * size_t(w) + size_t(x)] = uint16_t(std::clamp(K, 2.0, double(by.most)));
+        }
+    return sets;
+}
+
+// Bytes that a pixel takes: 24 for each replication, and at most 32 for all else.
+inline double bytes_of(Size size, double sets) {
+    return (32 + 24 * sets) * double(size.width) * double(size.height);
+}
+
+// Chooses sets by the pilot, which all blocks have; fewer of them where they do not fit into so
+// many bytes.  Returns the most that a pixel may have.
+inline uint32_t choose_sets(Film& f, double memory) {
+    Allocation by;
+    for (;; --by.most) {
+        f.sets = sets_where_noise_is(f.spread, f.size, by);
+        double all = 0;
+        for (uint16_t k : f.sets) all += k;
+        if (by.most == 2 || bytes_of(f.size, all / double(f.pixels())) <= memory) {
+            f.spread = std::vector<float>();  // with its memory
+            std::vector<Sum> sum(size_t(all), Sum{});
+            for (size_t i = 0, k = 0; i < f.pixels(); k += f.sets[i++]) sum[k] = f.sum[i];
+            f.sum = std::move(sum);
+            break;
+        }
+    }
+    f.pilot = f.taken[0];
+    f.taken.assign(f.taken.size(), 0);
+    return by.most;
 }

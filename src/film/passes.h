@@ -1,30 +1,27 @@
-// film/passes.h  1  the one loop that renders: passes, threads, time, Ctrl-C
+// film/passes.h  4  the loop that fills a film: passes, threads, time, Ctrl-C
 #pragma once
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
-#include <cstdint>
-#include <exception>
+#include <future>
 #include <mutex>
-#include <thread>
-#include <vector>
+
+#include "film/error.h"
 
 // ---- Ctrl-C -------------------------------------------------------------------------------------
 
 // The signal that asks for an end, or 0.
 inline std::atomic<int> interrupted = 0;
 
-// The first Ctrl-C, or another signal to end, asks for an end after the passes completed so far; a
-// second Ctrl-C kills.  What whoever started us ignores stays ignored.  A stderr that nobody reads
-// is no reason to lose an image, and a file that grows too large is an error of its own.
+// The first Ctrl-C, or another signal to end, asks for an end; a second Ctrl-C kills.  A signal
+// that our parent ignores stays ignored.  A stderr that nobody reads is no reason to lose an image,
+// and a file that grows too large is an error of its own.
 inline void catch_interrupt() {
     for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
         struct sigaction action {};
         struct sigaction before {};
         action.sa_handler = [](int caught) { interrupted = caught; };
-        // What stops a job may be sent to it twice, by its engine and by a script.
+        // A job's engine and a script may both send SIGTERM.
         action.sa_flags = signal == SIGINT ? int(SA_RESETHAND) : 0;
         sigaction(signal, nullptr, &before);
         if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
@@ -32,138 +29,156 @@ inline void catch_interrupt() {
     for (int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
-// ---- When to stop -------------------------------------------------------------------------------
-
-// Whichever comes first; 0: no limit.
-struct Target {
-    uint64_t samples = 0;  // per pixel
-    double seconds = 0;
-    double error = 0;  // d_rel; see film/error.h
-};
-
-// Passes long enough to keep the threads busy, short enough to stop soon.
-class Schedule {
-public:
-    // Passes are multiples of `period` samples, but for the last of an uneven target.
-    Schedule(const Target& target, uint64_t period) : target_(target), period_(period) {}
-
-    // Samples per pixel of the next pass, after `samples` in `elapsed` seconds; 0: enough.  The
-    // first pass always runs.
-    uint64_t next(uint64_t samples, double elapsed) {
-        if (samples > 0) {
-            const double took = elapsed - started_;
-            const bool was_full = samples - before_ >= size_ * period_;  // others may cut it short
-            if (took < shortest && was_full) size_ *= 2;
-            if (took > 2 * shortest) size_ = std::max<uint64_t>(1, size_ / 2);
-        }
-        started_ = elapsed, before_ = samples;
-        uint64_t periods = size_;
-        if (target_.seconds > 0 && samples > 0) {
-            const double left = target_.seconds - elapsed;
-            const double per_period = elapsed / double(samples) * double(period_);
-            if (left <= 0) return 0;
-            if (left < per_period * double(periods))
-                periods = std::max<uint64_t>(1, uint64_t(left / per_period));
-        }
-        const uint64_t n = periods * period_;
-        return target_.samples ? std::min(n, target_.samples - samples) : n;
-    }
-
-private:
-    static constexpr double shortest = 0.1;  // seconds
-    const Target target_;
-    const uint64_t period_;
-    uint64_t size_ = 1;  // periods a pass
-    double started_ = 0;
-    uint64_t before_ = 0;  // samples
-};
+// Thrown out of work that nobody waits for.
+struct Interrupted {};
 
 // ---- Threads ------------------------------------------------------------------------------------
 
-inline unsigned all_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
-
-// Thrown out of work that nobody waits for: its part of a pass does not count.
-struct Interrupted {};
-
-// Calls work(k) for every k < count from several threads, and meanwhile() from this one ten times a
-// second.  Returns early, with some left out, once `interrupted`; then the answer is false.  What
-// work throws, it throws.
-template <class Work, class Meanwhile>
-bool in_parallel(size_t count, unsigned threads, Work work, Meanwhile meanwhile) {
+// Calls work(k) for every k < count from several threads, and meanwhile(part done) from this one
+// ten times a second.  Returns early, with some left out, once `interrupted`; then the answer is
+// false.  An exception of work becomes its own.
+inline bool in_parallel(size_t count, unsigned threads, const std::function<void(size_t)>& work,
+                        const std::function<void(double)>& meanwhile) {
     std::atomic<size_t> next = 0, done = 0;
-    std::mutex mutex;
-    std::condition_variable finished;
-    std::exception_ptr failure;
-    unsigned running = unsigned(std::min<size_t>(threads, count));
     auto run = [&] {
-        try {  // what was cut short does not count
+        try {  // an item that was cut short does not count
             for (size_t k; !interrupted && (k = next++) < count; done += !interrupted) work(k);
         } catch (const Interrupted&) {
         } catch (...) {
-            std::lock_guard lock(mutex);
-            failure = std::current_exception();
             next = count;
+            throw;
         }
-        std::lock_guard lock(mutex);
-        --running;
-        finished.notify_one();
     };
-    {
-        std::vector<std::jthread> workers;
-        struct Stop {  // before they are waited for, whatever is thrown here
-            std::atomic<size_t>& next;
-            const size_t end;
-            ~Stop() { next = end; }
-        } stop{next, count};
-        for (unsigned i = running; i > 0; --i) workers.emplace_back(run);
-        std::unique_lock lock(mutex);
-        while (!finished.wait_for(lock, std::chrono::milliseconds(100), [&] { return !running; }))
+    std::vector<std::future<void>> workers;
+    for (size_t i = std::min<size_t>(threads, count); i > 0; --i)
+        workers.push_back(std::async(std::launch::async, run));
+    for (auto& worker : workers)
+        while (worker.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready)
             meanwhile(double(done) / double(count));
-    }
-    if (failure) std::rethrow_exception(failure);
+    for (auto& worker : workers) worker.get();  // or throws what it has thrown
     meanwhile(double(done) / double(count));
     return done == count;
 }
 
-// ---- Passes -------------------------------------------------------------------------------------
+// ---- When to stop -------------------------------------------------------------------------------
 
-// How a film is filled.
-struct Passes {
-    Target target;
-    uint64_t period = 1;  // samples after which a pass may end
-    unsigned threads = 1;
-    uint64_t pause = 0;  // samples after which one does
+// Whichever comes first; 0: no limit.
+struct Target {
+    uint64_t samples = 0;  // of each replication
+    double seconds = 0;
+    double error = 0;  // d_rel
 };
 
-// Adds one pass to the film, unless `interrupted`, or a sample is not finite: then the answer is
-// false.  add(k, n) adds n samples to each pixel of block k; show(samples so far) while the threads
-// work.
-template <class Film, class Add, class Progress>
-bool add_pass(Film& film, uint64_t n, unsigned threads, Add add, Progress& progress) {
-    film.begin_pass(n);
-    const bool complete = in_parallel(
-        film.blocks(), threads, [&](size_t k) { add(k, n); },
-        [&](double part) { progress.show(double(film.samples()) + part * double(n)); });
-    if (!complete || film.non_finite() > 0) return false;
-    film.end_pass(n);
-    return true;
-}
+// How a film is filled.
+struct Plan {
+    Target target;
+    uint64_t period = 1;  // samples after which a pass may end, but for the last: whole grids
+    unsigned threads = 1;
+    double memory = INFINITY;  // bytes that the film may take
+    Size size = {};
+    int first_row = 0;
+    uint32_t sets = 0;     // replications of each pixel; 0: adaptive
+    uint64_t at_once = 1;  // samples that one sample of the film stands for
 
-// Adds passes to the film until the target is met, one could not be added, or between(film), which
-// says before each how many samples it may bring, says 0.  The progress is a clock of seconds.
-template <class Film, class Add, class Progress, class Between>
-void render(Film& film, const Passes& passes, Add add, Progress& progress, Between between) {
-    Schedule schedule(passes.target, passes.period);
-    while (const uint64_t most = between(film)) {
-        uint64_t n = schedule.next(film.samples(), progress.elapsed());
-        if (n == 0) return;
-        if (film.samples() < passes.pause) n = std::min(n, passes.pause - film.samples());
-        if (n > most) n = std::max<uint64_t>(1, most / passes.period) * passes.period;
-        if (!add_pass(film, n, passes.threads, add, progress)) return;
+    // Of each replication; 0: not known.
+    uint64_t known_samples() const { return target.error > 0 ? 0 : target.samples; }
+    // Samples before the others are chosen: whole grids.
+    uint64_t pilot() const {
+        const uint64_t n = (pilot_samples + period - 1) / period * period;
+        return target.samples ? std::min(n, target.samples) : n;
     }
+};
+
+// Samples after the next pass, if there are n after `elapsed` seconds and another period takes
+// `a_period` (0: not known): as many as fit into the time, at most about twice n.  n: enough.
+inline uint64_t end_of_pass(const Target& target, uint64_t period, uint64_t n, double elapsed,
+                            double a_period) {
+    constexpr double longest = 0.2;  // seconds: threads are seldom idle, Ctrl-C is soon obeyed
+    uint64_t periods = n / period + 1;
+    if (a_period > 0) {
+        const double left = target.seconds > 0 ? target.seconds - elapsed : HUGE_VAL;
+        if (left <= 0) return n;
+        const double fit = std::min(left, longest) / a_period;
+        periods = uint64_t(std::clamp(fit, 1.0, double(periods)));
+    }
+    const uint64_t to = (n / period + periods) * period;
+    return target.samples ? std::max(n, std::min(to, target.samples)) : to;
 }
 
-template <class Film, class Add, class Progress>
-void render(Film& film, const Passes& passes, Add add, Progress& progress) {
-    render(film, passes, add, progress, [](const Film&) { return UINT64_MAX; });
-}
+// ---- The loop -----------------------------------------------------------------------------------
+
+// Between passes it says how far the next one may go (no further than the film is: enough), and
+// meanwhile it shows progress and reads the clock.
+struct Watch {
+    std::function<uint64_t(const Film&)> between = [](const Film&) { return UINT64_MAX; };
+    // Samples a pixel so far, and in the end, if that is known, or 0.
+    std::function<void(double now, double all)> show = [](double, double) {};
+    std::function<double()> elapsed;  // seconds, with those of runs before this one
+};
+
+class Loop {
+public:
+    Loop(Film& film, const Plan& plan, const Radiance& L, const Watch& watch)
+        : film_(film), plan_(plan), L_(L), watch_(watch), offsets_(offsets(film)) {}
+
+    // Adds passes until the target is met, a sample is not finite, `interrupted` or enough.
+    void run() {
+        while (const uint64_t to = next_end()) {
+            auto work = [&](size_t block) {
+                if (film_.taken[block] >= to) return;
+                uint64_t rays = 0;
+                const NonFinite bad = add_samples(film_, block, offsets_[block], to, L_, rays);
+                rays_ += rays;
+                std::lock_guard lock(mutex_);
+                bad_.add(bad);
+            };
+            const double pixels = double(film_.pixels()), before = film_.total() / pixels,
+                         after = film_.total(to) / pixels;
+            // Before they are chosen there will be two replications or more.
+            const double all = plan_.target.samples ? film_.total(plan_.target.samples) / pixels *
+                                                          (film_.sets.empty() ? 2 : 1)
+                                                    : 0;
+            auto show = [&](double part) { watch_.show(before + part * (after - before), all); };
+            if (!in_parallel(film_.taken.size(), plan_.threads, work, show)) return;
+            if (bad_.count > 0) return;
+        }
+    }
+
+    const NonFinite& non_finite() const { return bad_; }
+    uint64_t rays() const { return rays_; }
+    uint32_t most_sets_chosen() const { return most_; }  // less than asked for: no more fit
+
+private:
+    Film& film_;
+    const Plan plan_;
+    const Radiance& L_;
+    const Watch& watch_;
+    std::vector<size_t> offsets_;
+    NonFinite bad_;
+    std::atomic<uint64_t> rays_ = 0;
+    uint32_t most_ = Allocation().most;
+    std::mutex mutex_;
+
+    // The second replications take as long as the pilot: of a time that is short it gets half.
+    bool is_pilot_done() const {
+        const uint64_t n = film_.least_taken();
+        const double seconds = plan_.target.seconds;
+        const bool is_half = n > 0 && seconds > 0 && 2 * watch_.elapsed() > seconds;
+        return n == film_.most_taken() && (n >= plan_.pilot() || is_half);
+    }
+
+    // Samples of each replication after the next pass; 0: none is needed.
+    uint64_t next_end() {
+        if (film_.sets.empty() && is_pilot_done()) {
+            most_ = choose_sets(film_, plan_.memory);
+            offsets_ = offsets(film_);
+        }
+        const uint64_t most = watch_.between(film_), n = film_.least_taken();
+        const double elapsed = watch_.elapsed(), total = film_.total();
+        const double a_period =
+            total > 0 ? elapsed / total * (film_.total(n + plan_.period) - total) : 0;
+        uint64_t to = std::min(most, end_of_pass(plan_.target, plan_.period, n, elapsed, a_period));
+        if (film_.sets.empty()) to = std::min(to, std::max(n, plan_.pilot()));
+        return to > n ? to : 0;
+    }
+};

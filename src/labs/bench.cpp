@@ -2,13 +2,15 @@
 //
 //   build/bench [--quick]
 //
-// Millions of rays a second, on one thread, of our tree and of Embree (Wald et al. 2014, ACM TOG
-// 33(4)) where Debian's libembree-dev is installed.  Both answer the same rays in the same
-// triangles, all rounded to float, since Embree knows nothing else.  They take turns, so that a
-// busy machine slows both, and the time is that of the processor.  Nothing here fails for being
-// slow.
+// Millions of rays a second, on one thread, of the wide tree, of the plain one, and of Embree (Wald
+// et al. 2014, ACM TOG 33(4)) where Debian's libembree-dev is installed.  All answer the same rays
+// in the same triangles, rounded to float, since Embree knows nothing else.  They take turns, two
+// at a time, so that a busy machine slows both, and the time is that of the processor.  Nothing
+// here fails for being slow.
 #include "labs/bench_paths.h"
 #include "labs/bench_rays.h"
+#include "wide/wide_bvh.h"
+#include "world/bvh.h"
 
 #if __has_include(<embree3/rtcore.h>)
 #include <embree3/rtcore.h>
@@ -28,23 +30,26 @@ struct Effort {
 
 // ---- The tracers --------------------------------------------------------------------------------
 
-struct Penumbra {
+template <class Either>
+struct Ours {
     const Case& c;
-    Bvh bvh = {};
+    Either tree = {};
 
-    explicit Penumbra(const Case& source) : c(source) {}
+    explicit Ours(const Case& source) : c(source) {}
 
-    void build() { bvh = Bvh(c.shapes); }
-    double bytes() const { return double(bvh.bytes()); }
+    void build() { tree = Either(c.shapes); }
 
     // Distance of the hit of ray i (any hit: 0), or infinity.
     real find(Kind kind, size_t i) const {
         const Ray& ray = c.rays[kind][i];
-        if (kind == shadow) return bvh.occluded(ray) ? 0 : infinity;
-        const auto hit = bvh.closest(ray);
+        if (kind == shadow) return tree.occluded(ray) ? 0 : infinity;
+        const auto hit = tree.closest(ray);
         return hit ? hit->t : infinity;
     }
 };
+using Wide = Ours<WideBvh>;
+using Plain = Ours<Bvh>;
+double bytes_of(const Wide& t) { return double(t.tree.bytes()); }
 
 #if HAVE_EMBREE
 struct Embree {
@@ -94,7 +99,6 @@ struct Embree {
         rtcCommitScene(scene);
         if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw SystemError("embree: no tree");
     }
-    double bytes() const { return double(held); }
 
     float find(Kind kind, size_t i) const {
         RTCRayHit hit{rays[kind][i], {}};
@@ -107,8 +111,9 @@ struct Embree {
         return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? HUGE_VALF : hit.ray.tfar;
     }
 };
+double bytes_of(const Embree& t) { return double(t.held); }
 #else
-using Embree = Penumbra;  // to be compiled, never run
+using Embree = Wide;  // to be compiled, never run
 #endif
 
 // ---- Measuring ----------------------------------------------------------------------------------
@@ -119,7 +124,7 @@ using Column = std::vector<double>;  // a number a round
 template <class Tracer>
 struct Runner {
     Tracer tracer;
-    double build_seconds = 0, bytes = 0;  // of each triangle
+    double build_seconds = 0;
     std::array<size_t, 3> hits{};
     std::array<Column, 3> speed{};  // millions of rays a second
 
@@ -131,7 +136,6 @@ struct Runner {
             times.push_back(processor_seconds() - start);
         }
         build_seconds = median(times);
-        bytes = tracer.bytes() / double(c.shapes.size());
         for (Kind kind : kinds) hits[kind] = count_hits(kind);
     }
 
@@ -156,7 +160,8 @@ struct Runner {
 };
 
 // Per cent of the rays whose answers differ: hit or not, or by more than 1e-4 of the distance.
-double disagreement(const Penumbra& a, const Embree& b, Kind kind) {
+template <class First, class Second>
+double disagreement(const First& a, const Second& b, Kind kind) {
     size_t count = 0;
     const size_t rays = a.c.rays[kind].size();
     for (size_t i = 0; i < rays; ++i) {
@@ -167,36 +172,54 @@ double disagreement(const Penumbra& a, const Embree& b, Kind kind) {
 }
 
 struct Outcome {
-    std::array<double, 3> ratio{};  // of our speed to Embree's
+    std::array<double, 3> ratio{};  // of the first's speed to the second's
     double differ = 0;              // the most of the three, per cent
 };
 
-// Adds the row of a scene.
-Outcome race(Report& report, const Case& c, const Effort& effort) {
-    Runner<Penumbra> ours(c, effort.builds);
-    std::optional<Runner<Embree>> theirs;
-    if (HAVE_EMBREE) theirs.emplace(c, effort.builds);
+// Adds what of a scene's row tells of speed.  Without the second, "–" stands for it.
+template <class First, class Second>
+Outcome race(std::vector<std::string>& cells, Runner<First>& first,
+             std::optional<Runner<Second>>& second, const Effort& effort) {
     Outcome o;
-    std::vector<std::string> cells = {c.name};
     std::array<Column, 3> ratios;
     for (int round = 0; round < effort.rounds; ++round)
         for (Kind kind : kinds) {
-            ours.run(kind, effort.seconds);
-            if (!theirs) continue;
-            theirs->run(kind, effort.seconds);
-            ratios[kind].push_back(ours.speed[kind].back() / theirs->speed[kind].back());
+            first.run(kind, effort.seconds);
+            if (!second) continue;
+            second->run(kind, effort.seconds);
+            ratios[kind].push_back(first.speed[kind].back() / second->speed[kind].back());
         }
     for (Kind kind : kinds) {
-        cells.push_back(text("%.2f", median(ours.speed[kind])));
-        cells.push_back(theirs ? with_range(ratios[kind], "%.2f") : "–");
-        if (!theirs) continue;
+        cells.push_back(text("%.2f", median(first.speed[kind])));
+        cells.push_back(second ? with_range(ratios[kind], "%.2f") : "–");
+        if (!second) continue;
         o.ratio[kind] = median(ratios[kind]);
-        o.differ = std::max(o.differ, disagreement(ours.tracer, theirs->tracer, kind));
+        o.differ = std::max(o.differ, disagreement(first.tracer, second->tracer, kind));
     }
-    cells.push_back(text("%.2g", ours.build_seconds));
-    cells.push_back(theirs ? text("%.2g", theirs->build_seconds) : "–");
-    cells.push_back(text("%.0f", ours.bytes));
-    cells.push_back(theirs ? text("%.0f", theirs->bytes) : "–");
+    cells.push_back(text("%.2g", first.build_seconds));
+    cells.push_back(second ? text("%.2g", second->build_seconds) : "–");
+    return o;
+}
+
+Outcome race_with_embree(Report& report, const Case& c, const Effort& effort) {
+    Runner<Wide> ours(c, effort.builds);
+    std::optional<Runner<Embree>> theirs;
+    if (HAVE_EMBREE) theirs.emplace(c, effort.builds);
+    std::vector<std::string> cells = {c.name};
+    const Outcome o = race(cells, ours, theirs, effort);
+    const double n = double(c.shapes.size());
+    cells.push_back(text("%.0f", bytes_of(ours.tracer) / n));
+    cells.push_back(theirs ? text("%.0f", bytes_of(theirs->tracer) / n) : "–");
+    report.row(cells);
+    return o;
+}
+
+Outcome race_of_trees(Report& report, const Case& c, const Effort& effort) {
+    Runner<Plain> plain(c, 1);
+    std::optional<Runner<Wide>> wide(std::in_place, c, 1);
+    std::vector<std::string> cells = {c.name};
+    const Outcome o = race(cells, plain, wide, effort);
+    if (o.differ > 0) throw SystemError("the trees' answers differ");
     report.row(cells);
     return o;
 }
@@ -206,7 +229,7 @@ Outcome race(Report& report, const Case& c, const Effort& effort) {
 void tell_what(Report& report, const Effort& effort) {
     report.say(text(R"(# Rays a second
 
-Our tree and Embree 3 (Wald et al. 2014) answer the same rays in the same triangles, one thread each, in
+Our wide tree and Embree 3 (Wald et al. 2014) answer the same rays in the same triangles, one thread each, in
 turns: primary rays (closest hit from the camera, row by row), bounce rays (closest hit in cosine-weighted
 directions from there) and shadow rays (any hit on the way to random points of a quad), %d × %d
 camera rays a scene.  Ours are numbers of %zu bytes, Embree's of 4.  Speeds are millions of rays a second
@@ -219,13 +242,18 @@ and the greatest in brackets.)",
             "libembree-dev).");
 }
 
-void tell_verdict(Report& report, const std::vector<Outcome>& all) {
-    std::array<double, 3> mean = {1, 1, 1};  // geometric
-    double differ = 0;
-    for (const Outcome& o : all) {
-        differ = std::max(differ, o.differ);
+// Geometric means over scenes.
+std::array<double, 3> mean_ratio(const std::vector<Outcome>& all) {
+    std::array<double, 3> mean = {1, 1, 1};
+    for (const Outcome& o : all)
         for (Kind kind : kinds) mean[kind] *= std::pow(o.ratio[kind], 1 / double(all.size()));
-    }
+    return mean;
+}
+
+void tell_verdict(Report& report, const std::vector<Outcome>& all) {
+    double differ = 0;
+    for (const Outcome& o : all) differ = std::max(differ, o.differ);
+    const auto mean = mean_ratio(all);
     if (HAVE_EMBREE)
         report.say(text(
             R"(Over all scenes (geometric means) we trace %.2f times as many primary rays a second as Embree, %.2f
@@ -238,6 +266,22 @@ at once; in large scenes these wait for memory, 72 bytes each where floats take 
 much).)");
 }
 
+void race_all_trees(Report& report, const std::vector<Case>& cases, const Effort& effort) {
+    report.say(
+        R"(## The plain tree
+
+The plain binary tree, which is read and taught, and the wide one: the same rays and the same answers, bit
+for bit.  × is the plain tree's speed over the wide one's.)");
+    report.head({"triangles", "primary, Mrays/s", "× wide", "bounce, Mrays/s", "× wide",
+                 "shadow, Mrays/s", "× wide", "build, s", "the wide one's"});
+    std::vector<Outcome> all;
+    for (const Case& c : cases) all.push_back(race_of_trees(report, c, effort));
+    report.end_of_table();
+    const auto mean = mean_ratio(all);
+    report.say(
+        text("Over all scenes: %.2f, %.2f and %.2f.", mean[primary], mean[bounce], mean[shadow]));
+}
+
 int run(bool quick) {
     const Effort effort = quick ? Effort{256, 3, 1, 0.01} : Effort{};
     Report report(report_folder(quick), "bench");
@@ -245,12 +289,14 @@ int run(bool quick) {
     report.head({"triangles", "primary, Mrays/s", "× Embree", "bounce, Mrays/s", "× Embree",
                  "shadow, Mrays/s", "× Embree", "build, s", "Embree's", "bytes a triangle",
                  "Embree's"});
+    std::vector<Case> cases = {cornell(effort.width)};
+    for (int level : {5, 7, 8}) cases.push_back(icosphere(level, effort.width));
+    for (int n : {1000, 100000}) cases.push_back(soup(n, effort.width));
     std::vector<Outcome> all;
-    all.push_back(race(report, cornell(effort.width), effort));
-    for (int level : {5, 7, 8}) all.push_back(race(report, icosphere(level, effort.width), effort));
-    for (int n : {1000, 100000}) all.push_back(race(report, soup(n, effort.width), effort));
+    for (const Case& c : cases) all.push_back(race_with_embree(report, c, effort));
     report.end_of_table();
     tell_verdict(report, all);
+    race_all_trees(report, cases, effort);
     race_all_paths(report, effort.rounds);
     report.say(made_by(quick ? "build/bench --quick" : "build/bench"));
     return report.finish();

@@ -1,6 +1,5 @@
 // labs/bench_paths.h  4  how long a path takes, beside the textbook's tracer, for bench
 #pragma once
-#include "app/options.h"
 #include "labs/lab.h"
 #include "labs/textbook.h"
 #include "path/pathtracer.h"
@@ -53,13 +52,13 @@ inline PathRunner path_runner(const std::string& name, const Scene& scene, const
 // Adds rows for one scene; the textbook's tracer knows but diffuse quadrangles.
 inline void race_paths(Report& report, const std::string& name, int rounds) {
     const Scene scene = read_scene("scenes/" + name + ".scene").scene;
-    Technique nee;
-    nee.light = LightMode::nee;
+    const Technique nee{Direction::bsdf, LightMode::nee, 0},
+        mis{Direction::bsdf, LightMode::mis, 0};
     std::vector<PathRunner> all = {
         textbook_runner(scene),
         path_runner("ours, the same technique", scene, nee, SamplerKind::independent),
-        path_runner("ours, MIS and Halton points", scene, {}, SamplerKind::halton),
-        path_runner("ours, the default", scene, Options{}.technique, Options{}.sampler)};
+        path_runner("ours, MIS and Halton points", scene, mis, SamplerKind::halton),
+        path_runner("ours, the default", scene, {}, SamplerKind::sobol)};
     for (int round = 0; round < rounds; ++round) {
         for (PathRunner& r : all) r.seconds.push_back(0);
         for (int y = 0; y < scene.size.height; ++y)

@@ -51,7 +51,7 @@ inline Surface float_surface(Surface x) {
 
 inline Case with_rays(Case c, int width) {
     for (Shape& s : c.shapes) s = {to_float(s.a), to_float(s.b), to_float(s.c)};
-    const Bvh bvh(c.shapes);
+    const Tree tree(c.shapes);
     const vec3 light_normal = unit(cross(c.light.u, c.light.v));
     Rng rng{mix(c.shapes.size())};
     for (int y = 0; y < width; ++y)
@@ -60,7 +60,7 @@ inline Case with_rays(Case c, int width) {
             const Ray ray = to_float(
                 camera_ray(c.camera, {width, width}, real(x) + jitter.x, real(y) + jitter.y));
             c.rays[primary].push_back(ray);
-            const auto hit = bvh.closest(ray);
+            const auto hit = tree.closest(ray);
             if (!hit) continue;
             Surface from = float_surface(surface(c.shapes[hit->id], ray, *hit));
             if (dot(from.n, ray.d) > 0) from.n = -from.n;

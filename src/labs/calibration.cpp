@@ -1,6 +1,6 @@
 // labs/calibration.cpp  7  does --error E stop at an error of E?
 //
-//   build/calibration [--seeds N] [--least-seeds N] [--scene NAME] [--size WxH] [--measured N]
+//   build/calibration [--seeds N] [--least-seeds N] [--scene NAME] [--size WxH]
 //                     [--quick] [--full]
 //
 // Stops runs of every scene and sampler as --error 10%, 3% and 1% would, looks how far their images
@@ -14,7 +14,7 @@ namespace {
 
 // From the 5 % to the 95 % quantile of true d_rel / E, with the median, a line for each sampler and
 // E; a panel for each scene.
-Svg picture_of(const Plan& plan, const Results& all) {
+Svg picture_of(const Effort& plan, const Results& all) {
     constexpr double width = 190, gap = 160, line = 14;
     const double height = line * double(plan.samplers.size() * plan.asked.size() + 1);
     constexpr size_t columns = 4;
@@ -56,8 +56,8 @@ const char* const purpose = R"(# Does --error E stop at an error of E?
 
 Every scene by every sampler, %dx%d pixels, stopped as `penumbra --error` stops: %.0f seeds at all E but
 the last, %.0f of them at the last.  One run serves every E and every rule, each of which looks when it would
-if it were alone.  The truth f is a run of its own by sobol, eight sets to a pixel, until its error is
-%g %%, or it has %.0f samples a set; its own error is known from the sets and taken off, for
+if it were alone.  The truth f is a run of its own by sobol, eight replications to a pixel, until its error is
+%g %%, or it has %.0f samples each; its own error is known from the sets and taken off, for
 E|f - g|² = d² + (error of f)².  True d_rel is over the quadratic mean of f.
 
 Wanted: where E takes more than the %.0f samples that every run takes, a median of true d_rel / E in [0.95, 1]
@@ -67,18 +67,18 @@ pixel has more than a tenth of the squared error of f; such scenes stand apart.)
 const char* const columns =
     R"(*samples* and *core s* are medians; *median*, *95 %*, *> 1.05* and *s.d.* (over the
 mean) are of true d_rel / E at the stop.  What limits the s.d.: *of the truth*, how true d_rel itself varies
-between seeds at a number of samples that nobody chose by looking (16, 64, 256 ..., the last below the median
+between seeds at a number of samples that nobody chose by looking (8, 32, 128 ..., the last below the median
 stop), and *of the estimate*, how d_rel as estimated varies there; *as stated* is the standard error that the
 estimate says of itself, over d_rel.)";
 
-void tell(Report& report, const Plan& plan, const Results& all) {
+void tell(Report& report, const Effort& plan, const Results& all) {
     report.say(text(purpose, plan.size.width, plan.size.height, double(plan.seeds),
                     double(std::min(plan.seeds, plan.least_seeds)), 100 * plan.truth_error,
-                    double(plan.truth_most), double(samples_before_sets)));
+                    double(plan.truth_most), double(first_look)));
     report.picture("calibration", picture_of(plan, all),
                    "true d_rel / E: 5 % to 95 %, and the median");
     report.say("## The truth");
-    report.head({"scene", "samples a set", "its error", "of it from one pixel", ""});
+    report.head({"scene", "samples a replication", "its error", "of it from one pixel", ""});
     for (const Study& s : all.studies)
         report.row({s.name, text("%.0f", double(s.samples)), text("%.3f %%", 100 * s.own_error()),
                     text("%.1f %%", 100 * s.greatest), s.is_rare() ? "rare light" : ""});
@@ -95,7 +95,7 @@ void tell(Report& report, const Plan& plan, const Results& all) {
     }
 }
 
-int run(Plan plan, int argc, char** argv) {
+int run(Effort plan, int argc, char** argv) {
     if (plan.scenes.empty()) plan.scenes = all_scenes();
     Report report(report_folder(plan.quick), "calibration");
     Results all;
@@ -110,11 +110,14 @@ int run(Plan plan, int argc, char** argv) {
     }
     tell(report, plan, all);
     steps.next("sets");
-    report.say(R"(## What it costs to know the error
+    report.say(text(R"(## What it costs to know the error
 
-How many times the squared error of one set, which knows nothing of its error, is that of several, **at equal
-work**: at as many samples in all, each counted by its pixel's rays.  By sobol; geometric means over scenes, ±
-standard errors over seeds.  *by noise* is what penumbra does; below it one constant at a time is changed.)");
+How many times the squared error of one replication, which knows nothing of its error, is that of several, **at
+equal work**: at as many samples *in all*, in the mean of pixels, each counted by its pixel's rays.  By sobol; geometric
+means over scenes, ± standard errors over seeds (jackknife).  Replications have 1, 2, 4 ... samples; between them the
+error is a power of samples.  *by noise* is what penumbra does, factor 3.5 and at most 16 chosen by a pilot of %.0f
+samples; below it one constant at a time is changed.)",
+                    double(pilot_samples)));
     tell_sets(report, all.studies, plan.sets_seeds, plan.counts);
     report.say(made_by(argc, argv));
     return report.finish();
@@ -123,7 +126,7 @@ standard errors over seeds.  *by noise* is what penumbra does; below it one cons
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    Effort plan;
     const Lab lab{
         "calibration",
         "Compares the error at which --error stops with the error that was asked for.",
@@ -134,15 +137,14 @@ int main(int argc, char** argv) {
          {"--scene", "NAME", "only this one; may be repeated, writes into out/",
           [&](auto& name) { plan.quick = true, plan.scenes.push_back(name); }},
          {"--size", "WxH", "of the images (64x32); writes into out/",
-          [&](auto& words) { plan.quick = true, plan.size = option::size(words); }},
-         {"--measured", "N", "pixels whose error is measured (as penumbra); into out/",
-          [&](auto& n) {
-              plan.quick = true, plan.by.measured = double(parse_count(n, 1, 1 << 25));
+          [&](auto& words) {
+              const auto [width, height] = parts_of(words, 'x', "WIDTHxHEIGHT");
+              plan.quick = true, plan.size = parse_size(width, height);
           }},
          {"--quick", "", "fewer runs, into out/",
           [&](auto&) {
               plan.quick = true, plan.seeds = 8, plan.least_seeds = 3, plan.sets_seeds = 3;
-              plan.truth_most = 512, plan.counts = 2, plan.asked = {0.1, 0.03};
+              plan.truth_most = 512, plan.counts = 16, plan.asked = {0.1, 0.03};
           }},
          {"--full", "", "all seeds to the last E", [&](auto&) { plan.least_seeds = plan.seeds; }}}};
     return lab_main(argc, argv, lab, [&] { return run(plan, argc, argv); });

@@ -5,6 +5,10 @@
 
 // ---- When to stop -------------------------------------------------------------------------------
 
+// As is_small_enough has it, and samples of each replication at penumbra's first look.
+inline constexpr double margin_of_error = 0.5;
+inline constexpr uint64_t first_look = 8;
+
 // What an error is raised by before the rule of --error sees it.
 struct Guard {
     std::string name;
@@ -36,8 +40,9 @@ public:
         const ImageError raised = guarded(guard_, e);
         const bool enough = is_small_enough(raised, asked_);
         stopped_ = enough && samples >= guard_.least;
-        next_ = next_look(samples, samples_before_sets, 1);
-        if (guard_.by_course && !enough) next_ = std::max(next_, samples + missing(raised, samples));
+        next_ = next_check(samples, first_look, 1);
+        if (guard_.by_course && !enough)
+            next_ = std::max(next_, samples + missing(raised, samples));
         if (enough) next_ = guard_.least;
         return stopped_;
     }
@@ -61,7 +66,7 @@ private:
 
 // A look at an image whose truth is known.
 struct Look {
-    uint64_t samples = 0;
+    uint64_t samples = 0;  // of each replication
     double seconds = 0;    // of the processor
     double estimate2 = 0;  // d^2, as estimated
     double stated = 0;     // standard error of d_rel over d_rel, as estimated
@@ -119,7 +124,7 @@ inline Kept kept(const Looks& stops, double asked) {
     k.median = median(ratio), k.high = quantile(ratio, 0.95), k.above = share_above(ratio, 1.05);
     k.scatter = scatter(ratio);
     k.stated = median(each(stops, [](const Look& l) { return l.stated; }));
-    k.at_least = k.samples <= double(samples_before_sets);
+    k.at_least = k.samples <= double(first_look);
     return k;
 }
 

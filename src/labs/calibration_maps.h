@@ -1,8 +1,8 @@
 // labs/calibration_maps.h  4  what build/radiosity --error delivers: true errors over those asked
 // for
 #pragma once
-#include "app/walks.h"
 #include "labs/illumination.h"
+#include "radiosity/walks.h"
 
 namespace illumination::calibration {
 

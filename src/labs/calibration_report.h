@@ -1,17 +1,23 @@
 // labs/calibration_report.h  6  tables of runs that --error stopped, beside other rules of stopping
 #pragma once
+#include <map>
+
 #include "labs/calibration_sets.h"
 
-struct Plan {
+struct Effort {
     bool quick = false;
     Size size = {64, 32};
-    Allocation by = {};  // of sets
     uint64_t seeds = 64, least_seeds = 16, sets_seeds = 8, most = 8192, truth_most = 4096;
     double truth_error = 0.002;
-    size_t counts = 3;
+    double counts = 128;  // the greatest of them
     std::vector<double> asked = {0.1, 0.03, 0.01};
     std::vector<std::string> scenes = {}, samplers = {"independent", "halton", "sobol"};
 };
+
+inline const std::map<std::string, SamplerKind> samplers = {
+    {"independent", SamplerKind::independent},
+    {"halton", SamplerKind::halton},
+    {"sobol", SamplerKind::sobol}};
 
 // The rule first, then what might take its place.
 inline const std::vector<Guard> guards = {
@@ -37,18 +43,17 @@ struct Case {
 inline std::vector<Stopper> stoppers_for(const std::vector<double>& asked) {
     std::vector<Stopper> stoppers;
     for (double E : asked)
-        for (const Guard& g : guards) stoppers.emplace_back(g, E, samples_before_sets);
+        for (const Guard& g : guards) stoppers.emplace_back(g, E, first_look);
     return stoppers;
 }
 
 // Some seeds go to the last E, the others only to the one before.
-inline Case runs_in(const Plan& plan, const Study& study, size_t scene,
+inline Case runs_in(const Effort& plan, const Study& study, size_t scene,
                     const std::string& sampler) {
     const std::vector<double> fewer(plan.asked.begin(), plan.asked.end() - 1);
     auto until = [&](uint64_t k) {
-        return run_until(study, options_for(sampler, k + 1),
-                         stoppers_for(k < plan.least_seeds ? plan.asked : fewer), plan.most,
-                         plan.by);
+        return run_until(study, samplers.at(sampler), k + 1,
+                         stoppers_for(k < plan.least_seeds ? plan.asked : fewer), plan.most);
     };
     Case c{scene, sampler, over_threads<Run>(plan.seeds, until)};
     for (Run& r : c.runs) r.stops.resize(plan.asked.size() * guards.size());
@@ -59,7 +64,7 @@ inline Case runs_in(const Plan& plan, const Study& study, size_t scene,
 inline size_t stopper_number(size_t asked, size_t guard) { return asked * guards.size() + guard; }
 
 // How many runs were asked for it.
-inline uint64_t runs_asked(const Plan& plan, size_t asked) {
+inline uint64_t runs_asked(const Effort& plan, size_t asked) {
     return asked + 1 == plan.asked.size() ? std::min(plan.seeds, plan.least_seeds) : plan.seeds;
 }
 
@@ -70,7 +75,7 @@ struct Results {
     std::vector<Case> cases;
 };
 
-inline void tell_case(Report& report, const Plan& plan, const Case& c, const Study& study) {
+inline void tell_case(Report& report, const Effort& plan, const Case& c, const Study& study) {
     for (size_t a = 0; a < plan.asked.size(); ++a) {
         const Looks stops = stops_of(c.runs, stopper_number(a, 0));
         const uint64_t unreached = runs_asked(plan, a) - stops.size();
@@ -84,7 +89,7 @@ inline void tell_case(Report& report, const Plan& plan, const Case& c, const Stu
             continue;
         }
         const Kept k = kept(stops, plan.asked[a]);
-        uint64_t before = samples_before_sets;
+        uint64_t before = first_look;
         while (4 * double(before) <= k.samples && !at_fixed(c.runs, 4 * before).empty())
             before *= 4;
         const Looks fixed = at_fixed(c.runs, before);
@@ -103,7 +108,7 @@ inline void tell_case(Report& report, const Plan& plan, const Case& c, const Stu
     }
 }
 
-inline void tell_cases(Report& report, const Plan& plan, const Results& all, bool rare) {
+inline void tell_cases(Report& report, const Effort& plan, const Results& all, bool rare) {
     report.head({"scene", "sampler", "E", "runs", "samples", "core s", "median", "95 %", "> 1.05",
                  "s.d.", "of the truth", "of the estimate", "as stated", ""});
     for (const Case& c : all.cases)
@@ -113,7 +118,7 @@ inline void tell_cases(Report& report, const Plan& plan, const Results& all, boo
 }
 
 // Over the cases of one sort that a guard stopped.
-inline void tell_guards(Report& report, const Plan& plan, const Results& all, bool rare) {
+inline void tell_guards(Report& report, const Effort& plan, const Results& all, bool rare) {
     report.head({"rule", "E", "cases", "median of medians", "95 % of all", "> 1.05", "samples, ×"});
     for (size_t g = 0; g < guards.size(); ++g)
         for (size_t a = 0; a < plan.asked.size(); ++a) {
@@ -142,7 +147,7 @@ inline void tell_guards(Report& report, const Plan& plan, const Results& all, bo
 }
 
 // Estimate against truth: where a look stopped a run, and where nobody looked first.
-inline void tell_bias(Report& report, const Plan& plan, const Results& all, bool rare) {
+inline void tell_bias(Report& report, const Effort& plan, const Results& all, bool rare) {
     report.head({"at", "cases", "estimate² / truth²", "±"});
     auto row = [&](const std::string& where, auto looks_of) {
         Moments m;
@@ -159,12 +164,12 @@ inline void tell_bias(Report& report, const Plan& plan, const Results& all, bool
         report.row({where, text("%.0f", double(m.n)), text("%.3f", ratio),
                     text("%.3f", ratio * std::sqrt(errors) / double(m.n))});
     };
-    for (uint64_t n : {16, 64, 256, 1024})
+    for (uint64_t n : {8, 32, 128, 512})
         row(text("%.0f samples", double(n)), [&](const Case& c) { return at_fixed(c.runs, n); });
     for (size_t a = 0; a < plan.asked.size(); ++a)
         row(text("a stop at %g %%", 100 * plan.asked[a]), [&](const Case& c) {
             Looks stops = stops_of(c.runs, stopper_number(a, 0));
-            std::erase_if(stops, [](const Look& l) { return l.samples <= samples_before_sets; });
+            std::erase_if(stops, [](const Look& l) { return l.samples <= first_look; });
             return stops;
         });
     report.end_of_table();

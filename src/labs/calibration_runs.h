@@ -4,31 +4,10 @@
 #include <atomic>
 #include <thread>
 
-#include "app/render.h"
 #include "labs/calibration.h"
+#include "labs/films.h"
 #include "labs/seeds.h"
 #include "world/scene_file.h"
-
-struct Silent {
-    void show(double) {}
-};
-
-// n more samples of every set of the film.
-inline void add_samples(Film<MeanPixel>& film, const Job& job, uint64_t n, unsigned threads) {
-    Silent silent;
-    auto add = [&](size_t block, uint64_t more) {
-        film.add_block(block, more, [&](int x, int y, uint64_t i, uint32_t set) {
-            uint64_t rays = 0;
-            return radiance(job, start(job.scene, job.pattern, {x, y, i, set}), rays);
-        });
-    };
-    if (threads > 1) {
-        add_pass(film, n, threads, add, silent);
-        return;
-    }
-    for (size_t block = 0; block < film.blocks(); ++block) add(block, n);
-    film.end_pass(n);
-}
 
 // What of(k) is for all k < n, on all cores.
 template <class T, class Of>
@@ -46,12 +25,13 @@ std::vector<T> over_threads(uint64_t n, Of of) {
 
 // ---- The truth ----------------------------------------------------------------------------------
 
-// A scene, and the image of it by a long run, whose own error its eight sets know.
+// A scene, and the image of it by a long run, whose own error its eight replications
+// know.
 struct Study {
     std::string name;
     Scene scene;
     Image image;
-    uint64_t samples = 0;         // of each set
+    uint64_t samples = 0;         // of each replication
     double norm = 0, square = 0;  // of the image: quadratic mean, d^2
     double greatest = 0;          // of one pixel, of that
 
@@ -62,62 +42,51 @@ struct Study {
     double truth2(const Image& f) const { return mse(f, image) - square; }
 };
 
-inline Options options_for(const std::string& sampler, uint64_t seed) {
-    Options o = parse_words(option_table, {"--sampler", sampler});
-    o.seed = seed;
-    o.error = 0.01;  // no samples are known before
-    return o;
-}
-
 // Until its own error is at most `enough`, or it has so many samples.
 inline Study study(const std::string& name, Size size, double enough, uint64_t most) {
     constexpr uint64_t first = 64, other_seed = 1000000;
     Study s{name, read_scene("scenes/" + name + ".scene").scene, {}};
     s.scene.size = size;
-    const Options o = options_for("sobol", other_seed);
-    for (Light& l : s.scene.lights) l.by_angle = o.polygons == Polygons::angle;
-    const Job job = job_of(o, s.scene);
-    Film<MeanPixel> film(size);
-    film.add_sets(std::vector<Sets>(film.number_of_pixels(), {8}));
+    const Pattern pattern = make_pattern(SamplerKind::sobol, other_seed, s.scene.depth, 0);
+    const Radiance L = radiance_of(s.scene, {}, pattern);
+    Film film = make_film(size, 8);
     ImageError e;
-    for (uint64_t n = first; !(e.d_rel() <= enough) && film.samples() < most; n = film.samples()) {
-        add_samples(film, job, n, all_cores());
+    for (s.samples = first;; s.samples *= 2) {
+        fill(film, s.samples, L, all_cores());
         e = error_of(film);
+        if (e.d_rel() <= enough || s.samples >= most) break;
     }
-    s.image = film.image(), s.samples = film.samples();
+    s.image = image_of(film);
     s.norm = e.norm, s.square = e.d2(), s.greatest = e.greatest / e.d2();
     return s;
 }
 
 // ---- Runs ---------------------------------------------------------------------------------------
 
-// What one run showed: where each stopper stopped (nothing: it did not), and looks at 16, 64, 256
+// What one run showed: where each stopper stopped (nothing: it did not), and looks at 8, 32, 128
 // ... samples, whatever they show.
 struct Run {
     std::vector<std::optional<Look>> stops;
     Looks fixed;
 };
 
-inline Look look_at(Film<MeanPixel>& film, const ImageError& e, const Study& study) {
-    return {film.samples(),
-            0,
-            e.d2(),
-            e.d2() > 0 ? e.spread / e.d2() / 2 : 0,
-            study.truth2(film.image()),
-            study.norm};
+inline Look look_at(const Film& film, const ImageError& e, const Study& study) {
+    return {film.least_taken(),           0,         e.d2(), e.d2() > 0 ? e.spread / e.d2() / 2 : 0,
+            study.truth2(image_of(film)), study.norm};
 }
 
-// As fill() does, on one thread, until all have stopped or there are `most` samples.
-inline Run run_until(const Study& study, const Options& o, std::vector<Stopper> stoppers,
-                     uint64_t most, const Allocation& by) {
-    const Job job = job_of(o, study.scene);
+// As penumbra does, on one thread, until all have stopped or there are `most` samples.
+inline Run run_until(const Study& study, SamplerKind sampler, uint64_t seed,
+                     std::vector<Stopper> stoppers, uint64_t most) {
+    const Pattern pattern = make_pattern(sampler, seed, study.scene.depth, 0);
+    const Radiance L = radiance_of(study.scene, {}, pattern);
     const double before = thread_seconds();
-    Film<MeanPixel> film(study.scene.size);
-    add_samples(film, job, samples_before_sets, 1);
-    film.add_sets(sets_where_noise_is(film.noise(), film.size, o.seed, by));
-    add_samples(film, job, 0, 1);
+    Film film = make_film(study.scene.size, 0);
+    fill(film, pilot_samples, L);
+    choose_sets(film, INFINITY);
+    fill(film, first_look, L);
     Run run{std::vector<std::optional<Look>>(stoppers.size()), {}};
-    for (uint64_t fixed = samples_before_sets;;) {
+    for (uint64_t fixed = first_look;;) {
         const ImageError e = error_of(film);
         Look look = look_at(film, e, study);
         look.seconds = thread_seconds() - before;
@@ -128,7 +97,7 @@ inline Run run_until(const Study& study, const Options& o, std::vector<Stopper> 
             if (!stoppers[k].stopped()) next = std::min(next, stoppers[k].next());
         }
         if (next == UINT64_MAX || look.samples >= most) return run;
-        add_samples(film, job, std::min({next, fixed, most}) - look.samples, 1);
+        fill(film, std::min({next, fixed, most}), L);
     }
 }
 

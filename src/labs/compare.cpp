@@ -1,17 +1,17 @@
 // labs/compare.cpp  3  how far is one image from another?
 //
-//   build/compare REFERENCE.pfm IMAGE.pfm [--limit 2%] [--variances F.pfm G.pfm [--alpha 1e-6]]
-//                 [--heatmap FILE.png]
+//   build/compare REFERENCE IMAGE [--limit 2%] [--alpha 1e-6] [--heatmap FILE.png]
 //
 // With f the reference, g the image and N numbers (three a pixel):
 //   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
 //
-// With the variances of both images' pixels (--view variance) also Welch's test whether they show
-// the same.  The verdict, and the exit status 1 if they differ: d_rel above the limit, or p below
-// alpha.
+// Both are .pfm or .film.  Two films know the variances of their pixels: then also Welch's test
+// whether they show the same.  The verdict, and the exit status 1 if they differ: d_rel above the
+// limit, or p below alpha.
 #include "base/program.h"
-#include "base/stats.h"
-#include "film/image.h"
+#include "keep/keep.h"
+#include "keep/read_pfm.h"
+#include "labs/p_of_z.h"
 
 namespace {
 
@@ -89,11 +89,6 @@ Image heatmap(const Image& f, const Image& g, double d) {
     return map;
 }
 
-void check_finite(const std::string& path, const Image& image) {
-    if (const auto pixel = first_non_finite(image))
-        throw UserError(path + ": pixel " + *pixel + " is not finite");
-}
-
 void check_same_size(const Image& f, const Image& g) {
     if (f.width != g.width || f.height != g.height)
         throw UserError("sizes differ: " + std::to_string(f.width) + "x" +
@@ -101,29 +96,50 @@ void check_same_size(const Image& f, const Image& g) {
                         std::to_string(g.height));
 }
 
-// The variances of an image's pixels.
-Image read_variance(const std::string& path, const Image& image) {
-    const Image variance = read_pfm(path);
-    check_same_size(image, variance);
-    check_finite(path, variance);
-    for (const auto& pixel : variance.pixels)
-        if (std::min({pixel[0], pixel[1], pixel[2]}) < 0)
-            throw UserError(path + ": a variance is negative");
-    return variance;
+// An image, and the variances of its pixels if a film knows them.
+struct Known {
+    Image image;
+    std::optional<Image> variance = {};
+};
+
+Known read_film(const std::string& path) {
+    Size size;
+    {
+        const FilmReader file(path);
+        size = {int(file.number("size", 65536)),
+                int(file.number("rows", 65536, '-') + 1 - file.number("rows", 65536))};
+    }
+    FilmPixels film(path, size);
+    Image image(size.width, size.height), variance(size.width, size.height);
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        const Pixel p = film.next();
+        for (size_t c = 0; c < 3; ++c) {
+            image.pixels[i][c] = float(p.value(c));
+            variance.pixels[i][c] = float(p.variance(c));
+        }
+    }
+    if (first_non_finite(variance)) return {image};  // one replication has none
+    return {image, variance};
+}
+
+Known read_known(const std::string& path) {
+    const Known known = path.ends_with(".film") ? read_film(path) : Known{read_pfm(path)};
+    if (const auto pixel = first_non_finite(known.image))
+        throw UserError(path + ": pixel " + *pixel + " is not finite");
+    return known;
 }
 
 // ---- What is asked, and what is answered --------------------------------------------------------
 
 struct Request {
-    std::vector<std::string> images, variances;
+    std::vector<std::string> images;
     std::string map;
     std::optional<double> limit, alpha;
     bool help = false;
 };
 
 const std::string usage =
-    "usage: compare REFERENCE.pfm IMAGE.pfm [--limit 2%] [--variances F.pfm G.pfm [--alpha 1e-6]] "
-    "[--heatmap FILE.png]";
+    "usage: compare REFERENCE IMAGE [--limit 2%] [--alpha 1e-6] [--heatmap FILE.png]";
 
 // The number after an option.
 double fraction_after(const std::vector<std::string>& words, size_t& i) {
@@ -139,7 +155,6 @@ double fraction_after(const std::vector<std::string>& words, size_t& i) {
 void check(const Request& r) {
     if (r.help) return;
     if (r.images.size() != 2) throw UserError(usage);
-    if (r.alpha && r.variances.empty()) throw UserError("--alpha: needs --variances");
     if (r.alpha && !(*r.alpha > 0 && *r.alpha < 1))
         throw UserError("--alpha: must be between 0 and 1");
 }
@@ -155,17 +170,12 @@ Request parse(const std::vector<std::string>& words) {
             r.map = words[i];
             if (!r.map.ends_with(".png"))
                 throw UserError("--heatmap: " + in_quotes(r.map) + " does not end in .png");
-        } else if (word == "--variances") {
-            if (i + 2 >= words.size()) throw UserError("--variances: needs two files");
-            r.variances = {words[i + 1], words[i + 2]};
-            i += 2;
         } else if (word == "--limit") {
             r.limit = fraction_after(words, i);
         } else if (word == "--alpha") {
             r.alpha = fraction_after(words, i);
         } else if (word.starts_with('-')) {
-            throw UserError(unknown("option", word,
-                                    {"--limit", "--variances", "--alpha", "--heatmap", "--help"}));
+            throw UserError(unknown("option", word, {"--limit", "--alpha", "--heatmap", "--help"}));
         } else {
             r.images.push_back(word);
         }
@@ -200,13 +210,13 @@ int judge(const Request& r, const Difference& d, const std::optional<Equality>& 
 
 const char* const help = R"(
 Prints how far IMAGE is from REFERENCE: d is the root of the mean squared difference,
-d_rel that over the root of the mean square of REFERENCE.  With the variances of both
-(penumbra --view variance) also by how much their means differ.  The last line and the
-exit status say whether they show the same (0) or differ (1):
+d_rel that over the root of the mean square of REFERENCE.  Both are .pfm or .film.
+Of two films (penumbra --keep) also by how much their means differ.  The last line and
+the exit status say whether they show the same (0) or differ (1):
 
   --limit 2%           they differ if d_rel is greater than this; .02 is the same
-  --variances F G      they differ if so large a difference of their means has a
-  --alpha 1e-6         probability p below alpha, by chance alone
+  --alpha 1e-6         films differ if so large a difference of their means has a
+                       probability p below this, by chance alone
   --heatmap FILE.png   draws the errors: black where they agree, white from 4 d on
 )";
 
@@ -216,15 +226,12 @@ int compare(const std::vector<std::string>& words) {
         std::printf("%s\n%s", usage.c_str(), help);
         return 0;
     }
-    const Image f = read_pfm(r.images[0]), g = read_pfm(r.images[1]);
+    const auto [f, variance_f] = read_known(r.images[0]);
+    const auto [g, variance_g] = read_known(r.images[1]);
     check_same_size(f, g);
-    check_finite(r.images[0], f);
-    check_finite(r.images[1], g);
     std::optional<Equality> e;
-    if (!r.variances.empty()) {
-        const Image of_f = read_variance(r.variances[0], f);
-        e = equality(f, g, of_f, read_variance(r.variances[1], g));
-    }
+    if (variance_f && variance_g) e = equality(f, g, *variance_f, *variance_g);
+    if (r.alpha && !e) throw UserError("--alpha: needs two films of --sets 2 or more");
     if (!r.map.empty()) check_writable(r.map);
     const Difference d = difference(f, g);
     print(d, e);
@@ -234,6 +241,8 @@ int compare(const std::vector<std::string>& words) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return exit_status([&] { return compare({argv + 1, argv + argc}); });
+int main(int argc, char** argv) try {
+    return finished(compare({argv + 1, argv + argc}));
+} catch (...) {
+    return failed();
 }

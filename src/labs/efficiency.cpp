@@ -8,13 +8,13 @@
 #include <atomic>
 #include <thread>
 
-#include "app/render.h"
 #include "labs/seeds.h"
+#include "path/start.h"
 #include "world/scene_file.h"
 
 namespace {
 
-struct Plan {
+struct Effort {
     bool quick = false;
     uint64_t seeds = 8, spp = 64;
     double pixels = 4608;
@@ -25,9 +25,9 @@ struct Plan {
 // ---- What is measured ---------------------------------------------------------------------------
 
 std::vector<Choice> all_choices() {
-    std::vector<Choice> all = samplers();
-    for (const char* words : {"--light nee", "--polygons angle", "--pick power", "--roulette 0",
-                              "--roulette 1", "--roulette 0.5", "--roulette 0.1"})
+    std::vector<Choice> all = alternatives("--sampler");
+    for (const char* words :
+         {"--light nee", "--roulette 0", "--roulette 1", "--roulette 0.5", "--roulette 0.1"})
         all.push_back(choice_of(words));
     return all;
 }
@@ -39,13 +39,15 @@ struct Contender {
     Series series;  // one image a seed
 };
 
-Contender contender(const std::string& name, const Choice& choice, const Plan& plan) {
-    Options o = parse_words(option_table, choice.words);
-    o.spp = plan.spp;
+Contender contender(const std::string& name, const Choice& choice, const Effort& plan) {
+    Options o;
+    OptionTable table = option_table(o);
+    parse_words(table, choice.words, [](const std::string& word) {
+        throw UserError("--choice: " + in_quotes(word) + " is no option");
+    });
     Scene s = read_scene("scenes/" + name + ".scene").scene;
     const double scale = std::sqrt(plan.pixels / double(s.size.width * s.size.height));
     s.size = {int(std::lround(scale * s.size.width)), int(std::lround(scale * s.size.height))};
-    for (Light& l : s.lights) l.by_angle = o.polygons == Polygons::angle;
     Series series{std::vector<Image>(plan.seeds, Image(s.size.width, s.size.height)),
                   std::vector<double>(plan.seeds)};
     return {o, std::move(s), std::move(series)};
@@ -54,48 +56,44 @@ Contender contender(const std::string& name, const Choice& choice, const Plan& p
 // Other options change the samples, or what an image is: here they would be left out in silence.
 void check_choice(const Choice& c) {
     for (size_t i = 0; i < c.words.size(); i += 2) {
-        constexpr const char* known[] = {"--sampler",  "--direction", "--light",
-                                         "--polygons", "--pick",      "--roulette"};
+        constexpr const char* known[] = {"--sampler", "--direction", "--light", "--roulette"};
         if (std::find(std::begin(known), std::end(known), c.words[i]) == std::end(known))
             throw UserError("--choice: " + c.words[i] + " is none of a path's choices");
     }
 }
 
-void render_row(Image& image, const Job& job, int y) {
+void render_row(Image& image, const Contender& c, const Pattern& pattern, uint64_t spp, int y) {
     for (int x = 0; x < image.width; ++x) {
         rgb sum;
-        uint64_t rays = 0;
-        for (uint64_t i = 0; i < job.o.spp; ++i)
-            sum += radiance(job, start(job.scene, job.pattern, {x, y, i}), rays);
-        for (size_t c = 0; c < 3; ++c) image.at(x, y)[c] = float(sum.*axis[c] / real(job.o.spp));
+        for (uint64_t i = 0; i < spp; ++i) {
+            const Start at = start(c.scene, pattern, {x, y, i});
+            sum += Li(c.scene, c.o.technique, at.ray, at.sampler);
+        }
+        for (size_t k = 0; k < 3; ++k) image.at(x, y)[k] = float(sum.*axis[k] / real(spp));
     }
 }
 
-void render_seed(std::vector<Contender>& all, uint64_t seed) {
-    std::vector<Options> options;
-    std::vector<Job> jobs;
-    for (const Contender& c : all) options.push_back(c.o);
-    for (size_t k = 0; k < all.size(); ++k) {
-        options[k].seed = seed + 1;
-        jobs.push_back(job_of(options[k], all[k].scene));
-    }
+void render_seed(std::vector<Contender>& all, uint64_t seed, uint64_t spp) {
+    std::vector<Pattern> patterns;
+    for (const Contender& c : all)
+        patterns.push_back(make_pattern(c.o.sampler, seed + 1, c.scene.depth, spp));
     const int height = all[0].scene.size.height;
     for (int y = 0; y < height; ++y)
         for (size_t turn = 0; turn < all.size(); ++turn) {
             const size_t k = (turn + size_t(y)) % all.size();
             const double before = thread_seconds();
-            render_row(all[k].series.images[seed], jobs[k], y);
+            render_row(all[k].series.images[seed], all[k], patterns[k], spp, y);
             all[k].series.seconds[seed] += thread_seconds() - before;
         }
 }
 
 // The default first.
-std::vector<Contender> render_scene(const std::string& name, const Plan& plan) {
+std::vector<Contender> render_scene(const std::string& name, const Effort& plan) {
     std::vector<Contender> all = {contender(name, {}, plan)};
     for (const Choice& c : plan.choices) all.push_back(contender(name, c, plan));
     std::atomic<uint64_t> next = 0;
     auto work = [&] {
-        for (uint64_t seed; (seed = next++) < plan.seeds;) render_seed(all, seed);
+        for (uint64_t seed; (seed = next++) < plan.seeds;) render_seed(all, seed, plan.spp);
     };
     std::vector<std::jthread> threads;
     for (unsigned t = 0; t < all_cores(); ++t) threads.emplace_back(work);
@@ -135,7 +133,7 @@ Gain gain_of(const Series& base, const Series& other) {
             over_seeds(seeds, [&](size_t w) { return variances(w) * times(w); })};
 }
 
-Outcome outcome(const std::string& name, const Plan& plan) {
+Outcome outcome(const std::string& name, const Effort& plan) {
     const std::vector<Contender> all = render_scene(name, plan);
     const Series& base = all[0].series;
     const double paths = double(base.images[0].pixels.size()) * double(plan.spp);
@@ -162,7 +160,7 @@ Overall overall(const std::vector<Outcome>& all, size_t choice, Which which) {
     return sum;
 }
 
-void tell_table(Report& report, const Plan& plan, const std::vector<Outcome>& all, Which which) {
+void tell_table(Report& report, const Effort& plan, const std::vector<Outcome>& all, Which which) {
     std::vector<std::string> head = {"scene"};
     for (const Choice& c : plan.choices) head.push_back(c.name);
     report.head(head);
@@ -181,7 +179,7 @@ void tell_scenes(Report& report, const std::vector<Outcome>& all) {
     report.end_of_table();
 }
 
-void tell_overall(Report& report, const Plan& plan, const std::vector<Outcome>& all) {
+void tell_overall(Report& report, const Effort& plan, const std::vector<Outcome>& all) {
     report.head({"choice", "scenes", "error, × less", "efficiency, × more", "least", "greatest"});
     auto where = [](const std::pair<double, std::string>& p) {
         return text("%.2f (%s)", p.first, p.second.c_str());
@@ -196,7 +194,7 @@ void tell_overall(Report& report, const Plan& plan, const std::vector<Outcome>& 
     report.end_of_table();
 }
 
-int run(Plan plan, const std::string& command) {
+int run(Effort plan, const std::string& command) {
     if (plan.scenes.empty()) plan.scenes = all_scenes();
     if (plan.choices.empty()) plan.choices = all_choices();
     for (const Choice& c : plan.choices) check_choice(c);
@@ -229,7 +227,7 @@ bit, for the choice concerns nothing in the scene; geometric means are of the ot
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    Effort plan;
     const Lab lab{"efficiency",
                   "Measures what one option at a time brings on every scene.",
                   {{"--seeds", "N", "renders of each (8)",

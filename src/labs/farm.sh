@@ -1,7 +1,7 @@
 # labs/farm.sh  1  a picture in parts, rendered by many machines: the plan, one part, the merge
 #
 #   bash src/labs/farm.sh plan --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
-#   bash src/labs/farm.sh part FOLDER NUMBER [THREADS]   renders a part, from its checkpoint if there is one
+#   bash src/labs/farm.sh part FOLDER NUMBER [THREADS]   renders a part, from its film if there is one
 #   bash src/labs/farm.sh merge FOLDER                   joins the parts, or says which are missing
 #
 # farm_slurm.sh and farm_parallel.sh do these three, and say what the options are; another engine needs no
@@ -37,13 +37,12 @@ count_of_parts() { planned "$1" part | wc -l; }  # FOLDER
 # Part I of N of 0 .. COUNT - 1, as FIRST-LAST.
 range() { echo "$(($3 * $1 / $2))-$(($3 * ($1 + 1) / $2 - 1))"; }  # I N COUNT
 
-# Lines of the plan: bands from the top, of each one its samples.
-parts() {  # HEIGHT BANDS SPP RANGES
-    local band range
+# Lines of the plan: bands from the top, each by all seeds.
+parts() {  # HEIGHT BANDS SEEDS
+    local band seed
     for ((band = 0; band < $2; ++band)); do
-        for ((range = 0; range < $4; ++range)); do
-            printf 'part --rows %s%s\n' "$(range "$band" "$2" "$1")" \
-                "$([ "$4" = 1 ] || echo " --samples $(range "$range" "$4" "$3")")"
+        for ((seed = 0; seed < $3; ++seed)); do
+            printf 'part --rows %s%s\n' "$(range "$band" "$2" "$1")" "$([ "$3" = 1 ] || echo " --seed $seed")"
         done
     done
 }
@@ -57,14 +56,14 @@ engine_option() { return 1; }
 
 # Reads the words of a farm into global variables.
 read_words() {
-    folder='' bands=1 ranges=1 program=$here/../../build size='' spp=''
+    folder='' bands=1 seeds=1 program=$here/../../build size='' spp=''
     outputs=() options=()
     while [ $# -gt 0 ] && [ "$1" != -- ]; do
         [ $# -gt 1 ] || fail "$1: its value is missing"
         case $1 in
             --folder) folder=$(absolute "$2") ;;
             --bands) count "$1" "$2"; bands=$2 ;;
-            --ranges) count "$1" "$2"; ranges=$2 ;;
+            --seeds) count "$1" "$2"; seeds=$2 ;;
             --build) program=$2 ;;
             -o | --stats) outputs+=("$1" "$(absolute "$2")") ;;
             *) engine_option "$1" "$2" || fail "$1: no option of a farm; those of penumbra stand behind --" ;;
@@ -75,7 +74,8 @@ read_words() {
     shift
     while [ $# -gt 1 ]; do
         case $1 in
-            --rows | --samples | --checkpoint | --resume | --threads | -o | --stats) fail "$1: the farm says it to every part" ;;
+            --rows | --keep | --threads | -o | --stats) fail "$1: the farm says it to every part" ;;
+            --seed) [ "$seeds" = 1 ] || fail "$1: --seeds $seeds says it to every part" ;;
             --size) size=$2 ;;
             --spp) spp=$2 ;;
         esac
@@ -93,7 +93,6 @@ check_words() {
     [[ $size =~ $at ]] || fail "--size WxH: bands are cut from it, behind --"
     count --spp "$spp"
     [ "$bands" -le "${size#*x}" ] || fail "--bands $bands: the picture has ${size#*x} rows"
-    [ "$ranges" -le "$spp" ] || fail "--ranges $ranges: a pixel has $spp samples"
     [ ${#outputs[@]} -gt 0 ] || fail "-o FILE: where to write the picture?"
     for ((which = 0; which < ${#outputs[@]}; which += 2)); do
         case ${outputs[which]}${outputs[which + 1]} in
@@ -112,9 +111,8 @@ check_words() {
 check_render() {
     local words=("${options[@]}") i
     for ((i = 0; i < ${#words[@]}; ++i)); do [ "${words[i]}" != --spp ] || words[i + 1]=1; done
-    [ "$ranges" = 1 ] || words+=(--samples 0-0)
-    mkdir -p "$folder" || exit 1
-    "$program/penumbra" "${words[@]}" --rows 0-0 --checkpoint "$folder/check.film" --quiet "$scene" || exit
+    mkdir -p "$folder" && rm -f "$folder/check.film" || exit 1
+    "$program/penumbra" "${words[@]}" --rows 0-0 --keep "$folder/check.film" --quiet "$scene" || exit
     # A plan is of the scene as it is now, and not of its name.
     sum=$(LC_ALL=C sed -n '/^$/q; s/^scene //p' "$folder/check.film" 2>/dev/null)
     rm -f "$folder/check.film"
@@ -123,13 +121,13 @@ check_render() {
 # A plan in the folder; one that is there already is gone on with if it is the same.
 write_plan() {
     local plan
-    plan=$(echo "penumbra farm 1"
+    plan=$(echo "penumbra farm 2"
            printf 'build %s\n' "$program"
            printf 'option %s\n' "${options[@]}"
            printf 'scene %s\n' "$scene"
            printf 'sum %s\n' "$sum"
            printf 'output %s\n' "${outputs[@]}"
-           parts "${size#*x}" "$bands" "$spp" "$ranges")
+           parts "${size#*x}" "$bands" "$seeds")
     if [ -e "$folder/farm.plan" ]; then
         [ "$plan" = "$(cat "$folder/farm.plan")" ] ||
             fail "$folder: holds the parts of another picture: choose another --folder"
@@ -144,21 +142,21 @@ usage() { sed -n '3,/^[^#]/ { s/^# \{0,1\}//p; }' "$1"; }
 # ---- One part -----------------------------------------------------------------------------------
 
 # Runs penumbra until it has ended, and returns its exit status; signals to stop are handed on, and it
-# writes its checkpoint.  `stopped` names the last one.
+# writes its film.  `stopped` names the last one.
 stopped=''
 render() {  # FOLDER NUMBER THREADS
-    local words resume=() child='' status=0 caught
+    local words child='' status=0 caught
     mapfile -t words < <(planned "$1" option)
-    [ ! -e "$(film "$1" "$2")" ] || resume=(--resume "$(film "$1" "$2")")
     pass() {
         stopped=$1 caught=1
         echo "farm: stops, for $1" >&2
         [ -z "$child" ] || kill -TERM "$child" 2>/dev/null
     }
     for signal in TERM INT HUP USR1; do trap "pass $signal" "$signal"; done
+    [ ! -e "$(film "$1" "$2")" ] || echo "farm: goes on from its film" >&2
     # shellcheck disable=SC2046  # a part is options without blanks in them
     "$(planned "$1" build)/penumbra" "${words[@]}" $(planned "$1" part | sed -n "$2p") --threads "$3" \
-        --checkpoint "$(film "$1" "$2")" "${resume[@]}" "$(planned "$1" scene)" &
+        --keep "$(film "$1" "$2")" "$(planned "$1" scene)" &
     child=$!
     [ -z "$stopped" ] || kill -TERM "$child"
     # What was caught ends the wait, and not penumbra.

@@ -6,7 +6,7 @@
 #     -o FILE           the picture, .pfm or .png; may be repeated
 #     --stats FILE      what was measured, as JSON
 #     --bands N         cut the picture into N bands of rows                                       1
-#     --ranges N        and the samples of each into N ranges                                      1
+#     --seeds N         render each band by N seeds, all of which have --spp samples                 1
 #     --hosts FILE      machines, a line each, as ssh knows them (parallel's --sshloginfile)    this one
 #     --slots N         parts at a time on each machine, which share its processors                1
 #     --retries N       how often a part is begun that is killed                                     3
@@ -31,7 +31,7 @@ case ${1-} in
         command -v parallel >/dev/null || fail "no parallel: install GNU parallel"
         read_words "$@"
         write_plan
-        # A part that is told to stop has a minute to write its checkpoint.  Those are begun again that were
+        # A part that is told to stop has a minute to write its film.  Those are begun again that were
         # killed, or whose machine was lost; penumbra's own refusals are left to the merge, which names them.
         unfinished "$folder" | parallel --jobs "$slots" --retries "$retries" --termseq TERM,60000,KILL,25 "${words[@]}" \
             "$(printf '%q ' bash "$here/farm.sh" part "$folder") {} \$(((\$(nproc) + $slots - 1) / $slots)) || [ \$? -le 128 ]"

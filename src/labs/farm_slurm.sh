@@ -6,7 +6,7 @@
 #     -o FILE           the picture, .pfm or .png; may be repeated
 #     --stats FILE      what was measured, as JSON
 #     --bands N         cut the picture into N bands of rows                                       1
-#     --ranges N        and the samples of each into N ranges                                      1
+#     --seeds N         render each band by N seeds, all of which have --spp samples                 1
 #     --cpus N          processors, and threads, of a part                                         1
 #     --sbatch WORD     for sbatch, e.g. --sbatch --partition=long; may be repeated
 #     --grace S         seconds before a limit of time at which a part stops and queues again    120

@@ -17,7 +17,7 @@ using namespace illumination;
 
 std::string room_name(const Race& r) { return text("%s, %zu triangles", r.scene, r.elements); }
 
-std::vector<Course> courses(const Plan& plan) {
+std::vector<Course> courses(const Scope& plan) {
     if (plan.quick) return {{"cube", 3.6, 1 << 18, 1e-3, 2}, {"cornell36", 160, 1 << 18, 1e-2, 2}};
     const uint64_t more = plan.full ? 8 : 1;
     const double longer = plan.full ? 20 : 1;
@@ -164,7 +164,7 @@ catches up earlier, at %s at the latest: there the argument decides nothing, and
 
 // ---- The report ---------------------------------------------------------------------------------
 
-void tell_pictures(Report& report, const std::string& penumbra, const Plan& plan) {
+void tell_pictures(Report& report, const std::string& penumbra, const Scope& plan) {
     const Room room = illumination::room("atelier", plan.quick ? 1 : 0.295);
     const Eye eye(room);
     const Filled particles =
@@ -185,7 +185,7 @@ void tell_pictures(Report& report, const std::string& penumbra, const Plan& plan
         "The same room three ways");
 }
 
-int study(const std::string& penumbra, const Plan& plan) {
+int study(const std::string& penumbra, const Scope& plan) {
     Report report(report_folder(plan.quick), "radiosity");
     report.say(R"(# Deterministic and Monte Carlo illumination maps
 
@@ -218,7 +218,7 @@ three a pixel.)");
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    Scope plan;
     const Lab lab{"illumination",
                   "Compares deterministic and Monte Carlo illumination maps.",
                   {quick_flag(plan.quick),

@@ -6,7 +6,7 @@
 
 namespace illumination {
 
-struct Plan {
+struct Scope {
     bool quick = false, full = false;
 };
 
@@ -45,7 +45,7 @@ class Eye {
 public:
     explicit Eye(const Room& room) : size_(room.scene.size) {
         looks_.resize(size_t(size_.width) * size_t(size_.height) * rays);
-        auto row = [&](int y) {
+        auto row = [&](size_t y) {
             Look* next = &looks_[size_t(y) * size_t(size_.width) * rays];
             for (int x = 0; x < size_.width; ++x)
                 pixel_of(room.scene, x, y, side, [&](const Ray& ray) {
@@ -53,7 +53,7 @@ public:
                     return rgb{};
                 });
         };
-        in_parallel(size_.height, all_cores(), row, [](double) {});
+        in_parallel(size_t(size_.height), all_cores(), row, [](double) {});
     }
 
     Image operator()(const IlluminationMap& map) const {
@@ -99,23 +99,24 @@ struct Filled {
     uint64_t particles = 0, rays = 0;
 };
 
-// A clock for render() that shows nothing.
-struct SilentClock {
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-    double elapsed() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-    void show(double) const {}
-};
+// All particles, by all threads.
+inline void walk(Particles& particles, uint64_t n) {
+    in_parallel(
+        Particles::batches, all_cores(),
+        [&](size_t batch) { particles.add(batch, n / Particles::batches); }, [](double) {});
+}
+
+using Clock = std::chrono::steady_clock;
+inline double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 inline Filled fill(const Room& room, const Eye& eye, SamplerKind kind, uint64_t seed, uint64_t n) {
     Particles particles(room.scene, room.mesh, Particles::pattern(kind, seed, n));
-    const Passes passes{{n / Particles::batches, 0}, 1, all_cores()};
-    SilentClock clock;
-    render(
-        particles, passes, [&](int batch, uint64_t m) { particles.add(batch, m); }, clock);
+    const Clock::time_point start = Clock::now();
+    walk(particles, n);
     IlluminationMap map = particles.map();
-    const double seconds = clock.elapsed();
+    const double seconds = seconds_since(start);
     Filled f{eye(map), std::move(map),        particles.error(),
              seconds,  particles.particles(), particles.rays()};
     return f;

@@ -263,7 +263,7 @@ inline void tell_cube_noise(Report& report, const CubeRuns& r) {
                  "Independent particles converge like 1/√N");
 }
 
-inline void tell_cube(Report& report, const Plan& plan) {
+inline void tell_cube(Report& report, const Scope& plan) {
     const CubeRuns r = run_cube(plan);
     report.say("## The cube, whose radiosity is known");
     report.say(

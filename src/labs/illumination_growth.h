@@ -77,7 +77,7 @@ inline Apart apart(const std::string& scene, double H, double unshot) {
     return {double(r.mesh.elements()), d_rel(flat, image(Shooter::face))};
 }
 
-inline Study run_study(const Plan& plan) {
+inline Study run_study(const Scope& plan) {
     using List = std::vector<double>;
     const List all = plan.quick ? List{90, 50} : List{90, 50, 28, 16, 9};
     const List flat = plan.quick ? List{130, 90} : plan.full ? all : List{90, 65, 48, 35};
@@ -186,11 +186,8 @@ inline Speed speed(const std::vector<std::string>& penumbra, const Room& r, bool
     for (int round = 0; round < (quick ? 2 : 5); ++round) {
         Particles particles(r.scene, r.mesh,
                             Particles::pattern(SamplerKind::independent, uint64_t(round), n));
-        SilentClock clock;
         const double start = processor_seconds();
-        render(
-            particles, {{n / Particles::batches, 0}, 1, all_cores()},
-            [&](int batch, uint64_t m) { particles.add(batch, m); }, clock);
+        walk(particles, n);
         s.particles.push_back(1e9 * (processor_seconds() - start) / double(particles.rays()));
         const Rendering image = rendering(penumbra[0], {penumbra.begin() + 1, penumbra.end()});
         s.paths.push_back(1e9 * image.core_seconds() / stats(image.stats, "rays")[0]);
@@ -199,7 +196,7 @@ inline Speed speed(const std::vector<std::string>& penumbra, const Room& r, bool
     return s;
 }
 
-inline void tell_speed(Report& report, const Plan& plan, const std::string& penumbra) {
+inline void tell_speed(Report& report, const Scope& plan, const std::string& penumbra) {
     report.head({"scene", "penumbra", "its core ns a ray", "particles' core ns a ray", "ratio"});
     double most = 0;
     for (const auto& [scene, H] : {std::pair{"cornell36", 28.0}, {"atelier", 0.295}}) {
@@ -226,7 +223,7 @@ inline void tell_speed(Report& report, const Plan& plan, const std::string& penu
     report.say(text("A ray of particles costs at most %.2f times one of penumbra.", most));
 }
 
-inline void tell_growth(Report& report, const Plan& plan, const std::string& penumbra) {
+inline void tell_growth(Report& report, const Scope& plan, const std::string& penumbra) {
     const Study s = run_study(plan);
     report.say("## What it costs");
     report.say(text(

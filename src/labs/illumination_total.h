@@ -4,7 +4,7 @@
 
 namespace illumination {
 
-inline Test test_of(const Plan& plan) {
+inline Test test_of(const Scope& plan) {
     if (plan.quick) return {"cornell36", {320, 160}, 16, 200, {64, 32}};
     if (plan.full)
         return {"cornell36", {226, 160, 113, 80, 56.5, 40, 28.2, 20}, 4096, 8000, {128, 64}};

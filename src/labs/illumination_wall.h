@@ -212,12 +212,10 @@ struct Walked {
 };
 inline Walked walked(const Walls& w, SamplerKind kind, uint64_t seed, uint64_t n) {
     Particles particles(w.room.scene, w.room.mesh, Particles::pattern(kind, seed, n));
-    SilentClock clock;
-    render(
-        particles, {{n / Particles::batches, 0}, 1, all_cores()},
-        [&](int batch, uint64_t m) { particles.add(batch, m); }, clock);
+    const Clock::time_point start = Clock::now();
+    walk(particles, n);
     const IlluminationMap map = particles.map();
-    const double seconds = clock.elapsed();
+    const double seconds = seconds_since(start);
     return {&w,
             kind,
             n,
@@ -234,7 +232,7 @@ inline constexpr std::array method_names = {"shooting, elements", "shooting, fac
                                             "particles, projection", "particles, hat mean"};
 
 struct CubeRuns {
-    Plan plan;
+    Scope plan;
     cube::Solution exact;
     std::vector<Walls> walls;                      // 4, 8, 16 ... cells
     std::array<std::vector<Solved>, 4> by_method;  // of the same cells, or the first of them
@@ -244,7 +242,7 @@ struct CubeRuns {
     double exact_at(size_t k) const { return exact.luminance(cube_points[k].x, cube_points[k].y); }
 };
 
-inline CubeRuns run_cube(const Plan& plan) {
+inline CubeRuns run_cube(const Scope& plan) {
     CubeRuns r;
     r.plan = plan;
     r.particles = uint64_t(1) << (plan.quick ? 16 : 20);

@@ -1,47 +1,38 @@
-// labs/indirect.cpp  5  what illumination maps bring to paths that end on them
+// labs/indirect.cpp  6  what illumination maps bring to paths that end on them
 //
 //   build/indirect [--quick]
 //
-// --indirect map, control and regression beside whole paths: when paths should go on, by variance
+// Final gathering, control and regression beside whole paths: when paths should go on, by variance
 // and cost of a sample, with the bound of two levels; how fine maps should be; and errors after
 // five seconds, noise and bias apart.
-#include "labs/indirect_levels.h"
+#include "labs/indirect_images.h"
 
 namespace {
 
 using namespace indirect;
 using illumination::percent;
 
-struct Plan {
+struct Scope {
     bool quick = false;
-    std::string penumbra;
-    std::string seconds() const { return quick ? "0.5" : "5"; }
-    std::string reference_seconds() const { return quick ? "0.5" : "6"; }
+    double seconds() const { return quick ? 0.5 : 5; }
+    double reference_seconds() const { return quick ? 0.5 : 6; }
 };
 
 constexpr const char* scenes[] = {"cornell36", "cube", "atelier"};
-constexpr const char* methods[] = {"path", "map", "control", "regression", "path --roulette 0"};
+constexpr Method methods[] = {Method::path, Method::gather, Method::control_variate,
+                              Method::regression, Method::endless};
 
 // ---- Errors -------------------------------------------------------------------------------------
 
-using Words = std::vector<std::string>;
-
 // Two runs that have nothing in common but what is asked for.
 struct Pair {
-    std::array<Rendering, 2> run;
-    double core_seconds() const { return (run[0].core_seconds() + run[1].core_seconds()) / 2; }
-    double samples() const { return double(run[0].samples() + run[1].samples()) / 2; }
-    double stat(const char* key) const { return stats(run[0].stats, key)[0]; }
+    std::array<Drawn, 2> run;
+    double core_seconds() const { return (run[0].core_seconds + run[1].core_seconds) / 2; }
+    double samples() const { return (run[0].samples + run[1].samples) / 2; }
 };
 
-Pair pair_of(const Plan& plan, const Words& words, int first_seed) {
-    Pair pair;
-    for (int k = 0; k < 2; ++k) {
-        Words all = words;
-        all.insert(all.end(), {"--seed", std::to_string(first_seed + k)});
-        pair.run[size_t(k)] = rendering(plan.penumbra, all);
-    }
-    return pair;
+Pair pair_of(const Asked& asked, uint64_t first_seed) {
+    return {draw(asked, first_seed), draw(asked, first_seed + 1)};
 }
 
 // Squares, relative to the reference's mean square.  The noise is half of the squared difference of
@@ -73,16 +64,13 @@ Error error_of(const Pair& pair, const Pair& reference) {
     return {noise.mean / norm, bias.mean / norm, bias.standard_error() / norm};
 }
 
-Pair reference_of(const Plan& plan, const std::string& scene, const Words& more) {
-    Words words = {"scenes/" + scene + ".scene", "--indirect", "control", "--time",
-                   plan.reference_seconds()};
-    words.insert(words.end(), more.begin(), more.end());
-    return pair_of(plan, words, 1001);
+Pair reference_of(const Scope& plan, const std::string& scene, Size size) {
+    return pair_of({scene, Method::control_variate, plan.reference_seconds(), 0, 0, 0, size}, 1001);
 }
 
 // ---- When to go on ------------------------------------------------------------------------------
 
-void tell_levels(Report& report, const Plan& plan) {
+void tell_levels(Report& report, const Scope& plan) {
     report.say(R"(## When to go on
 
 Variance (the mean over pixels and channels) and core time of one sample; efficiency is 1 / (variance × time)
@@ -122,11 +110,11 @@ the first vertex, too: survivors count for 1 / q, so that roulette, which return
 
 // ---- How fine -----------------------------------------------------------------------------------
 
-void tell_meshes(Report& report, const Plan& plan) {
+void tell_meshes(Report& report, const Scope& plan) {
     const std::string scene = "cornell36";
-    const Words size = {"--size", "64x32"};
+    const Size size = {64, 32};
     const Pair reference = reference_of(plan, scene, size);
-    const double diagonal = 16 * reference.stat("map_mesh");
+    const double diagonal = 16 * reference.run[0].H;
     report.say(R"(## How fine, how many particles
 
 The bias of `map` on cornell36, 64 × 32 pixels: what two runs have in common against independent references
@@ -135,22 +123,15 @@ together with that of the paths.  H is a part of the scene's diagonal.)");
     report.head({"H", "triangles", "particles", "seconds of maps", "error that they report", "bias",
                  "noise of maps and paths"});
     for (double part : {8.0, 16.0, 32.0, 64.0})
-        for (const char* particles : {"30000", "100000", "300000", "1000000"}) {
-            Words words = {"scenes/" + scene + ".scene",
-                           "--indirect",
-                           "map",
-                           "--spp",
-                           plan.quick ? "64" : "1024",
-                           "--mesh",
-                           text("%.17g", diagonal / part),
-                           "--particles",
-                           particles};
-            words.insert(words.end(), size.begin(), size.end());
-            const Pair p = pair_of(plan, words, 1);
+        for (uint64_t particles : {30000, 100000, 300000, 1000000}) {
+            const Pair p = pair_of({scene, Method::gather, 0, plan.quick ? 64u : 1024u,
+                                    diagonal / part, particles, size},
+                                   1);
             const Error e = error_of(p, reference);
-            report.row({text("1/%.0f", part), text("%.0f", p.stat("map_triangles")), particles,
-                        text("%.2f", p.stat("map_seconds")), percent(p.stat("map_error")), e.bias(),
-                        percent(std::sqrt(e.noise2))});
+            const Drawn& run = p.run[0];
+            report.row({text("1/%.0f", part), text("%.0f", run.triangles),
+                        std::to_string(particles), text("%.2f", run.map_seconds),
+                        percent(run.map_error), e.bias(), percent(std::sqrt(e.noise2))});
         }
     report.end_of_table();
 }
@@ -163,23 +144,19 @@ struct Measured {
     double product() const { return error.d_rel() * error.d_rel() * pair.core_seconds(); }
 };
 
-Measured measure(const Plan& plan, const std::string& scene, const std::string& method,
-                 const std::string& seconds, const Pair& reference) {
-    Words words = {"scenes/" + scene + ".scene", "--time", seconds, "--indirect"};
-    std::istringstream parts(method);
-    for (std::string word; parts >> word;) words.push_back(word);
-    Pair pair = pair_of(plan, words, 1);
+Measured measure(const std::string& scene, Method method, double seconds, const Pair& reference) {
+    Pair pair = pair_of({scene, method, seconds}, 1);
     const Error error = error_of(pair, reference);
     return {std::move(pair), error};
 }
 
-void row_of(Report& report, const std::string& scene, const std::string& method, const Measured& m,
+void row_of(Report& report, const std::string& scene, Method method, const Measured& m,
             const Measured& path) {
-    const bool maps = !method.starts_with("path");
-    report.row({scene, "`" + method + "`", text("%.0f", m.pair.samples()),
-                text("%.1f", m.pair.core_seconds()),
-                maps ? text("%.2f", m.pair.stat("map_seconds")) : "",
-                maps ? percent(m.pair.stat("map_error")) : "", percent(m.error.d_rel()),
+    const Drawn& run = m.pair.run[0];
+    const bool maps = run.triangles > 0;
+    report.row({scene, text("`%s`", method_names[int(method)]), text("%.0f", m.pair.samples()),
+                text("%.1f", m.pair.core_seconds()), maps ? text("%.2f", run.map_seconds) : "",
+                maps ? percent(run.map_error) : "", percent(m.error.d_rel()),
                 percent(std::sqrt(m.error.noise2)), m.error.bias(),
                 text("%.2f", path.product() / m.product())});
 }
@@ -199,22 +176,22 @@ std::string claims_of(Report& report, const std::string& scene, const std::vecto
 }
 
 // Returns what was measured of the first scene.
-std::pair<std::vector<Measured>, Pair> tell_errors(Report& report, const Plan& plan) {
-    report.say(text(R"(## After %s seconds
+std::pair<std::vector<Measured>, Pair> tell_errors(Report& report, const Scope& plan) {
+    report.say(text(R"(## After %g seconds
 
-`--time %s`, all cores, defaults, maps included, 256 × 128 pixels: errors against two references by
+%g seconds, all cores, Sobol' points, maps included, 256 × 128 pixels: errors against two references by
 `control`; noise from two seeds, bias as above (of whole paths, what the scene's depth leaves out).
 Efficiency is 1 / (d_rel² × core seconds), over that of whole paths.)",
                     plan.seconds(), plan.seconds()));
-    report.head({"scene", "`--indirect`", "samples", "core s", "s of maps", "their error", "d_rel",
+    report.head({"scene", "paths", "samples", "core s", "s of maps", "their error", "d_rel",
                  "noise", "bias", "efficiency"});
     std::vector<std::string> claims;
     std::optional<std::pair<std::vector<Measured>, Pair>> first;
     for (const char* scene : scenes) {
         Pair reference = reference_of(plan, scene, {});
         std::vector<Measured> all;
-        for (const char* method : methods) {
-            all.push_back(measure(plan, scene, method, plan.seconds(), reference));
+        for (Method method : methods) {
+            all.push_back(measure(scene, method, plan.seconds(), reference));
             row_of(report, scene, method, all.back(), all[0]);
         }
         claims.push_back(claims_of(report, scene, all));
@@ -226,8 +203,7 @@ Efficiency is 1 / (d_rel² × core seconds), over that of whole paths.)",
 }
 
 // Errors on cornell36 over core seconds, and what is seen after the shortest of these times.
-void tell_times(Report& report, const Plan& plan, const std::vector<Measured>& longest,
-                const Pair& reference) {
+void tell_times(Report& report, const std::vector<Measured>& longest, const Pair& reference) {
     Svg sheet(860, 400);
     std::vector<Picture> pictures;
     {
@@ -235,37 +211,36 @@ void tell_times(Report& report, const Plan& plan, const std::vector<Measured>& l
                   {"error (d_rel)", 0.005, 0.5}, "cornell36, 256 × 128 pixels");
         for (size_t k = 0; k < 4; ++k) {  // all but the last
             std::vector<double> x, y;
-            for (const char* seconds : {"0.3", "1.2"}) {
-                const Measured m = measure(plan, "cornell36", methods[k], seconds, reference);
+            for (double seconds : {0.3, 1.2}) {
+                const Measured m = measure("cornell36", methods[k], seconds, reference);
                 x.push_back(m.pair.core_seconds()), y.push_back(m.error.d_rel());
-                const Rendering& r = m.pair.run[0];
+                const Drawn& r = m.pair.run[0];
                 if (x.size() == 1 && k < 2)
-                    pictures.push_back(
-                        {r.image, methods[k],
-                         text("%.0f samples, %.2f core s, d_rel %s", double(r.samples()),
-                              r.core_seconds(), percent(y[0]))});
+                    pictures.push_back({r.image, method_names[k],
+                                        text("%.0f samples, %.2f core s, d_rel %s", r.samples,
+                                             r.core_seconds, percent(y[0]))});
             }
             x.push_back(longest[k].pair.core_seconds()), y.push_back(longest[k].error.d_rel());
-            plot.curve(x, y, {.colour = svg::colours[k]}, methods[k]);
+            plot.curve(x, y, {.colour = svg::colours[k]}, method_names[k]);
         }
     }  // its labels are written
     report.picture("indirect-time", sheet, "Error over time");
     report.picture("indirect", contact_sheet(pictures, 2, 1), "After 0.3 seconds");
 }
 
-int study(const Plan& plan) {
+int study(const Scope& plan) {
     Report report(report_folder(plan.quick), "indirect");
     report.say(R"(# Paths that end on illumination maps
 
 The light that diffuse surfaces reflect is known, but for noise and a mesh, once particles have filled
-illumination maps: R_map = ρ E / π.  `--indirect map` ends a path there after its first bounce (final
+illumination maps: R_map = ρ E / π.  `map` (`build/radiosity --final-gather`) ends a path there after its first bounce (final
 gathering), biased by the maps' error.  `control` lets Russian roulette decide whether the path goes on,
 and returns R_map + [ξ < q] / q · (R̂ − R_map) (Szécsi, Szirmay-Kalos, Kelemen 2003): unbiased, whatever
 the maps hold.  `regression` does the same with a multiple of R_map that other paths tell.  All three
 scatter light without end, as the maps do, and render the scene of triangles that the maps lie on.  Errors
 are d_rel = √(1/N Σ(f−g)²) / √(1/N Σf²).)");
     const auto [of_cornell, reference] = tell_errors(report, plan);
-    tell_times(report, plan, of_cornell, reference);
+    tell_times(report, of_cornell, reference);
     tell_levels(report, plan);
     tell_meshes(report, plan);
     report.say(made_by(plan.quick ? "build/indirect --quick" : "build/indirect"));
@@ -275,12 +250,9 @@ are d_rel = √(1/N Σ(f−g)²) / √(1/N Σf²).)");
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    Scope plan;
     const Lab lab{"indirect",
                   "Measures what illumination maps bring to paths that end on them.",
                   {quick_flag(plan.quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        plan.penumbra = renderer_beside(lab, argv[0]);
-        return study(plan);
-    });
+    return lab_main(argc, argv, lab, [&] { return study(plan); });
 }

@@ -1,7 +1,7 @@
 // labs/indirect_levels.h  4  variance and cost of a sample, by when paths go on beyond maps
 #pragma once
 #include "labs/illumination.h"
-#include "radiosity/gather.h"
+#include "labs/indirect_paths.h"
 
 namespace indirect {
 
@@ -94,7 +94,7 @@ inline Setup setup(const std::string& scene, uint64_t particles) {
     const Scene read = read_scene("scenes/" + scene + ".scene").scene;
     Room room = illumination::room(scene, double(diagonal(read)) / 16);
     Particles p(room.scene, room.mesh, Particles::pattern(SamplerKind::halton, 1, particles));
-    for (int b = 0; b < Particles::batches; ++b) p.add(b, Particles::of_each(particles));
+    for (size_t b = 0; b < Particles::batches; ++b) p.add(b, Particles::of_each(particles));
     KnownLight known = known_light(room.scene, room.mesh, p.map());
     return {std::move(room), std::move(known)};
 }

@@ -68,6 +68,6 @@ int run(const std::vector<std::string>& words) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return exit_status([&] { return run({argv + 1, argv + argc}); });
+int main(int argc, char** argv) try { return finished(run({argv + 1, argv + argc})); } catch (...) {
+    return failed();
 }

@@ -1,5 +1,7 @@
 // labs/lab.h  2  what experiments share: numbers of many runs, reports, renders, command lines
 #pragma once
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,8 +16,9 @@
 
 #include "base/program.h"
 #include "base/stats.h"
-#include "film/image.h"
 #include "film/passes.h"
+#include "keep/read_pfm.h"
+#include "labs/execute.h"
 #include "labs/svg.h"
 
 // ---- Numbers of many runs -----------------------------------------------------------------------
@@ -72,6 +75,8 @@ inline Image part_of(const Image& image, int left, int top, Size size) {
         for (int x = 0; x < size.width; ++x) part.at(x, y) = image.at(left + x, top + y);
     return part;
 }
+
+inline unsigned all_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
 
 // Of the processor, by all threads of this program.
 inline double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
@@ -262,33 +267,34 @@ inline void print_help(const Lab& lab) {
 }
 
 // The renderer beside this lab: build/techniques-float runs build/penumbra-float.
-inline std::string renderer_beside(const Lab& lab, const std::string& self) {
+inline std::string renderer_beside(const Lab& lab, const std::string& self,
+                                   const std::string& name = "penumbra") {
     std::filesystem::path program = self;
-    program.replace_filename(program.filename().string().replace(0, lab.name.size(), "penumbra"));
+    program.replace_filename(program.filename().string().replace(0, lab.name.size(), name));
     if (::access(program.c_str(), X_OK) != 0)
-        throw UserError(program.string() + ": cannot run; say  make build/penumbra");
+        throw UserError(program.string() + ": cannot run; say  make build/" + name);
     return program.string();
 }
 
 // A lab's main: reads its flags, then work() is its exit status.
 template <class Work>
-int lab_main(int argc, char** argv, const Lab& lab, Work work) {
-    return exit_status([&] {
-        const std::vector<std::string> words(argv + 1, argv + argc);
-        std::vector<std::string_view> known = {"--help"};
-        for (const Flag& flag : lab.flags) known.push_back(flag.name);
-        for (size_t i = 0; i < words.size(); ++i) {
-            if (words[i] == "--help") return print_help(lab), 0;
-            const auto flag = std::find_if(lab.flags.begin(), lab.flags.end(),
-                                           [&](const Flag& f) { return f.name == words[i]; });
-            if (flag == lab.flags.end()) throw UserError(unknown("option", words[i], known));
-            if (flag->value.empty()) {
-                flag->set("");
-                continue;
-            }
-            if (++i == words.size()) throw UserError(std::string(flag->name) + ": needs a value");
-            flag->set(words[i]);
+int lab_main(int argc, char** argv, const Lab& lab, Work work) try {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    std::vector<std::string_view> known = {"--help"};
+    for (const Flag& flag : lab.flags) known.push_back(flag.name);
+    for (size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "--help") return print_help(lab), 0;
+        const auto flag = std::find_if(lab.flags.begin(), lab.flags.end(),
+                                       [&](const Flag& f) { return f.name == words[i]; });
+        if (flag == lab.flags.end()) throw UserError(unknown("option", words[i], known));
+        if (flag->value.empty()) {
+            flag->set("");
+            continue;
         }
-        return work();
-    });
+        if (++i == words.size()) throw UserError(std::string(flag->name) + ": needs a value");
+        flag->set(words[i]);
+    }
+    return finished(work());
+} catch (...) {
+    return failed();
 }

@@ -5,18 +5,17 @@
 // Renders cornell36 by both cameras with Cycles (Debian's blender), with the tracer of textbook.h
 // and with penumbra, by several of its options: one thread each, in turns, the same samples.  Time
 // is that of the processor.  Nothing here fails for being slow.
-#include "app/report.h"
 #include "labs/seeds.h"
 #include "labs/textbook.h"
 #include "world/scene_file.h"
 
 namespace {
 
-const std::string folder = "build/cycles";  // rooms, references, the log of Blender
+const std::string folder = "build/cycles";  // rooms, the log of Blender
 
-struct Plan {
+struct Effort {
     bool quick = false;
-    uint64_t seeds = 3, spp = 64, reference_spp = 1024;
+    uint64_t seeds = 3, spp = 64;
 };
 
 struct View {
@@ -109,64 +108,25 @@ void add_penumbra(Series& series, const std::string& program, const View& view,
     series.seconds.push_back(r.core_seconds());
 }
 
-// Light that ends on maps has a bias.
-bool is_biased(const Choice& choice) { return choice.name.find("map") != choice.name.npos; }
-
+// One set, but for the default.
 std::vector<Choice> choices() {
-    std::vector<Choice> all = {{"the default", {}}, choice_of("--light nee --sampler independent")};
-    for (const Choice& c : samplers()) all.push_back(c);
-    for (const char* words : {"--indirect map", "--indirect control", "--indirect regression"})
-        all.push_back(choice_of(words));
+    std::vector<Choice> all = {{"the default", choice_of("--sets adaptive").words},
+                               choice_of("--sets 1"),
+                               choice_of("--light nee --sampler independent")};
+    for (const Choice& c : alternatives("--sampler")) all.push_back(c);
     return all;
 }
 
 // ---- Errors -------------------------------------------------------------------------------------
 
-// What biased images are compared with: far more samples, of paths that do not end before their
-// light does; kept until the program changes.
-struct Reference {
-    Image image;
-    double variance = 0;  // of a number, mean over pixels and channels
-};
-
-Reference reference(const std::string& program, const View& view, const Plan& plan) {
-    const std::string stem =
-        folder + "/" + view.name + "-reference-" + std::to_string(plan.reference_spp);
-    const std::string pfm = stem + ".pfm", stats_file = stem + ".json";
-    auto older = [&](const std::string& file) {
-        return std::filesystem::last_write_time(file) < std::filesystem::last_write_time(pfm);
-    };
-    const bool kept = ::access(pfm.c_str(), R_OK) == 0 && older(program) && older(view.scene);
-    if (!kept)
-        execute({program, "--quiet", "--sets", "2", "--depth", "64", "--seed", "1000000", "--spp",
-                 std::to_string(plan.reference_spp / 2), "--stats", stats_file, "-o", pfm,
-                 view.scene});
-    const Rendering r = read_rendering(pfm);
-    double variance = 0;
-    for (double v : stats(r.stats, "variance_of_mean"))
-        variance += v / 3 * double(r.image.pixels.size());
-    return {r.image, variance};
-}
-
-// Mean squared error of a series, the bias included.
-double error_against(const Reference& truth, const Series& s, size_t without) {
-    Moments m;
-    for (size_t k = 0; k < s.images.size(); ++k)
-        if (k != without) m.add(mse(truth.image, s.images[k]) - truth.variance);
-    return m.mean;
-}
-
 struct Row {
     std::string name;
     Series series;
-    std::optional<Reference> truth;  // where the bias counts
     double mean_square = 0;
 
     // d_rel^2, of all seeds or of all but one.
     double error2(size_t without = SIZE_MAX) const {
-        const double e =
-            truth ? error_against(*truth, series, without) : variance_between(series, without);
-        return e / mean_square;
+        return variance_between(series, without) / mean_square;
     }
     double cost(size_t without) const { return error2(without) * seconds_without(series, without); }
     double mean() const {
@@ -181,15 +141,12 @@ struct Row {
 // ---- The report ---------------------------------------------------------------------------------
 
 // In turns, so that whatever else the machine does hits all alike.
-std::vector<Row> render_all(const View& view, const Plan& plan, const std::string& program,
+std::vector<Row> render_all(const View& view, const Effort& plan, const std::string& program,
                             const std::string& blender, Steps& steps) {
     const Scene scene = read_scene(view.scene).scene;
     write_file(folder + "/" + view.name + ".json", room_of(scene, plan.spp));
-    std::vector<Row> rows = {{"Cycles", {}, {}}, {"the textbook's tracer", {}, {}}};
-    for (const Choice& c : choices()) {
-        rows.push_back({"penumbra, " + c.name, {}, {}});
-        if (is_biased(c)) rows.back().truth = reference(program, view, plan);
-    }
+    std::vector<Row> rows = {{"Cycles", {}}, {"the textbook's tracer", {}}};
+    for (const Choice& c : choices()) rows.push_back({"penumbra, " + c.name, {}});
     for (uint64_t seed = 1; seed <= plan.seeds; ++seed) {
         steps.next(view.name + ", seed " + std::to_string(seed));
         add_cycles(rows[0].series, blender, view, seed);
@@ -221,7 +178,7 @@ void tell(Report& report, const View& view, const std::vector<Row>& rows) {
     report.end_of_table();
 }
 
-int run(const std::string& program, const Plan& plan) {
+int run(const std::string& program, const Effort& plan) {
     const auto blender = program_called("blender");
     if (!blender) {
         std::puts("peers: nothing is measured without Cycles: install blender (Debian: blender)");
@@ -235,11 +192,10 @@ Cycles renders the triangles of `cornell36` as it comes with Blender, on one thr
 with neither denoiser nor adaptive sampling nor clamping; the tracer of `src/labs/textbook.h` and
 penumbra on one thread, too; all with %.0f samples a pixel and %.0f seeds, in turns.  Core seconds
 of Cycles are those of %.0f samples less those of one, so that starting and reading do not count;
-penumbra's count from the start to the end of the program, the textbook's its rows alone.  d_rel is the deviation between seeds over the quadratic
-mean; where light ends on maps the bias counts, too, against %.0f samples.  Efficiency is
-1 / (d_rel² × core seconds).  ± is the standard error over seeds (jackknife).)",
-                    double(plan.spp), double(plan.seeds), double(plan.spp + 1),
-                    double(plan.reference_spp)));
+penumbra's count from the start to the end of the program, the textbook's its rows alone.  *The default* has
+more samples where noise is, all others as many everywhere.  d_rel is the deviation between seeds over the
+quadratic mean, efficiency 1 / (d_rel² × core seconds).  ± is the standard error over seeds (jackknife).)",
+                    double(plan.spp), double(plan.seeds), double(plan.spp + 1)));
     Steps steps(views.size() * plan.seeds);
     for (const View& view : views)
         tell(report, view, render_all(view, plan, program, *blender, steps));
@@ -250,9 +206,9 @@ mean; where light ends on maps the bias counts, too, against %.0f samples.  Effi
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    Effort plan;
     auto set_seeds = [&](const std::string& n) { plan.seeds = parse_count(n, 3, 100); };
-    auto make_quick = [&](auto&) { plan = {true, 3, 16, 64}; };
+    auto make_quick = [&](auto&) { plan = {true, 3, 16}; };
     const Lab lab{"peers",
                   "Measures efficiency beside Cycles, if blender is installed.",
                   {{"--seeds", "N", "renders of each (3)", set_seeds},

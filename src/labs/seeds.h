@@ -108,18 +108,11 @@ inline Choice choice_of(const std::string& name) {
 
 // What can be said after an option that has a few words to choose from, but for the default.
 inline std::vector<Choice> alternatives(const std::string& name) {
+    Options o;
+    OptionTable table = option_table(o);
+    const Option& option = row(table, name);
     std::vector<Choice> choices;
-    for (const auto& row : option_table)
-        if (row.name == name)
-            for (const std::string_view word : option::words_of(row.value))
-                if (word != row.otherwise)
-                    choices.push_back(choice_of(name + " " + std::string(word)));
-    return choices;
-}
-
-// Unbiased samplers beside the default.
-inline std::vector<Choice> samplers() {
-    std::vector<Choice> choices = alternatives("--sampler");
-    std::erase_if(choices, [](const Choice& c) { return c.words[1] == "halton-naive"; });
+    for (const Text word : words_of(option.value))
+        if (word != option.otherwise) choices.push_back(choice_of(name + " " + std::string(word)));
     return choices;
 }

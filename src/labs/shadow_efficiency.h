@@ -21,14 +21,14 @@ struct Costs {
 };
 
 // Variances of the mean of the channels, from seed to seed.
-inline void measure(Costs& c, const Regions& regions, const Plan& plan, Row words) {
+inline void measure(Costs& c, const Regions& regions, const ShadowPlan& plan, Row words) {
     std::array<std::vector<Moments>, 4> pixels;
     pixels.fill(std::vector<Moments>(regions.of.size()));
     for (uint64_t seed = 0; seed < plan.seeds; ++seed)
         for (size_t e = 0; e < 4; ++e) {
             Row all = words;
             all.insert(all.end(),
-                       {"--direct", estimator_names[e], "--seed", std::to_string(100 + seed)});
+                       {"--estimator", estimator_names[e], "--seed", std::to_string(100 + seed)});
             const Rendering r = rendering(plan.renderer, all);
             c.seconds[e] += r.core_seconds();
             for (size_t i = 0; i < regions.of.size(); ++i) {
@@ -54,9 +54,8 @@ inline std::string triple(const Costs& c, size_t region) {
 }
 
 inline std::vector<Costs> print_scene(Report& report, const std::string& scene,
-                                      const std::string& depth, const Plan& plan) {
-    const Stage v =
-        load(scene, Polygons::angle, scene == "cornell" ? 2 * plan.shrink : plan.shrink);
+                                      const std::string& depth, const ShadowPlan& plan) {
+    const Stage v = load(scene, scene == "cornell" ? 2 * plan.shrink : plan.shrink);
     const Regions regions = find_regions(v, plan.look / 4);
     std::vector<Costs> both;
     for (const char* sampler : {"independent", "halton"}) {
@@ -64,10 +63,6 @@ inline std::vector<Costs> print_scene(Report& report, const std::string& scene,
         c.scene = scene + (depth.empty() ? "" : ", depth " + depth);
         c.sampler = sampler;
         Row words = {"scenes/" + scene + ".scene",
-                     "--light",
-                     "nee",
-                     "--polygons",
-                     "angle",
                      "--sampler",
                      sampler,
                      "--spp",
@@ -116,11 +111,11 @@ inline void recommend(Report& report, const std::vector<Costs>& all) {
         gain("lanterns", "halton", 3)));
 }
 
-inline void print_efficiency(Report& report, const Plan& plan) {
+inline void print_efficiency(Report& report, const ShadowPlan& plan) {
     report.say("## Efficiency");
     report.say(text(
         "1 / (variance · core seconds) of whole renders over that of stochastic: control / ratio / "
-        "regression.  %d samples, quads by angle; variances of %d seeds, of the mean of the "
+        "regression.  %d samples; variances of %d seeds, of the mean of the "
         "channels, summed over a region.  Time: core seconds over stochastic's, within some 5 %% "
         "on a busy machine.  –: there are no such pixels; =: no noise in either.",
         int(plan.render_spp), int(plan.seeds)));

@@ -15,7 +15,7 @@ struct Noise {
 // `trials` estimates of `spp` samples.  The prediction is Var(w V - beta (w - U)) / spp from all of
 // the pixel's samples; where U is the same all over the pixel, Var(w V), Var(w (1 - V)), Var(w (V -
 // R)) and (1 - corr^2) Var(w V).
-inline Noise measure_noise(const Stage& v, PixelIndex p, uint64_t spp, uint64_t trials) {
+inline Noise measure_noise(const Stage& v, PixelSample p, uint64_t spp, uint64_t trials) {
     Noise noise;
     ShadowMoments all;
     Moments wV;
@@ -52,7 +52,7 @@ struct Bias {
     std::array<std::array<Moments, bias_steps>, 2> value, excess;
 };
 
-inline Bias measure_bias(const Stage& v, PixelIndex p, uint64_t trials, size_t steps) {
+inline Bias measure_bias(const Stage& v, PixelSample p, uint64_t trials, size_t steps) {
     Bias bias;
     ShadowMoments all;
     for (uint64_t i = 0; i < 4096; ++i) add(all, first_light(v, p, (uint64_t(1) << 41) + i));

@@ -1,12 +1,11 @@
 // labs/shadow_regions.h  3  where a scene is lit, in penumbra and in umbra, for shadows
 #pragma once
-#include "app/options.h"
 #include "film/passes.h"
 #include "shadow/shadow.h"
 #include "world/scene_file.h"
 
 // How much is measured.
-struct Plan {
+struct ShadowPlan {
     bool quick = false;
     std::string only = {};                // one scene
     int shrink = 2;                       // of the sides of the images that are measured
@@ -19,7 +18,7 @@ struct Plan {
 
     bool wants(const std::string& scene) const { return only.empty() || only == scene; }
 };
-inline Plan quick_plan(const std::string& only) {
+inline ShadowPlan quick_plan(const std::string& only) {
     return {true, only, 8, 128, 64, 64, 8, 2, 16, 20};
 }
 
@@ -37,16 +36,16 @@ struct Stage {
     int height() const { return scene.size.height; }
 };
 
-inline Stage load(const std::string& name, Polygons polygons, int shrink) {
-    Stage v{read_scene("scenes/" + name + ".scene").scene, {}, {SamplerKind::independent, 1}};
+inline Stage load(const std::string& name, int shrink) {
+    Stage v{read_scene("scenes/" + name + ".scene").scene,
+            {Direction::bsdf, LightMode::nee, 0},
+            {SamplerKind::independent, 1}};
     v.scene.size = {v.width() / shrink, v.height() / shrink};
-    for (Light& l : v.scene.lights) l.by_angle = polygons == Polygons::angle;
-    v.technique.light = LightMode::nee;
     return v;
 }
 
 // Direct light that the camera sees by sample i of a pixel.
-inline Shadowed first_light(const Stage& v, PixelIndex p, uint64_t i) {
+inline Shadowed first_light(const Stage& v, PixelSample p, uint64_t i) {
     const Start at = start(v.scene, v.pattern, {p.x, p.y, i});
     return shadowed(v.scene, step(v.scene, v.technique, {at.ray, at.ray.o}, at.sampler));
 }
@@ -60,8 +59,7 @@ inline void add(ShadowMoments& m, const Shadowed& s, real rgb::*channel = &rgb::
 template <class One>
 void in_parallel(size_t count, One one) {
     if (count > 0)
-        in_parallel(
-            int(count), all_cores(), [&](int k) { one(size_t(k)); }, [](double) {});
+        in_parallel(count, std::max(1u, std::thread::hardware_concurrency()), one, [](double) {});
 }
 
 enum Region { lit, penumbra, umbra, between, other };
@@ -71,11 +69,11 @@ struct Regions {
     int width = 0, height = 0;
     std::vector<Region> of;  // every pixel, row by row
 
-    Region at(PixelIndex p) const { return of[size_t(p.y * width + p.x)]; }
+    Region at(PixelSample p) const { return of[size_t(p.y * width + p.x)]; }
 
     // As evenly spread as can be.
-    std::vector<PixelIndex> pixels(Region r, size_t most) const {
-        std::vector<PixelIndex> all, some;
+    std::vector<PixelSample> pixels(Region r, size_t most) const {
+        std::vector<PixelSample> all, some;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
                 if (at({x, y}) == r) all.push_back({x, y});
@@ -91,7 +89,7 @@ struct Seen {
     double visible_part = 0;
 };
 
-inline Seen look(const Stage& v, PixelIndex p, uint64_t samples) {
+inline Seen look(const Stage& v, PixelSample p, uint64_t samples) {
     Seen seen;
     ShadowMoments m;
     for (uint64_t i = 0; i < samples; ++i) {

@@ -7,7 +7,7 @@
 template <class Paint>
 void paint_all(const Stage& v, Paint paint) {
     in_parallel(size_t(v.height()), [&](size_t y) {
-        for (int x = 0; x < v.width(); ++x) paint(PixelIndex{x, int(y)});
+        for (int x = 0; x < v.width(); ++x) paint(PixelSample{x, int(y)});
     });
 }
 
@@ -18,7 +18,7 @@ struct ShadowImages {
     Image visible;
 };
 
-inline void paint_shadows(ShadowImages& images, const Stage& v, PixelIndex p) {
+inline void paint_shadows(ShadowImages& images, const Stage& v, PixelSample p) {
     std::array<Moments, 4> values;
     ShadowMoments all;
     for (uint64_t t = 0; t < images.trials; ++t) {
@@ -45,7 +45,7 @@ inline void paint_shadows(ShadowImages& images, const Stage& v, PixelIndex p) {
 inline Svg shadow_sheet(const Stage& v) {
     const Image blank(v.width(), v.height());
     ShadowImages images{{blank, blank, blank, blank}, {blank, blank, blank, blank}, blank};
-    paint_all(v, [&](PixelIndex p) { paint_shadows(images, v, p); });
+    paint_all(v, [&](PixelSample p) { paint_shadows(images, v, p); });
     const double exposure = double(v.scene.exposure), most = 0.25;
     Svg sheet(4 * 268 + 12, 3 * 160 + 10);
     for (int e = 0; e < 4; ++e) {
@@ -70,7 +70,7 @@ inline Svg bias_sheet(const Stage& v, const Regions& regions, uint64_t trials) {
     const Map map{{"bias of ratio, thousandths of radiance", -2, 2, false}, blue_to_red};
     std::array<Image, last> images;
     images.fill(Image(v.width(), v.height()));
-    paint_all(v, [&](PixelIndex p) {
+    paint_all(v, [&](PixelSample p) {
         const Region r = regions.at(p);
         const bool biased = r == penumbra || r == between;
         const Bias bias = biased ? measure_bias(v, p, trials, last) : Bias{};

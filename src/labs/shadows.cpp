@@ -17,7 +17,7 @@ void explain(Report& report) {
         "A light sample brings w, the light that it stands for, and w V, what shadows leave of it. "
         "The mean U of w is known in closed form.  All four estimators are mean(w V) − β mean(w − "
         "U) (Heitz, Hill, McGuire 2018, and regression):");
-    report.head({"`--direct`", "β", "class", "variance × N", "bias × N"});
+    report.head({"`--estimator`", "β", "class", "variance × N", "bias × N"});
     report.row({"`stochastic`", "0", "unbiased", "Var(w V)", "0"});
     report.row({"`control`", "1", "unbiased", "Var(w (1 − V))", "0"});
     report.row(
@@ -66,7 +66,7 @@ std::string cell(Report& report, Region region, size_t e, const std::vector<Nois
                 report.verdict(std::abs(variance / predicted - 1) < 0.15));
 }
 
-void measure_scene(Report& report, const std::string& name, const Stage& v, Plan plan) {
+void measure_scene(Report& report, const std::string& name, const Stage& v, ShadowPlan plan) {
     // Many lights: the predictions are those of many samples.
     if (v.scene.lights.size() > 8) plan.spp *= 4, plan.trials /= 2, plan.most_pixels /= 2;
     const Regions regions = find_regions(v, plan.look);
@@ -88,7 +88,7 @@ void measure_scene(Report& report, const std::string& name, const Stage& v, Plan
     }
 }
 
-void print_noise(Report& report, const Plan& plan) {
+void print_noise(Report& report, const ShadowPlan& plan) {
     report.say("## Noise in light, penumbra and umbra");
     report.say(text(
         "Lit is where no sample is occluded, umbra where all are, penumbra where 10 to 90 %% of "
@@ -100,27 +100,20 @@ void print_noise(Report& report, const Plan& plan) {
         "pixels; sum of variances over sum of their predictions from each pixel's own w and V, "
         "which must be within 15 %%; and the part of the pixels where it is.  What is exact must "
         "be so in every pixel, bit for bit; but for blind estimates, none of whose samples found "
-        "light.  Quads are sampled uniformly by area or by angle.",
+        "light.",
         int(plan.most_pixels), int(plan.spp)));
     Row head = {"scene", "region", "pixels × estimates", "blind"};
     head.insert(head.end(), std::begin(estimator_names), std::end(estimator_names));
     report.head(head);
-    for (const auto& [scene, polygons] : {std::pair{"penumbra", Polygons::area},
-                                          {"panel", Polygons::area},
-                                          {"panel", Polygons::angle},
-                                          {"lanterns", Polygons::angle}})
-        if (plan.wants(scene))
-            measure_scene(report,
-                          scene + std::string(polygons == Polygons::area ? ", area" : ", angle"),
-                          load(scene, polygons, plan.shrink), plan);
+    for (const char* scene : {"penumbra", "panel", "lanterns"})
+        if (plan.wants(scene)) measure_scene(report, scene, load(scene, plan.shrink), plan);
     report.end_of_table();
     report.say(
         "Control is not always the noisier one in a penumbra: it depends on whether the dimmer or "
         "the brighter part of the light is hidden.");
     for (const char* scene : {"penumbra", "lanterns"})
         if (plan.wants(scene))
-            report.picture(text("shadows-%s", scene),
-                           shadow_sheet(load(scene, Polygons::angle, plan.shrink / 2)),
+            report.picture(text("shadows-%s", scene), shadow_sheet(load(scene, plan.shrink / 2)),
                            text("%s by four estimators, and their noise", scene));
 }
 
@@ -147,8 +140,8 @@ MeanBias mean_bias(const std::vector<Bias>& pixels, size_t e, size_t step) {
     return {b.mean, std::sqrt(error2), std::sqrt(std::max(0.0, square)), std::sqrt(variance)};
 }
 
-void print_bias(Report& report, const Plan& plan) {
-    const Stage v = load("penumbra", Polygons::area, plan.shrink);
+void print_bias(Report& report, const ShadowPlan& plan) {
+    const Stage v = load("penumbra", plan.shrink);
     const Regions regions = find_regions(v, plan.look);
     const auto pixels = regions.pixels(penumbra, plan.most_pixels / 2);
     std::vector<Bias> all(pixels.size());
@@ -191,7 +184,7 @@ void print_bias(Report& report, const Plan& plan) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    ShadowPlan plan;
     bool noise = false, bias = false, efficiency = false;
     auto sets = [](bool& flag) { return [&flag](const std::string&) { flag = true; }; };
     const Lab lab{
@@ -204,7 +197,7 @@ int main(int argc, char** argv) {
          {"--quick", "", "small images; writes into out/, not reference/", sets(plan.quick)}}};
     return lab_main(argc, argv, lab, [&] {
         if (plan.quick) plan = quick_plan(plan.only);
-        plan.renderer = renderer_beside(lab, argv[0]);
+        plan.renderer = renderer_beside(lab, argv[0], "shadow");
         const bool all = !noise && !bias && !efficiency;
         Report report(report_folder(plan.quick || !all || !plan.only.empty()), "shadows");
         explain(report);

@@ -62,6 +62,12 @@ def memory():
             + table(['scene', 'size', 'sets a pixel', 'peak', 'bytes a pixel'], rows))
 
 
+def kept_anew(*base):
+    if os.path.exists(path('a.film')):
+        os.remove(path('a.film'))
+    return render('--keep', path('a.film'), *base)
+
+
 def cost():
     rows = []
     sizes = [('256x128', 64), ('1024x512', 4)]
@@ -70,13 +76,13 @@ def cost():
         for _ in range(3):
             base = ('--threads', 1, '--size', size, '--spp', spp, scene('cornell36'))
             without = render(*base)['whole']
-            kept = render('--checkpoint', path('a.film'), '--every', 1, *base)['whole']
+            kept = kept_anew(*base)['whole']
             film = os.path.getsize(path('a.film'))
             ratios.append(kept / without - 1)
         rows.append([size, spp, f'{without:.1f} s', f'{film / 1e6:.1f} MB',
                      f'{100 * statistics.median(ratios):+.1f} %',
                      f'{100 * min(ratios):+.1f} … {100 * max(ratios):+.1f} %'])
-    return ('## What checkpoints cost\n\n`--checkpoint a.film --every 1`, and so at least one at the end, over the same command without: '
+    return ('## What checkpoints cost\n\n`--keep a.film`, which is written at the end at least, over the same command without: '
             'whole processes\nof one thread, in turn. At size 256x128 and 64 samples the one at the end is all of it.\n\n'
             + table(['size', 'samples', 'takes', 'file', 'more time, median', 'least … most'], rows))
 
@@ -107,18 +113,16 @@ def kills():
     options = ['--size', '64x32', '--spp', 1024, '--seed', 1, scene('cornell36')]
     whole = render(*options)
     expected, done, chains = bits('a.pfm'), 0, 0
-    every = 0.02
     while done < kills_wanted:
         if os.path.exists(path('k.film')):
             os.remove(path('k.film'))
         chains += 1
         while True:
-            resume = ['--resume', path('k.film')] if os.path.exists(path('k.film')) else []
-            process = subprocess.Popen(words('--checkpoint', path('k.film'), '--every', every, *resume, *options))
+            process = subprocess.Popen(words('--keep', path('k.film'), *options))
             try:
                 process.wait(random.uniform(0.02, 0.6))
             except subprocess.TimeoutExpired:
-                process.kill()
+                process.send_signal(random.choice([signal.SIGKILL, signal.SIGTERM]))
                 process.wait()
                 done += 1
                 continue
@@ -127,7 +131,7 @@ def kills():
         assert bits('a.pfm') == expected, 'another picture'
         left = [name for name in os.listdir(FOLDER) if '.part' in name]
         assert not left, left
-    return (f'## kill -9\n\ncornell36 at 64x32 with 1024 samples ({whole["seconds"]:.1f} s), killed at random moments '
+    return (f'## kill -9\n\ncornell36 at 64x32 with 1024 samples ({whole["seconds"]:.1f} s), killed or stopped at random moments '
             f'and resumed until it was done: **{done} kills** in\n{chains} chains of runs; every picture is that of a run without a break, '
             f'bit by bit; no file was damaged, none was left over.\n\n')
 

@@ -1,10 +1,11 @@
-// labs/techniques.cpp  4  what each of three techniques brings
+// labs/techniques.cpp  5  what each of three techniques brings
 //
 //   build/techniques [--reference FILE.pfm] [--time S] [--quick]
 //
 // Renders scenes/coursework.scene with importance sampling of the cosine (and the lobe), Halton
 // points and next-event estimation (NEE), alone and together, and compares the images with a
 // reference.  Exit status 1 if an image's mean is not the reference's.
+#include "labs/p_of_z.h"
 #include "labs/technique_renders.h"
 
 namespace {
@@ -197,7 +198,7 @@ A first attempt uses bases 2 and 3 again at every bounce and the same points in 
         times(halton)));
 }
 
-int study(const std::string& program, const Plan& plan) {
+int study(const std::string& program, const Effort& plan) {
     Report report(report_folder(plan.quick), "techniques");
     const Study s = render_all(program, plan);
     tell_what(report, s);
@@ -212,7 +213,7 @@ int study(const std::string& program, const Plan& plan) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    Effort plan;
     auto set_seconds = [&](const std::string& s) {
         plan.seconds = parse_number(s);
         if (!(plan.seconds > 0)) throw UserError("--time: " + in_quotes(s) + " is not positive");

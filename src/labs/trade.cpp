@@ -2,9 +2,9 @@
 //
 //   build/trade [--float PROGRAM] [--scene NAME] [--full] [--quick] [--page]
 //
-// Every scene by all samplers, --light, --direct, --indirect and both precisions, at five sample
-// counts, in a tournament; and by the methods of build/radiosity.  Writes a report, and what was
-// measured into out/trade/, from which --page writes report and page again.
+// Every scene by all samplers, --light and both precisions, at five sample counts, in a tournament.
+// Writes a report, and what was measured into out/trade/, from which --page writes report and page
+// again.
 #include "labs/seeds.h"
 #include "labs/trade_file.h"
 #include "labs/trade_page.h"
@@ -17,10 +17,10 @@ using namespace trade;
 
 const std::string folder = "out/trade";
 
-Trade measured(Plan plan, const std::string& command) {
+Trade measured(Effort plan, const std::string& command) {
     if (plan.scenes.empty()) plan.scenes = all_scenes();
     Trade t;
-    t.default_words = written({});
+    t.default_words = default_words();
     t.command = command;
     Steps steps(plan.scenes.size());
     for (const std::string& name : plan.scenes) {
@@ -42,23 +42,23 @@ int report_of(const Trade& t, bool quick) {
     return report.finish();
 }
 
-void make_quick(Plan& plan) {
+void make_quick(Effort& plan) {
     plan.quick = true;
     plan.counts = {1, 4, 16};
     plan.part = 4;
-    plan.tournament = 5, plan.reference = 1, plan.radiosity = 0.5;
+    plan.tournament = 5, plan.reference = 1;
 }
 
-void make_full(Plan& plan) {
+void make_full(Effort& plan) {
     plan.counts.push_back(1024);
     plan.seeds = 2;
-    plan.tournament *= 6, plan.reference *= 6, plan.radiosity *= 6;
+    plan.tournament *= 6, plan.reference *= 6;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Plan plan;
+    Effort plan;
     bool page = false;
     std::string list;
     const Lab lab{

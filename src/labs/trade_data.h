@@ -6,7 +6,7 @@
 
 #include "film/image.h"
 
-// One sample count of one setting (of `radiosity` the particles, or 1 / unshot).  The error is
+// One sample count of one setting.  The error is
 // d_rel (Khodulev 1996, ch. 5), bias included where the setting is biased, NAN if it is smaller
 // than what the reference shows; seconds are of one core, for an image of the size that the file
 // gives.
@@ -14,7 +14,7 @@ struct TradePoint {
     double spp = 0, seconds = 0, error = 0, error_se = 0;
 };
 
-// Words after `penumbra` (or `radiosity`) and the scene.
+// Words after `penumbra` and the scene.
 struct TradeSetting {
     std::string words;
     bool is_float = false, unbiased = true, takes_every_scene = true;

@@ -134,7 +134,7 @@ void each_image(T& trade, const std::string& folder, With with) {
 // FOLDER/trade.rows, and images beside it.
 inline void write_trade(const Trade& trade, const std::string& folder) {
     trade_file::each_image(trade, folder, [](const std::string& file, const Image& image) {
-        if (!image.pixels.empty()) write_file(file, encode_pfm(image));
+        if (!image.pixels.empty()) write_image(file, image, 1);
     });
     write_file(folder + "/trade.rows", trade_file::encode(trade));
 }

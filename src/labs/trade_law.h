@@ -28,13 +28,10 @@ inline void fit(TradeSetting& s) {
     s.spread = std::sqrt(squares);
 }
 
-// Of radiosity, which takes no samples of pixels.
-inline bool is_radiosity(const TradeSetting& s) { return s.words.starts_with("radiosity"); }
-
 // What one sample a pixel costs: nothing is cheaper.
 inline double least_seconds(const TradeSetting& s) {
     const TradePoint& first = s.points.front();
-    return is_radiosity(s) ? first.seconds : first.seconds / std::max(1.0, first.spp);
+    return first.seconds / std::max(1.0, first.spp);
 }
 
 // Whether its error goes on falling as the law says: a bias, or rounding in float, does not.

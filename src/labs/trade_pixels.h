@@ -6,6 +6,7 @@
 #pragma once
 #include <cstdlib>
 
+#include "base/vec.h"
 #include "labs/maps.h"
 
 // |f|, of all channels of all pixels; 1 if all are black, so that nothing is divided by it.

@@ -8,15 +8,12 @@
 
 namespace trade {
 
-// "sobol mis map", "hierarchy": without what all have; " in float".
+// "sobol mis": without what all have; ", float".
 inline std::string short_name(const std::string& words, bool is_float) {
     std::istringstream in(words);
     std::string name;
     for (std::string word; in >> word;)
-        if (!word.starts_with("--") && word != "radiosity")
-            name += (name.empty() ? "" : " ") + word;
-    if (words.find("--indirect control") != words.npos) name += " maps";
-    if (words.find("--indirect regression") != words.npos) name += " maps";
+        if (!word.starts_with("--")) name += (name.empty() ? "" : " ") + word;
     if (words.find("--sets ") != words.npos) name += " set";
     return name + (is_float ? ", float" : "");
 }
@@ -231,9 +228,8 @@ inline void tell(Report& report, const Trade& t) {
 What error takes what time, by each setting, so that a user may choose.  Errors are
 d_rel = √(1/N Σ(f−g)²) / √(1/N Σf²) (Khodulev 1996, ch. 5) against long runs f whose own error is known and
 taken off; bias is in them.  Seconds are core seconds of whole images, without
-reading the scene.  Differences of a few per cent between settings are noise.  Where all is diffuse light is
-scattered without end, as maps do it.  Settings are named by what stands after their options, "maps" after
---indirect, "1 set" without more samples where noise is, "float" the other precision.)");
+reading the scene.  Differences of a few per cent between settings are noise.  Settings are named by what
+stands after their options, "1 set" without more samples where noise is, "float" the other precision.)");
     tell_answers(report, t);
     report.picture("trade", curves(t), "Error over core seconds; grey: all other settings");
     tell_default(report, t);

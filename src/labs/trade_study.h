@@ -1,20 +1,19 @@
 // labs/trade_study.h  6  the measurement: a scene's reference, its tournament, its pictures
 #pragma once
+#include "labs/trade_errors.h"
 #include "labs/trade_law.h"
-#include "labs/trade_radiosity.h"
+#include "labs/trade_runs.h"
 
 namespace trade {
 
-struct Plan {
+struct Effort {
     bool quick = false;
     std::string float_program;
     std::vector<std::string> scenes = {};  // none: all
     std::vector<uint64_t> counts = {1, 4, 16, 64, 256};
     uint64_t seeds = 1;
-    int part = 1;  // of the scenes' widths and heights
-    // Core seconds a scene may take: the tournament, the reference; and by the clock, a method of
-    // radiosity.
-    double tournament = 150, reference = 30, radiosity = 5;
+    int part = 1;                             // of the scenes' widths and heights
+    double tournament = 150, reference = 30;  // core seconds a scene may take
 };
 
 // Seeds of runs, pictures and references: none is used twice.
@@ -25,15 +24,14 @@ inline constexpr uint64_t first_seed = 1, picture_seed = 500, reference_seed = 1
 // Eight runs of the default, of as many samples as the seconds allow, a power of two.
 inline Reference long_run(const Ground& g, double core_seconds) {
     constexpr uint64_t runs = 8, pilot = 8;
-    Renderer render(g);
-    const std::string words = written({});
-    const double each = render({words, pilot, 0}).seconds() / double(pilot);
+    const std::string words = default_words();
+    const double each = taken_by(g, {words, pilot, 0}).seconds / double(pilot);
     uint64_t spp = pilot;
     while (2 * double(spp) * each * double(runs) <= core_seconds) spp *= 2;
     Series series;
     for (uint64_t k = 0; k < runs; ++k) {
-        Taken t = render({words, spp, reference_seed + k});
-        series.images.push_back(std::move(t.image)), series.seconds.push_back(t.seconds());
+        Taken t = taken_by(g, {words, spp, reference_seed + k});
+        series.images.push_back(std::move(t.image)), series.seconds.push_back(t.seconds);
     }
     return reference_of(series);
 }
@@ -42,7 +40,7 @@ inline Reference long_run(const Ground& g, double core_seconds) {
 
 // Settings of both precisions, and where they stand.
 struct Tournament {
-    const Plan& plan;
+    const Effort& plan;
     const Ground& ground;
     const Reference& reference;
     std::vector<TradeSetting> settings = {};
@@ -53,7 +51,7 @@ struct Tournament {
         for (const TradeSetting& s : more) {
             settings.push_back(s);
             Entrant e;
-            e.candidate = is_candidate(s), e.kept = s.words == written({});
+            e.candidate = is_candidate(s), e.kept = s.words == default_words();
             entrants.push_back(e);
         }
     }
@@ -84,9 +82,8 @@ inline std::vector<Series> play(Tournament& t, uint64_t spp) {
             for (size_t i = 0; i < who.size(); ++i) {
                 Series& s = series[who[i]];
                 s.images.push_back(std::move(taken[i].image));
-                s.seconds.push_back(taken[i].seconds());
-                // Four samplers share maps.
-                t.entrants[who[i]].next_cost += taken[i].rest + taken[i].maps / 4;
+                s.seconds.push_back(taken[i].seconds);
+                t.entrants[who[i]].next_cost += taken[i].seconds;
             }
         }
     return series;
@@ -111,7 +108,8 @@ inline void round_of(Tournament& t, uint64_t spp, uint64_t next) {
     drop_for_budget(t.entrants, double(spp), next == t.plan.counts.back() ? left : 0.4 * left);
 }
 
-inline std::vector<TradeSetting> tournament(const Plan& plan, const Ground& g, const Reference& f) {
+inline std::vector<TradeSetting> tournament(const Effort& plan, const Ground& g,
+                                            const Reference& f) {
     Tournament t{plan, g, f};
     t.enter(settings_of(g, false));
     if (!plan.float_program.empty()) t.enter(settings_of(g, true));
@@ -123,7 +121,7 @@ inline std::vector<TradeSetting> tournament(const Plan& plan, const Ground& g, c
 
 // Where rounding is an error of its own, beyond the noise.
 inline std::string of_float(const TradeScene& s) {
-    const size_t d = index_of(s, written({})), f = index_of(s, written({}), true);
+    const size_t d = index_of(s, default_words()), f = index_of(s, default_words(), true);
     if (d == SIZE_MAX || f == SIZE_MAX) return "";
     const double in_double = s.settings[d].points.back().error,
                  in_float = s.settings[f].points.back().error;
@@ -134,9 +132,9 @@ inline std::string of_float(const TradeScene& s) {
 
 // The default in float beside double: sums over all pixels but the brightest hundredth, whose noise
 // would hide a bias.
-inline std::string bias_of_float(const Plan& plan, const Ground& g) {
+inline std::string bias_of_float(const Effort& plan, const Ground& g) {
     if (plan.float_program.empty()) return "";
-    const std::vector<Task> task = {{written({}), 64, picture_seed}};
+    const std::vector<Task> task = {{default_words(), 64, picture_seed}};
     const Image in_double = rendered_here(g, task)[0].image,
                 in_float = rendered_by(plan.float_program, g, task)[0].image;
     auto sum = [](const auto& pixel) {
@@ -159,89 +157,63 @@ inline std::string bias_of_float(const Plan& plan, const Ground& g) {
 
 // What is shown: the default, the cheapest at 3 %, and lessons; float where that is one.
 inline std::vector<std::pair<std::string, bool>> shown(const TradeScene& s) {
-    std::vector<std::pair<std::string, bool>> list = {{written({}), false}};
+    std::vector<std::pair<std::string, bool>> list = {{default_words(), false}};
     auto add = [&](const TradeSetting& t) {
         const std::pair<std::string, bool> one{t.words, t.is_float};
-        if (!is_radiosity(t) && std::find(list.begin(), list.end(), one) == list.end())
-            list.push_back(one);
+        if (std::find(list.begin(), list.end(), one) == list.end()) list.push_back(one);
     };
     auto add_cheapest = [&](auto may) {
         const TradeAnswer a = cheapest(s, 0.03, may);
         if (a.setting != SIZE_MAX) add(s.settings[a.setting]);
     };
     add_cheapest([](const TradeSetting& t) { return !t.is_float; });
-    for (const char* kind : {"--direct ratio", "--indirect map"})
-        add_cheapest([&](const TradeSetting& t) {
-            return !t.is_float && t.words.find(kind) != t.words.npos;
-        });
     for (const char* words :
-         {"--sampler independent --light none", "--sampler independent --light nee",
-          "--sampler halton-naive --light nee"})
+         {"--sampler independent --light none", "--sampler independent --light nee"})
         if (const size_t k = index_of(s, words); k != SIZE_MAX) add(s.settings[k]);
-    if (const size_t k = index_of(s, written({}), true); k != SIZE_MAX && !of_float(s).empty())
+    if (const size_t k = index_of(s, default_words(), true); k != SIZE_MAX && !of_float(s).empty())
         add(s.settings[k]);
     return list;
 }
 
 // Seconds a picture takes: as many as the default needs for 3 %, in reason.
 inline double seconds_of_pictures(const TradeScene& s) {
-    const size_t own = index_of(s, written({}));
+    const size_t own = index_of(s, default_words());
     const double t = own == SIZE_MAX ? NAN : seconds_for(s.settings[own], 0.03);
     return std::isnan(t) ? 1 : std::clamp(t, 0.1, 1.0);
 }
 
-inline TradePicture picture(const Plan& plan, const Ground& g, const TradeSetting& s,
+inline TradePicture picture(const Effort& plan, const Ground& g, const TradeSetting& s,
                             double seconds) {
     const TradePoint& last = s.points.back();
     const auto spp = uint64_t(std::max(1.0, std::round(seconds * last.spp / last.seconds)));
     const std::vector<Task> task = {{s.words, spp, picture_seed}};
     std::vector<Taken> t =
         s.is_float ? rendered_by(plan.float_program, g, task) : rendered_here(g, task);
-    return {s.words, s.is_float, t[0].seconds(), NAN, std::move(t[0].image)};
+    return {s.words, s.is_float, t[0].seconds, NAN, std::move(t[0].image)};
 }
 
-inline void add_pictures(const Plan& plan, const Ground& g, const Reference& f,
-                         const std::vector<Method>& methods, TradeScene& s) {
+inline void add_pictures(const Effort& plan, const Ground& g, const Reference& f, TradeScene& s) {
     const double seconds = seconds_of_pictures(s);
     for (const auto& [words, is_float] : shown(s)) {
         const TradeSetting& setting = s.settings[index_of(s, words, is_float)];
         if (!setting.points.empty()) s.pictures.push_back(picture(plan, g, setting, seconds));
-    }
-    for (const Method& m : methods) {  // the one nearest in time
-        auto off = [&](const Look& l) { return std::abs(std::log(l.point.seconds / seconds)); };
-        const auto l = std::min_element(m.looks.begin(), m.looks.end(),
-                                        [&](auto& a, auto& b) { return off(a) < off(b); });
-        if (l != m.looks.end())
-            s.pictures.push_back({m.setting.words, false, l->point.seconds, NAN, l->image});
     }
     for (TradePicture& p : s.pictures) p.error = error_of({p.image}, f).value;
 }
 
 // ---- A scene ------------------------------------------------------------------------------------
 
-inline std::string remark(const Ground& g) {
-    if (!g.diffuse) return "";
-    std::string words =
-        text("Diffuse: light is scattered up to %d times, whatever the file says.", without_end);
-    if (!g.faceted.empty())
-        words += " --indirect and radiosity take its spheres for icospheres, which is their bias.";
-    return words;
-}
-
-inline TradeScene study(const Plan& plan, const std::string& name) {
+inline TradeScene study(const Effort& plan, const std::string& name) {
     const Ground g = ground_of(name, plan.part);
     const Reference reference = long_run(g, plan.reference);
-    TradeScene s{name, remark(g)};
+    TradeScene s{name};
     s.width = g.scene.size.width, s.height = g.scene.size.height;
     s.exposure = double(g.scene.exposure);
     s.reference = reference.image, s.reference_error = reference.error;
     s.settings = tournament(plan, g, reference);
     for (TradeSetting& setting : s.settings) fit(setting);
-    std::vector<Method> methods;
-    if (g.diffuse) methods = by_radiosity(g, reference, plan.radiosity);
-    for (Method& m : methods) fit(m.setting), s.settings.push_back(m.setting);
-    s.answers = answers_of(s, written({}));
-    add_pictures(plan, g, reference, methods, s);
+    s.answers = answers_of(s, default_words());
+    add_pictures(plan, g, reference, s);
     s.remark += of_float(s) + bias_of_float(plan, g);
     constexpr double coarse = 0.05;
     if (reference.error > coarse)

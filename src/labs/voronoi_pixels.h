@@ -1,9 +1,10 @@
-// labs/voronoi_pixels.h  3  pixels by samples that weigh as their Voronoi cells do, for voronoi
+// labs/voronoi_pixels.h  3  pixels by samples that weigh as their Voronoi cells do, for
+// voronoi_weights
 #pragma once
 #include <ctime>
 
-#include "app/summary.h"
 #include "base/stats.h"
+#include "keep/keep.h"
 #include "labs/lab.h"
 #include "path/pathtracer.h"
 #include "path/start.h"
@@ -18,7 +19,7 @@ inline constexpr std::array weightings = {Weighting::mc, Weighting::vor, Weighti
 inline constexpr const char* names[] = {"mc", "vor", "fvor", "cvor", "torus", "stratified"};
 inline constexpr size_t mc = 0, vor = 1, cvor = 3, stratified = 5, techniques = 6;
 
-struct Plan {
+struct Scope {
     bool quick = false;
     Size size = {256, 256};  // as published
     uint64_t most = 256;     // samples a pixel
@@ -33,7 +34,7 @@ inline constexpr const char* region_names[] = {"border of the light", "ball", "o
                                                "one diffuse surface"};
 
 // By what 64 camera rays meet.
-inline Region region_of(const Scene& scene, PixelIndex p) {
+inline Region region_of(const Scene& scene, PixelSample p) {
     bool emits = false, dark = false, sphere = false, other = false;
     uint32_t first = UINT32_MAX;
     vec3 n;
@@ -63,7 +64,7 @@ struct Samples {
     std::vector<rgb> L;
 };
 
-inline Samples draw_samples(const Scene& scene, const Pattern& pattern, PixelIndex p, uint64_t n) {
+inline Samples draw_samples(const Scene& scene, const Pattern& pattern, PixelSample p, uint64_t n) {
     Samples s;
     for (uint64_t i = 0; i < n; ++i) {
         const Start at = start(scene, pattern, {p.x, p.y, i});
@@ -90,7 +91,7 @@ inline Mean weighted(Weigher& weigher, size_t t, const Samples& s, SampleSet set
     return weighted_mean(weigher(weightings[t], {s.places.data() + set.first, set.n}, key),
                          s.L.data() + set.first);
 }
-inline Mean by_strata(const Scene& scene, uint64_t seed, PixelIndex p, uint64_t n) {
+inline Mean by_strata(const Scene& scene, uint64_t seed, PixelSample p, uint64_t n) {
     const Pattern strata = make_pattern(SamplerKind::stratified, seed, scene.depth, n);
     const Samples s = draw_samples(scene, strata, p, n);
     return weighted_mean(std::vector<double>(n, 1 / double(n)), s.L.data());
@@ -103,24 +104,34 @@ struct Reference {
     Mean mean{};         // of noise, a channel each
 };
 
-// The image by the best that we have.  Its error: the variance of its mean, from its sets, is the
-// sum over pixels; how pixels share in it, an image of the variance of fewer samples tells.
+// The variance of each pixel of a film.
+inline Image variance_of(const std::string& path, Size size) {
+    FilmPixels film(path, size);
+    Image image(size.width, size.height);
+    for (auto& pixel : image.pixels) {
+        const Pixel p = film.next();
+        for (size_t c = 0; c < 3; ++c) pixel[c] = float(p.variance(c));
+    }
+    return image;
+}
+
+// The image by the best that we have.  Its error: the variance of its mean, from its replications,
+// is the sum over pixels; a film of fewer samples tells how pixels share in it.
 inline Reference read_reference(const std::string& name, Size size) {
     const std::string options = text(" --sampler halton --roulette 0 --seed 1000 --size %dx%d",
                                      size.width, size.height),
                       stem = text("reference/%s-%d", name, size.width), file = stem + ".pfm",
-                      json = stem + ".json", variance = stem + "-variance.pfm",
+                      json = stem + ".json", variance = text("out/%s-%d.film", name, size.width),
                       scene = " scenes/" + name + ".scene";
     for (const std::string& needed : {file, json, variance})
         if (!std::filesystem::exists(needed))
-            throw UserError(needed + ": missing; make it by\n  build/penumbra --sets 2 --spp 4096" +
+            throw UserError(needed + ": missing; make it by\n  build/penumbra --sets 2 --spp 8192" +
                             options + " -o " + file + " --stats " + json + scene +
-                            "\n  build/penumbra --view variance --spp 256" + options + " -o " +
-                            variance + scene);
-    Reference r{read_pfm(file), read_pfm(variance)};
-    for (const Image* image : {&r.image, &r.noise})
-        if (image->width != size.width || image->height != size.height)
-            throw UserError(file + ": of another size");
+                            "\n  build/penumbra --sets 2 --spp 256" + options + " --keep " +
+                            variance + " -o out/" + name + ".png" + scene);
+    Reference r{read_pfm(file), variance_of(variance, size)};
+    if (r.image.width != size.width || r.image.height != size.height)
+        throw UserError(file + ": of another size");
     const std::vector<double> of_mean = stats(read_file(json), "variance_of_mean");
     const double count = double(r.image.pixels.size());
     for (size_t c = 0; c < 3; ++c) {
@@ -194,7 +205,7 @@ inline uint64_t sets(uint64_t most, uint64_t n) {
 
 // All techniques get the same samples of a pixel, but for strata.
 inline void measure_pixel(Result& r, std::vector<std::array<Tally, techniques>>& tallies,
-                          Weigher& weigher, PixelIndex p, uint64_t most) {
+                          Weigher& weigher, PixelSample p, uint64_t most) {
     const Region region = region_of(r.scene, p);
     const auto &truth = r.reference.image.at(p.x, p.y), &noise = r.reference.noise.at(p.x, p.y);
     double start = thread_seconds();
@@ -227,25 +238,23 @@ inline void measure_pixel(Result& r, std::vector<std::array<Tally, techniques>>&
             r.variance[t].at(p.x, p.y)[c] = float(spread[t][c].variance());
 }
 
-inline Result measure(const std::string& name, const Plan& plan) {
+inline Result measure(const std::string& name, const Scope& plan) {
     Result r{name, read_scene("scenes/" + name + ".scene").scene, read_reference(name, plan.size)};
     r.scene.size = plan.size;
     for (uint64_t n = 64; n <= plan.most; n *= 4) r.ns.push_back(n);
     r.of.resize(r.ns.size());
     r.variance.fill(Image(plan.size.width, plan.size.height));
     std::mutex mutex;
-    SampleProgress progress({plan.most, 0}, false);
-    auto row = [&](int y) {
+    auto row = [&](size_t y) {
         Weigher weigher;
         std::vector<std::array<Tally, techniques>> mine(r.ns.size());
         for (int x = 0; x < plan.size.width; ++x)
-            measure_pixel(r, mine, weigher, {x, y * plan.every}, plan.most);
+            measure_pixel(r, mine, weigher, {x, int(y) * plan.every}, plan.most);
         std::lock_guard lock(mutex);
         for (size_t k = 0; k < mine.size(); ++k)
             for (size_t t = 0; t < techniques; ++t) r.of[k][t].merge(mine[k][t]);
     };
-    in_parallel(plan.size.height / plan.every, all_cores(), row,
-                  [&](double part) { progress.show(part * double(plan.most)); });
+    in_parallel(size_t(plan.size.height / plan.every), all_cores(), row, [](double) {});
     return r;
 }
 

@@ -19,8 +19,7 @@ enum class LightMode {
 struct Technique {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
-    real roulette = 0;  // Russian roulette for paths of a throughput below this; 0: never
-    Pick pick = Pick::place;
+    real roulette = real(0.25);  // Russian roulette for paths of a throughput below this; 0: never
 };
 
 // A path's numbers stay in registers only if its loop is compiled as one function: its parts, which
@@ -75,15 +74,14 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     if (t.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
     const bool one = scene.lights.size() == 1;
     const real u_pick = one ? 0 : sampler.choice(vertex, Draw::pick);
-    const LightPick chosen =
-        one ? LightPick{} : choose_light(scene, t.pick, x.at.p, x.local.n, u_pick);
+    const LightPick chosen = one ? LightPick{} : choose_light(scene, x.at.p, x.local.n, u_pick);
     const Light& light = scene.lights[chosen.light];
     const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
     if (!s) return {};
     const vec3 wi = x.local.to_local(s->wi);
     const rgb f = eval(m, x.wo, wi);
     if (max_of(f) <= 0) return {};
-    // BEGIN SOLUTION 3.3  what arrives by one light sample, and goes on to wo
+    // exercise 3.3
     // f L cos / pdf where nothing is in the way; pdf is of the light and of the point on it.
     const real pdf_light = chosen.pick * s->pdf;
     const bool share = t.light == LightMode::mis && !s->delta;
@@ -91,14 +89,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     const bool occluded = scene.bvh.occluded(spawn_to(x.at, s->at));
     const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
     return {L, &light, *s, wi.z, pdf_light, weight, occluded};
-    // STUB  shines through everything, and gives a tenth of its radiance, however small it is
-    // const real pdf_light = 10;
-    // const bool share = t.light == LightMode::mis && !s->delta;
-    // const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
-    // const bool occluded = false;
-    // const rgb L = f * s->L * (wi.z * real(0.1));
-    // return {L, &light, *s, wi.z, pdf_light, weight, occluded};
-    // END SOLUTION
+    // end
 }
 
 // ---- One vertex ---------------------------------------------------------------------------------
@@ -131,18 +122,15 @@ struct Step {
 // Weight of emission that a ray met by chance, beside light found by aiming.
 inline real weight_of_emission(const Scene& scene, const Technique& t, const Segment& s,
                                const Vertex& x) {
-    // BEGIN SOLUTION 3.4  the weight of light that is met by chance
+    // exercise 3.4
     if (t.light == LightMode::none || std::isinf(s.pdf)) return 1;
     const size_t i = size_t(scene.light_of[x.hit.id]);
-    const real pick = pick_of(scene, t.pick, i, s.from, s.n);
+    const real pick = pick_of(scene, i, s.from, s.n);
     const real pdf = pick * pdf_light(scene.lights[i], s.from, x.at);
     // 0 where light samples do not go: the inside of a two-sided sphere light.
     if (t.light == LightMode::nee) return pdf > 0 ? 0 : 1;
     return power_heuristic(s.pdf, pdf);
-    // STUB  half of it, wherever the light could be aimed at
-    // const bool aimed_at = t.light != LightMode::none && s.k > 0 && !scene.lights.empty();
-    // return aimed_at && x.material->emits() ? real(0.5) : 1;
-    // END SOLUTION
+    // end
 }
 
 // The rendering equation (Kajiya 1986) at one vertex x:
@@ -172,13 +160,11 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
     e.wi = x.local.to_world(b.wi);
     if (ends(max_of(b.f) <= 0, "nothing is reflected that way")) return e;
-    // BEGIN SOLUTION 3.2  what the eye gets of light that comes along the next ray
+    // exercise 3.2
     // The product of f |cos| / pdf over all scatterings.
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
-    // STUB  half of what it got before, whatever the surface
-    // rgb beta = s.beta * real(0.5);
-    // END SOLUTION
-    // BEGIN SOLUTION 3.5  ending the dim, and paying for it
+    // end
+    // exercise 3.5
     // Arvo, Kirk 1990.  Those that are left have at least t.roulette.
     if (max_of(beta) < t.roulette) {
         const real survival = max_of(beta) / t.roulette;
@@ -186,9 +172,7 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
         if (ends(u_survival >= survival, "Russian roulette")) return e;
         beta /= survival;
     }
-    // STUB  ends all that are dim: what they would have brought is lost
-    // if (ends(max_of(beta) < t.roulette, "Russian roulette")) return e;
-    // END SOLUTION
+    // end
     e.next = {spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1, x.local.n};
     return e;
 }
@@ -204,7 +188,7 @@ struct NoAccount {
 template <class Account = NoAccount>
 rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
        Account account = {}) {
-    // BEGIN SOLUTION 3.1  the radiance of a path, from vertex to vertex
+    // exercise 3.1
     rgb L;
     for (Segment s{ray, ray.o};;) {
         const Step e = step(scene, t, s, sampler);
@@ -214,12 +198,7 @@ rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sa
         if (e.end) return L;
         s = e.next;
     }
-    // STUB  the first vertex alone: what it emits, and what lights that are aimed at send there
-    // const Segment s{ray, ray.o};
-    // const Step e = step(scene, t, s, sampler);
-    // account(s, e);
-    // return e.Le + e.direct.L;
-    // END SOLUTION
+    // end
 }
 
 #undef PART

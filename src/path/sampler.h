@@ -11,9 +11,7 @@ enum class SamplerKind {
     independent,  // every number for itself
     stratified,   // jittered grids, shuffled
     halton,       // scrambled Halton points, every pixel its own randomisation
-    sobol,        // Sobol' points, every pixel and every pair of numbers its own randomisation
-    halton_naive  // as often met: the same points in every pixel and at every bounce; biased.
-                  // One number: base 2; two: bases 2, 3 (three would add 5: none are drawn here)
+    sobol         // Sobol' points, every pixel and every pair of numbers its own randomisation
 };
 
 // What each number of a path is for: dimension(k, what) at vertex k, the first surface being 0.
@@ -27,8 +25,8 @@ inline constexpr uint32_t dimension(int vertex, Draw what) {
 struct Pattern {
     SamplerKind kind = SamplerKind::sobol;
     uint64_t seed = 0;
-    uint32_t columns = 1, rows = 1;  // stratified: of a grid
-    std::vector<Base> bases = {};    // halton: one prime a dimension
+    uint32_t columns = 1, rows = 1;    // stratified: of a grid
+    std::vector<uint32_t> bases = {};  // halton: one prime a dimension
 
     // Samples per pixel after which whole grids are complete.
     uint64_t period() const { return uint64_t(columns) * rows; }
@@ -46,9 +44,7 @@ inline uint32_t rows_of_grid(uint64_t n) {
 // (unknown).  Before its last pass is complete the cells are still a fair, if random, choice.
 inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth, uint64_t spp) {
     Pattern p{kind, seed};
-    if (kind == SamplerKind::halton)
-        for (uint32_t prime : first_primes(dimension(depth, Draw::light_x)))
-            p.bases.emplace_back(prime);
+    if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
     if (kind == SamplerKind::stratified) {
         p.columns = p.rows = 4;
         for (uint64_t cells = std::min<uint64_t>(spp, 256); cells > 1; --cells) {
@@ -79,21 +75,21 @@ inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
 
 // Strata: a number of part `part` of [0,1), of `parts` equal ones; and a point of cell `cell` of a
 // grid of the unit square, cell 0 ... columns * rows - 1.  The bits are random.
-// BEGIN SOLUTION 4.4  a random number in its stratum, a random point in its cell
+// exercise 4.4
 inline real in_part(uint32_t part, uint32_t parts, uint64_t bits) {
     return std::min(below_one, (real(part) + to_unit(bits)) / real(parts));
 }
 inline vec2 in_cell(uint32_t cell, uint32_t columns, uint32_t rows, uint64_t bits) {
     return {in_part(cell % columns, columns, bits), in_part(cell / columns, rows, mix(bits))};
 }
-// STUB  anywhere, whatever the stratum
-// inline real in_part(uint32_t part, uint32_t parts, uint64_t bits) {
-//     return part < parts ? to_unit(bits) : 0;
-// }
-// inline vec2 in_cell(uint32_t cell, uint32_t columns, uint32_t rows, uint64_t bits) {
-//     return {in_part(cell % columns, columns, bits), in_part(cell, columns * rows, mix(bits))};
-// }
-// END SOLUTION
+// end
+
+// Sample i of replication `set` of pixel (x, y).
+struct PixelSample {
+    int x = 0, y = 0;
+    uint64_t i = 0;
+    uint32_t set = 0;
+};
 
 // The numbers of [0,1) of one sample of one pixel, a function of (seed, pixel, set, sample,
 // dimension) alone: any thread may draw any path at any time.  Each set of a pixel's samples has a
@@ -115,19 +111,15 @@ public:
                 return in_part(cell, pattern_.columns * pattern_.rows, jitter);
             }
             case SamplerKind::halton: {
-                // BEGIN SOLUTION 4.3  numbers of its own for every pixel and dimension
+                // exercise 4.3
                 const uint64_t bits = random(dim);
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
-                // STUB  two numbers for everything, the same in every pixel
-                // return radical_inverse(pattern_.bases[dim % 2], index_);
-                // END SOLUTION
+                // end
             }
-            case SamplerKind::sobol: {
+            default: {
                 const uint64_t bits = random(dim);
                 return sobol_single(index_, bits, mix(bits));
             }
-            default:
-                return radical_inverse(2, index_);
         }
     }
 
@@ -135,8 +127,6 @@ public:
     vec2 get2(uint32_t dim) const {
         if (pattern_.kind == SamplerKind::sobol)
             return sobol_pair(index_, random(dim), random(dim + 1));
-        if (pattern_.kind == SamplerKind::halton_naive)
-            return {radical_inverse(2, index_), radical_inverse(3, index_)};
         if (pattern_.kind == SamplerKind::stratified) {
             const auto [cell, jitter] = stratum(dim);
             return in_cell(cell, pattern_.columns, pattern_.rows, jitter);

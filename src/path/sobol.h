@@ -1,5 +1,4 @@
-// path/sobol.h  1  Sobol' points in pairs: even at any number of samples, most even at powers of
-// two
+// path/sobol.h  1  Sobol' points in pairs, most even at powers of two
 #pragma once
 #include <bit>
 #include <cstdint>

@@ -3,13 +3,6 @@
 #include "path/sampler.h"
 #include "world/scene.h"
 
-// Sample i of a set of pixel (x, y).
-struct PixelSample {
-    int x, y;
-    uint64_t i;
-    uint32_t set = 0;
-};
-
 // The numbers of its path, its place in the pixel, its ray.
 struct Start {
     Sampler sampler;

@@ -69,7 +69,7 @@ Image image_of_rays(const Scene& scene, int K, unsigned threads, Value value) {
             image.at(x, y) = {float(c.x), float(c.y), float(c.z)};
         }
     };
-    in_parallel(image.height, threads, row, [](double) {});
+    in_parallel(size_t(image.height), threads, row, [](double) {});
     return image;
 }
 
@@ -82,4 +82,13 @@ inline Image irradiance_image(const Scene& scene, const Mesh& mesh, const Illumi
                               int K, unsigned threads) {
     return image_of_rays(scene, K, threads,
                          [&](const Ray& ray) { return seen_along(scene, mesh, map, ray).E; });
+}
+
+// Mean over an image, a channel at a time; NaN stays NaN.
+inline std::array<double, 3> mean_of_pixels(const Image& image) {
+    std::array<double, 3> sum{};
+    for (const auto& pixel : image.pixels)
+        for (size_t c = 0; c < 3; ++c) sum[c] += double(pixel[c]);
+    for (double& s : sum) s /= double(image.pixels.size());
+    return sum;
 }

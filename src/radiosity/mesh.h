@@ -193,10 +193,6 @@ struct Bytes {
     }
 };
 
-inline double bytes_of_machine() {
-    return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-}
-
 // Throws UserError if what is needed exceeds the memory, or the numbers that count it.
 inline void check_fits(const Scene& s, double H, const Bytes& bytes, double memory) {
     auto fits = [&](double h) {

@@ -77,7 +77,7 @@ uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hi
             balance.escaped += power;
             return k + 1;
         }
-        // BEGIN SOLUTION R.2  a particle hits, and is absorbed or goes on
+        // exercise R.2
         hit(*x, power);
         const rgb rho = x->material->kd;
         const real all = max_of(rho), survival = all < 1 ? all : white_survival;
@@ -90,11 +90,7 @@ uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hi
         power = left;
         const vec3 w = x->local.to_world(sample_cosine_hemisphere(u.scattered(k)));
         ray = spawn(x->at, w);
-        // STUB  every particle ends where it hits first
-        // hit(*x, power);
-        // balance.absorbed += power;
-        // return k + 1;
-        // END SOLUTION
+        // end
     }
 }
 
@@ -123,13 +119,6 @@ public:
         return make_pattern(kind, seed, 5, of_each(samples));
     }
 
-    // ---- As a film for render() of passes.h: blocks are batches, samples particles of each ------
-    size_t blocks() const { return batches; }
-    uint64_t samples() const { return samples_; }
-    uint64_t non_finite() const { return 0; }
-    void begin_pass(uint64_t) {}
-    void end_pass(uint64_t n) { samples_ += n; }
-
     // Walks n more particles of a batch; all but those for which there is no time after Ctrl-C.
     void add(size_t batch, uint64_t n) {
         Batch& b = batch_[batch];
@@ -147,6 +136,12 @@ public:
 
     // ---- Results --------------------------------------------------------------------------------
 
+    // Of each batch, that have all walked.
+    uint64_t of_each() const {
+        return std::min_element(batch_.begin(), batch_.end(),
+                                [](auto& a, auto& b) { return a.n < b.n; })
+            ->n;
+    }
     uint64_t particles() const {
         uint64_t n = 0;
         for (const Batch& b : batch_) n += b.n;
@@ -227,7 +222,6 @@ private:
     const Mesh& mesh_;
     const Pattern pattern_, independent_;
     std::vector<Batch> batch_;
-    uint64_t samples_ = 0;
 
     static double sum_of(rgb x) { return double(x.x) + double(x.y) + double(x.z); }
     static void add_to(Sum& sum, rgb x) {

@@ -8,6 +8,7 @@
 #pragma once
 #include <barrier>
 #include <numeric>
+#include <thread>
 #include <utility>
 
 #include "radiosity/missing.h"
@@ -211,7 +212,7 @@ private:
     rgb load(uint32_t i) {
         const Node& n = tree_[i];
         Corners& L = radiance_[i];
-        // BEGIN SOLUTION R.1  what is yet to be sent
+        // exercise R.1
         if (n.children == 0) {
             const Face& f = mesh_.faces[side_ / 2];
             const size_t own = 2 * size_t(n.first) + side_ % 2;
@@ -225,18 +226,7 @@ private:
         for (uint32_t k = n.first; k < n.first + n.children; ++k) sum += load(k) * tree_[k].area;
         L.fill(sum / n.area);
         return L[0];
-        // STUB  light of its own is sent once, and what is reflected never
-        // const Face& f = mesh_.faces[side_ / 2];
-        // const size_t own = 2 * size_t(n.first) + side_ % 2;
-        // L = {};
-        // if (n.children == 0) {
-        //     if (sent_[own] == 0) L.fill(emission(scene_, f, side_ % 2));
-        //     shot_[own] = exitance(f, n.first, side_ % 2);
-        //     sent_[own] = double(mean_of(shot_[own].mean()));
-        // }
-        // for (uint32_t k = 0; k < n.children; ++k) L.fill(L[0] + load(n.first + k) / n.children);
-        // return L[0];
-        // END SOLUTION
+        // end
     }
 
     // ---- Who receives ---------------------------------------------------------------------------

@@ -30,7 +30,7 @@ struct ShadowMoments {
 
     // In one pass (Welford 1962), and of two parts (Chan, Golub, LeVeque 1983).  Equal numbers have
     // equal means: w and w V agree to the last bit where V is 1.
-    // BEGIN SOLUTION 5.4  one more sample, and the moments of two parts together
+    // exercise 5.4
     void add(double new_U, double new_w, double new_wV) {
         const double to_U = new_U - U, to_w = new_w - w, to_wV = new_wV - wV, to_b = to_w - to_U;
         const double before = double(n), step = 1 / double(++n);
@@ -54,17 +54,7 @@ struct ShadowMoments {
                 x.b_wV + y.b_wV + to_b * to_wV * both,
                 x.b_U + y.b_U + to_b * to_U * both};
     }
-    // STUB  means alone, and of two parts the larger
-    // void add(double new_U, double new_w, double new_wV) {
-    //     ++n;
-    //     U += (new_U - U) / double(n);
-    //     w += (new_w - w) / double(n);
-    //     wV += (new_wV - wV) / double(n);
-    // }
-    // friend ShadowMoments merge(const ShadowMoments& x, const ShadowMoments& y) {
-    //     return x.n > y.n ? x : y;
-    // }
-    // END SOLUTION
+    // end
 };
 
 // The same where U is one number W: sums about it, which is all that keeps them from cancelling.
@@ -95,29 +85,23 @@ inline double stochastic(const ShadowMoments& m) { return m.wV; }
 // nothing is in the way.
 template <class T>
 T control(const T& U, const T& w, const T& wV) {
-    // BEGIN SOLUTION 5.1  make use of U, which is known, and stay unbiased
+    // exercise 5.1
     const T in_shadow = w - wV;
     return U - in_shadow;
-    // STUB  what was sampled, and nothing of what is known
-    // (void)U, (void)w;
-    // return wV;
-    // END SOLUTION
+    // end
 }
 inline double control(const ShadowMoments& m) { return control(m.U, m.w, m.wV); }
 
 // visible_part: R from these samples; 0 if none of them found any light.  ratio: consistent;
 // exactly U where nothing is in the way, and 0 where everything is.
-// BEGIN SOLUTION 5.2  the part of the light that is visible, and an estimate of S by it
+// exercise 5.2
 inline double visible_part(const ShadowMoments& m) { return m.w > 0 ? m.wV / m.w : 0; }
 inline double ratio(const ShadowMoments& m) { return m.U * visible_part(m); }
-// STUB  all of the light or none; and what was sampled
-// inline double visible_part(const ShadowMoments& m) { return m.wV > 0 ? 1 : 0; }
-// inline double ratio(const ShadowMoments& m) { return m.wV; }
-// END SOLUTION
+// end
 
 // Consistent.  Exact, as ratio is, where all is lit and where nothing is.
 inline double regression(const ShadowMoments& m) {
-    // BEGIN SOLUTION 5.3  as much of the correction as these samples suggest
+    // exercise 5.3
     // Where U differs from sample to sample it is no news that w V follows it: beta is the slope of
     // w V - R U on b, which leaves fully lit and fully dark pixels as free of noise as ratio does.
     // Written as a correction of ratio: mean(w V) = R mean(w).  Of a few samples beta has no
@@ -125,9 +109,7 @@ inline double regression(const ShadowMoments& m) {
     if (m.n < 8 || !(m.bb > 0)) return ratio(m);
     const double R = visible_part(m), beta = (m.b_wV - R * m.b_U) / m.bb;
     return m.U * R + (R - beta) * (m.w - m.U);
-    // STUB  what was sampled
-    // return m.wV;
-    // END SOLUTION
+    // end
 }
 
 inline double estimate(Estimator e, const ShadowMoments& m) {

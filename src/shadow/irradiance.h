@@ -78,7 +78,7 @@ inline real irradiance_by_area(const Polygon& p) {
 // By a sum over the edges, exact for polygons of any size (Lambert 1760; Arvo 1995, thesis, sec.
 // 3). The sum cancels: its error is some ulp over the angle.
 inline real irradiance_lambert(const Polygon& p) {
-    // BEGIN SOLUTION 5.5  a sum over the edges
+    // exercise 5.5
     // E / L = 1/2 |sum of Theta (Gamma)_z|, Theta the angle under which an edge is seen and Gamma
     // the unit normal of its plane with the receiver.
     real sum = 0;
@@ -91,9 +91,7 @@ inline real irradiance_lambert(const Polygon& p) {
         a = b;
     }
     return std::abs(sum) / 2;
-    // STUB  as if all polygons were small
-    // return irradiance_by_area(p);
-    // END SOLUTION
+    // end
 }
 
 // A polygon of three or four corners, whichever side it shows; each formula where it is the better.

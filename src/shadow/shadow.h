@@ -5,7 +5,7 @@
 // mirror.  All else stays as sampled and is added: Phong lobes, later vertices of a path, point
 // lights, the inside of spheres, and lights nearer to their receiver than rounding.
 #pragma once
-#include "film/film.h"
+#include "film/passes.h"
 #include "path/pathtracer.h"
 #include "path/start.h"
 #include "shadow/estimators.h"
@@ -73,18 +73,15 @@ struct ShadowSample {
     Shadowed first;
 };
 
-// By steps as Li adds them up, and by the control variate if that is the estimator.  Unbiased.
+// By steps as Li adds them up.
 template <class Account>
-ShadowSample shadow_Li(const Scene& scene, const Technique& t, Estimator estimator, const Start& at,
-                       Account account) {
+ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, Account account) {
     ShadowSample sample;
     Li(scene, t, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
         auto& [rest, first] = sample;
         rest += s.beta * e.Le * e.weight;
         if (s.k == 0) first = shadowed(scene, e);
         rest += s.k == 0 ? e.direct.L - first.wV : s.beta * e.direct.L;
-        if (s.k == 0 && estimator == Estimator::control)
-            rest += control(first.U, first.w, first.wV);
         account(s, e);
     });
     return sample;
@@ -92,46 +89,45 @@ ShadowSample shadow_Li(const Scene& scene, const Technique& t, Estimator estimat
 
 // ---- Pixels -------------------------------------------------------------------------------------
 
-// For Film.  Ratio and regression need the moments of all samples of a set: the mean of the ratios
-// of single samples would never converge.
+// Of n samples: ratio and regression need the moments of all, for the mean of the ratios of single
+// samples would never converge.
 struct ShadowPixel {
-    static constexpr const char* name = "shadows";
-    using Sample = ShadowSample;
-    MeanPixel rest;
+    Sum rest;
     ShadowMoments shadowed[3] = {};  // a channel at a time
 
-    static ShadowPixel unwritten() { return {MeanPixel::unwritten(), {}}; }
-    static bool fits(const ShadowSample& s) {
-        return fits_float(s.rest) && is_finite(s.first.U) && is_finite(s.first.w);
-    }
-    void add(uint64_t i, const ShadowSample& s) {
-        rest.add(i, s.rest);
+    void add(const ShadowSample& s) {
+        rest.add(s.rest);
         for (size_t c = 0; c < 3; ++c)
             shadowed[c].add(double(s.first.U.*axis[c]), double(s.first.w.*axis[c]),
                             double(s.first.wV.*axis[c]));
     }
-
-    void add(const ShadowPixel& p) {
-        rest.add(p.rest);
-        for (size_t c = 0; c < 3; ++c) shadowed[c] = merge(shadowed[c], p.shadowed[c]);
-    }
-
-    double spread(uint64_t i, const ShadowSample& s) const { return rest.spread(i, s.rest); }
-    // What shadows leave to be found counts as if V were a coin that falls anew for every sample.
-    double noise(uint64_t n, double spread) const {
-        double sum = rest.noise(n, spread);
-        for (const ShadowMoments& m : shadowed) {
-            const double R = visible_part(m);
-            sum += n < 2 ? 0 : (m.bb / double(n - 1) + m.w * m.w) * R * (1 - R) / double(n);
+    rgb value(Estimator e) const {
+        rgb L;
+        for (size_t c = 0; c < 3; ++c) {
+            const ShadowMoments& m = shadowed[c];
+            L.*axis[c] = real(rest.L[c] / double(m.n) + estimate(e, m));
         }
-        return sum;
+        return L;
     }
-
-    // By an estimator that needs all samples.
-    struct Value {
-        Estimator estimator = Estimator::ratio;
-        double operator()(const ShadowPixel& p, uint64_t n, size_t c) const {
-            return p.rest.sum[c] / double(n) + estimate(estimator, p.shadowed[c]);
-        }
-    };
 };
+
+// A film's function of a sample.  Such a sample is the estimate by all n of a replication.
+inline Radiance shadow_estimate(const Scene& scene, const Technique& t, const Pattern& pattern,
+                                Estimator e, uint64_t n) {
+    return [=, &scene, &pattern](PixelSample s, uint64_t& rays) {
+        ShadowPixel pixel;
+        for (s.i = 0; s.i < n; ++s.i) {
+            const Start at = start(scene, pattern, s);
+            auto count = [&rays](const Segment&, const Step& step) {
+                if (interrupted) throw Interrupted();
+                rays += 1 + (step.direct.light != nullptr);
+            };
+            const ShadowSample one = shadow_Li(scene, t, at, count);
+            if (!fits_float(one.rest) || !is_finite(one.first))
+                throw SystemError(in_words(s) + " is not finite (replay it by penumbra " +
+                                  in_words(s, "--light nee --pixel ", " --sample ") + ")");
+            pixel.add(one);
+        }
+        return pixel.value(e);
+    };
+}

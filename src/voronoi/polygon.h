@@ -43,7 +43,7 @@ public:
 
     // Leaves the points with d v <= h; what was cut off has an edge due to that neighbour.
     void cut(const HalfPlane& by) {
-        // BEGIN SOLUTION V.1  a polygon loses what is beyond a line
+        // exercise V.1
         excess_.clear();
         bool any = false;
         for (const Corner& c : corners_) {
@@ -65,13 +65,7 @@ public:
         if (next_.size() < 3) return;  // rounding alone: the site itself stays
         corners_.swap(next_);
         next_.reserve(corners_.capacity());  // alike, so that their memory is enough next time
-        // STUB  corners beyond the line go, and nothing takes their place
-        // excess_.clear();
-        // next_.clear();
-        // for (const Corner& c : corners_)
-        //     if (by.d.x * c.p.x + by.d.y * c.p.y <= by.h) next_.push_back(c);
-        // if (next_.size() >= 3) corners_ = next_;
-        // END SOLUTION
+        // end
     }
 
     Outline outline() const { return corners_; }
@@ -114,7 +108,7 @@ inline VoronoiCell measured(Outline corners) {
             cell.rim = {cell.rim.x + to.p.y - from.p.y, cell.rim.y - to.p.x + from.p.x};
         from = to;
     }
-    // BEGIN SOLUTION V.2  area and centroid
+    // exercise V.2
     // By triangles (site, corner, next corner).
     double twice = 0, six_x = 0, six_y = 0;
     Corner c = corners.back();
@@ -127,16 +121,7 @@ inline VoronoiCell measured(Outline corners) {
     }
     cell.area = twice / 2;
     if (twice > 0) cell.offset = {six_x / (3 * twice), six_y / (3 * twice)};
-    // STUB  area of the box around it, and the mean of its corners
-    // Rectangle box = {corners[0].p, corners[0].p};
-    // for (const Corner& c : corners) {
-    //     box = {{std::min(box.lo.x, c.p.x), std::min(box.lo.y, c.p.y)},
-    //            {std::max(box.hi.x, c.p.x), std::max(box.hi.y, c.p.y)}};
-    //     cell.offset.x += c.p.x / double(corners.size());
-    //     cell.offset.y += c.p.y / double(corners.size());
-    // }
-    // cell.area = box.area();
-    // END SOLUTION
+    // end
     return cell;
 }
 

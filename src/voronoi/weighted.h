@@ -1,45 +1,36 @@
 // voronoi/weighted.h  6  pixels whose samples weigh as much as their Voronoi cells
 #pragma once
-#include "path/sampler.h"
+#include "film/passes.h"
+#include "path/start.h"
 #include "voronoi/weights.h"
 
-// For a film in place of L, the radiance of sample i of a set of a pixel: that times n w_i, so that
-// the film's plain mean is the weighted one.  The weights need all n samples of a set, so its first
-// one renders them all.  Bias class: see Weighting.
-class WeightedPixels {
-public:
-    WeightedPixels(Weighting kind, const Pattern& pattern, uint64_t n)
-        : kind_(kind), pattern_(pattern), n_(n) {}
-
-    const Weigher& weigher() const { return weigher_; }
-
-    // Of pixel number `pixel` of the pattern; in order, set by set: L(i).
-    template <class Radiance>
-    rgb operator()(uint64_t pixel, uint32_t set, uint64_t i, Radiance L) {
-        if (i == 0) gather(pixel, set, L);
-        return values_[i] * real((*weights_)[i] * double(values_.size()));
-    }
-
-private:
-    const Weighting kind_;
-    const Pattern& pattern_;
-    const uint64_t n_;
-    Weigher weigher_;
-    std::vector<rgb> values_;
-    std::vector<Site> places_;
-    const std::vector<double>* weights_ = nullptr;
-
-    template <class Radiance>
-    void gather(uint64_t pixel, uint32_t set, Radiance& L) {
-        values_.clear();
-        places_.clear();
-        for (uint64_t i = 0; i < n_; ++i) {
-            const vec2 u = Sampler(pattern_, pixel, i, set).get2(film_x);  // as L draws it
-            places_.push_back({double(u.x), double(u.y)});
-            values_.push_back(L(i));
-        }
-        // No path draws this number.
-        const uint64_t strip = hash(hash(hash(0, pattern_.seed), pixel), UINT64_MAX - set);
-        weights_ = &weigher_(kind_, places_, strip);
-    }
+// How often weights were not to be had at once, see Weigher.
+struct WeightTroubles {
+    std::atomic<uint64_t> redraws = 0, fallbacks = 0;
 };
+
+// A film's function of a sample from L, one of the pixel's samples: the weighted mean of all n of a
+// replication, by their places in the pixel.  The pattern is of independent numbers.  Bias class:
+// see Weighting.
+inline Radiance weighted_mean(const Scene& scene, const Pattern& pattern, Weighting kind,
+                              uint64_t n, const Radiance& L, WeightTroubles& troubles) {
+    return [=, &scene, &pattern, &troubles](PixelSample s, uint64_t& rays) {
+        std::vector<Site> places;
+        std::vector<rgb> values;
+        const uint64_t pixel = pixel_number(scene, s);
+        for (s.i = 0; s.i < n; ++s.i) {
+            const vec2 u = Sampler(pattern, pixel, s.i, s.set).get2(film_x);  // as L draws it
+            places.push_back({double(u.x), double(u.y)});
+            values.push_back(L(s, rays));
+        }
+        Weigher weigher;
+        // No path draws this number.
+        const uint64_t strip = hash(hash(hash(0, pattern.seed), pixel), UINT64_MAX - s.set);
+        const std::vector<double>& weights = weigher(kind, places, strip);
+        troubles.redraws += weigher.redraws, troubles.fallbacks += weigher.fallbacks;
+        Sum sum;
+        for (size_t i = 0; i < n; ++i)
+            for (size_t c = 0; c < 3; ++c) sum.L[c] += weights[i] * double(values[i].*axis[c]);
+        return rgb{real(sum.L[0]), real(sum.L[1]), real(sum.L[2])};
+    };
+}

@@ -74,7 +74,7 @@ inline real pdf(const Material& m, vec3 wo, vec3 wi, Direction direction) {
     return (1 - q) * pdf_cosine_hemisphere(wi.z) + q * lobe;
 }
 
-// BEGIN SOLUTION 3.6  glass
+// exercise 3.6
 // Reflectance of a smooth dielectric for unpolarised light (Fresnel); eta = n_i / n_t, cosines of
 // the angles of incidence and refraction.
 inline real fresnel(real cos_i, real cos_t, real eta) {
@@ -97,19 +97,7 @@ inline BsdfSample sample_glass(const Material& m, vec3 wo, bool outside, real u)
     real f = (1 - reflectance) * sqr(eta) / cos_t;
     return {{-eta * wo.x, -eta * wo.y, -cos_t}, {f, f, f}, 1 - reflectance};
 }
-// STUB  mirrors a tenth of what meets it from outside, and lets the rest straight through
-// // Reflectance of a smooth dielectric for unpolarised light; eta = n_i / n_t, cosines of the
-// // angles of incidence and refraction.
-// inline real fresnel(real cos_i, real cos_t, real eta) {
-//     return cos_i > 0 && cos_t > 0 && eta > 0 ? real(0.1) : 1;
-// }
-// // One direction for wo, reflected or refracted; u chooses which.  `outside`: wo is in air.
-// inline BsdfSample sample_glass(const Material& m, vec3 wo, bool outside, real u) {
-//     const real reflectance = outside ? fresnel(wo.z, wo.z, 1 / m.ior) : 0;
-//     const real part = u < reflectance ? reflectance : 1 - reflectance, f = part / wo.z;
-//     return {u < reflectance ? mirrored(wo) : -wo, {f, f, f}, part};
-// }
-// END SOLUTION
+// end
 
 // A direction wi from three numbers; `outside`: wo is on the side of the surface's own normal.  A
 // direction below the horizon is kept, with f = 0: dropping it would bias the estimate.

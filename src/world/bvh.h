@@ -1,167 +1,228 @@
-// world/bvh.h  5  where rays stop: a bounding volume hierarchy of triangles and spheres
+// world/bvh.h  4  where rays stop: a plain binary tree of boxes
 #pragma once
-#include "base/words.h"
-#include "world/bvh_collapse.h"
-#include "world/bvh_leaf.h"
-#include "world/bvh_node.h"
+#include <array>
+#include <span>
+#include <vector>
 
-// A tree of boxes, up to eight children a node.  Its answers equal those of a loop over all shapes,
-// bit for bit; of shapes hit at the same distance the one with the smallest index wins.
+#include "world/shapes.h"
+
+// A ray as boxes see it; inverse is 1 / d, component by component.
+struct Probe {
+    Ray ray;
+    vec3 inverse;
+    explicit Probe(const Ray& r) : ray(r), inverse{1 / r.d.x, 1 / r.d.y, 1 / r.d.z} {}
+};
+
+// How far along the ray it enters a box: 0 if it starts inside.  Nothing if it meets none of the
+// box up to tmax.  The tree's boxes are wider than what they hold, by more than rounding, so that
+// nothing depends on rays that run within a face.
+inline std::optional<real> enter_box(const Box& b, const Probe& p) {
+    // exercise 1.4
+    real enter = 0, leave = p.ray.tmax;
+    for (auto k : axis) {
+        const real lo = (b.lo.*k - p.ray.o.*k) * p.inverse.*k;
+        const real hi = (b.hi.*k - p.ray.o.*k) * p.inverse.*k;
+        enter = std::max(enter, std::min(lo, hi));
+        leave = std::min(leave, std::max(lo, hi));
+    }
+    return enter <= leave ? std::optional(enter) : std::nullopt;
+    // end
+}
+
+// A leaf holds count shapes from first on; an inner node (count = 0) has the children first and
+// first + 1.  The root is node 0.
+struct TreeNode {
+    Box box;
+    uint32_t first = 0, count = 0;
+    bool is_leaf() const { return count > 0; }
+};
+
+inline constexpr int tree_depth = 64;  // at most; so many nodes never wait at once
+
+// The nearest of `best` and all hits in the leaves.  enter(box): where the ray enters it, or
+// nothing.  look(leaf, best): the nearest of best and the leaf's own hits.
+template <class Enter, class Look>
+inline Hit nearest_hit(std::span<const TreeNode> nodes, Hit best, Enter enter, Look look) {
+    // exercise 1.5
+    struct Waiting {
+        uint32_t node;
+        real enter;
+    };
+    std::array<Waiting, tree_depth + 2> stack;
+    size_t waiting = 0;
+    if (const auto t = enter(nodes[0].box)) stack[waiting++] = {0, *t};
+    while (waiting > 0) {
+        const Waiting next = stack[--waiting];
+        if (next.enter > best.t) continue;
+        const TreeNode& node = nodes[next.node];
+        if (node.is_leaf()) {
+            best = look(node, best);
+            continue;
+        }
+        const uint32_t left = node.first, right = left + 1;
+        const auto l = enter(nodes[left].box), r = enter(nodes[right].box);
+        const bool right_first = l && r && *r < *l;
+        if (l && right_first) stack[waiting++] = {left, *l};
+        if (r) stack[waiting++] = {right, *r};
+        if (l && !right_first) stack[waiting++] = {left, *l};
+    }
+    return best;
+    // end
+}
+
+// Boxes in a row are divided before number `left`.  The cost is what a ray that meets them all is
+// expected to look at, times half the area of the box about them.
+struct Division {
+    real cost = infinity;
+    size_t left = 0;
+};
+
+// The cheapest division of two or more boxes that leaves some on both sides (the surface area
+// heuristic; Goldsmith, Salmon 1987, IEEE CG&A 7(5)).  Time O(n).
+inline Division best_division(std::span<const Box> boxes) {
+    // exercise 1.6
+    std::vector<real> right(boxes.size());  // half the area about the boxes from i on
+    Box box;
+    for (size_t i = boxes.size(); i-- > 0;) {
+        box.add(boxes[i]);
+        right[i] = box.half_area();
+    }
+    box = {};
+    Division best;
+    for (size_t i = 1; i < boxes.size(); ++i) {
+        box.add(boxes[i - 1]);
+        const real cost = box.half_area() * real(i) + right[i] * real(boxes.size() - i);
+        if (cost < best.cost) best = {cost, i};
+    }
+    return best;
+    // end
+}
+
+// Its answers equal those of a loop over all shapes, bit for bit; of shapes hit at the same
+// distance the one with the smallest index wins.
 class Bvh {
 public:
     Bvh() = default;
 
-    // Time O(n log n).  Shape i keeps the index i in every answer.
+    // Shape i keeps the index i in every answer.
     explicit Bvh(const std::vector<Shape>& shapes) {
         if (shapes.empty()) return;
-        demand_room(shapes.size() < bvh::Child::most_shapes);
-        const bvh::BinaryTree tree = bvh::build(shapes);
-        const bvh::Collapse collapse(tree, bvh::Leaves::largest);
-        leaves_.reserve(shapes.size());
-        add(shapes, tree, collapse, 0);
-        leaves_.finish();
-        nodes_.shrink_to_fit();
+        std::vector<Item> items;
+        for (uint32_t i = 0; i < shapes.size(); ++i) items.push_back({bounds(shapes[i]), i});
+        nodes_.emplace_back();
+        grow(0, items, 0);
+        for (uint32_t id : ids_) shapes_.push_back(shapes[id]);
     }
 
-    // The nearest hit, or nothing.
-    std::optional<Hit> closest(const Ray& ray) const {
-        Hit best{ray.tmax};
-        nearest_first(
-            ray, best, [] {}, [](bvh::Child) {});
-        return best.id == UINT32_MAX ? std::nullopt : std::optional(best);
-    }
-
-    // Whether anything is hit.  The order of nodes does not matter: the first hit ends it all.
-    bool occluded(const Ray& ray) const {
-        if (nodes_.empty()) return false;
-        const bvh::Probe probe(ray);
-        const Shear k = shear(ray.d);
-        const float end = float(ray.tmax);
-        std::array<AnyOrder, bvh::BinaryTree::depth> stack;
-        AnyOrder* top = stack.data();
-        const bvh::Node* node = nodes_.data();
-        for (;;) {
-            bvh::Lanes rest = node->meet(probe, end).met();
-            for (;;) {
-                while (!rest.any()) {
-                    if (top == stack.data()) return false;
-                    --top;
-                    node = top->node;
-                    rest = top->rest;
-                }
-                const bvh::Child child = node->child[rest.first()];
-                rest.drop_first();
-                if (!child.is_leaf()) {
-                    *top = {node, rest};
-                    top += rest.any();
-                    node = at(child);
-                    break;
-                }
-                if (leaves_.any(child, ray, k)) return true;
-            }
-        }
-    }
-
-    // What closest(ray) costs.
+    // What closest(ray) costs: nodes whose boxes it asks, and shapes.
     struct Work {
         int nodes = 0, shapes = 0;
     };
     Work work(const Ray& ray) const {
         Work work;
-        Hit best{ray.tmax};
-        nearest_first(
-            ray, best, [&] { ++work.nodes; },
-            [&](bvh::Child leaf) { work.shapes += int(leaf.count()); });
+        closest(ray, &work);
         return work;
     }
 
-    size_t bytes() const { return nodes_.capacity() * sizeof(bvh::Node) + leaves_.bytes(); }
+    // The nearest hit, or nothing.
+    std::optional<Hit> closest(const Ray& ray, Work* work = nullptr) const {
+        if (nodes_.empty()) return {};
+        const Probe probe(ray);
+        const Shear k = shear(ray.d);
+        const real room = rounding(ray);
+        auto enter = [&](const Box& box) {
+            if (work) ++work->nodes;
+            return enter_box(wider(box, room), probe);
+        };
+        auto look = [&](const TreeNode& leaf, Hit best) {
+            if (work) work->shapes += int(leaf.count);
+            for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+                const auto hit = intersect(shapes_[i], ray, k, best.t);
+                if (!hit || (hit->t == best.t && ids_[i] > best.id)) continue;
+                best = *hit;
+                best.id = ids_[i];
+            }
+            return best;
+        };
+        const Hit hit = nearest_hit(nodes_, Hit{ray.tmax}, enter, look);
+        return hit.id == UINT32_MAX ? std::nullopt : std::optional(hit);
+    }
+
+    // Whether anything is hit.  The order does not matter: the first hit ends it all.
+    bool occluded(const Ray& ray) const {
+        if (nodes_.empty()) return false;
+        const Probe probe(ray);
+        const Shear k = shear(ray.d);
+        const real room = rounding(ray);
+        std::array<uint32_t, tree_depth + 2> stack{0};
+        for (size_t waiting = 1; waiting > 0;) {
+            const TreeNode& node = nodes_[stack[--waiting]];
+            if (!enter_box(wider(node.box, room), probe)) continue;
+            for (uint32_t i = node.first; i < node.first + node.count; ++i)
+                if (intersect(shapes_[i], ray, k, ray.tmax)) return true;
+            if (node.is_leaf()) continue;
+            stack[waiting++] = node.first;
+            stack[waiting++] = node.first + 1;
+        }
+        return false;
+    }
 
 private:
-    std::vector<bvh::Node> nodes_;
-    bvh::Leaves leaves_;
+    std::vector<TreeNode> nodes_;
+    std::vector<Shape> shapes_;  // in the order of the leaves
+    std::vector<uint32_t> ids_;  // their indices
 
-    // ---- Traversal ------------------------------------------------------------------------------
-
-    // A node with children yet to be looked at: those left, or all and the key of the next.  There
-    // is never more than one of a level.
-    struct AnyOrder {
-        const bvh::Node* node;
-        bvh::Lanes rest;
-    };
-    struct Ordered {
-        bvh::Keys keys;
-        const bvh::Node* node;
-        int32_t key;
-    };
-
-    const bvh::Node* at(bvh::Child c) const {
-        const auto* first = reinterpret_cast<const std::byte*>(nodes_.data());
-        return reinterpret_cast<const bvh::Node*>(first + c.bits);
-    }
-
-    // Makes best the nearest hit of it and of all shapes.  Of a node's children the nearest comes
-    // first; none that begins behind the best hit so far is opened.
-    template <class Open, class OpenLeaf>
-    [[gnu::always_inline]] void nearest_first(const Ray& ray, Hit& best, Open open,
-                                              OpenLeaf open_leaf) const {
-        if (nodes_.empty()) return;
-        const bvh::Probe probe(ray);
-        const Shear k = shear(ray.d);
-        float end = float(best.t);
-        std::array<Ordered, bvh::BinaryTree::depth> stack;
-        Ordered* top = stack.data();
-        const bvh::Node* node = nodes_.data();
-        open();
-        bvh::Keys keys = node->meet(probe, end).keys();
-        int32_t key = bvh::least(keys);
-        for (;;) {
-            while (key > bvh::Crossing::last_key(end)) {
-                if (top == stack.data()) return;
-                --top;
-                node = top->node;
-                keys = top->keys;
-                key = top->key;
-            }
-            const bvh::Child child = node->child[key & 7];
-            key = bvh::next(keys, key);
-            if (child.is_leaf()) {
-                open_leaf(child);
-                best = leaves_.nearest(child, ray, k, best);
-                end = float(best.t);
-                continue;
-            }
-            *top = {keys, node, key};
-            top += key <= bvh::Crossing::last_key(end);
-            node = at(child);
-            open();
-            keys = node->meet(probe, end).keys();
-            key = bvh::least(keys);
-        }
-    }
+    // What a hit and a plane of a box are off by if the ray comes from afar.
+    static real rounding(const Ray& ray) { return 32 * ulp * max_abs(ray.o); }
+    static Box wider(const Box& b, real e) { return {b.lo - vec3{e, e, e}, b.hi + vec3{e, e, e}}; }
 
     // ---- Construction ---------------------------------------------------------------------------
 
-    static void demand_room(bool enough) {
-        if (!enough) throw UserError("so many shapes are too many for one scene");
+    struct Item {
+        Box box;
+        uint32_t id;
+        real centre(real vec3::*k) const { return box.lo.*k + box.hi.*k; }  // twice
+    };
+    static constexpr size_t leaf_size = 4;  // shapes at most
+    static constexpr int halved_from = 32;  // a level from which on the tree is balanced
+
+    // Makes a node of these items, and all below it.
+    void grow(size_t index, std::span<Item> items, int depth) {
+        Box box;
+        for (const Item& item : items) box.add(item.box);
+        const Division d = divide(items, depth);
+        // A leaf costs a ray about as much as a node and one of its shapes.
+        if (items.size() <= leaf_size && !(d.cost < box.half_area() * real(items.size() - 1))) {
+            nodes_[index] = {box, uint32_t(ids_.size()), uint32_t(items.size())};
+            for (const Item& item : items) ids_.push_back(item.id);
+            return;
+        }
+        const size_t left = nodes_.size();
+        nodes_[index] = {box, uint32_t(left)};
+        nodes_.resize(left + 2);
+        grow(left, items.first(d.left), depth + 1);
+        grow(left + 1, items.subspan(d.left), depth + 1);
     }
 
-    // Adds the node that a branch becomes and all below it.
-    bvh::Child add(const std::vector<Shape>& shapes, const bvh::BinaryTree& tree,
-                   const bvh::Collapse& collapse, uint32_t root) {
-        const size_t index = nodes_.size(), offset = index * sizeof(bvh::Node);
-        demand_room(offset <= UINT32_MAX);
-        nodes_.emplace_back();
-        const bvh::Children children = collapse.children(root);
-        for (size_t i = 0; i < children.count; ++i) {
-            const bvh::Branch& b = tree.branches[children.branch[i]];
-            nodes_[index].set(i, b.box);
-            if (collapse.is_leaf(children.branch[i]))
-                nodes_[index].child[i] = leaves_.add(shapes, {&tree.ids[b.first], b.count});
+    // Sorts the items along the axis that is divided best.
+    static Division divide(std::span<Item> items, int depth) {
+        Division best{infinity, items.size() / 2};
+        if (items.size() < 2 || depth >= halved_from) return best;
+        auto best_axis = axis[0];
+        auto sort = [&](real vec3::*k) {
+            std::ranges::sort(items, {}, [k](const Item& i) { return i.centre(k); });
+        };
+        for (auto k : axis) {
+            sort(k);
+            if (items.front().centre(k) == items.back().centre(k)) continue;
+            std::vector<Box> boxes;
+            for (const Item& item : items) boxes.push_back(item.box);
+            const Division d = best_division(boxes);
+            if (d.left == 0 || d.left >= items.size() || !(d.cost < best.cost)) continue;
+            best = d;
+            best_axis = k;
         }
-        for (size_t i = 0; i < children.count; ++i)
-            if (!collapse.is_leaf(children.branch[i]))
-                nodes_[index].child[i] = add(shapes, tree, collapse, children.branch[i]);
-        return {uint32_t(offset)};
+        sort(best_axis);
+        return best;
     }
 };

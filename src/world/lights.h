@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "world/shapes.h"
-#include "world/spherical_rectangle.h"
 #include "world/warp.h"
 
 // To be made by the functions below, which compute n and pdf_area.
@@ -16,10 +15,13 @@ struct Light {
     real pdf_area = 0;    // density of uniform points of a polygon, 1 / its area
     rgb L = {};           // radiance; of a point: intensity, radiance x length^2
     bool twosided = false;
-    RectangleFrame rectangle = {};  // a quad, if its edges are perpendicular
-    bool by_angle = false;          // of a rectangle: sample the solid angle, not the area
-    real error = 0;                 // of surface points, see Surface
-    real pick = 0;                  // probability that the scene chooses this light
+    real error = 0;  // of surface points, see Surface
+    real pick = 0;   // probability that the scene chooses this light by its power
+    // To be weighed (light_choice.h): the sphere about it; L A over that of the strongest light.
+    vec3 centre = {};
+    real reach = 0, strength = 0;
+
+    bool is_round() const { return kind == Kind::sphere || kind == Kind::point; }
     vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
 };
 
@@ -33,9 +35,7 @@ inline Light triangle_light(vec3 p, vec3 u, vec3 v) {
     return {Light::Kind::triangle, p, u, v, 0, unit(cross(u, v)), pdf_triangle_area(u, v)};
 }
 inline Light quad_light(vec3 p, vec3 u, vec3 v) {
-    Light l{Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
-    l.rectangle = rectangle_frame(u, v);
-    return l;
+    return {Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
 }
 
 // Emitted power of all directions, mean of the channels (watts); double, lest it overflow.
@@ -66,22 +66,14 @@ inline std::optional<real> sin2_subtended(const Light& l, vec3 p) {
     return sqr(l.r) / d2;
 }
 
-// The rectangle that p sees, if its solid angle is to be sampled and can be.
-inline std::optional<SeenRectangle> seen_rectangle(const Light& l, vec3 p) {
-    if (!l.by_angle || l.kind != Light::Kind::quad) return {};
-    return see_rectangle(l.rectangle, l.p - p);
-}
-
 // Density per solid angle of the direction from p to the point y, for uniform points of a polygon.
 inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
-    // BEGIN SOLUTION 2.6  from a density per area to one per solid angle
+    // exercise 2.6
     vec3 w = y.p - p;
     real d2 = dot(w, w);
     real cos_y = std::abs(dot(y.n, w)) / std::sqrt(d2);
     return cos_y > 0 ? l.pdf_area * d2 / cos_y : 0;
-    // STUB  the density per area as it is, as if the light were a part of the unit sphere
-    // return y.p == p ? 0 : l.pdf_area;
-    // END SOLUTION
+    // end
 }
 
 // Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  In radii, the
@@ -102,15 +94,14 @@ inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, ve
     return LightSample{wi, {l.p + l.r * n, n, l.error}, l.L, pdf_cone(*sin2_max)};
 }
 
-// Uniform over the area, or over the solid angle; nothing from the side that does not emit.
+// Uniform over the area; nothing from the side that does not emit.
 inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, vec2 u) {
-    const auto seen = seen_rectangle(l, p);
     vec3 on = l.kind == Light::Kind::quad ? sample_quad(u, l.u, l.v) : sample_triangle(u, l.u, l.v);
-    Surface y{seen ? p + sample_rectangle(*seen, u) : l.p + on, l.n, l.error};
+    Surface y{l.p + on, l.n, l.error};
     vec3 wi = unit(y.p - p);
     real cos_y = -dot(y.n, wi);
     if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
-    const real pdf = seen ? pdf_rectangle(*seen) : pdf_polygon_by_area(l, p, y);
+    const real pdf = pdf_polygon_by_area(l, p, y);
     if (!(pdf > 0)) return {};  // edge-on, but for the rounding of wi
     return LightSample{wi, y, l.L, pdf};
 }
@@ -128,10 +119,7 @@ inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
 // Density (1/sr) with which sample_light from p chooses the point y of the light.
 inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
     if (l.kind == Light::Kind::point) return 0;
-    if (l.kind != Light::Kind::sphere) {
-        const auto seen = seen_rectangle(l, p);
-        return seen ? pdf_rectangle(*seen) : pdf_polygon_by_area(l, p, y);
-    }
+    if (l.kind != Light::Kind::sphere) return pdf_polygon_by_area(l, p, y);
     auto sin2_max = sin2_subtended(l, p);
     return sin2_max ? pdf_cone(*sin2_max) : 0;
 }

@@ -5,8 +5,8 @@
 
 #include "base/words.h"
 #include "world/bsdf.h"
-#include "world/bvh.h"
 #include "world/light_choice.h"
+#include "world/tree.h"
 
 // A pinhole; the axes are unit, tan_half is the tangent of half the vertical field of view.
 struct Camera {
@@ -24,17 +24,12 @@ inline Camera look_at(vec3 eye, vec3 target, real fov) {
 // Through the point (x, y) of the image plane, in pixels from its top left corner.  Pixels are
 // square: a wider image sees more, never stretches.
 inline Ray camera_ray(const Camera& c, Size size, real x, real y) {
-    // BEGIN SOLUTION 1.1  a ray for every place of the image
+    // exercise 1.1
     real pixel = 2 * c.tan_half / real(size.height);
     vec3 d = c.forward + c.right * ((x - real(size.width) / 2) * pixel) +
              c.up * ((real(size.height) / 2 - y) * pixel);
     return {c.eye, unit(d)};
-    // STUB  a fisheye, which bends straight lines
-    // const real across = (x / real(size.width) - real(0.5)) * pi / 2;
-    // const real upwards = (real(0.5) - y / real(size.height)) * pi / 2;
-    // const vec3 level = c.forward * std::cos(across) + c.right * std::sin(across);
-    // return {c.eye, level * std::cos(upwards) + c.up * std::sin(upwards)};
-    // END SOLUTION
+    // end
 }
 
 inline constexpr int32_t no_light = -1;
@@ -56,11 +51,11 @@ struct Scene {
     // Empty where no file is.
     std::vector<std::string> names;
     std::vector<uint32_t> line_of, line_of_light;
+    int dropped = 0;  // triangles that have no area
 
-    Bvh bvh;                       // from here on made by prepare
+    Tree bvh;                      // from here on made by prepare
     std::vector<Facing> facing;    // of each shape
     std::vector<double> pick_cdf;  // running sum of lights[i].pick
-    FewLights few;                 // the same lights, if they are weighed one by one
 
     const Material& material(const Hit& hit) const { return materials[material_of[hit.id]]; }
     Surface surface(const Ray& ray, const Hit& hit) const {
@@ -73,6 +68,11 @@ inline real diagonal(const Scene& s) {
     Box box;
     for (const Shape& shape : s.shapes) box.add(bounds(shape));
     return length(box.hi - box.lo);
+}
+
+inline void add_material(Scene& s, const Material& m, const std::string& name) {
+    s.materials.push_back(m);
+    s.names.push_back(name);
 }
 
 inline void add_shape(Scene& s, const Shape& shape, uint32_t material, int32_t light) {
@@ -105,36 +105,33 @@ inline bool has_area(const Shape& s) {
     return std::isnormal(dot(n, n));
 }
 
-// Returns the number of triangles dropped because they have no area.
-inline int add_triangle(Scene& s, vec3 a, vec3 b, vec3 c, uint32_t material) {
+inline void add_triangle(Scene& s, vec3 a, vec3 b, vec3 c, uint32_t material) {
     Shape t{a, b, c};
-    if (!has_area(t)) return 1;
+    if (!has_area(t)) return void(++s.dropped);
     const int32_t light =
         add_light(s, triangle_light(a, b - a, c - a), material, rounding_error(t));
     add_shape(s, t, material, light);
-    return 0;
 }
 
 // Parallelogram with corners a, b, c, d: triangles (a, b, c) and (a, c, d), one light; it faces the
 // side of (b-a) x (d-a).
-inline int add_face(Scene& s, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material) {
+inline void add_face(Scene& s, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material) {
     Shape first{a, b, c}, second{a, c, d};
-    if (!has_area(first) || !has_area(second)) return 2;
+    if (!has_area(first) || !has_area(second)) return void(s.dropped += 2);
     real error = std::max(rounding_error(first), rounding_error(second));
     int32_t light = add_light(s, quad_light(a, b - a, d - a), material, error);
     add_shape(s, first, material, light);
     add_shape(s, second, material, light);
-    return 0;
 }
 
 // Corner p and two edges.
-inline int add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
-    return add_face(s, p, p + u, p + u + v, p + v, material);
+inline void add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
+    add_face(s, p, p + u, p + u + v, p + v, material);
 }
 
 // Size along x, y, z from the origin, then rotated about y (x' = c x + s z, z' = c z - s x), then
 // moved.  Faces outwards.  Each corner is computed once, so the box is watertight.
-inline int add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t material) {
+inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t material) {
     const double angle = double(degrees) * std::numbers::pi / 180;
     const double cosine = std::cos(angle), sine = std::sin(angle);
     vec3 corner[8];  // bit 0: far in x, bit 1: in y, bit 2: in z
@@ -144,12 +141,10 @@ inline int add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t materi
                      size.y * real(i >> 1 & 1) + move.y,
                      real(cosine * z - sine * x + double(move.z))};
     }
-    int dropped = 0;
     for (auto [a, b, c, d] : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6},   // -z, +z
                               std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3},   // -y, +y
                               std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})  // -x, +x
-        dropped += add_face(s, corner[a], corner[b], corner[c], corner[d], material);
-    return dropped;
+        add_face(s, corner[a], corner[b], corner[c], corner[d], material);
 }
 
 inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
@@ -159,7 +154,7 @@ inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
 // Builds the tree, and lets lights be chosen in proportion to their power.  Random numbers are
 // multiples of ulp: so are the probabilities, exactly, and by a share dealt evenly none is 0.
 inline void prepare(Scene& s) {
-    s.bvh = Bvh(s.shapes);
+    s.bvh = Tree(s.shapes);
     s.facing.clear();
     for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
     const double n = double(s.lights.size()), even = std::min(0.5, 2 * n * double(ulp));
@@ -172,7 +167,7 @@ inline void prepare(Scene& s) {
         l.pick = real(s.pick_cdf.back() - before);
         before = s.pick_cdf.back();
     }
-    s.few = few_lights(s.lights);
+    prepare_weights(s.lights);
 }
 
 // A light, with probability pick.  Only if there is one.
@@ -181,16 +176,26 @@ inline const Light& choose_light(const Scene& s, real u) {
     return s.lights[std::min(size_t(i - s.pick_cdf.begin()), s.lights.size() - 1)];
 }
 
-// The light to aim at from a surface at p whose normal, on the side of the eye, is m.
-inline LightPick choose_light(const Scene& s, Pick by, vec3 p, vec3 m, real u) {
-    if (by == Pick::place && s.few.n > 0)
-        if (const auto w = light_weights(s.few, p, m)) return choose_light(*w, u);
-    const Light& light = choose_light(s, u);
-    return {size_t(&light - s.lights.data()), light.pick};
+// A light, and the probability that it is chosen.
+struct LightPick {
+    size_t light = 0;
+    real pick = 1;
+};
+
+// The light to aim at from a surface at p whose normal, on the side of the eye, is m: one of a few
+// by about what it sends there, one of many by its power.
+inline LightPick choose_light(const Scene& s, vec3 p, vec3 m, real u) {
+    const auto w = light_weights(s.lights, p, m);
+    if (!w) {
+        const Light& light = choose_light(s, u);
+        return {size_t(&light - s.lights.data()), light.pick};
+    }
+    size_t chosen = 0;
+    for (real sum = w->of[0]; sum <= u * w->sum; sum += w->of[chosen]) ++chosen;
+    return {chosen, w->of[chosen] / w->sum};
 }
 // The probability that it is this one.
-inline real pick_of(const Scene& s, Pick by, size_t light, vec3 p, vec3 m) {
-    if (by == Pick::place && s.few.n > 0)
-        if (const auto w = light_weights(s.few, p, m)) return pick_of(*w, light);
-    return s.lights[light].pick;
+inline real pick_of(const Scene& s, size_t light, vec3 p, vec3 m) {
+    const auto w = light_weights(s.lights, p, m);
+    return w ? w->of[light] / w->sum : s.lights[light].pick;
 }

@@ -1,8 +1,7 @@
-// world/scene_file.h  8  reading scenes/NAME.scene
+// world/scene_file.h  9  reading scenes/NAME.scene
 #pragma once
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "world/grammar.h"
 #include "world/obj.h"
@@ -15,95 +14,63 @@ struct ParsedScene {
 };
 
 // Reads statements one after the other; every error is a UserError without the line number.
-class Parser {
+class SceneReader {
 public:
     // Files are named relative to `folder`.
-    explicit Parser(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit SceneReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    void statement(const std::string& text, int line) {
-        bytes_ += text.size() + 1;
-        words_ = words_before(text, '#');
-        if (words_.empty()) return;
+    void statement(const Words& words, uint32_t line) {
+        words_ = words;
         next_ = 1;
-        line_ = line;
-        const Statement& statement = statement_of(words_);
-        if (statement.kind == Statement::setting) set(words_[0]);
-        if (statement.kind == Statement::material) define(words_[0]);
-        if (statement.kind == Statement::content) add(words_[0]);
-        scene_.line_of.resize(scene_.shapes.size(), uint32_t(line));
-        scene_.line_of_light.resize(scene_.lights.size(), uint32_t(line));
+        const Statement& statement = statement_of(words);
+        if (statement.kind == Statement::setting) set(words[0]);
+        if (statement.kind == Statement::material) define(words[0]);
+        if (statement.kind == Statement::content) add(words[0]);
+        scene_.line_of.resize(scene_.shapes.size(), line);
+        scene_.line_of_light.resize(scene_.lights.size(), line);
     }
 
-    // What only the whole scene can tell.
-    ParsedScene finish() {
-        if (!seen_.contains("camera")) throw UserError("no camera");
-        if (scene_.shapes.empty()) throw UserError("empty scene: nothing to look at");
-        for (const SphereLight& l : sphere_lights_)
-            if (length(scene_.camera.eye - l.centre) <= l.r) {
-                line_ = l.line;
-                throw UserError("the camera is inside this sphere light");
-            }
-        ParsedScene result;
-        if (dropped_ > 0)
-            result.warnings.push_back(std::to_string(dropped_) +
-                                      (dropped_ == 1 ? " triangle without area was dropped"
-                                                     : " triangles without area were dropped"));
-        check_light(result.warnings);
-        prepare(scene_);
-        result.scene = std::move(scene_);
-        result.files = std::move(files_);
-        return result;
+    // What only the whole scene can tell.  The scene's file is called `name`.
+    ParsedScene finish(const std::string& name) {
+        Scene& s = scene_;
+        if (!seen_.contains("camera")) throw UserError(name + ": no camera");
+        if (s.shapes.empty()) throw UserError(name + ": empty scene: nothing to look at");
+        auto warn = [&](const std::string& what) { warnings_.push_back(what); };
+        if (s.dropped > 0) warn("dropped triangles without area: " + std::to_string(s.dropped));
+        for (const auto& [line, other] : lift_lights(s, name))
+            warn("line " + std::to_string(line) + ": this light lies in the surface of line " +
+                 std::to_string(other) +
+                 ": it shines in front of it (of two lights in one place the first does)");
+        prepare(s);
+        for (size_t k = 0; k < s.lights.size(); ++k)
+            for (size_t i = 0; s.lights[k].kind == Light::Kind::point && i < s.shapes.size(); ++i)
+                if (lies_on(s.shapes[i], s.facing[i], s.lights[k].p))
+                    throw error_at(name, s.line_of_light[k],
+                                   "this point light lies on the surface of line " +
+                                       std::to_string(s.line_of[i]) + ": move it off");
+        if (const auto coarse = std::ranges::find_if(s.shapes, is_coarse); coarse != s.shapes.end())
+            warn("line " + std::to_string(s.line_of[size_t(coarse - s.shapes.begin())]) +
+                 ": numbers of " + std::to_string(sizeof(real)) +
+                 " bytes are coarse here: rays start more than 1 % of this shape's size off it");
+        if (s.lights.empty()) warn("no light: all will be black");
+        return {std::move(scene_), std::move(warnings_), std::move(files_)};
     }
-
-    int line() const { return line_; }
 
 private:
-    // Refuses what rounding would decide, and tells what can be seen but for that.
-    void check_light(std::vector<std::string>& warnings) {
-        for (const auto& [line, cover] : drop_covered_lights(scene_))
-            warnings.push_back("line " + std::to_string(line) + ": this light is dark: line " +
-                               std::to_string(cover) + " covers it, which comes first");
-        if (const auto on = light_on_surface(scene_)) {
-            line_ = int(on->line_of_light);
-            throw UserError("this point light lies on the surface of line " +
-                            std::to_string(on->line) + ": move it off");
-        }
-        const Coarse c = coarsest(scene_);
-        if (c.part > real(0.01))
-            warnings.push_back(
-                "line " + std::to_string(c.line) + ": numbers of " + std::to_string(sizeof(real)) +
-                " bytes are coarse here: rays start " +
-                std::to_string(int(std::min(real(1e9), 100 * c.part))) +
-                " % of this shape's size off the surface of line " + std::to_string(c.because));
-        if (scene_.lights.empty()) warnings.push_back("no light: all will be black");
-    }
-
-    // Lengths: their fourth powers must neither overflow nor vanish.
-    static constexpr double longest = sizeof(real) == 4 ? 1e9 : 1e30;
     static constexpr uint64_t max_depth = 1000000, max_samples = 1 << 20;
-
-    struct SphereLight {
-        vec3 centre;
-        real r;
-        int line;
-    };
 
     const std::filesystem::path folder_;
     Scene scene_;
-    std::map<std::string, uint32_t> material_;  // by name
-    std::map<std::string, int> seen_;           // line of the statements that stand only once
-    std::vector<SphereLight> sphere_lights_;
-    std::vector<std::string> files_;  // of meshes
-    std::vector<std::string> words_;
+    std::vector<std::string> warnings_, files_;  // files: of meshes
+    std::map<std::string, uint32_t> material_;   // by name
+    std::set<std::string> seen_;                 // statements that stand only once
+    Words words_;
     size_t next_ = 0;  // word to read
-    int line_ = 0, dropped_ = 0;
-    std::set<std::string> meshes_;        // that were read
-    uint64_t bytes_ = 0, fan_steps_ = 0;  // of all files, each once; that concave faces took
 
     // ---- Statements ---------------------------------------------------------------------------
 
     void set(const std::string& keyword) {
-        once(keyword);
+        if (!seen_.insert(keyword).second) throw UserError("a second " + keyword);
         if (keyword == "size") scene_.size = parse_size(words_[1], words_[2]);
         if (keyword == "camera") camera();
         if (keyword == "depth") scene_.depth = int(parse_count(words_[1], 0, max_depth));
@@ -119,49 +86,39 @@ private:
         } else if (keyword == "sphere") {
             vec3 centre = point();
             real r = length_of("radius");
-            uint32_t m = material();
-            add_sphere(s, centre, r, m);
-            if (s.materials[m].emits()) sphere_lights_.push_back({centre, r, line_});
+            add_sphere(s, centre, r, material());
         } else if (keyword == "triangle") {
             vec3 a = point(), b = point(), c = point();
-            dropped_ += add_triangle(s, a, b, c, material());
+            add_triangle(s, a, b, c, material());
         } else if (keyword == "quad") {
             vec3 p = point(), u = point(), v = point();
-            dropped_ += add_quad(s, p, u, v, material());
+            add_quad(s, p, u, v, material());
         } else if (keyword == "mesh") {
             mesh();
         } else {  // box
             real w = length_of("width"), h = length_of("height"), d = length_of("depth");
             real degrees = number();
             vec3 move = point();
-            dropped_ += add_box(s, {w, h, d}, degrees, move, material());
+            add_box(s, {w, h, d}, degrees, move, material());
         }
-    }
-
-    void once(const std::string& keyword) {
-        auto [place, is_new] = seen_.try_emplace(keyword, line_);
-        if (!is_new)
-            throw UserError("a second " + keyword + ", after line " +
-                            std::to_string(place->second));
     }
 
     // ---- Words ----------------------------------------------------------------------------------
 
     std::string last() const { return in_quotes(words_[next_ - 1]); }  // word read
     real number(double most = largest_number) { return real(parse_number(words_[next_++], most)); }
-    real positive(const std::string& what) {
-        real x = number();
+    real positive(const std::string& what, double most = largest_number) {
+        const real x = number(most);
         if (!(x > 0)) throw UserError(what + " must be positive, not " + last());
         return x;
     }
     real length_of(const std::string& what) {
-        real x = number(longest);
-        if (!(x > 0)) throw UserError(what + " must be positive, not " + last());
-        if (double(x) < 1 / longest) throw UserError(what + " is too small: " + last());
+        const real x = positive(what, longest_length);
+        if (double(x) < 1 / longest_length) throw UserError(what + " is too small: " + last());
         return x;
     }
     vec3 point() {
-        real x = number(longest), y = number(longest), z = number(longest);
+        real x = number(longest_length), y = number(longest_length), z = number(longest_length);
         return {x, y, z};
     }
     rgb colour() {
@@ -172,11 +129,6 @@ private:
         }
         return c;
     }
-    void check_albedo(rgb albedo) const {
-        if (max_of(albedo) > 1 + 4 * ulp)
-            throw UserError("reflects more than it receives: a channel of the albedo exceeds 1");
-    }
-
     uint32_t material() { return look_up(material_, words_[next_++], "material"); }
 
     void camera() {
@@ -188,55 +140,14 @@ private:
             throw UserError("the camera must look somewhere, and not along y, which is up");
     }
 
-    // Polygons of an OBJ file, scaled and moved.  Parallelograms are lights in one piece.
     void mesh() {
         const std::string path = (folder_ / words_[next_++]).string();
         const real scale = length_of("scale");
         const vec3 move = point();
         std::optional<uint32_t> given;
         if (next_ < words_.size()) given = material();
-        const ObjMesh mesh = ObjReader::read(path);
-        if (meshes_.insert(true_name(path)).second) bytes_ += mesh.bytes;
-        files_.insert(files_.end(), mesh.files.begin(), mesh.files.end());
-        const auto first = uint32_t(scene_.materials.size());
-        for (const ObjMesh::Material& m : mesh.materials) {
-            Material material;
-            material.kd = m.kd;
-            material.Le = m.ke;
-            scene_.materials.push_back(material);
-            scene_.names.push_back(m.name);
-        }
-        most_materials.check(scene_.materials.size(), bytes_);
-        for (const ObjMesh::Face& face : mesh.faces) {
-            try {
-                if (face.material < 0 && !given)
-                    throw UserError("no material: give one here or in 'mesh'");
-                std::vector<vec3> corners;
-                for (uint32_t i : face.corners) corners.push_back(mesh.vertices[i] * scale + move);
-                polygon(corners, face.material < 0 ? *given : first + uint32_t(face.material));
-            } catch (const UserError& e) {
-                throw UserError(path + ":" + std::to_string(face.line) + ": " + e.what());
-            }
-            most_shapes.check(scene_.shapes.size(), bytes_);
-            most_fan_steps.check(fan_steps_, bytes_);
-        }
-    }
-
-    void polygon(const std::vector<vec3>& corners, uint32_t m) {
-        for (vec3 c : corners)
-            if (double(max_abs(c)) > longest) throw UserError("too far away");
-        const auto fan = fan_of(corners);
-        if (!fan && corners.size() > most_concave)
-            throw UserError("concave, with more than " + std::to_string(most_concave) +
-                            " corners: cut this polygon up");
-        if (!fan) throw UserError("no corner sees all others: cut this polygon up");
-        const std::vector<vec3>& c = fan->corners;
-        if (fan->tried > 1) fan_steps_ += fan->tried * c.size();
-        if (c.size() == 4 && c[0] + c[2] == c[1] + c[3])
-            dropped_ += add_face(scene_, c[0], c[1], c[2], c[3], m);
-        else
-            for (size_t i = 1; i + 1 < c.size(); ++i)
-                dropped_ += add_triangle(scene_, c[0], c[i], c[i + 1], m);
+        const auto files = ObjReader(scene_, scale, move, given).read(path);
+        files_.insert(files_.end(), files.begin(), files.end());
     }
 
     // diffuse, phong, mirror, glass, light
@@ -258,33 +169,27 @@ private:
             m.kind = Material::Kind::glass;
             m.ior = positive("index of refraction");
         } else {
-            rgb Le = colour();
-            bool twosided = next_ < words_.size() && words_[next_] == "twosided";
-            if (twosided) ++next_;
+            const rgb Le = colour();
+            const bool twosided = next_ < words_.size() && words_[next_] == "twosided";
+            next_ += twosided;
             if (next_ < words_.size()) m = scene_.materials[material()];
             if (next_ < words_.size()) throw UserError("unknown word " + in_quotes(words_[next_]));
             m.Le = Le;
             m.twosided = twosided;
         }
-        check_albedo(m.kd + m.ks);
+        if (max_of(m.kd + m.ks) > 1)
+            throw UserError("reflects more than it receives: a channel of the albedo exceeds 1");
         material_[name] = uint32_t(scene_.materials.size());
-        scene_.materials.push_back(m);
-        scene_.names.push_back(name);
+        add_material(scene_, m, name);
     }
 };
 
 // Throws UserError "NAME:LINE: what is wrong".
 inline ParsedScene parse_scene(const std::string& text, const std::string& name) {
-    std::istringstream in(text);
-    Parser parser(std::filesystem::path(name).parent_path());
-    int number = 0;
-    try {
-        for (std::string line; std::getline(in, line);) parser.statement(line, ++number);
-        return parser.finish();
-    } catch (const UserError& e) {
-        int line = std::max(1, parser.line());
-        throw UserError(name + ":" + std::to_string(line) + ": " + e.what());
-    }
+    SceneReader reader(std::filesystem::path(name).parent_path());
+    read_lines(text, name,
+               [&](const Words& words, uint32_t line) { reader.statement(words, line); });
+    return reader.finish(name);
 }
 
 // A scene may come through a pipe, too.

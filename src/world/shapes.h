@@ -102,7 +102,7 @@ inline Shear shear(vec3 d) {
 // who want it.
 inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, const Shear& k,
                                              real tmax) {
-    // BEGIN SOLUTION 1.3  where a ray meets a triangle
+    // exercise 1.3
     // Watertight: u, v, w are the edge functions of the sheared triangle.  Vertices that triangles
     // share are sheared to the same numbers, and an edge function is never rounded to the wrong
     // sign or to 0; a 0 counts as inside.  So a ray between two triangles always meets one of them.
@@ -122,13 +122,7 @@ inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, con
     real t = (u * az + v * bz + w * cz) * k.sz / det;
     if (!(t > 0 && t <= tmax)) return {};
     return Hit{t, 0, v / det, w / det};
-    // STUB  a small disc about the centroid that faces the ray
-    // const vec3 m = (s.a + s.b + s.c) / 3 - ray.o, n = cross(s.b - s.a, s.c - s.a);
-    // const real z = m.*axis[k.z], t = z * k.sz, third = real(1) / 3;
-    // const real x = m.*axis[k.x] - k.sx * z, y = m.*axis[k.y] - k.sy * z;
-    // if (x * x + y * y > length(n) / 24 || !(t > 0 && t <= tmax)) return {};
-    // return Hit{t, 0, third, third};
-    // END SOLUTION
+    // end
 }
 
 // ---- Spheres ----------------------------------------------------------------------------------
@@ -150,7 +144,7 @@ inline real power_of_point(vec3 o, const Shape& s) {
 
 // The nearest point of the sphere on a ray, at 0 < t <= tmax, from outside or from inside.
 inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real tmax) {
-    // BEGIN SOLUTION 1.2  where a ray meets a sphere
+    // exercise 1.2
     // Roots of |f + t d|^2 = r^2, f = o - a, without cancellation, from q = b +- sqrt and c / q.
     // The discriminant is that of the vector between the centre and its foot on the ray, which is
     // exact from afar (Haines, Gunther, Akenine-Moller 2019, Ray Tracing Gems ch. 7), but near the
@@ -171,12 +165,7 @@ inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real 
     real t = near > 0 ? near : far;
     if (!(t > 0 && t <= tmax)) return {};
     return Hit{t};
-    // STUB  a disc about the centre that faces the ray
-    // const real t = dot(s.a - ray.o, ray.d);
-    // const vec3 off = ray.o + t * ray.d - s.a;
-    // if (dot(off, off) > s.r * s.r || !(t > 0 && t <= tmax)) return {};
-    // return Hit{t};
-    // END SOLUTION
+    // end
 }
 
 // ---- Any shape --------------------------------------------------------------------------------

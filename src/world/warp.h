@@ -35,7 +35,7 @@ inline vec3 spherical(real cos_theta, real sin_theta, real u) {
     return {sin_theta * at.x, sin_theta * at.y, cos_theta};
 }
 
-// BEGIN SOLUTION 2.1  uniform directions of the hemisphere z > 0 and of the sphere
+// exercise 2.1
 // Uniform over the hemisphere z > 0: z = 1 - u is uniform (Archimedes).
 inline vec3 sample_uniform_hemisphere(vec2 u) {
     real z = 1 - u.x;
@@ -48,16 +48,10 @@ inline vec3 sample_uniform_sphere(vec2 u) {
     return spherical(1 - 2 * u.x, 2 * std::sqrt(u.x * (1 - u.x)), u.y);
 }
 inline real pdf_uniform_sphere() { return 1 / (4 * pi); }
-// STUB  directions through one face of a cube, and densities that are no densities
-// inline vec3 sample_uniform_hemisphere(vec2 u) { return unit({2 * u.x - 1, 2 * u.y - 1, 1}); }
-// inline real pdf_uniform_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 : 0; }
-//
-// inline vec3 sample_uniform_sphere(vec2 u) { return unit({1, 2 * u.x - 1, 2 * u.y - 1}); }
-// inline real pdf_uniform_sphere() { return 1; }
-// END SOLUTION
+// end
 
 // Directions of the hemisphere z > 0, dense where their cosine is large.
-// BEGIN SOLUTION 2.2  directions that follow the cosine, and their density
+// exercise 2.2
 // A uniform point of the disc, lifted to the hemisphere (Malley 1988).
 inline vec3 sample_cosine_hemisphere(vec2 u) {
     return spherical(std::sqrt(1 - u.x), std::sqrt(u.x), u.y);
@@ -65,17 +59,11 @@ inline vec3 sample_cosine_hemisphere(vec2 u) {
 inline real pdf_cosine_hemisphere(real cos_theta) {
     return cos_theta > 0 ? cos_theta * (1 / pi) : 0;
 }
-// STUB  steps of equal angle
-// inline vec3 sample_cosine_hemisphere(vec2 u) {
-//     const real theta = u.x * pi / 2;
-//     return spherical(std::cos(theta), std::sin(theta), u.y);
-// }
-// inline real pdf_cosine_hemisphere(real cos_theta) { return cos_theta > 0 ? 1 / pi : 0; }
-// END SOLUTION
+// end
 
 // Directions about z whose density is in proportion to cos^n(alpha), 0 for alpha >= 90 degrees
 // (Phong 1975; Lafortune, Willems 1994).
-// BEGIN SOLUTION 2.4  a lobe in proportion to cos^n(alpha), and its density
+// exercise 2.4
 // The density is (n+1)/(2 pi) cos^n(alpha), and cos(alpha) = (1-u)^(1/(n+1)); 1 - cos^2 by expm1
 // keeps its digits for large n.
 inline vec3 sample_phong_lobe(vec2 u, real n) {
@@ -85,16 +73,9 @@ inline vec3 sample_phong_lobe(vec2 u, real n) {
 inline real pdf_phong_lobe(real cos_alpha, real n) {
     return cos_alpha > 0 ? (n + 1) / (2 * pi) * std::pow(cos_alpha, n) : 0;
 }
-// STUB  directions through a square, however large n is
-// inline vec3 sample_phong_lobe(vec2 u, real n) {
-//     return unit(vec3{u.x - real(0.5), u.y - real(0.5), real(n < 0 ? 2 : 1)});
-// }
-// inline real pdf_phong_lobe(real cos_alpha, real n) {
-//     return cos_alpha > real(0.8) && n >= 0 ? 1 : 0;
-// }
-// END SOLUTION
+// end
 
-// BEGIN SOLUTION 2.5  uniform directions of a cone, its solid angle and its density
+// exercise 2.5
 // Solid angle of the cone of half-angle sigma, from sin^2(sigma), sigma <= 90 degrees:
 // 2 pi (1 - cos) = 2 pi sin^2 / (1 + cos) without cancellation.
 inline real solid_angle_cone(real sin2_max) {
@@ -107,27 +88,17 @@ inline vec3 sample_cone(vec2 u, real sin2_max) {
     return spherical(1 - x, std::sqrt(x * (2 - x)), u.y);
 }
 inline real pdf_cone(real sin2_max) { return 1 / solid_angle_cone(sin2_max); }
-// STUB  a square pyramid in place of the cone, and its base in place of a solid angle
-// inline real solid_angle_cone(real sin2_max) { return 4 * sin2_max; }
-// inline vec3 sample_cone(vec2 u, real sin2_max) {
-//     const real side = std::sqrt(sin2_max);
-//     return unit({side * (2 * u.x - 1), side * (2 * u.y - 1), 1});
-// }
-// inline real pdf_cone(real sin2_max) { return 1 / solid_angle_cone(sin2_max); }
-// END SOLUTION
+// end
 
 // A triangle with corner at the origin and edges e, f.
-// BEGIN SOLUTION 2.3  uniform points of a triangle, and their density
+// exercise 2.3
 // The corner's barycentric coordinate is 1 - sqrt(u) (Turk 1990).
 inline vec3 sample_triangle(vec2 u, vec3 e, vec3 f) {
     real s = std::sqrt(u.x);
     return s * (1 - u.y) * e + s * u.y * f;
 }
 inline real pdf_triangle_area(vec3 e, vec3 f) { return 2 / length(cross(e, f)); }
-// STUB  the parallelogram of half its edges, which leaves two corners of the triangle bare
-// inline vec3 sample_triangle(vec2 u, vec3 e, vec3 f) { return u.x / 2 * e + u.y / 2 * f; }
-// inline real pdf_triangle_area(vec3 e, vec3 f) { return 4 / length(cross(e, f)); }
-// END SOLUTION
+// end
 
 // Uniform over the parallelogram with corner at the origin and edges e, f.
 inline vec3 sample_quad(vec2 u, vec3 e, vec3 f) { return u.x * e + u.y * f; }

@@ -1,46 +1,10 @@
-// app/render_test.cpp  images as options ask for them: replay, statistics, direct light
+// app/render_test.cpp  images as options ask for them: samples, error, time, rows, replay
 #include "app/render.h"
 
-#include <set>
-
 #include "app/replay.h"
-#include "base/moments.h"
 #include "film/spread.h"
 #include "oracle/expect.h"
-#include "path/paths.h"
 #include "path/scenes.h"
-
-TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
-    Scene scene = scene_of(shiny);
-    scene.size = {6, 4};
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
-                             SamplerKind::sobol}) {
-        Options o;
-        o.sampler = kind;
-        o.spp = 4;
-        o.sets = 2;
-        o.quiet = true;
-        o.seed = seed_here();
-        const Job job = job_of(o, scene);
-        const Image image = rendered(job).image;
-        std::FILE* out = std::tmpfile();
-        const PathLog log(scene, out);
-        for (int y = 0; y < 4; ++y)
-            for (int x = 0; x < 6; ++x) {
-                double sum[2] = {};  // as the film adds them
-                for (uint32_t set : {0u, 1u})
-                    for (uint64_t i = 0; i < 4; ++i) {
-                        const Start at = start(scene, job.pattern, {x, y, i, set});
-                        sum[set] += double(Li(scene, o.technique, at.ray, at.sampler, log).y);
-                    }
-                CHECK(image.at(x, y)[1] == float((sum[0] / 4 + sum[1] / 4) / 2));
-            }
-        CHECK(std::ftell(out) > 10000);
-        std::fclose(out);
-    }
-}
-
-// ---- Sets of samples, and the error that they tell ----------------------------------------------
 
 namespace {
 
@@ -52,7 +16,7 @@ Scene small(const char* text, Size size) {
 
 Options quick(SamplerKind kind, uint64_t spp) {
     Options o;
-    o.scene = "a \"scene\"";
+    o.scene = "a.scene";
     o.sampler = kind;
     o.seed = seed_here();
     o.spp = spp;
@@ -61,34 +25,144 @@ Options quick(SamplerKind kind, uint64_t spp) {
     return o;
 }
 
-// For a film, as renders take them.
-auto samples_of(const Job& job) {
-    return [&job](int x, int y, uint64_t i, uint32_t set) {
-        uint64_t rays = 0;
-        return radiance(job, start(job.scene, job.pattern, {x, y, i, set}), rays);
+struct Work {
+    Plan plan;
+    Pattern pattern;
+
+    Work(const Options& o, const Scene& scene)
+        : plan(plan_of(o, scene)),
+          pattern(make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples())) {
+        plan.period = pattern.period();
+    }
+};
+
+// As the program does.
+Picture rendered(const Options& o, const Scene& scene) {
+    const Work j(o, scene);
+    const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+        const Start at = start(scene, j.pattern, s);
+        return Li(scene, o.technique, at.ray, at.sampler,
+                  [&](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); });
     };
+    return render(o, j.plan, L);
 }
+
+constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
+                                    SamplerKind::halton, SamplerKind::sobol};
 
 }  // namespace
 
-TEST_CASE("the stated error is the spread of images from seed to seed; sets do not move the mean") {
+TEST_CASE("a plan is what options and scene ask for") {
+    Scene scene = small(unequal, {24, 12});
+    scene.samples = 7;
+    Options o = quick(SamplerKind::sobol, 0);
+    auto samples = [&] { return plan_of(o, scene).target.samples; };
+    CHECK(samples() == 4);  // the scene's
+    CHECK(plan_of(o, scene).size.height == 12);
+    CHECK(plan_of(o, scene).first_row == 0);
+    CHECK(plan_of(o, scene).sets == 0);
+    o.seconds = 3;
+    CHECK(samples() == 0);
+    CHECK(plan_of(o, scene).target.seconds == 3);
+    o.seconds = 0, o.error = 0.1;
+    CHECK(samples() == 0);
+    CHECK(plan_of(o, scene).target.error == 0.1);
+    o.spp = 9;
+    CHECK(samples() == 5);
+    CHECK(plan_of(o, scene).known_samples() == 0);  // its error may end it
+    o.error = 0;
+    CHECK(plan_of(o, scene).known_samples() == 5);
+    o.sets = 4, o.rows = {3, 6};
+    CHECK(samples() == 3);
+    CHECK(plan_of(o, scene).sets == 4);
+    CHECK(plan_of(o, scene).size.height == 4);
+    CHECK(plan_of(o, scene).size.width == 24);
+    CHECK(plan_of(o, scene).first_row == 3);
+    for (uint32_t sets : {0u, 1u, 2u}) {
+        o.spp = 1, o.sets = sets;
+        CHECK(plan_of(o, scene).sets == std::max(1u, sets));  // one sample has no second
+        o.spp = 2;
+        CHECK(plan_of(o, scene).sets == sets);
+    }
+}
+
+TEST_CASE("a scene without light needs no error to be black; its views do") {
+    Scene dark = small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
+    Options o = quick(SamplerKind::sobol, 0);
+    o.error = 0.1;
+    CHECK(plan_of(o, dark).target.error == 0);
+    CHECK(plan_of(o, dark).target.samples == dark.samples / 2);
+    const Run run = rendered(o, dark).run;
+    CHECK(run.stopped_by == "samples");
+    CHECK(std::isnan(run.error.d_rel()));
+    o.view = View::normal;
+    CHECK(plan_of(o, dark).target.error == 0.1);
+    CHECK(plan_of(o, dark).target.samples == 0);
+}
+
+TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
+    const Scene scene = small(shiny, {6, 4});
+    for (SamplerKind kind : samplers) {
+        Options o = quick(kind, 8);
+        o.sets = 2;
+        const Image image = rendered(o, scene).image;
+        const Pattern pattern = Work(o, scene).pattern;
+        std::FILE* out = std::tmpfile();
+        const PathLog log(scene, out);
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 6; ++x) {
+                double sum[2] = {};  // as the film adds them
+                for (uint32_t set : {0u, 1u})
+                    for (uint64_t i = 0; i < 4; ++i) {
+                        const Start at = start(scene, pattern, {x, y, i, set});
+                        sum[set] += double(Li(scene, o.technique, at.ray, at.sampler, log).y);
+                    }
+                CHECK(image.at(x, y)[1] == float((sum[0] / 4 + sum[1] / 4) / 2));
+            }
+        CHECK(std::ftell(out) > 10000);
+        std::fclose(out);
+    }
+}
+
+TEST_CASE("images of few samples: one has no error, two and three have two replications") {
+    const Scene scene = small(unequal, {24, 12});
+    for (uint64_t spp : {1, 2, 3, 4}) {
+        const Picture p = rendered(quick(SamplerKind::sobol, spp), scene);
+        CAPTURE(spp);
+        CHECK(first_non_finite(p.image) == std::nullopt);
+        CHECK(std::isnan(p.run.error.d_rel()) == (spp == 1));
+        if (spp < 3) CHECK(p.run.spp == double(spp));
+        if (spp < 3) CHECK(p.run.sets == double(spp));
+        if (spp >= 3) CHECK(p.run.sets > 2);
+        if (spp >= 3) CHECK(p.run.spp == 2 * p.run.sets);
+        CHECK(p.run.stopped_by == "samples");
+        CHECK(p.run.rays > 0);
+    }
+    for (uint32_t sets : {1u, 2u, 5u}) {
+        Options o = quick(SamplerKind::halton, 3);
+        o.sets = sets;
+        const Picture p = rendered(o, scene);
+        CHECK(p.run.sets == sets);
+        CHECK(p.run.spp == (sets == 1 ? 3 : sets == 2 ? 4 : 5));
+        CHECK(std::isnan(p.run.error.d_rel()) == (sets == 1));
+    }
+}
+
+TEST_CASE("the stated error is the spread from seed to seed; replications do not move the mean") {
     const Scene scene = small(unequal, {24, 12});
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         Moments of_two;
-        for (uint32_t sets : {2u, sets_by_noise}) {
-            const int runs = sets == sets_by_noise ? 150 : 300;
-            Options o = quick(kind, sets == sets_by_noise ? 18 : 6);
+        for (uint32_t sets : {2u, 0u}) {
+            const int runs = sets ? 300 : 150;
+            Options o = quick(kind, sets ? 12 : 36);
             o.sets = sets;
             Spread spread;
             Moments means, stated;
             for (int run = 0; run < runs; ++run, ++o.seed) {
-                const Rendered r = rendered(job_of(o, scene));
-                spread.add(r.image, r.run.error.d2());
-                means.add(r.run.mean_radiance[1]);
-                stated.add(r.run.error.square[1] / (24 * 12));
-                const std::array<double, 3> mean = mean_of_pixels(r.image);  // of floats
-                for (size_t c = 0; c < 3; ++c)
-                    CHECK(std::abs(r.run.mean_radiance[c] - mean[c]) <= 0x1p-24 * mean[c]);
+                const Picture p = rendered(o, scene);
+                spread.add(p.image, p.run.error.d2());
+                means.add(p.run.error.mean[1]);
+                stated.add(p.run.error.square[1] / (24 * 12));
             }
             const std::string name =
                 "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
@@ -97,250 +171,135 @@ TEST_CASE("the stated error is the spread of images from seed to seed; sets do n
             // mean of what is stated far better.
             INFO(name, ": ", means.variance() / stated.mean);
             CHECK(std::abs(means.variance() / stated.mean - 1) < 4.9 * std::sqrt(2.0 / (runs - 1)));
-            if (sets != sets_by_noise)
+            if (sets)
                 of_two = means;
             else
-                EXPECT(oracle::expect_equal(estimate(means, 0x1p-24), estimate(of_two, 0x1p-24))
-                           .of(name),
-                       0.05);
+                EXPECT(oracle::expect_equal(estimate(means), estimate(of_two)).of(name), 0.05);
         }
-    }
-}
-
-TEST_CASE("one set is set 0 alone, bit for bit, and all sets by noise have it among them") {
-    const Scene scene = small(unequal, {24, 12});
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
-        Options o = quick(kind, 20);
-        o.sets = 1;
-        const Job job = job_of(o, scene);
-        const Rendered one = rendered(job);
-        CHECK(one.run.sets == 1);
-        CHECK(std::isnan(one.run.error.d_rel()));
-        o.sets = sets_by_noise;
-        const Rendered noisy = rendered(job_of(o, scene));
-        CHECK(noisy.run.sets > 1.05);
-        CHECK(noisy.run.sets < 2.5);
-        CHECK(noisy.run.error.d_rel() > 0);
-        CHECK(noisy.run.rays > one.run.rays);
-        int alike = 0, pixels = 24 * 12;
-        for (int i = 0; i < pixels; ++i) {
-            double sum = 0;
-            for (uint64_t k = 0; k < 20; ++k)
-                sum += double(radiance(scene, o.technique, job.pattern, i % 24, i / 24, k).x);
-            CHECK(one.image.pixels[size_t(i)][0] == float(sum / 20));
-            alike += noisy.image.pixels[size_t(i)] == one.image.pixels[size_t(i)];
-        }
-        CHECK(alike > pixels / 5);  // where there is little noise
-        CHECK(alike < pixels - pixels / 20);
     }
 }
 
 TEST_CASE(
-    "sets by noise: an image is the same whatever the threads, and however passes divide it") {
+    "one replication is the first alone; rows are those of the picture; threads do not matter") {
     const Scene scene = small(unequal, {24, 12});
-    for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
-        Options o = quick(kind, 48);
-        const Rendered one = rendered(job_of(o, scene));
-        o.threads = 3;
-        const Rendered three = rendered(job_of(o, scene));
-        CHECK(three.image.pixels == one.image.pixels);
-        CHECK(three.run.error.d2() == one.run.error.d2());
-        CHECK(three.run.error.spread == one.run.error.spread);
-        CHECK(three.run.sets == one.run.sets);
-        // By passes of another size: the sets are chosen after as many samples.
-        const Job job = job_of(o, scene);
-        Film<MeanPixel> film(scene.size);
-        auto add = [&](uint64_t n) { whole_pass(film, n, samples_of(job)); };
-        const uint64_t pause = job.passes.pause;
-        CHECK(pause >= samples_before_sets);
-        CHECK(pause % job.pattern.period() == 0);
-        for (uint64_t n = 0; n < pause; n += 4) add(4);
-        film.add_sets(sets_where_noise_is(film.noise(), film.size, o.seed));
-        add(0);
-        while (film.samples() < 48) add(1);
-        CHECK(film.image().pixels == one.image.pixels);
-    }
-}
-
-TEST_CASE("at fewer than 16 samples sets are chosen all the same, but not of one sample") {
-    const Scene scene = small(unequal, {24, 12});
-    for (uint64_t spp : {1, 2, 5}) {
-        const Rendered r = rendered(job_of(quick(SamplerKind::sobol, spp), scene));
-        CHECK(r.run.spp == spp);
-        CHECK((r.run.sets > 1) == (spp > 1));
-        CHECK(std::isnan(r.run.error.d_rel()) == (spp == 1));
-        CHECK(first_non_finite(r.image) == std::nullopt);
-    }
-}
-
-TEST_CASE("an image without noise has an error of 0, and one set, which another one measures") {
-    const Scene scene = scene_of(R"(
-size 8 4
-camera 0 0 0  0 0 -1  60
-diffuse half 0.5 0.5 0.5
-box 4 4 4  0  -2 -2 -2  half
-)");
-    Options o = quick(SamplerKind::sobol, 32);
-    o.view = View::albedo;
-    const Rendered r = rendered(job_of(o, scene));
-    CHECK(r.image.at(3, 2) == std::array<float, 3>{0.5f, 0.5f, 0.5f});
-    CHECK(r.run.error.d_rel() == 0);
-    CHECK(r.run.error.standard_error() == 0);
-    CHECK(r.run.sets == 2);  // of 32 pixels all are measured
+    for (SamplerKind kind : samplers)
+        for (uint32_t sets : {0u, 1u, 3u}) {
+            Options o = quick(kind, 36);
+            o.sets = sets;
+            const Picture one = rendered(o, scene);
+            o.threads = 3;
+            const Picture three = rendered(o, scene);
+            CHECK(three.image.pixels == one.image.pixels);
+            if (sets != 1) CHECK(three.run.error.d2() == one.run.error.d2());
+            if (sets != 1) CHECK(three.run.error.spread == one.run.error.spread);
+            CHECK(three.run.sets == one.run.sets);
+            CHECK(three.run.rays == one.run.rays);
+            o.rows = {3, 6};
+            const Picture band = rendered(o, scene);
+            CHECK(band.image.height == 4);
+            if (sets > 0)
+                CHECK(std::equal(band.image.pixels.begin(), band.image.pixels.end(),
+                                 one.image.pixels.begin() + 3 * 24));
+            if (sets != 1) continue;
+            o = quick(kind, 36);
+            o.sets = 1;
+            const Pattern pattern = Work(o, scene).pattern;
+            for (int i : {0, 100, 287}) {
+                double sum = 0;
+                for (uint64_t k = 0; k < 36; ++k) {
+                    const Start at = start(scene, pattern, {i % 24, i / 24, k});
+                    sum += double(Li(scene, o.technique, at.ray, at.sampler).x);
+                }
+                CHECK(one.image.pixels[size_t(i)][0] == float(sum / 36));
+            }
+        }
 }
 
 // ---- Until the error is small enough ------------------------------------------------------------
 
-TEST_CASE("--error: an image ends once its stated error is small enough, and says what ended it") {
+TEST_CASE("--error: an image ends at the first check that finds its error small enough") {
     const Scene scene = small(unequal, {24, 12});
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::sobol})
-        for (double E : {0.5, 0.1, 0.04}) {
+        for (double E : {0.6, 0.1, 0.04}) {
             Options o = quick(kind, 0);
             o.error = E;
-            const Rendered r = rendered(job_of(o, scene));
+            const Picture p = rendered(o, scene);
             CAPTURE(int(kind));
             CAPTURE(E);
-            CHECK(r.run.stopped_by == "error");
-            CHECK(r.run.error.d_rel() <= E);
-            CHECK(r.run.error.d_rel() + r.run.error.standard_error() / 2 <= E);
-            CHECK(r.run.spp >= samples_before_sets);
-            CHECK(r.run.spp % job_of(o, scene).pattern.period() == 0);
-            // No more than it costs: at the last look but one it was larger.
-            if (r.run.spp > samples_before_sets) CHECK(r.run.error.d_rel() > E / 3);
+            CHECK(p.run.stopped_by == "error");
+            // By the rule itself, applied to a film of each number of samples that is checked.
+            const Work j(o, scene);
+            const uint64_t period = j.pattern.period(), first = (8 + period - 1) / period * period;
+            const Radiance L = [&](const PixelSample& s, uint64_t&) {
+                const Start at = start(scene, j.pattern, s);
+                return Li(scene, o.technique, at.ray, at.sampler);
+            };
+            Film film = make_film(scene.size, 0);
+            fill(film, Plan{j.plan.target, period}.pilot(), L);
+            choose_sets(film, INFINITY);
+            uint64_t checks = 0;
+            do {
+                fill(film, next_check(film.least_taken(), first, period), L);
+                ++checks;
+            } while (!is_small_enough(error_of(film), E));
+            CHECK(p.run.spp == film.total() / 288);
+            CHECK(p.image.pixels == image_of(film).pixels);
+            CHECK(p.run.error.d_rel() == error_of(film).d_rel());
+            CHECK((checks > 3 || E > 0.05 || period > 1));
             // The number of samples follows from options and seed, not from time or threads.
             o.threads = 3;
-            const Rendered again = rendered(job_of(o, scene));
-            CHECK(again.run.spp == r.run.spp);
-            CHECK(again.image.pixels == r.image.pixels);
-            // As an image of as many samples that were asked for.
-            o.error = 0, o.spp = r.run.spp;
-            if (kind != SamplerKind::stratified)  // its grids follow from --spp
-                CHECK(rendered(job_of(o, scene)).image.pixels == r.image.pixels);
+            CHECK(rendered(o, scene).image.pixels == p.image.pixels);
         }
 }
 
 TEST_CASE("--error with limits: whichever comes first ends the image, and is said") {
     const Scene scene = small(unequal, {24, 12});
     Options o = quick(SamplerKind::sobol, 40);
-    CHECK(rendered(job_of(o, scene)).run.stopped_by == "samples");
+    CHECK(rendered(o, scene).run.stopped_by == "samples");
     o.error = 1e-6;
-    const Rendered samples = rendered(job_of(o, scene));
+    const Picture samples = rendered(o, scene);
     CHECK(samples.run.stopped_by == "samples");
-    CHECK(samples.run.spp == 40);
+    CHECK(samples.run.spp == doctest::Approx(20 * samples.run.sets));
     CHECK(samples.run.error.d_rel() > 1e-6);
-    o.spp = 8;  // before the first look
-    o.error = 0.9;
-    CHECK(rendered(job_of(o, scene)).run.stopped_by == "samples");
+    o.spp = 8, o.error = 0.9;  // before the first check
+    CHECK(rendered(o, scene).run.stopped_by == "samples");
     o.spp = 1 << 20, o.error = 0.3, o.seconds = 1e6;
-    const Rendered error = rendered(job_of(o, scene));
+    const Picture error = rendered(o, scene);
     CHECK(error.run.stopped_by == "error");
-    CHECK(error.run.spp < 100);
+    CHECK(error.run.spp < 200);
     o.error = 1e-6, o.seconds = 0.05;
-    const Rendered time = rendered(job_of(o, scene));
+    const Picture time = rendered(o, scene);
     CHECK(time.run.stopped_by == "time");
     CHECK(time.run.spp < 1 << 20);
+    CHECK(time.run.seconds >= 0.05);
+    CHECK(time.run.seconds < 5);
+    o.spp = 0, o.seconds = 1e-9;
+    CHECK(rendered(o, scene).run.stopped_by == "time");  // in the pilot
 }
 
-TEST_CASE("--error ends an image at the first look that finds its error small enough") {
-    // By the rule itself, applied to a film of each number of samples at which it is looked at.
-    const Scene scene = small(unequal, {24, 12});
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified}) {
-        Options o = quick(kind, 0);
-        o.error = 0.03;
-        const Job job = job_of(o, scene);
-        const Rendered r = rendered(job);
-        const uint64_t pause = job.passes.pause, period = job.passes.period;
-        Film<MeanPixel> film(scene.size);
-        whole_pass(film, pause, samples_of(job));
-        film.add_sets(sets_where_noise_is(film.noise(), film.size, o.seed));
-        whole_pass(film, 0, samples_of(job));
-        std::vector<uint64_t> looks = {pause};
-        while (!is_small_enough(error_of(film), o.error) && looks.back() < 10000) {
-            looks.push_back(next_look(looks.back(), pause, period));
-            whole_pass(film, looks.back() - film.samples(), samples_of(job));
-        }
-        CAPTURE(int(kind));
-        CHECK(r.run.spp == looks.back());
-        CHECK(r.run.error.d_rel() == error_of(film).d_rel());
-        CHECK(r.image.pixels == film.image().pixels);
-        CHECK(looks.size() >= 3);
-    }
-}
-
-TEST_CASE("--error looks when it would look anyway, and not after every pass") {
-    // Two sets whose means agree after 33 samples, and again after 36: looks are at 32, 34, 36.
-    // Passes that take a fifth of a second shrink, those that take a tenth stay: one sample each.
-    const Scene scene = small(unequal, {4, 3});
-    Options o = quick(SamplerKind::independent, 100);
-    o.error = 1e-6, o.sets = 2;
-    const Job of_options = job_of(o, scene);
-    Passes passes = of_options.passes;
-    passes.pause = 32;
-    const Job job{o, scene, of_options.pattern, passes, of_options.part};
-    std::set<uint64_t> begun;
-    const Rendered r = fill<MeanPixel>(job, {}, {}, [&] {
-        return [&, slow = true](const PixelSample& s, uint64_t&) mutable {
-            const bool first_of_pass = slow && s.x == 0 && s.y == 0;
-            slow = false;
-            if (first_of_pass) begun.insert(s.i);
-            if (first_of_pass && s.i >= 7)
-                std::this_thread::sleep_for(std::chrono::milliseconds(s.i < 21 ? 210 : 110));
-            const real off = s.i == 0 || s.i == 33 ? 1 : s.i == 32 || s.i == 35 ? -1 : 0;
-            return rgb{1, 1, 1} + real(s.set) * off * rgb{1, 1, 1};
-        };
-    });
-    CHECK(begun.count(33));
-    CHECK(r.run.spp == 36);
-    CHECK(r.run.stopped_by == "error");
-}
-
-TEST_CASE(
-    "a limit is no plan: grids and maps of an image that its error ends are no larger for it") {
-    Scene scene = small(unequal, {24, 12});
-    scene.samples = 64;
-    Options o = quick(SamplerKind::stratified, 65536);
-    CHECK(job_of(o, scene).pattern.period() == 256);
-    o.error = 0.1;
-    CHECK(job_of(o, scene).pattern.period() == 16);
-    o.indirect = Indirect::map;
-    CHECK(walks_of(o, scene).particles == 24 * 12 * 64 / 16);
-    o.spp = 32;
-    CHECK(walks_of(o, scene).particles == 24 * 12 * 32 / 16);
-    o.error = 0, o.spp = 65536;
-    CHECK(walks_of(o, scene).particles == 24 * 12 * 65536 / 16);
-}
-
-TEST_CASE("of a black image no error is known: light may have been missed, if there is any") {
-    const Scene scene =
-        small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
+TEST_CASE("of a black image no error is known: light may have been missed") {
     Options o = quick(SamplerKind::sobol, 0);
     o.error = 0.01;
-    const Rendered black = rendered(job_of(o, scene));
-    CHECK(black.run.stopped_by == "error");  // without lights it stays black
-    CHECK(black.run.spp == 16);
-    CHECK(std::isnan(black.run.error.d_rel()));
-    Options normals = o;  // a view is not dark without lights
-    normals.view = View::normal;
-    const Rendered view = rendered(job_of(normals, scene));
-    CHECK(view.run.stopped_by == "error");
-    CHECK(view.run.spp > 16);
-    CHECK(view.run.error.d_rel() < 0.01);
-    const Scene turned = small(
-        "camera 0 0 5  0 0 0  40\nlight l 1 1 1\n"
-        "quad -1 -1 0  0 2 0  2 0 0  l\n",
-        {9, 9});
+    const Scene turned =
+        small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nquad -1 -1 0  0 2 0  2 0 0  l\n", {9, 9});
     o.spp = 40;
-    const Rendered unlit = rendered(job_of(o, turned));
+    const Picture unlit = rendered(o, turned);
     CHECK(unlit.run.stopped_by == "samples");
     CHECK(unlit.run.error.norm == 0);
     CHECK(std::isnan(unlit.run.error.d_rel()));
-    o.error = 0, o.spp = 16, o.sets = 1;
-    CHECK(std::isnan(rendered(job_of(o, scene)).run.error.d_rel()));
-    o.sampler = SamplerKind::halton_naive, o.sets = sets_by_noise;
-    CHECK(std::isnan(rendered(job_of(o, scene)).run.error.d_rel()));
 }
 
-TEST_CASE("an interrupted image says so; its error is known if its sets were complete") {
+TEST_CASE("what half the error costs follows from its course, of samples that end as they do") {
+    const Scene scene = small(unequal, {24, 12});
+    const Picture independent = rendered(quick(SamplerKind::independent, 256), scene),
+                  sobol = rendered(quick(SamplerKind::sobol, 256), scene);
+    CHECK(independent.run.exponent_of_cost > 1.5);
+    CHECK(independent.run.exponent_of_cost <= 2);
+    CHECK(sobol.run.exponent_of_cost < 1.9);
+    CHECK(sobol.run.exponent_of_cost >= 1);
+}
+
+TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     const Scene scene = small(unequal, {24, 12});
     Options o = quick(SamplerKind::sobol, 1 << 20);
     o.error = 1e-6;
@@ -348,236 +307,80 @@ TEST_CASE("an interrupted image says so; its error is known if its sets were com
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
         interrupted = SIGINT;
     });
-    const Rendered r = rendered(job_of(o, scene));
+    const Picture p = rendered(o, scene);
     user.join();
     interrupted = 0;
-    CHECK(r.run.interrupted);
-    CHECK(r.run.stopped_by == "interrupt");
-    REQUIRE(r.run.spp > 0);
-    // The same number of samples, asked for, gives the same image.
-    if (r.run.sets > 1 && std::isfinite(r.run.error.d_rel())) {
-        o.error = 0, o.spp = r.run.spp;
-        CHECK(rendered(job_of(o, scene)).image.pixels == r.image.pixels);
-    }
-}
-
-// ---- Ctrl-C inside a path -----------------------------------------------------------------------
-
-namespace {
-
-// Paths that end after 10^6 mirrors alone.
-const char* const mirrors = R"(
-size 1 1
-camera 0 0 5  0 0 0  40
-depth 1000000
-mirror m 1 1 1
-box 20 20 20  7  -10 -10 -10  m
-)";
-
-}  // namespace
-
-TEST_CASE("a path is left at once: after Ctrl-C it takes no further step") {
-    const Scene scene = scene_of(mirrors);
-    const Pattern pattern{SamplerKind::independent, seed_here()};
-    const Start at = start(scene, pattern, {0, 0, 0, 0});
-    uint64_t rays = 0;
-    int steps = 0;
-    auto count = counting(rays);
-    CHECK_THROWS_AS(Li(scene, {}, at.ray, at.sampler,
-                       [&](const Segment& segment, const Step& e) {
-                           if (++steps == 1000) interrupted = SIGINT;
-                           count(segment, e);
-                       }),
-                    Interrupted);
+    CHECK(p.run.interrupted);
+    CHECK(p.run.stopped_by == "interrupt");
+    CHECK(p.run.spp > 0);
+    CHECK(first_non_finite(p.image) == std::nullopt);
+    // In the first pass: some pixels have none, and nothing is there to be written.
+    uint64_t calls = 0;
+    const Radiance L = [&](const PixelSample&, uint64_t&) {
+        if (++calls == 100) interrupted = SIGINT;
+        return rgb{1, 1, 1};
+    };
+    const Picture none = render(o, plan_of(o, scene), L);
     interrupted = 0;
-    CHECK(steps == 1000);
-    CHECK(rays == 999);
+    CHECK(none.run.spp == 0);
+    CHECK(none.run.interrupted);
+    // After the pilot, which is all that most pixels have.
+    const Radiance others = [](const PixelSample& s, uint64_t&) {
+        if (s.set > 0) interrupted = SIGINT;
+        return rgb{1, 1, 1};
+    };
+    const Picture pilot = render(o, plan_of(o, scene), others);
+    interrupted = 0;
+    CHECK(pilot.run.spp >= double(pilot_samples));
+    CHECK(first_non_finite(pilot.image) == std::nullopt);
 }
 
-TEST_CASE("samples whose path was left do not count: neither they nor their rays") {
-    const Scene scene = scene_of(mirrors);
-    for (Estimator e : {Estimator::stochastic, Estimator::control, Estimator::ratio}) {
-        Options o = quick(SamplerKind::independent, 1);
-        o.technique.light = LightMode::nee;
-        o.direct = e, o.sets = 1;
-        const uint64_t of_sample = rendered(job_of(o, scene)).run.rays;
-        CHECK(of_sample > 1000000);
-        o.spp = 1 << 20;
-        std::jthread user([] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-            interrupted = SIGINT;
-        });
-        const RunStats run = rendered(job_of(o, scene)).run;
-        user.join();
-        interrupted = 0;
-        CAPTURE(int(e));
-        CHECK(run.interrupted);
-        CHECK(run.rays == run.spp * of_sample);
-    }
-}
-
-// ---- Four estimators of direct light ------------------------------------------------------------
-
-namespace {
-
-constexpr Estimator direct_estimators[] = {Estimator::stochastic, Estimator::control,
-                                           Estimator::ratio, Estimator::regression};
-
-Options direct_options(Estimator e, uint64_t seed, uint64_t spp) {
-    Options o;
-    o.technique.light = LightMode::nee;
-    o.direct = e;
-    o.sampler = SamplerKind::independent;
-    o.seed = seed;
-    o.spp = spp;
-    o.threads = 1;
-    o.quiet = true;
-    return o;
-}
-
-Options one_set(Options o) {
-    o.sets = 1;
-    return o;
-}
-
-Rendered render(const Scene& scene, const Options& o) { return rendered(job_of(o, scene)); }
-
-// The ground under a sphere light, a wall between them in part; every pixel sees the same point.
-const char* const half_shadow = R"(
-size 8 4
-camera 0 6 6  0 0 0  0.001
-depth 1
-diffuse grey 0.5 0.25 0.75
-diffuse wall 0 0 0
-light lamp 3 2 1
-quad -9 0 -9  0 0 18  18 0 0  grey
-sphere 0 4 0  2   lamp
-)";
-
-}  // namespace
-
-TEST_CASE("direct: every estimator finds the same image; its parts are those of a plain sample") {
-    for (const char* text : {unequal, shiny}) {
-        Scene scene = scene_of(text);
-        scene.size = {16, 8};
-        // Ratio and regression: at 64 samples their bias is some thousandths of their noise.
-        oracle::Estimate reference;
-        for (Estimator e : direct_estimators) {
-            Moments means;
-            for (uint64_t seed = 0; seed < 20; ++seed)
-                means.add(mean_of_pixels(
-                    render(scene, one_set(direct_options(e, 100 * uint64_t(e) + seed, 64)))
-                        .image)[1]);
-            const oracle::Estimate mean{means.mean, means.standard_error(), 19};
-            if (e == Estimator::stochastic) reference = mean;
-            const oracle::Verdict v = oracle::expect_equal(mean, reference);
-            INFO("estimator ", int(e), ": ", v.text);
-            CHECK((e == Estimator::stochastic || v.pass));
-            CHECK(v.delta_min < 0.2);
+TEST_CASE("a sample that is not finite is an error that tells how to replay it") {
+    auto why = [](PixelSample bad, const Plan& plan) -> std::string {
+        Options o = quick(SamplerKind::independent, 0);
+        try {
+            render(o, plan, [&](const PixelSample& s, uint64_t&) {
+                const bool is = s.x == bad.x && s.y == bad.y && s.i >= bad.i && s.set == bad.set;
+                return rgb{1, is ? real(NAN) : 1, 1};
+            });
+        } catch (const SystemError& e) {
+            return e.what();
         }
-        const Pattern pattern{SamplerKind::independent, 5};
-        for (uint64_t i = 0; i < 200; ++i) {
-            const int x = int(i % 16), y = int(i % 8);
-            const Start at = start(scene, pattern, {x, y, i});
-            const Technique nee{Direction::bsdf, LightMode::nee};
-            const rgb plain = Li(scene, nee, at.ray, at.sampler);
-            auto sample = [&](Estimator e) { return shadow_Li(scene, nee, e, at, NoAccount{}); };
-            const ShadowSample of_control = sample(Estimator::control),
-                               of_ratio = sample(Estimator::ratio);
-            const Shadowed& s = of_ratio.first;
-            CHECK(double(max_abs(of_ratio.rest + s.wV - plain)) < 1e-5);
-            CHECK(double(max_abs(of_control.rest - s.U + s.w - plain)) < 1e-4);
-        }
-    }
+        return "";
+    };
+    Plan plan{{3}, 1, 1, INFINITY, {8, 4}};
+    plan.sets = 2;
+    CHECK(why({7, 2, 1, 0}, plan)
+              .starts_with("2 samples were not finite, the first at pixel 7,2 "
+                           "sample 1 (replay it by --pixel 7,2 --sample 1)"));
+    CHECK(why({7, 2, 2, 1}, plan)
+              .starts_with("1 samples were not finite, the first at pixel 7,2 "
+                           "sample 2,1 (replay it by --pixel 7,2 --sample 2,1)"));
+    plan.first_row = 10;
+    CHECK(why({0, 13, 0, 0}, plan).find("--pixel 0,13 --sample 0)") != std::string::npos);
 }
 
-TEST_CASE("direct: what is fully lit or fully dark has no noise at all") {
-    const Scene open = scene_of(half_shadow);
-    const Scene dark = scene_of(half_shadow + std::string("quad -3 1 -3  0 0 3.9  6 0 0  wall\n"));
-    for (Estimator e : direct_estimators) {
-        const Image lit = render(open, direct_options(e, 1, 16)).image,
-                    umbra = render(dark, direct_options(e, 1, 16)).image;
-        // rho L / pi E, at 30 degrees' half-angle: E = pi sin^2.  Pixels differ by their own
-        // places.
-        double spread = 0;
-        for (const auto& p : lit.pixels)
-            spread = std::max(spread, std::abs(double(p[0]) / (0.5 * 3 * 0.25) - 1));
-        INFO("estimator ", int(e));
-        if (e == Estimator::stochastic)
-            CHECK(spread > 1e-3);
-        else
-            CHECK(spread < 1e-5);
-        double brightest = 0;
-        for (const auto& p : umbra.pixels) brightest = std::max(brightest, double(std::abs(p[1])));
-        if (e == Estimator::control)
-            CHECK(brightest > 1e-3);
-        else
-            CHECK(brightest == 0);
-    }
-}
-
-TEST_CASE("direct: the error that a run states is the spread from seed to seed, for ratio, too") {
-    // A lobe, too: light beside that of the closed form.
-    std::string text = half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 0 0  wall\n");
-    text.replace(text.find("diffuse grey 0.5 0.25 0.75"), 26,
-                 "phong grey 0.5 0.25 0.75 .2 .2 .2 2");
-    const Scene scene = scene_of(text);
-    for (Estimator e : direct_estimators)
-        for (uint32_t sets : {2u, sets_by_noise}) {
-            Spread spread;
-            for (uint64_t seed = 0; seed < 120; ++seed) {
-                Options o = direct_options(e, hash(seed_here(), seed), 32);
-                o.sets = sets;
-                const Rendered r = render(scene, o);
-                spread.add(r.image, r.run.error.d2());
-            }
-            const std::string name =
-                "estimator " + std::to_string(int(e)) + ", sets " + std::to_string(sets);
-            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.4);
+TEST_CASE("a film that the machine does not hold is refused before it is made") {
+    const Options o = quick(SamplerKind::sobol, 4);
+    // A thousand bytes a pixel: enough for two replications of each, not for 1024.
+    const Size size{1 << 14, int(bytes_of_machine() / 1000 / (1 << 14))};
+    Plan plan{{4}, 1, 1, bytes_of_machine(), size};
+    plan.sets = 1024;
+    const Radiance L = [](const PixelSample&, uint64_t&) { return rgb{}; };
+    auto refused = [&] {
+        try {
+            render(o, plan, L);
+            return std::string();
+        } catch (const UserError& e) {
+            return std::string(e.what());
         }
-}
-
-TEST_CASE("--view variance is that of the image of as many sets, a pixel at a time") {
-    std::string text = half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 0 0  wall\n");
-    const Scene scene = scene_of(text);
-    for (Estimator e : {Estimator::stochastic, Estimator::ratio}) {
-        Moments values, stated;  // every pixel sees the same point
-        for (uint64_t seed = 0; seed < 60; ++seed) {
-            Options o = direct_options(e, hash(seed_here(), seed), 32);
-            o.sets = 2;
-            const Rendered r = render(scene, o);
-            o.view = View::variance, o.sets = sets_by_noise;
-            const Rendered v = render(scene, o);
-            CHECK(v.run.error.d2() == r.run.error.d2());
-            for (size_t i = 0; i < r.image.pixels.size(); ++i) {
-                values.add(double(r.image.pixels[i][1]));
-                stated.add(double(v.image.pixels[i][1]));
-            }
-        }
-        // 1920 values: their variance is known within 3.2 %, the mean of as many squares as well.
-        const double measured = values.variance() / stated.mean;
-        INFO("estimator ", int(e), ": measured over stated ", measured);
-        CHECK(std::abs(measured - 1) < 4.9 * std::sqrt(2 * 2.0 / 1920));
-    }
-}
-
-TEST_CASE("direct: ratio and regression do not depend on threads or passes, and are whole-pixel") {
-    const Scene scene = scene_of(half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 0 0  wall\n"));
-    for (Estimator e : {Estimator::ratio, Estimator::regression}) {
-        Options o = direct_options(e, 1, 48);
-        const Image noisy = render(scene, o).image;
-        o.threads = 3;
-        CHECK(render(scene, o).image.pixels == noisy.pixels);
-        o.sets = 1;
-        const Image one = render(scene, o).image;
-        // By hand, from the samples of one pixel.
-        const Pattern pattern = job_of(o, scene).pattern;
-        ShadowMoments m;
-        for (uint64_t i = 0; i < 48; ++i) {
-            const Start at = start(scene, pattern, {2, 1, i});
-            const Shadowed s = shadow_Li(scene, o.technique, e, at, NoAccount{}).first;
-            m.add(double(s.U.z), double(s.w.z), double(s.wV.z));
-        }
-        CHECK(double(one.at(2, 1)[2]) == doctest::Approx(estimate(e, m)).epsilon(1e-6));
-    }
+    };
+    const std::string why = refused();
+    CHECK(why.starts_with("16384x" + std::to_string(size.height) + " pixels do not fit into the "));
+    CHECK(why.ends_with(" GB of this machine: render fewer rows at a time (--rows)"));
+    // Adaptive, it has two replications of each pixel or more.
+    plan.size = {8, 4}, plan.sets = 0, plan.memory = bytes_of(plan.size, 1.9);
+    CHECK(refused().starts_with("8x4 pixels do not fit"));
+    plan.memory = bytes_of(plan.size, 2);
+    CHECK(refused() == "");
 }

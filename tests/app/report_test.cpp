@@ -1,7 +1,46 @@
-// app/report_test.cpp  JSON, and means of images
+// app/report_test.cpp  what a run tells: progress, the error in words, JSON
 #include "app/report.h"
 
 #include <doctest/doctest.h>
+
+#include <ctime>
+
+#include "base/folder.h"
+
+namespace {
+
+Run run_of(double d_rel, double standard_error) {
+    Run run;
+    run.spp = 64, run.seconds = 8, run.rays = 16000000, run.sets = 2.5;
+    run.error.norm = 2;
+    run.error.square.fill(std::pow(2 * d_rel, 2));
+    run.error.spread = d_rel > 0 ? standard_error * 2 * run.error.d2() / d_rel : 0;
+    run.stopped_by = "samples";
+    return run;
+}
+
+std::string json_of(const Run& run, Size size) {
+    json::Object object;
+    add_run(object, run, size);
+    return object.text();
+}
+
+// What is printed on stderr meanwhile.
+template <class Work>
+std::string told(Work work) {
+    const Folder folder;
+    const std::string path = folder / "err";
+    std::fflush(stderr);
+    const int before = ::dup(STDERR_FILENO), file = ::open(path.c_str(), O_CREAT | O_WRONLY, 0600);
+    ::dup2(file, STDERR_FILENO);
+    work();
+    std::fflush(stderr);
+    ::dup2(before, STDERR_FILENO);
+    ::close(before), ::close(file);
+    return read_file(path);
+}
+
+}  // namespace
 
 TEST_CASE("JSON: every digit of a number, every letter of a name") {
     CHECK(std::strtod(json::number(0.1 + 0.2).c_str(), nullptr) == 0.1 + 0.2);
@@ -10,13 +49,134 @@ TEST_CASE("JSON: every digit of a number, every letter of a name") {
     CHECK(json::numbers({1, 2, NAN}) == "[1, 2, null]");
     CHECK(json::string("a\"b\\c\x01\n") == R"("a\"b\\c\u0001\u000a")");
     CHECK(json::string("\xc3\xa9") == "\"\xc3\xa9\"");
+    CHECK(json::truth(true) == "true");
+    CHECK(json::truth(false) == "false");
+    json::Object object;
+    object.add("a", "1");
+    object.add("b", "2");
+    CHECK(object.text() == "{\n  \"a\": 1,\n  \"b\": 2\n}\n");
 }
 
-TEST_CASE("the mean of an image is that of its pixels, a channel at a time") {
-    Image image(3, 1);
-    image.pixels = {{1, 2, 3}, {3, 2, 1}, {5, 2, 8}};
-    CHECK(mean_of_pixels(image) == std::array<double, 3>{3, 2, 4});
-    image.pixels[1][2] = NAN;
-    CHECK(std::isnan(mean_of_pixels(image)[2]));
-    CHECK(mean_of_pixels(image)[0] == 3);
+TEST_CASE("numbers for people") {
+    CHECK(percent(0.00982) == "0.982 %");
+    CHECK(fixed(1.25, 1) == "1.2");
+    CHECK(fixed(-2, 3) == "-2.000");
+    CHECK(significant(0.0234, 1) == "0.02");
+    CHECK(significant(234, 1) == "234");
+    CHECK(significant(234, 2) == "234");
+    CHECK(significant(3.14159, 3) == "3.14");
+    CHECK(significant(64, 3) == "64");
+}
+
+TEST_CASE("an image's error in words: with its standard error, and what half of it would cost") {
+    CHECK(told_error(run_of(0.021, 0.0011)) == "d_rel 2.1 % ± 0.1 %; 1 % needs 35 s");
+    Run run = run_of(0.021, 0.0011);
+    run.exponent_of_cost = 1;
+    CHECK(told_error(run) == "d_rel 2.1 % ± 0.1 %; 1 % needs 17 s");
+    CHECK(told_error(run_of(0.2, 0.11)) == "d_rel 20 % ± 11 %; 10 % needs 32 s");
+    CHECK(told_error(run_of(1.25, 0.4)) == "d_rel 125 % ± 40 %; 60 % needs 35 s");
+    CHECK(told_error(run_of(0.00032, 0.00001)) == "d_rel 0.032 % ± 0.001 %; 0.02 % needs 20 s");
+    run = run_of(0.02, 0.001), run.seconds = 1000;
+    CHECK(told_error(run) == "d_rel 2 % ± 0.1 %; 1 % needs 4000 s");
+    CHECK(told_error(run_of(0, 0)) == "d_rel 0 % ± 0 %");
+    run = run_of(0.02, 0.001), run.bias = "consistent";
+    CHECK(told_error(run) == "d_rel 2 % ± 0.1 % without its bias (consistent); 1 % needs 32 s");
+}
+
+TEST_CASE("where there is no error to state, the reason is said") {
+    auto told = [](double spp, double sets, bool early) {
+        Run run;
+        run.spp = spp, run.sets = sets, run.interrupted = early;
+        return told_error(run);
+    };
+    CHECK(told(1, 1, false) == "error not known: one sample");
+    CHECK(told(64, 1, false) == "error not known: one replication");
+    CHECK(told(64, 1, true) == "error not known: interrupted early");
+    CHECK(told(64, 2.5, true) == "error not known: interrupted early");
+    CHECK(told(64, 2.5, false) == "error not known: too little time");
+    Run run = run_of(0.02, 0.001);
+    run.error.norm = 0;
+    CHECK(told_error(run) == "error not known: the image is black");
+    run = run_of(0.02, 0.001), run.spp = 2;
+    CHECK(told_error(run).starts_with("d_rel 2 %"));  // two replications of one sample
+}
+
+TEST_CASE("the line that stays: the error, what ended an image that asked for one, interrupts") {
+    Run run = run_of(0.02, 0.001);
+    run.spp = 70.25;
+    const std::string line =
+        "a.scene: 70.2 samples per pixel, 8.00 s, 2.00 Mrays/s, d_rel 2 % ± 0.1 %; 1 % needs 32 s";
+    CHECK(summary("a.scene", run, false) == line);
+    for (const char* by : {"samples", "time", "error"}) {
+        run.stopped_by = by;
+        CHECK(summary("a.scene", run, true) == line + " (stopped by " + by + ")");
+    }
+    run.interrupted = true;
+    CHECK(summary("a.scene", run, true) == line + " (interrupted)");
+    run = Run();
+    run.seconds = 8, run.interrupted = true;
+    CHECK(summary("a.scene", run, false) ==
+          "a.scene: 0 samples per pixel, 8.00 s, 0.00 Mrays/s (interrupted)");
+}
+
+TEST_CASE("the statistics of a run, all keys in their order, null where nothing is known") {
+    Run run;
+    run.spp = 64.5, run.seconds = 2, run.cpu_seconds = 3.5, run.rays = 4000000, run.sets = 2.75;
+    run.error.mean = {2, 3, 4};
+    run.error.square = {4, 8, 12};  // of two pixels
+    run.error.norm = 4, run.error.spread = 2;
+    run.exponent_of_cost = 1.5, run.bias = "consistent", run.stopped_by = "time";
+    std::string text = json_of(run, {2, 1});
+    const size_t peak = text.find("  \"peak_memory_bytes\": ");
+    REQUIRE(peak != text.npos);
+    const double bytes = std::strtod(text.c_str() + peak + 23, nullptr);
+    text.resize(peak);
+    auto number = [](double x) { return json::number(x); };
+    const double d_rel = std::sqrt(8) / 4;
+    CHECK(text ==
+          std::string("{\n  \"precision\": ") + (sizeof(real) == 4 ? "\"float\"" : "\"double\"") +
+              ",\n  \"interrupted\": false,\n  \"samples_per_pixel\": 64.5,\n"
+              "  \"seconds\": 2,\n  \"cpu_seconds\": 3.5,\n  \"rays\": 4000000,\n"
+              "  \"mrays_per_second\": 2,\n  \"mean_radiance\": [2, 3, 4],\n"
+              "  \"variance_of_mean\": [2, 4, 6],\n  \"sets_per_pixel\": 2.75,\n"
+              "  \"d_rel\": " +
+              number(d_rel) + ",\n  \"d_rel_standard_error\": " + number(d_rel * 2 / 8 / 2) +
+              ",\n  \"seconds_to_half_d_rel\": " + number(2 * std::pow(2, 1.5)) +
+              ",\n  \"bias\": \"consistent\",\n  \"stopped_by\": \"time\",\n");
+    // What this process takes is more than a megabyte, and is told in bytes.
+    CHECK(bytes > 2e6);
+    const std::vector<char> more(size_t(bytes) + (64 << 20), 1);
+    const double grown = double(peak_memory_bytes()) - bytes;
+    CHECK(more[more.size() / 2] == 1);
+    CHECK(grown > 60 << 20);
+    CHECK(grown < 1.01 * bytes + (70 << 20));
+    run = Run();
+    run.interrupted = true;
+    text = json_of(run, {2, 1});
+    for (const char* key : {"d_rel", "d_rel_standard_error", "seconds_to_half_d_rel"})
+        CHECK(text.find("\"" + std::string(key) + "\": null") != text.npos);
+    CHECK(text.find("\"variance_of_mean\": [null, null, null]") != text.npos);
+    CHECK(text.find("\"interrupted\": true") != text.npos);
+    CHECK(json_of(run_of(0, 0), {1, 1}).find("\"seconds_to_half_d_rel\": null") != text.npos);
+}
+
+TEST_CASE("progress in a log: a plain line every two seconds; quiet: none") {
+    auto shown = [](double limit, bool quiet, double before, double done) {
+        return told([&] {
+            Progress progress(limit, quiet, before);
+            const double until = progress.elapsed() + 0.3;
+            while (progress.elapsed() < until) progress.show(done, "7 samples");
+        });
+    };
+    CHECK(shown(0, false, 0, 0.5) == "");  // not yet two seconds
+    CHECK(shown(0, true, 8, 0.5) == "");
+    CHECK(shown(0, false, 8, 0.5) == "50 %  7 samples, 8.0 s elapsed, 8.0 s left\n");
+    CHECK(shown(0, false, 8, 0) == "0 %  7 samples, 8.0 s elapsed\n");
+    CHECK(shown(10, false, 8, 0) == "80 %  7 samples, 8.0 s elapsed, 2.0 s left\n");
+    CHECK(shown(10, false, 8, 0.9) == "90 %  7 samples, 8.0 s elapsed, 0.9 s left\n");
+    CHECK(shown(4, false, 8, 0.5) == "100 %  7 samples, 8.0 s elapsed, 0.0 s left\n");
+    CommonOptions o;
+    CHECK(told([&] { tell(o, "a\x1b"); }) == "a?\n");
+    o.quiet = true;
+    CHECK(told([&] { tell(o, "a"); }) == "");
 }

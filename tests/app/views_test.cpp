@@ -37,7 +37,6 @@ sphere 0 0 0  1  clear
 )");
     CHECK(view_along(scene, View::albedo, {{0, 0, 5}, {0, 0, -1}}) == rgb{1, 1, 1});
     CHECK(default_exposure(scene, View::radiance) == 3);
-    CHECK(default_exposure(scene, View::variance) == 3);
     CHECK(default_exposure(scene, View::normal) == 1);
     CHECK(default_exposure(scene, View::albedo) == 1);
     CHECK(default_exposure(scene, View::bvh) == real(1) / 64);

@@ -52,11 +52,6 @@ extern "C" [[gnu::weak]] ssize_t write(int fd, const void* bytes, size_t size) {
     if (asked) size = std::min(size, asked->most);
     return system_call<ssize_t(int, const void*, size_t)>("write")(fd, bytes, size);
 }
-extern "C" [[gnu::weak]] ssize_t pwrite(int fd, const void* bytes, size_t size, off_t offset) {
-    if (fails("pwrite")) return -1;
-    if (asked) size = std::min(size, asked->most);
-    return system_call<ssize_t(int, const void*, size_t, off_t)>("pwrite")(fd, bytes, size, offset);
-}
 extern "C" [[gnu::weak]] int close(int fd) {
     const bool failed = fails("close");
     const int error = errno, closed = system_call<int(int)>("close")(fd);

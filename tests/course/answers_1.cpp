@@ -1,6 +1,6 @@
 // course/answers_1.cpp  answers of week 1: intersections and the tree
 #include "course/answers.h"
-#include "course/bvh.h"
+#include "world/bvh.h"
 #include "world/scene.h"
 
 using course::In, course::Out, course::vec3_of;

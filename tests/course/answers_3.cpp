@@ -46,11 +46,8 @@ Sampler sampler(double seed) {
     return {pattern, 0, uint64_t(seed)};
 }
 
-// 4 numbers: how light is found, how directions are chosen, the threshold of roulette, how lights
-// are picked.
-Technique technique(In x) {
-    return {Direction(int(x[1])), LightMode(int(x[0])), real(x[2]), Pick(int(x[3]))};
-}
+// 3 numbers: how light is found, how directions are chosen, the threshold of roulette.
+Technique technique(In x) { return {Direction(int(x[1])), LightMode(int(x[0])), real(x[2])}; }
 
 // 17 numbers.
 Segment segment(In x) {
@@ -68,8 +65,8 @@ void append(Out& out, vec3 v) {
 }
 
 Out take_step(In x) {
-    const Sampler numbers_of_path = sampler(x[4]);
-    const Step e = step(scene, technique(x), segment(x.subspan(5)), numbers_of_path);
+    const Sampler numbers_of_path = sampler(x[3]);
+    const Step e = step(scene, technique(x), segment(x.subspan(4)), numbers_of_path);
     const bool goes_on = e.end == nullptr;
     Out out{double(e.met), double(goes_on), double(e.weight)};
     for (vec3 v : {e.Le, e.direct.L, e.wi, e.x.local.n}) append(out, v);
@@ -84,14 +81,14 @@ Out take_step(In x) {
 
 // Of the ray that goes on; 0 if none does.
 Out throughput(In x) {
-    const Sampler numbers_of_path = sampler(x[4]);
-    const Step e = step(scene, technique(x), segment(x.subspan(5)), numbers_of_path);
+    const Sampler numbers_of_path = sampler(x[3]);
+    const Step e = step(scene, technique(x), segment(x.subspan(4)), numbers_of_path);
     return numbers(e.end ? rgb{} : e.next.beta);
 }
 
 Out found_by_aiming(In x) {
-    const Sampler numbers_of_path = sampler(x[4]);
-    const auto at = meet(scene, {vec3_of(x, 5), vec3_of(x, 8)});
+    const Sampler numbers_of_path = sampler(x[3]);
+    const auto at = meet(scene, {vec3_of(x, 4), vec3_of(x, 7)});
     if (!at) throw std::runtime_error("the ray meets nothing");
     return numbers(direct_light(scene, technique(x), *at, numbers_of_path, 0).L);
 }
@@ -107,16 +104,15 @@ Vertex on_a_light(In x) {
 
 Out weight(In x) {
     return {double(
-        weight_of_emission(scene, technique(x), segment(x.subspan(4)), on_a_light(x.subspan(21))))};
+        weight_of_emission(scene, technique(x), segment(x.subspan(3)), on_a_light(x.subspan(20))))};
 }
 
 // How likely a light sample from there is to choose that light, and the density of its point.
 Out likelihood(In x) {
-    const Technique t = technique(x);
-    const Segment s = segment(x.subspan(4));
-    const Vertex y = on_a_light(x.subspan(21));
+    const Segment s = segment(x.subspan(3));
+    const Vertex y = on_a_light(x.subspan(20));
     const size_t light = size_t(scene.light_of[y.hit.id]);
-    return {double(pick_of(scene, t.pick, light, s.from, s.n)),
+    return {double(pick_of(scene, light, s.from, s.n)),
             double(pdf_light(scene.lights[light], s.from, y.at))};
 }
 
@@ -136,22 +132,22 @@ Out glass(In x) {
 int main() {
     return course::answer_all({
         {"scene", 0, build},
-        {"Li", 11,
+        {"Li", 10,
          [](In x) {
-             return numbers(Li(scene, technique(x), {vec3_of(x, 5), vec3_of(x, 8)}, sampler(x[4])));
+             return numbers(Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3])));
          }},
-        {"accounts", 11,
+        {"accounts", 10,
          [](In x) {
              double calls = 0;
-             Li(scene, technique(x), {vec3_of(x, 5), vec3_of(x, 8)}, sampler(x[4]),
+             Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3]),
                 [&](const Segment&, const Step&) { ++calls; });
              return Out{calls};
          }},
-        {"step", 22, take_step},
-        {"throughput", 22, throughput},
-        {"direct_light", 11, found_by_aiming},
-        {"weight_of_emission", 28, weight},
-        {"likelihood", 28, likelihood},
+        {"step", 21, take_step},
+        {"throughput", 21, throughput},
+        {"direct_light", 10, found_by_aiming},
+        {"weight_of_emission", 27, weight},
+        {"likelihood", 27, likelihood},
         {"sample_glass", 6, glass},
         {"number", 3,
          [](In x) {

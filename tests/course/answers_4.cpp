@@ -11,8 +11,8 @@ uint64_t bits_of(In x, size_t at) { return uint64_t(x[at]) << 32 | uint64_t(x[at
 
 // Base, index, bits of shift and factor.
 Out scrambled(In x) {
-    return {double(scrambled_radical_inverse(Base(uint32_t(x[0])), bits_of(x, 1), bits_of(x, 3),
-                                             bits_of(x, 5)))};
+    return {double(
+        scrambled_radical_inverse(uint32_t(x[0]), bits_of(x, 1), bits_of(x, 3), bits_of(x, 5)))};
 }
 
 // Seed, pixel, sample: all numbers that a path of so many vertices may draw, the film's first.
@@ -33,7 +33,7 @@ Out path(In x) {
 int main() {
     return course::answer_all({
         {"radical_inverse", 3,
-         [](In x) { return Out{double(radical_inverse(Base(uint32_t(x[0])), bits_of(x, 1)))}; }},
+         [](In x) { return Out{double(radical_inverse(uint32_t(x[0]), bits_of(x, 1)))}; }},
         {"scrambled_radical_inverse", 7, scrambled},
         {"path", 3, path},
         {"in_part", 4,

@@ -14,20 +14,9 @@ inline const std::string square_stub = "inline double square(double x) { return 
 inline const std::string cube_right = "    return x * square(x);\n";
 inline const std::string cube_stub = "    return square(x);\n";
 
-inline std::string commented(const std::string& code) {
-    std::string text;
-    for (size_t at = 0, end; at < code.size(); at = end + 1) {
-        end = code.find('\n', at);
-        text += "// " + code.substr(at, end - at) + "\n";
-    }
-    return text;
-}
-
 // A region as it stands in the solution.
-inline std::string solved(const std::string& number, const std::string& solution,
-                          const std::string& stub) {
-    return "// BEGIN SOLUTION " + number + "  what it is\n" + solution +
-           "// STUB  something else\n" + commented(stub) + "// END SOLUTION\n";
+inline std::string solved(const std::string& number, const std::string& solution) {
+    return "// exercise " + number + "\n" + solution + "// end\n";
 }
 // And as it is handed in.
 inline std::string open(const std::string& number, const std::string& code) {
@@ -110,12 +99,16 @@ struct House {
             if (entry.path().extension() == ".py")
                 folder.write("src/course/" + entry.path().filename().string(),
                              read_file(entry.path().string()));
-        for (const char* name : {"bvh.h", "draw.h", "draw.cpp", "course.mk"})
+        for (const char* name : {"draw.h", "draw.cpp", "course.mk"})
             folder.write(std::string("src/course/") + name, "// nothing\n");
         folder.write("src/film/nothing.h", "// film/nothing.h  1  nothing\n");
-        folder.write("src/world/numbers.h", numbers_h(solved("1.1", twice_right, twice_stub),
-                                                      solved("1.2", square_right, square_stub)));
-        folder.write("src/path/cube.h", cube_h(solved("1.3", cube_right, cube_stub)));
+        folder.write("src/world/numbers.h",
+                     numbers_h(solved("1.1", twice_right), solved("1.2", square_right)));
+        folder.write("src/path/cube.h", cube_h(solved("1.3", cube_right)));
+        for (const auto& [number, stub] :
+             Regions{{"1.1", twice_stub}, {"1.2", square_stub}, {"1.3", cube_stub}})
+            folder.write("src/course/stubs/" + number,
+                         "// " + number + "  what it is\n// instead: something else\n" + stub);
         for (const char* name : {"answers.h", "judge.h", "program.h"})
             folder.write(std::string("tests/course/") + name,
                          read_file(std::string("tests/course/") + name));

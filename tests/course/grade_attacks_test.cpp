@@ -284,8 +284,8 @@ TEST_CASE(
         "shop = workshop.Workshop('cache', 1)\n"
         "shop.write_tree('1', {'1.2': Region('1.2', 'mine\\n', 1, '')}, 'written/tree')\n");
     REQUIRE(std::system(("cd '" + mine + "' && CXX=g++ FLAGS=-Isrc python3 tree.py").c_str()) == 0);
-    CHECK(std::system(("grep -rqE 'cipher|SOLUTION|STUB' '" + mine + "/written/tree'").c_str()) !=
-          0);
+    CHECK(std::system(
+              ("grep -rqE 'cipher|// exercise|// end' '" + mine + "/written/tree'").c_str()) != 0);
     CHECK(std::system(("grep -rq mine '" + mine + "/written/tree'").c_str()) == 0);
     CHECK(std::system(("cd '" + mine +
                        "/written/tree' && find . -name 'judge*' -o -name '*.py' -o -name 'oracle*' "

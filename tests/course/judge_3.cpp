@@ -49,13 +49,11 @@ void build(Judge& j, int depth, const std::vector<Out>& things) {
 
 enum Light { by_chance, by_aiming, by_both };
 enum Directions { uniform, by_bsdf };
-enum Pick { by_power, by_place };
 
 struct Technique {
     Light light = by_chance;
     Directions directions = by_bsdf;
     double roulette = 0;
-    Pick pick = by_place;
 };
 
 constexpr size_t segment_size = 17;
@@ -73,7 +71,7 @@ Out segment(const Triple& o, const Triple& d, const Triple& beta = {1, 1, 1}, in
 }
 
 Out question(const Technique& t, const Out& more) {
-    Out q{double(t.light), double(t.directions), t.roulette, double(t.pick)};
+    Out q{double(t.light), double(t.directions), t.roulette};
     append(q, more);
     return q;
 }
@@ -322,10 +320,10 @@ void from_two_points(Judge& j) {
     const Triple a = (2 / 27.0 / oracle::pi) * Triple{3, 2, 1} * albedo;    // 3 away
     const Triple b = (2 / 108.0 / oracle::pi) * Triple{4, 8, 16} * albedo;  // 6 away
     build(j, 4, {ground, point_light({1, 2, 2}, {3, 2, 1}), point_light({-4, 2, 4}, {4, 8, 16})});
-    const Technique place{by_aiming}, power{by_aiming, by_bsdf, 0, by_power};
-    j.probe("direct_light", {aimed(place, 1), aimed(place, 2), aimed(power, 1), aimed(power, 2)});
+    const Technique t{by_aiming};
+    j.probe("direct_light", {aimed(t, 1), aimed(t, 2)});
     Rows ask;
-    for (int i = 0; i < 4000; ++i) ask.add(aimed(place, j.random.bits() >> 32));
+    for (int i = 0; i < 4000; ++i) ask.add(aimed(t, j.random.bits() >> 32));
     const Rows L = j.ask("direct_light", ask);
     double chances = 0, chance_of_a = 0, chance_of_b = 0;
     for (size_t i = 0; i < L.size(); ++i)
@@ -446,15 +444,11 @@ void of_two_lamps(Judge& j) {
     build(j, 4, {ball({3, 0, 4}, 1, dim), quad({-3, -1, 3}, {0, 2, 0}, {2, 0, 0}, bright)});
     const std::vector<Place> places = {{0, {2.4, 0, 3.2}, {-0.6, 0, -0.8}},
                                        {1, {-2.5, 0.5, 3}, {0, 0, -1}}};
-    const Technique place{by_both}, power{by_both, by_bsdf, 0, by_power};
-    for (const Technique& t : {place, power})
-        for (const Place& y : places) weight(j, t, 0.3, y);
-    for (const Technique& t : {power, place}) {
-        const double off = off_half(j, t, places);
-        j.exact(std::string("of two lamps, chosen by ") + (t.pick == by_power ? "power" : "place") +
-                    ": 1/2 where both ways are as likely",
-                off <= tolerance(j, 64), oracle::say("off by %.6g", off));
-    }
+    const Technique t{by_both};
+    for (const Place& y : places) weight(j, t, 0.3, y);
+    const double off = off_half(j, t, places);
+    j.exact("of two lamps: 1/2 where both ways are as likely", off <= tolerance(j, 64),
+            oracle::say("off by %.6g", off));
 }
 
 void both_weighted(Judge& j) {

@@ -102,7 +102,7 @@ def test_nothing_in_the_copy_tells_which_it_is():
             files = [p for p in c.folder.rglob('*') if p.is_file()]
             for path in files:
                 text = path.read_text(errors='replace')
-                for word in ('SOLUTION', 'STUB', c.mutant.name, c.mutant.head['what'], '.mutant', '// BEGIN'):
+                for word in ('// exercise', '// end\n', c.mutant.name, c.mutant.head['what'], '.mutant', '// BEGIN'):
                     expect(word not in text, path, word)
             names = {str(p.relative_to(c.folder)) for p in files}
             expect(not any('judge' in n or 'mistakes' in n or 'answers' in n or n.endswith('.key') for n in names), names)

@@ -1,6 +1,7 @@
 # course/starter_test.py  tests of the generator: python3 tests/course/starter_test.py [NAME...]
 """Each function test_... is a test; starter_test.cpp runs them one by one."""
 import pathlib
+import re
 import sys
 import tempfile
 
@@ -15,15 +16,12 @@ from testing import expect
 
 FILE = '''// x.h
 int before;
-    // BEGIN SOLUTION 2.1  add
+    // exercise 2.1
     return a + b;
-    // STUB  the first alone
-    // // of two
-    // return a;
-    //
-    // END SOLUTION
+    // end
 int after;
 '''
+STUB = '// 2.1  add\n// instead: the first alone\n    // of two\n    return a;\n\n'
 
 
 def refused(call, *part):
@@ -39,19 +37,38 @@ def refused(call, *part):
 
 # ---- Regions ---------------------------------------------------------------------------------------
 
+class Tree:
+    """A folder with these files of src."""
+
+    def __init__(self, files):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.root = pathlib.Path(self.temporary.name)
+        starter.write(self.root / 'tests/course/exercises.txt', '2.1 | Add | x.h | | 1 | 1\n')
+        for name, text in files.items():
+            starter.write(self.root / 'src' / name, text)
+
+    def __enter__(self):
+        return self.root
+
+    def __exit__(self, *_):
+        self.temporary.cleanup()
+
+
 def test_a_region_has_a_solution_and_a_stub():
-    [r] = regions.regions(FILE, 'x.h')
+    with Tree({'course/stubs/2.1': STUB}) as root:
+        [r] = regions.regions(FILE, 'x.h', root)
     expect((r.number, r.title) == ('2.1', 'add'), r.number, r.title)
     expect(r.solution == ['    return a + b;'], r.solution)
     expect(r.stub == ['    // of two', '    return a;', ''], r.stub)
 
 
-def test_an_open_region_is_its_stub_between_markers():
-    text = regions.rewrite(FILE, 'x.h', lambda r: r.open(r.stub))
+def test_an_open_region_is_its_stub_between_marks():
+    with Tree({'course/stubs/2.1': STUB}) as root:
+        text = regions.rewrite(FILE, 'x.h', lambda r: r.open(r.stub), root)
     expect(text == '// x.h\nint before;\n    // BEGIN 2.1  add\n    // of two\n    return a;\n\n    // END 2.1\nint after;\n', text)
 
 
-def test_a_solved_region_has_no_markers():
+def test_a_solved_region_has_no_marks():
     text = regions.rewrite(FILE, 'x.h', lambda r: None)
     expect(text == '// x.h\nint before;\n    return a + b;\nint after;\n', text)
 
@@ -63,13 +80,29 @@ def test_two_regions_keep_what_is_between_them():
 
 
 def test_what_is_not_well_formed_is_refused_with_its_line():
-    begin, stub, end = '// BEGIN SOLUTION 2.1  add\n', '// STUB  none\n', '// END SOLUTION\n'
-    for text, part in ((begin + begin, 'begins within'), (begin + 'x', 'does not end'), (begin + end, 'without a STUB'),
-                       (end, 'without a BEGIN'), (begin + stub + stub, 'twice'), (stub, 'not in a region'),
-                       (begin + stub + 'return a;\n' + end, 'must begin with //'),
-                       ('// BEGIN SOLUTION 2.1 add\n', 'no marker'), ('// END SOLUTION 2.1\n', 'no marker'),
-                       ('// BEGIN 2.1  add\n', 'no marker'), (begin + '//STUB\n', 'no marker')):
-        refused(lambda: regions.regions(text, 'x.h'), 'x.h', part)
+    begin, end = '// exercise 2.1\n', '// end\n'
+    for text, line, part in ((begin + begin, 2, '2.1 begins within 2.1'), (end, 1, 'an end without an exercise'),
+                             (begin + end + end, 3, 'an end without'), ('// exercise 9.9\n', 1, 'no stub src/course/stubs/9.9'),
+                             *((begin + like, 2, 'no mark') for like in (
+                                 '//end\n', '// END\n', '// end 2.1\n', 'return a;  // end\n', '// exercise\n', '// exercise 2\n',
+                                 '// exercise 2.2  add\n', '//exercise 2.2\n', '// Exercise 2.2\n', '// BEGIN 2.1  add\n'))):
+        refused(lambda: regions.regions(text, 'x.h'), f'x.h:{line}: ', part)
+    refused(lambda: regions.regions(begin + 'x', 'x.h'), 'x.h: 2.1 does not end')
+
+
+def test_regions_and_stubs_belong_together():
+    good = {'x.h': FILE, 'course/stubs/2.1': STUB}
+    with Tree(good) as root:
+        expect(list(regions.solution_files(root)) == ['2.1'], 'what is well-formed is refused')
+    for change, part in (({'y.h': FILE}, 'src/y.h: 2.1 is in src/x.h, too'), ({'x.h': FILE + FILE}, 'src/x.h: 2.1 is in src/x.h, too'),
+                         ({'x.h': '// x.h\n'}, 'src/course/stubs/2.1 is the stub of no region'),
+                         ({'x.h': FILE.replace('2.1', '2.2')}, 'src/x.h:3: there is no stub src/course/stubs/2.2'),
+                         ({'y.h': FILE.replace('2.1', '2.2'), 'course/stubs/2.2': STUB.replace('2.1', '2.2')},
+                          'src/y.h: 2.2 is not in exercises.txt'),
+                         *(({'course/stubs/2.1': stub}, 'src/course/stubs/2.1 must begin with') for stub in (
+                             '', STUB.replace('2.1', '2.2'), STUB.replace('  add', ''), STUB.replace('// instead', '//')))):
+        with Tree({**good, **change}) as root:
+            refused(lambda: regions.solution_files(root), part)
 
 
 def test_every_exercise_is_a_region_of_its_file():
@@ -130,13 +163,13 @@ def test_earlier_weeks_are_solved_these_open_later_ones_stubs():
             stub = '\n'.join(region.stub) in text
             marked = f'// BEGIN {e.number}  {region.title}\n' in text and f'// END {e.number}\n' in text
             expect((solution, stub, marked) == (e.week == '1', e.week != '1', e.week in '23'), e.number, solution, stub, marked)
-        expect('SOLUTION' not in text and 'STUB' not in text, 'markers of the solution are left')
+        expect(not regions.BEGIN.search(text) and not regions.END.search(text), 'marks of the solution are left')
 
 
 def test_a_starter_has_what_its_weeks_need_and_no_more():
     with Made() as made:
         folders = sorted(p.name for p in (made.folder / 'src').iterdir())
-        expect(folders == ['base', 'course', 'film', 'path', 'world'], folders)
+        expect(folders == ['base', 'course', 'film', 'keep', 'path', 'world'], folders)
         names = sorted(p.name for p in (made.folder / 'tests/course').iterdir())
         expect(not [n for n in names if n.endswith('_test.cpp') or n.endswith('.py') or 'hidden' in n], names)
         expect([n for n in names if n.startswith('judge_')] == ['judge_2.cpp', 'judge_3.cpp'], names)
@@ -144,8 +177,18 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         for table in ('exercises.txt', 'mistakes.txt'):
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
             expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
-        expect('BinaryBvh' in (made.folder / 'src/world/bvh.h').read_text(), 'the tree')
-        expect(not (made.folder / 'src/world/bvh_leaf.h').exists(), 'our tree')
+        expect('wide' not in (made.folder / 'src/world/tree.h').read_text(), 'the wide tree')
+
+
+def test_all_that_a_starter_includes_is_there():
+    with tempfile.TemporaryDirectory() as temporary:
+        starter.make_starter(starter.Plan('1-6,V,R'), pathlib.Path(temporary))
+        files = [*pathlib.Path(temporary).rglob('*.h'), *pathlib.Path(temporary).rglob('*.cpp')]
+        expect(any(f.name == 'draw.cpp' for f in files), files)
+        for file in files:
+            for name in re.findall(r'^#include "(.*)"', file.read_text(), re.M):
+                found = [f for f in ('src', 'tests', 'tests/course') if (pathlib.Path(temporary) / f / name).exists()]
+                expect(found, f'{file.name} includes {name}')
 
 
 def test_a_solved_copy_has_all_solutions():
@@ -186,10 +229,11 @@ def test_a_leak_is_seen():
             path.parent.mkdir(exist_ok=True)
             old = path.read_text() if path.exists() else ''
             line = max((s for s in found['2.2'][1].solution), key=lambda s: len(s.split('//')[0]))
-            path.write_text(old + '\n' + comment + '  ' + line.strip() + '\n')
-            starter_check.check_leaks(found, made.folder, numbers)
-            expect(starter_check.failures, where, 'a solution was not found')
-            starter_check.failures.clear()
+            for leak in (comment + '  ' + line.strip(), '// exercise 2.2', '    // end'):
+                path.write_text(old + '\n' + leak + '\n')
+                starter_check.check_leaks(found, made.folder, numbers)
+                expect(starter_check.failures, where, leak, 'was not found')
+                starter_check.failures.clear()
 
 
 def test_random_subsets_meet_every_pair_in_every_state():

@@ -1,21 +1,24 @@
 # farm/cases.sh  what may happen to a farm; the first line of each case says it
 
 size=${SIZE:-128x96} spp=${SPP:-512} scene=${SCENE:-$here/scenes/cornell36.scene}
-resumed='samples, goes on'  # what penumbra says of a checkpoint
-picture=(--size "$size" --spp "$spp" "$scene")
+resumed='^farm: goes on from its film'
 . src/labs/farm.sh  # what it knows of a folder's parts
 
-whole_render() {
-    echo "one render of the whole"
-    "$build/penumbra" -o "$work/whole.pfm" --quiet "${picture[@]}"
+# What a farm renders, and $whole, the picture of one render.  Sets are fixed: adaptive ones of a band
+# are chosen by its own rows.
+picture_of() {  # SAMPLES
+    picture=(--size "$size" --sets 2 --spp "$1" "$scene") whole=$work/whole-$1.pfm
+    [ -e "$whole" ] || "$build/penumbra" -o "$whole" --quiet "${picture[@]}"
 }
+# Each of four bands takes longer than the ten seconds after which a film is first written.
+longer() { picture_of $((16 * spp)); }
 
 # ---- By Slurm -----------------------------------------------------------------------------------
 
 # Submits; $job is the array, $merge_job the one behind it.
 by_slurm() {  # OPTION...
     local status=0
-    bash src/labs/farm_slurm.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- --every .5 "${picture[@]}" \
+    bash src/labs/farm_slurm.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- "${picture[@]}" \
         >"$folder.out" 2>"$folder.err" || status=$?
     job=$(sed -n 's/^farm: job \([0-9]*\) renders.*/\1/p' "$folder.out")
     merge_job=$(sed -n 's/.*job \([0-9]*\) merges.*/\1/p' "$folder.out")
@@ -23,10 +26,10 @@ by_slurm() {  # OPTION...
     return $status
 }
 
-merged() { await "${1:-300}" "the merge, job $merge_job" ended "$merge_job"; }
+merged() { await "${1:-900}" "the merge, job $merge_job" ended "$merge_job"; }
 merge_failed() { [ "$(state_of "$merge_job")" = FAILED ] || bad "the merge: $(state_of "$merge_job")"; }
 
-# A part that runs and has a checkpoint, but is not done.
+# A part that runs and has a film, but is not done.
 in_mid_run() {
     local number
     for number in $(parts_in "$job" RUNNING); do
@@ -37,9 +40,9 @@ in_mid_run() {
     done
     return 1
 }
-await_mid_run() { await 60 'a part has a checkpoint and runs on' in_mid_run; }
+await_mid_run() { await 120 'a part has a film and runs on' in_mid_run; }
 
-process_of() { pgrep -f -- "penumbra .*--checkpoint $(film "$folder" "$1")"; }  # NUMBER
+process_of() { pgrep -f -- "penumbra .*--keep $(film "$folder" "$1")"; }  # NUMBER
 kill_part() { kill -9 "$(process_of "$1")" || bad "part $1 does not run"; }
 
 case_slurm_whole() {
@@ -49,15 +52,21 @@ case_slurm_whole() {
     [ -e "$folder.json" ] || bad "no statistics"
 }
 
-case_slurm_samples() {
-    : "bands and ranges of samples, the same to rounding"
-    by_slurm --bands 2 --ranges 3 --cpus 2 || return
-    merged || return
-    "$build/compare" --limit 0.0001% "$work/whole.pfm" "$folder.pfm" >"$folder.compared" || bad "$(cat "$folder.compared")"
+case_slurm_seeds() {
+    : "bands by several seeds"
+    by_slurm --bands 2 --seeds 3 --cpus 2 || return
+    local seed
+    for seed in 0 1 2; do
+        "$build/penumbra" --quiet --keep "$work/$seed.film" -o "$work/$seed.pfm" --seed $seed "${picture[@]}"
+    done
+    whole=$work/seeds.pfm
+    "$build/merge" --quiet -o "$whole" "$work"/[012].film
+    merged && is_right "$folder.pfm"
 }
 
 case_slurm_requeued() {
-    : "parts are taken from the node in mid-run (scontrol requeue), and go on from their checkpoints"
+    : "parts are taken from the node in mid-run (scontrol requeue), and go on from their films"
+    longer
     by_slurm --bands 4 || return
     local went_on=()
     for time in 1 2; do
@@ -71,6 +80,7 @@ case_slurm_requeued() {
 
 case_slurm_killed() {
     : "penumbra is killed in mid-run (kill -9), three times"
+    longer
     by_slurm --bands 4 || return
     local killed=()
     for time in 1 2 3; do
@@ -85,6 +95,7 @@ queued_again() { [ "$(cat "$folder"/part-*.log | grep -c '^farm: queues again')"
 
 case_slurm_killed_for_good() {
     : "one part is killed as often as it runs: the merge names it; the same command again renders it alone"
+    longer
     by_slurm --bands 4 --retries 1 || return
     await_mid_run || return
     local victim=$part
@@ -102,7 +113,7 @@ case_slurm_killed_for_good() {
 }
 
 case_slurm_damaged() {
-    : "a part fails for good, for its checkpoint is damaged: the merge names it; without the file it is rendered"
+    : "a part fails for good, for its film is damaged: the merge names it; without the file it is rendered"
     mkdir "$folder" && head -c 5000 /dev/urandom >"$(film "$folder" 3)"
     by_slurm --bands 4 || return
     merged && merge_failed
@@ -115,13 +126,14 @@ case_slurm_damaged() {
 }
 
 case_slurm_node_lost() {
-    : "the node dies with all that runs on it, and comes back: parts go on from their checkpoints"
+    : "the node dies with all that runs on it, and comes back: parts go on from their films"
+    longer
     by_slurm --bands 4 || return
     await_mid_run || return
     local lost=$part number stepds=''
     for number in $(parts_in "$job" RUNNING); do stepds+=" $(pgrep -f "^slurmstepd: \[$(id_of "$number")")"; done
     kill -9 "$(cat "$slurm/slurmd.pid")" $stepds
-    kill -9 $(pgrep -f "farm_slurm.sh part $folder") $(pgrep -f -- "--checkpoint $folder/")
+    kill -9 $(pgrep -f "farm_slurm.sh part $folder") $(pgrep -f -- "--keep $folder/")
     await 60 'Slurm knows' node_is 'down*' || return
     start_node
     merged && is_right "$folder.pfm"
@@ -132,6 +144,7 @@ id_of() { scontrol show job "${job}_$1" | sed -n 's/^JobId=\([0-9]*\).*/\1/p'; }
 
 case_slurm_drained() {
     : "the node is drained: parts that run end, the others wait; it is resumed, and they finish"
+    longer
     by_slurm --bands 6 || return
     await_mid_run || return
     scontrol update nodename=farm state=drain reason=test
@@ -147,7 +160,8 @@ case_slurm_drained() {
 }
 
 case_slurm_preempted() {
-    : "urgent jobs take the processors from parts, which write their checkpoints and go on later"
+    : "urgent jobs take the processors from parts, which write their films and go on later"
+    longer
     by_slurm --bands 4 || return
     await_mid_run || return
     sbatch --partition=urgent --cpus-per-task=2 --output=/dev/null --wrap 'sleep 3' >/dev/null
@@ -158,7 +172,8 @@ case_slurm_preempted() {
 }
 
 case_slurm_cancelled() {
-    : "cancelled parts stay so; the merge says which; the same command again goes on from their checkpoints"
+    : "cancelled parts stay so; the merge says which; the same command again goes on from their films"
+    longer
     by_slurm --bands 4 || return
     await_mid_run || return
     (by_slurm --bands 4) 2>/dev/null && bad 'a second farm began in the folder'
@@ -174,6 +189,7 @@ case_slurm_cancelled() {
 
 case_slurm_time_limit() {
     : "a part comes to its limit of time: it stops before, queues again, and goes on"
+    longer
     by_slurm --bands 1 --sbatch --time=1 --grace 50 || return
     await_mid_run || return
     # However fast the machine is, it is not done by then.
@@ -191,7 +207,7 @@ case_slurm_full_disk() {
     : "the folder's disk is full: parts fail, the merge names them; with room again the same command ends it"
     small_disk 64k && folder=$disk/farm || return 0
     by_slurm --bands 4 || return
-    merged 300
+    merged
     is_absent "$folder.pfm"
     more_disk 64m
     by_slurm --bands 4 || return
@@ -212,7 +228,7 @@ case_slurm_refused() {
 # ---- By GNU parallel ----------------------------------------------------------------------------
 
 by_parallel() {  # OPTION...
-    bash src/labs/farm_parallel.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- --every .5 "${picture[@]}" \
+    bash src/labs/farm_parallel.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- "${picture[@]}" \
         >"$folder.out" 2>"$folder.err"
 }
 parallel_in_mid_run() {
@@ -233,10 +249,11 @@ case_parallel_whole() {
 
 case_parallel_killed() {
     : "penumbra is killed in mid-run (kill -9), twice"
+    longer
     by_parallel --bands 4 --slots 2 & local farm=$!
     local killed=() process
     for time in 1 2; do
-        await 60 'a part has a checkpoint and runs on' parallel_in_mid_run || return
+        await 120 'a part has a film and runs on' parallel_in_mid_run || return
         killed+=("$part") process=$(process_of "$part")
         kill -9 "$process" && await 20 'it has ended' have_ended "$process" || return
     done
@@ -246,16 +263,17 @@ case_parallel_killed() {
 }
 
 case_parallel_stopped() {
-    : "the farm is stopped (SIGTERM), then killed; each time the same command goes on from the checkpoints"
+    : "the farm is stopped (SIGTERM), then killed; each time the same command goes on from the films"
+    longer
     local signal
     for signal in TERM KILL; do
         by_parallel --bands 4 --slots 2 & local farm=$!
-        await 60 'a part has a checkpoint and runs on' parallel_in_mid_run || return
+        await 120 'a part has a film and runs on' parallel_in_mid_run || return
         kill -s "$signal" $(pgrep -f "parallel .*$folder") "$farm"
         wait "$farm" 2>/dev/null && bad 'it went on'
         is_absent "$folder.pfm"
-        [ "$signal" = TERM ] || kill -9 $(pgrep -f -- "--checkpoint $folder/") 2>/dev/null
-        await 30 'no part runs' eval '! pgrep -f -- "--checkpoint $folder/" >/dev/null' || return
+        [ "$signal" = TERM ] || kill -9 $(pgrep -f -- "--keep $folder/") 2>/dev/null
+        await 30 'no part runs' eval '! pgrep -f -- "--keep $folder/" >/dev/null' || return
     done
     by_parallel --bands 4 --slots 2 || bad "exit status $?"
     is_right "$folder.pfm"
@@ -264,10 +282,11 @@ case_parallel_stopped() {
 
 case_parallel_ssh() {
     : "two machines by ssh, of which one is lost in mid-run: its parts go on upon the other"
+    longer
     start_ssh one two || { bad "sshd does not start"; return; }
     printf '1/ssh -F %s %s\n' "$work/ssh/config" one "$work/ssh/config" two >"$work/hosts"
     by_parallel --bands 6 --hosts "$work/hosts" & local farm=$!
-    await 60 'a part has a checkpoint and runs on' parallel_in_mid_run || return
+    await 120 'a part has a film and runs on' parallel_in_mid_run || return
     local lost
     lost=$(descendants "$(cat "$(sshd_of one)/pid")")
     kill -9 "$(cat "$(sshd_of one)/pid")" $lost

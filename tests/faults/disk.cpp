@@ -310,14 +310,13 @@ int open64(const char* name, int flags, ...) {
     va_end(rest);
     return open_by(real<int(const char*, int, ...)>("open64"), name, flags, mode);
 }
-FILE* fopen(const char* name, const char* mode) {
-    REAL(fopen);
+// std::ifstream opens so.
+FILE* fopen64(const char* name, const char* mode) {
+    REAL(fopen64);
     const std::string path = absolute(name);
     if (!plan().is_ours(path)) return next(name, mode);
     const Lock lock(mutex);
-    if (fails(plan().fault("open", path))) return nullptr;
-    if (*mode != 'r') opens(path, O_TRUNC);
-    return next(name, mode);
+    return fails(plan().fault("open", path)) ? nullptr : next(name, mode);
 }
 ssize_t read(int fd, void* bytes, size_t size) {
     REAL(read);
@@ -333,10 +332,6 @@ ssize_t read(int fd, void* bytes, size_t size) {
 ssize_t write(int fd, const void* bytes, size_t size) {
     REAL(write);
     return write_by([&](size_t n) { return next(fd, bytes, n); }, fd, size);
-}
-ssize_t pwrite(int fd, const void* bytes, size_t size, off_t at) {
-    REAL(pwrite);
-    return write_by([&](size_t n) { return next(fd, bytes, n, at); }, fd, size);
 }
 // A disk that takes no time: what is lost with the power is ours to say.
 int fsync(int fd) {

@@ -8,7 +8,7 @@ from the seed and the run's number; when signals arrive does not.  --run N is th
 
 Wrong is: a file that is neither what it was nor right; exit status 0 without all files, another one
 without a message; death by no signal of ours; what is left beside the files by a run that was not
-killed, or that the next one does not remove; a checkpoint from which a run does not go on to the
+killed, or that the next one does not remove; a film from which a run does not go on to the
 same picture; a damaged one that is not refused.  What is wrong is kept in build/faults/wrong-N.
 """
 import argparse
@@ -19,6 +19,7 @@ import random
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -77,8 +78,8 @@ class Conditions:
 class Outcome:
     def __init__(self, status, killed_by, err, faults, seconds):
         self.status, self.killed_by, self.err, self.faults, self.seconds = status, killed_by, err, faults, seconds
-        told = re.findall(r': (\d+) samples per pixel, .*', err)
-        self.samples = int(told[-1]) if told else None
+        told = re.findall(r': (\S+) samples per pixel, .*', err)
+        self.samples = float(told[-1]) if told else None
 
     def __str__(self):
         return 'exit status %s, signal %s; faults: %s\n%s' % (self.status, self.killed_by, self.faults, self.err)
@@ -133,9 +134,9 @@ class Soak:
         return Outcome(code if code >= 0 else None, -code if code < 0 else None,
                        said[0].decode('utf-8', 'replace'), faults, time.monotonic() - start)
 
-    def truth(self, picture, samples, sets=None):
+    def truth(self, picture, samples):
         """{suffix: content} of a run without faults, or None if there is none of so many samples."""
-        words = picture.words(samples, sets)
+        words = picture.words(samples)
         key = tuple(words)
         with self.lock:
             if key in self.truths:
@@ -160,48 +161,42 @@ class Wrong(Exception):
 # ---- Pictures ------------------------------------------------------------------------------------
 
 class Picture:
-    def __init__(self, scene, options, spp):
-        self.scene, self.options, self.spp = scene, options, spp
+    def __init__(self, scene, options, spp, sets=None):
+        self.scene, self.options, self.spp, self.sets = scene, options, spp, sets  # None: adaptive
         self.timed = False  # --time may end it sooner
 
-    def words(self, samples=None, sets=None):
-        options = list(self.options)
-        if sets is not None:
-            options += ['--sets', str(sets)]
-        return [os.path.join(ROOT, 'scenes', self.scene), *options, '--spp', str(samples or self.spp)]
+    def words(self, samples=None):
+        sets = ['--sets', str(self.sets)] if self.sets else []
+        return [os.path.join(ROOT, 'scenes', self.scene), *self.options, *sets, '--spp', str(samples or self.spp)]
+
+    def has_all(self, samples):
+        """Whether that many in the mean are what was asked for; adaptive ones are more."""
+        if not self.sets:
+            return samples >= self.spp
+        return samples == -(-self.spp // self.sets) * self.sets
 
 
 SCENES = ['atelier', 'cornell', 'cornell36', 'cornell36obj', 'cornellglossy', 'coursework', 'cube', 'extremes',
           'furnace', 'lanterns', 'materials', 'panel', 'penumbra']
-DIFFUSE = ['cornell36', 'cube', 'furnace']
 
 
 def draw_picture(rng, spp=None, stops_anywhere=False):
-    """stops_anywhere: as many samples as the first of more give the same picture."""
+    """stops_anywhere: a pixel that has n samples of more is that of a render of n."""
     scene, options = rng.choice(SCENES), ['--size', '%dx%d' % (rng.randint(1, 40), rng.randint(1, 30)),
                                           '--seed', str(rng.randrange(3))]
     spp = spp or rng.choice([1, 2, 4, 9, 16, 25, 64])
     kind = rng.random()
-    sampler = rng.choice(['sobol', 'sobol', 'halton', 'independent'] + [] if stops_anywhere else ['stratified'])
+    sampler = rng.choice(['sobol', 'sobol', 'halton', 'independent'] + ([] if stops_anywhere else ['stratified']))
     if sampler == 'stratified':
         spp = rng.choice([1, 4, 16, 64])
-    if kind < 0.1 and not stops_anywhere:
-        options += ['--film', rng.choice(['vor', 'fvor', 'cvor', 'torus']), '--sampler', 'independent']
-        spp = max(spp, 4)
+    if kind < 0.2:
+        has_point = b'pointlight' in read(os.path.join(ROOT, 'scenes', scene + '.scene'))
+        options += ['--light', 'nee' if has_point else rng.choice(['none', 'nee']), '--sampler', sampler]
     elif kind < 0.3:
-        options += ['--direct', rng.choice(['control', 'ratio', 'regression']), '--light', 'nee', '--sampler', sampler]
-    elif kind < 0.36:
-        scene = rng.choice(DIFFUSE)
-        options += ['--indirect', rng.choice(['map', 'control', 'regression']), '--particles', '200', '--sampler', sampler]
-    elif kind < 0.42:
         options += ['--view', rng.choice(['normal', 'depth', 'albedo', 'bvh']), '--sampler', sampler]
-    elif kind < 0.47:
-        options += ['--view', 'variance', '--sampler', sampler]
     else:
         options += ['--sampler', sampler, '--roulette', rng.choice(['0', '0.25', '1'])]
-    if rng.random() < 0.3 and '--view' not in options and '--film' not in options:
-        options += ['--sets', str(rng.choice([1, 2, 4]))]
-    return Picture(scene + '.scene', options, spp)
+    return Picture(scene + '.scene', options, spp, rng.choice([1, 2, 4] + ([] if stops_anywhere else 5 * [None])))
 
 
 def same(name, content, truth, exact=True):
@@ -212,9 +207,44 @@ def same(name, content, truth, exact=True):
         a, b = json.loads(content), json.loads(truth['.json'])
     except ValueError:
         return False
-    unlike = OF_THE_CLOCK if exact else OF_THE_CLOCK | {'rays', 'map_rays'}
-    unlike = unlike | {'map_seconds', 'sets'}  # one set may stand for what was to be chosen
+    unlike = OF_THE_CLOCK if exact else OF_THE_CLOCK | {'rays'}
     return a.keys() == b.keys() and all(a[k] == b[k] for k in a if k not in unlike)
+
+
+# ---- Films ---------------------------------------------------------------------------------------
+
+def head_of(film):
+    lines = film.split(b'\n\n', 1)[0].decode('utf-8', 'replace').splitlines()
+    return dict(line.split(' ', 1) for line in lines if ' ' in line)
+
+
+def rays_of(film):
+    """Fewer are samples lost."""
+    return int(head_of(film)['rays']) if film else 0
+
+
+def samples_of(film):
+    """Of each replication, pixel by pixel, in a film of fixed sets."""
+    width, height = map(int, head_of(film)['size'].split('x'))
+    block = max(1, min(256, width * height // 256))  # as film.h has it
+    taken = struct.unpack_from('<%dQ' % -(-width * height // block), film, film.index(b'\n\n') + 2)
+    return [taken[i // block] for i in range(width * height)]
+
+
+def truth_of(soak, picture, film):
+    """What files show of a film that was interrupted: each pixel as many samples as it has."""
+    samples = samples_of(film)
+    if min(samples) == 0:
+        return None
+    truths = {n: soak.truth(picture, n * picture.sets) for n in set(samples)}
+    if len(truths) == 1:
+        return truths[samples[0]]
+    width = int(head_of(film)['size'].split('x')[0])
+    pfm = bytearray(truths[samples[0]]['.pfm'])
+    for i, n in enumerate(samples):
+        at = len(pfm) - 12 * width * (i // width + 1) + 12 * (i % width)  # rows from the bottom up
+        pfm[at:at + 12] = truths[n]['.pfm'][at:at + 12]
+    return {'.pfm': bytes(pfm)}  # of others the end alone is known
 
 
 def parts(folder):
@@ -229,35 +259,42 @@ def survivable(faults):
 
 def check_files(soak, picture, folder, names, before, outcome, sent):
     """Which of the files are right; Wrong if one is neither that nor what it was."""
-    samples = outcome.samples if outcome.samples is not None else 0 if sent else picture.spp
     changed = [n for n in names if read(os.path.join(folder, n)) != before.get(n)]
-    right, truths = [], []
-    if changed and 0 < samples < ENDLESS:
-        truths = [t for t in [soak.truth(picture, samples)] if t]
-        told_none = 'error not known' in outcome.err and '--sets' not in picture.options
-        if sent and samples < picture.spp and told_none:  # its sets were not chosen, or not finished
-            truths += [t for t in [soak.truth(picture, samples, 1)] if t]
+    truth = None
+    if changed and sent and outcome.status != 0:
+        film = read(os.path.join(folder, 'c.film'))
+        truth = truth_of(soak, picture, film) if film else None
+    elif changed or outcome.status == 0:
+        truth = soak.truth(picture, int(outcome.samples) if picture.timed and outcome.samples else picture.spp)
+    right = []
     for name in names:
         now, was = read(os.path.join(folder, name)), before.get(name)
-        if any(now is not None and same(name, now, t, not sent) for t in truths):
+        if now is not None and truth and is_right(name, now, truth, not sent):
             right.append(name)
         elif now != was:
             raise Wrong('%s is neither right nor what it was' % name if now is not None else '%s is gone' % name)
     return right
 
 
-def check_checkpoint(soak, picture, folder, before):
+def is_right(name, content, truth, exact):
+    if '.png' in truth or name.endswith('.pfm'):
+        return same(name, content, truth, exact)
+    return content.endswith(b'}\n' if name.endswith('.json') else b'IEND\xaeB`\x82')
+
+
+def check_film(soak, picture, folder, before):
     """A run goes on from it, whatever happened, to the same picture."""
     film = read(os.path.join(folder, 'c.film'))
     if film is None:
         if before.get('c.film') is not None:
-            raise Wrong('the checkpoint is gone')
+            raise Wrong('the film is gone')
         return
-    outcome = soak.run([*picture.words(), '--resume', 'c.film', '-o', 'resumed.pfm'], folder)
+    spp = picture.spp if picture.spp < ENDLESS else picture.sets * (max(samples_of(film)) + 10)
+    outcome = soak.run([*picture.words(spp), '--keep', 'c.film', '-o', 'resumed.pfm'], folder)
     if outcome.status != 0:
-        raise Wrong('no run goes on from the checkpoint: %s' % outcome)
-    if read(os.path.join(folder, 'resumed.pfm')) != soak.truth(picture, picture.spp)['.pfm']:
-        raise Wrong('a run that went on from the checkpoint has another picture')
+        raise Wrong('no run goes on from the film: %s' % outcome)
+    if read(os.path.join(folder, 'resumed.pfm')) != soak.truth(picture, spp)['.pfm']:
+        raise Wrong('a run that went on from the film has another picture')
     os.remove(os.path.join(folder, 'resumed.pfm'))
 
 
@@ -275,13 +312,13 @@ def verdict(soak, picture, folder, names, before, conditions, outcome):
     if tidy and parts(folder):
         raise Wrong('it left %s' % parts(folder))
     if 'c.film' in os.listdir(folder):
-        check_checkpoint(soak, picture, folder, before)
+        check_film(soak, picture, folder, before)
     if outcome.killed_by is not None:
         return 'killed'
     if outcome.status == 0:
         if len(right) < len(names):
             raise Wrong('exit status 0 with %s alone' % right)
-        if outcome.samples != picture.spp and not picture.timed:
+        if not picture.timed and not picture.has_all(outcome.samples):
             raise Wrong('exit status 0 with other samples than asked for')
         return 'right'
     if outcome.status in [ENDS[s] for s in sent]:
@@ -299,14 +336,25 @@ def verdict(soak, picture, folder, names, before, conditions, outcome):
 def clean_run(soak, picture, folder, names):
     """What was left beside the files goes with the next run."""
     outs = [w for n in names for w in (('--stats' if n.endswith('.json') else '-o'), n)]
-    kept = ['--checkpoint', 'c.film'] if any('c.film' in n for n in os.listdir(folder)) else []
+    kept = ['--keep', 'c.film'] if any('c.film' in n for n in os.listdir(folder)) else []
     outcome = soak.run([*picture.words(), *outs, *kept], folder)
     check_files(soak, picture, folder, names, {}, outcome, [])
     if outcome.status != 0 or parts(folder):
         raise Wrong('the next run: %s, and it left %s' % (outcome, parts(folder)))
 
 
-def one_run(soak, rng, folder, picture, conditions, names=None, film=None, more=(), every='0.01', resume=False):
+def kept(soak, picture, folder):
+    """c.film, of about half the samples."""
+    spp = picture.spp if '--sampler stratified' in ' '.join(picture.options) else -(-picture.spp // 2)
+    if not picture.sets and spp < 16:  # a shorter pilot chooses other sets
+        spp = picture.spp
+    outcome = soak.run([*picture.words(spp), '-o', 'x.pfm', '--keep', 'c.film'], folder)
+    if outcome.status != 0:
+        raise Wrong('no film: %s' % outcome)
+    os.remove(os.path.join(folder, 'x.pfm'))
+
+
+def one_run(soak, rng, folder, picture, conditions, names=None, film=None, more=(), resume=False):
     """A verdict and the outcome of a run with random outputs."""
     names = names or rng.choice([['a.pfm'], ['a.png'], ['a.pfm', 'b.png'], ['a.pfm', 'b.png', 's.json'], ['b.png', 's.json']])
     film = rng.random() < 0.4 if film is None else film
@@ -318,12 +366,10 @@ def one_run(soak, rng, folder, picture, conditions, names=None, film=None, more=
     words = [*picture.words(), '--threads', str(rng.randint(1, 4)), *more]
     words += [w for n in names for w in (('--stats' if n.endswith('.json') else '-o'), n)]
     if film:
-        words += ['--checkpoint', 'c.film', '--every', every]
+        words += ['--keep', 'c.film']
         if resume or rng.random() < 0.5 and picture.spp < 1000:
-            soak.run([*picture.words(), '-o', 'x.pfm', '--checkpoint', 'c.film'], folder)
-            os.remove(os.path.join(folder, 'x.pfm'))
+            kept(soak, picture, folder)
             before['c.film'] = read(os.path.join(folder, 'c.film'))
-            words += ['--resume', 'c.film'] if resume else []
     write(folder + '.command', ' '.join([soak.program, *words, '\n', *map(str, (
         conditions.faults, conditions.signals, conditions.memory, conditions.largest))]).encode())
     outcome = soak.run(words, folder, conditions, rng.getrandbits(32))
@@ -369,7 +415,7 @@ def run_full_disk(soak, rng, folder):
             with open(filler, 'wb') as f:
                 f.write(b'x' * max(0, free.f_bavail * free.f_frsize - room))
             words = [*picture.words(), *[w for n in names for w in (('--stats' if n.endswith('.json') else '-o'), n)],
-                     *(['--checkpoint', 'c.film'] if rng.random() < 0.5 else [])]
+                     *(['--keep', 'c.film'] if rng.random() < 0.5 else [])]
             outcome = soak.run(words, real)
             os.remove(filler)
             if outcome.status != 0:
@@ -407,7 +453,7 @@ def run_interrupt(soak, rng, folder):
     what = rng.choice(list(ENDS))
     picture = draw_picture(rng, ENDLESS, stops_anywhere=True)
     result, outcome = one_run(soak, rng, folder, picture, Conditions(signals=[(rng.uniform(0, 0.3), what), (60, signal.SIGKILL)]),
-                              film=False)
+                              film=True)
     outcome.faults[what.name] += 1
     return result, outcome
 
@@ -431,7 +477,7 @@ def run_memory(soak, rng, folder):
     picture = draw_picture(rng)  # a larger one
     size = rng.choice([64, 256, 600])
     picture.options[1] = '%dx%d' % (size, size // rng.choice([1, 2, 4]))
-    picture.spp = 1 if '--film' not in picture.options else 4
+    picture.spp, picture.sets = 1, rng.choice([None, 1, 2, 4])
     result, outcome = one_run(soak, rng, folder, picture, Conditions(memory=int(12000 * 2 ** rng.uniform(0, 4))))
     outcome.faults['memory'] += outcome.status != 0
     return result, outcome
@@ -440,11 +486,7 @@ def run_memory(soak, rng, folder):
 def run_clock(soak, rng, folder):
     picture = draw_picture(rng, rng.choice([64, 256, 1024]), stops_anywhere=True)
     faults = ['real:STEP=0.3', 'steady:STEP=%g' % rng.choice([0.01, 0.2])]
-    more = []
-    if '--sets' not in picture.options and '--view' not in picture.options and rng.random() < 0.5:
-        picture.options += ['--sets', '2']
-    if '--sets' in picture.options and '--indirect' not in picture.options:
-        picture.timed, more = True, ['--time', '%g' % rng.choice([0.05, 20, 1000])]
+    picture.timed, more = True, ['--time', '%g' % rng.choice([0.05, 20, 1000])]
     return one_run(soak, rng, folder, picture, Conditions(faults), film=False, more=more)
 
 
@@ -460,61 +502,46 @@ def run_mixed(soak, rng, folder):
         return one_run(soak, rng, folder, draw_picture(rng), Conditions(faults, memory=int(20000 * 2 ** rng.uniform(0, 4))))
     picture = draw_picture(rng, ENDLESS, stops_anywhere=True)
     what = rng.choice([*ENDS, signal.SIGKILL])
-    faults = [f for f in faults if not f.startswith('fsync:EIO')]  # a file could be new, and nobody say of how many samples
+    # Else files could be new, and no film would say of how many samples.
+    faults = [f for f in faults if not f.startswith(('fsync', 'write:EIO', 'rename', 'unlink', 'power'))]
     return one_run(soak, rng, folder, picture, Conditions(faults, [(rng.uniform(0.02, 0.2), what), (60, signal.SIGKILL)]),
-                   names=[rng.choice(['a.pfm', 'a.png'])], film=False)
+                   names=[rng.choice(['a.pfm', 'a.png'])], film=True)
 
 
-# ---- Checkpoints ---------------------------------------------------------------------------------
-
-def head_of(film):
-    lines = film.split(b'\n\n', 1)[0].decode('utf-8', 'replace').splitlines()
-    return dict(line.split(' ', 1) for line in lines if ' ' in line)
-
-
-def taken(film):
-    """Samples, of all pixels, that a checkpoint holds."""
-    return int(head_of(film)['taken']) if film else 0
-
+# ---- Films that are gone on with ---------------------------------------------------------------------------------
 
 def of_a_link(rng):
     what = rng.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGKILL, *ENDS])
     faults = [[], [], [], [], ['power:CUT@%d' % rng.randint(1, 12)], ['write:ENOSPC=0.3', 'fsync:EIO=0.3', 'rename:EIO=0.1']]
-    return Conditions(rng.choice(faults), [(rng.uniform(0.02, 0.7), what)])
+    return Conditions(rng.choice(faults), [(rng.expovariate(20), what)])
 
 
 def run_chain(soak, rng, folder):
-    """Killed, interrupted, without power or disk time and again, and gone on from the checkpoint."""
+    """Killed, interrupted, without power or disk time and again, and gone on from the film."""
     picture = draw_picture(rng, 1000, stops_anywhere=True)
     pixels = [int(n) for n in picture.options[1].split('x')]
     picture.spp = min(20000, 100000 // (pixels[0] * pixels[1]) + 100)
     path, all_faults, before = os.path.join(folder, 'c.film'), collections.Counter(), 0
-    for link in range(30):
+    last = 11  # each asks for a little more: a film is written when it has that
+    for link in range(last + 1):
         film = read(path)
-        if taken(film) < before:
-            raise Wrong('the checkpoint holds less than before')
-        before = taken(film)
-        conditions = Conditions() if link == 29 else of_a_link(rng)
-        words = [*picture.words(), '--threads', str(rng.randint(1, 3)), '-o', 'a.pfm', '--checkpoint', 'c.film',
-                 '--every', '0.01', *(['--resume', 'c.film'] if film else [])]
+        if rays_of(film) < before:
+            raise Wrong('the film holds less than before')
+        before = rays_of(film)
+        conditions = Conditions() if link == last else of_a_link(rng)
+        words = [*picture.words(picture.spp * (link + 1) // (last + 1)), '--threads', str(rng.randint(1, 3)), '-o', 'a.pfm', '--keep', 'c.film']
         write(folder + '.command', ' '.join([soak.program, *words, '\n', *conditions.faults, str(conditions.signals)]).encode())
         outcome = soak.run(words, folder, conditions, rng.getrandbits(32))
         write(folder + '.outcome', str(outcome).encode())
-        ended = time.time()
         all_faults += outcome.faults
         if outcome.killed_by == signal.SIGKILL and not outcome.faults:
             all_faults['SIGKILL'] += 1
-            if read(path) != film:
-                with soak.lock:
-                    soak.lost.append(ended - os.path.getmtime(path))
         elif outcome.status in ENDS.values():
             all_faults['interrupted'] += 1
         elif outcome.status == 2:
             raise Wrong('it does not go on: %s' % outcome)
         elif outcome.killed_by is not None and not conditions.sent(outcome.killed_by) and not outcome.faults['power CUT']:
             raise Wrong('it died of signal %d' % outcome.killed_by)
-        if outcome.status == 0:
-            break
     if outcome.status != 0:
         raise Wrong('at last: %s' % outcome)
     if read(os.path.join(folder, 'a.pfm')) != soak.truth(picture, picture.spp)['.pfm']:
@@ -526,13 +553,10 @@ def run_chain(soak, rng, folder):
 
 
 def run_damage(soak, rng, folder):
-    """A checkpoint that is not as it was written."""
+    """A film that is not as it was written."""
     picture, path = draw_picture(rng), os.path.join(folder, 'c.film')
-    first = soak.run([*picture.words(), '-o', 'x.pfm', '--checkpoint', 'c.film'], folder)
-    os.remove(os.path.join(folder, 'x.pfm'))
-    film = bytearray(read(path) or b'')
-    if first.status != 0 or not film:
-        raise Wrong('no checkpoint: %s' % first)
+    kept(soak, picture, folder)
+    film = bytearray(read(path))
     how = rng.choice(['bit', 'bits', 'cut', 'longer', 'zeros', 'exchanged', 'of another picture'])
     damaged = bytearray(film)
     at = rng.randrange(len(film))
@@ -550,11 +574,11 @@ def run_damage(soak, rng, folder):
         damaged = film[half:] + film[:half]
     asked = picture
     if how == 'of another picture':
-        asked = Picture(picture.scene, [*picture.options, '--seed', '77'], picture.spp)
+        asked = Picture(picture.scene, [*picture.options, '--seed', '77'], picture.spp, picture.sets)
     write(path, damaged)
     if damaged == film and how != 'of another picture':  # zeros for zeros
-        return 'right', first
-    outcome = soak.run([*asked.words(), '--resume', 'c.film', '--checkpoint', 'c.film', '-o', 'a.pfm'], folder)
+        return 'right', Outcome(0, None, '', collections.Counter(), 0)
+    outcome = soak.run([*asked.words(), '--keep', 'c.film', '-o', 'a.pfm'], folder)
     write(folder + '.outcome', (how + '\n' + str(outcome)).encode())
     outcome.faults[how] += 1
     if outcome.status != 2 or not outcome.err.strip().splitlines()[-1].startswith('c.film: '):
@@ -568,7 +592,7 @@ KINDS = {'none': (1, run_none), 'full disk': (2, run_full_disk), 'file limit': (
          'write': (3, run_write), 'fsync, rename, close': (3, run_commit), 'Ctrl-C and its like': (2, run_interrupt),
          'stopped for a while': (1, run_stop), 'kill -9': (2, run_kill), 'memory': (2, run_memory), 'clock': (2, run_clock),
          'power': (3, run_power), 'several at once': (3, run_mixed), 'killed and resumed': (1, run_chain),
-         'damaged checkpoint': (2, run_damage)}
+         'damaged film': (2, run_damage)}
 
 
 # ---- All of them ---------------------------------------------------------------------------------
@@ -653,8 +677,8 @@ EACH = ['open:EIO', 'read:EIO', 'read:SHORT', 'read:EINTR', 'write:EIO', 'write:
 
 
 def every_call(soak, tally):
-    """A small render, and one that goes on from a checkpoint: each of their calls failed in each way."""
-    picture = Picture('cube.scene', ['--size', '7x5'], 4)
+    """A small render, and one that goes on from a film: each of their calls failed in each way."""
+    picture = Picture('cube.scene', ['--size', '7x5'], 4, 2)
     for number, (fault, resume) in enumerate([(f, r) for f in EACH for r in (False, True)]):
         at = 0 if fault.startswith('power') else 1
         while True:
@@ -662,8 +686,7 @@ def every_call(soak, tally):
             os.mkdir(folder)
             try:
                 result, outcome = one_run(soak, rng, folder, picture, Conditions(['%s@%d' % (fault, at)]),
-                                          ['a.pfm', 's.json'] if resume else ['a.pfm', 'b.png', 's.json'], film=True,
-                                          every='1000', resume=resume)
+                                          ['a.pfm', 's.json'] if resume else ['a.pfm', 'b.png', 's.json'], film=True, resume=resume)
             except Wrong as wrong:
                 tally.add(fault, 'wrong', {fault: 1})
                 print('WRONG, %s@%d: %s' % (fault, at, wrong), flush=True)
@@ -698,7 +721,7 @@ def main():
     os.makedirs(BUILD, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=BUILD) as folder:
         soak = Soak(options.program, seed, folder)
-        soak.full, soak.lost, soak.mounted = threading.Lock(), [], mount(folder)
+        soak.full, soak.mounted = threading.Lock(), mount(folder)
         print('seed %s%s' % (seed, '' if soak.mounted else '; no disk can be mounted here'), flush=True)
         try:
             if options.each:
@@ -708,9 +731,6 @@ def main():
         finally:
             unmount(soak.mounted)
     total = tally.show()
-    if soak.lost:
-        print('lost by kill -9 since the last checkpoint: %.2f s in the mean, %.2f s at most' %
-              (sum(soak.lost) / len(soak.lost), max(soak.lost)))
     never = [k for k, row in tally.rows.items() if row['runs'] >= 30 and row['bitten'] == 0 and k != 'none' and
              not (k == 'memory' and options.program.endswith('-san'))]
     if never:

@@ -1,7 +1,5 @@
-// film/error_test.cpp  d^2 as images state it, beside what it is; its course, and when it is small
+// film/error_test.cpp  d^2 as films state it, beside what it is; its course, and when it is small
 #include "film/error.h"
-
-#include <memory>
 
 #include "film/spread.h"
 #include "oracle/expect.h"
@@ -18,107 +16,135 @@ double normal(Rng& rng) {
 
 // ---- What images state --------------------------------------------------------------------------
 
-TEST_CASE("d^2 and the variance of a pixel, by hand") {
-    // Pixels of values 1, 5, 3 (variance 4, of which three are shown), of 2 and 6 (variance 8, one
-    // shown, measured by a chance of 1/4), of 7 alone; green twice, blue without noise.
-    auto L = [](int x, int, uint64_t, uint32_t set) {
-        constexpr real values[3][3] = {{1, 5, 3}, {2, 6, 0}, {7, 0, 0}};
-        return rgb{values[x][set], 2 * values[x][set], 1};
-    };
-    MeanFilm film({3, 1}), variances({3, 1}, {}, Shows::variances);
-    for (MeanFilm* f : {&film, &variances}) {
-        f->add_sets({{3, 0}, {1, 0.25}, {1, 0}});
-        whole_pass(*f, 2, L);
-    }
+TEST_CASE("d^2 of an image, by hand") {
+    // Replications of 1, 5, 3 (variance 4), of 2, 6, 1 (variance 7), of 7 alike; green twice, blue
+    // without noise.
+    const Film film = filled({3, 1}, 3, 2, [](const PixelSample& s, uint64_t&) {
+        constexpr real values[3][3] = {{1, 5, 3}, {2, 6, 1}, {7, 7, 7}};
+        return rgb{values[s.x][s.set], 2 * values[s.x][s.set], 1};
+    });
+    const ErrorTerms terms = terms_of(film);
+    CHECK(terms.pixels == 3);
+    CHECK(terms.measured == 3);
+    CHECK(terms.sum == std::array<double, 3>{13, 26, 3});
     const ImageError e = error_of(film);
-    CHECK(film.terms().pixels == 3);
-    CHECK(film.terms().measured == 2);
-    CHECK(film.terms().sum == std::array<double, 3>{12, 24, 3});
-    CHECK(error_of(variances).d_rel() == e.d_rel());
-    const double red = (4 / 3.0 + 8 / 0.25) / 3;
+    CHECK(e.mean == std::array<double, 3>{13 / 3.0, 26 / 3.0, 1});
+    const double red = (4 / 3.0 + 7 / 3.0) / 3;
     CHECK(e.square[0] == doctest::Approx(red).epsilon(1e-15).scale(0));
     CHECK(e.square[1] == doctest::Approx(4 * red).epsilon(1e-15).scale(0));
     CHECK(e.square[2] == 0);
     CHECK(e.d2() == doctest::Approx(5 * red / 3).epsilon(1e-15).scale(0));
-    // Shown: 3, 2, 7 in red.
-    CHECK(e.norm == doctest::Approx(std::sqrt((5 * (9 + 4 + 49) + 3) / 9.0)).epsilon(1e-15));
+    // Values 3, 3, 7.
+    CHECK(e.norm == doctest::Approx(std::sqrt((5 * (9 + 9 + 49) + 3) / 9.0)).epsilon(1e-15));
     CHECK(e.d_rel() == doctest::Approx(std::sqrt(e.d2()) / e.norm).epsilon(1e-15).scale(0));
-    const double terms[2] = {4 / 3.0 * 5 / 9, 8 / 0.25 * 5 / 9};
-    CHECK(e.greatest == doctest::Approx(terms[1]).epsilon(1e-15).scale(0));
-    // E[T]^2 = p (n - 1) / (n + 1) E[T^2]: 1/2 of three sets, 1/4 1/3 of two.
-    const double spread = std::sqrt(std::pow(terms[0], 2) / 2 + std::pow(terms[1], 2) * 11 / 12);
+    const double first = 4 / 3.0 * 5 / 3, second = 7 / 3.0 * 5 / 3;
+    CHECK(e.greatest == doctest::Approx(second / 3).epsilon(1e-15).scale(0));
+    // E[T]^2 = (K - 1) / (K + 1) E[T^2]: a half.
+    const double spread = std::sqrt((first * first + second * second) / 2) / 3;
     CHECK(e.spread == doctest::Approx(spread).epsilon(1e-15).scale(0));
     // d(sqrt(s)) = ds / (2 sqrt(s)).
     CHECK(e.standard_error() ==
           doctest::Approx(e.spread / (2 * std::sqrt(e.d2()) * e.norm)).epsilon(1e-15).scale(0));
-    const Image& variance = variances.image();
-    CHECK(variance.at(0, 0) == std::array<float, 3>{float(4 / 3.0), float(16 / 3.0), 0});
-    CHECK(variance.at(1, 0) == std::array<float, 3>{8, 32, 0});
-    CHECK(std::isnan(variance.at(2, 0)[0]));
+    CHECK(e.d_rel_and_unseen() ==
+          doctest::Approx(std::sqrt(e.d2() + e.greatest) / e.norm).epsilon(1e-15).scale(0));
+}
+
+TEST_CASE("the error of a film against brute force") {
+    const Radiance L = random_radiance(
+        seed_here(), [](const PixelSample& s, vec2 u) { return heteroscedastic(s.x, s.y, u); });
+    Film film = filled({33, 17}, 0, 24, L);
+    const std::vector<size_t> at = offsets(film);
+    double square = 0, norm2 = 0, worst = 0;
+    for (size_t i = 0, k = 0; i < film.pixels(); k += film.sets[i++]) {
+        double term = 0;
+        for (size_t c = 0; c < 3; ++c) {
+            const double K = film.sets[i];
+            double sum = 0, squares = 0;
+            for (size_t set = 0; set < film.sets[i]; ++set) sum += film.sum[k + set].L[c] / 24;
+            for (size_t set = 0; set < film.sets[i]; ++set)
+                squares += std::pow(film.sum[k + set].L[c] / 24 - sum / K, 2);
+            term += squares / (K - 1) / K / 3;
+            norm2 += std::pow(sum / K, 2) / 3;
+        }
+        square += term, worst = std::max(worst, term);
+    }
+    const ImageError e = error_of(film);
+    CHECK(e.d2() == doctest::Approx(square / 561).epsilon(1e-12).scale(0));
+    CHECK(e.norm == doctest::Approx(std::sqrt(norm2 / 561)).epsilon(1e-12).scale(0));
+    CHECK(e.greatest == doctest::Approx(worst / 561).epsilon(1e-12).scale(0));
+    // A pixel of one replication is not measured, and the image's error is not known.
+    ErrorTerms terms = terms_of(film);
+    terms.add(Pixel{{film.sum.data(), 1}, 24, 24});
+    CHECK(terms.pixels == 562);
+    CHECK(terms.measured == 561);
+    CHECK(std::isnan(terms.error().d_rel()));
+}
+
+TEST_CASE("of independent pictures, weighed by their samples: value, variance, and its spread") {
+    // Of 8 samples: replications of mean 1 and 3 (variance 1); of 24: 2, 3, 7 (variance 7 / 3).
+    const std::vector<Sum> few = {{{4, 8, 0}}, {{12, 24, 0}}},
+                           many = {{{16, 0, 8}}, {{24, 0, 8}}, {{56, 0, 8}}};
+    const std::vector<Pixel> pictures = {{few, 4, 4}, {many, 8, 8}};
+    ErrorTerms terms;
+    const auto value = terms.add(pictures);
+    CHECK(value == std::array<double, 3>{(2 + 3 * 4) / 4.0, 4 / 4.0, 3 / 4.0});
+    const ImageError e = terms.error();
+    CHECK(e.mean == value);
+    CHECK(e.square[0] == doctest::Approx((1 + 9 * 7 / 3.0) / 16).epsilon(1e-14));
+    CHECK(e.square[1] == doctest::Approx(4 / 16.0).epsilon(1e-14));
+    CHECK(e.square[2] == 0);
+    CHECK(e.greatest == doctest::Approx(e.d2()).epsilon(1e-14));
+    CHECK(e.norm == doctest::Approx(std::sqrt((3.5 * 3.5 + 1 + 0.5625) / 3)).epsilon(1e-14));
+    const double first = 5 / 16.0 / 3, second = 9 * 7 / 3.0 / 16 / 3;
+    CHECK(e.spread ==
+          doctest::Approx(std::sqrt(first * first * 2 / 3 + second * second / 2)).epsilon(1e-14));
+    // One that is not measured leaves the pixel so.
+    terms.add(std::vector<Pixel>{pictures[0], {{few.data(), 1}, 4, 4}});
+    CHECK(terms.pixels == 2);
+    CHECK(terms.measured == 1);
 }
 
 TEST_CASE("an error that is not known is no number; that of an image without noise is 0") {
-    auto film_of = [](const std::vector<Sets>& sets, auto value) {
-        auto film = std::make_unique<MeanFilm>(Size{2, 1});
-        if (!sets.empty()) film->add_sets(sets);
-        whole_pass(*film, 3, [&](int x, int, uint64_t, uint32_t set) {
-            const real v = value(x, set);
-            return rgb{v, v, v};
-        });
-        return film;
-    };
-    auto error = [](const std::unique_ptr<MeanFilm>& film) { return error_of(*film); };
-    const std::vector<Sets> one(2, {1, 0}), two(2, {2, 0}), measured(2, {1, 0.5});
     for (real level : {real(0), real(3)})
-        for (const auto& sets : {std::vector<Sets>(), one}) {
-            const ImageError e = error(film_of(sets, [&](int, uint32_t) { return level; }));
-            CHECK(std::isnan(e.d2()));
-            CHECK(std::isnan(e.d_rel()));
-            CHECK(std::isnan(e.standard_error()));
+        for (uint32_t sets : {0u, 1u, 2u}) {
+            const Film film = filled({2, 1}, sets, 3, [=](const PixelSample&, uint64_t&) {
+                return level * rgb{1, 1, 1};
+            });
+            const ImageError e = error_of(film);
+            CAPTURE(sets);
             CHECK(e.norm == double(level));
+            CHECK((sets == 1 ? std::isnan(e.d2()) : e.d2() == 0));
+            CHECK((sets == 1 || level == 0 ? std::isnan(e.d_rel()) : e.d_rel() == 0));
+            CHECK((sets == 1 ? std::isnan(e.standard_error()) : e.standard_error() == 0));
+            CHECK(is_small_enough(e, 0.01) == (sets != 1 && level > 0));
         }
-    for (real level : {real(0), real(3)}) {
-        const ImageError e = error(film_of(two, [&](int, uint32_t) { return level; }));
-        CHECK(e.d2() == 0);
-        CHECK((level > 0 ? e.d_rel() == 0 : std::isnan(e.d_rel())));
-        CHECK(e.standard_error() == 0);
-    }
-    // Black, but for what only measures it.
-    const ImageError e = error(film_of(measured, [](int, uint32_t set) { return real(set); }));
-    CHECK(e.d2() > 0);
-    CHECK(std::isnan(e.d_rel()));
     CHECK(ErrorCourse().cost_of(HUGE_VAL) == HUGE_VAL);
-    CHECK(!is_small_enough(e, 0.5));
-    // Before any sample; while the others catch up.
-    MeanFilm film({1, 1});
+    CHECK(std::isnan(error_of(make_film({1, 1}, 2)).d_rel()));  // before any sample
+    // Of the pilot alone; while some blocks catch up; then it is known.
+    const Radiance L = [](const PixelSample& s, uint64_t&) { return rgb{2, 2, real(2 + s.set)}; };
+    Film film = make_film({2, 2}, 0);
+    fill(film, 4, L);
     CHECK(std::isnan(error_of(film).d_rel()));
-    film.add_sets({{2, 0}});
+    choose_sets(film, INFINITY);
     CHECK(std::isnan(error_of(film).d_rel()));
-    for (Shows shows : {Shows::values, Shows::variances}) {
-        MeanFilm late({1, 1}, {}, shows);
-        whole_pass(late, 4, [](int, int, uint64_t, uint32_t) { return rgb{2, 2, 2}; });
-        late.add_sets({{2, 0}});
-        CHECK(std::isnan(error_of(late).d_rel()));
-        CHECK(error_of(late).norm == 2);
-        CHECK(std::isnan(late.image().at(0, 0)[0]) == (shows == Shows::variances));
-    }
+    CHECK(error_of(film).norm == 2);
+    fill_blocks(film, 0, 3, 2, L);
+    CHECK(std::isnan(error_of(film).d_rel()));
+    fill_blocks(film, 3, 4, 1, L);
+    CHECK(error_of(film).d2() == doctest::Approx(0.5 / 2 / 3));
 }
 
-TEST_CASE("what float cannot hold: d_rel at radiance 2^-80 and 2^93 is that at 1, to the bit") {
+TEST_CASE("what float cannot hold: d_rel at radiance 2^-50 and 2^50 is that at 1, to the bit") {
     auto error = [](int exponent) {
-        MeanFilm film({12, 12});
-        fill(film, by_noise, 1, 40, [&](int x, int y, uint64_t i, uint32_t set) {
-            const uint64_t bits = hash(hash(hash(7, uint64_t(12 * y + x)), set), i);
-            const rgb v = heteroscedastic(x, y, {to_unit(bits), to_unit(mix(bits))});
-            return v * std::ldexp(real(1), exponent);
-        });
-        CHECK(film.non_finite() == 0);
-        return error_of(film);
+        return error_of(
+            filled({12, 12}, 0, 40, random_radiance(7, [=](const PixelSample& s, vec2 u) {
+                       return heteroscedastic(s.x, s.y, u) * std::ldexp(real(1), exponent);
+                   })));
     };
     const ImageError one = error(0);
     CHECK(one.d_rel() > 0.01);
     CHECK(one.standard_error() > 0);
-    for (int exponent : {-80, 93}) {
+    for (int exponent : {-50, 50}) {
         const ImageError e = error(exponent);
         CHECK(e.d_rel() == one.d_rel());
         CHECK(e.standard_error() == one.standard_error());
@@ -129,28 +155,23 @@ TEST_CASE("what float cannot hold: d_rel at radiance 2^-80 and 2^93 is that at 1
 // ---- Against replicates -------------------------------------------------------------------------
 
 TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
-    // Grey pixels of normal numbers, 1 to 10 large; with sets 2, 3, or measured by chances of 1/4.
-    for (const Sets& sets : {Sets{2, 0}, Sets{3, 0}, Sets{8, 0}, Sets{1, 0.25}}) {
+    // Grey pixels of normal numbers, 1 to 10 large.
+    for (uint32_t sets : {2u, 3u, 8u}) {
         Moments d2, spread2;
         double truth = 0;
-        for (int x = 0; x < 100; ++x) truth += std::pow(1 + x % 10, 2) / sets.shown / 100;
-        Rng rng{hash(seed_here(), sets.count())};
+        for (int x = 0; x < 100; ++x) truth += std::pow(1 + x % 10, 2) / sets / 100;
+        Rng rng{hash(seed_here(), sets)};
         for (int r = 0; r < 3000; ++r) {
-            std::vector<Sets> drawn(100, sets);
-            for (Sets& s : drawn)
-                if (rng.uniform() >= s.chance && s.chance > 0) s.chance = 0;
-            MeanFilm film({100, 1});
-            film.add_sets(drawn);
-            whole_pass(film, 1, [&](int x, int, uint64_t, uint32_t) {
-                const real v = real((1 + x % 10) * normal(rng));
-                return rgb{v, v, v};
-            });
-            const ImageError e = error_of(film);
+            const ImageError e =
+                error_of(filled({100, 1}, sets, 1, [&](const PixelSample& s, uint64_t&) {
+                    const real v = real((1 + s.x % 10) * normal(rng));
+                    return rgb{v, v, v};
+                }));
             d2.add(e.d2());
             spread2.add(e.spread * e.spread);
         }
-        INFO("sets ", sets.shown, ", chance ", sets.chance);
-        EXPECT(oracle::expect_mean(truth, estimate(d2, double(ulp))), 0.07);
+        INFO("sets ", sets);
+        EXPECT(oracle::expect_mean(truth, estimate(d2, double(ulp))), 0.03);
         // Both are known within 3 %: the fourth moment of a sum of a hundred terms is about 3.3.
         const double ratio = spread2.mean / d2.variance();
         CAPTURE(ratio);
@@ -158,6 +179,32 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
               4.9 * std::hypot(std::sqrt(2.5 / 3000), spread2.standard_error() / spread2.mean));
         CHECK(spread2.standard_error() < 0.05 * spread2.mean);
     }
+}
+
+TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, samples that differ") {
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
+                             SamplerKind::sobol})
+        for (uint64_t others : {4, 24})
+            for (uint32_t sets : {0u, 3u}) {
+                Spread spread;
+                for (uint64_t r = 0; r < 400; ++r) {
+                    const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1, 24);
+                    const Radiance L = [&](const PixelSample& s, uint64_t&) {
+                        const uint64_t pixel = uint64_t(s.y * 12 + s.x);
+                        const Sampler sampler(pattern, pixel, s.i, s.set);
+                        return heteroscedastic(s.x, s.y, sampler.get2(film_x));
+                    };
+                    Film film = make_film({12, 9}, sets);
+                    if (sets == 0) {
+                        fill(film, 8, L);
+                        choose_sets(film, INFINITY);
+                    }
+                    fill(film, others, L);
+                    spread.add(image_of(film), error_of(film).d2());
+                }
+                INFO("sampler ", int(kind), ", sets ", sets, ", others ", others);
+                EXPECT(oracle::expect_mean(1, spread.ratio()), 0.25);
+            }
 }
 
 // ---- How it falls, and when it is small enough --------------------------------------------------
@@ -176,16 +223,16 @@ TEST_CASE("the course of an error: exponents of known laws, from 1/2 to 1") {
     }
 }
 
-TEST_CASE("the course looks back to half the samples, no nearer and no farther than it must") {
+TEST_CASE("the course is of the last two errors whose samples have doubled") {
     ErrorCourse course;
     CHECK(course.is_due(1));
     course.add(16, 8);
     CHECK(!course.is_due(31));
     CHECK(course.is_due(32));
     CHECK(course.exponent() == 0.5);
-    course.add(20, 1);  // not twice as many
+    course.add(31, 1);  // not twice as many
     CHECK(course.exponent() == 0.5);
-    course.add(32, 8 * std::pow(2, -0.75));  // beside 16, not 20
+    course.add(32, 8 * std::pow(2, -0.75));  // beside 16
     CHECK(course.exponent() == doctest::Approx(0.75).epsilon(1e-12));
     course.add(64, 8 * std::pow(2, -0.75) / std::pow(2, 0.6));  // beside 32, not 16
     CHECK(course.exponent() == doctest::Approx(0.6).epsilon(1e-12));
@@ -231,27 +278,74 @@ TEST_CASE(
     CHECK(is_small_enough(spotted, 0.0101));
 }
 
-TEST_CASE("looks are a lattice: whole periods, about a 32nd apart, wherever one asks from") {
+TEST_CASE("checks are a lattice: whole periods, about a 32nd apart, wherever one asks from") {
     struct Lattice {
         uint64_t first, period;
     };
-    for (const auto& [first, period] :
+    for (const Lattice& lattice :
          {Lattice{16, 1}, Lattice{18, 6}, Lattice{256, 256}, Lattice{25, 25}, Lattice{1, 1}}) {
+        const uint64_t first = lattice.first, period = lattice.period;
         CAPTURE(first);
-        std::vector<uint64_t> looks = {first};
-        while (looks.back() < 200000) looks.push_back(next_look(looks.back(), first, period));
-        for (uint64_t n = 0; n < first; ++n) CHECK(next_look(n, first, period) == first);
-        for (size_t k = 1; k < looks.size(); ++k) {
-            const uint64_t step = looks[k] - looks[k - 1], part = looks[k - 1] / 32;
+        std::vector<uint64_t> checks = {first};
+        while (checks.back() < 200000) checks.push_back(next_check(checks.back(), first, period));
+        for (uint64_t n = 0; n < first; ++n) CHECK(next_check(n, first, period) == first);
+        for (size_t k = 1; k < checks.size(); ++k) {
+            const uint64_t step = checks[k] - checks[k - 1], part = checks[k - 1] / 32;
             CHECK(step > 0);
             CHECK(step % period == 0);
             CHECK(step > part);  // seldom enough
             CHECK(step <= part + period);
             // From anywhere between two of them: the one ahead.
-            for (uint64_t n : {looks[k - 1], looks[k - 1] + step / 2, looks[k] - 1})
-                CHECK(next_look(n, first, period) == looks[k]);
+            for (uint64_t n : {checks[k - 1], checks[k - 1] + step / 2, checks[k] - 1})
+                CHECK(next_check(n, first, period) == checks[k]);
         }
     }
-    CHECK(next_look(16, 16, 1) == 17);
-    CHECK(next_look(64, 16, 1) == 67);
+    CHECK(next_check(16, 16, 1) == 17);
+    CHECK(next_check(64, 16, 1) == 67);
+}
+
+TEST_CASE("checks look at whole films when they are due, and tell what they expect") {
+    const Radiance one = [](const PixelSample&, uint64_t&) { return rgb{1, 1, 1}; };
+    const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
+        return rgb{u.x, u.x, u.x};
+    });
+    const Size size{12, 9};
+    // A pilot, which has no error, goes on; then the first check is at 8, in whole grids.
+    Film film = make_film(size, 0);
+    fill(film, 8, one);
+    ErrorChecks checks(0.1, 1);
+    CHECK(checks.next(film) == UINT64_MAX);
+    choose_sets(film, INFINITY);
+    CHECK(checks.next(film) == 8);
+    CHECK(ErrorChecks(0.1, 6).next(film) == 12);
+    fill(film, 7, one);
+    CHECK(checks.next(film) == 8);  // no check, though the error is 0
+    CHECK(!checks.is_enough());
+    // A film that was interrupted is completed first.
+    fill_blocks(film, 0, 1, 9, one);
+    fill_blocks(film, 1, film.taken.size(), 8, one);
+    CHECK(checks.next(film) == 9);
+    CHECK(!checks.is_enough());
+    fill(film, 9, one);
+    CHECK(checks.next(film) == 9);
+    CHECK(checks.is_enough());
+    // One that is still too much: as the square of what it should fall by.
+    Film rough = make_film(size, 2);
+    fill(rough, 8, noisy);
+    const double d = error_of(rough).d_rel();
+    ErrorChecks strict(d / 5, 1), none(0, 1);
+    CHECK(strict.next(rough) == 9);
+    CHECK(!strict.is_enough());
+    CHECK(strict.expected() == doctest::Approx(8 * 25));
+    // Of a black film it is not known.
+    Film black = make_film(size, 2);
+    fill(black, 8, [](const PixelSample&, uint64_t&) { return rgb{}; });
+    ErrorChecks dark(0.1, 1);
+    CHECK(dark.next(black) == 9);
+    CHECK(dark.expected() == HUGE_VAL);
+    // Without an error that is asked for only its course is looked at.
+    CHECK(none.next(rough) == UINT64_MAX);
+    CHECK(none.expected() == HUGE_VAL);
+    CHECK(!none.course().is_due(15));
+    CHECK(none.course().is_due(16));
 }

@@ -2,16 +2,34 @@
 #pragma once
 #include "film/film.h"
 
-// n more samples for blocks from `first` on, up to `last`: L(x, y, i, set).
-template <class Pixel, class L>
-void add_blocks(Film<Pixel>& film, size_t first, size_t last, uint64_t n, L sample) {
-    for (size_t b = first; b < last; ++b) film.add_block(b, n, sample);
+// Brings the blocks from `first` on, up to `last`, to n samples.
+inline NonFinite fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
+    const std::vector<size_t> at = offsets(f);
+    NonFinite bad;
+    uint64_t rays = 0;
+    for (size_t b = first; b < last; ++b) bad.add(add_samples(f, b, at[b], n, L, rays));
+    return bad;
+}
+inline NonFinite fill(Film& f, uint64_t n, const Radiance& L) {
+    return fill_blocks(f, 0, f.taken.size(), n, L);
 }
 
-// n more samples for every pixel of a film.
-template <class Pixel, class L>
-void whole_pass(Film<Pixel>& film, uint64_t n, L sample) {
-    film.begin_pass(n);
-    add_blocks(film, 0, film.blocks(), n, sample);
-    film.end_pass(n);
+// A film of n samples a replication; 0 sets: chosen.
+inline Film filled(Size size, uint32_t sets, uint64_t n, const Radiance& L) {
+    Film f = make_film(size, sets);
+    if (sets == 0) {
+        fill(f, std::min(n, pilot_samples), L);
+        choose_sets(f, INFINITY);
+    }
+    fill(f, n, L);
+    return f;
+}
+
+// A radiance from the numbers of an independent sample.
+inline Radiance random_radiance(uint64_t seed, std::function<rgb(const PixelSample&, vec2)> value) {
+    return [=](const PixelSample& s, uint64_t&) {
+        const uint64_t pixel = hash(uint64_t(s.y), uint64_t(s.x)),
+                       bits = hash(hash(hash(seed, pixel), s.set), s.i);
+        return value(s, {to_unit(bits), to_unit(mix(bits))});
+    };
 }

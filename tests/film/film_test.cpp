@@ -1,9 +1,7 @@
-// film/film_test.cpp  sums, variances and counts of samples
+// film/film_test.cpp  sums of samples, what they tell of a pixel, and where it has more of them
 #include "film/film.h"
 
-#include <bit>
 #include <map>
-#include <memory>
 
 #include "base/moments.h"
 #include "base/rng.h"
@@ -12,404 +10,429 @@
 
 namespace {
 
-using Pixel = std::array<float, 3>;
-using MeanFilm = Film<MeanPixel>;
+using Colour = std::array<float, 3>;
 
-}  // namespace
+// A number for every sample, whose sum depends on the order of addition.
+const Radiance numbered = [](const PixelSample& s, uint64_t& rays) {
+    rays += 1 + s.i;
+    const uint64_t bits = hash(hash(hash(uint64_t(s.y), uint64_t(s.x)), s.set), s.i);
+    const real v = std::ldexp(to_unit(bits), int(s.i * 37 % 60) - 30);
+    return rgb{v, real(s.i), real(s.set)};
+};
 
-TEST_CASE("a film is the mean of its samples, however passes divide them") {
-    // Values whose sum depends on the order of addition.
-    auto L = [](int x, int y, uint64_t i) {
-        const real v = std::ldexp(real(1 + x + 3 * y) / 7, int(i * 37 % 60) - 30);
-        return rgb{i % 2 ? -v : v, real(i), 1};
+// One to four replications of a pixel, in turn.
+Film film_of_kinds(Size size) {
+    Film f = make_film(size, 1);
+    size_t all = 0;
+    for (size_t i = 0; i < f.pixels(); ++i) all += f.sets[i] = uint16_t(1 + i % 4);
+    f.sum.assign(all, Sum{});
+    return f;
+}
+
+// All that a film holds, to the bit.
+bool same(const Film& a, const Film& b) {
+    auto equal = [](const auto& x, const auto& y) {
+        return x.size() == y.size() &&
+               (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);
     };
-    auto film_of = [&](const std::vector<uint64_t>& passes) {
-        MeanFilm film({3, 2});
-        for (uint64_t n : passes) {
-            film.begin_pass(n);
-            for (size_t b = film.blocks(); b-- > 0;)
-                film.add_block(b, n,
-                               [&](int x, int y, uint64_t i, uint32_t) { return L(x, y, i); });
-            film.end_pass(n);
-        }
-        CHECK(film.samples() == 12);
-        CHECK(film.non_finite() == 0);
-        return film.take_image();
-    };
-    const Image whole = film_of({12});
-    double sum = 0;
-    for (uint64_t i = 0; i < 12; ++i) sum += double(L(2, 1, i).x);
-    CHECK(whole.at(2, 1) == Pixel{float(sum / 12), 5.5f, 1});
-    for (const auto& passes : {std::vector<uint64_t>(12, 1), {1, 2, 4, 5}, {5, 5, 2}, {11, 1}})
-        CHECK(film_of(passes).pixels == whole.pixels);
+    return a.pilot == b.pilot && a.sets == b.sets && equal(a.sum, b.sum) && a.taken == b.taken &&
+           equal(a.spread, b.spread);
 }
 
-TEST_CASE("a pass that is not complete leaves no trace in the image") {
-    MeanFilm film({2, 2});
-    auto grey = [](real value) {
-        return [=](int, int, uint64_t, uint32_t) { return rgb{value, value, value}; };
-    };
-    REQUIRE(film.blocks() == 4);
-    film.begin_pass(2);
-    add_blocks(film, 0, 2, 2, grey(3));
-    CHECK(film.samples() == 0);
-    for (const Pixel& pixel : film.image().pixels) CHECK(std::isnan(pixel[0]));
-    add_blocks(film, 2, 4, 2, grey(3));
-    film.end_pass(2);
-    film.begin_pass(2);
-    add_blocks(film, 0, 2, 2, grey(100));
-    CHECK(film.samples() == 2);
-    for (const Pixel& pixel : film.image().pixels) CHECK(pixel == Pixel{3, 3, 3});
-}
-
-TEST_CASE("a pixel that nobody wrote is no number in the image, even if the pass is ended") {
-    MeanFilm film({2, 2});
-    for (int pass = 0; pass < 2; ++pass) {
-        film.begin_pass(1);
-        add_blocks(film, 0, 2, 1, [](int, int, uint64_t, uint32_t) { return rgb{1, 1, 1}; });
-        film.end_pass(1);
-        CHECK(film.image().at(0, 0) == Pixel{1, 1, 1});
-        CHECK(first_non_finite(film.image()) == "0,1");
-    }
-}
-
-TEST_CASE("a block takes no more samples once the run is interrupted") {
-    MeanFilm film({1024, 2});
-    REQUIRE(film.blocks() == 256);  // of eight pixels
-    int samples = 0;
-    film.begin_pass(100);
-    film.add_block(0, 100, [&](int x, int, uint64_t i, uint32_t) {
-        interrupted = x == 2 && i == 7;
-        ++samples;
-        return rgb{};
-    });
-    interrupted = 0;
-    CHECK(samples == 208);
-}
-
-TEST_CASE("samples that no file can hold are counted, and the first by sample, row, column told") {
-    const real nan = std::numeric_limits<real>::quiet_NaN();
-    const std::map<std::array<int, 3>, rgb> bad = {{{7, 0, 0}, {nan, 1, 1}},  // sample, y, x
-                                                   {{4, 2, 1}, {1, nan, 1}},
-                                                   {{4, 1, 2}, {1, 1, -infinity}},
-                                                   {{5, 1, 0}, {infinity, 1, nan}}};
-    for (bool downwards : {false, true}) {
-        MeanFilm film({3, 3});
-        whole_pass(film, 0, [](int, int, uint64_t, uint32_t) { return rgb{}; });
-        CHECK(film.non_finite() == 0);
-        film.begin_pass(8);
-        for (size_t k = 0; k < film.blocks(); ++k)
-            film.add_block(downwards ? film.blocks() - 1 - k : k, 8,
-                           [&](int x, int y, uint64_t i, uint32_t) {
-                               auto found = bad.find({int(i), y, x});
-                               return found == bad.end() ? rgb{1, 1, 1} : found->second;
-                           });
-        CHECK(film.non_finite() == 4);
-        CHECK(film.first_non_finite().sample == 4);
-        CHECK(film.first_non_finite().y == 1);
-        CHECK(film.first_non_finite().x == 2);
-    }
-    MeanFilm film({1, 1});  // finite, but the file's numbers are float
-    film.add_block(0, 1, [](int, int, uint64_t, uint32_t) {
-        return rgb{1, real(1e30) * real(1e10), 1};
-    });
-    CHECK(film.non_finite() == 1);
-}
-
-TEST_CASE("a film adds up in double: 2^24 ones and more, beside numbers of 1e-9") {
-    MeanFilm film({1, 1});
-    whole_pass(film, 1000, [](int, int, uint64_t i, uint32_t) {
-        const real tiny = i % 2 ? real(1e-9) : 0;
-        return rgb{i < 2 ? real(1 << 24) : 1, i < 2 ? 1 : tiny, 0};
-    });
-    CHECK(film.image().at(0, 0)[0] == float((2.0 * (1 << 24) + 998) / 1000));
-    CHECK(film.image().at(0, 0)[1] == float((2 + 499e-9) / 1000));
-}
-
-// ---- Noise --------------------------------------------------------------------------------------
-
-TEST_CASE("noise of few numbers, by hand") {
-    // 1, 5, 3: mean 3, squared distances 8, twice as far in green.
-    const auto noise = [](uint64_t n) {
-        MeanFilm film({1, 1});
-        whole_pass(film, n, [](int, int, uint64_t i, uint32_t) {
-            const real x = real(i == 0 ? 1 : i == 1 ? 5 : 3);
-            return rgb{x, 2 * x, 0};
-        });
-        return film.noise();
-    };
-    CHECK(noise(1) == std::vector<double>{0});
-    CHECK(noise(2) == std::vector<double>{5 * 8.0 / 1 / 2});
-    CHECK(noise(3)[0] == doctest::Approx(5 * 8.0 / 2 / 3).epsilon(1e-15).scale(0));
-}
-
-TEST_CASE("noise is the variance of the mean of independent samples, all channels together") {
-    // Pixel values u^2: variance of one sample 1/5 - 1/9 = 4/45, the same far from zero.
-    MeanFilm film({400, 250});
-    const uint64_t n = 7;  // uneven, in passes of 1, 2, 4
-    for (uint64_t pass : {1, 2, 4})
-        whole_pass(film, pass, [&](int x, int y, uint64_t i, uint32_t) {
-            const real u = to_unit(hash(hash(uint64_t(y), uint64_t(x)), i));
-            return rgb{u * u, 1000 + u * u, 0};
-        });
-    CHECK(film.samples() == n);
-    Moments m;
-    for (double v : film.noise()) m.add(v);
-    EXPECT(oracle::expect_mean(2 * 4 / 45.0 / double(n), estimate(m, double(ulp))), 0.05);
-    // No cancellation far from zero, no noise where there is none.
-    auto noise_of = [](auto value) {
-        MeanFilm one({1, 1});
-        whole_pass(one, 7, [&](int, int, uint64_t i, uint32_t) { return value(to_unit(mix(i))); });
-        return one.noise()[0];
-    };
-    const double near = noise_of([](real u) {
-        return rgb{u * u, 0, 0};
-    }),
-                 far = noise_of([](real u) {
-                     return rgb{0, 1000 + u * u, 0};
-                 });
-    const double offset_error = sizeof(real) == 4 ? 0.02 : 1e-6;
-    CHECK(std::abs(far / near - 1) < offset_error);
-    CHECK(noise_of([](real) { return rgb{1, 2, 3}; }) == 0);
-}
-
-// ---- Sets of samples ----------------------------------------------------------------------------
-
-namespace {
-
-// A number for every sample of every set.
-rgb numbered(int x, int y, uint64_t i, uint32_t set) {
-    const uint64_t bits = hash(hash(hash(uint64_t(y), uint64_t(x)), set), i);
-    return {to_unit(bits), to_unit(mix(bits)), real(set)};
-}
-
-void add(MeanFilm& film, uint64_t n) { whole_pass(film, n, numbered); }
-
-const std::vector<Sets> of_four_pixels = {{1, 0}, {3, 0}, {1, 0.25}, {2, 0}};
-
-std::vector<Sets> of_all_kinds(size_t pixels) {
-    std::vector<Sets> sets(pixels);
-    for (size_t i = 0; i < pixels; ++i) sets[i] = of_four_pixels[i % 4];
-    return sets;
+// Its middle is 1000 in one sample of 50, else 0; its neighbours 30 in one of 4; others up to 35.
+rgb rare_light(const PixelSample& s, vec2 u) {
+    real v = 35 * u.x;
+    if (std::abs(s.x - 4) < 2 && std::abs(s.y - 4) < 2) v = u.x < real(0.25) ? 30 : 0;
+    if (s.x == 4 && s.y == 4) v = u.x < real(0.02) ? 1000 : 0;
+    return {v, v, v};
 }
 
 }  // namespace
 
-TEST_CASE("a pixel is the mean of its sets that are shown, whenever they were added") {
-    // Blocks of one pixel, and of six.
-    for (const auto& [size, before] : std::initializer_list<std::pair<Size, uint64_t>>{
-             {{2, 2}, 0}, {{2, 2}, 1}, {{2, 2}, 4}, {{2, 2}, 9}, {{1600, 1}, 0}, {{1600, 1}, 2}}) {
-        MeanFilm film(size);
-        const size_t pixels = film.number_of_pixels(), width = size_t(size.width);
-        if (before > 0) add(film, before);
-        CHECK(!film.has_sets());
-        CHECK(film.sets_per_pixel() == 1);
-        film.add_sets(of_all_kinds(pixels));
-        CHECK(film.has_sets());
-        CHECK(film.sets_per_pixel() == (before > 0 ? 1 : 2));  // until the others have caught up
-        for (uint64_t n : {0, 2, 1}) add(film, n);
-        CHECK(film.sets_per_pixel() == 2);  // (1 + 3 + 2 + 2) / 4
-        const uint64_t n = before + 3;
-        CHECK(film.samples() == n);
-        const Image& image = film.image();
-        for (size_t i = 0; i < pixels; ++i) {
-            const uint32_t shown = of_four_pixels[i % 4].shown;
-            CHECK(film.sets(i).count() == std::vector<uint32_t>{1, 3, 2, 2}[i % 4]);
-            double sum = 0;
-            for (uint32_t set = 0; set < film.sets(i).count(); ++set) {
-                double of_set = 0;
-                for (uint64_t k = 0; k < n; ++k)
-                    of_set += double(numbered(int(i % width), int(i / width), k, set).x);
-                CHECK(film.pixel(i, set).sum[0] == of_set);
-                if (set < shown) sum += of_set / double(n);
-            }
-            CHECK(image.pixels[i][0] == float(sum / shown));
-            CHECK(image.pixels[i][2] == float(shown - 1) / 2);
-        }
-    }
-}
-
-TEST_CASE("until the others have caught up, a pixel is its first set") {
-    MeanFilm film({2, 2});
-    add(film, 5);
-    const Image one = film.image();
-    film.add_sets(of_four_pixels);
-    CHECK(!film.others_are_complete());
-    CHECK(film.image().pixels == one.pixels);
-    film.begin_pass(0);
-    add_blocks(film, 0, 2, 0, numbered);  // and no more
-    CHECK(film.image().pixels == one.pixels);
-    add(film, 0);
-    CHECK(film.others_are_complete());
-    CHECK(film.image().pixels != one.pixels);
-    CHECK(film.image().pixels[0] == one.pixels[0]);
-}
-
-TEST_CASE("one set each is the film without sets, bit for bit") {
-    MeanFilm plain({2, 2}), one({2, 2});
-    one.add_sets(std::vector<Sets>(4, {1, 0}));
-    for (MeanFilm* film : {&plain, &one})
-        for (uint64_t n : {1, 6, 4}) add(*film, n);
-    CHECK(one.image().pixels == plain.image().pixels);
-    CHECK(one.terms().norm2 == plain.terms().norm2);
-}
-
-TEST_CASE("of samples that do not fit the first by sample, then by set is told, with its set") {
-    MeanFilm film({2, 1});
-    film.add_sets({{3, 0}, {3, 0}});
-    add_blocks(film, 0, 2, 4, [](int x, int, uint64_t i, uint32_t set) {
-        const bool bad = i == 2 ? set > 0 && x == 2 - int(set) : i == 3 && set == 0;
-        return rgb{bad ? real(NAN) : 1, 1, 1};
-    });
-    CHECK(film.non_finite() == 4);
-    CHECK(film.first_non_finite().sample == 2);
-    CHECK(film.first_non_finite().set == 1);
-    CHECK(film.first_non_finite().x == 1);
-}
-
-// ---- Blocks, and passes that are cut short ------------------------------------------------------
-
-TEST_CASE("a film keeps 24 bytes of a set of samples, and 8 of how many there are") {
-    CHECK(sizeof(MeanPixel) == 24);
-    CHECK(sizeof(Sets) == 8);
-}
+// ---- Samples ------------------------------------------------------------------------------------
 
 TEST_CASE("blocks are all pixels, each once; a row and a small picture have work for all threads") {
     for (Size size : {Size{1, 1}, Size{16384, 1}, Size{33, 17}, Size{2048, 1024}, Size{1, 509}}) {
-        const Blocks blocks{size_t(size.width) * size_t(size.height)};
-        CAPTURE(blocks.pixels);
+        const Film f = make_film(size, 1);
+        CAPTURE(f.pixels());
         size_t next = 0;
-        for (size_t b = 0; b < blocks.count(); ++b) {
-            CHECK(blocks.begin(b) == next);
-            CHECK(blocks.end(b) > next);
-            CHECK(blocks.end(b) - next <= 256);
-            next = blocks.end(b);
+        for (size_t b = 0; b < f.taken.size(); ++b) {
+            CHECK(f.begin(b) == next);
+            CHECK(f.end(b) > next);
+            CHECK(f.end(b) - next <= 256);
+            next = f.end(b);
         }
-        CHECK(next == blocks.pixels);
-        CHECK(blocks.count() >= std::min<size_t>(blocks.pixels, 256));
+        CHECK(next == f.pixels());
+        CHECK(f.taken.size() >= std::min<size_t>(f.pixels(), 256));
     }
 }
 
-TEST_CASE("a pass takes each sample of each pixel once") {
+TEST_CASE("a pass takes each sample of each replication once, in order, of its own rows") {
     for (Size size : {Size{1, 1}, Size{2000, 1}, Size{33, 17}, Size{1, 509}}) {
-        MeanFilm film(size);
-        std::vector<int> taken(film.number_of_pixels());
+        Film f = film_of_kinds(size);
+        f.first_row = 100;
+        std::map<std::array<int, 3>, uint64_t> taken;  // y, x, set
         uint64_t out_of_order = 0;
-        for (uint64_t n : {2, 3})
-            whole_pass(film, n, [&](int x, int y, uint64_t i, uint32_t set) {
-                int& of_pixel = taken[size_t(y) * size_t(size.width) + size_t(x)];
-                out_of_order += i != uint64_t(of_pixel) || set != 0;
-                ++of_pixel;
-                return rgb{1, 1, 1};
-            });
-        CHECK(taken == std::vector<int>(taken.size(), 5));
+        const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+            out_of_order += s.i != taken[{s.y, s.x, int(s.set)}]++;
+            ++rays;
+            return rgb{1, 1, 1};
+        };
+        for (uint64_t n : {2, 5}) fill(f, n, L);
         CHECK(out_of_order == 0);
-    }
-}
-
-namespace {
-
-// All that a film tells, to the bit.
-std::vector<uint64_t> told(MeanFilm& film) {
-    std::vector<uint64_t> bits = {film.samples(), film.others_are_complete()};
-    for (const Pixel& pixel : film.image().pixels)
-        for (float channel : pixel) bits.push_back(std::bit_cast<uint32_t>(channel));
-    const ErrorTerms t = film.terms();
-    for (double x : {t.sum[0], t.sum[1], t.sum[2], t.norm2, t.square[0], t.square[1], t.square[2],
-                     t.terms2, t.greatest, film.sets_per_pixel()})
-        bits.push_back(std::bit_cast<uint64_t>(x));
-    bits.insert(bits.end(), {t.pixels, t.measured});
-    return bits;
-}
-
-// How a pass may be cut short, in the middle of a pixel.
-enum class Cut { by_signal, by_leaving, by_failure };
-
-void cut_short(MeanFilm& film, uint64_t n, size_t blocks, Cut cut) {
-    film.begin_pass(n);
-    add_blocks(film, 0, blocks, n, numbered);
-    uint64_t taken = 0;
-    auto stopped = [&](int x, int y, uint64_t i, uint32_t set) {
-        if (++taken == 8) {
-            if (cut == Cut::by_failure) throw std::bad_alloc();
-            interrupted = SIGINT;
-            if (cut == Cut::by_leaving) throw Interrupted();
+        CHECK(taken.size() == f.sum.size());
+        CHECK(f.total() == 5 * double(f.sum.size()));
+        size_t wrong = 0;
+        for (const auto& [at, n] : taken) {
+            const size_t i = size_t(at[0] - 100) * size_t(size.width) + size_t(at[1]);
+            wrong += n != 5 || i >= f.pixels() || uint32_t(at[2]) >= f.sets_of(i);
         }
-        return numbered(x, y, i, set);
-    };
-    try {
-        film.add_block(blocks, n, stopped);
-    } catch (const Interrupted&) {
-        CHECK(cut == Cut::by_leaving);
-    } catch (const std::bad_alloc&) {
-        CHECK(cut == Cut::by_failure);
+        CHECK(wrong == 0);
     }
-    interrupted = 0;
-    REQUIRE(taken == 8);
 }
 
-// A film that goes on from what a file holds of another one.
-std::unique_ptr<MeanFilm> gone_on(const MeanFilm& film, Shows shows) {
-    FilmState<MeanPixel> state = film.state();
-    state.others_of = {};
-    if (!film.unfinished_pass()) state.image = {}, state.terms.assign(film.blocks(), {});
-    auto next = std::make_unique<MeanFilm>(film.size, MeanPixel::Value{}, shows);
-    next->restore([&] { return state; });
-    return next;
-}
-
-}  // namespace
-
-TEST_CASE("a pass that is cut short leaves image and error as they were; begun anew it goes on") {
-    // Blocks of four pixels, the last of one.
-    const Size size{1025, 1};
-    struct Course {
-        std::vector<uint64_t> before;  // passes, up to the sets if there are any
-        int sets;                      // -1: none; 0: none of their samples; 1: a pass of them
-        uint64_t n;                    // of the pass that is cut short
-    };
-    const std::vector<Course> courses = {{{}, -1, 4},    {{}, 0, 4},     {{2, 3}, -1, 4},
-                                         {{2, 3}, 0, 0}, {{2, 3}, 0, 2}, {{2, 3}, 1, 4}};
-    for (Shows shows : {Shows::values, Shows::variances})
-        for (const Course& course : courses)
-            for (Cut cut : {Cut::by_signal, Cut::by_leaving, Cut::by_failure}) {
-                INFO("passes ", course.before.size(), ", sets ", course.sets, ", samples ",
-                     course.n, ", cut ", int(cut));
-                MeanFilm film(size, {}, shows), whole(size, {}, shows);
-                for (MeanFilm* f : {&film, &whole}) {
-                    REQUIRE(f->blocks() == 257);
-                    for (uint64_t n : course.before) add(*f, n);
-                    if (course.sets >= 0) f->add_sets(of_all_kinds(1025));
-                    if (course.sets > 0) add(*f, 1);
-                }
-                CHECK(!film.unfinished_pass());
-                // Of the other film: nobody has seen this one's image yet.
-                const std::vector<uint64_t> before = told(whole);
-                CHECK(told(*gone_on(film, shows)) == before);
-                cut_short(film, course.n, 100, cut);
-                CHECK(told(film) == before);
-                CHECK(film.unfinished_pass() == course.n);
-                cut_short(film, course.n, 200, cut);  // and once more
-                CHECK(told(film) == before);
-                const std::unique_ptr<MeanFilm> next = gone_on(film, shows);
-                CHECK(told(*next) == before);
-                // What blocks have they do not take again.
-                for (MeanFilm* f : {&film, next.get()}) {
-                    f->begin_pass(course.n);
-                    add_blocks(*f, 0, 200, course.n, [](int, int, uint64_t, uint32_t) {
-                        FAIL_CHECK("a sample that the film had");
-                        return rgb{};
-                    });
-                    add_blocks(*f, 200, 257, course.n, numbered);
-                    f->end_pass(course.n);
-                    CHECK(!f->unfinished_pass());
-                }
-                add(whole, course.n);
-                CHECK(told(film) == told(whole));
-                CHECK(told(*next) == told(whole));
-                CHECK(told(film) != before);
-                for (MeanFilm* f : {&film, next.get(), &whole}) add(*f, 3);
-                CHECK(told(film) == told(whole));
-                CHECK(told(*next) == told(whole));
+TEST_CASE("a pixel is the mean of its replications, however passes divide the samples") {
+    for (Size size : {Size{2, 2}, Size{1600, 1}}) {  // blocks of one pixel, and of six
+        Film whole = film_of_kinds(size);
+        fill(whole, 12, numbered);
+        CHECK(whole.sets_per_pixel() == 2.5);
+        const Image image = image_of(whole);
+        size_t at = 0, wrong = 0;
+        uint64_t rays = 0;
+        for (size_t i = 0; i < whole.pixels(); ++i) {
+            double value = 0;
+            const int x = int(i) % size.width, y = int(i) / size.width;
+            for (uint32_t set = 0; set < whole.sets[i]; ++set) {
+                double sum = 0;
+                for (uint64_t k = 0; k < 12; ++k) sum += double(numbered({x, y, k, set}, rays).x);
+                wrong += whole.sum[at++].L[0] != sum;
+                value += sum / 12;
             }
+            const double K = whole.sets[i];
+            wrong += image.pixels[i] != Colour{float(value / K), 5.5f, float((K - 1) / 2)};
+        }
+        CHECK(wrong == 0);
+        for (const auto& passes : {std::vector<uint64_t>{1, 2, 3, 4, 5, 6, 12},
+                                   {1, 3, 7, 12},
+                                   {5, 5, 4, 12},
+                                   {11, 12}}) {
+            Film f = film_of_kinds(size);
+            for (uint64_t n : passes) {
+                f.least_taken() % 2 ? void(fill(f, n, numbered)) : [&] {
+                    for (size_t b = f.taken.size(); b-- > 0;) fill_blocks(f, b, b + 1, n, numbered);
+                }();
+            }
+            CHECK(same(f, whole));
+        }
+    }
+}
+
+TEST_CASE("a film adds up in double: 2^24 ones and more, beside numbers of 1e-9") {
+    const Film f = filled({1, 1}, 1, 1000, [](const PixelSample& s, uint64_t&) {
+        const real tiny = s.i % 2 ? real(1e-9) : 0;
+        return rgb{s.i < 2 ? real(1 << 24) : 1, s.i < 2 ? 1 : tiny, 0};
+    });
+    CHECK(image_of(f).at(0, 0)[0] == float((2.0 * (1 << 24) + 998) / 1000));
+    CHECK(image_of(f).at(0, 0)[1] == float((2 + 499e-9) / 1000));
+}
+
+TEST_CASE("samples that no file can hold are counted, and the first of them told") {
+    const real nan = std::numeric_limits<real>::quiet_NaN();
+    // By sample, replication, row, column.
+    const std::map<std::array<int, 4>, rgb> bad = {{{7, 0, 0, 0}, {nan, 1, 1}},
+                                                   {{4, 1, 2, 1}, {1, nan, 1}},
+                                                   {{4, 1, 1, 2}, {1, 1, -infinity}},
+                                                   {{4, 2, 0, 0}, {infinity, 1, 1}},
+                                                   {{5, 0, 1, 0}, {1, nan, 1}}};
+    const Radiance L = [&](const PixelSample& s, uint64_t&) {
+        const auto found = bad.find({int(s.i), int(s.set), s.y, s.x});
+        return found == bad.end() ? rgb{1, 1, 1} : found->second;
+    };
+    for (bool upwards : {false, true}) {
+        Film f = make_film({3, 3}, 3);
+        CHECK(fill(f, 4, L).count == 0);
+        NonFinite all;
+        for (size_t k = 0; k < 9; ++k) {
+            const size_t b = upwards ? 8 - k : k;
+            const NonFinite of_block = fill_blocks(f, b, b + 1, 8, L);
+            CHECK(of_block.count == (b == 0 ? 2 : b == 3 || b == 5 || b == 7 ? 1 : 0));
+            all.add(of_block);
+        }
+        CHECK(all.count == 5);
+        CHECK(all.first.i == 4);
+        CHECK(all.first.set == 1);
+        CHECK(all.first.y == 1);
+        CHECK(all.first.x == 2);
+    }
+    for (rgb v : {rgb{1, real(1e30) * real(1e10), 1}, rgb{1, 1, nan}, rgb{-infinity, 1, 1}})
+        CHECK(!fits_float(v));  // the first is finite, but files hold float
+    CHECK(fits_float({-1, 0, real(3e38)}));
+}
+
+TEST_CASE("blocks commit whole: one whose function throws stays as it was, and is taken up again") {
+    struct Failure {};
+    const Size size{1025, 1};  // blocks of four pixels, the last of one
+    for (bool chosen : {false, true}) {
+        Film f = chosen ? filled(size, 0, 0, numbered) : make_film(size, 0);
+        fill(f, 3, numbered);
+        REQUIRE(f.taken.size() == 257);
+        const Film before = f;
+        for (uint64_t at = 1; at <= 5; ++at) {
+            uint64_t calls = 0;
+            const Radiance stopped = [&](const PixelSample& s, uint64_t& rays) {
+                if (++calls == 2 * at) throw Failure();
+                return numbered(s, rays);
+            };
+            CHECK_THROWS_AS(fill_blocks(f, 100, 101, 9, stopped), Failure);
+            CHECK(same(f, before));
+        }
+        fill_blocks(f, 0, 100, 9, numbered);
+        CHECK(f.least_taken() == 3);
+        CHECK(f.most_taken() == 9);
+        const Film some = f;
+        CHECK_THROWS_AS(fill_blocks(f, 100, 101, 9,
+                                    [](const PixelSample&, uint64_t&) -> rgb { throw Failure(); }),
+                        Failure);
+        CHECK(same(f, some));
+        // Each pixel is the mean of its own samples.
+        size_t wrong = 0;
+        const Image image = image_of(f);
+        for (size_t i = 0; i < 1025; ++i) wrong += image.pixels[i][1] != (i < 400 ? 4 : 1);
+        CHECK(wrong == 0);
+        fill(f, 9, numbered);
+        Film whole = before;
+        fill(whole, 9, numbered);
+        CHECK(same(f, whole));
+    }
+}
+
+// ---- What replications tell ---------------------------------------------------------------------
+
+TEST_CASE("a pixel without samples is no number; one replication has no variance") {
+    Film f = make_film({2, 2}, 3);
+    fill_blocks(f, 0, 2, 1, numbered);
+    CHECK(first_non_finite(image_of(f)) == "0,1");
+    for_each_pixel(f, [](size_t i, const Pixel& p) {
+        CHECK(p.count() == (i < 2 ? 3 : 0));
+        CHECK(std::isnan(p.value(0)) == (i >= 2));
+        CHECK(std::isnan(p.variance(0)) == (i >= 2));
+    });
+    f = filled({1, 1}, 1, 7, numbered);
+    for_each_pixel(f, [](size_t, const Pixel& p) {
+        CHECK(p.count() == 1);
+        CHECK(p.value(1) == 3);
+        CHECK(std::isnan(p.variance(1)));
+    });
+    for (Size size : {Size{1, 1}, Size{5, 1}, Size{1, 5}}) {
+        f = filled(size, 0, 20, numbered);
+        CHECK(first_non_finite(image_of(f)) == std::nullopt);
+        for_each_pixel(f, [](size_t, const Pixel& p) {
+            CHECK(p.value(1) == 9.5);
+            CHECK(std::isfinite(p.variance(0)));
+        });
+    }
+}
+
+TEST_CASE(
+    "value and variance of a pixel are unbiased if its replications differ in samples: exact") {
+    // Over all outcomes of tosses of a coin, each sample 0 or 1.
+    for (const auto& row :
+         std::initializer_list<std::pair<uint64_t, uint64_t>>{{1, 1}, {3, 1}, {2, 2}, {4, 2}})
+        for (uint64_t K : {2, 3, 4}) {
+            const uint64_t first = row.first, others = row.second;
+            const uint64_t tosses = first + (K - 1) * others;
+            double value = 0, square = 0, variance = 0;
+            for (uint64_t outcome = 0; outcome < uint64_t(1) << tosses; ++outcome) {
+                std::vector<Sum> sums(K);
+                for (uint64_t t = 0; t < tosses; ++t)
+                    sums[t < first ? 0 : 1 + (t - first) / others].L[0] += double(outcome >> t & 1);
+                const Pixel p{sums, first, others};
+                value += p.value(0), square += p.value(0) * p.value(0), variance += p.variance(0);
+            }
+            const double n = std::ldexp(1, int(tosses));
+            CAPTURE(first);
+            CAPTURE(K);
+            CHECK(value / n == doctest::Approx(0.5).epsilon(1e-13));
+            CHECK(variance / n == doctest::Approx(square / n - 0.25).epsilon(1e-13));
+            CHECK(square / n - 0.25 ==
+                  doctest::Approx((0.25 / double(first) + double(K - 1) * 0.25 / double(others)) /
+                                  double(K * K)));
+        }
+}
+
+TEST_CASE("until the others have samples a pixel is its pilot; then they are means beside it") {
+    Film f = make_film({1, 1}, 0);
+    fill(f, 16, numbered);
+    CHECK(image_of(f).at(0, 0)[1] == 7.5f);
+    choose_sets(f, INFINITY);
+    CHECK(f.pilot == 16);
+    CHECK(f.least_taken() == 0);
+    CHECK(f.sets == std::vector<uint16_t>{2});
+    CHECK(image_of(f).at(0, 0)[1] == 7.5f);
+    CHECK(f.total() == 16);
+    CHECK(f.total(16) == 32);
+    CHECK(f.total(20) == 40);
+    fill(f, 2, numbered);
+    for_each_pixel(f, [](size_t, const Pixel& p) {
+        CHECK(p.count() == 2);
+        CHECK(p.first == 16);
+        CHECK(p.others == 2);
+    });
+    CHECK(image_of(f).at(0, 0) == Colour{image_of(f).at(0, 0)[0], (7.5f + 0.5f) / 2, 0.5f});
+    CHECK(f.total() == 18);
+    CHECK(f.total(2) == 18);
+    fill(f, 20, numbered);
+    CHECK(f.samples(0, 0) == 20);
+    CHECK(image_of(f).at(0, 0)[1] == 9.5f);
+    CHECK(f.total() == 40);
+}
+
+// ---- Replications where noise is ----------------------------------------------------------------
+
+TEST_CASE(
+    "the spread of a pilot is the root of squared distances to its mean, all channels together") {
+    // 1, 5, 3, 7: mean 4, 9 + 1 + 1 + 9, twice as far in green; the same far from 0.
+    for (real far : {0, 1024})
+        for (const auto& passes : {std::vector<uint64_t>{4}, {1, 2, 3, 4}, {2, 4}}) {
+            Film f = make_film({2, 1}, 0);
+            for (uint64_t n : passes)
+                fill(f, n, [far](const PixelSample& s, uint64_t&) {
+                    const real x = std::array<real, 4>{1, 5, 3, 7}[s.i] * real(1 + s.x);
+                    return rgb{far + x, 2 * x, 3};
+                });
+            CHECK(f.spread[0] == doctest::Approx(std::sqrt(5 * 20.0)).epsilon(1e-6));
+            CHECK(f.spread[1] == doctest::Approx(2 * std::sqrt(5 * 20.0)).epsilon(1e-6));
+        }
+    CHECK(make_film({3, 3}, 2).spread.empty());
+    CHECK(filled({3, 3}, 0, 16, numbered).spread.empty());
+}
+
+TEST_CASE(
+    "replications: 3.5 times the root of the noise around over the mean of the other colour") {
+    // By hand, from the definition, for pictures of all shapes.
+    Rng rng{seed_here()};
+    for (Size size :
+         {Size{1, 1}, Size{2, 1}, Size{1, 2}, Size{1, 40}, Size{40, 1}, Size{2, 2}, Size{9, 7}}) {
+        std::vector<float> noise(size_t(size.width * size.height));
+        for (float& v : noise) v = float(std::exp(4 * double(rng.uniform())));
+        const auto sets = sets_where_noise_is(noise, size);
+        for (int i = 0; i < int(noise.size()); ++i) {
+            Moments around, other;
+            for (int k = 0; k < int(noise.size()); ++k) {
+                const int dx = std::abs(k % size.width - i % size.width),
+                          dy = std::abs(k / size.width - i / size.width);
+                if (k != i && dx < 2 && dy < 2) around.add(std::pow(double(noise[size_t(k)]), 2));
+                if ((dx + dy) % 2 == 1) other.add(std::pow(double(noise[size_t(k)]), 2));
+            }
+            const double K = around.n ? 3.5 * std::sqrt(around.mean / other.mean) : 0;
+            CAPTURE(K);
+            CHECK(sets[size_t(i)] == std::clamp(std::floor(K + 0.5), 2.0, 32.0));
+        }
+    }
+    // All alike: 3.5, which is rounded up; nothing, or noise that cannot be told: two.
+    CHECK(sets_where_noise_is(std::vector<float>(12, 5), {4, 3}) == std::vector<uint16_t>(12, 4));
+    for (float none : {0.f, NAN, INFINITY})
+        CHECK(sets_where_noise_is(std::vector<float>(12, none), {4, 3}) ==
+              std::vector<uint16_t>(12, 2));
+    for (float level : {1e-30f, 1e30f})  // whose squares are no floats
+        CHECK(sets_where_noise_is(std::vector<float>(12, level), {4, 3})[5] == 4);
+    CHECK(sets_where_noise_is({7}, {1, 1}) == std::vector<uint16_t>{2});
+    CHECK(sets_where_noise_is(std::vector<float>(12, 5), {4, 3}, {9, 1024})[5] == 9);
+    CHECK(sets_where_noise_is(std::vector<float>(12, 5), {4, 3}, {9, 6})[5] == 6);
+}
+
+TEST_CASE("a pixel's own samples have no say in its replications, however large they are") {
+    const Size size{7, 5};
+    std::vector<float> noise(35);
+    Rng rng{seed_here()};
+    for (float& v : noise) v = float(std::exp(4 * double(rng.uniform())));
+    bool matters = false;
+    for (size_t i = 0; i < 35; ++i) {
+        std::vector<std::vector<uint16_t>> seen;
+        const float before = noise[i];
+        for (float own : {0.f, 1e-30f, 1.f, 1e4f, 1e30f}) {
+            noise[i] = own;
+            seen.push_back(sets_where_noise_is(noise, size));
+            CHECK(seen.back()[i] == seen.front()[i]);
+            matters = matters || seen.back() != seen.front();
+        }
+        noise[i] = before;
+    }
+    CHECK(matters);  // to others
+}
+
+TEST_CASE("chosen replications keep the pilot, and fit into the memory that there is") {
+    CHECK(sizeof(Sum) == 24);
+    CHECK(bytes_of({10, 3}, 2.5) == 30 * (32 + 24 * 2.5));
+    const Size size{40, 30};
+    const Radiance L = random_radiance(7, [](const PixelSample& s, vec2 u) {
+        const real scale = s.x > 36 ? 100 : 1;
+        return rgb{scale * u.x, u.y, 1};
+    });
+    Film pilot = make_film(size, 0);
+    fill(pilot, 16, L);
+    CHECK(pilot.sets_per_pixel() == 1);
+    uint32_t last = 33;
+    for (double K : {1e9, 4.0, 3.0, 2.5, 2.0, 0.1}) {
+        Film f = pilot;
+        const uint32_t most = choose_sets(f, bytes_of(size, K));
+        CAPTURE(K);
+        CHECK(most <= last);
+        CHECK(*std::max_element(f.sets.begin(), f.sets.end()) <= most);
+        CHECK(*std::min_element(f.sets.begin(), f.sets.end()) == 2);
+        CHECK(f.sets_per_pixel() <= std::max(2.0, K));
+        if (K > 100) CHECK(most == 32);
+        if (K < 2) CHECK(most == 2);
+        // No more was cut than had to be.
+        if (most < 32) {
+            double all = 0;
+            for (uint16_t k : sets_where_noise_is(pilot.spread, size, {3.5, most + 1})) all += k;
+            CHECK(all / 1200 > K);
+        }
+        last = most;
+        size_t at = 0, wrong = 0;
+        for (size_t i = 0; i < 1200; at += f.sets[i++]) {
+            wrong += f.sum[at].L != pilot.sum[i].L;
+            for (uint32_t set = 1; set < f.sets[i]; ++set)
+                wrong += f.sum[at + set].L != std::array<double, 3>{};
+        }
+        CHECK(wrong == 0);
+        CHECK(at == f.sum.size());
+        // What the film takes.
+        const size_t bytes = f.sum.capacity() * sizeof f.sum[0] + f.sets.capacity() * 2 +
+                             f.taken.capacity() * 8 + f.spread.capacity() * 4;
+        CHECK(double(bytes) <= bytes_of(size, f.sets_per_pixel()));
+    }
+    CHECK(last == 2);
+}
+
+TEST_CASE("chosen replications leave every pixel's mean unbiased, that of rare light, too") {
+    // Were a pixel's own samples to choose its replications, those that found rare light early
+    // would be averaged with more that did not: 14 instead of 20.
+    const size_t middle = 40;
+    Moments early, outlier, neighbour, pooled, sets;
+    for (uint64_t r = 0; r < 5000; ++r) {
+        const Radiance L = random_radiance(hash(seed_here(), r), rare_light);
+        Film f = make_film({9, 9}, 0);
+        fill(f, 16, L);
+        choose_sets(f, INFINITY);
+        fill(f, 4, L);  // as after Ctrl-C: 16 samples of the first, 4 of each other
+        for_each_pixel(f, [&](size_t i, const Pixel& p) {
+            if (i == middle) early.add(p.value(0));
+        });
+        fill(f, 20, L);
+        double sum = 0;
+        for_each_pixel(f, [&](size_t i, const Pixel& p) {
+            if (i == middle) outlier.add(p.value(0));
+            if (i == middle - 9) neighbour.add(p.value(0));
+            sum += p.value(0);
+        });
+        pooled.add(sum / 81);
+        sets.add(f.sets[middle]);
+    }
+    CHECK(sets.variance() > 0);
+    EXPECT(oracle::expect_mean(20, estimate(early)), 0.2);
+    EXPECT(oracle::expect_mean(20, estimate(outlier)), 0.1);
+    EXPECT(oracle::expect_mean(7.5, estimate(neighbour)), 0.03);
+    EXPECT(oracle::expect_mean((20 + 8 * 7.5 + 72 * 17.5) / 81, estimate(pooled)), 0.02);
 }

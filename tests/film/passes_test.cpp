@@ -1,26 +1,29 @@
-// film/passes_test.cpp  when to stop, and work by several threads
+// film/passes_test.cpp  when to stop, Ctrl-C, threads, and the loop over them
 #include "film/passes.h"
 
 #include <doctest/doctest.h>
 
-TEST_CASE("the schedule stops at the samples or the seconds asked for, and always begins") {
-    auto passes = [](uint64_t spp, double seconds, double seconds_a_sample) {
-        Schedule schedule({spp, seconds}, 1);
+#include "film/spread.h"
+
+// ---- When to stop -------------------------------------------------------------------------------
+
+TEST_CASE("passes end at the samples or the seconds asked for, and there is always a first") {
+    auto passes = [](uint64_t spp, double seconds, double a_sample) {
         std::vector<uint64_t> sizes;
-        uint64_t samples = 0;
-        while (uint64_t n = schedule.next(samples, double(samples) * seconds_a_sample)) {
-            sizes.push_back(n);
-            samples += n;
+        uint64_t n = 0;
+        for (uint64_t to; (to = end_of_pass({spp, seconds}, 1, n, double(n) * a_sample,
+                                            n > 0 ? a_sample : 0)) > n;
+             n = to) {
+            sizes.push_back(to - n);
             REQUIRE(sizes.size() < 2000);
         }
-        return std::pair(samples, sizes);
+        return std::pair(n, sizes);
     };
     for (uint64_t spp : {1, 2, 5, 64, 1000})
         for (double speed : {0.0, 1e-6, 0.03, 7.0}) {
             CHECK(passes(spp, 0, speed).first == spp);
             CHECK(passes(spp, 1e30, speed).first == spp);
         }
-    CHECK(passes(0, 1e-9, 7).first == 1);  // one sample at least
     CHECK(passes(0, 100, 7).first == 15);  // the pass that crosses the end is short
     CHECK(passes(5, 100, 7).first == 5);   // whichever comes first
     CHECK(passes(50, 100, 7).first == 15);
@@ -30,21 +33,68 @@ TEST_CASE("the schedule stops at the samples or the seconds asked for, and alway
     CHECK(*std::max_element(sizes.begin(), sizes.end()) < 400);  // so that Ctrl-C is soon obeyed
     CHECK(sizes.size() < 200);                                   // and threads are seldom idle
     for (uint64_t n : passes(100, 0, 7).second) CHECK(n == 1);
+    // One pass at least, that of which nobody knows what it takes.
+    CHECK(end_of_pass({0, 1e-9}, 16, 0, 1, 0) == 16);
+    CHECK(end_of_pass({0, 1e-9}, 16, 16, 2, 1) == 16);
+    // A film that has more than is asked for keeps it.
+    CHECK(end_of_pass({10, 0}, 1, 12, 0, 0) == 12);
+    // By a clock that stands passes about double, and do not overflow.
+    for (uint64_t n = 1, pass = 0, to; pass < 40; ++pass, n = to) {
+        to = end_of_pass({}, 1, n, 1, 0);
+        CHECK(to == 2 * n + 1);
+        CHECK(end_of_pass({}, 1, n, 1, 1e-300) == to);
+    }
 }
 
 TEST_CASE("passes are whole grids, and shrink when samples take longer") {
-    Schedule schedule({}, 18);
-    uint64_t samples = 0, longest = 0, last = 0;
+    uint64_t n = 5, longest = 0, last = 0;  // a run that goes on from half a grid
     double elapsed = 0;
     for (int pass = 0; pass < 40; ++pass) {
-        const uint64_t n = schedule.next(samples, elapsed);
-        CHECK(n % 18 == 0);
-        longest = std::max(longest, n), last = n;
-        samples += n;
-        elapsed += double(n) * (pass < 20 ? 1e-5 : 1e-2);
+        const double a_sample = pass < 20 ? 1e-5 : 1e-2;
+        const uint64_t to = end_of_pass({}, 18, n, elapsed, 18 * a_sample);
+        CHECK(to % 18 == 0);
+        CHECK(to > n);
+        longest = std::max(longest, to - n), last = to - n;
+        elapsed += double(to - n) * a_sample;
+        n = to;
     }
     CHECK(longest > 1000);
     CHECK(last == 18);  // 0.18 s
+}
+
+TEST_CASE("the pilot is 8 samples in whole grids, or all that there are") {
+    auto pilot = [](uint64_t samples, uint64_t period) { return Plan{{samples}, period}.pilot(); };
+    CHECK(pilot(0, 1) == 8);
+    CHECK(pilot(100, 1) == 8);
+    CHECK(pilot(5, 1) == 5);
+    CHECK(pilot(0, 18) == 18);
+    CHECK(pilot(36, 6) == 12);
+    CHECK(pilot(36, 36) == 36);
+    CHECK(pilot(10, 12) == 10);
+}
+
+// ---- Ctrl-C, threads ----------------------------------------------------------------------------
+
+TEST_CASE("the first signal to end asks for an end, a second Ctrl-C kills; what is ignored stays") {
+    struct sigaction before[5], caught{};
+    const int signals[5] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
+    for (int i = 0; i < 5; ++i) sigaction(signals[i], nullptr, &before[i]);
+    std::signal(SIGHUP, SIG_IGN);  // nohup
+    catch_interrupt();
+    for (int signal : {SIGPIPE, SIGXFSZ, SIGHUP}) {
+        sigaction(signal, nullptr, &caught);
+        CHECK((caught.sa_handler == SIG_IGN));
+    }
+    for (int again = 0; again < 2; ++again) {
+        std::raise(SIGTERM);
+        CHECK(interrupted == SIGTERM);
+    }
+    std::raise(SIGINT);
+    CHECK(interrupted == SIGINT);
+    sigaction(SIGINT, nullptr, &caught);
+    CHECK((caught.sa_handler == SIG_DFL));
+    interrupted = 0;
+    for (int i = 0; i < 5; ++i) sigaction(signals[i], &before[i], nullptr);
 }
 
 TEST_CASE("an interrupted pass is told to be incomplete") {
@@ -82,14 +132,9 @@ TEST_CASE("what work throws reaches the caller, and nobody begins another piece"
         CHECK_THROWS_AS(in_parallel(1 << 20, threads, work, [](double) {}), std::bad_alloc);
         CHECK(begun < 1 << 20);
     }
-    std::atomic<int> begun = 0;
-    auto slow = [&](size_t) {
-        ++begun;
-        std::this_thread::sleep_for(std::chrono::milliseconds(30));
-    };
+    auto slow = [&](size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(150)); };
     auto meanwhile = [](double) { throw std::bad_alloc(); };
-    CHECK_THROWS_AS(in_parallel(100, 1, slow, meanwhile), std::bad_alloc);
-    CHECK(begun < 100);
+    CHECK_THROWS_AS(in_parallel(2, 1, slow, meanwhile), std::bad_alloc);
 }
 
 TEST_CASE("who waits is told what part of the work is done") {
@@ -110,109 +155,6 @@ TEST_CASE("who waits is told what part of the work is done") {
     CHECK(parts.back() == 1);
 }
 
-TEST_CASE("progress is told in samples a pixel; a sample that is no number ends it at its pass") {
-    struct Samples {
-        uint64_t n = 0, bad = 0;
-        size_t blocks() const { return 3; }
-        void begin_pass(uint64_t) {}
-        uint64_t samples() const { return n; }
-        uint64_t non_finite() const { return bad; }
-        void end_pass(uint64_t more) { n += more; }
-    };
-    struct {
-        std::vector<double> shown;
-        double elapsed() const { return 0; }
-        void show(double samples) { shown.push_back(samples); }
-    } progress;
-    Samples film;
-    render(
-        film, {{24, 0}, 8, 1}, [](size_t, uint64_t) {}, progress);  // 8, and twice as many
-    CHECK(film.n == 24);
-    CHECK(std::find(progress.shown.begin(), progress.shown.end(), 8) != progress.shown.end());
-    CHECK(progress.shown.back() == 24);
-    Samples broken;
-    render(
-        broken, {{24, 0}, 8, 1}, [&](size_t, uint64_t n) { broken.bad = n == 16; }, progress);
-    CHECK(broken.n == 8);
-}
-
-namespace {
-
-// Counts, in passes, what is added to it.
-struct Counting {
-    uint64_t n = 0;
-    std::vector<uint64_t> ends = {};  // of passes
-    uint64_t begun = 0;               // samples of the running pass
-    size_t blocks() const { return 2; }
-    uint64_t samples() const { return n; }
-    uint64_t non_finite() const { return 0; }
-    void begin_pass(uint64_t more) { begun = more; }
-    void end_pass(uint64_t more) {
-        CHECK(more == begun);
-        ends.push_back(n += more);
-    }
-};
-
-struct Stopped {
-    double elapsed() const { return 0; }  // passes may grow and grow
-    void show(double) {}
-};
-
-}  // namespace
-
-TEST_CASE("a pass ends at the pause, whatever its size, and others do as they like") {
-    for (uint64_t pause : {1, 5, 16, 63, 100}) {
-        Counting film;
-        Stopped clock;
-        render(
-            film, {{64, 0}, 1, 1, pause}, [](size_t, uint64_t) {}, clock);
-        CAPTURE(pause);
-        CHECK(film.n == 64);
-        CHECK(std::count(film.ends.begin(), film.ends.end(), pause) == (pause <= 64));
-        CHECK(film.ends.size() < 12);
-    }
-}
-
-TEST_CASE("no pass brings more samples than the last look allows, but for whole grids; 0: enough") {
-    for (uint64_t period : {1, 6}) {
-        Counting film;
-        Stopped clock;
-        // Asked before each pass; looks at 20, 50 and 51 samples.
-        std::vector<uint64_t> seen;
-        auto look = [&](const Counting& f) -> uint64_t {
-            seen.push_back(f.samples());
-            for (uint64_t at : {20, 50, 51})
-                if (f.samples() < at) return at - f.samples();
-            return 0;
-        };
-        render(
-            film, {{0, 0}, period, 1}, [](size_t, uint64_t) {}, clock, look);
-        CAPTURE(period);
-        auto ended_at = [&](uint64_t n) {
-            return std::find(film.ends.begin(), film.ends.end(), n) != film.ends.end();
-        };
-        std::vector<uint64_t> asked = {0};
-        asked.insert(asked.end(), film.ends.begin(), film.ends.end());
-        CHECK(seen == asked);
-        CHECK(ended_at(period == 1 ? 20 : 24));
-        CHECK(ended_at(period == 1 ? 50 : 54));
-        CHECK(film.n == (period == 1 ? 51 : 54));
-        for (uint64_t end : film.ends) CHECK(end % period == 0);
-    }
-}
-
-TEST_CASE("many passes that looks cut short do not end a render") {
-    Counting film;
-    Stopped clock;
-    auto look = [](const Counting& f) -> uint64_t { return f.samples() < 1000 ? 1 : 0; };
-    render(
-        film, {{5000, 0}, 1, 1}, [](size_t, uint64_t) {}, clock, look);
-    CHECK(film.n == 1000);
-    // And those after them are short enough to be interrupted.
-    Schedule schedule({}, 1);
-    for (uint64_t n = 0; n < 1000; ++n) CHECK(schedule.next(n, 0) <= 2);
-}
-
 TEST_CASE("every piece of work is done once, by any number of threads") {
     for (size_t count : {size_t(1), size_t(2), size_t(100)})
         for (unsigned threads : {1u, 2u, 7u, 300u}) {
@@ -230,4 +172,256 @@ TEST_CASE("every piece of work is done once, by any number of threads") {
             CHECK(part == 1);
             for (const auto& times : done) CHECK(times == 1);
         }
+}
+
+// ---- The loop -----------------------------------------------------------------------------------
+
+namespace {
+
+const Radiance noisy = random_radiance(
+    3, [](const PixelSample& s, vec2 u) { return heteroscedastic(s.x % 12, s.y, u); });
+
+struct Run {
+    Film film;
+    uint64_t rays, non_finite;
+    uint32_t most;
+    std::vector<uint64_t> ends;  // of passes
+};
+
+// By a clock that ticks once a sample of one pixel, or stands.
+Run run(Size size, uint32_t sets, const Plan& plan, const Radiance& L = noisy,
+        std::function<uint64_t(const Film&)> between = nullptr, double tick = 0) {
+    Run r{make_film(size, sets), 0, 0, 0, {}};
+    std::atomic<uint64_t> samples = 0;
+    const Radiance counting = [&](const PixelSample& s, uint64_t& rays) {
+        ++samples, ++rays;
+        return L(s, rays);
+    };
+    Watch watch;
+    watch.elapsed = [&] { return 1e-9 + tick * double(samples); };
+    watch.between = [&](const Film& f) {
+        if (f.least_taken() > 0) r.ends.push_back(f.least_taken());
+        return between ? between(f) : UINT64_MAX;
+    };
+    Loop loop(r.film, plan, counting, watch);
+    loop.run();
+    r.rays = loop.rays(), r.non_finite = loop.non_finite().count, r.most = loop.most_sets_chosen();
+    return r;
+}
+
+bool same(const Film& a, const Film& b) {
+    return a.sets == b.sets && a.taken == b.taken && a.pilot == b.pilot &&
+           a.sum.size() == b.sum.size() &&
+           std::memcmp(a.sum.data(), b.sum.data(), a.sum.size() * sizeof a.sum[0]) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("a film is the same by any number of threads and passes, and as filled by hand") {
+    for (Size size : {Size{24, 12}, Size{1, 1}, Size{1, 30}, Size{30, 1}})
+        for (uint32_t sets : {0u, 1u, 3u})
+            for (uint64_t n : {1, 2, 3, 40}) {
+                const Film by_hand = filled(size, sets, n, noisy);
+                for (unsigned threads : {1u, 2u, 7u}) {
+                    const Run r = run(size, sets, {{n}, 1, threads});
+                    CHECK(same(r.film, by_hand));
+                    CHECK(double(r.rays) == r.film.total());
+                    CHECK(r.most == 32);
+                }
+                const Run short_passes = run(size, sets, {{n}}, noisy,
+                                             [](const Film& f) { return f.least_taken() + 1; });
+                CHECK(same(short_passes.film, by_hand));
+                CHECK(short_passes.ends.size() >= n);
+            }
+}
+
+TEST_CASE("passes end at whole grids, but for the last and the pilot of few samples") {
+    for (const auto& ends : {run({3, 3}, 2, {{0}, 6}, noisy,
+                                 [](const Film& f) { return f.least_taken() < 90 ? 500 : 1; })
+                                 .ends,
+                             run({3, 3}, 0, {{0}, 6}, noisy, [](const Film& f) {
+                                 return f.least_taken() < 90 ? 500 : 1;
+                             }).ends})
+        for (uint64_t n : ends) CHECK(n % 6 == 0);
+    const Run r = run({3, 3}, 0, {{20}, 6});
+    CHECK(r.film.pilot == 12);
+    CHECK(r.film.least_taken() == 20);
+    CHECK(r.film.samples(0, 0) == 20);
+}
+
+TEST_CASE("no pass goes further than the one who watches allows; no further than it is: enough") {
+    std::vector<uint64_t> asked;
+    const Run r = run({4, 3}, 2, {}, noisy, [&](const Film& f) -> uint64_t {
+        asked.push_back(f.least_taken());
+        for (uint64_t at : {20, 50, 51})
+            if (f.least_taken() < at) return at;
+        return f.least_taken();
+    });
+    CHECK(asked.front() == 0);
+    for (uint64_t at : {20, 50, 51}) CHECK(std::count(asked.begin(), asked.end(), at) == 1);
+    CHECK(r.film.least_taken() == 51);
+    CHECK(r.ends.size() < 20);
+}
+
+TEST_CASE("a time is kept by films of replications that are chosen, of which the pilot has half") {
+    // 48 pixels; a sample of the picture takes 48 ticks.
+    for (double seconds : {2.0, 300.0, 2000.0, 40000.0}) {
+        const Run r = run({8, 6}, 0, {{0, seconds}}, noisy, nullptr, 1.0 / 48);
+        CAPTURE(seconds);
+        CHECK(!r.film.sets.empty());
+        CHECK(r.film.least_taken() > 0);
+        const double took = r.film.total() / 48, a_sample = r.film.sets_per_pixel();
+        CAPTURE(took);
+        CHECK(took <= std::max(seconds + a_sample, 1 + a_sample));
+        if (seconds > 2) CHECK(took > seconds - a_sample);
+        if (seconds < 30) CHECK(r.film.pilot <= seconds);
+        if (seconds > 300) CHECK(r.film.pilot == pilot_samples);
+    }
+    const Run r = run({8, 6}, 0, {{0, 8}}, noisy, nullptr, 1.0 / 48);
+    CHECK(r.film.pilot >= 4);  // half of the time
+    CHECK(r.film.pilot < 8);
+    // A picture's sample of 10 ms: passes grow, and the first after the pilot is cut short.
+    const Run fast = run({8, 6}, 0, {{0, 0.1}}, noisy, nullptr, 0.01 / 48);
+    CHECK(fast.film.least_taken() > 0);
+    CHECK(fast.film.total() / 48 <= 10 + fast.film.sets_per_pixel());
+    // A time that is over at once: nothing is chosen before there is a sample.
+    CHECK(run({8, 6}, 0, {{0, 1e-9}}, noisy, nullptr, 1.0 / 48).film.pilot == 1);
+    // Grids of 6 samples by two replications take 0.12 s: a pass has one of them.
+    CHECK(run({8, 6}, 2, {{60}, 6}, noisy, nullptr, 0.01 / 48).ends.size() == 10);
+}
+
+TEST_CASE("replications are cut to fit into the memory, and the loop tells how many there may be") {
+    const Run all = run({24, 12}, 0, {{20}});
+    const double K = all.film.sets_per_pixel();
+    REQUIRE(K > 2.2);
+    const Run cut = run({24, 12}, 0, {{20}, 1, 1, bytes_of({24, 12}, (K + 2) / 2)});
+    CHECK(cut.most < 32);
+    CHECK(cut.film.sets_per_pixel() <= (K + 2) / 2);
+    CHECK(cut.film.least_taken() == 20);
+}
+
+TEST_CASE("progress is told in samples a pixel, now and in the end; then the clock is asked") {
+    Film film = make_film({5, 5}, 3);
+    Watch watch;
+    std::vector<std::pair<double, double>> shown;
+    watch.elapsed = [] { return 1.0; };
+    watch.show = [&](double now, double all) { shown.push_back({now, all}); };
+    Plan plan{{7}};
+    Loop(film, plan, noisy, watch).run();
+    CHECK(std::find(shown.begin(), shown.end(), std::pair(3.0, 21.0)) != shown.end());
+    for (const auto& [now, all] : shown) CHECK(all == 21);
+    CHECK(shown.back().first == 21);
+    shown.clear();
+    film = make_film({5, 5}, 0);
+    plan.target.samples = 20;
+    Loop(film, plan, noisy, watch).run();
+    CHECK(shown.front().second == 40);  // two replications, as far as is known
+    CHECK(shown.back().first == 20 * film.sets_per_pixel());
+    CHECK(shown.back().second == doctest::Approx(20 * film.sets_per_pixel()));
+    shown.clear();
+    plan.target = {0, 0};
+    film = make_film({5, 5}, 1);
+    watch.between = [](const Film& f) { return std::max<uint64_t>(3, f.least_taken()); };
+    Loop(film, plan, noisy, watch).run();
+    for (const auto& [now, all] : shown) CHECK(all == 0);  // nobody knows
+    // A pass that ends at its 13th pixel of 25.
+    film = make_film({5, 5}, 3);
+    plan.target.samples = 7;
+    watch.between = [](const Film& f) { return interrupted ? f.least_taken() : UINT64_MAX; };
+    const Radiance L = [](const PixelSample& s, uint64_t&) {
+        if (s.x == 2 && s.y == 2) interrupted = SIGINT;
+        return rgb{1, 1, 1};
+    };
+    Loop(film, plan, L, watch).run();
+    interrupted = 0;
+    CHECK(shown.back().first == doctest::Approx(3 * 12.0 / 25));
+    CHECK(shown.back().second == 21);
+}
+
+TEST_CASE("a sample that is no number ends the run at its pass, counted with all of that pass") {
+    for (unsigned threads : {1u, 3u}) {
+        const Run r = run({9, 9}, 2, {{64}, 8, threads}, [](const PixelSample& s, uint64_t&) {
+            return s.i >= 10 && s.i < 12 && s.x == s.y ? rgb{1, NAN, 1} : rgb{1, 1, 1};
+        });
+        CHECK(r.non_finite == 2 * 2 * 9);
+        CHECK(r.film.least_taken() == r.film.most_taken());
+        CHECK(r.film.least_taken() < 64);
+        CHECK(r.film.least_taken() >= 12);
+    }
+}
+
+TEST_CASE("a pilot that Ctrl-C left in part is completed before replications are chosen") {
+    const Size size{24, 12};
+    Film film = make_film(size, 0);
+    double now = 1;
+    uint64_t calls = 0;
+    Watch watch;
+    watch.elapsed = [&] { return now; };
+    watch.between = [](const Film& f) {
+        CHECK(interrupted == 0);  // after Ctrl-C there is no other pass
+        return interrupted ? f.least_taken() : UINT64_MAX;
+    };
+    const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+        if (++calls == 400) interrupted = SIGINT;
+        return noisy(s, rays);
+    };
+    const Plan plan{{20, 100}};
+    Loop(film, plan, L, watch).run();
+    interrupted = 0;
+    REQUIRE(film.least_taken() < film.most_taken());
+    now = 60;  // though the pilot's half of the time is over
+    Loop(film, plan, noisy, watch).run();
+    CHECK(film.least_taken() == 20);
+    CHECK(film.pilot < 8);
+    const Film by_hand = filled(size, 1, 20, noisy);
+    for_each_pixel(film, [&](size_t i, const Pixel& p) { CHECK(p.sum[0].L == by_hand.sum[i].L); });
+}
+
+TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, and goes on") {
+    const Size size{24, 12};
+    for (uint32_t sets : {0u, 3u}) {
+        const Film whole = filled(size, sets, 20, noisy);
+        for (uint64_t at = 1; at < uint64_t(whole.total()); at += 331) {
+            Film film = make_film(size, sets);
+            Watch watch;
+            watch.elapsed = [] { return 1.0; };
+            uint64_t calls = 0;
+            const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+                if (++calls == at) {
+                    interrupted = SIGINT;
+                    if (at % 2) throw Interrupted();
+                }
+                ++rays;
+                return noisy(s, rays);
+            };
+            const Plan plan{{20}};
+            {
+                Loop loop(film, plan, L, watch);
+                loop.run();
+                CHECK(calls <= at + 20 * 32);  // the block is finished, if that
+                CHECK(double(loop.rays()) == film.total());
+            }
+            interrupted = 0;
+            // Its samples by hand.
+            size_t wrong = 0;
+            uint64_t rays = 0;
+            const Image image = image_of(film);
+            for_each_pixel(film, [&](size_t i, const Pixel& p) {
+                double value = 0;
+                for (uint32_t set = 0; set < p.count(); ++set) {
+                    const uint64_t n = set == 0 ? p.first : p.others;
+                    double sum = 0;
+                    for (uint64_t k = 0; k < n; ++k)
+                        sum += double(noisy({int(i % 24), int(i / 24), k, set}, rays).x);
+                    value += sum / double(n);
+                }
+                const float of_samples = float(value / double(p.count()));
+                wrong += p.count() == 0 ? !std::isnan(image.pixels[i][0])
+                                        : image.pixels[i][0] != of_samples;
+            });
+            CHECK(wrong == 0);
+            Loop(film, plan, noisy, watch).run();
+            CHECK(same(film, whole));
+        }
+    }
 }

@@ -34,24 +34,6 @@ private:
     double last_d2_ = 0;
 };
 
-// ---- Films as renders fill them -----------------------------------------------------------------
-
-using MeanFilm = Film<MeanPixel>;
-
-inline constexpr uint32_t by_noise = 0;
-
-// As renders do: in every pixel, or chosen by noise after some samples.
-template <class Pixel, class L>
-void fill(Film<Pixel>& film, uint32_t sets, uint64_t seed, uint64_t n, L sample) {
-    if (sets != by_noise) film.add_sets(std::vector<Sets>(film.number_of_pixels(), {sets}));
-    whole_pass(film, samples_before_sets, sample);
-    if (sets == by_noise) {
-        film.add_sets(sets_where_noise_is(film.noise(), film.size, seed));
-        whole_pass(film, 0, sample);
-    }
-    whole_pass(film, n - samples_before_sets, sample);
-}
-
 // An image whose noise differs by 100 from left to right, smooth in places, with an edge in others.
 inline rgb heteroscedastic(int x, int y, vec2 u) {
     const real scale = real(std::exp2(-0.3 * x));

@@ -24,22 +24,15 @@ inline std::vector<std::string> drawn_options(Choices& c) {
         words.push_back(name), words.push_back(value);
     };
     say("--size", c.of({"8x4", "1x1", "5x3", "1x9"}));
-    say("--spp", c.of({"2", "3", "1", "4"}));
+    say("--spp", c.of({"4", "6", "1", "2"}));
     say("--depth", c.of({"3", "0", "1", "8"}));
-    const std::string light = c.of({"mis", "nee", "none"});
-    say("--light", light);
-    if (light == "nee") say("--direct", c.of({"stochastic", "control", "ratio", "regression"}));
-    const std::string sampler =
-        c.of({"sobol", "independent", "stratified", "halton", "halton-naive"});
-    say("--sampler", sampler);
-    if (sampler == "independent") say("--film", c.of({"mc", "vor", "fvor", "cvor", "torus"}));
+    say("--light", c.of({"mis", "nee", "none"}));
+    say("--sampler", c.of({"sobol", "independent", "stratified", "halton"}));
     say("--direction", c.of({"bsdf", "uniform"}));
-    say("--polygons", c.of({"area", "angle"}));
-    say("--pick", c.of({"place", "power"}));
     say("--roulette", c.of({"0.25", "0", "1", "1e-9"}));
     say("--seed", std::to_string(c.byte()));
-    if (c.rarely()) say("--view", c.of({"normal", "depth", "albedo", "bvh", "variance"}));
-    if (c.rarely()) say("--sets", c.of({"2", "3", "1"}));
+    if (c.rarely()) say("--view", c.of({"normal", "depth", "albedo", "bvh"}));
+    if (c.rarely()) say("--sets", c.of({"2", "3", "1", "adaptive"}));
     if (c.rarely()) say("--rows", "0-0"), say("-o", "a.pfm");
     return words;
 }
@@ -145,6 +138,39 @@ inline Drawn drawn(std::string_view bytes) {
     d.options = drawn_options(c);
     d.scene = SceneWriter(c, d.moderate).text();
     return d;
+}
+
+// A room with lamps, of one side or two, that lie in its surfaces, in each other, or twice in one
+// place, in any order.
+inline std::string drawn_lamps(Choices& c) {
+    std::string text =
+        "camera 0 1 3.9  0 1 0  90\ndepth 2\ndiffuse d .5 .5 .5\nlight l 1 1 1\n"
+        "light m 1 .5 2 twosided\nlight n .5 1 .5 twosided d\n"
+        "quad -4 0 -4  0 0 8  8 0 0  d\nquad -4 4 -4  8 0 0  0 0 8  d\n";
+    auto half = [&](int from, unsigned steps) {
+        char word[20];
+        std::snprintf(word, sizeof word, " %g", from + c.below(steps) / 2.0);
+        return std::string(word);
+    };
+    for (unsigned k = 0; k < 6 && !c.empty(); ++k) {
+        const std::string what = c.of({"quad", "triangle", "sphere"}),
+                          material = c.of({"l", "m", "n", "d"});
+        text += what;
+        if (what == "sphere") {
+            text += c.of({" 1 2 0  .5", " 1 2 0  1", " -2 1 -1  1"});
+        } else {
+            const std::string y = c.of({" 4", " 0", " 2"}), x = half(-3, 8), z = half(-3, 8);
+            const std::string u = half(1, 5), v = half(1, 5);
+            const bool turned = c.below(2) != 0;
+            if (what == "quad")
+                text += x + y + z +
+                        (turned ? " " + u + " 0 0  0 0" + v : "  0 0" + v + " " + u + " 0 0");
+            else
+                text += x + y + z + (turned ? "  3" : "  -3") + y + " 3 " + u + y + " -3.5";
+        }
+        text += "  " + material + "\n";
+    }
+    return text + "quad 2 3 -3  1 0 0  0 0 1  l\n";
 }
 
 }  // namespace fuzz

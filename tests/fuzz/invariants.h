@@ -2,24 +2,9 @@
 #pragma once
 #include "film/image.h"
 #include "fuzz/input.h"
-#include "world/obj.h"
 #include "world/scene.h"
 
 namespace fuzz {
-
-inline void check_mesh(const ObjMesh& mesh) {
-    demand(!mesh.faces.empty(), "a mesh without faces");
-    for (const ObjMesh::Face& face : mesh.faces) {
-        demand(face.corners.size() >= 3, "a face of less than three corners");
-        for (uint32_t corner : face.corners)
-            demand(corner < mesh.vertices.size(), "a corner that is no vertex");
-        demand(face.material >= -1 && face.material < int(mesh.materials.size()),
-               "a face of no material");
-        demand(face.line > 0, "a face of no line");
-    }
-    for (const ObjMesh::Material& m : mesh.materials)
-        demand(max_of(m.kd) <= 1 && is_finite(m.ke), "a material that cannot be");
-}
 
 inline void check_shape(const Shape& s) {
     demand(is_finite(s.a) && is_finite(s.b) && is_finite(s.c) && std::isfinite(s.r),

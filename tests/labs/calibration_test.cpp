@@ -8,7 +8,7 @@ namespace {
 // d_rel = d, of which squared one pixel has a tenth.
 ImageError error(double d, double relative_spread = 0) {
     const double d2 = d * d;
-    return {{d2, d2, d2}, relative_spread * d2, 1, d2 / 10};
+    return {{}, {d2, d2, d2}, relative_spread * d2, 1, d2 / 10};
 }
 
 Look look(uint64_t samples, double truth, double estimate) {
@@ -40,7 +40,7 @@ TEST_CASE("a guard raises what it says") {
     CHECK(guarded({"", 0, 3}, e).greatest == doctest::Approx(4 * 0.001).epsilon(1e-14).scale(0));
     CHECK(guarded({"", 0, 3}, e).spread == 0);
     // No pixel has a part of nothing.
-    ImageError none{{0, 0, 0}, 0, 1, NAN};
+    ImageError none{{}, {0, 0, 0}, 0, 1, NAN};
     CHECK(guarded({"", 0, 3}, none).d2() == 0);
 }
 
@@ -53,9 +53,9 @@ TEST_CASE("a stopper looks when the rule of --error says, and stops at what was 
     // Else those of renders, whatever is asked for.
     const Guard plain{"", margin_of_error, -1};
     const std::vector<uint64_t> looks = looks_of(plain, 0.01, 0.4);
-    std::vector<uint64_t> of_renders = {samples_before_sets};
+    std::vector<uint64_t> of_renders = {16};
     while (of_renders.back() < 1600)
-        of_renders.push_back(next_look(of_renders.back(), samples_before_sets, 1));
+        of_renders.push_back(next_check(of_renders.back(), first_look, 1));
     CHECK(looks == of_renders);
     CHECK(looks.back() <= 1650);
     CHECK(looks_of(plain, 0.1, 0.4) == std::vector<uint64_t>{16});
@@ -83,7 +83,7 @@ TEST_CASE("what runs did: median, quantile, share above 1.05, verdict") {
     CHECK(kept(stops, 0.0899).above == doctest::Approx(0.97).epsilon(1e-12));  // of 0.094395
     CHECK(kept(stops, 0.09).verdict() == "exceeded");
     CHECK(kept(stops, 0.105).verdict() == "too careful");
-    for (Look& l : stops) l.samples = samples_before_sets;
+    for (Look& l : stops) l.samples = first_look;
     CHECK(kept(stops, 0.105).verdict() == "kept, at the least samples");
     CHECK(kept(stops, 0.09).verdict() == "exceeded");
     for (size_t i = 90; i < 100; ++i) stops[i].truth2 = 0.04;

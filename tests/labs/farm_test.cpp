@@ -26,8 +26,8 @@ struct Yard {
     Yard() {
         folder.write("a.scene", "");
         script("build/penumbra", R"(echo "$@" >>told
-for word; do [ "$before" != --checkpoint ] || film=$word; before=$word; done
-printf 'penumbra film 1\ncomplete yes\n\n' >"$film"
+for word; do [ "$before" != --keep ] || film=$word; before=$word; done
+printf 'penumbra film 2\ncomplete yes\n\n' >"$film"
 )");
         script("build/merge", "echo \"$@\" >merged\n");
         fs::create_directory(folder.path / "bin");
@@ -57,19 +57,19 @@ std::string parts_of(const std::string& plan) { return plan.substr(plan.find("pa
 
 }  // namespace
 
-TEST_CASE("bands and ranges of samples make up the picture, as even as can be") {
+TEST_CASE("bands make up the picture, as even as can be, each by all seeds") {
     const Yard yard;
-    const Said said = yard.plan("--bands 4 --ranges 2");
+    const Said said = yard.plan("--bands 4 --seeds 2");
     INFO(said.err);
     CHECK(said.status == 0);
     CHECK(parts_of(yard.folder.read("farm/farm.plan")) ==
-          "part --rows 0-0 --samples 0-1\npart --rows 0-0 --samples 2-4\n"
-          "part --rows 1-2 --samples 0-1\npart --rows 1-2 --samples 2-4\n"
-          "part --rows 3-3 --samples 0-1\npart --rows 3-3 --samples 2-4\n"
-          "part --rows 4-5 --samples 0-1\npart --rows 4-5 --samples 2-4\n");
+          "part --rows 0-0 --seed 0\npart --rows 0-0 --seed 1\n"
+          "part --rows 1-2 --seed 0\npart --rows 1-2 --seed 1\n"
+          "part --rows 3-3 --seed 0\npart --rows 3-3 --seed 1\n"
+          "part --rows 4-5 --seed 0\npart --rows 4-5 --seed 1\n");
 }
 
-TEST_CASE("one part has all rows, and says nothing of samples") {
+TEST_CASE("one part has all rows, and says nothing of seeds") {
     const Yard yard;
     CHECK(yard.plan("").status == 0);
     CHECK(parts_of(yard.folder.read("farm/farm.plan")) == "part --rows 0-5\n");
@@ -85,7 +85,7 @@ TEST_CASE("what cannot be rendered is refused before it is planned") {
         CHECK_FALSE(yard.folder.has("farm/farm.plan"));
     };
     refused(farm_words + "--bands 7 -- " + picture, "farm: --bands 7: the picture has 6 rows");
-    refused(farm_words + "--ranges 6 -- " + picture, "farm: --ranges 6: a pixel has 5 samples");
+    refused(farm_words + "--seeds 2 -- --seed 1 " + picture, "farm: --seed: --seeds 2 says it");
     refused(farm_words + "--bands 0 -- " + picture, "farm: --bands '0': a number, 1 or more");
     refused(farm_words + "--bands -- " + picture, "farm: --bands '--': a number");
     refused(farm_words + "--hosts h -- " + picture, "farm: --hosts: no option of a farm");
@@ -104,7 +104,7 @@ TEST_CASE("what cannot be rendered is refused before it is planned") {
 TEST_CASE("before anything is planned, penumbra is asked for a sample of a row") {
     const Yard yard;
     CHECK(yard.plan("--bands 3").status == 0);
-    CHECK(yard.folder.read("told").starts_with("--size 8x6 --spp 1 --rows 0-0 --checkpoint "));
+    CHECK(yard.folder.read("told").starts_with("--size 8x6 --spp 1 --rows 0-0 --keep "));
     CHECK_FALSE(yard.folder.has("farm/check.film"));
 }
 
@@ -119,23 +119,23 @@ TEST_CASE("the same plan is gone on with, another one is refused") {
     CHECK(yard.folder.read("farm/farm.plan") == before);
 }
 
-TEST_CASE("a part goes on from its checkpoint if there is one") {
+TEST_CASE("a part is told its film, from which it goes on") {
     const Yard yard;
-    CHECK(yard.plan("--bands 3 --ranges 5").status == 0);
+    CHECK(yard.plan("--bands 3 --seeds 5").status == 0);
     const std::string film = yard.folder / "farm/part-0007.film",
-                      part =
-                          "--size 8x6 --spp 5 --rows 2-3 --samples 1-1 --threads 3 --checkpoint " +
-                          film,
+                      part = "--size 8x6 --spp 5 --rows 2-3 --seed 1 --threads 3 --keep " + film,
                       scene = " " + yard.folder / "a.scene" + "\n";
     fs::remove(yard.folder.path / "told");
     CHECK(yard.run("farm.sh part farm 7 3").status == 0);
     CHECK(yard.folder.has("told"));
+    CHECK(yard.log("7") == "");
     CHECK(yard.run("farm.sh part farm 7 3").status == 0);
+    CHECK(yard.log("7") == "farm: goes on from its film\n");
     // The folder stands in the plan by its whole name, the script is called by a short one.
     std::string told = yard.folder.read("told");
     for (size_t at; (at = told.find(" farm/")) != told.npos;)
         told.replace(at, 6, " " + yard.folder / "farm/");
-    CHECK(told == part + scene + part + " --resume " + film + scene);
+    CHECK(told == part + scene + part + scene);
 }
 
 TEST_CASE(
@@ -144,7 +144,7 @@ TEST_CASE(
     CHECK(yard.plan("--bands 3").status == 0);
     for (const char* number : {"1", "2", "3"})
         CHECK(yard.run(std::string("farm.sh part farm ") + number).status == 0);
-    yard.folder.write("farm/part-0002.film", "penumbra film 1\ncomplete no\n\ncomplete yes\n");
+    yard.folder.write("farm/part-0002.film", "penumbra film 2\ncomplete no\n\ncomplete yes\n");
     yard.folder.write("farm/part-0002.log", "nothing yet\nthe lamp went out\n");
     const Said said = yard.run("farm.sh merge farm");
     CHECK(said.status == 1);
@@ -159,17 +159,17 @@ TEST_CASE(
                                             "farm/part-0003.film\n");
 }
 
-TEST_CASE("whoever stops a part stops penumbra, and waits until it has written its checkpoint") {
+TEST_CASE("whoever stops a part stops penumbra, and waits until it has written its film") {
     const Yard yard;
     CHECK(yard.plan("").status == 0);
     yard.script("build/penumbra",
-                "trap 'sleep .3; echo written >checkpoint; exit 143' TERM\n"
+                "trap 'sleep .3; echo written >film; exit 143' TERM\n"
                 "touch begun; for n in {1..400}; do sleep .05; done\n");
     const Said said = yard.run(
         "farm.sh part farm 1 & part=$!; until [ -e begun ]; do sleep .05; done; kill -TERM $part; "
         "wait $part");
     CHECK(said.status == 143);
-    CHECK(yard.folder.has("checkpoint"));
+    CHECK(yard.folder.has("film"));
     CHECK(yard.log("1").find("farm: stops, for TERM") != std::string::npos);
 }
 
@@ -271,7 +271,7 @@ TEST_CASE("parts, one of them stopped in between, merge into the picture of one 
                  "camera 0 0 5  0 0 0  40\ndiffuse grey .5 .5 .5\nlight lamp 9 9 9\n"
                  "quad -2 -1 -2  0 0 4  4 0 0  grey\nsphere 0 0 0  .5  lamp\n");
     const std::string script = "bash '" + fs::absolute("src/labs/farm.sh").string() + "' ",
-                      words = "--size 24x18 --spp 300 a.scene";
+                      words = "--size 24x18 --sets 2 --spp 600 a.scene";
     auto run = [&](const std::string& command) {
         const int status = std::system(
             ("cd '" + folder.path.string() + "' && { " + command + "; } >>out 2>>err").c_str());
@@ -279,7 +279,7 @@ TEST_CASE("parts, one of them stopped in between, merge into the picture of one 
         REQUIRE(status == 0);
     };
     run("build/penumbra --quiet -o whole.pfm " + words);
-    run(script + "plan --build build --folder farm --bands 3 -o a.pfm -- --every .01 " + words);
+    run(script + "plan --build build --folder farm --bands 3 -o a.pfm -- " + words);
     run(script + "part farm 1 1; " + script + "part farm 2 1");
     run(script + "part farm 3 1 & part=$!; sleep .05; kill $part; wait $part || :");
     run(script + "part farm 3 1; " + script + "merge farm");

@@ -19,8 +19,7 @@ Ray random_ray(const Scene& scene, oracle::Random& random) {
 
 TEST_CASE("the textbook's tracer has the mean of ours, and takes as many rays") {
     const Scene scene = read_scene("scenes/cornell36.scene").scene;
-    Technique nee;
-    nee.light = LightMode::nee;
+    const Technique nee{Direction::bsdf, LightMode::nee, 0};
     const Pattern pattern{SamplerKind::independent, seed_here()};
     textbook::Room room = textbook::room_of(scene);
     oracle::Random random(seed_here() + 1);

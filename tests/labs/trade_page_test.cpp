@@ -106,7 +106,8 @@ TEST_CASE("beside each picture stand its setting, precision, bias, time and erro
     };
     CHECK(told("Referenceknown to 0.12 %") == 2);
     CHECK(told("--sampler sobol --light misdouble, unbiased0.310 s, error 3.59 %") == 2);
-    CHECK(told("--sampler halton-naive --light misdouble, biased0.290 s, error 9.12 %") == 2);
+    CHECK(told("--sampler halton --light nee --direct ratiodouble, biased0.290 s, error 9.12 %") ==
+          2);
     CHECK(told("--sampler sobol --light misfloat, unbiased0.300 s, error 3.45 %") == 2);
     CHECK(
         contains(page.by_id("scene-second").words, "In float a sphere of this scene is 5 % off."));

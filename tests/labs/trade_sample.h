@@ -29,7 +29,7 @@ inline TradeScene sample_scene(const std::string& name, int width, int height) {
     s.width = 256, s.height = 128, s.exposure = 0.75;
     s.settings = {sample_setting("--sampler sobol --light mis", 0.02),
                   sample_setting("--sampler halton --light nee", 0.0123),
-                  sample_setting("--sampler halton-naive --light mis", 0.05),
+                  sample_setting("--sampler halton --light nee --direct ratio", 0.05),
                   sample_setting("--sampler sobol --light mis", 0.019)};
     s.settings[2].unbiased = false;
     s.settings[2].dropped = "after 64 samples: 1/11 of the best's efficiency";

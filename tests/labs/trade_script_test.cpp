@@ -207,7 +207,7 @@ setTimeout(() => say("nonsense", stage.dataset.at + " " + stage.dataset.mode + "
     document.getElementById("a").selectedIndex + document.getElementById("b").selectedIndex), 100);
 )js");
     CHECK(root.of("data-map") == "true");
-    CHECK(root.of("data-alt").starts_with("error map of first by --sampler halton-naive"));
+    CHECK(root.of("data-alt").starts_with("error map of first by --sampler halton --light nee"));
     CHECK(root.of("data-reference") == "true");
     const TradeScene scene = sample_trade().scenes[0];
     const Byte3 colour = error_colours()[size_t(

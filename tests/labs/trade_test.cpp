@@ -204,7 +204,8 @@ namespace {
 Trade small_trade() {
     Trade t;
     t.default_words = "--sampler sobol --light mis", t.command = "build/trade";
-    TradeScene s = scene_of({by_law("--sampler sobol --light mis", 0.02, 1 / 3.0), {"radiosity"}});
+    TradeScene s =
+        scene_of({by_law("--sampler sobol --light mis", 0.02, 1 / 3.0), {"--sampler halton"}});
     s.remark = "some words, 5 %", s.width = 2, s.height = 1, s.exposure = 0.1;
     s.settings[0].dropped = "after 16 samples: why", s.settings[0].takes_every_scene = false;
     s.settings[1].is_float = true, s.settings[1].unbiased = false;

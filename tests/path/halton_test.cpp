@@ -39,37 +39,6 @@ TEST_CASE("the first primes are 2, 3, 5, ... and the 10000th is 104729") {
     for (size_t n : {0, 1, 2, 5, 6, 7}) CHECK(first_primes(n).size() == n);
 }
 
-TEST_CASE("quotients and remainders by a base are exact: by any, of any number") {
-    Rng rng{seed_here()};
-    std::vector<uint32_t> bases{2, 3, 5, 7, 104729, 65521, 65536, 65537, 4294967291, UINT32_MAX};
-    for (int i = 0; i < 1000; ++i) {  // of any length
-        const uint64_t bits = rng.bits();
-        bases.push_back(std::max(2u, uint32_t(bits >> 32) >> bits % 31));
-    }
-    int wrong = 0;
-    for (uint64_t b : bases) {
-        const Base base{uint32_t(b)};
-        for (uint64_t top : {b, uint64_t(1) << 32, uint64_t(1) << 33, uint64_t(1) << 63, rng.bits(),
-                             rng.bits() >> 32, rng.bits() >> 48}) {
-            const uint64_t multiple = top / b * b;
-            for (uint64_t n : {multiple - 1, multiple, multiple + 1, multiple + b - 1, top - 1, top,
-                               top + 1, uint64_t(0), UINT64_MAX})
-                wrong += base.quotient(n) != n / b || base.remainder(n) != n % b;
-        }
-    }
-    CHECK(wrong == 0);
-}
-
-TEST_CASE("a base's digits are full when another power of it would not fit in 64 bits") {
-    for (uint32_t b : {2u, 3u, 541u, 65536u, 4294967291u}) {
-        const Base base{b};
-        uint128 power = 1;
-        while (power <= base.most) power *= b;
-        CHECK(power <= UINT64_MAX);
-        CHECK(power * b > UINT64_MAX);
-    }
-}
-
 TEST_CASE("radical inverses are the exact fractions, rounded; also beyond 2^32 and 2^53") {
     CHECK(radical_inverse(3, 1) == real(1) / 3);
     CHECK(radical_inverse(3, 2) == real(2) / 3);

@@ -39,15 +39,14 @@ struct Named : Technique {
     const char* name;
 };
 constexpr Named techniques[] = {
-    {{bsdf, mis}, "bsdf, mis"},
-    {{bsdf, nee}, "bsdf, nee"},
-    {{bsdf, none}, "bsdf, none"},
-    {{uniform, mis}, "uniform, mis"},
-    {{uniform, nee}, "uniform, nee"},
-    {{uniform, none}, "uniform, none"},
+    {{bsdf, mis, 0}, "bsdf, mis"},
+    {{bsdf, nee, 0}, "bsdf, nee"},
+    {{bsdf, none, 0}, "bsdf, none"},
+    {{uniform, mis, 0}, "uniform, mis"},
+    {{uniform, nee, 0}, "uniform, nee"},
+    {{uniform, none, 0}, "uniform, none"},
     {{bsdf, mis, 1}, "bsdf, mis, roulette"},
     {{bsdf, nee, real(0.5)}, "bsdf, nee, roulette of the dim"},
-    {{bsdf, mis, 0, Pick::power}, "bsdf, mis, lights by power"},
     {{uniform, none, 1}, "uniform, none, roulette"},
 };
 
@@ -120,7 +119,7 @@ TEST_CASE("a furnace has the radiance Le (1 - rho^(D+1)) / (1 - rho) at every de
 TEST_CASE("a furnace by cosine sampling alone has no noise") {
     Scene scene = scene_of(furnace);
     scene.depth = 7;
-    const Technique t{bsdf, none};
+    const Technique t{bsdf, none, 0};
     const real truth = real(0.4) * (1 - std::pow(real(0.5), real(8))) / real(0.5);
     const Pattern pattern{SamplerKind::independent, seed_here()};
     real worst = 0;
@@ -143,7 +142,7 @@ box 4 3 4  0  -2 -1.5 -2   glow
 sphere -0.6 0 0  0.5  glass
 sphere 0.6 0 0  0.5  mirror
 )");
-    const Technique t{bsdf, none};
+    const Technique t{bsdf, none, 0};
     const Pattern pattern{SamplerKind::independent, seed_here()};
     real worst = 0;
     for (uint64_t i = 0; i < 20; ++i)
@@ -180,7 +179,7 @@ light lamp 1 1 1
 quad -9 0 -9  0 0 18  18 0 0  floor
 quad -1 1 -1  2 0 0  0 0 2  lamp
 )");
-    const oracle::Estimate reference = image_mean(scene, {uniform, none}, 99, 400000);
+    const oracle::Estimate reference = image_mean(scene, {uniform, none, 0}, 99, 400000);
     for (real roulette : {real(0), real(1)}) {
         const Technique t{bsdf, none, roulette};
         EXPECT(oracle::expect_equal(image_mean(scene, t, seed_here(), 400000), reference), 0.04);
@@ -251,8 +250,7 @@ quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
             (glossy ? "phong half 0.3 0.3 0.3  0.3 0.3 0.3  4\n" : "diffuse half 0.5 0.5 0.5\n") +
             room);
         const Technique t{bsdf, mis, real(glossy ? 0 : 1)};
-        const Pattern pattern =
-            make_pattern(SamplerKind::halton, seed_here(), scene.depth + 1, 64);
+        const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), scene.depth + 1, 64);
         for (uint32_t dim = dimension(0, Draw(0)); dim < pattern.bases.size(); ++dim) {
             const Draw what = Draw((dim - dimension(0, Draw(0))) % uint32_t(Draw::count));
             const size_t k = (dim - dimension(0, Draw(0))) / uint32_t(Draw::count);
@@ -302,7 +300,7 @@ sphere -0.5 0.4 0.2  0.1  ball
     int hits = 0;
     real worst = 0;
     for (int i = 0; i < 800; ++i) {
-        const Technique t{uniform, mis, 0, i % 2 ? Pick::power : Pick::place};
+        const Technique t{uniform, mis, 0};
         const int x = i / 2 % 20, y = i / 40;
         const Start at = start(scene, pattern, {x, y, 0});
         const auto ground = meet(scene, at.ray);
@@ -343,7 +341,7 @@ sphere 1 1 0  0.7  lamp
     const Pattern pattern{SamplerKind::independent, seed_here()};
     int steps = 0, wrong = 0;
     for (int i = 0; i < 256; ++i)
-        radiance(scene, {bsdf, mis}, pattern, i % 16, i / 16, 0,
+        radiance(scene, {bsdf, mis, 0}, pattern, i % 16, i / 16, 0,
                  [&](const Segment&, const Step& e) {
                      if (e.end) return;
                      const Surface& at = e.x.at;
@@ -413,7 +411,7 @@ diffuse white 0.5 0.5 0.5
 pointlight 1 2 0  3 3 3
 quad -5 0 -5  0 0 10  10 0 0  white
 )";
-    const Technique t{bsdf, mis};
+    const Technique t{bsdf, mis, 0};
     // At the origin: d^2 = 5, cos = 2 / sqrt 5.  The pixel is 1e-5 wide: 1e-5 relative.
     const double truth = 0.5 / double(pi) * 3 / 5 * 2 / std::sqrt(5.0);
     CHECK(double(radiance(scene_of(text), t, {SamplerKind::independent}, 0, 0, 0).x) ==

@@ -295,17 +295,8 @@ TEST_CASE("means over a set are uncorrelated with those of the pixel's other set
     }
 }
 
-TEST_CASE("halton-naive repeats itself: the same numbers in every pixel and at every vertex") {
-    const Pattern p = make_pattern(SamplerKind::halton_naive, seed_here(), depth, 64);
-    const Sampler a(p, 3, 11), b(p, 900, 11);
-    CHECK(a.get2(film_x).x == b.get2(dimension(2, Draw::wi_x)).x);
-    CHECK(a.get2(film_x).x == radical_inverse(2, 11));
-    CHECK(a.get2(film_x).y == radical_inverse(3, 11));
-}
-
 TEST_CASE("samples 2^32 apart differ, whatever the sampler, in every set") {
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
-                             SamplerKind::sobol, SamplerKind::halton_naive})
+    for (SamplerKind kind : kinds)
         for (uint32_t set : {0u, 1u}) {
             const Pattern pattern = make_pattern(kind, seed_here(), depth, 64);
             int equal = 0;

@@ -221,8 +221,9 @@ TEST_CASE(
 }
 
 TEST_CASE("a room whose walls absorb nothing is warned of, by its first line") {
-    const std::string text = "diffuse grey .5 .5 .5\ndiffuse white .3 1 .3\npointlight 0 0 1  1 1 1\n"
-                             "quad 0 0 0  1 0 0  0 1 0  grey\nquad 0 0 2  1 0 0  0 1 0  white\n";
+    const std::string text =
+        "diffuse grey .5 .5 .5\ndiffuse white .3 1 .3\npointlight 0 0 1  1 1 1\n"
+        "quad 0 0 0  1 0 0  0 1 0  grey\nquad 0 0 2  1 0 0  0 1 0  white\n";
     const Faceted f = faceted(parsed(text), 1);
     REQUIRE(f.warnings.size() == 1);
     CHECK(f.warnings[0] == "6: reflects all light: in a closed room there is no end to it");

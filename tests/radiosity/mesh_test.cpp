@@ -4,6 +4,7 @@
 #include <bit>
 #include <map>
 
+#include "base/program.h"
 #include "base/rng.h"
 #include "oracle/expect.h"
 #include "radiosity/rooms.h"

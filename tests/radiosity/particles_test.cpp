@@ -19,8 +19,8 @@ constexpr SamplerKind kinds[] = {SamplerKind::independent, SamplerKind::stratifi
 // A whole run: n particles, and a seed of the test's name.
 Particles run(const Scene& s, const Mesh& mesh, SamplerKind kind, uint64_t n, uint64_t seed) {
     Particles p(s, mesh, Particles::pattern(kind, hash(seed_here(), seed), n));
-    for (int batch = 0; batch < Particles::batches; ++batch) p.add(batch, n / Particles::batches);
-    p.end_pass(n / Particles::batches);
+    for (size_t batch = 0; batch < Particles::batches; ++batch)
+        p.add(batch, n / Particles::batches);
     return p;
 }
 
@@ -153,20 +153,17 @@ TEST_CASE("a point sends a sixth of its power to every wall of a cube around it"
 TEST_CASE("the sums are the same, bit for bit, for any number of threads and passes") {
     const Scene s = study(true);
     const Mesh mesh = make_mesh(s, 1);
-    struct {
-        double elapsed() const { return 0; }
-        void show(double) {}
-    } clock;
     for (SamplerKind kind : kinds) {
         const Particles one = run(s, mesh, kind, 3200, 1);
         CHECK(one.particles() == 3200);
-        CHECK(one.samples() == 200);
+        CHECK(one.of_each() == 200);
         CHECK(one.rays() > one.particles());
         for (unsigned threads : {1u, 2u, 3u, 5u}) {
             Particles p(s, mesh, Particles::pattern(kind, hash(seed_here(), 1), 3200));
-            render(
-                p, {{200, 0}, 8, threads}, [&](int y, uint64_t n) { p.add(y, n); }, clock);
-            CHECK(p.samples() == 200);
+            for (uint64_t n : {8, 64, 128})
+                in_parallel(
+                    Particles::batches, threads, [&](size_t b) { p.add(b, n); }, [](double) {});
+            CHECK(p.of_each() == 200);
             CHECK(p.map() == one.map());
             CHECK(p.error() == one.error());
             CHECK(p.rays() == one.rays());
@@ -181,7 +178,7 @@ TEST_CASE("batches are randomisations of their own; without one there is no erro
     const Mesh mesh = make_mesh(s, 1);
     const Pattern pattern = Particles::pattern(SamplerKind::halton, 1, 1600);
     std::vector<IlluminationMap> maps;
-    for (int batch : {0, 1, 15}) {
+    for (size_t batch : {0u, 1u, 15u}) {
         Particles p(s, mesh, pattern);
         p.add(batch, 100);
         CHECK(std::isnan(p.error()));

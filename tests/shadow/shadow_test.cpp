@@ -3,7 +3,6 @@
 #include "shadow/shadow.h"
 
 #include "base/moments.h"
-#include "film/fill.h"
 #include "oracle/expect.h"
 #include "shadow/population.h"
 #include "world/scene_file.h"
@@ -24,8 +23,8 @@ struct Receiver {
         const Pattern pattern{SamplerKind::independent, seed};
         Step e;
         e.met = true, e.x = Vertex{{}, x, &material, 1, local, {0, 0, 1}};
-        e.direct =
-            direct_light(scene, {Direction::bsdf, LightMode::nee}, e.x, Sampler(pattern, 0, i), 0);
+        e.direct = direct_light(scene, {Direction::bsdf, LightMode::nee, 0}, e.x,
+                                Sampler(pattern, 0, i), 0);
         return e;
     }
     Shadowed shadowed_sample(uint64_t i, uint64_t seed = 1) const {
@@ -34,14 +33,13 @@ struct Receiver {
 };
 
 // Statements are lights and obstacles about the origin.
-Receiver receiver(const std::string& statements, vec3 n, bool by_angle = false) {
+Receiver receiver(const std::string& statements, vec3 n) {
     Receiver r;
     r.scene =
         parse_scene(
             "camera 0 0 9  0 0 0  40\ndiffuse black 0 0 0\nsphere 0 -99 0  1  black\n" + statements,
             "test")
             .scene;
-    for (Light& l : r.scene.lights) l.by_angle = by_angle;
     r.x = {{0, 0, 0}, unit(n), 0};
     r.local = frame(r.x.n);
     r.material.kd = {real(0.5), real(0.25), real(0.125)};
@@ -81,51 +79,32 @@ pointlight 0 3 0   5 5 5
 
 }  // namespace
 
-TEST_CASE("direct: U is the mean of w, for every light, tilt, side and way to sample") {
+TEST_CASE("direct: U is the mean of w, for every light, tilt and side") {
     const struct {
         const char* name;
         std::string scene;
         vec3 n;
-        bool by_angle;
     } cases[] = {
-        {"sphere, 30", sphere_at(30), {0, 1, 0}, false},
-        {"sphere, cut by the horizon, 75", sphere_at(75), {0, 1, 0}, false},
-        {"sphere, 90", sphere_at(90), {0, 1, 0}, false},
-        {"sphere, 105", sphere_at(105), {0, 1, 0}, false},
-        {"sphere close by", "light lamp 1 1 1\nsphere 0 1.01 0  1  lamp\n", {0, 1, 0.5}, false},
-        {"quad overhead",
-         "light lamp 1 2 1\nquad -1 1 -1  2 0 0  0 0 2  lamp\n",
-         {0, 1, 0.1},
-         false},
-        {"the same by angle",
-         "light lamp 1 2 1\nquad -1 1 -1  2 0 0  0 0 2  lamp\n",
-         {0, 1, 0.1},
-         true},
+        {"sphere, 30", sphere_at(30), {0, 1, 0}},
+        {"sphere, cut by the horizon, 75", sphere_at(75), {0, 1, 0}},
+        {"sphere, 90", sphere_at(90), {0, 1, 0}},
+        {"sphere, 105", sphere_at(105), {0, 1, 0}},
+        {"sphere close by", "light lamp 1 1 1\nsphere 0 1.01 0  1  lamp\n", {0, 1, 0.5}},
+        {"quad overhead", "light lamp 1 2 1\nquad -1 1 -1  2 0 0  0 0 2  lamp\n", {0, 1, 0.1}},
         {"quad, cut by the horizon",
          "light lamp 1 2 1\nquad 1 -1 1  0 2 0  0 0 -2  lamp\n",
-         {0, 1, 0},
-         false},
-        {"the same by angle",
-         "light lamp 1 2 1\nquad 1 -1 1  0 2 0  0 0 -2  lamp\n",
-         {0, 1, 0},
-         true},
+         {0, 1, 0}},
         {"oblique parallelogram",
          "light lamp 1 2 1\nquad 1 -0.3 -1  0.1 2 0.5  0 0 2  lamp\n",
-         {0.3, 1, 0},
-         true},
+         {0.3, 1, 0}},
         {"triangle",
          "light lamp 2 1 1\ntriangle 1 0 0  1 1.5 -0.4  0.7 0.4 0.9  lamp\n",
-         {0, 1, 0},
-         true},
-        {"a tube",
-         "light lamp 1e6 1e6 1e6\nquad -.4 1 0  .8 0 0  0 0 1e-6  lamp\n",
-         {0, 1, 0.1},
-         false},
-        {"many", many, {0, 1, 0.2}, false},
-        {"many by angle", many, {0.2, 1, 0.2}, true},
+         {0, 1, 0}},
+        {"a tube", "light lamp 1e6 1e6 1e6\nquad -.4 1 0  .8 0 0  0 0 1e-6  lamp\n", {0, 1, 0.1}},
+        {"many", many, {0, 1, 0.2}},
     };
     for (const auto& c : cases) {
-        const Receiver r = receiver(c.scene, c.n, c.by_angle);
+        const Receiver r = receiver(c.scene, c.n);
         const uint64_t seed = oracle::seed_of(std::string("direct U ") + c.name), n = 150000;
         uint64_t i = 0;
         oracle::Estimate w[3];
@@ -307,99 +286,28 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
     CHECK(dark.shadowed_sample(0).U == rgb{});
 }
 
-TEST_CASE("direct: a film of moments counts whole passes, and all samples of a set together") {
-    oracle::Random random(oracle::seed_of("shadow film"));
-    std::array<std::array<ShadowMoments, 3>, 2> sets;
-    auto draw = [&](int x, int y, uint64_t, uint32_t set) {
-        ShadowSample sample{{1, 1, 1}, {}};
+TEST_CASE("direct: the value of a pixel is that of the moments of all its samples") {
+    oracle::Random random(oracle::seed_of("shadow pixel"));
+    ShadowPixel pixel;
+    ShadowMoments moments[3];
+    double rest[3] = {};
+    constexpr int n = 12;
+    for (int i = 0; i < n; ++i) {
+        ShadowSample sample;
         for (size_t c = 0; c < 3; ++c) {
             auto& [U, w, wV] = sample.first;
             U.*axis[c] = real(1 + random());
             w.*axis[c] = real(U.*axis[c] * (real(0.5) + real(random())));
             wV.*axis[c] = random() < 0.5 ? w.*axis[c] : 0;
-            if (x != 1 || y != 0) continue;
-            const double u = double(U.*axis[c]), W = double(w.*axis[c]), V = double(wV.*axis[c]);
-            sets[set][c].add(u, W, V);
+            sample.rest.*axis[c] = real(random());
+            rest[c] += double(sample.rest.*axis[c]) / n;
+            moments[c].add(double(U.*axis[c]), double(w.*axis[c]), double(wV.*axis[c]));
         }
-        return sample;
-    };
-    auto moments_of = [&](Film<ShadowPixel>& film) {
-        sets = {};
-        film.add_sets({{1, 0}, {2, 0}, {1, 0}, {1, 0.5}});
-        for (uint64_t n : {1, 3, 8}) whole_pass(film, n, draw);
-        // A pass that is not finished.
-        film.begin_pass(1);
-        add_blocks(film, 0, 2, 1, [](int, int, uint64_t, uint32_t) {
-            return ShadowSample{{9, 9, 9}, {{9, 9, 9}, {9, 9, 9}, {9, 9, 9}}};
-        });
-        return sets;
-    };
-    for (Estimator e : {Estimator::ratio, Estimator::regression}) {
-        Film<ShadowPixel> values({2, 2}, {e}), variances({2, 2}, {e}, Shows::variances);
-        const auto of_values = moments_of(values), of_variances = moments_of(variances);
-        const Image &image = values.image(), &variance = variances.image();
-        for (size_t c = 0; c < 3; ++c) {
-            const double sum = estimate(e, of_values[0][c]) + estimate(e, of_values[1][c]);
-            CHECK(double(image.at(1, 0)[c]) == doctest::Approx(1 + sum / 2));
-            const double a = estimate(e, of_variances[0][c]), b = estimate(e, of_variances[1][c]);
-            // (a - b)^2 / 2 is the variance of one of them, of which two are shown.
-            CHECK(double(variance.at(1, 0)[c]) ==
-                  doctest::Approx((a - b) * (a - b) / 4).epsilon(1e-4).scale(0));
-        }
-        CHECK(std::isnan(variance.at(0, 0)[0]));
+        pixel.add(sample);
     }
-}
-
-TEST_CASE("sets that float cannot tell apart have a variance of their own") {
-    // Samples 1 and 1 + 2^-23 of one set, of mean 1 + 2^-24, which float rounds to 1; 1 of another.
-    Film<ShadowPixel> film({1, 1}, {Estimator::ratio}, Shows::variances);
-    film.add_sets({{2, 0}});
-    whole_pass(film, 2, [](int, int, uint64_t i, uint32_t set) {
-        const real x = i == 1 && set == 0 ? 1 + std::ldexp(real(1), -23) : 1;
-        return ShadowSample{{x, x, x}, {}};
-    });
-    CHECK(film.image().at(0, 0)[0] == std::ldexp(1.0f, -48) / 4);
-}
-
-TEST_CASE("direct: the noise of a pixel is that of light and of shadows as if they were coins") {
-    // Independent samples: U is 1, w is uniform over [1/2, 3/2] (variance 1/12), V a coin of R =
-    // 1/4, the rest uniform over [0, 1].  Shadows: E[w^2] R (1 - R), E[w^2] = 13/12.
-    oracle::Random random(seed_here());
-    Moments noise;
-    const uint64_t n = 16;
-    for (int trial = 0; trial < 12000; ++trial) {
-        ShadowPixel p;
-        double spread = 0;
-        for (uint64_t i = 0; i < n; ++i) {
-            const real w = real(0.5 + random()), V = random() < 0.25, rest = real(random());
-            const ShadowSample sample{{rest, 0, 0}, {{1, 0, 0}, {w, 0, 0}, {w * V, 0, 0}}};
-            spread += p.spread(i, sample);
-            p.add(i, sample);
-        }
-        noise.add(p.noise(n, spread) * double(n));
-    }
-    // R (1 - R) of R from n samples is smaller by R (1 - R) / n, and a little for the spread of w.
-    const double R1R = 0.25 * 0.75, shadows = 13 / 12.0 * R1R * (1 - 1.1 / double(n));
-    EXPECT(oracle::expect_mean(1 / 12.0 + shadows, estimate(noise, double(ulp))), 0.02);
-    ShadowPixel lit, dark;
-    double of_lit = 0, of_dark = 0;  // how far their light without shadows spreads
-    for (uint64_t i = 0; i < n; ++i) {
-        const real w = real(0.5 + random());
-        const ShadowSample seen{{}, {{1, 1, 1}, {w, w, w}, {w, w, w}}},
-            hidden{{}, {{1, 1, 1}, {w, w, w}, {}}};
-        of_lit += lit.spread(i, seen), of_dark += dark.spread(i, hidden);
-        lit.add(i, seen);
-        dark.add(i, hidden);
-    }
-    CHECK(lit.noise(n, of_lit) == 0);
-    CHECK(dark.noise(n, of_dark) == 0);
-    CHECK(ShadowPixel().noise(1, 0) == 0);
-}
-
-TEST_CASE("direct: a sample whose moments are no numbers does not fit a film") {
-    const rgb one{1, 1, 1}, bad{1, NAN, 1};
-    CHECK(ShadowPixel::fits({one, {one, one, one}}));
-    CHECK_FALSE(ShadowPixel::fits({bad, {one, one, one}}));
-    CHECK_FALSE(ShadowPixel::fits({one, {bad, one, one}}));
-    CHECK_FALSE(ShadowPixel::fits({one, {one, bad, one}}));
+    for (Estimator e :
+         {Estimator::stochastic, Estimator::control, Estimator::ratio, Estimator::regression})
+        for (size_t c = 0; c < 3; ++c)
+            CHECK(double(pixel.value(e).*axis[c]) ==
+                  doctest::Approx(rest[c] + estimate(e, moments[c])).epsilon(1e-6));
 }

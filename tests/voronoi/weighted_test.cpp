@@ -2,37 +2,85 @@
 // samples
 #include "voronoi/weighted.h"
 
-#include <doctest/doctest.h>
+#include "app/render.h"
+#include "film/spread.h"
+#include "oracle/expect.h"
 
-TEST_CASE("weighted pixels add up to n sum w L for every set of each, and constants to n") {
-    for (Weighting film : {Weighting::vor, Weighting::fvor, Weighting::cvor, Weighting::torus})
-        for (uint64_t spp : {1, 2, 9, 64}) {
+namespace {
+
+constexpr Weighting weightings[] = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
+                                    Weighting::torus};
+
+}  // namespace
+
+TEST_CASE("a weighted mean is the sum of w L for every set of a pixel, and constants stay") {
+    Scene scene;
+    scene.size = {4, 3};
+    for (Weighting kind : weightings)
+        for (uint64_t n : {1, 2, 9, 64}) {
             const Pattern pattern{SamplerKind::independent, 7};
-            WeightedPixels weighted(film, pattern, spp);
-            for (int k = 0; k < 10; ++k) {
-                const uint64_t pixel = uint64_t(10 + k / 2);
-                const uint32_t set = uint32_t(k % 2);
-                auto place = [&](uint64_t i) {
-                    return Sampler(pattern, pixel, i, set).get2(film_x);
-                };
-                auto L = [&](uint64_t i) { return rgb{1, place(i).x, real(i % 3)}; };
-                rgb sum;
-                for (uint64_t i = 0; i < spp; ++i) sum += weighted(pixel, set, i, L);
+            WeightTroubles troubles;
+            auto place = [&](const PixelSample& s) {
+                return Sampler(pattern, uint64_t(4 * s.y + s.x), s.i, s.set).get2(film_x);
+            };
+            const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+                return ++rays, rgb{1, place(s).x, real(s.i % 3)};
+            };
+            const Radiance mean = weighted_mean(scene, pattern, kind, n, L, troubles);
+            uint64_t expected_redraws = 0, expected_fallbacks = 0;
+            for (const PixelSample s : {PixelSample{2, 1, 0, 0}, {2, 1, 0, 1}, {3, 2, 0, 0}}) {
+                uint64_t rays = 0;
+                const rgb found = mean(s, rays);
+                CHECK(rays == n);
                 std::vector<Site> places;
-                for (uint64_t i = 0; i < spp; ++i)
-                    places.push_back({double(place(i).x), double(place(i).y)});
-                Weigher weigher;
-                const auto& w = weigher(film, places,
-                                        hash(hash(hash(0, pattern.seed), pixel), UINT64_MAX - set));
-                double expected = 0, third = 0;
-                for (uint64_t i = 0; i < spp; ++i) {
-                    expected += double(spp) * w[i] * places[i].x;
-                    third += double(spp) * w[i] * double(i % 3);
+                for (uint64_t i = 0; i < n; ++i) {
+                    const vec2 u = place({s.x, s.y, i, s.set});
+                    places.push_back({double(u.x), double(u.y)});
                 }
-                const double n = double(spp), allowed = 64 * n * double(ulp);
-                CHECK(std::abs(double(sum.x) - n) <= allowed);
-                CHECK(std::abs(double(sum.y) - expected) <= allowed);
-                CHECK(std::abs(double(sum.z) - third) <= 3 * allowed);
+                Weigher weigher;
+                const auto& w = weigher(
+                    kind, places,
+                    hash(hash(hash(0, pattern.seed), uint64_t(4 * s.y + s.x)), UINT64_MAX - s.set));
+                expected_redraws += weigher.redraws, expected_fallbacks += weigher.fallbacks;
+                double second = 0, third = 0;
+                for (uint64_t i = 0; i < n; ++i)
+                    second += w[i] * places[i].x, third += w[i] * double(i % 3);
+                CHECK(std::abs(double(found.x) - 1) <= 64 * double(ulp));
+                CHECK(std::abs(double(found.y) - second) <= 64 * double(ulp));
+                CHECK(std::abs(double(found.z) - third) <= 192 * double(ulp));
             }
+            CHECK(troubles.redraws == expected_redraws);
+            CHECK(troubles.fallbacks == expected_fallbacks);
         }
+}
+
+TEST_CASE("the stated d^2 of weighted means is that from seed to seed, on any number of threads") {
+    Scene scene;
+    scene.size = {6, 6};
+    for (Weighting kind : weightings) {
+        Spread spread;
+        for (uint64_t r = 0; r < 600; ++r) {
+            const Pattern pattern{SamplerKind::independent, hash(seed_here(), r)};
+            WeightTroubles troubles;
+            const Radiance sample = [&](const PixelSample& s, uint64_t&) {
+                const Sampler numbers(pattern, uint64_t(6 * s.y + s.x), s.i, s.set);
+                return heteroscedastic(s.x, s.y, numbers.get2(film_x));
+            };
+            const Radiance L = weighted_mean(scene, pattern, kind, 12, sample, troubles);
+            Options o;
+            o.sets = 2, o.quiet = true;
+            auto rendered = [&](unsigned threads) {
+                o.threads = threads;
+                Plan plan = plan_of(o, scene);
+                plan.target.samples = 1, plan.at_once = 12;
+                return render(o, plan, L);
+            };
+            const Picture p = rendered(1);
+            if (r == 0) CHECK(rendered(3).image.pixels == p.image.pixels);
+            CHECK(p.run.spp == 24);
+            spread.add(p.image, p.run.error.d2());
+        }
+        EXPECT(oracle::expect_mean(1, spread.ratio()).of("weighting " + std::to_string(int(kind))),
+               0.4);
+    }
 }

@@ -1,7 +1,8 @@
 // whole/closed_forms_maps_test.cpp  paths that end on maps meet closed forms of diffuse triangles
-#include "app/render.h"
 #include "base/moments.h"
+#include "labs/indirect_paths.h"
 #include "oracle/expect.h"
+#include "radiosity/particles.h"
 #include "whole/known_scenes.h"
 #include "world/scene_file.h"
 
@@ -34,16 +35,14 @@ std::vector<Endless> endless_scenes(const std::vector<Known>& rows) {
 }
 
 // Paths that end on maps of a wrong scale, 0 or one of particles.
-Maps maps_of(const Scene& scene, double scale) {
+KnownLight maps_of(const Scene& scene, double scale) {
     Mesh mesh = make_mesh(scene, double(diagonal(scene)) / 8);
     constexpr uint64_t n = 4096;
     Particles p(scene, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1), n));
-    for (int batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
+    for (size_t batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
     IlluminationMap map = p.map();
     for (rgb& E : map) E = E * real(scale);
-    Maps maps;
-    maps.known = known_light(scene, std::move(mesh), std::move(map));
-    return maps;
+    return known_light(scene, std::move(mesh), std::move(map));
 }
 
 // One sample of what is known.
@@ -67,9 +66,9 @@ TEST_CASE("control and regression meet every closed form of diffuse triangles") 
         for (double scale : {0.0, 1.0, 3.0})
             for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified,
                                      SamplerKind::halton, SamplerKind::sobol}) {
-                const Maps maps = maps_of(e.scene, scale);
+                const KnownLight known = maps_of(e.scene, scale);
                 const bool nee = !e.known->no_nee && kind == SamplerKind::halton;
-                Gather g{e.scene, {}, maps.known};
+                Gather g{e.scene, {Direction::bsdf, LightMode::mis, 0}, known};
                 g.technique.light = nee ? LightMode::nee : LightMode::mis;
                 // The slope is another run's.
                 if (scale == 3) g.slope = {real(0.3), real(0.3), real(0.4)};

@@ -1,6 +1,5 @@
 // whole/closed_forms_test.cpp  scenes whose radiance is known, by every technique, at one
 // significance
-#include "app/option_checks.h"
 #include "app/options.h"
 #include "base/moments.h"
 #include "oracle/expect.h"
@@ -16,7 +15,7 @@ namespace {
 
 // As the user says them: a new option is one more row.
 const char* const samplers[] = {"--sampler independent", "--sampler stratified", "--sampler halton",
-                                "--sampler sobol", "--sampler halton-naive"};
+                                "--sampler sobol"};
 const char* const techniques[] = {
     "--direction uniform --light none",
     "--direction uniform --light nee",
@@ -30,21 +29,20 @@ const char* const techniques[] = {
     "--direction bsdf --light none --roulette 1",
     "--direction bsdf --light nee --roulette 1",
     "--direction bsdf --light mis --roulette 1",
-    "--direction bsdf --light nee --pick power",
-    "--direction bsdf --light mis --pick power",
 };
 
 Options options_of(const std::string& said) {
     std::vector<std::string> list;
     std::istringstream in(said + " --quiet scene");
     for (std::string word; in >> word;) list.push_back(word);
-    return parse_options(list);
+    Options o;
+    OptionTable table = option_table(o);
+    parse_options(table, o, list);
+    return o;
 }
 
 const char* why_empty(const Known& k, const Scene& scene, const Options& o, bool first) {
-    if (o.sampler == SamplerKind::halton_naive) return biased;
     if (scene.depth == 0 && !first) return unscattered;
-    if (o.technique.pick == Pick::power && scene.few.n == 0) return no_choice;
     if (o.technique.light == LightMode::none && k.no_none) return k.no_none;
     if (o.technique.light == LightMode::nee && k.no_nee) return k.no_nee;
     if (o.technique.light == LightMode::nee && o.technique.roulette == 1 && scene.depth == 1)
@@ -88,9 +86,13 @@ Cell check(const Known& k, const Scene& scene, const Options& o, uint64_t n) {
     const uint64_t points = n / uint64_t(replicates);
     Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, points);
     Moments samples, means;
+    oracle::Draws draws;
     for (int i = 0; i < replicates; ++i, ++pattern.seed) {
         Moments of_one;
-        for (uint64_t j = 0; j < points; ++j) of_one.add(measure(k, scene, o, pattern, j));
+        for (uint64_t j = 0; j < points; ++j) {
+            const double x = measure(k, scene, o, pattern, j);
+            of_one.add(x), draws.add(x);
+        }
         samples.merge(of_one);
         means.add(of_one.mean);
     }
@@ -99,7 +101,7 @@ Cell check(const Known& k, const Scene& scene, const Options& o, uint64_t n) {
     const double rounding = 256 * double(ulp) * k.truth;
     cell.exact = e.standard_error < rounding;
     e.standard_error = std::hypot(e.standard_error, rounding);
-    const double needed = cell.exact ? 0 : 1000 * std::pow(samples.skewness(), 2);
+    const double needed = cell.exact ? 0 : 1000 * std::pow(draws.skewness(), 2);
     cell.verdict =
         needed <= double(samples.n)
             ? oracle::expect_mean(k.truth, e)
@@ -136,11 +138,6 @@ void print_matrix(const std::vector<Known>& rows, const std::vector<std::vector<
     std::printf("Sigmas off the closed form; ==: exact but for rounding\n");
     for (size_t t = 0; t < columns; ++t) std::printf("  %c  %s\n", int('A' + t), techniques[t]);
     for (size_t s = 0; s < std::size(samplers); ++s) {
-        const Cell& first = matrix[0][s * columns];
-        if (first.empty == biased) {
-            std::printf("%-32s  (%c)\n", samplers[s], letter_of(biased));
-            continue;
-        }
         std::printf("%-32s", samplers[s]);
         for (size_t t = 0; t < columns; ++t) std::printf("%5c", int('A' + t));
         std::puts("");

@@ -1,5 +1,7 @@
 // whole/compare_test.cpp  compare by hand, and how programs run others
 #include "base/program.h"
+#include "keep/keep.h"
+#include "labs/execute.h"
 #include "whole/process.h"
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -27,6 +29,23 @@ Comparison compare(const Folder& folder, const Words& words) {
         &c.d, &c.d_rel, &c.ratio, &c.largest, &c.x, &c.y, &end);
     c.found = read == 6 && size_t(end) == o.out.size();
     return c;
+}
+
+// A film of one row whose pixels have two replications of one sample, m - s and m + s: a mean of m
+// with a variance of s^2.
+void write_film(const Folder& folder, const std::string& name, const std::vector<float>& m,
+                const std::vector<float>& variance) {
+    const int width = int(m.size() / 3);
+    Film f = make_film({width, 1}, 2);
+    for (size_t i = 0; i < f.pixels(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            const double mean = double(m[3 * i + c]), s = std::sqrt(double(variance[3 * i + c]));
+            f.sum[2 * i].L[c] = mean - s, f.sum[2 * i + 1].L[c] = mean + s;
+        }
+    f.taken.assign(f.taken.size(), 1);
+    const std::string path = (folder.path / name).string();
+    const Keeper keeper(path, {{}, {}, {{"size", std::to_string(width) + "x1"}, {"rows", "0-0"}}});
+    REQUIRE(keeper.write(f, {}, true) == "");
 }
 
 }  // namespace
@@ -90,12 +109,14 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("compare: two images with their variances show the same, or not") {
+TEST_CASE("compare: two films show the same, or not") {
     const Folder folder;
-    folder.write("f.pfm", pfm(2, 1, {1, 2, 3, 4, 5, 6}));
-    folder.write("g.pfm", pfm(2, 1, {1, 2, 3, 4, 8, 6}));  // green sums up to 3 more
-    folder.write("none.pfm", pfm(2, 1, {0, 0, 0, 0, 0, 0}));
-    folder.write("v.pfm", pfm(2, 1, {1, 1, 1, 1, 1.25f, 1}));
+    const std::vector<float> f = {1, 2, 3, 4, 5, 6}, g = {1, 2, 3, 4, 8, 6},  // green has 3 more
+        none = {0, 0, 0, 0, 0, 0}, v = {1, 1, 1, 1, 1.25f, 1};
+    write_film(folder, "f.film", f, v);
+    write_film(folder, "g.film", g, v);
+    write_film(folder, "f0.film", f, none);
+    write_film(folder, "g0.film", g, none);
     auto verdict = [&](const std::string& words) {
         const Outcome o = run(folder, "compare", split(words));
         double sigmas = -1, alone = -1, p = -1;
@@ -112,37 +133,47 @@ TEST_CASE("compare: two images with their variances show the same, or not") {
     };
     // Variance of the difference 2 x 2.25: 3 / sqrt(4.5) = 1.41 sigma, p = .1573 of one channel,
     // 1 - .8427^3 of the worst of three; of 2 sigma .0455 and .1304.
-    CHECK(verdict("--variances v.pfm v.pfm f.pfm g.pfm") == std::pair{1.41, 0.402});
-    CHECK(verdict("g.pfm f.pfm --variances none.pfm v.pfm") == std::pair{-2.0, 0.13});
-    CHECK(verdict("f.pfm f.pfm --variances none.pfm none.pfm") == std::pair{0.0, 1.0});
-    CHECK(verdict("f.pfm g.pfm --variances none.pfm none.pfm").second == 0);
+    CHECK(verdict("f.film g.film") == std::pair{1.41, 0.402});
+    CHECK(verdict("g0.film f.film") == std::pair{-2.0, 0.13});
+    CHECK(verdict("f0.film f0.film") == std::pair{0.0, 1.0});
+    CHECK(verdict("f0.film g0.film").second == 0);
     // Renders: another seed shows the same, another depth does not.
     const std::string scene =
         "camera 0 1 5 0 0 0 60\ndiffuse grey 0.5 0.5 0.5\nlight lamp 9 9 9\n"
         "quad -5 0 -5 0 0 10 10 0 0 grey\nsphere 0 3 0 1 lamp\nsphere 1 0.5 1 0.5 grey\n";
     folder.write("a.scene", scene);
-    const std::string options = "--quiet --size 32x16 --spp 32 --sets 2 --sampler independent ";
+    const std::string options = "--quiet --size 32x16 --spp 64 --sampler independent ";
     for (const auto& [name, more] :
-         {std::pair{"a", "--seed 1"}, {"b", "--seed 2"}, {"c", "--depth 0"}}) {
+         {std::pair{"a", "--seed 1"}, {"b", "--seed 2"}, {"c", "--depth 0"}, {"d", "--sets 1"}}) {
         std::string line = options;
-        line.append(more).append(" a.scene -o ").append(name);
-        std::string image = line, variance = line;
-        expect_success(folder, "penumbra", split(image.append(".pfm")));
-        expect_success(folder, "penumbra", split(variance.append("v.pfm --view variance")));
+        line.append(more).append(" a.scene -o ").append(name).append(".pfm --keep ").append(name);
+        expect_success(folder, "penumbra", split(line.append(".film")));
+        // A film's image is the image.
+        const std::string n = name;
+        CHECK(run(folder, "compare", split(n + ".film " + n + ".pfm --limit 0")).status == 0);
     }
-    CHECK(verdict("a.pfm b.pfm --variances av.pfm bv.pfm").second > 1e-6);
-    CHECK(verdict("a.pfm c.pfm --variances av.pfm cv.pfm").second < 1e-6);
+    CHECK(verdict("a.film b.film").second > 1e-6);
+    CHECK(verdict("a.film c.film").second < 1e-6);
+    // One replication tells no variance: neither do images.
+    for (const char* words : {"a.film d.film", "a.film b.pfm", "a.pfm b.film"}) {
+        const Outcome o = run(folder, "compare", split(words));
+        CHECK(o.status == 0);
+        CHECK(o.out.find("sigma") == o.out.npos);
+    }
 }
 
 TEST_CASE("compare judges: the last line and the exit status say the same, and why") {
     const Folder folder;
     folder.write("f.pfm", pfm(1, 1, {50, 50, 50}));
-    folder.write("g.pfm", pfm(1, 1, {51, 51, 51}));  // d_rel = 1/50
-    folder.write("h.pfm", pfm(1, 1, {50, 52, 50}));  // 2 / 50 / sqrt(3), by 2 sigma in green
+    folder.write("g.pfm", pfm(1, 1, {51, 51, 51}));         // d_rel = 1/50
+    write_film(folder, "h.film", {50, 52, 50}, {0, 0, 0});  // 2 / 50 / sqrt(3), by 2 sigma
+    write_film(folder, "f1.film", {50, 50, 50}, {1, 1, 1});
+    write_film(folder, "f.film", {50, 50, 50}, {0, 0, 0});
+    write_film(folder, "g.film", {51, 51, 51}, {0, 0, 0});
+    write_film(folder, "black.film", {0, 0, 0}, {0, 0, 0});
     folder.write("black.pfm", pfm(1, 1, {0, 0, 0}));
-    folder.write("one.pfm", pfm(1, 1, {1, 1, 1}));
     // p of 2 sigma in one of three channels is .130384.
-    const std::string h = "f.pfm h.pfm --variances one.pfm black.pfm ";
+    const std::string h = "f1.film h.film ";
     const struct {
         std::string words;
         std::string verdict;  // the last line
@@ -159,15 +190,15 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
         {h + "--alpha 0.13038", "same: p = 0.13 >= 0.13"},
         {h + "--alpha 13.038%", "same: p = 0.13 >= 0.13"},
         {h + "--alpha 0.13039", "differ: p = 0.13 < 0.13"},
-        {"h.pfm f.pfm --variances one.pfm black.pfm --alpha 0.13039", "differ: p = 0.13 < 0.13"},
-        {"h.pfm f.pfm --variances one.pfm black.pfm --alpha 0.13038", "same: p = 0.13 >= 0.13"},
+        {"h.film f1.film --alpha 0.13039", "differ: p = 0.13 < 0.13"},
+        {"h.film f1.film --alpha 0.13038", "same: p = 0.13 >= 0.13"},
         {h + "--alpha 1e-3 --limit 3%", "same: d_rel 2.3094 % <= 3 %, p = 0.13 >= 0.001"},
         {h + "--alpha 1e-3 --limit 2%", "differ: d_rel 2.3094 % > 2 %, p = 0.13 >= 0.001"},
         {h + "--alpha .2 --limit 3%", "differ: d_rel 2.3094 % <= 3 %, p = 0.13 < 0.2"},
         {h + "--alpha .2 --limit 2%", "differ: d_rel 2.3094 % > 2 %, p = 0.13 < 0.2"},
-        {"f.pfm g.pfm --variances black.pfm black.pfm --alpha 1e-30", "differ: p = 0 < 1e-30"},
-        {"f.pfm f.pfm --variances black.pfm black.pfm --alpha .999", "same: p = 1 >= 0.999"},
-        {"black.pfm black.pfm --variances black.pfm black.pfm", "same: p = 1 >= 1e-06"},
+        {"f.film g.film --alpha 1e-30", "differ: p = 0 < 1e-30"},
+        {"f.film f.film --alpha .999", "same: p = 1 >= 0.999"},
+        {"black.film black.film", "same: p = 1 >= 1e-06"},
     };
     for (const auto& row : rows) {
         const Outcome o = run(folder, "compare", split(row.words));
@@ -197,7 +228,11 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
     folder.write("text.pfm", "a picture\n");
     folder.write("big.pfm", "PF\n1 1\n1.0\n" + one.substr(12));  // big-endian
     folder.write("huge.pfm", "PF\n1000000 1000000\n-1.0\n");
-    folder.write("minus.pfm", pfm(1, 1, {1, -1, 1}));
+    write_film(folder, "two.film", {1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0});
+    write_film(folder, "nan.film", {1, 1, 1, 1, NAN, 1}, {0, 0, 0, 0, 0, 0});
+    const std::string film = folder.read("two.film");
+    folder.write("cut.film", film.substr(0, film.size() - 1));
+    folder.write("text.film", "a picture\n");
     const std::string not_pfm = ": not a little-endian colour PFM file",
                       usage_line = "usage: compare";
     const std::pair<std::string, std::string> rows[] = {
@@ -225,22 +260,21 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
         {"one.pfm one.pfm --heatmap missing/a.png", "missing/a.png: cannot write: No such file"},
         {"one.pfm two.pfm --heatmap a.png", "sizes differ"},
         {"two.pfm nan.pfm --heatmap a.png", "nan.pfm: pixel 1,0 is not finite"},
-        {"one.pfm one.pfm --variances one.pfm", "--variances: needs two files"},
-        {"one.pfm one.pfm --variances one.pfm two.pfm", "sizes differ: 1x1 and 2x1"},
-        {"one.pfm one.pfm --variances one.pfm minus.pfm", "minus.pfm: a variance is negative"},
-        {"two.pfm two.pfm --variances two.pfm nan.pfm", "nan.pfm: pixel 1,0 is not finite"},
+        {"one.pfm none.film", "none.film: cannot open"},
+        {"text.film one.pfm", "text.film: "},
+        {"one.pfm cut.film", "cut.film: is cut short"},
+        {"two.film one.pfm", "sizes differ: 2x1 and 1x1"},
+        {"nan.film two.pfm", "nan.film: pixel 1,0 is not finite"},
         {"one.pfm one.pfm --limit", "--limit: needs a value"},
         {"one.pfm one.pfm --limit -1%", "--limit: '-1%' is negative"},
         {"one.pfm one.pfm --limit %", "--limit: '' is not a number"},
         {"one.pfm one.pfm --limit 2", "--limit: '2' is more than 100 %; for percent say 2%"},
         {"one.pfm one.pfm --limit nan%", "--limit: 'nan' is not finite"},
         {"one.pfm one.pfm --limit one.pfm", "--limit: 'one.pfm' is not a number"},
-        {"one.pfm one.pfm --alpha 1e-6", "--alpha: needs --variances"},
-        {"one.pfm one.pfm --variances one.pfm one.pfm --alpha", "--alpha: needs a value"},
-        {"one.pfm one.pfm --variances one.pfm one.pfm --alpha 0",
-         "--alpha: must be between 0 and 1"},
-        {"one.pfm one.pfm --variances one.pfm one.pfm --alpha 100%",
-         "--alpha: must be between 0 and 1"},
+        {"two.film two.pfm --alpha 1e-6", "--alpha: needs two films of --sets 2 or more"},
+        {"two.film two.film --alpha", "--alpha: needs a value"},
+        {"two.film two.film --alpha 0", "--alpha: must be between 0 and 1"},
+        {"two.film two.film --alpha 100%", "--alpha: must be between 0 and 1"},
         {"two.pfm nan.pfm --limit 1", "nan.pfm: pixel 1,0 is not finite"},
         {"one.pfm one.pfm --heat a.png", "unknown option '--heat' (did you mean '--heatmap'?)"},
     };
@@ -276,5 +310,4 @@ TEST_CASE("a program that another runs: its failure, or that it is not there, is
     CHECK(what({"/bin/sh", "-c", "exit 3"}) == "/bin/sh failed: exit status 3");
     CHECK(what({"/bin/sh", "-c", "kill -9 $$"}) == "/bin/sh failed: killed by signal 9");
     CHECK(what({"/nowhere"}).starts_with("/nowhere: cannot run: "));
-    CHECK(exit_status([] { return 7; }) == 7);
 }

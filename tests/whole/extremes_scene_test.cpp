@@ -42,7 +42,8 @@ std::vector<rgb> samples_of(const std::string& text, int spp) {
     for (int y = 0; y < scene.size.height; ++y)
         for (int x = 0; x < scene.size.width; ++x)
             for (int i = 0; i < spp; ++i)
-                samples.push_back(radiance(scene, {}, pattern, x, y, uint64_t(i)));
+                samples.push_back(radiance(scene, {Direction::bsdf, LightMode::mis, 0}, pattern, x,
+                                           y, uint64_t(i)));
     return samples;
 }
 
@@ -96,7 +97,7 @@ double white_furnace() {
                             "box 4 3 4  0  -2 -1.5 -2  glow\n",
                             "furnace")
                             .scene;
-    const Technique chance{Direction::bsdf, LightMode::none};
+    const Technique chance{Direction::bsdf, LightMode::none, 0};
     const Pattern pattern{SamplerKind::independent, oracle::seed_of("white furnace")};
     const big truth = -std::expm1(10001 * std::log1p(-1e-7L)) / 1e-7L;
     Worst worst;

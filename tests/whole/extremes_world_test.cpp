@@ -77,7 +77,7 @@ double met_again() {
 // Rays from inside, aimed at corners and edges, that find a way out of the mesh.
 double leaks(Mesh mesh, vec3 move) {
     for (Shape& s : mesh) s = {s.a + move, s.b + move, s.c + move};
-    const Bvh bvh(mesh);
+    const Tree bvh(mesh);
     Dice random{{oracle::seed_of("leaks")}};
     int leaked = 0;
     for (int i = 0; i < 40000; ++i) {
@@ -101,7 +101,7 @@ double along_axes() {
         add_box(boxes, {1, 1, real(i % 3 ? 1 : 0.5)}, 0,
                 {real(random.below(6)), real(random.below(6)), real(random.below(6))}, 0);
     const std::vector<Shape>& shapes = boxes.shapes;
-    const Bvh bvh(shapes);
+    const Tree bvh(shapes);
     int wrong = 0;
     for (int i = 0; i < 20000; ++i) {
         const vec3 o{real(random.below(7)) - (i % 7 == 0 ? 10 : 0), real(random.below(7)),
@@ -132,7 +132,7 @@ double coincident() {
             shapes.push_back(i == first || (i > first && random.below(2))
                                  ? wall
                                  : Shape{random.direction() - vec3{0, 0, 3}, {}, {}, 1});
-        const Bvh bvh(shapes);
+        const Tree bvh(shapes);
         for (int i = 0; i < 200; ++i) {
             const vec3 o{random(-2, 2), random(-2, 2), 5};
             const auto hit = bvh.closest({o, {0, 0, -1}});
@@ -146,7 +146,7 @@ double coincident() {
 double sheet_before_wall(real gap) {
     std::vector<Shape> shapes;
     for (real z : {real(0), gap}) shapes.push_back({{-20, -20, z}, {20, -20, z}, {0, 30, z}});
-    const Bvh bvh(shapes);
+    const Tree bvh(shapes);
     Dice random{{oracle::seed_of("sheet")}};
     const int n = 20000;
     int wall = 0;
@@ -161,7 +161,7 @@ double sheet_before_wall(real gap) {
 // The same sheet over a floor: part of the shadow rays from the floor that pass it.
 double shadow_of_sheet(real gap) {
     const Shape floor{{-20, -20, 0}, {20, -20, 0}, {0, 30, 0}};
-    const Bvh bvh({floor, {{-20, -20, gap}, {20, -20, gap}, {0, 30, gap}}});
+    const Tree bvh({floor, {{-20, -20, gap}, {20, -20, gap}, {0, 30, gap}}});
     Dice random{{oracle::seed_of("shadow of a sheet")}};
     const int n = 20000;
     int lit = 0;
@@ -197,8 +197,8 @@ double tiny_normals() {
 }
 
 double few_shapes() {
-    int wrong = Bvh(std::vector<Shape>{}).closest({{}, {0, 0, 1}}).has_value();
-    const Bvh one({{{0, 0, 5}, {}, {}, 1}});
+    int wrong = Tree(std::vector<Shape>{}).closest({{}, {0, 0, 1}}).has_value();
+    const Tree one({{{0, 0, 5}, {}, {}, 1}});
     wrong += one.closest({{}, {0, 0, 1}})->t != 4;
     wrong += one.closest({{}, {0, 0, -1}}).has_value();
     const real nan = std::numeric_limits<real>::quiet_NaN();

@@ -26,6 +26,6 @@ TEST_CASE("twenty renders under random faults, and one that is killed and resume
     expect_nothing_wrong("--runs 1 --only 'killed and resumed'");
 }
 
-TEST_CASE("no damaged checkpoint is gone on from") {
-    expect_nothing_wrong("--runs 20 --jobs 2 --only 'damaged checkpoint'");
+TEST_CASE("no damaged film is gone on from") {
+    expect_nothing_wrong("--runs 20 --jobs 2 --only 'damaged film'");
 }

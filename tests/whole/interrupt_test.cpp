@@ -3,7 +3,7 @@
 
 namespace {
 
-void expect_passes_so_far(int signal, int status) {
+void expect_samples_so_far(int signal, int status) {
     const Folder folder;
     folder.write("file.scene", good + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
     Outcome o;
@@ -25,23 +25,27 @@ void expect_passes_so_far(int signal, int status) {
     CHECK(s.interrupted);
     REQUIRE(s.samples > 0);
     CHECK(s.samples < 1000000000);
-    // A run that was asked for as many gives the same image, bit by bit.
-    expect_success(folder, "penumbra",
-                   {"--spp", std::to_string(s.samples), "--size", "33x17", "-o", "b.pfm", "-o",
-                    "b.png", "file.scene"});
-    CHECK(folder.same("a.pfm", "b.pfm"));
-    CHECK(folder.same("a.png", "b.png"));
+    // It shows what a run of some samples shows.
+    expect_success(folder, "penumbra", split("--spp 64 --size 33x17 -o b.pfm file.scene"));
+    const Image image = read_pfm(folder / "a.pfm"), other = read_pfm(folder / "b.pfm");
+    CHECK(all_finite(image));
+    double square = 0, norm = 0;
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        square += std::pow(double(image.pixels[i][1]) - double(other.pixels[i][1]), 2);
+        norm += std::pow(double(other.pixels[i][1]), 2);
+    }
+    CHECK(square < 0.04 * norm);
 }
 
 }  // namespace
 
-TEST_CASE("Ctrl-C writes the passes completed so far, with their true sample count") {
-    expect_passes_so_far(SIGINT, 130);
+TEST_CASE("Ctrl-C writes the samples so far, and says how many they are") {
+    expect_samples_so_far(SIGINT, 130);
 }
 
 TEST_CASE("SIGTERM and SIGHUP do what Ctrl-C does, and the exit status tells them apart") {
-    expect_passes_so_far(SIGTERM, 143);
-    expect_passes_so_far(SIGHUP, 129);
+    expect_samples_so_far(SIGTERM, 143);
+    expect_samples_so_far(SIGHUP, 129);
 }
 
 TEST_CASE("a signal that was ignored from the start stays ignored") {
@@ -63,8 +67,8 @@ TEST_CASE("Ctrl-C is heard within a path, too") {
     folder.write("file.scene",
                  hall_of_mirrors("8192 1", 1000000));  // an hour a pass, 0.2 s a sample
     const auto before = folder.all();
-    for (const char* film : {"", "--film cvor --sampler independent --spp 1000"}) {
-        Process process(folder, "penumbra", split(std::string(film) + " -o a.pfm file.scene"));
+    for (const char* sets : {"", "--sets 3"}) {
+        Process process(folder, "penumbra", split(std::string(sets) + " -o a.pfm file.scene"));
         REQUIRE(process.listen(30, [](const Outcome& o) { return contains(o.err, "no light"); }));
         process.listen(0.3, [](const Outcome&) { return false; });
         process.interrupt();
@@ -105,7 +109,8 @@ TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no ter
 
 TEST_CASE("a second Ctrl-C kills at once, and leaves no file") {
     const Folder folder;
-    folder.write("file.scene", hall_of_mirrors("1000 1", 1000000));  // minutes a pass
+    // Minutes a pass; a film of so many pixels takes a moment to add up after it, too.
+    folder.write("file.scene", hall_of_mirrors("4096 2048", 1000000));
     const auto before = folder.all();
     auto never = [](const Outcome&) { return false; };
     Outcome o;

@@ -123,8 +123,6 @@ inline const char* const meeting = "infinite variance of light samples where emi
 inline const char* const rare = "fewer than one path in a hundred finds the light";
 inline const char* const idle = "roulette after the last scattering that counts changes nothing";
 inline const char* const unscattered = "no scattering: nothing but the sampler matters";
-inline const char* const no_choice = "one light, or so many that power decides anyhow";
-inline const char* const biased = "biased by design";
 
 struct Known {
     const char* name;
@@ -261,11 +259,14 @@ diffuse up 0.8 0.8 0.8
     text += quad({0.5, 1, -1}, {2, 0, 0}, {0, 0, 2}, "bright");
     text += triangle({-0.3, 2, 0.3}, {0.3, 2, -0.3}, {-0.3, 2, -0.3}, "strong");
     text += triangle({3, 1, 0}, {3, 2, 0}, {3, 1, 2}, "strong");
-    add({"unequal lights, two turned away", text,
-         0.8 / Pi *
-             (8 * sphere_irradiance(0.4, std::cos(50 * Pi / 180)) +
-              4 * polygon_irradiance(ceiling(0.5, 2.5, 1, 1))),
-         none, 4, 4});
+    const double unequal = 0.8 / Pi *
+                           (8 * sphere_irradiance(0.4, std::cos(50 * Pi / 180)) +
+                            4 * polygon_irradiance(ceiling(0.5, 2.5, 1, 1)));
+    add({"unequal lights, two turned away", text, unequal, none, 4, 4});
+    // So many that each is chosen by its power.
+    for (const double left : {1.0, 2.0, 3.0})
+        text += triangle({left, 3, 0}, {left, 3, 1}, {left + 1, 3, 0}, "lamp");
+    add({"seven unequal lights, five turned away", text, unequal, none, 8, 4});
 
     // Eclipse: E = pi cos (sin^2 of the light - sin^2 of what is before it).
     text = patch + sphere(at_angle(30, 3), 1.5, "lamp");

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "base/folder.h"
-#include "film/image.h"
 #include "film/png.h"
+#include "keep/read_pfm.h"
 
 namespace {
 

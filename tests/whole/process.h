@@ -16,7 +16,7 @@
 #include <sstream>
 
 #include "base/folder.h"
-#include "film/image.h"
+#include "keep/read_pfm.h"
 
 using Words = std::vector<std::string>;
 
@@ -241,7 +241,7 @@ inline bool all_finite(const Image& image) {
 
 struct Summary {
     std::string scene;
-    unsigned long long samples = 0, non_finite = 1;
+    double samples = 0;
     double seconds = -1, speed = -1;
     std::string error, stopped_by;  // as they are told
     bool interrupted = false, found = false;
@@ -250,7 +250,7 @@ struct Summary {
 // Of the line that tells of the samples; a bar may have stood where it stands.
 inline Summary summary(const std::string& err) {
     Summary s;
-    const size_t end = err.find('\n', err.find(" Mrays/s, "));
+    const size_t end = err.find('\n', err.find(" Mrays/s"));
     if (end == err.npos) return s;
     const size_t start = err.rfind('\n', end - 1) + 1;
     std::string line = err.substr(start, end - start);
@@ -259,9 +259,8 @@ inline Summary summary(const std::string& err) {
     s.scene = line.substr(0, name);
     line.erase(0, name);
     int read_to = 0;
-    const int read =
-        std::sscanf(line.c_str(), ": %llu samples per pixel, %lf s, %lf Mrays/s, %llu non-finite%n",
-                    &s.samples, &s.seconds, &s.speed, &s.non_finite, &read_to);
+    const int read = std::sscanf(line.c_str(), ": %lf samples per pixel, %lf s, %lf Mrays/s%n",
+                                 &s.samples, &s.seconds, &s.speed, &read_to);
     line.erase(0, size_t(read_to));
     auto cut = [&](const std::string& words) {
         const bool has = line.ends_with(words);
@@ -273,7 +272,7 @@ inline Summary summary(const std::string& err) {
         if (cut(" (stopped by " + std::string(by) + ")")) s.stopped_by = by;
     if (line.starts_with(", ")) s.error = line.substr(2);
     const bool told = s.error.starts_with("d_rel ") || s.error.starts_with("error not known: ");
-    s.found = read == 4 && (s.samples > 0 ? told : line.empty());
+    s.found = read == 3 && (s.samples > 0 ? told : line.empty());
     return s;
 }
 

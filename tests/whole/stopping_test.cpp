@@ -1,6 +1,7 @@
 // whole/stopping_test.cpp  --error stops at what was asked for, on films whose truth is known
 #include <cmath>
 
+#include "film/error.h"
 #include "film/fill.h"
 #include "oracle/expect.h"
 #include "path/sampler.h"
@@ -20,34 +21,29 @@ rgb truth(int x, int y) {
 }
 
 struct Stop {
-    double ratio;  // true d_rel / E
-    uint64_t samples;
+    double ratio;      // true d_rel / E
+    uint64_t samples;  // of each replication
 };
 
 // As renders with --error do.
 Stop stop_of(SamplerKind kind, uint64_t seed, double asked) {
     const Pattern pattern = make_pattern(kind, seed, 1, 0);
-    Film<MeanPixel> film(size);
-    auto add = [&](uint64_t n) {
-        whole_pass(film, n, [&](int x, int y, uint64_t i, uint32_t set) {
-            const uint64_t pixel = uint64_t(y) * uint64_t(size.width) + uint64_t(x);
-            return L(x, y, Sampler(pattern, pixel, i, set).get2(0));
-        });
+    const Radiance sample = [&](const PixelSample& s, uint64_t&) {
+        const uint64_t pixel = uint64_t(s.y) * uint64_t(size.width) + uint64_t(s.x);
+        return L(s.x, s.y, Sampler(pattern, pixel, s.i, s.set).get2(0));
     };
-    add(samples_before_sets);
-    film.add_sets(sets_where_noise_is(film.noise(), size, seed));
-    add(0);
+    Film film = filled(size, 0, pilot_samples, sample);
     while (!is_small_enough(error_of(film), asked))
-        add(next_look(film.samples(), samples_before_sets, 1) - film.samples());
-    const Image& image = film.image();
+        fill(film, next_check(film.least_taken(), pilot_samples, 1), sample);
+    const Image image = image_of(film);
     double square = 0, norm = 0;
-    for (size_t i = 0; i < film.number_of_pixels(); ++i)
+    for (size_t i = 0; i < film.pixels(); ++i)
         for (size_t c = 0; c < 3; ++c) {
             const rgb f = truth(int(i % size_t(size.width)), int(i / size_t(size.width)));
             square += std::pow(double(image.pixels[i][c]) - double(f.*axis[c]), 2);
             norm += std::pow(double(f.*axis[c]), 2);
         }
-    return {std::sqrt(square / norm) / asked, film.samples()};
+    return {std::sqrt(square / norm) / asked, film.least_taken()};
 }
 
 // P(at least k of n), each with a probability of p.
@@ -93,7 +89,7 @@ TEST_CASE("true d_rel / E at a stop: median in [0.95, 1], 95 % of runs below 1.0
         int low = 0, high = 0, above = 0;
         for (uint64_t seed = 1; seed <= runs; ++seed) {
             const Stop s = stop_of(kind, seed, E);
-            REQUIRE(s.samples > samples_before_sets);
+            REQUIRE(s.samples > pilot_samples);
             low += s.ratio<0.95, high += s.ratio> 1, above += s.ratio > 1.05;
         }
         expect_at_most("below 0.95", low, runs, 0.5);

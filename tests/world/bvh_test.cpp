@@ -1,308 +1,103 @@
-// world/bvh_test.cpp  a tree answers as a loop over all shapes does, bit for bit, only sooner
+// world/bvh_test.cpp  the plain tree answers as a loop over all shapes does, only sooner
 #include "world/bvh.h"
 
-#include "world/hard_rays.h"
+#include "world/tree_cases.h"
 
-namespace {
+TEST_CASE_TEMPLATE_INVOKE(random_and_awkward, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(one_shape, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(slivers_edge_on, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(all_sizes, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(coincident, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(identical, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(exponentially_spaced, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(beyond_float, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(infinitely_far, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(empty_and_nan, Bvh);
+TEST_CASE_TEMPLATE_INVOKE(scaled_scene, Bvh);
 
-using Comparison = ComparisonOf<Bvh>;
-
-// Nodes opened and shapes looked at, in the mean of 10000 rays from a sphere of radius 1.
-struct Work {
-    double nodes = 0, shapes = 0;
-};
-Work work_of_rays(const Bvh& tree, Dice& random) {
-    const int rays = 10000;
-    Work mean;
-    for (int i = 0; i < rays; ++i) {
-        const vec3 o = random.direction();
-        const Bvh::Work work = tree.work({o, random.direction()});
-        mean.nodes += double(work.nodes) / rays, mean.shapes += double(work.shapes) / rays;
-    }
-    return mean;
-}
-
-}  // namespace
-
-TEST_CASE("closest and occluded equal a loop over all shapes, on random and on awkward rays") {
-    Dice random{{1}};
-    const Shapes scenes[] = {
-        soup(30, 0, random), soup(15, 15, random), soup(0, 20, random), ball(2), grid(2), room(),
-        soup(5, 0, random)};
-    for (const Shapes& scene : scenes) {
-        Comparison c{scene};
-        judge(c, int(5000000 / (20 + scene.size())), 1, random);
-        CAPTURE(scene.size());
-        CHECK(c.different == 0);
-        CHECK(c.hits > c.rays / 5);
-        CHECK(c.hits < c.rays);
-    }
-}
-
-TEST_CASE("a tree of one shape is hit exactly when the shape is, from far away too") {
-    // From there rounding moves a ray by more than the padding of a box, which is in proportion to
-    // the shape: the slabs must be wide enough.  Planes through 0 are not even rounded to float.
-    Dice random{{2}};
-    int hits = 0, different = 0;
-    for (int i = 0; i < 60000; ++i) {
-        Shape s = i % 8 == 0 ? soup(0, 1, random)[0] : triangle(1, random);
-        if (i % 4 > 0) s.a = {}, s.b.x = s.b.y = s.c.y = 0;
-        const Shapes scene{s};
-        Comparison c{scene};
-        const Shape tip = s.is_sphere() ? s : Shape{s.a, s.a, s.a};
-        const real reach = random.decades(0, 7);
-        for (int k = 0; k < 2; ++k) c.judge(aimed(s, at_edge, reach, random));
-        for (int k = 0; k < 8; ++k) c.judge(aimed(tip, near_axis, reach, random));
-        different += c.different;
-        hits += c.hits;
-    }
-    CHECK(different == 0);
-    CHECK(hits > 200000);
-}
-
-TEST_CASE("slivers seen edge-on or at their ends are hit in their boxes or not at all") {
-    Dice random{{3}};
-    int hits = 0, different = 0;
-    for (int i = 0; i < 200; ++i) {
-        const Shapes scene = slivers(10, random);
-        Comparison c{scene};
-        for (int k = 0; k < 2000; ++k)
-            c.judge(aimed(scene[random.below(10)], k % 2 ? beside : in_plane, 1, random));
-        different += c.different;
-        hits += c.hits;
-    }
-    CHECK(different == 0);
-    CHECK(hits > 20000);
-}
-
-TEST_CASE("tree and loop agree at coordinates of 1e8, of 1e-8, and of all sizes at once") {
-    Dice random{{4}};
-    Shapes mixture;
-    for (int i = 0; i < 60; ++i)
-        mixture.push_back(scaled(soup(i % 2, 1 - i % 2, random), random.decades(-8, 8))[0]);
-    for (int i = 0; i < 60; ++i) {  // small ones far out
-        Shape s = soup(i % 2, 1 - i % 2, random)[0];
-        const vec3 far = random.decades(0, 8) * random.direction();
-        s = {s.a + far, s.b + far, s.c + far, s.r};
-        mixture.push_back(s);
-    }
-    for (real size : {real(1e8), real(1e-8)})
-        for (const Shapes& scene : {soup(30, 30, random), room(), grid(2)}) {
-            const Shapes placed = scaled(scene, size);
-            Comparison c{placed};
-            judge(c, 10000, size, random);
-            CHECK(c.different == 0);
-            CHECK(c.hits > c.rays / 5);
-        }
-    Comparison c{mixture};
-    for (int exponent = -8; exponent <= 8; ++exponent)
-        judge(c, 4000, std::pow(real(10), real(exponent)), random);
-    CHECK(c.different == 0);
-    CHECK(c.hits > c.rays / 5);
-}
-
-TEST_CASE("of coincident shapes the first is hit, wherever the tree has put it") {
+TEST_CASE("a ray looks at few nodes and shapes of the plain tree: nearest first, none behind") {
     Dice random{{5}};
-    int wrong = 0;
-    for (int i = 0; i < 300; ++i) {
-        // 12 shapes, 5 times over, in any order: the least index is that of the first copy.
-        const Shapes originals = soup(6, 6, random);
-        Shapes scene;
-        for (int k = 0; k < 60; ++k) scene.push_back(originals[random.below(12)]);
-        auto copy = [](const Shape& s, const Shape& t) {
-            return s.a == t.a && s.b == t.b && s.c == t.c && s.r == t.r;
-        };
-        const Bvh tree(scene);
-        for (int k = 0; k < 100; ++k) {
-            const auto hit = tree.closest({2 * random.direction(), random.direction()});
-            if (!hit) continue;
-            for (uint32_t first = 0; first < hit->id; ++first)
-                wrong += copy(scene[first], scene[hit->id]);
-        }
-    }
-    CHECK(wrong == 0);
+    const MeanWork small = work_of_rays<Bvh>(many(20000, real(0.03), random), random);
+    const MeanWork large = work_of_rays<Bvh>(many(2000, 1, random), random);
+    CAPTURE(small.nodes);
+    CAPTURE(small.shapes);
+    CAPTURE(large.nodes);
+    CAPTURE(large.shapes);
+    CHECK(small.nodes < 63);
+    CHECK(small.shapes < 1);
+    CHECK(large.nodes < 510);
+    CHECK(large.shapes < 193);
 }
 
-TEST_CASE("1e5 identical triangles: at most 128 bytes of nodes each, and the first is hit") {
-    Dice random{{6}};
-    const Shape t = triangle(1, random);
-    const Shapes scene(100000, t);
-    const Bvh tree(scene);
-    CHECK(tree.bytes() < scene.size() * (sizeof(Shape) + 128));
-    CHECK(tree.bytes() >= scene.size() * 3 * sizeof(vec3));
-    int wrong = 0, hits = 0;
-    for (int i = 0; i < 120; ++i) {
-        Ray ray = aimed(t, i % aims, 1, random);
-        auto expected = nearest({t}, ray);
-        wrong += !same(tree.closest(ray), expected);
-        wrong += tree.occluded(ray) != expected.has_value();
-        hits += expected.has_value();
-        if (!expected) continue;
-        ray.tmax = expected->t;
-        wrong += !same(tree.closest(ray), expected);
-    }
-    CHECK(wrong == 0);
-    CHECK(hits > 10);
-}
-
-TEST_CASE("1e5 triangles at exponentially spaced places do not exhaust the stack") {
-    // As far as the cubes of coordinates are numbers; in double beyond the floats of the boxes.
-    const real octaves = sizeof(real) == 8 ? 300 : 40;
+TEST_CASE("boxes are entered where a point within comes first, or missed if none does") {
+    // Of points along the ray, which are in the box and which are not.
     Dice random{{7}};
-    Shapes scene;
-    const int n = 100000;
-    for (int i = 0; i < n; ++i) {
-        const real x = std::exp2(octaves * (2 * real(i) / n - 1));
-        scene.push_back({{x, -x, -x}, {x, x, -x}, {x, 0, x}});
-    }
-    Comparison c{scene};
-    for (int i = 0; i < 12; ++i) {
-        const real x = std::exp2(octaves * random(-1, 1));
-        const vec3 skew = unit({1, random(-1, 1) / 4, random(-1, 1) / 4});
-        for (vec3 d : {vec3{1, 0, 0}, vec3{-1, 0, 0}, skew, -skew, random.direction()}) {
-            c.judge({{0, 0, 0}, d});
-            c.judge({{x, x / 9, x / 7}, d});
-            c.judge({{2 * scene.back().a.x, 0, 0}, d});
+    int wrong = 0, met = 0;
+    for (int i = 0; i < 3000; ++i) {
+        Box b;
+        for (int k = 0; k < 2; ++k) b.add(random.direction(random(0, 2)));
+        const vec3 o = random.direction(random(0, 3)), to = random.direction(random(0, 2));
+        const Ray ray{o, unit(to - o), random(0, 6)};
+        const auto t = enter_box(b, Probe(ray));
+        met += t.has_value();
+        auto depth = [&](real s) {  // how far outside the box the point at s is
+            const vec3 p = ray.o + s * ray.d;
+            return std::max({b.lo.x - p.x, p.x - b.hi.x, b.lo.y - p.y, p.y - b.hi.y, b.lo.z - p.z,
+                             p.z - b.hi.z});
+        };
+        const real close = 64 * ulp;
+        for (int k = 0; k <= 100; ++k) {
+            const real s = ray.tmax * real(k) / 100;
+            wrong += depth(s) < -close && !(t && *t <= s + close);
         }
+        if (t) wrong += !(*t >= 0 && *t <= ray.tmax && depth(*t) < close);
+        if (t && *t > 0) wrong += depth(*t) < -close;
     }
-    CHECK(c.different == 0);
-    CHECK(c.hits > c.rays / 4);
+    CHECK(wrong == 0);
+    CHECK(met > 300);
+    CHECK(met < 2700);
 }
 
-TEST_CASE("a ray opens 7.8 nodes among 20000 triangles: nearest first, none behind the hit") {
-    Dice random{{8}};
-    Shapes scene;
-    for (int i = 0; i < 20000; ++i) scene.push_back(triangle(real(0.03), random));
-    const Bvh tree(scene);
-    const Work work = work_of_rays(tree, random);
-    // 7.80 and 11.9.  In the order of the node 9.0 and 15.1; boxes behind the hit, too, 8.1
-    // and 12.3.
-    CHECK(work.nodes < 7.9);
-    CHECK(work.shapes < 12.1);
+TEST_CASE("nearest_hit looks for what is nearer than the best that it is given, and at that only") {
+    std::vector<TreeNode> nodes(3);
+    nodes[0].first = 1;
+    nodes[1].box.lo.x = 1, nodes[1].count = 1;
+    nodes[2].box.lo.x = 2, nodes[2].count = 1;
+    int seen = 0;
+    auto enter = [](const Box& b) { return std::optional(std::min(b.lo.x, real(2))); };
+    auto look = [&](const TreeNode& leaf, Hit best) {
+        ++seen;
+        return best.t < leaf.box.lo.x + 1 ? best : Hit{leaf.box.lo.x + 1, uint32_t(leaf.box.lo.x)};
+    };
+    nodes[0].box.lo.x = 0;
+    CHECK(nearest_hit(nodes, Hit{}, enter, look).id == 1);
+    CHECK(seen == 2);  // the second begins where the first hit is
+    CHECK(nearest_hit(nodes, Hit{real(1.5)}, enter, look).t == real(1.5));
+    CHECK(seen == 3);
+    CHECK(nearest_hit(nodes, Hit{real(0.5)}, enter, look).t == real(0.5));
+    CHECK(seen == 3);
 }
 
-TEST_CASE("a ray looks at 411 of 2000 large triangles, whose boxes overlap: none behind the hit") {
-    // Here most boxes that begin before a hit hold what is hit behind it.
-    Dice random{{8}};
-    Shapes scene;
-    for (int i = 0; i < 2000; ++i) scene.push_back(triangle(1, random));
-    const Bvh tree(scene);
-    const Work work = work_of_rays(tree, random);
-    // 35.6 and 410.5; in the order of the node 37.9 and 435.
-    CHECK(work.nodes < 35.75);
-    CHECK(work.shapes < 414);
-}
-
-TEST_CASE("a tree takes up 90 bytes a triangle at most in double, 54 in float") {
-    // 9 numbers, an index, and 14 bytes of nodes, which are as large in both.
-    const size_t most = 9 * sizeof(real) + 4 + 14;
-    Dice random{{10}};
-    Shapes small, large;
-    for (int i = 0; i < 20000; ++i) {
-        small.push_back(triangle(real(0.03), random));
-        large.push_back(triangle(1, random));
-    }
-    for (const Shapes& scene : {ball(6), grid(8), small, large}) {
-        CAPTURE(scene.size());
-        CHECK(Bvh(scene).bytes() < scene.size() * most);
-        CHECK(Bvh(scene).bytes() > scene.size() * (9 * sizeof(real) + 4));
-    }
-}
-
-TEST_CASE("triangles of 1e-30 are hit by rays so nearly along an axis that 1/d is beyond float") {
-    if (sizeof(real) == 4) return;
-    const real distance = real(1e10), size = real(1e-30);
-    Shapes scene;
-    for (int i = 0; i < 20; ++i) {
-        const real y = real(i) * size;
-        scene.push_back({{0, y, -size}, {0, y + size, -size}, {0, y, size}});
-    }
-    Comparison c{scene};
-    for (int i = 0; i < 20; ++i)
-        c.judge({{-distance, 0, 0}, {1, (real(i) + real(0.3)) * size / distance, 0}});
-    CHECK(c.different == 0);
-    CHECK(c.hits == 20);
-}
-
-TEST_CASE("rays from infinitely far, as floats see it, meet what there is and nothing else") {
-    // Absent children's boxes are empty, but such a ray meets even those.
-    Dice random{{11}};
-    const real far = sizeof(real) == 8 ? real(1e300) : real(1e38);
-    for (int n : {1, 3, 9, 20}) {
-        const Shapes scene = soup(n, n % 3, random);
-        Comparison c{scene};
-        for (int octant = 0; octant < 8; ++octant)
-            for (real size : {real(1), far}) {
-                const vec3 o =
-                    size * vec3{octant & 1 ? real(1) : real(-1), octant & 2 ? real(1) : real(-1),
-                                octant & 4 ? real(1) : real(-1)};
-                for (int i = 0; i < 50; ++i) c.judge({o, random.direction()});
-                c.judge({o, unit({-o.x / size, -o.y / size, -o.z / size})});
-            }
-        CHECK(c.different == 0);
-    }
-}
-
-TEST_CASE("an empty tree is missed, and a ray that is not a number misses every tree") {
-    const real nan = std::numeric_limits<real>::quiet_NaN();
-    const Ray ray{{0, 0, 3}, {0, 0, -1}};
-    for (const Bvh& tree : {Bvh{}, Bvh(Shapes{})}) {
-        CHECK(!tree.closest(ray));
-        CHECK(!tree.occluded(ray));
-        CHECK(tree.bytes() == 0);
-    }
-    const Shapes scene = room();
-    const Bvh tree(scene);
-    CHECK(tree.closest(ray));
-    for (const Ray& bad : {Ray{{0, 0, 3}, {nan, nan, nan}}, Ray{{nan, 0, 3}, {0, 0, -1}}}) {
-        CHECK(!tree.closest(bad));
-        CHECK(!tree.occluded(bad));
-    }
-}
-
-TEST_CASE("a scene 2^20 times as large is hit at 2^20 times the distance, bit for bit") {
-    Dice random{{9}};
-    const real k = std::ldexp(real(1), 20);
-    const Shapes scene = soup(50, 50, random), large = scaled(scene, k);
-    const Bvh tree(scene), large_tree(large);
-    int different = 0, hits = 0;
-    for (int i = 0; i < 60000; ++i) {
-        const Ray ray = aimed(scene[random.below(scene.size())], i % aims, 1, random);
-        auto hit = tree.closest(ray);
-        hits += hit.has_value();
-        if (hit) hit->t *= k;
-        different += !same(hit, large_tree.closest({ray.o * k, ray.d}));
-    }
-    CHECK(different == 0);
-    CHECK(hits > 20000);
-}
-
-TEST_CASE("below a depth of 32 nodes are halved, on spines to the left and to the right") {
-    // Sizes and places in powers of two: each split parts the few largest from all the others, of
-    // which there are 200 octaves.
-    for (real side : {real(1), real(-1)}) {
-        Shapes scene;
-        const int n = 2000;
-        for (int i = 0; i < n; ++i) {
-            const real x = std::exp2(real(200) * real(i) / n - 140);
-            scene.push_back({{side * x, -x, -x}, {side * x, x, -x}, {side * x, 0, x}});
+TEST_CASE("boxes are divided where areas times numbers are least, in any order of sizes") {
+    Dice random{{6}};
+    int wrong = 0;
+    for (int i = 0; i < 2000; ++i) {
+        std::vector<Box> boxes(2 + random.below(12));
+        for (Box& b : boxes) {
+            b.add(random.direction());
+            b.add(b.lo + random.decades(-3, 1) * vec3{random(0, 1), random(0, 1), random(0, 1)});
         }
-        const bvh::BinaryTree tree = bvh::build(scene);
-        // Children follow their parents.
-        std::vector<int> depth(tree.branches.size());
-        int deepest = 0, halved = 0, uneven = 0;
-        for (size_t i = 0; i < tree.branches.size(); ++i) {
-            const bvh::Branch& b = tree.branches[i];
-            deepest = std::max(deepest, depth[i]);
-            if (b.leaf()) continue;
-            depth[b.left] = depth[b.left + 1] = depth[i] + 1;
-            if (depth[i] < bvh::BinaryTree::sah_depth) continue;
-            ++halved;
-            uneven += tree.branches[b.left].count != b.count / 2;
-        }
-        CAPTURE(side);
-        CHECK(halved > 10);
-        CHECK(uneven == 0);
-        CHECK(deepest <= bvh::BinaryTree::depth);
+        auto cost = [&](size_t left) {
+            Box halves[2];
+            for (size_t k = 0; k < boxes.size(); ++k) halves[k >= left].add(boxes[k]);
+            return double(halves[0].half_area()) * double(left) +
+                   double(halves[1].half_area()) * double(boxes.size() - left);
+        };
+        const Division d = best_division(boxes);
+        double least = HUGE_VAL;
+        for (size_t k = 1; k < boxes.size(); ++k) least = std::min(least, cost(k));
+        wrong += !(d.left > 0 && d.left < boxes.size() && cost(d.left) <= least * (1 + 1e-5) &&
+                   std::abs(double(d.cost) - least) <= least * 1e-5);
     }
+    CHECK(wrong == 0);
 }

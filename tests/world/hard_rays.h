@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "world/bvh_build.h"
 #include "world/geometry.h"
 
 using Shapes = std::vector<Shape>;
@@ -68,10 +67,10 @@ inline vec3 corner(const Shape& s, Dice& random) {
     return p;
 }
 
-// A plane of the box of a shape as the tree stores it.
-inline real box_plane(const Shape& s, size_t a, Dice& random) {
-    const bvh::Planes p = bvh::planes(bvh::outwards(bounds(s)));
-    return random.below(2) ? real(-p[a]) : real(p[3 + a]);
+// The box of a shape as the tree stores it.
+template <class Tree>
+Box stored_box(const Shape& s) {
+    return bounds(s);
 }
 
 // A ray that has to do with the shape; distances are in units of `reach`.
@@ -86,7 +85,8 @@ enum Aim {
     along_axis,
     aims
 };
-inline Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
+template <class Tree>
+Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
     const vec3 anyhow = random.direction();
     const real distance = reach * random.decades(-1, 1);
     if (aim == anywhere) return {distance * random.direction(), anyhow};
@@ -111,9 +111,10 @@ inline Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
         d = unit(d);
     } else if (aim == across_axis || aim == along_axis) {  // zeros of both signs, box planes
         const size_t odd = random.below(3);
+        const Box box = stored_box<Tree>(s);
         for (size_t a = 0; a < 3; ++a) {
             if ((a == odd) == (aim == across_axis)) d.*axis[a] = random.sign() * 0;
-            if (random.below(2)) target.*axis[a] = box_plane(s, a, random);
+            if (random.below(2)) target.*axis[a] = (random.below(2) ? box.lo : box.hi).*axis[a];
         }
         d = unit(d);
     }
@@ -128,7 +129,7 @@ inline Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
 template <class Tree>
 void judge(ComparisonOf<Tree>& c, int rays, real reach, Dice& random) {
     for (int i = 0; i < rays; ++i)
-        c.judge(aimed(c.shapes[random.below(c.shapes.size())], i % aims, reach, random));
+        c.judge(aimed<Tree>(c.shapes[random.below(c.shapes.size())], i % aims, reach, random));
 }
 
 // ---- Scenes, about as large as 1 ----------------------------------------------------------------
@@ -201,4 +202,10 @@ inline Shapes room() {
 inline Shapes scaled(Shapes shapes, real k) {
     for (Shape& s : shapes) s = scaled(s, k);
     return shapes;
+}
+
+inline Shapes many(int n, real edge, Dice& random) {
+    Shapes scene;
+    for (int i = 0; i < n; ++i) scene.push_back(triangle(edge, random));
+    return scene;
 }

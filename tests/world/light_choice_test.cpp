@@ -27,6 +27,14 @@ Light light_of(Dice& dice, Light::Kind kind, real r) {
 }
 Light light_of(Dice& dice, real r) { return light_of(dice, Light::Kind(dice.below(4)), r); }
 
+// Lights alone.
+Scene scene_of(const std::vector<Light>& lights) {
+    Scene s;
+    s.lights = lights;
+    prepare(s);
+    return s;
+}
+
 // Irradiance by one light sample; nothing from below the horizon.
 real sends(const Light& l, vec3 p, vec3 m, vec2 u) {
     const auto s = sample_light(l, p, u);
@@ -41,23 +49,22 @@ TEST_CASE("one of a few lights is chosen as often as is said") {
         for (int place = 0; place < 4; ++place) {
             std::vector<Light> lights;
             for (size_t i = 0; i < n; ++i) lights.push_back(light_of(dice, real(0.5)));
-            const FewLights few = few_lights(lights);
-            REQUIRE(few.n == n);
-            const auto w = light_weights(few, dice.direction(dice(0, 3)), dice.direction());
-            if (!w) continue;
+            const Scene s = scene_of(lights);
+            const vec3 p = dice.direction(dice(0, 3)), m = dice.direction();
+            if (!light_weights(s.lights, p, m)) continue;
             real sum = 0;
-            for (size_t i = 0; i < n; ++i) sum += pick_of(*w, i);
+            for (size_t i = 0; i < n; ++i) sum += pick_of(s, i, p, m);
             CHECK(std::abs(sum - 1) < 8 * ulp);
             for (real u : {real(0), dice(0, 1), below_one}) {
-                const LightPick chosen = choose_light(*w, u);
+                const LightPick chosen = choose_light(s, p, m, u);
                 REQUIRE(chosen.light < n);
                 CHECK(chosen.pick > 0);
-                CHECK(chosen.pick == pick_of(*w, chosen.light));
+                CHECK(chosen.pick == pick_of(s, chosen.light, p, m));
             }
             oracle::Random random(seed_here());
             EXPECT(oracle::expect_choice(
-                       random, [&](real u) { return choose_light(*w, u).light; },
-                       [&](int i) { return pick_of(*w, size_t(i)); }, n),
+                       random, [&](real u) { return choose_light(s, p, m, u).light; },
+                       [&](int i) { return pick_of(s, size_t(i), p, m); }, n),
                    0.05);
         }
 }
@@ -69,20 +76,20 @@ TEST_CASE("a light weighs nothing only where it sends nothing") {
         const real r = dice.decades(-1, 1);
         const std::vector<Light> lights{light_of(dice, r), shining(point_light({}, {}), 1)};
         const vec3 p = dice.direction(dice(0, 4)), m = dice.direction();
-        const real weight = few_lights(lights).weights(p, m)[0];
+        const Light first = scene_of(lights).lights[0];
+        const real weighs = light_weight(first, p, m);
         real E = 0;
         for (int k = 0; k < 8; ++k) E += sends(lights[0], p, m, dice.pair());
         // So little is the error of a cosine near 0.
         const bool sends_some = E > 64 * ulp * power(lights[0]);
         sent += sends_some;
-        lost += sends_some && !(weight > 0);
+        lost += sends_some && !(weighs > 0);
         // All of it lies below the horizon, or it is turned away.
-        const LightBounds b = bounds_of(lights[0]);
-        const bool is_below = dot(m, b.centre - p) < -b.r - 64 * ulp;
+        const bool is_below = dot(m, first.centre - p) < -first.reach - 64 * ulp;
         const bool is_behind = lights[0].n != vec3{} && !lights[0].twosided &&
                                dot(lights[0].n, p - lights[0].p) < -64 * ulp * r;
         below += is_below, behind += is_behind;
-        wasted += (is_below || is_behind) && weight > 0;
+        wasted += (is_below || is_behind) && weighs > 0;
     }
     CHECK(sent > 10000);
     CHECK(lost == 0);
@@ -111,8 +118,9 @@ TEST_CASE("far away, lights weigh what they send") {
             grazing |= l.n != vec3{} && std::abs(dot(l.n, unit(to))) < real(0.25);
         }
         if (grazing || !(E[0] > 0 && E[1] > 0)) continue;
-        const FewLights::Each w = few_lights(lights).weights(p, m);
-        worst.see(std::abs(w[0] / w[1] * (E[1] / E[0]) - 1));
+        const std::vector<Light> both = scene_of(lights).lights;
+        const real w = light_weight(both[0], p, m) / light_weight(both[1], p, m);
+        worst.see(std::abs(w * (E[1] / E[0]) - 1));
         ++seen;
     }
     CHECK(seen > 2000);
@@ -123,13 +131,12 @@ TEST_CASE("the sphere about a polygon holds its corners, and touches two of a qu
     Dice dice;
     for (int i = 0; i < 1000; ++i)
         for (Light::Kind kind : {Light::Kind::quad, Light::Kind::triangle}) {
-            const Light l = light_of(dice, kind, 1);
-            const LightBounds b = bounds_of(l);
+            const Light l = scene_of({light_of(dice, kind, 1)}).lights[0];
             std::vector<vec3> corners{l.p, l.p + l.u, l.p + l.v};
             if (kind == Light::Kind::quad) corners.push_back(l.p + l.u + l.v);
             real most = 0;
-            for (vec3 corner : corners) most = std::max(most, length(corner - b.centre));
-            CHECK(std::abs(most - b.r) < 16 * ulp);
+            for (vec3 corner : corners) most = std::max(most, length(corner - l.centre));
+            CHECK(std::abs(most - l.reach) < 16 * ulp);
         }
 }
 
@@ -142,20 +149,21 @@ TEST_CASE("near or far, strong or faint: probabilities add up to 1") {
             lights.push_back(light_of(dice, dice.decades(-range, range) / 8));
             lights.back().L = lights.back().L * dice.decades(-range / 4, range / 4);
         }
-        const FewLights few = few_lights(lights);
+        const Scene s = scene_of(lights);
         const vec3 p = dice.below(8) ? dice.direction(dice.decades(-range, range)) : lights[0].p;
-        const auto w = light_weights(few, p, dice.direction());
-        if (!w) continue;
+        const vec3 m = dice.direction();
+        if (!light_weights(s.lights, p, m)) continue;
         real sum = 0;
-        for (size_t k = 0; k < 4; ++k) sum += pick_of(*w, k);
+        for (size_t k = 0; k < 4; ++k) sum += pick_of(s, k, p, m);
         REQUIRE(std::abs(sum - 1) < 8 * ulp);
     }
     // At the point itself; and where the square of a distance is infinite.
     const std::vector<Light> lights{shining(point_light({}, {}), 1),
                                     shining(sphere_light({1, 0, 0}, real(0.5)), 1)};
-    CHECK(light_weights(few_lights(lights), {}, {1, 0, 0}));
+    const Scene s = scene_of(lights);
+    CHECK(light_weights(s.lights, {}, {1, 0, 0}));
     const real beyond = std::numeric_limits<real>::max() / 4;
-    CHECK(!light_weights(few_lights(lights), {beyond, 0, 0}, {0, 1, 0}));
+    CHECK(!light_weights(s.lights, {beyond, 0, 0}, {0, 1, 0}));
 }
 
 TEST_CASE("a scene chooses by place if lights are few and of use, otherwise by power") {
@@ -165,43 +173,40 @@ TEST_CASE("a scene chooses by place if lights are few and of use, otherwise by p
     s.materials.push_back(lamp);
     add_sphere(s, {0, 0, 0}, 1, 0);
     prepare(s);
-    CHECK(s.few.n == 0);
     const vec3 p{1, 2, 3}, up{0, 1, 0}, down{0, -1, 0};
-    CHECK(pick_of(s, Pick::place, 0, p, up) == 1);
-    for (size_t n = 2; n <= FewLights::most + 1; ++n) {
+    CHECK(pick_of(s, 0, p, up) == 1);
+    for (size_t n = 2; n <= most_weighed + 1; ++n) {
         s.pick_cdf.clear();
         add_sphere(s, {real(n) * 4, real(n), 0}, real(1) / real(n), 0);
         prepare(s);
-        CHECK(s.few.n == (n <= FewLights::most ? n : 0));
         bool differs = false;
         for (int i = 0; i < 100; ++i) {
             const real u = (real(i) + real(0.5)) / 100;
-            const LightPick by_place = choose_light(s, Pick::place, p, down, u);
-            const LightPick by_power = choose_light(s, Pick::power, p, down, u);
-            CHECK(&s.lights[by_power.light] == &choose_light(s, u));
-            CHECK(by_power.pick == s.lights[by_power.light].pick);
-            CHECK(by_place.pick == pick_of(s, Pick::place, by_place.light, p, down));
-            CHECK(by_power.pick == pick_of(s, Pick::power, by_power.light, p, down));
-            differs |= by_place.light != by_power.light;
+            const LightPick by_place = choose_light(s, p, down, u);
+            CHECK(by_place.pick == pick_of(s, by_place.light, p, down));
+            const Light& by_power = choose_light(s, u);
+            differs |= &s.lights[by_place.light] != &by_power;
             // All of them are below the horizon.
-            const LightPick blind = choose_light(s, Pick::place, {0, 99, 0}, up, u);
-            CHECK(blind.light == by_power.light);
+            const LightPick blind = choose_light(s, {0, 99, 0}, up, u);
+            CHECK(&s.lights[blind.light] == &by_power);
             CHECK(blind.pick == by_power.pick);
-            CHECK(blind.pick == pick_of(s, Pick::place, blind.light, {0, 99, 0}, up));
+            CHECK(blind.pick == pick_of(s, blind.light, {0, 99, 0}, up));
         }
-        CHECK(differs == (n <= FewLights::most));
+        CHECK(differs == (n <= most_weighed));
     }
 }
 
 TEST_CASE("where what shines is so faint that sums of it are denormal, power decides") {
-    FewLights few;
-    few.n = 2;
-    few.round = {1, 1}, few.r2 = {1, 1};
-    few.y = {-5, 5};  // the strong one is below the horizon
-    few.strength = {1, std::numeric_limits<real>::denorm_min() * 100};
-    CHECK_FALSE(light_weights(few, {}, {0, 1, 0}));
-    few.strength[1] = std::numeric_limits<real>::min() * 1000;
-    const auto weights = light_weights(few, {}, {0, 1, 0});
-    REQUIRE(weights);
-    for (real u : {real(0), below_one}) CHECK(choose_light(*weights, u).light == 1);
+    // The strong one is below the horizon.
+    Scene s =
+        scene_of({shining(sphere_light({0, -5, 0}, 1), 1), shining(sphere_light({0, 5, 0}, 1), 1)});
+    s.lights[1].strength = std::numeric_limits<real>::denorm_min() * 100;
+    CHECK_FALSE(light_weights(s.lights, {}, {0, 1, 0}));
+    s.lights[1].strength = std::numeric_limits<real>::min() * 1000;
+    REQUIRE(light_weights(s.lights, {}, {0, 1, 0}));
+    for (real u : {real(0), below_one}) CHECK(choose_light(s, {}, {0, 1, 0}, u).light == 1);
+    // What is too faint for its part of the other to be a number still weighs something.
+    s = scene_of({shining(sphere_light({0, -5, 0}, 1), real(1e30)),
+                  shining(point_light({0, real(0.5), 0}, {}), std::numeric_limits<real>::min())});
+    for (real u : {real(0), below_one}) CHECK(choose_light(s, {}, {0, 1, 0}, u).light == 1);
 }

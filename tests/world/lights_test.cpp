@@ -136,24 +136,6 @@ TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slante
             }
 }
 
-TEST_CASE("by solid angle: rectangles alone; triangles and parallelograms keep to their area") {
-    oracle::Random random(seed_here());
-    const vec3 corner{-1, 2, 3}, u{2, 0, 0}, p{0, 0, 1};
-    for (const auto& [kind, v, may] : {std::tuple(Light::Kind::triangle, vec3{0, 0, -3}, false),
-                                       {Light::Kind::quad, vec3{1, 0, -3}, false},
-                                       {Light::Kind::quad, vec3{-1, 0, -3}, false},
-                                       {Light::Kind::quad, vec3{0, 0, -3}, true}}) {
-        Light by_area = polygon_light(kind, corner, u, v), by_angle = by_area;
-        by_area.twosided = by_angle.twosided = by_angle.by_angle = true;
-        const vec2 here{real(random()), real(random())};
-        const auto a = sample_light(by_area, p, here), b = sample_light(by_angle, p, here);
-        REQUIRE((a && b));
-        CHECK((a->wi == b->wi) == !may);
-        CHECK((a->pdf == b->pdf) == !may);
-        CHECK((pdf_light(by_area, p, a->at) == pdf_light(by_angle, p, a->at)) == !may);
-    }
-}
-
 TEST_CASE("polygon lights: the side that emits, both sides, edge-on") {
     Light l = polygon_light(Light::Kind::quad, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     const vec2 u{real(0.3), real(0.6)};
@@ -182,23 +164,18 @@ TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
     CHECK(!sample_light(l, {1, 2, 3}, {}));
 }
 
-TEST_CASE("what a light is made with: normal and density of a polygon, frame of a rectangle") {
+TEST_CASE("what a light is made with: normal and density of a polygon") {
     const vec3 p{1, 2, 3}, u{3, 0, 0}, v{0, 0, -2};
     const Light triangle = triangle_light(p, u, v), quad = quad_light(p, u, v);
     for (const Light& l : {triangle, quad}) {
         CHECK((l.p == p && l.u == u && l.v == v));
         CHECK(l.n == vec3{0, 1, 0});
-        CHECK((!l.by_angle && !l.twosided));
+        CHECK(!l.twosided);
     }
     CHECK(triangle.kind == Light::Kind::triangle);
     CHECK(triangle.pdf_area == real(1) / 3);
-    CHECK(triangle.rectangle.a == 0);
     CHECK(quad.kind == Light::Kind::quad);
     CHECK(quad.pdf_area == real(1) / 6);
-    const RectangleFrame& r = quad.rectangle;
-    CHECK((r.x == vec3{1, 0, 0} && r.y == vec3{0, 0, -1} && r.z == vec3{0, 1, 0}));
-    CHECK((r.a == 3 && r.b == 2));
-    CHECK(quad_light(p, u, {real(1e-3), 0, -2}).rectangle.a == 0);
 
     const Light sphere = sphere_light(p, 4);
     CHECK((sphere.kind == Light::Kind::sphere && sphere.p == p && sphere.r == 4));

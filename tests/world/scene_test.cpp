@@ -124,18 +124,22 @@ TEST_CASE("a quad is two triangles that share a diagonal and nothing else") {
 
 TEST_CASE("what has no area is dropped and counted") {
     Scene s = empty_scene();
-    CHECK(add_triangle(s, {0, 0, 0}, {1, 1, 1}, {2, 2, 2}, lamp) == 1);
-    CHECK(add_quad(s, {0, 0, 0}, {1, 1, 1}, {2, 2, 2}, lamp) == 2);
+    add_triangle(s, {0, 0, 0}, {1, 1, 1}, {2, 2, 2}, lamp);
+    CHECK(s.dropped == 1);
+    add_quad(s, {0, 0, 0}, {1, 1, 1}, {2, 2, 2}, lamp);
+    CHECK(s.dropped == 3);
     CHECK(s.shapes.empty());
     CHECK(s.lights.empty());
-    CHECK(add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey) == 0);
+    add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
+    CHECK(s.dropped == 3);
 }
 
 TEST_CASE("a box faces outwards and turns about y: x' = c x + s z, z' = c z - s x") {
     for (real degrees : {real(0), real(30), real(90), real(-135)}) {
         Scene s = empty_scene();
         const vec3 size{1, 2, 3}, move{10, 20, 30};
-        CHECK(add_box(s, size, degrees, move, grey) == 0);
+        add_box(s, size, degrees, move, grey);
+        CHECK(s.dropped == 0);
         REQUIRE(s.shapes.size() == 12);
         const real c = std::cos(degrees * pi / 180), sine = std::sin(degrees * pi / 180);
         auto turned = [&](vec3 v) { return vec3{c * v.x + sine * v.z, v.y, c * v.z - sine * v.x}; };

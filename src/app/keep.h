@@ -1,0 +1,16 @@
+// app/keep.h  2  films in files, if this program was built with the module keep
+#pragma once
+#include "film/film.h"
+
+#if __has_include("keep/keep.h")
+#include "keep/keep.h"
+#else
+struct Keeper {
+    Keeper(const std::string& path, const FilmOf&) {
+        if (!path.empty()) throw UserError("--keep: this program was built without src/keep");
+    }
+    Spent restore(Film&) const { return {}; }
+    void write_now_and_then(const Film&, const Spent&) {}
+    std::string write(const Film&, const Spent&, bool) { return ""; }
+};
+#endif

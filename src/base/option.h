@@ -1,0 +1,229 @@
+// base/option.h  3  a program's options: one table of rows
+//
+// Parsing, --help, suggestions, the first lines of --stats and the README's tables follow from the
+// rows.  A row holds functions that read and write the program's own variables.
+#pragma once
+#include <functional>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/json.h"
+#include "base/words.h"
+
+using Text = std::string_view;
+
+struct Option {
+    Text name;              // "--spp"
+    Text value;             // "N", or "none|nee|mis"; "": none
+    Text help;              // its meaning
+    std::string otherwise;  // the default; "": nothing
+    std::function<void(Text)> set;
+    std::function<std::string()> json = {};  // its value in --stats; none: not there
+    bool given = false;                      // by the user
+};
+using OptionTable = std::vector<Option>;
+
+// Throws UserError if there is no such row.
+inline Option& row(OptionTable& table, Text name) {
+    std::vector<Text> known;
+    for (Option& r : table) {
+        if (r.name == name) return r;
+        known.push_back(r.name);
+    }
+    throw UserError(unknown("option", name, known));
+}
+inline bool is_given(OptionTable& table, Text name) { return row(table, name).given; }
+inline OptionTable operator+(OptionTable a, const OptionTable& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+// Without the rows of these names.
+inline OptionTable without(OptionTable table, const std::vector<Text>& names) {
+    std::erase_if(table, [&](auto& r) {
+        return std::find(names.begin(), names.end(), r.name) != names.end();
+    });
+    return table;
+}
+
+// ---- Values -------------------------------------------------------------------------------------
+
+// The words of "none|nee|mis".
+inline std::vector<Text> words_of(Text alternatives) {
+    std::vector<Text> words;
+    for (size_t from = 0, to = 0; to != alternatives.npos; from = to + 1) {
+        to = alternatives.find('|', from);
+        words.push_back(alternatives.substr(from, to - from));
+    }
+    return words;
+}
+
+// One of several words, in the order of their enumeration; `at` holds the default.
+template <class Enum>
+Option one_of(Text name, Text words, Text help, Enum& at) {
+    auto set = [words, &at](Text text) {
+        const auto known = words_of(words);
+        const auto found = std::find(known.begin(), known.end(), text);
+        if (found == known.end()) throw UserError(unknown("value", text, known));
+        at = Enum(found - known.begin());
+    };
+    auto word = [words, &at] { return std::string(words_of(words)[size_t(at)]); };
+    return {name, words, help, word(), set, [word] { return json::string(word()); }};
+}
+
+// A whole number of [least, most].
+template <class Whole>
+Option whole_number(Text name, Text help, std::string otherwise, Whole& at, uint64_t least,
+                    uint64_t most) {
+    auto set = [&at, least, most](Text v) { at = Whole(parse_count(v, least, most)); };
+    return {name, "N", help, std::move(otherwise), set};
+}
+
+inline double parse_positive(Text text) {
+    const double x = parse_number(text);
+    if (!(x > 0)) throw UserError(in_quotes(text) + " is not positive");
+    return x;
+}
+
+// A relative error: "1%" or "0.01".
+inline double parse_error(Text text) {
+    const double E = parse_fraction(text);
+    if (!(E > 0 && E < 1)) throw UserError(in_quotes(text) + " is not between 0 and 100 %");
+    return E;
+}
+
+// The two parts of "256x128" or "10-19".
+inline std::array<Text, 2> parts_of(Text text, char between, Text form) {
+    const size_t at = text.find(between);
+    if (at == text.npos) throw UserError(in_quotes(text) + " is not " + std::string(form));
+    return {text.substr(0, at), text.substr(at + 1)};
+}
+
+// ---- Options of every program -------------------------------------------------------------------
+
+struct CommonOptions {
+    std::string scene;
+    std::vector<std::string> outputs;
+    double seconds = 0;  // to stop after; 0: no limit
+    uint64_t seed = 0;
+    unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+    std::optional<Size> size;        // default: the scene's
+    std::optional<double> exposure;  // default: the scene's
+    std::string stats;               // file, or empty
+    bool quiet = false, help = false;
+};
+
+inline Option output_row(CommonOptions& o, std::string otherwise) {
+    auto set = [&o](Text v) {
+        if (!v.ends_with(".png") && !v.ends_with(".pfm"))
+            throw UserError(in_quotes(v) + " ends neither in .png nor in .pfm");
+        o.outputs.emplace_back(v);
+    };
+    return {"-o", "FILE", "image to write, .png or .pfm; may be repeated", std::move(otherwise),
+            set};
+}
+
+inline OptionTable common_rows(CommonOptions& o) {
+    auto set_size = [&o](Text v) {
+        const auto [width, height] = parts_of(v, 'x', "WIDTHxHEIGHT");
+        o.size = parse_size(width, height);
+    };
+    Option seed = whole_number("--seed", "another seed, another noise", "0", o.seed, 0, UINT64_MAX);
+    seed.json = [&o] { return std::to_string(o.seed); };
+    Option threads = whole_number("--threads", "the image does not depend on it", "all cores",
+                                  o.threads, 1, 1024);
+    threads.json = [&o] { return std::to_string(o.threads); };
+    return {
+        seed,
+        threads,
+        {"--size", "WxH", "pixels, e.g. 256x128; they are square, the field of view is vertical",
+         "the scene's", set_size},
+        {"--exposure", "E", "factor from radiance to PNG", "the scene's",
+         [&o](Text v) { o.exposure = parse_positive(v); }},
+        {"--stats", "FILE", "write what was measured, as JSON", "", [&o](Text v) { o.stats = v; }},
+        {"--quiet", "", "print nothing but errors", "", [&o](Text) { o.quiet = true; }},
+        {"--help", "", "print this, as -h does", "", [&o](Text) { o.help = true; }}};
+}
+
+// ---- Words to options ---------------------------------------------------------------------------
+
+// Hands words that are no options, and all that follow "--", to `other`.  Throws UserError about
+// the first word that cannot be used.
+inline void parse_words(OptionTable& table, const std::vector<std::string>& words,
+                        const std::function<void(const std::string&)>& other) {
+    bool is_ended = false;
+    for (size_t i = 0; i < words.size(); ++i) {
+        const std::string word = words[i] == "-h" ? "--help" : words[i];
+        if (is_ended || !word.starts_with('-')) {
+            other(words[i]);
+            continue;
+        }
+        is_ended = word == "--";
+        if (is_ended) continue;
+        Option& r = row(table, word);
+        if (!r.value.empty() && i + 1 == words.size()) throw UserError(word + ": needs a value");
+        try {
+            r.set(r.value.empty() ? "" : words[++i]);
+            r.given = true;
+        } catch (const UserError& e) {
+            throw UserError(word + ": " + e.what());
+        }
+    }
+}
+
+// The same for a program of one scene.
+inline void parse_words(OptionTable& table, const std::vector<std::string>& words,
+                        CommonOptions& o) {
+    parse_words(table, words, [&o](const std::string& word) {
+        if (word.empty()) throw UserError("the scene's name is empty");
+        if (!o.scene.empty())
+            throw UserError("two scenes: " + in_quotes(o.scene) + " and " + in_quotes(word));
+        o.scene = word;
+    });
+    if (!o.help && o.scene.empty()) throw UserError("no scene given (try --help)");
+}
+
+// ---- Options to words ---------------------------------------------------------------------------
+
+// What the user asked for: --stats begins with it.
+inline json::Object asked_for(const OptionTable& table, const std::string& scene, Size size) {
+    json::Object object;
+    object.add("scene", json::string(scene));
+    object.add("width", std::to_string(size.width));
+    object.add("height", std::to_string(size.height));
+    for (const Option& r : table)
+        if (r.json) object.add(std::string(r.name.substr(2)), r.json());
+    return object;
+}
+
+// Appends text to a page, broken into lines of less than 80 columns; further lines are indented.
+inline void wrap(std::string& page, const std::string& text, size_t indent) {
+    std::istringstream words(text);
+    size_t column = page.size() - (page.rfind('\n') + 1);
+    for (std::string word; words >> word; column += word.size() + 1) {
+        if (column + word.size() >= 80) {
+            page.back() = '\n';
+            page.append(column = indent, ' ');
+        }
+        page += word + " ";
+    }
+    page.back() = '\n';
+}
+
+// A line or two for every option.
+inline std::string option_lines(const OptionTable& table) {
+    constexpr size_t indent = 24;
+    std::string page;
+    for (const Option& r : table) {
+        std::string line = "  " + std::string(r.name) + " " + std::string(r.value) + " ";
+        if (line.size() > indent) line.back() = '\n';
+        line.append(line.size() > indent ? indent : indent - line.size(), ' ');
+        page += line;
+        std::string text(r.help);
+        if (!r.otherwise.empty()) text += " (default: " + r.otherwise + ")";
+        wrap(page, text, indent);
+    }
+    return page;
+}

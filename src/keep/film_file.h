@@ -1,0 +1,134 @@
+// keep/film_file.h  1  .film files: a head that says what is in them, numbers, and a checksum
+//
+//     penumbra film 2                    what it is, and the version of this format
+//     bytes 00000000000000001536         of numbers, after the head
+//     checksum 0f1e2d3c4b5a6978          of all that follows this line
+//     scene 7dc0f03976e8ec38             KEY VALUE: what the writer says of them
+//                                        an empty line
+//     numbers, as memory holds them: little-endian
+#pragma once
+#include <bit>
+#include <sstream>
+
+#include "base/files.h"
+#include "base/rng.h"
+#include "film/film.h"
+
+static_assert(std::endian::native == std::endian::little,
+              "numbers are written as memory holds them");
+
+// FNV-1a (Fowler, Noll, Vo 1991).  A step is a bijection of the sum for any byte, and of the byte
+// for any sum: if one byte alone is damaged, the sum differs for certain.  If more are, it is the
+// same with a probability of about 2^-64.  No proof against forgery.
+struct Checksum {
+    uint64_t sum = 0xcbf29ce484222325;
+
+    void add(std::span<const std::byte> bytes) {
+        for (const std::byte b : bytes) sum = (sum ^ uint64_t(b)) * 0x100000001b3;
+    }
+    std::string text() const {
+        char text[20];
+        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(sum));
+        return text;
+    }
+};
+
+// The three lines that come first; they have one length.
+inline std::string first_lines(uint64_t bytes, const Checksum& checksum) {
+    const std::string digits = std::to_string(bytes);
+    return "penumbra film 2\nbytes " + std::string(20 - digits.size(), '0') + digits +
+           "\nchecksum " + checksum.text() + "\n";
+}
+
+// At any moment the file is the old one or the new one, though the process be killed or the power
+// fail.  Keys are words, and values have no line breaks.
+inline void write_film_file(const std::string& path, const Facts& head, const Pieces& numbers) {
+    std::string lines;
+    for (const auto& [key, value] : head) lines += key + " " + value + "\n";
+    lines += "\n";
+    Checksum checksum;
+    checksum.add(std::as_bytes(std::span(lines)));
+    uint64_t bytes = 0;
+    for (const auto& n : numbers) checksum.add(n), bytes += n.size();
+    lines = first_lines(bytes, checksum) + lines;
+    Pieces pieces = {std::as_bytes(std::span(lines))};
+    pieces.insert(pieces.end(), numbers.begin(), numbers.end());
+    write_file(path, pieces);
+}
+
+// Refuses with UserError, by the file's name, what was not written so.  It reads all of
+// the file once before it hands out anything, so that nothing of a damaged one is used.
+class FilmReader {
+public:
+    explicit FilmReader(const std::string& path) : path_(path), in_(open_file(path)) {
+        std::string head(1 << 16, '\0');  // none is longer
+        head.resize(read_some(std::as_writable_bytes(std::span(head))));
+        const size_t lines = check_first_lines(head), end = head.find("\n\n", lines - 1);
+        if (end == head.npos) refuse(cut_short);
+        left_ = std::strtoull(head.c_str() + head.find("\nbytes ") + 7, nullptr, 10);
+        in_.clear();
+        in_.seekg(0, std::ios::end);
+        const uint64_t there = uint64_t(in_.tellg()) - (end + 2);
+        if (there != left_) refuse(there < left_ ? cut_short : "is longer than it says");
+        if (first_lines(left_, checksum_from(lines)) != head.substr(0, lines))
+            refuse("is damaged (its checksum differs)");
+        go_to(end + 2);
+        std::istringstream in(head.substr(lines, end + 1 - lines));
+        for (std::string key, value; in >> key && in.get() && std::getline(in, value);)
+            head_.push_back({key, value});
+    }
+
+    [[noreturn]] void refuse(const std::string& why) const { throw UserError(path_ + ": " + why); }
+    const Facts& head() const { return head_; }
+    std::string said(std::string_view key) const {
+        for (const auto& [k, value] : head_)
+            if (k == key) return value;
+        return "not known";
+    }
+    // A number of [0, most] that begins a value, or stands `after` a character of it.
+    double number(std::string_view key, double most = 0x1p53, char after = '\0') const {
+        const std::string value = said(key);
+        const char* const from = value.data() + (after ? value.find(after) + 1 : 0);
+        double x = -1;
+        std::from_chars(from, value.data() + value.size(), x);
+        if (!(x >= 0 && x <= most)) refuse("its " + std::string(key) + " is " + in_quotes(value));
+        return x;
+    }
+    uint64_t left() const { return left_; }  // bytes of numbers to be read
+    void read(std::span<std::byte> numbers) {
+        if (numbers.size() > left_) refuse("holds less than it should");
+        if (read_some(numbers) != numbers.size()) refuse(cut_short);
+        left_ -= numbers.size();
+    }
+
+private:
+    static constexpr const char* cut_short = "is cut short";
+    const std::string path_;
+    std::ifstream in_;
+    Facts head_;
+    uint64_t left_ = 0;
+
+    size_t read_some(std::span<std::byte> bytes) { return read_from(in_, path_, bytes); }
+    void go_to(uint64_t byte) {
+        in_.clear();
+        in_.seekg(std::streamoff(byte));
+    }
+    // Returns where they end.
+    size_t check_first_lines(const std::string& head) const {
+        const std::string first = first_lines(0, {});
+        const size_t line = first.find('\n') + 1, magic = line - 2, end = head.find('\n');
+        if (!head.empty() && head.size() < first.size() && first.starts_with(head.substr(0, line)))
+            refuse(cut_short);
+        if (head.compare(0, magic, first, 0, magic) != 0 || end > magic + 20) refuse("no film");
+        if (end != line - 1 || head[magic] != first[magic])
+            refuse("of another version (" + head.substr(magic, end - magic) + ")");
+        return first.size();
+    }
+    Checksum checksum_from(uint64_t byte) {
+        Checksum sum;
+        std::vector<std::byte> piece(1 << 18);
+        go_to(byte);
+        while (const size_t n = read_some(piece)) sum.add(std::span(piece).first(n));
+        return sum;
+    }
+};

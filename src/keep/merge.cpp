@@ -1,0 +1,118 @@
+// keep/merge.cpp  4  build/merge: bands and seeds of one picture, rendered one by one, put together
+#include <deque>
+
+#include "app/outputs.h"
+#include "base/program.h"
+#include "keep/keep.h"
+
+namespace {
+
+constexpr const char* before_options =
+    "usage: merge [options] PART.film...\n\nMerges films of `penumbra --keep PART.film` into "
+    "one\npicture: bands (--rows A-B), and other seeds of them (--seed N).\n\n"
+    "Bands of fixed --sets are the picture of one render, bit for bit.  Those of\n--sets adaptive "
+    "choose by their own rows: unbiased, but another picture.\nSeeds are independent pictures: "
+    "each pixel is their mean, weighed by samples,\nwith the variance of that mean.\n\n";
+
+struct Part {
+    std::string path, seed, rows;
+    int first, last;  // of the rows
+};
+
+// From the top.  Throws UserError unless they make up the picture, the same rows by other seeds.
+void check_cover(const std::vector<Part>& parts, int height) {
+    int next = 0;
+    for (size_t k = 0; k <= parts.size(); ++k) {
+        const int first = k < parts.size() ? parts[k].first : height;
+        if (first > next)
+            throw UserError("rows " + std::to_string(next) + "-" + std::to_string(first - 1) +
+                            " are missing");
+        if (k == parts.size()) return;
+        const Part &p = parts[k], &before = parts[k > 0 ? k - 1 : 0];
+        if (p.rows == before.rows && p.seed != before.seed) continue;
+        if (first < next)
+            throw UserError(p.path + ": has rows " + p.rows + " by seed " + p.seed +
+                            ", which overlap those of " + before.path);
+        next = p.last + 1;
+    }
+}
+
+// The picture, row by row; memory holds it, and a row of each film.
+Image merge(const std::vector<Part>& parts, Size size, Run& run) {
+    ErrorTerms terms;
+    Image image(size.width, size.height);
+    for (size_t k = 0; k < parts.size();) {
+        const auto [path, seed, rows, first, last] = parts[k];
+        std::deque<FilmPixels> films;
+        for (; k < parts.size() && parts[k].rows == rows; ++k)
+            films.emplace_back(parts[k].path, Size{size.width, last - first + 1});
+        std::vector<Pixel> pixel(films.size());
+        for (int y = first; y <= last && !interrupted; ++y)
+            for (int x = 0; x < size.width; ++x) {
+                for (size_t s = 0; s < films.size(); ++s) {
+                    pixel[s] = films[s].next();
+                    run.spp += pixel[s].samples(), run.sets += double(pixel[s].sum.size());
+                }
+                const auto mean = terms.add(pixel);
+                image.at(x, y) = {float(mean[0]), float(mean[1]), float(mean[2])};
+            }
+    }
+    run.spp /= double(terms.pixels), run.sets /= double(terms.pixels);
+    run.error = terms.error();
+    return image;
+}
+
+// The program; returns its exit status, throws UserError and SystemError.
+int program(const std::vector<std::string>& words) {
+    CommonOptions o;
+    std::vector<std::string> paths;
+    OptionTable table = without(common_rows(o), {"--seed", "--threads", "--size"});
+    table.insert(table.begin(), output_row(o, "out/NAME.png, out/NAME.pfm"));
+    parse_words(table, words, [&](const std::string& word) { paths.push_back(word); });
+    if (o.help) return std::printf("%s%s", before_options, option_lines(table).c_str()), 0;
+    if (paths.empty()) throw UserError("no parts given (try --help)");
+
+    const FilmReader any(paths[0]);
+    Facts picture = any.head();  // but for the seed, and what follows it
+    const auto seed = std::ranges::find(picture, "seed", [](auto& fact) { return fact[0]; });
+    picture.erase(seed, picture.end());
+    const Size size{int(any.number("size", 65536)), int(any.number("size", 65536, 'x'))};
+    Run run;
+    run.sets = 0, run.stopped_by = "merge";
+    std::vector<Part> parts;
+    for (const std::string& path : paths) {
+        const FilmReader file(path);
+        check_agrees(file, picture, " as in " + paths[0]);
+        check_agrees(file, {{"precision", sizeof(real) == 4 ? "float" : "double"}});
+        if (file.said("complete") != "yes")
+            file.refuse("is not complete: go on by penumbra --keep " + path);
+        const double last = file.number("rows", size.height - 1, '-');
+        parts.push_back({path, file.said("seed"), file.said("rows"), int(file.number("rows", last)),
+                         int(last)});
+        const Spent spent = spent_in(file);
+        run.seconds += spent.seconds, run.cpu_seconds += spent.cpu_seconds, run.rays += spent.rays;
+    }
+    std::ranges::stable_sort(parts, {},
+                             [](const Part& p) { return std::tie(p.first, p.last, p.seed); });
+    check_cover(parts, size.height);
+    o.scene = any.said("name");
+    const auto outputs = outputs_of(o, "out/NAME", paths, {}, size);
+    catch_interrupt();
+    const Image image = merge(parts, size, run);
+    if (interrupted) return 128 + interrupted;  // and no file is written
+    write_images(outputs, image, o.exposure ? *o.exposure : any.number("exposure"));
+    json::Object stats = asked_for(table, o.scene, size);
+    add_run(stats, run, size);
+    if (!o.stats.empty()) write_file(o.stats, stats.text());
+    tell(o, summary(o.scene, run, false));
+    tell_written(o, outputs);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    return finished(program({argv + 1, argv + argc}));
+} catch (...) {
+    return failed();
+}

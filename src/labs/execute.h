@@ -1,0 +1,31 @@
+// labs/execute.h  1  one program runs another
+#pragma once
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/words.h"
+
+// Runs a program with its arguments, and waits for it; SystemError unless it succeeds.
+inline void execute(std::vector<std::string> words) {
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    if (const int error = ::posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ))
+        throw SystemError(words[0] + ": cannot run: " + std::strerror(error));
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            throw SystemError(words[0] + ": cannot wait for it: " + std::strerror(errno));
+    if (WIFSIGNALED(status))
+        throw SystemError(words[0] + " failed: killed by signal " +
+                          std::to_string(WTERMSIG(status)));
+    if (const int code = WEXITSTATUS(status))
+        throw SystemError(words[0] + " failed: exit status " + std::to_string(code));
+}

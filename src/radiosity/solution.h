@@ -1,0 +1,170 @@
+// radiosity/solution.h  8  from options to illumination maps, and what is told of them
+#pragma once
+#include "app/render.h"
+#include "radiosity/mesh_view.h"
+#include "radiosity/options.h"
+#include "radiosity/shooting.h"
+#include "radiosity/walks.h"
+
+// ---- The scene ----------------------------------------------------------------------------------
+
+struct Stage {
+    Scene scene;  // of triangles
+    Mesh mesh;
+    double H = 0;      // longest edge
+    double bytes = 0;  // of mesh and solution
+};
+
+// Longest edges, a part of the scene's diagonal unless --mesh says it; throws UserError if the
+// scene is none for illumination maps and their error, or its mesh none for this machine.
+inline double edge_length(const RadiosityOptions& o, const Scene& scene, const Bytes& bytes) {
+    if (const uint32_t line = line_of_white(scene); line && o.error > 0 && !is_random(o))
+        throw UserError("--error: " + o.scene + ":" + std::to_string(line) +
+                        ": reflects all light, so nothing bounds what is not yet sent: say "
+                        "--method particles");
+    check_diffuse(scene, o.scene);
+    const double H = o.mesh.value_or(double(diagonal(scene)) / (o.final_gather ? 16 : 32));
+    try {
+        check_fits(scene, H, bytes, bytes_of_machine());
+    } catch (const UserError& e) {
+        throw UserError((o.mesh ? "--mesh: " : "--mesh, by default: ") + std::string(e.what()));
+    }
+    return H;
+}
+
+inline Bytes bytes_of(const RadiosityOptions& o) {
+    return is_random(o) ? Particles::bytes() : Shooting::bytes();
+}
+
+inline Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
+    auto [facets, warnings] = faceted(scene, H);
+    for (const std::string& w : warnings) tell(o, o.scene + ":" + w);
+    Stage stage{std::move(facets), {}, H, bytes_of(o).of(sizes(scene, H))};
+    stage.mesh = make_mesh(stage.scene, H);
+    return stage;
+}
+
+// ---- Methods ------------------------------------------------------------------------------------
+
+// What a method has found; NaN: it does not say.
+struct Solution {
+    IlluminationMap map;
+    uint64_t shots = 0, particles = 0, rays = 0;
+    double unshot = NAN, seconds = 0;
+    MapError stated = {};  // of shooting, at most that
+    int signal = 0;        // that cut it short
+    bool empty() const { return shots == 0 && particles == 0; }
+};
+
+inline std::string shot(uint64_t shots, double unshot) {
+    return std::to_string(shots) + " shots, " + percent(unshot) + " unshot";
+}
+
+inline Solution shoot(const RadiosityOptions& o, const Stage& stage) {
+    const Shooter shooter = o.method == Method::shooting ? Shooter::element : Shooter::face;
+    Shooting solver(stage.scene, stage.mesh, shooter, o.threads);
+    Progress progress(o.seconds, o.quiet);
+    solver.run({o.unshot, o.seconds, o.shots, o.error}, [&](const Shooting& now) {
+        const double unshot = now.unshot();
+        // It falls by about the same factor from shot to shot.
+        double done = o.shots ? double(now.shots()) / double(o.shots) : 0;
+        if (o.unshot > 0 && unshot > 0)
+            done = std::max(done, std::log(unshot) / std::log(o.unshot));
+        if (o.error > 0) done = std::max(done, std::log(now.error()) / std::log(o.error));
+        progress.show(done, shot(now.shots(), unshot));
+    });
+    Solution s{solver.map()};
+    s.shots = solver.shots(), s.rays = solver.rays(), s.unshot = solver.unshot();
+    s.stated.error = solver.error();
+    s.seconds = progress.elapsed();
+    return s;
+}
+
+inline Solution walk(const RadiosityOptions& o, const Stage& stage, SamplerKind kind, uint64_t seed,
+                     const WalksTarget& target) {
+    const Pattern pattern = Particles::pattern(kind, seed, target.particles);
+    Walked w = walk_all(stage.scene, stage.mesh, pattern, target, o);
+    Solution s{std::move(w.map)};
+    s.particles = w.particles, s.rays = w.rays, s.stated = w.stated, s.seconds = w.seconds;
+    return s;
+}
+
+inline Solution solve(const RadiosityOptions& o, const Stage& stage) {
+    Solution s = is_random(o) ? walk(o, stage, o.sampler, o.seed, {o.particles, o.seconds, o.error})
+                              : shoot(o, stage);
+    s.signal = interrupted;
+    return s;
+}
+
+// Maps for final gathering: unless the user says how many particles, one for 16 paths, or a
+// sixteenth of the time, so that their noise, which all pixels share, is little beside that of the
+// paths (by `make indirect`).  Of an image that its error ends nobody knows the samples: as many as
+// the scene's at most.
+inline WalksTarget walks_of(const RadiosityOptions& o, const Scene& scene) {
+    if (o.particles > 0) return {o.particles, o.seconds};
+    uint64_t N = o.spp > 0 || o.seconds > 0 ? o.spp : scene.samples;
+    if (o.error > 0) N = o.spp > 0 ? std::min<uint64_t>(o.spp, scene.samples) : scene.samples;
+    const double pixels = double(scene.size.width) * double(scene.size.height);
+    return {uint64_t(std::ceil(pixels * double(N) / 16)), o.seconds / 16};
+}
+
+// ---- What is told -------------------------------------------------------------------------------
+
+// What ended the run; "": there was no light left, or none at all.
+inline std::string stopped_by(const RadiosityOptions& o, const Solution& s) {
+    if (s.signal) return "signal";
+    if (o.error > 0 &&
+        (is_random(o) ? ErrorTarget(o.error).met(s.stated) : s.stated.error <= o.error))
+        return "--error";
+    if (o.unshot > 0 && s.unshot <= o.unshot) return "--unshot";
+    if (o.shots > 0 && s.shots >= o.shots) return "--shots";
+    if (o.particles > 0 && s.particles >= o.particles) return "--particles";
+    return o.seconds > 0 && s.seconds >= o.seconds ? "--time" : "";
+}
+
+inline std::string summary(const RadiosityOptions& o, const Mesh& mesh, const Solution& s) {
+    std::string line = o.scene + ": " + std::to_string(mesh.elements()) + " triangles, " +
+                       (is_random(o) ? walked(s.particles, s.stated) : shot(s.shots, s.unshot));
+    if (!std::isfinite(s.stated.error))
+        line += ", error not known";
+    else if (!is_random(o))
+        line += ", error at most " + percent(s.stated.error);
+    if (std::isfinite(s.stated.error) && o.error > 0) line += " without that of the triangles";
+    line += ", " + fixed(s.seconds, 2) + " s, " + fixed(double(s.rays) / s.seconds * 1e-6, 2) +
+            " Mrays/s";
+    const std::string what = stopped_by(o, s);
+    if (s.signal) return line + " (interrupted)";
+    return o.error > 0 && !what.empty() ? line + " (stopped by " + what + ")" : line;
+}
+
+inline std::string encode_stats(const RadiosityOptions& o, const OptionTable& table,
+                                const Stage& stage, const Solution& s,
+                                const std::array<double, 3>& mean) {
+    json::Object object = asked_for(table, o.scene, stage.scene.size);
+    auto count = [](auto n) { return std::to_string(n); };
+    const std::string by = stopped_by(o, s);
+    for (const auto& [key, value] :
+         Facts{{"rays_per_pixel", count(o.rays * o.rays)},
+               {"mesh", json::number(stage.H)},
+               {"faces", count(stage.mesh.faces.size())},
+               {"elements", count(stage.mesh.elements())},
+               {"vertices", count(stage.mesh.vertices())},
+               {"bytes", json::number(stage.bytes)},
+               {"precision", sizeof(real) == 4 ? "\"float\"" : "\"double\""},
+               {"interrupted", json::truth(s.signal != 0)},
+               {"shots", count(s.shots)},
+               {"unshot", json::number(s.unshot)},
+               {"particles", count(s.particles)},
+               {"error", json::number(s.stated.error)},
+               {"error_uncertainty", json::number(s.stated.uncertainty)},
+               {"error_asked", o.error > 0 ? json::number(o.error) : "null"},
+               {"stopped_by", by.empty() ? "null" : json::string(by)},
+               {"seconds", json::number(s.seconds)},
+               {"cpu_seconds", json::number(cpu_seconds())},
+               {"rays", count(s.rays)},
+               {"mrays_per_second", json::number(double(s.rays) / s.seconds * 1e-6)},
+               {"mean_of_image", json::numbers(mean)},
+               {"peak_memory_bytes", count(peak_memory_bytes())}})
+        object.add(key, value);
+    return object.text();
+}

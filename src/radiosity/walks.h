@@ -1,0 +1,145 @@
+// radiosity/walks.h  7  particles walk until a target is met, with a bar
+#pragma once
+#include "app/report.h"
+#include "radiosity/particles.h"
+
+// How far it is, for the bar and for the line that stays.
+inline std::string walked(uint64_t particles, const MapError& e) {
+    std::string words = std::to_string(particles) + " particles";
+    if (std::isfinite(e.error)) words += ", error " + percent(e.error);
+    if (std::isfinite(e.uncertainty)) words += " ± " + percent(e.uncertainty);
+    return words;
+}
+
+// What walks stop after, whichever comes first; 0: no limit.
+struct WalksTarget {
+    uint64_t particles = 0;
+    double seconds = 0;
+    double error = 0;  // of the map, see Particles::stated
+};
+
+// When to look at the error: one that is asked for is met once it is reached with more than its own
+// uncertainty on top, for a run ends where its error looks small.
+class ErrorTarget {
+public:
+    explicit ErrorTarget(double error) : asked_(error) {}
+
+    // Particles of each batch before which nobody looks.  An error does not tell of light that no
+    // particle has carried: a part p of all power, on a part a of the surfaces, is p^2 / a of
+    // |E|^2, and goes unseen with the probability exp(-16 least p).
+    static constexpr uint64_t least = 4096;
+
+    bool met(const MapError& e) const { return at_most(e) <= asked_; }
+
+    // The part of all work that n particles are, by 1 / sqrt(n) (Halton's are faster).
+    double done(const MapError& e) const { return std::pow(asked_ / at_most(e), 2); }
+
+    // After a look at n, which was not enough: a little early by 1 / sqrt(n), so that a look that
+    // errs is followed by another one; by no less than 4 %, 2 % of the error, so that looks are few
+    // beside the walks.
+    uint64_t next(uint64_t n, const MapError& e) const {
+        const double more = std::clamp(0.9 / done(e), 1.04, 4.0);
+        return uint64_t(std::ceil(double(n) * more));
+    }
+
+private:
+    const double asked_;
+    // By measurement (reference/radiosity-error.md): a run's error is itself a draw, which spreads
+    // as the error of one of 16 batches would, so that 95 % of runs are to come to at most 1.05 E.
+    static constexpr double margin = 1.5;
+    static double at_most(const MapError& e) {
+        const double sum = e.error + margin * e.uncertainty;
+        return std::isnan(sum) ? double(INFINITY) : sum;
+    }
+};
+
+// A map that particles filled, and what it took.
+struct Walked {
+    IlluminationMap map;  // black if none walked
+    uint64_t particles = 0, rays = 0;
+    MapError stated = {};
+    double seconds = 0;
+};
+
+class Walks {
+public:
+    // All must outlive it, but for the target.
+    Walks(const Scene& scene, const Mesh& mesh, const Pattern& pattern, const WalksTarget& target,
+          const CommonOptions& o)
+        : target_(target),
+          o_(o),
+          least_(256 * pattern.period()),
+          particles_(scene, mesh, pattern),
+          bar_(target.seconds, o.quiet) {}
+
+    // Until the target is met, or `interrupted`.  Whole grids, but for the limit.
+    void run(uint64_t grid) {
+        const ErrorTarget enough(target_.error);
+        const uint64_t limit = Particles::of_each(target_.particles);
+        auto reachable = [&](uint64_t n) {
+            const uint64_t whole = (n + grid - 1) / grid * grid;
+            return limit ? std::min(whole, limit) : whole;
+        };
+        uint64_t to = target_.error > 0 ? reachable(ErrorTarget::least) : limit;
+        while (walk_to(to) && to != limit && !enough.met(look()))
+            to = reachable(enough.next(to, look()));
+    }
+
+    Walked walked() const {
+        Walked w{{}, particles_.particles(), particles_.rays(), particles_.stated()};
+        w.map = particles_.map();
+        w.seconds = bar_.elapsed();
+        return w;
+    }
+
+private:
+    const WalksTarget target_;
+    const CommonOptions& o_;
+    const uint64_t least_;  // of a pass: maps of fewer in a batch are nothing but noise
+    Particles particles_;
+    Progress bar_;
+    uint64_t of_ = 0;  // particles of each batch at which the error was that
+    MapError error_;
+
+    // The error as it is now.
+    const MapError& look() {
+        if (of_ != particles_.of_each()) error_ = particles_.stated(), of_ = particles_.of_each();
+        return error_;
+    }
+
+    // Brings every batch to so many; 0: as many as there is time for.  False: not all walked.
+    bool walk_to(uint64_t to) {
+        for (;;) {
+            const uint64_t n = particles_.of_each();
+            const double elapsed = bar_.elapsed();
+            const double a_period = n > 0 ? elapsed / double(n) * double(least_) : 0;
+            const uint64_t next = end_of_pass({to, target_.seconds}, least_, n, elapsed, a_period);
+            if (next == n) return n == to;
+            const bool complete = in_parallel(
+                Particles::batches, o_.threads,
+                [&](size_t batch) { particles_.add(batch, next - n); },
+                [&](double part) { show(double(n) + part * double(next - n)); });
+            if (!complete) return false;
+            // The error takes time of its own: it is asked for when the particles have doubled.
+            if (!o_.quiet && next >= 2 * of_ && bar_.elapsed() >= 1) look();
+        }
+    }
+
+    // In the meantime the error falls like 1 / sqrt(n).
+    void show(double each) {
+        const double n = each * Particles::batches, since = double(of_) / each;
+        double done = target_.particles ? n / double(target_.particles) : 0;
+        if (target_.error > 0 && of_ > 0)
+            done = std::max(done, ErrorTarget(target_.error).done(error_) / since);
+        const double falls = std::sqrt(since);
+        bar_.show(done, ::walked(uint64_t(n), {error_.error * falls, error_.uncertainty * falls}));
+    }
+};
+
+// Where there is no light, nothing walks.
+inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& pattern,
+                       const WalksTarget& target, const CommonOptions& o) {
+    Walks walks(scene, mesh, pattern, target, o);
+    if (!scene.lights.empty()) walks.run(pattern.period());
+    return walks.walked();
+}

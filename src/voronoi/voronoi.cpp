@@ -1,0 +1,97 @@
+// voronoi/voronoi.cpp  9  the program: images whose samples weigh as their Voronoi cells do
+#include "app/render.h"
+#include "base/program.h"
+#include "voronoi/weighted.h"
+
+namespace {
+
+constexpr const char* before_options =
+    "usage: voronoi [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) by "
+    "independent paths.\nThe samples of a pixel weigh as much as their Voronoi cells in it.\n\n";
+
+constexpr const char* after_options = R"(
+Weights take all samples of a replication, N / K of them, so that a run is one
+pass: it ends by --spp alone, and Ctrl-C leaves no image.
+
+Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
+2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
+129 SIGHUP).
+)";
+
+struct VoronoiOptions : Options {
+    Weighting weights = Weighting::cvor;
+};
+
+OptionTable voronoi_table(VoronoiOptions& o) {
+    o.sets = 2;
+    o.sampler = SamplerKind::independent;
+    OptionTable table = {
+        output_row(o, "out/NAME-voronoi.png, .pfm"),
+        one_of("--weights", "mc|vor|fvor|cvor|torus",
+               "equal; or areas of cells: bounded by random sites in a strip around the pixel, the "
+               "same without cells that leave the strip, clipped to the pixel, or on a torus",
+               o.weights),
+        whole_number("--sets", "replications of each pixel, whose spread tells the error", "2",
+                     o.sets, 1, most_sets)};
+    table[2].value = "K";
+    table[2].json = [&o] { return std::to_string(o.sets); };
+    for (Option& r :
+         without(option_table(o), {"-o", "--sets", "--sampler", "--time", "--error", "--keep",
+                                   "--rows", "--view", "--pixel", "--sample"}))
+        table.push_back(std::move(r));
+    row(table, "--spp").help = "samples a pixel, of all replications together";
+    row(table, "--spp").otherwise = "the scene's";
+    return table;
+}
+
+// One of the samples, none of which the film sees.
+Radiance path_of(const Options& o, const Scene& scene, const Pattern& pattern) {
+    return [&](const PixelSample& s, uint64_t& rays) {
+        const Start at = start(scene, pattern, s);
+        const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](auto&, const Step& e) {
+            if (interrupted) throw Interrupted();
+            rays += 1 + (e.direct.light != nullptr);
+        });
+        if (fits_float(L)) return L;
+        throw SystemError(in_words(s) + " is not finite (replay it by penumbra " +
+                          in_words(s, "--sampler independent --pixel ", " --sample ") + ")");
+    };
+}
+
+// The program; returns its exit status, throws UserError and SystemError.
+int voronoi_main(const std::vector<std::string>& words) {
+    VoronoiOptions o;
+    OptionTable table = voronoi_table(o);
+    parse_words(table, words, o);
+    if (o.help) {
+        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
+        return 0;
+    }
+    const ParsedScene parsed = load(o);
+    const Scene& scene = parsed.scene;
+    Plan plan = plan_of(o, scene);
+    plan.at_once = std::exchange(plan.target.samples, 1);
+    if (plan.at_once > 1 << 20) throw UserError("--spp: at most 1048576 samples a replication");
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.at_once);
+    const auto outputs = outputs_of(o, parsed, "-voronoi", plan.size);
+    catch_interrupt();
+    for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
+    WeightTroubles troubles;
+    const Radiance L = weighted_mean(scene, pattern, o.weights, plan.at_once,
+                                     path_of(o, scene, pattern), troubles);
+    Picture picture = render(o, plan, L);
+    Run& run = picture.run;
+    if (interrupted) run.spp = 0;
+    if (o.weights != Weighting::mc && o.weights != Weighting::torus) run.bias = "consistent";
+    run.more = {{"redraws", std::to_string(troubles.redraws)},
+                {"fallbacks", std::to_string(troubles.fallbacks)}};
+    return write_picture(o, table, scene, outputs, picture);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    return finished(voronoi_main({argv + 1, argv + argc}));
+} catch (...) {
+    return failed();
+}

@@ -1,0 +1,108 @@
+// wide/collapse.h  4  which branches of a binary tree become the children of wide nodes
+#pragma once
+#include "wide/build.h"
+
+namespace wide {
+
+// Of a node.
+struct Children {
+    std::array<uint32_t, lane_count> branch;
+    size_t count = 0;
+    void add(uint32_t b) { branch[count++] = b; }
+};
+
+// The cheapest wide tree by surface area that a binary one contains (Ylitie, Karras, Laine 2017,
+// "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", section 4.1): the cost
+// of a branch shared out among up to j children of a node is the least over how many of them go to
+// the left.  Time and memory O(n).
+class Collapse {
+public:
+    Collapse(const BinaryTree& tree, size_t largest_leaf)
+        : tree_(tree), largest_leaf_(largest_leaf), cost_(tree.branches.size()) {
+        const double whole = area(0);
+        // Children follow their parents.
+        for (uint32_t i = uint32_t(cost_.size()); i-- > 0;)
+            cost_[i] = costs(i, whole > 0 ? float(area(i) / whole) : 0);
+    }
+
+    bool is_leaf(uint32_t i) const { return cost_[i].leaf; }
+
+    // Those of the node that a branch becomes: 1 if it is itself a leaf, otherwise 2 to 8.  The
+    // largest come first: they are the likeliest to stop a ray that asks for any hit.
+    Children children(uint32_t i) const {
+        Children list;
+        if (is_leaf(i)) {
+            list.add(i);
+            return list;
+        }
+        const uint32_t left = tree_.branches[i].left;
+        const size_t k = share(left, lane_count);
+        collect(left, k, list);
+        collect(left + 1, lane_count - k, list);
+        const auto first = list.branch.begin(), end = first + ptrdiff_t(list.count);
+        std::sort(first, end, [&](uint32_t a, uint32_t b) {
+            return area(a) != area(b) ? area(a) > area(b) : a < b;
+        });
+        return list;
+    }
+
+private:
+    // As up to j + 1 children: costs in units of a visit to the root's node.
+    struct Costs {
+        std::array<float, lane_count - 1> as;
+        bool leaf;
+    };
+    // Measured: a visit to a leaf takes half as long as to a node, and a little more for each
+    // shape.
+    static constexpr float leaf_cost = 0.5f, shape_cost = 0.05f;
+
+    const BinaryTree& tree_;
+    size_t largest_leaf_;
+    std::vector<Costs> cost_;
+
+    double area(uint32_t i) const { return half_area(tree_.branches[i].box); }
+
+    float as(uint32_t i, size_t j) const { return cost_[i].as[j - 1]; }
+
+    // How many of j children go to the left one of two branches.
+    size_t share(uint32_t left, size_t j) const {
+        size_t best = 1;
+        for (size_t k = 2; k < j; ++k)
+            if (as(left, k) + as(left + 1, j - k) < as(left, best) + as(left + 1, j - best))
+                best = k;
+        return best;
+    }
+
+    Costs costs(uint32_t i, float relative_area) const {
+        const Branch& b = tree_.branches[i];
+        const bool may_be_leaf = b.count <= largest_leaf_ && !(i == 0 && tree_.mixed);
+        const float leaf =
+            may_be_leaf ? relative_area * (leaf_cost + shape_cost * float(b.count)) : HUGE_VALF;
+        Costs c;
+        if (b.leaf()) {
+            c.as.fill(leaf);
+            c.leaf = true;
+            return c;
+        }
+        auto shared = [&](size_t j) {
+            const size_t k = share(b.left, j);
+            return as(b.left, k) + as(b.left + 1, j - k);
+        };
+        const float node = relative_area + shared(lane_count);
+        c.leaf = leaf <= node;
+        c.as[0] = std::min(leaf, node);
+        for (size_t j = 2; j < lane_count; ++j) c.as[j - 1] = std::min(c.as[j - 2], shared(j));
+        return c;
+    }
+
+    void collect(uint32_t i, size_t j, Children& list) const {
+        while (j > 1 && as(i, j) == as(i, j - 1)) --j;
+        if (j == 1) return list.add(i);
+        const uint32_t left = tree_.branches[i].left;
+        const size_t k = share(left, j);
+        collect(left, k, list);
+        collect(left + 1, j - k, list);
+    }
+};
+
+}  // namespace wide

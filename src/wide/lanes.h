@@ -1,0 +1,92 @@
+// wide/lanes.h  1  eight numbers at once
+#pragma once
+#include <bit>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+#include "base/vec.h"
+
+// GCC warns that such types are passed otherwise where registers are narrower.  No library of ours
+// is affected: there is none.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace wide {
+
+// GCC and Clang compute with such types lane by lane, in whatever registers the processor has, and
+// round every lane as the same line rounds one number.
+inline constexpr size_t lane_count = 8;
+typedef float Floats __attribute__((vector_size(lane_count * sizeof(float))));
+typedef int32_t Keys __attribute__((vector_size(lane_count * sizeof(int32_t))));
+
+// As many reals as a register of AVX-512 or AVX2 holds (SSE2: two registers): GCC keeps wider
+// vectors in memory.
+#ifdef __AVX512F__
+inline constexpr size_t real_lanes = 8;
+#else
+inline constexpr size_t real_lanes = 32 / sizeof(real);
+#endif
+typedef real Reals __attribute__((vector_size(real_lanes * sizeof(real))));
+
+inline Floats all(float x) { return Floats{} + x; }
+
+template <class Vector>
+Vector smaller(const Vector& a, const Vector& b) {
+    return a < b ? a : b;
+}
+template <class Vector>
+Vector larger(const Vector& a, const Vector& b) {
+    return a > b ? a : b;
+}
+
+// The lanes for which a comparison holds: a byte for each, 1 or 0.
+class Lanes {
+public:
+    Lanes() = default;
+    template <class Comparison>
+    explicit Lanes(const Comparison& holds) {
+        constexpr size_t n = sizeof(holds) / sizeof(holds[0]);
+        typedef int8_t Bytes __attribute__((vector_size(n)));
+        using Word = std::conditional_t<n == 8, uint64_t, uint32_t>;
+        bytes_ = std::bit_cast<Word>(__builtin_convertvector(holds, Bytes)) & ones;
+    }
+    bool any() const { return bytes_ != 0; }
+    size_t first() const { return size_t(std::countr_zero(bytes_)) / 8; }
+    void drop_first() { bytes_ &= bytes_ - 1; }
+    // Those below n, which is 1 to 8, stay.
+    void keep(size_t n) { bytes_ &= ones >> (8 * (lane_count - n)); }
+
+private:
+    static constexpr uint64_t ones = 0x0101010101010101;
+    uint64_t bytes_;
+};
+
+inline Reals load(const real* x) {
+    Reals y;
+    std::memcpy(&y, x, sizeof y);
+    return y;
+}
+
+inline Reals fused(const Reals& a, const Reals& b, const Reals& c) {
+    Reals y;
+    for (size_t i = 0; i < real_lanes; ++i) y[i] = std::fma(a[i], b[i], c[i]);
+    return y;
+}
+
+// As of single numbers.
+inline Reals difference_of_products(const Reals& a, const Reals& b, const Reals& c,
+                                    const Reals& d) {
+    const Reals cd = c * d;
+    return fused(a, b, -cd) + fused(-c, d, cd);
+}
+
+// The least of eight: halves, quarters, and the last two.
+inline int32_t least(const Keys& k) {
+    typedef int32_t Half __attribute__((vector_size(sizeof(Keys) / 2)));
+    const Half four = smaller<Half>(__builtin_shufflevector(k, k, 0, 1, 2, 3),
+                                    __builtin_shufflevector(k, k, 4, 5, 6, 7));
+    const Half two = smaller<Half>(four, __builtin_shufflevector(four, four, 2, 3, 0, 1));
+    return smaller<Half>(two, __builtin_shufflevector(two, two, 1, 0, 3, 2))[0];
+}
+
+}  // namespace wide

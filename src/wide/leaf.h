@@ -1,0 +1,144 @@
+// wide/leaf.h  3  shapes in the order of the leaves, met by a ray a leaf at a time
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "wide/node.h"
+
+namespace wide {
+
+// What a ray meets of some triangles: t and, times det, v and w, in the lanes of hit.
+struct Meeting {
+    Lanes hit;
+    Reals t, v, w, det;
+};
+
+// Some of a leaf's triangles, from at on, as many as there are lanes.  Its numbers lie in rows: a.x
+// of each of count, a.y of each and so on.
+struct Rows {
+    const real* numbers;
+    size_t count, at;
+};
+
+// intersect_triangle, line by line, of several triangles.  Lanes beyond the last triangle hold what
+// follows the row, and nobody looks at them.
+inline Meeting intersect_triangles(const Rows& rows, const Ray& ray, const Shear& k, real tmax) {
+    const real ox = ray.o.*axis[k.x], oy = ray.o.*axis[k.y], oz = ray.o.*axis[k.z];
+    const size_t count = rows.count;
+    const real* first = rows.numbers + rows.at;
+    const real *x = first + k.x * count, *y = first + k.y * count, *z = first + k.z * count;
+    const size_t b = 3 * count, c = 6 * count;
+    const Reals az = load(z) - oz, bz = load(z + b) - oz, cz = load(z + c) - oz;
+    const Reals ax = (load(x) - ox) - k.sx * az, ay = (load(y) - oy) - k.sy * az;
+    const Reals bx = (load(x + b) - ox) - k.sx * bz, by = (load(y + b) - oy) - k.sy * bz;
+    const Reals cx = (load(x + c) - ox) - k.sx * cz, cy = (load(y + c) - oy) - k.sy * cz;
+    const Reals u = difference_of_products(cx, by, cy, bx);
+    const Reals v = difference_of_products(ax, cy, ay, cx);
+    const Reals w = difference_of_products(bx, ay, by, ax);
+    const Reals det = u + v + w;
+    // Where det is 0 or a NaN is about, t is NaN.
+    const auto inside = (smaller(smaller(u, v), w) >= 0) | (larger(larger(u, v), w) <= 0);
+    Meeting m{Lanes(inside), {}, v, w, det};
+    m.hit.keep(count - rows.at);
+    if (!m.hit.any()) return m;
+    m.t = (u * az + v * bz + w * cz) * k.sz / det;
+    m.hit = Lanes(inside & (m.t > 0) & (m.t <= tmax));
+    m.hit.keep(count - rows.at);
+    return m;
+}
+
+class Leaves {
+public:
+    static constexpr uint32_t largest = lane_count;  // shapes in a leaf
+
+    void reserve(size_t shapes) {
+        ids_.reserve(shapes);
+        numbers_.reserve(shapes * numbers + lane_count);
+    }
+
+    // Adds a leaf of these shapes, 1 to 8.
+    Child add(const std::vector<Shape>& shapes, std::span<const uint32_t> ids) {
+        const size_t n = ids.size();
+        const bool spheres = shapes[ids[0]].is_sphere();
+        const Child leaf = Child::leaf(uint32_t(ids_.size()), uint32_t(n), spheres);
+        ids_.insert(ids_.end(), ids.begin(), ids.end());
+        std::array<real, numbers * largest> rows{};
+        for (size_t i = 0; i < n; ++i) {
+            const Shape& s = shapes[ids[i]];
+            real* row = &rows[spheres ? numbers * i : i];
+            if (spheres) {
+                for (real x : {s.a.x, s.a.y, s.a.z, s.r}) *row++ = x;
+                continue;
+            }
+            for (vec3 p : {s.a, s.b, s.c})
+                for (auto a : axis) *row = p.*a, row += n;
+        }
+        numbers_.insert(numbers_.end(), rows.begin(), rows.begin() + ptrdiff_t(numbers * n));
+        return leaf;
+    }
+    // The last row is read beyond its end.
+    void finish() { numbers_.resize(numbers_.size() + lane_count); }
+
+    // The nearest hit of best and of a leaf's; of equals the one with the smallest index.
+    [[gnu::always_inline]] Hit nearest(Child leaf, const Ray& ray, const Shear& k, Hit best) const {
+        if (leaf.spheres()) [[unlikely]]
+            return nearest_sphere(leaf, ray, best);
+        Rows rows{&numbers_[leaf.first() * numbers], leaf.count(), 0};
+        do {
+            Meeting m = intersect_triangles(rows, ray, k, best.t);
+            for (; m.hit.any(); m.hit.drop_first()) {
+                const size_t i = m.hit.first();
+                const uint32_t id = ids_[leaf.first() + rows.at + i];
+                if (m.t[i] < best.t || (m.t[i] == best.t && id < best.id))
+                    best = {m.t[i], id, m.v[i] / m.det[i], m.w[i] / m.det[i]};
+            }
+        } while (has_more(rows));
+        return best;
+    }
+
+    bool any(Child leaf, const Ray& ray, const Shear& k) const {
+        if (leaf.spheres()) [[unlikely]]
+            return any_sphere(leaf, ray);
+        Rows rows{&numbers_[leaf.first() * numbers], leaf.count(), 0};
+        do {
+            if (intersect_triangles(rows, ray, k, ray.tmax).hit.any()) return true;
+        } while (has_more(rows));
+        return false;
+    }
+
+    size_t bytes() const {
+        return numbers_.capacity() * sizeof(real) + ids_.capacity() * sizeof(uint32_t);
+    }
+
+private:
+    static constexpr size_t numbers = 9;  // of a shape; a sphere needs four
+    std::vector<real> numbers_;
+    std::vector<uint32_t> ids_;  // their indices
+
+    // Moves on to the next lanes.
+    static bool has_more(Rows& rows) {
+        return real_lanes < largest && (rows.at += real_lanes) < rows.count;
+    }
+    Shape sphere(uint32_t i) const {
+        const real* x = &numbers_[i * numbers];
+        return {{x[0], x[1], x[2]}, {}, {}, x[3]};
+    }
+    // Apart, so that a scene of triangles pays nothing for them.
+    [[gnu::noinline]] Hit nearest_sphere(Child leaf, const Ray& ray, Hit best) const {
+        for (uint32_t i = leaf.first(); i < leaf.first() + leaf.count(); ++i) {
+            const auto hit = intersect_sphere(sphere(i), ray, best.t);
+            if (!hit || (hit->t == best.t && ids_[i] >= best.id)) continue;
+            best = *hit;
+            best.id = ids_[i];
+        }
+        return best;
+    }
+    [[gnu::noinline]] bool any_sphere(Child leaf, const Ray& ray) const {
+        for (uint32_t i = leaf.first(); i < leaf.first() + leaf.count(); ++i)
+            if (intersect_sphere(sphere(i), ray, ray.tmax)) return true;
+        return false;
+    }
+};
+
+}  // namespace wide

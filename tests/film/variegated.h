@@ -1,0 +1,18 @@
+// film/variegated.h  an image of which no two numbers are alike
+#pragma once
+#include "film/image.h"
+
+using Colour = std::array<float, 3>;
+
+// All values different, in every pixel and channel, with signs, zeros and subnormal numbers.
+inline Image variegated(int width, int height) {
+    Image image(width, height);
+    float k = 0;
+    for (Colour& pixel : image.pixels)
+        for (float& channel : pixel) {
+            channel = (k - 7) * 0.37f;
+            ++k;
+        }
+    image.at(0, 0) = {0, -0.0f, 1e-42f};
+    return image;
+}

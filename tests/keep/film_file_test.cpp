@@ -1,0 +1,224 @@
+// keep/film_file_test.cpp  .film files hold what was written, or are refused by name
+#include "keep/film_file.h"
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <functional>
+
+#include "base/folder.h"
+#include "base/system_calls.h"
+
+namespace {
+
+const Facts head = {{"scene", "scenes/a b.scene"}, {"options", ""}, {"size", "3x2"}};
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& numbers) {
+    return std::as_bytes(std::span(numbers));
+}
+
+void write_film(const std::string& path, const Facts& facts, const std::string& numbers) {
+    write_film_file(path, facts, {bytes_of(numbers)});
+}
+
+template <class T>
+std::vector<T> read(FilmReader& film, size_t count) {
+    std::vector<T> numbers(count);
+    film.read(std::as_writable_bytes(std::span(numbers)));
+    return numbers;
+}
+
+// Why it is refused, without its name; "" if all of it is read.
+std::string refusal(const Folder& folder, const std::string& name) {
+    try {
+        FilmReader film(folder / name);
+        read<char>(film, film.left());
+        return "";
+    } catch (const UserError& e) {
+        const std::string why = e.what(), start = folder / name + ": ";
+        CHECK(why.starts_with(start));
+        return why.substr(std::min(why.size(), start.size()));
+    }
+}
+
+// What is said if films cannot be written, "" if they can.
+std::string failure(const std::function<void()>& work) {
+    try {
+        work();
+        return "";
+    } catch (const SystemError& e) {
+        return e.what();
+    }
+}
+
+// A folder with one film, and its bytes.
+struct Sample {
+    Folder folder;
+    std::string bytes;
+    explicit Sample(const std::string& numbers = "0123456789 and so on") {
+        write_film(folder / "a.film", head, numbers);
+        bytes = folder.read("a.film");
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a film is read as it was written: its lines in their order, its numbers bit by bit") {
+    const Folder folder;
+    const std::vector<double> many(100000, 1e-310);  // more than one call writes
+    const std::vector<float> few = {NAN, -0.0f, 1e-42f};
+    write_film_file(folder / "a.film", head,
+                    {bytes_of(few), {}, bytes_of(many), bytes_of(std::string("x"))});
+    FilmReader film(folder / "a.film");
+    CHECK(film.head() == head);
+    CHECK(film.said("scene") == "scenes/a b.scene");
+    CHECK(film.said("options") == "");
+    CHECK(film.said("spp") == "not known");
+    CHECK(film.left() == 12 + 800000 + 1);
+    const auto back = read<float>(film, 3);
+    CHECK(std::memcmp(back.data(), few.data(), 12) == 0);
+    CHECK(read<double>(film, 100000) == many);
+    CHECK(read<char>(film, 1) == std::vector<char>{'x'});
+    CHECK(film.left() == 0);
+    CHECK_THROWS_AS(read<char>(film, 1), UserError);
+    CHECK(folder.files() == 1);
+}
+
+TEST_CASE("`head` shows a film's first lines; films of version 2 stay what they are") {
+    const Sample film("abc");
+    // The checksum by a program in another language.
+    CHECK(film.bytes ==
+          "penumbra film 2\nbytes 00000000000000000003\nchecksum 50feca0aaa5a1aa0\n"
+          "scene scenes/a b.scene\noptions \nsize 3x2\n\nabc");
+}
+
+TEST_CASE("numbers of a head: at the start of a value, or after a character of it") {
+    const Folder folder;
+    write_film(folder / "a.film",
+               {{"rows", "3-15"},
+                {"time", "0.25"},
+                {"no", "x"},
+                {"less", "-1"},
+                {"much", "1e300"},
+                {"nan", "nan"}},
+               "");
+    const FilmReader film(folder / "a.film");
+    CHECK(film.number("rows", 100) == 3);
+    CHECK(film.number("rows", 100, '-') == 15);
+    CHECK(film.number("rows", 15, '-') == 15);
+    CHECK(film.number("time") == 0.25);
+    CHECK_THROWS_WITH_AS(film.number("rows", 14, '-'),
+                         (folder / "a.film" + ": its rows is '3-15'").c_str(), UserError);
+    for (const char* key : {"no", "less", "much", "nan", "missing"})
+        CHECK_THROWS_AS(film.number(key), UserError);
+}
+
+TEST_CASE("a film without lines, or without numbers, is one") {
+    const Folder folder;
+    write_film(folder / "a.film", {}, "");
+    CHECK(refusal(folder, "a.film") == "");
+    FilmReader film(folder / "a.film");
+    CHECK(film.head().empty());
+    CHECK(film.left() == 0);
+}
+
+TEST_CASE("a film's sum is that of its bytes, in whatever pieces they come") {
+    std::string bytes;
+    for (int i = 0; i < 100; ++i) bytes += char(i * i);
+    Checksum whole;
+    whole.add(bytes_of(bytes));
+    for (size_t piece = 1; piece < 40; ++piece) {
+        Checksum sum;
+        for (size_t from = 0; from < bytes.size(); from += piece)
+            sum.add(bytes_of(bytes.substr(from, piece)));
+        CHECK(sum.text() == whole.text());
+    }
+    Checksum longer = whole;
+    longer.add(bytes_of(std::string(1, '\0')));
+    CHECK(longer.text() != whole.text());
+}
+
+TEST_CASE("no part of a film passes for a whole one") {
+    const Sample film;
+    for (size_t length = 0; length < film.bytes.size(); ++length) {
+        film.folder.write("a.film", film.bytes.substr(0, length));
+        INFO(length, " bytes");
+        CHECK(refusal(film.folder, "a.film") == (length > 0 ? "is cut short" : "no film"));
+    }
+    film.folder.write("a.film", film.bytes);
+    CHECK(refusal(film.folder, "a.film") == "");
+}
+
+TEST_CASE("a film with more behind it is none") {
+    const Sample film;
+    for (const std::string& more : {std::string("x"), std::string(1, '\0'), film.bytes}) {
+        film.folder.write("a.film", film.bytes + more);
+        CHECK(refusal(film.folder, "a.film") == "is longer than it says");
+    }
+}
+
+TEST_CASE("a film with any bit flipped is refused, and says why") {
+    const Sample film;
+    const size_t lines = first_lines(0, {}).size(), numbers = film.bytes.size() - 20;
+    for (size_t bit = 0; bit < 8 * film.bytes.size(); ++bit) {
+        std::string bytes = film.bytes;
+        bytes[bit / 8] = char(bytes[bit / 8] ^ (1 << bit % 8));
+        film.folder.write("a.film", bytes);
+        const std::string why = refusal(film.folder, "a.film");
+        INFO("bit ", bit, ": ", why);
+        CHECK(why != "");
+        if (bit / 8 >= numbers) CHECK(why == "is damaged (its checksum differs)");
+        if (bit / 8 >= 43 && bit / 8 < lines) CHECK(why == "is damaged (its checksum differs)");
+        if (bit / 8 < 14) CHECK(why == "no film");
+    }
+}
+
+TEST_CASE("what is no film, or of another version, is refused by name") {
+    const Sample film;
+    const Folder& folder = film.folder;
+    const std::string rest = film.bytes.substr(16);
+    for (const std::string& bytes :
+         {std::string("PF\n1 1\n-1.0\n"), std::string(100000, 'x'), std::string(100000, '\n'),
+          "penumbra film 2" + std::string(100000, '1'), "penumbra film\n" + rest}) {
+        folder.write("a.film", bytes);
+        CHECK(refusal(folder, "a.film") == "no film");
+    }
+    for (const char* version : {"1", "3", "22"}) {
+        folder.write("a.film", "penumbra film " + (version + ("\n" + rest)));
+        CHECK(refusal(folder, "a.film") == "of another version (" + std::string(version) + ")");
+    }
+    folder.write("a.film", first_lines(100000, {}) + std::string(100000, 'x'));
+    CHECK(refusal(folder, "a.film") == "is cut short");
+    CHECK(refusal(folder, "missing.film").starts_with("cannot open: "));
+    REQUIRE(::mkfifo((folder / "pipe.film").c_str(), 0600) == 0);
+    CHECK(refusal(folder, "pipe.film") == "is no regular file");
+    CHECK(refusal(folder, "") == "is a directory");
+}
+
+TEST_CASE("a film that cannot be written whole leaves the old one, and nothing beside it") {
+    const Sample film;
+    const std::string path = film.folder / "a.film";
+    rlimit old_limit;
+    REQUIRE(getrlimit(RLIMIT_FSIZE, &old_limit) == 0);
+    auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+    for (size_t size : {size_t(2000), size_t(5000000)}) {  // seen at the end, and on the way
+        const rlimit limit{1000, old_limit.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        const std::string why = failure([&] { write_film(path, {}, std::string(size, 'x')); });
+        setrlimit(RLIMIT_FSIZE, &old_limit);
+        CHECK(why == path + ": cannot write: File too large");
+    }
+    std::signal(SIGXFSZ, old_handler);
+    CHECK(film.folder.read("a.film") == film.bytes);
+    CHECK(film.folder.files() == 1);
+}
+
+TEST_CASE("a film is on the disk before it has its name, and its name is before it is written") {
+    const Folder folder;
+    const auto calls = calls_of({}, [&] { write_film(folder / "a.film", {}, "abc"); });
+    const std::string size = std::to_string(folder.read("a.film").size());
+    CHECK(calls == std::vector<std::string>{"write", "write", "fsync " + size, "close", "rename",
+                                            "fsync folder", "close"});
+}

@@ -1,0 +1,288 @@
+// keep/keep_test.cpp  films come out of files as they went in, go on, or are refused
+#include "keep/keep.h"
+
+#include <sys/wait.h>
+
+#include <thread>
+
+#include "base/folder.h"
+#include "film/passes.h"
+#include "film/refusal.h"
+#include "oracle/expect.h"
+
+namespace {
+
+constexpr Size size = {37, 25};  // 925 pixels: blocks of 3, and one of 1
+
+// Noisy at the left, smooth at the right.
+rgb noise(const PixelSample& s) {
+    const uint64_t key = hash(hash(hash(s.set, s.i), uint64_t(s.x)), uint64_t(s.y));
+    const real u = real(to_unit(key));
+    return s.x < 9 ? rgb{u, 0, 5 * u} : rgb{1, real(s.y), u / 100};
+}
+
+// Adds samples to a film until each replication has n; after so many, as of Ctrl-C, stops.
+Film fill(Film film, uint64_t n, unsigned threads = 2, int64_t stop_after = INT64_MAX) {
+    std::atomic<int64_t> left = stop_after;
+    const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+        if (left-- <= 0) throw Interrupted();
+        ++rays;
+        return noise(s);
+    };
+    Watch watch;
+    watch.elapsed = [] { return 1.0; };
+    Loop(film, {{n, 0, 0}, 1, threads}, L, watch).run();
+    return film;
+}
+
+template <class T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+bool same(const Film& a, const Film& b) {
+    return a.pilot == b.pilot && a.first_row == b.first_row && same(a.sets, b.sets) &&
+           same(a.sum, b.sum) && same(a.taken, b.taken) && same(a.spread, b.spread);
+}
+
+const FilmOf of = {{}, {{"sampler", "\"sobol\""}, {"seed", "7"}}, {{"name", "cube"}}};
+
+Film restored(const std::string& path, const Film& empty, const FilmOf& what = of) {
+    Film film = empty;
+    Keeper(path, what).restore(film);
+    return film;
+}
+
+}  // namespace
+
+TEST_CASE("a film comes back as it was: before its sets, after them, and amid a pass") {
+    const Folder folder;
+    const Keeper keeper(folder / "a.film", of);
+    for (const uint32_t sets : {0u, 1u, 3u}) {
+        const Film empty = make_film(size, sets, 5);
+        for (const uint64_t n : {1, 16, 20})
+            for (const int64_t stop_after : {int64_t(500), INT64_MAX}) {
+                const Film film = fill(empty, n, 1, stop_after);
+                CAPTURE(sets);
+                CAPTURE(n);
+                CAPTURE(stop_after);
+                CHECK(keeper.write(film, {}, true) == "");
+                const bool comes_back = same(restored(folder / "a.film", empty), film);
+                CHECK(comes_back);
+            }
+    }
+}
+
+TEST_CASE("a film that was stopped anywhere, and kept, becomes what one run makes") {
+    const Folder folder;
+    const uint64_t seed = seed_here();
+    int amid = 0;
+    for (const uint32_t sets : {0u, 3u}) {
+        const Film empty = make_film(size, sets);
+        const Film whole = fill(empty, 40);
+        for (uint64_t k = 0; k < 12; ++k) {
+            const auto stop = int64_t(whole.total() * to_unit(hash(seed, k)));
+            const Film film = fill(empty, 40, 3, stop);
+            Keeper(folder / "a.film", of).write(film, {}, false);
+            if (film.most_taken() + film.pilot == 0) continue;
+            amid += film.least_taken() != film.most_taken();
+            const Film on = fill(restored(folder / "a.film", empty), 40);
+            CAPTURE(stop);
+            const bool is_whole = same(on, whole);
+            CHECK(is_whole);
+        }
+    }
+    CHECK(amid > 3);
+}
+
+TEST_CASE("pixels of a film, a row at a time, are those of the film in memory") {
+    const Folder folder;
+    for (const uint32_t sets : {0u, 3u})
+        for (const int64_t stop_after : {int64_t(30000), INT64_MAX}) {
+            const Film film = fill(make_film(size, sets), 20, 1, stop_after);
+            Keeper(folder / "a.film", of).write(film, {}, true);
+            FilmPixels pixels(folder / "a.film", size);
+            int wrong = 0;
+            for_each_pixel(film, [&](size_t, const Pixel& p) {
+                const Pixel its = pixels.next();
+                wrong += its.first != p.first || its.others != p.others ||
+                         its.sum.size() != p.sum.size() ||
+                         std::memcmp(its.sum.data(), p.sum.data(), p.sum.size_bytes()) != 0;
+            });
+            CHECK(wrong == 0);
+        }
+}
+
+TEST_CASE("what a run took comes back, and the head says what the film is of") {
+    const Folder folder;
+    const std::string path = folder / "a.film";
+    const Film film = fill(make_film(size, 2), 1);
+    Keeper(path, of).write(film, {0.1, 1e9, uint64_t(1) << 53}, true);
+    Film back = film;
+    const Spent spent = Keeper(path, of).restore(back);
+    CHECK(spent.seconds == 0.1);
+    CHECK(spent.cpu_seconds == 1e9);
+    CHECK(spent.rays == uint64_t(1) << 53);
+    const Facts expected = {
+        {"sampler", "sobol"}, {"seed", "7"}, {"name", "cube"}, {"complete", "yes"}};
+    const Facts head = FilmReader(path).head();
+    CHECK(Facts(head.begin() + 1, head.begin() + 5) == expected);
+    Keeper(path, of).write(film, {}, false);
+    CHECK(FilmReader(path).said("complete") == "no");
+}
+
+TEST_CASE("no film is nothing to go on from, and no name no film") {
+    const Folder folder;
+    const Film empty = make_film(size, 2);
+    const bool untouched =
+        same(restored(folder / "no.film", empty), empty) && same(restored("", empty), empty);
+    CHECK(untouched);
+    CHECK(Keeper("", of).write(empty, {}, true) == "");
+    CHECK(folder.files() == 0);
+}
+
+TEST_CASE("a film of other samples is refused by the first thing that differs") {
+    const Folder folder;
+    const std::string path = folder / "a.film";
+    folder.write("scene", "box"), folder.write("mesh", "knot");
+    FilmOf what = of;
+    what.files = {folder / "scene", folder / "mesh"};
+    const Film film = fill(make_film(size, 2), 1);
+    Keeper(path, what).write(film, {}, true);
+    auto why = [&](const FilmOf& other) {
+        const std::string text = refusal([&] { restored(path, film, other); });
+        return text.starts_with(path + ": ") ? text.substr(path.size() + 2) : text;
+    };
+    CHECK(why(what) == "no refusal");
+    FilmOf other = what;
+    other.samples[1] = {"seed", "8"};
+    CHECK(why(other) == "its seed is 7, not 8");
+    other.samples[0] = {"sampler", "\"halton\""};
+    CHECK(why(other) == "its sampler is sobol, not halton");
+    other = what, other.notes = {{"name", "sphere"}};
+    CHECK(why(other) == "no refusal");
+    other = what, other.samples.push_back({"grid", "7x5"});
+    CHECK(why(other) == "its grid is not known, not 7x5");
+    folder.write("scene", "boxk"), folder.write("mesh", "not");
+    CHECK(why(what) == "its scene is another one");
+}
+
+TEST_CASE("a film that could be none is refused, by what is wrong") {
+    const Folder folder;
+    const std::string path = folder / "a.film";
+    const Film empty = make_film(size, 0), film = fill(empty, 20);
+    auto why = [&](const Facts& changed, const Film& f, const Film& into) {
+        Keeper(path, {}).write(f, {}, true);
+        FilmReader file(path);
+        Facts head = file.head();
+        for (const auto& [key, value] : changed)
+            for (auto& [k, v] : head)
+                if (k == key) v = value;
+        std::vector<std::byte> numbers(file.left());
+        file.read(numbers);
+        write_film_file(path, head, {numbers});
+        return refusal([&] { restored(path, into, {}); }).substr(path.size());
+    };
+    CHECK(why({{"pilot", "-1"}}, film, empty) == ": its pilot is '-1'");
+    CHECK(why({{"seconds", "soon"}}, film, empty) == ": its seconds is 'soon'");
+    CHECK(why({{"rays", "1e300"}}, film, empty) == ": its rays is '1e300'");
+    const std::string other = ": has other replications than it says",
+                      impossible = ": has a pixel of impossible replications";
+    Film wrong = film;
+    wrong.sets[2] = 0;
+    CHECK(why({}, wrong, empty) == impossible);
+    wrong.sets[2] = most_sets + 1;
+    CHECK(why({}, wrong, empty) == impossible);
+    wrong.sets[2] = uint16_t(film.sets[2] + 1);
+    CHECK(why({}, wrong, empty) == other);
+    CHECK(why({}, film, make_film({37, 24}, 0)) != "");
+    CHECK(why({}, film, make_film({1000, 1000}, 0)) == ": holds less than it should");
+    CHECK(why({}, fill(empty, 20, 1, 500), make_film({37, 24}, 0)) == other);
+    auto why_not_read = [&](const std::string& name, Size of_it) {
+        return refusal([&] { FilmPixels(folder / name, of_it); }).substr((folder / name).size());
+    };
+    // More than any memory holds.
+    CHECK(why_not_read("a.film", {1 << 30, 1 << 30}) == ": holds less than it should");
+    Keeper(folder / "b.film", {}).write(empty, {}, true);
+    CHECK(why_not_read("b.film", size) == ": has no samples");
+}
+
+TEST_CASE("films are written once in an interval, and a hundredth of the time at most") {
+    const Folder folder;
+    const Film film = fill(make_film(size, 2), 1);
+    using std::chrono::milliseconds;
+    Keeper seldom(folder / "a.film", of);
+    seldom.write_now_and_then(film, {});
+    CHECK(folder.files() == 0);
+    Keeper often(folder / "a.film", of, milliseconds(30));
+    auto writes = [&](int ms) {
+        int count = 0;
+        const auto end = std::chrono::steady_clock::now() + milliseconds(ms);
+        while (std::chrono::steady_clock::now() < end) {
+            fs::remove(folder / "a.film");
+            often.write_now_and_then(film, {});
+            count += folder.has("a.film");
+        }
+        return count;
+    };
+    CHECK(writes(20) == 0);
+    const int count = writes(200);
+    CHECK(count >= 1);
+    CHECK(count <= 7);
+    // A film whose writing takes a while comes seldom: 100 times as long after the last one.
+    const Film large = make_film({1024, 1024}, 2);
+    Film one = large;
+    one.taken[0] = 1;
+    Keeper slow(folder / "b.film", of, milliseconds(0));
+    const auto start = std::chrono::steady_clock::now();
+    slow.write_now_and_then(one, {});
+    const auto took = std::chrono::steady_clock::now() - start;
+    REQUIRE(folder.has("b.film"));
+    fs::remove(folder / "b.film");
+    while (std::chrono::steady_clock::now() - start < 20 * took) slow.write_now_and_then(one, {});
+    CHECK_FALSE(folder.has("b.film"));
+}
+
+TEST_CASE("a film without samples replaces none; one that cannot be written says why") {
+    const Folder folder;
+    const Film empty = make_film(size, 2);
+    const Keeper keeper(folder / "a.film", of);
+    CHECK(keeper.write(fill(empty, 1), {}, true) == "");
+    const std::string bytes = folder.read("a.film");
+    CHECK(keeper.write(empty, {}, true) == "");
+    CHECK(folder.read("a.film") == bytes);
+    Film chosen = empty;  // a pilot is samples
+    chosen.pilot = 16;
+    CHECK(keeper.write(chosen, {}, true) == "");
+    CHECK(folder.read("a.film") != bytes);
+    const Keeper nowhere(folder / "no/a.film", of);
+    CHECK(nowhere.write(empty, {}, true) ==
+          folder / "no/a.film" + ": cannot write: No such file or directory");
+}
+
+TEST_CASE("kill -9 in a write: the film is the old one or the new one") {
+    const Folder folder;
+    const std::string path = folder / "a.film";
+    std::vector<Film> films;
+    for (const uint64_t n : {1, 2}) films.push_back(fill(make_film({200, 100}, 3), n));
+    const uint64_t seed = seed_here();
+    Keeper(path, of).write(films[0], {}, true);
+    int within = 0;
+    for (uint64_t k = 0; k < 40; ++k) {
+        const pid_t child = ::fork();
+        REQUIRE(child >= 0);
+        if (child == 0)
+            for (size_t i = 0;; ++i) Keeper(path, of).write(films[i % 2], {}, true);
+        std::this_thread::sleep_for(
+            std::chrono::microseconds(uint64_t(2e4 * to_unit(hash(seed, k)))));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        within += folder.files() > 1;
+        const Film film = restored(path, make_film({200, 100}, 3));
+        const bool is_whole = same(film, films[0]) || same(film, films[1]);
+        CHECK(is_whole);
+        remove_stale(path);
+        CHECK(folder.files() == 1);
+    }
+    CHECK(within > 0);
+}

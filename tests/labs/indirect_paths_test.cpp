@@ -1,0 +1,308 @@
+// labs/indirect_paths_test.cpp  paths that end on maps: unbiased whatever the maps hold, or as far
+// off as these
+#include "labs/indirect_paths.h"
+
+#include "base/moments.h"
+#include "oracle/expect.h"
+#include "radiosity/exact.h"
+#include "radiosity/particles.h"
+#include "radiosity/rooms.h"
+#include "radiosity/shooting.h"
+
+using namespace rooms;
+
+namespace {
+
+constexpr double Pi = std::numbers::pi;
+constexpr SamplerKind kinds[] = {SamplerKind::independent, SamplerKind::stratified,
+                                 SamplerKind::halton, SamplerKind::sobol};
+
+Scene endless(Scene s) {
+    s.depth = std::numeric_limits<int>::max();
+    return s;
+}
+
+// ---- Maps, good and bad -------------------------------------------------------------------------
+
+IlluminationMap by_particles(const Scene& s, const Mesh& mesh, uint64_t n) {
+    Particles p(s, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1000), n));
+    for (size_t batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
+    return p.map();
+}
+
+IlluminationMap times(IlluminationMap map, rgb factor) {
+    for (rgb& E : map) E *= factor;
+    return map;
+}
+
+// ---- Rooms whose light is known -----------------------------------------------------------------
+
+// Coloured, closed, lit by a coloured point; over its walls E has the mean Phi / (A (1 - rho)).
+constexpr double sides[] = {3, 2, 2.5};
+const double area = 2 * (3 * 2 + 2 * 2.5 + 2.5 * 3);
+constexpr double rho[] = {0.7, 0.5, 0.2}, intensity[] = {2, 3, 5};
+Scene coloured() {
+    Scene s;
+    add_room(s, {3, 2, real(2.5)}, add(s, diffuse({real(0.7), real(0.5), real(0.2)})));
+    add_point_light(s, {real(1.2), real(1.1), 1}, {2, 3, 5});
+    prepare(s);
+    return endless(std::move(s));
+}
+double mean_radiance(size_t c) {
+    return rho[c] / Pi * (4 * Pi * intensity[c] / area) / (1 - rho[c]);
+}
+
+// A ray that hits a wall at a right angle; u.x tells which wall, and where on it.
+Ray onto_wall(vec2 u) {
+    double place = double(u.x) * area;
+    for (size_t n = 0; n < 3; ++n) {
+        const size_t a = (n + 1) % 3, b = (n + 2) % 3;
+        for (const bool far : {false, true}) {
+            const double wall = sides[a] * sides[b];
+            if (place < wall) {
+                vec3 p, d;
+                p.*axis[a] = real(place / wall * sides[a]), p.*axis[b] = real(u.y) * real(sides[b]);
+                p.*axis[n] = far ? real(sides[n] - 1e-3) : real(1e-3);
+                d.*axis[n] = far ? 1 : -1;
+                return {p, d};
+            }
+            place -= wall;
+        }
+    }
+    return {{1, 1, 1}, {0, 0, 1}};
+}
+
+// Lit by a lamp, half of it covered, and by a triangle that emits on both sides; no symmetry, two
+// colours.  Where light samples go matters.
+Scene lamps() {
+    Scene s;
+    const uint32_t walls = add(s, diffuse({real(0.7), real(0.5), real(0.2)}));
+    add(s, diffuse({real(0.3), real(0.6), real(0.6)}));
+    add_room(s, {3, 2, real(2.5)}, walls, 2);
+    add_quad(s, {real(0.2), real(1.9), real(0.3)}, {2, 0, 0}, {0, 0, real(0.7)},
+             add(s, diffuse(grey(0.1), {5, 4, 2})));
+    add_quad(s, {real(1.2), real(1.88), real(0.2)}, {real(1.1), 0, 0}, {0, 0, real(0.9)},
+             add(s, diffuse(grey(0))));
+    add_triangle(s, {real(0.3), real(0.4), 2}, {1, real(0.4), 2}, {real(0.3), 1, real(2.2)},
+                 add(s, diffuse(grey(0.4), grey(1), true)));
+    prepare(s);
+    return endless(std::move(s));
+}
+
+// Every wall glows: L = Le + rho L everywhere.
+Scene glowing() { return endless(room({3, 2, 2}, diffuse(grey(0.5), grey(0.4), true))); }
+constexpr double glow = 0.4 / (1 - 0.5);
+// E = pi L on the inner sides; outside it is dark.
+IlluminationMap of_glow(const Mesh& mesh) {
+    IlluminationMap map(number_of_sides(mesh));
+    for (size_t k = 0; k < map.size(); k += 2) map[k] = grey(Pi * glow);
+    return map;
+}
+
+// ---- Estimates ----------------------------------------------------------------------------------
+
+// The mean of n paths along rays that two numbers choose; replicate r.
+template <class RayOf>
+rgb mean_of_paths(const Gather& g, SamplerKind kind, int r, uint64_t n, RayOf ray_of) {
+    const uint64_t seed = hash(seed_here(), uint64_t(r));
+    const Pattern pattern = EndlessNumbers::pattern(kind, seed, n),
+                  rest = EndlessNumbers::independent(seed);
+    rgb sum;
+    for (uint64_t i = 0; i < n; ++i) {
+        const Sampler first(pattern, 0, i);
+        const EndlessNumbers u(first, Sampler(rest, 0, i));
+        sum += Li(g, ray_of(first.get2(film_x)), u);
+    }
+    return sum / real(n);
+}
+
+// Every channel of such means is that of the truth; errors of `seen` of it would be noticed.
+template <class RayOf>
+void expect_radiance(std::array<double, 3> truth, double seen, const Gather& g, SamplerKind kind,
+                     RayOf ray_of) {
+    constexpr int replicates = 512;
+    std::vector<rgb> mean;
+    for (int r = 0; r < replicates; ++r) mean.push_back(mean_of_paths(g, kind, r, 64, ray_of));
+    for (size_t c = 0; c < 3; ++c) {
+        CAPTURE(c);
+        EXPECT(oracle::expect_replicates(truth[c], replicates,
+                                         [&](int r) { return double(mean[size_t(r)].*axis[c]); }),
+               seen);
+    }
+}
+auto always(Ray ray) {
+    return [ray](vec2) { return ray; };
+}
+
+const Technique techniques[] = {{Direction::bsdf, LightMode::mis, 0},
+                                {Direction::bsdf, LightMode::nee, 0},
+                                {Direction::uniform, LightMode::mis, 0}};
+
+}  // namespace
+
+TEST_CASE("control and regression are unbiased with good maps, with none, with wrong ones") {
+    const Scene s = coloured();
+    const Mesh mesh = make_mesh(s, 0.5);
+    const IlluminationMap good = by_particles(s, mesh, 100000);
+    const struct {
+        rgb factor, slope;
+        double seen;
+    } maps[] = {{grey(1), grey(1), 0.1},
+                {grey(0), grey(1), 0.1},
+                {{3, 2, -1}, grey(1), 0.2},
+                {{3, 2, -1}, {real(0.4), real(0.6), -1}, 0.1}};
+    for (const auto& map : maps) {
+        const rgb factor = map.factor, slope = map.slope;
+        const KnownLight known = known_light(s, mesh, times(good, factor));
+        for (const Technique& t : techniques)
+            for (SamplerKind kind : kinds) {
+                CAPTURE(mean_of(factor));
+                CAPTURE(int(kind));
+                CAPTURE(int(t.light));
+                expect_radiance({mean_radiance(0), mean_radiance(1), mean_radiance(2)}, map.seen,
+                                {s, t, known, by_throughput, slope}, kind, onto_wall);
+            }
+    }
+}
+
+TEST_CASE("control sees what whole paths see in a room with lamps") {
+    const Scene s = lamps();
+    const Mesh mesh = make_mesh(s, 0.5);
+    const IlluminationMap good = by_particles(s, mesh, 20000);
+    constexpr int replicates = 64;
+    constexpr uint64_t paths = 1024;
+    const Technique roulette{Direction::bsdf, LightMode::mis, real(0.5)};
+    std::vector<rgb> whole;
+    for (int r = 0; r < replicates; ++r) {
+        const Pattern p = EndlessNumbers::independent(hash(seed_here(), 99 + uint64_t(r)));
+        rgb sum;
+        for (uint64_t i = 0; i < paths; ++i) {
+            const Sampler sampler(p, 0, i);
+            sum += Li(s, roulette, onto_wall(sampler.get2(film_x)), sampler);
+        }
+        whole.push_back(sum / real(paths));
+    }
+    for (const rgb factor : {grey(1), grey(0), grey(2)}) {
+        const KnownLight known = known_light(s, mesh, times(good, factor));
+        std::vector<rgb> ended;
+        for (int r = 0; r < replicates; ++r)
+            ended.push_back(
+                mean_of_paths({s, techniques[0], known}, SamplerKind::halton, r, paths, onto_wall));
+        for (size_t c = 0; c < 3; ++c) {
+            Moments a, b;
+            for (const rgb L : whole) a.add(double(L.*axis[c]));
+            for (const rgb L : ended) b.add(double(L.*axis[c]));
+            CAPTURE(mean_of(factor));
+            CAPTURE(c);
+            EXPECT(oracle::expect_equal(estimate(b), estimate(a)), 0.12);
+        }
+    }
+}
+
+TEST_CASE("control meets the exact luminance of the cube, its maps three times too bright, too") {
+    const Scene s = endless(cube());
+    const Mesh mesh = make_mesh(s, 2.5);
+    const IlluminationMap good = by_particles(s, mesh, 50000);
+    for (double factor : {1.0, 0.0, 3.0}) {
+        const KnownLight known = known_light(s, mesh, times(good, grey(factor)));
+        for (size_t point = 0; point < 3; ++point) {
+            const exact::CubePoint& p = exact::cube_points[point];
+            CAPTURE(factor);
+            CAPTURE(p.name);
+            const Ray ray{{real(5 * p.x), real(5 * p.y), real(4.9)}, {0, 0, 1}};
+            expect_radiance({p.luminance, p.luminance, p.luminance}, factor == 3 ? 0.1 : 0.05,
+                            {s, techniques[0], known}, SamplerKind::halton, always(ray));
+        }
+    }
+}
+
+// In a closed room one bounce from all walls alike meets all walls alike: mean L = rho (mean E0 /
+// pi
+// + mean R_map), E0 direct.
+TEST_CASE("map: paths end on what the maps hold, whatever that is; a coloured room") {
+    const Scene s = coloured();
+    const Mesh mesh = make_mesh(s, 0.5);
+    const IlluminationMap good = by_particles(s, mesh, 20000);
+    for (const rgb factor : {grey(1), grey(0), rgb{3, 2, -1}}) {
+        const IlluminationMap map = times(good, factor);
+        rgb flux;
+        for (const Face& f : mesh.faces) flux += integral(mesh, map, f, false);
+        std::array<double, 3> truth{};
+        for (size_t c = 0; c < 3; ++c) {
+            const double E0 = 4 * Pi * intensity[c] / area, E = double(flux.*axis[c]) / area;
+            truth[c] = rho[c] / Pi * (E0 + rho[c] * E);
+        }
+        const KnownLight known = known_light(s, mesh, map);
+        CAPTURE(mean_of(factor));
+        for (const Technique& t : techniques)
+            for (SamplerKind kind : kinds)
+                expect_radiance(truth, 0.15, {s, t, known, never}, kind, onto_wall);
+    }
+}
+
+TEST_CASE("map: its bias is that of the maps and falls with the mesh") {
+    const Scene s = endless(cube());
+    double before = 1;
+    for (int cells : {2, 4, 8}) {
+        const Mesh mesh = make_mesh(s, 10 * std::sqrt(2.0) / cells);
+        Shooting shooting(s, mesh, Shooter::face, 1);
+        shooting.run({0.001, 0, 0}, [](const Shooting&) {});
+        const KnownLight known = known_light(s, mesh, shooting.map());
+        const exact::CubePoint& a = exact::cube_points[0];
+        double mean = 0;
+        constexpr int replicates = 16;
+        for (int r = 0; r < replicates; ++r)
+            mean += double(mean_of_paths({s, techniques[0], known, never}, SamplerKind::halton, r,
+                                         1024, always({{0, 0, real(4.9)}, {0, 0, 1}}))
+                               .x) /
+                    replicates;
+        const double bias = 1 - mean / a.luminance;
+        INFO(cells, " cells: too dark by ", 100 * bias, " %");
+        CHECK(bias > 0);
+        CHECK(bias < 0.7 * before);
+        before = bias;
+    }
+    CHECK(before < 0.02);
+}
+
+TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light found by hitting") {
+    const Scene s = glowing();
+    const Mesh mesh = make_mesh(s, 1);
+    const KnownLight known = known_light(s, mesh, of_glow(mesh));
+    for (const GoOn go_on : {never, by_throughput}) {
+        const Gather g{s, {Direction::bsdf, LightMode::none, 0}, known, go_on};
+        for (int r = 0; r < 100; ++r)
+            CHECK(double(mean_of_paths(g, SamplerKind::independent, r, 1, [](vec2 u) {
+                             return Ray{{1, 1, 1}, sample_uniform_sphere(u)};
+                         }).x) == approx(glow));
+    }
+    // By light samples, too, but for where walls meet, whose variance is infinite.
+    expect_radiance({glow, glow, glow}, 0.05, {s, techniques[0], known}, SamplerKind::halton,
+                    always({{1, 1, 1}, {0, 0, 1}}));
+}
+
+TEST_CASE("the slope is what paths find over what maps know") {
+    Scene s = glowing();
+    s.camera = look_at({1, 1, real(1.9)}, {1, 1, 0}, 60);
+    const Mesh mesh = make_mesh(s, 1);
+    const Technique none{Direction::bsdf, LightMode::none, 0};
+    const Pattern pattern = EndlessNumbers::independent(seed_here());
+    // Exact: paths that start from exact maps find the same whatever they do.
+    const KnownLight known = known_light(s, mesh, of_glow(mesh));
+    CHECK(double(max_abs(slope_of({s, none, known}, pattern, 100) - grey(1))) < 1e-5);
+    // Without maps nothing is to be scaled.
+    const KnownLight dark = known_light(s, mesh, IlluminationMap(number_of_sides(mesh)));
+    CHECK(slope_of({s, none, dark}, pattern, 100) == grey(1));
+    // Coloured, 3, 2 and 1/2 times too bright.
+    const KnownLight wrong = known_light(s, mesh, times(of_glow(mesh), {3, 2, real(0.5)}));
+    const double truth[] = {1 / 3.0, 1 / 2.0, 2};
+    for (size_t c = 0; c < 3; ++c)
+        EXPECT(oracle::expect_replicates(
+                   truth[c], 32,
+                   [&](int r) {
+                       const Pattern p =
+                           EndlessNumbers::independent(hash(seed_here(), uint64_t(r)));
+                       return double(slope_of({s, none, wrong}, p, 2000).*axis[c]);
+                   }),
+               0.1);
+}

@@ -1,0 +1,131 @@
+// radiosity/walks_test.cpp  particles walk until their error is what was asked for, and no farther
+#include "radiosity/walks.h"
+
+#include "base/moments.h"
+#include "oracle/expect.h"
+#include "radiosity/rooms.h"
+
+using namespace rooms;
+
+namespace {
+
+CommonOptions quietly(unsigned threads = 1) {
+    CommonOptions o;
+    o.quiet = true, o.threads = threads;
+    return o;
+}
+
+Walked walk_to(const Scene& s, const Mesh& mesh, const WalksTarget& target, uint64_t seed,
+               SamplerKind kind = SamplerKind::halton) {
+    const Pattern pattern = Particles::pattern(kind, hash(seed_here(), seed), target.particles);
+    return walk_all(s, mesh, pattern, target, quietly());
+}
+
+constexpr uint64_t first_look = ErrorTarget::least * Particles::batches;
+
+// Walls that glow and reflect: E = pi (2, 2.5, 2), which is in the span of the hats of any mesh.
+Scene furnace() {
+    return room({2, 3, 1}, diffuse({real(0.5), real(0.2), real(0.7)}, {1, 2, real(0.6)}));
+}
+
+double true_error(const Mesh& mesh, const IlluminationMap& map) {
+    const vec3 truth = pi * rgb{2, real(2.5), 2};
+    double off = 0, size = 0;
+    for (const Face& face : mesh.faces) {
+        Sums d(face.vertices());
+        for (uint32_t v = 0; v < d.size(); ++v) d[v] = map[2 * (face.vertex + v)] - truth;
+        const rgb square = Projection(mesh, face).square(d);
+        off += double(square.x + square.y + square.z);
+        size += double(dot(truth, truth) * face.area());
+    }
+    return std::sqrt(off / size);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an error is met with its uncertainty on top; the next look is where 1 / sqrt(n) meets it") {
+    const ErrorTarget target(0.1);
+    CHECK(target.met({0.09, 0.006}));
+    CHECK_FALSE(target.met({0.09, 0.007}));
+    CHECK_FALSE(target.met({}));
+    CHECK_FALSE(target.met({INFINITY, INFINITY}));
+    CHECK_FALSE(target.met({0.01, NAN}));
+    CHECK(target.met({0, 0}));
+    CHECK(target.done({0.185, 0.01}) == doctest::Approx(0.25));
+    CHECK(target.done({INFINITY, INFINITY}) == 0);
+    CHECK(target.next(1000, {0.12, 0.02}) == 2025);  // 0.9 of 2.25 times as many
+    CHECK(target.next(1000, {0.101, 0}) == 1040);
+    CHECK(target.next(1000, {0.9, 0.1}) == 4000);
+    CHECK(target.next(1000, {}) == 4000);
+}
+
+TEST_CASE("--error: the error at the stop is the stated one, which is at most what was asked for") {
+    const Scene s = furnace();
+    const Mesh mesh = make_mesh(s, 0.6);
+    constexpr double asked = 0.025;
+    Moments actual, stated;
+    for (uint64_t r = 0; r < 64; ++r) {
+        const Walked w = walk_to(s, mesh, {0, 0, asked}, r);
+        CHECK(w.particles > 1.5 * first_look);
+        CHECK(w.stated.error + 1.5 * w.stated.uncertainty <= asked);
+        CHECK(w.stated.error > 0.93 * asked);
+        const double error = true_error(mesh, w.map);
+        actual.add(error * error), stated.add(w.stated.error * w.stated.error);
+    }
+    EXPECT(oracle::expect_equal(estimate(actual), estimate(stated)), 0.13);
+}
+
+TEST_CASE("--error: particles, seconds and the first look are limits") {
+    const Scene s = furnace();
+    const Mesh mesh = make_mesh(s, 2.2);
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
+                             SamplerKind::sobol}) {
+        CHECK(walk_to(s, mesh, {0, 0, 0.9}, 1, kind).particles == first_look);
+        CHECK(walk_to(s, mesh, {1600, 0, 0.9}, 1, kind).particles == 1600);
+        CHECK(walk_to(s, mesh, {100000, 0, 1e-9}, 1, kind).particles == 100000);
+        const Walked w = walk_to(s, mesh, {0, 0.05, 1e-9}, 1, kind);
+        CHECK(w.particles > 0);
+        CHECK(w.seconds >= 0.05 * 0.5);
+        CHECK(w.stated.error > 1e-9);
+    }
+}
+
+TEST_CASE("--error: the run is the same for any number of threads, and that of as many particles") {
+    const Scene s = furnace();
+    const Mesh mesh = make_mesh(s, 1);
+    const Pattern pattern = Particles::pattern(SamplerKind::halton, 1, 0);
+    const Walked one = walk_all(s, mesh, pattern, {0, 0, 0.015}, quietly());
+    CHECK(one.particles > first_look);
+    CHECK(walk_all(s, mesh, pattern, {0, 0, 0.015}, quietly(3)).map == one.map);
+    CHECK(walk_all(s, mesh, pattern, {one.particles, 0, 0}, quietly(2)).map == one.map);
+}
+
+TEST_CASE("--error: light that is rare but bright is seen before the run may end") {
+    // A lamp of 1/1000 of the power, a plate as small as itself beside it: of |E|^2 most.
+    Scene s;
+    add_room(s, grey(10), add(s, diffuse(grey(0.5))));
+    const uint32_t black = add(s, diffuse(grey(0)));
+    add_quad(s, {4, real(9.9), 4}, {1, 0, 0}, {0, 0, 1}, add(s, diffuse(grey(0), grey(1))));
+    const real a = real(0.004), near = 5;
+    add_quad(s, {near, near, near}, {a, 0, 0}, {0, 0, a},
+             add(s, diffuse(grey(0), grey(1e-3 / (0.004 * 0.004)))));
+    add_quad(s, {near, near - a, near}, {0, 0, a}, {a, 0, 0}, black);
+    prepare(s);
+    const Mesh mesh = make_mesh(s, 3);
+    const Face& plate = mesh.faces.back();
+    REQUIRE(plate.vertices() == 4);
+    for (uint64_t r = 0; r < 12; ++r) {
+        const Walked w = walk_to(s, mesh, {0, 0, 0.3}, r);
+        CHECK(double(integral(mesh, w.map, plate, false).x) > 0);
+        CHECK(w.stated.error <= 0.3);
+    }
+}
+
+TEST_CASE("no light, no error: nothing walks") {
+    const Scene s = room({1, 1, 1}, diffuse(grey(0.5)));
+    const Mesh mesh = make_mesh(s, 2);
+    const Walked w = walk_to(s, mesh, {0, 0, 0.1}, 1);
+    CHECK(w.particles == 0);
+    CHECK(std::isnan(w.stated.error));
+}

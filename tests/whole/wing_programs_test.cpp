@@ -1,0 +1,125 @@
+// whole/wing_programs_test.cpp  build/shadow and build/voronoi as their user meets them
+#include "whole/process.h"
+
+namespace {
+
+const std::string programs[] = {"shadow", "voronoi"};
+const std::string words_of[] = {"--estimator", "--weights"};
+
+// A ball in the light of a lamp, its shadow on the ground.
+const std::string scene =
+    "size 17 9\ncamera 0 3 6  0 0 0  50\nsamples 8\ndiffuse g .5 .4 .3\nlight l 4 4 4\n"
+    "quad -5 0 -5  0 0 10  10 0 0  g\nsphere 0 1 0  .5  g\nsphere 1 3 0  .4  l\n";
+
+struct Place : Folder {
+    Place() { write("a.scene", scene); }
+    Image image(const std::string& program, const std::string& options) const {
+        expect_success(*this, program, split("--quiet -o x.pfm a.scene " + options));
+        return read_pfm(*this / "x.pfm");
+    }
+};
+
+// The greatest difference, beside the greatest value.
+double apart(const Image& a, const Image& b) {
+    REQUIRE(a.pixels.size() == b.pixels.size());
+    double most = 0, off = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            most = std::max(most, double(std::abs(a.pixels[i][c])));
+            off = std::max(off, std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c])));
+        }
+    return off / most;
+}
+
+}  // namespace
+
+TEST_CASE("shadow and voronoi: one page of help; out/NAME-PROGRAM.png and .pfm; statistics") {
+    for (size_t k = 0; k < 2; ++k) {
+        const Place folder;
+        const Outcome help = run(folder, programs[k], {"--help"});
+        CHECK(help.status == 0);
+        CHECK(contains(help.out, programs[k] + " [options] SCENE"));
+        CHECK(contains(help.out, "  " + words_of[k] + " "));
+        for (const char* gone : {"--time", "--error", "--keep", "--rows", "--view", "--pixel"})
+            CHECK_FALSE(contains(help.out, std::string("\n  ") + gone));
+        std::istringstream lines(help.out);
+        for (std::string text; std::getline(lines, text);) CHECK(text.size() <= 80);
+
+        const Outcome o =
+            expect_success(folder, programs[k], split("a.scene --sets 3 --spp 10 --stats s.json"));
+        const std::string stem = "out/a-" + programs[k];
+        CHECK(o.err.ends_with("\nwrote " + stem + ".png, " + stem + ".pfm, s.json\n"));
+        CHECK(contains(o.err, "a.scene: 12 samples per pixel, "));
+        CHECK(contains(o.err, " without its bias (consistent)"));
+        CHECK(all_finite(read_pfm(folder / (stem + ".pfm"))));
+        const std::string json = folder.read("s.json");
+        CHECK(contains(json, "\"samples_per_pixel\": 12,"));
+        CHECK(contains(json, "\"sets_per_pixel\": 3,"));
+        CHECK(contains(json, "\"stopped_by\": \"samples\""));
+        CHECK(contains(json, "\"redraws\": 0") == (programs[k] == "voronoi"));
+        CHECK(contains(json, "\"fallbacks\": 0") == (programs[k] == "voronoi"));
+    }
+}
+
+TEST_CASE(
+    "shadow and voronoi: plain samples make penumbra's image; the others are of their class") {
+    const Place folder;
+    const std::string common = " --sets 2 --spp 32 --roulette .25 --seed 3 ";
+    for (const char* sampler : {"independent", "stratified", "halton", "sobol"}) {
+        const std::string by = common + "--sampler " + sampler;
+        CHECK(apart(folder.image("shadow", by + " --estimator stochastic"),
+                    folder.image("penumbra", by + " --light nee")) < 1e-6);
+    }
+    for (const char* light : {"nee", "mis"}) {
+        const std::string by = common + "--light " + light;
+        CHECK(apart(folder.image("voronoi", by + " --weights mc"),
+                    folder.image("penumbra", by + " --sampler independent")) < 1e-6);
+    }
+    const Image truth = folder.image("penumbra", "--sets 1 --spp 4096");
+    const std::pair<std::string, std::string> rows[] = {
+        {"shadow", "stochastic unbiased"}, {"shadow", "control unbiased"},
+        {"shadow", "ratio consistent"},    {"shadow", "regression consistent"},
+        {"voronoi", "mc unbiased"},        {"voronoi", "vor consistent"},
+        {"voronoi", "fvor consistent"},    {"voronoi", "cvor consistent"},
+        {"voronoi", "torus unbiased"}};
+    for (const auto& [program, row] : rows) {
+        const Words words = split(row);
+        const std::string option = words_of[program == "voronoi"] + " " + words[0];
+        INFO(program, " ", option);
+        const Image image = folder.image(program, option + common + "--stats s.json --threads 1");
+        CHECK(folder.image(program, option + common + "--threads 3").pixels == image.pixels);
+        CHECK(contains(folder.read("s.json"), "\"bias\": \"" + words[1] + "\""));
+        CHECK(apart(truth, image) > 1e-4);
+        CHECK(apart(truth, image) < 0.5);
+    }
+}
+
+TEST_CASE("shadow and voronoi refuse, in one line, what they cannot do") {
+    const Place folder;
+    const std::tuple<std::string, std::string, std::string> rows[] = {
+        {"shadow", "--estimator mean a.scene", "--estimator: unknown value 'mean'"},
+        {"shadow", "--sets adaptive a.scene", "--sets: 'adaptive' is not a whole number"},
+        {"shadow", "--light mis a.scene", "unknown option '--light'"},
+        {"shadow", "--time 3 a.scene", "unknown option '--time'"},
+        {"shadow", "", "no scene given"},
+        {"voronoi", "--weights area a.scene", "--weights: unknown value 'area'"},
+        {"voronoi", "--sampler sobol a.scene", "unknown option '--sampler'"},
+        {"voronoi", "--error 1% a.scene", "unknown option '--error'"},
+        {"voronoi", "--spp 2097153 a.scene", "--spp: at most 1048576 samples a replication"},
+        {"voronoi", "-o a.scene a.scene", "-o: 'a.scene' ends neither in .png nor in .pfm"}};
+    for (const auto& [program, line, why] : rows) expect_refusal(folder, program, split(line), why);
+}
+
+TEST_CASE("shadow and voronoi: Ctrl-C leaves no image") {
+    for (const std::string& program : programs) {
+        const Place folder;
+        Process process(folder, program, split("--spp 1000000 -o a.pfm a.scene"));
+        process.listen(0.5, [](const Outcome&) { return false; });
+        process.interrupt(SIGINT);
+        const Outcome o = process.finish();
+        INFO(o.err);
+        CHECK(o.status == 130);
+        CHECK(o.err.ends_with(" (interrupted)\n"));
+        CHECK(folder.all().size() == 1);
+    }
+}

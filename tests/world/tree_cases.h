@@ -1,0 +1,249 @@
+// world/tree_cases.h  what every tree must do: each is tested by these cases
+//
+//     TEST_CASE_TEMPLATE_INVOKE(random_and_awkward, Bvh);
+#pragma once
+#include "world/hard_rays.h"
+
+// Nodes and shapes looked at, in the mean of 10000 rays from a sphere of radius 1.
+struct MeanWork {
+    double nodes = 0, shapes = 0;
+};
+template <class Tree>
+MeanWork work_of_rays(const Shapes& scene, Dice& random) {
+    const Tree tree(scene);
+    const int rays = 10000;
+    MeanWork mean;
+    for (int i = 0; i < rays; ++i) {
+        const vec3 o = random.direction();
+        const auto work = tree.work({o, random.direction()});
+        mean.nodes += double(work.nodes) / rays, mean.shapes += double(work.shapes) / rays;
+    }
+    return mean;
+}
+
+TEST_CASE_TEMPLATE_DEFINE(
+    "closest and occluded equal a loop over all shapes, on random and on awkward rays", Tree,
+    random_and_awkward) {
+    Dice random{{1}};
+    const Shapes scenes[] = {
+        soup(30, 0, random), soup(15, 15, random), soup(0, 20, random), ball(2), grid(2), room(),
+        soup(5, 0, random)};
+    for (const Shapes& scene : scenes) {
+        ComparisonOf<Tree> c{scene};
+        judge(c, int(5000000 / (20 + scene.size())), 1, random);
+        CAPTURE(scene.size());
+        CHECK(c.different == 0);
+        CHECK(c.hits > c.rays / 5);
+        CHECK(c.hits < c.rays);
+    }
+}
+
+TEST_CASE_TEMPLATE_DEFINE("a tree of one shape is hit exactly when the shape is, from far away too",
+                          Tree, one_shape) {
+    // From there rounding moves a ray by more than the padding of a box, which is in proportion to
+    // the shape: the slabs must be wide enough.  Planes through 0 are not even rounded to float.
+    Dice random{{2}};
+    int hits = 0, different = 0;
+    for (int i = 0; i < 60000; ++i) {
+        Shape s = i % 8 == 0 ? soup(0, 1, random)[0] : triangle(1, random);
+        if (i % 4 > 0) s.a = {}, s.b.x = s.b.y = s.c.y = 0;
+        const Shapes scene{s};
+        ComparisonOf<Tree> c{scene};
+        const Shape tip = s.is_sphere() ? s : Shape{s.a, s.a, s.a};
+        const real reach = random.decades(0, 7);
+        for (int k = 0; k < 2; ++k) c.judge(aimed<Tree>(s, at_edge, reach, random));
+        for (int k = 0; k < 8; ++k) c.judge(aimed<Tree>(tip, near_axis, reach, random));
+        different += c.different;
+        hits += c.hits;
+    }
+    CHECK(different == 0);
+    CHECK(hits > 200000);
+}
+
+TEST_CASE_TEMPLATE_DEFINE(
+    "slivers seen edge-on or at their ends are hit in their boxes or not at all", Tree,
+    slivers_edge_on) {
+    Dice random{{3}};
+    int hits = 0, different = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Shapes scene = slivers(10, random);
+        ComparisonOf<Tree> c{scene};
+        for (int k = 0; k < 2000; ++k)
+            c.judge(aimed<Tree>(scene[random.below(10)], k % 2 ? beside : in_plane, 1, random));
+        different += c.different;
+        hits += c.hits;
+    }
+    CHECK(different == 0);
+    CHECK(hits > 20000);
+}
+
+TEST_CASE_TEMPLATE_DEFINE(
+    "tree and loop agree at coordinates of 1e8, of 1e-8, and of all sizes at once", Tree,
+    all_sizes) {
+    Dice random{{4}};
+    Shapes mixture;
+    for (int i = 0; i < 60; ++i)
+        mixture.push_back(scaled(soup(i % 2, 1 - i % 2, random), random.decades(-8, 8))[0]);
+    for (int i = 0; i < 60; ++i) {  // small ones far out
+        Shape s = soup(i % 2, 1 - i % 2, random)[0];
+        const vec3 far = random.decades(0, 8) * random.direction();
+        s = {s.a + far, s.b + far, s.c + far, s.r};
+        mixture.push_back(s);
+    }
+    for (real size : {real(1e8), real(1e-8)})
+        for (const Shapes& scene : {soup(30, 30, random), room(), grid(2)}) {
+            const Shapes placed = scaled(scene, size);
+            ComparisonOf<Tree> c{placed};
+            judge(c, 10000, size, random);
+            CHECK(c.different == 0);
+            CHECK(c.hits > c.rays / 5);
+        }
+    ComparisonOf<Tree> c{mixture};
+    for (int exponent = -8; exponent <= 8; ++exponent)
+        judge(c, 4000, std::pow(real(10), real(exponent)), random);
+    CHECK(c.different == 0);
+    CHECK(c.hits > c.rays / 5);
+}
+
+TEST_CASE_TEMPLATE_DEFINE("of coincident shapes the first is hit, wherever the tree has put it",
+                          Tree, coincident) {
+    Dice random{{5}};
+    int wrong = 0;
+    for (int i = 0; i < 300; ++i) {
+        // 12 shapes, 5 times over, in any order: the least index is that of the first copy.
+        const Shapes originals = soup(6, 6, random);
+        Shapes scene;
+        for (int k = 0; k < 60; ++k) scene.push_back(originals[random.below(12)]);
+        auto copy = [](const Shape& s, const Shape& t) {
+            return s.a == t.a && s.b == t.b && s.c == t.c && s.r == t.r;
+        };
+        const Tree tree(scene);
+        for (int k = 0; k < 100; ++k) {
+            const auto hit = tree.closest({2 * random.direction(), random.direction()});
+            if (!hit) continue;
+            for (uint32_t first = 0; first < hit->id; ++first)
+                wrong += copy(scene[first], scene[hit->id]);
+        }
+    }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE_TEMPLATE_DEFINE("of 1e5 identical triangles the first is hit", Tree, identical) {
+    Dice random{{6}};
+    const Shape t = triangle(1, random);
+    const Tree tree(Shapes(100000, t));
+    int wrong = 0, hits = 0;
+    for (int i = 0; i < 120; ++i) {
+        Ray ray = aimed<Tree>(t, i % aims, 1, random);
+        auto expected = nearest({t}, ray);
+        wrong += !same(tree.closest(ray), expected);
+        wrong += tree.occluded(ray) != expected.has_value();
+        hits += expected.has_value();
+        if (!expected) continue;
+        ray.tmax = expected->t;
+        wrong += !same(tree.closest(ray), expected);
+    }
+    CHECK(wrong == 0);
+    CHECK(hits > 10);
+}
+
+TEST_CASE_TEMPLATE_DEFINE("1e5 triangles at exponentially spaced places do not exhaust the stack",
+                          Tree, exponentially_spaced) {
+    // As far as the cubes of coordinates are numbers; in double beyond the floats of the boxes.
+    const real octaves = sizeof(real) == 8 ? 300 : 40;
+    Dice random{{7}};
+    Shapes scene;
+    const int n = 100000;
+    for (int i = 0; i < n; ++i) {
+        const real x = std::exp2(octaves * (2 * real(i) / n - 1));
+        scene.push_back({{x, -x, -x}, {x, x, -x}, {x, 0, x}});
+    }
+    ComparisonOf<Tree> c{scene};
+    for (int i = 0; i < 12; ++i) {
+        const real x = std::exp2(octaves * random(-1, 1));
+        const vec3 skew = unit({1, random(-1, 1) / 4, random(-1, 1) / 4});
+        for (vec3 d : {vec3{1, 0, 0}, vec3{-1, 0, 0}, skew, -skew, random.direction()}) {
+            c.judge({{0, 0, 0}, d});
+            c.judge({{x, x / 9, x / 7}, d});
+            c.judge({{2 * scene.back().a.x, 0, 0}, d});
+        }
+    }
+    CHECK(c.different == 0);
+    CHECK(c.hits > c.rays / 4);
+}
+
+TEST_CASE_TEMPLATE_DEFINE(
+    "triangles of 1e-30 are hit by rays so nearly along an axis that 1/d is beyond float", Tree,
+    beyond_float) {
+    if (sizeof(real) == 4) return;
+    const real distance = real(1e10), size = real(1e-30);
+    Shapes scene;
+    for (int i = 0; i < 20; ++i) {
+        const real y = real(i) * size;
+        scene.push_back({{0, y, -size}, {0, y + size, -size}, {0, y, size}});
+    }
+    ComparisonOf<Tree> c{scene};
+    for (int i = 0; i < 20; ++i)
+        c.judge({{-distance, 0, 0}, {1, (real(i) + real(0.3)) * size / distance, 0}});
+    CHECK(c.different == 0);
+    CHECK(c.hits == 20);
+}
+
+TEST_CASE_TEMPLATE_DEFINE(
+    "rays from infinitely far, as floats see it, meet what there is and nothing else", Tree,
+    infinitely_far) {
+    // Absent children's boxes are empty, but such a ray meets even those.
+    Dice random{{11}};
+    const real far = sizeof(real) == 8 ? real(1e300) : real(1e38);
+    for (int n : {1, 3, 9, 20}) {
+        const Shapes scene = soup(n, n % 3, random);
+        ComparisonOf<Tree> c{scene};
+        for (int octant = 0; octant < 8; ++octant)
+            for (real size : {real(1), far}) {
+                const vec3 o =
+                    size * vec3{octant & 1 ? real(1) : real(-1), octant & 2 ? real(1) : real(-1),
+                                octant & 4 ? real(1) : real(-1)};
+                for (int i = 0; i < 50; ++i) c.judge({o, random.direction()});
+                c.judge({o, unit({-o.x / size, -o.y / size, -o.z / size})});
+            }
+        CHECK(c.different == 0);
+    }
+}
+
+TEST_CASE_TEMPLATE_DEFINE(
+    "an empty tree is missed, and a ray that is not a number misses every tree", Tree,
+    empty_and_nan) {
+    const real nan = std::numeric_limits<real>::quiet_NaN();
+    const Ray ray{{0, 0, 3}, {0, 0, -1}};
+    for (const Tree& tree : {Tree{}, Tree(Shapes{})}) {
+        CHECK(!tree.closest(ray));
+        CHECK(!tree.occluded(ray));
+        CHECK(tree.work(ray).nodes == 0);
+    }
+    const Shapes scene = room();
+    const Tree tree(scene);
+    CHECK(tree.closest(ray));
+    for (const Ray& bad : {Ray{{0, 0, 3}, {nan, nan, nan}}, Ray{{nan, 0, 3}, {0, 0, -1}}}) {
+        CHECK(!tree.closest(bad));
+        CHECK(!tree.occluded(bad));
+    }
+}
+
+TEST_CASE_TEMPLATE_DEFINE(
+    "a scene 2^20 times as large is hit at 2^20 times the distance, bit for bit", Tree,
+    scaled_scene) {
+    Dice random{{9}};
+    const real k = std::ldexp(real(1), 20);
+    const Shapes scene = soup(50, 50, random), large = scaled(scene, k);
+    const Tree tree(scene), large_tree(large);
+    int different = 0, hits = 0;
+    for (int i = 0; i < 60000; ++i) {
+        const Ray ray = aimed<Tree>(scene[random.below(scene.size())], i % aims, 1, random);
+        auto hit = tree.closest(ray);
+        hits += hit.has_value();
+        if (hit) hit->t *= k;
+        different += !same(hit, large_tree.closest({ray.o * k, ray.d}));
+    }
+    CHECK(different == 0);
+    CHECK(hits > 20000);
+}
