@@ -304,12 +304,12 @@ packages:
 
 # Folders by floor; those of one floor do not know each other.  Programs (.cpp) stand above app.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-FLOORS := base:0 world:1 wide:2 path:2 film:3 keep:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
-# The core names no wing, but in two headers: one says which tree, one whether films are kept.  Nor do
+FLOORS := base:0 world:1 wide:2 path:2 film:3 keep:4 unseen:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
+# The core names no wing, but in three headers: which tree, whether films are kept, whether light may be unseen.  Nor do
 # tests of the core.  A wing's program stands above the app.
 CORE  := base world path film app
-WINGS := wide keep shadow voronoi radiosity
-DOORS := world/tree.h:wide app/keep.h:keep
+WINGS := wide keep unseen shadow voronoi radiosity
+DOORS := world/tree.h:wide app/keep.h:keep app/unseen.h:unseen
 # Of a folder that is named here, a wing includes these headers alone.
 NEEDS := wide:world/shapes.h
 

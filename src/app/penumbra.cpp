@@ -1,6 +1,7 @@
 // app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
 #include "app/replay.h"
+#include "app/unseen.h"
 #include "base/program.h"
 
 namespace {
@@ -19,14 +20,18 @@ Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 )";
 
 // The samples of one pixel after the other.  A path ends early once nobody waits for it.
-Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern) {
-    return [&](const PixelSample& s, uint64_t& rays) {
+Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
+                     const Witness& witness) {
+    return [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
-        if (o.view != View::radiance) return ++rays, view_along(scene, o.view, at.ray);
-        return Li(scene, o.technique, at.ray, at.sampler, [&](const Segment&, const Step& e) {
-            if (interrupted) throw Interrupted();
-            rays += 1 + (e.direct.light != nullptr);
-        });
+        if (o.view != View::radiance) return ++tally.rays, view_along(scene, o.view, at.ray);
+        auto misses = witness.account(tally);
+        return Li(scene, o.technique, at.ray, at.sampler,
+                  [&](const Segment& segment, const Step& e) {
+                      if (interrupted) throw Interrupted();
+                      tally.rays += 1 + (e.direct.light != nullptr);
+                      misses(segment, e);
+                  });
     };
 }
 
@@ -71,7 +76,9 @@ int penumbra(const std::vector<std::string>& words) {
     const auto outputs = outputs_of(o, parsed, "", plan.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
-    const Radiance L = radiance_of(o, scene, pattern);
+    Witness witness(scene, o.technique);
+    if (o.view == View::radiance) witness.watch(plan);
+    const Radiance L = radiance_of(o, scene, pattern, witness);
     const FilmOf what = film_of(table, o, parsed, plan, pattern);
     const Picture picture = render(o, plan, L, what);  // film and bar end here
     return write_picture(o, table, scene, outputs, picture);

@@ -47,7 +47,9 @@ inline Film film_for(const Plan& plan) {
         throw UserError(std::to_string(plan.size.width) + "x" + std::to_string(plan.size.height) +
                         " pixels do not fit into the " + fixed(plan.memory * 1e-9, 0) +
                         " GB of this machine: render fewer rows at a time (--rows)");
-    return make_film(plan.size, plan.sets, plan.first_row);
+    Film film = make_film(plan.size, plan.sets, plan.first_row);
+    film.evidence = plan.evidence;
+    return film;
 }
 
 // A NaN is an error and no black dot.
@@ -67,11 +69,13 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent,
     run.spp = all ? film.total() / double(film.pixels()) * double(plan.at_once) : 0;
     run.interrupted = interrupted;
     const bool all_taken = plan.target.samples > 0 && film.least_taken() == plan.target.samples;
-    run.stopped_by = run.interrupted      ? "interrupt"
-                     : checks.is_enough() ? "error"
-                     : all_taken          ? "samples"
-                                          : "time";
+    run.stopped_by = run.interrupted        ? "interrupt"
+                     : checks.is_enough()   ? "error"
+                     : checks.is_hopeless() ? "error not known"
+                     : all_taken            ? "samples"
+                                            : "time";
     run.error = error_of(film);
+    run.doubt = doubt_of(film, run.error, plan.judge);
     run.sets = film.sets_per_pixel();
     run.exponent_of_cost = 1 / checks.course().exponent();
     return run;
@@ -90,7 +94,7 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     Keeper keeper(o.keep, what);
     const Spent before = keeper.restore(film);
     Progress progress(plan.target.seconds, o.quiet, before.seconds);
-    ErrorChecks checks(plan.target.error, plan.period);
+    ErrorChecks checks(plan.target.error, plan.period, plan.judge);
     Watch watch;
     Loop loop(film, plan, L, watch);
     auto spent = [&] {

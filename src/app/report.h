@@ -66,6 +66,7 @@ struct Run : Spent {
     bool interrupted = false;
     std::string stopped_by;  // "samples", "time", "error" or "interrupt"
     ImageError error;
+    std::string doubt;              // why that may be far too small, or ""
     double sets = 1;                // replications a pixel, in the mean
     double exponent_of_cost = 2;    // seconds ~ d_rel^-this
     std::string bias = "unbiased";  // class of the estimator
@@ -89,14 +90,13 @@ inline int64_t peak_memory_bytes() {
 inline std::string why_no_error(const Run& run) {
     if (run.spp <= 1) return "one sample";
     if (run.sets == 1) return run.interrupted ? "interrupted early" : "one replication";
-    if (run.error.norm == 0) return "the image is black";
-    if (std::isfinite(run.error.d_rel())) return "";
+    if (std::isfinite(run.error.d_rel()) || run.error.norm == 0) return run.doubt;
     return run.interrupted ? "interrupted early" : "too little time";
 }
 
 // "d_rel 2.1 % ± 0.1 %; 1 % needs 34 s"
 inline std::string told_error(const Run& run) {
-    if (const std::string why = why_no_error(run); !why.empty()) return "error not known: " + why;
+    if (const std::string why = why_no_error(run); !why.empty()) return "d_rel not known: " + why;
     const double d = run.error.d_rel();
     std::string words = "d_rel " + significant(100 * d, 2) + " % ± " +
                         significant(100 * run.error.standard_error(), 1) + " %";
@@ -132,11 +132,14 @@ inline void add_run(json::Object& object, const Run& run, Size size) {
     for (double& v : of_mean) v /= double(size.width) * double(size.height);
     object.add("variance_of_mean", json::numbers(of_mean));
     object.add("sets_per_pixel", json::number(run.sets));
-    object.add("d_rel", json::number(run.error.d_rel()));
-    object.add("d_rel_standard_error", json::number(run.error.standard_error()));
-    const bool falls = run.error.d2() > 0;  // or is 0, or not known
+    const std::string reason = why_no_error(run);
+    auto if_known = [&](double x) { return json::number(reason.empty() ? x : double(NAN)); };
+    object.add("d_rel", if_known(run.error.d_rel()));
+    object.add("d_rel_standard_error", if_known(run.error.standard_error()));
+    object.add("d_rel_reason", reason.empty() ? "null" : json::string(reason));
+    const bool falls = run.error.d2() > 0;  // or is 0
     object.add("seconds_to_half_d_rel",
-               json::number(falls ? run.seconds * std::pow(2, run.exponent_of_cost) : double(NAN)));
+               if_known(falls ? run.seconds * std::pow(2, run.exponent_of_cost) : double(NAN)));
     object.add("bias", json::string(run.bias));
     object.add("stopped_by", json::string(run.stopped_by));
     for (const auto& [key, value] : run.more) object.add(key, value);

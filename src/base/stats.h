@@ -1,7 +1,13 @@
 // base/stats.h  1  moments that do not cancel
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+
+// A sum of numbers >= 0 that is the same in any order: in multiples of 2^-60.
+__extension__ typedef unsigned __int128 FixedPoint;
+inline FixedPoint fixed_point(double x) { return FixedPoint(std::min(x, 0x1p40) * 0x1p60); }
+inline double value_of(FixedPoint sum) { return std::ldexp(double(sum), -60); }
 
 // Count, mean and squared distances to it, one number at a time (Welford 1962) or merged (Chan,
 // Golub, LeVeque 1983).  Always double: these are statements about numbers, not numbers of the

@@ -107,6 +107,16 @@ private:
     } before_, last_;
 };
 
+// Why a film's error may be far more than it says; "": no reason is known.
+using Judge = std::function<std::string(const Film&, const ImageError&)>;
+
+// The same of any film.  A standard error of a quarter is that of 8 degrees of freedom.
+inline std::string doubt_of(const Film& film, const ImageError& e, const Judge& judge) {
+    if (e.norm == 0) return "no light was met";
+    const std::string why = judge && e.d2() >= 0 ? judge(film, e) : "";
+    return why.empty() && e.standard_error() > e.d_rel() / 4 ? "it hangs on few pixels" : why;
+}
+
 // The rule of --error: stop once the estimate, with another pixel like the worst and half its
 // standard error, is no more than asked for.  The margin makes up for stopping at a look that errs,
 // the pixel for some of the light that was not seen (both by `make calibration`).  An error that is
@@ -127,7 +137,8 @@ inline uint64_t next_check(uint64_t samples, uint64_t first, uint64_t period) {
 // Looks at a film's error now and then, until it is at most `wanted`; 0: for its course alone.
 class ErrorChecks {
 public:
-    ErrorChecks(double wanted, uint64_t period) : wanted_(wanted), period_(period) {}
+    ErrorChecks(double wanted, uint64_t period, const Judge& judge = {})
+        : wanted_(wanted), period_(period), judge_(judge) {}
 
     // Samples up to which the film may go before it looks again; as many as it has: enough.
     uint64_t next(const Film& film) {
@@ -139,23 +150,30 @@ public:
         if (checks || (is_even && course_.is_due(n))) {
             const ImageError e = error_of(film);
             course_.add(n, e.d_rel());
-            is_enough_ = checks && is_small_enough(e, wanted_);
+            const bool is_known = !checks || doubt_of(film, e, judge_).empty();
+            is_enough_ = checks && is_known && is_small_enough(e, wanted_);
+            is_hopeless_ = !is_known && film.total() >= most_unknown * double(film.pixels());
             const double too_much = std::isfinite(e.d_rel()) ? e.d_rel() / wanted_ : HUGE_VAL;
             expected_ = double(n) * course_.cost_of(std::max(1.0, too_much));
         }
-        return is_enough_ ? n : wanted_ > 0 ? next_check(n, first, period_) : UINT64_MAX;
+        return is_enough_ || is_hopeless_ ? n
+               : wanted_ > 0              ? next_check(n, first, period_)
+                                          : UINT64_MAX;
     }
 
     bool is_enough() const { return is_enough_; }
+    bool is_hopeless() const { return is_hopeless_; }  // not known, after so many samples
     const ErrorCourse& course() const { return course_; }
     // Samples of each replication in the end, by the last look; infinite: not known.
     double expected() const { return wanted_ > 0 ? expected_ : HUGE_VAL; }
 
 private:
-    static constexpr uint64_t first_check = 8;  // samples; fewer tell little of a spread
+    static constexpr uint64_t first_check = 8;    // samples; fewer tell little of a spread
+    static constexpr double most_unknown = 4096;  // samples a pixel
     const double wanted_;
     const uint64_t period_;
+    const Judge judge_;
     ErrorCourse course_;
-    bool is_enough_ = false;
+    bool is_enough_ = false, is_hopeless_ = false;
     double expected_ = HUGE_VAL;
 };

@@ -14,8 +14,15 @@
 #include "film/image.h"
 #include "path/sampler.h"
 
-// The radiance of a sample; counts the rays that it takes.  Calls come from several threads.
-using Radiance = std::function<rgb(const PixelSample&, uint64_t& rays)>;
+// What samples leave beside their radiance.
+struct Tally {
+    uint64_t rays = 0;
+    double share = 1;              // of a sample of this pixel, whose replications are 1 / share
+    std::vector<FixedPoint> sums;  // evidence for whoever judges the film; see Film
+};
+
+// The radiance of a sample, and its tally.  Calls come from several threads.
+using Radiance = std::function<rgb(const PixelSample&, Tally&)>;
 
 // A channel at a time.
 struct Sum {
@@ -36,6 +43,7 @@ struct Film {
     std::vector<uint16_t> sets;   // replications of each pixel; empty: not yet chosen
     std::vector<Sum> sum;         // of each replication: those of pixel 0, those of pixel 1 ...
     std::vector<uint64_t> taken;  // samples that each replication of a block's pixels has
+    std::vector<FixedPoint> evidence;  // sums of tallies: films that are put together add them
     std::vector<float> spread;  // of each pixel's pilot: root of the squared distances to its mean
 
     size_t pixels() const { return size_t(size.width) * size_t(size.height); }
@@ -176,7 +184,7 @@ inline bool fits_float(rgb L) {
 // Brings the replications of a block, which begin at `offset`, to n samples, in order: the image
 // is the same however passes and threads divide them.  If L throws, the block stays as it was.
 inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, const Radiance& L,
-                             uint64_t& rays) {
+                             Tally& tally) {
     const size_t from = f.begin(block), to = f.end(block), width = size_t(f.size.width);
     NonFinite bad;
     std::vector<Sum> sums;
@@ -184,11 +192,12 @@ inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, c
     sums.reserve(16 * (to - from)), spread.reserve(to - from);
     for (size_t i = from, k = offset; i < to; ++i) {
         float root = f.spread.empty() ? 0 : f.spread[i];
+        tally.share = 1.0 / std::max(2u, f.sets_of(i));  // a pilot is one of two or more
         for (uint32_t set = 0; set < f.sets_of(i); ++set) {
             Sum sum = f.sum[k++];
             for (uint64_t s = f.samples(block, set); s < n; ++s) {
                 const PixelSample which{int(i % width), f.first_row + int(i / width), s, set};
-                const rgb sample = L(which, rays);
+                const rgb sample = L(which, tally);
                 if (!fits_float(sample)) bad.add({1, which});
                 double squares = double(root) * double(root);
                 for (size_t c = 0; c < 3 && s > 0 && !f.spread.empty(); ++c) {
@@ -216,6 +225,9 @@ struct Allocation {
     double factor = 3.5;
     uint32_t most = 32;
 };
+
+// Replications of a pixel of which few samples tell.
+inline constexpr uint32_t least_of_noisy = 8;
 
 // Samples of the pilot.
 inline constexpr uint64_t pilot_samples = 8;
@@ -255,12 +267,15 @@ inline double bytes_of(Size size, double sets) {
     return (32 + 24 * sets) * double(size.width) * double(size.height);
 }
 
-// Chooses sets by the pilot, which all blocks have; fewer of them where they do not fit into so
+// Chooses sets by the pilot, which all blocks have, and 8 where it is known that few samples meet
+// what is bright (`noisy`); fewer of them where they do not fit into so
 // many bytes.  Returns the most that a pixel may have.
-inline uint32_t choose_sets(Film& f, double memory) {
+inline uint32_t choose_sets(Film& f, double memory, const std::vector<size_t>& noisy = {}) {
     Allocation by;
     for (;; --by.most) {
         f.sets = sets_where_noise_is(f.spread, f.size, by);
+        for (size_t i : noisy)
+            f.sets[i] = std::max(f.sets[i], uint16_t(std::min(by.most, least_of_noisy)));
         double all = 0;
         for (uint16_t k : f.sets) all += k;
         if (by.most == 2 || bytes_of(f.size, all / double(f.pixels())) <= memory) {

@@ -77,8 +77,11 @@ struct Plan {
     double memory = INFINITY;  // bytes that the film may take
     Size size = {};
     int first_row = 0;
-    uint32_t sets = 0;     // replications of each pixel; 0: adaptive
-    uint64_t at_once = 1;  // samples that one sample of the film stands for
+    uint32_t sets = 0;                      // replications of each pixel; 0: adaptive
+    uint64_t at_once = 1;                   // samples that one sample of the film stands for
+    std::vector<size_t> noisy = {};         // pixels of which few samples tell
+    std::vector<FixedPoint> evidence = {};  // of a film without samples
+    Judge judge = {};                       // of the error, by them
 
     // Of each replication; 0: not known.
     uint64_t known_samples() const { return target.error > 0 ? 0 : target.samples; }
@@ -126,10 +129,12 @@ public:
         while (const uint64_t to = next_end()) {
             auto work = [&](size_t block) {
                 if (film_.taken[block] >= to) return;
-                uint64_t rays = 0;
-                const NonFinite bad = add_samples(film_, block, offsets_[block], to, L_, rays);
-                rays_ += rays;
+                Tally tally;
+                tally.sums.resize(film_.evidence.size());
+                const NonFinite bad = add_samples(film_, block, offsets_[block], to, L_, tally);
                 std::lock_guard lock(mutex_);
+                rays_ += tally.rays;
+                for (size_t i = 0; i < tally.sums.size(); ++i) film_.evidence[i] += tally.sums[i];
                 bad_.add(bad);
             };
             const double pixels = double(film_.pixels()), before = film_.total() / pixels,
@@ -170,7 +175,7 @@ private:
     // Samples of each replication after the next pass; 0: none is needed.
     uint64_t next_end() {
         if (film_.sets.empty() && is_pilot_done()) {
-            most_ = choose_sets(film_, plan_.memory);
+            most_ = choose_sets(film_, plan_.memory, plan_.noisy);
             offsets_ = offsets(film_);
         }
         const uint64_t most = watch_.between(film_), n = film_.least_taken();

@@ -20,9 +20,11 @@ inline size_t read_but_sums(FilmReader& file, Film& f) {
     f.taken.resize((n + f.block_size() - 1) / f.block_size());
     f.sets.resize(is_chosen ? n : 0);
     f.spread.resize(is_chosen ? 0 : n);
+    f.evidence.resize(size_t(file.number("evidence", 1 << 16)));
     file.read(std::as_writable_bytes(std::span(f.taken)));
     file.read(std::as_writable_bytes(std::span(f.sets)));
     file.read(std::as_writable_bytes(std::span(f.spread)));
+    file.read(std::as_writable_bytes(std::span(f.evidence)));
     size_t sums = is_chosen ? 0 : n;
     for (const uint16_t K : f.sets) {
         if (K < 1 || K > most_sets) file.refuse("has a pixel of impossible replications");
@@ -40,6 +42,7 @@ public:
         read_but_sums(file_, film_);
         if (film_.least_taken() + film_.pilot == 0) file_.refuse("has no samples");
     }
+    const Film& film() const { return film_; }  // without its sums
     // The next one; it lives until the next row begins.
     Pixel next() {
         if (const size_t width = size_t(film_.size.width); i_ % width == 0) {
@@ -101,6 +104,7 @@ public:
         if (path_.empty() || !std::filesystem::exists(path_)) return {};
         FilmReader file(path_);
         check_agrees(file, samples_);
+        check_agrees(file, {{"evidence", std::to_string(f.evidence.size())}});
         f.sum = std::vector<Sum>();  // before there are others
         f.sum.resize(read_but_sums(file, f));
         file.read(std::as_writable_bytes(std::span(f.sum)));
@@ -131,10 +135,13 @@ public:
                                      {"cpu-seconds", json::number(spent.cpu_seconds)},
                                      {"rays", std::to_string(spent.rays)},
                                      {"pilot", std::to_string(f.pilot)},
+                                     {"evidence", std::to_string(f.evidence.size())},
                                      {"sets-chosen", f.sets.empty() ? "no" : "yes"}});
-            write_film_file(path_, head,
-                            {std::as_bytes(std::span(f.taken)), std::as_bytes(std::span(f.sets)),
-                             std::as_bytes(std::span(f.spread)), std::as_bytes(std::span(f.sum))});
+            write_film_file(
+                path_, head,
+                {std::as_bytes(std::span(f.taken)), std::as_bytes(std::span(f.sets)),
+                 std::as_bytes(std::span(f.spread)), std::as_bytes(std::span(f.evidence)),
+                 std::as_bytes(std::span(f.sum))});
             return "";
         } catch (const SystemError& e) {
             return e.what();

@@ -2,6 +2,7 @@
 #include <deque>
 
 #include "app/outputs.h"
+#include "app/unseen.h"
 #include "base/program.h"
 #include "keep/keep.h"
 
@@ -40,12 +41,19 @@ void check_cover(const std::vector<Part>& parts, int height) {
 // The picture, row by row; memory holds it, and a row of each film.
 Image merge(const std::vector<Part>& parts, Size size, Run& run) {
     ErrorTerms terms;
+    Unseen unseen;
     Image image(size.width, size.height);
     for (size_t k = 0; k < parts.size();) {
         const auto [path, seed, rows, first, last] = parts[k];
         std::deque<FilmPixels> films;
         for (; k < parts.size() && parts[k].rows == rows; ++k)
             films.emplace_back(parts[k].path, Size{size.width, last - first + 1});
+        double all = 0;
+        for (const FilmPixels& f : films) all += f.film().total();
+        for (size_t s = 0; s < films.size(); ++s) {
+            const Film& f = films[s].film();
+            unseen.add(f.evidence, double(f.least_taken()), f.total() / all);
+        }
         std::vector<Pixel> pixel(films.size());
         for (int y = first; y <= last && !interrupted; ++y)
             for (int x = 0; x < size.width; ++x) {
@@ -59,6 +67,9 @@ Image merge(const std::vector<Part>& parts, Size size, Run& run) {
     }
     run.spp /= double(terms.pixels), run.sets /= double(terms.pixels);
     run.error = terms.error();
+    run.doubt = doubt_of({}, run.error, [&](const Film&, const ImageError& e) {
+        return unseen.doubt(e.d2(), e.norm, double(terms.pixels));
+    });
     return image;
 }
 

@@ -105,9 +105,9 @@ inline std::vector<double> work_of(Size size, const Radiance& L) {
     std::vector<double> work;
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) {
-            uint64_t rays = 0;
-            for (uint64_t i = 0; i < pilot_samples; ++i) L({x, y, i}, rays);
-            work.push_back(double(rays));
+            Tally tally;
+            for (uint64_t i = 0; i < pilot_samples; ++i) L({x, y, i}, tally);
+            work.push_back(double(tally.rays));
         }
     return work;
 }

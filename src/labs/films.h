@@ -6,10 +6,11 @@
 
 // Of paths; counts their rays.
 inline Radiance radiance_of(const Scene& scene, const Technique& t, const Pattern& pattern) {
-    return [&scene, t, &pattern](const PixelSample& s, uint64_t& rays) {
+    return [&scene, t, &pattern](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
-        return Li(scene, t, at.ray, at.sampler,
-                  [&](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); });
+        return Li(scene, t, at.ray, at.sampler, [&](const Segment&, const Step& e) {
+            tally.rays += 1 + (e.direct.light != nullptr);
+        });
     };
 }
 
@@ -17,8 +18,8 @@ inline Radiance radiance_of(const Scene& scene, const Technique& t, const Patter
 inline void fill(Film& film, uint64_t n, const Radiance& L, unsigned threads = 1) {
     const std::vector<size_t> at = offsets(film);
     auto add = [&](size_t block) {
-        uint64_t rays = 0;
-        add_samples(film, block, at[block], n, L, rays);
+        Tally tally;
+        add_samples(film, block, at[block], n, L, tally);
     };
     if (threads > 1)
         in_parallel(film.taken.size(), threads, add, [](double) {});

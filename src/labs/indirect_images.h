@@ -71,14 +71,14 @@ inline Maps maps_of(const Asked& a, const Scene& read, uint64_t seed, Drawn& dra
 
 // A film's function of a sample.
 inline Radiance mapped(const Maps& maps, Method m, const Pattern& pattern, const Pattern& rest) {
-    return [&maps, &pattern, &rest, g = maps.gather(m)](const PixelSample& s, uint64_t&) {
+    return [&maps, &pattern, &rest, g = maps.gather(m)](const PixelSample& s, Tally&) {
         const Start at = start(maps.scene, pattern, s);
         const Sampler beyond(rest, pixel_number(maps.scene, s), s.i, s.set);
         return Li(g, at.ray, {at.sampler, beyond});
     };
 }
 inline Radiance whole_paths(const Scene& scene, const Technique& t, const Pattern& pattern) {
-    return [=, &scene, &pattern](const PixelSample& s, uint64_t&) {
+    return [=, &scene, &pattern](const PixelSample& s, Tally&) {
         const Start at = start(scene, pattern, s);
         return Li(scene, t, at.ray, at.sampler);
     };

@@ -26,12 +26,12 @@ inline KnownLight known_light(const Scene& s, Mesh mesh, IlluminationMap map) {
 // as ever, and what the maps know where they end.
 inline Radiance final_gather(const Scene& scene, const Technique& t, const KnownLight& known,
                              const Pattern& pattern) {
-    return [=, &scene, &known, &pattern](const PixelSample& s, uint64_t& rays) {
+    return [=, &scene, &known, &pattern](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         rgb R;
         const rgb L = Li(scene, t, at.ray, at.sampler, [&](const Segment& segment, const Step& e) {
             if (interrupted) throw Interrupted();
-            rays += 1 + (e.direct.light != nullptr);
+            tally.rays += 1 + (e.direct.light != nullptr);
             if (segment.k == 1 && e.met) R = segment.beta * known.at(e.x);
         });
         return L + R;

@@ -114,13 +114,13 @@ struct ShadowPixel {
 // A film's function of a sample.  Such a sample is the estimate by all n of a replication.
 inline Radiance shadow_estimate(const Scene& scene, const Technique& t, const Pattern& pattern,
                                 Estimator e, uint64_t n) {
-    return [=, &scene, &pattern](PixelSample s, uint64_t& rays) {
+    return [=, &scene, &pattern](PixelSample s, Tally& tally) {
         ShadowPixel pixel;
         for (s.i = 0; s.i < n; ++s.i) {
             const Start at = start(scene, pattern, s);
-            auto count = [&rays](const Segment&, const Step& step) {
+            auto count = [&tally](const Segment&, const Step& step) {
                 if (interrupted) throw Interrupted();
-                rays += 1 + (step.direct.light != nullptr);
+                tally.rays += 1 + (step.direct.light != nullptr);
             };
             const ShadowSample one = shadow_Li(scene, t, at, count);
             if (!fits_float(one.rest) || !is_finite(one.first))

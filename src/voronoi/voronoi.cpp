@@ -46,11 +46,11 @@ OptionTable voronoi_table(VoronoiOptions& o) {
 
 // One of the samples, none of which the film sees.
 Radiance path_of(const Options& o, const Scene& scene, const Pattern& pattern) {
-    return [&](const PixelSample& s, uint64_t& rays) {
+    return [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](auto&, const Step& e) {
             if (interrupted) throw Interrupted();
-            rays += 1 + (e.direct.light != nullptr);
+            tally.rays += 1 + (e.direct.light != nullptr);
         });
         if (fits_float(L)) return L;
         throw SystemError(in_words(s) + " is not finite (replay it by penumbra " +

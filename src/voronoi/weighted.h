@@ -14,14 +14,14 @@ struct WeightTroubles {
 // see Weighting.
 inline Radiance weighted_mean(const Scene& scene, const Pattern& pattern, Weighting kind,
                               uint64_t n, const Radiance& L, WeightTroubles& troubles) {
-    return [=, &scene, &pattern, &troubles](PixelSample s, uint64_t& rays) {
+    return [=, &scene, &pattern, &troubles](PixelSample s, Tally& tally) {
         std::vector<Site> places;
         std::vector<rgb> values;
         const uint64_t pixel = pixel_number(scene, s);
         for (s.i = 0; s.i < n; ++s.i) {
             const vec2 u = Sampler(pattern, pixel, s.i, s.set).get2(film_x);  // as L draws it
             places.push_back({double(u.x), double(u.y)});
-            values.push_back(L(s, rays));
+            values.push_back(L(s, tally));
         }
         Weigher weigher;
         // No path draws this number.

@@ -39,10 +39,11 @@ struct Work {
 // As the program does.
 Picture rendered(const Options& o, const Scene& scene) {
     const Work j(o, scene);
-    const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+    const Radiance L = [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, j.pattern, s);
-        return Li(scene, o.technique, at.ray, at.sampler,
-                  [&](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); });
+        return Li(scene, o.technique, at.ray, at.sampler, [&](const Segment&, const Step& e) {
+            tally.rays += 1 + (e.direct.light != nullptr);
+        });
     };
     return render(o, j.plan, L);
 }
@@ -230,7 +231,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             // By the rule itself, applied to a film of each number of samples that is checked.
             const Work j(o, scene);
             const uint64_t period = j.pattern.period(), first = (8 + period - 1) / period * period;
-            const Radiance L = [&](const PixelSample& s, uint64_t&) {
+            const Radiance L = [&](const PixelSample& s, Tally&) {
                 const Start at = start(scene, j.pattern, s);
                 return Li(scene, o.technique, at.ray, at.sampler);
             };
@@ -316,7 +317,7 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     CHECK(first_non_finite(p.image) == std::nullopt);
     // In the first pass: some pixels have none, and nothing is there to be written.
     uint64_t calls = 0;
-    const Radiance L = [&](const PixelSample&, uint64_t&) {
+    const Radiance L = [&](const PixelSample&, Tally&) {
         if (++calls == 100) interrupted = SIGINT;
         return rgb{1, 1, 1};
     };
@@ -325,7 +326,7 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     CHECK(none.run.spp == 0);
     CHECK(none.run.interrupted);
     // After the pilot, which is all that most pixels have.
-    const Radiance others = [](const PixelSample& s, uint64_t&) {
+    const Radiance others = [](const PixelSample& s, Tally&) {
         if (s.set > 0) interrupted = SIGINT;
         return rgb{1, 1, 1};
     };
@@ -339,7 +340,7 @@ TEST_CASE("a sample that is not finite is an error that tells how to replay it")
     auto why = [](PixelSample bad, const Plan& plan) -> std::string {
         Options o = quick(SamplerKind::independent, 0);
         try {
-            render(o, plan, [&](const PixelSample& s, uint64_t&) {
+            render(o, plan, [&](const PixelSample& s, Tally&) {
                 const bool is = s.x == bad.x && s.y == bad.y && s.i >= bad.i && s.set == bad.set;
                 return rgb{1, is ? real(NAN) : 1, 1};
             });
@@ -366,7 +367,7 @@ TEST_CASE("a film that the machine does not hold is refused before it is made") 
     const Size size{1 << 14, int(bytes_of_machine() / 1000 / (1 << 14))};
     Plan plan{{4}, 1, 1, bytes_of_machine(), size};
     plan.sets = 1024;
-    const Radiance L = [](const PixelSample&, uint64_t&) { return rgb{}; };
+    const Radiance L = [](const PixelSample&, Tally&) { return rgb{}; };
     auto refused = [&] {
         try {
             render(o, plan, L);

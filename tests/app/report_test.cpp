@@ -89,14 +89,18 @@ TEST_CASE("where there is no error to state, the reason is said") {
         run.spp = spp, run.sets = sets, run.interrupted = early;
         return told_error(run);
     };
-    CHECK(told(1, 1, false) == "error not known: one sample");
-    CHECK(told(64, 1, false) == "error not known: one replication");
-    CHECK(told(64, 1, true) == "error not known: interrupted early");
-    CHECK(told(64, 2.5, true) == "error not known: interrupted early");
-    CHECK(told(64, 2.5, false) == "error not known: too little time");
+    CHECK(told(1, 1, false) == "d_rel not known: one sample");
+    CHECK(told(64, 1, false) == "d_rel not known: one replication");
+    CHECK(told(64, 1, true) == "d_rel not known: interrupted early");
+    CHECK(told(64, 2.5, true) == "d_rel not known: interrupted early");
+    CHECK(told(64, 2.5, false) == "d_rel not known: too little time");
     Run run = run_of(0.02, 0.001);
-    run.error.norm = 0;
-    CHECK(told_error(run) == "error not known: the image is black");
+    run.doubt = "it hangs on few pixels";
+    CHECK(told_error(run) == "d_rel not known: it hangs on few pixels");
+    run.error.norm = 0, run.doubt = "no light was met";
+    CHECK(told_error(run) == "d_rel not known: no light was met");
+    run.spp = 1;
+    CHECK(told_error(run) == "d_rel not known: one sample");
     run = run_of(0.02, 0.001), run.spp = 2;
     CHECK(told_error(run).starts_with("d_rel 2 %"));  // two replications of one sample
 }
@@ -153,6 +157,11 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     run = Run();
     run.interrupted = true;
     text = json_of(run, {2, 1});
+    CHECK(text.find("\"d_rel_reason\": \"one sample\"") != text.npos);
+    Run doubtful = run_of(0.02, 0.001);
+    doubtful.doubt = "rare \"light\"";
+    text = json_of(doubtful, {1, 1});
+    CHECK(text.find("\"d_rel_reason\": \"rare \\\"light\\\"\"") != text.npos);
     for (const char* key : {"d_rel", "d_rel_standard_error", "seconds_to_half_d_rel"})
         CHECK(text.find("\"" + std::string(key) + "\": null") != text.npos);
     CHECK(text.find("\"variance_of_mean\": [null, null, null]") != text.npos);

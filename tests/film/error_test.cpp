@@ -19,7 +19,7 @@ double normal(Rng& rng) {
 TEST_CASE("d^2 of an image, by hand") {
     // Replications of 1, 5, 3 (variance 4), of 2, 6, 1 (variance 7), of 7 alike; green twice, blue
     // without noise.
-    const Film film = filled({3, 1}, 3, 2, [](const PixelSample& s, uint64_t&) {
+    const Film film = filled({3, 1}, 3, 2, [](const PixelSample& s, Tally&) {
         constexpr real values[3][3] = {{1, 5, 3}, {2, 6, 1}, {7, 7, 7}};
         return rgb{values[s.x][s.set], 2 * values[s.x][s.set], 1};
     });
@@ -107,7 +107,7 @@ TEST_CASE("of independent pictures, weighed by their samples: value, variance, a
 TEST_CASE("an error that is not known is no number; that of an image without noise is 0") {
     for (real level : {real(0), real(3)})
         for (uint32_t sets : {0u, 1u, 2u}) {
-            const Film film = filled({2, 1}, sets, 3, [=](const PixelSample&, uint64_t&) {
+            const Film film = filled({2, 1}, sets, 3, [=](const PixelSample&, Tally&) {
                 return level * rgb{1, 1, 1};
             });
             const ImageError e = error_of(film);
@@ -121,7 +121,7 @@ TEST_CASE("an error that is not known is no number; that of an image without noi
     CHECK(ErrorCourse().cost_of(HUGE_VAL) == HUGE_VAL);
     CHECK(std::isnan(error_of(make_film({1, 1}, 2)).d_rel()));  // before any sample
     // Of the pilot alone; while some blocks catch up; then it is known.
-    const Radiance L = [](const PixelSample& s, uint64_t&) { return rgb{2, 2, real(2 + s.set)}; };
+    const Radiance L = [](const PixelSample& s, Tally&) { return rgb{2, 2, real(2 + s.set)}; };
     Film film = make_film({2, 2}, 0);
     fill(film, 4, L);
     CHECK(std::isnan(error_of(film).d_rel()));
@@ -163,7 +163,7 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
         Rng rng{hash(seed_here(), sets)};
         for (int r = 0; r < 3000; ++r) {
             const ImageError e =
-                error_of(filled({100, 1}, sets, 1, [&](const PixelSample& s, uint64_t&) {
+                error_of(filled({100, 1}, sets, 1, [&](const PixelSample& s, Tally&) {
                     const real v = real((1 + s.x % 10) * normal(rng));
                     return rgb{v, v, v};
                 }));
@@ -189,7 +189,7 @@ TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, sam
                 Spread spread;
                 for (uint64_t r = 0; r < 400; ++r) {
                     const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1, 24);
-                    const Radiance L = [&](const PixelSample& s, uint64_t&) {
+                    const Radiance L = [&](const PixelSample& s, Tally&) {
                         const uint64_t pixel = uint64_t(s.y * 12 + s.x);
                         const Sampler sampler(pattern, pixel, s.i, s.set);
                         return heteroscedastic(s.x, s.y, sampler.get2(film_x));
@@ -305,7 +305,7 @@ TEST_CASE("checks are a lattice: whole periods, about a 32nd apart, wherever one
 }
 
 TEST_CASE("checks look at whole films when they are due, and tell what they expect") {
-    const Radiance one = [](const PixelSample&, uint64_t&) { return rgb{1, 1, 1}; };
+    const Radiance one = [](const PixelSample&, Tally&) { return rgb{1, 1, 1}; };
     const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
         return rgb{u.x, u.x, u.x};
     });
@@ -339,7 +339,7 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     CHECK(strict.expected() == doctest::Approx(8 * 25));
     // Of a black film it is not known.
     Film black = make_film(size, 2);
-    fill(black, 8, [](const PixelSample&, uint64_t&) { return rgb{}; });
+    fill(black, 8, [](const PixelSample&, Tally&) { return rgb{}; });
     ErrorChecks dark(0.1, 1);
     CHECK(dark.next(black) == 9);
     CHECK(dark.expected() == HUGE_VAL);
@@ -348,4 +348,52 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     CHECK(none.expected() == HUGE_VAL);
     CHECK(!none.course().is_due(15));
     CHECK(none.course().is_due(16));
+}
+
+TEST_CASE("an error is in doubt: black, by few pixels, or as a judge has it") {
+    const Judge silent = [](const Film&, const ImageError&) { return std::string(); };
+    const Judge doubtful = [](const Film&, const ImageError&) { return std::string("rare light"); };
+    auto error = [](double d2, double spread, double norm) {
+        ImageError e;
+        e.square = {d2, d2, d2}, e.spread = spread, e.norm = norm;
+        return e;
+    };
+    const Film film;
+    CHECK(doubt_of(film, error(4, 0, 3), {}).empty());
+    CHECK(doubt_of(film, error(0, 0, 3), silent).empty());
+    CHECK(doubt_of(film, error(0, 0, 0), doubtful) == "no light was met");
+    CHECK(doubt_of(film, error(4, 0, 3), doubtful) == "rare light");
+    // d_rel +- a quarter of it: d^2 +- half of it.
+    CHECK(doubt_of(film, error(4, 1.99, 3), silent).empty());
+    CHECK(doubt_of(film, error(4, 2.01, 3), silent) == "it hangs on few pixels");
+    CHECK(doubt_of(film, error(4, 2.01, 3), doubtful) == "rare light");
+    // Of one replication there is none to doubt.
+    CHECK(doubt_of(film, error(NAN, NAN, 3), doubtful).empty());
+}
+
+TEST_CASE("an error that is in doubt stops no render before 4096 samples a pixel") {
+    bool is_known = false;
+    const Judge judge = [&](const Film&, const ImageError&) {
+        return std::string(is_known ? "" : "rare light");
+    };
+    const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
+        return rgb{u.x, u.x, u.x};
+    });
+    Film film = make_film({12, 9}, 4);
+    ErrorChecks checks(0.5, 512, judge), others(0.5, 512, judge);
+    fill(film, 512, noisy);
+    CHECK(checks.next(film) > 512);
+    CHECK(!checks.is_hopeless());
+    is_known = true;
+    CHECK(others.next(film) == 512);
+    CHECK(others.is_enough());
+    is_known = false;
+    fill(film, 1024, noisy);
+    CHECK(checks.next(film) == 1024);
+    CHECK(checks.is_hopeless());
+    CHECK(!checks.is_enough());
+    // Without an error that is asked for nobody minds.
+    ErrorChecks none(0, 512, judge);
+    CHECK(none.next(film) == UINT64_MAX);
+    CHECK(!none.is_hopeless());
 }

@@ -6,8 +6,8 @@
 inline NonFinite fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
     const std::vector<size_t> at = offsets(f);
     NonFinite bad;
-    uint64_t rays = 0;
-    for (size_t b = first; b < last; ++b) bad.add(add_samples(f, b, at[b], n, L, rays));
+    Tally tally;
+    for (size_t b = first; b < last; ++b) bad.add(add_samples(f, b, at[b], n, L, tally));
     return bad;
 }
 inline NonFinite fill(Film& f, uint64_t n, const Radiance& L) {
@@ -27,7 +27,7 @@ inline Film filled(Size size, uint32_t sets, uint64_t n, const Radiance& L) {
 
 // A radiance from the numbers of an independent sample.
 inline Radiance random_radiance(uint64_t seed, std::function<rgb(const PixelSample&, vec2)> value) {
-    return [=](const PixelSample& s, uint64_t&) {
+    return [=](const PixelSample& s, Tally&) {
         const uint64_t pixel = hash(uint64_t(s.y), uint64_t(s.x)),
                        bits = hash(hash(hash(seed, pixel), s.set), s.i);
         return value(s, {to_unit(bits), to_unit(mix(bits))});

@@ -13,8 +13,8 @@ namespace {
 using Colour = std::array<float, 3>;
 
 // A number for every sample, whose sum depends on the order of addition.
-const Radiance numbered = [](const PixelSample& s, uint64_t& rays) {
-    rays += 1 + s.i;
+const Radiance numbered = [](const PixelSample& s, Tally& tally) {
+    tally.rays += 1 + s.i;
     const uint64_t bits = hash(hash(hash(uint64_t(s.y), uint64_t(s.x)), s.set), s.i);
     const real v = std::ldexp(to_unit(bits), int(s.i * 37 % 60) - 30);
     return rgb{v, real(s.i), real(s.set)};
@@ -73,9 +73,9 @@ TEST_CASE("a pass takes each sample of each replication once, in order, of its o
         f.first_row = 100;
         std::map<std::array<int, 3>, uint64_t> taken;  // y, x, set
         uint64_t out_of_order = 0;
-        const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+        const Radiance L = [&](const PixelSample& s, Tally& tally) {
             out_of_order += s.i != taken[{s.y, s.x, int(s.set)}]++;
-            ++rays;
+            ++tally.rays;
             return rgb{1, 1, 1};
         };
         for (uint64_t n : {2, 5}) fill(f, n, L);
@@ -98,13 +98,13 @@ TEST_CASE("a pixel is the mean of its replications, however passes divide the sa
         CHECK(whole.sets_per_pixel() == 2.5);
         const Image image = image_of(whole);
         size_t at = 0, wrong = 0;
-        uint64_t rays = 0;
+        Tally tally;
         for (size_t i = 0; i < whole.pixels(); ++i) {
             double value = 0;
             const int x = int(i) % size.width, y = int(i) / size.width;
             for (uint32_t set = 0; set < whole.sets[i]; ++set) {
                 double sum = 0;
-                for (uint64_t k = 0; k < 12; ++k) sum += double(numbered({x, y, k, set}, rays).x);
+                for (uint64_t k = 0; k < 12; ++k) sum += double(numbered({x, y, k, set}, tally).x);
                 wrong += whole.sum[at++].L[0] != sum;
                 value += sum / 12;
             }
@@ -128,7 +128,7 @@ TEST_CASE("a pixel is the mean of its replications, however passes divide the sa
 }
 
 TEST_CASE("a film adds up in double: 2^24 ones and more, beside numbers of 1e-9") {
-    const Film f = filled({1, 1}, 1, 1000, [](const PixelSample& s, uint64_t&) {
+    const Film f = filled({1, 1}, 1, 1000, [](const PixelSample& s, Tally&) {
         const real tiny = s.i % 2 ? real(1e-9) : 0;
         return rgb{s.i < 2 ? real(1 << 24) : 1, s.i < 2 ? 1 : tiny, 0};
     });
@@ -144,7 +144,7 @@ TEST_CASE("samples that no file can hold are counted, and the first of them told
                                                    {{4, 1, 1, 2}, {1, 1, -infinity}},
                                                    {{4, 2, 0, 0}, {infinity, 1, 1}},
                                                    {{5, 0, 1, 0}, {1, nan, 1}}};
-    const Radiance L = [&](const PixelSample& s, uint64_t&) {
+    const Radiance L = [&](const PixelSample& s, Tally&) {
         const auto found = bad.find({int(s.i), int(s.set), s.y, s.x});
         return found == bad.end() ? rgb{1, 1, 1} : found->second;
     };
@@ -179,9 +179,9 @@ TEST_CASE("blocks commit whole: one whose function throws stays as it was, and i
         const Film before = f;
         for (uint64_t at = 1; at <= 5; ++at) {
             uint64_t calls = 0;
-            const Radiance stopped = [&](const PixelSample& s, uint64_t& rays) {
+            const Radiance stopped = [&](const PixelSample& s, Tally& tally) {
                 if (++calls == 2 * at) throw Failure();
-                return numbered(s, rays);
+                return numbered(s, tally);
             };
             CHECK_THROWS_AS(fill_blocks(f, 100, 101, 9, stopped), Failure);
             CHECK(same(f, before));
@@ -190,9 +190,9 @@ TEST_CASE("blocks commit whole: one whose function throws stays as it was, and i
         CHECK(f.least_taken() == 3);
         CHECK(f.most_taken() == 9);
         const Film some = f;
-        CHECK_THROWS_AS(fill_blocks(f, 100, 101, 9,
-                                    [](const PixelSample&, uint64_t&) -> rgb { throw Failure(); }),
-                        Failure);
+        CHECK_THROWS_AS(
+            fill_blocks(f, 100, 101, 9, [](const PixelSample&, Tally&) -> rgb { throw Failure(); }),
+            Failure);
         CHECK(same(f, some));
         // Each pixel is the mean of its own samples.
         size_t wrong = 0;
@@ -296,7 +296,7 @@ TEST_CASE(
         for (const auto& passes : {std::vector<uint64_t>{4}, {1, 2, 3, 4}, {2, 4}}) {
             Film f = make_film({2, 1}, 0);
             for (uint64_t n : passes)
-                fill(f, n, [far](const PixelSample& s, uint64_t&) {
+                fill(f, n, [far](const PixelSample& s, Tally&) {
                     const real x = std::array<real, 4>{1, 5, 3, 7}[s.i] * real(1 + s.x);
                     return rgb{far + x, 2 * x, 3};
                 });

@@ -193,9 +193,9 @@ Run run(Size size, uint32_t sets, const Plan& plan, const Radiance& L = noisy,
         std::function<uint64_t(const Film&)> between = nullptr, double tick = 0) {
     Run r{make_film(size, sets), 0, 0, 0, {}};
     std::atomic<uint64_t> samples = 0;
-    const Radiance counting = [&](const PixelSample& s, uint64_t& rays) {
-        ++samples, ++rays;
-        return L(s, rays);
+    const Radiance counting = [&](const PixelSample& s, Tally& tally) {
+        ++samples, ++tally.rays;
+        return L(s, tally);
     };
     Watch watch;
     watch.elapsed = [&] { return 1e-9 + tick * double(samples); };
@@ -328,7 +328,7 @@ TEST_CASE("progress is told in samples a pixel, now and in the end; then the clo
     film = make_film({5, 5}, 3);
     plan.target.samples = 7;
     watch.between = [](const Film& f) { return interrupted ? f.least_taken() : UINT64_MAX; };
-    const Radiance L = [](const PixelSample& s, uint64_t&) {
+    const Radiance L = [](const PixelSample& s, Tally&) {
         if (s.x == 2 && s.y == 2) interrupted = SIGINT;
         return rgb{1, 1, 1};
     };
@@ -340,7 +340,7 @@ TEST_CASE("progress is told in samples a pixel, now and in the end; then the clo
 
 TEST_CASE("a sample that is no number ends the run at its pass, counted with all of that pass") {
     for (unsigned threads : {1u, 3u}) {
-        const Run r = run({9, 9}, 2, {{64}, 8, threads}, [](const PixelSample& s, uint64_t&) {
+        const Run r = run({9, 9}, 2, {{64}, 8, threads}, [](const PixelSample& s, Tally&) {
             return s.i >= 10 && s.i < 12 && s.x == s.y ? rgb{1, NAN, 1} : rgb{1, 1, 1};
         });
         CHECK(r.non_finite == 2 * 2 * 9);
@@ -361,9 +361,9 @@ TEST_CASE("a pilot that Ctrl-C left in part is completed before replications are
         CHECK(interrupted == 0);  // after Ctrl-C there is no other pass
         return interrupted ? f.least_taken() : UINT64_MAX;
     };
-    const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+    const Radiance L = [&](const PixelSample& s, Tally& tally) {
         if (++calls == 400) interrupted = SIGINT;
-        return noisy(s, rays);
+        return noisy(s, tally);
     };
     const Plan plan{{20, 100}};
     Loop(film, plan, L, watch).run();
@@ -386,13 +386,13 @@ TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, a
             Watch watch;
             watch.elapsed = [] { return 1.0; };
             uint64_t calls = 0;
-            const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+            const Radiance L = [&](const PixelSample& s, Tally& tally) {
                 if (++calls == at) {
                     interrupted = SIGINT;
                     if (at % 2) throw Interrupted();
                 }
-                ++rays;
-                return noisy(s, rays);
+                ++tally.rays;
+                return noisy(s, tally);
             };
             const Plan plan{{20}};
             {
@@ -404,7 +404,7 @@ TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, a
             interrupted = 0;
             // Its samples by hand.
             size_t wrong = 0;
-            uint64_t rays = 0;
+            Tally tally;
             const Image image = image_of(film);
             for_each_pixel(film, [&](size_t i, const Pixel& p) {
                 double value = 0;
@@ -412,7 +412,7 @@ TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, a
                     const uint64_t n = set == 0 ? p.first : p.others;
                     double sum = 0;
                     for (uint64_t k = 0; k < n; ++k)
-                        sum += double(noisy({int(i % 24), int(i / 24), k, set}, rays).x);
+                        sum += double(noisy({int(i % 24), int(i / 24), k, set}, tally).x);
                     value += sum / double(n);
                 }
                 const float of_samples = float(value / double(p.count()));
@@ -424,4 +424,47 @@ TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, a
             CHECK(same(film, whole));
         }
     }
+}
+
+TEST_CASE(
+    "evidence is the same by any number of threads, and of what an interrupted pass left out") {
+    const Radiance leaving = [](const PixelSample& s, Tally& tally) {
+        if (s.x == 5 && s.i == 17 && interrupted == SIGTERM) throw Interrupted();
+        tally.sums.at(size_t(s.x) % 3) += fixed_point(tally.share / (1.0 + double(s.i)));
+        return noisy(s, tally);
+    };
+    auto film_by = [&](unsigned threads, int signal) {
+        Film film = make_film({24, 12}, 0);
+        film.evidence.resize(3);
+        Plan plan{{20}, 1, threads};
+        plan.noisy = {30};
+        Watch watch;
+        watch.elapsed = [] { return 1e-9; };
+        Loop first(film, plan, leaving, watch);
+        watch.between = [&](const Film& f) {
+            interrupted = f.least_taken() > 9 ? signal : 0;
+            return UINT64_MAX;
+        };
+        first.run();
+        interrupted = 0;
+        Loop second(film, plan, leaving, watch);
+        signal = 0;
+        second.run();
+        return film;
+    };
+    const Film one = film_by(1, 0);
+    double expected = 0;
+    for (int i = 0; i < 20; ++i)
+        for (size_t p = 0; p < one.pixels(); ++p)
+            if (p % 24 % 3 == 0)
+                expected += (i < 8 ? 0.5 : 1.0 / one.sets[p]) / (1 + i) +
+                            (one.sets[p] - 1.0) / one.sets[p] / (1 + i);
+    CHECK(value_of(one.evidence[0]) == doctest::Approx(expected));
+    CHECK(one.sets[30] >= 8);
+    for (unsigned threads : {1u, 2u, 7u})
+        for (int signal : {0, SIGTERM}) {
+            const Film film = film_by(threads, signal);
+            CHECK(film.evidence == one.evidence);
+            CHECK(same(film, one));
+        }
 }

@@ -104,9 +104,9 @@ inline void check_rays(const Scene& s, Choices c) {
 }
 
 inline Radiance radiance_of(const Scene& s, const Options& o, const Pattern& p) {
-    return [&](const PixelSample& at, uint64_t& rays) {
+    return [&](const PixelSample& at, Tally& tally) {
         const Start begin = start(s, p, at);
-        if (o.view != View::radiance) return ++rays, view_along(s, o.view, begin.ray);
+        if (o.view != View::radiance) return ++tally.rays, view_along(s, o.view, begin.ray);
         return Li(s, o.technique, begin.ray, begin.sampler);
     };
 }
@@ -166,10 +166,10 @@ public:
     void make(const std::string& name) {
         if (kind_ < 2) return go_on(name);
         Film f = make_film(size, o_.sets);
-        uint64_t rays = 0;
+        Tally tally;
         for (size_t b = 0, at = 0; b < f.taken.size() / 2; at += f.sets_of(f.begin(b++)))
-            add_samples(f, b, at, 2, L_, rays);  // a block is a pixel
-        demand(Keeper(name, what()).write(f, {1, 1, rays}, false).empty(), "no film is written");
+            add_samples(f, b, at, 2, L_, tally);  // a block is a pixel
+        demand(Keeper(name, what()).write(f, {1, 1, tally.rays}, false).empty(), "no film is written");
     }
 
 private:

@@ -24,9 +24,10 @@ rgb noise(const PixelSample& s) {
 // Adds samples to a film until each replication has n; after so many, as of Ctrl-C, stops.
 Film fill(Film film, uint64_t n, unsigned threads = 2, int64_t stop_after = INT64_MAX) {
     std::atomic<int64_t> left = stop_after;
-    const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
+    const Radiance L = [&](const PixelSample& s, Tally& tally) {
         if (left-- <= 0) throw Interrupted();
-        ++rays;
+        ++tally.rays;
+        for (FixedPoint& sum : tally.sums) sum += (FixedPoint(1) << 70) + s.i;
         return noise(s);
     };
     Watch watch;
@@ -42,7 +43,8 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 }
 bool same(const Film& a, const Film& b) {
     return a.pilot == b.pilot && a.first_row == b.first_row && same(a.sets, b.sets) &&
-           same(a.sum, b.sum) && same(a.taken, b.taken) && same(a.spread, b.spread);
+           same(a.sum, b.sum) && same(a.taken, b.taken) && same(a.spread, b.spread) &&
+           same(a.evidence, b.evidence);
 }
 
 const FilmOf of = {{}, {{"sampler", "\"sobol\""}, {"seed", "7"}}, {{"name", "cube"}}};
@@ -59,7 +61,8 @@ TEST_CASE("a film comes back as it was: before its sets, after them, and amid a 
     const Folder folder;
     const Keeper keeper(folder / "a.film", of);
     for (const uint32_t sets : {0u, 1u, 3u}) {
-        const Film empty = make_film(size, sets, 5);
+        Film empty = make_film(size, sets, 5);
+        empty.evidence.resize(sets);
         for (const uint64_t n : {1, 16, 20})
             for (const int64_t stop_after : {int64_t(500), INT64_MAX}) {
                 const Film film = fill(empty, n, 1, stop_after);
@@ -78,7 +81,8 @@ TEST_CASE("a film that was stopped anywhere, and kept, becomes what one run make
     const uint64_t seed = seed_here();
     int amid = 0;
     for (const uint32_t sets : {0u, 3u}) {
-        const Film empty = make_film(size, sets);
+        Film empty = make_film(size, sets);
+        empty.evidence.resize(3);
         const Film whole = fill(empty, 40);
         for (uint64_t k = 0; k < 12; ++k) {
             const auto stop = int64_t(whole.total() * to_unit(hash(seed, k)));
@@ -99,7 +103,9 @@ TEST_CASE("pixels of a film, a row at a time, are those of the film in memory") 
     const Folder folder;
     for (const uint32_t sets : {0u, 3u})
         for (const int64_t stop_after : {int64_t(30000), INT64_MAX}) {
-            const Film film = fill(make_film(size, sets), 20, 1, stop_after);
+            Film film = make_film(size, sets);
+            film.evidence.resize(sets);
+            film = fill(film, 20, 1, stop_after);
             Keeper(folder / "a.film", of).write(film, {}, true);
             FilmPixels pixels(folder / "a.film", size);
             int wrong = 0;
@@ -110,6 +116,7 @@ TEST_CASE("pixels of a film, a row at a time, are those of the film in memory") 
                          std::memcmp(its.sum.data(), p.sum.data(), p.sum.size_bytes()) != 0;
             });
             CHECK(wrong == 0);
+            CHECK(same(pixels.film().evidence, film.evidence));
         }
 }
 
@@ -163,6 +170,9 @@ TEST_CASE("a film of other samples is refused by the first thing that differs") 
     CHECK(why(other) == "no refusal");
     other = what, other.samples.push_back({"grid", "7x5"});
     CHECK(why(other) == "its grid is not known, not 7x5");
+    Film lit = film;
+    lit.evidence.resize(2);
+    CHECK(refusal([&] { restored(path, lit, what); }) == path + ": its evidence is 0, not 2");
     folder.write("scene", "boxk"), folder.write("mesh", "not");
     CHECK(why(what) == "its scene is another one");
 }

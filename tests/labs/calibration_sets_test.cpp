@@ -15,7 +15,7 @@ TEST_CASE("a curve is a power between its points, and goes on beyond them") {
 
 TEST_CASE("an image by a rule: the mean of the replications that it has, which are paid") {
     Film film = film_of_sets({2, 1}, {3, 2});
-    fill(film, 4, [](const PixelSample& s, uint64_t&) {
+    fill(film, 4, [](const PixelSample& s, Tally&) {
         return rgb{real(10 * s.x + int(s.set)), 1, 0};
     });
     const Paid p = paid(film, {2, 1}, {3, 1});
@@ -30,7 +30,7 @@ TEST_CASE("all replications that any rule asks for, by the pilot that it has") {
     Film pilot = make_film({8, 8}, 0);
     std::vector<std::vector<float>> spread;
     for (uint64_t n = 1; n <= longest_pilot; n *= 2) {
-        fill(pilot, n, [&](const PixelSample& s, uint64_t&) {
+        fill(pilot, n, [&](const PixelSample& s, Tally&) {
             const bool left = s.x < 2, late = s.i >= 8;
             return real(s.i % 2) * (left && !late      ? rgb{5, 5, 5}
                                     : s.x >= 6 && late ? rgb{50, 50, 50}

@@ -40,9 +40,9 @@ TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light fou
     const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1, 0);
     const Radiance L = final_gather(s, by_hitting, known, pattern);
     for (uint64_t i = 0; i < 200; ++i) {
-        uint64_t rays = 0;
-        CHECK(double(L({int(i % 8), int(i / 8 % 8), i}, rays).x) == approx(glow));
-        CHECK(rays == 2);
+        Tally tally;
+        CHECK(double(L({int(i % 8), int(i / 8 % 8), i}, tally).x) == approx(glow));
+        CHECK(tally.rays == 2);
     }
 }
 
@@ -61,8 +61,8 @@ TEST_CASE("paths end on what the maps hold, whatever that is") {
                         make_pattern(kind, hash(seed_here(), uint64_t(r)), 1, n);
                     const Radiance L = final_gather(s, t, known, pattern);
                     rgb sum;
-                    uint64_t rays = 0;
-                    for (uint64_t i = 0; i < n; ++i) sum += L({3, 4, i}, rays);
+                    Tally tally;
+                    for (uint64_t i = 0; i < n; ++i) sum += L({3, 4, i}, tally);
                     means.push_back(sum / real(n));
                 }
                 for (size_t c = 0; c < 3; ++c) {

@@ -23,15 +23,15 @@ TEST_CASE("a weighted mean is the sum of w L for every set of a pixel, and const
             auto place = [&](const PixelSample& s) {
                 return Sampler(pattern, uint64_t(4 * s.y + s.x), s.i, s.set).get2(film_x);
             };
-            const Radiance L = [&](const PixelSample& s, uint64_t& rays) {
-                return ++rays, rgb{1, place(s).x, real(s.i % 3)};
+            const Radiance L = [&](const PixelSample& s, Tally& tally) {
+                return ++tally.rays, rgb{1, place(s).x, real(s.i % 3)};
             };
             const Radiance mean = weighted_mean(scene, pattern, kind, n, L, troubles);
             uint64_t expected_redraws = 0, expected_fallbacks = 0;
             for (const PixelSample s : {PixelSample{2, 1, 0, 0}, {2, 1, 0, 1}, {3, 2, 0, 0}}) {
-                uint64_t rays = 0;
-                const rgb found = mean(s, rays);
-                CHECK(rays == n);
+                Tally tally;
+                const rgb found = mean(s, tally);
+                CHECK(tally.rays == n);
                 std::vector<Site> places;
                 for (uint64_t i = 0; i < n; ++i) {
                     const vec2 u = place({s.x, s.y, i, s.set});
@@ -62,7 +62,7 @@ TEST_CASE("the stated d^2 of weighted means is that from seed to seed, on any nu
         for (uint64_t r = 0; r < 600; ++r) {
             const Pattern pattern{SamplerKind::independent, hash(seed_here(), r)};
             WeightTroubles troubles;
-            const Radiance sample = [&](const PixelSample& s, uint64_t&) {
+            const Radiance sample = [&](const PixelSample& s, Tally&) {
                 const Sampler numbers(pattern, uint64_t(6 * s.y + s.x), s.i, s.set);
                 return heteroscedastic(s.x, s.y, numbers.get2(film_x));
             };

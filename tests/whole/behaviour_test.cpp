@@ -296,6 +296,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         {"depth", "7"},
         {"precision", sizeof(real) == 4 ? "\"float\"" : "\"double\""},
         {"interrupted", "false"},
+        {"d_rel_reason", "null"},
         {"bias", "\"unbiased\""},
         {"stopped_by", "\"samples\""}};
     const std::set<std::string> of_time = {"seconds", "cpu_seconds", "mrays_per_second",
@@ -464,8 +465,8 @@ TEST_CASE("the summary states the error, or why it is not known; --error says wh
         CHECK(contains(told(options).error, " % needs "));
         CHECK(told(options).stopped_by == "");
     }
-    CHECK(told("--sets 1").error == "error not known: one replication");
-    CHECK(told("--spp 1").error == "error not known: one sample");
+    CHECK(told("--sets 1").error == "d_rel not known: one replication");
+    CHECK(told("--spp 1").error == "d_rel not known: one sample");
     const Summary error = told("--error 10%"), samples = told("--error 1e-5 --spp 20 --sets 2"),
                   time = told("--error 1e-6 --time 0.05 --spp 1000000000");
     CHECK(error.stopped_by == "error");

@@ -79,7 +79,7 @@ double merged_billion() {
 // The film's mean of 1e9 samples of one pixel, 0.1 and 0.3 by turns, one by one.
 double billion_one_by_one() {
     const real low = real(0.1), high = real(0.3);
-    const Film film = filled({1, 1}, 1, 1000000000, [&](const PixelSample& s, uint64_t&) {
+    const Film film = filled({1, 1}, 1, 1000000000, [&](const PixelSample& s, Tally&) {
         const real L = s.i % 2 ? high : low;
         return rgb{L, L, L};
     });
@@ -97,7 +97,7 @@ double variance_far_from_zero() {
 // The same as radiance, in the film.
 double film_far_from_zero() {
     Film film = make_film({1, 1}, 0);
-    fill(film, 1000, [](const PixelSample& s, uint64_t&) {
+    fill(film, 1000, [](const PixelSample& s, Tally&) {
         const real L = real(1e8) + (s.i % 2 ? real(1) : real(-1));
         return rgb{L, L, L};
     });

@@ -27,7 +27,7 @@ inline void expect_same_run(const Folder& folder, const std::string& a, const st
     const std::string of_a = folder.read(a + ".json"), of_b = folder.read(b + ".json");
     for (const char* key :
          {"samples_per_pixel", "mean_radiance", "variance_of_mean", "sets_per_pixel", "d_rel",
-          "d_rel_standard_error", "bias", "interrupted", "rays", "stopped_by"}) {
+          "d_rel_standard_error", "d_rel_reason", "bias", "interrupted", "rays", "stopped_by"}) {
         if (is_merged && std::string(key) == "stopped_by") continue;
         INFO(std::string(key));
         CHECK(stated(of_a, key) == stated(of_b, key));

@@ -271,7 +271,7 @@ inline Summary summary(const std::string& err) {
     for (const char* by : {"samples", "time", "error"})
         if (cut(" (stopped by " + std::string(by) + ")")) s.stopped_by = by;
     if (line.starts_with(", ")) s.error = line.substr(2);
-    const bool told = s.error.starts_with("d_rel ") || s.error.starts_with("error not known: ");
+    const bool told = s.error.starts_with("d_rel ") || s.error.starts_with("d_rel not known: ");
     s.found = read == 3 && (s.samples > 0 ? told : line.empty());
     return s;
 }

@@ -5,6 +5,8 @@
 #include "film/fill.h"
 #include "oracle/expect.h"
 #include "path/sampler.h"
+#include "whole/kept.h"
+#include "whole/process.h"
 
 namespace {
 
@@ -28,7 +30,7 @@ struct Stop {
 // As renders with --error do.
 Stop stop_of(SamplerKind kind, uint64_t seed, double asked) {
     const Pattern pattern = make_pattern(kind, seed, 1, 0);
-    const Radiance sample = [&](const PixelSample& s, uint64_t&) {
+    const Radiance sample = [&](const PixelSample& s, Tally&) {
         const uint64_t pixel = uint64_t(s.y) * uint64_t(size.width) + uint64_t(s.x);
         return L(s.x, s.y, Sampler(pattern, pixel, s.i, s.set).get2(0));
     };
@@ -96,4 +98,36 @@ TEST_CASE("true d_rel / E at a stop: median in [0.95, 1], 95 % of runs below 1.0
         expect_at_most("above 1", high, runs, 0.5);
         expect_at_most("above 1.05", above, runs, 0.05);
     }
+}
+
+TEST_CASE("--error goes on while light may be missing, and says so after 4096 samples") {
+    const Folder folder;
+    // A lamp of a hundredth of the ball that it is seen in, and one that lights the floor.
+    folder.write("spark.scene",
+                 "camera 0 2 6  0 .7 0  40\ndepth 8\nmirror m .9 .9 .9\ndiffuse d .6 .6 .6\n"
+                 "light l 2e4 2e4 2e4\nlight k 5 5 5\nquad -5 0 -5  0 0 10  10 0 0  d\n"
+                 "sphere 0 1 0 1 m\nsphere 2 4 3 .002 l\nquad -1 6 -1 2 0 0 0 0 2 k\n");
+    const Words words = split("--size 32x16 -o a.pfm --stats a.json spark.scene --error 5%");
+    const Outcome o = expect_success(folder, "penumbra", words);
+    INFO(o.err);
+    CHECK(contains(o.err, "d_rel not known: the light of line 9 "));
+    CHECK(contains(o.err, "light not yet seen may amount to "));
+    CHECK(contains(o.err, "(stopped by error not known)"));
+    const std::string stats = folder.read("a.json");
+    CHECK(stated(stats, "d_rel") == "null");
+    CHECK(stated(stats, "error") == "0.05");
+    CHECK(stated(stats, "d_rel_standard_error") == "null");
+    CHECK(stated(stats, "d_rel_reason").starts_with("\"the light of line 9 "));
+    CHECK(stated(stats, "stopped_by") == "\"error not known\"");
+    CHECK(std::stod(stated(folder.read("a.json"), "samples_per_pixel")) >= 4096);
+    CHECK(std::stod(stated(folder.read("a.json"), "samples_per_pixel")) < 6000);
+    // Without that lamp it is known early.
+    folder.write("spark.scene",
+                 "camera 0 2 6  0 .7 0  40\ndepth 8\nmirror m .9 .9 .9\n"
+                 "diffuse d .6 .6 .6\nlight k 5 5 5\n"
+                 "quad -5 0 -5  0 0 10  10 0 0  d\nsphere 0 1 0 1 m\n"
+                 "quad -1 6 -1 2 0 0 0 0 2 k\n");
+    CHECK(contains(expect_success(folder, "penumbra", words).err, "(stopped by error)"));
+    CHECK(std::stod(stated(folder.read("a.json"), "samples_per_pixel")) < 1000);
+    CHECK(stated(folder.read("a.json"), "d_rel_reason") == "null");
 }

@@ -1,0 +1,18 @@
+// app/unseen.h  1  light that samples may have missed, if this program was built with src/unseen
+#pragma once
+#include "film/passes.h"
+#include "path/pathtracer.h"
+
+#if __has_include("unseen/unseen.h")
+#include "unseen/unseen.h"
+#else
+struct Unseen {
+    void add(const std::vector<FixedPoint>&, double, double) {}
+    std::string doubt(double, double, double) const { return ""; }
+};
+struct Witness {
+    Witness(const Scene&, const Technique&) {}
+    void watch(Plan&) {}
+    NoAccount account(Tally&) const { return {}; }
+};
+#endif

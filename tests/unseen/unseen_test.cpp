@@ -1,0 +1,239 @@
+// unseen/unseen_test.cpp  light that samples may have missed: near misses, lights in view, the
+// verdict
+#include "unseen/unseen.h"
+
+#include "base/moments.h"
+#include "oracle/expect.h"
+#include "path/paths.h"
+
+namespace {
+
+Scene with_light(const Light& l) {
+    Scene s;
+    s.lights = {l};
+    prepare_weights(s.lights);
+    return s;
+}
+
+// A polygon grown s times about its middle; of a quad one half.
+Shape grown(const Light& l, real s) {
+    auto corner = [&](vec3 p) { return l.centre + s * (p - l.centre); };
+    return {corner(l.p), corner(l.p + l.u), corner(l.p + l.v)};
+}
+
+// A floor of a mirror, a ball light above it that the eye does not see, a black wall behind.
+Scene mirror_scene(real r, bool direct = false) {
+    Scene s;
+    s.size = {8, 8};
+    s.depth = 2;
+    s.camera = look_at({0, 1, 0}, {0, direct ? real(1) : real(0), direct ? real(2) : real(1)}, 60);
+    Material mirror, light;
+    mirror.kind = Material::Kind::mirror, mirror.ks = {1, 1, 1};
+    light.Le = {3, 2, 1};
+    add_material(s, mirror, "m");
+    add_material(s, light, "l");
+    add_quad(s, {-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, 0);
+    add_sphere(s, {real(0.2), real(1.1), 2}, r, 1);
+    s.line_of_light = {7};
+    prepare(s);
+    return s;
+}
+
+// Evidence of n samples of every pixel, each of which has so many replications.
+struct Evidence {
+    std::vector<LightGroup> groups;
+    std::vector<FixedPoint> sums;
+    double c(size_t kind, size_t k, size_t power = 0) const {
+        return value_of(sums[place(0, kind) + 2 * k + power]);
+    }
+};
+Evidence evidence_of(const Scene& s, const Technique& t, uint64_t n, double K = 1) {
+    const Evidence e{lights_in_view(s, 0, s.size.height).groups, {}};
+    Tally tally{0, 1 / K, no_evidence_yet(e.groups)};
+    const Pattern pattern{SamplerKind::independent, seed_here()};
+    for (int y = 0; y < s.size.height; ++y)
+        for (int x = 0; x < s.size.width; ++x)
+            for (uint64_t i = 0; i < n; ++i)
+                radiance(s, t, pattern, x, y, i, NearMisses{s, t, e.groups, tally});
+    return {e.groups, tally.sums};
+}
+
+}  // namespace
+
+TEST_CASE("a ray meets a grown light where it would meet that shape, from its bright side") {
+    oracle::Random random(seed_here());
+    auto in = [&](double a, double b) { return real(a + (b - a) * random()); };
+    auto vector = [&] { return vec3{in(-1, 1), in(-1, 1), in(-1, 1)}; };
+    int met = 0, missed = 0;
+    for (int i = 0; i < 30000; ++i) {
+        const vec3 p = vector(), u = real(0.02) * vector(), v = real(0.02) * vector();
+        Light l = i % 3 == 0   ? sphere_light(p, in(0.001, 0.01))
+                  : i % 3 == 1 ? triangle_light(p, u, v)
+                               : quad_light(p, u, v);
+        l.twosided = i % 2 != 0;
+        l = with_light(l).lights[0];
+        const vec3 o = 3 * vector();
+        const Ray ray{o, unit(l.centre + in(0, 1) * vector() - o), in(1, 5)};
+        const uint32_t mask = growths_met(l, ray);
+        for (size_t k = 0; k < growths; ++k) {
+            const real s = real(1 << k);
+            bool expected;
+            if (l.kind == Light::Kind::sphere) {
+                // The disc about its centre that faces the ray.
+                const vec3 d = ray.d, f = l.p - ray.o;
+                expected = length(cross(f, d)) <= s * l.r && dot(f, d) > 0 &&
+                           dot(f, d) < ray.tmax && length(f) > s * l.r;
+            } else {
+                const Shape half = grown(l, s);
+                expected = bool(intersect(half, ray, shear(ray.d), ray.tmax));
+                if (l.kind == Light::Kind::quad) {
+                    const Shape other{half.b, half.b + half.c - half.a, half.c};
+                    expected = expected || intersect(other, ray, shear(ray.d), ray.tmax);
+                }
+                expected = expected && (l.twosided || dot(l.n, ray.d) < 0) &&
+                           length(l.centre - ray.o) > s * l.reach;
+            }
+            CHECK(bool(mask >> k & 1) == expected);
+            (expected ? met : missed) += 1;
+        }
+    }
+    CHECK(met > 20000);
+    CHECK(missed > 30000);
+    CHECK(growths_met(point_light({}, {1, 1, 1}), {{0, 0, 1}, {0, 0, -1}}) == 0);
+}
+
+TEST_CASE("the part of pixels that lights cover, in view of the eye") {
+    for (real r : {real(0.001), real(0.01), real(0.1)}) {
+        const Scene s = mirror_scene(r, true);
+        const LightsInView view = lights_in_view(s, 0, s.size.height);
+        const vec3 f = s.lights[0].p - s.camera.eye;
+        const double pixel = 2 * double(s.camera.tan_half) / s.size.height;
+        const double cosine = double(dot(unit(f), s.camera.forward));
+        const double cap =
+            2 * std::numbers::pi * (1 - std::sqrt(1 - double(r) * double(r) / double(dot(f, f))));
+        const double area = cap / (pixel * pixel * cosine * cosine * cosine);
+        CHECK(view.groups[0].area == doctest::Approx(area).epsilon(0.02));
+        CHECK(view.groups[0].L2 == doctest::Approx(14.0 / 3));
+        CHECK(view.groups[0].line == 7);
+        if (r < real(0.05))
+            CHECK(view.groups[0].a == doctest::Approx(area * (1 - area)).epsilon(0.02));
+        // The pixels are those of the light; bands of rows share them out.
+        CHECK(view.noisy.size() == (r < real(0.05) ? 1 : 2));
+        double parts = 0;
+        for (int row = 0; row < s.size.height; row += 2)
+            parts += lights_in_view(s, row, 2).groups[0].area;
+        CHECK(parts == doctest::Approx(view.groups[0].area));
+    }
+    // In view of mirrors alone, or behind something: none.
+    CHECK(lights_in_view(mirror_scene(real(0.1)), 0, 8).groups[0].area == 0);
+    Scene hidden = mirror_scene(real(0.1), true);
+    add_quad(hidden, {-1, -1, 1}, {2, 0, 0}, {0, 4, 0}, 0);
+    prepare(hidden);
+    CHECK(lights_in_view(hidden, 0, 8).groups[0].area == 0);
+}
+
+TEST_CASE("near misses tell the light that is met, at every growth") {
+    // A mean of c / s^2 that does not depend on s, while the light stays small.
+    const Evidence e = evidence_of(mirror_scene(real(0.04)), {}, 10000);
+    const double met = e.c(0, 0);
+    REQUIRE(met > 100);  // hits
+    for (size_t k = 1; k < 4; ++k) {
+        const double told = e.c(0, k) / std::pow(4.0, k);
+        CHECK(told == doctest::Approx(met).epsilon(5 / std::sqrt(met)));
+        CHECK(e.c(0, k) > 2 * e.c(0, k - 1));
+    }
+    // Of a mirror that reflects all, c is 1 and so is its square; nothing is of the other kind.
+    CHECK(e.c(0, 0, 1) == met);
+    for (size_t k = 0; k < growths; ++k) CHECK(e.c(1, k) == 0);
+    // A pixel's replications share.
+    const Evidence half = evidence_of(mirror_scene(real(0.04)), {}, 10000, 2);
+    CHECK(half.c(0, 0) == met / 4);
+    CHECK(half.c(0, 0, 1) == met / 16);
+    // In view of the eye it is not counted by chance.
+    const Evidence direct = evidence_of(mirror_scene(real(0.02), true), {}, 100);
+    CHECK(direct.c(0, 0) < direct.groups[0].area * 100);
+}
+
+TEST_CASE("behind a rough surface it is another kind, and where light is aimed at it is none") {
+    Scene s = mirror_scene(real(0.05));
+    s.materials[0] = Material();
+    s.materials[0].kd = {real(0.5), real(0.5), real(0.5)};
+    // A mirror above: floor, mirror, light.
+    Material mirror;
+    mirror.kind = Material::Kind::mirror, mirror.ks = {1, 1, 1};
+    add_material(s, mirror, "above");
+    add_quad(s, {-9, 3, -9}, {18, 0, 0}, {0, 0, 18}, 2);
+    s.depth = 3;
+    prepare(s);
+    const Evidence e = evidence_of(s, {}, 2000);
+    CHECK(e.c(1, 4) > 0);
+    for (size_t k = 0; k < growths; ++k) CHECK(e.c(0, k) == 0);
+}
+
+TEST_CASE(
+    "light is in doubt while few samples met it, and what is missing could double the error") {
+    std::vector<LightGroup> groups = {{12, 4, 100, 0, 8}};
+    auto doubt = [&](double hits, int near, size_t kind, double d2, double t = 1) {
+        std::vector<FixedPoint> evidence = no_evidence_yet(groups);
+        FixedPoint* const sums = &evidence[place(0, kind)];
+        sums[0] = sums[1] = fixed_point(hits);
+        for (size_t i = 2; i < 2 * growths; ++i) sums[i] = fixed_point(near);
+        Unseen u;
+        u.add(evidence, t);
+        return u.doubt(d2, 2, 25);
+    };
+    // Six near misses at s = 2, each of c = 1: of 4 * 6 / 4 over 25 pixels.
+    CHECK(doubt(0, 6, 0, 0.01) ==
+          "the light of line 12 in mirrors or glass was met 0 times; light not yet seen may amount "
+          "to 24 %");
+    CHECK(doubt(9, 9, 1, 0.01)
+              .starts_with("the light of line 12 by way of mirrors or glass was "
+                           "met 9 times"));
+    CHECK(doubt(10, 10, 0, 0.01).empty());  // often enough
+    CHECK(doubt(0, 4, 0, 0).empty());       // too few to tell
+    CHECK(!doubt(0, 5, 0, 0).empty());
+    // Three times the variance that is seen.
+    CHECK(!doubt(0, 6, 0, 6 / 25.0 / 3 * 0.999).empty());
+    CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 1.001).empty());
+    CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 0.999 / 4, 2).size() > 0);
+    CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 1.001 / 4, 2).empty());
+    // A light of a part of a pixel, by eye rays.
+    groups = {{0, 4, 0.1, 0.09, 8}};
+    CHECK(
+        doubt(0, 0, 0, 0, 12) ==
+        "a light, smaller than a pixel, was met 10 times; light not yet seen may amount to 0.6 %");
+    CHECK(doubt(0, 0, 0, 0, 12.6).empty());
+}
+
+TEST_CASE("films of one picture add up") {
+    const std::vector<LightGroup> groups = {{3, 1, 0.1, 0.09, 4}};
+    std::vector<FixedPoint> evidence = no_evidence_yet(groups);
+    for (size_t k = 0; k < growths; ++k)
+        for (size_t power : {0, 1})
+            evidence[place(0, 0) + 2 * k + power] = fixed_point(k == 0 ? 3 : 40);
+    auto doubt = [&](int films, double weight) {
+        Unseen u;
+        for (int i = 0; i < films; ++i) u.add(evidence, 2, weight);
+        return u.doubt(0, 1, 1);
+    };
+    CHECK(doubt(1, 1).find("was met 3 times; light not yet seen may amount to 158 %") !=
+          std::string::npos);
+    CHECK(doubt(3, 1.0 / 3).find("was met 9 times; light not yet seen may amount to 91 %") !=
+          std::string::npos);
+    CHECK(doubt(4, 0.25).find("smaller than a pixel") != std::string::npos);
+    const LightGroup g = group_in(evidence, 0);
+    CHECK((g.line == 3 && g.L2 == 1 && g.area == 0.1 && g.a == 0.09 && g.K == 4));
+}
+
+TEST_CASE("many lights share groups, and one near miss in many counts for all") {
+    Scene few = mirror_scene(real(0.02)), many = few;
+    for (int i = 0; i < 999; ++i) add_sphere(many, {real(0.2), 50, 2}, real(1e-6), 1);
+    many.line_of_light.resize(1000, 8);
+    prepare(many);
+    CHECK(lights_in_view(many, 0, 8).groups.size() == most_light_groups);
+    const Evidence one = evidence_of(few, {}, 2000), all = evidence_of(many, {}, 2000);
+    CHECK(all.c(0, 0) == one.c(0, 0));  // those that are met
+    const double expected = one.c(0, 6), sigma = std::sqrt(expected * 1000);
+    CHECK(std::abs(all.c(0, 6) - expected) < 4 * sigma);
+    CHECK(all.c(0, 6) > 0);
+}
