@@ -129,12 +129,12 @@ bench:                     ## rays a second of both trees, beside Embree if libe
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 trade: build/knot.obj build/trade-float$(VARIANT)  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 3 hours)
-calibration: build/knot.obj  ## does --error stop where it says? (half an hour; FULL=1: all seeds at 1 %)
+calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours; BASELINE=PROGRAM: samples beside those of an older one)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
 EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
                calibration cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
-calibration: LAB_FLAGS := $(if $(FULL),--full)
+calibration: LAB_FLAGS := $(BASELINE:%=--baseline %)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 trade: LAB_FLAGS := --float build/trade-float$(VARIANT) $(if $(FULL),--full)
 peers: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
