@@ -154,10 +154,11 @@ void row_of(Report& report, const std::string& scene, Method method, const Measu
             const Measured& path) {
     const Drawn& run = m.pair.run[0];
     const bool maps = run.triangles > 0;
-    report.row({scene, text("`%s`", method_names[int(method)]), text("%.0f", m.pair.samples()),
-                text("%.1f", m.pair.core_seconds()), maps ? text("%.2f", run.map_seconds) : "",
-                maps ? percent(run.map_error) : "", percent(m.error.d_rel()),
-                percent(std::sqrt(m.error.noise2)), m.error.bias(),
+    const char* stated = run.bias == "unbiased" ? "" : ", biased";
+    report.row({scene, text("`%s`%s", method_names[int(method)], stated),
+                text("%.0f", m.pair.samples()), text("%.1f", m.pair.core_seconds()),
+                maps ? text("%.2f", run.map_seconds) : "", maps ? percent(run.map_error) : "",
+                percent(m.error.d_rel()), percent(std::sqrt(m.error.noise2)), m.error.bias(),
                 text("%.2f", path.product() / m.product())});
 }
 
@@ -237,7 +238,8 @@ illumination maps: R_map = ρ E / π.  `map` (`build/radiosity --final-gather`) 
 gathering), biased by the maps' error.  `control` lets Russian roulette decide whether the path goes on,
 and returns R_map + [ξ < q] / q · (R̂ − R_map) (Szécsi, Szirmay-Kalos, Kelemen 2003): unbiased, whatever
 the maps hold.  `regression` does the same with a multiple of R_map that other paths tell.  All three
-scatter light without end, as the maps do, and render the scene of triangles that the maps lie on.  Errors
+scatter light without end, as the maps do, and render the scene of triangles that the maps lie on: where
+these stand for balls, all three are biased.  Errors
 are d_rel = √(1/N Σ(f−g)²) / √(1/N Σf²).)");
     const auto [of_cornell, reference] = tell_errors(report, plan);
     tell_times(report, of_cornell, reference);

@@ -24,6 +24,7 @@ struct Drawn {
     Image image;
     double samples = 0, core_seconds = 0;
     double H = 0, triangles = 0, map_seconds = 0, map_error = 0;
+    std::string bias = "unbiased";  // class of the estimator, of the scene that was read
 };
 
 // Maps, and how paths use them; the scene is of triangles, its light scattered without end.
@@ -47,7 +48,9 @@ struct Maps {
 inline Maps maps_of(const Asked& a, const Scene& read, uint64_t seed, Drawn& drawn) {
     const illumination::Clock::time_point start = illumination::Clock::now();
     drawn.H = a.H > 0 ? a.H : double(diagonal(read)) / 16;
-    Maps maps{faceted(read, drawn.H).scene, {}};
+    Faceted facets = faceted(read, drawn.H);
+    if (facets.has_balls || a.method == Method::gather) drawn.bias = "biased";
+    Maps maps{std::move(facets.scene), {}};
     maps.scene.depth = std::numeric_limits<int>::max();
     Mesh mesh = make_mesh(maps.scene, drawn.H);
     const double share = a.method == Method::gather ? 16 : 64;

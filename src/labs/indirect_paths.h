@@ -11,6 +11,9 @@
 //             reduction for Russian roulette).  Unbiased, whatever the maps hold.
 // regression: a slope times R_map in both places.  Unbiased, for the slope is that of other paths.
 //
+// All of this is about the scene of triangles that the maps lie on: where these stand for balls
+// (facets.h), its light is not that of the balls.
+//
 // Light is scattered without end, as in the maps: the scene's depth must be too large to be met.
 #pragma once
 #include "radiosity/gather.h"

@@ -81,6 +81,7 @@ inline std::vector<std::array<vec3, 3>> quartered(const std::vector<std::array<v
 struct Faceted {
     Scene scene;
     std::vector<std::string> warnings;  // "LINE: what"
+    bool has_balls = false;             // facets stand for spheres: no estimate is unbiased
 };
 
 // A shape of `from`, and a light that it is alone, as they are in `to`.
@@ -89,33 +90,51 @@ inline void add_facet(Scene& to, const Scene& from, size_t i, const Shape& shape
     to.line_of.push_back(from.line_of[i]);
 }
 
-// Adds the facets of sphere i; returns their area over the sphere's.
-inline double add_facets(Scene& to, const Scene& from, size_t i, double H) {
-    const Shape& sphere = from.shapes[i];
+// Those facets of a sphere that are not too small for their place.
+inline std::vector<Shape> facets_of(const Shape& sphere, double H) {
     auto faces = icosahedron();
     for (int k = quarterings(sphere.r, H); k > 0; --k) faces = quartered(faces);
-    double area = 0;
+    std::vector<Shape> facets;
     for (const auto& [a, b, c] : faces) {
         const Shape facet{sphere.a + sphere.r * a, sphere.a + sphere.r * b,
                           sphere.a + sphere.r * c};
-        if (!has_area(facet)) continue;  // too small for its place
-        int32_t light = no_light;
-        if (from.light_of[i] != no_light) {
-            const Light& ball = from.lights[size_t(from.light_of[i])];
-            Light l = triangle_light(facet.a, facet.b - facet.a, facet.c - facet.a);
-            l.L = ball.L, l.twosided = ball.twosided, l.error = ball.error;
-            light = int32_t(to.lights.size());
-            to.lights.push_back(l);
-            to.line_of_light.push_back(from.line_of[i]);
-        }
-        add_facet(to, from, i, facet, light);
-        area += double(length(area_vector(facet))) / 2;
+        if (has_area(facet)) facets.push_back(facet);
     }
+    return facets;
+}
+
+// Of a sphere's facets, over the sphere's.
+inline double part_of_area(const Shape& sphere, const std::vector<Shape>& facets) {
+    double area = 0;
+    for (const Shape& facet : facets) area += double(length(area_vector(facet))) / 2;
     return area / (4 * std::numbers::pi * double(sphere.r) * double(sphere.r));
 }
 
+// Adds facets of sphere i, whose area is that part of the sphere's; if they emit, then by as much
+// more as makes their power the sphere's.
+inline void add_facets(Scene& to, const Scene& from, size_t i, const std::vector<Shape>& facets,
+                       double part) {
+    const uint32_t material = from.material_of[i];
+    if (from.light_of[i] == no_light) {
+        for (const Shape& facet : facets) add_facet(to, from, i, facet, no_light);
+        return;
+    }
+    const Light& ball = from.lights[size_t(from.light_of[i])];
+    Material bright = from.materials[material];
+    bright.Le = ball.L / real(part);
+    add_material(to, bright, from.names[material]);
+    for (const Shape& facet : facets) {
+        Light l = triangle_light(facet.a, facet.b - facet.a, facet.c - facet.a);
+        l.L = bright.Le, l.twosided = ball.twosided, l.error = ball.error;
+        add_facet(to, from, i, facet, int32_t(to.lights.size()));
+        to.material_of.back() = uint32_t(to.materials.size()) - 1;
+        to.lights.push_back(l);
+        to.line_of_light.push_back(from.line_of[i]);
+    }
+}
+
 // The same scene of triangles alone: a sphere becomes an icosphere inscribed in it, with edges of
-// at most H, of less area and so, if it emits, of less power.  Lights keep their radiance.
+// at most H.  Lights keep their power; an icosphere has less area, so its radiance is larger.
 inline Faceted faceted(const Scene& from, double H) {
     Faceted result{from, {}};
     Scene& to = result.scene;
@@ -134,15 +153,16 @@ inline Faceted faceted(const Scene& from, double H) {
             add_facet(to, from, i, from.shapes[i], own == no_light ? own : light[size_t(own)]);
             continue;
         }
-        const size_t before = to.shapes.size();
-        const double area = add_facets(to, from, i, H);
+        const std::vector<Shape> facets = facets_of(from.shapes[i], H);
+        const double part = part_of_area(from.shapes[i], facets);
+        add_facets(to, from, i, facets, part);
+        result.has_balls = true;
         char less[32];
-        std::snprintf(less, sizeof less, "%.2g", 100 * (1 - area));
-        result.warnings.push_back(std::to_string(from.line_of[i]) + ": the sphere becomes " +
-                                  std::to_string(to.shapes.size() - before) +
-                                  " triangles, faces of their own, whose area" +
-                                  (own == no_light ? " is " : " and power are ") + less +
-                                  " % less");
+        std::snprintf(less, sizeof less, "%.2g", 100 * (1 - part));
+        result.warnings.push_back(
+            std::to_string(from.line_of[i]) + ": the sphere becomes " +
+            std::to_string(facets.size()) + " triangles, faces of their own, whose area is " +
+            less + " % less" + (own == no_light ? "" : ", and their radiance as much more"));
     }
     if (const uint32_t line = line_of_white(to))
         result.warnings.push_back(std::to_string(line) +

@@ -158,6 +158,7 @@ inline std::string encode_stats(const RadiosityOptions& o, const OptionTable& ta
                {"error", json::number(s.stated.error)},
                {"error_uncertainty", json::number(s.stated.uncertainty)},
                {"error_asked", o.error > 0 ? json::number(o.error) : "null"},
+               {"bias", "\"biased\""},  // by the triangles: a map is linear on each
                {"stopped_by", by.empty() ? "null" : json::string(by)},
                {"seconds", json::number(s.seconds)},
                {"cpu_seconds", json::number(cpu_seconds())},

@@ -128,7 +128,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("lights stay with their shapes; a sphere's power falls as its area does") {
+TEST_CASE("lights stay with their shapes and their power; facets of a ball are brighter") {
     const Scene s = parsed(R"(
 diffuse d .5 .5 .5
 light a 1 2 3
@@ -157,6 +157,7 @@ sphere 0 9 0  1  b
         const Light& l = f.lights[size_t(k)];
         ++shapes_of[size_t(k)];
         CHECK(l.L == m.Le);
+        CHECK(m.kd == (f.line_of[i] == 6 || f.line_of[i] == 10 ? rgb{} : s.materials[0].kd));
         CHECK(l.twosided == m.twosided);
         CHECK(f.line_of_light[size_t(k)] == f.line_of[i]);
         const bool quad = f.line_of[i] == 7;
@@ -173,11 +174,12 @@ sphere 0 9 0  1  b
                                                                        : 1));
     double small = 0;  // of a unit sphere's facets
     for (size_t i = 0; i < facets; ++i) small += double(length(area_vector(f.shapes[i]))) / 2;
-    CHECK(small < 4 * std::numbers::pi);
-    const rgb power = emitted_power(f);  // a, b on both sides, the point, a
     const double Pi = std::numbers::pi;
-    CHECK(double(power.x) == approx(Pi * (small + 10 + 2 * 5 * small + 4 * 7 + 0.5)));
-    CHECK(double(power.z) == approx(Pi * (3 * small + 10 + 2 * 5 * small + 4 * 7 + 1.5)));
+    CHECK(small < 4 * Pi);
+    CHECK(double(f.lights[size_t(f.light_of[0])].L.z) == approx(3 * 4 * Pi / small));
+    const rgb power = emitted_power(f);  // a, b on both sides, the point, a
+    CHECK(double(power.x) == approx(Pi * (4 * Pi + 10 + 2 * 5 * 4 * Pi + 4 * 7 + 0.5)));
+    CHECK(double(power.z) == approx(Pi * (3 * 4 * Pi + 10 + 2 * 5 * 4 * Pi + 4 * 7 + 1.5)));
     // Lights are chosen by their power again.
     double total = 0, picks = 0;
     for (const Light& l : f.lights) total += ::power(l), picks += double(l.pick);

@@ -316,8 +316,9 @@ TEST_CASE("a sphere in a sphere, of facets: as the closed form of spheres of the
     double inner = 0, outer = 0;
     for (const Face& f : mesh.faces) (length(f.a) < 3 ? inner : outer) += double(f.area());
     CHECK(inner == doctest::Approx(16 * Pi).epsilon(0.05));
+    const double exitance = Pi * 16 * Pi / inner;  // the power is that of the sphere
     const exact::OfSpheres truth = exact::illuminances(
-        {std::sqrt(inner / (4 * Pi)), std::sqrt(outer / (4 * Pi)), 0.3, 0.8, Pi, 0});
+        {std::sqrt(inner / (4 * Pi)), std::sqrt(outer / (4 * Pi)), 0.3, 0.8, exitance, 0});
     for (SamplerKind kind : kinds) {
         std::vector<std::array<double, 2>> E;
         for (uint64_t r = 0; r < 32; ++r) {

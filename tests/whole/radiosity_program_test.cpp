@@ -145,6 +145,7 @@ TEST_CASE(
         const std::string stats = folder.read("s.json");
         CHECK(contains(stats, "\"method\": \"" + method + "\""));
         CHECK(contains(stats, "\"interrupted\": false"));
+        CHECK(contains(stats, "\"bias\": \"biased\""));
         CHECK(number_of(stats, "mesh") == 5);
         CHECK(number_of(stats, "faces") == 13);
         CHECK(number_of(stats, "elements") == double(s.triangles));
