@@ -1,5 +1,6 @@
 // world/scene_check.h  8  what an author may not see: lights in surfaces, points on them, rounding
 #pragma once
+#include <map>
 #include <numeric>
 #include <span>
 
@@ -45,9 +46,7 @@ inline std::vector<std::vector<uint32_t>> surfaces_of_lights(const Scene& s,
         box.push_back(bounds(shape));
     }
     const vec3 size = lights.hi - lights.lo;
-    const auto along = size.x == max_of(size)   ? &vec3::x
-                       : size.y == max_of(size) ? &vec3::y
-                                                : &vec3::z;
+    const auto along = std::ranges::max(axis, {}, [&](auto k) { return size.*k; });
     std::vector<uint32_t> in_order(box.size());
     std::iota(in_order.begin(), in_order.end(), 0u);
     std::ranges::sort(in_order, {}, [&](uint32_t i) { return std::pair(box[i].lo.*along, i); });
@@ -138,8 +137,47 @@ inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
 }
 
 // Rays start two errors off a surface (see spawn).  Where that is more than a hundredth of a shape,
-// images are wrong by per cents.
+// or of its distance to the eye, a light or another shape, images are wrong by per cents.
 inline bool is_coarse(const Shape& s) {
     const Box box = bounds(s);
     return 200 * rounding_error(s) > max_abs(box.hi - box.lo);
+}
+
+// What is so near to the middle of x, which is shape `own` or a point: both ways along the normal
+// of a triangle, else along the axes.  What is within four errors of a triangle touches it.
+inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t own, real reach) {
+    const vec3 middle = x.is_sphere() ? x.a : (x.a + x.b + x.c) / 3;
+    for (size_t k = 0; k < (f.n == vec3{} ? 12 : 2); ++k) {
+        vec3 d = k & 1 ? -f.n : f.n;
+        if (f.n == vec3{}) d.*axis[k / 4] = k & 1 ? -1 : 1;
+        const vec3 o = middle + ((k & 2 ? x.r : 0) + 4 * f.error) * d;
+        const auto hit = s.bvh.closest({o, d, reach});
+        const real error = hit ? std::max(f.error, s.facing[hit->id].error) : 0;
+        if (hit && hit->id != own && length(o + hit->t * d - middle) < 200 * error) return hit;
+    }
+    return {};
+}
+
+// Lengths that are too short, and a shape's line; one of each kind.  Looks for pairs at 2048 places
+// at most, the first of each line and others; if lights were lifted, not for pairs with a light.
+inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool lifted) {
+    std::map<std::string, uint32_t> found;
+    const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
+    auto look_about = [&](vec3 p, const char* what) {
+        if (const auto hit = near_hit(s, {p, p, p}, {}, UINT32_MAX, reach))
+            found.emplace(what, s.line_of[hit->id]);
+    };
+    look_about(s.camera.eye, "distance to the eye");
+    for (const Light& l : s.lights)
+        if (l.kind == Light::Kind::point) look_about(l.p, "distance to a point light");
+    for (uint32_t i = 0, firsts = 0, pairs = 0; i < s.shapes.size(); ++i) {
+        if (is_coarse(s.shapes[i])) found.emplace("size", s.line_of[i]);
+        const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];
+        if (i % (1 + s.shapes.size() / 1024) > 0 && !(first && firsts++ < 1024)) continue;
+        const auto hit = pairs ? std::nullopt : near_hit(s, s.shapes[i], s.facing[i], i, reach);
+        if (!hit || (lifted && std::max(s.light_of[i], s.light_of[hit->id]) >= 0)) continue;
+        found.emplace("distance to line " + std::to_string(s.line_of[hit->id]), s.line_of[i]);
+        ++pairs;
+    }
+    return found;
 }

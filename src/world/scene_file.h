@@ -37,7 +37,8 @@ public:
         if (s.shapes.empty()) throw UserError(name + ": empty scene: nothing to look at");
         auto warn = [&](const std::string& what) { warnings_.push_back(what); };
         if (s.dropped > 0) warn("dropped triangles without area: " + std::to_string(s.dropped));
-        for (const auto& [line, other] : lift_lights(s, name))
+        const auto lifted = lift_lights(s, name);
+        for (const auto& [line, other] : lifted)
             warn("line " + std::to_string(line) + ": this light lies in the surface of line " +
                  std::to_string(other) +
                  ": it shines in front of it (of two lights in one place the first does)");
@@ -48,10 +49,10 @@ public:
                     throw error_at(name, s.line_of_light[k],
                                    "this point light lies on the surface of line " +
                                        std::to_string(s.line_of[i]) + ": move it off");
-        if (const auto coarse = std::ranges::find_if(s.shapes, is_coarse); coarse != s.shapes.end())
-            warn("line " + std::to_string(s.line_of[size_t(coarse - s.shapes.begin())]) +
-                 ": numbers of " + std::to_string(sizeof(real)) +
-                 " bytes are coarse here: rays start more than 1 % of this shape's size off it");
+        for (const auto& [length, line] : coarse_lengths(s, !lifted.empty()))
+            warn("line " + std::to_string(line) + ": numbers of " + std::to_string(sizeof(real)) +
+                 " bytes are coarse here: rays start off this shape by more than 1 % of its " +
+                 length + "; light may be wrong: use REAL=double, or move all nearer to 0");
         if (s.lights.empty()) warn("no light: all will be black");
         return {std::move(scene_), std::move(warnings_), std::move(files_)};
     }

@@ -192,15 +192,118 @@ TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {
     if (!single) CHECK(warns(box_at(1e14), "line 4: numbers of 8 bytes are coarse here"));
     for (const char* name : {"atelier", "cornell", "cornell36", "cornellglossy", "coursework",
                              "cube", "furnace", "lanterns", "materials", "panel", "penumbra"})
-        CHECK(!warns(read_scene("scenes/" + std::string(name) + ".scene"), "are coarse"));
+        CHECK(warns(read_scene("scenes/" + std::string(name) + ".scene"), "are coarse") ==
+              (single && name == std::string_view("atelier")));
     CHECK(warns(read_scene("scenes/extremes.scene"), "are coarse here") == single);
+}
+
+namespace {
+
+// A floor whose rays start `offset` off it, and others beside it; a line too many is a warning.
+constexpr double offset = 32 * double(ulp) * 1000;
+std::string told(const std::string& eye, const std::string& others) {
+    std::string all;
+    for (const std::string& w : parsed("camera " + eye + "\ndiffuse d .5 .5 .5\nlight l 1 1 1\n" +
+                                       "quad -1000 0 -1000  0 0 2000  2000 0 0  d\n" + others)
+                                    .warnings)
+        all += (all.empty() ? "" : "\n") + w;
+    return all;
+}
+// The last %s of the text is that many offsets.
+std::string with(std::string text, double offsets) {
+    char number[40];
+    std::snprintf(number, sizeof number, "%.17g", offsets * offset);
+    for (size_t i; (i = text.find('@')) != text.npos;) text.replace(i, 1, number);
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("where rays start more than 1 % of the way to something near, it is told") {
+    const std::string start = "line 4: numbers of " + std::to_string(sizeof(real)) +
+                              " bytes are coarse here: rays start off this shape by more than 1 % "
+                              "of its distance to ",
+                      end = "; light may be wrong: use REAL=double, or move all nearer to 0";
+    const std::string eye = "0 9 20  0 0 0  50", lamp = "quad -9 9 -9  18 0 0  0 0 18  l\n";
+    const struct {
+        std::string eye, others, what;
+    } rows[] = {{eye, "quad -1000 @ -1000  2000 0 0  0 0 2000  l\n", "line 5"},
+                {eye, "quad -1000 -@ -1000  2000 0 0  0 0 2000  l\n", "line 5"},
+                {"1 @ 2  9 @ 1  50", lamp, "the eye"},
+                {"1 -@ 2  9 -@ 1  50", lamp, "the eye"},
+                {eye, "pointlight 1 @ 2  9 9 9\npointlight 3 @ 2  9 9 9\n", "a point light"}};
+    for (const auto& row : rows) {
+        INFO(row.eye, row.others);
+        for (const double offsets : {50.0, 95.0})
+            CHECK(told(with(row.eye, offsets), with(row.others, offsets)) ==
+                  start + row.what + end);
+        CHECK(told(with(row.eye, 105), with(row.others, 105)) == "");
+    }
+    // From a ball or from a plate: the other is too large to look out from where it is near.
+    for (const std::string other :
+         {"sphere 9 @ 9  5 l\n", "sphere 9 -@ 9  5 l\n", "quad 9 @ 9  1 0 0  0 0 1  l\n"}) {
+        INFO(other);
+        const std::string near = told(eye, with(other, 90));
+        CHECK(near.starts_with("line 5: "));
+        CHECK(near.ends_with(" its distance to line 4" + end));
+        CHECK(told(eye, with(other, 110)) == "");
+    }
+    // A small ball by its centre, on the floor or above it; its size is that of many more offsets.
+    auto ball = [&](double height) {
+        return told(eye, lamp + with("sphere 0 @ 0  ", height) + with("@ d\n", 40));
+    };
+    CHECK(ball(90).ends_with(" its distance to line 4" + end));
+    CHECK(ball(110) == "");
+}
+
+TEST_CASE("shapes that touch are not near, nor are they with a light near by") {
+    const std::string eye = "0 9 20  0 0 0  50", lamp = "quad -9 9 -9  18 0 0  0 0 18  l\n";
+    for (const char* standing :
+         {"box 2 2 2  30  1 0 1  d\n", "sphere 2 1 3  1 d\n", "sphere 0 0 0  1 d\n",
+          "quad -4 0 -4  0 0 8  8 0 0  d\n", "quad -4 0 -4  8 0 0  0 8 0  d\n"}) {
+        INFO(std::string(standing));
+        CHECK(told(eye, lamp + standing) == "");
+    }
+    // A ball in a corner; a roof, a box upon a box.
+    CHECK(told(eye, lamp + "quad -9 0 -1  18 0 0  0 9 0  d\nsphere 3 1 0  1  d\n") == "");
+    CHECK(told(eye, lamp + "box 2 2 2  0  -1 0 -1  d\nbox 1 1 1  20  -.5 2 -.5  d\n") == "");
+}
+
+TEST_CASE("plates on a slope touch it within rounding; a small ball far away is not near itself") {
+    const std::string eye = "0 9 20  0 0 0  50", lamp = "quad -9 9 -9  18 0 0  0 0 18  l\n";
+    std::string slope = "quad -90 0 0  180 0 0  0 2.1 1.3  d\n";
+    for (int i = -20; i < 20; ++i) {
+        char plate[200];
+        std::snprintf(plate, sizeof plate, "quad %.1f .21 .13  .7 0 0  0 %.3f %.3f  d\n", 1.7 * i,
+                      0.021 * (30 + i), 0.013 * (30 + i));
+        slope += plate;
+    }
+    CHECK(told(eye, lamp + slope) == "");
+    const std::string ball = told(eye, lamp + with("sphere 900 50 0  @ d\n", 30));
+    CHECK(ball.find(" of its size;") != ball.npos);
+    CHECK(ball.find("distance") == ball.npos);
+}
+
+TEST_CASE("three scenes that float gets wrong are told; in double they are not near") {
+    const std::string floor = "quad -1000 0 -1000  0 0 2000  2000 0 0  d\n";
+    const std::string head = "diffuse d .5 .5 .5\nlight l 1 1 1\n",
+                      eye = "camera 0 1 4  0 .5 0  50\n";
+    for (const char* h : {"1e-9", "1e-6", "1e-4", "1e-2", "0.1"})
+        CHECK(parsed(eye + head + floor + "quad -1000 " + h + " -1000  2000 0 0  0 0 2000  l\n")
+                  .warnings.size() == (single ? 1 : 0));
+    CHECK(warns(parsed("camera 0 1e-3 0  5 1e-3 0  50\n" + head +
+                       "sphere 0 -1e6 0  1e6 d\nsphere 0 2e3 0  900 l\n"),
+                "its distance to the eye") == single);
+    for (const char* lamp : {"sphere 1.9997 .0349 0  .1 l\n", "sphere 6.9 .1204 0  .345 l\n"})
+        CHECK(warns(parsed(eye + head + floor + lamp), "its distance to line 4") == single);
 }
 
 // Maps of its light have one side and no sky.  In float a ray that starts 10 micrometres from an
 // edge may start behind it.
 TEST_CASE("the house of atelier is closed, and only the fronts of its faces are seen") {
     const ParsedScene atelier = read_scene("scenes/atelier.scene");
-    CHECK(atelier.warnings.empty());
+    // The sill is a millimetre off the wall.
+    CHECK(atelier.warnings.size() == (single ? 1 : 0));
     CHECK(atelier.scene.lights.size() == 5);
     const Scene& scene = atelier.scene;
     int escapes = 0, backs = 0;
