@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -28,9 +29,31 @@ inline std::string significant(double x, int digits) {
 
 namespace json {
 
+// Bytes of the character that a text begins with; 0: what it begins with is no UTF-8.
+inline size_t utf8_length(std::string_view text) {
+    const uint32_t first = static_cast<unsigned char>(text[0]);
+    const size_t n = first < 0x80         ? 1
+                     : first >> 5 == 0x06 ? 2
+                     : first >> 4 == 0x0e ? 3
+                     : first >> 3 == 0x1e ? 4
+                                          : 0;
+    if (n <= 1 || n > text.size()) return n == 1;
+    uint32_t point = first & (0x7f >> n);
+    for (const char c : text.substr(1, n - 1)) {
+        if ((c & 0xc0) != 0x80) return 0;
+        point = point << 6 | (c & 0x3f);
+    }
+    constexpr uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = point >> 11 == 0x1b;
+    return point < least[n] || point > 0x10ffff || surrogate ? 0 : n;
+}
+
+// A name of a file may hold any bytes: U+FFFD stands for each that is not part of UTF-8.
 inline std::string string(std::string_view text) {
     std::string out = "\"";
-    for (char c : text) {
+    for (size_t n; !text.empty(); text.remove_prefix(n > 0 ? n : 1)) {
+        n = utf8_length(text);
+        const char c = text[0];
         char escaped[8];
         std::snprintf(escaped, sizeof escaped, "\\u%04x", unsigned(static_cast<unsigned char>(c)));
         if (c == '"' || c == '\\')
@@ -38,7 +61,7 @@ inline std::string string(std::string_view text) {
         else if (static_cast<unsigned char>(c) < ' ')
             out += escaped;
         else
-            out += c;
+            out += n > 0 ? text.substr(0, n) : "\\ufffd";
     }
     return out + '"';
 }

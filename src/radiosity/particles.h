@@ -125,12 +125,17 @@ public:
         for (const uint64_t end = b.n + n; b.n < end && !interrupted; ++b.n) {
             const WalkNumbers u(pattern_, independent_, uint64_t(batch), b.n);
             Balance one;
+            rgb kept{1, 1, 1};  // by the surfaces that it meets
             b.rays += walk(scene_, u, one, [&](const Vertex& x, rgb power) {
+                kept *= x.material->kd;
                 const auto [vertex, weight] = between(mesh_, x.hit);
                 for (size_t k = 0; k < 3; ++k)
                     add_to(b.sums[2 * vertex[k] + (x.cos_o < 0)], power * weight[k]);
             });
             for (size_t k = 0; k < 3; ++k) add_to(b.balance[k], one.*Balance::parts[k]);
+            for (size_t c = 0; c < 3; ++c)
+                b.lost[c] |=
+                    one.emitted.*axis[c] > 0 && (one.escaped.*axis[c] > 0 || kept.*axis[c] < 1);
         }
     }
 
@@ -151,6 +156,16 @@ public:
         uint64_t n = 0;
         for (const Batch& b : batch_) n += b.rays;
         return n;
+    }
+    // Whether all light of a channel has been kept: in a closed room that absorbs nothing there is
+    // no limit for it to reach.
+    bool is_endless() const {
+        for (size_t c = 0; c < 3; ++c) {
+            bool emitted = false, lost = false;
+            for (const Batch& b : batch_) emitted |= b.balance[0][c] > 0, lost |= b.lost[c];
+            if (emitted && !lost) return true;
+        }
+        return false;
     }
     // Of all particles together, over their number.
     Balance balance() const {
@@ -216,6 +231,7 @@ private:
         std::vector<Sum> sums;  // of power times hat, for the sides of all vertices
         std::array<Sum, 3> balance;
         uint64_t n, rays;
+        std::array<bool, 3> lost{};  // of a channel something has been absorbed, or has escaped
     };
 
     const Scene& scene_;

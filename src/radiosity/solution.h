@@ -37,9 +37,9 @@ inline Bytes bytes_of(const RadiosityOptions& o) {
 }
 
 inline Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
-    auto [facets, warnings] = faceted(scene, H);
-    for (const std::string& w : warnings) tell(o, o.scene + ":" + w);
-    Stage stage{std::move(facets), {}, H, bytes_of(o).of(sizes(scene, H))};
+    Faceted facets = faceted(scene, H);
+    for (const std::string& w : facets.warnings) tell(o, o.scene + ":" + w);
+    Stage stage{std::move(facets.scene), {}, H, bytes_of(o).of(sizes(scene, H))};
     stage.mesh = make_mesh(stage.scene, H);
     return stage;
 }

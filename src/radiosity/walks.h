@@ -81,8 +81,14 @@ public:
             return limit ? std::min(whole, limit) : whole;
         };
         uint64_t to = target_.error > 0 ? reachable(ErrorTarget::least) : limit;
-        while (walk_to(to) && to != limit && !enough.met(look()))
+        while (walk_to(to) && to != limit && !enough.met(look())) {
+            if (limit == 0 && target_.seconds == 0 && particles_.is_endless())
+                throw UserError(
+                    "--error: none of " + std::to_string(particles_.particles()) +
+                    " particles lost light of some channel, so there is no end to it, and no error "
+                    "to meet: say --particles or --time as well, or let a surface absorb some");
             to = reachable(enough.next(to, look()));
+        }
     }
 
     Walked walked() const {

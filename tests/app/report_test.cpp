@@ -49,6 +49,20 @@ TEST_CASE("JSON: every digit of a number, every letter of a name") {
     CHECK(json::numbers({1, 2, NAN}) == "[1, 2, null]");
     CHECK(json::string("a\"b\\c\x01\n") == R"("a\"b\\c\u0001\u000a")");
     CHECK(json::string("\xc3\xa9") == "\"\xc3\xa9\"");
+    // Of two, three and four bytes, the first and the last of each; then what is cut short, too
+    // long, a surrogate, beyond the last, or no beginning.
+    for (const std::string good :
+         {"\x7f", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
+          "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
+        CHECK(json::string("a" + good + "b") == "\"a" + good + "b\"");
+    for (const std::string bad : {"\x80", "\xbf", "\xff", "\xc3", "\xe2\x82", "\xf0\x9f\x98",
+                                  "\xc1\xbf", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf", "\xed\xa0\x80",
+                                  "\xed\xbf\xbf", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80"}) {
+        std::string each;
+        for (size_t i = 0; i < bad.size(); ++i) each += "\\ufffd";
+        CHECK(json::string(bad) == "\"" + each + "\"");
+        CHECK(json::string("a" + bad + "\xc3\xa9") == "\"a" + each + "\xc3\xa9\"");
+    }
     CHECK(json::truth(true) == "true");
     CHECK(json::truth(false) == "false");
     json::Object object;
@@ -145,7 +159,8 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
               "  \"variance_of_mean\": [2, 4, 6],\n  \"sets_per_pixel\": 2.75,\n"
               "  \"d_rel\": " +
               number(d_rel) + ",\n  \"d_rel_standard_error\": " + number(d_rel * 2 / 8 / 2) +
-              ",\n  \"seconds_to_half_d_rel\": " + number(2 * std::pow(2, 1.5)) +
+              ",\n  \"d_rel_reason\": null,\n  \"seconds_to_half_d_rel\": " +
+              number(2 * std::pow(2, 1.5)) +
               ",\n  \"bias\": \"consistent\",\n  \"stopped_by\": \"time\",\n");
     // What this process takes is more than a megabyte, and is told in bytes.
     CHECK(bytes > 2e6);
@@ -158,15 +173,17 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     run.interrupted = true;
     text = json_of(run, {2, 1});
     CHECK(text.find("\"d_rel_reason\": \"one sample\"") != text.npos);
+    for (const char* key : {"d_rel", "d_rel_standard_error", "seconds_to_half_d_rel"})
+        CHECK(text.find("\"" + std::string(key) + "\": null") != text.npos);
+    CHECK(text.find("\"variance_of_mean\": [null, null, null]") != text.npos);
+    CHECK(text.find("\"interrupted\": true") != text.npos);
+    CHECK(json_of(run_of(0, 0), {1, 1}).find("\"seconds_to_half_d_rel\": null") != text.npos);
     Run doubtful = run_of(0.02, 0.001);
     doubtful.doubt = "rare \"light\"";
     text = json_of(doubtful, {1, 1});
     CHECK(text.find("\"d_rel_reason\": \"rare \\\"light\\\"\"") != text.npos);
     for (const char* key : {"d_rel", "d_rel_standard_error", "seconds_to_half_d_rel"})
         CHECK(text.find("\"" + std::string(key) + "\": null") != text.npos);
-    CHECK(text.find("\"variance_of_mean\": [null, null, null]") != text.npos);
-    CHECK(text.find("\"interrupted\": true") != text.npos);
-    CHECK(json_of(run_of(0, 0), {1, 1}).find("\"seconds_to_half_d_rel\": null") != text.npos);
 }
 
 TEST_CASE("progress in a log: a plain line every two seconds; quiet: none") {

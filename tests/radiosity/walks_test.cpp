@@ -91,6 +91,38 @@ TEST_CASE("--error: particles, seconds and the first look are limits") {
     }
 }
 
+TEST_CASE("--error alone: where no particle loses light the run ends with a message") {
+    const vec3 size{2, 3, 1};
+    auto ends = [](const Scene& s, const WalksTarget& target) -> std::string {
+        try {
+            walk_to(s, make_mesh(s, 2.2), target, 1);
+            return "";
+        } catch (const UserError& e) {
+            return e.what();
+        }
+    };
+    const std::string message = "--error: none of " + std::to_string(first_look) +
+                                " particles lost light of some channel, so there is no end to it";
+    const rgb glow{1, 1, 1}, white{real(0.5), 1, real(0.7)};
+    CHECK(ends(room(size, diffuse(white, glow)), {0, 0, 0.01}).starts_with(message));
+    CHECK(ends(room(size, diffuse(grey(1), glow)), {0, 0, 0.01}).starts_with(message));
+    // What other limits end; light of the other channels alone; a wall that absorbs; a way out.
+    CHECK(ends(room(size, diffuse(white, glow)), {1600, 0, 0.01}) == "");
+    CHECK(ends(room(size, diffuse(white, glow)), {0, 0.05, 0.01}) == "");
+    CHECK(ends(room(size, diffuse(white, {1, 0, 1})), {0, 0, 0.05}) == "");
+    Scene absorbs;
+    const uint32_t walls = add(absorbs, diffuse(grey(1), glow));
+    add(absorbs, diffuse(grey(0.5), glow));
+    add_room(absorbs, size, walls, 2);
+    prepare(absorbs);
+    CHECK(ends(absorbs, {0, 0, 0.05}) == "");
+    Scene open;
+    add_quad(open, {}, {1, 0, 0}, {0, 1, 0}, add(open, diffuse(grey(1), glow)));
+    add_quad(open, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 0);
+    prepare(open);
+    CHECK(ends(open, {0, 0, 0.003}) == "");
+}
+
 TEST_CASE("--error: the run is the same for any number of threads, and that of as many particles") {
     const Scene s = furnace();
     const Mesh mesh = make_mesh(s, 1);

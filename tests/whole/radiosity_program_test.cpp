@@ -216,6 +216,32 @@ TEST_CASE("radiosity --error: what came first ends the run, and is said") {
     CHECK(std::isnan(number_of(folder.read("s.json"), "error")));
 }
 
+TEST_CASE("radiosity --error alone: particles in a closed white room end with a message") {
+    const Place folder(
+        "size 9 5\ncamera .3 .2 4  0 0 0  70\ndiffuse w 1 .5 .5\n"
+        "box 10 10 10  0  -5 -5 -5  w\npointlight 0 0 0  9 9 9\n");
+    const Outcome o = run(folder, "radiosity",
+                          split("--method particles --mesh 5 --error 5% -o a.pfm file.scene"));
+    INFO(o.err);
+    CHECK(o.status == 2);
+    CHECK(contains(o.err, "--error: none of 65536 particles lost light of some channel"));
+    CHECK(folder.all().size() == 1);
+}
+
+TEST_CASE("statistics are UTF-8 even if the scene's name is not") {
+    const Folder folder;
+    folder.write("caf\xe9 \xc3\xa9.scene", room);
+    const std::string options = "--stats s.json --quiet -o a.pfm --size 8x4";
+    for (const std::string program : {"penumbra --spp 1", "radiosity --mesh 5 --shots 2"}) {
+        std::vector<std::string> words = split(program + " " + options);
+        const std::string name = words[0];
+        words.erase(words.begin());
+        words.push_back("caf\xe9 \xc3\xa9.scene");
+        expect_success(folder, name, words);
+        CHECK(contains(folder.read("s.json"), "\"scene\": \"caf\\ufffd \xc3\xa9.scene\""));
+    }
+}
+
 TEST_CASE("radiosity --quiet prints nothing; -o and its files; the scene may come through a pipe") {
     const Place folder(room);
     const Outcome o = expect_success(
