@@ -136,6 +136,7 @@ inline void add_run(json::Object& object, const Run& run, Size size) {
     auto if_known = [&](double x) { return json::number(reason.empty() ? x : double(NAN)); };
     object.add("d_rel", if_known(run.error.d_rel()));
     object.add("d_rel_standard_error", if_known(run.error.standard_error()));
+    object.add("d_rel_by_spread", json::number(run.error.d_rel()));  // known or not
     object.add("d_rel_reason", reason.empty() ? "null" : json::string(reason));
     const bool falls = run.error.d2() > 0;  // or is 0
     object.add("seconds_to_half_d_rel",

@@ -57,7 +57,7 @@ inline double seconds_between_points(const TradeSetting& s, double E) {
 }
 
 // Laws are believed up to this many times the seconds of the last point.
-inline constexpr double reach = 16;
+inline constexpr double law_reach = 16;
 
 // Seconds after which the setting's error is E: by its law, or, of a setting that is biased or
 // rounds, between its points alone.  NAN: not by what was measured.
@@ -65,7 +65,7 @@ inline double seconds_for(const TradeSetting& s, double E) {
     if (s.points.empty()) return NAN;
     if (!follows_its_law(s)) return seconds_between_points(s, E);
     const double t = seconds_by_law(s, E);
-    return t <= reach * s.points.back().seconds ? t : NAN;
+    return t <= law_reach * s.points.back().seconds ? t : NAN;
 }
 
 // ---- Answers ------------------------------------------------------------------------------------

@@ -95,7 +95,7 @@ For each scene and error: core seconds of the cheapest setting, which it is, and
 instead.  –: not by what was measured.  Laws are believed up to %.0f times the seconds of their last point,
 but of a setting that is biased or computes in float, whose errors have a floor, nothing beyond its points;
 no setting is cheaper than one sample a pixel.)",
-                    reach));
+                    law_reach));
     std::vector<std::string> head = {"scene"};
     for (double E : asked) head.push_back("error " + told_percent(E));
     report.head(head);

@@ -13,7 +13,7 @@ namespace {
 using namespace trials;
 using namespace functions;
 using Row = std::vector<std::string>;
-using Number = double (Tally::*)() const;
+using Number = double (Estimates::*)() const;
 
 // ---- The experiment -----------------------------------------------------------------------------
 
@@ -43,8 +43,8 @@ double exponent(const std::vector<Series>& all, size_t function, size_t e, Numbe
     return slope(numbers(all), column(all, function, e, number));
 }
 // A mean of squares is no measure of what has no variance.
-Number error_of(size_t function) {
-    return list[function].has_variance() ? &Tally::rmse : &Tally::median_error;
+Number error_number(size_t function) {
+    return list[function].has_variance() ? &Estimates::rmse : &Estimates::median_error;
 }
 
 // ---- The report ---------------------------------------------------------------------------------
@@ -103,7 +103,7 @@ void print_errors(Report& report, const Series& s) {
              "variance: of it, here and below, the median error.",
              int(s.n)));
     print_table(report,
-                [&](size_t k, size_t e) { return text("%.2e", (at[k][e].*error_of(k))()); });
+                [&](size_t k, size_t e) { return text("%.2e", (at[k][e].*error_number(k))()); });
     report.say("Bias ± its standard error:");
     print_table(report, [&](size_t k, size_t e) {
         const Moments& m = at[k][e].error;
@@ -132,8 +132,9 @@ void print_exponents(Report& report, const std::vector<Series>& all) {
         "undivided, −0.75 of an indicator and of whatever does not vanish on the border (by its "
         "border cells), of a Hölder function that does at most −(1 + α) / 2: here of hat alone, "
         "−1.");
-    print_table(report,
-                [&](size_t k, size_t e) { return text("%.2f", exponent(all, k, e, error_of(k))); });
+    print_table(report, [&](size_t k, size_t e) {
+        return text("%.2f", exponent(all, k, e, error_number(k)));
+    });
 }
 
 void print_bias(Report& report, const std::vector<Series>& all) {
@@ -183,15 +184,15 @@ void print_findings(Report& report, const std::vector<Series>& all) {
             text("the row printed as not_holder (mc .000585, vor .000179) is that of not_c1, here "
                  "%.6f and %.6f; not_holder has %.5f and %.5f.",
                  sd(not_c1, mc), sd(not_c1, vor), sd(not_holder, mc), sd(not_holder, vor)));
-    const double steep = exponent(all, hat, poisson_area, &Tally::deviation),
-                 flat = exponent(all, hat, poisson_vor, &Tally::deviation);
+    const double steep = exponent(all, hat, poisson_area, &Estimates::deviation),
+                 flat = exponent(all, hat, poisson_vor, &Estimates::deviation);
     verdict(steep < -1 && flat > -0.9,
             text("its theory is about the undivided sum of functions that vanish on the border.  "
                  "Deviations of hat from N = %.0f to %.0f with Poisson counts: %s (exponent %.2f); "
                  "divided: %s (exponent %.2f).",
                  numbers(all).front(), numbers(all).back(),
-                 words(column(all, hat, poisson_area, &Tally::deviation)), steep,
-                 words(column(all, hat, poisson_vor, &Tally::deviation)), flat));
+                 words(column(all, hat, poisson_area, &Estimates::deviation)), steep,
+                 words(column(all, hat, poisson_vor, &Estimates::deviation)), flat));
     Values gains;
     for (size_t k = 0; k < list.size(); ++k)
         if (list[k].has_variance()) gains.push_back(s.of[k][vor].rmse() / s.of[k][cvor].rmse());
@@ -258,8 +259,8 @@ struct Sheet {
             return y;
         };
         for (size_t j : {0, 1, 3})
-            plot.spread(numbers(all), thousandths(shown[j], &Tally::bias),
-                        thousandths(shown[j], &Tally::deviation), svg::colours[j],
+            plot.spread(numbers(all), thousandths(shown[j], &Estimates::bias),
+                        thousandths(shown[j], &Estimates::deviation), svg::colours[j],
                         estimators[shown[j]].name);
     }
 };
@@ -267,9 +268,9 @@ struct Sheet {
 Svg plots(const std::vector<Series>& all) {
     Sheet sheet{all};
     for (size_t k = 0; k < list.size(); ++k)
-        sheet.curves(k, error_of(k), list[k].has_variance() ? "rmse" : "median error", "error");
+        sheet.curves(k, error_number(k), list[k].has_variance() ? "rmse" : "median error", "error");
     sheet.spread(not_c1);
-    sheet.curves(holder_1, &Tally::time, "time", "seconds");
+    sheet.curves(holder_1, &Estimates::time, "time", "seconds");
     return sheet.svg;
 }
 

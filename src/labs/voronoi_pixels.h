@@ -149,7 +149,7 @@ inline Reference read_reference(const std::string& name, Size size) {
 // ---- Errors -------------------------------------------------------------------------------------
 
 // Of one technique with one number of samples.
-struct Tally {
+struct PixelEstimates {
     std::array<double, regions> squares{}, count{};  // of errors, over channels and pixels
     double seconds = 0, samples = 0;                 // of weights; of paths for mc and stratified
     uint64_t redraws = 0, fallbacks = 0;
@@ -162,7 +162,7 @@ struct Tally {
             ++count[r];
         }
     }
-    void merge(const Tally& t) {
+    void merge(const PixelEstimates& t) {
         for (size_t r = 0; r < regions; ++r) squares[r] += t.squares[r], count[r] += t.count[r];
         seconds += t.seconds, samples += t.samples;
         redraws += t.redraws, fallbacks += t.fallbacks;
@@ -179,7 +179,7 @@ struct Result {
     Scene scene;
     Reference reference;
     std::vector<uint64_t> ns = {};
-    std::vector<std::array<Tally, techniques>> of = {};  // by n
+    std::vector<std::array<PixelEstimates, techniques>> of = {};  // by n
     std::array<Image, weightings.size()> variance = {};  // of 64 samples' mean, all channels
 
     // Squared error of mc over that of t.
@@ -204,7 +204,7 @@ inline uint64_t sets(uint64_t most, uint64_t n) {
 }
 
 // All techniques get the same samples of a pixel, but for strata.
-inline void measure_pixel(Result& r, std::vector<std::array<Tally, techniques>>& tallies,
+inline void measure_pixel(Result& r, std::vector<std::array<PixelEstimates, techniques>>& tallies,
                           Weigher& weigher, PixelSample p, uint64_t most) {
     const Region region = region_of(r.scene, p);
     const auto &truth = r.reference.image.at(p.x, p.y), &noise = r.reference.noise.at(p.x, p.y);
@@ -216,7 +216,7 @@ inline void measure_pixel(Result& r, std::vector<std::array<Tally, techniques>>&
         const uint64_t n = r.ns[k];
         for (uint64_t set = 0; set < sets(most, n); ++set)
             for (size_t t = 0; t < weightings.size(); ++t) {
-                Tally& tally = tallies[k][t];
+                PixelEstimates& tally = tallies[k][t];
                 const uint64_t key = hash(hash(n, set), uint64_t(p.y) << 32 | uint32_t(p.x));
                 start = thread_seconds();
                 const Mean m = weighted(weigher, t, s, {set * n, n}, key);
@@ -227,7 +227,7 @@ inline void measure_pixel(Result& r, std::vector<std::array<Tally, techniques>>&
                 tally.add(m, truth, noise, region);
                 for (size_t c = 0; c < 3 && n == 64; ++c) spread[t][c].add(m[c]);
             }
-        Tally& tally = tallies[k][stratified];
+        PixelEstimates& tally = tallies[k][stratified];
         start = thread_seconds();
         tally.add(by_strata(r.scene, 2, p, n), truth, noise, region);
         tally.seconds += thread_seconds() - start;
@@ -247,7 +247,7 @@ inline Result measure(const std::string& name, const Scope& plan) {
     std::mutex mutex;
     auto row = [&](size_t y) {
         Weigher weigher;
-        std::vector<std::array<Tally, techniques>> mine(r.ns.size());
+        std::vector<std::array<PixelEstimates, techniques>> mine(r.ns.size());
         for (int x = 0; x < plan.size.width; ++x)
             measure_pixel(r, mine, weigher, {x, int(y) * plan.every}, plan.most);
         std::lock_guard lock(mutex);

@@ -47,7 +47,7 @@ inline constexpr size_t mc = 0, vor = 1, vor_area = 2, cvor = 5, cvor_corrected 
                         poisson_area = 13;
 
 // All estimates of one integral by one estimator.
-struct Tally {
+struct Estimates {
     Moments error;
     Values sizes;  // of errors
     double seconds = 0;
@@ -62,8 +62,8 @@ struct Tally {
 
 struct Series {
     uint64_t n = 0;
-    std::vector<std::array<Tally, estimators.size()>> of{list.size()};     // by function
-    uint64_t redraws = 0, strips = 0, unsettled = 0, cells = 0, none = 0;  // see Weigher
+    std::vector<std::array<Estimates, estimators.size()>> of{list.size()};  // by function
+    uint64_t redraws = 0, strips = 0, unsettled = 0, cells = 0, none = 0;   // see Weigher
 };
 
 // ---- Samples ------------------------------------------------------------------------------------
@@ -143,7 +143,7 @@ inline void add(Series& series, size_t e, const Samples& s, Weigher& weigher, ui
     const auto estimate = prepared(estimators[e], s.places, weigher, key);
     const double took = processor_seconds() - start;
     for (size_t k = 0; k < list.size(); ++k) {
-        Tally& tally = series.of[k][e];
+        Estimates& tally = series.of[k][e];
         start = processor_seconds();
         const double error = estimate(s.values[k]) - list[k].integral;
         tally.seconds += processor_seconds() - start + took + s.seconds[k];

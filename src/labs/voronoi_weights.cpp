@@ -84,7 +84,7 @@ void print_regions(Report& report, const std::vector<Result>& all) {
     report.head(head);
     for (const Result& r : all)
         for (size_t region = 0; region < regions; ++region) {
-            const Tally& tally = r.of.back()[mc];
+            const PixelEstimates& tally = r.of.back()[mc];
             if (tally.count[region] == 0) continue;
             Row row = {r.name, region_names[region],
                        text("%.2f %%", 100 * tally.count[region] / tally.values()),

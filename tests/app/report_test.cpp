@@ -159,6 +159,7 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
               "  \"variance_of_mean\": [2, 4, 6],\n  \"sets_per_pixel\": 2.75,\n"
               "  \"d_rel\": " +
               number(d_rel) + ",\n  \"d_rel_standard_error\": " + number(d_rel * 2 / 8 / 2) +
+              ",\n  \"d_rel_by_spread\": " + number(d_rel) +
               ",\n  \"d_rel_reason\": null,\n  \"seconds_to_half_d_rel\": " +
               number(2 * std::pow(2, 1.5)) +
               ",\n  \"bias\": \"consistent\",\n  \"stopped_by\": \"time\",\n");
@@ -184,6 +185,7 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     CHECK(text.find("\"d_rel_reason\": \"rare \\\"light\\\"\"") != text.npos);
     for (const char* key : {"d_rel", "d_rel_standard_error", "seconds_to_half_d_rel"})
         CHECK(text.find("\"" + std::string(key) + "\": null") != text.npos);
+    CHECK(text.find("\"d_rel_by_spread\": 0.02") != text.npos);
 }
 
 TEST_CASE("progress in a log: a plain line every two seconds; quiet: none") {

@@ -71,8 +71,8 @@ TEST_CASE("points without an error are left out of the law; one point has none")
 TEST_CASE("seconds for an error: by the law, and no farther than it is believed") {
     const TradeSetting s = by_law("a", 0.02, 0.5);  // the last point: 10.24 s
     CHECK(seconds_for(s, 0.01) == doctest::Approx(4));
-    const double least = 0.02 / std::sqrt(reach * 10.24);
-    CHECK(seconds_for(s, 1.01 * least) == doctest::Approx(reach * 10.24 / 1.0201));
+    const double least = 0.02 / std::sqrt(law_reach * 10.24);
+    CHECK(seconds_for(s, 1.01 * least) == doctest::Approx(law_reach * 10.24 / 1.0201));
     CHECK(std::isnan(seconds_for(s, 0.99 * least)));
     CHECK(seconds_for(s, 5) == doctest::Approx(0.01));  // one sample a pixel
     CHECK(std::isnan(seconds_for(TradeSetting{"none"}, 0.1)));

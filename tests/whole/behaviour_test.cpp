@@ -301,10 +301,10 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         {"stopped_by", "\"samples\""}};
     const std::set<std::string> of_time = {"seconds", "cpu_seconds", "mrays_per_second",
                                            "seconds_to_half_d_rel", "peak_memory_bytes"},
-                                of_samples = {"samples_per_pixel",   "rays",
-                                              "mean_radiance",       "variance_of_mean",
-                                              "sets_per_pixel",      "d_rel",
-                                              "d_rel_standard_error"};
+                                of_samples = {"samples_per_pixel",    "rays",
+                                              "mean_radiance",        "variance_of_mean",
+                                              "sets_per_pixel",       "d_rel",
+                                              "d_rel_standard_error", "d_rel_by_spread"};
     CHECK(one.size() == asked.size() + of_time.size() + of_samples.size());
     auto number = [](const auto& values, const std::string& key) {
         const std::string& text = values.at(key);

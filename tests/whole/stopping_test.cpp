@@ -114,11 +114,11 @@ TEST_CASE("--error goes on while light may be missing, and says so after 4096 sa
     CHECK(contains(o.err, "light not yet seen may amount to "));
     CHECK(contains(o.err, "(stopped by error not known)"));
     const std::string stats = folder.read("a.json");
-    CHECK(stated(stats, "d_rel") == "null");
-    CHECK(stated(stats, "error") == "0.05");
-    CHECK(stated(stats, "d_rel_standard_error") == "null");
+    CHECK(stated(stats, "d_rel") == "null,");
+    CHECK(std::stod(stated(stats, "error")) == 0.05);
+    CHECK(stated(stats, "d_rel_standard_error") == "null,");
     CHECK(stated(stats, "d_rel_reason").starts_with("\"the light of line 9 "));
-    CHECK(stated(stats, "stopped_by") == "\"error not known\"");
+    CHECK(stated(stats, "stopped_by") == "\"error not known\",");
     CHECK(std::stod(stated(folder.read("a.json"), "samples_per_pixel")) >= 4096);
     CHECK(std::stod(stated(folder.read("a.json"), "samples_per_pixel")) < 6000);
     // Without that lamp it is known early.
@@ -129,5 +129,5 @@ TEST_CASE("--error goes on while light may be missing, and says so after 4096 sa
                  "quad -1 6 -1 2 0 0 0 0 2 k\n");
     CHECK(contains(expect_success(folder, "penumbra", words).err, "(stopped by error)"));
     CHECK(std::stod(stated(folder.read("a.json"), "samples_per_pixel")) < 1000);
-    CHECK(stated(folder.read("a.json"), "d_rel_reason") == "null");
+    CHECK(stated(folder.read("a.json"), "d_rel_reason") == "null,");
 }
