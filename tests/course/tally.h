@@ -7,7 +7,8 @@
 
 namespace course {
 
-// Seconds of CPU that a run may take on average: the oracle's check of a density takes 0.03 on an idle machine.
+// Seconds of CPU that a run may take on average: the oracle's check of a density takes 0.03 on an
+// idle machine.
 inline constexpr double limit = 1;
 inline constexpr size_t runs_of_wrong = 3, runs_of_right = 17;
 

@@ -169,7 +169,8 @@ public:
         Tally tally;
         for (size_t b = 0, at = 0; b < f.taken.size() / 2; at += f.sets_of(f.begin(b++)))
             add_samples(f, b, at, 2, L_, tally);  // a block is a pixel
-        demand(Keeper(name, what()).write(f, {1, 1, tally.rays}, false).empty(), "no film is written");
+        demand(Keeper(name, what()).write(f, {1, 1, tally.rays}, false).empty(),
+               "no film is written");
     }
 
 private:
