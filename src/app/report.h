@@ -90,7 +90,7 @@ inline int64_t peak_memory_bytes() {
 inline std::string why_no_error(const Run& run) {
     if (run.spp <= 1) return "one sample";
     if (run.sets == 1) return run.interrupted ? "interrupted early" : "one replication";
-    if (std::isfinite(run.error.d_rel()) || run.error.norm == 0) return run.doubt;
+    if (run.error.d2() >= 0 || run.error.norm == 0) return run.doubt;
     return run.interrupted ? "interrupted early" : "too little time";
 }
 

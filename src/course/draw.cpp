@@ -73,7 +73,7 @@ Image beside(const Image& yours, const Image& expected, double exposure) {
     return all;
 }
 
-// d_rel = sqrt(sum (f - F)^2 / sum f^2), F what is expected (Khodulev 1996).
+// d_rel = sqrt(sum (f - F)^2 / sum F^2), F what is expected (Khodulev 1996).
 double relative_error(const Image& f, const Image& F) {
     double difference = 0, sum = 0;
     for (size_t i = 0; i < f.pixels.size(); ++i)

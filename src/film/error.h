@@ -5,7 +5,7 @@
 #include "film/film.h"
 
 // Of an image f of a truth F: d^2 = mean over pixels and channels of (f - F)^2, in expectation and
-// without the bias of f.  NaN: not known.
+// without the bias of f; d_rel = d / |F|.  NaN: not known.
 struct ImageError {
     std::array<double, 3> mean{};                 // of the image, a channel at a time
     std::array<double, 3> square{NAN, NAN, NAN};  // d^2, a channel at a time
@@ -14,14 +14,17 @@ struct ImageError {
     double greatest = NAN;                        // part of d^2 that comes from the worst pixel
 
     double d2() const { return (square[0] + square[1] + square[2]) / 3; }
-    // Of a black image not known: all samples may have missed the light.
-    double d_rel() const { return norm > 0 ? std::sqrt(d2()) / norm : double(NAN); }
+    // |F|, for E |f|^2 = |F|^2 + d^2; 0: lost in noise.
+    double norm_of_truth() const { return std::sqrt(std::max(0.0, norm * norm - d2())); }
+    // Of a black image not known: all samples may have missed the light.  Infinite: all is noise.
+    double d_rel() const { return norm > 0 ? std::sqrt(d2()) / norm_of_truth() : double(NAN); }
     // The same if there were another pixel like the worst, in which rare light was not seen.
     double d_rel_and_unseen() const {
         return d_rel() * std::sqrt(d2() > 0 ? 1 + greatest / d2() : 1);
     }
-    // Of d_rel, by the slope of the root.
-    double standard_error() const { return d2() == 0 ? 0 : d_rel() * spread / d2() / 2; }
+    // Standard errors: of d over d; of d_rel, by the slope of d / |F|.
+    double spread_of_d() const { return d2() == 0 ? 0 : spread / d2() / 2; }
+    double standard_error() const { return d_rel() * spread_of_d() * (1 + d_rel() * d_rel()); }
 };
 
 // Sums over pixels.  A pixel's term T is the mean variance of its channels.  T varies by
@@ -114,7 +117,10 @@ using Judge = std::function<std::string(const Film&, const ImageError&)>;
 inline std::string doubt_of(const Film& film, const ImageError& e, const Judge& judge) {
     if (e.norm == 0) return "no light was met";
     const std::string why = judge && e.d2() >= 0 ? judge(film, e) : "";
-    return why.empty() && e.standard_error() > e.d_rel() / 4 ? "it hangs on few pixels" : why;
+    if (!why.empty()) return why;
+    if (e.spread_of_d() > 0.25) return "it hangs on few pixels";
+    const double d_rel = e.d_rel();
+    return e.spread_of_d() * (1 + d_rel * d_rel) > 0.25 ? "the picture is mostly noise" : "";
 }
 
 // The rule of --error: stop once the estimate, with another pixel like the worst and half its

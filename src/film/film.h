@@ -220,7 +220,7 @@ inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, c
 
 // ---- Replications where noise is ----------------------------------------------------------------
 
-// The most of a pixel, and the factor of the rule below; by `make calibration`.
+// The most of a pixel, and the factor of the rule below; see reference/replications.md.
 struct Allocation {
     double factor = 3.5;
     uint32_t most = 32;

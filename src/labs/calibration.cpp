@@ -111,8 +111,8 @@ struct Job {
 };
 
 const std::vector<std::string> counts = {"--spp 16", "--spp 32", "--spp 64", "--spp 256"},
-                               errors = {"--error 10% --time 20", "--error 5% --time 20",
-                                         "--error 3% --time 20", "--error 1% --time 20"},
+                               errors = {"--error 10% --time 10", "--error 5% --time 10",
+                                         "--error 3% --time 10", "--error 1% --time 10"},
                                more = {"--spp 1024", "--spp 4096"};  // 64 times 16, 64
 const std::string one_set = "--spp 64 --sets 1";
 
@@ -272,7 +272,7 @@ const Measure measures[] = {
              share(s.more, [](const Run& r) { return verdict(r, r.stated) == Verdict::right; }));
      },
      ">= 80 %, hard"},
-    {"--error: reached within 20 s",
+    {"--error: reached within 10 s",
      [](const Sample& s) {
          return percent_of(double(those(s.asked, is_reached).size()) / double(s.asked.size()));
      },
@@ -373,7 +373,7 @@ const char* const purpose = R"(# Is the error that is stated the true one?
 `build/penumbra --size 64x32` on every scene of four sets: *ordinary* are scenes/ except extremes, and
 scenes/calibration/ordinary; *hard* extremes and scenes/calibration/hard; *blind* scenes/calibration/blind, which were
 written by someone who had not seen the rule.  %.0f seeds x 16, 32, 64 and 256 samples; %.0f seeds x `--error` 10 %%, 5 %%,
-3 %% and 1 %%, with `--time 20`; hard scenes also 1024 samples and 4096 (%.0f seeds).
+3 %% and 1 %%, with `--time 10`; hard scenes also 1024 samples and 4096 (%.0f seeds).
 
 The truth is an image of %.0f samples a pixel, of ordinary scenes a quarter of that, by another seed.  The true d_rel of a run
 is by `build/compare`, in squares less what the reference states of its own error by the spread of replications.  Where that

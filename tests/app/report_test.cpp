@@ -12,9 +12,10 @@ namespace {
 Run run_of(double d_rel, double standard_error) {
     Run run;
     run.spp = 64, run.seconds = 8, run.rays = 16000000, run.sets = 2.5;
-    run.error.norm = 2;
     run.error.square.fill(std::pow(2 * d_rel, 2));
-    run.error.spread = d_rel > 0 ? standard_error * 2 * run.error.d2() / d_rel : 0;
+    const double d2 = run.error.d2();
+    run.error.norm = std::sqrt(4 + d2);
+    run.error.spread = d_rel > 0 ? standard_error * 2 * d2 / d_rel / (1 + d_rel * d_rel) : 0;
     run.stopped_by = "samples";
     return run;
 }
@@ -141,28 +142,25 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     Run run;
     run.spp = 64.5, run.seconds = 2, run.cpu_seconds = 3.5, run.rays = 4000000, run.sets = 2.75;
     run.error.mean = {2, 3, 4};
-    run.error.square = {4, 8, 12};  // of two pixels
-    run.error.norm = 4, run.error.spread = 2;
+    run.error.square = {4, 8, 12};             // of two pixels
+    run.error.norm = 4, run.error.spread = 2;  // |F|^2 = 8
     run.exponent_of_cost = 1.5, run.bias = "consistent", run.stopped_by = "time";
     std::string text = json_of(run, {2, 1});
     const size_t peak = text.find("  \"peak_memory_bytes\": ");
     REQUIRE(peak != text.npos);
     const double bytes = std::strtod(text.c_str() + peak + 23, nullptr);
     text.resize(peak);
-    auto number = [](double x) { return json::number(x); };
-    const double d_rel = std::sqrt(8) / 4;
-    CHECK(text ==
-          std::string("{\n  \"precision\": ") + (sizeof(real) == 4 ? "\"float\"" : "\"double\"") +
-              ",\n  \"interrupted\": false,\n  \"samples_per_pixel\": 64.5,\n"
-              "  \"seconds\": 2,\n  \"cpu_seconds\": 3.5,\n  \"rays\": 4000000,\n"
-              "  \"mrays_per_second\": 2,\n  \"mean_radiance\": [2, 3, 4],\n"
-              "  \"variance_of_mean\": [2, 4, 6],\n  \"sets_per_pixel\": 2.75,\n"
-              "  \"d_rel\": " +
-              number(d_rel) + ",\n  \"d_rel_standard_error\": " + number(d_rel * 2 / 8 / 2) +
-              ",\n  \"d_rel_by_spread\": " + number(d_rel) +
-              ",\n  \"d_rel_reason\": null,\n  \"seconds_to_half_d_rel\": " +
-              number(2 * std::pow(2, 1.5)) +
-              ",\n  \"bias\": \"consistent\",\n  \"stopped_by\": \"time\",\n");
+    CHECK(text == std::string("{\n  \"precision\": ") +
+                      (sizeof(real) == 4 ? "\"float\"" : "\"double\"") +
+                      ",\n  \"interrupted\": false,\n  \"samples_per_pixel\": 64.5,\n"
+                      "  \"seconds\": 2,\n  \"cpu_seconds\": 3.5,\n  \"rays\": 4000000,\n"
+                      "  \"mrays_per_second\": 2,\n  \"mean_radiance\": [2, 3, 4],\n"
+                      "  \"variance_of_mean\": [2, 4, 6],\n  \"sets_per_pixel\": 2.75,\n"
+                      "  \"d_rel\": 1,\n  \"d_rel_standard_error\": 0.25,\n"
+                      "  \"d_rel_by_spread\": 1,\n  \"d_rel_reason\": null,\n"
+                      "  \"seconds_to_half_d_rel\": " +
+                      json::number(2 * std::pow(2, 1.5)) +
+                      ",\n  \"bias\": \"consistent\",\n  \"stopped_by\": \"time\",\n");
     // What this process takes is more than a megabyte, and is told in bytes.
     CHECK(bytes > 2e6);
     const std::vector<char> more(size_t(bytes) + (64 << 20), 1);

@@ -36,17 +36,22 @@ TEST_CASE("d^2 of an image, by hand") {
     CHECK(e.d2() == doctest::Approx(5 * red / 3).epsilon(1e-15).scale(0));
     // Values 3, 3, 7.
     CHECK(e.norm == doctest::Approx(std::sqrt((5 * (9 + 9 + 49) + 3) / 9.0)).epsilon(1e-15));
-    CHECK(e.d_rel() == doctest::Approx(std::sqrt(e.d2()) / e.norm).epsilon(1e-15).scale(0));
+    // E |f|^2 = |F|^2 + d^2.
+    const double F = std::sqrt((5 * (9 + 9 + 49) + 3) / 9.0 - 5 * red / 3);
+    CHECK(e.norm_of_truth() == doctest::Approx(F).epsilon(1e-15));
+    CHECK(e.d_rel() == doctest::Approx(std::sqrt(e.d2()) / F).epsilon(1e-15).scale(0));
     const double first = 4 / 3.0 * 5 / 3, second = 7 / 3.0 * 5 / 3;
     CHECK(e.greatest == doctest::Approx(second / 3).epsilon(1e-15).scale(0));
     // E[T]^2 = (K - 1) / (K + 1) E[T^2]: a half.
     const double spread = std::sqrt((first * first + second * second) / 2) / 3;
     CHECK(e.spread == doctest::Approx(spread).epsilon(1e-15).scale(0));
-    // d(sqrt(s)) = ds / (2 sqrt(s)).
+    // Of sqrt(s / (N - s)) the slope is N / (2 sqrt(s) (N - s)^3/2).
     CHECK(e.standard_error() ==
-          doctest::Approx(e.spread / (2 * std::sqrt(e.d2()) * e.norm)).epsilon(1e-15).scale(0));
+          doctest::Approx(e.spread * e.norm * e.norm / (2 * std::sqrt(e.d2()) * F * F * F))
+              .epsilon(1e-14)
+              .scale(0));
     CHECK(e.d_rel_and_unseen() ==
-          doctest::Approx(std::sqrt(e.d2() + e.greatest) / e.norm).epsilon(1e-15).scale(0));
+          doctest::Approx(std::sqrt(e.d2() + e.greatest) / F).epsilon(1e-15).scale(0));
 }
 
 TEST_CASE("the error of a film against brute force") {
@@ -115,7 +120,8 @@ TEST_CASE("an error that is not known is no number; that of an image without noi
             CHECK(e.norm == double(level));
             CHECK((sets == 1 ? std::isnan(e.d2()) : e.d2() == 0));
             CHECK((sets == 1 || level == 0 ? std::isnan(e.d_rel()) : e.d_rel() == 0));
-            CHECK((sets == 1 ? std::isnan(e.standard_error()) : e.standard_error() == 0));
+            CHECK((sets == 1 || level == 0 ? std::isnan(e.standard_error())
+                                           : e.standard_error() == 0));
             CHECK(is_small_enough(e, 0.01) == (sets != 1 && level > 0));
         }
     CHECK(ErrorCourse().cost_of(HUGE_VAL) == HUGE_VAL);
@@ -255,9 +261,9 @@ TEST_CASE(
     "the rule of --error: raised by half its standard error and another pixel like the worst") {
     auto error = [](double d_rel, double standard_error) {
         ImageError e;
-        e.norm = 2;
-        e.square.fill(std::pow(d_rel * e.norm, 2));
-        e.spread = d_rel > 0 ? standard_error * 2 * e.d2() / d_rel : 0;
+        e.square.fill(std::pow(d_rel * 2, 2));
+        e.norm = std::sqrt(4 + e.d2());
+        e.spread = d_rel > 0 ? standard_error * 2 * e.d2() / d_rel / (1 + d_rel * d_rel) : 0;
         e.greatest = 0;
         REQUIRE(e.d_rel() == doctest::Approx(d_rel));
         REQUIRE(e.standard_error() == doctest::Approx(standard_error));
@@ -350,7 +356,20 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     CHECK(none.course().is_due(16));
 }
 
-TEST_CASE("an error is in doubt: black, by few pixels, or as a judge has it") {
+TEST_CASE("d_rel is over the truth, not over an image that is mostly noise") {
+    // F = 3, and noise of variance 400 / 12 in one sample.  Of a pixel f^2 and its variance have a
+    // deviation of about 24 each.
+    const ImageError e =
+        error_of(filled({100, 100}, 2, 1, random_radiance(11, [](const PixelSample&, vec2 u) {
+                            const real L = 3 + 20 * (u.x - real(0.5));
+                            return rgb{L, L, L};
+                        })));
+    CHECK(std::abs(e.norm_of_truth() * e.norm_of_truth() - 9) < 5 * 34 / 100.0);
+    CHECK(e.norm > 4.5);
+    CHECK(e.d_rel() == doctest::Approx(std::sqrt(400.0 / 12 / 2) / 3).epsilon(0.1));
+}
+
+TEST_CASE("an error is in doubt: black, by few pixels, lost in noise, or as a judge has it") {
     const Judge silent = [](const Film&, const ImageError&) { return std::string(); };
     const Judge doubtful = [](const Film&, const ImageError&) { return std::string("rare light"); };
     auto error = [](double d2, double spread, double norm) {
@@ -359,14 +378,20 @@ TEST_CASE("an error is in doubt: black, by few pixels, or as a judge has it") {
         return e;
     };
     const Film film;
-    CHECK(doubt_of(film, error(4, 0, 3), {}).empty());
-    CHECK(doubt_of(film, error(0, 0, 3), silent).empty());
+    CHECK(doubt_of(film, error(4, 0, 30), {}).empty());
+    CHECK(doubt_of(film, error(0, 0, 30), silent).empty());
     CHECK(doubt_of(film, error(0, 0, 0), doubtful) == "no light was met");
-    CHECK(doubt_of(film, error(4, 0, 3), doubtful) == "rare light");
-    // d_rel +- a quarter of it: d^2 +- half of it.
-    CHECK(doubt_of(film, error(4, 1.99, 3), silent).empty());
+    CHECK(doubt_of(film, error(4, 0, 30), doubtful) == "rare light");
+    // d +- a quarter of it: d^2 +- half of it.
+    CHECK(doubt_of(film, error(4, 1.97, 30), silent).empty());
+    CHECK(doubt_of(film, error(4, 2.01, 30), silent) == "it hangs on few pixels");
     CHECK(doubt_of(film, error(4, 2.01, 3), silent) == "it hangs on few pixels");
-    CHECK(doubt_of(film, error(4, 2.01, 3), doubtful) == "rare light");
+    CHECK(doubt_of(film, error(4, 2.01, 30), doubtful) == "rare light");
+    // |F|^2 = 9 - 4, and so d_rel +- 9 / 5 times as much; or nothing is left of the picture.
+    CHECK(doubt_of(film, error(4, 1.1, 3), silent).empty());
+    CHECK(doubt_of(film, error(4, 1.12, 3), silent) == "the picture is mostly noise");
+    CHECK(doubt_of(film, error(4, 0.01, 1.9), silent) == "the picture is mostly noise");
+    CHECK(doubt_of(film, error(4, 0.01, 1.9), doubtful) == "rare light");
     // Of one replication there is none to doubt.
     CHECK(doubt_of(film, error(NAN, NAN, 3), doubtful).empty());
 }

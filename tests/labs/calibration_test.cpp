@@ -86,8 +86,8 @@ TEST_CASE("shares are of the runs whose truth is known") {
 }
 
 TEST_CASE("what --error asked for, and whether it was reached") {
-    CHECK(asked_in("--error 3% --time 20") == doctest::Approx(.03));
-    CHECK(asked_in("--time 20 --error 10%") == doctest::Approx(.1));
+    CHECK(asked_in("--error 3% --time 10") == doctest::Approx(.03));
+    CHECK(asked_in("--time 10 --error 10%") == doctest::Approx(.1));
     CHECK(asked_in("--spp 16") == 0);
     Run r = run(.5, .5);
     CHECK_FALSE(is_reached(r));

@@ -96,8 +96,9 @@ TEST_CASE("seeds are independent pictures: their mean by samples, and the varian
             for (const auto& p : images[k].pixels)
                 for (float c : p) norm2 += double(c) * double(c) / 252;
             const double w = k == 2 ? 0.75 : 0.125, d_rel = folder.number("one", "d_rel");
-            const double its = d_rel * d_rel * norm2,
-                         err = 2 * its * folder.number("one", "d_rel_standard_error") / d_rel;
+            const double all = 1 + d_rel * d_rel;  // of |f|^2 over |F|^2
+            const double its = d_rel * d_rel * norm2 / all,
+                         err = 2 * its * folder.number("one", "d_rel_standard_error") / d_rel / all;
             d2 += w * w * its, fourth += std::pow(w, 4) * err * err;
             sum += folder.number("one", "samples_per_pixel");
         }
@@ -114,10 +115,11 @@ TEST_CASE("seeds are independent pictures: their mean by samples, and the varian
                 norm2 += its * its / 252;
             }
         CHECK(worst < 1e-6);  // of floats
-        const double d_rel = std::sqrt(d2 / norm2);
+        const double d_rel = std::sqrt(d2 / (norm2 - d2));
         CHECK(folder.number("all", "d_rel") == doctest::Approx(d_rel).epsilon(1e-5));
         CHECK(folder.number("all", "d_rel_standard_error") ==
-              doctest::Approx(d_rel * std::sqrt(fourth) / d2 / 2).epsilon(1e-5));
+              doctest::Approx(d_rel * (1 + d_rel * d_rel) * std::sqrt(fourth) / d2 / 2)
+                  .epsilon(1e-5));
     }
 }
 
