@@ -240,7 +240,7 @@ struct Measure {
 
 const Measure measures[] = {
     {"runs", [](const Sample& s) { return text("%zu", s.plain.size()); }, ""},
-    {"... whose truth is not known well enough: left out below",
+    {"runs whose truth is not known well enough; left out below",
      [](const Sample& s) { return text("%zu", s.plain.size() - those(s.plain, is_known).size()); },
      ""},
     {"understated by more than 2 by the spread of replications alone",
@@ -250,7 +250,7 @@ const Measure measures[] = {
      },
      ""},
     {"understated by more than 2, and no hint",
-     [](const Sample& s) { return percent_of(share(s.plain, is_understated)); }, "<= 1 %"},
+     [](const Sample& s) { return percent_of(share(s.plain, is_understated)); }, "≤ 1 %"},
     {"a hint that the error is not known",
      [](const Sample& s) { return percent_of(share(s.plain, is_hinted)); }, ""},
     {"a hint, though the spread was right within 2",
@@ -259,35 +259,35 @@ const Measure measures[] = {
              return is_hinted(r) && verdict(r, r.by_spread) == Verdict::right;
          }));
      },
-     "<= 2 %, ordinary"},
+     "≤ 2 %, ordinary"},
     {"stated over the spread's statement, median",
      [](const Sample& s) {
          return number_of(median(each(those(s.plain, std::not_fn(is_hinted)),
                                       [](const Run& r) { return r.stated / r.by_spread; })));
      },
-     "<= 1.05, ordinary"},
+     "≤ 1.05, ordinary"},
     {"64 times the samples: an error is stated, and right within 2",
      [](const Sample& s) {
          return percent_of(
              share(s.more, [](const Run& r) { return verdict(r, r.stated) == Verdict::right; }));
      },
-     ">= 80 %, hard"},
+     "≥ 80 %, hard"},
     {"--error: reached within 10 s",
      [](const Sample& s) {
          return percent_of(double(those(s.asked, is_reached).size()) / double(s.asked.size()));
      },
      ""},
     {"--error: true over asked, median",
-     [](const Sample& s) { return number_of(median(over_asked(s.asked))); }, "<= 1"},
+     [](const Sample& s) { return number_of(median(over_asked(s.asked))); }, "≤ 1"},
     {"--error: true over asked, 95 %",
-     [](const Sample& s) { return number_of(quantile(over_asked(s.asked), 0.95)); }, "<= 1.25"},
+     [](const Sample& s) { return number_of(quantile(over_asked(s.asked), 0.95)); }, "≤ 1.25"},
     {"--error: samples over those of the program before",
      [](const Sample& s) {
          return number_of(
              geometric_mean(over_twins(those(s.asked, is_reached), those(s.before, is_reached),
                                        [](const Run& r) { return r.samples; })));
      },
-     "<= 1.10, ordinary"},
+     "≤ 1.10, ordinary"},
     {"64 samples: cost of one replication over that of those that know their error",
      [](const Sample& s) { return number_of(cost_over(s.all, one_set, counts[2])); }, ""},
 };
@@ -306,6 +306,7 @@ void tell_table(Report& report, const Results& all) {
     auto row = [&](const std::string& what, auto cell, const char* aim) {
         std::vector<std::string> cells = {what};
         for (const Sample& s : samples) cells.push_back(s.plain.empty() ? "" : cell(s));
+        if (std::all_of(cells.begin() + 1, cells.end(), [](auto& c) { return c.empty(); })) return;
         cells.push_back(aim);
         report.row(cells);
     };
@@ -341,10 +342,10 @@ void tell_table(Report& report, const Results& all) {
 std::string pair_of(const Runs& runs, const std::string& words) {
     const Runs some = those(runs, [&](const Run& r) { return r.words == words; });
     const Runs stated = those(some, std::not_fn(is_hinted));
-    auto digits = [](double x) { return text("%.2g", 100 * x); };
+    auto digits = [](double x) { return std::isnan(x) ? "–" : text("%.2g", 100 * x); };
     const std::string first =
         stated.empty() ? "?" : digits(median(each(stated, [](const Run& r) { return r.stated; })));
-    return text("%s / %s", first, digits(median(each(some, true_d)))) +
+    return text("%s / %s", first, digits(median(each(those(some, is_known), true_d)))) +
            (stated.size() < some.size() ? text(" (%zu ?)", some.size() - stated.size()) : "");
 }
 
@@ -372,13 +373,13 @@ const char* const purpose = R"(# Is the error that is stated the true one?
 
 `build/penumbra --size 64x32` on every scene of four sets: *ordinary* are scenes/ except extremes, and
 scenes/calibration/ordinary; *hard* extremes and scenes/calibration/hard; *blind* scenes/calibration/blind, which were
-written by someone who had not seen the rule.  %.0f seeds x 16, 32, 64 and 256 samples; %.0f seeds x `--error` 10 %%, 5 %%,
-3 %% and 1 %%, with `--time 10`; hard scenes also 1024 samples and 4096, by as many seeds.
+written by someone who had not seen the rule.  Seeds: %.0f for 16, 32, 64 and 256 samples, and for 1024 in hard scenes; %.0f
+for `--error` 10 %%, 5 %%, 3 %% and 1 %% with `--time 10`, and for 4096 samples in hard scenes.
 
 The truth is an image of %.0f samples a pixel, of ordinary scenes a quarter of that, by another seed.  The true d_rel of a run
 is by `build/compare`, in squares less what the reference states of its own error by the spread of replications.  Where that
 is more than .8 of the distance the truth is not known, and the run is left out.  A **hint** is a d_rel that is not stated,
-but said not to be known.  Percentages are of runs.)";
+but said not to be known.  Percentages are of runs.  *The program before* is the one that `--baseline` names.)";
 
 int run(Effort plan, int argc, char** argv) {
     Report report(report_folder(plan.quick), "calibration");
@@ -399,7 +400,9 @@ int run(Effort plan, int argc, char** argv) {
     all.runs = all_runs(plan, all_jobs(plan, all.studies));
     report.say(text(purpose, double(plan.seeds), double(plan.error_seeds), double(plan.truth)));
     tell_table(report, all);
-    report.say("## Every scene\n\nMedians over seeds; ?: the error was said not to be known.");
+    report.say(
+        "## Every scene\n\nMedians over seeds; ?: the error was said not to be known; –: the truth "
+        "is not.");
     tell_scenes(report, all);
     report.say(made_by(argc, argv));
     return report.finish();
