@@ -46,7 +46,7 @@ TEST_CASE("shadow and voronoi: one page of help; out/NAME-PROGRAM.png and .pfm; 
         for (std::string text; std::getline(lines, text);) CHECK(text.size() <= 80);
 
         const Outcome o = expect_success(
-            folder, programs[k], split("a.scene --sets 3 --spp 10 --size 34x18 --stats s.json"));
+            folder, programs[k], split("a.scene --sets 3 --spp 10 --size 136x72 --stats s.json"));
         const std::string stem = "out/a-" + programs[k];
         CHECK(o.err.ends_with("\nwrote " + stem + ".png, " + stem + ".pfm, s.json\n"));
         CHECK(contains(o.err, "a.scene: 12 samples per pixel, "));
