@@ -64,7 +64,7 @@ private:
 struct Run : Spent {
     double spp = 0;  // samples a pixel, in the mean; 0: some pixel has none
     bool interrupted = false;
-    std::string stopped_by;  // "samples", "time", "error" or "interrupt"
+    std::string stopped_by;  // "samples", "time", "error", "error not known" or "interrupt"
     ImageError error;
     std::string doubt;              // why that may be far too small, or ""
     double sets = 1;                // replications a pixel, in the mean

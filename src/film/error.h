@@ -22,9 +22,10 @@ struct ImageError {
     double d_rel_and_unseen() const {
         return d_rel() * std::sqrt(d2() > 0 ? 1 + greatest / d2() : 1);
     }
-    // Standard errors: of d over d; of d_rel, by the slope of d / |F|.
+    // Standard errors: of d over d; of d_rel over d_rel, by the slope of d / |F|; of d_rel.
     double spread_of_d() const { return d2() == 0 ? 0 : spread / d2() / 2; }
-    double standard_error() const { return d_rel() * spread_of_d() * (1 + d_rel() * d_rel()); }
+    double spread_of_d_rel() const { return spread_of_d() * (1 + d_rel() * d_rel()); }
+    double standard_error() const { return d_rel() * spread_of_d_rel(); }
 };
 
 // Sums over pixels.  A pixel's term T is the mean variance of its channels.  T varies by
@@ -119,8 +120,7 @@ inline std::string doubt_of(const Film& film, const ImageError& e, const Judge& 
     const std::string why = judge && e.d2() >= 0 ? judge(film, e) : "";
     if (!why.empty()) return why;
     if (e.spread_of_d() > 0.25) return "it hangs on few pixels";
-    const double d_rel = e.d_rel();
-    return e.spread_of_d() * (1 + d_rel * d_rel) > 0.25 ? "the picture is mostly noise" : "";
+    return e.spread_of_d_rel() > 0.25 ? "the picture is mostly noise" : "";
 }
 
 // The rule of --error: stop once the estimate, with another pixel like the worst and half its

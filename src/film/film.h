@@ -268,8 +268,8 @@ inline double bytes_of(Size size, double sets) {
 }
 
 // Chooses sets by the pilot, which all blocks have, and 8 where it is known that few samples meet
-// what is bright (`noisy`); fewer of them where they do not fit into so
-// many bytes.  Returns the most that a pixel may have.
+// what is bright (`noisy`); fewer of them where they do not fit into so many bytes.  Returns the
+// most that a pixel may have.
 inline uint32_t choose_sets(Film& f, double memory, const std::vector<size_t>& noisy = {}) {
     Allocation by;
     for (;; --by.most) {
