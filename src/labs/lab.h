@@ -9,6 +9,8 @@
 #include <ctime>
 #include <filesystem>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -74,6 +76,22 @@ inline Image part_of(const Image& image, int left, int top, Size size) {
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) part.at(x, y) = image.at(left + x, top + y);
     return part;
+}
+
+// Between blanks.
+inline std::vector<std::string> words_in(const std::string& line) {
+    std::istringstream in(line);
+    return {std::istream_iterator<std::string>(in), {}};
+}
+
+// But cornell36obj, which is cornell36 again.
+inline std::vector<std::string> scenes_in(const std::string& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".scene" && entry.path().stem() != "cornell36obj")
+            names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 inline unsigned all_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
@@ -163,11 +181,12 @@ inline std::string made_by(const std::string& command) {
                 sizeof(real) == sizeof(double) ? "double" : "float", compiler);
 }
 
-inline std::string made_by(int argc, char** argv) {
+inline std::string command_of(int argc, char** argv) {
     std::string command = argv[0];
     for (int k = 1; k < argc; ++k) command += std::string(" ") + argv[k];
-    return made_by(command);
+    return command;
 }
+inline std::string made_by(int argc, char** argv) { return made_by(command_of(argc, argv)); }
 
 // "17 of 96, 40 s left: cosine + NEE", on stderr: drawn over itself on a terminal, else a line
 // each.
@@ -209,6 +228,21 @@ inline std::vector<double> stats(const std::string& json, const std::string& key
     std::istringstream words(line);
     for (std::string word; words >> word;)
         numbers.push_back(word == "null" ? NAN : parse_number(word, HUGE_VAL));
+    return numbers;
+}
+
+// All that stand alone, by their names; NaN: null.
+inline std::map<std::string, double> numbers_of(const std::string& json) {
+    std::map<std::string, double> numbers;
+    std::istringstream in(json);
+    for (std::string line; std::getline(in, line);) {
+        char name[64], value[64];
+        if (std::sscanf(line.c_str(), " \"%63[^\"]\": %63[^,[\"]", name, value) != 2) continue;
+        char* end = nullptr;
+        const double x = std::strtod(value, &end);
+        if (*end == 0) numbers[name] = x;
+        if (std::string_view(value) == "null") numbers[name] = NAN;
+    }
     return numbers;
 }
 
@@ -255,6 +289,12 @@ struct Lab {
 // Of every experiment.
 inline Flag quick_flag(bool& quick) {
     return {"--quick", "", "fewer runs, into out/", [&](const std::string&) { quick = true; }};
+}
+
+// Of every experiment on a grid.
+inline Flag kept_flag(bool& kept) {
+    return {"--kept", "", "tables from rows of former runs, without a render",
+            [&](const std::string&) { kept = true; }};
 }
 
 inline void print_help(const Lab& lab) {

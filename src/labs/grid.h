@@ -1,0 +1,195 @@
+// labs/grid.h  5  renders of scenes by settings: how far each is from the truth, and what it took
+//
+//   Grid grid("efficiency", "build/penumbra");
+//   const Rows rows = grid.run({{"cornell", "scenes/cornell.scene --size 64x32"}},
+//                              {{"the default", ""}, {"NEE", "--light nee"}}, {16, 64}, 8);
+//   table(rows, of_setting, of_count, [](const Rows& r) { return told(d_rel(r), "%.3f"); });
+//
+// Rows are kept as text in out/NAME.rows, references in out/truth/: a study that was cut short goes
+// on, and its tables are made again without a render.
+#pragma once
+#include <mutex>
+
+#include "base/rng.h"
+#include "labs/rows.h"
+
+// ---- What is rendered ---------------------------------------------------------------------------
+
+// The words that name a scene and its size, and the samples a pixel of its reference.
+struct Subject {
+    std::string name, words;
+    uint64_t truth = 16384;
+};
+
+struct Setting {
+    std::string name, words;
+    std::string program = {};  // with its first words; "": the grid's
+};
+
+// A reference of many samples, by the default with 16 replications: two would not know the error
+// where one pixel has all of it.
+struct Truth {
+    Image image;
+    double own = 0;                    // d_rel, by the spread of replications
+    std::map<std::string, double> of;  // its statistics
+};
+
+inline std::string fingerprint(const std::string& bytes) {
+    uint64_t h = bytes.size();
+    for (unsigned char c : bytes) h = hash(h, c);
+    return text("%012.0f", double(h >> 25));
+}
+
+// Of all numbers, three a pixel (Khodulev 1996, ch. 5).
+inline double d_rel(const Image& truth, const Image& image) {
+    double square = 0;
+    for (const auto& pixel : truth.pixels)
+        for (float x : pixel) square += double(x) * double(x);
+    return std::sqrt(mse(truth, image) * 3 * double(truth.pixels.size()) / square);
+}
+
+inline double mean_of(const Image& image) {
+    double sum = 0;
+    for (const auto& pixel : image.pixels)
+        for (float x : pixel) sum += double(x);
+    return sum / (3 * double(image.pixels.size()));
+}
+
+// ---- Running ------------------------------------------------------------------------------------
+
+class Grid {
+public:
+    // Renders by `program`, unless a setting has its own; as many at a time as there are cores,
+    // each by one thread. Kept: rows by whatever program there are, and nothing is rendered.
+    Grid(std::string name, std::string program, bool kept = false)
+        : name_(std::move(name)), program_(std::move(program)), is_kept_(kept) {
+        std::filesystem::create_directories("out/truth");
+        std::ifstream in(file());
+        for (std::string line; std::getline(in, line);)
+            if (const auto row = row_of(line))
+                done_[{key(row->first), is_kept_ ? "" : row->second}] = row->first;
+    }
+
+    // More numbers of an image.
+    std::function<void(Row&, const Image&, const Truth&)> measure;
+
+    // Seed by seed, so that of a study that is cut short fewer seeds of everything are there;
+    // settings take turns, so that load hits all alike.
+    Rows run(const std::vector<Subject>& subjects, const std::vector<Setting>& settings,
+             const std::vector<uint64_t>& counts, uint64_t seeds) {
+        std::vector<Job> jobs, missing;
+        for (const Subject& s : subjects)
+            for (const Setting& setting : settings)
+                for (uint64_t count : counts)
+                    for (uint64_t seed = 1; seed <= seeds; ++seed)
+                        jobs.push_back(job(s, setting, count, seed));
+        for (uint64_t seed = 1; seed <= seeds; ++seed)
+            for (size_t k = 0; k < jobs.size(); ++k) {
+                // Of each scene another setting begins.
+                const size_t turn = (k + (seed - 1) * counts.size() * seeds) % jobs.size();
+                if (jobs[turn].row.seed == seed && !done_.count(jobs[turn].key))
+                    missing.push_back(jobs[turn]);
+            }
+        if (!is_kept_) render_all(missing);
+        Rows rows;
+        for (const Job& j : jobs)
+            if (const auto at = done_.find(j.key); at != done_.end()) rows.push_back(at->second);
+        return rows;
+    }
+
+    // Rendered once, by the grid's program.
+    const Truth& truth(const Subject& s) {
+        const std::string print = print_of_truth(s);
+        if (const auto at = truths_.find(print); at != truths_.end()) return at->second;
+        std::string stem = s.name + "-" + print;
+        std::replace(stem.begin(), stem.end(), '/', '-');
+        stem = "out/truth/" + stem;
+        if (!std::filesystem::exists(stem + ".pfm"))
+            render(program_ + " " + truth_words(s), all_cores(), stem);
+        const std::map<std::string, double> of = numbers_of(read_file(stem + ".json"));
+        const auto own = of.find("d_rel_by_spread");
+        return truths_[print] = {read_pfm(stem + ".pfm"),
+                                 own == of.end() ? of.at("d_rel") : own->second, of};
+    }
+
+private:
+    struct Job {
+        Row row;
+        const Subject* subject;
+        std::string command;  // but for the files that it writes
+        std::pair<std::string, std::string> key;
+    };
+    std::string name_, program_;
+    bool is_kept_;
+    std::map<std::pair<std::string, std::string>, Row> done_;  // by place and fingerprint
+    std::map<std::string, Truth> truths_;
+    std::map<std::string, std::string> prints_;  // of programs
+
+    std::string file() const { return "out/" + name_ + ".rows"; }
+    static std::string key(const Row& r) {
+        return text("%s\t%s\t%.0f\t%.0f", r.scene, r.setting, double(r.count), double(r.seed));
+    }
+    static std::string truth_words(const Subject& s) {
+        return text("%s --spp %.0f --sets 16 --seed 1000000", s.words, double(s.truth));
+    }
+    static std::string print_of_truth(const Subject& s) {
+        return fingerprint(truth_words(s) + read_file(words_in(s.words)[0]));
+    }
+
+    Job job(const Subject& s, const Setting& setting, uint64_t count, uint64_t seed) {
+        const Row row{s.name, setting.name, count, seed};
+        if (is_kept_) return {row, &s, "", {key(row), ""}};
+        const std::string program = setting.program.empty() ? program_ : setting.program,
+                          file = words_in(program)[0];
+        if (prints_[file].empty()) prints_[file] = fingerprint(read_file(file));
+        const std::string command =
+            text("%s %s %s%s --seed %.0f", program, s.words, setting.words,
+                 count > 0 ? text(" --spp %.0f", double(count)) : "", double(seed));
+        return {
+            row, &s, command, {key(row), fingerprint(prints_[file] + command + print_of_truth(s))}};
+    }
+
+    void render_all(const std::vector<Job>& jobs) {
+        std::ofstream out(file(), std::ios::app);
+        for (const Job& j : jobs) truth(*j.subject);
+        Steps steps(jobs.size());
+        std::mutex lock;
+        in_parallel(
+            jobs.size(), all_cores(),
+            [&](size_t k) {
+                const Row row = rendered(jobs[k], text("out/%s-%d-%zu", name_, int(::getpid()), k));
+                const std::lock_guard guard(lock);
+                steps.next(row.scene + ", " + row.setting);
+                done_[jobs[k].key] = row;
+                out << line_of(row, jobs[k].key.second) << std::flush;
+            },
+            [](double) {});
+    }
+
+    Row rendered(const Job& job, const std::string& stem) const {
+        render(job.command, 1, stem);
+        const std::string json = read_file(stem + ".json");
+        const Image image = read_pfm(stem + ".pfm");
+        for (const char* suffix : {".pfm", ".json"}) std::filesystem::remove(stem + suffix);
+        const Truth& f = truths_.at(print_of_truth(*job.subject));
+        Row row = job.row;
+        row.of = numbers_of(json);
+        const double off = row.of["off"] = d_rel(f.image, image);
+        row.of["own"] = f.own;
+        row.of["d2"] = off * off - f.own * f.own;
+        row.of["mean"] = mean_of(image);
+        row.of["error"] = json.find("\"stopped_by\": \"error\"") != json.npos;
+        if (measure) measure(row, image, f);
+        return row;
+    }
+
+    // Writes STEM.pfm and STEM.json, which have these names when they are whole.
+    static void render(const std::string& command, unsigned threads, const std::string& stem) {
+        std::vector<std::string> words = words_in(command + text(" --threads %u", threads));
+        words.insert(words.end(),
+                     {"--quiet", "-o", stem + ".new.pfm", "--stats", stem + ".new.json"});
+        execute(words);
+        std::filesystem::rename(stem + ".new.json", stem + ".json");
+        std::filesystem::rename(stem + ".new.pfm", stem + ".pfm");
+    }
+};

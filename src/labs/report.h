@@ -1,0 +1,106 @@
+// labs/report.h  3  a report: prose in Markdown, filled in with what was measured
+#pragma once
+#include <map>
+#include <set>
+
+#include "labs/lab.h"
+
+// A table in Markdown.
+inline std::string table(const std::vector<std::string>& head,
+                         const std::vector<std::vector<std::string>>& lines) {
+    auto line_of = [](const std::vector<std::string>& cells) {
+        std::string line = "|";
+        for (const std::string& cell : cells) line += cell.empty() ? " |" : " " + cell + " |";
+        return line + "\n";
+    };
+    std::string words = line_of(head) + "|";
+    for (size_t i = 0; i < head.size(); ++i) words += "---|";
+    words += "\n";
+    for (const auto& line : lines) words += line_of(line);
+    words.pop_back();  // the prose has a line's end
+    return words;
+}
+
+// Numbers for who doubts: one head, and lines.
+inline std::string csv(const std::vector<std::string>& head,
+                       const std::vector<std::vector<std::string>>& lines) {
+    std::string words;
+    auto add = [&](const std::vector<std::string>& cells) {
+        for (size_t i = 0; i < cells.size(); ++i) {
+            const bool quotes = cells[i].find_first_of(",\"\n") != std::string::npos;
+            words += (i ? "," : "") + (quotes ? "\"" + cells[i] + "\"" : cells[i]);
+        }
+        words += "\n";
+    };
+    add(head);
+    for (const auto& line : lines) add(line);
+    return words;
+}
+
+// reference/NAME.md.in says {{word}} where a table, a number or a verdict goes, and
+// {{plot FILE The caption}} where a picture goes.
+class Page {
+public:
+    // Writes FOLDER/NAME.md, with pictures beside it and numbers in FOLDER/data/.
+    Page(const std::string& folder, const std::string& name)
+        : folder_(folder), name_(name), prose_(read_file("reference/" + name + ".md.in")) {
+        std::filesystem::create_directories(folder + "/data");
+        check_writable(file(name + ".md"));
+    }
+
+    void set(const std::string& word, const std::string& words) { words_[word] = words; }
+    void plot(const std::string& name, const Svg& svg) {
+        write_file(file(name + ".svg"), svg.file());
+        plots_.insert(name);
+    }
+    void data(const std::string& name, const std::string& numbers) {
+        write_file(file("data/" + name + ".csv"), numbers);
+    }
+    // The word's text is its verdict, and counts if it fails.
+    bool claim(const std::string& word, bool holds) {
+        set(word, verdict(holds));
+        return holds;
+    }
+    std::string verdict(bool holds) {
+        failures_ += !holds;
+        return holds ? "ok" : "**fails**";
+    }
+
+    // Writes the report and prints it; the exit status: 1 if a claim failed.
+    int finish() {
+        std::string out;
+        for (size_t at = 0;;) {
+            const size_t open = prose_.find("{{", at), close = prose_.find("}}", open);
+            out += prose_.substr(at, open - at);
+            if (open == prose_.npos) break;
+            out += filled(prose_.substr(open + 2, close - open - 2));
+            at = close + 2;
+        }
+        for (const auto& [word, words] : words_)
+            if (!used_.count(word)) throw UserError(name_ + ".md.in has no {{" + word + "}}");
+        write_file(file(name_ + ".md"), out);
+        std::fputs(out.c_str(), stdout);
+        std::fprintf(stderr, "wrote %s; %d claims failed\n", file(name_ + ".md").c_str(),
+                     failures_);
+        return failures_ > 0;
+    }
+
+    std::string file(const std::string& name) const { return folder_ + "/" + name; }
+
+private:
+    std::string folder_, name_, prose_;
+    std::map<std::string, std::string> words_;
+    std::set<std::string> plots_, used_;
+    int failures_ = 0;
+
+    std::string filled(const std::string& place) {
+        const std::vector<std::string> words = words_in(place);
+        if (words.size() > 2 && words[0] == "plot" && plots_.count(words[1]))
+            return "![" + place.substr(place.find(words[1]) + words[1].size() + 1) + "](" +
+                   words[1] + ".svg)";
+        const auto at = words_.find(place);
+        if (at == words_.end()) throw UserError(name_ + ".md.in: nothing fills {{" + place + "}}");
+        used_.insert(place);
+        return at->second;
+    }
+};

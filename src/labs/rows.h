@@ -1,0 +1,189 @@
+// labs/rows.h  4  numbers of many renders, and what follows: means with their errors, tables, plots
+#pragma once
+#include <map>
+#include <optional>
+
+#include "labs/report.h"
+
+// ---- A row --------------------------------------------------------------------------------------
+
+// One render: its place in the grid, and numbers of it: those of its statistics, and
+//     off    d_rel of image and reference
+//     own    d_rel that the reference states of itself
+//     d2     squared error over the reference's mean square: off^2 - own^2, for the two are
+//     independent mean   of all numbers of the image error  1 if --error ended it
+struct Row {
+    std::string scene, setting;
+    uint64_t count = 0, seed = 0;  // count: samples a pixel; 0: the setting says when to stop
+    std::map<std::string, double> of = {};
+
+    double operator[](const std::string& name) const {
+        const auto at = of.find(name);
+        return at == of.end() ? NAN : at->second;
+    }
+};
+using Rows = std::vector<Row>;
+
+// A line, with tabs between; numbers come back as they were.
+inline std::string line_of(const Row& r, const std::string& print) {
+    std::ostringstream line;
+    line.precision(17);
+    line << r.scene << '\t' << r.setting << '\t' << r.count << '\t' << r.seed << '\t' << print;
+    for (const auto& [name, x] : r.of) line << '\t' << name << '=' << x;
+    line << "\t.\n";
+    return line.str();
+}
+
+// The row and its fingerprint; nothing of a line that was cut short.
+inline std::optional<std::pair<Row, std::string>> row_of(const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, '\t');) cells.push_back(cell);
+    if (cells.size() < 6 || cells.back() != ".") return std::nullopt;
+    Row r{cells[0], cells[1], std::strtoull(cells[2].c_str(), nullptr, 10),
+          std::strtoull(cells[3].c_str(), nullptr, 10)};
+    for (size_t k = 5; k + 1 < cells.size(); ++k) {
+        const size_t at = cells[k].find('=');
+        r.of[cells[k].substr(0, at)] = std::strtod(cells[k].c_str() + at + 1, nullptr);
+    }
+    return std::pair{r, cells[4]};
+}
+
+// ---- Numbers of rows ----------------------------------------------------------------------------
+
+template <class Which>
+Rows where(const Rows& rows, Which which) {
+    Rows some;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(some), which);
+    return some;
+}
+inline Rows in_scene(const Rows& rows, const std::string& name) {
+    return where(rows, [&](const Row& r) { return r.scene == name; });
+}
+inline Rows by_setting(const Rows& rows, const std::string& name) {
+    return where(rows, [&](const Row& r) { return r.setting == name; });
+}
+
+inline std::vector<double> all_of(const Rows& rows, const std::string& name) {
+    std::vector<double> x;
+    for (const Row& r : rows) x.push_back(r[name]);
+    return x;
+}
+inline double mean(const Rows& rows, const std::string& name) {
+    const std::vector<double> x = all_of(rows, name);
+    return std::accumulate(x.begin(), x.end(), 0.0) / double(x.size());
+}
+
+// Squared errors are averaged, for they have an expectation; NaN: less than what the reference
+// leaves open.
+inline double relative_error(const Rows& rows) { return std::sqrt(mean(rows, "d2")); }
+
+inline double accuracy(const Rows& rows) { return 1 / relative_error(rows); }
+
+// 1 / (squared error x CPU seconds): for unbiased estimators the same at every number of samples.
+inline double efficiency(const Rows& rows) {
+    return 1 / (mean(rows, "d2") * mean(rows, "cpu_seconds"));
+}
+
+// What one setting's number is over another's: the geometric mean over the scenes that have both.
+template <class Number>
+double over(const Rows& rows, const std::string& setting, const std::string& base, Number number) {
+    double sum = 0, scenes = 0;
+    std::map<std::string, std::pair<Rows, Rows>> of;
+    for (const Row& r : rows) {
+        if (r.setting == setting) of[r.scene].first.push_back(r);
+        if (r.setting == base) of[r.scene].second.push_back(r);
+    }
+    for (const auto& [scene, both] : of)
+        if (!both.first.empty() && !both.second.empty())
+            sum += std::log(number(both.first) / number(both.second)), ++scenes;
+    return std::exp(sum / scenes);
+}
+
+// A number of rows, and its standard error from what it is without each of the seeds (jackknife:
+// Quenouille 1956, Tukey 1958).
+struct Estimate {
+    double value = 0, error = 0;
+};
+template <class Number>
+Estimate jackknife(const Rows& rows, Number number) {
+    std::map<uint64_t, Rows> without;
+    for (const Row& r : rows) without[r.seed];
+    for (auto& [seed, others] : without)
+        others = where(rows, [s = seed](const Row& r) { return r.seed != s; });
+    Moments m;
+    for (const auto& [seed, others] : without) m.add(number(others));
+    const double n = double(without.size());
+    return {number(rows), n > 1 ? std::sqrt((n - 1) / n * m.m2) : NAN};
+}
+inline std::string told(const Estimate& e, const char* format) {
+    if (std::isnan(e.value)) return "–";
+    return text(format, e.value) + (std::isnan(e.error) ? "" : " ± " + text(format, e.error));
+}
+
+// A number of one setting over that of another, over all scenes of the rows; "=": the same images.
+template <class Number>
+std::string gain(const Rows& rows, const std::string& setting, const std::string& base,
+                 Number number, const char* format = "%.2f") {
+    if (all_of(by_setting(rows, setting), "off") == all_of(by_setting(rows, base), "off"))
+        return "=";
+    auto ratio = [&](const Rows& some) { return over(some, setting, base, number); };
+    return told(jackknife(rows, ratio), format);
+}
+
+// ---- Tables and plots ---------------------------------------------------------------------------
+
+inline std::string of_scene(const Row& r) { return r.scene; }
+inline std::string of_setting(const Row& r) { return r.setting; }
+inline std::string of_count(const Row& r) { return text("%.0f", double(r.count)); }
+
+// Rows by a word of them, in the order in which these words are met.
+template <class Key>
+std::vector<std::pair<std::string, Rows>> grouped(const Rows& rows, Key key) {
+    std::vector<std::pair<std::string, Rows>> groups;
+    for (const Row& r : rows) {
+        const std::string word = key(r);
+        auto at = std::find_if(groups.begin(), groups.end(),
+                               [&](const auto& group) { return group.first == word; });
+        if (at == groups.end()) at = groups.insert(at, {word, {}});
+        at->second.push_back(r);
+    }
+    return groups;
+}
+
+// Markdown: a line for each `by`, a column for each `across`, in it what `value` says of their
+// rows.
+template <class By, class Across, class Value>
+std::string table(const Rows& rows, By by, Across across, Value value) {
+    const auto columns = grouped(rows, across);
+    std::vector<std::vector<std::string>> lines;
+    for (const auto& [word, group] : grouped(rows, by)) {
+        std::vector<std::string>& line = lines.emplace_back(1, word);
+        const auto cells = grouped(group, across);
+        for (const auto& column : columns) {
+            const auto at = std::find_if(cells.begin(), cells.end(), [&](const auto& cell) {
+                return cell.first == column.first;
+            });
+            line.push_back(at == cells.end() ? "" : value(at->second));
+        }
+    }
+    std::vector<std::string> head(1);
+    for (const auto& column : columns) head.push_back(column.first);
+    return table(head, lines);
+}
+
+// A curve for each word of `series`, a point for each count: numbers of the rows there.
+template <class Series, class X, class Y>
+Svg plot(const Rows& rows, const Axis& x, const Axis& y, Series series, X x_of, Y y_of,
+         const std::string& title) {
+    Svg sheet(860, 400);
+    size_t k = 0;
+    Plot plot(sheet, {80, 40}, {560, 300}, x, y, title);
+    for (const auto& [word, group] : grouped(rows, series)) {
+        std::vector<double> xs, ys;
+        for (const auto& [count, cell] : grouped(group, of_count))
+            xs.push_back(x_of(cell)), ys.push_back(y_of(cell));
+        plot.curve(xs, ys, {.colour = svg::colours[k++ % std::size(svg::colours)]}, word);
+    }
+    return sheet;
+}
