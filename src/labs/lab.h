@@ -261,17 +261,24 @@ inline Rendering read_rendering(const std::string& pfm) {
 
 // Runs build/penumbra with these words, which name a scene and no output; unless they say otherwise
 // with one set of samples, for then a pixel has as many samples as its fellows.
-inline Rendering rendering(const std::string& program, std::vector<std::string> words) {
+inline Rendering rendering(const std::vector<std::string>& program,
+                           std::vector<std::string> words) {
     std::filesystem::create_directories("out");
     const std::string stem = "out/lab" + std::to_string(::getpid()), pfm = stem + ".pfm",
                       json = stem + ".json";
-    words.insert(words.begin(), {program, "--sets", "1"});
+    if (std::find(words.begin(), words.end(), "--sets") == words.end())
+        words.insert(words.begin(), {"--sets", "1"});
+    words.insert(words.begin(), program.begin(), program.end());
     words.insert(words.end(), {"--quiet", "-o", pfm, "--stats", json});
     execute(words);
     Rendering r{read_pfm(pfm), read_file(json)};
     std::filesystem::remove(pfm);
     std::filesystem::remove(json);
     return r;
+}
+
+inline Rendering rendering(const std::string& program, const std::vector<std::string>& words) {
+    return rendering(std::vector<std::string>{program}, words);
 }
 
 // ---- Command lines ------------------------------------------------------------------------------

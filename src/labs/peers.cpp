@@ -1,39 +1,27 @@
-// labs/peers.cpp  4  efficiency beside Cycles, in one run
+// labs/peers.cpp  6  efficiency beside Cycles and a textbook's tracer
 //
-//   build/peers [--seeds N] [--quick]
-//
-// Renders cornell36 by both cameras with Cycles (Debian's blender), with the tracer of textbook.h
-// and with penumbra, by several of its options: one thread each, in turns, the same samples.  Time
-// is that of the processor.  Nothing here fails for being slow.
-#include "labs/seeds.h"
+//   build/peers [--seeds N] [--quick] [--kept]
+//   build/peers --render cycles|textbook SCENE --spp N --seed N -o FILE.pfm --stats FILE.json ...
+#include "base/json.h"
+#include "labs/grid.h"
 #include "labs/textbook.h"
 #include "world/scene_file.h"
 
 namespace {
 
-const std::string folder = "build/cycles";  // rooms, the log of Blender
+// ---- Other renderers, as programs that know penumbra's options ----------------------------------
 
-struct Effort {
-    bool quick = false;
-    uint64_t seeds = 3, spp = 64;
-};
-
-struct View {
-    std::string name, scene;
-};
-const std::array<View, 2> views = {
-    {{"A", "scenes/cornell36.scene"}, {"B", "scenes/cornell36b.scene"}}};
-
-// ---- Cycles -------------------------------------------------------------------------------------
-
-// A program on the PATH, or nothing.
-std::optional<std::string> program_called(const std::string& name) {
-    const char* path = std::getenv("PATH");
-    std::istringstream folders(path ? path : "");
-    for (std::string place; std::getline(folders, place, ':');)
-        if (::access((place + "/" + name).c_str(), X_OK) == 0) return place + "/" + name;
-    return {};
+// The value of an option.
+std::string value_of(const std::vector<std::string>& words, const std::string& option) {
+    const auto at = std::find(words.begin(), words.end(), option);
+    if (at == words.end() || at + 1 == words.end()) throw UserError("peers: " + option + "?");
+    return *(at + 1);
 }
+
+struct Taken {
+    Image image;
+    double seconds = 0;
+};
 
 std::string json_of(vec3 v) { return json::numbers({double(v.x), double(v.y), double(v.z)}); }
 
@@ -63,155 +51,132 @@ std::string room_of(const Scene& s, uint64_t spp) {
     return room.text();
 }
 
-void add_cycles(Series& series, const std::string& blender, const View& view, uint64_t seed) {
-    const std::string out = std::filesystem::absolute(folder + "/" + view.name).string();
-    const std::string log = folder + "/blender.log";
-    for (const char* suffix : {".pfm", ".seconds"}) std::filesystem::remove(out + suffix);
+Taken by_cycles(const Scene& scene, uint64_t spp, uint64_t seed, const std::string& stem) {
+    write_file(stem + ".room.json", room_of(scene, spp));
     try {
-        execute({"/bin/sh", "-c", "exec \"$0\" \"$@\" >" + log + " 2>&1", blender, "-b",
-                 "--python-exit-code", "1", "--python", "src/labs/cycles.py", "--", out + ".json",
-                 std::to_string(seed), out});
+        execute({"/bin/sh", "-c", "exec blender \"$@\" >\"$0\" 2>&1", stem + ".log", "-b",
+                 "--python-exit-code", "1", "--python", "src/labs/cycles.py", "--",
+                 stem + ".room.json", std::to_string(seed), stem});
     } catch (const SystemError& e) {
-        throw SystemError("blender: " + std::string(e.what()) + "; see " + log);
+        throw SystemError("blender: " + std::string(e.what()) + "; see " + stem + ".log");
     }
-    series.images.push_back(read_pfm(out + ".pfm"));
-    std::string seconds = read_file(out + ".seconds");
+    std::string seconds = read_file(stem + ".seconds");
     seconds.erase(seconds.find('\n'));
-    series.seconds.push_back(parse_number(seconds));
+    Taken taken{read_pfm(stem + ".pfm"), parse_number(seconds)};
+    for (const char* suffix : {".room.json", ".log", ".seconds", ".pfm", ".exr"})
+        std::filesystem::remove(stem + suffix);
+    return taken;
 }
 
-// ---- Ours ---------------------------------------------------------------------------------------
-
-void add_textbook(Series& series, const Scene& scene, uint64_t spp, uint64_t seed) {
+Taken by_textbook(const Scene& scene, uint64_t spp, uint64_t seed) {
     textbook::Room room = textbook::room_of(scene);
-    Image image(scene.size.width, scene.size.height);
+    Taken taken{Image(scene.size.width, scene.size.height)};
     const double start = processor_seconds();
     for (int y = 0; y < scene.size.height; ++y)
-        textbook::render_row(room, scene, seed, spp, y, image);
-    series.seconds.push_back(processor_seconds() - start);
-    series.images.push_back(image);
+        textbook::render_row(room, scene, seed, spp, y, taken.image);
+    taken.seconds = processor_seconds() - start;
+    return taken;
 }
 
-Rendering penumbra(const std::string& program, const View& view, const Choice& choice,
-                   std::vector<std::string> more) {
-    more.push_back(view.scene);
-    more.insert(more.end(), choice.words.begin(), choice.words.end());
-    return rendering(program, more);
-}
-
-void add_penumbra(Series& series, const std::string& program, const View& view,
-                  const Choice& choice, uint64_t spp, uint64_t seed) {
-    const Rendering r =
-        penumbra(program, view, choice,
-                 {"--threads", "1", "--spp", std::to_string(spp), "--seed", std::to_string(seed)});
-    series.images.push_back(r.image);
-    series.seconds.push_back(r.core_seconds());
-}
-
-// One set, but for the default.
-std::vector<Choice> choices() {
-    std::vector<Choice> all = {{"the default", choice_of("--sets adaptive").words},
-                               choice_of("--sets 1"),
-                               choice_of("--light nee --sampler independent")};
-    for (const Choice& c : alternatives("--sampler")) all.push_back(c);
-    return all;
-}
-
-// ---- Errors -------------------------------------------------------------------------------------
-
-struct Row {
-    std::string name;
-    Series series;
-    double mean_square = 0;
-
-    // d_rel^2, of all seeds or of all but one.
-    double error2(size_t without = SIZE_MAX) const {
-        return variance_between(series, without) / mean_square;
+// An image, and where --sets asks for more than one replication the error of two halves' mean.
+int render(const std::vector<std::string>& words) {
+    const std::string &who = words.at(0), out = value_of(words, "-o");
+    const Scene scene = read_scene(words.at(1)).scene;
+    const uint64_t spp = parse_count(value_of(words, "--spp"), 1, 1 << 20),
+                   seed = parse_count(value_of(words, "--seed"), 0, 1 << 30);
+    auto take = [&](uint64_t n, uint64_t s) {
+        return who == "cycles" ? by_cycles(scene, n, s, out + "-cycles") : by_textbook(scene, n, s);
+    };
+    const bool halves = value_of(words, "--sets") != "1";
+    Taken a = take(halves ? spp / 2 : spp, seed);
+    double own = NAN;
+    if (halves) {
+        const Taken b = take(spp / 2, seed + 1);
+        own = d_rel(a.image, b.image) / 2;
+        for (size_t i = 0; i < a.image.pixels.size(); ++i)
+            for (size_t c = 0; c < 3; ++c)
+                a.image.pixels[i][c] = (a.image.pixels[i][c] + b.image.pixels[i][c]) / 2;
+        a.seconds += b.seconds;
     }
-    double cost(size_t without) const { return error2(without) * seconds_without(series, without); }
-    double mean() const {
-        Moments m;
-        for (const Image& image : series.images)
-            for (const auto& pixel : image.pixels)
-                for (float x : pixel) m.add(double(x));
-        return m.mean;
-    }
-};
-
-// ---- The report ---------------------------------------------------------------------------------
-
-// In turns, so that whatever else the machine does hits all alike.
-std::vector<Row> render_all(const View& view, const Effort& plan, const std::string& program,
-                            const std::string& blender, Steps& steps) {
-    const Scene scene = read_scene(view.scene).scene;
-    write_file(folder + "/" + view.name + ".json", room_of(scene, plan.spp));
-    std::vector<Row> rows = {{"Cycles", {}}, {"the textbook's tracer", {}}};
-    for (const Choice& c : choices()) rows.push_back({"penumbra, " + c.name, {}});
-    for (uint64_t seed = 1; seed <= plan.seeds; ++seed) {
-        steps.next(view.name + ", seed " + std::to_string(seed));
-        add_cycles(rows[0].series, blender, view, seed);
-        add_textbook(rows[1].series, scene, plan.spp, seed);
-        size_t k = 2;
-        for (const Choice& c : choices())
-            add_penumbra(rows[k++].series, program, view, c, plan.spp, seed);
-    }
-    for (Row& row : rows) row.mean_square = mean_square(row.series);
-    return rows;
+    write_image(out, a.image, 1);
+    json::Object stats;
+    stats.add("samples_per_pixel", std::to_string(spp));
+    stats.add("cpu_seconds", json::number(a.seconds));
+    stats.add("d_rel", std::isnan(own) ? "null" : json::number(own));
+    write_file(value_of(words, "--stats"), stats.text() + "\n");
+    return 0;
 }
 
-void tell(Report& report, const View& view, const std::vector<Row>& rows) {
-    report.say("## Camera " + view.name + ", `" + view.scene + "`");
-    report.head(
-        {"", "d_rel", "core s", "core s, × Cycles", "efficiency, × Cycles", "mean, × Cycles"});
-    const Row& cycles = rows[0];
-    for (const Row& row : rows) {
-        const size_t seeds = row.series.images.size();
-        const Estimate time = over_seeds(seeds, [&](size_t without) {
-            return seconds_without(row.series, without) / seconds_without(cycles.series, without);
-        });
-        const Estimate efficiency = over_seeds(
-            seeds, [&](size_t without) { return cycles.cost(without) / row.cost(without); });
-        report.row({row.name, text("%.4f", std::sqrt(row.error2())),
-                    text("%.2f", seconds_without(row.series)), told(time, "%.2f"),
-                    told(efficiency, "%.2f"), text("%.4f", row.mean() / cycles.mean())});
-    }
-    report.end_of_table();
+// ---- The study ----------------------------------------------------------------------------------
+
+const std::string cycles = "Cycles";
+
+std::string views(const Rows& rows) {
+    std::vector<std::vector<std::string>> lines;
+    for (const auto& [scene, all] : grouped(rows, of_scene))
+        for (const auto& [name, some] : grouped(all, of_setting)) {
+            auto time = [](const Rows& r) { return mean(r, "cpu_seconds"); };
+            lines.push_back(
+                {scene, name, text("%.4f", relative_error(some)), text("%.2f", time(some)),
+                 gain(all, name, cycles, time), gain(all, name, cycles, efficiency),
+                 text("%.4f", mean(some, "mean") / mean(by_setting(all, cycles), "mean"))});
+        }
+    return table({"camera", "renderer", "relative RMSE", "CPU s", "CPU s, × Cycles",
+                  "efficiency, × Cycles", "mean, × Cycles"},
+                 lines);
 }
 
-int run(const std::string& program, const Effort& plan) {
-    const auto blender = program_called("blender");
-    if (!blender) {
-        std::puts("peers: nothing is measured without Cycles: install blender (Debian: blender)");
-        return 0;
-    }
-    std::filesystem::create_directories(folder);
-    Report report(report_folder(plan.quick), "peers");
-    report.say(text(R"(# Beside Cycles
-
-Cycles renders the triangles of `cornell36` as it comes with Blender, on one thread of the processor,
-with neither denoiser nor adaptive sampling nor clamping; the tracer of `src/labs/textbook.h` and
-penumbra on one thread, too; all with %.0f samples a pixel and %.0f seeds, in turns.  Core seconds
-of Cycles are those of %.0f samples less those of one, so that starting and reading do not count;
-penumbra's count from the start to the end of the program, the textbook's its rows alone.  *The default* has
-more samples where noise is, all others as many everywhere.  d_rel is the deviation between seeds over the
-quadratic mean, efficiency 1 / (d_rel² × core seconds).  ± is the standard error over seeds (jackknife).)",
-                    double(plan.spp), double(plan.seeds), double(plan.spp + 1)));
-    Steps steps(views.size() * plan.seeds);
-    for (const View& view : views)
-        tell(report, view, render_all(view, plan, program, *blender, steps));
-    report.say(made_by(plan.quick ? "build/peers --quick" : "build/peers"));
-    return report.finish();
+// Each by references of its own, so that what models differ by is no error.
+int run(bool quick, bool kept, uint64_t seeds, const std::string& self, const std::string& penumbra,
+        const std::string& command) {
+    Page page(report_folder(quick), "peers");
+    const uint64_t spp = quick ? 16 : 64;
+    const std::vector<Subject> both = {{"A", "scenes/cornell36.scene", 16 * spp},
+                                       {"B", "scenes/cornell36b.scene", 16 * spp}};
+    std::vector<Setting> ours = {{"penumbra, the default", "--sets adaptive"}};
+    for (const char* words : {"", "--light nee --sampler independent", "--sampler independent",
+                              "--sampler stratified", "--sampler halton"})
+        ours.push_back(
+            {std::string("penumbra, --sets 1 ") + words, std::string("--sets 1 ") + words});
+    Rows rows;
+    auto add = [&](const std::string& name, const std::string& program,
+                   const std::vector<Setting>& settings) {
+        const Rows more = Grid(name, program, kept).run(both, settings, {spp}, seeds);
+        rows.insert(rows.end(), more.begin(), more.end());
+    };
+    add("peers-cycles", self + " --render cycles", {{cycles, "--sets 1"}});
+    add("peers-textbook", self + " --render textbook", {{"a textbook's tracer", "--sets 1"}});
+    add("peers", penumbra, ours);
+    page.set("table", views(rows));
+    for (const auto& [word, camera] : {std::pair{"time", "A"}, std::pair{"time B", "B"}})
+        page.set(word,
+                 text("%.2f", 1 / over(in_scene(rows, camera), ours[0].name, cycles, efficiency)));
+    page.set("samples", text("%.0f", double(spp)));
+    page.set("seeds", text("%.0f", double(seeds)));
+    page.set("made", made_by(command));
+    return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Effort plan;
-    auto set_seeds = [&](const std::string& n) { plan.seeds = parse_count(n, 3, 100); };
-    auto make_quick = [&](auto&) { plan = {true, 3, 16}; };
-    const Lab lab{"peers",
-                  "Measures efficiency beside Cycles, if blender is installed.",
-                  {{"--seeds", "N", "renders of each (3)", set_seeds},
-                   {"--quick", "", "fewer runs, into out/", make_quick}}};
-    return lab_main(argc, argv, lab, [&] { return run(renderer_beside(lab, argv[0]), plan); });
+    bool quick = false, kept = false;
+    uint64_t seeds = 3;
+    if (argc > 2 && argv[1] == std::string("--render")) try {
+            return render({argv + 2, argv + argc});
+        } catch (...) {
+            return failed();
+        }
+    const Lab lab{
+        "peers",
+        "Measures efficiency beside Cycles, if blender is installed.",
+        {{"--seeds", "N", "renders of each (3)", [&](auto& n) { seeds = parse_count(n, 3, 100); }},
+         kept_flag(kept),
+         quick_flag(quick)}};
+    return lab_main(argc, argv, lab, [&] {
+        if (std::system("command -v blender >/dev/null") != 0)
+            return std::puts("peers: nothing is measured without Cycles; install blender"), 0;
+        return run(quick, kept, seeds, argv[0], renderer_beside(lab, argv[0]),
+                   command_of(argc, argv));
+    });
 }

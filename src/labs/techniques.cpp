@@ -1,60 +1,60 @@
-// labs/techniques.cpp  5  what each of three techniques brings
+// labs/techniques.cpp  6  what each of three techniques brings
 //
-//   build/techniques [--reference FILE.pfm] [--time S] [--quick]
-//
-// Renders scenes/coursework.scene with importance sampling of the cosine (and the lobe), Halton
-// points and next-event estimation (NEE), alone and together, and compares the images with a
-// reference.  Exit status 1 if an image's mean is not the reference's.
+//   build/techniques [--quick] [--kept]
+//   build/techniques --render SCENE --direction D --light L --spp N -o FILE.pfm --stats FILE.json
+//   ...
+#include "base/json.h"
+#include "labs/grid.h"
+#include "labs/naive_halton.h"
 #include "labs/p_of_z.h"
-#include "labs/technique_renders.h"
+#include "world/scene_file.h"
 
 namespace {
 
-using namespace techniques;
+const std::string scene = "scenes/coursework.scene", uniform = "uniform", cosine = "+ cosine",
+                  halton = "+ Halton", nee = "+ NEE", cosine_halton = "cosine + Halton",
+                  cosine_nee = "cosine + NEE", halton_nee = "Halton + NEE", all_three = "all three",
+                  mis = "all three, MIS", stratified = "stratified, cosine + NEE",
+                  naive = "naive Halton", naive_both = "naive, cosine + NEE";
 
-// ---- What follows -------------------------------------------------------------------------------
-
-using Number = std::function<double(const Result&)>;
-
-Moments moments(const Results& results, const Number& number) {
-    Moments m;
-    for (const Result& r : results) m.add(number(r));
-    return m;
+std::vector<Setting> settings(const std::string& self) {
+    auto words = [](const char* sampler, const char* direction, const char* light) {
+        return text("--sets 1 --sampler %s --direction %s --light %s", sampler, direction, light);
+    };
+    const std::string own = self + " --render";
+    return {{uniform, words("independent", "uniform", "none")},
+            {cosine, words("independent", "bsdf", "none")},
+            {halton, words("halton", "uniform", "none")},
+            {nee, words("independent", "uniform", "nee")},
+            {cosine_halton, words("halton", "bsdf", "none")},
+            {cosine_nee, words("independent", "bsdf", "nee")},
+            {halton_nee, words("halton", "uniform", "nee")},
+            {all_three, words("halton", "bsdf", "nee")},
+            {mis, words("halton", "bsdf", "mis")},
+            {stratified, words("stratified", "bsdf", "nee")},
+            {naive, words("halton", "uniform", "none"), own},
+            {naive_both, words("halton", "bsdf", "nee"), own}};
 }
 
-// Seed by seed; naive points have but one result.
-Moments ratio(const Results& a, const Results& b, const Number& number) {
-    Moments m;
-    for (size_t k = 0; k < a.size(); ++k)
-        m.add(number(a[k]) / number(b[std::min(k, b.size() - 1)]));
-    return m;
-}
-
-struct Agreement {
-    double z = 0, p = 1;  // of the worst of three channels
-};
-
-// Is the image mean right?  Its variance is the sum over the pixels of the spread of each over the
-// seeds: every pixel has its own randomisation, so pixels are independent, and thousands of them
-// make normal what a few seeds' means are not.
-Agreement agreement(const Results& results, const Rendering& reference) {
-    Agreement worst;
-    const double n = double(results.size()), pixels = double(reference.image.pixels.size());
-    for (size_t c = 0; c < 3; ++c) {
-        auto channel = [&](const Rendering& r) { return stats(r.stats, "mean_radiance")[c]; };
-        auto image_mean = [&](const Result& r) { return channel(r.rendering); };
-        double variances = 0;
-        for (size_t i = 0; i < reference.image.pixels.size(); ++i) {
-            auto pixel = [&](const Result& r) { return double(r.rendering.image.pixels[i][c]); };
-            variances += moments(results, pixel).variance();
-        }
-        const double own = stats(reference.stats, "variance_of_mean")[c],
-                     error = std::sqrt(variances / (pixels * pixels * n) + own),
-                     z = (moments(results, image_mean).mean - channel(reference)) / error,
-                     p = p_of_z(z);
-        if (p <= worst.p) worst = {z, p};
-    }
-    return worst;
+// Naive points, in place of penumbra.
+int render(const std::vector<std::string>& words) {
+    auto value = [&](const char* option) {
+        const auto at = std::find(words.begin(), words.end(), option);
+        if (at == words.end() || at + 1 == words.end())
+            throw UserError(std::string("techniques: ") + option + "?");
+        return *(at + 1);
+    };
+    Technique t;
+    t.direction = value("--direction") == "bsdf" ? Direction::bsdf : Direction::uniform;
+    t.light = value("--light") == "nee" ? LightMode::nee : LightMode::none;
+    const uint64_t spp = parse_count(value("--spp"), 1, UINT32_MAX);
+    const double start = processor_seconds();
+    const Image image = naive_halton::render(read_scene(words.at(0)).scene, t, spp);
+    json::Object stats;
+    stats.add("cpu_seconds", json::number(processor_seconds() - start));
+    write_image(value("-o"), image, 1);
+    write_file(value("--stats"), stats.text() + "\n");
+    return 0;
 }
 
 // Correlation of the errors g - f of horizontal neighbours, about zero.
@@ -71,159 +71,109 @@ double neighbours(const Image& f, const Image& g) {
     return together / alone;
 }
 
-// ---- The report ---------------------------------------------------------------------------------
-
-double d_rel_of_reference(const Study& s) {
-    double sum = 0;
-    for (double v : stats(s.reference.stats, "variance_of_mean")) sum += v / 3;
-    return std::sqrt(sum * double(s.reference.image.pixels.size()) / s.mean_square);
+// The image's mean over the reference's, and its standard error.  Pixels have randomisations of
+// their own, so they are independent; channels are not, and count as one.
+void measure(Row& r, const Image& image, const Truth& f) {
+    Image black = f.image;
+    for (auto& pixel : black.pixels) pixel = {0, 0, 0};
+    const double rms = std::sqrt(mse(f.image, black) / double(image.pixels.size()));
+    r.of["ratio"] = r["mean"] / mean_of(f.image);
+    r.of["ratio variance"] = (r["d2"] + r["own"] * r["own"]) * std::pow(rms / mean_of(f.image), 2);
+    r.of["neighbours"] = neighbours(f.image, image);
 }
 
-void tell_what(Report& report, const Study& s) {
-    report.say(text(R"(# Three techniques, measured
+double z_of(const Rows& rows) {
+    return (mean(rows, "ratio") - 1) /
+           std::sqrt(mean(rows, "ratio variance") / double(rows.size()));
+}
 
-`%s` is rendered with uniform directions that find light by chance, then with
-importance sampling of the cosine (and the lobe), Halton points and next-event estimation (NEE), alone
-and together.  The images g are compared with the reference f, `%s` of %.0f samples per
-pixel, over all N numbers, three a pixel: d_rel = √(1/N Σ(f−g)²) / √(1/N Σf²) (Khodulev 1996, ch. 5);
-its own is %.5f.  ± is the standard deviation over seeds: %.0f at equal samples, %.0f at equal time; the
-naive points know no seed.)",
-                    scene, s.plan.reference, double(s.reference.samples()), d_rel_of_reference(s),
-                    double(s.plan.seeds), double(s.plan.fewer_seeds)));
+double square(const Rows& rows) { return mean(rows, "d2"); }
+double error_after_a_second(const Rows& rows) { return std::sqrt(1 / efficiency(rows)); }
+
+std::string all_settings(Page& page, const Rows& rows) {
+    std::vector<std::vector<std::string>> lines;
+    for (const auto& [name, some] : grouped(rows, of_setting)) {
+        const bool is_naive = name.starts_with("naive");
+        const double z = z_of(some);
+        lines.push_back({name, told(jackknife(some, relative_error), "%.4f"),
+                         gain(rows, name, uniform, efficiency),
+                         told(jackknife(some, error_after_a_second), "%.4f"),
+                         text("%.4f", mean(some, "ratio")), is_naive ? "" : text("%+.1f", z),
+                         is_naive ? "" : text("%.2g", p_of_z(z)),
+                         is_naive ? "" : page.verdict(p_of_z(z) > 1e-6)});
+    }
+    return table({"technique", "relative RMSE, 64 samples", "efficiency, × uniform",
+                  "relative RMSE after 1 CPU s", "mean / reference", "z", "p", ""},
+                 lines);
 }
 
 // Parts of the images, since noise does not compress.
-void tell_images(Report& report, const Study& s) {
-    auto picture = [](const Rendering& r, const char* name, double d_rel) {
-        return Picture{part_of(r.image, 50, 0, {168, r.image.height}), name,
-                       text("d_rel %.4f, %.0f spp", d_rel, double(r.samples()))};
-    };
-    std::vector<Picture> pictures;
-    for (size_t t : {uniform, cosine, nee, cosine_nee, halton, cosine_halton, halton_nee, all_three,
-                     naive, naive_both, mis})
-        pictures.push_back(picture(s.equal[t][0].rendering, all[t].name, s.equal[t][0].d_rel));
-    pictures.push_back(picture(s.reference, "reference", d_rel_of_reference(s)));
-    report.picture("techniques", contact_sheet(pictures, 4, exposure), "Parts of the images");
-}
-
-void tell_table(Report& report, const Study& s) {
-    report.head({"technique", text("d_rel, %.0f samples", double(s.plan.spp)),
-                 text("d_rel, %g s", s.plan.seconds), text("samples in %g s", s.plan.seconds),
-                 "efficiency, × uniform", "mean / reference", "z", "p", ""});
-    for (size_t t = 0; t < all.size(); ++t) {
-        std::vector<std::string> cells = {
-            all[t].name,
-            plus_minus(moments(s.equal[t], &Result::d_rel), "%.4f"),
-            plus_minus(moments(s.timed[t], &Result::d_rel), "%.4f"),
-            text("%.0f", moments(s.timed[t], &Result::samples).mean),
-            plus_minus(ratio(s.equal[uniform], s.equal[t], &Result::cost), "%.2f"),
-            text("%.4f", moments(s.equal[t], &Result::radiance).mean / mean(s.reference))};
-        if (t < naive) {
-            const auto [z, p] = agreement(s.equal[t], s.reference);
-            for (const std::string& cell :
-                 {text("%+.1f", z), text("%.2g", p), report.verdict(p > 1e-6)})
-                cells.push_back(cell);
-        }
-        cells.resize(9);
-        report.row(cells);
+Svg pictures(const std::string& program, const std::vector<Setting>& all, const std::string& spp) {
+    std::vector<Picture> shown;
+    for (const Setting& s : all) {
+        std::vector<std::string> words = words_in(scene + " " + s.words + " --spp " + spp);
+        const Image image =
+            rendering(words_in(s.program.empty() ? program : s.program), words).image;
+        shown.push_back({part_of(image, 50, 0, {168, image.height}), s.name, spp + " samples"});
     }
-    report.end_of_table();
-    report.say(
-        R"(Efficiency is 1 / (d_rel² × core seconds) at equal samples, seed by seed over uniform's.  z is the
-image's mean against the reference's in standard errors of both, of three channels the worst; p is
-Student's and must be above 10⁻⁶, but for the naive points.  Seconds are of a shared machine, whose
-load may have changed meanwhile: efficiency, which counts core seconds, is more to be trusted.)");
+    return contact_sheet(shown, 4, 0.6);  // the scene's exposure
 }
 
-void tell_gains(Report& report, const Study& s) {
-    auto gain = [&](size_t a, size_t b) {
-        return ratio(s.equal[b], s.equal[a], &Result::cost).mean;
+int run(bool quick, bool kept, const std::string& self, const std::string& program,
+        const std::string& command) {
+    Page page(report_folder(quick), "techniques");
+    const uint64_t spp = quick ? 16 : 64, seeds = quick ? 2 : 8;
+    const Subject subject{"coursework", scene, 64 * spp};
+    const std::vector<Setting> all = settings(self), naives(all.end() - 2, all.end());
+    Grid grid("techniques", program, kept);
+    grid.measure = measure;
+    const Rows equal = grid.run({subject}, all, {spp}, seeds),
+               many = grid.run({subject}, all, {4 * spp}, seeds / 2),
+               limits = grid.run({subject}, naives, {spp, 8 * spp, 64 * spp}, 1);
+    page.set("table", all_settings(page, equal));
+    page.plot("techniques", pictures(program, all, text("%.0f", double(spp))));
+    page.set("naive", table(limits, of_setting, of_count, [](const Rows& r) {
+                 return text("%.4f, mean %.4f", relative_error(r), mean(r, "ratio"));
+             }));
+    auto gain_of = [&](const std::string& a, const std::string& b) {
+        return over(equal, a, b, efficiency);
     };
-    auto less_noise = [](const Series& of, size_t a, size_t b) {
-        return plus_minus(ratio(of[b], of[a], &Result::mse), "%.2f");
-    };
-    const double product = gain(cosine, uniform) * gain(nee, uniform);
-    report.say(text(R"(## What each brings
-
-* NEE alone is %.1f times as efficient as uniform directions, importance sampling %.1f times, Halton
-  points %.1f times.
-* NEE and importance sampling together are %.1f times as efficient, and the product would be %.1f: both
-  cure the noise of directions that miss the lights.
-* Halton points bring %.1f times on top of importance sampling, %.1f on top of NEE, %.1f on top of both.
-* MIS brings another %.1f times: light samples seldom hit the narrow Phong lobes, in which scattered rays
-  find the lights.
-* Independent numbers have %s times the squared error of Halton points at %.0f samples
-  with uniform directions and NEE, %s times with cosine and NEE.)",
-                    gain(nee, uniform), gain(cosine, uniform), gain(halton, uniform),
-                    gain(cosine_nee, uniform), product, gain(cosine_halton, cosine),
-                    gain(halton_nee, nee), gain(all_three, cosine_nee), gain(mis, all_three),
-                    less_noise(s.many, halton_nee, nee), double(s.plan.many),
-                    less_noise(s.many, all_three, cosine_nee)));
-}
-
-void tell_naive(Report& report, const Study& s) {
-    report.say(R"(## Why a naive Halton seems useless
-
-A first attempt uses bases 2 and 3 again at every bounce and the same points in every pixel.)");
-    report.head({"naive points", "samples", "d_rel", "mean / reference"});
-    for (size_t name : {naive, naive_both})
-        for (const Series* of : {&s.equal, &s.eighth, &s.limit}) {
-            const Result& r = (*of)[name][0];
-            report.row({all[name].name, text("%.0f", double(r.rendering.samples())),
-                        text("%.4f", r.d_rel),
-                        text("%.4f", mean(r.rendering) / mean(s.reference))});
-        }
-    report.end_of_table();
-    const Results& independent = s.equal[uniform];
-    const Result &first = s.equal[naive][0], &last = s.limit[naive][0];
-    const Image& f = s.reference.image;
-    auto times = [&](size_t name) {
-        return plus_minus(ratio(independent, s.equal[name], &Result::mse), "%.2f");
-    };
-    report.say(text(
-        R"(1. The same bases at every bounce make later directions functions of earlier ones, so that the image
-   converges to another limit: at %.0f samples its d_rel is %.4f, where independent numbers
-   would be at %.4f.
-2. The same points in every pixel turn noise into the discs of the picture: errors of neighbouring pixels
-   (from the naive points' own limit) correlate by %.3f, those of independent numbers by %.3f, of
-   our Halton points by %.3f.  The eye sees patterns where d_rel sees small errors.
-3. One noisy image hardly shows what they bring: at %.0f samples of uniform the squared error of
-   independent numbers is %s times that of naive points and %s times that of ours.
-4. With NEE the mean may be right while the image is not: a test of means alone would let it pass.)",
-        double(s.plan.limit), last.d_rel,
-        independent[0].d_rel * std::sqrt(double(s.plan.spp) / double(s.plan.limit)),
-        neighbours(last.rendering.image, first.rendering.image),
-        neighbours(f, independent[0].rendering.image),
-        neighbours(f, s.equal[halton][0].rendering.image), double(s.plan.spp), times(naive),
-        times(halton)));
-}
-
-int study(const std::string& program, const Effort& plan) {
-    Report report(report_folder(plan.quick), "techniques");
-    const Study s = render_all(program, plan);
-    tell_what(report, s);
-    tell_images(report, s);
-    tell_table(report, s);
-    tell_gains(report, s);
-    tell_naive(report, s);
-    report.say(made_by(plan.quick ? "build/techniques --quick" : "build/techniques"));
-    return report.finish();
+    const std::pair<const char*, double> gains[] = {
+        {"nee", gain_of(nee, uniform)},
+        {"cosine", gain_of(cosine, uniform)},
+        {"halton", gain_of(halton, uniform)},
+        {"both", gain_of(cosine_nee, uniform)},
+        {"product", gain_of(cosine, uniform) * gain_of(nee, uniform)},
+        {"halton on cosine", gain_of(cosine_halton, cosine)},
+        {"halton on nee", gain_of(halton_nee, nee)},
+        {"halton on both", gain_of(all_three, cosine_nee)},
+        {"mis", gain_of(mis, all_three)},
+        {"all", gain_of(mis, uniform)}};
+    for (const auto& [word, x] : gains) page.set(word, text("%.1f", x));
+    page.set("square nee", gain(many, nee, halton_nee, square));
+    page.set("square both", gain(many, cosine_nee, all_three, square));
+    for (const auto& [word, name] :
+         {std::pair{"neighbours naive", naive}, std::pair{"neighbours uniform", uniform},
+          std::pair{"neighbours halton", halton}})
+        page.set(word, text("%.3f", mean(by_setting(equal, name), "neighbours")));
+    page.set("seeds", text("%.0f", double(seeds)));
+    page.set("made", made_by(command));
+    return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Effort plan;
-    auto set_seconds = [&](const std::string& s) {
-        plan.seconds = parse_number(s);
-        if (!(plan.seconds > 0)) throw UserError("--time: " + in_quotes(s) + " is not positive");
-    };
-    auto make_quick = [&](auto&) { plan = {true, plan.reference, 2, 2, 16, 32, 256, 0.2}; };
+    bool quick = false, kept = false;
+    if (argc > 2 && argv[1] == std::string("--render")) try {
+            return render({argv + 2, argv + argc});
+        } catch (...) {
+            return failed();
+        }
     const Lab lab{"techniques",
                   "Measures what cosine, Halton points and next-event estimation bring.",
-                  {{"--reference", "FILE.pfm", "compare with this image, beside its FILE.json",
-                    [&](auto& file) { plan.reference = file; }},
-                   {"--time", "S", "seconds a render at equal time (5)", set_seconds},
-                   {"--quick", "", "fewer runs, into out/", make_quick}}};
-    return lab_main(argc, argv, lab, [&] { return study(renderer_beside(lab, argv[0]), plan); });
+                  {kept_flag(kept), quick_flag(quick)}};
+    return lab_main(argc, argv, lab, [&] {
+        return run(quick, kept, argv[0], renderer_beside(lab, argv[0]), command_of(argc, argv));
+    });
 }
