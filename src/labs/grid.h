@@ -70,6 +70,7 @@ public:
                 done_[{key(row->first), is_kept_ ? "" : row->second}] = row->first;
     }
 
+    unsigned jobs = all_cores();  // at a time
     // More numbers of an image.
     std::function<void(Row&, const Image&, const Truth&)> measure;
 
@@ -77,22 +78,22 @@ public:
     // settings take turns, so that load hits all alike.
     Rows run(const std::vector<Subject>& subjects, const std::vector<Setting>& settings,
              const std::vector<uint64_t>& counts, uint64_t seeds) {
-        std::vector<Job> jobs, missing;
+        std::vector<Job> all, missing;
         for (const Subject& s : subjects)
             for (const Setting& setting : settings)
                 for (uint64_t count : counts)
                     for (uint64_t seed = 1; seed <= seeds; ++seed)
-                        jobs.push_back(job(s, setting, count, seed));
+                        all.push_back(job(s, setting, count, seed));
         for (uint64_t seed = 1; seed <= seeds; ++seed)
-            for (size_t k = 0; k < jobs.size(); ++k) {
+            for (size_t k = 0; k < all.size(); ++k) {
                 // Of each scene another setting begins.
-                const size_t turn = (k + (seed - 1) * counts.size() * seeds) % jobs.size();
-                if (jobs[turn].row.seed == seed && !done_.count(jobs[turn].key))
-                    missing.push_back(jobs[turn]);
+                const size_t turn = (k + (seed - 1) * counts.size() * seeds) % all.size();
+                if (all[turn].row.seed == seed && !done_.count(all[turn].key))
+                    missing.push_back(all[turn]);
             }
         if (!is_kept_) render_all(missing);
         Rows rows;
-        for (const Job& j : jobs)
+        for (const Job& j : all)
             if (const auto at = done_.find(j.key); at != done_.end()) rows.push_back(at->second);
         return rows;
     }
@@ -132,8 +133,8 @@ private:
     static std::string truth_words(const Subject& s) {
         return text("%s --spp %.0f --sets 16 --seed 1000000", s.words, double(s.truth));
     }
-    static std::string print_of_truth(const Subject& s) {
-        return fingerprint(truth_words(s) + read_file(words_in(s.words)[0]));
+    std::string print_of_truth(const Subject& s) const {
+        return fingerprint(program_ + truth_words(s) + read_file(words_in(s.words)[0]));
     }
 
     Job job(const Subject& s, const Setting& setting, uint64_t count, uint64_t seed) {
@@ -149,19 +150,21 @@ private:
             row, &s, command, {key(row), fingerprint(prints_[file] + command + print_of_truth(s))}};
     }
 
-    void render_all(const std::vector<Job>& jobs) {
+    void render_all(const std::vector<Job>& missing) {
         std::ofstream out(file(), std::ios::app);
-        for (const Job& j : jobs) truth(*j.subject);
-        Steps steps(jobs.size());
+        out << '\n';  // the last line may have been cut short
+        for (const Job& j : missing) truth(*j.subject);
+        Steps steps(missing.size());
         std::mutex lock;
         in_parallel(
-            jobs.size(), all_cores(),
+            missing.size(), jobs,
             [&](size_t k) {
-                const Row row = rendered(jobs[k], text("out/%s-%d-%zu", name_, int(::getpid()), k));
+                const Row row =
+                    rendered(missing[k], text("out/%s-%d-%zu", name_, int(::getpid()), k));
                 const std::lock_guard guard(lock);
                 steps.next(row.scene + ", " + row.setting);
-                done_[jobs[k].key] = row;
-                out << line_of(row, jobs[k].key.second) << std::flush;
+                done_[missing[k].key] = row;
+                out << line_of(row, missing[k].key.second) << std::flush;
             },
             [](double) {});
     }

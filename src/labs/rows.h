@@ -3,7 +3,7 @@
 #include <map>
 #include <optional>
 
-#include "labs/report.h"
+#include "labs/page.h"
 
 // ---- A row --------------------------------------------------------------------------------------
 

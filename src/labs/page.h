@@ -1,4 +1,4 @@
-// labs/report.h  3  a report: prose in Markdown, filled in with what was measured
+// labs/page.h  3  a report: prose in Markdown, filled in with what was measured
 #pragma once
 #include <map>
 #include <set>
@@ -27,8 +27,11 @@ inline std::string csv(const std::vector<std::string>& head,
     std::string words;
     auto add = [&](const std::vector<std::string>& cells) {
         for (size_t i = 0; i < cells.size(); ++i) {
-            const bool quotes = cells[i].find_first_of(",\"\n") != std::string::npos;
-            words += (i ? "," : "") + (quotes ? "\"" + cells[i] + "\"" : cells[i]);
+            words += i ? "," : "";
+            const bool is_plain = cells[i].find_first_of(",\"\n") == std::string::npos;
+            if (!is_plain) words += '"';
+            for (char c : cells[i]) words += c == '"' ? "\"\"" : std::string(1, c);
+            if (!is_plain) words += '"';
         }
         words += "\n";
     };
