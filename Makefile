@@ -148,11 +148,7 @@ endif
 # build/radiosity and build/voronoi are renderers.
 radiosity: $(PENUMBRA) build/illumination$(SUFFIX)
 	build/illumination$(SUFFIX) $(if $(QUICK),--quick) $(if $(FULL),--full)
-# How pixels share in the error of the references.
-out/%-256.film: $(PENUMBRA) scenes/%.scene
-	$(PENUMBRA) --quiet --sampler halton --roulette 0 --seed 1000 --size 256x256 --sets 2 --spp 256 --keep $@ -o out/$*-256.png scenes/$*.scene
-voronoi: out/cornell-256.film out/cornellglossy-256.film
-voronoi: build/voronoi_weights$(SUFFIX)
+voronoi: $(PENUMBRA) build/voronoi_weights$(SUFFIX)
 	build/voronoi_weights$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
 
 extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)
