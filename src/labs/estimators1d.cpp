@@ -1,14 +1,14 @@
-// labs/estimators1d.cpp  3  four estimators of a shadowed integral, on the unit interval
+// labs/estimators1d.cpp  4  four estimators of a shadowed integral, on the unit interval
 //
 //   build/estimators1d [--quick]
 //
-// Measures noise and bias of each estimator of S = integral over [0,1] of w V, with W that of w,
-// from N uniform x, for six pairs (w, V) of known integrals (Heitz, Hill, McGuire 2018,
-// supplement), beside what is predicted for large N.  Exit status 1 if a prediction fails.
+// Noise and bias of each estimator of S = integral over [0,1] of w V, with W that of w, from N
+// uniform x, for six pairs (w, V) of known integrals (Heitz, Hill, McGuire 2018, supplement),
+// beside what is predicted for large N.
 #include <array>
 
 #include "base/rng.h"
-#include "labs/lab.h"
+#include "labs/page.h"
 #include "shadow/population.h"
 
 namespace {
@@ -166,27 +166,23 @@ void draw_noise(Svg& sheet, Place corner, const Case& c, const Rows& rows) {
 constexpr size_t asymptotic = 8, regressed = 10;  // steps: from N = 256, from N = 1024
 constexpr double low_variance = 0.4;              // of W: standard deviation of one sample
 
-void tell_table(Report& report, const std::vector<Rows>& all) {
-    report.say(text(R"(## The paper's Table 1
-
-The table says which standard deviations of one sample (sd √N at N = %.0f) are below %.1f W (✓), and
-gives them in units of W; the paper has no regression.  The last column compares its marks with ours.)",
-                    n_of(regressed), low_variance));
-    report.head({"case", "w", "V", names[0], names[1], names[2], names[3], "as in the paper"});
+// Standard deviations of one sample over W, and the paper's marks of the low ones.
+std::string paper_table(Page& page, const std::vector<Rows>& all) {
+    std::vector<std::vector<std::string>> lines;
     for (size_t i = 0; i < all.size(); ++i) {
         const Case& c = cases[i];
-        std::vector<std::string> cells = {c.letter, c.w.kind, c.V_kind};
+        lines.push_back({c.letter, c.w.kind, c.V_kind});
         bool same = true;
         for (size_t e = 0; e < 4; ++e) {
             const double of_one = std::sqrt(all[i][regressed].variance(e) * n_of(regressed)),
                          sd = of_one / c.population().W;
-            cells.push_back(text("%s %.3g", sd < low_variance ? "✓" : "✗", sd));
+            lines.back().push_back(text("%s %.3g", sd < low_variance ? "✓" : "✗", sd));
             if (e < 3) same = same && (sd < low_variance) == c.low[e];
         }
-        cells.push_back(report.verdict(same));
-        report.row(cells);
+        lines.back().push_back(page.verdict(same));
     }
-    report.end_of_table();
+    return table({"case", "w", "V", names[0], names[1], names[2], names[3], "as in the paper"},
+                 lines);
 }
 
 // The greatest departures from what is predicted for large N, as parts of it; of all cases.
@@ -217,37 +213,23 @@ struct Departures {
     }
 };
 
-void tell_predictions(Report& report, const Departures& worst, double spread) {
-    report.say("## Predictions");
+void tell_predictions(Page& page, const Departures& worst, double spread) {
     const double limit = 4.5 * spread;
-    report.claim(
-        worst.variance < limit,
-        text("From N = %.0f on every variance is within %.2g %% of its prediction (allowed "
-             "are 4.5 spreads, %.2g %%)",
-             n_of(asymptotic), 100 * worst.variance, 100 * limit));
-    report.claim(worst.ratio_bias < 2 * limit,
-                 text("The bias of ratio is within %.2g %% of its prediction (twice that)",
-                      100 * worst.ratio_bias));
-    report.claim(worst.exact, "What should have no noise has none, regression but for rounding");
-    report.claim(worst.regression < 1.03,
-                 text("From N = %.0f on the rmse of regression is at most %.3f of the best of the "
-                      "other three (1.03)",
-                      n_of(regressed), worst.regression));
+    auto percent = [](double x) { return text("%.2g %%", 100 * x); };
+    page.claim("variance holds", worst.variance < limit);
+    page.claim("bias holds", worst.ratio_bias < 2 * limit);
+    page.claim("exact holds", worst.exact);
+    page.claim("regression holds", worst.regression < 1.03);
+    page.set("spread", percent(spread));
+    page.set("variance", percent(worst.variance));
+    page.set("limit", percent(limit));
+    page.set("bias", percent(worst.ratio_bias));
+    page.set("regression", text("%.3f", worst.regression));
 }
 
-int study(bool quick) {
+int study(bool quick, const std::string& command) {
     const uint64_t trials = quick ? 512 : 32768;
-    const double spread = std::sqrt(2 / double(trials));
-    Report report(report_folder(quick), "estimators1d");
-    report.say(text(R"(# Four estimators of a shadowed integral
-
-The integral S of w V over [0, 1] is estimated from N uniform x, with the integral W of w known, by
-mean(w V) − β (mean(w) − W): β is 0 (stochastic), 1 (control variate), Σ w V / Σ w (ratio), or the slope
-of w V on w (regression; ratio below N = 8).  The first two are unbiased, the others consistent (Heitz,
-Hill, McGuire 2018, supplement; regression is ours).  Six pairs (w, V) have known moments, which predict
-variance and bias for large N.  There are %.0f trials, each N the start of the next, so that a measured
-variance spreads by %.1f %%.)",
-                    double(trials), 100 * spread));
+    Page page(report_folder(quick), "estimators1d");
     std::vector<Rows> all;
     Departures worst;
     Svg sheet(1075, 690);
@@ -260,12 +242,12 @@ variance spreads by %.1f %%.)",
         draw_functions(sheet, corner, c);
         draw_noise(sheet, {corner.x + 170, corner.y}, c, all.back());
     }
-    report.picture("estimators1d", sheet, "Noise of four estimators over the number of samples");
-    report.say("Dots are measured, lines predicted.  Noise that falls as 1/√N is a level line.");
-    tell_table(report, all);
-    tell_predictions(report, worst, spread);
-    report.say(made_by(quick ? "build/estimators1d --quick" : "build/estimators1d"));
-    return report.finish();
+    page.plot("estimators1d", sheet);
+    page.set("table", paper_table(page, all));
+    tell_predictions(page, worst, std::sqrt(2 / double(trials)));
+    page.set("trials", text("%.0f", double(trials)));
+    page.set("made", made_by(command));
+    return page.finish();
 }
 
 }  // namespace
@@ -275,5 +257,5 @@ int main(int argc, char** argv) {
     const Lab lab{"estimators1d",
                   "Measures four estimators of a shadowed integral in 1D.",
                   {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return study(quick); });
+    return lab_main(argc, argv, lab, [&] { return study(quick, command_of(argc, argv)); });
 }
