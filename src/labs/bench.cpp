@@ -1,12 +1,9 @@
-// labs/bench.cpp  5  how many rays a second?
+// labs/bench.cpp  5  rays a second of both trees and of Embree, and the time of a path
 //
 //   build/bench [--quick]
 //
-// Millions of rays a second, on one thread, of the wide tree, of the plain one, and of Embree (Wald
-// et al. 2014, ACM TOG 33(4)) where Debian's libembree-dev is installed.  All answer the same rays
-// in the same triangles, rounded to float, since Embree knows nothing else.  They take turns, two
-// at a time, so that a busy machine slows both, and the time is that of the processor.  Nothing
-// here fails for being slow.
+// On one thread.  All answer the same rays in the same triangles, rounded to float, since Embree
+// knows nothing else.  They take turns, two at a time, so that a busy machine slows both.
 #include "labs/bench_paths.h"
 #include "labs/bench_rays.h"
 #include "wide/wide_bvh.h"
@@ -201,105 +198,73 @@ Outcome race(std::vector<std::string>& cells, Runner<First>& first,
     return o;
 }
 
-Outcome race_with_embree(Report& report, const Case& c, const Effort& effort) {
+std::vector<std::string> race_with_embree(std::vector<Outcome>& all, const Case& c,
+                                          const Effort& effort) {
     Runner<Wide> ours(c, effort.builds);
     std::optional<Runner<Embree>> theirs;
     if (HAVE_EMBREE) theirs.emplace(c, effort.builds);
     std::vector<std::string> cells = {c.name};
-    const Outcome o = race(cells, ours, theirs, effort);
+    all.push_back(race(cells, ours, theirs, effort));
     const double n = double(c.shapes.size());
     cells.push_back(text("%.0f", bytes_of(ours.tracer) / n));
     cells.push_back(theirs ? text("%.0f", bytes_of(theirs->tracer) / n) : "–");
-    report.row(cells);
-    return o;
+    return cells;
 }
 
-Outcome race_of_trees(Report& report, const Case& c, const Effort& effort) {
+std::vector<std::string> race_of_trees(std::vector<Outcome>& all, const Case& c,
+                                       const Effort& effort) {
     Runner<Plain> plain(c, 1);
     std::optional<Runner<Wide>> wide(std::in_place, c, 1);
     std::vector<std::string> cells = {c.name};
-    const Outcome o = race(cells, plain, wide, effort);
-    if (o.differ > 0) throw SystemError("the trees' answers differ");
-    report.row(cells);
-    return o;
+    all.push_back(race(cells, plain, wide, effort));
+    if (all.back().differ > 0) throw SystemError("the trees' answers differ");
+    return cells;
 }
 
 // ---- The report ---------------------------------------------------------------------------------
 
-void tell_what(Report& report, const Effort& effort) {
-    report.say(text(R"(# Rays a second
-
-Our wide tree and Embree 3 (Wald et al. 2014) answer the same rays in the same triangles, one thread each, in
-turns: primary rays (closest hit from the camera, row by row), bounce rays (closest hit in cosine-weighted
-directions from there) and shadow rays (any hit on the way to random points of a quad), %d × %d
-camera rays a scene.  Ours are numbers of %zu bytes, Embree's of 4.  Speeds are millions of rays a second
-of the processor's time, medians of %d rounds; × is ours over Embree's, round by round, with the least
-and the greatest in brackets.)",
-                    effort.width, effort.width, sizeof(real), effort.rounds));
-    if (!HAVE_EMBREE)
-        report.say(
-            "Embree was not measured: its header `embree3/rtcore.h` is missing (Debian: "
-            "libembree-dev).");
-}
-
-// Geometric means over scenes.
-std::array<double, 3> mean_ratio(const std::vector<Outcome>& all) {
+// "1.1 primary, 0.9 bounce and 1.2 shadow rays": geometric means over scenes.
+std::string mean_ratio(const std::vector<Outcome>& all) {
     std::array<double, 3> mean = {1, 1, 1};
     for (const Outcome& o : all)
         for (Kind kind : kinds) mean[kind] *= std::pow(o.ratio[kind], 1 / double(all.size()));
-    return mean;
+    return text("%.2f primary, %.2f bounce and %.2f shadow rays", mean[primary], mean[bounce],
+                mean[shadow]);
 }
 
-void tell_verdict(Report& report, const std::vector<Outcome>& all) {
-    double differ = 0;
-    for (const Outcome& o : all) differ = std::max(differ, o.differ);
-    const auto mean = mean_ratio(all);
-    if (HAVE_EMBREE)
-        report.say(text(
-            R"(Over all scenes (geometric means) we trace %.2f times as many primary rays a second as Embree, %.2f
-times as many bounce rays and %.2f times as many shadow rays.  The two answer at most %.4f %% of the rays
-of a kind differently.)",
-            mean[primary], mean[bounce], mean[shadow], differ));
-    report.say(
-        R"(Half of the time goes into boxes and the choice of the next child, most of the rest into triangles, several
-at once; in large scenes these wait for memory, 72 bytes each where floats take 36 (`perf record` says how
-much).)");
-}
-
-void race_all_trees(Report& report, const std::vector<Case>& cases, const Effort& effort) {
-    report.say(
-        R"(## The plain tree
-
-The plain binary tree, which is read and taught, and the wide one: the same rays and the same answers, bit
-for bit.  × is the plain tree's speed over the wide one's.)");
-    report.head({"triangles", "primary, Mrays/s", "× wide", "bounce, Mrays/s", "× wide",
-                 "shadow, Mrays/s", "× wide", "build, s", "the wide one's"});
-    std::vector<Outcome> all;
-    for (const Case& c : cases) all.push_back(race_of_trees(report, c, effort));
-    report.end_of_table();
-    const auto mean = mean_ratio(all);
-    report.say(
-        text("Over all scenes: %.2f, %.2f and %.2f.", mean[primary], mean[bounce], mean[shadow]));
-}
-
-int run(bool quick) {
+int run(bool quick, const std::string& command) {
     const Effort effort = quick ? Effort{256, 3, 1, 0.01} : Effort{};
-    Report report(report_folder(quick), "bench");
-    tell_what(report, effort);
-    report.head({"triangles", "primary, Mrays/s", "× Embree", "bounce, Mrays/s", "× Embree",
-                 "shadow, Mrays/s", "× Embree", "build, s", "Embree's", "bytes a triangle",
-                 "Embree's"});
+    Page page(report_folder(quick), "bench");
     std::vector<Case> cases = {cornell(effort.width)};
     for (int level : {5, 7, 8}) cases.push_back(icosphere(level, effort.width));
     for (int n : {1000, 100000}) cases.push_back(soup(n, effort.width));
-    std::vector<Outcome> all;
-    for (const Case& c : cases) all.push_back(race_with_embree(report, c, effort));
-    report.end_of_table();
-    tell_verdict(report, all);
-    race_all_trees(report, cases, effort);
-    race_all_paths(report, effort.rounds);
-    report.say(made_by(quick ? "build/bench --quick" : "build/bench"));
-    return report.finish();
+    std::vector<Outcome> embree, trees;
+    std::vector<std::vector<std::string>> lines, plain;
+    for (const Case& c : cases) lines.push_back(race_with_embree(embree, c, effort));
+    for (const Case& c : cases) plain.push_back(race_of_trees(trees, c, effort));
+    double differ = 0;
+    for (const Outcome& o : embree) differ = std::max(differ, o.differ);
+    page.set("embree", table({"triangles", "primary, Mrays/s", "× Embree", "bounce, Mrays/s",
+                              "× Embree", "shadow, Mrays/s", "× Embree", "build, s", "Embree's",
+                              "bytes a triangle", "Embree's"},
+                             lines));
+    page.set("plain", table({"triangles", "primary, Mrays/s", "× wide", "bounce, Mrays/s", "× wide",
+                             "shadow, Mrays/s", "× wide", "build, s", "the wide one's"},
+                            plain));
+    page.set("paths", table({"scene", "tracer", "µs a path", "rays a path", "µs a ray",
+                             "time, × textbook's"},
+                            all_paths(effort.rounds)));
+    page.set("verdict",
+             HAVE_EMBREE
+                 ? text("It traces %s per ray of Embree.  At most %.4f %% of the answers differ.",
+                        mean_ratio(embree), differ)
+                 : "Embree was not measured: its header is missing (Debian: libembree-dev).");
+    page.set("verdict of the plain tree", mean_ratio(trees));
+    page.set("width", text("%d", effort.width));
+    page.set("rounds", text("%d", effort.rounds));
+    page.set("bytes", text("%zu", sizeof(real)));
+    page.set("made", made_by(command));
+    return page.finish();
 }
 
 }  // namespace
@@ -308,5 +273,5 @@ int main(int argc, char** argv) {
     bool quick = false;
     const Lab lab{
         "bench", "Measures rays a second, beside Embree if it is installed.", {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return run(quick); });
+    return lab_main(argc, argv, lab, [&] { return run(quick, command_of(argc, argv)); });
 }

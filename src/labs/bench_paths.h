@@ -1,6 +1,6 @@
 // labs/bench_paths.h  4  how long a path takes, beside the textbook's tracer, for bench
 #pragma once
-#include "labs/lab.h"
+#include "labs/page.h"
 #include "labs/textbook.h"
 #include "path/pathtracer.h"
 #include "path/start.h"
@@ -49,8 +49,9 @@ inline PathRunner path_runner(const std::string& name, const Scene& scene, const
     return {name, trace};
 }
 
-// Adds rows for one scene; the textbook's tracer knows but diffuse quadrangles.
-inline void race_paths(Report& report, const std::string& name, int rounds) {
+// Lines for one scene; the textbook's tracer knows but diffuse quadrangles.
+inline void race_paths(std::vector<std::vector<std::string>>& lines, const std::string& name,
+                       int rounds) {
     const Scene scene = read_scene("scenes/" + name + ".scene").scene;
     const Technique nee{Direction::bsdf, LightMode::nee, 0},
         mis{Direction::bsdf, LightMode::mis, 0};
@@ -74,21 +75,15 @@ inline void race_paths(Report& report, const std::string& name, int rounds) {
         for (size_t k = 0; k < r.seconds.size(); ++k)
             ratios.push_back(r.seconds[k] / all[0].seconds[k]);
         const double each = double(r.rays) / (paths * rounds), path = median(r.seconds) / paths;
-        report.row({name, r.name, text("%.2f", 1e6 * path), text("%.2f", each),
-                    text("%.3f", 1e6 * path / each), with_range(ratios, "%.2f")});
+        lines.push_back({name, r.name, text("%.2f", 1e6 * path), text("%.2f", each),
+                         text("%.3f", 1e6 * path / each), with_range(ratios, "%.2f")});
     }
 }
 
-inline void race_all_paths(Report& report, int rounds) {
-    report.say(text(R"(## A path
-
-A tracer as textbooks print it, in sixty lines (`src/labs/textbook.h`: quadrangles in a loop, independent
-numbers, next-event estimation), and ours, on one thread, in turns row by row of an image, %d rounds
-of %.0f samples a pixel.)",
-                    rounds, double(path_samples)));
-    report.head({"scene", "tracer", "µs a path", "rays a path", "µs a ray", "time, × textbook's"});
-    for (const char* name : {"cornell36", "cornell36b"}) race_paths(report, name, rounds);
-    report.end_of_table();
+inline std::vector<std::vector<std::string>> all_paths(int rounds) {
+    std::vector<std::vector<std::string>> lines;
+    for (const char* name : {"cornell36", "cornell36b"}) race_paths(lines, name, rounds);
+    return lines;
 }
 
 }  // namespace bench

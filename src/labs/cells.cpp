@@ -1,13 +1,8 @@
-// labs/cells.cpp  3  how many Voronoi cells a second?
+// labs/cells.cpp  4  Voronoi cells a second, beside CGAL's Delaunay triangulation
 //
 //   build/cells [--quick]
-//
-// Nanoseconds a site, on one thread, of the areas of all cells in a square, and of CGAL's Delaunay
-// triangulation of the same sites (range insertion, exact predicates, without its own checks) where
-// Debian's libcgal-dev is installed: that has no areas yet.  The two take turns, so that a busy
-// machine slows both, and the time is that of the processor.
 #include "base/rng.h"
-#include "labs/lab.h"
+#include "labs/page.h"
 #include "voronoi/voronoi.h"
 
 #if __has_include(<CGAL/Delaunay_triangulation_2.h>)
@@ -86,8 +81,8 @@ double time_of(Runner& runner, size_t sites) {
     return (processor_seconds() - start) / double(times * n) * 1e9;
 }
 
-// Adds the row of n sites; our nanoseconds a site.
-double race(Report& report, size_t n, size_t sites, size_t rounds) {
+// Adds the line of n sites; our nanoseconds a site.
+double race(std::vector<std::vector<std::string>>& lines, size_t n, size_t sites, size_t rounds) {
     Rng random{mix(n)};
     std::vector<Sites> sets;
     for (size_t k = 0; k < std::clamp<size_t>(sites / n, 1, 64); ++k)
@@ -101,8 +96,9 @@ double race(Report& report, size_t n, size_t sites, size_t rounds) {
         b.push_back(time_of(theirs, sites));
         ratio.push_back(a.back() / b.back());
     }
-    report.row({text("%zu", n), text("%.0f", median(a)), HAVE_CGAL ? text("%.0f", median(b)) : "–",
-                HAVE_CGAL ? with_range(ratio, "%.2f") : "–"});
+    lines.push_back({text("%zu", n), text("%.0f", median(a)),
+                     HAVE_CGAL ? text("%.0f", median(b)) : "–",
+                     HAVE_CGAL ? with_range(ratio, "%.2f") : "–"});
     return median(a);
 }
 
@@ -119,41 +115,32 @@ double exponent(Where where, const std::vector<double>& counts) {
     return slope(counts, seconds);
 }
 
-int run(bool quick) {
+int run(bool quick, const std::string& command) {
     const size_t rounds = quick ? 3 : 15, sites = quick ? 20000 : 200000;
-    Report report(report_folder(quick), "cells");
-    report.say(text(R"(# Voronoi cells a second
-
-The areas of all cells of random sites in a square are measured beside CGAL's Delaunay triangulation of
-the same sites (range insertion, exact predicates), which has no areas yet, on one thread.  CGAL's own
-checks are off, as in its release builds.  The two take turns; times are nanoseconds a site of the
-processor, medians of %zu rounds of some %zu sites, and ratios are taken round by round, with the least
-and the greatest in brackets.)",
-                    rounds, sites));
-    if (!HAVE_CGAL)
-        report.say(
-            "CGAL was not measured: its header `CGAL/Delaunay_triangulation_2.h` is missing "
-            "(Debian: libcgal-dev).");
-    report.head({"sites", "areas, ns a site", "CGAL, ns a site", "ratio"});
+    Page page(report_folder(quick), "cells");
+    std::vector<std::vector<std::string>> lines;
     double at_256 = 0, last = 0;
     for (size_t n : {64, 256, 1024, 4096, 65536}) {
-        last = race(report, n, sites, rounds);
+        last = race(lines, n, sites, rounds);
         if (n == 256) at_256 = last;
     }
-    report.end_of_table();
-    report.say(text(
-        R"(A site at 65536 costs %.2f times one at 256; other work on the machine takes the caches, and more.
-That is with vectors of %d numbers, and with fewer (`make cells ARCH=haswell`: 4, `ARCH=x86-64`: 2) it
-takes longer.  Sites along a line take time like n^%.2f, on one circle, whose cells all meet in its
-centre, like n^%.2f.  Half of the time of scattered sites goes into the walk from bisector to bisector
-(`perf record`).)",
-        last / at_256, cell::lanes,
-        exponent(on_a_line,
-                 quick ? std::vector<double>{1000, 4000} : std::vector<double>{2000, 8000, 32000}),
-        exponent(on_a_circle,
-                 quick ? std::vector<double>{500, 1000} : std::vector<double>{1000, 2000, 4000})));
-    report.say(made_by(quick ? "build/cells --quick" : "build/cells"));
-    return report.finish();
+    using Counts = std::vector<double>;
+    const double line = exponent(on_a_line, quick ? Counts{1000, 4000} : Counts{2000, 8000, 32000}),
+                 circle =
+                     exponent(on_a_circle, quick ? Counts{500, 1000} : Counts{1000, 2000, 4000});
+    page.set("verdict",
+             HAVE_CGAL ? text("%.0f ns per site of %s, %s times the time of CGAL.", last,
+                              lines.back()[0], lines.back()[3])
+                       : "CGAL was not measured: its headers are missing (Debian: libcgal-dev).");
+    page.set("table", table({"sites", "areas, ns per site", "CGAL, ns per site", "ratio"}, lines));
+    page.set("growth", text("%.2f", last / at_256));
+    page.set("line", text("%.2f", line));
+    page.set("circle", text("%.2f", circle));
+    page.set("lanes", text("%d", cell::lanes));
+    page.set("rounds", text("%zu", rounds));
+    page.set("sites", text("%zu", sites));
+    page.set("made", made_by(command));
+    return page.finish();
 }
 
 }  // namespace
@@ -163,5 +150,5 @@ int main(int argc, char** argv) {
     const Lab lab{"cells",
                   "Measures Voronoi cells a second, beside CGAL if it is installed.",
                   {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return run(quick); });
+    return lab_main(argc, argv, lab, [&] { return run(quick, command_of(argc, argv)); });
 }
