@@ -175,7 +175,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 survival: $(PENUMBRA)  ## memory a pixel, what checkpoints cost, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
 	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
-readme: build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
+readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
 	build/readme$(SUFFIX)
 
 clean:  ## remove build/ and out/

@@ -4,12 +4,7 @@
 //
 // What stands between <!-- options --> and <!-- /options --> of README.md becomes penumbra's table,
 // and so do the statements of a scene's file, and in reference/ the options of radiosity.
-#include "app/options.h"
-#if __has_include("radiosity/options.h")
-#include "radiosity/options.h"
-#endif
-#include "base/files.h"
-#include "base/program.h"
+#include "labs/lab.h"
 #include "world/grammar.h"
 
 namespace {
@@ -23,53 +18,69 @@ std::string with_table(const std::string& text, const std::string& name, const s
 }
 
 // One row: `word arguments`, and what is said about it.
-std::string row_markdown(Text word, Text arguments, Text meaning, Text otherwise) {
-    std::string code(word);
-    std::istringstream in{std::string(arguments)};
-    for (std::string part; in >> part;) code.append(" ").append(part);
+std::string row_markdown(const std::string& words, const std::string& meaning,
+                         const std::string& otherwise) {
+    std::string code;
+    for (const std::string& part : words_in(words)) code += (code.empty() ? "" : " ") + part;
     for (size_t i = 0; (i = code.find('|', i)) != code.npos; i += 2) code.insert(i, 1, '\\');
-    std::string row = "| `";
-    row.append(code).append("` | ").append(meaning).append(" | ");
-    return row.append(otherwise).append(otherwise.empty() ? "|\n" : " |\n");
+    return "| `" + code + "` | " + meaning + " | " + otherwise +
+           (otherwise.empty() ? "|\n" : " |\n");
 }
 
-std::string option_markdown(const OptionTable& options) {
-    std::string table = "| option | meaning | default |\n|---|---|---|\n";
-    for (const Option& row : options)
-        table += row_markdown(row.name, row.value, row.help, row.otherwise);
+// Of what a program prints of itself: an option begins two columns in, its meaning 24.
+std::string option_markdown(const std::string& help) {
+    std::string table = "| option | meaning | default |\n|---|---|---|\n", option, meaning;
+    auto end = [&] {
+        if (option.empty()) return;
+        const size_t at = meaning.rfind(" (default: ");
+        const bool has = at != meaning.npos && meaning.back() == ')';
+        table += row_markdown(option, meaning.substr(0, has ? at : meaning.npos),
+                              has ? meaning.substr(at + 11, meaning.size() - at - 12) : "");
+        option.clear();
+    };
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) {
+        const bool begins = line.starts_with("  -"),
+                   goes_on = line.starts_with(std::string(24, ' ')) && !option.empty();
+        if (!goes_on) end();
+        if (!begins && !goes_on) continue;
+        const size_t gap = begins ? line.find("  ", 2) : 0;
+        if (begins) option = line.substr(2, gap - 2), meaning = "";
+        for (const std::string& word : words_in(gap == line.npos ? "" : line.substr(gap)))
+            meaning += (meaning.empty() ? "" : " ") + word;
+    }
+    end();
     return table;
+}
+
+std::string help_of(const std::string& program) {
+    const std::string file = "out/help" + std::to_string(::getpid());
+    std::filesystem::create_directories("out");
+    execute({"/bin/sh", "-c", "exec \"$0\" --help >\"$1\"", program, file});
+    const std::string help = read_file(file);
+    std::filesystem::remove(file);
+    return help;
 }
 
 std::string grammar_markdown() {
     std::string table = "| statement | meaning | default |\n|---|---|---|\n";
     for (const Statement& row : grammar)
-        table += row_markdown(row.keyword, row.words, row.meaning, row.otherwise);
+        table += row_markdown(std::string(row.keyword) + " " + std::string(row.words),
+                              std::string(row.meaning), std::string(row.otherwise));
     return table;
-}
-
-int run(const std::vector<std::string>& words) {
-    const std::string usage = "usage: readme";
-    if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
-        std::printf(
-            "%s\nWrites the tables of options and statements of README.md and reference/.\n",
-            usage.c_str());
-        return 0;
-    }
-    if (!words.empty()) throw UserError(usage);
-    Options o;
-    const std::string options =
-        with_table(read_file("README.md"), "options", option_markdown(option_table(o)));
-    write_file("README.md", with_table(options, "statements", grammar_markdown()));
-#if __has_include("radiosity/options.h")
-    RadiosityOptions r;
-    const std::string page = "reference/radiosity-options.md";
-    write_file(page, with_table(read_file(page), "options", option_markdown(radiosity_table(r))));
-#endif
-    return 0;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) try { return finished(run({argv + 1, argv + argc})); } catch (...) {
-    return failed();
+int main(int argc, char** argv) {
+    const Lab lab{"readme", "Writes tables of options and statements into README.md.", {}};
+    return lab_main(argc, argv, lab, [&] {
+        const std::string penumbra = option_markdown(help_of(renderer_beside(lab, argv[0]))),
+                          page = "reference/radiosity-options.md";
+        const std::string options = with_table(read_file("README.md"), "options", penumbra);
+        write_file("README.md", with_table(options, "statements", grammar_markdown()));
+        const std::string radiosity = help_of(renderer_beside(lab, argv[0], "radiosity"));
+        write_file(page, with_table(read_file(page), "options", option_markdown(radiosity)));
+        return 0;
+    });
 }
