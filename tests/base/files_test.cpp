@@ -8,23 +8,12 @@
 
 #include <csignal>
 
+#include "base/complaint.h"
 #include "base/folder.h"
 #include "base/system_calls.h"
 
 namespace {
 
-// What is said if it cannot be done; "" if it can.
-template <class Error>
-std::string complaint(const auto& work) {
-    try {
-        work();
-        return "";
-    } catch (const Error& e) {
-        return e.what();
-    }
-}
-
-// The number of a process that has ended.
 pid_t dead_process() {
     const pid_t child = ::fork();
     if (child == 0) ::_exit(0);
@@ -33,8 +22,6 @@ pid_t dead_process() {
 }
 
 }  // namespace
-
-// ---- Reading ------------------------------------------------------------------------------------
 
 TEST_CASE("a file is read to its end; an error on the way is none") {
     const Folder folder;
@@ -90,8 +77,6 @@ TEST_CASE("only regular files are read: a pipe would keep us waiting, a device n
           }).ends_with(": is a directory"));
     CHECK(read_file("/dev/null", true) == "");
 }
-
-// ---- Writing ------------------------------------------------------------------------------------
 
 TEST_CASE("a link stays, and what it leads to is written; one that leads nowhere is replaced") {
     const Folder folder;
@@ -198,12 +183,8 @@ TEST_CASE("a file that cannot be written whole leaves the old one, and nothing b
         auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
         const rlimit limit{1000, old_limit.rlim_max};
         setrlimit(RLIMIT_FSIZE, &limit);
-        std::string error;
-        try {
-            write_file(path, std::string(size, 'x'));
-        } catch (const SystemError& e) {
-            error = e.what();
-        }
+        const std::string error =
+            complaint<SystemError>([&] { write_file(path, std::string(size, 'x')); });
         setrlimit(RLIMIT_FSIZE, &old_limit);
         std::signal(SIGXFSZ, old_handler);
         CHECK(error.starts_with(path + ": cannot write: "));

@@ -3,17 +3,9 @@
 
 #include <doctest/doctest.h>
 
-namespace {
+#include "base/complaint.h"
 
-// What is said about it; "" if it is accepted.
-std::string complaint(const auto& read) {
-    try {
-        read();
-        return "";
-    } catch (const UserError& e) {
-        return e.what();
-    }
-}
+namespace {
 
 std::string about_number(const std::string& text) {
     return complaint([&] { parse_number(text); });

@@ -9,6 +9,7 @@
 #include "base/moments.h"
 #include "base/rng.h"
 #include "oracle/expect.h"
+#include "path/samplers.h"
 
 namespace {
 
@@ -21,12 +22,6 @@ struct Points {
 Points random_points(Rng& rng) {
     const uint64_t a = rng.bits(), b = rng.bits();
     return {a, b};
-}
-
-// Of n equal parts of [0,1), the one of u.
-uint64_t part(uint64_t n, real u) {
-    REQUIRE((u >= 0 && u < 1));
-    return uint64_t(u * real(n));
 }
 
 // A nested uniform shuffle as it is defined: every aligned block of 2^j indices has a coin of its
@@ -165,7 +160,6 @@ TEST_CASE("single numbers: one in each of 2^k parts, for 2^k indices in a row") 
 
 TEST_CASE("points are uniform over the square, in their first digits and in their last") {
     Rng rng{seed_here()};
-    const std::vector<double> equal(256, 1 / 256.0);
     constexpr int digits = std::numeric_limits<real>::digits;
     const real last = real(uint64_t(1) << (digits - 4));  // leaves four digits
     auto fraction = [&](real u) { return u * last - std::floor(u * last); };
@@ -181,10 +175,10 @@ TEST_CASE("points are uniform over the square, in their first digits and in thei
             const real v = sobol_single(mirrored(i), a, b);
             ++single[part(16, v) * 16 + part(16, fraction(v))];
         }
-        EXPECT(oracle::expect_counts(single, equal).of("single"), 0.2);
-        EXPECT(oracle::expect_counts(cubes, std::vector<double>(512, 1 / 512.0)).of("cube"), 0.2);
-        EXPECT(oracle::expect_counts(first_digits, equal).of("first digits"), 0.2);
-        EXPECT(oracle::expect_counts(last_digits, equal).of("last digits"), 0.2);
+        EXPECT(expect_alike(single).of("single"), 0.2);
+        EXPECT(expect_alike(cubes).of("cube"), 0.2);
+        EXPECT(expect_alike(first_digits).of("first digits"), 0.2);
+        EXPECT(expect_alike(last_digits).of("last digits"), 0.2);
     }
 }
 
@@ -237,8 +231,7 @@ TEST_CASE("the first four points are any four that can be, each equally often") 
     }
     std::vector<uint64_t> seen;
     for (const auto& [code, times] : counts) seen.push_back(times);
-    EXPECT(oracle::expect_counts(seen, std::vector<double>(seen.size(), 1 / double(seen.size()))),
-           0.1);
+    EXPECT(expect_alike(seen), 0.1);
 }
 
 TEST_CASE("pairs of other words stand beside each other like pairs shuffled by coins") {

@@ -1,0 +1,20 @@
+// path/samplers.h  every sampler, and where its numbers lie
+#pragma once
+#include "oracle/expect.h"
+#include "path/sampler.h"
+
+inline constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
+                                           SamplerKind::halton, SamplerKind::sobol};
+inline constexpr const char* sampler_names[] = {"independent", "stratified", "halton", "sobol"};
+
+// Of n equal parts of [0,1), the one of u.
+inline uint64_t part(uint64_t n, real u) {
+    REQUIRE((u >= 0 && u < 1));
+    return uint64_t(u * real(n));
+}
+
+// That all are counted equally often.
+inline oracle::Verdict expect_alike(const std::vector<uint64_t>& counts) {
+    return oracle::expect_counts(counts,
+                                 std::vector<double>(counts.size(), 1 / double(counts.size())));
+}
