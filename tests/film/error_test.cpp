@@ -1,8 +1,10 @@
 // film/error_test.cpp  d^2 as films state it, beside what it is; its course, and when it is small
 #include "film/error.h"
 
+#include "base/about.h"
 #include "film/spread.h"
 #include "oracle/expect.h"
+#include "path/samplers.h"
 
 namespace {
 
@@ -13,8 +15,6 @@ double normal(Rng& rng) {
 }
 
 }  // namespace
-
-// ---- What images state --------------------------------------------------------------------------
 
 TEST_CASE("d^2 of an image, by hand") {
     // Replications of 1, 5, 3 (variance 4), of 2, 6, 1 (variance 7), of 7 alike; green twice, blue
@@ -30,28 +30,25 @@ TEST_CASE("d^2 of an image, by hand") {
     const ImageError e = error_of(film);
     CHECK(e.mean == std::array<double, 3>{13 / 3.0, 26 / 3.0, 1});
     const double red = (4 / 3.0 + 7 / 3.0) / 3;
-    CHECK(e.square[0] == doctest::Approx(red).epsilon(1e-15).scale(0));
-    CHECK(e.square[1] == doctest::Approx(4 * red).epsilon(1e-15).scale(0));
+    CHECK(e.square[0] == about(red, 1e-15));
+    CHECK(e.square[1] == about(4 * red, 1e-15));
     CHECK(e.square[2] == 0);
-    CHECK(e.d2() == doctest::Approx(5 * red / 3).epsilon(1e-15).scale(0));
+    CHECK(e.d2() == about(5 * red / 3, 1e-15));
     // Values 3, 3, 7.
     CHECK(e.norm == doctest::Approx(std::sqrt((5 * (9 + 9 + 49) + 3) / 9.0)).epsilon(1e-15));
     // E |f|^2 = |F|^2 + d^2.
     const double F = std::sqrt((5 * (9 + 9 + 49) + 3) / 9.0 - 5 * red / 3);
     CHECK(e.norm_of_truth() == doctest::Approx(F).epsilon(1e-15));
-    CHECK(e.d_rel() == doctest::Approx(std::sqrt(e.d2()) / F).epsilon(1e-15).scale(0));
+    CHECK(e.d_rel() == about(std::sqrt(e.d2()) / F, 1e-15));
     const double first = 4 / 3.0 * 5 / 3, second = 7 / 3.0 * 5 / 3;
-    CHECK(e.greatest == doctest::Approx(second / 3).epsilon(1e-15).scale(0));
+    CHECK(e.greatest == about(second / 3, 1e-15));
     // E[T]^2 = (K - 1) / (K + 1) E[T^2]: a half.
     const double spread = std::sqrt((first * first + second * second) / 2) / 3;
-    CHECK(e.spread == doctest::Approx(spread).epsilon(1e-15).scale(0));
+    CHECK(e.spread == about(spread, 1e-15));
     // Of sqrt(s / (N - s)) the slope is N / (2 sqrt(s) (N - s)^3/2).
     CHECK(e.standard_error() ==
-          doctest::Approx(e.spread * e.norm * e.norm / (2 * std::sqrt(e.d2()) * F * F * F))
-              .epsilon(1e-14)
-              .scale(0));
-    CHECK(e.d_rel_and_unseen() ==
-          doctest::Approx(std::sqrt(e.d2() + e.greatest) / F).epsilon(1e-15).scale(0));
+          about(e.spread * e.norm * e.norm / (2 * std::sqrt(e.d2()) * F * F * F), 1e-14));
+    CHECK(e.d_rel_and_unseen() == about(std::sqrt(e.d2() + e.greatest) / F, 1e-15));
 }
 
 TEST_CASE("the error of a film against brute force") {
@@ -74,9 +71,9 @@ TEST_CASE("the error of a film against brute force") {
         square += term, worst = std::max(worst, term);
     }
     const ImageError e = error_of(film);
-    CHECK(e.d2() == doctest::Approx(square / 561).epsilon(1e-12).scale(0));
-    CHECK(e.norm == doctest::Approx(std::sqrt(norm2 / 561)).epsilon(1e-12).scale(0));
-    CHECK(e.greatest == doctest::Approx(worst / 561).epsilon(1e-12).scale(0));
+    CHECK(e.d2() == about(square / 561, 1e-12));
+    CHECK(e.norm == about(std::sqrt(norm2 / 561), 1e-12));
+    CHECK(e.greatest == about(worst / 561, 1e-12));
     // A pixel of one replication is not measured, and the image's error is not known.
     ErrorTerms terms = terms_of(film);
     terms.add(Pixel{{film.sum.data(), 1}, 24, 24});
@@ -158,8 +155,6 @@ TEST_CASE("what float cannot hold: d_rel at radiance 2^-50 and 2^50 is that at 1
     }
 }
 
-// ---- Against replicates -------------------------------------------------------------------------
-
 TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
     // Grey pixels of normal numbers, 1 to 10 large.
     for (uint32_t sets : {2u, 3u, 8u}) {
@@ -188,8 +183,7 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
 }
 
 TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, samples that differ") {
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
-                             SamplerKind::sobol})
+    for (SamplerKind kind : samplers)
         for (uint64_t others : {4, 24})
             for (uint32_t sets : {0u, 3u}) {
                 Spread spread;
@@ -213,8 +207,6 @@ TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, sam
             }
 }
 
-// ---- How it falls, and when it is small enough --------------------------------------------------
-
 TEST_CASE("the course of an error: exponents of known laws, from 1/2 to 1") {
     CHECK(ErrorCourse().exponent() == 0.5);
     CHECK(ErrorCourse().cost_of(2) == 4);
@@ -224,8 +216,8 @@ TEST_CASE("the course of an error: exponents of known laws, from 1/2 to 1") {
         ErrorCourse course;
         for (uint64_t n : {16, 40, 90, 200}) course.add(n, 3 * std::pow(double(n), -gamma));
         CAPTURE(row.first);
-        CHECK(course.exponent() == doctest::Approx(found).epsilon(1e-12).scale(0));
-        CHECK(course.cost_of(4) == doctest::Approx(std::pow(4, 1 / found)).epsilon(1e-12).scale(0));
+        CHECK(course.exponent() == about(found, 1e-12));
+        CHECK(course.cost_of(4) == about(std::pow(4, 1 / found), 1e-12));
     }
 }
 

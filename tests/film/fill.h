@@ -1,5 +1,7 @@
 // film/fill.h  films filled as renders fill them, but by one thread
 #pragma once
+#include <cstring>
+
 #include "film/film.h"
 
 // Brings the blocks from `first` on, up to `last`, to n samples.
@@ -32,4 +34,16 @@ inline Radiance random_radiance(uint64_t seed, std::function<rgb(const PixelSamp
                        bits = hash(hash(hash(seed, pixel), s.set), s.i);
         return value(s, {to_unit(bits), to_unit(mix(bits))});
     };
+}
+
+// All that films hold, to the bit.
+template <class T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+inline bool same(const Film& a, const Film& b) {
+    return a.pilot == b.pilot && a.first_row == b.first_row && same(a.sets, b.sets) &&
+           same(a.sum, b.sum) && same(a.taken, b.taken) && same(a.spread, b.spread) &&
+           same(a.evidence, b.evidence);
 }

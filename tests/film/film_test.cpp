@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "base/cases.h"
 #include "base/moments.h"
 #include "base/rng.h"
 #include "film/fill.h"
@@ -29,16 +30,6 @@ Film film_of_kinds(Size size) {
     return f;
 }
 
-// All that a film holds, to the bit.
-bool same(const Film& a, const Film& b) {
-    auto equal = [](const auto& x, const auto& y) {
-        return x.size() == y.size() &&
-               (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);
-    };
-    return a.pilot == b.pilot && a.sets == b.sets && equal(a.sum, b.sum) && a.taken == b.taken &&
-           equal(a.spread, b.spread);
-}
-
 // Its middle is 1000 in one sample of 50, else 0; its neighbours 30 in one of 4; others up to 35.
 rgb rare_light(const PixelSample& s, vec2 u) {
     real v = 35 * u.x;
@@ -48,8 +39,6 @@ rgb rare_light(const PixelSample& s, vec2 u) {
 }
 
 }  // namespace
-
-// ---- Samples ------------------------------------------------------------------------------------
 
 TEST_CASE("blocks are all pixels, each once; a row and a small picture have work for all threads") {
     for (Size size : {Size{1, 1}, Size{16384, 1}, Size{33, 17}, Size{2048, 1024}, Size{1, 509}}) {
@@ -158,11 +147,7 @@ TEST_CASE("samples that no file can hold are counted, and the first of them told
             CHECK(of_block.count == (b == 0 ? 2 : b == 3 || b == 5 || b == 7 ? 1 : 0));
             all.add(of_block);
         }
-        CHECK(all.count == 5);
-        CHECK(all.first.i == 4);
-        CHECK(all.first.set == 1);
-        CHECK(all.first.y == 1);
-        CHECK(all.first.x == 2);
+        CHECK(said(all.count, all.first.i, all.first.set, all.first.y, all.first.x) == "5 4 1 1 2");
     }
     for (rgb v : {rgb{1, real(1e30) * real(1e10), 1}, rgb{1, 1, nan}, rgb{-infinity, 1, 1}})
         CHECK(!fits_float(v));  // the first is finite, but files hold float
@@ -194,7 +179,6 @@ TEST_CASE("blocks commit whole: one whose function throws stays as it was, and i
             fill_blocks(f, 100, 101, 9, [](const PixelSample&, Tally&) -> rgb { throw Failure(); }),
             Failure);
         CHECK(same(f, some));
-        // Each pixel is the mean of its own samples.
         size_t wrong = 0;
         const Image image = image_of(f);
         for (size_t i = 0; i < 1025; ++i) wrong += image.pixels[i][1] != (i < 400 ? 4 : 1);
@@ -205,8 +189,6 @@ TEST_CASE("blocks commit whole: one whose function throws stays as it was, and i
         CHECK(same(f, whole));
     }
 }
-
-// ---- What replications tell ---------------------------------------------------------------------
 
 TEST_CASE("a pixel without samples is no number; one replication has no variance") {
     Film f = make_film({2, 2}, 3);
@@ -269,15 +251,10 @@ TEST_CASE("until the others have samples a pixel is its pilot; then they are mea
     CHECK(f.least_taken() == 0);
     CHECK(f.sets == std::vector<uint16_t>{2});
     CHECK(image_of(f).at(0, 0)[1] == 7.5f);
-    CHECK(f.total() == 16);
-    CHECK(f.total(16) == 32);
-    CHECK(f.total(20) == 40);
+    CHECK(said(f.total(), f.total(16), f.total(20)) == "16 32 40");
     fill(f, 2, numbered);
-    for_each_pixel(f, [](size_t, const Pixel& p) {
-        CHECK(p.count() == 2);
-        CHECK(p.first == 16);
-        CHECK(p.others == 2);
-    });
+    for_each_pixel(
+        f, [](size_t, const Pixel& p) { CHECK(said(p.count(), p.first, p.others) == "2 16 2"); });
     CHECK(image_of(f).at(0, 0) == Colour{image_of(f).at(0, 0)[0], (7.5f + 0.5f) / 2, 0.5f});
     CHECK(f.total() == 18);
     CHECK(f.total(2) == 18);
@@ -286,8 +263,6 @@ TEST_CASE("until the others have samples a pixel is its pilot; then they are mea
     CHECK(image_of(f).at(0, 0)[1] == 9.5f);
     CHECK(f.total() == 40);
 }
-
-// ---- Replications where noise is ----------------------------------------------------------------
 
 TEST_CASE(
     "the spread of a pilot is the root of squared distances to its mean, all channels together") {
@@ -398,7 +373,6 @@ TEST_CASE("chosen replications keep the pilot, and fit into the memory that ther
         }
         CHECK(wrong == 0);
         CHECK(at == f.sum.size());
-        // What the film takes.
         const size_t bytes = f.sum.capacity() * sizeof f.sum[0] + f.sets.capacity() * 2 +
                              f.taken.capacity() * 8 + f.spread.capacity() * 4;
         CHECK(double(bytes) <= bytes_of(size, f.sets_per_pixel()));

@@ -2,18 +2,17 @@
 #include "film/image.h"
 
 #include <doctest/doctest.h>
-
 #include <sys/resource.h>
 
 #include <cstdlib>
 #include <map>
 
+#include "base/cases.h"
+#include "base/complaint.h"
 #include "base/folder.h"
 #include "base/system_calls.h"
 #include "film/png.h"
 #include "film/variegated.h"
-
-// ---- Images and files ---------------------------------------------------------------------------
 
 TEST_CASE("a fresh image is NaN everywhere, and (x, y) counts from the top left, row by row") {
     Image image(3, 2);
@@ -101,9 +100,7 @@ TEST_CASE("a PNG holds exposure times radiance in sRGB, from the top left, and n
                     same = same && png.at(x, y, c) ==
                                        int(to_byte(exposure * double(image.at(x, y)[size_t(c)])));
         CHECK(same);
-        CHECK(png.at(4, 0, 0) == 255);
-        CHECK(png.at(4, 0, 1) == 0);
-        CHECK(png.at(4, 0, 2) == 255);
+        CHECK(said(png.at(4, 0, 0), png.at(4, 0, 1), png.at(4, 0, 2)) == "255 0 255");
     }
 }
 
@@ -116,14 +113,7 @@ TEST_CASE("a PFM is written row by row, for which no second picture is needed") 
 }
 
 TEST_CASE("a picture that a PNG cannot hold is refused, before there is one") {
-    auto refusal = [](Size size) -> std::string {
-        try {
-            check_png("a.png", size);
-        } catch (const UserError& e) {
-            return e.what();
-        }
-        return "";
-    };
+    auto refusal = [](Size size) { return complaint([&] { check_png("a.png", size); }); };
     CHECK(refusal({16384, 16384}) == "");
     CHECK(refusal({16384, 16385}) ==
           "a.png: 16384x16385 pixels are too many for a PNG, which holds 268435456; "

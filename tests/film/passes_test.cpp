@@ -3,9 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "base/cases.h"
 #include "film/spread.h"
-
-// ---- When to stop -------------------------------------------------------------------------------
 
 TEST_CASE("passes end at the samples or the seconds asked for, and there is always a first") {
     auto passes = [](uint64_t spp, double seconds, double a_sample) {
@@ -64,16 +63,9 @@ TEST_CASE("passes are whole grids, and shrink when samples take longer") {
 
 TEST_CASE("the pilot is 8 samples in whole grids, or all that there are") {
     auto pilot = [](uint64_t samples, uint64_t period) { return Plan{{samples}, period}.pilot(); };
-    CHECK(pilot(0, 1) == 8);
-    CHECK(pilot(100, 1) == 8);
-    CHECK(pilot(5, 1) == 5);
-    CHECK(pilot(0, 18) == 18);
-    CHECK(pilot(36, 6) == 12);
-    CHECK(pilot(36, 36) == 36);
-    CHECK(pilot(10, 12) == 10);
+    CHECK(said(pilot(0, 1), pilot(100, 1), pilot(5, 1), pilot(0, 18)) == "8 8 5 18");
+    CHECK(said(pilot(36, 6), pilot(36, 36), pilot(10, 12)) == "12 36 10");
 }
-
-// ---- Ctrl-C, threads ----------------------------------------------------------------------------
 
 TEST_CASE("the first signal to end asks for an end, a second Ctrl-C kills; what is ignored stays") {
     struct sigaction before[5], caught{};
@@ -174,8 +166,6 @@ TEST_CASE("every piece of work is done once, by any number of threads") {
         }
 }
 
-// ---- The loop -----------------------------------------------------------------------------------
-
 namespace {
 
 const Radiance noisy = random_radiance(
@@ -209,12 +199,6 @@ Run run(Size size, uint32_t sets, const Plan& plan, const Radiance& L = noisy,
     return r;
 }
 
-bool same(const Film& a, const Film& b) {
-    return a.sets == b.sets && a.taken == b.taken && a.pilot == b.pilot &&
-           a.sum.size() == b.sum.size() &&
-           std::memcmp(a.sum.data(), b.sum.data(), a.sum.size() * sizeof a.sum[0]) == 0;
-}
-
 }  // namespace
 
 TEST_CASE("a film is the same by any number of threads and passes, and as filled by hand") {
@@ -244,9 +228,7 @@ TEST_CASE("passes end at whole grids, but for the last and the pilot of few samp
                              }).ends})
         for (uint64_t n : ends) CHECK(n % 6 == 0);
     const Run r = run({3, 3}, 0, {{20}, 6});
-    CHECK(r.film.pilot == 12);
-    CHECK(r.film.least_taken() == 20);
-    CHECK(r.film.samples(0, 0) == 20);
+    CHECK(said(r.film.pilot, r.film.least_taken(), r.film.samples(0, 0)) == "12 20 20");
 }
 
 TEST_CASE("no pass goes further than the one who watches allows; no further than it is: enough") {
@@ -402,7 +384,6 @@ TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, a
                 CHECK(double(loop.rays()) == film.total());
             }
             interrupted = 0;
-            // Its samples by hand.
             size_t wrong = 0;
             Tally tally;
             const Image image = image_of(film);
