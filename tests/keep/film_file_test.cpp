@@ -1,12 +1,9 @@
 // keep/film_file_test.cpp  .film files hold what was written, or are refused by name
 #include "keep/film_file.h"
 
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
-#include <functional>
-
+#include "base/complaint.h"
 #include "base/folder.h"
 #include "base/system_calls.h"
 
@@ -32,28 +29,14 @@ std::vector<T> read(FilmReader& film, size_t count) {
 
 // Why it is refused, without its name; "" if all of it is read.
 std::string refusal(const Folder& folder, const std::string& name) {
-    try {
-        FilmReader film(folder / name);
-        read<char>(film, film.left());
-        return "";
-    } catch (const UserError& e) {
-        const std::string why = e.what(), start = folder / name + ": ";
-        CHECK(why.starts_with(start));
-        return why.substr(std::min(why.size(), start.size()));
-    }
+    const std::string start = folder / name + ": ", why = complaint([&] {
+                                                        FilmReader film(folder / name);
+                                                        read<char>(film, film.left());
+                                                    });
+    CHECK((why.empty() || why.starts_with(start)));
+    return why.substr(std::min(why.size(), start.size()));
 }
 
-// What is said if films cannot be written, "" if they can.
-std::string failure(const std::function<void()>& work) {
-    try {
-        work();
-        return "";
-    } catch (const SystemError& e) {
-        return e.what();
-    }
-}
-
-// A folder with one film, and its bytes.
 struct Sample {
     Folder folder;
     std::string bytes;
@@ -195,24 +178,6 @@ TEST_CASE("what is no film, or of another version, is refused by name") {
     REQUIRE(::mkfifo((folder / "pipe.film").c_str(), 0600) == 0);
     CHECK(refusal(folder, "pipe.film") == "is no regular file");
     CHECK(refusal(folder, "") == "is a directory");
-}
-
-TEST_CASE("a film that cannot be written whole leaves the old one, and nothing beside it") {
-    const Sample film;
-    const std::string path = film.folder / "a.film";
-    rlimit old_limit;
-    REQUIRE(getrlimit(RLIMIT_FSIZE, &old_limit) == 0);
-    auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    for (size_t size : {size_t(2000), size_t(5000000)}) {  // seen at the end, and on the way
-        const rlimit limit{1000, old_limit.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-        const std::string why = failure([&] { write_film(path, {}, std::string(size, 'x')); });
-        setrlimit(RLIMIT_FSIZE, &old_limit);
-        CHECK(why == path + ": cannot write: File too large");
-    }
-    std::signal(SIGXFSZ, old_handler);
-    CHECK(film.folder.read("a.film") == film.bytes);
-    CHECK(film.folder.files() == 1);
 }
 
 TEST_CASE("a film is on the disk before it has its name, and its name is before it is written") {

@@ -1,6 +1,7 @@
 // keep/read_pfm_test.cpp  images come back from PFM files as they went in; other files are refused
 #include "keep/read_pfm.h"
 
+#include "base/complaint.h"
 #include "base/folder.h"
 #include "film/variegated.h"
 
@@ -10,12 +11,7 @@ namespace {
 const std::string one_pixel("PF\n1 1\n-1.0\n\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f", 24);
 
 bool refused(const std::string& path) {
-    try {
-        read_pfm(path);
-    } catch (const UserError& e) {
-        return std::string(e.what()).starts_with(path + ": ");
-    }
-    return false;
+    return complaint([&] { read_pfm(path); }).starts_with(path + ": ");
 }
 
 }  // namespace
