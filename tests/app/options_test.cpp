@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include "app/refused_words.h"
+#include "base/complaint.h"
+
 namespace {
 
 struct Parsed {
@@ -12,185 +15,107 @@ struct Parsed {
     explicit Parsed(const std::vector<std::string>& words) { parse_options(table, o, words); }
 };
 
-Options parse(std::vector<std::string> words) {
-    words.push_back("a.scene");
-    return Parsed(words).o;
-}
+Options parse(const std::string& line) { return Parsed(split(line + " a.scene")).o; }
 
-std::string complaint(const std::vector<std::string>& words) {
-    try {
-        const Parsed parsed(words);
-        return "";
-    } catch (const UserError& e) {
-        return e.what();
-    }
+std::string complaint_of(const std::string& line) {
+    return complaint([&] { Parsed(split(line)); });
 }
 
 }  // namespace
 
 TEST_CASE("every option sets what it is named after") {
-    const Options o = parse({"--spp",     "7",          "--time", "2.5",     "--depth",
-                             "3",         "--roulette", "0.5",    "--seed",  "18446744073709551615",
-                             "--threads", "5",          "--size", "30x20",   "--exposure",
-                             "0.5",       "--stats",    "s.json", "--pixel", "6,8",
-                             "--sample",  "9,4",        "-o",     "a.pfm",   "-o",
-                             "b.png",     "--sets",     "3",      "--quiet", "--error",
-                             "2.5%"});
-    CHECK(o.scene == "a.scene");
-    CHECK(o.spp == 7);
-    CHECK(o.seconds == 2.5);
-    CHECK(o.depth == 3);
-    CHECK(o.technique.roulette == real(0.5));
-    CHECK(o.seed == UINT64_MAX);
-    CHECK(o.threads == 5);
-    CHECK(o.size->width == 30);
-    CHECK(o.size->height == 20);
-    CHECK(o.exposure == 0.5);
-    CHECK(o.stats == "s.json");
-    CHECK(o.replay->x == 6);
-    CHECK(o.replay->y == 8);
-    CHECK(o.replay->i == 9);
-    CHECK(o.replay->set == 4);
+    const Options o = parse(
+        "--spp 7 --time 2.5 --depth 3 --roulette 0.5 --seed 18446744073709551615 --threads 5 "
+        "--size 30x20 --exposure 0.25 --stats s.json --pixel 6,8 --sample 9,4 -o a.pfm -o b.png "
+        "--sets 3 --quiet --error 2.5%");
+    CHECK(said(o.scene, o.spp, o.seconds, *o.depth) == "a.scene 7 2.5 3");
+    CHECK(said(o.technique.roulette, o.seed, o.threads) == "0.5 18446744073709551615 5");
+    CHECK(said(o.size->width, o.size->height, *o.exposure, o.stats) == "30 20 0.25 s.json");
+    CHECK(said(o.replay->x, o.replay->y, o.replay->i, o.replay->set) == "6 8 9 4");
     CHECK(o.outputs == std::vector<std::string>{"a.pfm", "b.png"});
-    CHECK(o.sets == 3);
-    CHECK(o.error == 0.025);
-    CHECK(o.quiet);
-    CHECK(!o.help);
+    CHECK(said(o.sets, o.error, o.quiet, o.help) == "3 0.025 yes no");
     CHECK(Parsed({"--help"}).o.help);
     CHECK(Parsed({"-h"}).o.help);
-    const Options band =
-        parse({"--rows", "3-17", "--keep", "a.film", "--sets", "4", "--sets", "adaptive"});
-    CHECK(band.keep == "a.film");
-    CHECK(band.rows->first == 3);
-    CHECK(band.rows->last == 17);
-    CHECK(band.rows->count() == 15);
-    CHECK(band.sets == 0);
-    CHECK(parse({"--sample", "9", "--pixel", "6,8"}).replay->i == 9);
-    CHECK(parse({"--sample", "9", "--pixel", "6,8"}).replay->set == 0);
-    CHECK(parse({"--pixel", "6,8"}).replay->i == 0);
+    const Options band = parse("--rows 3-17 --keep a.film --sets 4 --sets adaptive");
+    CHECK(said(band.keep, band.rows->first, band.rows->last, band.rows->count(), band.sets) ==
+          "a.film 3 17 15 0");
+    const Options first = parse("--pixel 6,8"), set = parse("--sample 9 --pixel 6,8");
+    CHECK(said(first.replay->i, set.replay->i, set.replay->set) == "0 9 0");
 }
 
 TEST_CASE("words of choices mean what they say") {
-    const std::pair<const char*, SamplerKind> samplers[] = {
-        {"independent", SamplerKind::independent},
-        {"stratified", SamplerKind::stratified},
-        {"halton", SamplerKind::halton},
-        {"sobol", SamplerKind::sobol}};
-    for (const auto& [word, kind] : samplers) CHECK(parse({"--sampler", word}).sampler == kind);
-    CHECK(parse({"--direction", "uniform"}).technique.direction == Direction::uniform);
-    CHECK(parse({"--direction", "bsdf"}).technique.direction == Direction::bsdf);
-    CHECK(parse({"--light", "none"}).technique.light == LightMode::none);
-    CHECK(parse({"--light", "nee"}).technique.light == LightMode::nee);
-    CHECK(parse({"--light", "mis"}).technique.light == LightMode::mis);
-    const std::pair<const char*, View> views[] = {{"radiance", View::radiance},
-                                                  {"normal", View::normal},
-                                                  {"depth", View::depth},
-                                                  {"albedo", View::albedo},
-                                                  {"bvh", View::bvh}};
-    for (const auto& [word, view] : views) CHECK(parse({"--view", word}).view == view);
+    for (const auto& [word, kind] : {std::pair{"independent", SamplerKind::independent},
+                                     {"stratified", SamplerKind::stratified},
+                                     {"halton", SamplerKind::halton},
+                                     {"sobol", SamplerKind::sobol}})
+        CHECK(parse("--sampler " + std::string(word)).sampler == kind);
+    CHECK(parse("--direction uniform").technique.direction == Direction::uniform);
+    CHECK(parse("--direction bsdf").technique.direction == Direction::bsdf);
+    CHECK(parse("--light none").technique.light == LightMode::none);
+    CHECK(parse("--light nee").technique.light == LightMode::nee);
+    CHECK(parse("--light mis").technique.light == LightMode::mis);
+    for (const auto& [word, view] : {std::pair{"radiance", View::radiance},
+                                     {"normal", View::normal},
+                                     {"depth", View::depth},
+                                     {"albedo", View::albedo},
+                                     {"bvh", View::bvh}})
+        CHECK(parse("--view " + std::string(word)).view == view);
 }
 
 TEST_CASE("without options: Sobol' samples, importance-sampled, MIS, adaptive") {
-    const Options o = parse({});
-    CHECK(o.spp == 0);  // the scene's
-    CHECK(o.seconds == 0);
-    CHECK(o.error == 0);
+    const Options o = parse("");
+    CHECK(said(o.spp, o.seconds, o.error, o.seed, o.sets) == "0 0 0 0 0");  // spp: the scene's
     CHECK(o.sampler == SamplerKind::sobol);
     CHECK(o.technique.direction == Direction::bsdf);
     CHECK(o.technique.light == LightMode::mis);
     CHECK(o.technique.roulette == real(0.25));
-    CHECK(o.seed == 0);
-    CHECK(o.sets == 0);
     CHECK(o.view == View::radiance);
     CHECK(o.threads >= 1);
-    CHECK(!o.depth);
-    CHECK(!o.size);
-    CHECK(!o.exposure);
-    CHECK(!o.rows);
-    CHECK(!o.replay);
+    CHECK_FALSE((o.depth || o.size || o.exposure || o.rows || o.replay));
     CHECK(o.keep.empty());
     CHECK(o.outputs.empty());
 }
 
 TEST_CASE("--spp is of all replications together, rounded up; two of them if they are chosen") {
-    auto each = [](const std::vector<std::string>& words, uint64_t N) {
-        return samples_each(parse(words), N);
-    };
-    CHECK(each({}, 64) == 32);
-    CHECK(each({}, 7) == 4);
-    CHECK(each({}, 1) == 1);
-    CHECK(each({}, 0) == 0);  // not known
-    CHECK(each({"--sets", "1"}, 7) == 7);
-    CHECK(each({"--sets", "3"}, 7) == 3);
-    CHECK(each({"--sets", "1024"}, 7) == 1);
+    auto each = [](const std::string& line, uint64_t N) { return samples_each(parse(line), N); };
+    CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: not known
+    CHECK(said(each("--sets 1", 7), each("--sets 3", 7), each("--sets 1024", 7)) == "7 3 1");
 }
 
 TEST_CASE("a word that cannot be meant is refused, by its name") {
-    const std::pair<std::vector<std::string>, std::string> rows[] = {
-        {{}, "no scene given (try --help)"},
-        {{""}, "the scene's name is empty"},
-        {{"a", "b"}, "two scenes: 'a' and 'b'"},
-        {{"a", "--time", "0"}, "--time: '0' is not positive"},
-        {{"a", "--spp", "0"}, "--spp: '0' is not a whole number"},
-        {{"a", "--spp", "1099511627777"}, "--spp: '1099511627777' is not a whole number"},
-        {{"a", "--spp"}, "--spp: needs a value"},
-        {{"a", "--sets", "0"}, "--sets: '0' is not a whole number"},
-        {{"a", "--sets", "1025"}, "--sets: '1025' is not a whole number"},
-        {{"a", "--depth", "1000001"}, "--depth: '1000001' is not a whole number"},
-        {{"a", "--threads", "1025"}, "--threads: '1025' is not a whole number"},
-        {{"a", "--rows", "7-6"}, "--rows: '7-6' ends before it begins"},
-        {{"a", "--rows", "7"}, "--rows: '7' is not FIRST-LAST"},
-        {{"a", "--rows", "7-"}, "--rows: '' is not a whole number"},
-        {{"a", "--keep", "a.pfm"}, "--keep: 'a.pfm' does not end in .film"},
-        {{"a", "-o", "a.jpg"}, "-o: 'a.jpg' ends neither in .png nor in .pfm"},
-        {{"a", "--size", "7"}, "--size: '7' is not WIDTHxHEIGHT"},
-        {{"a", "--pixel", "7"}, "--pixel: '7' is not X,Y"},
-        {{"a", "--pixel", "7,8,9"}, "--pixel: '8,9' is not a whole number"},
-        {{"a", "--pixel", "7,8", "--sample", "1,2,3"}, "--sample: '2,3' is not a whole number"},
-        {{"a", "--pixel", "7,8", "--sample", "1,"}, "--sample: '' is not a whole number"},
-        {{"a", "--pixel", "7,8", "--sample", "1,1025"}, "--sample: '1025' is not a whole number"},
-        {{"a", "--light", "mix"}, "--light: unknown value 'mix' (did you mean 'mis'?)"},
-        {{"a", "--light", "none|nee"}, "--light: unknown value 'none|nee'"},
-        {{"a", "--sp", "3"}, "unknown option '--sp' (did you mean '--spp'?)"},
-        {{"-x"}, "unknown option '-x' (did you mean '-o'?)"},
-        // Combinations.
-        {{"a", "--sample", "3"}, "--sample: goes with --pixel X,Y"},
-        {{"a", "--pixel", "1,2", "--keep", "a.film"}, "--keep: goes without --pixel"},
-        {{"a", "--error", "1%", "--sets", "1"}, "--error: needs --sets 2 or more, or adaptive"},
-        {{"a", "--rows", "1-2"}, "--rows: needs --keep F.film, which build/merge takes, or -o"}};
-    for (const auto& row : rows) {
-        const std::string told = complaint(row.first);
-        INFO(row.second);
-        INFO(told);
-        CHECK(told.starts_with(row.second));
+    std::vector<Refusal> rows = refused_words();
+    for (Refusal& row : rows) row.words = "a " + row.words;
+    rows.push_back({"", "no scene given (try --help)"});
+    rows.push_back({"''", "the scene's name is empty"});
+    rows.push_back({"a b", "two scenes: 'a' and 'b'"});
+    rows.push_back({"a --spp", "--spp: needs a value"});
+    rows.push_back({"-x", "unknown option '-x' (did you mean '-o'?)"});
+    for (const auto& [words, why] : rows) {
+        const std::string told = complaint_of(words);
+        INFO(words, "\nexpected: ", why, "\ntold:     ", told);
+        CHECK(told.starts_with(why));
     }
-    for (const char* none : {"0", "100%", "1", "-1%", "nan"})
-        CHECK(complaint({"a", "--error", none}).starts_with("--error: '"));
-    for (const std::vector<std::string>& fine : std::vector<std::vector<std::string>>{
-             {"a", "--error", "99%", "--sets", "2"},
-             {"a", "--error", "1%", "--spp", "9", "--time", "3"},
-             {"a", "--rows", "0-0", "-o", "a.pfm"},
-             {"a", "--rows", "1-2", "--keep", "a.film"},
-             {"a", "--spp", "1099511627776", "--sets", "1024", "--depth", "1000000"},
-             {"a", "--sample", "1099511627776,1024", "--pixel", "0,0"}})
-        CHECK(complaint(fine) == "");
+    for (const std::string& fine :
+         parts_of("--error 99% --sets 2;--error 1% --spp 9 --time 3;--rows 0-0 -o a.pfm;"
+                  "--rows 1-2 --keep a.film;--spp 1099511627776 --sets 1024 --depth 1000000;"
+                  "--sample 1099511627776,1024 --pixel 0,0"))
+        CHECK(complaint_of("a " + fine) == "");
 }
 
 TEST_CASE("after -- there are no options") {
-    Options o;
-    OptionTable table = option_table(o);
-    parse_options(table, o, {"--spp", "2", "--", "--spp"});
-    CHECK(o.spp == 2);
-    CHECK(o.scene == "--spp");
-    CHECK(complaint({"--", "-h", "a.scene"}).find("two scenes") != std::string::npos);
+    const Options o = Parsed({"--spp", "2", "--", "--spp"}).o;
+    CHECK(said(o.spp, o.scene) == "2 --spp");
+    CHECK(complaint_of("-- -h a.scene").starts_with("two scenes"));
 }
 
 TEST_CASE("the statistics begin with what was asked for, one by one") {
-    auto stats = [](std::vector<std::string> words) {
-        words.push_back("a \"b\"\\");
-        return asked_for(Parsed(words).table, words.back(), {9, 5}).text();
+    auto stats = [](const std::string& line) {
+        const std::string name = "a \"b\"\\";
+        std::vector<std::string> words = split(line);
+        words.push_back(name);
+        return asked_for(Parsed(words).table, name, {9, 5}).text();
     };
-    CHECK(stats({"--threads", "3"}) == R"({
+    CHECK(stats("--threads 3") == R"({
   "scene": "a \"b\"\\",
   "width": 9,
   "height": 5,
@@ -206,17 +131,9 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
   "threads": 3
 }
 )");
-    CHECK(stats({"--threads",   "5",
-                 "--error",     "12.5%",
-                 "--sets",      "12",
-                 "--sampler",   "halton",
-                 "--direction", "uniform",
-                 "--light",     "nee",
-                 "--roulette",  "0.5",
-                 "--view",      "bvh",
-                 "--rows",      "4-7",
-                 "-o",          "a.pfm",
-                 "--seed",      "18446744073709551615"}) == R"({
+    CHECK(stats("--threads 5 --error 12.5% --sets 12 --sampler halton --direction uniform "
+                "--light nee --roulette 0.5 --view bvh --rows 4-7 -o a.pfm "
+                "--seed 18446744073709551615") == R"({
   "scene": "a \"b\"\\",
   "width": 9,
   "height": 5,

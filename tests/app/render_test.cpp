@@ -2,8 +2,11 @@
 #include "app/render.h"
 
 #include "app/replay.h"
+#include "base/cases.h"
+#include "base/complaint.h"
 #include "film/spread.h"
 #include "oracle/expect.h"
+#include "path/samplers.h"
 #include "path/scenes.h"
 
 namespace {
@@ -34,51 +37,54 @@ struct Work {
           pattern(make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples())) {
         plan.period = pattern.period();
     }
+    Radiance radiance(const Options& o, const Scene& scene) const {
+        return [&, t = o.technique](const PixelSample& s, Tally& tally) {
+            const Start at = start(scene, pattern, s);
+            return Li(scene, t, at.ray, at.sampler, [&](const Segment&, const Step& e) {
+                tally.rays += 1 + (e.direct.light != nullptr);
+            });
+        };
+    }
 };
 
-// As the program does.
 Picture rendered(const Options& o, const Scene& scene) {
     const Work j(o, scene);
-    const Radiance L = [&](const PixelSample& s, Tally& tally) {
-        const Start at = start(scene, j.pattern, s);
-        return Li(scene, o.technique, at.ray, at.sampler, [&](const Segment&, const Step& e) {
-            tally.rays += 1 + (e.direct.light != nullptr);
-        });
-    };
-    return render(o, j.plan, L);
+    return render(o, j.plan, j.radiance(o, scene));
 }
 
-constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
-                                    SamplerKind::halton, SamplerKind::sobol};
+const Scene& unequal_picture() {
+    static const Scene scene = small(unequal, {24, 12});
+    return scene;
+}
 
 }  // namespace
 
 TEST_CASE("a plan is what options and scene ask for") {
-    Scene scene = small(unequal, {24, 12});
+    Scene scene = unequal_picture();
     scene.samples = 7;
     Options o = quick(SamplerKind::sobol, 0);
-    auto samples = [&] { return plan_of(o, scene).target.samples; };
-    CHECK(samples() == 4);  // the scene's
-    CHECK(plan_of(o, scene).size.height == 12);
-    CHECK(plan_of(o, scene).first_row == 0);
-    CHECK(plan_of(o, scene).sets == 0);
+    auto target = [&] {
+        const Plan plan = plan_of(o, scene);
+        return said(plan.target.samples, plan.target.seconds, plan.target.error);
+    };
+    auto picture = [&] {
+        const Plan plan = plan_of(o, scene);
+        return said(plan.size.width, plan.size.height, plan.first_row, plan.sets);
+    };
+    CHECK(target() == "4 0 0");  // the scene's
+    CHECK(picture() == "24 12 0 0");
     o.seconds = 3;
-    CHECK(samples() == 0);
-    CHECK(plan_of(o, scene).target.seconds == 3);
+    CHECK(target() == "0 3 0");
     o.seconds = 0, o.error = 0.1;
-    CHECK(samples() == 0);
-    CHECK(plan_of(o, scene).target.error == 0.1);
+    CHECK(target() == "0 0 0.1");
     o.spp = 9;
-    CHECK(samples() == 5);
+    CHECK(target() == "5 0 0.1");
     CHECK(plan_of(o, scene).known_samples() == 0);  // its error may end it
     o.error = 0;
     CHECK(plan_of(o, scene).known_samples() == 5);
     o.sets = 4, o.rows = {3, 6};
-    CHECK(samples() == 3);
-    CHECK(plan_of(o, scene).sets == 4);
-    CHECK(plan_of(o, scene).size.height == 4);
-    CHECK(plan_of(o, scene).size.width == 24);
-    CHECK(plan_of(o, scene).first_row == 3);
+    CHECK(target() == "3 0 0");
+    CHECK(picture() == "24 4 3 4");
     for (uint32_t sets : {0u, 1u, 2u}) {
         o.spp = 1, o.sets = sets;
         CHECK(plan_of(o, scene).sets == std::max(1u, sets));  // one sample has no second
@@ -126,16 +132,17 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
 }
 
 TEST_CASE("images of few samples: one has no error, two and three have two replications") {
-    const Scene scene = small(unequal, {24, 12});
+    const Scene& scene = unequal_picture();
     for (uint64_t spp : {1, 2, 3, 4}) {
         const Picture p = rendered(quick(SamplerKind::sobol, spp), scene);
         CAPTURE(spp);
         CHECK(first_non_finite(p.image) == std::nullopt);
         CHECK(std::isnan(p.run.error.d_rel()) == (spp == 1));
-        if (spp < 3) CHECK(p.run.spp == double(spp));
-        if (spp < 3) CHECK(p.run.sets == double(spp));
-        if (spp >= 3) CHECK(p.run.sets > 2);
-        if (spp >= 3) CHECK(p.run.spp == 2 * p.run.sets);
+        if (spp < 3)
+            CHECK(said(p.run.spp, p.run.sets) == said(spp, spp));
+        else
+            CHECK(p.run.sets > 2);
+        CHECK((spp < 3 || p.run.spp == 2 * p.run.sets));
         CHECK(p.run.stopped_by == "samples");
         CHECK(p.run.rays > 0);
     }
@@ -150,7 +157,7 @@ TEST_CASE("images of few samples: one has no error, two and three have two repli
 }
 
 TEST_CASE("the stated error is the spread from seed to seed; replications do not move the mean") {
-    const Scene scene = small(unequal, {24, 12});
+    const Scene& scene = unequal_picture();
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         Moments of_two;
         for (uint32_t sets : {2u, 0u}) {
@@ -182,7 +189,7 @@ TEST_CASE("the stated error is the spread from seed to seed; replications do not
 
 TEST_CASE(
     "one replication is the first alone; rows are those of the picture; threads do not matter") {
-    const Scene scene = small(unequal, {24, 12});
+    const Scene& scene = unequal_picture();
     for (SamplerKind kind : samplers)
         for (uint32_t sets : {0u, 1u, 3u}) {
             Options o = quick(kind, 36);
@@ -216,10 +223,8 @@ TEST_CASE(
         }
 }
 
-// ---- Until the error is small enough ------------------------------------------------------------
-
 TEST_CASE("--error: an image ends at the first check that finds its error small enough") {
-    const Scene scene = small(unequal, {24, 12});
+    const Scene& scene = unequal_picture();
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::sobol})
         for (double E : {0.6, 0.1, 0.04}) {
             Options o = quick(kind, 0);
@@ -231,10 +236,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             // By the rule itself, applied to a film of each number of samples that is checked.
             const Work j(o, scene);
             const uint64_t period = j.pattern.period(), first = (8 + period - 1) / period * period;
-            const Radiance L = [&](const PixelSample& s, Tally&) {
-                const Start at = start(scene, j.pattern, s);
-                return Li(scene, o.technique, at.ray, at.sampler);
-            };
+            const Radiance L = j.radiance(o, scene);
             Film film = make_film(scene.size, 0);
             fill(film, Plan{j.plan.target, period}.pilot(), L);
             choose_sets(film, INFINITY);
@@ -254,7 +256,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
 }
 
 TEST_CASE("--error with limits: whichever comes first ends the image, and is said") {
-    const Scene scene = small(unequal, {24, 12});
+    const Scene& scene = unequal_picture();
     Options o = quick(SamplerKind::sobol, 40);
     CHECK(rendered(o, scene).run.stopped_by == "samples");
     o.error = 1e-6;
@@ -281,17 +283,17 @@ TEST_CASE("--error with limits: whichever comes first ends the image, and is sai
 TEST_CASE("of a black image no error is known: light may have been missed") {
     Options o = quick(SamplerKind::sobol, 0);
     o.error = 0.01;
-    const Scene turned =
-        small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nquad -1 -1 0  0 2 0  2 0 0  l\n", {9, 9});
     o.spp = 40;
-    const Picture unlit = rendered(o, turned);
+    const Picture unlit = rendered(
+        o,
+        small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nquad -1 -1 0  0 2 0  2 0 0  l\n", {9, 9}));
     CHECK(unlit.run.stopped_by == "samples");
     CHECK(unlit.run.error.norm == 0);
     CHECK(std::isnan(unlit.run.error.d_rel()));
 }
 
 TEST_CASE("what half the error costs follows from its course, of samples that end as they do") {
-    const Scene scene = small(unequal, {24, 12});
+    const Scene& scene = unequal_picture();
     const Picture independent = rendered(quick(SamplerKind::independent, 256), scene),
                   sobol = rendered(quick(SamplerKind::sobol, 256), scene);
     CHECK(independent.run.exponent_of_cost > 1.5);
@@ -301,7 +303,7 @@ TEST_CASE("what half the error costs follows from its course, of samples that en
 }
 
 TEST_CASE("an interrupted image says so, and is of the samples that it has") {
-    const Scene scene = small(unequal, {24, 12});
+    const Scene& scene = unequal_picture();
     Options o = quick(SamplerKind::sobol, 1 << 20);
     o.error = 1e-6;
     std::jthread user([] {
@@ -337,17 +339,13 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
 }
 
 TEST_CASE("a sample that is not finite is an error that tells how to replay it") {
-    auto why = [](PixelSample bad, const Plan& plan) -> std::string {
-        Options o = quick(SamplerKind::independent, 0);
-        try {
-            render(o, plan, [&](const PixelSample& s, Tally&) {
+    auto why = [](PixelSample bad, const Plan& plan) {
+        return complaint<SystemError>([&] {
+            render(quick(SamplerKind::independent, 0), plan, [&](const PixelSample& s, Tally&) {
                 const bool is = s.x == bad.x && s.y == bad.y && s.i >= bad.i && s.set == bad.set;
                 return rgb{1, is ? real(NAN) : 1, 1};
             });
-        } catch (const SystemError& e) {
-            return e.what();
-        }
-        return "";
+        });
     };
     Plan plan{{3}, 1, 1, INFINITY, {8, 4}};
     plan.sets = 2;
@@ -368,14 +366,7 @@ TEST_CASE("a film that the machine does not hold is refused before it is made") 
     Plan plan{{4}, 1, 1, bytes_of_machine(), size};
     plan.sets = 1024;
     const Radiance L = [](const PixelSample&, Tally&) { return rgb{}; };
-    auto refused = [&] {
-        try {
-            render(o, plan, L);
-            return std::string();
-        } catch (const UserError& e) {
-            return std::string(e.what());
-        }
-    };
+    auto refused = [&] { return complaint<UserError>([&] { render(o, plan, L); }); };
     const std::string why = refused();
     CHECK(why.starts_with("16384x" + std::to_string(size.height) + " pixels do not fit into the "));
     CHECK(why.ends_with(" GB of this machine: render fewer rows at a time (--rows)"));
