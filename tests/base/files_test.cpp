@@ -14,6 +14,10 @@
 
 namespace {
 
+std::string unread(const std::string& path, bool any_kind = false) {
+    return complaint([&] { read_file(path, any_kind); });
+}
+
 pid_t dead_process() {
     const pid_t child = ::fork();
     if (child == 0) ::_exit(0);
@@ -33,20 +37,15 @@ TEST_CASE("a file is read to its end; an error on the way is none") {
     // Nothing is mapped at 0.
     CHECK(complaint<SystemError>([] { read_file("/proc/self/mem"); }) ==
           "/proc/self/mem: cannot read: Input/output error");
-    CHECK(complaint<UserError>([&] {
-              read_file(folder / "b");
-          }).ends_with("/b: cannot open: No such file or directory"));
+    CHECK(unread(folder / "b").ends_with("/b: cannot open: No such file or directory"));
 }
 
 TEST_CASE("what does not end is refused once it is longer than files may be") {
     const Folder folder;
     folder.write("long", "");
     fs::resize_file(folder / "long", (uint64_t(1) << 30) + 1);
-    CHECK(complaint<UserError>([&] {
-              read_file(folder / "long");
-          }).ends_with("/long: is longer than 1073741824 bytes"));
-    CHECK(complaint<UserError>([] { read_file("/dev/zero", true); }) ==
-          "/dev/zero: is longer than 1073741824 bytes");
+    CHECK(unread(folder / "long").ends_with("/long: is longer than 1073741824 bytes"));
+    CHECK(unread("/dev/zero", true) == "/dev/zero: is longer than 1073741824 bytes");
     fs::resize_file(folder / "long", uint64_t(1) << 30);
     CHECK(read_file(folder / "long").size() == uint64_t(1) << 30);
 }
@@ -68,13 +67,9 @@ TEST_CASE("bytes are read in pieces, fewer at the end") {
 TEST_CASE("only regular files are read: a pipe would keep us waiting, a device never end") {
     const Folder folder;
     REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
-    CHECK(complaint<UserError>([&] {
-              read_file(folder / "pipe");
-          }).ends_with("/pipe: is no regular file"));
-    CHECK(complaint<UserError>([] { read_file("/dev/zero"); }) == "/dev/zero: is no regular file");
-    CHECK(complaint<UserError>([&] {
-              read_file(folder.path.string(), true);
-          }).ends_with(": is a directory"));
+    CHECK(unread(folder / "pipe").ends_with("/pipe: is no regular file"));
+    CHECK(unread("/dev/zero") == "/dev/zero: is no regular file");
+    CHECK(unread(folder.path.string(), true).ends_with(": is a directory"));
     CHECK(read_file("/dev/null", true) == "");
 }
 

@@ -32,8 +32,8 @@ oracle::Estimate image_mean(const Scene& scene, const Technique& t, uint64_t see
     return e;
 }
 
-constexpr Direction uniform = Direction::uniform, bsdf = Direction::bsdf;
-constexpr LightMode none = LightMode::none, nee = LightMode::nee, mis = LightMode::mis;
+using enum Direction;
+using enum LightMode;
 
 struct Named : Technique {
     const char* name;
@@ -93,6 +93,18 @@ Purpose purpose(Draw what, bool glossy) {
             return {of_direction | (glossy ? of_end : 0), of_direction};
         default:
             return glossy ? Purpose{0, 0} : Purpose{of_end, of_end};
+    }
+}
+
+// That each technique finds the mean that `reference` finds; `chance` times as many samples where
+// light is found by chance alone, in rare large parts.
+void expect_same_mean(const Scene& scene, const Technique& reference, uint64_t reference_spp,
+                      uint64_t spp, uint64_t chance, double largest) {
+    const oracle::Estimate truth = image_mean(scene, reference, ~seed_here(), reference_spp);
+    uint64_t seed = seed_here();
+    for (const Named& t : techniques) {
+        const uint64_t n = t.light == none ? chance * spp : spp;
+        EXPECT(oracle::expect_equal(image_mean(scene, t, seed++, n), truth).of(t.name), largest);
     }
 }
 
@@ -354,31 +366,17 @@ sphere 1 1 0  0.7  lamp
 }
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {
-    const Scene scene = scene_of(unequal);
-    const oracle::Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
-    uint64_t seed = seed_here();
-    for (const Named& t : techniques) {
-        const oracle::Estimate mean = image_mean(scene, t, seed++, 150);
-        EXPECT(oracle::expect_equal(mean, reference).of(t.name), 0.06);
-    }
+    expect_same_mean(scene_of(unequal), techniques[0], 300, 150, 1, 0.06);
 }
 
+// Next-event estimation has no answer to a caustic seen in a mirror but the same one: all three
+// count light that arrives by way of mirror or glass when they hit it.
 TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustics") {
-    const Scene scene = scene_of(shiny);
-    const oracle::Estimate reference = image_mean(scene, techniques[0], ~seed_here(), 300);
-    uint64_t seed = seed_here();
-    for (const Named& t : techniques) {
-        // Next-event estimation has no answer to a caustic seen in a mirror but the same one:
-        // all three count light that arrives by way of mirror or glass when they hit it.
-        // Light found by chance comes in rare large parts: more samples, or one decides the error.
-        const uint64_t spp = t.light == none ? 920 : 230;
-        const oracle::Estimate mean = image_mean(scene, t, seed++, spp);
-        EXPECT(oracle::expect_equal(mean, reference).of(t.name), 0.06);
-    }
+    expect_same_mean(scene_of(shiny), techniques[0], 300, 230, 4, 0.06);
 }
 
 TEST_CASE("every way finds the same inside a two-sided sphere light, and by a lobe of exponent 0") {
-    const char* const shell = R"(
+    const Scene scene = scene_of(R"(
 size 32 16
 camera 0 0 5  0 0 0  20
 depth 3
@@ -391,14 +389,8 @@ sphere 0 0 0  2  shell
 sphere -0.4 0 0  0.3  grey
 sphere 0.4 0 0  0.3  lobe
 sphere 0 0.9 0  0.2  lamp
-)";
-    const Scene scene = scene_of(shell);
-    const oracle::Estimate reference = image_mean(scene, techniques[5], ~seed_here(), 375);
-    uint64_t seed = seed_here();
-    for (const Named& t : techniques) {
-        const oracle::Estimate mean = image_mean(scene, t, seed++, 100);
-        EXPECT(oracle::expect_equal(mean, reference).of(t.name), 0.007);
-    }
+)");
+    expect_same_mean(scene, techniques[5], 375, 100, 1, 0.007);
 }
 
 TEST_CASE(
