@@ -1,24 +1,20 @@
 // whole/compare_test.cpp  compare by hand, and how programs run others
+#include "base/complaint.h"
 #include "base/program.h"
+#include "film/png.h"
 #include "keep/keep.h"
 #include "labs/execute.h"
 #include "whole/process.h"
-
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#include <stb/stb_image.h>
 
 namespace {
 
 struct Comparison {
     double d = -1, d_rel = -1, ratio = -1, largest = -1;
     int x = -1, y = -1;
-    bool found = false;
 };
 
-Comparison compare(const Folder& folder, const Words& words) {
-    const Outcome o = run(folder, "compare", words);
+Comparison compare(const Folder& folder, const std::string& words) {
+    const Outcome o = run(folder, "compare " + words);
     INFO(o.err);
     CHECK(o.status == 0);
     CHECK(o.err == "");
@@ -27,7 +23,8 @@ Comparison compare(const Folder& folder, const Words& words) {
     const int read = std::sscanf(
         o.out.c_str(), "d: %lf\nd_rel: %lf\nratio of means: %lf\nlargest error: %lf at %d,%d\n%n",
         &c.d, &c.d_rel, &c.ratio, &c.largest, &c.x, &c.y, &end);
-    c.found = read == 6 && size_t(end) == o.out.size();
+    const bool found = read == 6 && size_t(end) == o.out.size();
+    REQUIRE(found);
     return c;
 }
 
@@ -58,26 +55,18 @@ TEST_CASE("compare: d, d_rel, ratio of means, largest error and where, as by han
     folder.write("f.pfm", pfm(2, 2, f));
     folder.write("g.pfm", pfm(2, 2, g));
     // Sums: 78 and 75, squares of f: 650, of g: 623, squares of the errors: 29.
-    const Comparison c = compare(folder, {"f.pfm", "g.pfm"});
-    REQUIRE(c.found);
+    const Comparison c = compare(folder, "f.pfm g.pfm"), back = compare(folder, "g.pfm f.pfm"),
+                     same = compare(folder, "f.pfm f.pfm");
     CHECK(c.d == doctest::Approx(std::sqrt(29 / 12.0)).epsilon(1e-5));
     CHECK(c.d_rel == doctest::Approx(std::sqrt(29 / 650.0)).epsilon(1e-5));
     CHECK(c.ratio == doctest::Approx(75 / 78.0).epsilon(1e-5));
-    CHECK(c.largest == 5);
-    CHECK(c.x == 0);
-    CHECK(c.y == 1);
-    const Comparison back = compare(folder, {"g.pfm", "f.pfm"});  // the other is the reference
-    REQUIRE(back.found);
+    CHECK(said(c.largest, c.x, c.y) == "5 0 1");
+    // The other is the reference.
     CHECK(back.d == c.d);
     CHECK(back.d_rel == doctest::Approx(std::sqrt(29 / 623.0)).epsilon(1e-5));
     CHECK(back.ratio == doctest::Approx(78 / 75.0).epsilon(1e-5));
-    const Comparison same = compare(folder, {"f.pfm", "f.pfm"});
-    REQUIRE(same.found);
-    CHECK(same.d == 0);
-    CHECK(same.d_rel == 0);
-    CHECK(same.ratio == 1);
-    CHECK(same.largest == 0);
-    CHECK(folder.all().size() == 2);
+    CHECK(said(same.d, same.d_rel, same.ratio, same.largest) == "0 0 1 0");
+    CHECK(folder.files() == 2);
 }
 
 TEST_CASE(
@@ -91,21 +80,16 @@ TEST_CASE(
     folder.write("f.pfm", pfm(3, 2, f));
     folder.write("g.pfm", pfm(3, 2, g));
     for (bool differ : {true, false}) {
-        compare(folder, {"f.pfm", "--heatmap", "map.png", differ ? "g.pfm" : "f.pfm"});
-        const std::string png = folder.read("map.png");
-        int w = 0, h = 0, n = 0;
-        stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()),
-                                                int(png.size()), &w, &h, &n, 3);
-        REQUIRE(pixels != nullptr);
-        REQUIRE(w == 3);
-        REQUIRE(h == 2);
+        compare(folder, std::string("f.pfm --heatmap map.png ") + (differ ? "g.pfm" : "f.pfm"));
+        const Decoded map = decode_png(folder.read("map.png"));
+        REQUIRE(map.width == 3);
+        REQUIRE(map.height == 2);
         auto brightness = [&](int i) {
-            return pixels[3 * i] + pixels[3 * i + 1] + pixels[3 * i + 2];
+            return map.at(i, 0, 0) + map.at(i, 0, 1) + map.at(i, 0, 2);
         };
         for (int i : {0, 1, 4, 5}) CHECK(brightness(i) == 0);
         CHECK((brightness(2) > 0) == differ);
         CHECK((brightness(3) > brightness(2)) == differ);
-        stbi_image_free(pixels);
     }
 }
 
@@ -118,7 +102,7 @@ TEST_CASE("compare: two films show the same, or not") {
     write_film(folder, "f0.film", f, none);
     write_film(folder, "g0.film", g, none);
     auto verdict = [&](const std::string& words) {
-        const Outcome o = run(folder, "compare", split(words));
+        const Outcome o = run(folder, "compare " + words);
         double sigmas = -1, alone = -1, p = -1;
         const size_t at = o.out.find("by ");
         REQUIRE(at != o.out.npos);
@@ -141,22 +125,22 @@ TEST_CASE("compare: two films show the same, or not") {
     const std::string scene =
         "camera 0 1 5 0 0 0 60\ndiffuse grey 0.5 0.5 0.5\nlight lamp 9 9 9\n"
         "quad -5 0 -5 0 0 10 10 0 0 grey\nsphere 0 3 0 1 lamp\nsphere 1 0.5 1 0.5 grey\n";
-    folder.write("a.scene", scene);
+    const Place place(scene);
     const std::string options = "--quiet --size 32x16 --spp 64 --sampler independent ";
-    for (const auto& [name, more] :
-         {std::pair{"a", "--seed 1"}, {"b", "--seed 2"}, {"c", "--depth 0"}, {"d", "--sets 1"}}) {
-        std::string line = options;
-        line.append(more).append(" a.scene -o ").append(name).append(".pfm --keep ").append(name);
-        expect_success(folder, "penumbra", split(line.append(".film")));
+    for (const auto& [name, more] : {std::pair<std::string, std::string>{"a", "--seed 1"},
+                                     {"b", "--seed 2"},
+                                     {"c", "--depth 0"},
+                                     {"d", "--sets 1"}}) {
+        const std::string film = folder / (name + ".film"), image = folder / (name + ".pfm");
+        place.render(options + more + " -o " + image + " --keep " + film);
         // A film's image is the image.
-        const std::string n = name;
-        CHECK(run(folder, "compare", split(n + ".film " + n + ".pfm --limit 0")).status == 0);
+        CHECK(run(folder, "compare " + film + " " + image + " --limit 0").status == 0);
     }
     CHECK(verdict("a.film b.film").second > 1e-6);
     CHECK(verdict("a.film c.film").second < 1e-6);
     // One replication tells no variance: neither do images.
-    for (const char* words : {"a.film d.film", "a.film b.pfm", "a.pfm b.film"}) {
-        const Outcome o = run(folder, "compare", split(words));
+    for (const std::string words : {"a.film d.film", "a.film b.pfm", "a.pfm b.film"}) {
+        const Outcome o = run(folder, "compare " + words);
         CHECK(o.status == 0);
         CHECK(o.out.find("sigma") == o.out.npos);
     }
@@ -201,7 +185,7 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
         {"black.film black.film", "same: p = 1 >= 1e-06"},
     };
     for (const auto& row : rows) {
-        const Outcome o = run(folder, "compare", split(row.words));
+        const Outcome o = run(folder, "compare " + row.words);
         CAPTURE(row.words);
         CHECK(o.err == "");
         const size_t last = o.out.rfind('\n', o.out.size() - 2);
@@ -209,7 +193,7 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
         CHECK(o.out.substr(last + 1) == row.verdict + "\n");
         CHECK(o.status == (row.verdict.starts_with("same: ") ? 0 : 1));
     }
-    CHECK(run(folder, "compare", {"f.pfm", "g.pfm"}).status == 0);  // nothing is asked
+    CHECK(run(folder, "compare f.pfm g.pfm").status == 0);  // nothing is asked
 }
 
 TEST_CASE("compare: images that cannot be compared are refused, and nothing is written") {
@@ -233,80 +217,66 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
     const std::string film = folder.read("two.film");
     folder.write("cut.film", film.substr(0, film.size() - 1));
     folder.write("text.film", "a picture\n");
-    const std::string not_pfm = ": not a little-endian colour PFM file",
-                      usage_line = "usage: compare";
-    const std::pair<std::string, std::string> rows[] = {
-        {"", usage_line},
-        {"one.pfm", usage_line},
-        {"one.pfm one.pfm one.pfm", usage_line},
-        {"one.pfm two.pfm", "sizes differ: 1x1 and 2x1"},
-        {"two.pfm high.pfm", "sizes differ: 2x1 and 1x2"},
-        {"one.pfm missing.pfm", "missing.pfm: cannot open: No such file or directory"},
-        {"missing.pfm one.pfm", "missing.pfm: cannot open: No such file or directory"},
-        {"one.pfm .", ".: is a directory"},
-        {"two.pfm nan.pfm", "nan.pfm: pixel 1,0 is not finite"},
-        {"nan.pfm two.pfm", "nan.pfm: pixel 1,0 is not finite"},
-        {"high.pfm inf.pfm", "inf.pfm: pixel 0,1 is not finite"},
-        {"one.pfm cut.pfm", "cut.pfm: 1x1 pixels do not fill the file"},
-        {"long.pfm one.pfm", "long.pfm: 1x1 pixels do not fill the file"},
-        {"one.pfm head.pfm", "head.pfm" + not_pfm},
-        {"last.pfm last.pfm", "last.pfm" + not_pfm},
-        {"one.pfm empty.pfm", "empty.pfm" + not_pfm},
-        {"one.pfm text.pfm", "text.pfm" + not_pfm},
-        {"one.pfm big.pfm", "big.pfm" + not_pfm},
-        {"one.pfm huge.pfm", "huge.pfm: '1000000' is not a whole number from 1 to 65536"},
-        {"one.pfm one.pfm --heatmap", "--heatmap: needs a value"},
-        {"one.pfm one.pfm --heatmap a.pfm", "--heatmap: 'a.pfm' does not end in .png"},
-        {"one.pfm one.pfm --heatmap missing/a.png", "missing/a.png: cannot write: No such file"},
-        {"one.pfm two.pfm --heatmap a.png", "sizes differ"},
-        {"two.pfm nan.pfm --heatmap a.png", "nan.pfm: pixel 1,0 is not finite"},
-        {"one.pfm none.film", "none.film: cannot open"},
-        {"text.film one.pfm", "text.film: "},
-        {"one.pfm cut.film", "cut.film: is cut short"},
-        {"two.film one.pfm", "sizes differ: 2x1 and 1x1"},
-        {"nan.film two.pfm", "nan.film: pixel 1,0 is not finite"},
-        {"one.pfm one.pfm --limit", "--limit: needs a value"},
-        {"one.pfm one.pfm --limit -1%", "--limit: '-1%' is negative"},
-        {"one.pfm one.pfm --limit %", "--limit: '' is not a number"},
-        {"one.pfm one.pfm --limit 2", "--limit: '2' is more than 100 %; for percent say 2%"},
-        {"one.pfm one.pfm --limit nan%", "--limit: 'nan' is not finite"},
-        {"one.pfm one.pfm --limit one.pfm", "--limit: 'one.pfm' is not a number"},
-        {"two.film two.pfm --alpha 1e-6", "--alpha: needs two films of --sets 2 or more"},
-        {"two.film two.film --alpha", "--alpha: needs a value"},
-        {"two.film two.film --alpha 0", "--alpha: must be between 0 and 1"},
-        {"two.film two.film --alpha 100%", "--alpha: must be between 0 and 1"},
-        {"two.pfm nan.pfm --limit 1", "nan.pfm: pixel 1,0 is not finite"},
-        {"one.pfm one.pfm --heat a.png", "unknown option '--heat' (did you mean '--heatmap'?)"},
-    };
-    for (const auto& [line, why] : rows) expect_refusal(folder, "compare", split(line), why);
+    for (const auto& [words, why] : members({
+             {"@", "one.pfm;one.pfm one.pfm one.pfm", "usage: compare"},
+             {"one.pfm two.pfm", "", "sizes differ: 1x1 and 2x1"},
+             {"two.pfm high.pfm", "", "sizes differ: 2x1 and 1x2"},
+             {"two.film one.pfm", "", "sizes differ: 2x1 and 1x1"},
+             {"one.pfm two.pfm --heatmap a.png", "", "sizes differ"},
+             {"@", "one.pfm missing.pfm;missing.pfm one.pfm",
+              "missing.pfm: cannot open: No such file or directory"},
+             {"one.pfm none.film", "", "none.film: cannot open"},
+             {"one.pfm .", "", ".: is a directory"},
+             {"@",
+              "two.pfm nan.pfm;nan.pfm two.pfm;two.pfm nan.pfm --heatmap a.png;"
+              "two.pfm nan.pfm --limit 1",
+              "nan.pfm: pixel 1,0 is not finite"},
+             {"nan.film two.pfm", "", "nan.film: pixel 1,0 is not finite"},
+             {"high.pfm inf.pfm", "", "inf.pfm: pixel 0,1 is not finite"},
+             {"one.pfm @", "cut.pfm;long.pfm", "@: 1x1 pixels do not fill the file"},
+             {"@ one.pfm", "head.pfm;last.pfm;empty.pfm;text.pfm;big.pfm",
+              "@: not a little-endian colour PFM file"},
+             {"one.pfm huge.pfm", "", "huge.pfm: '1000000' is not a whole number from 1 to 65536"},
+             {"text.film one.pfm", "", "text.film: "},
+             {"one.pfm cut.film", "", "cut.film: is cut short"},
+             {"one.pfm one.pfm --heatmap a.pfm", "", "--heatmap: 'a.pfm' does not end in .png"},
+             {"one.pfm one.pfm --heatmap missing/a.png", "",
+              "missing/a.png: cannot write: No such file"},
+             {"two.film two.film @", "--heatmap;--limit;--alpha", "@: needs a value"},
+             {"one.pfm one.pfm --limit @", "-1%", "--limit: '@' is negative"},
+             {"one.pfm one.pfm --limit %", "", "--limit: '' is not a number"},
+             {"one.pfm one.pfm --limit @", "2",
+              "--limit: '@' is more than 100 %; for percent say 2%"},
+             {"one.pfm one.pfm --limit @%", "nan", "--limit: '@' is not finite"},
+             {"one.pfm one.pfm --limit @", "one.pfm", "--limit: '@' is not a number"},
+             {"two.film two.pfm --alpha 1e-6", "", "--alpha: needs two films of --sets 2 or more"},
+             {"two.film two.film --alpha @", "0;100%", "--alpha: must be between 0 and 1"},
+             {"one.pfm one.pfm --heat a.png", "",
+              "unknown option '--heat' (did you mean '--heatmap'?)"},
+         }))
+        expect_refusal(folder, "compare " + words, why);
+    expect_refusal(folder, "compare", "usage: compare");
 }
 
 TEST_CASE("compare and knot say how they are used, and write no file for it") {
     const Folder folder;
     for (const char* program : {"compare", "knot"})
         for (const char* word : {"--help", "-h"}) {
-            const Outcome o = run(folder, program, {word});
+            const Outcome o = run(folder, Words{program, word});
             CHECK(o.status == 0);
             CHECK(o.err == "");
             CHECK(o.out.starts_with("usage: " + std::string(program) + " "));
         }
-    CHECK(folder.all().empty());
-    for (const Words& words : {Words{}, {"--hlep"}, {"knot"}, {"a.obj", "b.obj"}})
-        expect_refusal(folder, "knot", words, "usage: knot FILE.obj");
-    expect_success(folder, "knot", {"a.obj"});
+    CHECK(folder.files() == 0);
+    for (const std::string words : {"", "--hlep", "knot", "a.obj b.obj"})
+        expect_refusal(folder, "knot " + words, "usage: knot FILE.obj");
+    expect_success(folder, "knot a.obj");
     CHECK(folder.read("a.obj").starts_with("# trefoil knot, 24000 triangles\nv "));
 }
 
 TEST_CASE("a program that another runs: its failure, or that it is not there, is an error") {
     execute({"/bin/sh", "-c", "test \"$0\" = word", "word"});
-    auto what = [](std::vector<std::string> words) -> std::string {
-        try {
-            execute(words);
-        } catch (const SystemError& e) {
-            return e.what();
-        }
-        return "";
-    };
+    auto what = [](const Words& words) { return complaint<SystemError>([&] { execute(words); }); };
     CHECK(what({"/bin/sh", "-c", "exit 3"}) == "/bin/sh failed: exit status 3");
     CHECK(what({"/bin/sh", "-c", "kill -9 $$"}) == "/bin/sh failed: killed by signal 9");
     CHECK(what({"/nowhere"}).starts_with("/nowhere: cannot run: "));

@@ -3,31 +3,26 @@
 
 namespace {
 
+bool has_begun(const Outcome& o) { return contains(o.err, "no light"); }
+
 void expect_samples_so_far(int signal, int status) {
-    const Folder folder;
-    folder.write("file.scene", good + "quad -9 -1 -9  0 0 18  18 0 0  m\n");
+    const Place place(diffuse);
     Outcome o;
     // A busy machine may not have begun, or not have chosen sets: then again, with more patience.
     for (double patience = 0.25; patience < 20 && !summary(o.err).error.starts_with("d_rel ");
-         patience *= 3) {
-        Process process(folder, "penumbra",
-                        split("--spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene"));
-        process.listen(patience, [](const Outcome&) { return false; });
-        process.interrupt(signal);
-        o = process.finish();
-    }
+         patience *= 3)
+        o = cut_short(place, "penumbra --spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene",
+                      patience, signal);
     INFO(o.err);
-    CHECK(o.signal == 0);
     CHECK(o.status == status);
-    CHECK(folder.all().size() == 3);
+    CHECK(place.files() == 3);
     const Summary s = summary(o.err);
     REQUIRE(s.found);
     CHECK(s.interrupted);
     REQUIRE(s.samples > 0);
     CHECK(s.samples < 1000000000);
     // It shows what a run of some samples shows.
-    expect_success(folder, "penumbra", split("--spp 64 --size 33x17 -o b.pfm file.scene"));
-    const Image image = read_pfm(folder / "a.pfm"), other = read_pfm(folder / "b.pfm");
+    const Image image = read_pfm(place / "a.pfm"), other = place.image("--spp 64 --size 33x17");
     CHECK(all_finite(image));
     double square = 0, norm = 0;
     for (size_t i = 0; i < image.pixels.size(); ++i) {
@@ -49,52 +44,43 @@ TEST_CASE("SIGTERM and SIGHUP do what Ctrl-C does, and the exit status tells the
 }
 
 TEST_CASE("a signal that was ignored from the start stays ignored") {
-    const Folder folder;
-    folder.write("file.scene", hall_of_mirrors("4 4", 10));
-    Process process(folder, "penumbra", split("--threads 1 --time 0.6 -o a.pfm file.scene"),
+    const Place place(hall_of_mirrors("4 4", 10));
+    Process process(place, "penumbra --threads 1 --time 0.6 -o a.pfm file.scene",
                     {.ignored = SIGINT});
-    REQUIRE(process.listen(30, [](const Outcome& o) { return contains(o.err, "no light"); }));
-    process.listen(0.2, [](const Outcome&) { return false; });
+    REQUIRE(process.listen(30, has_begun));
+    process.listen(0.2);
     process.interrupt();
     const Outcome o = process.finish();
     CHECK(o.status == 0);
     CHECK_FALSE(summary(o.err).interrupted);
-    CHECK(folder.has("a.pfm"));
+    CHECK(place.has("a.pfm"));
 }
 
 TEST_CASE("Ctrl-C is heard within a path, too") {
-    const Folder folder;
-    folder.write("file.scene",
-                 hall_of_mirrors("8192 1", 1000000));  // an hour a pass, 0.2 s a sample
-    const auto before = folder.all();
-    for (const char* sets : {"", "--sets 3"}) {
-        Process process(folder, "penumbra", split(std::string(sets) + " -o a.pfm file.scene"));
-        REQUIRE(process.listen(30, [](const Outcome& o) { return contains(o.err, "no light"); }));
-        process.listen(0.3, [](const Outcome&) { return false; });
+    const Place place(hall_of_mirrors("8192 1", 1000000));  // an hour a pass, 0.2 s a sample
+    for (const std::string sets : {"", "--sets 3"}) {
+        const Untouched all(place);
+        Process process(place, "penumbra -o a.pfm file.scene " + sets);
+        REQUIRE(process.listen(30, has_begun));
+        process.listen(0.3);
         process.interrupt();
         const Outcome o = process.finish();  // which waits for a minute
         INFO(o.err);
-        CHECK(o.signal == 0);
         CHECK(o.status == 130);
         CHECK(summary(o.err).samples == 0);
-        const bool untouched = folder.all() == before;
-        CHECK(untouched);
     }
 }
 
 TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no terminal is, no bar") {
-    const Folder folder;
-    folder.write("file.scene",
-                 hall_of_mirrors("1024 1024", 1000));  // minutes a pass, 40 ms a block
-    folder.write("out/file.png", "old");
-    const auto before = folder.all();
-    Process process(folder, "penumbra", split("--threads 1 file.scene"));
+    const Place place(hall_of_mirrors("1024 1024", 1000));  // minutes a pass, 40 ms a block
+    place.write("out/file.png", "old");
+    const Untouched all(place);
+    Process process(place, "penumbra --threads 1 file.scene");
     // The first line about progress comes after two seconds.
     REQUIRE(process.listen(30, [](const Outcome& o) { return contains(o.err, " s elapsed"); }));
     process.interrupt();
     const Outcome o = process.finish();
     INFO(o.err);
-    CHECK(o.signal == 0);
     CHECK(o.status == 130);
     CHECK(contains(o.err, " s left\n"));
     CHECK_FALSE(contains(o.err, "\r"));
@@ -103,34 +89,28 @@ TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no ter
     CHECK(s.found);
     CHECK(s.interrupted);
     CHECK(s.samples == 0);
-    const bool untouched = folder.all() == before;
-    CHECK(untouched);
 }
 
 TEST_CASE("a second Ctrl-C kills at once, and leaves no file") {
-    const Folder folder;
     // Minutes a pass; a film of so many pixels takes a moment to add up after it, too.
-    folder.write("file.scene", hall_of_mirrors("4096 2048", 1000000));
-    const auto before = folder.all();
-    auto never = [](const Outcome&) { return false; };
+    const Place place(hall_of_mirrors("4096 2048", 1000000));
+    const Untouched all(place);
     Outcome o;
     double seconds = 0;
     // A busy machine may not have begun the pass, or end a path at once: then again, with more
     // patience.
     for (double patience = 0.1; patience < 20 && o.signal == 0; patience *= 3) {
-        Process process(folder, "penumbra", split("-o a.pfm file.scene"));
-        REQUIRE(process.listen(30, [](const Outcome& p) { return contains(p.err, "no light"); }));
-        process.listen(patience, never);
+        Process process(place, "penumbra -o a.pfm file.scene");
+        REQUIRE(process.listen(30, has_begun));
+        process.listen(patience);
         const auto start = std::chrono::steady_clock::now();
         for (int i = 0; i < 50 && !process.ended(); ++i) {  // signals that follow too soon are one
             process.interrupt();
-            process.listen(0.002, never);
+            process.listen(0.002);
         }
         o = process.finish();
         seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     CHECK(o.signal == SIGINT);
     CHECK(seconds < 10);
-    const bool untouched = folder.all() == before;
-    CHECK(untouched);
 }

@@ -1,24 +1,8 @@
 // whole/kept.h  renders that are kept in .film files, and what two of them must share
 #pragma once
-#include "keep/film_file.h"
+#include "keep/change_head.h"
 #include "path/scenes.h"
 #include "whole/process.h"
-
-// Diffuse surfaces alone, for maps.
-inline const std::string diffuse = good + "quad -9 -1 -9  0 0 18  18 0 0  m\n";
-
-inline Words operator+(Words a, const Words& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
-// What stands behind "KEY": in --stats.
-inline std::string stated(const std::string& stats, const std::string& key) {
-    const std::string start = "\"" + key + "\": ";
-    const size_t at = stats.find(start);
-    REQUIRE(at != stats.npos);
-    return stats.substr(at + start.size(), stats.find('\n', at) - at - start.size());
-}
 
 // Image and statistics, bit by bit; `merge` leaves fewer of these.
 inline void expect_same_run(const Folder& folder, const std::string& a, const std::string& b,
@@ -41,3 +25,15 @@ inline Words outputs(const std::string& name) {
 inline std::string in_head(const Folder& folder, const std::string& film, const std::string& key) {
     return FilmReader(folder / film).said(key);
 }
+
+// A scene of unequal lights, and what is kept of it.
+struct Unequal : Folder {
+    std::string size;
+    explicit Unequal(const std::string& s) : size(s) { write("unequal.scene", unequal); }
+    Words of(const std::string& options) const {
+        return split("penumbra unequal.scene " + options + " --size " + size);
+    }
+    double number(const std::string& name, const std::string& key) const {
+        return number_of(read(name + ".json"), key);
+    }
+};

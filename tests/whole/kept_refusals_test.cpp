@@ -8,20 +8,17 @@ namespace {
 
 const std::string mesh = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
 
-struct Kept : Folder {
-    Kept() {
+struct Kept : Place {
+    Kept() : Place(good + "mesh m.obj 1 0 0 0\n") {
         write("m.obj", mesh);
         write("m.mtl", "newmtl a\nKd 1 1 1\n");
-        write("file.scene", good + "mesh m.obj 1 0 0 0\n");
     }
-    // Leaves a film, and no picture.
     void keep(const std::string& film, const std::string& options) const {
-        expect_success(*this, "penumbra",
-                       split("--keep " + film + " -o x.pfm " + options + " file.scene"));
+        render("--keep " + film + " -o x.pfm " + options);
         fs::remove(*this / "x.pfm");
     }
-    void expect_refused(const std::string& options, const std::string& why) const {
-        expect_refusal(*this, "penumbra", split(options + " -o y.pfm file.scene"), why);
+    void refuse(const std::string& options, const std::string& why) const {
+        expect_refusal(*this, "penumbra -o y.pfm file.scene " + options, why);
     }
 };
 
@@ -30,31 +27,29 @@ struct Kept : Folder {
 TEST_CASE("a film of other samples is refused by what differs, and nothing is touched") {
     const Kept folder;
     folder.keep("a.film", "--spp 17");
-    const std::pair<const char*, const char*> rows[] = {
-        {"--size 9x4", "size is 8x4, not 9x4"},
-        {"--sampler halton", "sampler is sobol, not halton"},
-        {"--sets 2", "sets is adaptive, not 2"},
-        {"--direction uniform", "direction is bsdf, not uniform"},
-        {"--light nee", "light is mis, not nee"},
-        {"--depth 3", "depth is 8, not 3"},
-        {"--roulette 0.5", "roulette is 0.25, not 0.5"},
-        {"--seed 1", "seed is 0, not 1"},
-        {"--view normal", "view is radiance, not normal"},
-        {"--rows 0-1", "rows is 0-3, not 0-1"}};
-    for (const auto& [options, why] : rows)
-        folder.expect_refused("--spp 20 --keep a.film " + std::string(options),
-                              "a.film: its " + std::string(why) + "\n");
+    for (const auto& [options, why] :
+         {std::pair<std::string, std::string>{"--size 9x4", "size is 8x4, not 9x4"},
+          {"--sampler halton", "sampler is sobol, not halton"},
+          {"--sets 2", "sets is adaptive, not 2"},
+          {"--direction uniform", "direction is bsdf, not uniform"},
+          {"--light nee", "light is mis, not nee"},
+          {"--depth 3", "depth is 8, not 3"},
+          {"--roulette 0.5", "roulette is 0.25, not 0.5"},
+          {"--seed 1", "seed is 0, not 1"},
+          {"--view normal", "view is radiance, not normal"},
+          {"--rows 0-1", "rows is 0-3, not 0-1"}})
+        folder.refuse("--spp 20 --keep a.film " + options, "a.film: its " + why + "\n");
     // What samples do not depend on is another matter.
-    expect_success(folder, "penumbra",
-                   split("--spp 18 --keep a.film --threads 3 --exposure 2 -o z.pfm --stats z.json "
-                         "--error 50% --time 9 file.scene"));
+    folder.render(
+        "--spp 18 --keep a.film --threads 3 --exposure 2 -o z.pfm --stats z.json "
+        "--error 50% --time 9");
 }
 
 TEST_CASE("where samples depend on how many there are, another grid is refused") {
     const Kept folder;
     folder.keep("a.film", "--sets 1 --spp 12 --sampler stratified");
-    folder.expect_refused("--sets 1 --spp 20 --sampler stratified --keep a.film",
-                          "a.film: its grid is 4x3, not 5x4\n");
+    folder.refuse("--sets 1 --spp 20 --sampler stratified --keep a.film",
+                  "a.film: its grid is 4x3, not 5x4\n");
     folder.keep("b.film", "--sets 1 --spp 256 --sampler stratified");
     folder.keep("b.film", "--sets 1 --spp 512 --sampler stratified");
 }
@@ -62,22 +57,22 @@ TEST_CASE("where samples depend on how many there are, another grid is refused")
 TEST_CASE("another scene, by one byte of any of its files; the same one elsewhere") {
     const Kept folder;
     folder.keep("a.film", "--spp 2");
-    for (const char* name : {"file.scene", "m.obj", "m.mtl"}) {
-        INFO(std::string(name));
+    for (const std::string name : {"file.scene", "m.obj", "m.mtl"}) {
+        INFO(name);
         const std::string bytes = folder.read(name);
         folder.write(name, bytes + "\n");
-        folder.expect_refused("--spp 2 --keep a.film", "a.film: its scene is another one\n");
+        folder.refuse("--spp 2 --keep a.film", "a.film: its scene is another one\n");
         folder.write(name, bytes);
-        folder.write("other/" + std::string(name), bytes);
+        folder.write("other/" + name, bytes);
     }
-    expect_success(folder, "penumbra", split("--spp 2 --keep a.film -o z.pfm other/file.scene"));
+    expect_success(folder, "penumbra --spp 2 --keep a.film -o z.pfm other/file.scene");
 }
 
 TEST_CASE("a film of one sample a pixel has one replication, and gets no other") {
     const Kept folder;
     folder.keep("a.film", "--spp 1");
-    folder.expect_refused("--spp 2 --keep a.film", "a.film: its sets is 1, not adaptive\n");
-    expect_success(folder, "penumbra", split("--spp 8 --sets 1 --keep a.film -o z.pfm file.scene"));
+    folder.refuse("--spp 2 --keep a.film", "a.film: its sets is 1, not adaptive\n");
+    folder.render("--spp 8 --sets 1 --keep a.film -o z.pfm");
 }
 
 TEST_CASE("a film that is torn, damaged, longer, empty, a folder or in none") {
@@ -88,25 +83,25 @@ TEST_CASE("a film that is torn, damaged, longer, empty, a folder or in none") {
     for (size_t cut :
          {size_t(0), size_t(5), size_t(40), size_t(200), film.size() / 2, film.size() - 1}) {
         folder.write("b.film", film.substr(0, cut));
-        folder.expect_refused("--spp 17 --keep b.film",
-                              cut == 0 ? "b.film: no film\n" : "b.film: is cut short\n");
+        folder.refuse("--spp 17 --keep b.film",
+                      cut == 0 ? "b.film: no film\n" : "b.film: is cut short\n");
     }
     for (size_t at = 7; at < film.size(); at += film.size() / 23) {
         std::string flipped = film;
         flipped[at] = char(flipped[at] ^ 4);
         folder.write("b.film", flipped);
-        folder.expect_refused("--spp 17 --keep b.film", "b.film: ");
+        folder.refuse("--spp 17 --keep b.film", "b.film: ");
     }
     folder.write("b.film", film + "x");
-    folder.expect_refused("--spp 17 --keep b.film", "b.film: is longer than it says\n");
+    folder.refuse("--spp 17 --keep b.film", "b.film: is longer than it says\n");
     folder.write("b.film", "penumbra film 1" + film.substr(15));
-    folder.expect_refused("--spp 17 --keep b.film", "b.film: of another version (1)\n");
-    folder.expect_refused("--spp 17 --keep deep.film", "deep.film: is a directory\n");
-    folder.expect_refused("--spp 17 --keep no/a.film", "no/a.film: cannot write: No such file");
-    folder.expect_refused("--spp 17 --keep a", "--keep: 'a' does not end in .film\n");
+    folder.refuse("--spp 17 --keep b.film", "b.film: of another version (1)\n");
+    folder.refuse("--spp 17 --keep deep.film", "deep.film: is a directory\n");
+    folder.refuse("--spp 17 --keep no/a.film", "no/a.film: cannot write: No such file");
+    folder.refuse("--spp 17 --keep a", "--keep: 'a' does not end in .film\n");
     REQUIRE(::mkfifo((folder / "pipe.film").c_str(), 0600) == 0);
-    folder.expect_refused("--spp 17 --keep pipe.film", "pipe.film: is no regular file\n");
-    folder.expect_refused("--pixel 1,1 --keep a.film", "--keep: goes without --pixel\n");
+    folder.refuse("--spp 17 --keep pipe.film", "pipe.film: is no regular file\n");
+    folder.refuse("--pixel 1,1 --keep a.film", "--keep: goes without --pixel\n");
 }
 
 TEST_CASE("a film shares its name with nothing else") {
@@ -114,14 +109,10 @@ TEST_CASE("a film shares its name with nothing else") {
     folder.keep("a.film", "--spp 2");
     folder.write("scene.film", folder.read("file.scene"));
     fs::create_symlink("a.film", folder / "link.pfm");
-    const std::pair<const char*, const char*> rows[] = {
-        {"--keep a.film --stats ./a.film -o y.pfm file.scene",
-         "./a.film: would replace another file of this run\n"},
-        {"--keep a.film -o link.pfm file.scene",
-         "link.pfm: would replace another file of this run\n"},
-        {"--rows 0-1 --keep b.film --stats b.film file.scene",
-         "b.film: would replace another file of this run\n"},
-        {"--keep scene.film -o y.pfm scene.film",
-         "scene.film: would replace another file of this run\n"}};
-    for (const auto& [options, why] : rows) expect_refusal(folder, "penumbra", split(options), why);
+    const std::string why = ": would replace another file of this run\n";
+    expect_refusals(folder, "penumbra",
+                    {{"--keep a.film --stats ./a.film -o y.pfm file.scene", "./a.film" + why},
+                     {"--keep a.film -o link.pfm file.scene", "link.pfm" + why},
+                     {"--rows 0-1 --keep b.film --stats b.film file.scene", "b.film" + why},
+                     {"--keep scene.film -o y.pfm scene.film", "scene.film" + why}});
 }

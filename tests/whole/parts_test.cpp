@@ -6,27 +6,26 @@
 
 namespace {
 
-struct Scenes : Folder {
-    Scenes() { write("unequal.scene", unequal); }
-
-    Words of(const std::string& options, const std::string& size = "12x7") const {
-        return split(options + " --size " + size + " unequal.scene");
-    }
-    // Renders parts, by a line of options each, and puts them together.
+struct Scenes : Unequal {
+    Scenes() : Unequal("12x7") {}
     void merge_parts(const Words& words, const Words& parts, const std::string& name) const {
         Words films;
         for (size_t k = 0; k < parts.size(); ++k) {
             films.push_back("part" + std::to_string(k) + ".film");
-            expect_success(*this, "penumbra",
-                           words + split(parts[k] + " -o x.pfm --keep " + films.back()));
+            expect_success(*this, words + split(parts[k] + " -o x.pfm --keep " + films.back()));
         }
         std::rotate(films.begin(), films.begin() + ptrdiff_t(films.size() / 2), films.end());
-        expect_success(*this, "merge", outputs(name) + Words{"-o", name + ".png"} + films);
+        expect_success(*this, split("merge -o " + name + ".png") + outputs(name) + films);
         for (const std::string& film : films) fs::remove(*this / film);
     }
-    double number(const std::string& name, const std::string& key) const {
-        const std::string text = stated(read(name + ".json"), key);
-        return contains(text, "null") ? NAN : std::stod(text);
+    // That parts are the picture, and what is said of it.
+    void expect_whole(const std::string& options, const Words& parts) const {
+        INFO(options);
+        const Words words = of(options);
+        expect_success(*this, words + outputs("whole") + Words{"-o", "whole.png"});
+        merge_parts(words, parts, "parts");
+        expect_same_run(*this, "whole", "parts", true);
+        CHECK(same("whole.png", "parts.png"));
     }
 };
 
@@ -34,32 +33,20 @@ struct Scenes : Folder {
 
 TEST_CASE("bands of fixed --sets make up the picture, bit by bit, and all that is said of it") {
     const Scenes folder;
-    for (const char* options :
-         {"--sets 2 --spp 37", "--sets 1 --spp 9", "--sets 3 --spp 40 --sampler stratified",
-          "--sets 2 --spp 20 --sampler halton --light nee", "--sets 2 --spp 2 --view normal"}) {
-        INFO(std::string(options));
-        const Words words = folder.of(options);
-        expect_success(folder, "penumbra", outputs("whole") + Words{"-o", "whole.png"} + words);
-        folder.merge_parts(words, {"--rows 0-0", "--rows 1-4 --threads 1", "--rows 5-6"}, "parts");
-        expect_same_run(folder, "whole", "parts", true);
-        CHECK(folder.same("whole.png", "parts.png"));
-    }
+    for (const std::string& options :
+         parts_of("--sets 2 --spp 37;--sets 1 --spp 9;--sets 3 --spp 40 --sampler stratified;"
+                  "--sets 2 --spp 20 --sampler halton --light nee;--sets 2 --spp 2 --view normal"))
+        folder.expect_whole(options, {"--rows 0-0", "--rows 1-4 --threads 1", "--rows 5-6"});
 }
 
 TEST_CASE("a film alone is its picture, whatever its sets") {
     const Scenes folder;
-    for (const char* options : {"--spp 60", "--spp 1", "--spp 2", "--spp 17 --seed 5"}) {
-        INFO(std::string(options));
-        const Words words = folder.of(options);
-        expect_success(folder, "penumbra", outputs("whole") + Words{"-o", "whole.png"} + words);
-        folder.merge_parts(words, {""}, "one");
-        expect_same_run(folder, "whole", "one", true);
-        CHECK(folder.same("whole.png", "one.png"));
-    }
+    for (const std::string options : {"--spp 60", "--spp 1", "--spp 2", "--spp 17 --seed 5"})
+        folder.expect_whole(options, {""});
     // By another exposure than it was rendered with.
-    expect_success(folder, "penumbra", folder.of("--keep a.film --exposure 3 -o a.png"));
-    expect_success(folder, "penumbra", folder.of("--exposure 9 -o bright.png"));
-    expect_success(folder, "merge", split("--exposure 9 -o b.png a.film"));
+    expect_success(folder, folder.of("--keep a.film --exposure 3 -o a.png"));
+    expect_success(folder, folder.of("--exposure 9 -o bright.png"));
+    expect_success(folder, "merge --exposure 9 -o b.png a.film");
     CHECK(folder.same("b.png", "bright.png"));
 }
 
@@ -68,9 +55,8 @@ TEST_CASE("adaptive bands choose by their own rows: each is what a band alone is
     const Words words = folder.of("--spp 40");
     Image whole(12, 7);
     int y = 0;
-    for (const char* rows : {"0-3", "4-6"}) {
-        expect_success(folder, "penumbra",
-                       words + split("--rows " + std::string(rows) + " -o band.pfm"));
+    for (const std::string rows : {"0-3", "4-6"}) {
+        expect_success(folder, words + split("-o band.pfm --rows " + rows));
         const Image band = read_pfm(folder / "band.pfm");
         std::copy(band.pixels.begin(), band.pixels.end(), &whole.at(0, y));
         y += band.height;
@@ -82,15 +68,15 @@ TEST_CASE("adaptive bands choose by their own rows: each is what a band alone is
 
 TEST_CASE("seeds are independent pictures: their mean by samples, and the variance of that") {
     const Scenes folder;
-    for (const char* options : {"--sets 8", "--sets adaptive"}) {
-        INFO(std::string(options));
+    for (const std::string options : {"--sets 8", "--sets adaptive"}) {
+        INFO(options);
         const Words words = folder.of(options);
         // 16, 16 and 96 samples of fixed sets: weights 1/8, 1/8, 3/4.
-        const char* const parts[] = {"--spp 16 --seed 1", "--spp 16 --seed 2", "--spp 96 --seed 3"};
+        const Words parts = {"--spp 16 --seed 1", "--spp 16 --seed 2", "--spp 96 --seed 3"};
         std::array<Image, 3> images;
         double d2 = 0, sum = 0, fourth = 0;
         for (size_t k = 0; k < 3; ++k) {
-            expect_success(folder, "penumbra", words + outputs("one") + split(parts[k]));
+            expect_success(folder, words + outputs("one") + split(parts[k]));
             images[k] = read_pfm(folder / "one.pfm");
             double norm2 = 0;
             for (const auto& p : images[k].pixels)
@@ -102,7 +88,7 @@ TEST_CASE("seeds are independent pictures: their mean by samples, and the varian
             d2 += w * w * its, fourth += std::pow(w, 4) * err * err;
             sum += folder.number("one", "samples_per_pixel");
         }
-        folder.merge_parts(words, {parts[0], parts[1], parts[2]}, "all");
+        folder.merge_parts(words, parts, "all");
         CHECK(folder.number("all", "samples_per_pixel") == doctest::Approx(sum));
         if (contains(options, "adaptive")) continue;
         const Image all = read_pfm(folder / "all.pfm");
@@ -141,37 +127,27 @@ TEST_CASE("bands may have several seeds, each band its own") {
 TEST_CASE("a part that is interrupted, or given more samples, goes on, and is merged") {
     const Scenes folder;
     const Words words = folder.of("--sets 2");
-    expect_success(folder, "penumbra", split("--spp 37") + outputs("whole") + words);
-    for (const char* options :
+    expect_success(folder, words + split("--spp 37") + outputs("whole"));
+    for (const std::string options :
          {"--spp 20 --rows 0-3 --keep a.film", "--spp 37 --rows 0-3 --keep a.film",
           "--spp 37 --rows 4-6 --keep b.film"})
-        expect_success(folder, "penumbra", split(options) + words);
-    expect_success(folder, "merge", outputs("parts") + split("a.film b.film"));
+        expect_success(folder, words + split(options));
+    expect_success(folder, split("merge a.film b.film") + outputs("parts"));
     expect_same_run(folder, "whole", "parts", true);
 
     // A whole picture, cut short in mid-pass, is no part yet.
-    Process process(folder, "penumbra", split("--spp 1000000000 --keep c.film -o c.pfm") + words);
-    process.listen(0.4, [](const Outcome&) { return false; });
-    process.interrupt();
-    CHECK(process.finish().status == 130);
-    expect_refusal(folder, "merge", split("-o x.pfm c.film"),
+    const Words endless = words + split("--spp 1000000000 --keep c.film -o c.pfm");
+    CHECK(cut_short(folder, endless, 0.4).status == 130);
+    expect_refusal(folder, "merge -o x.pfm c.film",
                    "c.film: is not complete: go on by penumbra --keep c.film\n");
 }
 
 TEST_CASE("memory of merging: the picture, and of each film a row and 2 bytes a pixel") {
     const Scenes folder;
-    folder.write("dark.scene",
-                 "size 2048 1024\n" + camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
-    Words films;
-    for (int k = 0; k < 3; ++k) {
-        films.push_back(std::to_string(k) + ".film");
-        expect_success(folder, "penumbra",
-                       split("--spp 2 --sets 2 --depth 0 -o x.pfm --seed " + std::to_string(k) +
-                             " --keep " + films.back() + " dark.scene"));
-    }
-    expect_success(folder, "merge", outputs("all") + films);
+    folder.write("unequal.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
+    folder.merge_parts(folder.of("--spp 2 --sets 2 --depth 0") + split("--size 2048x1024"),
+                       {"--seed 0", "--seed 1", "--seed 2"}, "all");
     const double pixels = 2048.0 * 1024, memory = folder.number("all", "peak_memory_bytes");
-    const double each = memory / pixels;
-    INFO(each, " bytes a pixel");
+    INFO(memory, " bytes of ", pixels, " pixels");
     CHECK(memory < pixels * (12 + 2 * 3) * 1.1 + 8e6);  // the program itself: 8 MB
 }

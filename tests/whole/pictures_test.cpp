@@ -1,30 +1,10 @@
 // whole/pictures_test.cpp  what is up, right and round in a scene is so in its picture
-#include <doctest/doctest.h>
-
-#include <cstdlib>
 #include <numbers>
 
-#include "base/folder.h"
 #include "film/png.h"
-#include "keep/read_pfm.h"
+#include "whole/process.h"
 
 namespace {
-
-using Pixel = std::array<float, 3>;
-
-// What the program makes of a scene; its PNG as well, if asked for.
-Image render(const std::string& scene, const std::string& options, Decoded* png = nullptr) {
-    const Folder folder;
-    folder.write("test.scene", scene);
-    const char* suffix = std::getenv("PROGRAM_SUFFIX");
-    const std::string command = "build/penumbra" + std::string(suffix ? suffix : "") +
-                                " --quiet --spp 4 --depth 0 " + options + " -o '" +
-                                (folder / "image.pfm") + "' -o '" + (folder / "image.png") + "' '" +
-                                (folder / "test.scene") + "'";
-    REQUIRE(std::system(command.c_str()) == 0);
-    if (png) *png = decode_png(read_file(folder / "image.png"));
-    return read_pfm(folder / "image.pfm");
-}
 
 // Bounds of the pixels that are not black, and their centre of mass weighted by radiance, in
 // pixels from the top left corner.
@@ -65,11 +45,12 @@ TEST_CASE("up is up and right is right, in wide and in tall pictures") {
         for (const Size size : {Size{64, 32}, Size{32, 64}, Size{48, 48}}) {
             const int w = size.width, h = size.height;
             INFO(std::string(view.camera), ", ", w, "x", h);
-            Decoded png;
-            const Image image =
-                render("camera " + std::string(view.camera) + "  40\nlight l 0.5 0.25 1\nquad " +
-                           view.quad + " l\n",
-                       "--size " + std::to_string(w) + "x" + std::to_string(h), &png);
+            const Place place("camera " + std::string(view.camera) +
+                              "  40\nlight l 0.5 0.25 1\nquad " + view.quad + " l\n");
+            place.render("--spp 4 --depth 0 -o image.pfm -o image.png --size " + std::to_string(w) +
+                         "x" + std::to_string(h));
+            const Image image = read_pfm(place / "image.pfm");
+            const Decoded png = decode_png(place.read("image.png"));
             REQUIRE(image.width == w);
             REQUIRE(image.height == h);
             const Bright b = bright(image);
@@ -83,7 +64,7 @@ TEST_CASE("up is up and right is right, in wide and in tall pictures") {
             CHECK(std::abs(b.height() - 0.6 / 5 / pixel) < 2.01);
             // Channels in order; the PNG shows the same.
             const int x = int(b.x), y = int(b.y);
-            CHECK(image.at(x, y) == Pixel{0.5f, 0.25f, 1});
+            CHECK(image.at(x, y) == std::array<float, 3>{0.5f, 0.25f, 1});
             bool same = png.width == w && png.height == h;
             for (int i = 0; same && i < w * h; ++i)
                 for (size_t c = 0; c < 3; ++c)
@@ -95,13 +76,12 @@ TEST_CASE("up is up and right is right, in wide and in tall pictures") {
 
 TEST_CASE(
     "a new size never stretches: a ball is as wide as high, its height a part of the image's") {
-    const std::string scene =
-        "size 64 32\ncamera 0 0 5  0 0 0  40\nlight l 1 1 1\nsphere 0 0 0 1 l\n";
+    const Place place("size 64 32\ncamera 0 0 5  0 0 0  40\nlight l 1 1 1\nsphere 0 0 0 1 l\n");
     for (const Size size : {Size{64, 32}, Size{32, 64}, Size{48, 48}, Size{90, 31}}) {
         const int w = size.width, h = size.height;
         INFO(w, "x", h);
-        const Bright b =
-            bright(render(scene, "--size " + std::to_string(w) + "x" + std::to_string(h)));
+        const Bright b = bright(
+            place.image("--spp 4 --depth 0 --size " + std::to_string(w) + "x" + std::to_string(h)));
         const double pixel = 2 * std::tan(20 * std::numbers::pi / 180) / h;
         const double across =
             2 * std::tan(std::asin(0.2)) / pixel;  // sine of the half-angle: 1 / 5

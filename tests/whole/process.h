@@ -13,14 +13,28 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <sstream>
 
+#include "base/cases.h"
 #include "base/folder.h"
 #include "keep/read_pfm.h"
 
 using Words = std::vector<std::string>;
+inline Words operator+(Words a, const Words& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
 
-// ---- Programs to run in a folder ---------------------------------------------------------------
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
+
+// A program and its words, which a line parts at its blanks.
+struct Command {
+    Words words;
+    Command(const char* line) : words(split(line)) {}
+    Command(const std::string& line) : words(split(line)) {}
+    Command(Words w) : words(std::move(w)) {}
+};
 
 struct Outcome {
     int status = -1;  // of an exit
@@ -53,23 +67,25 @@ inline Channel terminal_channel() {
     return {from, to};
 }
 
+struct Setting {
+    bool terminal = false;                // stderr is one, and no pipe
+    bool deaf = false;                    // nobody reads stderr
+    std::string input = {}, output = {};  // what stdin brings, a file for stdout
+    int ignored = 0;                      // a signal
+    rlim_t largest_file = RLIM_INFINITY;
+};
+
 // A program that runs in a folder.
 class Process {
 public:
-    struct Setting {
-        bool terminal = false;                // stderr is one, and no pipe
-        bool deaf = false;                    // nobody reads stderr
-        std::string input = {}, output = {};  // what stdin brings, a file for stdout
-        int ignored = 0;                      // a signal
-        rlim_t largest_file = RLIM_INFINITY, memory = RLIM_INFINITY;
-    };
-
-    Process(const Folder& folder, const std::string& program, const Words& words,
-            const Setting& setting) {
+    Process(const Folder& folder, const Command& command, const Setting& setting = {}) {
         const char* suffix = std::getenv("PROGRAM_SUFFIX");
-        const std::string path = fs::absolute("build/" + program + (suffix ? suffix : "")).string();
-        std::vector<char*> argv{const_cast<char*>(path.c_str())};
-        for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+        const std::string path =
+            fs::absolute("build/" + command.words.at(0) + (suffix ? suffix : "")).string();
+        std::vector<char*> argv;
+        for (const std::string& word : command.words)
+            argv.push_back(const_cast<char*>(word.c_str()));
+        argv[0] = const_cast<char*>(path.c_str());
         argv.push_back(nullptr);
 
         const Channel in = pipe_channel();
@@ -98,8 +114,8 @@ public:
             for (int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ})
                 std::signal(s, s == setting.ignored ? SIG_IGN : SIG_DFL);
             ::sigprocmask(SIG_SETMASK, &before, nullptr);
-            limit(RLIMIT_FSIZE, setting.largest_file);
-            limit(RLIMIT_AS, setting.memory);
+            const rlimit limit{setting.largest_file, setting.largest_file};
+            if (limit.rlim_cur != RLIM_INFINITY) ::setrlimit(RLIMIT_FSIZE, &limit);
             if (::chdir(folder.path.c_str()) == 0 && ::dup2(in.from, 0) == 0 &&
                 ::dup2(out.to, 1) == 1 && ::dup2(err.to, 2) == 2)
                 ::execv(path.c_str(), argv.data());
@@ -108,8 +124,6 @@ public:
         for (int fd : {in.from, out.to, err.to}) ::close(fd);
         from_ = {out.from, err.from};
     }
-    Process(const Folder& folder, const std::string& program, const Words& words)
-        : Process(folder, program, words, Setting()) {}
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
     ~Process() {
@@ -121,13 +135,11 @@ public:
             if (fd >= 0) ::close(fd);
     }
 
-    // Reads what the program prints, until it is enough (true) or for so many seconds, or all that
-    // will ever come (false).
-    template <class Enough>
-    bool listen(double seconds, Enough enough) {
+    // Reads what the program prints for so many seconds, until it is enough (true) or ends (false).
+    bool listen(double seconds, bool (*enough)(const Outcome&) = nullptr) {
         using clock = std::chrono::steady_clock;
         const auto end = clock::now() + std::chrono::duration<double>(seconds);
-        while (!enough(outcome_)) {
+        while (!enough || !enough(outcome_)) {
             pollfd fds[] = {{open_[0] ? from_[0] : -1, POLLIN, 0},
                             {open_[1] ? from_[1] : -1, POLLIN, 0}};
             const auto left =
@@ -150,7 +162,7 @@ public:
 
     // Waits for its end; kills it after a minute.
     Outcome finish() {
-        listen(60, [](const Outcome&) { return false; });
+        listen(60);
         if (!ended()) ::kill(pid_, SIGKILL);
         int status = 0;
         ::waitpid(pid_, &status, 0);
@@ -165,16 +177,19 @@ private:
     std::array<int, 2> from_{-1, -1};  // its stdout and stderr
     std::array<bool, 2> open_{true, true};
     Outcome outcome_;
-
-    template <class Resource>
-    static void limit(Resource resource, rlim_t most) {
-        const rlimit limit{most, most};
-        if (most != RLIM_INFINITY) ::setrlimit(resource, &limit);
-    }
 };
 
-inline Outcome run(const Folder& folder, const std::string& program, const Words& words) {
-    return Process(folder, program, words).finish();
+inline Outcome run(const Folder& folder, const Command& command, const Setting& setting = {}) {
+    return Process(folder, command, setting).finish();
+}
+
+// Sends a signal after so many seconds, unless it ends before.
+inline Outcome cut_short(const Folder& folder, const Command& command, double seconds,
+                         int signal = SIGINT) {
+    Process process(folder, command);
+    process.listen(seconds);
+    process.interrupt(signal);
+    return process.finish();
 }
 
 inline bool terminal_to_be_had() {
@@ -183,28 +198,33 @@ inline bool terminal_to_be_had() {
     return trial >= 0;
 }
 
-// "--spp 1 ''" is three words, the last of them empty.
-inline Words split(const std::string& line) {
-    Words words;
-    std::istringstream in(line);
-    for (std::string word; in >> word;) words.push_back(word == "''" ? "" : word);
-    return words;
-}
+// That not a file is made, changed or left.
+class Untouched {
+public:
+    explicit Untouched(const Folder& folder) : folder_(folder), before_(folder.all()) {}
+    ~Untouched() {
+        const auto after = folder_.all();
+        std::string changed;
+        for (const auto& [name, bytes] : after)
+            if (!before_.contains(name) || before_.at(name) != bytes) changed += name + " ";
+        for (const auto& [name, bytes] : before_)
+            if (!after.contains(name)) changed += name + " ";
+        CHECK(changed == "");
+    }
 
-inline bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != text.npos;
-}
+private:
+    const Folder& folder_;
+    const std::map<std::string, std::string> before_;
+};
 
-// ---- What to expect of a run --------------------------------------------------------------------
-
-// Refused: exit status 2, one printable line that says why, and not a file made, changed or left.
-inline void expect_refusal(const Folder& folder, const std::string& program, const Words& words,
-                           const std::string& why) {
-    const auto before = folder.all();
-    const Outcome o = run(folder, program, words);
+// Refused: exit status 2, one printable line that says why, and no file touched.
+inline void expect_refusal(const Folder& folder, const Command& command, const std::string& why) {
     std::string line;
-    for (const std::string& word : words) line.append(" ").append(word, 0, 100);
-    INFO(program, line, "\nexpected: ", why, "\nstderr:   ", o.err);
+    for (const std::string& word : command.words) line.append(word, 0, 100).append(" ");
+    INFO(line, "\nexpected: ", why);
+    const Untouched all(folder);
+    const Outcome o = run(folder, command);
+    INFO("stderr: ", o.err);
     CHECK(o.signal == 0);
     CHECK(o.status == 2);
     CHECK(o.out == "");
@@ -215,21 +235,74 @@ inline void expect_refusal(const Folder& folder, const std::string& program, con
     CHECK(printable);
     CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
     CHECK(o.err.ends_with('\n'));
-    const bool untouched = folder.all() == before;
-    CHECK(untouched);
+}
+
+// By words behind `start`.
+inline void expect_refusals(const Folder& folder, const std::string& start,
+                            const std::vector<Refusal>& rows) {
+    for (const auto& [words, why] : rows) expect_refusal(folder, start + " " + words, why);
 }
 
 // Done: exit status 0.
-inline Outcome expect_success(const Folder& folder, const std::string& program,
-                              const Words& words) {
-    const Outcome o = run(folder, program, words);
+inline Outcome expect_success(const Folder& folder, const Command& command) {
+    const Outcome o = run(folder, command);
     std::string line;
-    for (const std::string& word : words) line.append(" ").append(word);
-    INFO(program, line, "\nstderr: ", o.err);
+    for (const std::string& word : command.words) line.append(word).append(" ");
+    INFO(line, "\nstderr: ", o.err);
     CHECK(o.signal == 0);
     CHECK(o.status == 0);
     CHECK(o.out == "");
     return o;
+}
+
+inline double seconds_of(const Folder& folder, const Command& command) {
+    const auto start = std::chrono::steady_clock::now();
+    expect_success(folder, command);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// One page on stdout, with each of these parts.
+inline void expect_help(const Folder& folder, const Command& command, long lines,
+                        const std::string& parts) {
+    const Outcome o = run(folder, command);
+    CHECK(o.status == 0);
+    CHECK(o.err == "");
+    for (const std::string& part : parts_of(parts)) {
+        INFO(part);
+        CHECK(contains(o.out, part));
+    }
+    CHECK(o.out.ends_with("\n"));
+    CHECK(std::count(o.out.begin(), o.out.end(), '\n') <= lines);
+    std::istringstream in(o.out);
+    for (std::string text; std::getline(in, text);) CHECK(text.size() <= 80);
+}
+
+// A folder with a scene, which penumbra renders.
+struct Place : Folder {
+    explicit Place(const std::string& scene) { write("file.scene", scene); }
+    Outcome render(const std::string& options) const {
+        return expect_success(*this, "penumbra " + options + " file.scene");
+    }
+    Image image(const std::string& options) const {
+        render(options + " -o image.pfm");
+        return read_pfm(*this / "image.pfm");
+    }
+};
+
+// What stands behind "KEY": in statistics.
+inline std::string stated(const std::string& json, const std::string& key) {
+    const std::string start = "\n  \"" + key + "\": ";
+    const size_t at = json.find(start);
+    REQUIRE(at != json.npos);
+    std::string value = json.substr(at + start.size(), json.find('\n', at + 1) - at - start.size());
+    if (value.ends_with(',')) value.pop_back();
+    return value;
+}
+// The number, or the first of a list; of null none.
+inline double number_of(const std::string& json, const std::string& key) {
+    const std::string value = stated(json, key);
+    return value.starts_with("null") ? NAN
+                                     : std::strtod(value.c_str() + (value[0] == '['), nullptr);
 }
 
 inline bool all_finite(const Image& image) {
@@ -247,7 +320,7 @@ struct Summary {
     bool interrupted = false, found = false;
 };
 
-// Of the line that tells of the samples; a bar may have stood where it stands.
+// Of the line that tells of the samples, where a bar may have stood.
 inline Summary summary(const std::string& err) {
     Summary s;
     const size_t end = err.find('\n', err.find(" Mrays/s"));
@@ -276,14 +349,14 @@ inline Summary summary(const std::string& err) {
     return s;
 }
 
-// ---- Scenes and images -------------------------------------------------------------------------
-
 inline const std::string camera = "camera 0 0 5  0 0 0  40\n";
 inline const std::string good = "size 8 4\n" + camera +
                                 "diffuse m .5 .5 .5\n"
                                 "light l 1 1 1\n"
                                 "sphere 0 0 0  1  m\n"
                                 "sphere 0 5 0  1  l\n";  // six lines
+// Diffuse surfaces alone, for maps.
+inline const std::string diffuse = good + "quad -9 -1 -9  0 0 18  18 0 0  m\n";
 
 // A closed box of mirrors, no light: a path ends only with the scene's depth.
 inline std::string hall_of_mirrors(const std::string& size, int depth) {

@@ -6,28 +6,6 @@
 
 namespace {
 
-struct Scenes : Folder {
-    Scenes() { write("unequal.scene", unequal); }
-};
-
-Words of(const std::string& options, const std::string& size = "12x6") {
-    return split(options + " --size " + size + " unequal.scene");
-}
-
-double seconds_of(const Folder& folder, const Words& words) {
-    const auto start = std::chrono::steady_clock::now();
-    expect_success(folder, "penumbra", words);
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// Interrupts the run, or kills it, after so many seconds, unless it is done before.
-Outcome cut_short(const Folder& folder, const Words& words, double seconds, int signal = SIGTERM) {
-    Process process(folder, "penumbra", words);
-    process.listen(seconds, [](const Outcome&) { return false; });
-    process.interrupt(signal);
-    return process.finish();
-}
-
 // Random moments in runs whose length is not known, on a machine that is now slow, now fast:
 // earlier after each that came too late and later after the others, so that about half are in time.
 class RandomMoments {
@@ -45,44 +23,41 @@ private:
 }  // namespace
 
 TEST_CASE("with more samples than before: the same image as at once, by any number of threads") {
-    const Scenes folder;
-    for (const char* options :
-         {"", "--sampler independent --sets 1", "--sampler halton", "--sets 3 --light nee",
-          "--sets 2 --direction uniform --roulette 0.3 --seed 3 --depth 2", "--view normal"}) {
-        INFO(std::string(options));
-        expect_success(folder, "penumbra", of(options) + split("--spp 71") + outputs("whole"));
+    const Unequal folder("12x6");
+    for (const std::string& options :
+         parts_of(";--sampler independent --sets 1;--sampler halton;--sets 3 --light nee;"
+                  "--sets 2 --direction uniform --roulette 0.3 --seed 3 --depth 2;--view normal")) {
+        INFO(options);
+        const Words words = folder.of(options);
+        expect_success(folder, words + split("--spp 71") + outputs("whole"));
         // The pilot, then others.
-        for (const char* spp : {"16", "32", "45", "71"})
-            expect_success(folder, "penumbra",
-                           of(options) + outputs("parts") +
-                               split("--keep a.film --threads 3 --spp " + std::string(spp)));
+        for (const std::string spp : {"16", "32", "45", "71"})
+            expect_success(
+                folder, words + outputs("parts") + split("--keep a.film --threads 3 --spp " + spp));
         CHECK(in_head(folder, "a.film", "complete") == "yes");
         expect_same_run(folder, "whole", "parts");
         // What is complete ends at once, with the same image; fewer samples take none away.
-        for (const char* spp : {"71", "20"}) {
-            expect_success(
-                folder, "penumbra",
-                of(options) + outputs("again") + split("--keep a.film --spp " + std::string(spp)));
+        for (const std::string spp : {"71", "20"}) {
+            expect_success(folder, words + outputs("again") + split("--keep a.film --spp " + spp));
             CHECK(folder.same("whole.pfm", "again.pfm"));
-            CHECK(stated(folder.read("again.json"), "rays") ==
-                  stated(folder.read("whole.json"), "rays"));
+            CHECK(folder.number("again", "rays") == folder.number("whole", "rays"));
         }
         fs::remove(folder / "a.film");
     }
 }
 
 TEST_CASE("interrupted at random moments, mostly in a pass: the same image in the end") {
-    const Scenes folder;
+    const Unequal folder("40x30");
     int interruptions = 0, amid = 0;
-    for (const char* options :
+    for (const std::string options :
          {"--spp 1000", "--spp 722 --sampler stratified", "--spp 600 --sets 3 --sampler halton",
           "--error 3% --sampler independent"}) {
-        INFO(std::string(options));
-        RandomMoments moments(seconds_of(folder, of(options, "40x30") + outputs("whole")));
-        const Words kept = of(options, "40x30") + split("--keep a.film") + outputs("parts");
+        INFO(options);
+        RandomMoments moments(seconds_of(folder, folder.of(options) + outputs("whole")));
+        const Words kept = folder.of(options) + split("--keep a.film") + outputs("parts");
         for (int run = 0, hits = 0; hits < 2 && run < 100; ++run) {
-            const Outcome o =
-                cut_short(folder, run > 0 ? kept + split("--threads 5") : kept, moments.next());
+            const Words words = run > 0 ? kept + split("--threads 5") : kept;
+            const Outcome o = cut_short(folder, words, moments.next(), SIGTERM);
             INFO(o.err);
             moments.was_in_time(o.status != 0);
             // One that had not yet begun is killed by the signal.
@@ -97,7 +72,7 @@ TEST_CASE("interrupted at random moments, mostly in a pass: the same image in th
             film.read(std::as_writable_bytes(std::span(taken)));
             amid += std::count(taken.begin(), taken.end(), taken[0]) != 300;
         }
-        expect_success(folder, "penumbra", kept);
+        expect_success(folder, kept);
         expect_same_run(folder, "whole", "parts");
         fs::remove(folder / "a.film");
     }
@@ -106,24 +81,21 @@ TEST_CASE("interrupted at random moments, mostly in a pass: the same image in th
 }
 
 TEST_CASE("a smaller --error, after a greater one and after --spp") {
-    const Scenes folder;
-    const std::string options = "--sampler independent";
-    expect_success(folder, "penumbra", of(options + " --error 4%") + outputs("whole"));
-    for (const char* first : {"--error 12%", "--spp 38"}) {
-        expect_success(folder, "penumbra", of(options + " --keep a.film -o x.pfm " + first));
-        CHECK(std::stoull(in_head(folder, "a.film", "rays")) <
-              std::stoull(stated(folder.read("whole.json"), "rays")));
-        expect_success(folder, "penumbra",
-                       of(options + " --error 4% --keep a.film") + outputs("parts"));
+    const Unequal folder("12x6");
+    const Words words = folder.of("--sampler independent");
+    expect_success(folder, words + split("--error 4%") + outputs("whole"));
+    for (const std::string first : {"--error 12%", "--spp 38"}) {
+        expect_success(folder, words + split("--keep a.film -o x.pfm " + first));
+        CHECK(std::stod(in_head(folder, "a.film", "rays")) < folder.number("whole", "rays"));
+        expect_success(folder, words + split("--error 4% --keep a.film") + outputs("parts"));
         expect_same_run(folder, "whole", "parts");
         fs::remove(folder / "a.film");
     }
 }
 
 TEST_CASE("kill -9 at any moment: a film that is whole, or none; the last one is the same image") {
-    const Scenes folder;
-    const std::string size = "80x40";
-    RandomMoments moments(seconds_of(folder, of("--spp 240", size) + outputs("whole")));
+    const Unequal folder("80x40");
+    RandomMoments moments(seconds_of(folder, folder.of("--spp 240") + outputs("whole")));
     const char* const asked = std::getenv("KILLS");
     const int kills = asked ? std::atoi(asked) : 20;
     // A run writes its film when it ends: of each that goes on a little further.
@@ -131,7 +103,7 @@ TEST_CASE("kill -9 at any moment: a film that is whole, or none; the last one is
     uint64_t rays = 0, spp = 32;
     for (uint64_t run = 0; killed < kills; ++run) {
         REQUIRE(run < 40 * uint64_t(kills));
-        const Words words = of("--keep a.film -o x.pfm --spp " + std::to_string(spp), size);
+        const Words words = folder.of("--keep a.film -o x.pfm --spp " + std::to_string(spp));
         const Outcome o = cut_short(folder, words, moments.next(), SIGKILL);
         moments.was_in_time(o.signal == SIGKILL);
         killed += o.signal == SIGKILL;
@@ -144,59 +116,55 @@ TEST_CASE("kill -9 at any moment: a film that is whole, or none; the last one is
         rays = now;
     }
     // A run removes what killed ones left beside the files that it writes.
-    expect_success(folder, "penumbra",
-                   of("--spp 240 --keep a.film -o x.pfm", size) + outputs("parts"));
+    expect_success(folder, folder.of("--spp 240 --keep a.film -o x.pfm") + outputs("parts"));
     expect_same_run(folder, "whole", "parts");
     for (const auto& [name, bytes] : folder.all()) CHECK_FALSE(contains(name, ".part"));
 }
 
 TEST_CASE("what a killed run left beside its film, the next one removes") {
-    const Scenes folder;
+    const Unequal folder("12x6");
     // More than Linux gives to processes.
     const std::string left = aside(folder / "a.film", "2147483646").filename().string();
     folder.write(left, "half");
-    expect_success(folder, "penumbra", of("--spp 2 --keep a.film -o a.pfm"));
+    expect_success(folder, folder.of("--spp 2 --keep a.film -o a.pfm"));
     CHECK(folder.has("a.film"));
     CHECK_FALSE(folder.has(left));
 }
 
 TEST_CASE("a disk that is full costs the film, and no image; the one that is there stays") {
-    const Scenes folder;
-    expect_success(folder, "penumbra", of("--spp 40", "32x24") + outputs("whole"));
-    auto run = [&] {
-        Process process(folder, "penumbra",
-                        of("--spp 40 --keep a.film", "32x24") + outputs("parts"),
-                        {.largest_file = 16384});  // less than the film, more than the image
-        return process.finish();
+    const Unequal folder("32x24");
+    expect_success(folder, folder.of("--spp 40") + outputs("whole"));
+    auto run_out = [&] {  // less than the film, more than the image
+        return run(folder, folder.of("--spp 40 --keep a.film") + outputs("parts"),
+                   {.largest_file = 16384});
     };
-    Outcome o = run();
+    Outcome o = run_out();
     INFO(o.err);
-    CHECK(o.signal == 0);
     CHECK(o.status == 1);
     CHECK(o.err.ends_with("a.film: cannot write: File too large\n"));
     CHECK_FALSE(contains(o.err, ", a.film"));
     expect_same_run(folder, "whole", "parts");
     CHECK_FALSE(folder.has("a.film"));
 
-    expect_success(folder, "penumbra", of("--spp 34 --keep a.film -o x.pfm", "32x24"));
+    expect_success(folder, folder.of("--spp 34 --keep a.film -o x.pfm"));
     const std::string film = folder.read("a.film");
-    o = run();
+    o = run_out();
     CHECK(o.status == 1);
     CHECK(folder.same("whole.pfm", "parts.pfm") ==
-          (stated(folder.read("whole.json"), "rays") == stated(folder.read("parts.json"), "rays")));
+          (folder.number("whole", "rays") == folder.number("parts", "rays")));
     const bool untouched = folder.read("a.film") == film;
     CHECK(untouched);
 }
 
 TEST_CASE("going on takes no more memory than beginning") {
-    const Scenes folder;
-    folder.write("dark.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
-    const Words words = split("--size 2048x1024 --depth 0 --sets 2 dark.scene");
-    expect_success(folder, "penumbra", split("--spp 4") + outputs("whole") + words);
-    expect_success(folder, "penumbra", split("--spp 2 -o x.pfm --keep a.film") + words);
-    expect_success(folder, "penumbra", split("--spp 4 --keep a.film") + outputs("parts") + words);
+    const Unequal folder("2048x1024");
+    folder.write("unequal.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
+    const Words words = folder.of("--depth 0 --sets 2");
+    expect_success(folder, words + split("--spp 4") + outputs("whole"));
+    expect_success(folder, words + split("--spp 2 -o x.pfm --keep a.film"));
+    expect_success(folder, words + split("--spp 4 --keep a.film") + outputs("parts"));
     expect_same_run(folder, "whole", "parts");
-    const double whole = std::stod(stated(folder.read("whole.json"), "peak_memory_bytes")),
-                 parts = std::stod(stated(folder.read("parts.json"), "peak_memory_bytes"));
+    const double whole = folder.number("whole", "peak_memory_bytes"),
+                 parts = folder.number("parts", "peak_memory_bytes");
     CHECK(parts < whole + 4e6);  // 2 bytes a pixel
 }

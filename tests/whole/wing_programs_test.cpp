@@ -6,15 +6,14 @@ namespace {
 const std::string programs[] = {"shadow", "voronoi"};
 const std::string words_of[] = {"--estimator", "--weights"};
 
-// A ball in the light of a lamp, its shadow on the ground.
 const std::string scene =
     "size 17 9\ncamera 0 3 6  0 0 0  50\nsamples 8\ndiffuse g .5 .4 .3\nlight l 4 4 4\n"
     "quad -5 0 -5  0 0 10  10 0 0  g\nsphere 0 1 0  .5  g\nsphere 1 3 0  .4  l\n";
 
-struct Place : Folder {
-    Place() { write("a.scene", scene); }
+struct Shadows : Folder {
+    Shadows() { write("a.scene", scene); }
     Image image(const std::string& program, const std::string& options) const {
-        expect_success(*this, program, split("--quiet -o x.pfm a.scene " + options));
+        expect_success(*this, program + " --quiet -o x.pfm a.scene " + options);
         return read_pfm(*this / "x.pfm");
     }
 };
@@ -35,42 +34,40 @@ double apart(const Image& a, const Image& b) {
 
 TEST_CASE("shadow and voronoi: one page of help; out/NAME-PROGRAM.png and .pfm; statistics") {
     for (size_t k = 0; k < 2; ++k) {
-        const Place folder;
-        const Outcome help = run(folder, programs[k], {"--help"});
-        CHECK(help.status == 0);
-        CHECK(contains(help.out, programs[k] + " [options] SCENE"));
-        CHECK(contains(help.out, "  " + words_of[k] + " "));
-        for (const char* gone : {"--time", "--error", "--keep", "--rows", "--view", "--pixel"})
-            CHECK_FALSE(contains(help.out, std::string("\n  ") + gone));
-        std::istringstream lines(help.out);
-        for (std::string text; std::getline(lines, text);) CHECK(text.size() <= 80);
+        const Shadows folder;
+        expect_help(folder, programs[k] + " --help", 100,
+                    programs[k] + " [options] SCENE;  " + words_of[k] + " ");
+        const std::string help = run(folder, programs[k] + " --help").out;
+        for (const std::string gone :
+             {"--time", "--error", "--keep", "--rows", "--view", "--pixel"})
+            CHECK_FALSE(contains(help, "\n  " + gone));
 
         const Outcome o = expect_success(
-            folder, programs[k], split("a.scene --sets 3 --spp 10 --size 136x72 --stats s.json"));
+            folder, programs[k] + " a.scene --sets 3 --spp 10 --size 136x72 --stats s.json");
         const std::string stem = "out/a-" + programs[k];
         CHECK(o.err.ends_with("\nwrote " + stem + ".png, " + stem + ".pfm, s.json\n"));
         CHECK(contains(o.err, "a.scene: 12 samples per pixel, "));
         CHECK(contains(o.err, " without its bias (consistent)"));
         CHECK(all_finite(read_pfm(folder / (stem + ".pfm"))));
         const std::string json = folder.read("s.json");
-        CHECK(contains(json, "\"samples_per_pixel\": 12,"));
-        CHECK(contains(json, "\"sets_per_pixel\": 3,"));
-        CHECK(contains(json, "\"stopped_by\": \"samples\""));
-        CHECK(contains(json, "\"redraws\": 0") == (programs[k] == "voronoi"));
-        CHECK(contains(json, "\"fallbacks\": 0") == (programs[k] == "voronoi"));
+        CHECK(stated(json, "samples_per_pixel") == "12");
+        CHECK(stated(json, "sets_per_pixel") == "3");
+        CHECK(stated(json, "stopped_by") == "\"samples\"");
+        for (const char* key : {"redraws", "fallbacks"})
+            CHECK(contains(json, "\"" + std::string(key) + "\": 0") == (programs[k] == "voronoi"));
     }
 }
 
 TEST_CASE(
     "shadow and voronoi: plain samples make penumbra's image; the others are of their class") {
-    const Place folder;
+    const Shadows folder;
     const std::string common = " --sets 2 --spp 32 --roulette .25 --seed 3 ";
-    for (const char* sampler : {"independent", "stratified", "halton", "sobol"}) {
+    for (const std::string sampler : {"independent", "stratified", "halton", "sobol"}) {
         const std::string by = common + "--sampler " + sampler;
         CHECK(apart(folder.image("shadow", by + " --estimator stochastic"),
                     folder.image("penumbra", by + " --light nee")) < 1e-6);
     }
-    for (const char* light : {"nee", "mis"}) {
+    for (const std::string light : {"nee", "mis"}) {
         const std::string by = common + "--light " + light;
         CHECK(apart(folder.image("voronoi", by + " --weights mc"),
                     folder.image("penumbra", by + " --sampler independent")) < 1e-6);
@@ -88,38 +85,35 @@ TEST_CASE(
         INFO(program, " ", option);
         const Image image = folder.image(program, option + common + "--stats s.json --threads 1");
         CHECK(folder.image(program, option + common + "--threads 3").pixels == image.pixels);
-        CHECK(contains(folder.read("s.json"), "\"bias\": \"" + words[1] + "\""));
+        CHECK(stated(folder.read("s.json"), "bias") == "\"" + words[1] + "\"");
         CHECK(apart(truth, image) > 1e-4);
         CHECK(apart(truth, image) < 0.5);
     }
 }
 
 TEST_CASE("shadow and voronoi refuse, in one line, what they cannot do") {
-    const Place folder;
-    const std::tuple<std::string, std::string, std::string> rows[] = {
-        {"shadow", "--estimator mean a.scene", "--estimator: unknown value 'mean'"},
-        {"shadow", "--sets adaptive a.scene", "--sets: 'adaptive' is not a whole number"},
-        {"shadow", "--light mis a.scene", "unknown option '--light'"},
-        {"shadow", "--time 3 a.scene", "unknown option '--time'"},
-        {"shadow", "", "no scene given"},
-        {"voronoi", "--weights area a.scene", "--weights: unknown value 'area'"},
-        {"voronoi", "--sampler sobol a.scene", "unknown option '--sampler'"},
-        {"voronoi", "--error 1% a.scene", "unknown option '--error'"},
-        {"voronoi", "--spp 2097153 a.scene", "--spp: at most 1048576 samples a replication"},
-        {"voronoi", "-o a.scene a.scene", "-o: 'a.scene' ends neither in .png nor in .pfm"}};
-    for (const auto& [program, line, why] : rows) expect_refusal(folder, program, split(line), why);
+    const Shadows folder;
+    expect_refusals(folder, "shadow",
+                    {{"--estimator mean a.scene", "--estimator: unknown value 'mean'"},
+                     {"--sets adaptive a.scene", "--sets: 'adaptive' is not a whole number"},
+                     {"--light mis a.scene", "unknown option '--light'"},
+                     {"--time 3 a.scene", "unknown option '--time'"},
+                     {"", "no scene given"}});
+    expect_refusals(folder, "voronoi",
+                    {{"--weights area a.scene", "--weights: unknown value 'area'"},
+                     {"--sampler sobol a.scene", "unknown option '--sampler'"},
+                     {"--error 1% a.scene", "unknown option '--error'"},
+                     {"--spp 2097153 a.scene", "--spp: at most 1048576 samples a replication"},
+                     {"-o a.scene a.scene", "-o: 'a.scene' ends neither in .png nor in .pfm"}});
 }
 
 TEST_CASE("shadow and voronoi: Ctrl-C leaves no image") {
     for (const std::string& program : programs) {
-        const Place folder;
-        Process process(folder, program, split("--spp 1000000 -o a.pfm a.scene"));
-        process.listen(0.5, [](const Outcome&) { return false; });
-        process.interrupt(SIGINT);
-        const Outcome o = process.finish();
+        const Shadows folder;
+        const Outcome o = cut_short(folder, program + " --spp 1000000 -o a.pfm a.scene", 0.5);
         INFO(o.err);
         CHECK(o.status == 130);
         CHECK(o.err.ends_with(" (interrupted)\n"));
-        CHECK(folder.all().size() == 1);
+        CHECK(folder.files() == 1);
     }
 }
