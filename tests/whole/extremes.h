@@ -15,14 +15,26 @@ inline constexpr bool is_double = sizeof(real) == 8;
 inline constexpr double d_ulp = 0x1p-53, f_ulp = 0x1p-24;  // of double and float: 1.1e-16, 6e-8
 inline constexpr double any = HUGE_VAL;
 
+struct Bounds {
+    double in_double, in_float;
+};
+constexpr Bounds ulps(double n) { return {n * d_ulp, n * f_ulp}; }
+constexpr Bounds within(double in_double, double in_float) { return {in_double, in_float}; }
+inline constexpr Bounds exact = {0, 0};
+
+// The error of a configuration with these numbers.
+template <class F, class... Numbers>
+std::function<double()> of(F error, Numbers... numbers) {
+    return [=] { return error(numbers...); };
+}
+
 // `error` runs the configuration with this build's `real`.  Where any error will do in float, it
 // cannot tell the configuration from another.
 struct Row {
     const char* name;
-    double in_double, in_float;  // the error that each may have
+    Bounds bounds;
     std::function<double()> error;
     bool in_suite = true;  // else too long for it: `make extremes` alone
-    double bound() const { return is_double ? in_double : in_float; }
 };
 
 // With EXTREMES=FILE every row, also the long ones, is added to that file: name, both bounds,
@@ -36,10 +48,10 @@ inline void check_rows(const std::vector<Row>& rows) {
         const double error = row.error();
         INFO(std::string(row.name));
         CHECK(!std::isnan(error));
-        CHECK(error <= row.bound());
+        CHECK(error <= (is_double ? row.bounds.in_double : row.bounds.in_float));
         if (out)
-            std::fprintf(out, "%s\t%.2g\t%.2g\t%.2g\n", row.name, row.in_double, row.in_float,
-                         error);
+            std::fprintf(out, "%s\t%.2g\t%.2g\t%.2g\n", row.name, row.bounds.in_double,
+                         row.bounds.in_float, error);
     }
     if (out) std::fclose(out);
 }
@@ -53,4 +65,24 @@ template <class F>
 void each_cell(int n, F f) {
     for (int i = 0; i < n * n; ++i)
         f(vec2{(real(i % n) + real(0.5)) / real(n), (real(i / n) + real(0.5)) / real(n)});
+}
+
+// The worst that `f` sees at these cells, or in n trials.
+template <class F>
+double worst_of_cells(int n, F f) {
+    Worst worst;
+    each_cell(n, [&](vec2 u) { f(worst, u); });
+    return double(worst.value);
+}
+template <class F>
+double worst_of(const char* name, int n, F f) {
+    Dice random{{oracle::seed_of(name)}};
+    Worst worst;
+    for (int i = 0; i < n; ++i) {
+        if constexpr (std::is_invocable_v<F, Dice&, Worst&, int>)
+            f(random, worst, i);
+        else
+            f(random, worst);
+    }
+    return double(worst.value);
 }

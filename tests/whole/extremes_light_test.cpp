@@ -23,32 +23,25 @@ double irradiance(const Light& l, vec3 p, int cells) {
 }
 
 double cone_solid_angle() {
-    Dice random{{oracle::seed_of("solid angle of a cone")}};
-    Worst worst;
-    for (int i = 0; i < 10000; ++i) {
+    return worst_of("solid angle of a cone", 10000, [&](Dice& random, Worst& worst) {
         const real sin2 = random.decades(-20, 0);
         worst.see(relative(solid_angle_cone(sin2),
                            2 * big_pi * big(sin2) / (1 + std::sqrt(1 - big(sin2)))));
-    }
-    return worst.value;
+    });
 }
 
 double cone_sines() {
     const real sin2_max = real(1e-8) / pi;  // 1e-8 sr
-    Worst worst;
-    each_cell(64, [&](vec2 u) {
+    return worst_of_cells(64, [&](Worst& worst, vec2 u) {
         const vec3 w = sample_cone(u, sin2_max);
         const big x = u.x * big(sin2_max) / (1 + std::sqrt(1 - big(sin2_max)));
         worst.see(relative(std::hypot(big(w.x), big(w.y)), std::sqrt(x * (2 - x))));
     });
-    return worst.value;
 }
 
 // 1 / pdf is the solid angle; light of radius 1 seen from a distance of d.
 double sphere_light_pdf(real d) {
-    Dice random{{oracle::seed_of("pdf of a sphere light")}};
-    Worst worst;
-    for (int i = 0; i < 1000; ++i) {
+    return worst_of("pdf of a sphere light", 1000, [&](Dice& random, Worst& worst) {
         const Light l = bright_sphere(random.direction(), 1);
         const vec3 p = d * random.direction();
         const big3 f = big3(l.p) - p;
@@ -57,21 +50,18 @@ double sphere_light_pdf(real d) {
         const auto s = sample_light(l, p, random.pair());
         worst.see(s ? relative(1 / big(s->pdf), truth) : HUGE_VAL);
         worst.see(relative(1 / big(pdf_light(l, p, {})), truth));
-    }
-    return worst.value;
+    });
 }
 
 // Normal where the ray meets the sphere: beta between it and -wi has sin(beta) = sin(theta) /
 // sin(sigma), so the angle at the centre is beta - theta.  From u in long double.
 double sphere_light_normal(real d) {
-    Dice random{{oracle::seed_of("normal of a sphere light")}};
-    Worst worst;
-    for (int i = 0; i < 20000; ++i) {
+    return worst_of("normal of a sphere light", 20000, [&](Dice& random, Worst& worst) {
         const Light l = bright_sphere({}, real(0.01));
         const vec3 p = d * l.r * random.direction();
         const vec2 u = random.pair();
         const auto s = sample_light(l, p, u);
-        if (!s) return HUGE_VAL;
+        if (!s) return worst.see(HUGE_VAL);
         const big sin2_max = big(l.r) * l.r / dot(big3(p), big3(p));
         const big x = u.x * sin2_max / (1 + std::sqrt(1 - sin2_max)), phi = 2 * big_pi * u.y;
         const big theta = std::atan2(std::sqrt(x * (2 - x)), 1 - x);
@@ -81,8 +71,7 @@ double sphere_light_normal(real d) {
         const big3 n = std::sin(alpha) * std::cos(phi) * big3(f.s) +
                        std::sin(alpha) * std::sin(phi) * big3(f.t) - std::cos(alpha) * big3(f.n);
         worst.see(length(big3(s->at.n) - n));
-    }
-    return worst.value;
+    });
 }
 
 // E = pi sin^2(sigma) under the middle of the light, h above whose surface the receiver is.
@@ -146,13 +135,11 @@ double insane_beside_a_light() {
 // x h A / d^4 for the normal +x.
 double edge_on(real h) {
     const Light l = quad_light({1, real(-0.5), h}, {0, 1, 0}, {1, 0, 0});
-    Worst worst;
-    each_cell(32, [&](vec2 u) {
+    return worst_of_cells(32, [&](Worst& worst, vec2 u) {
         const auto s = sample_light(l, {}, u);
         const big x = 1 + big(u.y), y = big(u.x) - 0.5L, d2 = x * x + y * y + big(h) * h;
         worst.see(s ? relative(big(s->wi.x) / s->pdf, x * h / (d2 * d2)) : HUGE_VAL);
     });
-    return worst.value;
 }
 
 // a b - c d from exact products, each a sum of two doubles (Dekker 1971).
@@ -163,30 +150,24 @@ big exact_difference(double a, double b, double c, double d) {
 
 // Area of a triangle whose edges differ by 2^-narrow.
 double sliver_light(int narrow) {
-    Dice random{{oracle::seed_of("sliver light")}};
     const real off = std::exp2(real(-narrow));
-    Worst worst;
-    for (int i = 0; i < 10000; ++i) {
+    return worst_of("sliver light", 10000, [&](Dice& random, Worst& worst) {
         const vec3 u = random.direction(), v = u + off * random.direction();
         const big3 n{exact_difference(u.y, v.z, u.z, v.y), exact_difference(u.z, v.x, u.x, v.z),
                      exact_difference(u.x, v.y, u.y, v.x)};
         worst.see(relative(1 / big(pdf_triangle_area(u, v)), length(n) / 2));
-    }
-    return worst.value;
+    });
 }
 
 // Point light at a distance of 1e-9 to 1e9: L d^2 = I.
 double light_of_a_point() {
-    Dice random{{oracle::seed_of("point light")}};
     Light l;
     l.L = {1, 1, 1};
-    Worst worst;
-    for (int i = 0; i < 1000; ++i) {
+    return worst_of("point light", 1000, [&](Dice& random, Worst& worst) {
         const vec3 p = random.decades(-9, 9) * random.direction();
         const auto s = sample_light(l, p, {});
         worst.see(s ? relative(s->L.x, 1 / dot(big3(p), big3(p))) : HUGE_VAL);
-    }
-    return worst.value;
+    });
 }
 
 // A light `ratio` times as powerful as another: the part of all random numbers that choose each
@@ -235,41 +216,35 @@ double weights_of_two() {
 
 TEST_CASE("extremes of lights: no more error than they may have") {
     check_rows({
-        {"cone of 10^-20 ... 2 pi sr: solid angle", 4 * d_ulp, 4 * f_ulp, cone_solid_angle},
-        {"cone of 10^-8 sr: sines of sampled angles", 8 * d_ulp, 8 * f_ulp, cone_sines},
-        {"sphere light of 10^-8 sr: 1 / pdf", 16 * d_ulp, 16 * f_ulp,
-         [] { return sphere_light_pdf(real(17725)); }},
-        {"sphere light of 10^-12 sr: 1 / pdf", 16 * d_ulp, 16 * f_ulp,
-         [] { return sphere_light_pdf(real(1.7725e6)); }},
-        {"sphere light 10 radii away: normal", 32 * d_ulp, 32 * f_ulp,
-         [] { return sphere_light_normal(10); }},
-        {"sphere light 10^7 radii away: normal", 32 * d_ulp, 32 * f_ulp,
-         [] { return sphere_light_normal(real(1e7)); }},
+        {"cone of 10^-20 ... 2 pi sr: solid angle", ulps(4), cone_solid_angle},
+        {"cone of 10^-8 sr: sines of sampled angles", ulps(8), cone_sines},
+        {"sphere light of 10^-8 sr: 1 / pdf", ulps(16), of(sphere_light_pdf, 17725)},
+        {"sphere light of 10^-12 sr: 1 / pdf", ulps(16), of(sphere_light_pdf, 1.7725e6)},
+        {"sphere light 10 radii away: normal", ulps(32), of(sphere_light_normal, 10)},
+        {"sphere light 10^7 radii away: normal", ulps(32), of(sphere_light_normal, 1e7)},
         // So near that float cannot tell outside from inside: no light samples there.
-        {"10^-7 above a sphere light: irradiance", 64 * d_ulp, any,
-         [] { return sphere_light_from(1, real(1e-7)); }},
-        {"10^-3 above a light of radius 10^6: irradiance", 64 * d_ulp, any,
-         [] { return sphere_light_from(real(1e6), real(1e-3)); }},
+        {"10^-7 above a sphere light: irradiance", within(64 * d_ulp, any),
+         of(sphere_light_from, 1, 1e-7)},
+        {"10^-3 above a light of radius 10^6: irradiance", within(64 * d_ulp, any),
+         of(sphere_light_from, 1e6, 1e-3)},
         // 1024 midpoints of the square root of u: 0.3 / 1024^1.5 = 1e-5.
-        {"sphere light of sine 10^-4, a third below the horizon: irradiance", 1e-5, 1e-4,
-         [] { return clipped_sphere_light(real(1e-4), real(0.4)); }},
-        {"sphere light of sine 10^-5, half below: irradiance", 1e-5, 1e-4,
-         [] { return clipped_sphere_light(real(1e-5), 0); }},
-        {"sphere light of sine 10^-5, nine tenths below: irradiance", 1e-5, 1e-4,
-         [] { return clipped_sphere_light(real(1e-5), real(-0.8)); }},
-        {"on the surface of a sphere light, and in it: samples not finite", 0, 0,
+        {"sphere light of sine 10^-4, a third below the horizon: irradiance", within(1e-5, 1e-4),
+         of(clipped_sphere_light, 1e-4, 0.4)},
+        {"sphere light of sine 10^-5, half below: irradiance", within(1e-5, 1e-4),
+         of(clipped_sphere_light, 1e-5, 0)},
+        {"sphere light of sine 10^-5, nine tenths below: irradiance", within(1e-5, 1e-4),
+         of(clipped_sphere_light, 1e-5, -0.8)},
+        {"on the surface of a sphere light, and in it: samples not finite", exact,
          insane_on_a_light},
-        {"in the plane of a quad light, on its edge, its corner: samples not finite", 0, 0,
+        {"in the plane of a quad light, on its edge, its corner: samples not finite", exact,
          insane_beside_a_light},
-        {"quad light edge-on, 10^-9 off its plane: contributions", 16 * d_ulp, 16 * f_ulp,
-         [] { return edge_on(real(1e-9)); }},
-        {"light as thin as 10^-6 of its length: area", 8 * d_ulp, 8 * f_ulp,
-         [] { return sliver_light(20); }},
-        {"point light 10^-9 ... 10^9 away: radiance", 8 * d_ulp, 8 * f_ulp, light_of_a_point},
-        {"lights of powers 1 and 10^9: how often against how probable", 0, 0,
-         [] { return choice_of_lights(1e9); }},
-        {"lights of powers 1 and 10^30: how often against how probable", 0, 0,
-         [] { return choice_of_lights(1e30); }},
-        {"MIS weights of densities 10^-30 ... 10^30: sum", 4 * d_ulp, 4 * f_ulp, weights_of_two},
+        {"quad light edge-on, 10^-9 off its plane: contributions", ulps(16), of(edge_on, 1e-9)},
+        {"light as thin as 10^-6 of its length: area", ulps(8), of(sliver_light, 20)},
+        {"point light 10^-9 ... 10^9 away: radiance", ulps(8), light_of_a_point},
+        {"lights of powers 1 and 10^9: how often against how probable", exact,
+         of(choice_of_lights, 1e9)},
+        {"lights of powers 1 and 10^30: how often against how probable", exact,
+         of(choice_of_lights, 1e30)},
+        {"MIS weights of densities 10^-30 ... 10^30: sum", ulps(4), weights_of_two},
     });
 }

@@ -1,12 +1,10 @@
 // whole/extremes_sums_test.cpp  numbers of paths, and sums over them
 #include "base/stats.h"
 #include "film/fill.h"
-#include "path/sampler.h"
+#include "path/samplers.h"
 #include "whole/extremes.h"
 
 namespace {
-
-// ---- Numbers of paths ---------------------------------------------------------------------------
 
 // Radical inverses at and beside an index, against the sum of d_k b^(-k-1).
 double halton_at(uint64_t index) {
@@ -46,8 +44,7 @@ double halton_blocks() {
 double late_samples() {
     int wrong = 0;
     const uint64_t late = uint64_t(1) << 40;
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::halton,
-                             SamplerKind::sobol}) {
+    for (SamplerKind kind : samplers) {
         const Pattern pattern = make_pattern(kind, oracle::seed_of("late samples"), 4, 16);
         for (uint32_t dim : {film_x, dimension(3, Draw::wi_x)}) {
             int cells[16] = {};
@@ -63,8 +60,6 @@ double late_samples() {
     }
     return wrong + !(to_unit(0xffffffff80u) < 1) + !(to_unit(UINT64_MAX) < 1);
 }
-
-// ---- Sums ---------------------------------------------------------------------------------------
 
 // 1e9 numbers, 0 ... 999 a million times each, in 1000 parts: mean 499.5, variance
 // (1000^2 - 1) / 12 n / (n - 1).
@@ -114,22 +109,20 @@ double tails() {
 
 TEST_CASE("extremes of numbers and sums: no more error than they may have") {
     check_rows({
-        {"Halton up to index 2^31", 4 * d_ulp, 4 * f_ulp,
-         [] { return halton_at(uint64_t(1) << 31); }},
-        {"Halton up to index 2^32", 4 * d_ulp, 4 * f_ulp,
-         [] { return halton_at(uint64_t(1) << 32); }},
-        {"Halton up to index 2^53", 4 * d_ulp, 4 * f_ulp,
-         [] { return halton_at(uint64_t(1) << 53); }},
-        {"Halton up to index 2^64 - 1", 4 * d_ulp, 4 * f_ulp, [] { return halton_at(UINT64_MAX); }},
-        {"scrambled Halton at 2^31, 2^32, 2^53: intervals without their one point", 0, 0,
+        {"Halton up to index 2^31", ulps(4), of(halton_at, uint64_t(1) << 31)},
+        {"Halton up to index 2^32", ulps(4), of(halton_at, uint64_t(1) << 32)},
+        {"Halton up to index 2^53", ulps(4), of(halton_at, uint64_t(1) << 53)},
+        {"Halton up to index 2^64 - 1", ulps(4), of(halton_at, UINT64_MAX)},
+        {"scrambled Halton at 2^31, 2^32, 2^53: intervals without their one point", exact,
          halton_blocks},
-        {"sample 2^40 of a pixel: numbers outside [0,1), cells without their one point", 0, 0,
+        {"sample 2^40 of a pixel: numbers outside [0,1), cells without their one point", exact,
          late_samples},
-        {"10^9 numbers, merged: mean and variance", 1e-12, 1e-12, merged_billion},
+        {"10^9 numbers, merged: mean and variance", within(1e-12, 1e-12), merged_billion},
         // The image is float: 6e-8.
-        {"10^9 samples of a pixel, one by one: mean", 1e-7, 1e-7, billion_one_by_one, false},
-        {"mean 10^8, sigma 1: variance", 1e-6, 1e-6, variance_far_from_zero},
-        {"radiance 10^8, sigma 1: spread in the film", 1e-6, any, film_far_from_zero},
-        {"p-values of z = 20, of Student's t = 10^8", 1e-12, 1e-12, tails},
+        {"10^9 samples of a pixel, one by one: mean", within(1e-7, 1e-7), billion_one_by_one,
+         false},
+        {"mean 10^8, sigma 1: variance", within(1e-6, 1e-6), variance_far_from_zero},
+        {"radiance 10^8, sigma 1: spread in the film", within(1e-6, any), film_far_from_zero},
+        {"p-values of z = 20, of Student's t = 10^8", within(1e-12, 1e-12), tails},
     });
 }

@@ -175,12 +175,10 @@ double shadow_of_sheet(real gap) {
 // Triangles with edges of 10^-k, and with no area, as scenes take them: each is dropped, or has
 // its normal: the product of its edges as rounded.
 double tiny_normals() {
-    Dice random{{oracle::seed_of("tiny normals")}};
     Scene scene;
     scene.materials.resize(1);
     const real least = is_double ? -320 : -44;
-    Worst worst;
-    for (int i = 0; i < 20000; ++i) {
+    return worst_of("tiny normals", 20000, [&](Dice& random, Worst& worst, int i) {
         const vec3 a = i % 2 ? vec3{} : random.direction();
         const real size = random.decades(least, 0);
         const vec3 b = a + size * random.direction();
@@ -192,8 +190,7 @@ double tiny_normals() {
             const big3 n = cross(big3(s.b - s.a), big3(s.c - s.a));
             worst.see(length(surface(s, {}, {}).n - 1 / length(n) * n));
         }
-    }
-    return worst.value;
+    });
 }
 
 double few_shapes() {
@@ -249,29 +246,23 @@ double corners_of_the_square() {
 
 // Near the pole of a uniform hemisphere: sin^2 = u (2 - u).
 double sines_at_the_pole() {
-    Dice random{{oracle::seed_of("pole")}};
-    Worst worst;
-    for (int i = 0; i < 10000; ++i) {
+    return worst_of("pole", 10000, [&](Dice& random, Worst& worst) {
         const real u = random.decades(is_double ? -15 : -7, 0);
         const vec3 w = sample_uniform_hemisphere({u, real(0.3)});
         // 1 - u is rounded, and so is the point; the sine is that of u.
         worst.see(relative(std::hypot(big(w.x), big(w.y)), std::sqrt(big(u) * (2 - big(u)))));
-    }
-    return worst.value;
+    });
 }
 
 // Exponent 1e5: sine of the angle from the axis.
 double lobe_sines() {
     const real n = real(1e5);
-    Dice random{{oracle::seed_of("lobe")}};
-    Worst worst;
-    for (int i = 0; i < 10000; ++i) {
+    return worst_of("lobe", 10000, [&](Dice& random, Worst& worst) {
         const real u = random.decades(is_double ? -12 : -6, 0);
         const vec3 w = sample_phong_lobe({u, real(0.3)}, n);
         const big truth = std::sqrt(-std::expm1(2 * std::log1p(-big(u)) / (big(n) + 1)));
         worst.see(relative(std::hypot(big(w.x), big(w.y)), truth));
-    }
-    return worst.value;
+    });
 }
 
 // Mirrored at a cosine of 1e-6 by a lobe of exponent 1e5: its density, as `pdf` finds it from wi
@@ -341,9 +332,7 @@ double critical_glass() {
 
 // f cos / pdf is 1 for what is reflected, eta^2 for what is refracted: index 10^-30 to 10^30.
 double glass_weights() {
-    Dice random{{oracle::seed_of("glass")}};
-    Worst worst;
-    for (int i = 0; i < 100000; ++i) {
+    return worst_of("glass", 100000, [&](Dice& random, Worst& worst, int i) {
         const real ior = i % 3 ? random.decades(-30, 30) : random(real(0.5), 2);
         const vec3 wo = i % 7 ? at_cosine(random.decades(-9, 0)) : vec3{0, 0, 1};
         const bool outside = i % 2;
@@ -351,8 +340,7 @@ double glass_weights() {
         const big eta = s.wi.z > 0 ? 1 : outside ? 1 / big(ior) : big(ior);
         worst.see(relative(s.f.x * (std::abs(s.wi.z) / s.pdf), eta * eta));
         worst.see(is_finite(s.wi) ? 0 : HUGE_VAL);
-    }
-    return worst.value;
+    });
 }
 
 // ---- Camera -------------------------------------------------------------------------------------
@@ -389,67 +377,61 @@ double from_above(real off) {
 }  // namespace
 
 TEST_CASE("extremes of shapes and directions: no more error than they may have") {
+    const FarSphere near = far_sphere(real(1e4)), far = far_sphere(real(1e7)),
+                    farther = far_sphere(1 / ulp);
+    const Lobe lobe = grazing_lobe();
     check_rows({
         // Rounding of a unit direction moves the hit by 3 ulp of the distance, of the roots by 5.
-        {"sphere 10^4 radii away: hit off the surface, in distances", 8 * d_ulp, 8 * f_ulp,
-         [] { return far_sphere(real(1e4)).hit_off; }},
-        {"sphere 10^4 radii away: point of a path off the surface, in distances", 5e-16, 3e-7,
-         [] { return far_sphere(real(1e4)).point_off; }},
-        {"sphere 10^4 radii away: part of the rays within 0.99 R that miss", 0, 0,
-         [] { return far_sphere(real(1e4)).missed; }},
-        {"sphere 10^7 radii away: part of the rays within 0.99 R that miss", 0, 0.5,
-         [] { return far_sphere(real(1e7)).missed; }},
-        {"sphere 10^7 radii away: hit off the surface, mean, in radii", 8e7 * d_ulp, any,
-         [] { return far_sphere(real(1e7)).hit_mean; }},
-        {"sphere 10^7 radii away: point of a path off the surface, mean, in radii", 6e-10,
-         4 * f_ulp, [] { return far_sphere(real(1e7)).point_mean; }},
-        {"sphere 1 / ulp radii away: the same", 4 * d_ulp, 4 * f_ulp,
-         [] { return far_sphere(1 / ulp).point_mean; }},
-        {"sphere of radius 10^6 seen from 10^-3: distance", 8 * d_ulp, 8 * f_ulp, over_a_planet},
-        {"rays leaving spheres of 10^-6 ... 10^6, 10^6 from the origin: met again", 0, 0,
+        {"sphere 10^4 radii away: hit off the surface, in distances", ulps(8),
+         [&] { return near.hit_off; }},
+        {"sphere 10^4 radii away: point of a path off the surface, in distances",
+         within(5e-16, 3e-7), [&] { return near.point_off; }},
+        {"sphere 10^4 radii away: part of the rays within 0.99 R that miss", exact,
+         [&] { return near.missed; }},
+        {"sphere 10^7 radii away: part of the rays within 0.99 R that miss", within(0, 0.5),
+         [&] { return far.missed; }},
+        {"sphere 10^7 radii away: hit off the surface, mean, in radii", within(8e7 * d_ulp, any),
+         [&] { return far.hit_mean; }},
+        {"sphere 10^7 radii away: point of a path off the surface, mean, in radii",
+         within(6e-10, 4 * f_ulp), [&] { return far.point_mean; }},
+        {"sphere 1 / ulp radii away: the same", ulps(4), [&] { return farther.point_mean; }},
+        {"sphere of radius 10^6 seen from 10^-3: distance", ulps(8), over_a_planet},
+        {"rays leaving spheres of 10^-6 ... 10^6, 10^6 from the origin: met again", exact,
          met_again},
-        {"closed mesh at (148376, 1234, -223423), aimed at edges and corners: leaks", 0, 0,
-         [] {
-             return leaks(ball(3), {148376, 1234, -223423});
-         }},
-        {"closed mesh of slivers, aspect 10^8, aimed at edges and corners: leaks", 0, 0,
-         [] { return leaks(cones(150, real(1e-8)), {}); }},
-        {"rays along axes, +0 and -0, in faces of boxes: tree unlike loop", 0, 0, along_axes},
-        {"coincident surfaces: not the first one seen", 0, 0, coincident},
-        {"sheet 10^-6 before a wall, from 10: part of the rays that see the wall", 0, 0.5,
-         [] { return sheet_before_wall(real(1e-6)); }},
-        {"sheet 10^-6 above a floor: part of the shadow rays that pass", 0, any,
-         [] { return shadow_of_sheet(real(1e-6)); }},
+        {"closed mesh at (148376, 1234, -223423), aimed at edges and corners: leaks", exact,
+         of(leaks, ball(3), vec3{148376, 1234, -223423})},
+        {"closed mesh of slivers, aspect 10^8, aimed at edges and corners: leaks", exact,
+         of(leaks, cones(150, real(1e-8)), vec3{})},
+        {"rays along axes, +0 and -0, in faces of boxes: tree unlike loop", exact, along_axes},
+        {"coincident surfaces: not the first one seen", exact, coincident},
+        {"sheet 10^-6 before a wall, from 10: part of the rays that see the wall", within(0, 0.5),
+         of(sheet_before_wall, 1e-6)},
+        {"sheet 10^-6 above a floor: part of the shadow rays that pass", within(0, any),
+         of(shadow_of_sheet, 1e-6)},
         // 1.5 ulp a component of the product, 3.5 of the unit vector; times sqrt(3).
-        {"triangles from 1 to denormal, and without area: normal", 9 * d_ulp, 9 * f_ulp,
-         tiny_normals},
-        {"no shape, one shape, a ray that is not a number: wrong answers", 0, 0, few_shapes},
+        {"triangles from 1 to denormal, and without area: normal", ulps(9), tiny_normals},
+        {"no shape, one shape, a ray that is not a number: wrong answers", exact, few_shapes},
 
-        {"frames about n.z = +-1, and 10^-9 off: scalar products of axes", 2.8e-16, 1e-7,
+        {"frames about n.z = +-1, and 10^-9 off: scalar products of axes", within(2.8e-16, 1e-7),
          frames_at_poles},
         // n is unit within 2 ulp.
-        {"frames anywhere: scalar products of axes", 8 * d_ulp, 8 * f_ulp, frames_anywhere},
-        {"samplers at the corners of the unit square: length", 8 * d_ulp, 8 * f_ulp,
-         corners_of_the_square},
-        {"uniform hemisphere near its pole: sines", 8 * d_ulp, 8 * f_ulp, sines_at_the_pole},
-        {"Phong exponent 10^5: sines from the axis", 8 * d_ulp, 8 * f_ulp, lobe_sines},
+        {"frames anywhere: scalar products of axes", ulps(8), frames_anywhere},
+        {"samplers at the corners of the unit square: length", ulps(8), corners_of_the_square},
+        {"uniform hemisphere near its pole: sines", ulps(8), sines_at_the_pole},
+        {"Phong exponent 10^5: sines from the axis", ulps(8), lobe_sines},
         // Rounding of the cosine, 4 ulp, times the exponent.
-        {"Phong exponent 10^5, grazing: density", 4e5 * d_ulp, 4e5 * f_ulp,
-         [] { return grazing_lobe().density; }},
-        {"Phong exponent 10^5, grazing: weight", 16 * d_ulp, 16 * f_ulp,
-         [] { return grazing_lobe().weight; }},
-        {"glass of index 1, cosines down to 10^-12: reflectance", 8 * d_ulp, 8 * f_ulp,
-         glass_like_air},
-        {"glass of index 1.5 ... 100, cosines down to 10^-12: reflectance", 16 * d_ulp, 16 * f_ulp,
+        {"Phong exponent 10^5, grazing: density", ulps(4e5), [&] { return lobe.density; }},
+        {"Phong exponent 10^5, grazing: weight", ulps(16), [&] { return lobe.weight; }},
+        {"glass of index 1, cosines down to 10^-12: reflectance", ulps(8), glass_like_air},
+        {"glass of index 1.5 ... 100, cosines down to 10^-12: reflectance", ulps(16),
          grazing_glass},
         // 4 ulp of cos^2 cancel, the root of which is the refracted cosine over n cos; 1 - R is
         // 2 (n + 1 / n) / cos times that: 2 (n^2 + 1) sqrt(4 ulp), n = 2.4.
-        {"glass at its critical angle: reflectance", 2.9e-7, 6.6e-3, critical_glass},
-        {"glass of index 10^-30 ... 10^30: weights", 16 * d_ulp, 16 * f_ulp, glass_weights},
-        {"field of view of 10^-4 degrees: angle between pixels", 1e-6, any,
-         [] { return telescope(real(1e-4)); }},
-        {"field of view of 179.99 degrees: its tangent", 1e-11, 1e-2, wide_angle},
-        {"camera 10^-9 from looking straight down: axes", 8 * d_ulp, 8 * f_ulp,
-         [] { return from_above(real(1e-9)); }},
+        {"glass at its critical angle: reflectance", within(2.9e-7, 6.6e-3), critical_glass},
+        {"glass of index 10^-30 ... 10^30: weights", ulps(16), glass_weights},
+        {"field of view of 10^-4 degrees: angle between pixels", within(1e-6, any),
+         of(telescope, 1e-4)},
+        {"field of view of 179.99 degrees: its tangent", within(1e-11, 1e-2), wide_angle},
+        {"camera 10^-9 from looking straight down: axes", ulps(8), of(from_above, 1e-9)},
     });
 }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "base/cases.h"
+#include "base/complaint.h"
 #include "path/paths.h"
 #include "world/scene_file.h"
 
@@ -15,7 +17,17 @@ const std::string room =
     "light lamp 2 2 2\nquad -4 0 -4  0 0 8  8 0 0  grey\n";
 const std::string over = "quad -1 2 -1  2 0 0  0 0 2  ";  // six lines before it
 
+std::string replaced(const std::string& from, const std::string& to, std::string text = room) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
 ParsedScene parsed(const std::string& text) { return parse_scene(text, "test"); }
+
+std::string number(double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", x);
+    return text;
+}
 
 bool warns(const ParsedScene& scene, const std::string& words) {
     return std::any_of(scene.warnings.begin(), scene.warnings.end(),
@@ -32,38 +44,30 @@ std::vector<rgb> render(const Scene& scene, LightMode mode) {
     return all;
 }
 
-std::string complaint(const std::string& text) {
-    try {
-        parsed(text);
-        return "";
-    } catch (const UserError& e) {
-        return e.what();
-    }
+double light_of(const Scene& scene, LightMode mode = LightMode::none) {
+    double sum = 0;
+    for (rgb L : render(scene, mode)) sum += double(L.x);
+    return sum;
 }
 
-}  // namespace
-
-namespace {
+const double rounding = single ? 0.01 : 1e-9;
 
 // What the pixels of two scenes have in all, for each mode: the same paths, but for rounding. Where
 // there are two lights to choose from light samples are others: six standard errors.
 void expect_same_light(const Scene& a, const Scene& b) {
     for (LightMode mode : {LightMode::none, LightMode::nee, LightMode::mis}) {
-        double sums[2] = {};
-        for (rgb L : render(a, mode)) sums[0] += double(L.x);
-        for (rgb L : render(b, mode)) sums[1] += double(L.x);
         CAPTURE(int(mode));
-        CHECK(sums[0] > 0);
+        const double light = light_of(a, mode);
+        CHECK(light > 0);
         const bool others = mode != LightMode::none && a.lights.size() != b.lights.size();
-        CHECK(sums[1] == doctest::Approx(sums[0]).epsilon(others ? 0.06 : single ? 0.01 : 1e-9));
+        CHECK(light_of(b, mode) == doctest::Approx(light).epsilon(others ? 0.06 : rounding));
     }
 }
 
 }  // namespace
 
 TEST_CASE("a lamp in a ceiling shines as if it were in front of it, however light is found") {
-    std::string text = room;
-    text.replace(text.find("depth 3"), 7, "depth 1");
+    const std::string text = replaced("depth 3", "depth 1");
     const Scene alone = parsed(text + over + "lamp\n").scene;
     // Beside it, of the same corners in other orders, of one half, of another diagonal, over it.
     for (const char* cover :
@@ -98,29 +102,16 @@ TEST_CASE("a lamp in a ceiling shines as if it were in front of it, however ligh
 }
 
 TEST_CASE("of two lamps in one place the first shines, and the other where it is alone") {
-    std::string text = room;
-    text.replace(text.find("depth 3"), 7, "depth 1");
+    const std::string text = replaced("depth 3", "depth 1");
     const std::string longer = "quad -1 2 -1  4 0 0  0 0 2  lamp\n";
-    const Scene one = parsed(text + longer).scene;
-    for (const std::string& two : {over + "lamp\n" + longer, longer + over + "lamp\n"}) {
-        const Scene both = parsed(text + two).scene;
-        double sums[2] = {};
-        for (rgb L : render(one, LightMode::none)) sums[0] += double(L.x);
-        for (rgb L : render(both, LightMode::none)) sums[1] += double(L.x);
-        CHECK(sums[1] == doctest::Approx(sums[0]).epsilon(single ? 0.01 : 1e-9));
-    }
+    auto light = [&](const std::string& shapes) { return light_of(parsed(text + shapes).scene); };
+    for (const std::string& two : {over + "lamp\n" + longer, longer + over + "lamp\n"})
+        CHECK(light(two) == doctest::Approx(light(longer)).epsilon(rounding));
     // Of another radiance: as if the second were cut out.
-    const std::string bright = "light bright 9 9 9\n", part = "quad 1 2 -1  2 0 0  0 0 2  bright\n";
-    std::string covered = longer;
-    covered.replace(covered.find("lamp"), 4, "bright");
-    expect_same_light(parsed(text + bright + over + "lamp\n").scene,
-                      parsed(text + bright + over + "lamp\n" + over + "bright\n").scene);
-    double sums[2] = {};
-    for (rgb L : render(parsed(text + bright + over + "lamp\n" + part).scene, LightMode::none))
-        sums[0] += double(L.x);
-    for (rgb L : render(parsed(text + bright + over + "lamp\n" + covered).scene, LightMode::none))
-        sums[1] += double(L.x);
-    CHECK(sums[1] == doctest::Approx(sums[0]).epsilon(single ? 0.01 : 1e-9));
+    const std::string bright = "light bright 9 9 9\n" + over + "lamp\n";
+    expect_same_light(parsed(text + bright).scene, parsed(text + bright + over + "bright\n").scene);
+    CHECK(light(bright + "quad -1 2 -1  4 0 0  0 0 2  bright\n") ==
+          doctest::Approx(light(bright + "quad 1 2 -1  2 0 0  0 0 2  bright\n")).epsilon(rounding));
 }
 
 TEST_CASE("a lamp of two sides in a wall shines on both; two of one side, back to back, as it") {
@@ -129,9 +120,7 @@ TEST_CASE("a lamp of two sides in a wall shines on both; two of one side, back t
     const std::string pair =
         "quad -1 .5 -1  2 0 0  0 1 0  lamp\nquad -1 .5 -1  0 1 0  2 0 0  lamp\n";
     for (const char* eye : {"0 1 4", "0 1 -4"}) {
-        std::string text = room;
-        text.replace(text.find("0 1 4"), 5, eye);
-        text.replace(text.find("depth 3"), 7, "depth 0");
+        const std::string text = replaced("0 1 4", eye, replaced("depth 3", "depth 0"));
         auto lit = [&](const std::string& scene) {
             int n = 0;
             for (rgb L : render(parsed(text + scene).scene, LightMode::none))
@@ -140,16 +129,13 @@ TEST_CASE("a lamp of two sides in a wall shines on both; two of one side, back t
         };
         const int alone = lit(both);
         CHECK(alone > 10);
-        CHECK(std::abs(lit(wall + both) - alone) <= (single ? 2 : 0));
-        CHECK(std::abs(lit(both + wall) - alone) <= (single ? 2 : 0));
-        CHECK(std::abs(lit(pair) - alone) <= (single ? 2 : 0));
-        CHECK(std::abs(lit(wall + pair) - alone) <= (single ? 2 : 0));
+        for (const std::string& others : {wall + both, both + wall, pair, wall + pair})
+            CHECK(std::abs(lit(others) - alone) <= (single ? 2 : 0));
     }
 }
 
 TEST_CASE("a lamp in a ball of its size shines, and the first of two") {
-    std::string text = room;
-    text.replace(text.find("depth 3"), 7, "depth 1");
+    const std::string text = replaced("depth 3", "depth 1");
     const Scene alone = parsed(text + "sphere 0 1 0 .3 lamp\n").scene;
     expect_same_light(alone, parsed(text + "sphere 0 1 0 .3 grey\nsphere 0 1 0 .3 lamp\n").scene);
     expect_same_light(alone, parsed(text + "sphere 0 1 0 .3 lamp\nsphere 0 1 0 .3 grey\n").scene);
@@ -161,31 +147,26 @@ TEST_CASE("a lamp in a ball of its size shines, and the first of two") {
 
 TEST_CASE("a point light on a surface is refused, off it accepted") {
     auto at = [](const char* place) {
-        return complaint(room + "triangle 0 1 0  1 1 0  0 2 1  grey\nsphere 2 2 2 .5 grey\n" +
-                         "pointlight " + place + "  1 1 1\n");
+        const std::string text = "triangle 0 1 0  1 1 0  0 2 1  grey\nsphere 2 2 2 .5 grey\n";
+        return complaint([&] { parsed(room + text + "pointlight " + place + "  1 1 1\n"); });
     };
     CHECK(at("0.5 0 0.5") == "test:9: this point light lies on the surface of line 6: move it off");
-    CHECK(at("0 0 0").starts_with("test:9: this point light lies on"));  // on the diagonal
-    CHECK(
-        at("0.25 1.25 0.25").starts_with("test:9: this point light lies on the surface of line 7"));
-    CHECK(at("2 2.5 2").starts_with("test:9: this point light lies on the surface of line 8"));
-    CHECK(at("0.5 1e-4 0.5") == "");
-    CHECK(at("0.5 -1e-4 0.5") == "");
-    CHECK(at("5 0 0") == "");  // in the plane, beside the quad
-    CHECK(at("1 2 1") == "");  // in the plane of the triangle, beyond its long side
-    CHECK(at("2 2.501 2") == "");
-    CHECK(at("2 2 2") == "");
+    for (const auto& [place, line] :
+         {std::pair{"0 0 0", "6"}, {"0.25 1.25 0.25", "7"}, {"2 2.5 2", "8"}})  // on the diagonal
+        CHECK(at(place).starts_with("test:9: this point light lies on the surface of line " +
+                                    std::string(line)));
+    // Beside the quad in its plane, beyond the long side of the triangle.
+    for (const char* place :
+         {"0.5 1e-4 0.5", "0.5 -1e-4 0.5", "5 0 0", "1 2 1", "2 2.501 2", "2 2 2"})
+        CHECK(at(place) == "");
 }
 
 TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {
     auto box_at = [](double x) {
-        char text[400];
-        std::snprintf(
-            text, sizeof text,
-            "camera %.17g 0 1.8  %.17g 0 0  60\ndiffuse half .5 .5 .5\nlight glow .4 .4 .4 "
-            "twosided half\nbox 4 3 4  0  %.17g -1.5 -2  glow\n",
-            x, x, x - 2);
-        return parsed(text);
+        const std::string at = number(x), wall = number(x - 2);
+        return parsed("camera " + at + " 0 1.8  " + at + " 0 0  60\ndiffuse half .5 .5 .5\n" +
+                      "light glow .4 .4 .4 twosided half\nbox 4 3 4  0  " + wall +
+                      " -1.5 -2   glow\n");
     };
     CHECK(warns(box_at(1e6), "are coarse here") == single);
     CHECK(!warns(box_at(1e3), "are coarse here"));
@@ -209,13 +190,10 @@ std::string told(const std::string& eye, const std::string& others) {
         all += (all.empty() ? "" : "\n") + w;
     return all;
 }
-// The last %s of the text is that many offsets.
-std::string with(std::string text, double offsets) {
-    char number[40];
-    std::snprintf(number, sizeof number, "%.17g", offsets * offset);
-    for (size_t i; (i = text.find('@')) != text.npos;) text.replace(i, 1, number);
-    return text;
+std::string off(const std::string& text, double offsets) {
+    return with(text, number(offsets * offset));
 }
+const std::string from_above = "0 9 20  0 0 0  50", panel = "quad -9 9 -9  18 0 0  0 0 18  l\n";
 
 }  // namespace
 
@@ -224,53 +202,52 @@ TEST_CASE("where rays start more than 1 % of the way to something near, it is to
                               " bytes are coarse here: rays start off this shape by more than 1 % "
                               "of its distance to ",
                       end = "; light may be wrong: use REAL=double, or move all nearer to 0";
-    const std::string eye = "0 9 20  0 0 0  50", lamp = "quad -9 9 -9  18 0 0  0 0 18  l\n";
+    const std::string& eye = from_above;
     const struct {
         std::string eye, others, what;
     } rows[] = {{eye, "quad -1000 @ -1000  2000 0 0  0 0 2000  l\n", "line 5"},
                 {eye, "quad -1000 -@ -1000  2000 0 0  0 0 2000  l\n", "line 5"},
-                {"1 @ 2  9 @ 1  50", lamp, "the eye"},
-                {"1 -@ 2  9 -@ 1  50", lamp, "the eye"},
+                {"1 @ 2  9 @ 1  50", panel, "the eye"},
+                {"1 -@ 2  9 -@ 1  50", panel, "the eye"},
                 {eye, "pointlight 1 @ 2  9 9 9\npointlight 3 @ 2  9 9 9\n", "a point light"}};
     for (const auto& row : rows) {
         INFO(row.eye, row.others);
         for (const double offsets : {50.0, 95.0})
-            CHECK(told(with(row.eye, offsets), with(row.others, offsets)) ==
-                  start + row.what + end);
-        CHECK(told(with(row.eye, 105), with(row.others, 105)) == "");
+            CHECK(told(off(row.eye, offsets), off(row.others, offsets)) == start + row.what + end);
+        CHECK(told(off(row.eye, 105), off(row.others, 105)) == "");
     }
     // From a ball or from a plate: the other is too large to look out from where it is near.
     for (const std::string other :
          {"sphere 9 @ 9  5 l\n", "sphere 9 -@ 9  5 l\n", "quad 9 @ 9  1 0 0  0 0 1  l\n"}) {
         INFO(other);
-        const std::string near = told(eye, with(other, 90));
+        const std::string near = told(eye, off(other, 90));
         CHECK(near.starts_with("line 5: "));
         CHECK(near.ends_with(" its distance to line 4" + end));
-        CHECK(told(eye, with(other, 110)) == "");
+        CHECK(told(eye, off(other, 110)) == "");
     }
     // A small ball by its centre, on the floor or above it; its size is that of many more offsets.
     auto ball = [&](double height) {
-        return told(eye, lamp + with("sphere 0 @ 0  ", height) + with("@ d\n", 40));
+        return told(eye, panel + off("sphere 0 @ 0  ", height) + off("@ d\n", 40));
     };
     CHECK(ball(90).ends_with(" its distance to line 4" + end));
     CHECK(ball(110) == "");
 }
 
 TEST_CASE("shapes that touch are not near, nor are they with a light near by") {
-    const std::string eye = "0 9 20  0 0 0  50", lamp = "quad -9 9 -9  18 0 0  0 0 18  l\n";
+    const std::string& eye = from_above;
     for (const char* standing :
          {"box 2 2 2  30  1 0 1  d\n", "sphere 2 1 3  1 d\n", "sphere 0 0 0  1 d\n",
           "quad -4 0 -4  0 0 8  8 0 0  d\n", "quad -4 0 -4  8 0 0  0 8 0  d\n"}) {
         INFO(std::string(standing));
-        CHECK(told(eye, lamp + standing) == "");
+        CHECK(told(eye, panel + standing) == "");
     }
     // A ball in a corner; a roof, a box upon a box.
-    CHECK(told(eye, lamp + "quad -9 0 -1  18 0 0  0 9 0  d\nsphere 3 1 0  1  d\n") == "");
-    CHECK(told(eye, lamp + "box 2 2 2  0  -1 0 -1  d\nbox 1 1 1  20  -.5 2 -.5  d\n") == "");
+    CHECK(told(eye, panel + "quad -9 0 -1  18 0 0  0 9 0  d\nsphere 3 1 0  1  d\n") == "");
+    CHECK(told(eye, panel + "box 2 2 2  0  -1 0 -1  d\nbox 1 1 1  20  -.5 2 -.5  d\n") == "");
 }
 
 TEST_CASE("plates on a slope touch it within rounding; a small ball far away is not near itself") {
-    const std::string eye = "0 9 20  0 0 0  50", lamp = "quad -9 9 -9  18 0 0  0 0 18  l\n";
+    const std::string& eye = from_above;
     std::string slope = "quad -90 0 0  180 0 0  0 2.1 1.3  d\n";
     for (int i = -20; i < 20; ++i) {
         char plate[200];
@@ -278,8 +255,8 @@ TEST_CASE("plates on a slope touch it within rounding; a small ball far away is 
                       0.021 * (30 + i), 0.013 * (30 + i));
         slope += plate;
     }
-    CHECK(told(eye, lamp + slope) == "");
-    const std::string ball = told(eye, lamp + with("sphere 900 50 0  @ d\n", 30));
+    CHECK(told(eye, panel + slope) == "");
+    const std::string ball = told(eye, panel + off("sphere 900 50 0  @ d\n", 30));
     CHECK(ball.find(" of its size;") != ball.npos);
     CHECK(ball.find("distance") == ball.npos);
 }
