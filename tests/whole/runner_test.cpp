@@ -48,6 +48,15 @@ struct Said {
     std::string out;
     bool has(const std::string& part) const { return out.find(part) != out.npos; }
     long lines() const { return std::count(out.begin(), out.end(), '\n'); }
+    void expect(int exit, const std::vector<std::string>& parts, const std::string& end) const {
+        INFO(out);
+        CHECK(status == exit);
+        for (const std::string& part : parts) {
+            INFO("expected: ", part);
+            CHECK(has(part));
+        }
+        CHECK(out.ends_with(end));
+    }
 };
 
 // A house whose `make` finds everything built.
@@ -103,11 +112,9 @@ TEST_CASE("green: a line for each floor, then how many passed") {
     house.add("base/low", 1, passes);
     house.add("world/mid", 1, passes);
     const Said said = house.test();
-    INFO(said.out);
-    CHECK(said.status == 0);
-    CHECK(said.has("base             1 file, 1 cases passed"));
-    CHECK(said.has("world            1 file, 1 cases passed"));
-    CHECK(said.out.ends_with("\n2 passed, 0 failed\n"));
+    said.expect(
+        0, {"base             1 file, 1 cases passed", "world            1 file, 1 cases passed"},
+        "\n2 passed, 0 failed\n");
     CHECK(said.lines() == 3);
 }
 
@@ -118,50 +125,43 @@ TEST_CASE("a failed floor: one line a case, where to start, and what stands on i
     house.add("world/mid", 1, "touch ran\n" + passes);
     house.add("film/high", 1, passes);
     const Said said = house.test();
-    INFO(said.out);
-    CHECK(said.status == 1);
-    CHECK(said.has("base/first_test: has a verdict: twice as bright\n"));
-    CHECK(said.has("base/first_test: throws: threw: no light\n"));
-    CHECK(said.has("base/second_test: fails: tests/whole/runner_test.cpp:"));
-    CHECK(said.has(": two == 3; it is 2 == 3; a note\n"));
+    said.expect(
+        1,
+        {"base/first_test: has a verdict: twice as bright\n",
+         "base/first_test: throws: threw: no light\n",
+         "base/second_test: fails: tests/whole/runner_test.cpp:",
+         ": two == 3; it is 2 == 3; a note\n",
+         "\nstart here: has a verdict, tests/whole/runner_test.cpp:", "; make test ONLY=first\n",
+         "\nwaits for base: world film; make test ALL=1 runs all\n"},
+        "\n2 passed, 3 failed\n");
     CHECK(said.out.find("first_test") < said.out.find("second_test"));
-    CHECK(said.has("\nstart here: has a verdict, tests/whole/runner_test.cpp:"));
-    CHECK(said.has("; make test ONLY=first\n"));
-    CHECK(said.has("\nwaits for base: world film; make test ALL=1 runs all\n"));
-    CHECK(said.out.ends_with("\n2 passed, 3 failed\n"));
     CHECK(!said.has("\nworld "));
-    CHECK(!fs::exists(house.folder / "build/logs/world.mid_test"));
+    CHECK(!house.folder.has("build/logs/world.mid_test"));
     CHECK(house.log("base.second_test").find("two == 4") != std::string::npos);
 
     const Said all = house.test("ALL=1");
-    INFO(all.out);
-    CHECK(all.status == 1);
+    all.expect(1, {}, "\n4 passed, 3 failed\n");
     CHECK(house.folder.has("ran"));
     CHECK(!all.has("waits for"));
-    CHECK(all.out.ends_with("\n4 passed, 3 failed\n"));
 }
 
 TEST_CASE("a crash names its case, keeps what was printed, and stops no other test") {
-    const struct {
-        const char *name, *verdict;
-    } ends[] = {
+    const std::pair<std::string, std::string> ends[] = {
         {"crashes", "crashed: SIGSEGV"},
         {"terminates",
          "crashed: SIGABRT - Abort (abnormal termination) signal: terminate called "
          "after throwing an instance of 'std::runtime_error': what():  nobody"},
         {"leaves", "ended the program: exit status 7\n"},
     };
-    for (const auto& end : ends) {
+    for (const auto& [name, verdict] : ends) {
         House house;
-        house.add("base/bad", 1, cases(end.name));
+        house.add("base/bad", 1, cases(name));
         house.add("base/good", 2, passes);
-        const Said said = house.test();
-        INFO(said.out);
-        CHECK(said.status == 1);
-        CHECK(said.has(std::string("base/bad_test: ") + end.name + ": " + end.verdict));
-        CHECK(said.has(std::string("start here: ") + end.name + ", tests/whole/runner_test.cpp:"));
-        CHECK(said.out.ends_with("\n2 passed, 1 failed\n"));
-        if (end.name == std::string("crashes"))
+        house.test().expect(1,
+                            {"base/bad_test: " + name + ": " + verdict,
+                             "start here: " + name + ", tests/whole/runner_test.cpp:"},
+                            "\n2 passed, 1 failed\n");
+        if (name == "crashes")
             CHECK(house.log("base.bad_test").find("about to crash") != std::string::npos);
     }
 }
@@ -169,13 +169,12 @@ TEST_CASE("a crash names its case, keeps what was printed, and stops no other te
 TEST_CASE("a test that does not end is ended, and names its case") {
     House house;
     house.add("base/loop", 1, cases("loops"));
-    Said said = house.test("LIMIT_OTHERS=1");
-    CHECK(said.has("loop_test: loops: used up 1 s of CPU time: an endless loop?\n"));
-    CHECK(said.out.ends_with("\n1 passed, 1 failed\n"));
+    const std::string end = "\n1 passed, 1 failed\n";
+    house.test("LIMIT_OTHERS=1")
+        .expect(1, {"loop_test: loops: used up 1 s of CPU time: an endless loop?\n"}, end);
     house.add("base/loop", 1, cases("waits"));
-    said = house.test("LIMIT_CLOCK=1");
-    CHECK(said.has("loop_test: waits: did not end within 1 s: does it wait for ever?\n"));
-    CHECK(said.out.ends_with("\n1 passed, 1 failed\n"));
+    house.test("LIMIT_CLOCK=1")
+        .expect(1, {"loop_test: waits: did not end within 1 s: does it wait for ever?\n"}, end);
 }
 
 TEST_CASE("what does not compile is said once, by its first error, and the floor has failed") {
@@ -187,15 +186,13 @@ TEST_CASE("what does not compile is said once, by its first error, and the floor
     house.folder.write("tests/base/a_test.broken", errors);
     house.folder.write("tests/base/b_test.broken", errors);
     const Said said = house.test();
-    INFO(said.out);
-    CHECK(said.status == 1);
-    CHECK(said.has("1 cases passed, 2 not built"));
-    CHECK(said.has("\nnot built: src/base/a.h:7:1: error: oh (2 files); build/logs/compile.0\n"));
-    CHECK(said.has("\nsrc/base/a.h:3:5: warning: unused parameter 'u'\n"));
+    said.expect(1,
+                {"1 cases passed, 2 not built",
+                 "\nnot built: src/base/a.h:7:1: error: oh (2 files); build/logs/compile.0\n",
+                 "\nsrc/base/a.h:3:5: warning: unused parameter 'u'\n",
+                 "\nstart here: src/base/a.h:7:1: error: oh\n", "waits for base: world;"},
+                "\n1 passed, 1 failed\n");
     CHECK(!said.has("and so on"));
-    CHECK(said.has("\nstart here: src/base/a.h:7:1: error: oh\n"));
-    CHECK(said.has("waits for base: world;"));
-    CHECK(said.out.ends_with("\n1 passed, 1 failed\n"));
 }
 
 TEST_CASE("a flood of failures fits on a screen") {
@@ -209,12 +206,12 @@ exit 1
     for (int files : {1, 3, 8, 40}) {
         for (int i = 0; i < files; ++i) house.add("base/f" + std::to_string(100 + i), 1, flood);
         const Said said = house.test();
-        INFO(said.out);
+        said.expect(
+            1,
+            {"base/f100_test: case 1: is wrong", "more cases in build/logs/base.f100_test\n",
+             "\nstart here: case 1, tests/a_test.cpp:1; make test ONLY=f100\n"},
+            "\n0 passed, " + std::to_string(100 * files) + " failed\n");
         CHECK(said.lines() <= 40);
-        CHECK(said.has("base/f100_test: case 1: is wrong"));
-        CHECK(said.has("more cases in build/logs/base.f100_test\n"));
-        CHECK(said.has("\nstart here: case 1, tests/a_test.cpp:1; make test ONLY=f100\n"));
-        CHECK(said.out.ends_with("\n0 passed, " + std::to_string(100 * files) + " failed\n"));
     }
 }
 
@@ -233,9 +230,7 @@ TEST_CASE("names are those of tests, headers or folders; another one is told fro
                       shapes = "world/shapes_test\nworld/shapes_spawn_test\n";
     const std::string world =
         "world/shapes_test\nworld/lights_test\nworld/shapes_spawn_test\n" + bvh;
-    const struct {
-        std::string names, tests;
-    } known[] = {
+    const std::pair<std::string, std::string> known[] = {
         {"bvh", bvh},
         {"world/bvh", bvh},
         {"src/world/bvh.h", bvh},
@@ -251,22 +246,20 @@ TEST_CASE("names are those of tests, headers or folders; another one is told fro
         {"bvh low", "base/low_test\n" + bvh},
         {"", "base/low_test\n" + world + "film/image_test\n" + film},
     };
-    for (const auto& k : known) {
-        const Said said = house.test("LIST=1", k.names);
-        INFO("ONLY=", k.names);
+    for (const auto& [names, tests] : known) {
+        const Said said = house.test("LIST=1", names);
+        INFO("ONLY=", names);
         CHECK(said.status == 0);
-        CHECK(said.out == k.tests);
+        CHECK(said.out == tests);
     }
-    const struct {
-        const char *name, *answer;
-    } unknown[] = {
-        {"bhv", "no test is named bhv; did you mean bvh?\n"},
-        {"src/world/shape.h", "no test is named src/world/shape.h; did you mean shapes?\n"},
-        {"quaternion", "no test is named quaternion; tests/ has them all\n"}};
-    for (const auto& u : unknown) {
-        const Said said = house.test("", u.name);
+    const std::pair<std::string, std::string> unknown[] = {
+        {"bhv", "bhv; did you mean bvh?\n"},
+        {"src/world/shape.h", "src/world/shape.h; did you mean shapes?\n"},
+        {"quaternion", "quaternion; tests/ has them all\n"}};
+    for (const auto& [name, answer] : unknown) {
+        const Said said = house.test("", name);
         CHECK(said.status == 2);
-        CHECK(said.out == u.answer);
+        CHECK(said.out == "no test is named " + answer);
     }
 }
 
@@ -275,10 +268,7 @@ TEST_CASE("what is asked for by name is run alone, wherever it stands, and shows
     house.add("base/low", 1, cases("fails"));
     house.add("world/mid", 1, "echo a table\n" + passes);
     const Said said = house.test("", "mid");
-    INFO(said.out);
-    CHECK(said.status == 0);
-    CHECK(said.has("\na table\n"));
+    said.expect(0, {"\na table\n"}, "\n1 passed, 0 failed\n");
     CHECK(!said.has("base"));
-    CHECK(said.out.ends_with("\n1 passed, 0 failed\n"));
     CHECK(house.test("", "mid low").out.ends_with("\n2 passed, 1 failed\n"));
 }
