@@ -2,6 +2,7 @@
 #include "base/moments.h"
 #include "labs/indirect_paths.h"
 #include "oracle/expect.h"
+#include "path/samplers.h"
 #include "radiosity/particles.h"
 #include "whole/known_scenes.h"
 #include "world/scene_file.h"
@@ -64,8 +65,7 @@ TEST_CASE("control and regression meet every closed form of diffuse triangles") 
     CHECK(scenes.size() >= 11);
     for (const Endless& e : scenes)
         for (double scale : {0.0, 1.0, 3.0})
-            for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified,
-                                     SamplerKind::halton, SamplerKind::sobol}) {
+            for (SamplerKind kind : samplers) {
                 const KnownLight known = maps_of(e.scene, scale);
                 const bool nee = !e.known->no_nee && kind == SamplerKind::halton;
                 Gather g{e.scene, {Direction::bsdf, LightMode::mis, 0}, known};

@@ -11,8 +11,6 @@ using namespace closed_forms;
 
 namespace {
 
-// ---- The matrix -------------------------------------------------------------------------------
-
 // As the user says them: a new option is one more row.
 const char* const samplers[] = {"--sampler independent", "--sampler stratified", "--sampler halton",
                                 "--sampler sobol"};

@@ -11,8 +11,6 @@
 
 namespace closed_forms {
 
-// ---- Scenes -----------------------------------------------------------------------------------
-
 inline std::string words(std::initializer_list<double> numbers) {
     std::string text;
     for (double x : numbers) text += oracle::say(" %.17g", x);
@@ -115,8 +113,6 @@ inline Start on_walls(Point box, Point centre, double r) {
     };
 }
 
-// ---- What is known ----------------------------------------------------------------------------
-
 // Why a cell of the matrix is empty.
 inline const char* const never_hit = "a point light is never hit";
 inline const char* const meeting = "infinite variance of light samples where emitting walls meet";
@@ -136,7 +132,7 @@ struct Known {
 
 inline std::vector<Known> known_scenes() {
     std::vector<Known> rows;
-    auto add = [&](const Known& k) { rows.push_back(k); };
+    auto add = [&](const Known& k) -> Known& { return rows.emplace_back(k); };
     const std::string patch = receiver;
     const Start none = nullptr;
 
@@ -150,10 +146,10 @@ box 4 3 4  0  -2 -1.5 -2   glow
 sphere -0.7 0 0  0.5  glow
 )";
     add({"furnace, depth 0", furnace + "depth 0\n", 0.4, none, 0, 1});
-    add({"furnace, depth 1", furnace + "depth 1\n", 0.4 * geometric(0.5, 2), none, 1, 1});
-    rows.back().no_nee = meeting;
-    add({"furnace, depth 8", furnace + "depth 8\n", 0.4 * geometric(0.5, 9), none, 2, 2});
-    rows.back().no_nee = meeting;
+    add({"furnace, depth 1", furnace + "depth 1\n", 0.4 * geometric(0.5, 2), none, 1, 1}).no_nee =
+        meeting;
+    add({"furnace, depth 8", furnace + "depth 8\n", 0.4 * geometric(0.5, 9), none, 2, 2}).no_nee =
+        meeting;
     const std::string bright_room = R"(
 size 1 1
 camera 0.2 0.3 1.6  0 0 0  15
@@ -171,8 +167,8 @@ sphere 0 0 0  0.5  grey
         "light lamp 5 4 3 wall\nbox 2 3 1.5  0  0 0 0  wall\n";
     const double walls = 2 * (2 * 3 + 3 * 1.5 + 1.5 * 2), lamp = 4 * Pi * 0.4 * 0.4;
     add({"closed room, point light", room + "pointlight 0.5 2.2 1.1  3 2 1\n",
-         0.7 / Pi * (4 * Pi * 2 / walls) * geometric(0.7, 3), on_walls({2, 3, 1.5}, {}, 0), 4, 0});
-    rows.back().no_none = never_hit;
+         0.7 / Pi * (4 * Pi * 2 / walls) * geometric(0.7, 3), on_walls({2, 3, 1.5}, {}, 0), 4, 0})
+        .no_none = never_hit;
     add({"closed room, ball light", room + sphere({0.6, 2.2, 0.9}, 0.4, "lamp"),
          4 * lamp / (walls + lamp) * geometric(0.7, 4), on_walls({2, 3, 1.5}, {0.6, 2.2, 0.9}, 0.4),
          4, 4});
@@ -192,8 +188,8 @@ diffuse low 0.3 0.3 0.3
 diffuse up 0.8 0.8 0.8
 pointlight 0 1.2 0  3 3 3
 )" + two_halves(R, "low", "up"),
-         up / Pi * (3 * cosine / (d * d) + reflected * geometric((up + low) / 2, 4)), at_x, 4, 0});
-    rows.back().no_none = never_hit;
+         up / Pi * (3 * cosine / (d * d) + reflected * geometric((up + low) / 2, 4)), at_x, 4, 0})
+        .no_none = never_hit;
     // The lower half glows: exitance pi 2.
     add({"integrating sphere, half glows", R"(
 camera 9 9 9  0 0 1  40
@@ -218,17 +214,18 @@ diffuse up 0.8 0.8 0.8
         {"small sphere, 89 degrees", 89, 0.05, 2, 3, 0},
     };
     for (const auto& t : tilts) {
-        add({t.name, patch + sphere(at_angle(t.degrees, t.d), t.s * t.d, "lamp"),
-             0.8 / Pi * sphere_irradiance(t.s, std::cos(t.degrees * Pi / 180)), none, t.aimed,
-             t.chance});
-        if (t.chance == 0) rows.back().no_none = rare;
+        Known& sphere_row =
+            add({t.name, patch + sphere(at_angle(t.degrees, t.d), t.s * t.d, "lamp"),
+                 0.8 / Pi * sphere_irradiance(t.s, std::cos(t.degrees * Pi / 180)), none, t.aimed,
+                 t.chance});
+        if (t.chance == 0) sphere_row.no_none = rare;
     }
 
     // Point light: E = I cos / d^2.
     const Point p = at_angle(40, 2.5);
     add({"point light", patch + "pointlight" + words(p) + " 3 4 5\n",
-         0.8 / Pi * 4 * p.y / (2.5 * 2.5 * 2.5), none, 1, 0});
-    rows.back().no_none = never_hit;
+         0.8 / Pi * 4 * p.y / (2.5 * 2.5 * 2.5), none, 1, 0})
+        .no_none = never_hit;
 
     // Knife edge: half of the sphere is behind a plane that ends on its axis.
     for (const bool upper : {true, false}) {
@@ -288,8 +285,8 @@ diffuse up 0.8 0.8 0.8
     add({"opposed rectangles", floor + "quad 0 1.5 0  2 0 0  0 0 3  lamp\n",
          0.8 * opposed(2 / 1.5, 3 / 1.5), on_floor, 2, 3});
     add({"rectangles at a right angle", floor + "quad 0 0 0  0 1.5 0  0 0 3  lamp\n",
-         0.8 * perpendicular(2 / 3.0, 1.5 / 3), on_floor, 6, 6});
-    rows.back().no_nee = meeting;
+         0.8 * perpendicular(2 / 3.0, 1.5 / 3), on_floor, 6, 6})
+        .no_nee = meeting;
     const Start on_disc = [](vec2 u) {
         const double r = std::sqrt(double(u.x)), phi = 2 * Pi * double(u.y);
         return onto({r * std::cos(phi), 0, r * std::sin(phi)}, {0, 1, 0});
