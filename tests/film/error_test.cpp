@@ -14,6 +14,10 @@ double normal(Rng& rng) {
     return r * std::cos(phi * rng.uniform());
 }
 
+const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
+    return rgb{u.x, u.x, u.x};
+});
+
 }  // namespace
 
 TEST_CASE("d^2 of an image, by hand") {
@@ -304,9 +308,6 @@ TEST_CASE("checks are a lattice: whole periods, about a 32nd apart, wherever one
 
 TEST_CASE("checks look at whole films when they are due, and tell what they expect") {
     const Radiance one = [](const PixelSample&, Tally&) { return rgb{1, 1, 1}; };
-    const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
-        return rgb{u.x, u.x, u.x};
-    });
     const Size size{12, 9};
     // A pilot, which has no error, goes on; then the first check is at 8, in whole grids.
     Film film = make_film(size, 0);
@@ -393,9 +394,6 @@ TEST_CASE("an error that is in doubt stops no render before 4096 samples a pixel
     const Judge judge = [&](const Film&, const ImageError&) {
         return std::string(is_known ? "" : "rare light");
     };
-    const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
-        return rgb{u.x, u.x, u.x};
-    });
     Film film = make_film({12, 9}, 4);
     ErrorChecks checks(0.5, 512, judge), others(0.5, 512, judge);
     fill(film, 512, noisy);

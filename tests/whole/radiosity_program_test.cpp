@@ -58,6 +58,16 @@ struct Room : Place {
     }
 };
 
+// Runs what would last for hours until something is found, then sends a signal.
+Outcome interrupted_run(const Folder& folder, const std::string& options, int signal) {
+    Outcome o;
+    // A busy machine may not have begun: then again, with more patience.
+    for (double patience = 0.2; patience < 20 && !folder.has("a.pfm"); patience *= 3)
+        o = cut_short(folder, "radiosity -o a.pfm -o a.png file.scene " + options, patience,
+                      signal);
+    return o;
+}
+
 }  // namespace
 
 // ---- What it says and writes --------------------------------------------------------------------
@@ -385,20 +395,6 @@ TEST_CASE("radiosity refuses, in one line, what it cannot do, and touches no fil
 }
 
 // ---- Ctrl-C -------------------------------------------------------------------------------------
-
-namespace {
-
-// Runs what would last for hours until something is found, then sends a signal.
-Outcome interrupted_run(const Folder& folder, const std::string& options, int signal) {
-    Outcome o;
-    // A busy machine may not have begun: then again, with more patience.
-    for (double patience = 0.2; patience < 20 && !folder.has("a.pfm"); patience *= 3)
-        o = cut_short(folder, "radiosity -o a.pfm -o a.png file.scene " + options, patience,
-                      signal);
-    return o;
-}
-
-}  // namespace
 
 TEST_CASE(
     "radiosity: Ctrl-C writes the image of the shots so far, the last of which it may cut short") {

@@ -64,6 +64,21 @@ void expect_same_light(const Scene& a, const Scene& b) {
     }
 }
 
+// A floor whose rays start `offset` off it, and others beside it; a line too many is a warning.
+constexpr double offset = 32 * double(ulp) * 1000;
+std::string told(const std::string& eye, const std::string& others) {
+    std::string all;
+    for (const std::string& w : parsed("camera " + eye + "\ndiffuse d .5 .5 .5\nlight l 1 1 1\n" +
+                                       "quad -1000 0 -1000  0 0 2000  2000 0 0  d\n" + others)
+                                    .warnings)
+        all += (all.empty() ? "" : "\n") + w;
+    return all;
+}
+std::string off(const std::string& text, double offsets) {
+    return with(text, number(offsets * offset));
+}
+const std::string from_above = "0 9 20  0 0 0  50", panel = "quad -9 9 -9  18 0 0  0 0 18  l\n";
+
 }  // namespace
 
 TEST_CASE("a lamp in a ceiling shines as if it were in front of it, however light is found") {
@@ -177,25 +192,6 @@ TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {
               (single && name == std::string_view("atelier")));
     CHECK(warns(read_scene("scenes/extremes.scene"), "are coarse here") == single);
 }
-
-namespace {
-
-// A floor whose rays start `offset` off it, and others beside it; a line too many is a warning.
-constexpr double offset = 32 * double(ulp) * 1000;
-std::string told(const std::string& eye, const std::string& others) {
-    std::string all;
-    for (const std::string& w : parsed("camera " + eye + "\ndiffuse d .5 .5 .5\nlight l 1 1 1\n" +
-                                       "quad -1000 0 -1000  0 0 2000  2000 0 0  d\n" + others)
-                                    .warnings)
-        all += (all.empty() ? "" : "\n") + w;
-    return all;
-}
-std::string off(const std::string& text, double offsets) {
-    return with(text, number(offsets * offset));
-}
-const std::string from_above = "0 9 20  0 0 0  50", panel = "quad -9 9 -9  18 0 0  0 0 18  l\n";
-
-}  // namespace
 
 TEST_CASE("where rays start more than 1 % of the way to something near, it is told") {
     const std::string start = "line 4: numbers of " + std::to_string(sizeof(real)) +
