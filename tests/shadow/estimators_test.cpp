@@ -1,27 +1,20 @@
 // shadow/estimators_test.cpp  exact zeros, unbiased means, variances and biases as predicted
 #include "shadow/estimators.h"
 
-#include <doctest/doctest.h>
-
 #include <vector>
 
 #include "base/moments.h"
-#include "oracle/expect.h"
+#include "shadow/checks.h"
 #include "shadow/population.h"
 
 namespace {
-
-constexpr Estimator all[] = {Estimator::stochastic, Estimator::control, Estimator::ratio,
-                             Estimator::regression};
 
 struct LightTriple {
     double U, w, wV;
 };
 
 ShadowMoments moments(const std::vector<LightTriple>& samples) {
-    ShadowMoments m;
-    for (const auto& [U, w, wV] : samples) m.add(U, w, wV);
-    return m;
+    return moments_of(samples.size(), [&, i = size_t(0)]() mutable { return samples[i++]; });
 }
 
 // w = 2x, V = [x < 1/2]: W = 1, S = R = 1/4, E[w^2] = 4/3, E[w^2 V] = 1/6, E[w^3] = 2, E[w^3 V] =
@@ -54,6 +47,30 @@ double of_many(F f) {
 }
 
 constexpr double pixel_truth = (1.0 / 2 + 1.0 / 3 + 1.0 / 3 + 1.0 / 4) / 2;
+
+// Checks the mean of estimates of n samples of a pixel each.
+void expect_pixel(oracle::Random& random, Estimator e, uint64_t n, uint64_t trials,
+                  double largest) {
+    EXPECT(oracle::expect_mean(pixel_truth, trials,
+                               [&] {
+                                   auto sample = [&] { return pixel_sample(random); };
+                                   return estimate(e, moments_of(n, sample));
+                               }),
+           largest);
+}
+
+// Checks that n times the bias comes to its constant: of an estimator less w V - beta (w - 1),
+// whose mean is known.
+void expect_bias(Estimator e, double beta, double largest) {
+    oracle::Random random(seed_here());
+    auto less = [&](uint64_t n) {
+        return of_many([&] {
+            const ShadowMoments m = of_ramp(random, n);
+            return estimate(e, m) - (m.wV - beta * (m.w - 1));
+        });
+    };
+    EXPECT(oracle::expect_bias_decay(ramp.bias(e), 64, 2000, less), largest);
+}
 
 }  // namespace
 
@@ -109,27 +126,24 @@ TEST_CASE("estimators: exact where all is lit and where nothing is") {
     SumsAbout lit_sums{1}, dark_sums{1};
     for (int i = 0; i < 1000; ++i) {
         const auto [U, w, wV] = pixel_sample(random);
-        lit.add(U, w, w);
-        dark.add(U, w, 0);
-        lit_sums.add(w, w);
-        dark_sums.add(w, 0);
-        CHECK(control(lit) == lit.U);
-        CHECK(ratio(lit) == lit.U);
-        CHECK(regression(lit) == doctest::Approx(lit.U).epsilon(1e-14));
-        CHECK(stochastic(dark) == 0);
-        CHECK(ratio(dark) == 0);
+        lit.add(U, w, w), lit_sums.add(w, w);
+        dark.add(U, w, 0), dark_sums.add(w, 0);
+        for (const ShadowMoments& m : {lit, lit_sums.moments()}) {
+            CHECK(control(m) == m.U);
+            CHECK(ratio(m) == m.U);
+            CHECK(regression(m) == doctest::Approx(m.U).epsilon(1e-14));
+        }
+        for (const ShadowMoments& m : {dark, dark_sums.moments()}) {
+            CHECK(stochastic(m) == 0);
+            CHECK(ratio(m) == 0);
+            CHECK(std::abs(regression(m)) < 1e-14);
+        }
         CHECK(regression(dark) == 0);
-        CHECK(control(lit_sums.moments()) == 1);
-        CHECK(ratio(lit_sums.moments()) == 1);
-        CHECK(regression(lit_sums.moments()) == doctest::Approx(1).epsilon(1e-14));
-        CHECK(stochastic(dark_sums.moments()) == 0);
-        CHECK(ratio(dark_sums.moments()) == 0);
-        CHECK(std::abs(regression(dark_sums.moments())) < 1e-14);
     }
 }
 
 TEST_CASE("estimators: no sample that found light, no sample at all, constant w") {
-    for (Estimator e : all) {
+    for (Estimator e : estimators) {
         CHECK(estimate(e, ShadowMoments{}) == 0);
         CHECK(std::isfinite(estimate(e, moments({{1, 0, 0}}))));
         CHECK(std::isfinite(estimate(e, moments(std::vector<LightTriple>(20, {1, 0, 0})))));
@@ -139,7 +153,7 @@ TEST_CASE("estimators: no sample that found light, no sample at all, constant w"
     // Where w is constant every form is the mean of w V.
     std::vector<LightTriple> half(20, {2, 2, 2});
     half.resize(40, {2, 2, 0});
-    for (Estimator e : all) CHECK(estimate(e, moments(half)) == doctest::Approx(1));
+    for (Estimator e : estimators) CHECK(estimate(e, moments(half)) == doctest::Approx(1));
 }
 
 TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in parts") {
@@ -186,66 +200,31 @@ TEST_CASE("estimators: stochastic and control are unbiased at any n, also where 
     for (Estimator e : {Estimator::stochastic, Estimator::control})
         for (uint64_t n : {1, 2, 8}) {
             oracle::Random random(seed_here() + n);
-            const oracle::Verdict v =
-                oracle::expect_mean(0.25, 100000, [&] { return estimate(e, of_ramp(random, n)); });
-            EXPECT(v, 0.1);
-            const oracle::Verdict u = oracle::expect_mean(pixel_truth, 100000, [&] {
-                ShadowMoments m;
-                for (uint64_t i = 0; i < n; ++i) {
-                    const auto [U, w, wV] = pixel_sample(random);
-                    m.add(U, w, wV);
-                }
-                return estimate(e, m);
-            });
-            EXPECT(u, 0.04);
+            auto of_n = [&] { return estimate(e, of_ramp(random, n)); };
+            EXPECT(oracle::expect_mean(0.25, 100000, of_n), 0.1);
+            expect_pixel(random, e, n, 100000, 0.04);
         }
 }
 
 TEST_CASE("estimators: ratio's bias at n = 1, 2 is known, and n times it tends to 1/6") {
     oracle::Random random(seed_here());
-    for (auto [n, truth] : {std::pair{1, 0.25}, std::pair{2, 0.119188}}) {
-        const oracle::Verdict v = oracle::expect_mean(
-            0.25 + truth, 400000, [&, n = n] { return ratio(of_ramp(random, uint64_t(n))); });
-        EXPECT(v, 0.02);
+    for (auto [n, bias] : {std::pair{1u, 0.25}, std::pair{2u, 0.119188}}) {
+        auto of_n = [&, n = n] { return ratio(of_ramp(random, n)); };
+        EXPECT(oracle::expect_mean(0.25 + bias, 400000, of_n), 0.02);
     }
     CHECK(ramp.bias(Estimator::ratio) == doctest::Approx(1.0 / 6));
-    const oracle::Verdict v =
-        oracle::expect_bias_decay(ramp.bias(Estimator::ratio), 64, 2000, [&](uint64_t n) {
-            return of_many([&] {
-                const ShadowMoments m = of_ramp(random, n);
-                return ratio(m) - (m.wV - ramp.R() * (m.w - 1));
-            });
-        });
-    EXPECT(v, 0.25);
+    expect_bias(Estimator::ratio, ramp.R(), 0.25);
 }
 
 TEST_CASE("estimators: regression's bias falls as predicted") {
-    oracle::Random random(seed_here());
-    const double beta = ramp.beta(Estimator::regression);
-    const oracle::Verdict v =
-        oracle::expect_bias_decay(ramp.bias(Estimator::regression), 64, 2000, [&](uint64_t n) {
-            return of_many([&] {
-                const ShadowMoments m = of_ramp(random, n);
-                return regression(m) - (m.wV - beta * (m.w - 1));
-            });
-        });
-    EXPECT(v, 0.5);
+    expect_bias(Estimator::regression, ramp.beta(Estimator::regression), 0.5);
 }
 
 TEST_CASE("estimators: ratio and regression converge to the pixel where U varies in it") {
+    // Their bias at n = 4096 is of the order of 1e-4, a tenth of what the test sees.
     oracle::Random random(seed_here());
-    for (Estimator e : {Estimator::ratio, Estimator::regression}) {
-        // Their bias at n = 4096 is of the order of 1e-4, a tenth of what the test sees.
-        const oracle::Verdict v = oracle::expect_mean(pixel_truth, 400, [&] {
-            ShadowMoments m;
-            for (int i = 0; i < 4096; ++i) {
-                const auto [U, w, wV] = pixel_sample(random);
-                m.add(U, w, wV);
-            }
-            return estimate(e, m);
-        });
-        EXPECT(v, 0.01);
-    }
+    for (Estimator e : {Estimator::ratio, Estimator::regression})
+        expect_pixel(random, e, 4096, 400, 0.01);
 }
 
 TEST_CASE("estimators: predicted biases are those of their definitions, w = 3x^2, V = [x < 0.8]") {
@@ -268,8 +247,9 @@ TEST_CASE("estimators: predicted biases are those of their definitions, w = 3x^2
 TEST_CASE("estimators: variances are those predicted, and regression's is the least") {
     // n variance, about the truth: mean of n (estimate - S)^2 over trials.
     const double published[] = {5.0 / 48, 29.0 / 48};  // 0.104, 0.604
-    for (size_t i = 0; i < 2; ++i) CHECK(ramp.variance(all[i]) == doctest::Approx(published[i]));
-    for (Estimator e : all) {
+    for (size_t i = 0; i < 2; ++i)
+        CHECK(ramp.variance(estimators[i]) == doctest::Approx(published[i]));
+    for (Estimator e : estimators) {
         oracle::Random random(seed_here() + uint64_t(e));
         CHECK(ramp.variance(Estimator::regression) <= ramp.variance(e));
         // Of ratio and regression at n = 256 the variance still differs by some 1/n.

@@ -1,68 +1,49 @@
 // shadow/irradiance_needles_test.cpp  lights that are thin or tiny beside their distance
-#include <doctest/doctest.h>
-
-#include "oracle/oracle.h"
+#include "shadow/checks.h"
 #include "shadow/irradiance.h"
+#include "world/geometry.h"
 
 namespace {
 
-constexpr bool single = sizeof(real) == 4;
-
-doctest::Approx approx(double x, double relative) {
-    return doctest::Approx(x).epsilon(relative).scale(0);
-}
-
-// Products of edges that are nearly parallel cancel: of these, nine digits of twenty.
-struct Point {
-    long double x, y, z;
-};
-Point exactly(vec3 v) { return {v.x, v.y, v.z}; }
-Point operator*(Point p, long double s) { return {p.x * s, p.y * s, p.z * s}; }
-Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Point operator-(Point a, Point b) { return a + b * -1; }
-long double dot(Point a, Point b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Point cross(Point a, Point b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // The integral of s max(0, z) / r^4 over p + s d for s from 0 to 1: Simpson's rule on what is above
 // the horizon.
-long double along(Point p, Point d) {
-    const long double end = p.z + d.z;
+big along(big3 p, big3 d) {
+    const big end = p.z + d.z;
     if (p.z <= 0 && end <= 0) return 0;
-    const long double from = p.z < 0 ? -p.z / d.z : 0, to = end < 0 ? -p.z / d.z : 1;
+    const big from = p.z < 0 ? -p.z / d.z : 0, to = end < 0 ? -p.z / d.z : 1;
     const int n = 1000;
-    long double sum = 0;
+    big sum = 0;
     for (int i = 0; i <= n; ++i) {
-        const long double s = from + (to - from) * i / n;
-        const Point m = p + d * s;
-        const long double r2 = dot(m, m);
+        const big s = from + (to - from) * i / n;
+        const big3 m = p + s * d;
+        const big r2 = dot(m, m);
         sum += (i == 0 || i == n ? 1 : 2 + 2 * (i % 2)) * s * std::max(0.0L, m.z) / (r2 * r2);
     }
     return sum * (to - from) / (3 * n);
 }
 
+// In long double, for products of nearly parallel edges cancel, nine digits of twenty.
 // A triangle with the longest side e, cut in two by its height g: fans of lines from the ends of
 // that side to g, on which they stand by Gauss' rule of three points.
-long double fans(Point a, Point e, Point f) {
-    const long double foot = dot(e, f) / dot(e, e), root = std::sqrt(0.15L);
-    const Point g = f - e * foot;
-    long double sum = 0;
+big fans(big3 a, big3 e, big3 f) {
+    const big foot = dot(e, f) / dot(e, e), root = std::sqrt(0.15L);
+    const big3 g = f - foot * e;
+    big sum = 0;
     for (auto [t, weight] : {std::pair{0.5L - root, 5.0L}, {0.5L, 8.0L}, {0.5L + root, 5.0L}}) {
-        const Point there = e * foot + g * t;
+        const big3 there = foot * e + t * g;
         sum += weight / 18 * (foot * along(a, there) + (1 - foot) * along(a + e, there - e));
     }
     return sum * std::abs(dot(cross(e, f), a));
 }
 
-double triangle_by_fans(Point a, Point u, Point v) {
-    const Point w = v - u;
-    const long double uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
-    if (ww > uu && ww > vv) return double(fans(a + u, w, u * -1));
+double triangle_by_fans(big3 a, big3 u, big3 v) {
+    const big3 w = v - u;
+    const big uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
+    if (ww > uu && ww > vv) return double(fans(a + u, w, -1 * u));
     return double(uu > vv ? fans(a, u, v) : fans(a, v, u));
 }
-double quad_by_fans(Point a, Point u, Point v) {
-    return triangle_by_fans(a, u, v) + triangle_by_fans(a + u + v, u * -1, v * -1);
+double quad_by_fans(big3 a, big3 u, big3 v) {
+    return triangle_by_fans(a, u, v) + triangle_by_fans(a + u + v, -1 * u, -1 * v);
 }
 
 // A corner and two edges.  The first is the longest side, the height about `width`, and the third
@@ -76,7 +57,7 @@ Needle needle(oracle::Random& random, real width, bool across_the_horizon) {
         const vec3 e = unit({number(), number(), number()}) * real(0.5);
         const vec3 f = unit(cross(e, {number(), number(), number()})) * width + e * real(random());
         const vec3 a = unit({number(), number(), real(0.1) + std::abs(number())}) - (e + f) / 2;
-        const Point n = cross(exactly(e), exactly(f)), p = exactly(a);
+        const big3 n = cross(big3(e), f), p = a;
         const bool edge_on = !(std::abs(dot(n, p)) > 0.1L * std::sqrt(dot(n, n) * dot(p, p)));
         const bool crosses = a.z * (a.z + e.z) < 0;
         if (!edge_on && crosses == across_the_horizon) return {a, e, f};
@@ -91,16 +72,16 @@ TEST_CASE("needles: triangles and parallelograms of any width against fans of li
     for (double width : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9})
         for (int i = 0; i < 20; ++i) {
             const auto [a, e, f] = needle(random, real(width), i % 4 == 0);
-            const double quad = quad_by_fans(exactly(a), exactly(e), exactly(f));
+            const double quad = quad_by_fans(a, e, f);
             INFO("width ", width, ", needle ", i);
-            CHECK(double(irradiance_quad(a, e, f)) == approx(quad, bound));
-            CHECK(double(irradiance_quad(a, f, e)) == approx(quad, bound));
+            CHECK(double(irradiance_quad(a, e, f)) == approx(quad, bound, bound));
+            CHECK(double(irradiance_quad(a, f, e)) == approx(quad, bound, bound));
             const real far = std::ldexp(real(1), single ? 30 : 300), near = 1 / far;
             CHECK(irradiance_quad(a * far, e * far, f * far) == irradiance_quad(a, e, f));
             CHECK(irradiance_quad(a * near, e * near, f * near) == irradiance_quad(a, e, f));
             for (const auto& [b, u, v] : {Needle{a, e, f}, {a, f, e}, {a + e, f - e, -e}}) {
-                const double triangle = triangle_by_fans(exactly(b), exactly(u), exactly(v));
-                CHECK(double(irradiance_triangle(b, u, v)) == approx(triangle, bound));
+                const double triangle = triangle_by_fans(b, u, v);
+                CHECK(double(irradiance_triangle(b, u, v)) == approx(triangle, bound, bound));
             }
         }
 }
@@ -113,9 +94,9 @@ TEST_CASE("needles: a tiny light is its area times both cosines over the square 
         const double quad = double(side) * double(side) * 2 * 2 / 81;
         const double bound = single ? 2e-5 : power > -16 ? 1e-6 : 1e-9;
         INFO("side 2^", power);
-        CHECK(double(irradiance_quad(corner, u, v)) == approx(quad, bound));
+        CHECK(double(irradiance_quad(corner, u, v)) == approx(quad, bound, bound));
         const vec3 third = centre - (u + v) / 3;  // its centre is the mean of its corners
-        CHECK(double(irradiance_triangle(third, u, v)) == approx(quad / 2, bound));
+        CHECK(double(irradiance_triangle(third, u, v)) == approx(quad / 2, bound, bound));
     }
 }
 
@@ -127,8 +108,8 @@ TEST_CASE("needles: below the horizon or seen from their ends they send nothing"
     // The upper half of one that stands across it.
     const double half = double(irradiance_quad({1, 0, -1}, {0, 0, 2}, {0, thin, 0}));
     const double upper = double(irradiance_quad({1, 0, 0}, {0, 0, 1}, {0, thin, 0}));
-    CHECK(half == approx(upper, single ? 1e-5 : 1e-11));
-    CHECK(half == approx(double(thin) / 4, single ? 1e-5 : 1e-9));
+    CHECK(half == approx(upper, 1e-11, 1e-5));
+    CHECK(half == approx(double(thin) / 4, 1e-9, 1e-5));
 }
 
 TEST_CASE("needles: what is thin beside its ends but passes near by is no needle") {
@@ -138,5 +119,5 @@ TEST_CASE("needles: what is thin beside its ends but passes near by is no needle
     const double E = double(irradiance_quad({-1, -width / 2, 5 * width}, {2, 0, 0}, {0, width, 0}));
     const double x = 1 / (5 * double(width)), y = 0.1, rx = std::hypot(1, x), ry = std::hypot(1, y);
     const double truth = 2 * (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry));
-    CHECK(E == approx(truth, single ? 1e-5 : 1e-12));
+    CHECK(E == approx(truth, 1e-12, 1e-5));
 }
