@@ -1,15 +1,13 @@
 // voronoi/cell_test.cpp  one cell: wrapping and cutting agree, ties and near-ties too
 #include "voronoi/cell.h"
 
-#include <doctest/doctest.h>
-
 #include <numbers>
 
-#include "oracle/expect.h"
+#include "voronoi/scattered.h"
 
 namespace {
 
-constexpr Rectangle frame = {{-2, -1}, {1, 3}};
+constexpr Rectangle frame = {{-2, -1}, {1, 3}}, about_the_site = {{-1, -1}, {1, 1}};
 
 double area_of(Outline o) {
     double twice = 0;
@@ -82,11 +80,7 @@ TEST_CASE("corners go around counterclockwise, and each edge knows whose it is")
     oracle::Random random(seed_here());
     Both both;
     for (int trial = 0; trial < 300; ++trial) {
-        std::vector<Site> others;
-        for (int k = 0; k < 20; ++k) {
-            const double x = 2 * random() - 1, y = 2 * random() - 1;
-            others.push_back({x, y});
-        }
+        const std::vector<Site> others = scattered(20, random, about_the_site);
         both.make(others);
         for (const Outline o : {both.wrapped, both.polygon.outline()})
             for (size_t k = 0; k < o.size(); ++k) {
@@ -123,10 +117,8 @@ TEST_CASE("only lines that cut a corner off are kept") {
 TEST_CASE("the flower's box holds the discs about the corners through the site") {
     const std::vector<Corner> square = {{{1, 0}}, {{0, 1}}, {{-2, 0}}, {{0, -1}}};
     const Rectangle box = flower_box(square);
-    CHECK(box.lo.x == -4);
-    CHECK(box.hi.x == 2);
-    CHECK(box.lo.y == -2);
-    CHECK(box.hi.y == 2);
+    CHECK((box.lo.x == -4 && box.hi.x == 2));
+    CHECK((box.lo.y == -2 && box.hi.y == 2));
 }
 
 TEST_CASE("more neighbours than there is room for, more corners than there is room for") {

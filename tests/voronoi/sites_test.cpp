@@ -1,24 +1,13 @@
 // voronoi/sites_test.cpp  every site is in its bucket, and in the tree where it is looked for
 #include "voronoi/sites.h"
 
-#include <doctest/doctest.h>
-
 #include <optional>
 
-#include "oracle/expect.h"
+#include "voronoi/scattered.h"
 
 namespace {
 
 constexpr Rectangle domain = {{-1, 2}, {3, 3}};
-
-std::vector<Site> scattered(int n, oracle::Random& random) {
-    std::vector<Site> sites;
-    for (int k = 0; k < n; ++k) {
-        const double x = -1 + 4 * random(), y = 2 + random();
-        sites.push_back({x, y});
-    }
-    return sites;
-}
 
 }  // namespace
 
@@ -26,7 +15,7 @@ TEST_CASE("buckets hold every site once, where it is") {
     oracle::Random random(seed_here());
     Buckets b;
     for (int n : {0, 1, 2, 7, 1000}) {
-        std::vector<Site> sites = scattered(n, random);
+        std::vector<Site> sites = scattered(uint64_t(n), random, domain);
         if (n == 7) sites[0] = domain.lo, sites[1] = domain.hi;
         b.sort(sites, {}, domain);
         REQUIRE(b.size() == uint32_t(n));
@@ -36,8 +25,7 @@ TEST_CASE("buckets hold every site once, where it is") {
             for (int i = 0; i < b.columns; ++i)
                 for (uint32_t k = b.start(i, j); k < b.start(i + 1, j); ++k) {
                     const Site p = b.site(k), q = sites[b.id[k]];
-                    CHECK(p.x == q.x);
-                    CHECK(p.y == q.y);
+                    CHECK((p.x == q.x && p.y == q.y));
                     const Rectangle bucket = {{b.left(i), b.bottom(j)},
                                               {b.left(i + 1), b.bottom(j + 1)}};
                     CHECK(grown(bucket, 1e-12).contains(p));
@@ -66,7 +54,7 @@ TEST_CASE("the tree finds the nearest site that is near enough and not left out"
     Buckets b;
     SiteTree tree;
     for (int n : {1, 8, 9, 500}) {
-        const std::vector<Site> sites = scattered(n, random);
+        const std::vector<Site> sites = scattered(uint64_t(n), random, domain);
         b.sort(sites, {}, domain);
         CHECK(tree.empty());
         tree.grow(b);
@@ -122,8 +110,7 @@ TEST_CASE("the tree looks at few of many sites: scattered, clustered, along a li
 }
 
 TEST_CASE("the distance of a point from a rectangle") {
-    CHECK(distance2(domain, {0, 2.5}) == 0);
-    CHECK(distance2(domain, {5, 2.5}) == 4);
-    CHECK(distance2(domain, {0, 0}) == 4);
-    CHECK(distance2(domain, {-4, 7}) == 25);
+    for (const auto& [p, d2] :
+         {std::pair{Site{0, 2.5}, 0}, {{5, 2.5}, 4}, {{0, 0}, 4}, {{-4, 7}, 25}})
+        CHECK(distance2(domain, p) == d2);
 }

@@ -14,11 +14,9 @@ TEST_CASE("sites are seen from the window's corner, in units of its greater side
     s.begin({{10, -5}, {18, -3}}, 0);
     s.add(Points{{10, -5}, {18, -3}, {12, -4.5}});
     CHECK(s.unit() == 8);
-    CHECK(s.sites()[0].x == 0);
-    CHECK(s.sites()[1].x == 1);
-    CHECK(s.sites()[1].y == 0.25);
-    CHECK(s.sites()[2].x == 0.25);
-    CHECK(s.sites()[2].y == 0.0625);
+    CHECK((s.sites()[0].x == 0 && s.sites()[0].y == 0));
+    CHECK((s.sites()[1].x == 1 && s.sites()[1].y == 0.25));
+    CHECK((s.sites()[2].x == 0.25 && s.sites()[2].y == 0.0625));
     CHECK_THROWS_AS(s.add(Points{{9.9, -4}}), std::domain_error);
 }
 
