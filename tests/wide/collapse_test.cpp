@@ -48,15 +48,15 @@ double least_cost(const BinaryTree& tree, uint32_t i, size_t room) {
     double least = HUGE_VAL;
     if (b.count <= largest_leaf && !(i == 0 && tree.mixed)) least = cost_of_leaf(tree, i);
     if (b.leaf()) return least;
-    auto shared = [&](size_t n) {
-        double best = HUGE_VAL;
-        for (size_t k = 1; k < n; ++k)
-            best =
-                std::min(best, least_cost(tree, b.left, k) + least_cost(tree, b.left + 1, n - k));
-        return best;
+    auto share = [&](size_t n, double own) {
+        for (size_t k = 1; k < n; ++k) {
+            const double left = least_cost(tree, b.left, k);
+            least = std::min(least, own + left + least_cost(tree, b.left + 1, n - k));
+        }
     };
-    least = std::min(least, area(tree, i) + shared(wide::lane_count));
-    return room > 1 ? std::min(least, shared(room)) : least;
+    share(wide::lane_count, area(tree, i));
+    share(room, 0);
+    return least;
 }
 
 // What the wide tree costs that Collapse chooses; NaN if it is none.
