@@ -64,20 +64,16 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     CHECK(s.light_of == std::vector<int32_t>{0, no_light, 1, 1, 2});
     CHECK(s.material_of == std::vector<uint32_t>{lamp, grey, panel, panel, lamp});
     REQUIRE(s.lights.size() == 4);
-    CHECK(s.lights[0].kind == Light::Kind::sphere);
-    CHECK(s.lights[0].r == 4);
-    CHECK(s.lights[0].L == rgb{1, 2, 3});
-    CHECK(s.lights[1].kind == Light::Kind::quad);
-    CHECK(s.lights[1].area_vector() == vec3{0, 0, 6});  // it faces +z, as its shapes do
+    const Light &ball = s.lights[0], &quad = s.lights[1], &point = s.lights[3];
+    CHECK((ball.kind == Light::Kind::sphere && ball.r == 4));
+    CHECK((ball.L == rgb{1, 2, 3} && !ball.twosided));
+    CHECK((quad.kind == Light::Kind::quad && quad.twosided));
+    CHECK(quad.area_vector() == vec3{0, 0, 6});  // it faces +z, as its shapes do
     for (size_t i : {2, 3}) CHECK(area_vector(s.shapes[i]) == vec3{0, 0, 6});
-    CHECK(s.lights[2].area_vector() == vec3{0, 0, real(0.5)});
-    for (size_t i = 0; i < 5; ++i)
-        if (s.light_of[i] != no_light)
-            CHECK(s.lights[size_t(s.light_of[i])].error >= rounding_error(s.shapes[i]));
-    CHECK(!s.lights[0].twosided);
-    CHECK(s.lights[1].twosided);
-    CHECK(s.lights[3].kind == Light::Kind::point);
-    CHECK(s.lights[3].L == rgb{2, 2, 2});
+    CHECK(s.lights[2].area_vector() == vec3{0, 0, 0.5});
+    CHECK((point.kind == Light::Kind::point && point.L == rgb{2, 2, 2}));
+    for (size_t i : {0, 2, 3, 4})
+        CHECK(s.lights[size_t(s.light_of[i])].error >= rounding_error(s.shapes[i]));
 }
 
 TEST_CASE("the surface of a scene's hit is that of the shape hit, after a second prepare, too") {
@@ -110,15 +106,14 @@ TEST_CASE("the surface of a scene's hit is that of the shape hit, after a second
 TEST_CASE("a quad is two triangles that share a diagonal and nothing else") {
     Scene s = empty_scene();
     add_quad(s, {1, 1, 0}, {2, 0, 0}, {0, 2, 0}, grey);
-    const real inner[] = {real(0.1), real(0.7), real(1.3), real(1.9)};
+    const real inner[] = {0.1, 0.7, 1.3, 1.9};
     for (real x : inner)
         for (real y : inner) {
-            if (x == y) continue;
             const Ray ray{{1 + x, 1 + y, 5}, {0, 0, -1}};
             int hits = 0;
             for (const Shape& t : s.shapes)
                 hits += intersect(t, ray, shear(ray.d), infinity).has_value();
-            CHECK(hits == 1);
+            if (x != y) CHECK(hits == 1);
         }
 }
 
@@ -162,27 +157,23 @@ TEST_CASE("a box faces outwards and turns about y: x' = c x + s z, z' = c z - s 
 
 TEST_CASE("a light is chosen as often as its power says, and says so") {
     Scene s = empty_scene();
-    for (real intensity : {real(1), real(5), real(2)})
-        add_point_light(s, {}, {intensity, intensity, intensity});
+    for (real intensity : {1, 5, 2}) add_point_light(s, {}, {intensity, intensity, intensity});
     add_sphere(s, {}, 1, grey);
     prepare(s);
     // Of 8000 equidistant numbers those of [0, 1/8), [1/8, 6/8), [6/8, 1).
-    int count[3] = {};
+    std::vector<int> count(3);
     REQUIRE(s.lights.size() == 3);
     for (int i = 0; i < 8000; ++i) {
         const auto chosen = &choose_light(s, (real(i) + real(0.5)) / 8000) - s.lights.data();
-        REQUIRE((chosen >= 0 && chosen < 3));
-        ++count[chosen];
+        ++count.at(size_t(chosen));
     }
-    const int expected[] = {1000, 5000, 2000};
-    for (size_t i = 0; i < 3; ++i) {
-        CHECK(count[i] == expected[i]);
-        CHECK(std::abs(s.lights[i].pick - real(expected[i]) / 8000) < 2 * ulp);
-    }
+    CHECK(count == std::vector<int>{1000, 5000, 2000});
+    for (size_t i = 0; i < 3; ++i)
+        CHECK(std::abs(s.lights[i].pick - real(count[i]) / 8000) < 2 * ulp);
     CHECK(&choose_light(s, 0) == &s.lights[0]);
     CHECK(&choose_light(s, below_one) == &s.lights[2]);
     s.pick_cdf.clear();
-    add_point_light(s, {}, {real(1e-30), 0, 0});  // so weak that its share rounds to 0
+    add_point_light(s, {}, {1e-30, 0, 0});  // so weak that its share rounds to 0
     prepare(s);
     REQUIRE(s.lights.size() == 4);
     REQUIRE(!s.pick_cdf.empty());
