@@ -9,15 +9,18 @@ bool meets(const Shape& s, const Ray& ray) { return meet(s, ray).has_value(); }
 // A point of the shape as a path finds it: hit by a ray from a few sizes away.  Nothing if
 // rounding leaves too little of the shape to be hit.
 std::optional<Surface> seen(const Shape& s, Dice& random) {
+    const real size = s.is_sphere() ? s.r : max_abs(s.b - s.a);
     for (int attempt = 0; attempt < 100; ++attempt) {
         const vec3 target = s.is_sphere() ? s.a + random.direction(random(0, s.r))
                                           : point(s, random.barycentrics());
-        const vec3 o = target + random.direction(4 * (s.is_sphere() ? s.r : max_abs(s.b - s.a)));
+        const vec3 o = target + random.direction(4 * size);
         const Ray ray{o, unit(target - o)};
         if (const auto hit = meet(s, ray)) return surface(s, ray, *hit);
     }
     return {};
 }
+
+const Shape unit_ball{{}, {}, {}, 1};
 
 // On the side of n, as often near the horizon (down to a cosine of 1e-7) as anywhere.
 vec3 leaving(const Surface& x, Dice& random) {
@@ -33,10 +36,8 @@ TEST_CASE("a ray that leaves a surface never meets it again, at any angle") {
     int again = 0, rays = 0;
     for (const Placement& p : placements)
         for (int i = 0; i < 2000; ++i) {
-            const Shape shapes[] = {{{}, {}, {}, 1},
-                                    random_triangle(random, 1),
-                                    random_triangle(random, real(0.01)),
-                                    random_sliver(random, 12)};
+            const Shape shapes[] = {unit_ball, random_triangle(random, 1),
+                                    random_triangle(random, real(0.01)), random_sliver(random, 12)};
             for (const Shape& shape : shapes) {
                 const Shape s = placed(shape, p, random);
                 const auto x = seen(s, random);
@@ -57,7 +58,7 @@ TEST_CASE("a ray sent into a sphere meets its far side") {
     Worst off;
     for (const Placement& p : placements)
         for (int i = 0; i < 20000; ++i) {
-            const Shape s = placed({{}, {}, {}, 1}, p, random);
+            const Shape s = placed(unit_ball, p, random);
             const Surface x = seen(s, random).value();
             const vec3 d = -leaving(x, random);
             if (dot(d, x.n) == 0) continue;
@@ -78,8 +79,7 @@ TEST_CASE("a ray starts 2 errors off its surface, and meets what lies 6 errors a
     Worst off;
     for (const Placement& p : placements)
         for (int i = 0; i < 20000; ++i) {
-            const Shape s =
-                placed(i % 3 ? random_triangle(random, 1) : Shape{{}, {}, {}, 1}, p, random);
+            const Shape s = placed(i % 3 ? random_triangle(random, 1) : unit_ball, p, random);
             const Surface x = seen(s, random).value();
             const vec3 up = i % 2 ? x.n : -x.n;
             const Ray ray = spawn(x, up);
@@ -101,7 +101,7 @@ TEST_CASE("nothing is between two surface points that see each other, and what i
         for (int i = 0; i < 40000; ++i) {
             const vec3 centre = random.direction(p.distance);
             auto shape = [&](real at) {
-                const Shape s = i % 3 ? random_triangle(random, 1) : Shape{{}, {}, {}, 1};
+                const Shape s = i % 3 ? random_triangle(random, 1) : unit_ball;
                 return moved(scaled(moved(s, random.direction(at)), p.scale), centre);
             };
             // Neighbours, or one up to 1e5 sizes away from the other.
@@ -132,7 +132,7 @@ TEST_CASE("points of one sphere see each other through its inside, and two walls
     int blocked = 0;
     for (const Placement& p : placements)
         for (int i = 0; i < 20000; ++i) {
-            const Shape s = placed({{}, {}, {}, 1}, p, random);
+            const Shape s = placed(unit_ball, p, random);
             const Surface x = seen(s, random).value(), y = seen(s, random).value();
             // The chord is deep enough if its sagitta, chord^2 / 8 r, is half an error.
             const vec3 chord = y.p - x.p;
