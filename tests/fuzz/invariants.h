@@ -2,6 +2,7 @@
 #pragma once
 #include "film/image.h"
 #include "fuzz/input.h"
+#include "world/nearest.h"
 #include "world/scene.h"
 
 namespace fuzz {
@@ -40,18 +41,9 @@ inline void check_scene(const Scene& s) {
 
 // The tree's answers are those of a loop over all shapes, bit for bit.
 inline void check_ray(const Scene& s, const Ray& ray) {
-    const Shear k = shear(ray.d);
-    Hit nearest{ray.tmax};
-    for (uint32_t i = 0; i < s.shapes.size(); ++i)
-        if (const auto hit = intersect(s.shapes[i], ray, k, ray.tmax))
-            if (nearest.id == UINT32_MAX || hit->t < nearest.t)
-                nearest = {hit->t, i, hit->v, hit->w};
-    const auto found = s.bvh.closest(ray);
-    demand(found.has_value() == (nearest.id != UINT32_MAX), "the tree misses, or hits nothing");
-    if (found)
-        demand(found->id == nearest.id && found->t == nearest.t && found->v == nearest.v &&
-                   found->w == nearest.w,
-               "the tree finds another hit");
+    const auto found = s.bvh.closest(ray), expected = nearest(s.shapes, ray);
+    demand(found.has_value() == expected.has_value(), "the tree misses, or hits nothing");
+    demand(same(found, expected), "the tree finds another hit");
     demand(s.bvh.occluded(ray) == found.has_value(), "the tree finds another shadow");
 }
 

@@ -13,7 +13,6 @@ TEST_CASE_TEMPLATE_INVOKE(exponentially_spaced, Bvh);
 TEST_CASE_TEMPLATE_INVOKE(beyond_float, Bvh);
 TEST_CASE_TEMPLATE_INVOKE(infinitely_far, Bvh);
 TEST_CASE_TEMPLATE_INVOKE(empty_and_nan, Bvh);
-TEST_CASE_TEMPLATE_INVOKE(scaled_scene, Bvh);
 
 TEST_CASE("a ray looks at few nodes and shapes of the plain tree: nearest first, none behind") {
     Dice random{{5}};

@@ -1,5 +1,4 @@
-// world/hard_rays.h  rays and scenes that trees find hard, and a loop over all shapes to compare
-// with
+// world/hard_rays.h  rays and scenes that trees find hard
 #pragma once
 #include <array>
 #include <cmath>
@@ -7,28 +6,9 @@
 #include <vector>
 
 #include "world/geometry.h"
+#include "world/nearest.h"
 
 using Shapes = std::vector<Shape>;
-
-// ---- Brute force --------------------------------------------------------------------------------
-
-// The nearest hit of all; of equals the first.
-inline std::optional<Hit> nearest(const Shapes& shapes, const Ray& ray) {
-    const Shear k = shear(ray.d);
-    std::optional<Hit> best;
-    for (uint32_t i = 0; i < shapes.size(); ++i) {
-        const auto hit = intersect(shapes[i], ray, k, ray.tmax);
-        if (!hit || (best && hit->t >= best->t)) continue;
-        best = hit;
-        best->id = i;
-    }
-    return best;
-}
-
-inline bool same(const std::optional<Hit>& a, const std::optional<Hit>& b) {
-    if (!a || !b) return !a && !b;
-    return a->t == b->t && a->id == b->id && a->v == b->v && a->w == b->w;
-}
 
 // Rays on which tree and loop differ, be they endless or end at, just before or about the hit.
 template <class Tree>
@@ -73,7 +53,6 @@ Box stored_box(const Shape& s) {
     return bounds(s);
 }
 
-// A ray that has to do with the shape; distances are in units of `reach`.
 enum Aim {
     anywhere,
     at_edge,
@@ -191,11 +170,10 @@ inline void add_box(Shapes& scene, vec3 p, vec3 size, real cosine, real sine) {
 inline Shapes room() {
     Shapes scene;
     add_box(scene, {-1, -1, -1}, {2, 2, 2}, 1, 0);
-    add_box(scene, {real(-0.7), -1, real(-0.5)}, {real(0.6), real(1.2), real(0.6)}, real(0.96),
-            real(0.28));
-    add_box(scene, {real(0.1), -1, 0}, {real(0.6), real(0.6), real(0.6)}, 1, 0);
-    add_quad(scene, {real(-0.3), 1, real(-0.3)}, {real(0.6), 0, 0}, {0, 0, real(0.6)});
-    scene.push_back({{real(0.4), 0, real(0.3)}, {}, {}, real(0.4)});
+    add_box(scene, {-0.7, -1, -0.5}, {0.6, 1.2, 0.6}, 0.96, 0.28);
+    add_box(scene, {0.1, -1, 0}, {0.6, 0.6, 0.6}, 1, 0);
+    add_quad(scene, {-0.3, 1, -0.3}, {0.6, 0, 0}, {0, 0, 0.6});
+    scene.push_back({{0.4, 0, 0.3}, {}, {}, 0.4});
     return scene;
 }
 
