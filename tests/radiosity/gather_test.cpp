@@ -51,8 +51,7 @@ TEST_CASE("paths end on what the maps hold, whatever that is") {
     for (const rgb factor : {grey(1), grey(0), rgb{3, 2, -1}}) {
         const KnownLight known = maps_of(s, factor);
         for (const Technique& t : techniques)
-            for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified,
-                                     SamplerKind::halton, SamplerKind::sobol}) {
+            for (SamplerKind kind : all_samplers) {
                 constexpr uint64_t n = 64;
                 constexpr int replicates = 256;
                 std::vector<rgb> means;

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "base/complaint.h"
+
 namespace {
 
 struct Parsed {
@@ -17,12 +19,7 @@ RadiosityOptions parse(std::vector<std::string> words) {
 }
 
 std::string complaint(const std::vector<std::string>& words) {
-    try {
-        parse(words);
-        return "";
-    } catch (const UserError& e) {
-        return e.what();
-    }
+    return complaint_of([&] { parse(words); });
 }
 
 }  // namespace
@@ -49,16 +46,14 @@ TEST_CASE("radiosity: every option sets what it is named after") {
     CHECK(o.outputs == std::vector<std::string>{"a.pfm", "b.png"});
     CHECK(o.quiet);
     const RadiosityOptions p = parse({"--method", "particles", "--particles", "1099511627776",
-                                      "--seed", "18446744073709551615", "--sampler", "stratified"});
+                                      "--seed", "18446744073709551615"});
     CHECK(p.method == Method::particles);
     CHECK(p.particles == uint64_t(1) << 40);
     CHECK(p.seed == UINT64_MAX);
-    CHECK(p.sampler == SamplerKind::stratified);
-    const std::pair<const char*, SamplerKind> samplers[] = {
-        {"independent", SamplerKind::independent},
-        {"halton", SamplerKind::halton},
-        {"sobol", SamplerKind::sobol}};
-    for (const auto& [word, kind] : samplers)
+    for (const auto& [word, kind] : {std::pair{"independent", SamplerKind::independent},
+                                     {"stratified", SamplerKind::stratified},
+                                     {"halton", SamplerKind::halton},
+                                     {"sobol", SamplerKind::sobol}})
         CHECK(parse({"--method", "particles", "--sampler", word}).sampler == kind);
     CHECK(parse({"--method", "hierarchy"}).method == Method::hierarchy);
     CHECK(parse({"--view", "luminance"}).shows == MapView::luminance);
@@ -68,57 +63,61 @@ TEST_CASE("radiosity: every option sets what it is named after") {
 TEST_CASE("radiosity: a run ends by what was asked for, and by what is usual if nothing was") {
     CHECK(parse({}).method == Method::hierarchy);
     CHECK(!parse({}).mesh);
-    CHECK(parse({}).unshot == 0.01);
-    CHECK(parse({}).particles == 0);
-    CHECK(parse({"--shots", "3"}).unshot == 0);
-    CHECK(parse({"--time", "3"}).unshot == 0);
-    CHECK(parse({"--time", "3", "--unshot", "1e-14"}).unshot == 1e-14);
-    CHECK(parse({"--method", "particles"}).particles == 1000000);
-    CHECK(parse({"--method", "particles"}).unshot == 0);
-    CHECK(parse({"--method", "particles", "--time", "2"}).particles == 0);
-    CHECK(parse({"--method", "particles", "--particles", "2", "--time", "2"}).particles == 2);
-    CHECK(parse({}).error == 0);
-    CHECK(parse({"--error", "5%"}).error == 0.05);
-    CHECK(parse({"--error", "5e-2"}).error == 0.05);
-    CHECK(parse({"--error", "5%"}).unshot == 0);
-    CHECK(parse({"--error", "5%", "--unshot", "1%"}).unshot == 0.01);
-    CHECK(parse({"--error", "5%", "--method", "particles"}).particles == 0);
-    CHECK(parse({"--error", "5%", "--method", "particles", "--particles", "3"}).particles == 3);
+    const struct {
+        std::vector<std::string> words;
+        double unshot, error;
+        uint64_t particles;
+    } rows[] = {{{}, 0.01, 0, 0},
+                {{"--shots", "3"}, 0, 0, 0},
+                {{"--time", "3"}, 0, 0, 0},
+                {{"--time", "3", "--unshot", "1e-14"}, 1e-14, 0, 0},
+                {{"--method", "particles"}, 0, 0, 1000000},
+                {{"--method", "particles", "--time", "2"}, 0, 0, 0},
+                {{"--method", "particles", "--particles", "2", "--time", "2"}, 0, 0, 2},
+                {{"--error", "5%"}, 0, 0.05, 0},
+                {{"--error", "5e-2"}, 0, 0.05, 0},
+                {{"--error", "5%", "--unshot", "1%"}, 0.01, 0.05, 0},
+                {{"--error", "5%", "--method", "particles"}, 0, 0.05, 0},
+                {{"--error", "5%", "--method", "particles", "--particles", "3"}, 0, 0.05, 3}};
+    for (const auto& row : rows) {
+        const RadiosityOptions o = parse(row.words);
+        CAPTURE(&row - rows);
+        CHECK(o.unshot == row.unshot);
+        CHECK(o.error == row.error);
+        CHECK(o.particles == row.particles);
+    }
 }
 
 TEST_CASE("radiosity: what says nothing to the method is refused, wherever it stands") {
-    for (const char* method : {"shooting", "hierarchy"})
-        for (const std::pair<const char*, const char*>& option :
-             {std::pair{"--particles", "5"}, {"--sampler", "halton"}, {"--seed", "0"}}) {
-            const std::string why = std::string(option.first) + ": needs --method particles";
-            CHECK(complaint({option.first, option.second, "--method", method}) == why);
-            CHECK(complaint({"--method", method, option.first, option.second}) == why);
-            CHECK(complaint({"--method", "particles", option.first, option.second}) == "");
+    const std::string of_walks = ": needs --method particles",
+                      of_shots = ": needs --method shooting or hierarchy";
+    for (const auto& [name, value, why] : {std::tuple{"--particles", "5", of_walks},
+                                           {"--sampler", "halton", of_walks},
+                                           {"--seed", "0", of_walks},
+                                           {"--unshot", "1%", of_shots},
+                                           {"--shots", "5", of_shots}})
+        for (const char* method : {"shooting", "hierarchy", "particles"}) {
+            const bool goes = (why == of_walks) == (method == std::string("particles"));
+            const std::string expected = goes ? "" : name + why;
+            CHECK(complaint({name, value, "--method", method}) == expected);
+            CHECK(complaint({"--method", method, name, value}) == expected);
         }
-    for (const std::pair<const char*, const char*>& option :
-         {std::pair{"--unshot", "1%"}, {"--shots", "5"}}) {
-        const std::string why =
-            std::string(option.first) + ": needs --method shooting or hierarchy";
-        CHECK(complaint({option.first, option.second, "--method", "particles"}) == why);
-        CHECK(complaint({"--method", "particles", option.first, option.second}) == why);
-        CHECK(complaint({"--method", "shooting", option.first, option.second}) == "");
-        CHECK(complaint({"--method", "hierarchy", option.first, option.second}) == "");
-    }
-    CHECK(complaint({"--sampler", "haltan"}) ==
-          "--sampler: unknown value 'haltan' (did you mean 'halton'?)");
-    CHECK(complaint({"--unshot", "0"}) == "--unshot: '0' is not between 0 and 100 %");
-    CHECK(complaint({"--unshot", "101%"}) == "--unshot: '101%' is not between 0 and 100 %");
-    CHECK(complaint({"--unshot", "5"}) == "--unshot: '5' is more than 100 %; for percent say 5%");
-    CHECK(complaint({"--error", "0"}) == "--error: '0' is not between 0 and 100 %");
-    CHECK(complaint({"--error", "0%"}) == "--error: '0%' is not between 0 and 100 %");
-    CHECK(complaint({"--error", "-1%"}) == "--error: '-1%' is negative");
-    CHECK(complaint({"--error", "1"}) == "--error: '1' is not between 0 and 100 %");
-    CHECK(complaint({"--error", "200%"}) == "--error: '200%' is not between 0 and 100 %");
-    CHECK(complaint({"--error", "5"}) == "--error: '5' is more than 100 %; for percent say 5%");
-    CHECK(complaint({"--error", "99.9%"}) == "");
-    CHECK(complaint({"--error", "small"}) == "--error: 'small' is not a number");
-    CHECK(complaint({"--mesh", "0"}) == "--mesh: '0' is not positive");
-    CHECK(complaint({"b.scene"}) == "two scenes: 'b.scene' and 'a.scene'");
+    const std::pair<std::vector<std::string>, const char*> rows[] = {
+        {{"--sampler", "haltan"}, "--sampler: unknown value 'haltan' (did you mean 'halton'?)"},
+        {{"--unshot", "0"}, "--unshot: '0' is not between 0 and 100 %"},
+        {{"--unshot", "101%"}, "--unshot: '101%' is not between 0 and 100 %"},
+        {{"--unshot", "5"}, "--unshot: '5' is more than 100 %; for percent say 5%"},
+        {{"--error", "0"}, "--error: '0' is not between 0 and 100 %"},
+        {{"--error", "0%"}, "--error: '0%' is not between 0 and 100 %"},
+        {{"--error", "-1%"}, "--error: '-1%' is negative"},
+        {{"--error", "1"}, "--error: '1' is not between 0 and 100 %"},
+        {{"--error", "200%"}, "--error: '200%' is not between 0 and 100 %"},
+        {{"--error", "5"}, "--error: '5' is more than 100 %; for percent say 5%"},
+        {{"--error", "99.9%"}, ""},
+        {{"--error", "small"}, "--error: 'small' is not a number"},
+        {{"--mesh", "0"}, "--mesh: '0' is not positive"},
+        {{"b.scene"}, "two scenes: 'b.scene' and 'a.scene'"}};
+    for (const auto& [words, why] : rows) CHECK(complaint(words) == why);
     CHECK_THROWS_AS(Parsed({}), UserError);
     CHECK(Parsed({"--help"}).o.help);
 }
@@ -141,19 +140,18 @@ TEST_CASE("radiosity: with --final-gather paths have the options of penumbra, ma
     CHECK(parse({"--final-gather"}).sampler == SamplerKind::sobol);
     CHECK(parse({"--final-gather"}).particles == 0);
     CHECK(parse({"--final-gather", "--method", "particles"}).sets == 0);
-    CHECK(complaint({"--final-gather", "--method", "hierarchy"}) ==
-          "--final-gather: needs --method particles");
-    CHECK(complaint({"--final-gather", "--shots", "3"}) ==
-          "--shots: needs --method shooting or hierarchy");
-    CHECK(complaint({"--final-gather", "--sets", "1", "--error", "1%"}) ==
-          "--error: needs --sets 2 or more, or adaptive");
-    for (const char* name : {"--rays", "--view"})
-        CHECK(complaint({"--final-gather", name, std::string(name) == "--rays" ? "3" : "mesh"}) ==
-              std::string(name) + ": goes without --final-gather");
-    const std::pair<const char*, const char*> of_paths[] = {
-        {"--spp", "4"}, {"--sets", "2"}, {"--direction", "bsdf"}, {"--light", "mis"}};
-    for (const auto& [name, value] : of_paths)
-        CHECK(complaint({name, value}) == std::string(name) + ": needs --final-gather");
+    const std::pair<std::vector<std::string>, const char*> rows[] = {
+        {{"--final-gather", "--method", "hierarchy"}, "--final-gather: needs --method particles"},
+        {{"--final-gather", "--shots", "3"}, "--shots: needs --method shooting or hierarchy"},
+        {{"--final-gather", "--sets", "1", "--error", "1%"},
+         "--error: needs --sets 2 or more, or adaptive"},
+        {{"--final-gather", "--rays", "3"}, "--rays: goes without --final-gather"},
+        {{"--final-gather", "--view", "mesh"}, "--view: goes without --final-gather"},
+        {{"--spp", "4"}, "--spp: needs --final-gather"},
+        {{"--sets", "2"}, "--sets: needs --final-gather"},
+        {{"--direction", "bsdf"}, "--direction: needs --final-gather"},
+        {{"--light", "mis"}, "--light: needs --final-gather"}};
+    for (const auto& [words, why] : rows) CHECK(complaint(words) == why);
 }
 
 TEST_CASE("radiosity: the statistics tell what was asked for; every option is in --help") {

@@ -2,11 +2,13 @@
 #pragma once
 #include <doctest/doctest.h>
 
-#include "radiosity/map.h"
+#include "radiosity/projection.h"
 
 namespace rooms {
 
 inline constexpr bool single = sizeof(real) == 4;
+inline constexpr SamplerKind all_samplers[] = {SamplerKind::independent, SamplerKind::stratified,
+                                               SamplerKind::halton, SamplerKind::sobol};
 
 inline doctest::Approx approx(double x, double in_double = 1e-12, double in_float = 2e-5) {
     return doctest::Approx(x).epsilon(single ? in_float : in_double).scale(0);  // relative
@@ -44,6 +46,42 @@ inline Scene room(vec3 size, const Material& m) {
     return s;
 }
 
+// Walls that glow and reflect: E = pi (2, 2.5, 2), which is in the span of the hats of any mesh.
+inline Scene furnace() { return room({2, 3, 1}, diffuse({0.5, 0.2, 0.7}, {1, 2, 0.6})); }
+
+// A room of colours without symmetry: a lamp, a screen whose both sides reflect, a triangle that
+// emits on both sides and a point.  Open: its last wall is missing.
+inline Scene study(bool open = false) {
+    Scene s;
+    const uint32_t walls = add(s, diffuse({0.7, 0.5, 0.2}));
+    add(s, diffuse({0.3, 0.6, 0.6}));
+    add_room(s, {3, 2, 2.5}, walls, 2);
+    for (int k = 0; k < (open ? 2 : 0); ++k)
+        s.shapes.pop_back(), s.material_of.pop_back(), s.light_of.pop_back();
+    add_quad(s, {1, 1.9, 1}, {0.5, 0, 0}, {0, 0, 0.7}, add(s, diffuse(grey(0.1), {5, 4, 2})));
+    add_quad(s, {2, 0, 1}, {0, 1.2, 0}, {0.3, 0, 0.8}, add(s, diffuse(grey(0.8))));
+    add_triangle(s, {0.3, 0.4, 2}, {1, 0.4, 2}, {0.3, 1, 2.2},
+                 add(s, diffuse(grey(0.4), grey(1), true)));
+    add_point_light(s, {0.7, 1.1, 0.6}, {1, 1, 2});
+    prepare(s);
+    return s;
+}
+
+// Quads that are long, high, skew and tiny, on the axes and off them; triangles, too.
+inline Scene furniture() {
+    Scene s;
+    const uint32_t d = add(s, diffuse(grey(0.5)));
+    add_room(s, {4, 3, 2}, d);
+    add_quad(s, {1, 1, 1}, {0.7, 0.1, 0}, {0, 0, 0.4}, d);
+    add_quad(s, {1, 2, 1}, {0.1, 0, 0}, {0, 0.1, 1}, d);
+    add_quad(s, {3, 1, 1}, {1, 0, 0.2}, {0.8, 0.6, 0}, d);
+    add_quad(s, {2, 1, 0.5}, {-0.4, 0, 0}, {0.3, 0.3, 0}, d);
+    add_triangle(s, {1, 1, 0}, {3, 1, 0.3}, {1, 2, 1}, d);
+    add_triangle(s, {2, 2, 1}, {2.01, 2, 1}, {2, 2.02, 1}, d);
+    prepare(s);
+    return s;
+}
+
 // Khodulev's theoretical case: see exact.h.
 inline Scene cube() {
     Scene s;
@@ -73,6 +111,27 @@ inline vec3 corner_of(const Mesh& mesh, uint32_t element, size_t k) {
 }
 inline real area_of(const Face& f) { return f.area() / real(f.elements()); }
 
+inline double longest_edge(const Mesh& mesh) {
+    double longest = 0;
+    for (uint32_t e = 0; e < mesh.elements(); ++e)
+        for (size_t k = 0; k < 3; ++k) {
+            const vec3 edge = corner_of(mesh, e, k) - corner_of(mesh, e, (k + 1) % 3);
+            longest = std::max(longest, double(length(edge)));
+        }
+    return longest;
+}
+
+// Where the grid has each vertex of a face, in the order in which meshes number them; those of
+// mesh.at are a little within.
+inline std::vector<vec3> grid_points(const Face& f) {
+    std::vector<vec3> points;
+    for (uint32_t j = 0; j <= f.rows; ++j)
+        for (uint32_t i = 0; i <= (f.quad ? f.columns : f.rows - j); ++i)
+            points.push_back(f.a + real(i) / real(f.columns) * (f.b - f.a) +
+                             real(j) / real(f.rows) * ((f.quad ? f.d : f.c) - f.a));
+    return points;
+}
+
 // Which face each element belongs to.
 inline std::vector<uint32_t> face_of_element(const Mesh& mesh) {
     std::vector<uint32_t> face(mesh.elements());
@@ -97,6 +156,28 @@ inline rgb integral(const Mesh& mesh, const IlluminationMap& map, const Face& f,
     for (uint32_t e = f.element; e < f.element + f.elements(); ++e)
         for (uint32_t v : mesh.corners[e]) sum += map[2 * v + back] * (area_of(f) / 3);
     return sum;
+}
+
+// Of the difference of two maps, over all surfaces and channels.
+inline double square(const Mesh& mesh, const IlluminationMap& a, const IlluminationMap& b) {
+    double sum = 0;
+    for (const Face& f : mesh.faces)
+        for (const bool back : {false, true}) {
+            Sums x;
+            for (uint32_t v = 2 * f.vertex + back; v < 2 * (f.vertex + f.vertices()); v += 2)
+                x.push_back(a[v] - b[v]);
+            const rgb s = Projection(mesh, f).square(x);
+            sum += double(s.x + s.y + s.z);
+        }
+    return sum;
+}
+
+// Of a furnace's map: its squared error over the square of what it should be.
+inline double furnace_error2(const Mesh& mesh, const IlluminationMap& map) {
+    const IlluminationMap none(map.size());
+    IlluminationMap truth = none;
+    for (size_t k = 0; k < truth.size(); k += 2) truth[k] = pi * rgb{2, 2.5, 2};
+    return square(mesh, map, truth) / square(mesh, truth, none);
 }
 
 // The point of a shape that a hit names.

@@ -9,25 +9,18 @@ using namespace rooms;
 
 namespace {
 
-// Faces of every kind: long and square, skew, of one cell, of odd numbers, triangles.
-Scene furniture() {
-    Scene s;
-    const uint32_t d = add(s, diffuse(grey(0.5)));
-    add_quad(s, {0, 0, 0}, {7, 0, 0}, {0, 1, 0}, d);
-    add_quad(s, {0, 0, 1}, {1, 1, 0}, {0, 5, 0}, d);
-    add_quad(s, {0, 0, 2}, {real(0.3), 0, 0}, {0, real(0.2), 0}, d);
-    add_quad(s, {0, 0, 3}, {3, 0, 0}, {real(0.5), 3, 0}, d);
-    add_triangle(s, {0, 0, 4}, {5, 0, 4}, {1, 3, 4}, d);
-    add_triangle(s, {9, 0, 5}, {real(9.2), 0, 5}, {9, real(0.1), 5}, d);
-    prepare(s);
-    return s;
-}
+struct OfFurniture {
+    Scene scene = furniture();
+    Mesh mesh = make_mesh(scene, 0.3);
+    Trees trees{mesh};
+    std::vector<uint32_t> face = face_of_element(mesh);
+};
 
-// By edge functions, in a plane z = const.
-bool contains(const Node& n, vec3 p) {
+// By edge functions, for points of its plane.
+bool contains(const Node& n, vec3 normal, vec3 p) {
     for (uint32_t k = 0; k < n.corners; ++k) {
         const vec3 a = n.corner[k], b = n.corner[(k + 1) % n.corners];
-        if (cross(b - a, p - a).z <= 0) return false;
+        if (dot(cross(b - a, p - a), normal) <= 0) return false;
     }
     return true;
 }
@@ -35,10 +28,7 @@ bool contains(const Node& n, vec3 p) {
 }  // namespace
 
 TEST_CASE("every element is one leaf; every node but a root has one parent, which comes first") {
-    const Scene s = furniture();
-    const Mesh mesh = make_mesh(s, 0.6);
-    const Trees trees(mesh);
-    const auto face = face_of_element(mesh);
+    const auto [s, mesh, trees, face] = OfFurniture{};
     for (uint32_t f = 0; f < mesh.faces.size(); ++f) {
         CAPTURE(f);
         const uint32_t from = trees.first(f), to = trees.first(f + 1);
@@ -68,25 +58,20 @@ TEST_CASE("every element is one leaf; every node but a root has one parent, whic
 }
 
 TEST_CASE("leaves have the corners of their elements, in the same order") {
-    const Scene s = furniture();
-    const Mesh mesh = make_mesh(s, 0.6);
-    const Trees trees(mesh);
-    const auto face = face_of_element(mesh);
+    const auto [s, mesh, trees, face] = OfFurniture{};
     for (uint32_t e = 0; e < mesh.elements(); ++e) {
         const Face& f = mesh.faces[face[e]];
         const Node& n = trees[trees.leaf(e)];
         // Vertices receive within their face's border, by a thousandth of a cell.
         for (size_t k = 0; k < 3; ++k)
-            CHECK(length(n.corner[k] - corner_of(mesh, e, k)) <= 0.6 * 3 / 1024);
+            CHECK(length(n.corner[k] - corner_of(mesh, e, k)) <= 0.3 * 3 / 1024);
         CHECK(double(n.area) == approx(double(area_of(f)), 1e-12, 1e-4));
         CHECK(dot(cross(n.corner[1] - n.corner[0], n.corner[2] - n.corner[0]), f.n) > 0);
     }
 }
 
 TEST_CASE("children divide their parent: areas add up, each point is in one of them") {
-    const Scene s = furniture();
-    const Mesh mesh = make_mesh(s, 0.6);
-    const Trees trees(mesh);
+    const auto [s, mesh, trees, face] = OfFurniture{};
     Rng rng{seed_here()};
     for (uint32_t f = 0; f < mesh.faces.size(); ++f) {
         CHECK(double(trees[trees.first(f)].area) == approx(double(mesh.faces[f].area())));
@@ -105,7 +90,7 @@ TEST_CASE("children divide their parent: areas add up, each point is in one of t
                                (upper ? 1 - v : v) * (n.corner[n.corners - 1] - n.corner[0]);
                 int inside = 0;
                 for (uint32_t k = n.first; k < n.first + n.children; ++k)
-                    inside += contains(trees[k], p);
+                    inside += contains(trees[k], mesh.faces[f].n, p);
                 CHECK(inside == 1);
             }
         }
@@ -113,9 +98,8 @@ TEST_CASE("children divide their parent: areas add up, each point is in one of t
 }
 
 TEST_CASE("a node is within its radius of its centre, which is as small as can be") {
-    const Scene s = furniture();
-    const Trees trees(make_mesh(s, 0.6));
-    for (uint32_t i = 0; i < trees.first(6); ++i) {
+    const auto [s, mesh, trees, face] = OfFurniture{};
+    for (uint32_t i = 0; i < trees.first(uint32_t(mesh.faces.size())); ++i) {
         const Node& n = trees[i];
         vec3 sum;
         real farthest = 0;
