@@ -7,29 +7,31 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "oracle/oracle.h"
+#include "oracle/textbook.h"
 
 namespace mistakes {
 
-using oracle::Random, oracle::Verdict;
+using oracle::pi, oracle::Random, oracle::Triple, oracle::Verdict;
+using textbook::polar, textbook::Vec;
+using D = Vec<double>;
+using F = Vec<float>;
 
+using Words = std::vector<std::string>;
 struct Mistake {
-    std::string name, wrong;            // the wrong line in one sentence
-    std::vector<std::string> expected;  // one of them names it; none: the code is right
+    std::string name;  // the wrong line
+    Words expected;    // one of them names it; none: the code is right
     std::function<Verdict(Random&)> run;
 };
 using Mistakes = std::vector<Mistake>;
 
-// ---- How a first line is judged
-// ---------------------------------------------------------------
+// ---- How a first line is judged -----------------------------------------------------------------
 
 inline std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -71,208 +73,162 @@ inline Naming naming(const Mistake& m, const Verdict& v) {
     return hint.empty() ? Naming::silent : Naming::wrong;
 }
 
-// ---- A few vectors, as any renderer has
-// ---------------------------------------------------------------
+// ---- Checks -------------------------------------------------------------------------------------
 
-constexpr double pi = std::numbers::pi;
-
-template <class T>
-struct Dir {
-    T x, y, z;
-    friend Dir operator+(Dir a, Dir b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend Dir operator-(Dir a, Dir b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend Dir operator*(T s, Dir a) { return {s * a.x, s * a.y, s * a.z}; }
-    friend T dot(Dir a, Dir b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-    friend Dir cross(Dir a, Dir b) {
-        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    }
-    friend T length(Dir a) { return std::sqrt(dot(a, a)); }
-    friend Dir unit(Dir a) { return (1 / length(a)) * a; }
-};
-
-template <class T>
-Dir<T> polar(T cosine, T phi) {
-    const T sine = std::sqrt(std::max(T(0), 1 - cosine * cosine));
-    return {sine * std::cos(phi), sine * std::sin(phi), cosine};
-}
-
-// The same for whatever vector a check hands to a factor.
-template <class V>
-Dir<double> plain(const V& w) {
-    if constexpr (requires { w.x; })
-        return {double(w.x), double(w.y), double(w.z)};
-    else
-        return {double(w[0]), double(w[1]), double(w[2])};
-}
-
-using Words = std::vector<std::string>;
+using Factors = std::vector<oracle::Factor>;
 
 template <class Sample, class Pdf>
-Mistake density(std::string name, std::string wrong, Words expected, Sample sample, Pdf pdf) {
-    return {name, wrong, expected,
-            [=](Random& random) { return oracle::expect_density(random, sample, pdf); }};
+Mistake any_density(std::string name, Words expected, Sample sample, Pdf pdf,
+                    Factors factors = {}) {
+    return {name, expected, [=](Random& random) {
+                return oracle::expect_density(random, sample, pdf, {.factors = factors});
+            }};
+}
+// Of directions from two numbers of type T.
+template <class T, class Sample, class Pdf>
+Mistake density(std::string name, Words expected, Sample sample, Pdf pdf, Factors factors = {}) {
+    return any_density(
+        name, expected, [=](T u, T v) { return sample(u, v); }, [=](Vec<T> w) { return T(pdf(w)); },
+        factors);
+}
+// The mean of f(random).
+template <class Draw>
+Mistake mean(std::string name, Words expected, double truth, Draw f, Factors factors = {}) {
+    return {name, expected, [=](Random& random) {
+                return oracle::expect_mean(truth, 100000, [&] { return f(random); },
+                                           {.factors = factors});
+            }};
 }
 
-// ---- Directions
-// ---------------------------------------------------------------
+// Words for more than one mistake.
+inline const Words root{"root", "sqrt", "square root"}, over_pi{"pi", "1/pi"},
+    cosine{"cos", "cosine", "cos theta"}, twice{"2", "1/2", "half", "twice"},
+    sine{"sin", "sine", "sin theta", "per (theta, phi)", "solid angle"},
+    of_length{"unit", "length", "norm", "normalized", "normalised", "unit length"},
+    negative{"negative", "below zero", "clamped"}, infinite{"infinite", "variance", "tail"},
+    not_finite{"finite", "not finite", "nan"}, black{"0", "zero", "exactly zero", "black"};
 
-template <class T>
-auto cosine_sample() {
-    return [](T u, T v) {
-        const T r = std::sqrt(u), phi = T(2 * pi) * v;
-        return Dir<T>{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)};
-    };
+inline Words operator|(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
 }
-template <class T>
-auto cosine_pdf() {
-    return [](Dir<T> w) { return std::max(T(0), w.z) * T(1 / pi); };
+
+// ---- Directions ---------------------------------------------------------------------------------
+
+// The cosine follows from the first number, phi is a part of the turn.
+template <class Z>
+auto about_z(Z z, double turn = 2 * pi) {
+    return [=]<class T>(T u, T v) { return polar(T(z(u)), T(turn) * v); };
 }
-template <class T>
-auto constant_above(double value) {
-    return [=](Dir<T> w) { return w.z > 0 ? T(value) : T(0); };
+// A function of the cosine, 0 below the horizon.
+template <class Of>
+auto above(Of f) {
+    return [=](const auto& w) { return w.z > 0 ? double(f(w.z)) : 0.0; };
 }
+inline auto constant_above(double value) {
+    return above([=](auto) { return value; });
+}
+inline const auto by_cosine = [](auto u, auto v) { return textbook::cosine_sample(u, v); };
+inline const auto cosine_pdf = above([](auto z) { return z / pi; });
+template <class Change>
+auto changed(Change change) {
+    return [=](auto u, auto v) { return change(by_cosine(u, v)); };
+}
+inline const auto evenly = about_z([](auto u) { return 1 - u; });
 
 inline Mistakes hemispheres() {
-    using D = Dir<double>;
-    using F = Dir<float>;
-    const auto d = cosine_sample<double>();
-    const auto f = cosine_sample<float>();
-    const auto pdf_d = cosine_pdf<double>();
-    const auto pdf_f = cosine_pdf<float>();
     return {
-        density("cosine, double", "", {}, d, pdf_d),
-        density("cosine, float", "", {}, f, pdf_f),
-        density(
-            "uniform hemisphere, float", "", {},
-            [](float u, float v) { return polar(1 - u, float(2 * pi) * v); },
-            constant_above<float>(1 / (2 * pi))),
-        density(
-            "r = u", "The disc's radius is u, not its root.", {"root", "sqrt", "square root"},
-            [](double u, double v) {
-                return D{u * std::cos(2 * pi * v), u * std::sin(2 * pi * v), std::sqrt(1 - u * u)};
-            },
-            pdf_d),
-        density(
-            "uniform for cosine", "Directions are uniform, the pdf is the cosine's.",
-            {"cos", "cosine", "cos theta", "uniform"},
-            [](float u, float v) { return polar(1 - u, float(2 * pi) * v); }, pdf_f),
-        density("pdf without cosine", "The pdf 1/pi lacks the cosine.",
-                {"cos", "cosine", "cos theta"}, f, constant_above<float>(1 / pi)),
-        density("pdf per (theta, phi)", "The pdf is that of the angles, cos sin / pi.",
-                {"sin", "sine", "sin theta", "per (theta, phi)", "solid angle"}, d,
-                [](D w) { return std::max(0.0, w.z) * std::hypot(w.x, w.y) / pi; }),
-        density(
-            "phi = pi v", "Directions fill half of the circle.", {"half", "half of phi", "phi"},
-            [](float u, float v) { return polar(std::sqrt(1 - u), float(pi) * v); }, pdf_f),
-        density(
-            "disc of radius 2", "The radius is 2 sqrt(u): directions are not unit vectors.",
-            {"unit", "length", "norm", "normalized", "normalised", "unit length"},
-            [](double u, double v) {
-                const double r = 2 * std::sqrt(u);
-                return D{r * std::cos(2 * pi * v), r * std::sin(2 * pi * v), std::sqrt(1 - u)};
-            },
-            pdf_d),
-        density("pdf without 1/pi", "The pdf is cos theta, not divided by pi.", {"pi", "1/pi"}, d,
-                [](D w) { return std::max(0.0, w.z); }),
-        density(
-            "sphere's constant", "The pdf of the hemisphere is 1/(4 pi), the sphere's.",
-            {"2", "half", "1/2", "twice", "hemisphere", "4 pi"},
-            [](float u, float v) { return polar(1 - u, float(2 * pi) * v); },
-            constant_above<float>(1 / (4 * pi))),
-        density("cosine not clamped", "The pdf is negative below the horizon.",
-                {"negative", "below zero", "clamped"}, d, [](D w) { return w.z / pi; }),
-        density("absolute cosine", "The pdf is positive below the horizon, too, without samples.",
-                {"horizon", "below", "half", "no sample", "no samples", "never sampled"}, f,
-                [](F w) { return std::abs(w.z) * float(1 / pi); }),
-        density("pdf halved", "The pdf is divided by 2 once more.", {"2", "half", "1/2", "twice"},
-                d, [=](D w) { return pdf_d(w) / 2; }),
-        density(
-            "below the horizon", "A cross product is turned round: z points down.",
-            {"horizon", "below", "negated", "turned", "-z"},
-            [=](double u, double v) {
-                const D w = d(u, v);
-                return D{w.x, w.y, -w.z};
-            },
-            pdf_d),
-        density(
-            "x and z swapped", "The frame's axes are handed over in the wrong order.",
-            {"exchanged", "swapped", "x and z", "z and x", "permuted"},
-            [=](float u, float v) {
-                const F w = f(u, v);
-                return F{w.z, w.y, w.x};
-            },
-            pdf_f),
-        density(
-            "uniform angle", "The hemisphere is sampled by theta = u pi / 2.",
-            {"sin", "sine", "sin theta", "per (theta, phi)", "solid angle"},
-            [](double u, double v) { return polar(std::cos(u * pi / 2), 2 * pi * v); },
-            constant_above<double>(1 / (2 * pi))),
-        density(
-            "same number twice", "One number makes both radius and angle.",
+        density<double>("cosine, double", {}, by_cosine, cosine_pdf),
+        density<float>("cosine, float", {}, by_cosine, cosine_pdf),
+        density<float>("uniform hemisphere, float", {}, evenly, constant_above(1 / (2 * pi))),
+        density<double>("r = u", root, about_z([](auto u) { return std::sqrt(1 - u * u); }),
+                        cosine_pdf),
+        density<float>("uniform for cosine", cosine | Words{"uniform"}, evenly, cosine_pdf),
+        density<float>("pdf without cosine", cosine, by_cosine, constant_above(1 / pi)),
+        density<double>("pdf per (theta, phi)", sine, by_cosine,
+                        [](D w) { return std::max(0.0, w.z) * std::hypot(w.x, w.y) / pi; }),
+        density<float>("phi = pi v: half of the circle", {"half", "half of phi", "phi"},
+                       about_z([](auto u) { return std::sqrt(1 - u); }, pi), cosine_pdf),
+        density<double>("disc of radius 2: no unit vectors", of_length, changed([](D w) {
+                            return D{2 * w.x, 2 * w.y, w.z};
+                        }),
+                        cosine_pdf),
+        density<double>("pdf without 1/pi", over_pi, by_cosine, above([](auto z) { return z; })),
+        density<float>("the sphere's 1/(4 pi) for the hemisphere",
+                       twice | Words{"hemisphere", "4 pi"}, evenly, constant_above(1 / (4 * pi))),
+        density<double>("cosine not clamped", negative, by_cosine, [](D w) { return w.z / pi; }),
+        density<float>("pdf of |cos|, positive below the horizon",
+                       {"horizon", "below", "half", "no sample", "no samples", "never sampled"},
+                       by_cosine, [](F w) { return std::abs(w.z) / pi; }),
+        density<double>("pdf halved once more", twice, by_cosine,
+                        [](D w) { return cosine_pdf(w) / 2; }),
+        density<double>("below the horizon", {"horizon", "below", "negated", "turned", "-z"},
+                        changed([](D w) {
+                            return D{w.x, w.y, -w.z};
+                        }),
+                        cosine_pdf),
+        density<float>("x and z swapped",
+                       {"exchanged", "swapped", "x and z", "z and x", "permuted"}, changed([](F w) {
+                           return F{w.z, w.y, w.x};
+                       }),
+                       cosine_pdf),
+        density<double>("hemisphere by theta = u pi / 2", sine,
+                        about_z([](auto u) { return std::cos(u * pi / 2); }),
+                        constant_above(1 / (2 * pi))),
+        density<double>(
+            "same number twice",
             {"same number", "same", "both", "curve", "does not depend", "not depend", "depends",
              "one number", "second number", "ignored", "line"},
-            [=](double u, double) { return d(u, u); }, pdf_d),
-        density(
-            "pi = 3.14", "The sampler's pi has three digits: a gap in phi.",
-            {"3.14", "pi", "gap", "phi"},
-            [](double u, double v) { return polar(std::sqrt(1 - u), 2 * 3.14 * v); }, pdf_d),
+            [](double u, double) { return by_cosine(u, u); }, cosine_pdf),
+        density<double>("pi = 3.14", {"3.14", "pi", "gap", "phi"},
+                        about_z([](auto u) { return std::sqrt(1 - u); }, 2 * 3.14), cosine_pdf),
     };
 }
 
-// ---- Frames and spheres of directions
-// ---------------------------------------------------------------
+// ---- Frames and spheres of directions -----------------------------------------------------------
 
 // Directions about the normal n by the tangents of make(n).
 template <class T, class Make>
-auto about(Dir<T> n, Make make) {
+auto about(Vec<T> n, Make make) {
     return [=](T u, T v) {
-        const Dir<T> w = cosine_sample<T>()(u, v);
+        const Vec<T> w = by_cosine(u, v);
         const auto [s, t] = make(n);
         return w.x * s + w.y * t + w.z * n;
     };
 }
+inline const auto by_cross = []<class T>(Vec<T> n) {
+    const Vec<T> a = std::abs(n.x) > T(0.9) ? Vec<T>{0, 1, 0} : Vec<T>{1, 0, 0};
+    const Vec<T> t = unit(cross(n, a));
+    return std::pair{cross(t, n), t};
+};
 template <class T>
-std::pair<Dir<T>, Dir<T>> frame_by_cross(Dir<T> n) {
-    const Dir<T> a = std::abs(n.x) > T(0.9) ? Dir<T>{0, 1, 0} : Dir<T>{1, 0, 0};
-    const Dir<T> t = unit(cross(n, a));
-    return {cross(t, n), t};
-}
-template <class T>
-auto cosine_about(Dir<T> n) {
-    return [=](Dir<T> w) { return std::max(T(0), dot(w, n)) * T(1 / pi); };
+auto cosine_about(Vec<T> n) {
+    return [=](Vec<T> w) { return std::max(T(0), dot(w, n)) * T(1 / pi); };
 }
 
 inline Mistakes frames() {
-    using D = Dir<double>;
-    using F = Dir<float>;
     const D n = unit(D{1, -2, 2});
-    const F pole{0.00031f, -0.00037f, -0.9999999f};
-    auto hg = [](double g) {
-        return [=](double u, double v) {
-            const double s = (1 - g * g) / (1 + g - 2 * g * u);
-            return polar((1 + g * g - s * s) / (2 * g), 2 * pi * v);
-        };
-    };
-    auto hg_pdf = [](double g) {
-        return [=](D w) { return (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * w.z, 1.5)); };
-    };
+    const F pole{0.00031f, -0.00037f, -0.9999999f}, level{0.6f, 0.8f, 0};
+    auto hg = about_z([](double u) {
+        const double g = 0.6, s = (1 - g * g) / (1 + g - 2 * g * u);
+        return (1 + g * g - s * s) / (2 * g);
+    });
+    auto hg_pdf = [](D w) { return 0.64 / (4 * pi * std::pow(1.36 - 1.2 * w.z, 1.5)); };
     return {
-        density("tilted cosine", "", {}, about(n, frame_by_cross<double>), cosine_about(n)),
-        density("tilted cosine, float", "", {}, about(pole, frame_by_cross<float>),
-                cosine_about(pole)),
-        density("Henyey-Greenstein", "", {}, hg(0.6), hg_pdf(0.6)),
-        density("sign(0) = 0 in the basis", "1/(s + z) of Duff's frame with s = 0 where z = 0.",
-                {"finite", "not finite", "nan", "inf"},
-                about(F{0.6f, 0.8f, 0},
-                      [](F z) {
-                          const float s = z.z > 0 ? 1.f : z.z < 0 ? -1.f : 0.f;
-                          const float a = -1 / (s + z.z), b = z.x * z.y * a;
-                          return std::pair{F{1 + s * z.x * z.x * a, s * b, -s * z.x},
-                                           F{b, s + z.y * z.y * a, -z.y}};
-                      }),
-                cosine_about(F{0.6f, 0.8f, 0})),
-        density(
-            "Frisvad near the pole", "1/(1 + z) in float has few digits where z is nearly -1.",
+        density<double>("tilted cosine", {}, about(n, by_cross), cosine_about(n)),
+        density<float>("tilted cosine, float", {}, about(pole, by_cross), cosine_about(pole)),
+        density<double>("Henyey-Greenstein", {}, hg, hg_pdf),
+        density<float>("sign(0) = 0 in Duff's basis", {"finite", "not finite", "nan", "inf"},
+                       about(level,
+                             [](F z) {
+                                 const float s = z.z > 0 ? 1.f : z.z < 0 ? -1.f : 0.f;
+                                 const float a = -1 / (s + z.z), b = z.x * z.y * a;
+                                 return std::pair{F{1 + s * z.x * z.x * a, s * b, -s * z.x},
+                                                  F{b, s + z.y * z.y * a, -z.y}};
+                             }),
+                       cosine_about(level)),
+        density<float>(
+            "Frisvad's 1/(1 + z) in float near the pole",
             {"rounding", "double", "unit", "length", "unit length", "orthogonal"},
             about(
                 pole,
@@ -281,173 +237,120 @@ inline Mistakes frames() {
                     return std::pair{F{1 - z.x * z.x * a, b, -z.x}, F{b, 1 - z.y * z.y * a, -z.y}};
                 }),
             cosine_about(pole)),
-        density("sign of g", "The phase function looks backward: light's direction for ray's.",
-                {"negated", "opposite", "mirrored", "-z", "backward", "sign", "turned"}, hg(0.6),
-                [=](D w) {
-                    return hg_pdf(0.6)({w.x, w.y, -w.z});
-                }),
-        density("phase function without 1/(4 pi)", "The pdf is not normalized.",
-                {"4 pi", "1/(4 pi)"}, hg(0.6), [=](D w) { return 4 * pi * hg_pdf(0.6)(w); }),
-        {"point of a ball added to the normal",
-         "n + a point *in* the unit ball, not on the sphere: cos^3 for cos.",
-         {"cos", "cosine", "cos theta", "cos^2 theta", "cos^2", "cosine^2"},
-         [](Random& random) {
-             auto sample = [](double u, double v, double w) {
-                 return unit(D{0, 0, 1} + std::cbrt(w) * polar(1 - 2 * u, 2 * pi * v));
-             };
-             return oracle::expect_density(random, sample, cosine_pdf<double>());
-         }},
+        density<double>("phase function backward: sign of g",
+                        {"negated", "opposite", "mirrored", "-z", "backward", "sign", "turned"}, hg,
+                        [=](D w) {
+                            return hg_pdf({w.x, w.y, -w.z});
+                        }),
+        density<double>("phase function without 1/(4 pi)", {"4 pi", "1/(4 pi)"}, hg,
+                        [=](D w) { return 4 * pi * hg_pdf(w); }),
+        any_density(
+            "normal plus a point in the unit ball, not on the sphere",
+            cosine | Words{"cos^2 theta", "cos^2", "cosine^2"},
+            [](double u, double v, double w) {
+                return unit(D{0, 0, 1} + std::cbrt(w) * polar(1 - 2 * u, 2 * pi * v));
+            },
+            [](D w) { return cosine_pdf(w); }),
     };
 }
 
-// ---- Cones and lobes
-// ---------------------------------------------------------------
+// ---- Cones and lobes ----------------------------------------------------------------------------
 
-template <class T>
-auto cone(T cos_max) {
-    return [=](T u, T v) { return polar(1 - u * (1 - cos_max), T(2 * pi) * v); };
+inline auto cone(double cos_max) {
+    return about_z([=](auto u) { return 1 - u * (1 - cos_max); });
 }
-template <class T>
-auto cone_pdf(T cos_max, double constant) {
-    return [=](Dir<T> w) { return w.z >= cos_max ? T(constant) : T(0); };
+inline auto cone_pdf(double cos_max, double constant) {
+    return [=]<class T>(Vec<T> w) { return w.z >= T(cos_max) ? constant : 0; };
 }
 
 inline Mistakes lobes() {
-    using F = Dir<float>;
-    auto phong = [](float root) {
-        return [=](float u, float v) { return polar(std::pow(u, 1 / root), float(2 * pi) * v); };
-    };
-    auto phong_pdf = [](float n, float factor) {
-        return [=](F w) { return w.z > 0 ? factor * float(1 / (2 * pi)) * std::pow(w.z, n) : 0.f; };
+    auto phong = [](double n) { return about_z([=](auto u) { return std::pow(u, 1 / n); }); };
+    auto phong_pdf = [](double n, double factor) {
+        return above([=](auto z) { return factor / (2 * pi) * std::pow(z, n); });
     };
     return {
-        density("cone", "", {}, cone(0.8), cone_pdf(0.8, 1 / (2 * pi * 0.2))),
-        density("Phong lobe, float", "", {}, phong(21), phong_pdf(20, 21)),
-        density("cone without 2 pi", "The pdf is 1/(1 - cos): phi has no density.",
-                {"2 pi", "1/(2 pi)"}, cone(0.8f), cone_pdf(0.8f, 1 / 0.2)),
-        density(
-            "cone of uniform angle", "theta = u theta_max fills the cone's middle.",
-            {"sin", "sine", "sin theta", "per (theta, phi)", "solid angle"},
-            [](double u, double v) { return polar(std::cos(u * 0.9), 2 * pi * v); },
-            cone_pdf(std::cos(0.9), 1 / (2 * pi * (1 - std::cos(0.9))))),
-        {"cone of a far light in float",
-         "1 - cos cancels: the solid angle of a cone of 1e-3 has one digit.",
-         {"rounding", "double", "cancellation"},
-         [](Random& random) {
-             const float cos_max = std::sqrt(1 - 1e-3f * 1e-3f);
-             auto pdf = [=](F w) {
-                 return w.z > 0 && std::hypot(w.x, w.y) <= 1e-3f
-                            ? 1 / (float(2 * pi) * (1 - cos_max))
-                            : 0.f;
-             };
-             auto sample = [](float u, float v) {
-                 const float x = u * 0.5e-6f, s = std::sqrt(x * (2 - x));
-                 return F{s * std::cos(float(2 * pi) * v), s * std::sin(float(2 * pi) * v), 1 - x};
-             };
-             return oracle::expect_density(random, sample, pdf);
-         }},
-        density("Phong's n for n + 1", "The pdf is n/(2 pi) cos^n.",
-                {"constant", "everywhere", "n + 1", "normalization", "normalisation"}, phong(5),
-                phong_pdf(4, 4)),
-        density("Phong's root", "The cosine is the n-th root of u, not the n+1-st.",
-                {"cos", "cosine", "cos theta"}, phong(4), phong_pdf(4, 5)),
+        density<double>("cone", {}, cone(0.8), cone_pdf(0.8, 1 / (2 * pi * 0.2))),
+        density<float>("Phong lobe, float", {}, phong(21), phong_pdf(20, 21)),
+        density<float>("cone without 2 pi: phi has no density", {"2 pi", "1/(2 pi)"}, cone(0.8),
+                       cone_pdf(0.8, 1 / 0.2)),
+        density<double>("cone by theta = u theta_max", sine,
+                        about_z([](auto u) { return std::cos(u * 0.9); }),
+                        cone_pdf(std::cos(0.9), 1 / (2 * pi * (1 - std::cos(0.9))))),
+        density<float>(
+            "cone of 1e-3 in float: 1 - cos cancels", {"rounding", "double", "cancellation"},
+            [](float u, float v) {
+                const float x = u * 0.5e-6f, s = std::sqrt(x * (2 - x));
+                return F{s * std::cos(float(2 * pi) * v), s * std::sin(float(2 * pi) * v), 1 - x};
+            },
+            [](F w) {
+                const float cos_max = std::sqrt(1 - 1e-3f * 1e-3f);
+                const bool inside = w.z > 0 && std::hypot(w.x, w.y) <= 1e-3f;
+                return inside ? 1 / (float(2 * pi) * (1 - cos_max)) : 0;
+            }),
+        density<float>("Phong's n for n + 1",
+                       {"constant", "everywhere", "n + 1", "normalization", "normalisation"},
+                       phong(5), phong_pdf(4, 4)),
+        density<float>("Phong's n-th root, not the n+1-st", cosine, phong(4), phong_pdf(4, 5)),
     };
 }
 
-// ---- Microfacets
-// ---------------------------------------------------------------
+// ---- Microfacets --------------------------------------------------------------------------------
 
 template <class T>
-T ggx(Dir<T> h, T alpha) {
-    const T c2 = h.z * h.z, t = 1 + c2 * (alpha * alpha - 1);
-    return h.z > 0 ? alpha * alpha / (T(pi) * t * t) : 0;
+auto ggx_half(Vec<T> wo, T alpha) {
+    return [=](T u, T v) { return ggx_half_sample(wo, u, v, alpha); };
 }
 template <class T>
-auto ggx_half(Dir<T> wo, T alpha) {
-    return [=](T u, T v) {
-        const Dir<T> h = polar(std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), T(2 * pi) * v);
-        return 2 * dot(wo, h) * h - wo;
-    };
-}
-template <class T>
-auto ggx_visible(Dir<T> wo, T alpha) {
-    return [=](T u, T v) {
-        const Dir<T> vh = unit(Dir<T>{alpha * wo.x, alpha * wo.y, wo.z});
-        const T len2 = vh.x * vh.x + vh.y * vh.y;
-        const Dir<T> t1 =
-            len2 > 0 ? (1 / std::sqrt(len2)) * Dir<T>{-vh.y, vh.x, 0} : Dir<T>{1, 0, 0};
-        const Dir<T> t2 = cross(vh, t1);
-        const T r = std::sqrt(u), phi = T(2 * pi) * v, p1 = r * std::cos(phi);
-        const T s = (1 + vh.z) / 2;
-        const T p2 = (1 - s) * std::sqrt(1 - p1 * p1) + s * r * std::sin(phi);
-        const Dir<T> n = p1 * t1 + p2 * t2 + std::sqrt(std::max(T(0), 1 - p1 * p1 - p2 * p2)) * vh;
-        const Dir<T> h = unit(Dir<T>{alpha * n.x, alpha * n.y, std::max(T(0), n.z)});
-        return 2 * dot(wo, h) * h - wo;
-    };
-}
-template <class T>
-T smith_g1(Dir<T> w, T alpha) {
-    return 2 * w.z / (w.z + std::sqrt(alpha * alpha + (1 - alpha * alpha) * w.z * w.z));
+auto ggx_visible(Vec<T> wo, T alpha) {
+    return [=](T u, T v) { return ggx_visible_sample(wo, u, v, alpha); };
 }
 
 // pdf(h), 0 below the horizon, under all factors that a microfacet's pdf has.
 template <class T, class Sample, class Pdf>
-Mistake microfacet(std::string name, std::string wrong, Words expected, Dir<T> wo, T alpha,
-                   Sample sample, Pdf pdf) {
-    auto run = [=](Random& random) {
-        auto half = [=](const auto& wi) {
-            const Dir<double> o = plain(wo);
-            return unit(o + plain(wi));
-        };
-        auto whole = [=](Dir<T> wi) { return wi.z > 0 ? pdf(unit(wo + wi)) : T(0); };
-        return oracle::expect_density(
-            random, sample, whole,
-            {.factors = {{"4 wo.h", [=](const auto& w) { return 4 * dot(plain(wo), half(w)); }},
-                         {"n.h", [=](const auto& w) { return half(w).z; }},
-                         {"G1(wo)", [=](const auto&) { return double(smith_g1(wo, alpha)); }},
-                         {"n.wo", [=](const auto&) { return double(wo.z); }}}});
-    };
-    return {name, wrong, expected, run};
+Mistake microfacet(std::string name, Words expected, Vec<T> wo, T alpha, Sample sample, Pdf pdf) {
+    const D o{double(wo.x), double(wo.y), double(wo.z)};
+    auto half = [=](const Triple& wi) { return unit(o + D{wi[0], wi[1], wi[2]}); };
+    return density<T>(name, expected, sample,
+                      [=](Vec<T> wi) { return wi.z > 0 ? pdf(unit(wo + wi)) : T(0); },
+                      {{"4 wo.h", [=](const Triple& w) { return 4 * dot(o, half(w)); }},
+                       {"n.h", [=](const Triple& w) { return half(w).z; }},
+                       {"G1(wo)", double(ggx_g1(wo, alpha))},
+                       {"n.wo", o.z}});
 }
 
 inline Mistakes microfacets() {
-    using D = Dir<double>;
-    using F = Dir<float>;
     const double a = 0.4;
     const float b = 0.3f;
     const D o = unit(D{0.5, 0.2, 0.7});
     const F p = unit(F{-0.3f, 0.4f, 0.6f}), q = unit(F{0.9f, 0.1f, 0.3f});
-    auto visible = [=](F h) { return smith_g1(p, b) * dot(p, h) * ggx(h, b) / p.z; };
+    auto visible = [=](F h) { return ggx_g1(p, b) * dot(p, h) * ggx_d(h, b) / p.z; };
+    auto right = [=](D h) { return ggx_d(h, a) * h.z / (4 * dot(o, h)); };
     return {
-        microfacet("GGX by half vector", "", {}, o, a, ggx_half(o, a),
-                   [=](D h) { return ggx(h, a) * h.z / (4 * dot(o, h)); }),
-        microfacet("GGX by half vector, float", "", {}, p, b, ggx_half(p, b),
-                   [=](F h) { return ggx(h, b) * h.z / (4 * dot(p, h)); }),
-        microfacet("GGX by visible normals, float", "", {}, p, b, ggx_visible(p, b),
+        microfacet("GGX by half vector", {}, o, a, ggx_half(o, a), right),
+        microfacet("GGX by half vector, float", {}, p, b, ggx_half(p, b),
+                   [=](F h) { return ggx_d(h, b) * h.z / (4 * dot(p, h)); }),
+        microfacet("GGX by visible normals, float", {}, p, b, ggx_visible(p, b),
                    [=](F h) { return visible(h) / (4 * dot(p, h)); }),
-        microfacet("1/(4 wo.h) forgotten", "The pdf is that of the half vector.",
-                   {"4 wo.h", "half vector"}, o, a, ggx_half(o, a),
-                   [=](D h) { return ggx(h, a) * h.z; }),
-        microfacet("n.h forgotten", "D alone is no density: n.h is missing.", {"n.h"}, p, b,
-                   ggx_half(p, b), [=](F h) { return ggx(h, b) / (4 * dot(p, h)); }),
-        microfacet("GGX without pi", "D lacks its 1/pi.", {"pi", "1/pi"}, o, a, ggx_half(o, a),
-                   [=](D h) { return pi * ggx(h, a) * h.z / (4 * dot(o, h)); }),
+        microfacet("1/(4 wo.h) forgotten", {"4 wo.h", "half vector"}, o, a, ggx_half(o, a),
+                   [=](D h) { return ggx_d(h, a) * h.z; }),
+        microfacet("n.h forgotten", {"n.h"}, p, b, ggx_half(p, b),
+                   [=](F h) { return ggx_d(h, b) / (4 * dot(p, h)); }),
+        microfacet("GGX without pi", over_pi, o, a, ggx_half(o, a),
+                   [=](D h) { return pi * right(h); }),
         microfacet(
-            "tangent without root", "tan is alpha u/(1-u), not its root.",
-            {"root", "sqrt", "square root"}, o, a,
+            "tan = alpha u/(1-u), without the root", root, o, a,
             [=](double u, double v) {
                 const double t = a * u / (1 - u);
-                const D h = polar(1 / std::sqrt(1 + t * t), 2 * pi * v);
-                return 2 * dot(o, h) * h - o;
+                return reflected(o, polar(1 / std::sqrt(1 + t * t), 2 * pi * v));
             },
-            [=](D h) { return ggx(h, a) * h.z / (4 * dot(o, h)); }),
-        microfacet("G1 forgotten", "The pdf of visible normals lacks the masking G1.", {"G1(wo)"},
-                   q, 0.7f, ggx_visible(q, 0.7f), [=](F h) { return ggx(h, 0.7f) / (4 * q.z); }),
+            right),
+        microfacet("G1 forgotten", {"G1(wo)"}, q, 0.7f, ggx_visible(q, 0.7f),
+                   [=](F h) { return ggx_d(h, 0.7f) / (4 * q.z); }),
         microfacet(
-            "reflected away", "wi is the direction in which wo is thrown: -reflect.",
+            "-reflect: wo is thrown away",
             {"horizon", "below", "negated", "opposite", "turned", "-z"}, o, a,
-            [=](double u, double v) { return -1.0 * ggx_half(o, a)(u, v); },
-            [=](D h) { return ggx(h, a) * h.z / (4 * dot(o, h)); }),
+            [=](double u, double v) { return -1.0 * ggx_half(o, a)(u, v); }, right),
     };
 }
+
 }  // namespace mistakes

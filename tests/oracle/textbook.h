@@ -9,27 +9,14 @@ namespace textbook {
 template <class T>
 struct Vec {
     T x, y, z;
+    friend Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Vec operator*(T s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
+    friend T dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    friend Vec cross(Vec a, Vec b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+    friend Vec unit(Vec a) { return (1 / std::sqrt(dot(a, a))) * a; }
 };
-template <class T>
-Vec<T> operator+(Vec<T> a, Vec<T> b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class T>
-Vec<T> operator*(T s, Vec<T> v) {
-    return {s * v.x, s * v.y, s * v.z};
-}
-template <class T>
-T dot(Vec<T> a, Vec<T> b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class T>
-Vec<T> unit(Vec<T> v) {
-    return (1 / std::sqrt(dot(v, v))) * v;
-}
-template <class T>
-Vec<T> cross(Vec<T> a, Vec<T> b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 template <class T>
 constexpr T pi = std::numbers::pi_v<T>;
 
