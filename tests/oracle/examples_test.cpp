@@ -194,37 +194,29 @@ TEST_CASE("images") {
 
 // Every block of code in README.md stands here, between "// [name" and "// ]".
 TEST_CASE("the examples of the page are these") {
-    std::ifstream page_file("tests/oracle/README.md"), code_file("tests/oracle/examples_test.cpp");
-    REQUIRE(page_file.good());
-    REQUIRE(code_file.good());
-    std::vector<std::string> regions;
-    bool inside = false;
-    for (std::string line; std::getline(code_file, line);) {
-        if (line.starts_with("    // [")) {
-            regions.emplace_back();
-            inside = true;
-        } else if (line == "    // ]") {
-            inside = false;
-        } else if (inside) {
-            regions.back() += (line.size() > 4 ? line.substr(4) : "") + "\n";
+    // Text between a line that begins so and one that is the end.
+    auto blocks = [](const char* path, const std::string& begin, const std::string& end,
+                     size_t indent) {
+        std::ifstream file(path);
+        REQUIRE(file.good());
+        std::vector<std::string> found;
+        bool inside = false;
+        for (std::string line; std::getline(file, line);) {
+            if (inside && line == end)
+                inside = false;
+            else if (inside)
+                found.back() += (line.size() > indent ? line.substr(indent) : "") + "\n";
+            else if ((inside = line.starts_with(begin)))
+                found.emplace_back();
         }
-    }
+        return found;
+    };
+    const auto regions = blocks("tests/oracle/examples_test.cpp", "    // [", "    // ]", 4);
+    const auto page = blocks("tests/oracle/README.md", "```cpp", "```", 0);
     CHECK(regions.size() >= 10);
-    std::string block;
-    bool code = false;
-    size_t blocks = 0;
-    for (std::string line; std::getline(page_file, line);) {
-        if (line == "```cpp") {
-            code = true;
-            block.clear();
-        } else if (code && line == "```") {
-            code = false;
-            ++blocks;
-            INFO(block);
-            CHECK(std::find(regions.begin(), regions.end(), block) != regions.end());
-        } else if (code) {
-            block += line + "\n";
-        }
+    CHECK(page.size() == regions.size());
+    for (const std::string& block : page) {
+        INFO(block);
+        CHECK(std::find(regions.begin(), regions.end(), block) != regions.end());
     }
-    CHECK(blocks == regions.size());
 }
