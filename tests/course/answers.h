@@ -9,25 +9,25 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <span>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "base/vec.h"
+#include "course/rows.h"
 
 namespace course {
 
-using In = std::span<const double>;
-using Out = std::vector<double>;
+inline vec3 vec3_of(In x, size_t at = 0) { return {real(x[at]), real(x[at + 1]), real(x[at + 2])}; }
 
 struct Question {
     std::string name;
     size_t width;  // numbers it takes; 0: any
     std::function<Out(In)> answer;
-};
 
-inline vec3 vec3_of(In x, size_t at = 0) { return {real(x[at]), real(x[at + 1]), real(x[at + 2])}; }
-inline Out numbers(vec3 v) { return {double(v.x), double(v.y), double(v.z)}; }
+    template <class F>
+    Question(std::string name_, size_t width_, F f)
+        : name(std::move(name_)), width(width_), answer([f](In x) { return row(f(x)); }) {}
+};
 
 // All rows of one answer, or why there is none.
 inline std::string answer(const Question& q, size_t width, const Out& in, Out& out,

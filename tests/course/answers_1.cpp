@@ -3,42 +3,43 @@
 #include "world/bvh.h"
 #include "world/scene.h"
 
-using course::In, course::Out, course::vec3_of;
+using course::In, course::row, course::Out, course::vec3_of;
 
 namespace {
 
 // Whether something is hit, and the numbers of the hit.
 Out hit_of(const std::optional<Hit>& hit) {
     if (!hit) return {0, 0, 0, 0};
-    return {1, double(hit->t), double(hit->v), double(hit->w)};
+    return row(1, hit->t, hit->v, hit->w);
 }
 
 // Eye, target, field of view, width, height, x, y: the ray's origin and direction.
 Out ask_camera(In x) {
     const Camera camera = look_at(vec3_of(x, 0), vec3_of(x, 3), real(x[6]));
     const Ray ray = camera_ray(camera, {int(x[7]), int(x[8])}, real(x[9]), real(x[10]));
-    return {double(ray.o.x), double(ray.o.y), double(ray.o.z),
-            double(ray.d.x), double(ray.d.y), double(ray.d.z)};
+    return row(ray.o, ray.d);
 }
 
-// Origin, direction, tmax; centre, radius.
+// Each begins with origin, direction, tmax of a ray.
+Ray ray_of(In x) { return {vec3_of(x, 0), vec3_of(x, 3), real(x[6])}; }
+
+// Centre, radius.
 Out ask_sphere(In x) {
     const Shape s{vec3_of(x, 7), {}, {}, real(x[10])};
-    return hit_of(intersect_sphere(s, {vec3_of(x, 0), vec3_of(x, 3), real(x[6])}, real(x[6])));
+    return hit_of(intersect_sphere(s, ray_of(x), real(x[6])));
 }
 
-// Origin, direction, tmax; corners.
+// Corners.
 Out ask_triangle(In x) {
-    const Ray ray{vec3_of(x, 0), vec3_of(x, 3), real(x[6])};
+    const Ray ray = ray_of(x);
     const Shape s{vec3_of(x, 7), vec3_of(x, 10), vec3_of(x, 13)};
     return hit_of(intersect_triangle(s, ray, shear(ray.d), ray.tmax));
 }
 
-// Origin, direction, tmax; lower and upper corner of a box.
+// Lower and upper corner.
 Out ask_box(In x) {
-    const Probe probe({vec3_of(x, 0), vec3_of(x, 3), real(x[6])});
-    const auto t = enter_box({vec3_of(x, 7), vec3_of(x, 10)}, probe);
-    return {t ? 1.0 : 0.0, t ? double(*t) : 0};
+    const auto t = enter_box({vec3_of(x, 7), vec3_of(x, 10)}, Probe(ray_of(x)));
+    return row(t.has_value(), t.value_or(0));
 }
 
 // Lower and upper corners of boxes: the cost of the best division, and how many are on the left.
@@ -47,7 +48,7 @@ Out ask_division(In x) {
     for (size_t i = 0; i + 6 <= x.size(); i += 6)
         boxes.push_back({vec3_of(x, i), vec3_of(x, i + 3)});
     const Division d = best_division(boxes);
-    return {double(d.cost), double(d.left)};
+    return row(d.cost, d.left);
 }
 
 // tmax, then four numbers a node: its first, its count, where a ray enters it and where it meets
@@ -75,9 +76,7 @@ Out ask_tree(In x) {
     };
     const Hit hit = nearest_hit(nodes, Hit{real(x[0])}, enter, look);
     const bool any = hit.id != UINT32_MAX;
-    Out out{any ? double(hit.t) : -1, any ? double(hit.id) : -1, boxes, leaves};
-    out.insert(out.end(), seen.begin(), seen.end());
-    return out;
+    return row(any ? hit.t : -1, any ? double(hit.id) : -1, boxes, leaves, seen);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "course/answers.h"
 #include "path/pathtracer.h"
 
-using course::In, course::Out, course::numbers, course::vec3_of;
+using course::In, course::Out, course::row, course::vec3_of;
 
 namespace {
 
@@ -51,46 +51,33 @@ Technique technique(In x) { return {Direction(int(x[1])), LightMode(int(x[0])), 
 
 // 17 numbers.
 Segment segment(In x) {
-    return {{vec3_of(x, 0), vec3_of(x, 3)},
-            vec3_of(x, 6),
-            real(x[9]),
-            vec3_of(x, 10),
-            int(x[13]),
-            vec3_of(x, 14)};
+    const Ray ray{vec3_of(x, 0), vec3_of(x, 3)};
+    return {ray, vec3_of(x, 6), real(x[9]), vec3_of(x, 10), int(x[13]), vec3_of(x, 14)};
 }
 
-void append(Out& out, vec3 v) {
-    const Out x = numbers(v);
-    out.insert(out.end(), x.begin(), x.end());
-}
-
-Out take_step(In x) {
+Step asked_step(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
-    const Step e = step(scene, technique(x), segment(x.subspan(4)), numbers_of_path);
+    return step(scene, technique(x), segment(x.subspan(4)), numbers_of_path);
+}
+Out take_step(In x) {
+    const Step e = asked_step(x);
     const bool goes_on = e.end == nullptr;
-    Out out{double(e.met), double(goes_on), double(e.weight)};
-    for (vec3 v : {e.Le, e.direct.L, e.wi, e.x.local.n}) append(out, v);
     const Segment& s = e.next;
-    append(out, s.ray.o), append(out, s.ray.d), append(out, s.from);
-    out.push_back(double(s.pdf));
-    append(out, goes_on ? s.beta : rgb{});
-    out.push_back(s.k);
-    append(out, s.n);
-    return out;
+    return row(e.met, goes_on, e.weight, e.Le, e.direct.L, e.wi, e.x.local.n, s.ray.o, s.ray.d,
+               s.from, s.pdf, goes_on ? s.beta : rgb{}, s.k, s.n);
 }
 
 // Of the ray that goes on; 0 if none does.
-Out throughput(In x) {
-    const Sampler numbers_of_path = sampler(x[3]);
-    const Step e = step(scene, technique(x), segment(x.subspan(4)), numbers_of_path);
-    return numbers(e.end ? rgb{} : e.next.beta);
+rgb throughput(In x) {
+    const Step e = asked_step(x);
+    return e.end ? rgb{} : e.next.beta;
 }
 
-Out found_by_aiming(In x) {
+rgb found_by_aiming(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
     const auto at = meet(scene, {vec3_of(x, 4), vec3_of(x, 7)});
     if (!at) throw std::runtime_error("the ray meets nothing");
-    return numbers(direct_light(scene, technique(x), *at, numbers_of_path, 0).L);
+    return direct_light(scene, technique(x), *at, numbers_of_path, 0).L;
 }
 
 // A light's shape, a point of it and the normal there: 7 numbers.
@@ -102,9 +89,9 @@ Vertex on_a_light(In x) {
     return y;
 }
 
-Out weight(In x) {
-    return {double(
-        weight_of_emission(scene, technique(x), segment(x.subspan(3)), on_a_light(x.subspan(20))))};
+real weight(In x) {
+    return weight_of_emission(scene, technique(x), segment(x.subspan(3)),
+                              on_a_light(x.subspan(20)));
 }
 
 // How likely a light sample from there is to choose that light, and the density of its point.
@@ -112,8 +99,7 @@ Out likelihood(In x) {
     const Segment s = segment(x.subspan(3));
     const Vertex y = on_a_light(x.subspan(20));
     const size_t light = size_t(scene.light_of[y.hit.id]);
-    return {double(pick_of(scene, light, s.from, s.n)),
-            double(pdf_light(scene.lights[light], s.from, y.at))};
+    return row(pick_of(scene, light, s.from, s.n), pdf_light(scene.lights[light], s.from, y.at));
 }
 
 Out glass(In x) {
@@ -121,10 +107,7 @@ Out glass(In x) {
     m.kind = Material::Kind::glass;
     m.ior = real(x[0]);
     const BsdfSample b = sample_glass(m, vec3_of(x, 3), x[1] != 0, real(x[2]));
-    Out out = numbers(b.wi);
-    append(out, b.f);
-    out.push_back(double(b.pdf));
-    return out;
+    return row(b.wi, b.f, b.pdf);
 }
 
 }  // namespace
@@ -134,14 +117,14 @@ int main() {
         {"scene", 0, build},
         {"Li", 10,
          [](In x) {
-             return numbers(Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3])));
+             return Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3]));
          }},
         {"accounts", 10,
          [](In x) {
              double calls = 0;
              Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3]),
                 [&](const Segment&, const Step&) { ++calls; });
-             return Out{calls};
+             return calls;
          }},
         {"step", 21, take_step},
         {"throughput", 21, throughput},
@@ -150,8 +133,6 @@ int main() {
         {"likelihood", 27, likelihood},
         {"sample_glass", 6, glass},
         {"number", 3,
-         [](In x) {
-             return Out{double(sampler(x[0]).get(dimension(int(x[1]), Draw(int(x[2])))))};
-         }},
+         [](In x) { return sampler(x[0]).get(dimension(int(x[1]), Draw(int(x[2])))); }},
     });
 }

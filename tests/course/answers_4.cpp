@@ -10,9 +10,8 @@ namespace {
 uint64_t bits_of(In x, size_t at) { return uint64_t(x[at]) << 32 | uint64_t(x[at + 1]); }
 
 // Base, index, bits of shift and factor.
-Out scrambled(In x) {
-    return {double(
-        scrambled_radical_inverse(uint32_t(x[0]), bits_of(x, 1), bits_of(x, 3), bits_of(x, 5)))};
+real scrambled(In x) {
+    return scrambled_radical_inverse(uint32_t(x[0]), bits_of(x, 1), bits_of(x, 3), bits_of(x, 5));
 }
 
 // Seed, pixel, sample: all numbers that a path of so many vertices may draw, the film's first.
@@ -32,16 +31,13 @@ Out path(In x) {
 
 int main() {
     return course::answer_all({
-        {"radical_inverse", 3,
-         [](In x) { return Out{double(radical_inverse(uint32_t(x[0]), bits_of(x, 1)))}; }},
+        {"radical_inverse", 3, [](In x) { return radical_inverse(uint32_t(x[0]), bits_of(x, 1)); }},
         {"scrambled_radical_inverse", 7, scrambled},
         {"path", 3, path},
-        {"in_part", 4,
-         [](In x) { return Out{double(in_part(uint32_t(x[0]), uint32_t(x[1]), bits_of(x, 2)))}; }},
+        {"in_part", 4, [](In x) { return in_part(uint32_t(x[0]), uint32_t(x[1]), bits_of(x, 2)); }},
         {"in_cell", 5,
          [](In x) {
-             const vec2 at = in_cell(uint32_t(x[0]), uint32_t(x[1]), uint32_t(x[2]), bits_of(x, 3));
-             return Out{double(at.x), double(at.y)};
+             return in_cell(uint32_t(x[0]), uint32_t(x[1]), uint32_t(x[2]), bits_of(x, 3));
          }},
     });
 }

@@ -9,7 +9,9 @@ namespace {
 
 // n, U, w, wV, bb, b_wV, b_U.
 ShadowMoments moments_of(In x) { return {uint64_t(x[0]), x[1], x[2], x[3], x[4], x[5], x[6]}; }
-Out numbers(const ShadowMoments& m) { return {double(m.n), m.U, m.w, m.wV, m.bb, m.b_wV, m.b_U}; }
+Out of_moments(const ShadowMoments& m) {
+    return course::row(m.n, m.U, m.w, m.wV, m.bb, m.b_wV, m.b_U);
+}
 
 // Of samples U, w, wV.
 ShadowMoments moments_of_samples(In x) {
@@ -28,18 +30,18 @@ Polygon polygon_of(In x) {
 
 int main() {
     return course::answer_all({
-        {"control", 3, [](In x) { return Out{control(x[0], x[1], x[2])}; }},
-        {"visible", 7, [](In x) { return Out{visible_part(moments_of(x))}; }},
-        {"ratio", 7, [](In x) { return Out{ratio(moments_of(x))}; }},
-        {"regression", 7, [](In x) { return Out{regression(moments_of(x))}; }},
-        {"moments", 0, [](In x) { return numbers(moments_of_samples(x)); }},
+        {"control", 3, [](In x) { return control(x[0], x[1], x[2]); }},
+        {"visible", 7, [](In x) { return visible_part(moments_of(x)); }},
+        {"ratio", 7, [](In x) { return ratio(moments_of(x)); }},
+        {"regression", 7, [](In x) { return regression(moments_of(x)); }},
+        {"moments", 0, [](In x) { return of_moments(moments_of_samples(x)); }},
         // Of the first x[0] samples, and of the others.
         {"merged", 0,
          [](In x) {
              const size_t first = 3 * size_t(x[0]);
-             return numbers(merge(moments_of_samples(x.subspan(1, first)),
-                                  moments_of_samples(x.subspan(1 + first))));
+             return of_moments(merge(moments_of_samples(x.subspan(1, first)),
+                                     moments_of_samples(x.subspan(1 + first))));
          }},
-        {"lambert", 0, [](In x) { return Out{double(irradiance_lambert(polygon_of(x)))}; }},
+        {"lambert", 0, [](In x) { return irradiance_lambert(polygon_of(x)); }},
     });
 }

@@ -76,17 +76,12 @@ Out walked(In x) {
             if (power.empty()) n = v.local.n;
             power.push_back(p), at.push_back(v.at.p);
         });
-    Out out = {double(rays)};
-    auto add = [&](rgb c) { out.insert(out.end(), {double(c.x), double(c.y), double(c.z)}); };
-    add(b.emitted), add(b.absorbed), add(b.escaped);
-    out.push_back(double(power.size()));
     rgb sum, greatest;
     for (rgb p : power)
         for (auto c : axis) sum.*c += p.*c, greatest.*c = std::max(greatest.*c, p.*c);
-    add(sum), add(power.size() > 1 ? power[1] : rgb{}), add(greatest);
     const vec3 w = at.size() > 1 ? unit(at[1] - at[0]) : vec3{};
-    out.insert(out.end(), {double(dot(w, n)), double(w.x + w.z)});
-    return out;
+    return course::row(rays, b.emitted, b.absorbed, b.escaped, power.size(), sum,
+                       power.size() > 1 ? power[1] : rgb{}, greatest, dot(w, n), w.x + w.z);
 }
 
 }  // namespace

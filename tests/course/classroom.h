@@ -109,7 +109,7 @@ struct House {
              Regions{{"1.1", twice_stub}, {"1.2", square_stub}, {"1.3", cube_stub}})
             folder.write("src/course/stubs/" + number,
                          "// " + number + "  what it is\n// instead: something else\n" + stub);
-        for (const char* name : {"answers.h", "judge.h", "program.h"})
+        for (const char* name : {"answers.h", "judge.h", "program.h", "rows.h"})
             folder.write(std::string("tests/course/") + name,
                          read_file(std::string("tests/course/") + name));
         folder.write("tests/course/answers_1.cpp", answers);

@@ -16,6 +16,44 @@
 
 namespace course {
 
+// ---- Numbers ------------------------------------------------------------------------------------
+
+using oracle::Triple, oracle::dot;
+
+inline Triple operator+(const Triple& a, const Triple& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Triple operator-(const Triple& a, const Triple& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Triple operator*(double s, const Triple& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline Triple operator*(const Triple& a, const Triple& b) {
+    return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
+}
+inline Triple cross(const Triple& a, const Triple& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double length(const Triple& a) { return std::sqrt(dot(a, a)); }
+inline Triple unit(const Triple& a) { return 1 / length(a) * a; }
+inline Triple triple(In x, size_t at = 0) { return {x[at], x[at + 1], x[at + 2]}; }
+
+// a equals b up to a relative error, or an absolute one below 1; NaN equals nothing.
+inline bool near(double a, double b, double tolerance) {
+    return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b));
+}
+inline bool near(const Triple& a, const Triple& b, double tolerance) {
+    return near(a[0], b[0], tolerance) && near(a[1], b[1], tolerance) &&
+           near(a[2], b[2], tolerance);
+}
+
+// The larger of two errors; what is not a number is no small one.
+inline double worse(double a, double b) {
+    return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN()
+                                          : std::max(a, b);
+}
+
+// ---- The judge ----------------------------------------------------------------------------------
+
 // One thing that was looked at.
 struct Item {
     std::string what;
@@ -23,11 +61,6 @@ struct Item {
     bool right = false;
     std::string seen;  // what was expected and what came, or what the oracle says
 };
-
-// a equals b up to a relative error, or an absolute one below 1; NaN equals nothing.
-inline bool near(double a, double b, double tolerance) {
-    return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b));
-}
 
 // A function of the program's, as a check of the oracle calls it: with one question after the
 // other. Some are asked at once; what is asked beyond `budget` is put off, to be asked in a batch.
@@ -75,20 +108,18 @@ struct Known {
     }
 };
 
-// The larger of two errors; what is not a number is no small one.
-inline double worse(double a, double b) {
-    return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN()
-                                          : std::max(a, b);
-}
+// All that was seen.
+struct Evidence {
+    std::vector<Item> items = {};
+    Out fingerprint = {};               // answers to probes: by them known mistakes are told
+    Out of_stub = {};                   // answers to further probes, by which the stub is told
+    std::optional<double> credit = {};  // in [0,1], where it is not the part of items that is right
+};
 
-class Judge {
+class Judge : public Evidence {
 public:
     oracle::Random random;
-    std::vector<Item> items;
-    Out fingerprint;               // answers to probes: by them known mistakes are told
-    double epsilon;                // of the student's `real`: 2^-53 or 2^-24
-    Out of_stub;                   // answers to further probes, by which the stub is told
-    std::optional<double> credit;  // in [0,1], where it is not the part of the items that is right
+    double epsilon;  // of the student's `real`: 2^-53 or 2^-24
 
     Judge(Program& program, uint64_t seed)
         : random(seed), epsilon(program.is_float() ? 0x1p-24 : 0x1p-53), program_(program) {}
@@ -102,8 +133,12 @@ public:
     // To questions that are always the same, and so tell which mistake it is.
     Rows probe(const std::string& question, const Rows& in) {
         Rows out = program_.ask(question, in);
-        fingerprint.insert(fingerprint.end(), out.numbers.begin(), out.numbers.end());
+        remember(out.numbers);
         return out;
+    }
+    // What follows from answers, where mistakes are told by that.
+    void remember(const Out& numbers) {
+        fingerprint.insert(fingerprint.end(), numbers.begin(), numbers.end());
     }
 
     // A check of the oracle calls functions one by one: check(random, functions) is run with what
@@ -139,11 +174,31 @@ public:
         exact(what, near(came, expected, tolerance),
               oracle::say("%.9g expected, %.9g came", expected, came));
     }
+    void vector(const std::string& what, const Triple& came, const Triple& expected,
+                double tolerance) {
+        exact(what, near(came, expected, tolerance),
+              oracle::say("(%.6g, %.6g, %.6g) expected, (%.6g, %.6g, %.6g) came", expected[0],
+                          expected[1], expected[2], came[0], came[1], came[2]));
+    }
+    // An error that is to be below a limit, and how many there are of what must not be.
+    void below(const std::string& what, double off, double limit,
+               const char* seen = "off by %.3g") {
+        exact(what, off < limit, oracle::say(seen, off));
+    }
+    void none(const std::string& what, size_t count, const char* seen) {
+        exact(what, count == 0, oracle::say(seen, count));
+    }
     void statistical(const std::string& what, const oracle::Verdict& v) {
         std::string seen = v.text.substr(0, v.text.find('\n'));
         if (v.pass)
             seen = oracle::say("p = %.2g; errors above %.2g %% are seen", v.p, 100 * v.delta_min);
         items.push_back({what, true, v.pass, seen});
+    }
+    // The mean of a number of each row.
+    template <class Rows, class Of>
+    void mean(const std::string& what, double truth, const Rows& rows, Of of) {
+        size_t i = 0;
+        statistical(what, oracle::expect_mean(truth, rows.size(), [&] { return of(rows[i++]); }));
     }
 
 private:
@@ -198,14 +253,10 @@ inline const KnownMistake* mistake_of(const std::vector<KnownMistake>& mistakes,
 
 // ---- The program --------------------------------------------------------------------------------
 
-struct Judgement {
+struct Judgement : Evidence {
     std::string exercise, state;  // right, wrong, open, silent
-    std::vector<Item> items;
-    std::string silence;  // why answers ended, if they did
-    std::optional<KnownMistake> named;
-    Out fingerprint;
-    std::optional<double> credit = {};
-    Out of_stub = {};
+    std::string silence = "";     // why answers ended, if they did
+    std::optional<KnownMistake> named = {};
     size_t right() const {
         return size_t(
             std::count_if(items.begin(), items.end(), [](const Item& i) { return i.right; }));
@@ -223,17 +274,14 @@ inline Judgement judge_one(const std::string& exercise, const Judging& judging,
                            const std::vector<KnownMistake>& mistakes, uint64_t seed,
                            Program& program) {
     Judge j(program, seed);
-    Judgement result{exercise, "right", {}, {}, {}, {}};
+    Judgement result{{}, exercise, "right"};
     try {
         judging(j);
     } catch (const Silence& e) {
         result.silence = e.what();
         j.items.push_back({"all questions are answered", false, false, e.what()});
     }
-    result.items = j.items;
-    result.fingerprint = j.fingerprint;
-    result.of_stub = j.of_stub;
-    result.credit = j.credit;
+    static_cast<Evidence&>(result) = j;
     if (result.right() == result.items.size() && !result.items.empty()) return result;
     result.state = result.silence.empty() ? "wrong" : "silent";
     if (const KnownMistake* m = mistake_of(mistakes, exercise, j)) {
@@ -334,7 +382,7 @@ inline int judge(int argc, char** argv, const std::map<std::string, Judging>& ex
             return judge_one(exercise, found->second, known, seed, program);
         } catch (const Silence& e) {  // it did not even begin
             const Item item{"all questions are answered", false, false, e.what()};
-            return Judgement{exercise, "silent", {item}, e.what(), {}, {}};
+            return Judgement{{{item}}, exercise, "silent", e.what()};
         }
     }();
     print(r);

@@ -1,21 +1,10 @@
 // course/judge_1.cpp  judges week 1: intersections and the tree
 #include "course/judge.h"
 
-using course::In, course::Judge, course::Out, course::Rows;
-using oracle::say, oracle::Triple;
+using namespace course;
+using oracle::say;
 
 namespace {
-
-// ---- Vectors ------------------------------------------------------------------------------------
-
-Triple operator+(Triple a, Triple b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Triple operator-(Triple a, Triple b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Triple operator*(double s, Triple a) { return {s * a[0], s * a[1], s * a[2]}; }
-double dot(Triple a, Triple b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Triple cross(Triple a, Triple b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Triple unit(Triple a) { return 1 / std::sqrt(dot(a, a)) * a; }
 
 double between(Judge& j, double low, double high) { return low + (high - low) * j.random(); }
 
@@ -40,14 +29,6 @@ Triple slanted(Judge& j, Triple n) {
 
 constexpr double endless = oracle::infinity;
 
-Out row(std::initializer_list<Triple> ray, double tmax, std::initializer_list<Triple> rest) {
-    Out numbers;
-    for (const Triple& v : ray) numbers.insert(numbers.end(), v.begin(), v.end());
-    numbers.push_back(tmax);
-    for (const Triple& v : rest) numbers.insert(numbers.end(), v.begin(), v.end());
-    return numbers;
-}
-
 // Distances as expected, a negative one for a miss, beside {hit, t, ...} as they came.
 struct Distances {
     int wrong = 0;
@@ -61,17 +42,48 @@ struct Distances {
                 (expected >= 0 ? say("t = %.9g expected", expected) : "a miss expected") + ", " +
                 (hit ? say("t = %.9g", came[1]) : "a miss") + " came";
     }
-    void judge(Judge& j, const std::string& what, int of) const {
-        j.exact(what, wrong == 0, first + (of > 1 ? say(" (%d of %d are wrong)", wrong, of) : ""));
+    void judge(Judge& j, const std::string& what, size_t of) const {
+        j.exact(what, wrong == 0, first + (of > 1 ? say(" (%d of %zu are wrong)", wrong, of) : ""));
     }
 };
 
-// One row of a probe, which has a distance as its answer.
-void expect(Judge& j, const std::string& what, const Rows& came, size_t i, double expected,
-            const std::string& where) {
+// A question with a distance as its answer, right within so many roundings of it or of 1.
+struct Asked {
+    Out ray;
+    double expected;
+    std::string where;
+    double roundings = 16;
+};
+// What is looked at by some of them; without a name, nothing: it tells mistakes.
+struct Look {
+    std::string what;
+    std::vector<Asked> asked;
+};
+Rows look(Judge& j, const std::string& question, const std::vector<Look>& looks) {
+    Rows rays;
+    for (const Look& l : looks)
+        for (const Asked& a : l.asked) rays.add(a.ray);
+    const Rows came = j.probe(question, rays);
+    size_t i = 0;
+    for (const Look& l : looks) {
+        Distances d;
+        for (const Asked& a : l.asked)
+            d.see(came[i++], a.expected, a.roundings * j.epsilon * std::max(1.0, a.expected),
+                  a.where);
+        if (!l.what.empty()) d.judge(j, l.what, l.asked.size());
+    }
+    return came;
+}
+
+// Many rays, each with its distance; or all of them miss.
+Rows aimed(Judge& j, const std::string& question, const std::string& what, const std::string& where,
+           const Rows& rays, const Out& expected = {}, double roundings = 0) {
+    const Rows came = j.ask(question, rays);
     Distances d;
-    d.see(came[i], expected, 16 * j.epsilon * std::max(1.0, expected), where);
-    d.judge(j, what, 1);
+    for (size_t i = 0; i < came.size(); ++i)
+        d.see(came[i], expected.empty() ? -1 : expected[i], roundings * j.epsilon, where);
+    d.judge(j, what, came.size());
+    return came;
 }
 
 // ---- 1.1  The camera ----------------------------------------------------------------------------
@@ -83,15 +95,8 @@ void camera(Judge& j) {
     };
     const Rows d = j.probe("camera_ray", {see(64, 32, 32, 16), see(64, 32, 32, 0),
                                           see(64, 32, 64, 16), see(32, 64, 8, 48)});
-    const double e = 16 * j.epsilon, third = 1 / std::sqrt(3.0);
     auto points_to = [&](const std::string& what, size_t i, Triple to) {
-        const In came = d[i].subspan(3);
-        const Triple u = unit(to);
-        const bool right = std::abs(came[0] - u[0]) < e && std::abs(came[1] - u[1]) < e &&
-                           std::abs(came[2] - u[2]) < e;
-        j.exact(what, right,
-                say("(%.6g, %.6g, %.6g) expected, (%.6g, %.6g, %.6g) came", u[0], u[1], u[2],
-                    came[0], came[1], came[2]));
+        j.vector(what, triple(d[i], 3), unit(to), 16 * j.epsilon);
     };
     points_to("the middle of the image is straight ahead", 0, {0, 0, -1});
     points_to("90 degrees of view: the middle of the upper edge is 45 degrees up", 1, {0, 1, -1});
@@ -100,71 +105,55 @@ void camera(Judge& j) {
     // Any camera: unit directions from the eye, and places of the image plane are evenly spaced.
     double off_unit = 0, off_eye = 0, off_even = 0, off_view = 0;
     for (int i = 0; i < 100; ++i) {
-        const Triple eye = 3 * in_cube(j), ahead = slanted(j, {third, 0, third});
+        const Triple eye = 3 * in_cube(j), ahead = slanted(j, 1 / std::sqrt(3.0) * Triple{1, 0, 1});
         const Triple target = eye + between(j, 1, 5) * ahead;
         const double fov = between(j, 20, 100), w = 16 + std::floor(100 * j.random());
         const double h = 16 + std::floor(100 * j.random());
         const double x = between(j, 0, w), y = between(j, 0, h);
-        auto at = [&](double px, double py) {
-            return Out{eye[0], eye[1], eye[2], target[0], target[1], target[2], fov, w, h, px, py};
-        };
+        auto at = [&](double px, double py) { return row(eye, target, fov, w, h, px, py); };
         const Rows rays = j.ask("camera_ray", {at(0, 0), at(x, y), at(x / 2, y / 2), at(w / 2, 0)});
         Triple plane[4];
         for (size_t k = 0; k < 4; ++k) {
-            const In r = rays[k];
-            const Triple o{r[0], r[1], r[2]}, dir{r[3], r[4], r[5]};
-            off_unit = course::worse(off_unit, std::abs(dot(dir, dir) - 1));
-            off_eye = course::worse(off_eye, std::sqrt(dot(o - eye, o - eye)));
+            const Triple o = triple(rays[k]), dir = triple(rays[k], 3);
+            off_unit = worse(off_unit, std::abs(dot(dir, dir) - 1));
+            off_eye = worse(off_eye, length(o - eye));
             plane[k] = 1 / dot(dir, ahead) * dir;
         }
         const Triple bend = plane[2] - 0.5 * (plane[0] + plane[1]);
-        off_even = course::worse(off_even, std::sqrt(dot(bend, bend)));
-        const Triple up = plane[3] - ahead;
-        const double angle = std::atan(std::sqrt(dot(up, up))) * 360 / oracle::pi;
-        off_view = course::worse(off_view, std::abs(angle - fov) / fov);
+        off_even = worse(off_even, length(bend));
+        const double angle = std::atan(length(plane[3] - ahead)) * 360 / oracle::pi;
+        off_view = worse(off_view, std::abs(angle - fov) / fov);
     }
-    j.exact("directions have length 1", off_unit < 32 * j.epsilon, say("off by %.3g", off_unit));
-    j.exact("rays start at the eye", off_eye < 16 * j.epsilon, say("off by %.3g", off_eye));
-    j.exact("steps on the image plane are even, so that straight lines stay straight",
-            off_even < 4096 * j.epsilon, say("off by %.3g", off_even));
-    j.exact("the field of view is the one that was asked for", off_view < 4096 * j.epsilon,
-            say("off by %.3g of it", off_view));
+    j.below("directions have length 1", off_unit, 32 * j.epsilon);
+    j.below("rays start at the eye", off_eye, 16 * j.epsilon);
+    j.below("steps on the image plane are even, so that straight lines stay straight", off_even,
+            4096 * j.epsilon);
+    j.below("the field of view is the one that was asked for", off_view, 4096 * j.epsilon,
+            "off by %.3g of it");
 }
 
 // ---- 1.2  Spheres -------------------------------------------------------------------------------
 
-Out at_sphere(Triple o, Triple d, double tmax, Triple centre, double r) {
-    Out x = row({o, d}, tmax, {centre});
-    x.push_back(r);
-    return x;
-}
-
 // Rays to points that face them, at known distances; and rays past the sphere.
 void random_spheres(Judge& j) {
-    const int n = 1000;
     Rows hits, misses;
     Out distance;
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         const Triple centre = 2 * in_cube(j);
         const double r = between(j, 0.5, 2), t = between(j, 0.1, 5);
         const Triple normal = direction(j);
         Triple d = slanted(j, normal);
         if (dot(d, normal) > 0) d = -1.0 * d;
-        hits.add(at_sphere(centre + r * normal - t * d, d, endless, centre, r));
+        hits.add(row(centre + r * normal - t * d, d, endless, centre, r));
         distance.push_back(t);
         const Triple aside = unit(cross(normal, d));
-        misses.add(at_sphere(centre + between(j, 1.01, 2) * r * aside - between(j, -5, 5) * d, d,
-                             endless, centre, r));
+        misses.add(row(centre + between(j, 1.01, 2) * r * aside - between(j, -5, 5) * d, d, endless,
+                       centre, r));
     }
-    const Rows hit = j.ask("intersect_sphere", hits), missed = j.ask("intersect_sphere", misses);
-    Distances of_hits, of_misses;
-    for (size_t i = 0; i < n; ++i) {
-        // b^2 - c loses some 3 b^2 <= 150 ulp, which the root divides by 2 x 0.2 x 0.5.
-        of_hits.see(hit[i], distance[i], 1024 * j.epsilon, "a sphere whose near side was aimed at");
-        of_misses.see(missed[i], -1, 0, "a ray past a sphere");
-    }
-    of_hits.judge(j, "1000 spheres are hit where their near side was aimed at", n);
-    of_misses.judge(j, "rays past 1000 spheres miss them", n);
+    // b^2 - c loses some 3 b^2 <= 150 ulp, which the root divides by 2 x 0.2 x 0.5.
+    aimed(j, "intersect_sphere", "1000 spheres are hit where their near side was aimed at",
+          "a sphere whose near side was aimed at", hits, distance, 1024);
+    aimed(j, "intersect_sphere", "rays past 1000 spheres miss them", "a ray past a sphere", misses);
 }
 
 void far_spheres(Judge& j) {
@@ -174,47 +163,42 @@ void far_spheres(Judge& j) {
     Out distance;
     for (double x : {0.0, 0.25, 0.5, 0.75, 1.5, 3.0})
         for (double z : {far, 0x1p30}) {
-            rays.add(at_sphere({x, 0, z}, {0, 0, -1}, endless, {0, 0, 0}, 1));
+            rays.add({x, 0, z, 0, 0, -1, endless, 0, 0, 0, 1});
             distance.push_back(x < 1 ? z - std::sqrt(1 - x * x) : -1);
         }
     const Rows came = j.ask("intersect_sphere", rays);
     Distances d;
     for (size_t i = 0; i < came.size(); ++i)
         d.see(came[i], distance[i], 16 * j.epsilon * rays[i][2], say("from %.6g away", rays[i][2]));
-    d.judge(j, "from far away a sphere is as large as from nearby", int(came.size()));
+    d.judge(j, "from far away a sphere is as large as from nearby", came.size());
 }
 
 void sphere(Judge& j) {
-    const Triple c{1, 2, 3}, z{0, 0, 1}, back{0, 0, -1};
+    const Triple o{0, 0, 0}, c{1, 2, 3}, z{0, 0, 1}, back{0, 0, -1}, above{1, 2, 10}, in{1, 2, 4};
     const double tiny = 0x1p-24;
-    const Rows t = j.probe(
-        "intersect_sphere",
-        {at_sphere({1, 2, 10}, back, endless, c, 2), at_sphere({1, 3.5, 10}, back, endless, c, 2.5),
-         at_sphere({1, 5, 10}, back, endless, c, 2.5), at_sphere({1, 2, 4}, back, endless, c, 2),
-         at_sphere({1, 2, 10}, z, endless, c, 2), at_sphere({1, 2, 10}, back, 4.5, c, 2),
-         at_sphere({1, 2, 10}, back, 7, c, 2), at_sphere({1, 2, 4}, back, 2.5, c, 2),
-         at_sphere({0, 0, 3 * tiny}, back, endless, {0, 0, 0}, tiny),
-         at_sphere({2, 0, 0x1p30}, back, endless, {0, 0, 0}, 1)});
-    expect(j, "a sphere of radius 2, 7 away: its near side is 5 away", t, 0, 5, "straight ahead");
-    expect(j, "one of radius 2.5, passed at 1.5 from its centre, is 5 away", t, 1, 5, "off centre");
-    expect(j, "passed at 3 it is missed", t, 2, -1, "beside");
-    expect(j, "from its inside the far side is seen", t, 3, 3, "from inside");
-    expect(j, "a sphere behind the origin is not seen", t, 4, -1, "behind");
-    Distances end;
-    end.see(t[5], -1, 0, "near side beyond tmax");
-    end.see(t[6], 5, 16 * j.epsilon, "far side beyond tmax");
-    end.see(t[7], -1, 0, "from inside, far side beyond tmax");
-    end.judge(j, "the ray ends at tmax", 3);
-    expect(j, "tiny spheres are seen from nearby", t, 8, 2 * tiny, "scaled by 2^-24");
+    look(
+        j, "intersect_sphere",
+        {{"a sphere of radius 2, 7 away: its near side is 5 away",
+          {{row(above, back, endless, c, 2), 5, "straight ahead"}}},
+         {"one of radius 2.5, passed at 1.5 from its centre, is 5 away",
+          {{row(Triple{1, 3.5, 10}, back, endless, c, 2.5), 5, "off centre"}}},
+         {"passed at 3 it is missed",
+          {{row(Triple{1, 5, 10}, back, endless, c, 2.5), -1, "beside"}}},
+         {"from its inside the far side is seen",
+          {{row(in, back, endless, c, 2), 3, "from inside"}}},
+         {"a sphere behind the origin is not seen", {{row(above, z, endless, c, 2), -1, "behind"}}},
+         {"the ray ends at tmax",
+          {{row(above, back, 4.5, c, 2), -1, "near side beyond tmax"},
+           {row(above, back, 7, c, 2), 5, "far side beyond tmax", 16.0 / 5},
+           {row(in, back, 2.5, c, 2), -1, "from inside, far side beyond tmax"}}},
+         {"tiny spheres are seen from nearby",
+          {{row(3 * tiny * z, back, endless, o, tiny), 2 * tiny, "scaled by 2^-24"}}},
+         {"", {{row(Triple{2, 0, 0x1p30}, back, endless, o, 1), -1, "beside, from afar"}}}});
     random_spheres(j);
     far_spheres(j);
 }
 
 // ---- 1.3  Triangles -----------------------------------------------------------------------------
-
-Out at_triangle(Triple o, Triple d, double tmax, Triple a, Triple b, Triple c) {
-    return row({o, d}, tmax, {a, b, c});
-}
 
 // A triangle that is no sliver.
 std::array<Triple, 3> any_triangle(Judge& j) {
@@ -227,37 +211,33 @@ std::array<Triple, 3> any_triangle(Judge& j) {
 void random_triangles(Judge& j) {
     const size_t n = 1000;
     Rows hits, misses;
-    std::vector<Triple> expected;  // t, v, w
+    Out distance;
+    std::vector<std::array<double, 2>> place;  // v, w
     for (size_t i = 0; i < n; ++i) {
         const auto [a, b, c] = any_triangle(j);
         const Triple d = slanted(j, unit(cross(b - a, c - a)));
         double v = between(j, 0.01, 0.98), w = between(j, 0.01, 0.98), t = between(j, 0.1, 5);
         if (v + w > 0.99) v = 0.99 - v, w = 0.99 - w;
         if (v < 0.01 || w < 0.01) v = w = 0.2;
-        hits.add(at_triangle(a + v * (b - a) + w * (c - a) - t * d, d, endless, a, b, c));
-        expected.push_back({t, v, w});
+        hits.add(row(a + v * (b - a) + w * (c - a) - t * d, d, endless, a, b, c));
+        distance.push_back(t), place.push_back({v, w});
         // Beyond one of the edges, at a time.
         const double along = between(j, 0.1, 0.9), out = between(j, 0.01, 1);
         const Triple p = i % 3 == 0   ? a + along * (b - a) - out * (c - a)
                          : i % 3 == 1 ? a + along * (c - a) - out * (b - a)
                                       : b + along * (c - b) + out * (b - a);
-        misses.add(at_triangle(p - t * d, d, endless, a, b, c));
+        misses.add(row(p - t * d, d, endless, a, b, c));
     }
-    const Rows hit = j.ask("intersect_triangle", hits);
-    const Rows missed = j.ask("intersect_triangle", misses);
-    Distances of_hits, of_misses;
+    const Rows hit =
+        aimed(j, "intersect_triangle", "1000 triangles are hit where they were aimed at",
+              "a triangle", hits, distance, 4096);
     double off = 0;
-    for (size_t i = 0; i < n; ++i) {
-        of_hits.see(hit[i], expected[i][0], 4096 * j.epsilon, "a triangle");
+    for (size_t i = 0; i < n; ++i)
         if (hit[i][0] != 0)
-            for (size_t k : {1, 2})
-                off = course::worse(off, std::abs(hit[i][1 + k] - expected[i][k]));
-        of_misses.see(missed[i], -1, 0, "a ray past an edge of a triangle");
-    }
-    of_hits.judge(j, "1000 triangles are hit where they were aimed at", int(n));
-    j.exact("v and w say where: (1-v-w) a + v b + w c", off < 4096 * j.epsilon,
-            say("off by %.3g", off));
-    of_misses.judge(j, "rays past an edge of 1000 triangles miss them", int(n));
+            for (size_t k : {0, 1}) off = worse(off, std::abs(hit[i][2 + k] - place[i][k]));
+    j.below("v and w say where: (1-v-w) a + v b + w c", off, 4096 * j.epsilon);
+    aimed(j, "intersect_triangle", "rays past an edge of 1000 triangles miss them",
+          "a ray past an edge of a triangle", misses);
 }
 
 // Rays through the edge that two triangles share, seen from either side and at any angle.
@@ -266,69 +246,59 @@ void shared_edges(Judge& j) {
     Rows left, right;
     for (size_t i = 0; i < n; ++i) {
         const auto [a, b, c] = any_triangle(j);
-        const Triple opposite = a + (b - c) + 0.1 * in_cube(j),
-                     d = slanted(j, unit(cross(b - a, c - a)));
-        const Triple other = slanted(j, unit(cross(b - a, opposite - a)));
-        const Triple o =
-            a + between(j, 0.05, 0.95) * (b - a) - between(j, 0.5, 5) * (i % 2 ? d : other);
+        const Triple opposite = a + (b - c) + 0.1 * in_cube(j);
+        const Triple n_first = cross(b - a, c - a), n_second = cross(b - a, opposite - a);
+        const Triple d = slanted(j, unit(n_first)), other = slanted(j, unit(n_second));
         const Triple aim = i % 2 ? d : other;
+        const Triple o = a + between(j, 0.05, 0.95) * (b - a) - between(j, 0.5, 5) * aim;
         // Both must be seen from the same side: then they lie on both sides of the edge.
-        const double front = dot(aim, cross(b - a, c - a)),
-                     back = dot(aim, cross(opposite - a, b - a));
-        if (front * back <= 0) continue;
-        left.add(at_triangle(o, aim, endless, a, b, c));
-        right.add(at_triangle(o, aim, endless, b, a, opposite));
+        if (dot(aim, n_first) * dot(aim, n_second) >= 0) continue;
+        left.add(row(o, aim, endless, a, b, c));
+        right.add(row(o, aim, endless, b, a, opposite));
     }
     // Where nothing is rounded, the ray is on the edge itself.
     for (double x : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-        left.add(at_triangle({x, 0, 2}, {0, 0, -1}, endless, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
-        right.add(at_triangle({x, 0, 2}, {0, 0, -1}, endless, {1, 0, 0}, {0, 0, 0}, {1, -1, 0}));
+        left.add({x, 0, 2, 0, 0, -1, endless, 0, 0, 0, 1, 0, 0, 0, 1, 0});
+        right.add({x, 0, 2, 0, 0, -1, endless, 1, 0, 0, 0, 0, 0, 1, -1, 0});
     }
     const Rows first = j.ask("intersect_triangle", left),
                second = j.ask("intersect_triangle", right);
-    int leaks = 0;
+    size_t leaks = 0;
     for (size_t i = 0; i < first.size(); ++i) leaks += !(first[i][0] > 0 || second[i][0] > 0);
     j.exact("no ray passes between triangles that share an edge", leaks == 0,
-            say("%d of %zu pass", leaks, first.size()));
+            say("%zu of %zu pass", leaks, first.size()));
 }
 
 void triangle(Judge& j) {
-    const Triple a{0, 0, 0}, b{4, 0, 0}, c{0, 2, 0}, back{0, 0, -1}, z{0, 0, 1};
+    const std::string question = "intersect_triangle";
+    const Triple a{0, 0, 0}, b{4, 0, 0}, c{0, 2, 0}, back{0, 0, -1}, z{0, 0, 1}, above{1, 1, 5};
     const double tiny = 0x1p-24;
-    const Rows t = j.probe(
-        "intersect_triangle",
-        {at_triangle({1, 1, 5}, back, endless, a, b, c),
-         at_triangle({1, 1, -5}, z, endless, a, b, c),
-         at_triangle({3, 1, 5}, back, endless, a, b, c),
-         at_triangle({1, 1, 5}, z, endless, a, b, c), at_triangle({1, 1, 5}, back, 4.5, a, b, c),
-         at_triangle({2, 0, 5}, back, endless, a, b, c),
-         at_triangle({tiny, tiny / 2, 1}, back, endless, a, tiny * b, tiny * c),
-         at_triangle({1, 1, tiny}, back, endless, a, b, c),
-         at_triangle({2, -0.5, 5}, back, endless, a, b, c)});
-    expect(j, "from 5 above: 5 away", t, 0, 5, "above (1, 1, 0)");
-    j.exact("there v = 1/4 and w = 1/2",
-            std::abs(t[0][2] - 0.25) + std::abs(t[0][3] - 0.5) < 16 * j.epsilon,
-            say("v = %.6g, w = %.6g", t[0][2], t[0][3]));
-    expect(j, "from below: its back is hit, too", t, 1, 5, "below (1, 1, 0)");
-    Distances outside;
-    outside.see(t[2], -1, 0, "beyond the edge from b to c");
-    outside.see(t[8], -1, 0, "beyond the edge from a to b");
-    outside.judge(j, "beside it: missed", 2);
-    expect(j, "behind the origin: not hit", t, 3, -1, "behind");
-    expect(j, "beyond the end of the ray: not hit", t, 4, -1, "tmax = 4.5, 5 away");
-    Distances small;
-    small.see(t[6], 1, 16 * j.epsilon, "scaled by 2^-24, from 1 away");
-    small.see(t[7], tiny, 16 * j.epsilon * tiny, "from 2^-24 away");
-    small.judge(j, "no triangle is too small, and none too near", 2);
+    const Rows first = look(
+        j, question,
+        {{"from 5 above: 5 away", {{row(above, back, endless, a, b, c), 5, "above (1, 1, 0)"}}}});
+    const double v = first[0][2], w = first[0][3];
+    j.exact("there v = 1/4 and w = 1/2", std::abs(v - 0.25) + std::abs(w - 0.5) < 16 * j.epsilon,
+            say("v = %.6g, w = %.6g", v, w));
+    look(j, question,
+         {{"from below: its back is hit, too",
+           {{row(Triple{1, 1, -5}, z, endless, a, b, c), 5, "below (1, 1, 0)"}}},
+          {"beside it: missed",
+           {{row(Triple{3, 1, 5}, back, endless, a, b, c), -1, "beyond the edge from b to c"},
+            {row(Triple{2, -0.5, 5}, back, endless, a, b, c), -1, "beyond the edge from a to b"}}},
+          {"behind the origin: not hit", {{row(above, z, endless, a, b, c), -1, "behind"}}},
+          {"beyond the end of the ray: not hit",
+           {{row(above, back, 4.5, a, b, c), -1, "tmax = 4.5, 5 away"}}},
+          {"", {{row(Triple{2, 0, 5}, back, endless, a, b, c), 5, "on an edge"}}},
+          {"no triangle is too small, and none too near",
+           {{row(Triple{tiny, tiny / 2, 1}, back, endless, a, tiny * b, tiny * c), 1,
+             "scaled by 2^-24, from 1 away"},
+            {row(Triple{1, 1, tiny}, back, endless, a, b, c), tiny, "from 2^-24 away",
+             16 * tiny}}}});
     random_triangles(j);
     shared_edges(j);
 }
 
 // ---- 1.4  Boxes ---------------------------------------------------------------------------------
-
-Out at_box(Triple o, Triple d, double tmax, Triple lo, Triple hi) {
-    return row({o, d}, tmax, {lo, hi});
-}
 
 // Points of a face that a ray enters by, at known distances; and rays past an edge.
 void random_boxes(Judge& j) {
@@ -349,54 +319,44 @@ void random_boxes(Judge& j) {
         p[face] = middle[face] + side * half[face];
         Triple d = slanted(j, normal);
         if (dot(d, normal) > 0) d = -1.0 * d;
-        hits.add(at_box(p - t * d, d, endless, middle - half, middle + half));
+        hits.add(row(p - t * d, d, endless, middle - half, middle + half));
         distance.push_back(t);
         // Within a plane that has all of the box on one side.
         Triple corner = middle, away{}, along = direction(j);
         corner[face] += side * half[face], corner[other] -= side * half[other];
         away[face] = side * between(j, 0.3, 1), away[other] = -side * between(j, 0.3, 1);
         along = unit(cross(away, along));
-        misses.add(at_box(corner + between(j, 0.02, 1) * away - between(j, -5, 5) * along, along,
-                          endless, middle - half, middle + half));
+        misses.add(row(corner + between(j, 0.02, 1) * away - between(j, -5, 5) * along, along,
+                       endless, middle - half, middle + half));
     }
-    const Rows hit = j.ask("enter_box", hits), missed = j.ask("enter_box", misses);
-    Distances of_hits, of_misses;
-    for (size_t i = 0; i < n; ++i) {
-        of_hits.see(hit[i], distance[i], 1024 * j.epsilon, "a face that was aimed at");
-        of_misses.see(missed[i], -1, 0, "a ray past an edge");
-    }
-    of_hits.judge(j, "1000 boxes are entered where they were aimed at", int(n));
-    of_misses.judge(j, "rays past an edge of 1000 boxes miss them", int(n));
+    aimed(j, "enter_box", "1000 boxes are entered where they were aimed at",
+          "a face that was aimed at", hits, distance, 1024);
+    aimed(j, "enter_box", "rays past an edge of 1000 boxes miss them", "a ray past an edge",
+          misses);
 }
 
 void box(Judge& j) {
     const Triple lo{2, -1, -3}, hi{5, 1, 3}, x{1, 0, 0}, left{-1, 0, 0}, o{0, 0, 0};
-    const Triple d{0.6, 0, 0.8}, minus_zero{1, -0.0, -0.0}, steep{0.6, 0.8, 0};
-    const Rows t = j.probe(
-        "enter_box",
-        {at_box(o, x, endless, lo, hi), at_box({9, 0, 0}, left, endless, lo, hi),
-         at_box({0, 0, -1}, d, endless, lo, hi), at_box({3, 0.5, 1}, d, endless, lo, hi),
-         at_box({9, 0, 0}, x, endless, lo, hi), at_box(o, x, 1.5, lo, hi), at_box(o, x, 3, lo, hi),
-         at_box({0, 2, 0}, minus_zero, endless, lo, hi), at_box(o, minus_zero, endless, lo, hi),
-         at_box(o, steep, endless, lo, hi), at_box({0, 0, 4}, x, endless, lo, hi)});
-    expect(j, "along x, a box that begins at x = 2 is 2 away", t, 0, 2, "from the origin along x");
-    expect(j, "backwards along x, from x = 9, one that ends at x = 5 is 4 away", t, 1, 4,
-           "along -x");
-    Distances slanted_rays;
-    slanted_rays.see(t[2], 10.0 / 3, 32 * j.epsilon, "along (0.6, 0, 0.8)");
-    slanted_rays.see(t[9], -1, 0, "along (0.6, 0.8, 0), above it");
-    slanted_rays.see(t[10], -1, 0, "along x at z = 4, beside it");
-    slanted_rays.judge(j, "slanted rays enter at 10/3, or pass above or beside", 3);
-    expect(j, "a ray that starts inside is in it at once", t, 3, 0, "from inside");
-    expect(j, "a box behind the origin is not met", t, 4, -1, "behind");
-    Distances end;
-    end.see(t[5], -1, 0, "tmax = 1.5, 2 away");
-    end.see(t[6], 2, 16 * j.epsilon, "tmax = 3, within the box");
-    end.judge(j, "the ray ends at tmax", 2);
-    Distances parallel;
-    parallel.see(t[7], -1, 0, "along x at y = 2, above it; d.y = -0");
-    parallel.see(t[8], 2, 16 * j.epsilon, "along x; d.y = -0");
-    parallel.judge(j, "where the direction is 0 the ray is between two planes, or never", 2);
+    const Triple d{0.6, 0, 0.8}, minus_zero{1, -0.0, -0.0}, steep{0.6, 0.8, 0}, right{9, 0, 0};
+    look(j, "enter_box",
+         {{"along x, a box that begins at x = 2 is 2 away",
+           {{row(o, x, endless, lo, hi), 2, "from the origin along x"}}},
+          {"backwards along x, from x = 9, one that ends at x = 5 is 4 away",
+           {{row(right, left, endless, lo, hi), 4, "along -x"}}},
+          {"slanted rays enter at 10/3, or pass above or beside",
+           {{row(Triple{0, 0, -1}, d, endless, lo, hi), 10.0 / 3, "along (0.6, 0, 0.8)", 9.6},
+            {row(o, steep, endless, lo, hi), -1, "along (0.6, 0.8, 0), above it"},
+            {row(Triple{0, 0, 4}, x, endless, lo, hi), -1, "along x at z = 4, beside it"}}},
+          {"a ray that starts inside is in it at once",
+           {{row(Triple{3, 0.5, 1}, d, endless, lo, hi), 0, "from inside"}}},
+          {"a box behind the origin is not met", {{row(right, x, endless, lo, hi), -1, "behind"}}},
+          {"the ray ends at tmax",
+           {{row(o, x, 1.5, lo, hi), -1, "tmax = 1.5, 2 away"},
+            {row(o, x, 3, lo, hi), 2, "tmax = 3, within the box", 8}}},
+          {"where the direction is 0 the ray is between two planes, or never",
+           {{row(Triple{0, 2, 0}, minus_zero, endless, lo, hi), -1,
+             "along x at y = 2, above it; d.y = -0"},
+            {row(o, minus_zero, endless, lo, hi), 2, "along x; d.y = -0", 8}}}});
     random_boxes(j);
 }
 
@@ -462,13 +422,12 @@ void random_trees(Judge& j) {
     }
     const Rows came = j.ask("nearest_hit", trees);
     double boxes = 0, leaves = 0, least = 0;
-    int wrong = 0;
+    size_t wrong = 0;
     for (size_t i = 0; i < n; ++i) {
         wrong += std::abs(came[i][0] - nearest[i]) > 8 * j.epsilon * nearest[i] + 8 * j.epsilon;
         boxes += came[i][2] / n, leaves += came[i][3] / n, least += needed[i] / n;
     }
-    j.exact("in 600 trees of 256 leaves the nearest hit is found", wrong == 0,
-            say("%d of 600 are wrong", wrong));
+    j.none("in 600 trees of 256 leaves the nearest hit is found", wrong, "%zu of 600 are wrong");
     // 1.74 times by the nearer child first, 2.4 by the left one first, 7.5 if none is skipped; and
     // 79 boxes, 145 if none is skipped, 256 by asking each leaf.
     j.exact("no more leaves than that need to be looked at", leaves < 2.05 * least,
@@ -517,11 +476,7 @@ void tree(Judge& j) {
 // ---- 1.6  Where to divide -----------------------------------------------------------------------
 
 // A cube of this size at a place, as six numbers.
-void add_box(Out& boxes, Triple lo, Triple size) {
-    const Triple hi = lo + size;
-    boxes.insert(boxes.end(), lo.begin(), lo.end());
-    boxes.insert(boxes.end(), hi.begin(), hi.end());
-}
+void add_box(Out& boxes, Triple lo, Triple size) { boxes = row(boxes, lo, lo + size); }
 
 // So many boxes in one place, and others in a place far away: cheapest is to part the two places.
 void clusters(Judge& j) {
@@ -552,7 +507,7 @@ void clusters(Judge& j) {
 
 // What changes nothing: the row from its other end, and all boxes moved.
 void alike(Judge& j) {
-    int ends = 0, moved = 0;
+    size_t ends = 0, moved = 0;
     for (int i = 0; i < 200; ++i) {
         const size_t n = 2 + size_t(14 * j.random());
         std::vector<Triple> lo, size;
@@ -573,38 +528,33 @@ void alike(Judge& j) {
         ends += !(std::abs(d[0] - r[0]) <= off && d[1] >= 1 && d[1] < double(n));
         moved += !(std::abs(d[0] - e[0]) <= off);
     }
-    j.exact("a row of boxes costs the same from its other end", ends == 0,
-            say("%d of 200 do not", ends));
-    j.exact("a row of boxes costs the same elsewhere", moved == 0, say("%d of 200 do not", moved));
+    j.none("a row of boxes costs the same from its other end", ends, "%zu of 200 do not");
+    j.none("a row of boxes costs the same elsewhere", moved, "%zu of 200 do not");
 }
 
 void division(Judge& j) {
-    struct Worked {
+    // Lower and upper corners of boxes.
+    const struct {
         std::string what;
         double cost, left;
+        const char* boxes;
+    } worked[] = {
+        {"two boxes are parted, at the sum of their areas", 8, 1, "0 0 0  1 1 1  2 0 0  4 1 1"},
+        {"four in a row and a distant fifth: the fifth is alone", 39, 4,
+         "0 0 0  1 1 1  1 0 0  2 1 1  2 0 0  3 1 1  3 0 0  4 1 1  9 0 0  10 1 1"},
+        {"a distant first one is alone", 39, 1,
+         "0 0 0  1 1 1  7 0 0  8 1 1  8 0 0  9 1 1  9 0 0  10 1 1  10 0 0  11 1 1"},
+        {"a large one among small ones is alone", 524, 1,
+         "0 0 0  8 8 8  5 5 5  6 6 6  6 2 1  7 3 2  7 1 6  8 2 8  8 4 4  9 5 5"},
+        {"boxes of all sizes, some of them flat", 210, 3,
+         "0 0 0  4 4 0  1 1 1  3 3 1  0 0 2  1 1 3  2 3 3  3 5 4  0 0 5  5 5 5"},
+        {"boxes that overlap", 334, 3,
+         "0 3 1  2 4 2  1 0 0  2 2 6  3 1 1  4 2 2  4 4 4  7 7 5  6 0 0  7 1 1"}};
+    for (const auto& w : worked) {
         Out boxes;
-    };
-    const Worked rows[] = {
-        {"two boxes are parted, at the sum of their areas",
-         8,
-         1,
-         {0, 0, 0, 1, 1, 1, 2, 0, 0, 4, 1, 1}},
-        {"four in a row and a distant fifth: the fifth is alone", 39, 4, {0, 0, 0, 1,  1, 1, 1, 0,
-                                                                          0, 2, 1, 1,  2, 0, 0, 3,
-                                                                          1, 1, 3, 0,  0, 4, 1, 1,
-                                                                          9, 0, 0, 10, 1, 1}},
-        {"a distant first one is alone", 39, 1, {0, 0, 0, 1, 1, 1, 7,  0, 0, 8,  1, 1, 8,  0, 0,
-                                                 9, 1, 1, 9, 0, 0, 10, 1, 1, 10, 0, 0, 11, 1, 1}},
-        {"a large one among small ones is alone", 524, 1, {0, 0, 0, 8, 8, 8, 5, 5, 5, 6,
-                                                           6, 6, 6, 2, 1, 7, 3, 2, 7, 1,
-                                                           6, 8, 2, 8, 8, 4, 4, 9, 5, 5}},
-        {"boxes of all sizes, some of them flat", 210, 3, {0, 0, 0, 4, 4, 0, 1, 1, 1, 3,
-                                                           3, 1, 0, 0, 2, 1, 1, 3, 2, 3,
-                                                           3, 3, 5, 4, 0, 0, 5, 5, 5, 5}},
-        {"boxes that overlap", 334, 3, {0, 3, 1, 2, 4, 2, 1, 0, 0, 2, 2, 6, 3, 1, 1,
-                                        4, 2, 2, 4, 4, 4, 7, 7, 5, 6, 0, 0, 7, 1, 1}}};
-    for (const Worked& w : rows) {
-        const Rows d = j.probe("best_division", Rows(w.boxes));
+        std::istringstream words(w.boxes);
+        for (double x; words >> x;) boxes.push_back(x);
+        const Rows d = j.probe("best_division", Rows(boxes));
         j.exact(w.what, std::abs(d[0][0] - w.cost) < 64 * j.epsilon * w.cost && d[0][1] == w.left,
                 say("a cost of %g after %g boxes expected, %g after %g came", w.cost, w.left,
                     d[0][0], d[0][1]));

@@ -1,67 +1,54 @@
 // course/judge_2.cpp  judges week 2: warps and densities
 #include "course/judge.h"
 
-using course::In, course::Judge, course::Out, course::Rows;
+using namespace course;
 using oracle::pi;
 
 namespace {
 
 // ---- Directions ---------------------------------------------------------------------------------
 
-// Middles of the cells of a grid in the square of random numbers, with more numbers after each.
-Rows grid(int n, const Out& more = {}) {
+// Pairs of the numbers from two lists, with more numbers after each.
+Rows pairs(const Out& numbers, const Out& more) {
     Rows u;
-    for (int i = 0; i < n; ++i)
-        for (int k = 0; k < n; ++k) {
-            Out row{(i + 0.5) / n, (k + 0.5) / n};
-            row.insert(row.end(), more.begin(), more.end());
-            u.add(row);
-        }
+    for (double x : numbers)
+        for (double y : numbers) u.add(row(x, y, more));
     return u;
 }
-// The square's corners, with as many: 0 is a random number, and 1 is not.
-Rows corners(double one, const Out& more = {}) {
-    Rows u;
-    for (double x : {0.0, one})
-        for (double y : {0.0, one}) {
-            Out row{x, y};
-            row.insert(row.end(), more.begin(), more.end());
-            u.add(row);
-        }
-    return u;
+// Middles of the cells of a grid in the square of random numbers.
+Rows grid(const Out& more = {}) {
+    Out middles;
+    for (int i = 0; i < 16; ++i) middles.push_back((i + 0.5) / 16);
+    return pairs(middles, more);
 }
-
-double square(In w) { return w[0] * w[0] + w[1] * w[1] + w[2] * w[2]; }
+// The square's corners: 0 is a random number, and 1 is not.
+Rows corners(const Judge& j, const Out& more = {}) { return pairs({0, 1 - j.epsilon}, more); }
 
 // What the directions over a grid are on average: known mistakes are told by it, whichever way
 // round a square is mapped.
 void remember_means(Judge& j, const Rows& directions) {
     Out sums(6);
     for (size_t i = 0; i < directions.size(); ++i) {
-        const In w = directions[i];
-        const double terms[6] = {w[2], w[2] * w[2], square(w), w[0], w[1], std::abs(w[0])};
+        const Triple w = triple(directions[i]);
+        const double terms[6] = {w[2], w[2] * w[2], dot(w, w), w[0], w[1], std::abs(w[0])};
         for (size_t k = 0; k < 6; ++k) sums[k] += terms[k] / double(directions.size());
     }
-    j.fingerprint.insert(j.fingerprint.end(), sums.begin(), sums.end());
+    j.remember(sums);
 }
 
-void expect_unit(Judge& j, const std::string& which, const Rows& directions, bool upper = false) {
+void expect_unit(Judge& j, const std::string& which, const std::vector<Rows>& directions,
+                 bool upper = false) {
     double off = 0, lowest = 1;
-    for (size_t i = 0; i < directions.size(); ++i) {
-        const double error = std::abs(square(directions[i]) - 1), z = directions[i][2];
-        off = error <= off ? off : error;
-        lowest = z >= lowest ? lowest : z;
-    }
+    for (const Rows& rows : directions)
+        for (size_t i = 0; i < rows.size(); ++i) {
+            const Triple w = triple(rows[i]);
+            off = worse(off, std::abs(dot(w, w) - 1));
+            lowest = -worse(-lowest, -w[2]);
+        }
     j.exact(which + " have length 1" + (upper ? " and are above the horizon" : ""),
             off < 64 * j.epsilon && (!upper || lowest >= 0),
             oracle::say("the square of a length is off by %.3g", off) +
                 (upper ? oracle::say(", the lowest z is %.6g", lowest) : ""));
-}
-Rows together(const std::vector<Rows>& parts) {
-    Rows all = parts[0];
-    for (size_t i = 1; i < parts.size(); ++i)
-        all.numbers.insert(all.numbers.end(), parts[i].numbers.begin(), parts[i].numbers.end());
-    return all;
 }
 
 // The integral over the upper hemisphere of what depends on the cosine c alone, by Simpson's rule
@@ -78,115 +65,98 @@ double over_hemisphere(const Out& values) {
 }
 double over_hemisphere(Judge& j, const std::string& pdf, const Out& more = {}) {
     Rows at;
-    for (int i = 0; i <= steps; ++i) {
-        Out row{cosine_at(i)};
-        row.insert(row.end(), more.begin(), more.end());
-        at.add(row);
-    }
+    for (int i = 0; i <= steps; ++i) at.add(row(cosine_at(i), more));
     return over_hemisphere(j.ask(pdf, at).numbers);
 }
 
-// Directions from two numbers and perhaps more are as dense as a function of theirs, that is 0
-// below the horizon and need not integrate to 1, says.
+// Points or directions from two numbers and perhaps more have this density, on this domain.
+template <class Density, class... Domain>
+oracle::Verdict dense(Judge& j, const std::string& sample, const Out& more, const Triple& meanwhile,
+                      Density density, const oracle::Options& o, const Domain&... domain) {
+    return j.batched({sample}, [&](oracle::Random& random, auto& known) {
+        auto draw = [&](double u, double v) {
+            return triple(known[0](row(u, v, more), row(meanwhile)));
+        };
+        return oracle::expect_density(random, draw, density, domain..., o);
+    });
+}
+
+// Directions are as dense as a function of the cosine says, that is 0 below the horizon and need
+// not integrate to 1.
 template <class Shape>
 oracle::Verdict follows(Judge& j, const std::string& sample, Shape shape, const Out& more = {}) {
     Out values;
     for (int i = 0; i <= steps; ++i) values.push_back(shape(cosine_at(i)));
     const double sum = over_hemisphere(values);
-    return j.batched({sample}, [&](oracle::Random& random, auto& known) {
-        return oracle::expect_density(
-            random,
-            [&](double u, double v) {
-                Out row{u, v};
-                row.insert(row.end(), more.begin(), more.end());
-                const Out& w = known[0](row, {0, 0, 1});
-                return oracle::Triple{w[0], w[1], w[2]};
-            },
-            [&](const oracle::Triple& w) { return w[2] > 0 ? shape(w[2]) / sum : 0.0; },
-            {.sees = 0.05, .tolerance = 1e-6 + 1e4 * j.epsilon, .axis = {0, 0, 1}});
-    });
+    return dense(j, sample, more, {0, 0, 1},
+                 [&](const Triple& w) { return w[2] > 0 ? shape(w[2]) / sum : 0.0; },
+                 {.sees = 0.05, .tolerance = 1e-6 + 1e4 * j.epsilon, .axis = {0, 0, 1}});
 }
 
 // ---- 2.1, 2.2 -----------------------------------------------------------------------------------
 
 void uniform(Judge& j) {
-    const Rows u = grid(16), edge = corners(1 - j.epsilon);
-    const Rows upper = j.ask("sample_uniform_hemisphere", u),
-               all = j.ask("sample_uniform_sphere", u);
+    const std::string half = "sample_uniform_hemisphere", whole = "sample_uniform_sphere";
+    const Rows upper = j.ask(half, grid()), all = j.ask(whole, grid());
     remember_means(j, upper);
     remember_means(j, all);
-    const Rows p = j.probe("pdf_uniform_hemisphere", {{1}, {0.7}, {0.1}, {-0.5}});
-    const Rows q = j.probe("pdf_uniform_sphere", {});
+    const Out p = j.probe("pdf_uniform_hemisphere", {{1}, {0.7}, {0.1}, {-0.5}}).numbers;
+    const Out q = j.probe("pdf_uniform_sphere", {}).numbers;
     expect_unit(j, "all directions",
-                together({upper, all, j.ask("sample_uniform_hemisphere", edge),
-                          j.ask("sample_uniform_sphere", edge)}));
+                {upper, all, j.ask(half, corners(j)), j.ask(whole, corners(j))});
     double lowest = 1;
-    for (size_t i = 0; i < upper.size(); ++i) lowest = -course::worse(-lowest, -upper[i][2]);
+    for (size_t i = 0; i < upper.size(); ++i) lowest = -worse(-lowest, -upper[i][2]);
     j.exact("directions of the hemisphere are above the horizon", lowest >= 0,
             oracle::say("one has z = %.6g", lowest));
     j.number("the hemisphere's density integrates to 1",
              over_hemisphere(j, "pdf_uniform_hemisphere"), 1, 1e-4);
-    j.exact("it is the same at every height, and 0 below the horizon",
-            p.numbers[0] == p.numbers[1] && p.numbers[1] == p.numbers[2] && p.numbers[3] == 0,
-            oracle::say("%.6g straight up, %.6g near the horizon, %.6g below it", p.numbers[0],
-                        p.numbers[2], p.numbers[3]));
-    j.number("the sphere's density integrates to 1", q.numbers[0] * 4 * pi, 1, 64 * j.epsilon);
+    j.exact(
+        "it is the same at every height, and 0 below the horizon",
+        p[0] == p[1] && p[1] == p[2] && p[3] == 0,
+        oracle::say("%.6g straight up, %.6g near the horizon, %.6g below it", p[0], p[2], p[3]));
+    j.number("the sphere's density integrates to 1", q[0] * 4 * pi, 1, 64 * j.epsilon);
     j.statistical("directions of the hemisphere are uniform",
-                  follows(j, "sample_uniform_hemisphere", [](double) { return 1.0; }));
+                  follows(j, half, [](double) { return 1.0; }));
     j.statistical("directions of the sphere are uniform",
-                  j.batched({"sample_uniform_sphere"}, [&](oracle::Random& random, auto& known) {
-                      return oracle::expect_density(
-                          random,
-                          [&](double x, double y) {
-                              const Out& w = known[0]({x, y}, {0, 0, 1});
-                              return oracle::Triple{w[0], w[1], w[2]};
-                          },
-                          [](const oracle::Triple&) { return 1 / (4 * pi); },
-                          {.sees = 0.05, .tolerance = 1e4 * j.epsilon});
-                  }));
+                  dense(j, whole, {}, {0, 0, 1}, [](const Triple&) { return 1 / (4 * pi); },
+                        {.sees = 0.05, .tolerance = 1e4 * j.epsilon}));
 }
 
 void cosine_hemisphere(Judge& j) {
     const std::string sample = "sample_cosine_hemisphere", pdf = "pdf_cosine_hemisphere";
-    const Rows w = j.ask(sample, grid(16));
+    const Rows w = j.ask(sample, grid());
     remember_means(j, w);
-    const Rows p = j.probe(pdf, {{1}, {0.5}, {0}, {-0.5}});
-    expect_unit(j, "directions", together({w, j.ask(sample, corners(1 - j.epsilon))}), true);
-    j.number("the density at 60 degrees is half of that straight up", p.numbers[1] / p.numbers[0],
-             0.5, 8 * j.epsilon);
+    const Out p = j.probe(pdf, {{1}, {0.5}, {0}, {-0.5}}).numbers;
+    expect_unit(j, "directions", {w, j.ask(sample, corners(j))}, true);
+    j.number("the density at 60 degrees is half of that straight up", p[1] / p[0], 0.5,
+             8 * j.epsilon);
     j.number("the density integrates to 1", over_hemisphere(j, pdf), 1, 1e-4);
-    j.exact("the density below the horizon is 0", p.numbers[3] == 0,
-            oracle::say("it is %.6g at a cosine of -0.5", p.numbers[3]));
+    j.exact("the density below the horizon is 0", p[3] == 0,
+            oracle::say("it is %.6g at a cosine of -0.5", p[3]));
     j.statistical("directions follow the cosine", follows(j, sample, [](double c) { return c; }));
 }
 
 // ---- 2.3 ----------------------------------------------------------------------------------------
 
-using oracle::Triple;
-
-Triple minus(const Triple& a, const Triple& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double length(const Triple& a) { return std::sqrt(square(In(a))); }
-
 // From the lengths of the sides (Heron).
 double area(const Triple& e, const Triple& f) {
-    const double a = length(e), b = length(f), c = length(minus(e, f)), s = (a + b + c) / 2;
+    const double a = length(e), b = length(f), c = length(e - f), s = (a + b + c) / 2;
     return std::sqrt(s * (s - a) * (s - b) * (s - c));
 }
-Out numbers_of(const Triple& e, const Triple& f) { return {e[0], e[1], e[2], f[0], f[1], f[2]}; }
 
 void triangle(Judge& j) {
     const Triple e{2, 0, 0.5}, f{0.3, 1.5, -0.25}, right{3, 0, 0}, angle{0, 4, 0};
-    const Rows points = j.ask("sample_triangle", grid(16, numbers_of(e, f)));
-    const Rows p = j.probe("pdf_triangle_area", {numbers_of(right, angle), numbers_of(e, f)});
+    const Rows points = j.ask("sample_triangle", grid(row(e, f)));
+    const Rows p = j.probe("pdf_triangle_area", {row(right, angle), row(e, f)});
 
     const oracle::Triangle<3> t{{0, 0, 0}, e, f};
     Out means(6);
     double outside = 0, nearest[3] = {0, 0, 0}, off = 0;
     for (size_t i = 0; i < points.size(); ++i) {
-        const Triple x{points[i][0], points[i][1], points[i][2]};
+        const Triple x = triple(points[i]);
         const auto [s, part] = t.coordinates(x);
         const double of[3] = {1 - s, s * (1 - part), s * part};
-        off = course::worse(off, length(minus(x, t.at({s, part}))));
+        off = worse(off, length(x - t.at({s, part})));
         for (size_t k = 0; k < 3; ++k) {
             outside = of[k] >= outside ? outside : of[k];
             nearest[k] = std::max(nearest[k], of[k]);
@@ -195,7 +165,7 @@ void triangle(Judge& j) {
         }
     }
     std::sort(means.begin(), means.begin() + 3), std::sort(means.begin() + 3, means.end());
-    j.fingerprint.insert(j.fingerprint.end(), means.begin(), means.end());
+    j.remember(means);
     j.exact("points are points of the triangle", outside > -64 * j.epsilon && off < 64 * j.epsilon,
             oracle::say("a barycentric coordinate is %.6g, a distance from the plane %.3g", outside,
                         off));
@@ -206,41 +176,28 @@ void triangle(Judge& j) {
              6, 64 * j.epsilon);
     j.number("density times area is 1 whatever the angle", p.numbers[1] * area(e, f), 1,
              64 * j.epsilon);
-    auto density = [&](const std::string& what, const Triple& a, const Triple& b, double per_area) {
-        j.statistical(
-            what, j.batched({"sample_triangle"}, [&](oracle::Random& random, auto& known) {
-                return oracle::expect_density(
-                    random,
-                    [&](double u, double v) {
-                        Out row{u, v};
-                        for (double x : numbers_of(a, b)) row.push_back(x);
-                        const Out& x = known[0](row, {a[0] / 3, a[1] / 3, a[2] / 3});
-                        return Triple{x[0], x[1], x[2]};
-                    },
-                    [&](const Triple&) { return per_area; }, oracle::Triangle<3>{{0, 0, 0}, a, b},
-                    {.sees = 0.05, .tolerance = 1e4 * j.epsilon});
-            }));
-    };
-    density("points follow one over the area", e, f, 1 / area(e, f));
+    j.statistical("points follow one over the area",
+                  dense(
+                      j, "sample_triangle", row(e, f), 1 / 3.0 * e,
+                      [&](const Triple&) { return 1 / area(e, f); },
+                      {.sees = 0.05, .tolerance = 1e4 * j.epsilon}, t));
 }
 
 // ---- 2.4 ----------------------------------------------------------------------------------------
 
 void phong_lobe(Judge& j) {
     const std::string sample = "sample_phong_lobe", pdf = "pdf_phong_lobe";
-    const Rows wide = j.ask(sample, grid(16, {3})), narrow = j.ask(sample, grid(16, {50}));
+    const Rows wide = j.ask(sample, grid({3})), narrow = j.ask(sample, grid({50}));
     remember_means(j, wide);
     remember_means(j, narrow);
-    const Rows p = j.probe(pdf, {{1, 3}, {0.5, 3}, {0.9, 50}, {-0.5, 2}, {0.5, 0}});
-    const double one = 1 - j.epsilon;
+    const Out p = j.probe(pdf, {{1, 3}, {0.5, 3}, {0.9, 50}, {-0.5, 2}, {0.5, 0}}).numbers;
     expect_unit(j, "directions",
-                together({wide, narrow, j.ask(sample, corners(one, {0})),
-                          j.ask(sample, corners(one, {1000}))}),
+                {wide, narrow, j.ask(sample, corners(j, {0})), j.ask(sample, corners(j, {1000}))},
                 true);
-    j.number("with n = 3 the density at 60 degrees is an eighth of that on the axis",
-             p.numbers[1] / p.numbers[0], 0.125, 64 * j.epsilon);
-    j.exact("the density behind the lobe is 0, for even n, too", p.numbers[3] == 0,
-            oracle::say("it is %.6g at a cosine of -0.5 with n = 2", p.numbers[3]));
+    j.number("with n = 3 the density at 60 degrees is an eighth of that on the axis", p[1] / p[0],
+             0.125, 64 * j.epsilon);
+    j.exact("the density behind the lobe is 0, for even n, too", p[3] == 0,
+            oracle::say("it is %.6g at a cosine of -0.5 with n = 2", p[3]));
     double worst = 1;
     for (double n : {0.0, 1.0, 2.5, 20.0, 400.0}) {
         const double sum = over_hemisphere(j, pdf, {n});
@@ -270,52 +227,45 @@ double solid_angle_of_rings(double sin2) {
 
 oracle::Verdict uniform_in_cone(Judge& j, double sin2) {
     const double density = 1 / solid_angle_of_rings(sin2), rim = 1 + 64 * j.epsilon;
-    return j.batched({"sample_cone"}, [&](oracle::Random& random, auto& known) {
-        return oracle::expect_density(
-            random,
-            [&](double u, double v) {
-                const Out& w = known[0]({u, v, sin2}, {0, 0, 1});
-                return Triple{w[0], w[1], w[2]};
-            },
-            [&](const Triple& w) {
-                return w[2] > 0 && part_of_cone(In(w), sin2) <= rim ? density : 0.0;
-            },
-            {.sees = 0.05, .tolerance = 1e-6 + 1e4 * j.epsilon, .axis = {0, 0, 1}});
-    });
+    return dense(j, "sample_cone", {sin2}, {0, 0, 1},
+                 [&](const Triple& w) {
+                     return w[2] > 0 && part_of_cone(In(w), sin2) <= rim ? density : 0.0;
+                 },
+                 {.sees = 0.05, .tolerance = 1e-6 + 1e4 * j.epsilon, .axis = {0, 0, 1}});
 }
 
 void cone(Judge& j) {
     const double wide = 0.36, star = 1e-20;
-    const Rows inner = j.ask("sample_cone", grid(16, {wide}));
-    const Rows close = j.ask("sample_cone", grid(16, {star}));
+    const std::string sample = "sample_cone";
+    const Rows inner = j.ask(sample, grid({wide})), close = j.ask(sample, grid({star}));
     remember_means(j, inner);
-    const Rows angle = j.probe("solid_angle_cone", {{1}, {0.75}, {wide}, {star}});
-    const Rows p = j.probe("pdf_cone", {{1}, {wide}, {star}});
-    const Rows w = together({inner, j.ask("sample_cone", corners(1 - j.epsilon, {wide}))});
+    const Out angle = j.probe("solid_angle_cone", {{1}, {0.75}, {wide}, {star}}).numbers;
+    const Out p = j.probe("pdf_cone", {{1}, {wide}, {star}}).numbers;
+    const std::vector<Rows> w{inner, j.ask(sample, corners(j, {wide}))};
     double most = 0, least = 1, mean = 0;
-    for (size_t i = 0; i < w.size(); ++i) {
-        const double part = part_of_cone(w[i], wide);
-        most = part <= most ? most : part;
-        least = part >= least ? least : part;
-    }
+    for (const Rows& rows : w)
+        for (size_t i = 0; i < rows.size(); ++i) {
+            const double part = part_of_cone(rows[i], wide);
+            most = worse(most, part), least = -worse(-least, -part);
+        }
     for (size_t i = 0; i < close.size(); ++i)
         mean += part_of_cone(close[i], star) / double(close.size());
     expect_unit(j, "directions", w, true);
     j.exact("directions fill the cone, from its axis to its rim, and no more",
             most <= 1 + 64 * j.epsilon && most > 0.9 && least < 0.1,
             oracle::say("in parts of the cone's, sin^2 is %.3g to %.3g", least, most));
-    j.number("a cone of 90 degrees has the solid angle of a hemisphere", angle.numbers[0] / pi, 2,
+    j.number("a cone of 90 degrees has the solid angle of a hemisphere", angle[0] / pi, 2,
              64 * j.epsilon);
-    j.number("a cone of 60 degrees has half of that", angle.numbers[1] / pi, 1, 64 * j.epsilon);
-    j.number("density times solid angle is 1", p.numbers[1] * angle.numbers[2], 1, 64 * j.epsilon);
+    j.number("a cone of 60 degrees has half of that", angle[1] / pi, 1, 64 * j.epsilon);
+    j.number("density times solid angle is 1", p[1] * angle[2], 1, 64 * j.epsilon);
     // So small a cone is a disc, whose radius is the sine.
-    const double flat = angle.numbers[3] / (pi * star), both = p.numbers[2] * angle.numbers[3];
+    const double flat = angle[3] / (pi * star), both = p[2] * angle[3];
     j.exact("the cone of a star keeps its digits",
             std::abs(flat - 1) < 1e-6 && std::abs(both - 1) < 1e-6 && std::abs(mean - 0.5) < 0.01,
             oracle::say("for sin^2 = 1e-20 the solid angle is %.7g times that of a flat disc, and "
                         "sin^2 of directions %.5g of it on average",
                         flat, mean));
-    j.fingerprint.insert(j.fingerprint.end(), {flat, mean});
+    j.remember({flat, mean});
     for (double sin2 : {wide, 0.99})
         j.statistical(oracle::say("with sin^2 = %.2g directions are uniform in the cone", sin2),
                       uniform_in_cone(j, sin2));
@@ -327,29 +277,18 @@ void cone(Judge& j) {
 struct Seen {
     Triple corner, u, v, from;
     Out at(double a, double b, double scale = 1) const {
-        Out row;
-        for (const Triple* x : {&corner, &u, &v, &from})
-            for (double c : *x) row.push_back(scale * c);
-        row.push_back(a), row.push_back(b);
-        return row;
+        return row(scale * corner, scale * u, scale * v, scale * from, a, b);
     }
 };
 
 // Of the triangle a, b, c seen from the origin (van Oosterom, Strackee 1983).
 double solid_angle(const Triple& a, const Triple& b, const Triple& c) {
-    auto dot = [](const Triple& x, const Triple& y) {
-        return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-    };
-    const double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-                          a[2] * (b[0] * c[1] - b[1] * c[0]);
-    return 2 *
-           std::atan2(std::abs(volume), length(a) * length(b) * length(c) + dot(a, b) * length(c) +
-                                            dot(b, c) * length(a) + dot(c, a) * length(b));
+    return 2 * std::atan2(std::abs(dot(a, cross(b, c))),
+                          length(a) * length(b) * length(c) + dot(a, b) * length(c) +
+                              dot(b, c) * length(a) + dot(c, a) * length(b));
 }
 double solid_angle(const Seen& s) {
-    const Triple a = minus(s.corner, s.from);
-    Triple b, c, d;
-    for (size_t k = 0; k < 3; ++k) b[k] = a[k] + s.u[k], c[k] = a[k] + s.v[k], d[k] = b[k] + s.v[k];
+    const Triple a = s.corner - s.from, b = a + s.u, c = a + s.v, d = b + s.v;
     return solid_angle(a, b, c) + solid_angle(b, d, c);
 }
 
@@ -375,21 +314,21 @@ void area_to_solid_angle(Judge& j) {
     behind.from = {0, 0, -2};
     Seen edge = table;
     edge.from = {7, 0, 0};
-    const Rows p = j.probe("pdf_polygon_by_area",
-                           {table.at(0.5, 0.5), table.at(0.1, 0.8), slanted.at(0.2, 0.7),
-                            beside.at(0.9, 0.1), behind.at(0.1, 0.8), edge.at(0.3, 0.3)});
-    const double unit = 256 * j.epsilon;
-    j.number("straight above the middle of a light of 2 x 3, at a height of 2, it is 2/3",
-             p.numbers[0], 2 / 3.0, unit);
-    const Rows larger =
-        j.ask("pdf_polygon_by_area", {table.at(0.1, 0.8, 8), slanted.at(0.2, 0.7, 8)});
-    const double change[2] = {larger.numbers[0] / p.numbers[1], larger.numbers[1] / p.numbers[2]};
+    const std::string question = "pdf_polygon_by_area";
+    const Out p = j.probe(question, {table.at(0.5, 0.5), table.at(0.1, 0.8), slanted.at(0.2, 0.7),
+                                     beside.at(0.9, 0.1), behind.at(0.1, 0.8), edge.at(0.3, 0.3)})
+                      .numbers;
+    const double digits = 256 * j.epsilon;
+    j.number("straight above the middle of a light of 2 x 3, at a height of 2, it is 2/3", p[0],
+             2 / 3.0, digits);
+    const Out larger = j.ask(question, {table.at(0.1, 0.8, 8), slanted.at(0.2, 0.7, 8)}).numbers;
+    const double change[2] = {larger[0] / p[1], larger[1] / p[2]};
     j.exact("where all is eight times as large, it is the same",
-            std::abs(change[0] - 1) < unit && std::abs(change[1] - 1) < unit,
+            std::abs(change[0] - 1) < digits && std::abs(change[1] - 1) < digits,
             oracle::say("it is %.6g and %.6g times as large", change[0], change[1]));
-    j.number("from behind it is as large as from the front", p.numbers[4] / p.numbers[1], 1, unit);
-    j.exact("where the light is seen edge-on it is 0, for no direction leads there",
-            p.numbers[5] == 0, oracle::say("it is %.6g", p.numbers[5]));
+    j.number("from behind it is as large as from the front", p[4] / p[1], 1, digits);
+    j.exact("where the light is seen edge-on it is 0, for no direction leads there", p[5] == 0,
+            oracle::say("it is %.6g", p[5]));
     for (const auto& [where, s] : {std::pair("from above", &table),
                                    {"from one side", &slanted},
                                    {"from far beside", &beside}})

@@ -3,7 +3,7 @@
 // Scenes stand here, beside what is known of them; the program that answers only builds them.
 #include "course/judge.h"
 
-using course::In, course::Judge, course::Out, course::Rows, oracle::Triple;
+using namespace course;
 
 namespace {
 
@@ -17,19 +17,13 @@ struct Stuff {
     bool twosided = false;
 };
 
-void append(Out& out, const auto& numbers) {
-    out.insert(out.end(), std::begin(numbers), std::end(numbers));
+Stuff glowing(const Triple& Le, Stuff m = {}) {
+    m.Le = Le;
+    return m;
 }
 
 Out thing(double kind, const Triple& a, const Triple& b, const Triple& c, const Stuff& m) {
-    Out out{kind};
-    for (const Triple& v : {a, b, c}) append(out, v);
-    out.push_back(m.kind);
-    append(out, m.kd), append(out, m.ks);
-    out.push_back(m.exponent), out.push_back(m.ior);
-    append(out, m.Le);
-    out.push_back(m.twosided);
-    return out;
+    return row(kind, a, b, c, int(m.kind), m.kd, m.ks, m.exponent, m.ior, m.Le, m.twosided);
 }
 Out ball(const Triple& centre, double r, const Stuff& m) {
     return thing(0, centre, {r, 0, 0}, {}, m);
@@ -41,7 +35,7 @@ Out point_light(const Triple& p, const Triple& intensity) { return thing(2, p, i
 
 void build(Judge& j, int depth, const std::vector<Out>& things) {
     Out all{double(depth)};
-    for (const Out& t : things) append(all, t);
+    for (const Out& t : things) all = row(all, t);
     j.ask("scene", all);
 }
 
@@ -54,62 +48,29 @@ struct Technique {
     Light light = by_chance;
     Directions directions = by_bsdf;
     double roulette = 0;
+    Out numbers() const { return {double(light), double(directions), roulette}; }
 };
-
-constexpr size_t segment_size = 17;
 
 // A path's ray that was drawn with density pdf after k scatterings, n being the normal it left.
 Out segment(const Triple& o, const Triple& d, const Triple& beta = {1, 1, 1}, int k = 0,
             double pdf = oracle::infinity, const Triple& n = {}) {
-    Out s;
-    append(s, o), append(s, d), append(s, o);
-    s.push_back(pdf);
-    append(s, beta);
-    s.push_back(k);
-    append(s, n);
-    return s;
+    return row(o, d, o, pdf, beta, k, n);
 }
 
-Out question(const Technique& t, const Out& more) {
-    Out q{double(t.light), double(t.directions), t.roulette};
-    append(q, more);
-    return q;
-}
-// The same, of path `seed`.
+// What is asked of path `seed`.
 Out question(const Technique& t, uint64_t seed, const Out& more) {
-    Out q = question(t, Out{double(seed)});
-    append(q, more);
-    return q;
+    return row(t.numbers(), seed, more);
 }
-Out ray(const Triple& o, const Triple& d) {
-    Out q;
-    append(q, o), append(q, d);
-    return q;
-}
-
-Triple triple(In x, size_t at = 0) { return {x[at], x[at + 1], x[at + 2]}; }
-Triple operator*(double s, const Triple& a) { return {s * a[0], s * a[1], s * a[2]}; }
-Triple operator*(const Triple& a, const Triple& b) {
-    return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
-}
-Triple operator+(const Triple& a, const Triple& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
+Out ray(const Triple& o, const Triple& d) { return row(o, d); }
 
 // Who computes in float here and there is as right: errors of some roundings, and of 1e-6, are
 // none.
 double tolerance(const Judge& j, double roundings = 1e4) {
     return std::max(1e-6, roundings * j.epsilon);
 }
-bool near(const Triple& a, const Triple& b, double tolerance) {
-    return course::near(a[0], b[0], tolerance) && course::near(a[1], b[1], tolerance) &&
-           course::near(a[2], b[2], tolerance);
-}
 // A colour.
 void colour(Judge& j, const std::string& what, const Triple& came, const Triple& expected) {
-    j.exact(what, near(came, expected, tolerance(j)),
-            oracle::say("(%.6g, %.6g, %.6g) expected, (%.6g, %.6g, %.6g) came", expected[0],
-                        expected[1], expected[2], came[0], came[1], came[2]));
+    j.vector(what, came, expected, tolerance(j));
 }
 
 // What happened at a vertex.
@@ -132,8 +93,8 @@ Step take_step(Judge& j, const Technique& t, uint64_t seed, const Out& from) {
 // Within a ball that emits Le and mirrors half of what meets it, radiance is Le (2 - 2^-depth).
 void within_a_hall_of_mirrors(Judge& j) {
     const Triple Le{0.4, 0.3, 0.2};
-    Stuff mirror{Stuff::mirror, {}, {0.5, 0.5, 0.5}};
-    mirror.Le = Le, mirror.twosided = true;
+    Stuff mirror = glowing(Le, {Stuff::mirror, {}, {0.5, 0.5, 0.5}});
+    mirror.twosided = true;
     for (int depth : {0, 1, 7}) {
         build(j, depth, {ball({0, 0, 0}, 2, mirror)});
         const Rows L =
@@ -164,8 +125,7 @@ void a_lit_ball_and_its_image(Judge& j) {
 
 // From a floor many rays meet the large lamp above it.
 void a_lamp_is_met(Judge& j) {
-    Stuff lamp;
-    lamp.Le = {1, 2, 3};
+    const Stuff lamp = glowing({1, 2, 3});
     build(j, 1, {ball({0, 0, -10}, 10, {Stuff::rough, {0.5, 0.5, 0.5}}), ball({0, 0, 3}, 2, lamp)});
     const Technique t{by_both};
     const Triple eye{8, 0, 4}, d{-2 / std::sqrt(5), 0, -1 / std::sqrt(5)};
@@ -199,9 +159,8 @@ const Triple towards{0.48, 0.6, 0.64};  // unit: where the eye is, seen from the
 // normal there is `towards`, and with aside > 0 the eye looks at it from the side.
 Out towards_a_ball(double aside = 0, const Triple& before = {1, 1, 1}, int k = 0) {
     const Triple o = 5 * towards + aside * Triple{0.64, 0, -0.48};
-    const Triple to = towards + -1 * o;
-    const double length = std::sqrt(oracle::dot(to, to));
-    return segment(o, (1 / length) * to, before, k);
+    const Triple to = towards - o;
+    return segment(o, unit(to), before, k);
 }
 
 void of_a_mirror(Judge& j) {
@@ -225,7 +184,7 @@ void of_a_rough_ball(Judge& j) {
     Triple came{}, expected{};
     for (uint64_t seed = 1; seed <= 16 && right; ++seed) {
         const Step s = take_step(j, evenly, seed, towards_a_ball(2));
-        came = s.beta, expected = 2 * oracle::dot(s.n, s.wi) * kd;
+        came = s.beta, expected = 2 * dot(s.n, s.wi) * kd;
         right = near(came, expected, tolerance(j));
     }
     colour(j, "twice albedo and cosine, if directions are uniform", came, expected);
@@ -233,9 +192,7 @@ void of_a_rough_ball(Judge& j) {
 
 // A lamp that reflects, too, is hit by a path that was drawn in order to do so.
 void of_a_lamp(Judge& j) {
-    Stuff lamp{Stuff::rough, {0.5, 0.5, 0.5}};
-    lamp.Le = {3, 2, 1};
-    build(j, 8, {ball({0, 0, 0}, 1, lamp)});
+    build(j, 8, {ball({0, 0, 0}, 1, glowing({3, 2, 1}, {Stuff::rough, {0.5, 0.5, 0.5}}))});
     Out from = towards_a_ball(2, {1, 1, 1}, 1);
     from[9] = 0.3;
     const Rows b = j.probe("throughput", Rows(question({by_aiming}, 1, from)));
@@ -253,10 +210,8 @@ void of_a_glossy_ball(Judge& j) {
     Rows ask;
     for (int i = 0; i < 200000; ++i)
         ask.add(question({by_chance, uniform}, j.random.bits() >> 32, towards_a_ball()));
-    const Rows b = j.ask("throughput", ask);
-    size_t i = 0;
-    j.statistical("mean of a glossy surface: all that it reflects",
-                  oracle::expect_mean(0.7, b.size(), [&] { return b[i++][0]; }));
+    j.mean("mean of a glossy surface: all that it reflects", 0.7, j.ask("throughput", ask),
+           [](In b) { return b[0]; });
 }
 
 void throughput(Judge& j) {
@@ -309,10 +264,9 @@ void no_surface_shades_itself(Judge& j) {
     j.probe("direct_light", some);
     for (int i = 0; i < 400; ++i) ask.add(from(on_the_ball(0.1 + 0.9 * j.random(), j.random())));
     const Rows L = j.ask("direct_light", ask);
-    int dark = 0;
+    size_t dark = 0;
     for (size_t i = 0; i < L.size(); ++i) dark += L[i][0] <= 0;
-    j.exact("no surface is in its own way", dark == 0,
-            oracle::say("%d of 400 points are dark in broad light", dark));
+    j.none("no surface is in its own way", dark, "%zu of 400 points are dark in broad light");
 }
 
 // The eye aims at one of two; each is worth 1 over the chance to be aimed at.
@@ -325,22 +279,20 @@ void from_two_points(Judge& j) {
     Rows ask;
     for (int i = 0; i < 4000; ++i) ask.add(aimed(t, j.random.bits() >> 32));
     const Rows L = j.ask("direct_light", ask);
-    double chances = 0, chance_of_a = 0, chance_of_b = 0;
+    double chance_of_a = 0, chance_of_b = 0;
     for (size_t i = 0; i < L.size(); ++i)
-        (L[i][0] * a[2] > L[i][2] * a[0] * 0.99 ? chance_of_a : chance_of_b) =
-            L[i][0] * a[2] > L[i][2] * a[0] * 0.99 ? a[0] / L[i][0] : b[0] / L[i][0];
-    chances = chance_of_a + chance_of_b;
-    j.number("chances by which two lights' samples are divided add up to", chances, 1,
-             tolerance(j));
-    size_t i = 0;
-    j.statistical("mean of one of two lights: their sum",
-                  oracle::expect_mean(a[1] + b[1], L.size(), [&] { return L[i++][1]; }));
+        if (L[i][0] * a[2] > L[i][2] * a[0] * 0.99)
+            chance_of_a = a[0] / L[i][0];
+        else
+            chance_of_b = b[0] / L[i][0];
+    j.number("chances by which two lights' samples are divided add up to",
+             chance_of_a + chance_of_b, 1, tolerance(j));
+    j.mean("mean of one of two lights: their sum", a[1] + b[1], L, [](In x) { return x[1]; });
 }
 
 // It shows 0.64 of what the whole sky would be; seen in the cone of cosine 0.6.
 void from_a_lamp(Judge& j) {
-    Stuff lamp;
-    lamp.Le = {1, 2, 3};
+    const Stuff lamp = glowing({1, 2, 3});
     build(j, 4, {ground, ball({0, 0, 4}, 3.2, lamp)});
     const Technique alone{by_aiming, uniform}, shared{by_both, uniform};
     j.probe("direct_light", {aimed(alone, 1), aimed(shared, 1)});
@@ -354,9 +306,7 @@ void from_a_lamp(Judge& j) {
     while (lit + 1 < L.size() && L[lit][1] <= 0) ++lit;
     j.number("a lamp's share beside rays that may meet it", part[lit][1] / L[lit][1], 1 / 1.16,
              tolerance(j));
-    size_t i = 0;
-    j.statistical("mean of a lamp that fills 0.64 of the sky",
-                  oracle::expect_mean(0.64, L.size(), [&] { return L[i++][1]; }));
+    j.mean("mean of a lamp that fills 0.64 of the sky", 0.64, L, [](In x) { return x[1]; });
 }
 
 void light_by_aiming(Judge& j) {
@@ -376,12 +326,8 @@ struct Place {
 };
 
 Out met(const Technique& t, double pdf, const Place& y) {
-    const double length = std::sqrt(oracle::dot(y.p, y.p));
-    Out q =
-        question(t, segment({0, 0, 0}, (1 / length) * y.p, {1, 1, 1}, int(y.k), pdf, {0, 0, 1}));
-    q.push_back(y.shape);
-    append(q, y.p), append(q, y.n);
-    return q;
+    const Out s = segment({0, 0, 0}, unit(y.p), {1, 1, 1}, int(y.k), pdf, {0, 0, 1});
+    return row(t.numbers(), s, y.shape, y.p, y.n);
 }
 
 double weight(Judge& j, const Technique& t, double pdf, const Place& y) {
@@ -394,19 +340,8 @@ double density(Judge& j, const Technique& t, const Place& y) {
     return both[0] * both[1];
 }
 
-// The worst of weights that should be 1/2, since the ray was as likely as the light sample.
-double off_half(Judge& j, const Technique& t, const std::vector<Place>& places) {
-    double worst = 0;
-    for (const Place& y : places) {
-        const Out w = j.ask("weight_of_emission", met(t, density(j, t, y), y));
-        worst = std::abs(w[0] - 0.5) <= worst ? worst : std::abs(w[0] - 0.5);
-    }
-    return worst;
-}
-
 void of_one_lamp(Judge& j) {
-    Stuff lamp;
-    lamp.Le = {1, 1, 1};
+    const Stuff lamp = glowing({1, 1, 1});
     build(j, 4, {ball({0, 0, 4}, 2, lamp)});
     const Place y{0, {0, 0, 2}, {0, 0, -1}}, seen{0, {0, 0, 2}, {0, 0, -1}, 0};
     j.number("the weight where nobody aims", weight(j, {by_chance}, 0.3, y), 1, 0);
@@ -428,25 +363,27 @@ void of_one_lamp(Judge& j) {
 
 // Samples of a ball's light do not go to its inside: who stands there meets it by chance alone.
 void within_a_lamp(Judge& j) {
-    Stuff lamp;
-    lamp.Le = {1, 1, 1}, lamp.twosided = true;
+    Stuff lamp = glowing({1, 1, 1});
+    lamp.twosided = true;
     build(j, 4, {ball({0, 0, 0}, 5, lamp)});
     const Place y{0, {0, 0, 5}, {0, 0, 1}};
     const double aiming = weight(j, {by_aiming}, 0.3, y), both = weight(j, {by_both}, 0.3, y);
     j.exact("a light that cannot be aimed at from there weighs 1",
-            course::near(aiming, 1, tolerance(j, 4)) && course::near(both, 1, tolerance(j, 4)),
+            near(aiming, 1, tolerance(j, 4)) && near(both, 1, tolerance(j, 4)),
             oracle::say("it weighs %.6g, and %.6g where both ways are used", aiming, both));
 }
 
 void of_two_lamps(Judge& j) {
-    Stuff dim, bright;
-    dim.Le = {1, 1, 1}, bright.Le = {5, 5, 5};
+    const Stuff dim = glowing({1, 1, 1}), bright = glowing({5, 5, 5});
     build(j, 4, {ball({3, 0, 4}, 1, dim), quad({-3, -1, 3}, {0, 2, 0}, {2, 0, 0}, bright)});
     const std::vector<Place> places = {{0, {2.4, 0, 3.2}, {-0.6, 0, -0.8}},
                                        {1, {-2.5, 0.5, 3}, {0, 0, -1}}};
     const Technique t{by_both};
     for (const Place& y : places) weight(j, t, 0.3, y);
-    const double off = off_half(j, t, places);
+    double off = 0;
+    for (const Place& y : places)
+        off =
+            worse(off, std::abs(j.ask("weight_of_emission", met(t, density(j, t, y), y))[0] - 0.5));
     j.exact("of two lamps: 1/2 where both ways are as likely", off <= tolerance(j, 64),
             oracle::say("off by %.6g", off));
 }
@@ -505,12 +442,8 @@ void roulette(Judge& j) {
         alive > 0 && alive < n && (highest_alive <= lowest_dead || highest_dead <= lowest_alive),
         oracle::say("of %d paths %.0f survive, with numbers of %.3g to %.3g", n, alive,
                     lowest_alive, highest_alive));
-    size_t i = 0;
-    j.statistical("share of paths that survive",
-                  oracle::expect_mean(chance, n, [&] { return beta[i++][2] > 0 ? 1.0 : 0.0; }));
-    i = 0;
-    j.statistical("mean throughput, the dead counted as 0",
-                  oracle::expect_mean(whole[0], n, [&] { return beta[i++][0]; }));
+    j.mean("share of paths that survive", chance, beta, [](In b) { return b[2] > 0 ? 1.0 : 0.0; });
+    j.mean("mean throughput, the dead counted as 0", whole[0], beta, [](In b) { return b[0]; });
 }
 
 // ---- 3.6 Glass ----------------------------------------------------------------------------------
@@ -553,7 +486,7 @@ void directions_of_glass(Judge& j) {
         const double s = std::sqrt(1 - cosine * cosine);
         mirror &= near(w.mirror, {-0.6 * s, -0.8 * s, cosine}, tolerance(j, 64));
         wanted = {-0.6 * sine, -0.8 * sine, -std::sqrt(1 - sine * sine)}, seen = w.through;
-        if (through) through = near(seen, wanted, tolerance(j, 64));
+        through = near(seen, wanted, tolerance(j, 64));
         if (!through) break;
     }
     j.exact("some is mirrored", mirror, "not in the mirror direction, or nothing is");
@@ -567,14 +500,14 @@ void reflectance_of_glass(Judge& j) {
     struct Known {
         bool outside;
         double cosine, reflectance;
-    };
-    const double brewster = 1 / std::sqrt(3.25);
+    } at{};
     double worst = 0;
-    Known at{};
     for (const Known& k :
-         {Known{true, 1, 0.04}, Known{true, 0.5, 0.0891867128022121},
-          Known{true, brewster, 0.0739644970414201}, Known{false, 0.8, 0.1141411002213539},
-          Known{true, 0.001, 0.9942055725085013}}) {
+         std::initializer_list<Known>{{true, 1, 0.04},
+                                      {true, 0.5, 0.0891867128022121},
+                                      {true, 1 / std::sqrt(3.25), 0.0739644970414201},
+                                      {false, 0.8, 0.1141411002213539},
+                                      {true, 0.001, 0.9942055725085013}}) {
         const double off = std::abs(ways(j, 1.5, k.outside, k.cosine).reflected - k.reflectance);
         if (!(off <= worst)) worst = off, at = k;
     }
@@ -590,14 +523,14 @@ void glass(Judge& j) {
     reflectance_of_glass(j);
     const Ways total = ways(j, 1.5, false, 0.5);
     j.exact("beyond the critical angle it reflects all, always",
-            total.n_reflected == total.n && course::near(total.reflected, 1, tolerance(j, 64)) &&
-                course::near(total.pdf_reflected, 1, tolerance(j, 64)),
+            total.n_reflected == total.n && near(total.reflected, 1, tolerance(j, 64)) &&
+                near(total.pdf_reflected, 1, tolerance(j, 64)),
             oracle::say("%d of %d times, a share of %.6g", total.n_reflected, total.n,
                         total.reflected));
     const Ways in = ways(j, 1.5, true, 1), out = ways(j, 1.5, false, 1);
     j.exact("radiance that is refracted: (1 - R) over or times the index squared",
-            course::near(in.refracted, 0.96 / 2.25, tolerance(j, 64)) &&
-                course::near(out.refracted, 0.96 * 2.25, tolerance(j, 1e3)),
+            near(in.refracted, 0.96 / 2.25, tolerance(j, 64)) &&
+                near(out.refracted, 0.96 * 2.25, tolerance(j, 1e3)),
             oracle::say("straight on, %.6g expected, %.6g came; and %.6g expected, %.6g came",
                         0.96 / 2.25, in.refracted, 0.96 * 2.25, out.refracted));
     const Ways slanted = ways(j, 1.5, true, 0.3);
@@ -608,10 +541,8 @@ void glass(Judge& j) {
     Rows ask;
     for (int i = 0; i < 100000; ++i) ask.add(at_glass(1.5, true, j.random(), 0.3));
     const Rows b = j.ask("sample_glass", ask);
-    size_t i = 0;
-    j.statistical(
-        "it reflects as often as it says",
-        oracle::expect_mean(slanted.pdf_reflected, b.size(), [&] { return b[i++][2] > 0; }));
+    j.mean("it reflects as often as it says", slanted.pdf_reflected, b,
+           [](In x) { return x[2] > 0; });
 }
 
 }  // namespace

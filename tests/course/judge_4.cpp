@@ -3,29 +3,39 @@
 
 #include "course/judge.h"
 
-using course::In, course::Judge, course::Out, course::Rows;
+using namespace course;
 
 namespace {
 
 // Doubles hold 53 bits: 64 are asked for in two halves.
-void add_bits(Out& row, uint64_t bits) {
-    row.push_back(double(bits >> 32));
-    row.push_back(double(bits & 0xffffffff));
-}
+Out bits(uint64_t all) { return {double(all >> 32), double(all & 0xffffffff)}; }
 
 // Which of n equal parts of [0,1) holds x; n if none does.  On their borders rounding is forgiven.
-size_t part(size_t n, double x, double epsilon) {
-    const double at = x * double(n) * (1 + 8 * epsilon) + double(n) * 1e-300;
+size_t part(const Judge& j, size_t n, double x) {
+    const double at = x * double(n) * (1 + 8 * j.epsilon) + double(n) * 1e-300;
     if (!(x >= 0 && x < 1)) return n;
     return std::min(n - 1, size_t(at));
 }
-size_t part(const Judge& j, size_t n, double x) { return part(n, x, j.epsilon); }
 
 // Whether all are in [0,1); and the first that is not.
 bool in_range(const Rows& numbers, double& first) {
     for (double x : numbers.numbers)
         if (!(x >= 0 && x < 1)) return first = x, false;
     return true;
+}
+
+// Of the numbers that come, how many are in each of n parts; the last count: outside of [0,1).
+std::vector<uint64_t> count(Judge& j, const std::string& question, const Rows& at, size_t n) {
+    std::vector<uint64_t> counts(n + 1);
+    for (double x : j.ask(question, at).numbers) ++counts[part(j, n, x)];
+    return counts;
+}
+// Parts that hold one, and parts that hold none.
+size_t without_zeros(const std::vector<uint64_t>& counts) {
+    return counts.size() - size_t(std::count(counts.begin(), counts.end(), 0));
+}
+size_t holes(const std::vector<uint64_t>& counts) {
+    return size_t(std::count(counts.begin(), counts.end() - 1, 0));
 }
 
 // Counts in equal cells are what chance makes of equal probabilities; what is in no cell counts as
@@ -38,94 +48,81 @@ oracle::Verdict equal_counts(const std::vector<uint64_t>& counts) {
 
 // ---- 4.1 ----------------------------------------------------------------------------------------
 
-Out inverse(double base, uint64_t index) {
-    Out row{base};
-    add_bits(row, index);
-    return row;
+Out inverse(double base, uint64_t index) { return row(base, bits(index)); }
+
+// The greatest error of what becomes of indices, in parts of it.
+double off_truth(const Rows& came, const Out& truth) {
+    double off = 0;
+    for (size_t i = 0; i < truth.size(); ++i)
+        off = worse(off, std::abs(came.numbers[i] - truth[i]) / (truth[i] > 0 ? truth[i] : 1));
+    return off;
 }
 
 void radical_inverse(Judge& j) {
+    const std::string question = "radical_inverse";
     // Decimal digits can be read: 1234 becomes 0.4321.
-    const Rows decimal = j.probe(
-        "radical_inverse",
-        {inverse(10, 0), inverse(10, 7), inverse(10, 10), inverse(10, 1234), inverse(10, 5600)});
-    const double read[5] = {0, 0.7, 0.01, 0.4321, 0.0065};
-    double off = 0;
-    for (size_t i = 0; i < 5; ++i)
-        off = std::abs(decimal.numbers[i] - read[i]) <= off
-                  ? off
-                  : std::abs(decimal.numbers[i] - read[i]);
-    j.exact("in base 10 index 1234 becomes 0.4321, 5600 becomes 0.0065", off < 64 * j.epsilon,
+    const Rows decimal = j.probe(question, {inverse(10, 0), inverse(10, 7), inverse(10, 10),
+                                            inverse(10, 1234), inverse(10, 5600)});
+    j.exact("in base 10 index 1234 becomes 0.4321, 5600 becomes 0.0065",
+            off_truth(decimal, {0, 0.7, 0.01, 0.4321, 0.0065}) < 64 * j.epsilon,
             oracle::say("they become %.6g and %.6g", decimal.numbers[3], decimal.numbers[4]));
-    const Rows small = j.probe("radical_inverse", {inverse(2, 1), inverse(2, 6), inverse(2, 11),
-                                                   inverse(3, 5), inverse(3, 19)});
-    const double fractions[5] = {1 / 2.0, 3 / 8.0, 13 / 16.0, 7 / 9.0, 11 / 27.0};
-    off = 0;
-    for (size_t i = 0; i < 5; ++i) {
-        const double error = std::abs(small.numbers[i] / fractions[i] - 1);
-        off = error <= off ? off : error;
-    }
-    j.exact("in base 2 index 6 becomes 3/8, in base 3 index 5 becomes 7/9", off < 64 * j.epsilon,
+    const Rows small = j.probe(
+        question, {inverse(2, 1), inverse(2, 6), inverse(2, 11), inverse(3, 5), inverse(3, 19)});
+    j.exact("in base 2 index 6 becomes 3/8, in base 3 index 5 becomes 7/9",
+            off_truth(small, {1 / 2.0, 3 / 8.0, 13 / 16.0, 7 / 9.0, 11 / 27.0}) < 64 * j.epsilon,
             oracle::say("they become %.9g and %.9g", small.numbers[1], small.numbers[3]));
 
-    size_t holes = 0;
+    size_t empty = 0;
     for (const auto& [base, n] : {std::pair(2, 64), {3, 81}, {5, 125}, {7, 343}, {29, 841}}) {
         Rows at;
         for (int i = 0; i < n; ++i) at.add(inverse(base, uint64_t(i)));
-        std::vector<int> hits(size_t(n) + 1);
-        for (double x : j.ask("radical_inverse", at).numbers) ++hits[part(j, size_t(n), x)];
-        holes += size_t(std::count(hits.begin(), hits.end() - 1, 0));
+        empty += holes(count(j, question, at, size_t(n)));
     }
-    j.exact("the first b^k indices put one point into each of b^k parts", holes == 0,
-            oracle::say("%zu parts stay empty in bases 2, 3, 5, 7 and 29", holes));
+    j.none("the first b^k indices put one point into each of b^k parts", empty,
+           "%zu parts stay empty in bases 2, 3, 5, 7 and 29");
 
-    const Rows large = j.probe(
-        "radical_inverse", {inverse(2, (uint64_t(1) << 40) + 1), inverse(3, 50031545098999707u + 2),
-                            inverse(10, 4000000000000000000u), inverse(10, UINT64_MAX)});
-    off = 0;
-    for (size_t i = 0; i < 4; ++i) {
-        const double truth[4] = {0.5, 2 / 3.0, 4e-19, 0.51615590737044764};
-        const double error = std::abs(large.numbers[i] / truth[i] - 1);
-        off = error <= off ? off : error;
-    }
-    j.exact("indices beyond 32 bits keep their digits, as far as 64 bits go", off < 1e-6,
+    const Rows large =
+        j.probe(question, {inverse(2, (uint64_t(1) << 40) + 1), inverse(3, 50031545098999707u + 2),
+                           inverse(10, 4000000000000000000u), inverse(10, UINT64_MAX)});
+    j.exact("indices beyond 32 bits keep their digits, as far as 64 bits go",
+            off_truth(large, {0.5, 2 / 3.0, 4e-19, 0.51615590737044764}) < 1e-6,
             oracle::say("2^40 + 1 in base 2 becomes %.9g, 3^35 + 2 in base 3 %.9g, in base 10 "
                         "4 10^18 %.3g and 18446744073709551615 %.9g",
                         large.numbers[0], large.numbers[1], large.numbers[2], large.numbers[3]));
     // Of all nines and the like: 1 - b^-k, which rounds to 1; with 65 digits they do not fit.
     const Rows near_one =
-        j.ask("radical_inverse", {inverse(2, UINT64_MAX), inverse(3, 12157665459056928800u),
-                                  inverse(10, 9999999999999999999u), inverse(2, (1u << 25) - 1)});
+        j.ask(question, {inverse(2, UINT64_MAX), inverse(3, 12157665459056928800u),
+                         inverse(10, 9999999999999999999u), inverse(2, (1u << 25) - 1)});
     double first = 0;
     const bool below = in_range(near_one, first);
     j.exact("no index becomes 1, not even the largest", below && near_one.numbers[0] > 0.999,
             oracle::say("one becomes %.17g", below ? near_one.numbers[0] : first));
-    j.fingerprint.push_back(below);
-    j.fingerprint.push_back(near_one.numbers[0]);
+    j.remember({double(below), near_one.numbers[0]});
 }
 
 // ---- 4.2 ----------------------------------------------------------------------------------------
 
-const std::string question = "scrambled_radical_inverse";
+const std::string scrambling = "scrambled_radical_inverse";
 
 Out scrambled(double base, uint64_t index, uint64_t shift, uint64_t factor) {
-    Out row = inverse(base, index);
-    add_bits(row, shift), add_bits(row, factor);
-    return row;
+    return row(base, bits(index), bits(shift), bits(factor));
 }
 
-// The first n indices with random bits; parts of [0,1) that stay empty, of n.
+// Of the first n indices with random bits, parts of [0,1) that stay empty, of n; of many trials.
 size_t empty_parts(Judge& j, oracle::Random& random, int base, int n) {
     Rows at;
     const uint64_t shift = random.bits(), factor = random.bits();
     for (int i = 0; i < n; ++i) at.add(scrambled(base, uint64_t(i), shift, factor));
-    std::set<size_t> hit;
-    for (double x : j.ask(question, at).numbers) hit.insert(part(j, size_t(n), x));
-    hit.erase(size_t(n));
-    return size_t(n) - hit.size();
+    return holes(count(j, scrambling, at, size_t(n)));
+}
+size_t empty_parts(Judge& j, oracle::Random& random) {
+    size_t empty = 0;
+    for (const auto& [base, n] : {std::pair(2, 64), {3, 27}, {7, 49}, {29, 29}})
+        for (int trial = 0; trial < 20; ++trial) empty += empty_parts(j, random, base, n);
+    return empty;
 }
 
-// With random bits, in n parts; the last count is that of numbers outside of [0,1).
+// With random bits, in n parts.
 std::vector<uint64_t> counts_of(Judge& j, oracle::Random& random, int base, uint64_t index,
                                 size_t n, int draws) {
     Rows at;
@@ -133,9 +130,7 @@ std::vector<uint64_t> counts_of(Judge& j, oracle::Random& random, int base, uint
         const uint64_t shift = random.bits(), factor = random.bits();
         at.add(scrambled(base, index, shift, factor));
     }
-    std::vector<uint64_t> counts(n + 1);
-    for (double x : j.ask(question, at).numbers) ++counts[part(j, n, x)];
-    return counts;
+    return count(j, scrambling, at, n);
 }
 
 // How far the first digit moves from index 0 to another: counts of 0 ... b - 1.
@@ -147,17 +142,13 @@ std::vector<uint64_t> moves_of(Judge& j, oracle::Random& random, size_t base, ui
         for (uint64_t index : {uint64_t(0), other})
             at.add(scrambled(double(base), index, shift, factor));
     }
-    const Rows x = j.ask(question, at);
+    const Rows x = j.ask(scrambling, at);
     std::vector<uint64_t> moves(base);
     for (size_t i = 0; i + 1 < x.size(); i += 2) {
         const size_t from = part(j, base, x.numbers[i]), to = part(j, base, x.numbers[i + 1]);
         ++moves[(to + base - from) % base];
     }
     return moves;
-}
-
-size_t without_zeros(const std::vector<uint64_t>& counts) {
-    return counts.size() - size_t(std::count(counts.begin(), counts.end(), 0));
 }
 
 void scrambled_digits(Judge& j) {
@@ -168,30 +159,24 @@ void scrambled_digits(Judge& j) {
     for (uint64_t bits : {uint64_t(0), UINT64_MAX})
         for (uint64_t index : {uint64_t(0), uint64_t(1), UINT64_MAX})
             for (double base : {2.0, 3.0, 541.0}) extremes.add(scrambled(base, index, bits, bits));
-    j.probe_stub(question, {scrambled(10, 1234, 0x123456789abcdef, 0xfedcba987654321),
-                            scrambled(3, 5, 0x3141592653589793, 0x2718281828459045)});
+    j.probe_stub(scrambling, {scrambled(10, 1234, 0x123456789abcdef, 0xfedcba987654321),
+                              scrambled(3, 5, 0x3141592653589793, 0x2718281828459045)});
     double first = 0;
-    const bool in = in_range(j.ask(question, extremes), first);
-    size_t holes = 0;
-    for (const auto& [base, n] : {std::pair(2, 64), {3, 27}, {7, 49}, {29, 29}})
-        for (int trial = 0; trial < 20; ++trial) holes += empty_parts(j, fixed, base, n);
+    const bool in = in_range(j.ask(scrambling, extremes), first);
+    const size_t any = empty_parts(j, fixed);
     size_t often = 0;
     for (int trial = 0; trial < 20; ++trial) often += empty_parts(j, fixed, 29, 29) > 0;
     auto outside = [&](uint64_t index) { return counts_of(j, fixed, 5, index, 625, 20000); };
     const auto zero = outside(0), larger = outside(7);
     const auto pairs = counts_of(j, fixed, 3, 4, 9, 2000), moves = moves_of(j, fixed, 7, 1, 2000);
-    for (size_t x : {size_t(in), size_t(holes > 0), size_t(often > 10), without_zeros(zero),
-                     without_zeros(larger), without_zeros(pairs), without_zeros(moves),
-                     size_t(moves[0] > 0), without_zeros(moves_of(j, fixed, 7, 7, 200))})
-        j.fingerprint.push_back(double(x));
+    j.remember(row(in, any > 0, often > 10, without_zeros(zero), without_zeros(larger),
+                   without_zeros(pairs), without_zeros(moves), moves[0] > 0,
+                   without_zeros(moves_of(j, fixed, 7, 7, 200))));
 
     j.exact("numbers are in [0,1), whatever the bits", in && larger.back() + zero.back() == 0,
             in ? "with random bits some are not" : oracle::say("one is %.17g", first));
-    holes = 0;
-    for (const auto& [base, n] : {std::pair(2, 64), {3, 27}, {7, 49}, {29, 29}})
-        for (int trial = 0; trial < 20; ++trial) holes += empty_parts(j, j.random, base, n);
-    j.exact("the first b^k indices still put one point into each of b^k parts", holes == 0,
-            oracle::say("%zu parts of 3380 stay empty", holes));
+    j.none("the first b^k indices still put one point into each of b^k parts",
+           empty_parts(j, j.random), "%zu parts of 3380 stay empty");
     j.statistical("index 0 becomes any number, for random bits",
                   equal_counts(counts_of(j, j.random, 5, 0, 625, 80000)));
     j.statistical("index 7 does, with two digits in base 5 that are scrambled apart",
@@ -220,7 +205,7 @@ size_t equal_numbers(In a, In b) {
 }
 
 // The film's two, then seven a vertex.
-const size_t count = 7;
+const size_t of_vertex = 7;
 const uint32_t primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
 
 // Of the boxes that two numbers' bases cut out, those that stay empty: none is after as many
@@ -268,11 +253,11 @@ oracle::Verdict uncorrelated(Judge& j) {
     auto product = [&] {
         double sum = 0;
         for (size_t i = pixel * samples; i < (pixel + 1) * samples; ++i)
-            for (size_t k = 2; k + count < x.width; ++k)
-                sum += (x[i][k] - 0.5) * (x[i][k + count] - 0.5);
+            for (size_t k = 2; k + of_vertex < x.width; ++k)
+                sum += (x[i][k] - 0.5) * (x[i][k + of_vertex] - 0.5);
         ++pixel;
         // In parts of 1/12: the product's mean if both were the same.
-        return 12 * sum / double(samples * (x.width - count - 2));
+        return 12 * sum / double(samples * (x.width - of_vertex - 2));
     };
     return oracle::expect_mean(0, pixels, product);
 }
@@ -295,16 +280,16 @@ void dimensions(Judge& j) {
     const size_t again = equal_numbers(here[0], here[1]), pixel = equal_numbers(here[0], here[2]);
     const size_t seed = equal_numbers(here[0], reseeded[0]);
     const size_t empty[] = {empty_boxes(j, 0, 1, 3), empty_boxes(j, 2, 3, 3),
-                            empty_boxes(j, 2, 2 + count, 3)};
+                            empty_boxes(j, 2, 2 + of_vertex, 3)};
     const Pairs pairs = pairs_of(j);
     // Numbers of one path that are equal, by vertices.
     size_t same_at_next = 0, same_as_first = 0;
-    for (size_t k = 2; k + count < width; ++k) same_at_next += here[0][k] == here[0][k + count];
+    for (size_t k = 2; k + of_vertex < width; ++k)
+        same_at_next += here[0][k] == here[0][k + of_vertex];
     for (size_t k = 1; k < width; ++k) same_as_first += here[0][k] == here[0][0];
-    for (size_t x : {different.size(), again, pixel, seed, size_t(empty[0] > 0),
-                     size_t(empty[1] > 0), size_t(empty[2] > 0), pairs.shifts.size(),
-                     pairs.factors.size(), size_t(pairs.lopsided), same_at_next, same_as_first})
-        j.fingerprint.push_back(double(x));
+    j.remember(row(different.size(), again, pixel, seed, empty[0] > 0, empty[1] > 0, empty[2] > 0,
+                   pairs.shifts.size(), pairs.factors.size(), pairs.lopsided, same_at_next,
+                   same_as_first));
 
     j.exact("all numbers of a path are different", different.size() == width,
             oracle::say("%zu of %zu are", different.size(), width));
@@ -325,15 +310,9 @@ void dimensions(Judge& j) {
 
 // ---- 4.4 ----------------------------------------------------------------------------------------
 
-Out in_part(double which, double parts, uint64_t bits) {
-    Out row{which, parts};
-    add_bits(row, bits);
-    return row;
-}
-Out in_cell(double which, double columns, double rows, uint64_t bits) {
-    Out row{which, columns, rows};
-    add_bits(row, bits);
-    return row;
+Out in_part(double which, double parts, uint64_t random) { return row(which, parts, bits(random)); }
+Out in_cell(double which, double columns, double rows, uint64_t random) {
+    return row(which, columns, rows, bits(random));
 }
 
 // Of `parts`, those that a random number of theirs has missed.
@@ -408,26 +387,23 @@ void strata(Judge& j) {
     for (int i = 0; i < 200; ++i) third.add(in_part(2, 5, fixed.bits()));
     const Out of_third = j.ask("in_part", third).numbers;
     const double lowest = *std::min_element(of_third.begin(), of_third.end());
-    for (size_t x : {size_t(all_missed(fixed) > 0), without_zeros(places),
-                     size_t(places.back() > 0), without_zeros(along), size_t(along[0] > 0),
-                     size_t(along.back() > 0), size_t(lowest < 0.39), size_t(below)})
-        j.fingerprint.push_back(double(x));
+    j.remember(row(all_missed(fixed) > 0, without_zeros(places), places.back() > 0,
+                   without_zeros(along), along[0] > 0, along.back() > 0, lowest < 0.39, below));
     for (const auto& [columns, rows] : grids) {
         bool any = false;
         for (int trial = 0; trial < 10; ++trial) any |= empty_cells(j, fixed, columns, rows) > 0;
-        j.fingerprint.push_back(any);
+        j.remember({double(any)});
     }
 
     size_t missed = 0, empty = 0;
     for (int trial = 0; trial < 20; ++trial) missed += all_missed(j.random);
     for (int trial = 0; trial < 20; ++trial)
         for (const auto& [columns, rows] : grids) empty += empty_cells(j, j.random, columns, rows);
-    j.exact("a number is in its part of [0,1)", missed == 0,
-            oracle::say("%zu of 2440 are not", missed));
+    j.none("a number is in its part of [0,1)", missed, "%zu of 2440 are not");
     j.exact("no number is 1, not even with the highest bits in the last part", below,
             oracle::say("one is %.17g", first));
-    j.exact("every cell of a grid gets its point, of oblong grids, too", empty == 0,
-            oracle::say("%zu of 1260 stay empty", empty));
+    j.none("every cell of a grid gets its point, of oblong grids, too", empty,
+           "%zu of 1260 stay empty");
     j.statistical("a number is anywhere in its part",
                   equal_counts(places_in_part(j, j.random, 64, 20000)));
     j.statistical("a point is anywhere in its cell, across and down independently",

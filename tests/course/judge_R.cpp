@@ -1,7 +1,7 @@
 // course/judge_R.cpp  judges the radiosity project: shooting, and a particle's walk
 #include "course/judge.h"
 
-using course::Judge, course::Out, course::Rows;
+using namespace course;
 
 namespace {
 
@@ -15,19 +15,18 @@ struct Room {
     double shots = 1200;
 };
 Out numbers_of(const Room& r) {
-    return {r.rho[0], r.rho[1],       r.rho[2],        r.L[0], r.L[1],
-            r.L[2],   double(r.lamp), double(r.faces), r.side, r.shots};
+    return row(Out(r.rho, r.rho + 3), Out(r.L, r.L + 3), r.lamp, r.faces, r.side, r.shots);
 }
 struct Shot {
     double elements, shots, unshot;
     double least[3], greatest[3], part[3];  // E; its integral over the emitted power
 };
-Shot shot_of(course::In x) {
+Shot shot_of(In x) {
     return {x[0], x[1], x[2], {x[3], x[6], x[9]}, {x[4], x[7], x[10]}, {x[5], x[8], x[11]}};
 }
 Shot shoot(Judge& j, const Room& r) { return shot_of(j.ask("shoot", numbers_of(r))); }
 
-std::string off(double by) { return oracle::say("it is off by %.3g of itself", by); }
+const char* off = "it is off by %.3g of itself";
 
 // The farthest E of any wall in any channel from pi L / (1 - rho), as a part of it.
 double furnace_off(const Shot& s, const Room& r) {
@@ -53,9 +52,8 @@ void shooting(Judge& j) {
     const Rows of_furnace = j.probe("shoot", Rows(numbers_of(furnace))),
                of_lamp = j.probe("shoot", Rows(numbers_of(lamp))),
                of_whole = j.probe("shoot", Rows(numbers_of(whole)));
-    j.exact("a room whose walls emit alike: E = pi L / (1 - rho) everywhere",
-            furnace_off(shot_of(of_furnace[0]), furnace) < 100 * rest + digits,
-            off(furnace_off(shot_of(of_furnace[0]), furnace)));
+    j.below("a room whose walls emit alike: E = pi L / (1 - rho) everywhere",
+            furnace_off(shot_of(of_furnace[0]), furnace), 100 * rest + digits, off);
     const Shot dark = shoot(j, black);
     j.exact("black walls that emit shoot once each, then nothing is left",
             dark.shots == dark.elements && dark.unshot <= 1e-9,
@@ -64,7 +62,7 @@ void shooting(Judge& j) {
     const Shot lit = shot_of(of_lamp[0]), by_faces = shot_of(of_whole[0]);
     double apart = 0;
     for (size_t c = 0; c < 3; ++c)
-        apart = course::worse(apart, std::abs(by_faces.part[c] / lit.part[c] - 1));
+        apart = worse(apart, std::abs(by_faces.part[c] / lit.part[c] - 1));
     // Between black walls the lamp's elements are all that shoots.
     Room alone = lamp;
     alone.rho[0] = alone.rho[1] = alone.rho[2] = 0;
@@ -77,7 +75,7 @@ void shooting(Judge& j) {
     }
     j.number("when the lamp has shot, what walls reflect of it is unsent", direct.unshot,
              reflected / emitted, digits);
-    j.exact("whole faces come to what elements come to", apart < 0.03, off(apart));
+    j.below("whole faces come to what elements come to", apart, 0.03, off);
     double before = 1, rise = 0;
     for (double k : {1, 2, 3, 5, 8, 13, 21, 34, 55}) {
         first.shots = k;
@@ -114,12 +112,6 @@ Rows walks(Judge& j, const Out& albedo, size_t n) {
     return j.ask("walk", in);
 }
 
-// f(walk) of one after the other.
-template <class F>
-auto each(const Rows& rows, F f) {
-    return [&rows, f, i = size_t(0)]() mutable { return f(rows[i++]); };
-}
-
 void walking(Judge& j) {
     Rows fixed;
     for (int i = 0; i < 4; ++i) fixed.add({0.8, 0.5, 0.2, double(i), 7});
@@ -139,30 +131,26 @@ void walking(Judge& j) {
             const double e = coloured[i][emitted + c];
             const double left = e - coloured[i][absorbed + c] - coloured[i][escaped + c];
             lost = left == left ? std::max(lost, std::abs(left / e)) : oracle::infinity;
-            growth = course::worse(growth, coloured[i][greatest + c] / e);
+            growth = worse(growth, coloured[i][greatest + c] / e);
         }
-    j.exact("of every particle, emitted = absorbed + escaped", lost < 1e4 * j.epsilon, off(lost));
-    j.exact("no particle gains power on walls that reflect 4/5 at most",
-            growth < 1 + 1e4 * j.epsilon, oracle::say("one has %.4g times its own", growth));
+    j.below("of every particle, emitted = absorbed + escaped", lost, 1e4 * j.epsilon, off);
+    j.below("no particle gains power on walls that reflect 4/5 at most", growth,
+            1 + 1e4 * j.epsilon, "one has %.4g times its own");
     const char* names[] = {"red, albedo .8: all stops bring 5 times what is emitted",
                            "green, albedo .5: twice", "blue, albedo .2: 1.25 times"};
     for (size_t c = 0; c < 3; ++c)
-        j.statistical(names[c],
-                      oracle::expect_mean(1 / (1 - albedo[c]), n, each(coloured, [c](course::In w) {
-                                              return w[sum + c] / w[emitted + c];
-                                          })));
-    j.statistical("the second stop of blue light brings a fifth of the first",
-                  oracle::expect_mean(0.2, n, each(coloured, [](course::In w) {
-                                          return w[second + 2] / w[emitted + 2];
-                                      })));
+        j.mean(names[c], 1 / (1 - albedo[c]), coloured,
+               [c](In w) { return w[sum + c] / w[emitted + c]; });
+    j.mean("the second stop of blue light brings a fifth of the first", 0.2, coloured,
+           [](In w) { return w[second + 2] / w[emitted + 2]; });
     Rows went;
     for (size_t i = 0; i < n; ++i)
         if (coloured[i][stops] > 1) went.add(Out(coloured[i].begin(), coloured[i].end()));
-    j.statistical("those that go on leave by Lambert's law: the mean cosine is 2/3",
-                  went.size() < 1000
-                      ? oracle::failure("hardly any goes on")
-                      : oracle::expect_mean(2 / 3.0, went.size(),
-                                            each(went, [](course::In w) { return w[cosine]; })));
+    const std::string leave = "those that go on leave by Lambert's law: the mean cosine is 2/3";
+    if (went.size() < 1000)
+        j.statistical(leave, oracle::failure("hardly any goes on"));
+    else
+        j.mean(leave, 2 / 3.0, went, [](In w) { return w[cosine]; });
     const Rows white = walks(j, {1, 1, 1}, 200);
     double all = 0;
     for (size_t i = 0; i < white.size(); ++i) all += white[i][stops] / 200;

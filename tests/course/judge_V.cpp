@@ -1,7 +1,7 @@
 // course/judge_V.cpp  judges the Voronoi project: a cell is cut, and measured
 #include "course/judge.h"
 
-using course::Judge, course::Out, course::Rows;
+using namespace course;
 
 namespace {
 
@@ -44,7 +44,7 @@ double farthest(const Places& a, const Places& b) {
     for (Place p : a) {
         double nearest = oracle::infinity;
         for (Place q : b) nearest = std::min(nearest, distance(p, q));
-        most = course::worse(most, nearest);
+        most = worse(most, nearest);
     }
     return most;
 }
@@ -93,7 +93,7 @@ double edges_off(const Answer& a, const Lines& lines) {
         if (n >= 0 && n < int(lines.size())) nearest = off(lines[size_t(n)]);
         for (const Line& w : walls)
             if (n == -1) nearest = std::min(nearest, off(w));
-        most = course::worse(most, nearest);
+        most = worse(most, nearest);
     }
     return a.corners.empty() ? oracle::infinity : most;
 }
@@ -112,37 +112,36 @@ void cutting(Judge& j) {
     const Answer half = cut(j, {{1, 0, 0.5}}, true),
                  corner = cut(j, {{1, 1, 1.5}, {-0.5, 1, 0.625}}, true),
                  nothing = cut(j, {{1, 0, -2}}, true);
-    auto off = [](double by) { return oracle::say("a corner is off by %.3g", by); };
+    const char* off = "a corner is off by %.3g";
     const Places expected = {{-1, -1}, {0.5, -1}, {0.5, 1}, {-1, 1}};
+    const double half_off = apart(half.corners, expected);
     j.exact("the square [-1,1]^2 cut at x = 1/2 has four corners",
-            apart(half.corners, expected) < 1e-14 && half.corners.size() == 4,
-            off(apart(half.corners, expected)));
+            half_off < 1e-14 && half.corners.size() == 4, oracle::say(off, half_off));
     const Places of_two = corners_by_force({{1, 1, 1.5}, {-0.5, 1, 0.625}});
-    j.exact("two lines that cut off two corners", apart(corner.corners, of_two) < 1e-12,
-            off(apart(corner.corners, of_two)));
+    j.below("two lines that cut off two corners", apart(corner.corners, of_two), 1e-12, off);
     const Places square = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     const Places whole = cut(j, {{1, 1, 2.5}, {-1, 0, 3}}).corners;
-    j.exact("lines that do not touch it change nothing", apart(whole, square) == 0,
-            off(apart(whole, square)));
-    j.exact("a line that would leave nothing changes nothing", apart(nothing.corners, square) == 0,
-            off(apart(nothing.corners, square)));
+    for (const auto& [what, came] :
+         {std::pair("lines that do not touch it change nothing", whole),
+          {"a line that would leave nothing changes nothing", nothing.corners}})
+        j.exact(what, apart(came, square) == 0, oracle::say(off, apart(came, square)));
     double corners_off = 0, edges = 0, turn = oracle::infinity, order = 0;
     for (int k = 0; k < 50; ++k) {
         Lines lines = random_lines(j.random, 3 + k % 8);
         const Answer a = cut(j, lines);
-        corners_off = course::worse(corners_off, apart(a.corners, corners_by_force(lines)));
-        edges = course::worse(edges, edges_off(a, lines));
+        corners_off = worse(corners_off, apart(a.corners, corners_by_force(lines)));
+        edges = worse(edges, edges_off(a, lines));
         turn = std::min(turn, least_turn(a.corners));
         std::reverse(lines.begin(), lines.end());
-        order = course::worse(order, apart(a.corners, cut(j, lines).corners));
+        order = worse(order, apart(a.corners, cut(j, lines).corners));
     }
-    j.exact("cells of 3 to 10 neighbours: their corners by trying all pairs of lines",
-            corners_off < 1e-11, off(corners_off));
-    j.exact("every edge lies on the bisector of the neighbour that it names", edges < 1e-11,
-            oracle::say("one is off by %.3g", edges));
+    j.below("cells of 3 to 10 neighbours: their corners by trying all pairs of lines", corners_off,
+            1e-11, off);
+    j.below("every edge lies on the bisector of the neighbour that it names", edges, 1e-11,
+            "one is off by %.3g");
     j.exact("corners go round counterclockwise", turn > -1e-12,
             oracle::say("a turn of %.3g to the left", turn));
-    j.exact("the order of the lines does not matter", order < 1e-11, off(order));
+    j.below("the order of the lines does not matter", order, 1e-11, off);
 }
 
 // ---- V.2 ----------------------------------------------------------------------------------------
@@ -163,9 +162,8 @@ Measure measure(Judge& j, const Places& p, bool probe = false) {
 }
 void same(Judge& j, const std::string& what, const Measure& came, const Measure& expected,
           double tolerance = 1e-12) {
-    const bool right = course::near(came.area, expected.area, tolerance) &&
-                       course::near(came.x, expected.x, tolerance) &&
-                       course::near(came.y, expected.y, tolerance);
+    const bool right =
+        near({came.area, came.x, came.y}, {expected.area, expected.x, expected.y}, tolerance);
     j.exact(what, right,
             oracle::say("area %.6g, centroid (%.6g, %.6g) expected; %.6g, (%.6g, %.6g) came",
                         expected.area, expected.x, expected.y, came.area, came.x, came.y));
@@ -211,16 +209,16 @@ void measuring(Judge& j) {
         return true;
     };
     const Measure m = measure(j, skew);
-    j.statistical("as many points of the square [-1,1]^2 fall into it as its area says",
-                  oracle::expect_mean(m.area / 4, 100000, [&] {
-                      const double px = 2 * j.random() - 1, py = 2 * j.random() - 1;
-                      return inside({px, py}) ? 1.0 : 0.0;
-                  }));
+    auto drawn = [&] {
+        const double px = 2 * j.random() - 1, py = 2 * j.random() - 1;
+        return Place{px, py};
+    };
+    j.statistical(
+        "as many points of the square [-1,1]^2 fall into it as its area says",
+        oracle::expect_mean(m.area / 4, 100000, [&] { return inside(drawn()) ? 1.0 : 0.0; }));
     j.statistical("and their mean is the centroid", oracle::expect_mean(m.x, 20000, [&] {
-                      for (int tries = 0; tries < 1000; ++tries) {
-                          const double px = 2 * j.random() - 1, py = 2 * j.random() - 1;
-                          if (inside({px, py})) return px;
-                      }
+                      for (int tries = 0; tries < 1000; ++tries)
+                          if (const Place q = drawn(); inside(q)) return q.x;
                       return 0.0;
                   }));
 }

@@ -9,12 +9,8 @@ using namespace course;
 
 namespace {
 
-// A program that is a line of shell: printf's octal escapes write doubles, 1.0 being
+// Programs are lines of shell: printf's octal escapes write doubles, 1.0 being
 // \0\0\0\0\0\0\360\77.
-struct Shell {
-    std::string line;
-    std::vector<std::string> words() const { return {"sh", "-c", line}; }
-};
 constexpr const char* one = R"(\0\0\0\0\0\0\360\77)";
 constexpr const char* two = R"(\0\0\0\0\0\0\0\100)";
 constexpr const char* nan_number = R"(\0\0\0\0\0\0\370\177)";
@@ -28,7 +24,7 @@ void one_is_one(Judge& j) {
 
 Judgement judged(const std::string& line, const std::vector<KnownMistake>& mistakes = {},
                  double patience = 2) {
-    std::vector<std::string> words = Shell{line}.words();
+    std::vector<std::string> words{"sh", "-c", line};
     std::vector<char*> argv;
     for (std::string& w : words) argv.push_back(w.data());
     argv.push_back(nullptr);
@@ -36,7 +32,7 @@ Judgement judged(const std::string& line, const std::vector<KnownMistake>& mista
         Program program(argv.data(), patience);
         return judge_one("9.1", one_is_one, mistakes, 1, program);
     } catch (const Silence& e) {
-        return {"9.1", "silent", {}, e.what(), {}, {}};
+        return {{}, "9.1", "silent", e.what()};
     }
 }
 // Reads a question of one number, answers it, and waits for the end.
@@ -48,39 +44,39 @@ std::string answers(const std::string& bytes, const std::string& width = "1") {
 }  // namespace
 
 TEST_CASE("right is right, wrong is wrong, and its score is the part of the items that is right") {
-    const Judgement right = judged(answers(one));
+    const Judgement right = judged(answers(one)), wrong = judged(answers(two));
     CHECK(right.state == "right");
     CHECK(right.score() == 1);
-    const Judgement wrong = judged(answers(two));
     CHECK(wrong.state == "wrong");
     CHECK(wrong.score() == 0.5);
     CHECK_FALSE(wrong.named);
-    const Judgement nothing = judged(answers(nan_number));
-    CHECK(nothing.state == "wrong");
+    CHECK(judged(answers(nan_number)).state == "wrong");
 }
 
 TEST_CASE("a mistake is named by its answers alone, and never what is right") {
-    const KnownMistake stub{"9.1", "stub", "", "", {7}},
+    const KnownMistake stub{"9.1", "stub", "", "", {7}}, the_stub{"9.1", "stub", "", "", {2}},
         twice{"9.1", "twice", "twice", "There", {2}}, other{"9.2", "other", "other", "There", {2}},
         longer{"9.1", "longer", "", "", {2, 2}}, right{"9.1", "right", "", "", {1}},
-        empty{"9.1", "empty", "", "", {}};
-    const Judgement named = judged(answers(two), {stub, other, longer, empty, twice});
-    REQUIRE(named.named);
-    CHECK(named.named->name == "twice");
-    CHECK(named.state == "wrong");
-    CHECK_FALSE(judged(answers(one), {stub, right}).named);
-    CHECK_FALSE(judged(answers(two), {stub, right, empty}).named);
-    KnownMistake near_by = twice;
-    near_by.fingerprint = {2 + 1e-6};
-    CHECK_FALSE(judged(answers(two), {near_by}).named);
-    near_by.fingerprint = {2 + 1e-9};  // what a compiler may round otherwise
-    CHECK(judged(answers(two), {near_by}).named);
-    KnownMistake the_stub = stub;
-    the_stub.fingerprint = {2};
-    const Judgement open = judged(answers(two), {twice, the_stub, other});
-    CHECK(open.state == "wrong");  // whichever comes first
-    CHECK(judged(answers(two), {the_stub}).state == "open");
-    CHECK(judged(answers(two), {the_stub}).score() == 0);
+        empty{"9.1", "empty", "", "", {}}, near_by{"9.1", "near", "", "", {2 + 1e-6}},
+        rounded{"9.1", "rounded", "", "", {2 + 1e-9}};  // as a compiler may
+    const struct {
+        const char* answer;
+        std::vector<KnownMistake> known;
+        std::string named, state;
+    } rows[] = {{two, {stub, other, longer, empty, twice}, "twice", "wrong"},
+                {one, {stub, right}, "", "right"},
+                {two, {stub, right, empty}, "", "wrong"},
+                {two, {near_by}, "", "wrong"},
+                {two, {rounded}, "rounded", "wrong"},
+                {two, {twice, the_stub, other}, "twice", "wrong"},  // whichever comes first
+                {two, {the_stub}, "stub", "open"}};
+    for (const auto& r : rows) {
+        const Judgement came = judged(answers(r.answer), r.known);
+        CAPTURE(r.known.front().name);
+        CHECK((came.named ? came.named->name : "") == r.named);
+        CHECK(came.state == r.state);
+        if (r.state == "open") CHECK(came.score() == 0);
+    }
 }
 
 TEST_CASE("a program that is silent is wrong, and it is said why") {

@@ -16,16 +16,13 @@
 #include <initializer_list>
 #include <map>
 #include <optional>
-#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <vector>
+
+#include "course/rows.h"
 
 namespace course {
-
-using In = std::span<const double>;
-using Out = std::vector<double>;
 
 // Rows of as many numbers each.
 struct Rows {
