@@ -1,6 +1,7 @@
 // course/tally_test.cpp  a test gets points for what it finds, and loses them by false alarms
 #include "course/tally.h"
 
+#include <functional>
 #include <set>
 
 #include "oracle/expect.h"
@@ -35,42 +36,40 @@ Played<Refuses> played(Refuses refuses) {
 
 }  // namespace
 
-TEST_CASE("whoever finds all that is wrong, and nothing else, gets all points") {
-    auto j = played([](size_t subject) { return subject < 12; });
-    const Tally t = tally(j, 1);
-    CHECK(t.credit() == 1);
-    CHECK(t.found() == 12);
-    CHECK(t.runs == 12 * 3 + 7 * 17);
-    CHECK(t.right_runs >= 100);
-    CHECK(t.alarms == 0);
-    CHECK(t.quiet());
-    CHECK(t.in_time());
-    CHECK(j.seeds.size() == t.runs);
-}
-
-TEST_CASE("whoever says yes to all, or no to all, gets none") {
-    auto yes = played([](size_t) { return false; });
-    auto no = played([](size_t) { return true; });
-    CHECK(tally(yes, 1).credit() == 0);
-    CHECK(tally(yes, 1).quiet());
-    const Tally t = tally(no, 1);
-    CHECK(t.credit() == 0);
-    CHECK(t.found() == 12);
-    CHECK(t.alarms == 7 * 17);
-    CHECK_FALSE(t.quiet());
-}
-
-TEST_CASE("whoever guesses gets none") {
+TEST_CASE(
+    "whoever finds all that is wrong, and nothing else, gets all points; whoever guesses none") {
     oracle::Random coin(seed_here());
+    auto guess = [&](double p) { return [&, p](size_t) { return coin() < p; }; };
+    std::vector<int> runs(19);
+    struct Row {
+        const char* who;
+        std::function<bool(size_t)> refuses;
+        double credit;
+        size_t found, alarms;
+    };
+    for (const Row& r : std::vector<Row>{
+             {"finds all", [](size_t subject) { return subject < 12; }, 1, 12, 0},
+             {"finds half", [](size_t subject) { return subject < 6; }, 0.5, 6, 0},
+             {"refuses now and then",
+              [&](size_t subject) { return subject < 12 && runs[subject]++ == 0; }, 0, 0, 0},
+             {"says yes to all", [](size_t) { return false; }, 0, 0, 0},
+             {"says no to all", [](size_t) { return true; }, 0, 12, 7 * 17}}) {
+        auto j = played(r.refuses);
+        const Tally t = tally(j, 1);
+        CAPTURE(r.who);
+        CHECK(t.credit() == r.credit);
+        CHECK(t.found() == r.found);
+        CHECK(t.alarms == r.alarms);
+        CHECK(t.quiet() == (r.alarms == 0));
+        CHECK(t.runs == 12 * 3 + 7 * 17);
+        CHECK(t.right_runs >= 100);
+        CHECK(t.in_time());
+        CHECK(j.seeds.size() == t.runs);
+    }
     for (double p : {0.3, 0.5, 0.9}) {
-        auto j = played([&](size_t) { return coin() < p; });
+        auto j = played(guess(p));
         CHECK(tally(j, 1).credit() == 0);
     }
-}
-
-TEST_CASE("half of what is wrong is half of the points") {
-    auto j = played([](size_t subject) { return subject < 6; });
-    CHECK(tally(j, 1).credit() == 0.5);
 }
 
 TEST_CASE("a false alarm that chance explains costs nothing, more cost five times their share") {
@@ -82,12 +81,6 @@ TEST_CASE("a false alarm that chance explains costs nothing, more cost five time
         CHECK(t.quiet() == (alarms <= 2));
         CHECK(t.credit() == doctest::Approx(alarms <= 2 ? 1 : 1 - 5.0 * alarms / (7 * 17)));
     }
-}
-
-TEST_CASE("what is refused now and then is not found") {
-    std::vector<int> runs(19);
-    auto j = played([&](size_t subject) { return subject < 12 && runs[subject]++ == 0; });
-    CHECK(tally(j, 1).found() == 0);
 }
 
 TEST_CASE("when time is up no more is asked") {
