@@ -26,6 +26,12 @@ vec3 power_sample(double u, double v, double n) {
     return about_z(std::pow(1 - u, 1 / (n + 1)), whole_turn * v);
 }
 
+// z follows from the first number.
+template <class Z>
+Pair turned(Z z) {
+    return [z](double u, double v) { return about_z(z(u), whole_turn * v); };
+}
+
 // Concentric squares become concentric circles (Shirley, Chiu 1997).
 vec3 concentric_sample(double u, double v) {
     const double x = 2 * u - 1, y = 2 * v - 1;
@@ -52,11 +58,14 @@ std::optional<vec3> tilted_sample(double u, double v) {
 double tilted_pdf(vec3 w) { return w.z > 0 ? power_pdf({0, 0, dot(w, tilted)}, 3) : 0; }
 
 // Cosine with a probability, or else uniform.
-vec3 mixed_sample(double u, double v, double share) {
-    return u < share ? cosine_sample(u / share, v) : uniform_sample((u - share) / (1 - share), v);
+Pair mixed(double share) {
+    return [=](double u, double v) {
+        return u < share ? cosine_sample(u / share, v)
+                         : uniform_sample((u - share) / (1 - share), v);
+    };
 }
-double mixed_pdf(vec3 w, double share) {
-    return share * cosine_pdf(w) + (1 - share) * uniform_pdf(w);
+auto mixed_pdf(double share) {
+    return [=](vec3 w) { return share * cosine_pdf(w) + (1 - share) * uniform_pdf(w); };
 }
 
 // An ellipse of the tangent plane at z = 1: x = 2 tan, y = tan / 2 of a cosine-sampled direction.
@@ -70,27 +79,21 @@ double stretched_pdf(vec3 w) {
 }
 
 Lineup<Sampler> hidden_samplers() {
-    auto plain = [](double u, double v) { return cosine_sample(u, v); };
     auto power = [](double n) { return [n](vec3 w) { return power_pdf(w, n); }; };
     const Pair lobe = [](double u, double v) { return power_sample(u, v, 20); };
     return {
-        {{"the radius is u",
-          {[](double u, double v) { return about_z(std::sqrt(1 - u * u), whole_turn * v); },
-           cosine_pdf}},
+        {{"the radius is u", {turned([](double u) { return std::sqrt(1 - u * u); }), cosine_pdf}},
          {"uniform under the cosine's density", {uniform_sample, cosine_pdf}},
-         {"the cosine under a uniform density", {plain, uniform_pdf}},
-         {"1 / pi forgotten", {plain, [](vec3 w) { return double(std::max(real(0), w.z)); }}},
+         {"the cosine under a uniform density", {cosine_sample, uniform_pdf}},
+         {"1 / pi forgotten", {cosine_sample, [](vec3 w) { return std::max(0.0, double(w.z)); }}},
          {"the lobe's n + 2 for n + 1",
           {lobe, [](vec3 w) { return 22.0 / 21 * power_pdf(w, 20); }}},
          {"the exponent of the density is one less", {lobe, power(19)}},
          {"half a turn", {[](double u, double v) { return cosine_sample(u, v / 2); }, cosine_pdf}},
          {"equal steps of the angle",
-          {[](double u, double v) {
-               return about_z(std::cos(u * std::numbers::pi / 2), whole_turn * v);
-           },
-           uniform_pdf}},
+          {turned([](double u) { return std::cos(u * std::numbers::pi / 2); }), uniform_pdf}},
          {"positive below the horizon",
-          {plain, [](vec3 w) { return std::abs(w.z) * one_over_pi; }}},
+          {cosine_sample, [](vec3 w) { return std::abs(w.z) * one_over_pi; }}},
          {"directions of other lengths",
           {[](double u, double v) {
                const vec3 w = cosine_sample(u, v);
@@ -102,9 +105,7 @@ Lineup<Sampler> hidden_samplers() {
                return about_z(std::exp(std::log(u) / 2), whole_turn * v + 0 * std::log(u));
            },
            cosine_pdf}},
-         {"shares exchanged",
-          {[](double u, double v) { return mixed_sample(u, v, 0.6); },
-           [](vec3 w) { return mixed_pdf(w, 0.4); }}},
+         {"shares exchanged", {mixed(0.6), mixed_pdf(0.4)}},
          {"rejects, and does not say so",
           {tilted_sample, [](vec3 w) { return 1.2 * tilted_pdf(w); }}},
          {"one number for both",
@@ -123,14 +124,11 @@ Lineup<Sampler> hidden_samplers() {
         {{"concentric circles", {concentric_sample, cosine_pdf}},
          {"float",
           {float_sample, [](vec3 w) { return w.z > 0 ? float(w.z) * 0.31830987f : 0.0f; }}},
-         {"a mixture",
-          {[](double u, double v) { return mixed_sample(u, v, 0.3); },
-           [](vec3 w) { return mixed_pdf(w, 0.3); }}},
+         {"a mixture", {mixed(0.3), mixed_pdf(0.3)}},
          {"rejects what is below the horizon", {tilted_sample, tilted_pdf}},
          {"the numbers exchanged and turned, in four sheets",
           {[](double u, double v) {
-               const double x = 2 * std::abs(v - 0.5), y = std::fmod(2 * u + 0.3, 1.0);
-               return uniform_sample(x, y);
+               return uniform_sample(2 * std::abs(v - 0.5), std::fmod(2 * u + 0.3, 1.0));
            },
            uniform_pdf}},
          {"stretched", {stretched_sample, stretched_pdf}},
@@ -140,27 +138,39 @@ Lineup<Sampler> hidden_samplers() {
 
 // ---- Estimators ---------------------------------------------------------------------------------
 
-// The mean of n values f(rng).
+using Estimate = std::function<double(uint64_t, int)>;
+
+// The mean of n values f(rng, i).
 template <class F>
-double mean_of_n(uint64_t seed, int n, F f) {
-    Rng rng{hash(seed, 4)};
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += f(rng);
-    return sum / n;
+Estimate mean_of(F f) {
+    return [f](uint64_t seed, int n) {
+        Rng rng{hash(seed, 4)};
+        double sum = 0;
+        for (int i = 0; i < n; ++i) {
+            if constexpr (std::is_invocable_v<F, Rng&>)
+                sum += f(rng);
+            else
+                sum += f(rng, i, n);
+        }
+        return sum / n;
+    };
 }
 double bump(double x) { return 1 + 4 * x * x * x; }  // its integral over [0,1] is 2
+const Estimate plain = mean_of([](Rng& rng) { return bump(rng.uniform()); });
 
 // A weighted mean of the bump over samples of a density proportional to x on [0.2, 1]: weights 1 /
 // x make it uniform.
 template <class Weight>
-double self_normalised(uint64_t seed, int n, Weight weight) {
-    Rng rng{hash(seed, 5)};
-    double sum = 0, weights = 0;
-    for (int i = 0; i < n; ++i) {
-        const double x = std::sqrt(0.04 + 0.96 * rng.uniform()), w = weight(x);
-        sum += w * bump(x), weights += w;
-    }
-    return sum / weights;
+Estimate self_normalised(Weight weight) {
+    return [weight](uint64_t seed, int n) {
+        Rng rng{hash(seed, 5)};
+        double sum = 0, weights = 0;
+        for (int i = 0; i < n; ++i) {
+            const double x = std::sqrt(0.04 + 0.96 * rng.uniform()), w = weight(x);
+            sum += w * bump(x), weights += w;
+        }
+        return sum / weights;
+    };
 }
 // The integral of the bump over [0.2, 1], and its mean there.
 constexpr double above_fifth = 0.8 + 1 - 0.0016, mean_above = above_fifth / 0.8;
@@ -189,17 +199,9 @@ double fitted(uint64_t seed, int n) {
     return f / n - slope * (x / n - 0.5);
 }
 
-// n strata, with one number in each; without jitter at their lower ends.
-double strata(uint64_t seed, int n, bool jitter) {
-    Rng rng{hash(seed, 8)};
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += bump((i + (jitter ? rng.uniform() : 0)) / n);
-    return sum / n;
-}
-
 // Survives with probability 1/4; weighed by 1/p, or by `weight`.
-double roulette(uint64_t seed, int n, double weight) {
-    return mean_of_n(seed, n, [=](Rng& rng) {
+Estimate roulette(double weight) {
+    return mean_of([=](Rng& rng) {
         const double value = bump(rng.uniform());
         return rng.uniform() < 0.25 ? weight * value : 0;
     });
@@ -217,79 +219,57 @@ double stops_early(uint64_t seed, int n) {
 }
 
 Lineup<Estimator> hidden_estimators() {
-    auto sampled = [](auto f) {
-        return [f](uint64_t seed, int n) { return mean_of_n(seed, n, f); };
-    };
-    auto plain = [](Rng& rng) { return bump(rng.uniform()); };
     return {
         {{"the length of the interval forgotten",
-          {sampled([](Rng& rng) { return bump(0.2 + 0.8 * rng.uniform()); }), above_fifth}},
+          {mean_of([](Rng& rng) { return bump(0.2 + 0.8 * rng.uniform()); }), above_fifth}},
          {"a firefly is cut off",
-          {sampled([](Rng& rng) { return std::min(4.0, bump(rng.uniform())); }), 2}},
-         {"roulette is not weighed",
-          {[](uint64_t seed, int n) { return roulette(seed, n, 1); }, 2}},
-         {"roulette is weighed by the other probability",
-          {[](uint64_t seed, int n) { return roulette(seed, n, 4 / 3.0); }, 2}},
+          {mean_of([](Rng& rng) { return std::min(4.0, bump(rng.uniform())); }), 2}},
+         {"roulette is not weighed", {roulette(1), 2}},
+         {"roulette is weighed by the other probability", {roulette(4 / 3.0), 2}},
          {"the ratio is called unbiased", {ratio, 2, true}},
          {"the fit is called unbiased", {fitted, 2, true}},
          {"zeros are left out",
-          {sampled([](Rng& rng) {
+          {mean_of([](Rng& rng) {
                double x = rng.uniform();
                while (x < 0.3) x = rng.uniform();
                return bump(x) - bump(0.3);
            }),
            0.7 + 1 - 0.0081 - 0.7 * (1 + 4 * 0.027)}},
-         {"eight seeds, and no more",
-          {[=](uint64_t seed, int n) { return mean_of_n(seed % 8, n, plain); }, 2}},
-         {"n is ignored", {[=](uint64_t seed, int) { return mean_of_n(seed, 16, plain); }, 2}},
+         {"eight seeds, and no more", {[](uint64_t seed, int n) { return plain(seed % 8, n); }, 2}},
+         {"n is ignored", {[](uint64_t seed, int) { return plain(seed, 16); }, 2}},
          {"it stops where it likes the mean", {stops_early, 2}},
          {"strata without jitter",
-          {[](uint64_t seed, int n) { return strata(seed, n, false); }, 2}},
+          {mean_of([](Rng&, int i, int n) { return bump(double(i) / n); }), 2}},
          {"now and then 0 / 0",
-          {sampled([](Rng& rng) {
+          {mean_of([](Rng& rng) {
                const double x = std::floor(500 * rng.uniform());
                return x / x * bump(rng.uniform());
            }),
            2}},
          {"weights of another density",
-          {[](uint64_t seed, int n) {
-               return self_normalised(seed, n, [](double) { return 1.0; });
-           },
-           mean_above, false}},
+          {self_normalised([](double) { return 1.0; }), mean_above, false}},
          {"all samples weigh alike, whatever the sign",
-          {sampled([](Rng& rng) { return std::abs(bump(rng.uniform()) - 2); }), 0}},
+          {mean_of([](Rng& rng) { return std::abs(bump(rng.uniform()) - 2); }), 0}},
          {"the number n counts one too few",
-          {[=](uint64_t seed, int n) { return mean_of_n(seed, n, plain) * n / std::max(1, n - 1); },
-           2}}},
+          {[](uint64_t seed, int n) { return plain(seed, n) * n / std::max(1, n - 1); }, 2}}},
         {{"float",
           {[](uint64_t seed, int n) {
                Rng rng{hash(seed, 10)};
                float sum = 0;
-               for (int i = 0; i < n; ++i) {
-                   const float x = float(rng.uniform());
-                   sum += 1 + 4 * x * x * x;
-               }
+               for (int i = 0; i < n; ++i) sum += float(bump(float(rng.uniform())));
                return double(sum / float(n));
            },
            2}},
-         {"strata", {[](uint64_t seed, int n) { return strata(seed, n, true); }, 2}},
-         {"a grid, shifted",
-          {[](uint64_t seed, int n) {
-               const double shift = Rng{hash(seed, 11)}.uniform();
-               double sum = 0;
-               for (int i = 0; i < n; ++i) sum += bump((i + shift) / n);
-               return sum / n;
-           },
-           2}},
-         {"roulette", {[](uint64_t seed, int n) { return roulette(seed, n, 4); }, 2}},
+         {"strata",
+          {mean_of([](Rng& rng, int i, int n) { return bump((i + rng.uniform()) / n); }), 2}},
+         {"a grid, shifted",  // by the same number for every i: rng is a copy
+          {mean_of([](Rng rng, int i, int n) { return bump((i + rng.uniform()) / n); }), 2}},
+         {"roulette", {roulette(4), 2}},
          {"the ratio", {ratio, 2, false}},
          {"weights that do not sum to 1",
-          {[](uint64_t seed, int n) {
-               return self_normalised(seed, n, [](double x) { return 1 / x; });
-           },
-           mean_above, false}},
+          {self_normalised([](double x) { return 1 / x; }), mean_above, false}},
          {"the truth is 0, and numbers have both signs",
-          {sampled([](Rng& rng) { return bump(rng.uniform()) - 2; }), 0}},
+          {mean_of([](Rng& rng) { return bump(rng.uniform()) - 2; }), 0}},
          {"always the same", {[](uint64_t, int) { return 2.0; }, 2}}}};
 }
 

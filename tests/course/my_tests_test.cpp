@@ -1,9 +1,8 @@
 // course/my_tests_test.cpp  the tests of week 6 find what is wrong, published or hidden, and
 // nothing else.
-#include "course/my_tests.h"
+#include "course/trial.h"
 
 #include "course/hidden_subjects.h"
-#include "course/trial.h"
 #include "oracle/expect.h"
 
 using namespace course;
@@ -11,12 +10,7 @@ using namespace course;
 namespace {
 
 // What students' tests ask of the oracle is no check of this suite.
-struct Aside {
-    const int checks = oracle::statistical_checks;
-    const double spent = oracle::alpha_spent;
-    Aside() { oracle::pictures = ""; }
-    ~Aside() { oracle::statistical_checks = checks, oracle::alpha_spent = spent; }
-};
+using oracle::Aside;
 
 // All wrong subjects are refused in all of a few runs; right ones pass in nearly all of many: one
 // false alarm in a thousand runs is what a test may have.
@@ -55,9 +49,7 @@ TEST_CASE("a test of intersectors finds wrong ones, and lets right ones pass") {
 
 TEST_CASE("tests draw what follows from their seeds") {
     const Aside aside;
-    for (const Trial& t : {trial_of_samplers(practice_samplers(), sampler_passes),
-                           trial_of_estimators(practice_estimators(), estimator_passes),
-                           trial_of_intersectors(practice_intersectors(), intersector_passes)}) {
+    for (const Trial& t : practice()) {
         const Out looks = t.looks(1);
         CHECK(looks == t.looks(1));
         CHECK(looks[0] != t.looks(2)[0]);

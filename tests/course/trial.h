@@ -2,6 +2,8 @@
 //
 // All subjects look alike from outside: whoever takes a function apart finds the same type.
 #pragma once
+#include "course/my_tests.h"
+
 #include <ctime>
 
 #include "course/answers.h"
@@ -30,84 +32,84 @@ struct Trial {
 // What a spy has seen: of all that was asked, in its order, and some features by name.
 struct Seen {
     uint64_t all = 0;
-    std::vector<bool> features;
-    void number(double x) { all = hash(all, std::bit_cast<uint64_t>(x)); }
-    Out out() const {
-        Out numbers{double(all >> 11)};
-        for (bool f : features) numbers.push_back(f);
-        return numbers;
+    std::vector<bool> features = {};
+    void look(std::initializer_list<double> asked, const std::vector<bool>& has) {
+        for (double x : asked) all = hash(all, std::bit_cast<uint64_t>(x));
+        features.resize(has.size());
+        for (size_t i = 0; i < has.size(); ++i) features[i] = features[i] || has[i];
     }
+    Out out() const { return row(all >> 11, features); }
 };
 
-template <class Subject, class Test>
-Trial trial(const Lineup<Subject>& lineup, Test test, std::function<Out(uint64_t)> looks) {
+template <class Subject>
+Trial trial(const Lineup<Subject>& lineup, bool test(const Subject&, uint64_t),
+            std::function<Out(uint64_t)> looks) {
     std::vector<Subject> all;
     for (const auto* side : {&lineup.wrong, &lineup.right})
         for (const Named<Subject>& s : *side) all.push_back(sealed(s.subject));
     return {lineup.wrong.size(), lineup.right.size(),
-            [=](size_t index, uint64_t seed) { return bool(test(all[index], seed)); }, looks};
+            [=](size_t index, uint64_t seed) { return test(all[index], seed); }, looks};
 }
 
 // Samples and densities, and many of them.
-template <class Test>
-Trial trial_of_samplers(const Lineup<Sampler>& lineup, Test test) {
-    return trial(lineup, test, [test](uint64_t seed) {
-        const Sampler right = practice_samplers().right[0].subject;
-        Seen seen{0, {false, false, false}};
-        size_t asked = 0;
-        test({[&](double u, double v) {
-                  seen.number(u), seen.number(v);
-                  seen.features[0] = true, seen.features[2] = ++asked >= 1000;
-                  return right.sample(u, v);
-              },
-              [&](vec3 w) {
-                  seen.features[1] = true;
-                  return right.pdf(w);
-              }},
-             seed);
-        return seen.out();
-    });
+inline Out looks_of_samplers(uint64_t seed) {
+    const Sampler right = practice_samplers().right[0].subject;
+    Seen seen;
+    size_t asked = 0;
+    sampler_passes({[&](double u, double v) {
+                        seen.look({u, v}, {true, false, ++asked >= 1000});
+                        return right.sample(u, v);
+                    },
+                    [&](vec3 w) {
+                        seen.look({}, {false, true, false});
+                        return right.pdf(w);
+                    }},
+                   seed);
+    return seen.out();
 }
 
 // Many estimates, several numbers of samples, and what is said of a subject of either class.
-template <class Test>
-Trial trial_of_estimators(const Lineup<Estimator>& lineup, Test test) {
-    return trial(lineup, test, [test](uint64_t seed) {
-        Seen seen{0, {false, false, false}};
-        int first = 0;
-        size_t asked = 0;
-        for (bool unbiased : {true, false})
-            test({[&](uint64_t of, int n) {
-                      if (first == 0) first = n;
-                      seen.number(double(of >> 11)), seen.number(n);
-                      seen.features[0] = ++asked >= 200;
-                      seen.features[1] = seen.features[1] || n != first;
-                      seen.features[2] = seen.features[2] || n >= 32;
-                      return mean_of_exp(of, n);
-                  },
-                  std::numbers::e - 1, unbiased},
-                 seed);
-        return seen.out();
-    });
+inline Out looks_of_estimators(uint64_t seed) {
+    Seen seen;
+    int first = 0;
+    size_t asked = 0;
+    for (bool unbiased : {true, false})
+        estimator_passes(
+            {[&](uint64_t of, int n) {
+                 if (first == 0) first = n;
+                 seen.look({double(of >> 11), double(n)}, {++asked >= 200, n != first, n >= 32});
+                 return mean_of_exp(of, n);
+             },
+             std::numbers::e - 1, unbiased},
+            seed);
+    return seen.out();
 }
 
 // Spheres, triangles, beams that end, and beams that begin within.
-template <class Test>
-Trial trial_of_intersectors(const Lineup<Intersector>& lineup, Test test) {
-    return trial(lineup, test, [test](uint64_t seed) {
-        Seen seen{0, {false, false, false, false}};
-        const Intersector right = practice_intersectors().right[0].subject;
-        test({[&](const Body& s, const Beam& beam) {
-                 for (double x : {beam.o.x, beam.o.y, beam.o.z, beam.d.x, beam.d.y, beam.d.z})
-                     seen.number(x);
-                 const bool features[] = {s.r > 0, s.r == 0,
-                                          beam.tmax<infinity, s.r> 0 && length(beam.o - s.a) < s.r};
-                 for (size_t i = 0; i < 4; ++i) seen.features[i] = seen.features[i] || features[i];
-                 return right.meet(s, beam);
-             }},
-             seed);
-        return seen.out();
-    });
+inline Out looks_of_intersectors(uint64_t seed) {
+    const Intersector right = practice_intersectors().right[0].subject;
+    Seen seen;
+    intersector_passes({[&](const Body& s, const Beam& beam) {
+                           const auto [o, d, tmax] = beam;
+                           seen.look(
+                               {o.x, o.y, o.z, d.x, d.y, d.z},
+                               {s.r > 0, s.r == 0, tmax<infinity, s.r> 0 && length(o - s.a) < s.r});
+                           return right.meet(s, beam);
+                       }},
+                       seed);
+    return seen.out();
+}
+
+// The student's tests of the three exercises, on these subjects.
+inline std::vector<Trial> trials_of(const Lineup<Sampler>& samplers,
+                                    const Lineup<Estimator>& estimators,
+                                    const Lineup<Intersector>& intersectors) {
+    return {trial(samplers, sampler_passes, looks_of_samplers),
+            trial(estimators, estimator_passes, looks_of_estimators),
+            trial(intersectors, intersector_passes, looks_of_intersectors)};
+}
+inline std::vector<Trial> practice() {
+    return trials_of(practice_samplers(), practice_estimators(), practice_intersectors());
 }
 
 inline double seconds_of_cpu() { return double(std::clock()) / CLOCKS_PER_SEC; }
