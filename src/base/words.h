@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -43,19 +44,18 @@ inline std::string in_quotes(std::string_view word) {
     return "'" + shown + (word.size() > 40 ? "...'" : "'");
 }
 
-// The whole of `text` as a number of [-largest, largest]; throws UserError otherwise.  1e30 is the
-// most that any statement or option needs, and float holds it.
+// The whole of `text` as a decimal number of [-largest, largest]; throws UserError otherwise.  1e30
+// is the most that any statement or option needs, and float holds it.  strtod rounds correctly, and
+// reads '.' as no program sets a locale; leading blanks and hexadecimal digits, which it takes, are
+// refused.
 inline constexpr double largest_number = 1e30;
 inline double parse_number(std::string_view text, double largest = largest_number) {
-    const bool plus = text.starts_with('+') && !text.starts_with("+-");
-    std::string_view digits = text.substr(plus);
-    double x = 0;
-    auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
-    if (error == std::errc::result_out_of_range)
-        throw UserError(in_quotes(text) + " is out of range");
-    if (error != std::errc() || end != digits.data() + digits.size())
+    const std::string word(text);
+    char* end = nullptr;
+    const double x = std::strtod(word.c_str(), &end);
+    const bool whole = !word.empty() && end == word.c_str() + word.size();
+    if (!whole || std::isnan(x) || word.find_first_of(" \t\n\v\f\rxX") != word.npos)
         throw UserError(in_quotes(text) + " is not a number");
-    if (!std::isfinite(x)) throw UserError(in_quotes(text) + " is not finite");
     if (std::abs(x) > largest) throw UserError(in_quotes(text) + " is too large");
     return x;
 }

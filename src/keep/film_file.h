@@ -89,8 +89,7 @@ public:
     double number(std::string_view key, double most = 0x1p53, char after = '\0') const {
         const std::string value = said(key);
         const char* const from = value.data() + (after ? value.find(after) + 1 : 0);
-        double x = -1;
-        std::from_chars(from, value.data() + value.size(), x);
+        const double x = std::strtod(from, nullptr);
         if (!(x >= 0 && x <= most)) refuse("its " + std::string(key) + " is " + in_quotes(value));
         return x;
     }

@@ -86,7 +86,7 @@ public:
             while (sync.arrive_and_wait(), !enough)
                 for (size_t k; (k = next++) < order_.size();) rays += receive(order_[k]);
         };
-        std::vector<std::jthread> others;
+        std::vector<std::thread> others;
         for (unsigned k = 1; k < threads_; ++k) {
             try {
                 others.emplace_back(work);
@@ -95,6 +95,7 @@ public:
             }
         }
         work();
+        for (std::thread& other : others) other.join();
     }
 
     static Bytes bytes() {

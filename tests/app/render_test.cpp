@@ -306,7 +306,7 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     const Scene& scene = unequal_picture();
     Options o = quick(SamplerKind::sobol, 1 << 20);
     o.error = 1e-6;
-    std::jthread user([] {
+    std::thread user([] {
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
         interrupted = SIGINT;
     });

@@ -21,13 +21,23 @@ TEST_CASE("a number is the whole word, finite and within its limits") {
     CHECK(parse_number("-1.5e-3") == -0.0015);
     CHECK(parse_number("+2") == 2);
     CHECK(parse_number("-1e30") == -1e30);
-    for (const char* word : {"", "x", "1x", "1 ", " 1", "+-1", "++1", "0x10", "1,5"})
-        CHECK(about_number(word).find("is not a number") != std::string::npos);
-    CHECK(about_number("nan") == "'nan' is not finite");
-    CHECK(about_number("-inf") == "'-inf' is not finite");
-    CHECK(about_number("1.1e30") == "'1.1e30' is too large");
-    CHECK(about_number("-1.1e30") == "'-1.1e30' is too large");
-    CHECK(about_number("1e999") == "'1e999' is out of range");
+    CHECK(parse_number(".5") == 0.5);
+    CHECK(parse_number("5.") == 5);
+    for (const char* word :
+         {"", "x", "1x", "1 ", " 1", "\n1", "+-1", "++1", "0x10", "0X1p3", "1,5", "1e", ".", "nan"})
+        CHECK(about_number(word) == in_quotes(word) + " is not a number");
+    CHECK(about_number(std::string("1\0", 2)) == "'1?' is not a number");
+    for (const char* word : {"1.1e30", "-1.1e30", "1e999", "-inf"})
+        CHECK(about_number(word) == in_quotes(word) + " is too large");
+}
+
+TEST_CASE("a number is the nearest double, rounded to even from a tie") {
+    CHECK(parse_number("0.1") == 0.1);
+    CHECK(parse_number("9007199254740993") == 9007199254740992);  // a tie, to even
+    CHECK(parse_number("9007199254740993.0000000000000000000001") == 9007199254740994);
+    CHECK(parse_number("2.2250738585072012e-308") == 0x1p-1022);
+    CHECK(parse_number("2e-324") == 0);
+    CHECK(parse_number("3e-324") == 0x1p-1074);
 }
 
 TEST_CASE("a fraction is a number, or so many hundredths, and not negative") {

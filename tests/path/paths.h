@@ -30,11 +30,11 @@ template <class F>
 auto side_by_side(int n, F f) {
     std::vector<decltype(f(0))> results(static_cast<size_t>(n));
     std::atomic<int> next = 0;
-    std::vector<std::jthread> workers;
+    std::vector<std::thread> workers;
     for (unsigned i = std::max(1u, std::thread::hardware_concurrency()); i > 0; --i)
         workers.emplace_back([&] {
             for (int k = next++; k < n; k = next++) results[static_cast<size_t>(k)] = f(k);
         });
-    workers.clear();
+    for (std::thread& worker : workers) worker.join();
     return results;
 }

@@ -47,8 +47,8 @@ TEST_CASE("an OBJ file that cannot be used is refused at its line") {
     } table[] = {
         {"v 1 2\n", "m.obj:1: v needs three numbers"},
         {"v 1 2 x\n", "m.obj:1: 'x' is not a number"},
-        {"\nv 1 nan 2\n", "m.obj:2: 'nan' is not finite"},
-        {"v 1 1e999 2\n", "m.obj:1: '1e999' is out of range"},
+        {"\nv 1 nan 2\n", "m.obj:2: 'nan' is not a number"},
+        {"v 1 1e999 2\n", "m.obj:1: '1e999' is too large"},
         {corners + "f 1 2\n", "m.obj:5: a face needs three corners or more"},
         {corners + "f 1 2 5\n", "m.obj:5: no vertex '5' among the 4 so far"},
         {corners + "f 0 1 2\n", "m.obj:5: no vertex '0' among the 4 so far"},

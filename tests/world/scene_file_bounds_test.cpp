@@ -139,7 +139,7 @@ TEST_CASE("words and lines of 10 kB, numbers of 10 000 digits, a line of 5000 wo
     const std::string digits(9000, '1');
     CHECK(parsed(folder, before + "sphere 0 0 0  0." + digits + "  d\n").scene.shapes[0].r ==
           doctest::Approx(1. / 9));
-    CHECK(complaint(folder, before + "sphere 0 0 0 " + digits + " d\n").find("out of range") !=
+    CHECK(complaint(folder, before + "sphere 0 0 0 " + digits + " d\n").find("is too large") !=
           std::string::npos);
     CHECK(complaint(folder, std::string(9990, 'x')).find("unknown keyword 'xxx") !=
           std::string::npos);
