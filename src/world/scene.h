@@ -18,7 +18,8 @@ struct Camera {
 inline Camera look_at(vec3 eye, vec3 target, real fov) {
     vec3 forward = unit(target - eye);
     vec3 right = unit(cross(forward, {0, 1, 0}));
-    return {eye, right, cross(right, forward), forward, std::tan(fov * pi / 360)};
+    const vec2 half = turned(fov / 720);
+    return {eye, right, cross(right, forward), forward, half.y / half.x};
 }
 
 // Through the point (x, y) of the image plane, in pixels from its top left corner.  Pixels are
@@ -132,8 +133,9 @@ inline void add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
 // Size along x, y, z from the origin, then rotated about y (x' = c x + s z, z' = c z - s x), then
 // moved.  Faces outwards.  Each corner is computed once, so the box is watertight.
 inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t material) {
-    const double angle = double(degrees) * std::numbers::pi / 180;
-    const double cosine = std::cos(angle), sine = std::sin(angle);
+    const real turns = degrees / 360;
+    const vec2 at = turned(turns - std::floor(turns));
+    const double cosine = double(at.x), sine = double(at.y);
     vec3 corner[8];  // bit 0: far in x, bit 1: in y, bit 2: in z
     for (int i = 0; i < 8; ++i) {
         const double x = double(size.x) * (i & 1), z = double(size.z) * (i >> 2);

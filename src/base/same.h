@@ -1,0 +1,50 @@
+// base/same.h  1  exponentials and logarithms with the same bits everywhere
+//
+// C libraries round exp, log and pow each in its own way, and glibc by the processor: one result of
+// a thousand differs.  What an image depends on is these, `turned` of world/warp.h for sines, and
+// what IEEE 754 rounds: + - * / sqrt fma.  Powers of two are taken off exactly; of what is left
+// Taylor's polynomials are exact to rounding.  Errors are below 3 * 2^-53.  Always double.
+#pragma once
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace same {
+
+inline constexpr double ln2_high = 0x1.62e42feep-1, ln2_low = 0x1.a39ef35793c76p-33;
+
+// x = 2^k m > 0 and normal, 1/2 <= m^2 < 2: k log(2) + 2 artanh(s), s = (m - 1) / (m + 1).
+inline double log(double x) {
+    const int64_t bits = std::bit_cast<int64_t>(x), k = (bits - 0x3fe6a09e667f3bcd) >> 52;
+    const double m = std::bit_cast<double>(bits - k * (int64_t(1) << 52)), s = (m - 1) / (m + 1);
+    const double s2 = s * s, s4 = s2 * s2;
+    double even = 0, odd = 0;  // the powers 2, 6, ... and 4, 8, ... of artanh(s) / s
+    for (int n = 19; n > 2; n -= 4) even = even * s4 + 1. / n, odd = odd * s4 + 1. / (n + 2);
+    const double rest = 2 * s * (s2 * (even + s2 * odd));
+    return double(k) * ln2_high + (2 * s + (rest + double(k) * ln2_low));
+}
+inline double log1p(double x) {
+    const double sum = 1 + x;
+    return log(sum) + ((1 - sum) + x) / sum;
+}
+
+// e^x - c for c = 0 or 1, without cancellation, x <= 1; it ends at x = -708.
+inline double exp_less(double x, double c) {
+    x = x < -708 ? -708 : x;
+    const double k = std::floor(x * 0x1.71547652b82fep0 + 0.5);
+    const double r = (x - k * ln2_high) - k * ln2_low, r2 = r * r;
+    double even = 0, odd = 0;  // cosh(r) - 1 and sinh(r) / r - 1
+    for (int n = 12; n > 1; n -= 2) {
+        even = (even + 1) * (r2 * (1. / (n * (n - 1))));
+        odd = (odd + 1) * (r2 * (1. / (n * (n + 1))));
+    }
+    const double scale = std::bit_cast<double>((int64_t(k) + 1023) << 52);
+    return scale * (even + (r + r * odd)) + (scale - c);
+}
+inline double exp(double x) { return exp_less(x, 0); }
+inline double expm1(double x) { return exp_less(x, 1); }
+
+// x^n for 0 < x <= 1 and n >= 0.
+inline double pow(double x, double n) { return exp(n * log(x)); }
+
+}  // namespace same
