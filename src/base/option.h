@@ -117,12 +117,12 @@ struct CommonOptions {
 
 inline Option output_row(CommonOptions& o, std::string otherwise) {
     auto set = [&o](Text v) {
-        if (!v.ends_with(".png") && !v.ends_with(".pfm"))
-            throw UserError(in_quotes(v) + " ends neither in .png nor in .pfm");
+        if (!v.ends_with(".png") && !v.ends_with(".pfm") && !v.ends_with(".hdr"))
+            throw UserError(in_quotes(v) + " ends in none of .png, .pfm and .hdr");
         o.outputs.emplace_back(v);
     };
-    return {"-o", "FILE", "image to write, .png or .pfm; may be repeated", std::move(otherwise),
-            set};
+    return {"-o", "FILE", "image to write, .png, .pfm or .hdr; may be repeated",
+            std::move(otherwise), set};
 }
 
 inline OptionTable common_rows(CommonOptions& o) {

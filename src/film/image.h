@@ -78,10 +78,28 @@ inline std::string encode_png(const Image& image, double exposure) {
     return std::string(bytes.get(), bytes.get() + size);
 }
 
-// By the ending of `path`, .png or .pfm; the latter is linear float, little-endian, the bottom row
-// first.
+// The bytes of a Radiance file (Ward 1991): linear; the greatest channel has the exponent, each 8
+// bits, rounded down.  Numbers below 0 become 0, those above 2^127 (1 - 2^-8) that.
+inline std::string encode_hdr(const Image& image) {
+    std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(image.height) +
+                        " +X " + std::to_string(image.width) + "\n";
+    bytes.reserve(bytes.size() + 4 * image.pixels.size());
+    for (const auto& pixel : image.pixels) {
+        int exponent = 0;
+        std::frexp(std::clamp(std::max({pixel[0], pixel[1], pixel[2]}), 0x1p-127f, 0x1.fep126f),
+                   &exponent);
+        for (float channel : pixel)
+            bytes += char(uint8_t(std::clamp(std::ldexp(channel, 8 - exponent), 0.f, 255.f)));
+        bytes += char(exponent + 128);
+    }
+    return bytes;
+}
+
+// By the ending of `path`: .png, .hdr, or .pfm, which is linear float, little-endian, the bottom
+// row first.
 inline void write_image(const std::string& path, const Image& image, double exposure) {
     static_assert(std::endian::native == std::endian::little);
+    if (path.ends_with(".hdr")) return write_file(path, encode_hdr(image));
     if (!path.ends_with(".pfm")) return write_file(path, encode_png(image, exposure));
     const std::string header =
         "PF\n" + std::to_string(image.width) + " " + std::to_string(image.height) + "\n-1.0\n";

@@ -97,7 +97,7 @@ check_words() {
     for ((which = 0; which < ${#outputs[@]}; which += 2)); do
         case ${outputs[which]}${outputs[which + 1]} in
             -o*.pfm | -o*.png | --stats*) ;;
-            *) fail "-o ${outputs[which + 1]}: ends neither in .png nor in .pfm" ;;
+            *) fail "-o ${outputs[which + 1]}: ends in none of .png, .pfm and .hdr" ;;
         esac
         [ -d "$(dirname "${outputs[which + 1]}")" ] || fail "${outputs[which + 1]}: there is no such folder"
     done

@@ -16,8 +16,8 @@ inline std::vector<Refusal> refused_words() {
         {"--light @", "MIS;none|nee;~", "--light: unknown value '@'"},
         {"--direction @", "bdsf", "--direction: unknown value '@' (did you mean 'bsdf'?)"},
         {"--direction @", "unifrom", "--direction: unknown value '@' (did you mean 'u"},
-        {"-o @", "a.jpg;a.PNG;a;~", "-o: '@' ends neither in .png nor in .pfm"},
-        {"-o @", "a.txt -o a.png;a.png -o a.txt", "-o: 'a.txt' ends neither"},
+        {"-o @", "a.jpg;a.PNG;a;~", "-o: '@' ends in none of .png, .pfm and .hdr"},
+        {"-o @", "a.txt -o a.png;a.png -o a.txt", "-o: 'a.txt' ends in none"},
         // Sizes and counts.
         {"--size @x1000000", "1000000", "--size: '@' is not a whole number from 1 to"},
         {"--size @", "65536x65536", "--size: an image of @ has more than 1073741824"},

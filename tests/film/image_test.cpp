@@ -59,6 +59,56 @@ TEST_CASE("a PFM is its header, then rows from the bottom up, little-endian") {
     CHECK(values == std::array<float, 12>{2, 2, 2, 3, 3, 3, 0, 0, 0, 1, 1, 1});
 }
 
+TEST_CASE("a Radiance file holds 8 bits of each channel and an exponent, from the top left") {
+    const Folder folder;
+    Image image(3, 2);
+    image.at(0, 0) = {1, 0.5f, 0.25f};
+    image.at(1, 0) = {0, 0, 0};
+    image.at(2, 0) = {-1, 3e38f, 0x1p126f};  // as near as it gets
+    image.at(0, 1) = {-3, -0.25f, -1e30f};
+    image.at(1, 1) = {1e-30f, 255.99f, 256};
+    image.at(2, 1) = {0x1p-149f, 0, 0};
+    write_image(folder / "a.hdr", image, 17);  // exposure is for PNG
+    const std::string bytes = folder.read("a.hdr"),
+                      header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 3\n";
+    REQUIRE(bytes.size() == header.size() + 24);
+    CHECK(bytes.starts_with(header));
+    CHECK(bytes.substr(header.size(), 4) == "\x80\x40\x20\x81");
+    CHECK(bytes.substr(header.size() + 4, 3) == std::string(3, '\0'));
+    CHECK(bytes.substr(header.size() + 8, 4) == std::string("\0\xff\x80\xff", 4));
+    CHECK(bytes.substr(header.size() + 12, 3) == std::string(3, '\0'));
+    CHECK(bytes.substr(header.size() + 16, 4) == std::string("\0\x7f\x80\x89", 4));
+    CHECK(bytes.substr(header.size() + 20, 3) == std::string(3, '\0'));
+}
+
+TEST_CASE("a Radiance file is what others read, each number at most 2^-7 of the greatest less") {
+    for (int width : {1, 8, 300}) {  // others look for run lengths from 8 on
+        Image image = variegated(width, 5);
+        float scale = 1e-30f;
+        for (Colour& pixel : image.pixels) {
+            for (float& channel : pixel) channel = std::abs(channel) * scale;
+            scale = scale > 1e30f ? 1e-30f : scale * 7;
+        }
+        const std::string bytes = encode_hdr(image);
+        int w = 0, h = 0, channels = 0;
+        float* read = stbi_loadf_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                                             int(bytes.size()), &w, &h, &channels, 3);
+        REQUIRE(read != nullptr);
+        CHECK(w == width);
+        CHECK(h == 5);
+        bool near = true;
+        for (size_t i = 0; i < image.pixels.size(); ++i) {
+            const Colour& p = image.pixels[i];
+            for (size_t c = 0; c < 3; ++c) {
+                const float less = p[c] - read[3 * i + c];
+                near = near && less >= 0 && less <= std::max({p[0], p[1], p[2]}) / 128;
+            }
+        }
+        CHECK(near);
+        stbi_image_free(read);
+    }
+}
+
 TEST_CASE("sRGB has the values of its standard") {
     CHECK(encode_srgb(0) == 0);
     CHECK(std::abs(encode_srgb(1) - 1) < 1e-15);

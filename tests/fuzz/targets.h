@@ -77,7 +77,8 @@ inline void check_options(const OptionTable& table, const Options& o) {
     demand(o.threads >= 1 && o.threads <= 1024, "threads that cannot be");
     demand(std::isfinite(o.seconds) && o.seconds >= 0, "a time that cannot be");
     for (const std::string& name : o.outputs)
-        demand(name.ends_with(".png") || name.ends_with(".pfm"), "an image of no kind");
+        demand(name.ends_with(".png") || name.ends_with(".pfm") || name.ends_with(".hdr"),
+               "an image of no kind");
     for (const Option& row : table)
         if (row.json) demand(!row.json().empty(), "an option without a value in JSON");
 }

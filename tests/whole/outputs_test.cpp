@@ -13,6 +13,10 @@ TEST_CASE("without -o the images are out/NAME.png and out/NAME.pfm; with it, tho
     CHECK(other.files() == 5);
     CHECK(other.same("a.pfm", "c.pfm"));
     CHECK(other.same("b.png", "d.png"));
+    other.render("-o a.hdr --exposure 9 --spp 2");
+    other.render("-o b.hdr --spp 2");
+    CHECK(other.read("a.hdr").starts_with("#?RADIANCE\n"));
+    CHECK(other.same("a.hdr", "b.hdr"));  // exposure is for PNG
     const bool same_pfm = other.read("a.pfm") == folder.read("out/my.first scene.pfm"),
                same_png = other.read("b.png") == folder.read("out/my.first scene.png");
     CHECK(same_pfm);

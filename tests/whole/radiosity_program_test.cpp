@@ -388,7 +388,7 @@ TEST_CASE("radiosity refuses, in one line, what it cannot do, and touches no fil
             {"--stats a.png -o a.png file.scene", "a.png: would replace another file"},
             {"-o missing/a.png file.scene",
              "missing/a.png: cannot write: No such file or directory"},
-            {"-o a.jpg file.scene", "-o: 'a.jpg' ends neither in .png nor in .pfm"},
+            {"-o a.jpg file.scene", "-o: 'a.jpg' ends in none of .png, .pfm and .hdr"},
         });
     CHECK(contains(run(place, "radiosity --mesh 1e-6 file.scene").err, " would fit\n"));
     expect_success(place, "radiosity --mesh 3 --shots 1 -o a.pfm fine.scene");

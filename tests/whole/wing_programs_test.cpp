@@ -104,7 +104,7 @@ TEST_CASE("shadow and voronoi refuse, in one line, what they cannot do") {
                      {"--sampler sobol a.scene", "unknown option '--sampler'"},
                      {"--error 1% a.scene", "unknown option '--error'"},
                      {"--spp 2097153 a.scene", "--spp: at most 1048576 samples a replication"},
-                     {"-o a.scene a.scene", "-o: 'a.scene' ends neither in .png nor in .pfm"}});
+                     {"-o a.scene a.scene", "-o: 'a.scene' ends in none of .png, .pfm and .hdr"}});
 }
 
 TEST_CASE("shadow and voronoi: Ctrl-C leaves no image") {
