@@ -6,15 +6,22 @@
 
 namespace {
 
-// The sampler as a map of (u, v), turned so that its axis is n.
+// The sampler turned so that its axis is n, as a map of (u, v).
 auto about(vec3 n, auto sample) {
     const Frame f = frame(n);
     return [=](double u, double v) { return f.to_world(sample(vec2{real(u), real(v)})); };
 }
-oracle::Options about(vec3 n) {
-    oracle::Options o{.sees = 0.04};
+// Checks that directions of a sampler about n have this density.
+void expect_density(oracle::Random& random, vec3 n, auto sample, auto pdf,
+                    const std::string& name = "") {
+    oracle::Options o{.sees = 0.04, .name = name};
     o.axis = {double(n.x), double(n.y), double(n.z)};
-    return o;
+    EXPECT(oracle::expect_density(random, about(n, sample), pdf, o), 0.05);
+}
+// Two numbers, in their order.
+vec2 pair_of(oracle::Random& random) {
+    const double u = random(), v = random();
+    return {real(u), real(v)};
 }
 
 // Axes of the whole sphere and at its poles, where frames have gone wrong.
@@ -57,86 +64,39 @@ TEST_CASE("u turns: within 2 ulp of 1 of cosine and sine, at quarters of a turn 
 TEST_CASE("uniform hemisphere: p(w) = 1 / 2 pi, about any axis") {
     oracle::Random random(seed_here());
     for (vec3 n : some_axes())
-        EXPECT(oracle::expect_density(
-                   random, about(n, sample_uniform_hemisphere),
-                   [&](vec3 w) { return pdf_uniform_hemisphere(dot(n, w)); }, about(n)),
-               0.05);
+        expect_density(random, n, sample_uniform_hemisphere,
+                       [&](vec3 w) { return pdf_uniform_hemisphere(dot(n, w)); });
 }
 
 TEST_CASE("uniform sphere: p(w) = 1 / 4 pi") {
     oracle::Random random(seed_here());
-    EXPECT(oracle::expect_density(
-               random,
-               [](real u, real v) {
-                   return sample_uniform_sphere({u, v});
-               },
-               [](vec3) { return pdf_uniform_sphere(); }),
-           0.05);
+    expect_density(random, {0, 0, 1}, sample_uniform_sphere,
+                   [](vec3) { return pdf_uniform_sphere(); });
 }
 
 TEST_CASE("cosine hemisphere: p(w) = cos(theta) / pi, about any axis") {
     oracle::Random random(seed_here());
     for (vec3 n : some_axes())
-        EXPECT(oracle::expect_density(
-                   random, about(n, sample_cosine_hemisphere),
-                   [&](vec3 w) { return pdf_cosine_hemisphere(dot(n, w)); }, about(n)),
-               0.05);
+        expect_density(random, n, sample_cosine_hemisphere,
+                       [&](vec3 w) { return pdf_cosine_hemisphere(dot(n, w)); });
 }
 
-TEST_CASE("cosine hemisphere: E[z^k] = 2 / (k+2), E[x] = E[y] = 0, estimates of int cos dw") {
+TEST_CASE("cosine hemisphere: cos / pdf is pi, exactly") {
     oracle::Random random(seed_here());
-    auto draw_one = [&] {
-        const vec2 u{real(random()), real(random())};
-        return sample_cosine_hemisphere(u);
+    const auto cosine = [&] {
+        const vec3 w = sample_cosine_hemisphere(pair_of(random));
+        return w.z / pdf_cosine_hemisphere(w.z);
     };
-    for (int k : {1, 2, 3, 6})
-        EXPECT(oracle::expect_mean(2 / (k + 2.0), 50000,
-                                   [&] { return std::pow(draw_one().z, real(k)); })
-                   .of("E[z^k] = int z^k cos/pi dw"),
-               0.08);
-    EXPECT(oracle::expect_mean(0, 50000, [&] { return draw_one().x; }), 0.02);
-    EXPECT(oracle::expect_mean(0, 50000, [&] { return draw_one().y; }), 0.02);
-    // cos / pdf has no variance: exact.
-    EXPECT(oracle::expect_mean(std::numbers::pi, 1000,
-                               [&] {
-                                   const vec3 w = draw_one();
-                                   return w.z / pdf_cosine_hemisphere(w.z);
-                               })
-               .of("int cos dw = pi"),
-           1e-12);
-    EXPECT(oracle::expect_mean(std::numbers::pi, 100000,
-                               [&] {
-                                   const vec2 u{real(random()), real(random())};
-                                   const vec3 w = sample_uniform_hemisphere(u);
-                                   return w.z / pdf_uniform_hemisphere(w.z);
-                               })
-               .of("int cos dw = pi by uniform directions, variance pi^2 / 3"),
-           0.016);
+    EXPECT(oracle::expect_mean(std::numbers::pi, 1000, cosine).of("int cos dw = pi"), 1e-12);
 }
 
 TEST_CASE("Phong lobe: p(w) = (n+1)/(2 pi) cos^n(alpha), exponents 0 to 10^5") {
     oracle::Random random(seed_here());
     for (real n : {real(0), real(0.5), real(1), real(10), real(1000), real(1e5)})
-        for (vec3 z : {vec3{0, 0, 1}, unit({1, -2, real(-0.3)})}) {
-            oracle::Options o = about(z);
-            EXPECT(oracle::expect_density(
-                       random, about(z, [&](vec2 u) { return sample_phong_lobe(u, n); }),
-                       [&](vec3 w) { return pdf_phong_lobe(dot(z, w), n); }, o),
-                   0.05);
-        }
-}
-
-TEST_CASE("Phong lobe: E[cos] = (n+1)/(n+2), and 1 - cos keeps its digits") {
-    oracle::Random random(seed_here());
-    for (real n : {real(0), real(3), real(100), real(1e5)})
-        EXPECT(oracle::expect_mean(1 / (double(n) + 2), 100000,
-                                   [&] {
-                                       const vec2 u{real(random()), real(random())};
-                                       const vec3 w = sample_phong_lobe(u, n);
-                                       return (sqr(w.x) + sqr(w.y)) / (1 + w.z);  // 1 - cos
-                                   })
-                   .of("E[1 - cos] = 1 / (n+2)"),
-               0.03);
+        for (vec3 z : {vec3{0, 0, 1}, unit({1, -2, real(-0.3)})})
+            expect_density(
+                random, z, [&](vec2 u) { return sample_phong_lobe(u, n); },
+                [&](vec3 w) { return pdf_phong_lobe(dot(z, w), n); });
 }
 
 TEST_CASE("Phong lobe: the sine keeps its digits, however narrow the lobe") {
@@ -153,7 +113,6 @@ TEST_CASE("Phong lobe: the sine keeps its digits, however narrow the lobe") {
 
 TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 10^-8") {
     oracle::Random random(seed_here());
-    const oracle::Options o{.sees = 0.04};
     for (real sin2 : {real(1), real(0.75), real(1e-2), real(1e-4), real(1e-10), real(1e-16)}) {
         CAPTURE(sin2);
         const long double c = std::sqrt(1 - (long double)(sin2));
@@ -161,28 +120,18 @@ TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 1
         CHECK(std::abs(double(pdf_cone(sin2) / exact - 1)) < 4 * double(ulp));
         // Cones of few of float's directions: their samples have no density.
         if (sizeof(real) == 4 && sin2 < real(0.99e-4)) continue;
-        auto inside = [&](vec3 w) {
-            return w.z >= 0 && sqr(w.x) + sqr(w.y) <= sin2 * (1 + 8 * ulp);
-        };
-        EXPECT(oracle::expect_density(
-                   random, about({0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); }),
-                   [&](vec3 w) { return inside(w) ? pdf_cone(sin2) : 0; }, o)
-                   .of(oracle::say("sin^2 = %g", double(sin2))),
-               0.05);
+        expect_density(
+            random, {0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); },
+            [&](vec3 w) {
+                const bool inside = w.z >= 0 && sqr(w.x) + sqr(w.y) <= sin2 * (1 + 8 * ulp);
+                return inside ? pdf_cone(sin2) : 0;
+            },
+            oracle::say("sin^2 = %g", double(sin2)));
     }
 }
 
-TEST_CASE("cone: E[1 - cos] = (1 - cos_max) / 2, to the last digits of the smallest") {
-    oracle::Random random(seed_here());
-    for (double sin2 : {0.75, 1e-4, 1e-12})
-        EXPECT(oracle::expect_mean(sin2 / (1 + std::sqrt(1 - sin2)) / 2, 20000,
-                                   [&] {
-                                       const vec2 u{real(random()), real(random())};
-                                       const vec3 w = sample_cone(u, real(sin2));
-                                       return (sqr(w.x) + sqr(w.y)) / (1 + w.z);
-                                   }),
-               0.05);
-    // 2 pi (1 - cos): against long double, where the naive form has no digit left.
+TEST_CASE("cone: 2 pi (1 - cos), to the last digits of the smallest") {
+    // In long double; the naive form has no digit left.
     for (double sin2 : {1.0, 0.5, 1e-3, 1e-8, 1e-16, 1e-30}) {
         const long double c = std::sqrt(1 - (long double)(real(sin2)));
         const long double exact = 2 * std::numbers::pi_v<long double> * real(sin2) / (1 + c);
@@ -237,18 +186,15 @@ TEST_CASE("power heuristic: p^2 / (p^2 + q^2), sums to 1, at any scale") {
 
 TEST_CASE("multiple importance sampling: int cos^2 dw = 2 pi / 3 from two techniques") {
     oracle::Random random(seed_here());
-    EXPECT(oracle::expect_mean(2 * std::numbers::pi / 3, 100000,
-                               [&] {
-                                   const vec2 u{real(random()), real(random())};
-                                   const vec2 v{real(random()), real(random())};
-                                   const vec3 a = sample_cosine_hemisphere(u);
-                                   const vec3 b = sample_phong_lobe(v, 20);
-                                   const real pa = pdf_cosine_hemisphere(a.z),
-                                              qa = pdf_phong_lobe(a.z, 20);
-                                   const real pb = pdf_cosine_hemisphere(b.z),
-                                              qb = pdf_phong_lobe(b.z, 20);
-                                   return sqr(a.z) / pa * power_heuristic(pa, qa) +
-                                          sqr(b.z) / qb * power_heuristic(qb, pb);
-                               }),
-           0.03);
+    auto weighted = [](vec3 w, bool by_lobe) {
+        const real cosine = pdf_cosine_hemisphere(w.z), lobe = pdf_phong_lobe(w.z, 20);
+        return by_lobe ? sqr(w.z) / lobe * power_heuristic(lobe, cosine)
+                       : sqr(w.z) / cosine * power_heuristic(cosine, lobe);
+    };
+    const auto sum_of_two = [&] {
+        const vec3 a = sample_cosine_hemisphere(pair_of(random));
+        const vec3 b = sample_phong_lobe(pair_of(random), 20);
+        return weighted(a, false) + weighted(b, true);
+    };
+    EXPECT(oracle::expect_mean(2 * std::numbers::pi / 3, 100000, sum_of_two), 0.03);
 }
