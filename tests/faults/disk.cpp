@@ -44,7 +44,7 @@ template <class Call>
 Call* real(const char* name) {
     return reinterpret_cast<Call*>(::dlsym(RTLD_NEXT, name));
 }
-#define REAL(name) static auto* const next = real<decltype(::name)>(#name)
+#define NEXT(name) real<decltype(::name)>(#name)
 
 // ---- What is asked for --------------------------------------------------------------------------
 
@@ -71,8 +71,7 @@ struct Plan {
             if (key == "seed") state = std::strtoull(value.c_str(), nullptr, 10);
             if (key == "room") room = std::strtoull(value.c_str(), nullptr, 10);
             if (key == "log")
-                log = real<decltype(::open)>("open")(
-                    value.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+                log = NEXT(open)(value.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
             if (colon == key.npos) continue;
             Rule rule{key.substr(0, colon), key.substr(colon + 1)};
             if (word[split] == '@')
@@ -97,7 +96,7 @@ struct Plan {
     }
     void note(const std::string& call, const std::string& what, const std::string& path) const {
         const std::string line = call + " " + what + " " + path + "\n";
-        if (log >= 0) (void)!real<decltype(::write)>("write")(log, line.data(), line.size());
+        if (log >= 0) (void)!NEXT(write)(log, line.data(), line.size());
     }
     // What becomes of this call; "": nothing.
     std::string fault(const std::string& call, const std::string& path) {
@@ -144,22 +143,22 @@ std::string path_of(int fd) {
 using Bytes = std::optional<std::string>;  // none: no such file
 
 Bytes content(const std::string& path) {
-    const int fd = real<decltype(::open)>("open")(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const int fd = NEXT(open)(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (fd < 0) return {};
     std::string bytes(1 << 16, '\0'), all;
-    for (ssize_t n; (n = real<decltype(::read)>("read")(fd, bytes.data(), bytes.size())) > 0;)
+    for (ssize_t n; (n = NEXT(read)(fd, bytes.data(), bytes.size())) > 0;)
         all.append(bytes, 0, size_t(n));
-    real<decltype(::close)>("close")(fd);
+    NEXT(close)(fd);
     return all;
 }
 void put(const std::string& path, const Bytes& bytes) {
     if (!bytes) {
-        real<decltype(::unlink)>("unlink")(path.c_str());
+        NEXT(unlink)(path.c_str());
         return;
     }
-    const int fd = real<decltype(::open)>("open")(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    (void)!real<decltype(::write)>("write")(fd, bytes->data(), bytes->size());
-    real<decltype(::close)>("close")(fd);
+    const int fd = NEXT(open)(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    (void)!NEXT(write)(fd, bytes->data(), bytes->size());
+    NEXT(close)(fd);
 }
 
 // A file was made, renamed or removed, and its folder is not on the disk yet.
@@ -312,32 +311,28 @@ int open64(const char* name, int flags, ...) {
 }
 // std::ifstream opens so.
 FILE* fopen64(const char* name, const char* mode) {
-    REAL(fopen64);
     const std::string path = absolute(name);
-    if (!plan().is_ours(path)) return next(name, mode);
+    if (!plan().is_ours(path)) return NEXT(fopen64)(name, mode);
     const Lock lock(mutex);
-    return fails(plan().fault("open", path)) ? nullptr : next(name, mode);
+    return fails(plan().fault("open", path)) ? nullptr : NEXT(fopen64)(name, mode);
 }
 ssize_t read(int fd, void* bytes, size_t size) {
-    REAL(read);
     const std::string path = path_of(fd);
-    if (!plan().is_ours(path)) return next(fd, bytes, size);
+    if (!plan().is_ours(path)) return NEXT(read)(fd, bytes, size);
     const Lock lock(mutex);
     const std::string what = plan().fault("read", path);
     if (fails(what)) return -1;
     if (what == "SHORT" && size > 1)
         size = 1 + size_t(plan().below(std::min<size_t>(size, 4096) - 1));
-    return next(fd, bytes, size);
+    return NEXT(read)(fd, bytes, size);
 }
 ssize_t write(int fd, const void* bytes, size_t size) {
-    REAL(write);
-    return write_by([&](size_t n) { return next(fd, bytes, n); }, fd, size);
+    return write_by([&](size_t n) { return NEXT(write)(fd, bytes, n); }, fd, size);
 }
 // A disk that takes no time: what is lost with the power is ours to say.
 int fsync(int fd) {
-    REAL(fsync);
     const std::string path = path_of(fd);
-    if (!plan().is_ours(path + "/")) return next(fd);
+    if (!plan().is_ours(path + "/")) return NEXT(fsync)(fd);
     const Lock lock(mutex);
     disk().may_lose_power("fsync", path);
     const std::string what = plan().fault("fsync", path);
@@ -355,9 +350,8 @@ int fsync(int fd) {
     return 0;
 }
 int rename(const char* from_name, const char* to_name) {
-    REAL(rename);
     const std::string from = absolute(from_name), to = absolute(to_name);
-    if (!plan().is_ours(to)) return next(from_name, to_name);
+    if (!plan().is_ours(to)) return NEXT(rename)(from_name, to_name);
     const Lock lock(mutex);
     disk().may_lose_power("rename", to);
     if (fails(plan().fault("rename", to))) return -1;
@@ -367,31 +361,23 @@ int rename(const char* from_name, const char* to_name) {
         moved.key() = to;
         disk().synced.insert(std::move(moved));
     }
-    return next(from_name, to_name);
+    return NEXT(rename)(from_name, to_name);
 }
 // A descriptor is closed whatever close() says.
 int close(int fd) {
-    REAL(close);
     const std::string path = path_of(fd);
-    if (!plan().is_ours(path)) return next(fd);
+    if (!plan().is_ours(path)) return NEXT(close)(fd);
     const Lock lock(mutex);
     const std::string what = plan().fault("close", path);
     if (what == "EIO") lose(fd);
-    const int result = next(fd);
+    const int result = NEXT(close)(fd);
     return fails(what) ? -1 : result;
 }
-int unlink(const char* name) {
-    REAL(unlink);
-    return remove_by(next, name);
-}
-int remove(const char* name) {
-    REAL(remove);
-    return remove_by(next, name);
-}
+int unlink(const char* name) { return remove_by(NEXT(unlink), name); }
+int remove(const char* name) { return remove_by(NEXT(remove), name); }
 
 int clock_gettime(clockid_t id, timespec* now) {
-    REAL(clock_gettime);
-    const int result = next(id, now);
+    const int result = NEXT(clock_gettime)(id, now);
     if (id != CLOCK_REALTIME && id != CLOCK_MONOTONIC) return result;
     const Lock lock(mutex);
     const bool steady = id == CLOCK_MONOTONIC;
@@ -405,14 +391,13 @@ int clock_gettime(clockid_t id, timespec* now) {
 // The kernel's clock has made no step.
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* held, clockid_t id,
                            const timespec* until) {
-    REAL(pthread_cond_clockwait);
     timespec step{};
     {
         const Lock lock(mutex);
         step = steps[id == CLOCK_MONOTONIC];
     }
     const timespec by_the_kernel = sum(*until, step, -1);
-    return next(condition, held, id, &by_the_kernel);
+    return NEXT(pthread_cond_clockwait)(condition, held, id, &by_the_kernel);
 }
 
 }  // extern "C"
