@@ -19,7 +19,7 @@ RadiosityOptions parse(std::vector<std::string> words) {
 }
 
 std::string complaint(const std::vector<std::string>& words) {
-    return complaint_of([&] { parse(words); });
+    return ::complaint([&] { parse(words); });
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ Scene scene_with(const Folder& folder, const std::string& obj,
 
 // What reading `obj` complains about, without the folder; "" if nothing.
 std::string complaint(const Folder& folder, const std::string& obj) {
-    const std::string why = complaint_of([&] { scene_with(folder, obj); }), place = folder / "";
+    const std::string why = ::complaint([&] { scene_with(folder, obj); }), place = folder / "";
     return why.empty() ? "" : why.substr(std::min(why.size(), why.find(place, 1) + place.size()));
 }
 

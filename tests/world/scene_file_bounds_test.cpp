@@ -19,7 +19,7 @@ ParsedScene parsed(const Folder& folder, const std::string& text) {
 }
 
 std::string complaint(const Folder& folder, const std::string& text) {
-    const std::string why = complaint_of([&] { parsed(folder, text); });
+    const std::string why = ::complaint([&] { parsed(folder, text); });
     return why.substr(std::min(why.size(), (folder / "").size()));
 }
 

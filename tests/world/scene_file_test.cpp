@@ -82,7 +82,7 @@ TEST_CASE("what cannot be is refused, at its line") {
         {"shpere 0 0 0  1\n", "a.scene:2: unknown keyword 'shpere' (did you mean 'sphere'?)"},
         {"# nothing\n", "a.scene: empty scene"}};
     for (const auto& [text, why] : rows) {
-        const std::string found = complaint_of([&, text = text] { scene_of(text); });
+        const std::string found = complaint([&, text = text] { scene_of(text); });
         INFO(found);
         CHECK(found.starts_with(why));
     }
