@@ -3,21 +3,18 @@
 
 #include <doctest/doctest.h>
 
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#include <stb/stb_image.h>
-
 #include "base/rng.h"
+#include "film/png.h"
 
 namespace {
 
 // By a decoder that is not ours.
-struct Decoded {
+struct Pixels {
     int width = 0, height = 0;
     std::vector<Byte3> pixels;
 };
-Decoded decoded(const std::string& png) {
-    Decoded d;
+Pixels decoded(const std::string& png) {
+    Pixels d;
     int channels = 0;
     unsigned char* bytes =
         stbi_load_from_memory(reinterpret_cast<const unsigned char*>(png.data()), int(png.size()),
@@ -103,7 +100,7 @@ TEST_CASE("an error map is a PNG file in which each pixel has its level's colour
     for (int width : {1, 2, 7, 16}) {
         std::vector<int> levels;
         for (int i = 0; i < 5 * width; ++i) levels.push_back((7 * i + i / 9) % error_levels);
-        const Decoded d = decoded(error_png(width, 5, levels));
+        const Pixels d = decoded(error_png(width, 5, levels));
         REQUIRE(d.width == width);
         REQUIRE(d.height == 5);
         const auto colours = error_colours();
@@ -117,7 +114,7 @@ TEST_CASE("a map shows where a picture is wrong, top row first") {
     g = f;
     g.at(2, 0) = {1.1f, 1.1f, 1.1f};
     g.at(0, 1) = {4, 1, 1};
-    const Decoded d = decoded(error_map(f, g, 1));
+    const Pixels d = decoded(error_map(f, g, 1));
     const auto colours = error_colours();
     CHECK(d.pixels[0] == colours[0]);
     CHECK(d.pixels[2] == colours[size_t(error_level(0.1))]);
