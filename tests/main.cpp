@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <new>
 
+#include "base/allocations.h"
 #include "oracle/oracle.h"
 #include "reporter.h"
 
-// Counts allocations of memory.
 std::atomic<size_t> allocations = 0;
 [[gnu::noinline]] void* operator new(size_t n) {
     ++allocations;

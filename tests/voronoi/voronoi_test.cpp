@@ -4,9 +4,8 @@
 #include <atomic>
 #include <numbers>
 
+#include "base/allocations.h"
 #include "voronoi/scattered.h"
-
-extern std::atomic<size_t> allocations;  // main.cpp counts them
 
 namespace {
 
