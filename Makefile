@@ -77,20 +77,12 @@ $(foreach rule,$(PARTS),$(eval $(rule)))
 build/knot.obj: build/knot$(SUFFIX)
 	build/knot$(SUFFIX) $@
 
-# Every test is a program of its own.  tests/run asks for them floor by floor, and runs them.
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
 SUITE := $(OBJECTS)/all-tests
 
 test: packages  ## build and run the tests, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
-	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' PROGRAM_SUFFIX=$(SUFFIX) ALL=$(ALL) \
-	    LIMIT=$(if $(SAN)$(DEBUG),10) HEAVY='$(HEAVY)' tests/run $(ONLY)
-
-# Says to tests/run that a test is built, and the programs that it runs.
-RUN      := $(APPS:%=build/%$(SUFFIX)) build/compare$(SUFFIX) build/knot$(SUFFIX) build/knot.obj
-RUNNERS  := $(shell grep -l 'build/penumbra\|whole/process.h' tests/*/*_test.cpp)
-$(RUNNERS:tests/%.cpp=$(OBJECTS)/tests/%.ready): $(RUN)
-$(TESTS:%=$(OBJECTS)/tests/%.ready): %.ready: %.exe always
-	@touch $@
+	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
+	    LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
 
 mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1 -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
@@ -207,20 +199,55 @@ $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>
 $(OBJECTS)/cells.exe: LIBRARIES = $(shell printf '\043include <CGAL/Delaunay_triangulation_2.h>\n' | \
                                           $(CXX) -std=c++20 -x c++ -fsyntax-only - 2>/dev/null && echo -lmpfr -lgmp)
 
-$(TESTS:%=$(OBJECTS)/tests/%.exe): %.exe: %.o $(OBJECTS)/tests/main.o
-	$(CXX) $(LINK) -o $@ $^
-
-$(SUITE): $(TESTS:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/main.o
-	$(CXX) $(LINK) -o $@ $^
-
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
 # vector is told so.
 HEAVY := app/render labs/indirect_paths radiosity/walks shadow/estimates course/my_tests labs/cube oracle/mistakes oracle/oracle path/pathtracer radiosity/mesh radiosity/particles \
          radiosity/shooting radiosity/transfer shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms \
          wide/wide_bvh world/bsdf world/bvh world/shapes
-$(OBJECTS)/tests/%.o: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
-$(HEAVY:%=$(OBJECTS)/tests/%_test.o): OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
+HEAVY := $(HEAVY:%=%_test)
+$(OBJECTS)/tests/%: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
+$(HEAVY:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/%-heavy.exe $(OBJECTS)/programs.exe: OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
 $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
+
+# By name, a test is a program of its own.  All of them are compiled by folders, which takes a third of the time:
+# a unit has all tests of a folder that compute much, or all others; ALONE, those that others must not see.
+ALONE := oracle/hosts_test
+UNIT   = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(patsubst %/,%,$(dir $1))$(if $(filter $(HEAVY),$1),-heavy))
+UNITS := $(sort $(foreach t,$(TESTS),$(call UNIT,$t)))
+$(foreach t,$(TESTS),$(eval IN_$(call UNIT,$t) += $t))
+$(foreach t,$(TESTS),$(eval $(OBJECTS)/tests/$t.run: $(if $(JOINED),$(call UNIT,$t),$(OBJECTS)/tests/$t).exe))
+
+# Tells tests/run, which listens at 9, what is built.  It does not wait until make has begun with all else, so a unit
+# that is compiled, or cannot be, tells it of its tests; but those that run programs wait for these.
+TELL = { echo $1 >&9; } 2>/dev/null || :
+$(TESTS:%=$(OBJECTS)/tests/%.run): always
+	@$(call TELL,$(@:$(OBJECTS)/tests/%.run=%) $(filter %.exe,$^))
+
+$(UNITS:%=%.exe): %.exe: $(OBJECTS)/tests/main.o tests/join.awk Makefile
+	@mkdir -p $(@D)
+	@awk -f tests/join.awk $(IN_$*:%=tests/%.cpp) >$*.cpp
+	@$(CXX) $(FLAGS) $(OPTIMISE) -I. -Itests -fmacro-prefix-map=./= -MT $@ -c -o $*.o $*.cpp && $(CXX) $(LINK) -o $@ $*.o $< || \
+	    { for test in $(IN_$*); do $(call TELL,$$test broken); done; exit 1; }
+	@for test in $(filter-out $(RUNNERS),$(IN_$*)); do $(call TELL,$$test $@); done
+$(foreach u,$(UNITS),$(eval $u.exe: $(IN_$u:%=tests/%.cpp)))
+
+$(TESTS:%=$(OBJECTS)/tests/%.exe): %.exe: %.o $(OBJECTS)/tests/main.o
+	$(CXX) $(LINK) -o $@ $^
+
+$(SUITE): $(UNITS:%=%.exe)
+	$(CXX) $(LINK) -o $@ $(^:.exe=.o) $(OBJECTS)/tests/main.o
+
+# The programs that tests run are one, which goes by its name.  Images are the same, bit for bit, however it is optimised.
+TESTED  := $(filter-out course/%,$(RENDERERS:src/%.cpp=%)) labs/compare labs/knot
+RUNNERS := $(patsubst tests/%.cpp,%,$(shell grep -l 'build/penumbra\|whole/process.h' tests/*/*_test.cpp))
+$(RUNNERS:%=$(OBJECTS)/tests/%.run): | programs-to-test
+.PHONY: programs-to-test
+programs-to-test: $(OBJECTS)/programs.exe build/knot.obj
+	@for program in $(notdir $(TESTED)); do ln -f $< build/$$program$(SUFFIX)-test; done
+$(OBJECTS)/programs.exe: $(TESTED:%=src/%.cpp) tests/join.awk Makefile
+	@mkdir -p $(@D)
+	@awk -v programs=1 -f tests/join.awk $(filter %.cpp,$^) >$(OBJECTS)/programs.cpp
+	$(CXX) $(FLAGS) $(OPTIMISE) -I. -MF $(OBJECTS)/programs.d -MT $@ -o $@ $(OBJECTS)/programs.cpp
 
 $(OBJECTS)/tests/%.o: tests/%.cpp $(OBJECTS)/std.h.gch Makefile | packages
 	@mkdir -p $(@D)
@@ -235,7 +262,7 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 	@mkdir -p $(@D)
 	$(CXX) $(FLAGS) $(OPTIMISE) -c -o $@ $<
 
--include $(wildcard $(OBJECTS)/*/*.d $(OBJECTS)/tests/*/*.d)
+-include $(wildcard $(OBJECTS)/*.d $(OBJECTS)/*/*.d $(OBJECTS)/tests/*/*.d)
 
 # ---- The classroom -------------------------------------------------------------------------------
 

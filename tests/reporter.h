@@ -2,9 +2,9 @@
 //
 // The file that TEST_REPORT names gets a line for each, in columns parted by tabs, and has it
 // before anything can crash:
-//     case  FILE:LINE  NAME      it begins
-//     fail  FILE:LINE  VERDICT   its first check that failed, or what ended it
-//     end   FAILED               1 if it failed, 0 if it passed
+//     begin   FILE:LINE  NAME  VERDICT  it runs, and this is known of it: of its first check that
+//     failed passed failed  FILE:LINE  NAME  VERDICT sum     CHECKS  ALPHA             the end:
+//     statistical checks, probability of a false alarm
 #pragma once
 #include <doctest/doctest.h>
 
@@ -14,6 +14,8 @@
 #include <mutex>
 #include <sstream>
 #include <string>
+
+#include "oracle/oracle.h"
 
 // For main.cpp alone, as is the reporter of doctest that it adds to.
 namespace {
@@ -41,14 +43,14 @@ struct Reporter : doctest::ConsoleReporter {
     void test_case_start(const doctest::TestCaseData& test) override {
         ConsoleReporter::test_case_start(test);
         running = &test;
-        told = false;
-        write("case", place(test), test.m_name);
+        where = place(test);
+        verdict.clear();
+        write("begin");
     }
     void test_case_end(const doctest::CurrentTestCaseStats& stats) override {
         ConsoleReporter::test_case_end(stats);
-        const bool good = stats.testCaseSuccess;
-        if (!good && running) tell(place(*running), "as its log says");
-        write("end", good ? "0" : "1", "");
+        if (!stats.testCaseSuccess && verdict.empty()) verdict = "as its log says";
+        write(stats.testCaseSuccess ? "passed" : "failed");
         flush();
     }
     void test_case_exception(const doctest::TestCaseException& e) override {
@@ -60,7 +62,7 @@ struct Reporter : doctest::ConsoleReporter {
     void log_assert(const doctest::AssertData& check) override {
         ConsoleReporter::log_assert(check);
         if (check.m_failed && !(check.m_at & doctest::assertType::is_warn))
-            tell(place(check.m_file, check.m_line), verdict(check));
+            tell(place(check.m_file, check.m_line), verdict_of(check));
     }
     void log_message(const doctest::MessageData& message) override {
         ConsoleReporter::log_message(message);
@@ -71,13 +73,15 @@ struct Reporter : doctest::ConsoleReporter {
         ConsoleReporter::test_run_end(stats);
         ran = stats.numTestCasesPassingFilters;
         failed = stats.numTestCasesFailed;
+        if (report)
+            std::fprintf(report, "sum\t%d\t%g\n", oracle::statistical_checks, oracle::alpha_spent);
         flush();
     }
 
 private:
     std::FILE* report = nullptr;
     const doctest::TestCaseData* running = nullptr;
-    bool told = false;
+    std::string where, verdict;  // of its first check that failed, in its own file if possible
     std::mutex telling;
 
     static std::string place(const std::string& file, int line) {
@@ -87,16 +91,18 @@ private:
         return place(test.m_file.c_str(), int(test.m_line));
     }
 
-    void write(const char* what, const std::string& first, const std::string& second) {
+    void write(const char* what) {
         if (!report) return;
-        std::fprintf(report, "%s\t%s\t%s\n", what, one_line(first).c_str(),
-                     one_line(second).c_str());
+        std::fprintf(report, "%s\t%s\t%s\t%s\n", what, where.c_str(),
+                     one_line(running->m_name).c_str(), one_line(verdict).c_str());
         std::fflush(report);
     }
-    void tell(const std::string& where, const std::string& why) {
+    void tell(const std::string& at, const std::string& why) {
         const std::lock_guard lock(telling);
-        if (!told) write("fail", where, why);
-        told = true;
+        if (!verdict.empty() || !running) return;
+        if (at.starts_with(running->m_file.c_str())) where = at;
+        verdict = why;
+        write("begin");
     }
     // What is not yet written is lost when a signal ends the program.
     static void flush() {
@@ -105,7 +111,7 @@ private:
     }
 
     // What the oracle says of it; else the expression, its values and what was noted around it.
-    static std::string verdict(const doctest::AssertData& check) {
+    static std::string verdict_of(const doctest::AssertData& check) {
         const std::string expression = check.m_expr;
         const int notes = get_num_active_contexts();
         if (notes > 0 && expression.ends_with(".pass")) return note(notes - 1);
