@@ -15,10 +15,13 @@
 
 // ---- What is rendered ---------------------------------------------------------------------------
 
-// The words that name a scene and its size, and the samples a pixel of its reference.
+// The words that name a scene and its size, and the samples a pixel of its reference; 0: there is
+// none, and rows have what the program states.
 struct Subject {
     std::string name, words;
     uint64_t truth = 16384;
+    std::string truth_words = {};  // of a reference that is no such number of samples
+    bool has_truth() const { return truth > 0 || !truth_words.empty(); }
 };
 
 struct Setting {
@@ -30,7 +33,7 @@ struct Setting {
 // where one pixel has all of it.
 struct Truth {
     Image image;
-    double own = 0;                    // d_rel, by the spread of replications
+    double own = 0;                    // d_rel, by the spread of replications; NaN: not stated
     std::map<std::string, double> of;  // its statistics
 };
 
@@ -74,17 +77,17 @@ public:
     // More numbers of an image.
     std::function<void(Row&, const Image&, const Truth&)> measure;
 
-    // Seed by seed, so that of a study that is cut short fewer seeds of everything are there;
-    // settings take turns, so that load hits all alike.
+    // No seed: one run of a program that knows none.  Seed by seed, so that of a study that is cut
+    // short fewer seeds of everything are there; settings take turns, so that load hits all alike.
     Rows run(const std::vector<Subject>& subjects, const std::vector<Setting>& settings,
              const std::vector<uint64_t>& counts, uint64_t seeds) {
         std::vector<Job> all, missing;
         for (const Subject& s : subjects)
             for (const Setting& setting : settings)
                 for (uint64_t count : counts)
-                    for (uint64_t seed = 1; seed <= seeds; ++seed)
+                    for (uint64_t seed = seeds > 0; seed <= seeds; ++seed)
                         all.push_back(job(s, setting, count, seed));
-        for (uint64_t seed = 1; seed <= seeds; ++seed)
+        for (uint64_t seed = seeds > 0; seed <= seeds; ++seed)
             for (size_t k = 0; k < all.size(); ++k) {
                 // Of each scene another setting begins.
                 const size_t turn = (k + (seed - 1) * counts.size() * seeds) % all.size();
@@ -108,9 +111,10 @@ public:
         if (!std::filesystem::exists(stem + ".pfm"))
             render(program_ + " " + truth_words(s), all_cores(), stem);
         const std::map<std::string, double> of = numbers_of(read_file(stem + ".json"));
-        const auto own = of.find("d_rel_by_spread");
-        return truths_[print] = {read_pfm(stem + ".pfm"),
-                                 own == of.end() ? of.at("d_rel") : own->second, of};
+        double own = NAN;
+        for (const char* key : {"d_rel", "d_rel_by_spread"})
+            if (const auto at = of.find(key); at != of.end()) own = at->second;
+        return truths_[print] = {read_pfm(stem + ".pfm"), own, of};
     }
 
 private:
@@ -131,6 +135,7 @@ private:
         return text("%s\t%s\t%.0f\t%.0f", r.scene, r.setting, double(r.count), double(r.seed));
     }
     static std::string truth_words(const Subject& s) {
+        if (!s.truth_words.empty()) return s.words + " " + s.truth_words;
         return text("%s --spp %.0f --sets 16 --seed 1000000", s.words, double(s.truth));
     }
     std::string print_of_truth(const Subject& s) const {
@@ -143,9 +148,9 @@ private:
         const std::string program = setting.program.empty() ? program_ : setting.program,
                           file = words_in(program)[0];
         if (prints_[file].empty()) prints_[file] = fingerprint(read_file(file));
-        const std::string command =
-            text("%s %s %s%s --seed %.0f", program, s.words, setting.words,
-                 count > 0 ? text(" --spp %.0f", double(count)) : "", double(seed));
+        const std::string command = text("%s %s %s%s%s", program, s.words, setting.words,
+                                         count > 0 ? text(" --spp %.0f", double(count)) : "",
+                                         seed > 0 ? text(" --seed %.0f", double(seed)) : "");
         return {
             row, &s, command, {key(row), fingerprint(prints_[file] + command + print_of_truth(s))}};
     }
@@ -153,7 +158,8 @@ private:
     void render_all(const std::vector<Job>& missing) {
         std::ofstream out(file(), std::ios::app);
         out << '\n';  // the last line may have been cut short
-        for (const Job& j : missing) truth(*j.subject);
+        for (const Job& j : missing)
+            if (j.subject->has_truth()) truth(*j.subject);
         Steps steps(missing.size());
         std::mutex lock;
         in_parallel(
@@ -174,14 +180,16 @@ private:
         const std::string json = read_file(stem + ".json");
         const Image image = read_pfm(stem + ".pfm");
         for (const char* suffix : {".pfm", ".json"}) std::filesystem::remove(stem + suffix);
-        const Truth& f = truths_.at(print_of_truth(*job.subject));
         Row row = job.row;
         row.of = numbers_of(json);
+        row.of["mean"] = mean_of(image);
+        row.of["stated"] = row["error"];
+        row.of["error"] = json.find("\"stopped_by\": \"error\"") != json.npos;
+        if (!job.subject->has_truth()) return row;
+        const Truth& f = truths_.at(print_of_truth(*job.subject));
         const double off = row.of["off"] = d_rel(f.image, image);
         row.of["own"] = f.own;
         row.of["d2"] = off * off - f.own * f.own;
-        row.of["mean"] = mean_of(image);
-        row.of["error"] = json.find("\"stopped_by\": \"error\"") != json.npos;
         if (measure) measure(row, image, f);
         return row;
     }

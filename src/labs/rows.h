@@ -9,9 +9,11 @@
 
 // One render: its place in the grid, and numbers of it: those of its statistics, and
 //     off    d_rel of image and reference
-//     own    d_rel that the reference states of itself
-//     d2     squared error over the reference's mean square: off^2 - own^2, for the two are
-//     independent mean   of all numbers of the image error  1 if --error ended it
+//     own    d_rel that the reference states of itself; NaN: none
+//     d2     off^2 - own^2, for the two are independent: squared error over a mean square
+//     mean   of all numbers of the image
+//     error  1 if --error ended it
+//     stated what the statistics have under "error": of build/radiosity that of its maps
 struct Row {
     std::string scene, setting;
     uint64_t count = 0, seed = 0;  // count: samples a pixel; 0: the setting says when to stop
@@ -170,6 +172,19 @@ std::string table(const Rows& rows, By by, Across across, Value value) {
     std::vector<std::string> head(1);
     for (const auto& column : columns) head.push_back(column.first);
     return table(head, lines);
+}
+
+// Numbers of every row for who doubts; nothing where a row has none.
+inline std::string csv(const Rows& rows, const std::vector<std::string>& numbers) {
+    std::vector<std::string> head = {"scene", "setting", "count", "seed"};
+    head.insert(head.end(), numbers.begin(), numbers.end());
+    std::vector<std::vector<std::string>> lines;
+    for (const Row& r : rows) {
+        lines.push_back({r.scene, r.setting, of_count(r), text("%.0f", double(r.seed))});
+        for (const std::string& name : numbers)
+            lines.back().push_back(std::isnan(r[name]) ? "" : text("%.6g", r[name]));
+    }
+    return csv(head, lines);
 }
 
 // A curve for each word of `series`, a point for each count: numbers of the rows there.
