@@ -50,7 +50,7 @@ inline Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
 struct Solution {
     IlluminationMap map;
     uint64_t shots = 0, particles = 0, rays = 0;
-    double unshot = NAN, seconds = 0;
+    double unshot = NAN, seconds = 0, cpu_seconds = 0;
     MapError stated = {};  // of shooting, at most that
     int signal = 0;        // that cut it short
     bool empty() const { return shots == 0 && particles == 0; }
@@ -90,8 +90,10 @@ inline Solution walk(const RadiosityOptions& o, const Stage& stage, SamplerKind 
 }
 
 inline Solution solve(const RadiosityOptions& o, const Stage& stage) {
+    const double before = cpu_seconds();
     Solution s = is_random(o) ? walk(o, stage, o.sampler, o.seed, {o.particles, o.seconds, o.error})
                               : shoot(o, stage);
+    s.cpu_seconds = cpu_seconds() - before;
     s.signal = interrupted;
     return s;
 }
@@ -162,6 +164,7 @@ inline std::string encode_stats(const RadiosityOptions& o, const OptionTable& ta
                {"stopped_by", by.empty() ? "null" : json::string(by)},
                {"seconds", json::number(s.seconds)},
                {"cpu_seconds", json::number(cpu_seconds())},
+               {"map_cpu_seconds", json::number(s.cpu_seconds)},
                {"rays", count(s.rays)},
                {"mrays_per_second", json::number(double(s.rays) / s.seconds * 1e-6)},
                {"mean_of_image", json::numbers(mean)},
