@@ -113,9 +113,9 @@ techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation brin
 estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
 shadows: build/shadow$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
-radiosity:                 ## illumination maps by shooting and by particles (6 minutes; FULL=1: an hour)
+radiosity:                 ## illumination maps by shooting and by particles (20 minutes)
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
-indirect:                  ## paths that end on illumination maps, beside whole ones (4 minutes)
+indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## paths that end on illumination maps, beside whole ones (20 minutes)
 voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
 bench:                     ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
@@ -138,9 +138,10 @@ build/trade-float$(VARIANT): always
 	@$(MAKE) --no-print-directory REAL=float $@
 endif
 # build/radiosity and build/voronoi are renderers.
-radiosity: $(PENUMBRA) build/illumination$(SUFFIX)
-	build/illumination$(SUFFIX) $(if $(QUICK),--quick) $(if $(FULL),--full)
-voronoi: $(PENUMBRA) build/voronoi_weights$(SUFFIX)
+radiosity: $(PENUMBRA) build/radiosity$(SUFFIX) build/illumination$(SUFFIX) build/illumination_cube$(SUFFIX)
+	build/illumination_cube$(SUFFIX) $(if $(QUICK),--quick)
+	build/illumination$(SUFFIX) $(if $(QUICK),--quick)
+voronoi: $(PENUMBRA) build/voronoi$(SUFFIX) build/voronoi_weights$(SUFFIX)
 	build/voronoi_weights$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
 
 extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)

@@ -1,66 +1,205 @@
-// labs/illumination.cpp  7  two methods of global illumination on the same triangles
+// labs/illumination.cpp  6  two methods of global illumination on the same triangles
 //
-//   build/illumination [--quick] [--full]
+//   build/illumination [--quick] [--kept]
 //
 // Khodulev (1996) compared a deterministic method with Monte Carlo, both on illumination maps, by
-// accuracy over time.  Here both are rebuilt and measured as he did; then with what he had not: the
-// exact CUBE, and a path tracer without triangles.
-#include "labs/illumination_cube.h"
-#include "labs/illumination_growth.h"
-#include "labs/illumination_total.h"
+// accuracy over time.  Here build/radiosity does both and is measured as he did; then with what he
+// had not: the exact CUBE, and a path tracer without triangles.
+#include "labs/illumination.h"
+
+#include "labs/grid.h"
 
 namespace {
 
 using namespace illumination;
+using Lines = std::vector<std::vector<std::string>>;
+
+struct Scope {
+    bool quick = false, kept = false;
+};
 
 // ---- Accuracy over time -------------------------------------------------------------------------
 
-std::string room_name(const Race& r) { return text("%s, %zu triangles", r.scene, r.elements); }
+// A scene, the longest edge, the longest Monte Carlo run, and where shooting and hierarchy end.
+struct Course {
+    std::string scene;
+    double H;
+    uint64_t particles;
+    double flat, faces;
+    std::string name() const { return scene + text(" %g", H); }
+    Subject seen_by(const std::string& truth) const {
+        const char* size = scene == "cornell36" ? " --size 128x64" : "";
+        return {name(), text("scenes/%s.scene%s --rays 4 --mesh %g", scene, size, H), 0, truth};
+    }
+    Subject subject() const {
+        return seen_by(text("--method particles --sampler independent --particles %.0f --seed 1",
+                            double(particles)));
+    }
+};
 
 std::vector<Course> courses(const Scope& plan) {
-    if (plan.quick) return {{"cube", 3.6, 1 << 18, 1e-3, 2}, {"cornell36", 160, 1 << 18, 1e-2, 2}};
-    const uint64_t more = plan.full ? 8 : 1;
-    const double longer = plan.full ? 20 : 1;
-    return {{"cube", 0.884, more << 24, 1e-4, 15 * longer},
-            {"cornell36", 160, more << 22, 1e-4, 15 * longer},
-            {"cornell36", 80, more << 22, 1e-4, 15 * longer},
-            {"cornell36", 40, more << 24, 1e-4, 15 * longer},
-            {"atelier", 0.295, more << 25, 1e-3, 40 * longer}};
+    if (plan.quick)
+        return {{"cube", 3.6, 1 << 18, 1e-3, 1e-3},
+                {"cornell36", 320, 1 << 18, 1e-2, 1e-2},
+                {"cornell36", 160, 1 << 18, 1e-2, 1e-2}};
+    constexpr uint64_t n = 1 << 22;
+    std::vector<Course> all = {{"cube", 0.884, 4 * n, 1e-4, 1e-4}};
+    for (double H : {226.0, 160.0, 113.0, 80.0, 56.5, 40.0})
+        all.push_back({"cornell36", H, H < 60 ? 4 * n : n, 1e-4, 1e-4});
+    all.push_back({"atelier", 0.295, 8 * n, 1e-1, 1e-3});
+    return all;
 }
 
-void tell_references(Report& report, const std::vector<Race>& races) {
-    report.say(R"(## References, and how good they are
+// A method's runs, one of a setting or two of other seeds, from the shortest on.
+Rows by_method(const Rows& rows, const std::string& method) {
+    return where(rows, [&](const Row& r) { return words_in(r.setting)[0] == method; });
+}
+template <class Error>
+Curve curve_of(const Rows& rows, const std::string& method, Error error) {
+    Curve c;
+    for (const auto& [setting, runs] : grouped(by_method(rows, method), of_setting))
+        if (const double e = error(runs); !std::isnan(e)) c.add(mean(runs, "map_cpu_seconds"), e);
+    return c;
+}
 
-The reference of a room is its longest run of particles.  Its own error is inferred: that of an image
-is k times what the run reports of its map (from 16 independent batches, as the quadratic mean over all
-surfaces), and k follows from twelve shorter runs, with their spread.  If errors are proportional to
-reports, distances have the exponent 1 over reports.  The error of a run that is longer than those
-twelve is predicted by k, and then measured against the longest.)");
-    report.head(
-        {"room", "k", "exponent", "predicted", "measured", "", "reference: particles", "error"});
+struct Race {
+    Course course;
+    Rows rows;
+    Proportion proportion;
+    double own = 0;  // error of the reference, inferred
+    Curve particles, halton;
+
+    double elements() const { return rows[0]["elements"]; }
+    std::string name() const { return text("%s, %.0f triangles", course.scene, elements()); }
+    double realistic_of(const Rows& runs) const {
+        return without(std::sqrt(mean(runs, "off2")), own);
+    }
+    Curve realistic(const std::string& method) const {
+        return curve_of(rows, method, [&](const Rows& runs) { return realistic_of(runs); });
+    }
+    // Near the last solution the distance to it says nothing any more.
+    Curve optimistic(const std::string& method) const {
+        const double last = by_method(rows, method).back()["unshot"];
+        return curve_of(rows, method, [&](const Rows& runs) {
+            return runs[0]["unshot"] > 4 * last ? runs[0]["optimistic"] : NAN;
+        });
+    }
+    double floor(const std::string& method) const { return realistic(method).error.back(); }
+    // The path tracer's distance, without the errors of both references.
+    double limit() const { return without(std::sqrt(rows[0]["limit2"]), own); }
+};
+
+Race run_race(Grid& grid, const Course& c, const Truth* traced, bool kept) {
+    Race race{c, {}, {}, 0, {}, {}};
+    auto add = [&](const std::vector<Setting>& settings, const Truth* last, uint64_t seeds) {
+        grid.measure = [=](Row& r, const Image& image, const Truth& f) {
+            r.of["off2"] = r["off"] * r["off"], r.of["reference"] = f.of.at("error");
+            r.of["reference_seconds"] = f.of.at("map_cpu_seconds");
+            if (last) r.of["optimistic"] = d_rel(last->image, image);
+            if (!traced) return;
+            auto square = [&](const Image& g) {
+                return std::pow(d_rel(traced->image, g), 2) - traced->own * traced->own;
+            };
+            r.of["total2"] = square(image), r.of["limit2"] = square(f.image);
+        };
+        const Rows rows = grid.run({c.subject()}, settings, {0}, seeds);
+        race.rows.insert(race.rows.end(), rows.begin(), rows.end());
+    };
+    std::vector<Setting> walks;
+    for (const char* kind : {"independent", "halton"})
+        for (uint64_t part : {1024, 512, 256, 128, 64, 32, 4})
+            walks.push_back({text("%s 1/%.0f", kind, double(part)),
+                             text("--method particles --sampler %s --particles %.0f", kind,
+                                  double(c.particles / part))});
+    add(walks, nullptr, 2);
+    for (const auto& [method, least] : {std::pair("shooting", c.flat), {"hierarchy", c.faces}}) {
+        std::vector<Setting> stops;
+        for (double unshot : decades_down_to(least)) {
+            const std::string words = text("--method %s --unshot %g", method, unshot);
+            stops.push_back({text("%s %g", method, unshot), words});
+        }
+        add(stops, kept ? nullptr : &grid.truth(c.seen_by(stops.back().words)), 0);
+    }
+    const Rows longer = by_setting(race.rows, "independent 1/4");
+    race.proportion = proportion(where(by_method(race.rows, "independent"),
+                                       [](const Row& r) { return r.setting != "independent 1/4"; }),
+                                 longer);
+    const double k = race.proportion.k.mean;
+    race.own = k * longer[0]["reference"];
+    auto error = [&](const Rows& r) { return race.realistic_of(r); };
+    race.particles = curve_of(race.rows, "independent", error);
+    race.halton = curve_of(race.rows, "halton", error);
+    race.particles.add(longer[0]["reference_seconds"], race.own);
+    return race;
+}
+
+std::string words_of(const Ahead& a) {
+    if (!a.ever) return "never";
+    const std::string from = text("%s (%s)", in_seconds(a.from), percent(a.worst));
+    return from + (a.to_the_end ? " on" : text(" to %s (%s)", in_seconds(a.to), percent(a.best)));
+}
+
+void tell_races(Page& page, const std::vector<Race>& races) {
+    Lines ahead_of, references;
+    Rows all;
+    size_t realistic = 0;
+    double flat = 0, hierarchy = 0;  // the largest error of particles at which they are caught up
+    std::string caught;
     for (const Race& r : races) {
         const Proportion& p = r.proportion;
-        const double spread = std::sqrt(p.k.variance()) / p.k.mean;
-        const bool proportional = std::abs(p.exponent - 1) < 4 * p.uncertainty + 0.02,
-                   predicts = std::abs(p.measured / p.predicted - 1) < 4 * spread;
-        report.row(
-            {room_name(r), plus_minus(p.k, "%.3f"), text("%.3f ± %.3f", p.exponent, p.uncertainty),
-             percent(p.predicted), percent(p.measured), report.verdict(proportional && predicts),
-             text("%.3g s", r.references.seconds.back()), percent(r.references.error.back())});
+        references.push_back(
+            {r.name(), plus_minus(p.k, "%.3f"), text("%.3f ± %.3f", p.exponent, p.standard_error),
+             percent(p.predicted), percent(p.measured), page.verdict(p.holds()), percent(r.own)});
+        ahead_of.push_back({r.name(), text("%.2f", power_through(r.particles).exponent),
+                            text("%.2f", power_through(r.halton).exponent)});
+        bool always = true;
+        for (const char* method : {"shooting", "hierarchy"}) {
+            const Ahead real = ahead(r.particles, r.realistic(method)),
+                        optimistic = ahead(r.particles, r.optimistic(method));
+            always = always && real.to_the_end;
+            const bool elements = method == std::string("shooting");
+            double& most = elements ? flat : hierarchy;
+            if (!optimistic.to_the_end) most = std::max(most, optimistic.best);
+            if (elements)
+                caught += text(
+                    "%s%s (%s)", caught.empty() ? "" : ", ",
+                    optimistic.to_the_end ? "not within the run" : "at " + percent(optimistic.best),
+                    r.name());
+            for (const std::string& cell :
+                 {words_of(real), words_of(optimistic), percent(r.floor(method))})
+                ahead_of.back().push_back(cell);
+            for (Row row : by_method(r.rows, method)) {
+                row.of["realistic"] = r.realistic_of({row});
+                row.of["particles"] = error_at(r.particles, row["map_cpu_seconds"]);
+                all.push_back(row);
+            }
+        }
+        realistic += always;
     }
-    report.end_of_table();
+    page.set("ahead",
+             table({"room", "exponent", "Halton", "ahead of shooting, realistic", "optimistic",
+                    "floor", "of hierarchy, realistic", "optimistic", "floor"},
+                   ahead_of));
+    page.set("references",
+             table({"room", "k", "exponent", "predicted", "measured", "", "error of the reference"},
+                   references));
+    page.data("radiosity-races", csv(all, {"elements", "unshot", "shots", "rays", "map_cpu_seconds",
+                                           "realistic", "optimistic", "particles"}));
+    page.set("rooms", text("%zu of %zu", realistic, races.size()));
+    page.set("flat", percent(flat)), page.set("hierarchy", percent(hierarchy));
+    page.set("caught", caught);
 }
 
-void plot_races(Report& report, const std::vector<const Race*>& races) {
-    constexpr double high = 270, wide = 520, row = high + 90;
-    Svg sheet(wide + 320, row * double(races.size()));
+void plot_races(Page& page, const std::vector<Race>& races) {
+    Svg sheet(840, 360 * double(std::min<size_t>(3, races.size())));
+    double top = 34;
     for (size_t k = 0; k < races.size(); ++k) {
-        const Race& r = *races[k];
-        const double top = row * double(k) + 34;
+        const Race& r = races[k];
+        if (k + 1 < races.size() && races[k + 1].course.scene == r.course.scene) continue;
         const double end =
-            std::max({r.flat.realistic.seconds.back(), r.references.seconds.back(), 1.0});
-        Plot plot(sheet, {80, top}, {wide, high}, {"seconds", 0.01, end * 1.3},
-                  {"error (d_rel)", 5e-4, 1}, room_name(r));
+            std::max(r.realistic("shooting").seconds.back(), r.particles.seconds.back());
+        Plot plot(sheet, {80, top}, {520, 270}, {"CPU seconds", 0.01, 1.3 * end},
+                  {"error (d_rel)", 5e-4, 1}, r.name());
         auto curve = [&](const Curve& c, int colour, bool dashed, const std::string& words) {
             Curve shown;  // what the axes hold
             for (size_t i = 0; i < c.error.size(); ++i)
@@ -68,151 +207,172 @@ void plot_races(Report& report, const std::vector<const Race*>& races) {
             plot.curve(shown.seconds, shown.error,
                        {.colour = svg::colours[colour], .dashed = dashed}, words);
         };
-        curve(r.particles(), 0, false, "particles");
+        curve(r.particles, 0, false, "particles");
         curve(r.halton, 1, false, "particles, Halton");
-        curve(r.flat.realistic, 2, false, "shooting, realistic");
-        curve(r.flat.optimistic, 2, true, "shooting, optimistic");
-        curve(r.hierarchy.realistic, 3, false, "hierarchy, realistic");
-        curve(r.hierarchy.optimistic, 3, true, "hierarchy, optimistic");
-        plot.curve(r.references.seconds, r.references.error,
-                   {.colour = svg::colours[4], .width = 0, .radius = 5}, "references, inferred");
+        for (const auto& [method, colour] : {std::pair("shooting", 2), {"hierarchy", 3}}) {
+            curve(r.realistic(method), colour, false, method + std::string(", realistic"));
+            curve(r.optimistic(method), colour, true, method + std::string(", optimistic"));
+        }
+        top += 360;
     }
-    report.picture("radiosity-time", sheet, "Error over time");
+    page.plot("radiosity-time", sheet);
 }
 
-std::string words_of(const Ahead& a) {
-    if (!a.ever) return "never";
-    const std::string from = text("%s (%s)", seconds(a.from), percent(a.worst));
-    return from + (a.to_the_end ? " on" : text(" to %s (%s)", seconds(a.to), percent(a.best)));
-}
+// ---- Against the path tracer --------------------------------------------------------------------
 
-void tell_races(Report& report, const std::vector<Race>& races) {
-    report.say(R"(## Accuracy over time
-
-Both methods on the same triangles, no adaptivity.  The *realistic* error of shooting is its distance to
-the Monte Carlo reference, whose own error is taken off in squares; the *optimistic* one is its distance
-to its own last solution, which is less than its true error, for solutions only grow.  Times are of
-all threads by the clock, without images.)");
-    std::vector<const Race*> shown;
-    for (const char* scene : {"cube", "cornell36", "atelier"})
-        for (auto r = races.rbegin(); r != races.rend(); ++r)
-            if (r->scene == scene) {
-                shown.push_back(&*r);
-                break;
-            }
-    plot_races(report, shown);
-    report.say("Particles are ahead, in time (and by an error of their own) from:");
-    report.head({"room", "exponent", "Halton", "shooting, realistic", "optimistic",
-                 "hierarchy, realistic", "optimistic", "floor, shooting", "floor, hierarchy"});
-    for (const Race& r : races)
-        report.row({room_name(r), text("%.2f", power_through(r.particles()).exponent),
-                    text("%.2f", power_through(r.halton).exponent),
-                    words_of(ahead(r.particles(), r.flat.realistic)),
-                    words_of(ahead(r.particles(), r.flat.optimistic)),
-                    words_of(ahead(r.particles(), r.hierarchy.realistic)),
-                    words_of(ahead(r.particles(), r.hierarchy.optimistic)), percent(r.flat.floor),
-                    percent(r.hierarchy.floor)});
-    report.end_of_table();
-    report.say(
-        R"(The exponent is that of the particles' error over time, −0.5 by theory for independent numbers, whose
-longest runs are the references.  In atelier the camera sees its window and lamps: they make the quadratic
-mean large, and all errors small beside it.  The floor is the realistic error of the last deterministic solution: the distance between the limits of two
-discretisations, vertices' values here and projections there, if the run is long enough.)");
-    for (const Race* r : shown) {
-        report.say(text("%s, shooting until %s of the power is unshot:", room_name(*r),
-                        percent(r->flat.shots.back().unshot)));
-        report.head({"method", "unshot", "shots", "shadow rays", "seconds", "realistic",
-                     "optimistic", "particles by then"});
-        const Curve particles = r->particles();
-        for (const auto& [name, d] :
-             {std::pair("shooting", &r->flat), {"hierarchy", &r->hierarchy}})
-            for (size_t i = 0; i < d->shots.size(); ++i) {
-                const Shot& s = d->shots[i];
-                report.row({name, percent(s.unshot), text("%.0f", double(s.shots)),
-                            text("%.3g", double(s.rays)), seconds(s.seconds),
-                            percent(d->realistic.error[i]),
-                            i < d->optimistic.error.size() ? percent(d->optimistic.error[i]) : "",
-                            percent(error_at(particles, s.seconds))});
-            }
-        report.end_of_table();
-    }
-}
-
-// The paper's conclusion, as the numbers have it.
-void tell_conclusion(Report& report, const std::vector<Race>& races) {
-    size_t realistic = 0;
-    double flat = 0, hierarchy = 0;  // the largest error of particles at which they are caught up
-    std::string where;
+// Without an end that is felt: .73^64 is 10^-9.
+void tell_total(Page& page, const std::vector<Race>& races, const Rows& traced) {
+    Curve path;
+    for (const auto& [count, runs] : grouped(traced, of_count))
+        path.add(mean(runs, "cpu_seconds"), relative_error(runs));
+    const Power tracer = power_through(path);
+    Lines lines;
+    std::vector<double> H, limits;
     for (const Race& r : races) {
-        realistic += ahead(r.particles(), r.flat.realistic).to_the_end &&
-                     ahead(r.particles(), r.hierarchy.realistic).to_the_end;
-        const Ahead f = ahead(r.particles(), r.flat.optimistic),
-                    h = ahead(r.particles(), r.hierarchy.optimistic);
-        if (!f.to_the_end) flat = std::max(flat, f.best);
-        if (!h.to_the_end) hierarchy = std::max(hierarchy, h.best);
-        where += text("%s%s (%s)", where.empty() ? "" : ", ",
-                      f.to_the_end ? "not within the run" : "at " + percent(f.best), room_name(r));
+        if (r.course.scene != "cornell36") continue;
+        const Rows shot = by_setting(r.rows, "hierarchy 0.01"),
+                   walked = by_setting(r.rows, "halton 1/4");
+        lines.push_back({text("%.0f", r.elements()), text("%g", r.course.H), percent(r.limit())});
+        H.push_back(r.course.H), limits.push_back(r.limit());
+        for (const Rows& runs : {shot, walked}) {
+            const double error = std::sqrt(mean(runs, "total2")), s = mean(runs, "map_cpu_seconds"),
+                         view = mean(runs, "cpu_seconds") - s, other = tracer.inverse(error),
+                         n = cameras(s, view, other);
+            for (const std::string& cell :
+                 {percent(error), in_seconds(s), in_seconds(view), in_seconds(other),
+                  std::isfinite(n) ? text("%.0f", n) : "never"})
+                lines.back().push_back(cell);
+        }
+        for (const std::string& cell :
+             {percent(r.realistic_of(shot)), percent(r.floor("hierarchy")),
+              percent(shot[0]["optimistic"])})
+            lines.back().push_back(cell);
     }
-    report.say(text(
-        R"(**Is Monte Carlo preferable even by the optimistic estimate?**  By the realistic estimate it is, to the
-end of every run, in %.0f of %.0f rooms: both deterministic methods stop at their floors.  By the
-optimistic estimate the paper's conclusion is confirmed for all errors above %s against shooting by
-triangles, and refuted below: shooting catches up %s.  The hierarchy, which the paper did not have,
-catches up earlier, at %s at the latest: there the argument decides nothing, and only the floors do.)",
-        double(realistic), double(races.size()), percent(flat), where, percent(hierarchy)));
+    page.set("total",
+             table({"triangles", "H", "particles' limit", "hierarchy, 1 %: total", "seconds",
+                    "a view", "path tracer", "cameras", "particles: total", "seconds", "a view",
+                    "path tracer", "cameras", "realistic", "floor", "optimistic"},
+                   lines));
+    const double least = *std::min_element(limits.begin(), limits.end());
+    page.set("limit-order", text("%.2f", slope(H, limits)));
+    page.set("least-limit", percent(least));
+    page.set("least-seconds", in_seconds(tracer.inverse(least)));
+    page.set("traced-own", percent(traced[0]["own"]));
+}
+
+// ---- What it costs ------------------------------------------------------------------------------
+
+void tell_growth(Page& page, const Scope& plan, const std::string& radiosity) {
+    using List = std::vector<double>;
+    Grid grid("illumination-costs", radiosity, plan.kept);
+    const List fine = plan.quick ? List{90, 50} : List{90, 50, 28, 16, 9};
+    const List flat = plan.quick ? List{130, 90} : List{90, 65, 48, 35};
+    Rows all;
+    Lines orders;
+    std::map<std::string, double> rays;  // exponents
+    auto grow = [&](const std::string& scene, const std::string& method, const List& H) {
+        std::vector<Setting> settings;
+        for (double h : H)
+            settings.push_back(
+                {text("%s %g", method, h), text("--method %s --unshot 0.01 --mesh %g", method, h)});
+        const Rows rows =
+            grid.run({{scene, text("scenes/%s.scene --size 8x4", scene), 0}}, settings, {0}, 0);
+        all.insert(all.end(), rows.begin(), rows.end());
+        const List n = all_of(rows, "elements");
+        orders.push_back({scene, method, text("%.0f–%.0f", n.front(), n.back())});
+        std::vector<std::string> predicted;
+        for (const char* what : {"shots", "rays", "map_cpu_seconds"}) {
+            const List y = all_of(rows, what);
+            const size_t k = n.size() - 2;
+            const double last = slope({n[k], n[k + 1]}, {y[k], y[k + 1]});
+            orders.back().push_back(text("n^%.2f (n^%.2f)", slope(n, y), last));
+            predicted.push_back(text("%.2g", y.back() * std::pow(1e5 / n.back(), last)));
+            if (what == std::string("rays")) rays[method] = slope(n, y);
+        }
+        orders.back().insert(orders.back().end(), predicted.begin(), predicted.end());
+    };
+    grow("cornell36", "shooting", flat), grow("cornell36", "hierarchy", fine);
+    const double by_elements = rays["shooting"], by_faces = rays["hierarchy"];
+    if (!plan.quick) grow("atelier", "hierarchy", {1.2, 0.295});
+    page.set("growth", table({"scene", "method", "elements", "shots", "shadow rays", "seconds",
+                              "shots at 100 000", "rays", "seconds"},
+                             orders));
+    page.data("radiosity-costs",
+              csv(all, {"elements", "vertices", "shots", "rays", "map_cpu_seconds"}));
+    page.set("growth-rays", text("n^%.2f to n^%.2f", by_elements, by_faces));
+    page.set("growth-ok", plan.quick
+                              ? "not by these meshes"
+                              : page.verdict(by_faces < 1.15 && by_faces < by_elements - 0.3));
+    // Whole faces beside elements, on the same triangles.
+    std::string list;
+    double most = 0;
+    for (double H : plan.quick ? List{130} : List{90, 55}) {
+        const Subject s{text("cornell36 %g", H),
+                        text("scenes/cornell36.scene --rays 4 --mesh %g", H), 0,
+                        "--method shooting --unshot 0.001"};
+        const Row r = grid.run({s}, {{"faces", "--method hierarchy --unshot 0.001"}}, {0}, 0)[0];
+        most = std::max(most, r["off"]);
+        list += text("%s%.2f %% at %.0f", list.empty() ? "" : ", ", 100 * r["off"], r["elements"]);
+    }
+    page.set("apart", list), page.claim("apart-ok", most < 0.02);
+}
+
+// Core nanoseconds a ray of both programs, over seeds.
+void tell_speed(Page& page, const Scope& plan, const std::string& penumbra,
+                const std::string& radiosity) {
+    Grid grid("illumination-speed", penumbra, plan.kept);
+    Lines lines;
+    double most = 0;
+    for (const auto& [scene, H, lights] :
+         {std::tuple{"cornell36", 28.0, std::vector<std::string>{"none", "nee"}},
+          {"atelier", 0.295, {"nee"}}})  // whose point light no path finds
+        for (const std::string& light : lights) {
+            const Rows rows =
+                grid.run({{scene, text("scenes/%s.scene", scene), 0}},
+                         {{light, text("--sets 1 --sampler independent --spp %d --light %s",
+                                       plan.quick ? 2 : 12, light)},
+                          {"particles",
+                           text("--size 8x4 --method particles --sampler independent --mesh %g "
+                                "--particles %d",
+                                H, 1 << (plan.quick ? 17 : 19)),
+                           radiosity}},
+                         {0}, plan.quick ? 2 : 5);
+            std::vector<double> paths, walks, ratio;
+            for (const Row& r : by_setting(rows, light))
+                paths.push_back(1e9 * r["cpu_seconds"] / r["rays"]);
+            for (const Row& r : by_setting(rows, "particles"))
+                walks.push_back(1e9 * r["map_cpu_seconds"] / r["rays"]);
+            for (size_t k = 0; k < paths.size(); ++k) ratio.push_back(walks[k] / paths[k]);
+            most = std::max(most, median(ratio));
+            lines.push_back({scene, "--light " + light, with_range(paths, "%.0f"),
+                             with_range(walks, "%.0f"), with_range(ratio, "%.2f")});
+        }
+    page.set("speed",
+             table({"scene", "penumbra", "its core ns a ray", "particles'", "ratio"}, lines));
+    page.set("speed-most", text("%.2f", most));
 }
 
 // ---- The report ---------------------------------------------------------------------------------
 
-void tell_pictures(Report& report, const std::string& penumbra, const Scope& plan) {
-    const Room room = illumination::room("atelier", plan.quick ? 1 : 0.295);
-    const Eye eye(room);
-    const Filled particles =
-        fill(room, eye, SamplerKind::halton, 1, plan.quick ? 1 << 18 : 1 << 22);
-    const auto shots = shoot(room, eye, Shooter::face, {plan.quick ? 0.1 : 0.01}, 60);
-    const Rendering traced =
-        rendering(penumbra, {"scenes/atelier.scene", "--spp", plan.quick ? "4" : "64"});
-    report.picture(
-        "radiosity-atelier",
-        contact_sheet(
-            {{traced.image, "path tracer",
-              text("%.0f samples a pixel, %.1f s", double(traced.samples()), wall_seconds(traced))},
-             {particles.image, "particles",
-              text("%s triangles, %.1f s", room.size(), particles.seconds)},
-             {shots[0].image, "shooting (hierarchy)",
-              text("%.0f %% unshot, %.1f s", 100 * shots[0].unshot, shots[0].seconds)}},
-            3, double(room.scene.exposure)),
-        "The same room three ways");
-}
-
-int study(const std::string& penumbra, const Scope& plan) {
-    Report report(report_folder(plan.quick), "radiosity");
-    report.say(R"(# Deterministic and Monte Carlo illumination maps
-
-Faces are cut into triangles no longer than H; irradiance is kept at their vertices, linear between
-(`build/radiosity`).  *Shooting* is progressive refinement (Cohen et al. 1988) without a random number, a
-triangle at a time; the *hierarchy* shoots whole faces, in parts as large as a vertex may see them (after
-Hanrahan et al. 1991).  *Particles* walk from the lights and are projected onto the same maps.  After
-Khodulev (1996, ch. 5).  Errors of images are d_rel = √(1/N Σ(f−g)²) / √(1/N Σf²) over all numbers,
-three a pixel.)");
-    tell_pictures(report, penumbra, plan);
-    tell_cube(report, plan);
+int study(const std::string& penumbra, const std::string& radiosity, const Scope& plan,
+          const std::string& command) {
+    Page page(report_folder(plan.quick), "radiosity");
+    Grid grid("illumination", radiosity, plan.kept);
+    Grid paths("illumination-paths", penumbra + " --depth 64", plan.kept);
+    const Subject room{"cornell36", "scenes/cornell36.scene --size 128x64",
+                       plan.quick ? 256u : 4096u};
+    const Rows traced = paths.run({room}, {{"path tracer", "--sets 1"}}, {2, 4, 8, 16, 32, 64}, 2);
+    const Truth* truth = plan.kept ? nullptr : &paths.truth(room);
     std::vector<Race> races;
-    const std::vector<Course> all = courses(plan);
-    Steps progress(all.size());
-    for (const Course& c : all) {
-        progress.next(text("%s, H %g", c.scene, c.H));
-        races.push_back(run_race(c));
-    }
-    tell_references(report, races);
-    tell_races(report, races);
-    tell_conclusion(report, races);
-    tell_truth(report, compared(penumbra, test_of(plan)));
-    tell_growth(report, plan, penumbra);
-    report.say(made_by(plan.quick  ? "build/illumination --quick"
-                       : plan.full ? "build/illumination --full"
-                                   : "build/illumination"));
-    return report.finish();
+    for (const Course& c : courses(plan))
+        races.push_back(run_race(grid, c, c.scene == "cornell36" ? truth : nullptr, plan.kept));
+    tell_races(page, races);
+    plot_races(page, races);
+    tell_total(page, races, traced);
+    tell_growth(page, plan, radiosity);
+    tell_speed(page, plan, penumbra, radiosity);
+    page.set("made", made_by(command));
+    return page.finish();
 }
 
 }  // namespace
@@ -221,7 +381,9 @@ int main(int argc, char** argv) {
     Scope plan;
     const Lab lab{"illumination",
                   "Compares deterministic and Monte Carlo illumination maps.",
-                  {quick_flag(plan.quick),
-                   {"--full", "", "longer runs: an hour", [&](auto&) { plan.full = true; }}}};
-    return lab_main(argc, argv, lab, [&] { return study(renderer_beside(lab, argv[0]), plan); });
+                  {quick_flag(plan.quick), kept_flag(plan.kept)}};
+    return lab_main(argc, argv, lab, [&] {
+        return study(renderer_beside(lab, argv[0]), renderer_beside(lab, argv[0], "radiosity"),
+                     plan, command_of(argc, argv));
+    });
 }

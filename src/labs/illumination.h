@@ -1,149 +1,104 @@
-// labs/illumination.h  3  rooms cut into triangles, lit by either method, as their camera sees them
+// labs/illumination.h  5  error over time of two methods, and references whose error is inferred
 #pragma once
-#include "labs/lab.h"
-#include "radiosity/particles.h"
-#include "radiosity/shooting.h"
+#include "base/json.h"
+#include "labs/rows.h"
+
+inline std::string in_seconds(double s) { return text(s < 0.1 ? "%.2g s" : "%.3g s", s); }
 
 namespace illumination {
 
-struct Scope {
-    bool quick = false, full = false;
+struct Curve {
+    std::vector<double> seconds, error;
+    void add(double s, double e) { seconds.push_back(s), error.push_back(e); }
 };
 
-// Distance of two images relative to the quadratic mean of the first (Khodulev 1996, ch. 5).
-inline double d_rel(const Image& f, const Image& g) {
-    double square = 0;
-    for (const auto& pixel : f.pixels)
-        for (float x : pixel) square += double(x) * double(x);
-    return std::sqrt(mse(f, g) * 3 * double(f.pixels.size()) / square);
-}
-
-inline std::string percent(double x) { return text(x < 0.001 ? "%.3f %%" : "%.2g %%", 100 * x); }
-inline std::string seconds(double s) { return text(s < 0.1 ? "%.2g s" : "%.3g s", s); }
-
-// ---- Rooms --------------------------------------------------------------------------------------
-
-// A scene and its triangles, no edge of them longer than H.
-struct Room {
-    std::string name;
-    Scene scene;
-    Mesh mesh;
-    double H = 0;
-    std::string size() const { return text("%zu", mesh.elements()); }
+// y = factor x^exponent.
+struct Power {
+    double factor = 1, exponent = 1;
+    double operator()(double x) const { return factor * std::pow(x, exponent); }
+    double inverse(double y) const { return std::pow(y / factor, 1 / exponent); }
 };
-
-inline Room room(const std::string& name, double H, std::optional<Size> size = {}) {
-    const Scene read = read_scene("scenes/" + name + ".scene").scene;
-    Room r{name, faceted(read, H).scene, {}, H};
-    r.scene.size = size.value_or(r.scene.size);
-    r.mesh = make_mesh(r.scene, H);
-    return r;
+inline Power power_through(const Curve& c) {
+    const double p = slope(c.seconds, c.error);
+    double log_factor = 0;
+    for (size_t k = 0; k < c.error.size(); ++k)
+        log_factor += std::log(c.error[k]) - p * std::log(c.seconds[k]);
+    return {std::exp(log_factor / double(c.error.size())), p};
 }
 
-// What its camera sees of a map: the rays, 16 a pixel on a grid, are traced once for all maps.
-class Eye {
-public:
-    explicit Eye(const Room& room) : size_(room.scene.size) {
-        looks_.resize(size_t(size_.width) * size_t(size_.height) * rays);
-        auto row = [&](size_t y) {
-            Look* next = &looks_[size_t(y) * size_t(size_.width) * rays];
-            for (int x = 0; x < size_.width; ++x)
-                pixel_of(room.scene, x, y, side, [&](const Ray& ray) {
-                    *next++ = look(room, ray);
-                    return rgb{};
-                });
-        };
-        in_parallel(size_t(size_.height), all_cores(), row, [](double) {});
-    }
+// Between the points of a curve by powers; beyond them like 1 / sqrt(t), as independent numbers do.
+inline double error_at(const Curve& c, double t) {
+    const auto& s = c.seconds;
+    const size_t above = size_t(std::upper_bound(s.begin(), s.end(), t) - s.begin());
+    if (above == 0) return c.error.front() * std::sqrt(s.front() / t);
+    if (above == s.size()) return c.error.back() * std::sqrt(s.back() / t);
+    const double part = std::log(t / s[above - 1]) / std::log(s[above] / s[above - 1]);
+    return c.error[above - 1] * std::pow(c.error[above] / c.error[above - 1], part);
+}
 
-    Image operator()(const IlluminationMap& map) const {
-        Image image(size_.width, size_.height);
-        for (size_t i = 0; i < image.pixels.size(); ++i) {
-            rgb sum;
-            for (const Look* l = &looks_[i * rays]; l < looks_.data() + (i + 1) * rays; ++l) {
-                sum += l->Le;
-                for (size_t k = 0; k < 3; ++k) sum += l->rho * map[l->side[k]] * l->weight[k] / pi;
-            }
-            for (size_t c = 0; c < 3; ++c) image.pixels[i][c] = float(sum.*axis[c] / rays);
-        }
-        return image;
-    }
+// Without the reference's own error, which is independent of it.
+inline double without(double d, double own) { return std::sqrt(std::max(0.0, d * d - own * own)); }
 
-private:
-    static constexpr int side = 4, rays = side * side;
-    struct Look {
-        std::array<uint32_t, 3> side{};
-        std::array<real, 3> weight{};
-        rgb rho, Le;
-    };
-    const Size size_;
-    std::vector<Look> looks_;
-
-    static Look look(const Room& room, const Ray& ray) {
-        const auto x = meet(room.scene, ray);
-        if (!x || x->cos_o == 0) return {};
-        const auto [vertex, weight] = between(room.mesh, x->hit);
-        Look l{{}, weight, x->material->kd, emitted(*x->material, x->cos_o)};
-        for (size_t k = 0; k < 3; ++k) l.side[k] = 2 * vertex[k] + (x->cos_o < 0);
-        return l;
+// The error of an image is proportional to what a run states of its map (Khodulev 1996, ch. 5): of
+// a run and a reference, which state a and b, d = k sqrt(a^2 + b^2).
+struct Proportion {
+    Moments k;                           // over the shorter runs
+    double exponent = 1;                 // of d over sqrt(a^2 + b^2): 1, if proportional
+    double standard_error = 0;           // of the exponent
+    double predicted = 0, measured = 0;  // error of a longer run: by k; against the reference
+    bool holds() const {
+        const double spread = std::sqrt(k.variance()) / k.mean;
+        return std::abs(exponent - 1) < 4 * standard_error + 0.02 &&
+               std::abs(measured / predicted - 1) < 4 * spread;
     }
 };
 
-// ---- Solutions ----------------------------------------------------------------------------------
-
-struct Filled {
-    Image image;
-    IlluminationMap map;
-    double reported = 0;  // relative error of the map, by the batches
-    double seconds = 0;   // of all threads together by the clock, without the image
-    uint64_t particles = 0, rays = 0;
-};
-
-// All particles, by all threads.
-inline void walk(Particles& particles, uint64_t n) {
-    in_parallel(
-        Particles::batches, all_cores(),
-        [&](size_t batch) { particles.add(batch, n / Particles::batches); }, [](double) {});
-}
-
-using Clock = std::chrono::steady_clock;
-inline double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-inline Filled fill(const Room& room, const Eye& eye, SamplerKind kind, uint64_t seed, uint64_t n) {
-    Particles particles(room.scene, room.mesh, Particles::pattern(kind, seed, n));
-    const Clock::time_point start = Clock::now();
-    walk(particles, n);
-    IlluminationMap map = particles.map();
-    const double seconds = seconds_since(start);
-    Filled f{eye(map), std::move(map),        particles.error(),
-             seconds,  particles.particles(), particles.rays()};
-    return f;
-}
-
-struct Shot {
-    Image image;
-    double seconds = 0, unshot = 0;
-    uint64_t shots = 0, rays = 0;
-};
-
-// One run, looked at whenever the unshot part has come down to the next of a list, and at its end;
-// which is no later than `seconds`.
-inline std::vector<Shot> shoot(const Room& room, const Eye& eye, Shooter shooter,
-                               const std::vector<double>& unshot, double seconds) {
-    Shooting run(room.scene, room.mesh, shooter, all_cores());
-    std::vector<Shot> looks;
-    for (double next : unshot) {
-        run.run({next, seconds, 0}, [](const Shooting&) {});
-        looks.push_back({eye(run.map()), run.seconds(), run.unshot(), run.shots(), run.rays()});
-        if (run.unshot() > next) break;
+// Of rows with `off`, `stated` and `reference` (what that states).
+inline Proportion proportion(const Rows& shorter, const Rows& longer) {
+    Proportion p;
+    Curve c;
+    for (const Row& r : shorter) {
+        c.add(std::hypot(r["stated"], r["reference"]), r["off"]);
+        p.k.add(c.error.back() / c.seconds.back());
     }
-    return looks;
+    const Power fit = power_through(c);
+    Moments x;
+    double residual = 0;
+    for (size_t i = 0; i < c.error.size(); ++i) {
+        const double off = std::log(c.error[i] / fit(c.seconds[i]));
+        residual += off * off / double(c.error.size() - 2);
+        x.add(std::log(c.seconds[i]));
+    }
+    p.exponent = fit.exponent, p.standard_error = std::sqrt(residual / x.m2);
+    const double a = mean(longer, "stated"), b = mean(longer, "reference");
+    p.predicted = p.k.mean * a, p.measured = mean(longer, "off") * a / std::hypot(a, b);
+    return p;
+}
+
+// Where particles are ahead of a deterministic curve.
+struct Ahead {
+    bool ever = false, to_the_end = false;
+    double from = 0, to = 0, worst = 0, best = 0;  // seconds; errors of particles there
+};
+inline Ahead ahead(const Curve& particles, const Curve& deterministic) {
+    Ahead a;
+    for (size_t i = 0; i < deterministic.seconds.size(); ++i) {
+        const double t = deterministic.seconds[i], own = error_at(particles, t);
+        if (own >= deterministic.error[i]) continue;
+        if (!a.ever) a.from = t, a.worst = own;
+        a.ever = true, a.to = t, a.best = own, a.to_the_end = i + 1 == deterministic.seconds.size();
+    }
+    return a;
+}
+
+// From how many cameras on one solution and its views take less time than as many images of the
+// same error by path tracing; none: infinity.
+inline double cameras(double solution, double view, double traced) {
+    return traced > view ? std::max(1.0, std::ceil(solution / (traced - view))) : INFINITY;
 }
 
 // 0.5, 0.2, 0.1, ... down to the least.
-inline std::vector<double> unshot_down_to(double least) {
+inline std::vector<double> decades_down_to(double least) {
     std::vector<double> list;
     for (double decade = 1; decade > least * 0.99; decade /= 10)
         for (double part : {0.5, 0.2, 0.1})

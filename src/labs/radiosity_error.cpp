@@ -1,21 +1,182 @@
-// labs/radiosity_error.cpp  5  what build/radiosity --error delivers
+// labs/radiosity_error.cpp  8  what build/radiosity --error delivers: true errors over those asked
 //
 //   build/radiosity_error [--quick]
-#include "labs/calibration_maps.h"
+//
+// They are those of maps, over all surfaces, which no image shows: so the parts are run.
+#include "base/json.h"
+#include "labs/room.h"
+#include "labs/rows.h"
+#include "radiosity/walks.h"
+
+namespace {
+
+// A map that was asked for, with its statement; `true` follows.
+struct Run {
+    Row row;
+    IlluminationMap map;
+};
+using Runs = std::vector<Run>;
+
+Run run_of(const Room& room, const char* method, double asked, const MapError& stated,
+           std::map<std::string, double> of, IlluminationMap map) {
+    of.insert({{"asked", asked}, {"stated", stated.error}, {"uncertainty", stated.uncertainty}});
+    const std::string scene = text("%s, %zu triangles", room.name, room.mesh.elements());
+    return {{scene, method, 0, 0, of}, std::move(map)};
+}
+void add_true(Run& run, double error) {
+    Row& r = run.row;
+    r.of["true"] = error, r.of["over asked"] = error / r["asked"];
+    r.of["over stated"] = error / r["stated"], r.of["over unshot"] = error / r["unshot"];
+}
+double mean_square(const Rows& rows, const char* name) {
+    double sum = 0;
+    for (double x : all_of(rows, name)) sum += x * x / double(rows.size());
+    return sum;
+}
+Rows rows_of(const Runs& runs) {
+    Rows rows;
+    for (const Run& run : runs) rows.push_back(run.row);
+    return rows;
+}
+std::string of_asked(const Row& r) { return percent(r["asked"]); }
+
+// ---- Particles ----------------------------------------------------------------------------------
+
+Runs walks(const Room& room, const char* method, SamplerKind kind, double asked, uint64_t n) {
+    Runs runs;
+    CommonOptions o;
+    o.quiet = true;
+    for (uint64_t r = 0; r < n; ++r) {
+        const double start = processor_seconds();
+        const auto p = Particles::pattern(kind, hash(r, std::bit_cast<uint64_t>(asked)), 0);
+        Walked w = walk_all(room.scene, room.mesh, p, {0, 0, asked}, o);
+        runs.push_back(run_of(
+            room, method, asked, w.stated,
+            {{"particles", double(w.particles)}, {"cpu_seconds", processor_seconds() - start}},
+            std::move(w.map)));
+    }
+    return runs;
+}
+
+// Distances to the mean of the reference's runs, whose own error is taken off in squares; a run
+// that is one of them is left out of its own reference.
+void add_true_errors(const Mesh& mesh, Runs& runs, const Runs& reference, bool is_own) {
+    const double all = double(reference.size()), n = all - is_own;
+    IlluminationMap sum(number_of_sides(mesh));
+    for (const Run& run : reference)
+        for (size_t v = 0; v < sum.size(); ++v) sum[v] += run.map[v];
+    const double square = square_of(mesh, sum) / (all * all),
+                 own = mean_square(rows_of(reference), "stated") / n;
+    for (Run& run : runs) {
+        IlluminationMap off = is_own ? difference(sum, run.map) : sum;
+        for (size_t v = 0; v < off.size(); ++v) off[v] = off[v] / real(n) - run.map[v];
+        add_true(run, std::sqrt(std::max(0.0, square_of(mesh, off) / square - own)));
+    }
+}
+
+// E from the smallest on: its runs are the reference of the others.
+void add_walks(Rows& rows, const Room& room, double least, uint64_t seeds) {
+    Runs reference;
+    auto add = [&](const char* method, SamplerKind kind, double asked) {
+        Runs runs = walks(room, method, kind, asked, seeds);
+        add_true_errors(room.mesh, runs, reference.empty() ? runs : reference, reference.empty());
+        for (const Run& run : runs) rows.push_back(run.row);
+        if (reference.empty()) reference = std::move(runs);
+    };
+    for (double asked : {0.01, 0.03, 0.1})
+        if (asked >= least) add("halton", SamplerKind::halton, asked);
+    if (room.name != "cornell36" || least > 0.01) return;
+    add("independent", SamplerKind::independent, 0.03);
+    add("stratified", SamplerKind::stratified, 0.03), add("sobol", SamplerKind::sobol, 0.03);
+}
+
+// Runs hardly longer than the first look, before which none ends, may be better than asked.
+std::string walked_cell(Page& page, const Rows& rows) {
+    const bool is_long =
+        median(all_of(rows, "particles")) > 2 * double(ErrorTarget::least * Particles::batches);
+    auto over = [&](double q) { return quantile(all_of(rows, "over asked"), q); };
+    const bool kept = over(0.5) <= 1 && (!is_long || (over(0.5) >= 0.95 && over(0.95) < 1.05));
+    return text("%.3f, %.3f, %.3f: ", over(0.5), over(0.95), over(1)) + page.verdict(kept);
+}
+
+// ---- Shooting -----------------------------------------------------------------------------------
+
+// Looks at one run; the last is its limit, and what that states counts as error.
+void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {
+    Shooting run(room.scene, room.mesh, shooter, all_cores());
+    Runs runs;
+    for (double asked : {0.5, 0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 1e-4}) {
+        shoot_on(run, {0, patience, 0, asked});
+        if (run.error() > asked && !runs.empty()) break;  // its last shot is cut short
+        runs.push_back(run_of(room, shooter == Shooter::face ? "hierarchy" : "shooting", asked,
+                              {run.error()}, {{"unshot", run.unshot()}, {"seconds", run.seconds()}},
+                              run.map()));
+        if (run.error() > asked) break;
+    }
+    const double left = runs.back().row["stated"], whole = square_of(room.mesh, runs.back().map);
+    for (Run& r : runs) {
+        const double d2 = square_of(room.mesh, difference(runs.back().map, r.map)) / whole;
+        // Nearer to the limit the distance says nothing.
+        if (r.row["asked"] >= 10 * left) add_true(r, std::sqrt(d2) + left);
+        rows.push_back(r.row);
+    }
+}
+
+std::vector<std::string> told(Page& page, const Rows& runs) {
+    const Rows rows = where(runs, [](const Row& r) { return !std::isnan(r["true"]); });
+    std::vector<std::string> line = {runs[0].scene, runs[0].setting};
+    if (rows.empty()) line.push_back(text("not below %s in time", percent(runs.back()["stated"])));
+    if (rows.empty()) return line.insert(line.end(), 3, ""), line;
+    for (const char* name : {"over asked", "over stated", "over unshot"}) {
+        const std::vector<double> x = all_of(rows, name);
+        line.push_back(text("%.2g–%.2g", quantile(x, 0), quantile(x, 1)));
+    }
+    line.push_back(page.verdict(quantile(all_of(rows, "over asked"), 1) <= 1));
+    return line;
+}
+
+int study(bool quick, const std::string& command) {
+    Page page(report_folder(quick), "radiosity-error");
+    using Places = std::vector<std::pair<std::string, double>>;
+    const Places places =
+        quick ? Places{{"cube", 0.03}, {"penumbra", 0.03}}
+              : Places{{"atelier", 0.03}, {"cornell36", 0.01}, {"cube", 0.01},    {"furnace", 0.03},
+                       {"lanterns", 0.1}, {"panel", 0.01},     {"penumbra", 0.03}};
+    Rows walked, shot;
+    for (const auto& place : places) {
+        // Edges are a part of the scene's diagonal.
+        const Scene read = scene_named(place.first);
+        auto room = [&](int parts) {
+            return make_room(place.first, read, double(diagonal(read)) / parts);
+        };
+        add_walks(walked, room(12), place.second, quick ? 8 : 32);
+        if (!quick && place.second < 0.1) add_walks(walked, room(32), 0.1, 32);
+        for (int parts : {8, 16})
+            for (Shooter shooter : {Shooter::face, Shooter::element})
+                add_shots(shot, room(parts), shooter, quick ? 5 : 60);
+    }
+    auto of_run = [](const Row& r) { return r.scene + ", " + r.setting; };
+    page.set("particles",
+             table(walked, of_run, of_asked, [&](const Rows& r) { return walked_cell(page, r); }));
+    std::vector<std::vector<std::string>> lines;
+    for (const auto& [name, rows] : grouped(shot, of_run)) lines.push_back(told(page, rows));
+    page.set("shooting", table({"scene", "method", "true / E", "k", "true / unshot", ""}, lines));
+    page.set("ratio",
+             text("%.3f", std::sqrt(mean_square(walked, "true") / mean_square(walked, "stated"))));
+    const std::vector<std::string> numbers = {"asked",     "stated", "uncertainty", "true",
+                                              "particles", "unshot", "cpu_seconds", "seconds"};
+    page.data("radiosity-error-particles", csv(walked, numbers));
+    page.data("radiosity-error-shooting", csv(shot, numbers));
+    page.set("seeds", quick ? "8" : "32"), page.set("made", made_by(command));
+    return page.finish();
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-    illumination::calibration::Extent extent;
+    bool quick = false;
     const Lab lab{"radiosity_error",
                   "Measures true errors of illumination maps over those asked for.",
-                  {quick_flag(extent.quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        Report report(report_folder(extent.quick), "radiosity-error");
-        report.say(
-            "# Illumination maps of a given error\n\nTrue errors of `build/radiosity "
-            "--error E` over E, on all scenes of diffuse surfaces (cornell36b and "
-            "cornell36obj are cornell36).  Errors leave out what the triangles cost.");
-        illumination::calibration::tell_maps(report, extent);
-        report.say(made_by(argc, argv));
-        return report.finish();
-    });
+                  {quick_flag(quick)}};
+    return lab_main(argc, argv, lab, [&] { return study(quick, command_of(argc, argv)); });
 }

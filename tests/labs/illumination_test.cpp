@@ -1,7 +1,9 @@
-// Of the study of illumination maps: its arithmetic, and that its eye sees what the program draws.
+// labs/illumination_test.cpp  the arithmetic of the study of illumination maps
+#include "labs/illumination.h"
+
 #include <doctest/doctest.h>
 
-#include "labs/illumination_truth.h"
+#include "labs/grid.h"
 
 using namespace illumination;
 
@@ -14,8 +16,10 @@ Image grey(std::initializer_list<float> values) {
     return image;
 }
 
-// A run of which only the image and the report count.
-Filled run_of(Image image, double reported) { return {std::move(image), {}, reported, 0, 0, 0}; }
+// A run that is off by so much, and states so much of its maps.
+Row run_of(double off, double stated, double reference) {
+    return {"", "", 0, 0, {{"off", off}, {"stated", stated}, {"reference", reference}}};
+}
 
 }  // namespace
 
@@ -36,31 +40,26 @@ TEST_CASE("a power is found again in points of it, scattered or not") {
 }
 
 TEST_CASE("the error of a reference is inferred by proportion") {
-    // Errors on one pixel each, so that squares add: run i is off by 2 r_i on a pixel of its own,
-    // the longer one by 2 * 0.01 and the longest by 2 * 0.005 on others: k = 2 / |f|.
-    const std::vector<double> reports = {0.4, 0.2, 0.1, 0.05};
-    auto image_of = [](size_t pixel, double off) {
-        Image image(8, 1);
-        for (int x = 0; x < 8; ++x) image.at(x, 0) = {1, 1, 1};
-        for (float& v : image.at(int(pixel), 0)) v += float(off);
-        return image;
-    };
-    std::vector<Filled> shorter;
-    for (size_t i = 0; i < reports.size(); ++i)
-        shorter.push_back(run_of(image_of(i, 2 * reports[i]), reports[i]));
-    const Filled longer = run_of(image_of(6, 0.02), 0.01),
-                 longest = run_of(image_of(7, 0.01), 0.005);
-    const Proportion p = proportion(shorter, longer, longest);
-    const double k = 2 / std::sqrt(8.0);
+    // Errors are k times what runs state; that of the reference adds in squares.
+    const double k = 0.7, reference = 0.005;
+    Rows shorter;
+    for (double stated : {0.4, 0.2, 0.1, 0.05})
+        shorter.push_back(run_of(k * std::hypot(stated, reference), stated, reference));
+    Rows longer = {run_of(k * std::hypot(0.01, reference), 0.01, reference)};
+    const Proportion p = proportion(shorter, longer);
     CHECK(p.k.n == 4);
-    CHECK(p.k.mean == doctest::Approx(k).epsilon(0.005));
-    CHECK(p.exponent == doctest::Approx(1).epsilon(0.005));
-    CHECK(p.predicted == doctest::Approx(0.01 * k).epsilon(0.005));
-    CHECK(p.measured == doctest::Approx(0.01 * k).epsilon(0.005));
+    CHECK(p.k.mean == doctest::Approx(k).epsilon(1e-9));
+    CHECK(p.exponent == doctest::Approx(1).epsilon(1e-9));
+    CHECK(p.predicted == doctest::Approx(0.01 * k).epsilon(1e-9));
+    CHECK(p.measured == doctest::Approx(0.01 * k).epsilon(1e-9));
+    // What is not proportional does not hold.
+    longer[0].of["off"] *= 2;
+    CHECK_FALSE(proportion(shorter, longer).holds());
+    shorter[0].of["off"] *= 3, shorter[1].of["off"] *= 2;
+    CHECK(proportion(shorter, longer).exponent > 1.3);
 }
 
-TEST_CASE("independent errors add in squares, and one is taken off so") {
-    CHECK(together(3, 4) == 5);
+TEST_CASE("the reference's own error is taken off in squares") {
     CHECK(without(5, 4) == 3);
     CHECK(without(3, 4) == 0);
 }
@@ -102,22 +101,8 @@ TEST_CASE("cameras from which on a map is cheaper") {
 
 TEST_CASE("what remains unshot is looked at by decades") {
     const std::vector<double> wanted = {0.5, 0.2, 0.1, 0.05, 0.02, 0.01},
-                              got = unshot_down_to(0.01);
+                              got = decades_down_to(0.01);
     REQUIRE(got.size() == wanted.size());
     for (size_t i = 0; i < got.size(); ++i) CHECK(got[i] == doctest::Approx(wanted[i]));
-    CHECK(unshot_down_to(0.02).back() == doctest::Approx(0.02));
-}
-
-TEST_CASE("the mean of two runs, and its error") {
-    const Pair p = pair_of(grey({3, 4}), grey({4, 4}));
-    CHECK(p.mean.at(0, 0)[0] == 3.5f);
-    CHECK(p.own == doctest::Approx(0.1));
-}
-
-TEST_CASE("the eye sees what is drawn, with 16 rays a pixel") {
-    const Room room = illumination::room("cornell36", 300, Size{16, 8});
-    IlluminationMap map(number_of_sides(room.mesh));
-    for (size_t i = 0; i < map.size(); ++i) map[i] = {real(i % 7), real(i % 11), real(i % 13)};
-    const Image eye = Eye(room)(map), drawn = radiance_image(room.scene, room.mesh, map, 4, 1);
-    CHECK(d_rel(drawn, eye) < 1e-6);
+    CHECK(decades_down_to(0.02).back() == doctest::Approx(0.02));
 }

@@ -1,0 +1,56 @@
+// labs/room.h  3  scenes cut into triangles, and illumination maps on them
+#pragma once
+#include "labs/lab.h"
+#include "radiosity/particles.h"
+#include "radiosity/shooting.h"
+
+// No edge of a triangle is longer than H.
+struct Room {
+    std::string name;
+    Scene scene;
+    Mesh mesh;
+};
+
+inline Room make_room(const std::string& name, const Scene& read, double H) {
+    Room r{name, faceted(read, H).scene, {}};
+    r.mesh = make_mesh(r.scene, H);
+    return r;
+}
+inline Scene scene_named(const std::string& name) {
+    return read_scene("scenes/" + name + ".scene").scene;
+}
+
+// A look at a run of shooting, which goes on until then.
+inline void shoot_on(Shooting& run, const ShootingTarget& target) {
+    run.run(target, [](const Shooting&) {});
+}
+
+// All particles.
+inline void walk(Particles& particles, uint64_t n, unsigned threads = all_cores()) {
+    in_parallel(
+        Particles::batches, threads,
+        [&](size_t batch) { particles.add(batch, Particles::of_each(n)); }, [](double) {});
+}
+
+// Integral of the square of a map over all surfaces and channels.
+inline double square_of(const Mesh& mesh, const IlluminationMap& map) {
+    double sum = 0;
+    for (const Face& f : mesh.faces)
+        for (const bool back : {false, true}) {
+            Sums x;
+            for (uint32_t v = 0; v < f.vertices(); ++v) x.push_back(map[2 * (f.vertex + v) + back]);
+            const rgb square = Projection(mesh, f).square(x);
+            for (auto c : axis) sum += double(square.*c);
+        }
+    return sum;
+}
+
+// a + (a - b) * factor.
+inline IlluminationMap beyond(IlluminationMap a, const IlluminationMap& b, double factor) {
+    for (size_t i = 0; i < a.size(); ++i) a[i] += real(factor) * (a[i] - b[i]);
+    return a;
+}
+inline IlluminationMap difference(IlluminationMap a, const IlluminationMap& b) {
+    for (size_t i = 0; i < a.size(); ++i) a[i] += -b[i];
+    return a;
+}
