@@ -16,6 +16,8 @@
 //
 // Light is scattered without end, as in the maps: the scene's depth must be too large to be met.
 #pragma once
+#include <functional>
+
 #include "radiosity/gather.h"
 
 // ---- Numbers ------------------------------------------------------------------------------------
@@ -45,17 +47,19 @@ private:
 // ---- When to go on ------------------------------------------------------------------------------
 
 // The probability q to go on where a segment ends.
-using GoOn = real (*)(const Segment&);
+using GoOn = std::function<real(const Segment&)>;
 
 inline real never(const Segment&) { return 0; }
 
 // What the path still counts for over a threshold, the rule of step; two thirds by measurement
 // (`make indirect`).  But a path must end between white walls, too.
-inline real by_throughput(const Segment& s) {
-    constexpr real threshold = real(2) / 3;
-    const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
-    return std::min(most, max_of(s.beta) / threshold);
+inline GoOn over(real threshold) {
+    return [=](const Segment& s) {
+        const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
+        return std::min(most, max_of(s.beta) / threshold);
+    };
 }
+inline const GoOn by_throughput = over(real(2) / 3);
 
 // ---- The path -----------------------------------------------------------------------------------
 
@@ -67,49 +71,31 @@ struct Gather {
     rgb slope{1, 1, 1};
 };
 
-// What the maps did at a vertex: slope R_map, the probability q to go on, whether the path did, and
-// the weight of R that follows, 1 - [xi < q] / q.
-struct Mapped {
-    rgb R;
-    real q = 1, weight = 0;
-    bool goes = true;
-};
-
-struct NoMapAccount {
-    void operator()(const Segment&, const Step&, const Mapped&) const {}
-};
-
-// Radiance that comes along a segment, from whose end the path goes on in any case.  Calls
-// account(segment, step, mapped) at every vertex.
-template <class Account = NoMapAccount>
-rgb radiance_along(const Gather& g, Segment first, const EndlessNumbers& u, Account account = {}) {
+// Radiance that comes along a segment, from whose end the path goes on in any case.
+inline rgb radiance_along(const Gather& g, const Segment& first, const EndlessNumbers& u) {
     rgb L;
     for (Segment s = first;;) {
-        Mapped m;
-        if (s.k > first.k) {
-            m.q = g.go_on(s);
-            m.goes = m.q > 0 && u.xi(s.k) < m.q;
-            m.weight = m.goes ? 1 - 1 / m.q : 1;
-        }
+        const real q = s.k > first.k ? g.go_on(s) : 1;
+        const bool goes = s.k == first.k || (q > 0 && u.xi(s.k) < q);
+        // Of what the maps know: 1 - [xi < q] / q.
+        const real weight = s.k == first.k ? 0 : goes ? 1 - 1 / q : 1;
         // Where a path may scatter no more, emission is all that step finds.
         Segment now = s;
-        if (m.goes)
-            now.beta /= m.q;
+        if (goes)
+            now.beta /= q;
         else
             now.k = g.scene.depth;
         const Step e = step(g.scene, g.technique, now, u[s.k]);
-        if (e.met && m.weight != 0) m.R = g.slope * g.known.at(e.x);
-        L += s.beta * (e.Le * e.weight + m.R * m.weight) + now.beta * e.direct.L;
-        account(s, e, m);
+        L += s.beta * e.Le * e.weight + now.beta * e.direct.L;
+        if (e.met && weight != 0) L += s.beta * g.slope * g.known.at(e.x) * weight;
         if (e.end) return L;
         s = e.next;
     }
 }
 
 // Along a ray from the camera.
-template <class Account = NoMapAccount>
-rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u, Account account = {}) {
-    return radiance_along(g, Segment{ray, ray.o}, u, account);
+inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
+    return radiance_along(g, Segment{ray, ray.o}, u);
 }
 
 // ---- The slope ----------------------------------------------------------------------------------
@@ -129,13 +115,10 @@ inline rgb slope_of(const Gather& g, const Pattern& pattern, uint64_t n) {
             camera_ray(g.scene.camera, g.scene.size, film.x * real(width), film.y * real(height));
         const Step seen = step(g.scene, g.technique, {ray, ray.o}, u[0]);
         if (seen.end) continue;
-        rgb R_map, emitted;
-        const rgb L =
-            radiance_along(g, seen.next, u, [&](const Segment& s, const Step& e, const Mapped&) {
-                if (s.k > 1 || !e.met) return;
-                R_map = s.beta * g.known.at(e.x);
-                emitted = s.beta * e.Le * e.weight;
-            });
+        const Step y = step(g.scene, g.technique, seen.next, u[1]);
+        if (!y.met) continue;
+        const rgb R_map = seen.next.beta * g.known.at(y.x),
+                  emitted = seen.next.beta * y.Le * y.weight, L = radiance_along(g, seen.next, u);
         for (size_t c = 0; c < 3; ++c) {
             const double m = double(R_map.*axis[c]);
             both[c] += double((L - emitted).*axis[c]) * m;

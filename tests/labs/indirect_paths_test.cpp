@@ -269,7 +269,7 @@ TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light fou
     const Scene s = glowing();
     const Mesh mesh = make_mesh(s, 1);
     const KnownLight known = known_light(s, mesh, of_glow(mesh));
-    for (const GoOn go_on : {never, by_throughput}) {
+    for (const GoOn& go_on : {GoOn(never), by_throughput}) {
         const Gather g{s, {Direction::bsdf, LightMode::none, 0}, known, go_on};
         for (int r = 0; r < 100; ++r)
             CHECK(double(mean_of_paths(g, SamplerKind::independent, r, 1, [](vec2 u) {
