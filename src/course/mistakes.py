@@ -16,6 +16,7 @@ import sys
 import regions
 import starter
 import trial
+import mutants
 from regions import ROOT
 
 TABLE = ROOT / 'tests/course/mistakes.txt'
@@ -40,21 +41,18 @@ def known_mistakes(number=None):
     known = []
     for n in found:
         known.append(Known(n, 'stub', 'the stub is still there', '', trial.with_stubs({n})))
-    for path in sorted((ROOT / 'tests/mutants').glob('*.mutant')):
-        text = path.read_text()
-        head = dict(line.split(': ', 1) for line in text.split('---\n', 1)[0].splitlines() if ': ' in line)
-        if 'exercise' not in head:
+    for m in mutants.everything().values():
+        if not m.exercise:
             continue
-        if head['exercise'] not in found:
-            raise regions.Malformed(f'{path.name}: there is no exercise {head["exercise"]}')
+        if m.exercise not in found:
+            raise regions.Malformed(f'{m.name}: there is no exercise {m.exercise}')
         for key in ('says', 'read'):
-            if '\t' in head.get(key, '\t') or not head[key].strip():
-                raise regions.Malformed(f'{path.name}: {key}: is missing')
-        name = head['file']
-        original = (ROOT / name).read_text()
-        wrong = trial.planted(text, original)
-        within(path.name, name, original, wrong, head['exercise'])
-        known.append(Known(head['exercise'], path.stem, head['says'].strip(), head['read'].strip(), {name: wrong}))
+            if not m.head.get(key) or '\t' in m.head[key]:
+                raise regions.Malformed(f'{m.name}: {key}: is missing')
+        original = (ROOT / m.file).read_text()
+        wrong = mutants.planted(m, original)
+        within(m.name, m.file, original, wrong, m.exercise)
+        known.append(Known(m.exercise, m.name, m.says, m.read, {m.file: wrong}))
     order = [e.number for e in regions.exercises()]
     known = [k for k in known if number in (None, k.exercise)]
     return sorted(known, key=lambda k: (order.index(k.exercise), k.name != 'stub', k.name))
@@ -130,5 +128,5 @@ def main():
 if __name__ == '__main__':
     try:
         sys.exit(main())
-    except regions.Malformed as error:
+    except (regions.Malformed, mutants.Malformed) as error:
         sys.exit(f'mistakes: {error}')

@@ -22,6 +22,7 @@ import sys
 import regions
 import starter
 import trial
+import mutants
 from regions import ROOT
 
 README = '''# Find the bug
@@ -46,27 +47,10 @@ class Refused(Exception):
     """Why this mutant is no exercise."""
 
 
-class Mutant:
-    """A file of tests/mutants."""
-
-    def __init__(self, path):
-        self.name, self.text = path.stem, path.read_text()
-        head = self.text.split('---\n', 1)[0]
-        self.head = dict(line.split(': ', 1) for line in head.splitlines() if ': ' in line)
-        self.file = self.head['file'].strip()
-
-    def exercise(self):
-        return self.head.get('exercise', '').strip()
-
-
-def mutants():
-    return {path.stem: Mutant(path) for path in sorted((ROOT / 'tests/mutants').glob('*.mutant'))}
-
-
 def candidates(plan):
     """Mutants to draw from: known mistakes of the open weeks that the copy holds, but for tests."""
-    return [m for m in mutants().values()
-            if m.exercise() in {e.number for e in plan.open} and m.file != 'src/course/my_tests.h']
+    return [m for m in mutants.everything().values()
+            if m.exercise in {e.number for e in plan.open} and m.file != 'src/course/my_tests.h']
 
 
 def formatted(text, name):
@@ -87,8 +71,8 @@ def plant(mutant, folder):
         raise Refused(f'the copy does not hold {mutant.file}')
     right = path.read_text()
     try:
-        wrong = trial.planted(mutant.text, right)
-    except regions.Malformed as error:
+        wrong = mutants.planted(mutant, right)
+    except mutants.Malformed as error:
         raise Refused(str(error))
     if formatted(right, mutant.file) == right:
         wrong = formatted(wrong, mutant.file)
@@ -146,8 +130,8 @@ def pictures(folder):
 
 def key_of(mutant, lines, shown):
     rows = [('mutant', mutant.name), ('file', mutant.file), ('lines', '{}-{}'.format(*lines)),
-            ('what', mutant.head.get('what', '')), ('exercise', mutant.exercise()),
-            ('seen by', mutant.head.get('test', ''))] + [('pictures', line) for line in shown]
+            ('what', mutant.what), ('exercise', mutant.exercise),
+            ('seen by', mutant.test)] + [('pictures', line) for line in shown]
     return ''.join(f'{name}: {value}\n' for name, value in rows if value)
 
 
@@ -187,7 +171,7 @@ def main():
         chosen = candidates(plan)
         (random.Random(words.seed) if words.seed else random.SystemRandom()).shuffle(chosen)
     else:
-        chosen = [m for name, m in mutants().items() if name == words.mutant]
+        chosen = [m for name, m in mutants.everything().items() if name == words.mutant]
     top = words.folder.resolve()
     copy = top / str(next_number(top))
     why = f'there is no mutant {words.mutant}' if words.mutant != 'random' else 'there is none to draw from'
@@ -205,5 +189,5 @@ def main():
 if __name__ == '__main__':
     try:
         sys.exit(main())
-    except regions.Malformed as error:
+    except (regions.Malformed, mutants.Malformed) as error:
         sys.exit(f'plant: {error}')

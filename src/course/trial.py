@@ -4,14 +4,16 @@ import concurrent.futures
 import json
 import os
 import pathlib
-import re
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 
 import regions
 from regions import ROOT
+
+sys.path.insert(0, str(ROOT / 'tests/mutants'))  # mutants.py
 
 CXX = shlex.split(os.environ.get('CXX', 'g++'))
 FLAGS = shlex.split(os.environ.get('FLAGS', '-std=c++20 -march=native -ffp-contract=off -fno-math-errno -pthread '
@@ -31,14 +33,6 @@ def answers_of_solution(exercise):
         subprocess.run([str(judge_of(exercise)), '--json', report.name, exercise, '--',
                         str(judge_of(exercise)).replace('judge_', 'answers_')], capture_output=True, check=False)
         return json.loads(pathlib.Path(report.name).read_text())['fingerprint']
-
-
-def planted(mutant_text, file_text):
-    """file_text with the wrong lines of a mutant, whose right ones are there exactly once."""
-    _, old, new = re.split(r'^---\n', mutant_text, flags=re.M)
-    if ('\n' + file_text).count('\n' + old) != 1:
-        raise regions.Malformed('the old lines are not exactly once in the file')
-    return ('\n' + file_text).replace('\n' + old, '\n' + new)[1:]
 
 
 class Trial:

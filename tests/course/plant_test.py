@@ -10,6 +10,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
 import hunted
 import plant
+import mutants
 import regions
 import sandbox
 import starter
@@ -19,11 +20,12 @@ from testing import expect
 BUG = 'warp_cosine_density_of_half'
 
 
-def mutant_of(folder, file, old, new, more=''):
+def mutant_of(file, old, new, more=''):
     """A mutant that is not among those of the project."""
-    path = pathlib.Path(folder) / 'made_up.mutant'
-    path.write_text(f'what: made up\nfile: {file}\ntest: warp_test\n{more}---\n{old}---\n{new}')
-    return plant.Mutant(path)
+    def edit(mark, lines):
+        return ''.join(mark + line + '\n' for line in lines.splitlines())
+    [mutant] = mutants.parse(f'file: {file}\ntest: warp_test\n@@ made_up: made up\n{more}{edit("-", old)}{edit("+", new)}')
+    return mutant
 
 
 class Copy:
@@ -33,7 +35,7 @@ class Copy:
         self.temporary = tempfile.TemporaryDirectory()
         self.top = pathlib.Path(self.temporary.name)
         self.folder = self.top / '1'
-        self.mutant = mutant_of(self.top, **made_up) if made_up else plant.mutants()[mutant]
+        self.mutant = mutant_of(**made_up) if made_up else mutants.everything()[mutant]
         self.refused = ''
         try:
             plant.make_copy(self.mutant, starter.Plan('1-5', solved=True), self.folder)
@@ -59,7 +61,7 @@ UNIFORM = lines_of('src/world/warp.h', 'inline real pdf_quad_area')
 def test_the_copy_has_the_wrong_line_in_place_of_the_right_one():
     with Copy(BUG) as copy:
         expect(not copy.refused, copy.refused)
-        _, old, new = copy.mutant.text.split('---\n')
+        old, new = copy.mutant.old, copy.mutant.new
         text = (copy.folder / copy.mutant.file).read_text()
         plan = starter.Plan('1-5', solved=True)
         right = regions.rewrite((regions.ROOT / copy.mutant.file).read_text(), 'warp.h', plan.replacement)
@@ -136,7 +138,7 @@ def test_what_is_no_exercise_is_refused_and_leaves_nothing():
             ('nothing but spaces', dict(file='src/world/warp.h', old=UNIFORM, new=UNIFORM))):
         with Copy(**made_up) as copy:
             expect(why in copy.refused, repr(why), repr(copy.refused))
-            left = [p.name for p in copy.top.iterdir() if p.suffix != '.mutant']
+            left = [p.name for p in copy.top.iterdir()]
             expect(not left, left)
 
 
@@ -146,8 +148,8 @@ def test_known_mistakes_of_the_weeks_are_drawn():
         found = plant.candidates(starter.Plan(weeks, solved=True))
         expect(len(found) > 4, weeks, len(found))
         for m in found:
-            expect(exercises[m.exercise()].week in starter.Plan(weeks).weeks, weeks, m.name)
-            expect(not m.exercise().startswith('6'), m.name, 'a test is no place for a bug')
+            expect(exercises[m.exercise].week in starter.Plan(weeks).weeks, weeks, m.name)
+            expect(not m.exercise.startswith('6'), m.name, 'a test is no place for a bug')
 
 
 def run(*words):

@@ -7,6 +7,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
 import mistakes
+import mutants
 import regions
 import starter
 import starter_check
@@ -28,7 +29,7 @@ def refused(call, *part):
     """call() must be refused, and say this."""
     try:
         call()
-    except (regions.Malformed, SystemExit) as error:
+    except (regions.Malformed, mutants.Malformed, SystemExit) as error:
         for p in part:
             expect(p in str(error), f'{p!r} is not in {str(error)!r}')
         return
@@ -173,7 +174,7 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         names = sorted(p.name for p in (made.folder / 'tests/course').iterdir())
         expect(not [n for n in names if n.endswith('_test.cpp') or n.endswith('.py') or 'hidden' in n], names)
         expect([n for n in names if n.startswith('judge_')] == ['judge_2.cpp', 'judge_3.cpp'], names)
-        expect(not list(made.folder.rglob('*.mutant')), 'mutants')
+        expect(not list(made.folder.rglob('*.mutants')), 'mutants')
         for table in ('exercises.txt', 'mistakes.txt'):
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
             expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
@@ -248,10 +249,10 @@ def test_random_subsets_meet_every_pair_in_every_state():
 
 
 def test_a_mistake_is_planted_once_or_refused():
-    mutant = 'what: x\n---\n    return a + b;\n---\n    return a - b;\n'
-    expect('return a - b;' in trial.planted(mutant, FILE), 'not planted')
-    refused(lambda: trial.planted(mutant, FILE + FILE), 'exactly once')
-    refused(lambda: trial.planted(mutant, 'none'), 'exactly once')
+    [mutant] = mutants.parse('file: x.h\ntest: x_test\n\n@@ minus: a wrong sign\n-    return a + b;\n+    return a - b;\n')
+    expect('return a - b;' in mutants.planted(mutant, FILE), 'not planted')
+    refused(lambda: mutants.planted(mutant, FILE + FILE), 'exactly once')
+    refused(lambda: mutants.planted(mutant, 'none'), 'exactly once')
 
 
 def test_a_mistake_changes_its_region_and_nothing_else():

@@ -1,0 +1,114 @@
+# mutants/mutants.py  wrong lines that someone might write: reads the files of this folder, and plants what they say
+"""A file has the mutants of one source.  It begins with lines that hold for all of them:
+
+    file: src/world/bvh.h    the source, of src or tests, scripts among them
+    test: bvh_test           the test file that must turn red, without its folder
+    case: *part of a name*   only these test cases of it (doctest's -tc)
+    program: penumbra        those run build/penumbra: build that, too; or several
+    needs: bwrap             where that is not installed, its test skips, and the mutant is left out
+
+A mutant is a block.  It begins with its name, which no other has, and what is wrong; then come the lines above,
+where it is different from the others; and
+
+    equivalent: proof        no test can see it, so all must stay green
+
+or, for the course, three lines that make it a known mistake (course/mistakes.py).  Then its edit, as in a diff.
+Lines of the source begin with - (right), + (wrong in their place) or a blank (right and wrong).  The right lines are
+together in the source, exactly once.
+
+    @@ box_one_axis: a ray inside one slab is said to be inside the box
+    exercise: 1.4
+    says: a ray between the planes of one axis is taken to be in the box
+    read: Three slabs
+     for (int k = 0; k < 3; ++k)
+    -    enter = std::max(enter, lo[k]);
+    +    enter = lo[k];
+"""
+import functools
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+ABOVE = ('file', 'test', 'case', 'program', 'needs')
+KEYS = ABOVE[1:] + ('equivalent', 'exercise', 'says', 'read')
+
+
+class Malformed(Exception):
+    """Lines that are no mutant, or do not fit their source."""
+
+
+class Mutant:
+    """Its name; what its block and its file's first lines say by their keys, and what; right and wrong lines."""
+
+    def __init__(self, path, name, head):
+        self.path, self.name, self.head, self.old, self.new = str(path), name, head, '', ''
+
+    def __getattr__(self, key):
+        if key not in ABOVE + KEYS + ('what',):
+            raise AttributeError(key)
+        return self.head.get(key, '')
+
+
+def parse(text, path=''):
+    """The mutants of a file, in order."""
+    shared, found = {}, []
+    for i, line in enumerate(text.split('\n'), 1):
+        key, colon, value = line.partition(': ')
+        if line.startswith('@@ ') and colon:
+            found.append(Mutant(path, key[3:], {**shared, 'what': value.strip()}))
+        elif found and line[:1] in ('-', '+', ' '):
+            found[-1].old += line[1:] + '\n' if line[0] != '+' else ''
+            found[-1].new += line[1:] + '\n' if line[0] != '-' else ''
+        elif colon and key in (KEYS if found else ABOVE) and not (found and found[-1].old):
+            (found[-1].head if found else shared)[key] = value.strip()
+        elif line:
+            raise Malformed(f'{path}:{i}: neither a key, a mutant nor a line of one: {line}')
+    for m in found:
+        if not (m.file and m.test and m.old):
+            raise Malformed(f'{path}: {m.name} lacks its file, its test or its lines')
+    return found
+
+
+def everything(root=ROOT):
+    """{name: mutant} of the project."""
+    mutants = {}
+    for path in sorted((root / 'tests/mutants').rglob('*.mutants')):
+        for m in parse(path.read_text(), path.relative_to(root)):
+            if mutants.setdefault(m.name, m) is not m:
+                raise Malformed(f'{m.path}: {m.name} is the name of another, too')
+    return mutants
+
+
+def planted(mutant, text):
+    """The text with the wrong lines in place of the right ones, which are there exactly once."""
+    if ('\n' + text).count('\n' + mutant.old) != 1:
+        raise Malformed(f'the right lines are not exactly once in {mutant.file}')
+    return ('\n' + text).replace('\n' + mutant.old, '\n' + mutant.new)[1:]
+
+
+@functools.cache
+def source(folder, name):
+    """The .cpp file of a test or a program, which is the only one of its name."""
+    found = [p.relative_to(ROOT) for p in ROOT.glob(f'{folder}/*/{name}.cpp')]
+    if len(found) != 1:
+        raise Malformed(f'there are {len(found)} files {folder}/*/{name}.cpp')
+    return found[0]
+
+
+def misfit(mutant):
+    """Why it cannot be planted, if so."""
+    try:
+        planted(mutant, (ROOT / mutant.file).read_text())
+        source('tests', mutant.test)
+    except (Malformed, OSError) as error:
+        return f'ERROR: {mutant.name}: {error}'
+
+
+def print_density(mutants):
+    mutated = [Path(m.file) for m in mutants]
+    sources = [p.relative_to(ROOT) for p in sorted(ROOT.glob('src/*/*')) if p.is_file()]
+    for folder in [*sorted({p.parent for p in sources}), Path('src')]:
+        files = [p for p in sources if folder in p.parents]
+        lines, count = sum((ROOT / p).read_text().count('\n') for p in files), sum(p in files for p in mutated)
+        print(f'{folder!s:14} {lines:6} lines {count:5} mutants, {100 * count / lines:5.1f} in a hundred')
+    print(f'{"tests":14} {"":12} {sum(p not in sources for p in mutated):5} mutants\nwithout any:',
+          *[p for p in sources if p not in mutated])
