@@ -24,6 +24,7 @@ together in the source, exactly once.
     -    enter = std::max(enter, lo[k]);
     +    enter = lo[k];
 """
+import dataclasses
 import functools
 from pathlib import Path
 
@@ -36,11 +37,14 @@ class Malformed(Exception):
     """Lines that are no mutant, or do not fit their source."""
 
 
+@dataclasses.dataclass
 class Mutant:
-    """Its name; what its block and its file's first lines say by their keys, and what; right and wrong lines."""
-
-    def __init__(self, path, name, head):
-        self.path, self.name, self.head, self.old, self.new = str(path), name, head, '', ''
+    """head: {key: what its block, or its file's first lines, say}.  Its keys are attributes, too."""
+    path: str
+    name: str
+    head: dict
+    old: str = ''  # right lines
+    new: str = ''  # wrong ones in their place
 
     def __getattr__(self, key):
         if key not in ABOVE + KEYS + ('what',):
@@ -54,7 +58,7 @@ def parse(text, path=''):
     for i, line in enumerate(text.split('\n'), 1):
         key, colon, value = line.partition(': ')
         if line.startswith('@@ ') and colon:
-            found.append(Mutant(path, key[3:], {**shared, 'what': value.strip()}))
+            found.append(Mutant(str(path), key[3:], {**shared, 'what': value.strip()}))
         elif found and line[:1] in ('-', '+', ' '):
             found[-1].old += line[1:] + '\n' if line[0] != '+' else ''
             found[-1].new += line[1:] + '\n' if line[0] != '-' else ''
