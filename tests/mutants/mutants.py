@@ -84,9 +84,11 @@ def everything(root=ROOT):
 
 def planted(mutant, text):
     """The text with the wrong lines in place of the right ones, which are there exactly once."""
-    if ('\n' + text).count('\n' + mutant.old) != 1:
+    text, old = '\n' + text, '\n' + mutant.old
+    at = text.find(old)
+    if at < 0 or text.find(old, at + 1) >= 0:
         raise Malformed(f'the right lines are not exactly once in {mutant.file}')
-    return ('\n' + text).replace('\n' + mutant.old, '\n' + mutant.new)[1:]
+    return (text[:at] + '\n' + mutant.new + text[at + len(old):])[1:]
 
 
 @functools.cache

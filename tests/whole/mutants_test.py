@@ -30,6 +30,8 @@ first=right
 second=right
 if [ $first = wrong ]; then echo "0 passed, 1 failed"; exit 1; fi
 echo "1 passed, 0 failed"
+# twice
+# twice
 '''
 HEAD = 'file: src/base/x.h\ntest: x_test\n'
 
@@ -49,7 +51,8 @@ class House:
         self.write('src/base/x.h', SOURCE)
         for name in ('scenes/a.scene', 'reference/a.md', 'Makefile', 'LICENSE', '.clang-format', 'tests/std.h', 'tests/main.cpp'):
             self.write(name, '')
-        self.write('tests/base/x_test.cpp', '#include "base/x.h"\n')
+        self.write('tests/base/x_test.cpp', '#include "base/x.h"\n#include "base/y.h"\n')
+        self.write('src/base/y.h', '')
         self.write('tests/mutants/base/x.h.mutants', head + ''.join(blocks))
         for name in ('run', 'bench.py', 'kept.py', 'mutants.py'):
             shutil.copy(ROOT / 'tests/mutants' / name, self.folder / 'tests/mutants')
@@ -97,7 +100,7 @@ def test_what_is_red_by_itself_kills_nothing():
 
 
 def test_all_must_apply_before_any_is_planted():
-    for wrong in (block('stale', 'third=right', 'x'), block('twice', 'fi', 'fi').replace('-fi', '-'), KILLED,
+    for wrong in (block('stale', 'third=right', 'x'), block('twice', '# twice', 'x'), KILLED,
                   block('of_no_test', 'second=right', 'x', 'test: y_test\n'), block('key', 'second=right', 'x', 'cases: x\n')):
         with House(KILLED, wrong) as house:
             status, said, last = house.run()
@@ -123,7 +126,7 @@ def test_verdicts_hold_until_something_is_touched():
         house.write('tests/mutants/base/x.h.mutants', HEAD + KILLED + SURVIVES.replace('second=wrong', 'first=wrong'))
         status, said, last = house.run()
         expect(status == 0 and '2/2' in last and '1 verdicts kept' in last, last)
-        for name in ('src/base/x.h', 'tests/base/x_test.cpp', 'tests/main.cpp'):
+        for name in ('src/base/x.h', 'src/base/y.h', 'tests/base/x_test.cpp', 'tests/main.cpp'):
             house.write(name, (house.folder / name).read_text() + '# more\n')
             expect('0 verdicts kept' in house.run()[2], name)
         house.write('tests/main.h', '')
