@@ -1,4 +1,4 @@
-# mutants/bench.py  where one mutant is planted, compiled and tested
+# mutants/bench.py  plants one mutant in a copy of the project, compiles and tests it
 import contextlib
 import os
 import re
@@ -70,13 +70,14 @@ class Bench:
         return 'crash' if status < 0 or status > 128 else f'exit status {status}'
 
     def baseline(self, test):
-        """(what is wrong without a mutant, how much to optimise).  A test's first mutant finds out; others wait for that."""
+        """The error of a test without a mutant, or nothing; and its level of optimisation.  The first of its mutants finds
+        them; the others wait."""
         with self.locks[test]:
             if test in self.baselines:
                 return self.baselines[test]
             those, wrong = self.of_test[test], []
             cases = sorted({m.case for m in those})
-            # What computes little is compiled faster than it runs.
+            # The compiler takes most of the time, unless a test computes much.
             for level, seconds in (('-Og', 10), ('-O1', BASELINE_LIMIT)):
                 folder = self.top / f'{test}{level}'
                 if not self.build(folder, level, test, sorted({p for m in those for p in m.program.split()})):

@@ -1,6 +1,6 @@
-# mutants/kept.py  which verdicts still hold: build/mutants.verdicts, and what a verdict depends on
-"""A line is a fingerprint and a verdict.  The fingerprint is one of the mutant, the compiler's flags, its source and all
-that its test and the test's programs include; or of the whole project, where a test sees more than it includes."""
+# mutants/kept.py  keeps verdicts in build/mutants.verdicts, as long as they hold
+"""A line of it is a fingerprint and a verdict.  The fingerprint covers the compiler's flags, the mutant, its source, and
+all files that its test and the test's programs include; it covers the whole project if a test reads other files."""
 import functools
 import hashlib
 import re

@@ -1,4 +1,4 @@
-# mutants/mutants.py  wrong lines that someone might write: reads the files of this folder, and plants what they say
+# mutants/mutants.py  reads the files of this folder: wrong lines that someone might write
 """A file has the mutants of one source.  It begins with lines that hold for all of them:
 
     file: src/world/bvh.h    the source, of src or tests, scripts among them
@@ -7,14 +7,14 @@
     program: penumbra        those run build/penumbra: build that, too; or several
     needs: bwrap             where that is not installed, its test skips, and the mutant is left out
 
-A mutant is a block.  It begins with its name, which no other has, and what is wrong; then come the lines above,
-where it is different from the others; and
+A mutant is a block.  Its first line has a name, which no other mutant has, and says what is wrong.  The lines above may
+follow, where it differs from the other mutants, and
 
     equivalent: proof        no test can see it, so all must stay green
 
-or, for the course, three lines that make it a known mistake (course/mistakes.py).  Then its edit, as in a diff.
-Lines of the source begin with - (right), + (wrong in their place) or a blank (right and wrong).  The right lines are
-together in the source, exactly once.
+Three more lines make it a known mistake of the course (course/mistakes.py).  Its edit is written as a diff: lines begin
+with - (right), + (wrong) or a blank (unchanged).  The right and the unchanged lines are adjacent in the source, and
+there exactly once.
 
     @@ box_one_axis: a ray inside one slab is said to be inside the box
     exercise: 1.4
@@ -43,8 +43,8 @@ class Mutant:
     path: str
     name: str
     head: dict
-    old: str = ''  # right lines
-    new: str = ''  # wrong ones in their place
+    old: str = ''  # right and unchanged lines
+    new: str = ''  # the lines in their place
 
     def __getattr__(self, key):
         if key not in ABOVE + KEYS + ('what',):
@@ -115,6 +115,6 @@ def print_density(mutants):
     for folder in [*sorted({p.parent for p in sources}), Path('src')]:
         files = [p for p in sources if folder in p.parents]
         lines, count = sum((ROOT / p).read_text().count('\n') for p in files), sum(p in files for p in mutated)
-        print(f'{folder!s:14} {lines:6} lines {count:5} mutants, {100 * count / lines:5.1f} in a hundred')
+        print(f'{folder!s:14} {lines:6} lines {count:5} mutants, {100 * count / lines:5.1f} per 100 lines')
     print(f'{"tests":14} {"":12} {sum(p not in sources for p in mutated):5} mutants\nwithout any:',
           *[p for p in sources if p not in mutated])

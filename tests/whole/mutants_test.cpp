@@ -1,4 +1,4 @@
-// whole/mutants_test.cpp  what plants mutants: tests written in Python, a case each
+// whole/mutants_test.cpp  tests of tests/mutants/run, written in Python
 #include <doctest/doctest.h>
 
 #include "course/python.h"

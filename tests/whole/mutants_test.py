@@ -1,7 +1,7 @@
-# whole/mutants_test.py  tests of what plants mutants: python3 tests/whole/mutants_test.py [NAME...]
+# whole/mutants_test.py  tests of tests/mutants/run: python3 tests/whole/mutants_test.py [NAME...]
 """Each function test_... is a test; mutants_test.cpp runs them one by one.
 
-They plant in a house whose compiler makes a shell script of src/base/x.h, and takes that for any test.
+The compiler of their project is a script: it turns src/base/x.h, which is shell, into every test.
 """
 import os
 import pathlib
