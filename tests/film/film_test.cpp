@@ -149,8 +149,13 @@ TEST_CASE("samples that no file can hold are counted, and the first of them told
         }
         CHECK(said(all.count, all.first.i, all.first.set, all.first.y, all.first.x) == "5 4 1 1 2");
     }
-    for (rgb v : {rgb{1, real(1e30) * real(1e10), 1}, rgb{1, 1, nan}, rgb{-infinity, 1, 1}})
-        CHECK(!fits_float(v));  // the first is finite, but files hold float
+    const real beyond = real(1e30) * real(1e10);  // finite, but files hold float
+    for (real bad_number : {beyond, nan, -infinity})
+        for (auto channel : axis) {
+            rgb v{1, 1, 1};
+            v.*channel = bad_number;
+            CHECK(!fits_float(v));
+        }
     CHECK(fits_float({-1, 0, real(3e38)}));
 }
 
