@@ -86,7 +86,7 @@ TEST_CASE("dimensions of a path and neighbouring pixels are uncorrelated") {
     for (SamplerKind kind : samplers) {
         const Pattern pattern = make_pattern(kind, seed_here(), depth, 16);
         Moments between_dimensions, between_pixels;
-        for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
+        for (uint64_t pixel = 0; pixel < 1000; ++pixel) {
             double dims = 0, pixels = 0;
             for (uint64_t sample = 0; sample < 16; ++sample) {
                 const Sampler here(pattern, 2 * pixel, sample),
