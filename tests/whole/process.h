@@ -13,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
 
 #include "base/cases.h"
 #include "base/folder.h"
@@ -202,7 +203,8 @@ inline bool terminal_to_be_had() {
 class Untouched {
 public:
     explicit Untouched(const Folder& folder) : folder_(folder), before_(folder.all()) {}
-    ~Untouched() {
+    ~Untouched() noexcept(false) {  // a failed check may end the run by throwing
+        if (std::uncaught_exceptions() > 0) return;
         const auto after = folder_.all();
         std::string changed;
         for (const auto& [name, bytes] : after)
