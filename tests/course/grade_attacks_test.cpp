@@ -24,9 +24,7 @@ std::string at_the_start(const std::string& does, const std::string& before = ""
 }
 
 struct Attack {
-    std::string name;
-    std::string twice;
-    std::string line;  // part of the verdict
+    std::string name, twice, line;  // part of the verdict
     double points = 0;
 };
 
@@ -36,16 +34,9 @@ void refuse(const std::string& name, const std::vector<Attack>& attacks) {
     for (const Attack& a : attacks) course.hand_in(a.name, {{"1.1", a.twice}, {"1.3", cube_right}});
     course.hand_in("honest", {{"1.1", twice_right}, {"1.3", cube_right}});
     course.grade();
-    INFO(course.said.out);
-    REQUIRE(course.said.status == 0);
-    for (const Attack& a : attacks) {
-        const Verdict twice = course.verdict(a.name, "1.1"), cube = course.verdict(a.name, "1.3");
-        INFO(a.name, ": ", twice.line);
-        CHECK(twice.says(a.line));
-        CHECK(twice.points == doctest::Approx(a.points));
-        CHECK(cube.points == 6);
-    }
-    CHECK(course.verdict("honest", "1.1").points == 2);
+    for (const Attack& a : attacks)
+        course.expect({{a.name, "1.1", a.line, a.points}, {a.name, "1.3", "", 6}});
+    course.expect({{"honest", "1.1", "", 2}});
 }
 
 }  // namespace
@@ -144,35 +135,30 @@ TEST_CASE("no file is read, no network is reached, nothing is started") {
     const auto opens = [](const std::string& path) {
         return if_it_works("std::fopen(\"" + path + "\", \"r\") != nullptr");
     };
-    refuse(
-        "reads",
-        {
-            {"the password file", opens("/etc/passwd"), "1 came"},
-            {"the judge", opens(here + "/tests/course/judge_1.cpp"), "1 came"},
-            {"another student", opens(here + "/in reads/honest/src/path/cube.h"), "1 came"},
-            {"the tree", opens("/tree/src/world/numbers.h"), "1 came"},
-            {"itself", opens("/answers"), "1 came"},
-            {"its process", opens("/proc/self/maps"), "1 came"},
-            {"memory", opens("/dev/zero"), "1 came"},
-            {"the compiler", opens("/usr/bin/g++"), "1 came"},
-            {"writes", if_it_works("std::fopen(\"/found\", \"w\") != nullptr"), "1 came"},
-            {"the environment",
-             if_it_works("std::getenv(\"PATH\") || std::getenv(\"CXX\") || std::getenv(\"HOME\")"),
-             "1 came"},
-            {"socket",
-             if_it_works("socket(2, 1, 0) >= 0 || socket(1, 1, 0) >= 0",
-                         c + "int socket(int, int, int);\n"),
-             "1 came"},
-            {"shell", if_it_works("std::system(\"exit 0\") == 0"), "1 came"},
-            {"signals",
-             if_it_works("kill(-1, 0) == 0 || kill(1, 9) == 0", c + "int kill(int, int);\n"),
-             "1 came"},
-            {"descriptors",
-             if_it_works("[] { for (int i = 4; i < 64; ++i) if (i != 9 && fcntl(i, 1) >= 0) return "
-                         "true; return false; }()",
-                         c + "int fcntl(int, int, ...);\n"),
-             "1 came"},
-        });
+    const std::vector<std::pair<std::string, std::string>> tried = {
+        {"the password file", opens("/etc/passwd")},
+        {"the judge", opens(here + "/tests/course/judge_1.cpp")},
+        {"another student", opens(here + "/in reads/honest/src/path/cube.h")},
+        {"the tree", opens("/tree/src/world/numbers.h")},
+        {"itself", opens("/answers")},
+        {"its process", opens("/proc/self/maps")},
+        {"memory", opens("/dev/zero")},
+        {"the compiler", opens("/usr/bin/g++")},
+        {"writes", if_it_works("std::fopen(\"/found\", \"w\") != nullptr")},
+        {"the environment",
+         if_it_works("std::getenv(\"PATH\") || std::getenv(\"CXX\") || std::getenv(\"HOME\")")},
+        {"socket", if_it_works("socket(2, 1, 0) >= 0 || socket(1, 1, 0) >= 0",
+                               c + "int socket(int, int, int);\n")},
+        {"shell", if_it_works("std::system(\"exit 0\") == 0")},
+        {"signals",
+         if_it_works("kill(-1, 0) == 0 || kill(1, 9) == 0", c + "int kill(int, int);\n")},
+        {"descriptors",
+         if_it_works("[] { for (int i = 4; i < 64; ++i) if (i != 9 && fcntl(i, 1) >= 0) return "
+                     "true; return false; }()",
+                     c + "int fcntl(int, int, ...);\n")}};
+    std::vector<Attack> attacks;
+    for (const auto& [name, twice] : tried) attacks.push_back({name, twice, "1 came"});
+    refuse("reads", attacks);
 }
 
 TEST_CASE("nothing is read while it is compiled") {
@@ -252,29 +238,28 @@ TEST_CASE(
     const std::string connect =
         "exec 3<>/dev/tcp/127.0.0.1/" + std::to_string(ntohs(address.sin_port));
     CHECK(std::system(("bash -c '" + connect + "'").c_str()) == 0);  // without walls
-    CHECK(inside("exit 0") == 0);
-    CHECK(inside(connect) != 0);
-    ::close(listening);
     const std::string mine = house().folder.path.string();
-    for (const std::string path :
-         {"/etc/passwd", "/proc/self", "/home", "/root", "/sys", "/usr/local", "/usr/src"}) {
-        INFO(path);
-        CHECK(inside("[ ! -e " + path + " ]") == 0);
-    }
-    CHECK(inside("[ ! -e \"" + mine + "/src\" ]") == 0);
-    CHECK(inside("[ \"$(env | cut -d = -f 1 | sort | tr \"\\n\" \" \")\" = \"LC_ALL PATH PWD SHLVL "
-                 "_ \" ]") == 0);
-    CHECK(inside("echo x >/tree/x") != 0);
-    CHECK(inside("echo x >/usr/lib/x") != 0);
-    CHECK(inside("echo x >/x") != 0);
-    CHECK(inside("echo x >/out/x") == 0);
-    CHECK(inside("head -c 100000000 /dev/zero >/out/x") != 0);
-    CHECK(inside("for i in 1 2 3 4 5 6; do head -c 60000000 /dev/zero >/tmp/$i || exit 1; done") !=
-          0);
-    CHECK(
-        inside("head -c 1900000000 /dev/zero | tail -c 1900000000 | wc -c | grep -q 1900000000") !=
-        0);
-    CHECK(inside("while :; do :; done") != 0);
+    std::vector<std::string> fail = {
+        connect,
+        "echo x >/tree/x",
+        "echo x >/usr/lib/x",
+        "echo x >/x",
+        "head -c 100000000 /dev/zero >/out/x",
+        "for i in 1 2 3 4 5 6; do head -c 60000000 /dev/zero >/tmp/$i || exit 1; done",
+        "head -c 1900000000 /dev/zero | tail -c 1900000000 | wc -c | grep -q 1900000000",
+        "while :; do :; done"};
+    std::vector<std::string> work = {
+        "exit 0", "echo x >/out/x",
+        "[ \"$(env | cut -d = -f 1 | sort | tr \"\\n\" \" \")\" = \"LC_ALL PATH PWD SHLVL _ \" ]"};
+    for (const std::string path : {"/etc/passwd", "/proc/self", "/home", "/root", "/sys",
+                                   "/usr/local", "/usr/src", (mine + "/src").c_str()})
+        work.push_back("[ ! -e \"" + path + "\" ]");
+    for (const auto* scripts : {&work, &fail})
+        for (const std::string& script : *scripts) {
+            INFO(script);
+            CHECK((inside(script) == 0) == (scripts == &work));
+        }
+    ::close(listening);
 
     // The tree of 1.2 holds no line of its solution, that of 1.1 and 1.3 no more than they need.
     house().folder.write(
@@ -283,12 +268,13 @@ TEST_CASE(
         "Region\n"
         "shop = workshop.Workshop('cache', 1)\n"
         "shop.write_tree('1', {'1.2': Region('1.2', 'mine\\n', 1, '')}, 'written/tree')\n");
-    REQUIRE(std::system(("cd '" + mine + "' && CXX=g++ FLAGS=-Isrc python3 tree.py").c_str()) == 0);
-    CHECK(std::system(
-              ("grep -rqE 'cipher|// exercise|// end' '" + mine + "/written/tree'").c_str()) != 0);
-    CHECK(std::system(("grep -rq mine '" + mine + "/written/tree'").c_str()) == 0);
-    CHECK(std::system(("cd '" + mine +
-                       "/written/tree' && find . -name 'judge*' -o -name '*.py' -o -name 'oracle*' "
-                       "| grep -q .")
-                          .c_str()) != 0);
+    const auto shell = [&](const std::string& command) {
+        return std::system(("cd '" + mine + "' && " + command).c_str()) == 0;
+    };
+    REQUIRE(shell("CXX=g++ FLAGS=-Isrc python3 tree.py"));
+    CHECK(!shell("grep -rqE 'cipher|// exercise|// end' written/tree"));
+    CHECK(shell("grep -rq mine written/tree"));
+    CHECK(
+        !shell("cd written/tree && find . -name 'judge*' -o -name '*.py' -o -name 'oracle*' | "
+               "grep -q ."));
 }
