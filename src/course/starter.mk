@@ -6,7 +6,7 @@ FLAGS    := -std=c++20 -march=native -ffp-contract=off -fno-math-errno -pthread 
 SUFFIX   := $(if $(filter float,$(REAL)),-float)
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
-  MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
+  MAKEFLAGS += -j$(shell nproc 2>/dev/null || sysctl -n hw.ncpu 2>/dev/null || echo 2)
 endif
 
 .PHONY: all clean help packages
