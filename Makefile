@@ -28,7 +28,7 @@ ifeq ($(filter wide plain,$(TREE)),)
   $(error TREE is wide or plain, not '$(TREE)')
 endif
 ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
-  MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
+  MAKEFLAGS += -j$(shell nproc 2>/dev/null || sysctl -n hw.ncpu 2>/dev/null || echo 2)
 endif
 
 # A program is a .cpp of its own name; those of the core and of the wings render.
@@ -39,7 +39,7 @@ PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test test-farm mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
+.PHONY: all programs test test-everywhere test-farm mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
         survival starter starter-check mistakes handout grade plant hunted
 .DELETE_ON_ERROR:
@@ -83,6 +83,9 @@ SUITE := $(OBJECTS)/all-tests
 test: packages  ## build and run the tests, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
 	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
 	    LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
+
+test-everywhere: packages build/knot.obj  ## the same bits from all compilers, C++ libraries and processors? (15 minutes); ONLY='clang++ -O2'
+	@FLAGS="$(filter-out -M% -W% -march% -DREAL%,$(FLAGS))" tests/everywhere $(if $(ONLY),'$(ONLY)')
 
 mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
