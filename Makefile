@@ -123,7 +123,7 @@ voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes;
 bench:                     ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
-trade: build/knot.obj build/trade-float$(VARIANT)  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 3 hours)
+trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 4 hours)
 calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours; BASELINE=PROGRAM: samples beside those of an older one)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
 EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
@@ -131,13 +131,13 @@ EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
 calibration: LAB_FLAGS := $(BASELINE:%=--baseline %)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
-trade: LAB_FLAGS := --float build/trade-float$(VARIANT) $(if $(FULL),--full)
+trade: LAB_FLAGS := $(if $(FULL),--full)
 peers: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
 $(EXPERIMENTS): %: build/%$(SUFFIX)
 	build/$@$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
 # Both precisions are measured side by side.
 ifeq ($(REAL),double)
-build/trade-float$(VARIANT): always
+build/penumbra-float$(VARIANT): always
 	@$(MAKE) --no-print-directory REAL=float $@
 endif
 # build/radiosity and build/voronoi are renderers.

@@ -1,90 +1,262 @@
-// labs/trade.cpp  8  error over time, by every setting: what to choose
+// labs/trade.cpp  7  error over time, by every setting: what to choose
 //
-//   build/trade [--float PROGRAM] [--scene NAME] [--full] [--quick] [--page]
+//   build/trade [--scene NAME] [--full] [--quick] [--kept]
 //
-// Every scene by all samplers, --light and both precisions, at five sample counts, in a tournament.
-// Writes a report, and what was measured into out/trade/, from which --page writes report and page
-// again.
-#include "labs/seeds.h"
-#include "labs/trade_file.h"
-#include "labs/trade_page.h"
-#include "labs/trade_report.h"
-#include "labs/trade_study.h"
+// Every scene by all samplers, --light and both precisions, at five sample counts.  Writes a
+// report, and a page to choose on: out/trade/trade.html.
+#include "labs/trade.h"
+#include "world/scene_file.h"
 
 namespace {
 
 using namespace trade;
 
-const std::string folder = "out/trade";
+struct Effort {
+    bool quick = false, kept = false;
+    std::vector<std::string> scenes = scenes_in("scenes");
+    std::vector<uint64_t> counts = {1, 4, 16, 64, 256};
+    uint64_t seeds = 1, truth = 4096;
+    int part = 2;  // of the scenes' widths and heights
+};
 
-Trade measured(Effort plan, const std::string& command) {
-    if (plan.scenes.empty()) plan.scenes = all_scenes();
-    Trade t;
-    t.default_words = default_words();
-    t.command = command;
-    Steps steps(plan.scenes.size());
-    for (const std::string& name : plan.scenes) {
-        steps.next(name);
-        t.scenes.push_back(study(plan, name));
-        write_trade(t, folder);  // what is there, should the rest fail
+const std::string own = "build/penumbra", in_float = "build/penumbra-float", folder = "out/trade",
+                  shot = "shot: ";
+
+Choices all_choices(const Scene& scene, const std::string& float_program) {
+    Choices all;
+    const bool points = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                    [](auto& l) { return l.kind == Light::Kind::point; });
+    for (const std::string& name : {own, in_float})
+        for (const std::string light : {"", " --light nee", " --light none", " --sets 1"})
+            for (const std::string sampler :
+                 {"", " --sampler halton", " --sampler stratified", " --sampler independent"}) {
+                const std::string words = sampler + light;
+                const bool sets = light == " --sets 1", none = light == " --light none";
+                if ((sets && !sampler.empty()) || (none && points)) continue;
+                all.push_back({{name + words, words, name == own ? "" : float_program},
+                               name == own && !none,
+                               words.empty() || sets});
+            }
+    return all;
+}
+
+// ---- Measuring ----------------------------------------------------------------------------------
+
+Point point_of(const Rows& rows) {
+    if (rows.empty()) return {};
+    const double truth = mean(rows, "own"), off = std::sqrt(mean(rows, "d2") + truth * truth);
+    return {double(rows[0].count), mean(rows, "cpu_seconds"), known_error(off, truth)};
+}
+
+// From count to count the hopeless go.
+Rows tournament(Grid& grid, const Effort& plan, const Subject& subject, Choices& choices) {
+    Rows all;
+    for (uint64_t count : plan.counts) {
+        std::vector<Setting> alive;
+        for (const Choice& c : choices)
+            if (c.dropped.empty()) alive.push_back(c.setting);
+        const Rows rows = grid.run({subject}, alive, {count}, plan.seeds);
+        for (Choice& c : choices)
+            if (c.dropped.empty()) c.points.push_back(point_of(by_setting(rows, c.setting.name)));
+        if (count != plan.counts.back()) drop_hopeless(choices);
+        all.insert(all.end(), rows.begin(), rows.end());
     }
-    t.candidates = candidates_of(t.scenes);
-    write_trade(t, folder);
-    return t;
+    return all;
 }
 
-int report_of(const Trade& t, bool quick) {
-    Report report(report_folder(quick), "trade");
-    tell(report, t);
-    report.say(made_by(t.command));
-    write_file(folder + "/index.html", trade_page(t));
-    std::fprintf(stderr, "wrote %s/index.html\n", folder.c_str());
-    return report.finish();
+std::string image_of(const Row& r) {
+    return text("%s/%s-%s-%.0f.pfm", folder, r.scene, fingerprint(r.setting), double(r.count));
 }
 
-void make_quick(Effort& plan) {
-    plan.quick = true;
-    plan.counts = {1, 4, 16};
-    plan.part = 4;
-    plan.tournament = 5, plan.reference = 1;
+// The default, the cheapest at 3 %, and lessons.
+std::vector<size_t> shown(const Choices& choices) {
+    std::vector<size_t> list = {0};
+    if (const Answer a = cheapest(choices, 0.03); a.choice > 0) list.push_back(a.choice);
+    for (const std::string& name : {in_float, own + " --sampler independent --light nee",
+                                    own + " --sampler independent --light none"})
+        for (size_t k = 0; k < choices.size(); ++k)
+            if (choices[k].setting.name == name && k != list.back()) list.push_back(k);
+    return list;
 }
 
-void make_full(Effort& plan) {
-    plan.counts.push_back(1024);
-    plan.seeds = 2;
-    plan.tournament *= 6, plan.reference *= 6;
+// In the CPU seconds that the default takes for 3 %: samples are tried until they take these within
+// 3 %.  Of the second seed, for the first has chosen the settings.
+void add_shots(Grid& grid, const Subject& subject, Study& s) {
+    const double by_default = reach(s.choices[0], 0.03).seconds,
+                 seconds = std::isnan(by_default) ? 1 : std::clamp(by_default, 0.5, 2.0);
+    for (size_t k : shown(s.choices)) {
+        Setting setting = s.choices[k].setting;
+        setting.name = shot + setting.name;
+        const Point& last = s.choices[k].points.back();
+        double spp = last.spp * seconds / last.seconds;
+        Row row;
+        for (int trial = 0; trial < 4 && !(std::abs(row["cpu_seconds"] / seconds - 1) < 0.03);
+             ++trial) {
+            const Rows rows = grid.run({subject}, {setting}, {uint64_t(std::max(1.0, spp))}, 2);
+            if (rows.size() < 2) return;
+            row = rows[1];
+            spp = double(row.count) * seconds / row["cpu_seconds"];
+        }
+        s.shots.push_back({text("%s --spp %.0f", s.choices[k].setting.name, double(row.count)),
+                           point_of({row}), read_pfm(image_of(row))});
+    }
+}
+
+// Rounding, where it changes the image's mean.
+std::string remark_on_float(const Rows& rows, uint64_t count) {
+    const Rows last = where(rows, [&](const Row& r) { return r.count == count; });
+    const double more =
+        mean(by_setting(last, in_float), "mean") / mean(by_setting(last, own), "mean") - 1;
+    if (!(std::abs(more) > 0.01)) return "";
+    return text("In float the image is %.1f %% too %s: rounding.", 100 * std::abs(more),
+                more > 0 ? "bright" : "dark");
+}
+
+Study study(Grid& grid, const Effort& plan, const std::string& name,
+            const std::string& float_program, Rows& all) {
+    const std::string file = "scenes/" + name + ".scene";
+    const Scene scene = read_scene(file).scene;
+    const int width = scene.size.width / plan.part, height = scene.size.height / plan.part;
+    const Subject subject{name, text("%s --size %dx%d", file, width, height), plan.truth};
+    Study s{name, "", double(scene.exposure), NAN, all_choices(scene, float_program)};
+    const Rows rows = tournament(grid, plan, subject, s.choices);
+    all.insert(all.end(), rows.begin(), rows.end());
+    const Truth& f = grid.truth(subject);
+    s.own = f.own, s.remark = remark_on_float(rows, plan.counts.back());
+    s.shots.push_back({"the reference", {}, f.image});
+    add_shots(grid, subject, s);
+    return s;
+}
+
+// ---- The report ---------------------------------------------------------------------------------
+
+std::string told_seconds(double x) { return std::isnan(x) ? "–" : significant(x, 2) + " s"; }
+
+std::string told_answer(const Choices& choices, double error) {
+    const auto [k, at] = cheapest(choices, error);
+    if (std::isnan(at.seconds)) return "–";
+    return text("%s: `%s --spp %.0f`", told_seconds(at.seconds), choices[k].setting.name,
+                std::ceil(at.spp)) +
+           (k ? "; default " + told_seconds(reach(choices[0], error).seconds) : "");
+}
+
+Svg curves(const std::vector<Study>& studies) {
+    constexpr double width = 680, height = 290;
+    Svg sheet(2 * width, height * std::ceil(double(studies.size()) / 2));
+    for (size_t k = 0; k < studies.size(); ++k) {
+        const Choices& choices = studies[k].choices;
+        Plot plot(sheet, {width * double(k % 2) + 70, height * double(k / 2) + 30}, {340, 200},
+                  {"CPU seconds", 1e-2, 100}, {"d_rel", 1e-3, 10}, studies[k].scene);
+        auto draw = [&](const Choice& c, const Plot::Style& style, const std::string& words) {
+            std::vector<double> t, e;
+            for (const Point& p : known(c.points)) t.push_back(p.seconds), e.push_back(p.error);
+            plot.curve(t, e, style, words);
+        };
+        for (const Choice& c : choices) draw(c, {"#cccccc", false, false, 0.7}, "");
+        std::set<size_t> named = {0};
+        for (double error : asked) named.insert(cheapest(choices, error).choice);
+        size_t colour = 0;
+        for (size_t i : named)
+            draw(choices[i], {svg::colours[colour++]}, choices[i].setting.name.substr(6));
+    }
+    return sheet;
+}
+
+using Lines = std::vector<std::vector<std::string>>;
+
+void tell_default(Page& page, const std::vector<Candidate>& all) {
+    Lines lines;
+    for (const Candidate& c : all)
+        lines.push_back({c.command, text("%.3f", c.ratio), text("%.3f", c.most), c.where});
+    page.data("trade-defaults", csv({"command", "ratio", "most", "where"}, lines));
+    const auto at = std::find_if(all.begin(), all.end(), [](auto& c) { return c.command == own; });
+    if (at == all.end()) throw UserError("no error of the default is known on any scene");
+    page.set("ratio", text("%.2f", at->ratio));
+    page.set("most", text("%.2f on %s", at->most, at->where));
+    page.set("best", text("`%s`: %.2f", all[0].command, all[0].ratio));
+    page.claim("is small", at->ratio <= 1.5);
+    page.claim("is best", at->ratio <= 1.05 * all[0].ratio);
+}
+
+// What one setting brings over another at the last count.
+void tell_pairs(Page& page, const Rows& rows, uint64_t count) {
+    const Rows last = where(rows, [&](const Row& r) {
+        return r.count == count && known_error(r["off"], r["own"]) > 0;
+    });
+    auto set = [&](const char* word, const std::string& one, const std::string& other,
+                   auto number) {
+        page.set(word, told({over(last, one, other, number), NAN}, "%.2f"));
+    };
+    set("float seconds", in_float, own, [](const Rows& r) { return mean(r, "cpu_seconds"); });
+    set("float error", in_float, own, relative_error);
+    set("sets", own, own + " --sets 1", efficiency);
+}
+
+void tell_points(Page& page, const std::vector<Study>& studies) {
+    Lines points, dropped;
+    for (const Study& s : studies)
+        for (const Choice& c : s.choices) {
+            for (const Point& p : c.points)
+                points.push_back({s.scene, c.setting.name, significant(p.spp, 4),
+                                  text("%.4g", p.seconds), told({p.error, NAN}, "%.4g")});
+            if (!c.dropped.empty()) dropped.push_back({s.scene, c.setting.name, c.dropped});
+        }
+    page.data("trade", csv({"scene", "command", "spp", "CPU seconds", "d_rel"}, points));
+    write_file(folder + "/dropped.csv", csv({"scene", "command", "dropped"}, dropped));
+}
+
+int run(const Effort& plan, const std::string& program, const std::string& float_program,
+        const std::string& command) {
+    std::filesystem::create_directories(folder);
+    Page page(report_folder(plan.quick), "trade");
+    Grid grid(plan.part > 2 ? "trade-quick" : "trade", program, plan.kept);
+    grid.measure = [](Row& row, const Image& image, const Truth&) {
+        if (row.setting.starts_with(shot) && row.seed == 2) write_image(image_of(row), image, 1);
+    };
+    std::vector<Study> studies;
+    Rows rows;
+    Lines lines;
+    std::string remarks;
+    for (const std::string& name : plan.scenes) {
+        const Study& s = studies.emplace_back(study(grid, plan, name, float_program, rows));
+        write_page(studies, command, plan.quick, folder);  // what is there, should the rest fail
+        lines.push_back({name});
+        for (double error : asked) lines.back().push_back(told_answer(s.choices, error));
+        if (!s.remark.empty()) remarks += text("  On %s: %s", name, s.remark);
+    }
+    page.set("table", table({"scene", "10 %", "3 %", "1 %", "0.3 %"}, lines));
+    page.plot("trade", curves(studies));
+    tell_default(page, candidates(studies));
+    tell_pairs(page, rows, plan.counts.back());
+    tell_points(page, studies);
+    page.set("samples", text("%.0f", double(plan.counts.back())));
+    page.set("truth", text("%.0f", double(plan.truth)));
+    page.set("part", text("1/%d", plan.part));
+    page.set("remarks", remarks);
+    page.set("made", made_by(command));
+    return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     Effort plan;
-    bool page = false;
-    std::string list;
-    const Lab lab{
-        "trade",
-        "Measures error over time by every setting, on every scene.",
-        {{"--float", "PROGRAM", "this lab in float, for the other precision",
-          [&](auto& program) { plan.float_program = program; }},
-         {"--scene", "NAME", "only this one; may be repeated, writes into out/",
-          [&](auto& name) {
-              plan.quick = true;
-              plan.scenes.push_back(name);
-          }},
-         {"--full", "", "more samples, seeds and time", [&](auto&) { make_full(plan); }},
-         {"--quick", "", "fewer runs, into out/", [&](auto&) { make_quick(plan); }},
-         {"--page", "", "write report and page from what was measured",
-          [&](auto&) { page = true; }},
-         {"--render", "FILE", "only what this file lists, for the lab in the other precision",
-          [&](auto& file) { list = file; }}}};
+    std::vector<std::string> scenes;
+    const Lab lab{"trade",
+                  "Measures error over time by every setting, on every scene.",
+                  {{"--scene", "NAME", "this one alone; may be repeated, writes into out/",
+                    [&](auto& name) { plan.quick = true, scenes.push_back(name); }},
+                   {"--full", "", "more samples and seeds",
+                    [&](auto&) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }},
+                   {"--quick", "", "fewer samples and pixels, into out/",
+                    [&](auto&) {
+                        plan.quick = true, plan.part = 4, plan.truth = 256;
+                        plan.counts = {1, 4, 16};
+                    }},
+                   kept_flag(plan.kept)}};
     return lab_main(argc, argv, lab, [&] {
-        std::filesystem::create_directories(folder);
-        if (!list.empty()) {
-            render_listed(list);
-            return 0;
-        }
-        std::string command = "build/trade";
-        for (int k = 1; k < argc; ++k) command += std::string(" ") + argv[k];
-        return report_of(page ? read_trade(folder) : measured(plan, command), plan.quick);
+        if (!scenes.empty()) plan.scenes = scenes;
+        return run(plan, renderer_beside(lab, argv[0]),
+                   renderer_beside(lab, argv[0], "penumbra-float"), command_of(argc, argv));
     });
 }

@@ -1,298 +1,353 @@
-// labs/trade_page_test.cpp  the page says what was measured, needs nothing but itself, and leaves
-// nobody out
-#include "labs/trade_page.h"
+// labs/trade_page_test.cpp  the page in a browser: it says what was measured, by mouse and keys
+//
+// A test adds a script to the page, which uses it as a reader would and writes what it saw into
+// attributes of the root; Chromium prints the page as it then is.
+#include <cstdlib>
 
-#include <set>
+#include "base/folder.h"
+#include "base/vec.h"
+#include "labs/trade.h"
 
-#include "base/rng.h"
-#include "labs/trade_report.h"
-#include "labs/trade_sample.h"
+using namespace trade;
 
 namespace {
 
-const std::string cheapest_on = "The cheapest setting for an error on ",
-                  answers_end = ", and how many times its time the default takes";
+// ---- A small trade that nobody measured ---------------------------------------------------------
 
-using Rows = std::vector<std::vector<std::string>>;
-
-size_t lines(std::string_view words) {
-    return size_t(std::count(words.begin(), words.end(), '\n'));
+// Every pixel, channel and image has another value; image 0 is a reference.
+Image sample_image(int width, int height, int k) {
+    Image image(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float off = 0.01f * float(k * ((7 * x + 5 * y + 3 * k) % 11));
+            image.at(x, y) = {0.05f + 0.06f * float(x) + off, 0.05f + 0.1f * float(y) - off / 2,
+                              0.2f + off};
+        }
+    return image;
 }
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != text.npos;
+Choice choice(const std::string& command, std::vector<double> errors) {
+    Choice c{{command, ""}};
+    double spp = 4;
+    for (double e : errors) c.points.push_back({spp, spp / 100, e}), spp *= 4;
+    return c;
+}
+
+Study sample_study(const std::string& name, int width, int height) {
+    Study s{name, "", 0.75, 0.004};
+    s.choices = {choice("penumbra", {0.12, 0.06, 0.03}),
+                 choice("penumbra --light nee", {0.1, 0.05, 0.02, 0.01}),
+                 choice("penumbra-float <i>", {NAN, NAN, NAN})};
+    s.choices[0].dropped = "after 64 samples: 1/11 of the best's efficiency";
+    for (int k = 0; k < 4; ++k)
+        s.shots.push_back({text("shot %d", k), {1, 0.3, 0.01 * k}, sample_image(width, height, k)});
+    s.shots[0] = {"the reference", {}, s.shots[0].image};
+    s.shots[3].at.error = NAN;
+    return s;
+}
+
+const std::vector<Study> sample = {sample_study("first", 12, 8), sample_study("second", 9, 7)};
+
+// ---- A browser ----------------------------------------------------------------------------------
+
+std::string browser() {
+    for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
+        if (std::system(text("command -v %s >/dev/null 2>&1", name).c_str()) == 0) return name;
+    MESSAGE("no Chromium on this machine (Debian: apt-get install chromium): not tested");
+    return "";
+}
+
+// The page of two small scenes, followed by a script that may use these.
+void write_driven(const Folder& folder, const std::string& script, bool preview = false) {
+    constexpr const char* tools = R"js(
+const root = document.documentElement, say = (name, value) => root.setAttribute("data-" + name, value);
+const soon = (ms = 50) => new Promise(done => setTimeout(done, ms));
+const key = (key, shiftKey) => stage.dispatchEvent(
+    new KeyboardEvent("keydown", { key, shiftKey, bubbles: true, cancelable: true }));
+const choose = async (id, value) => {
+    $(id).value = value;
+    $(id).dispatchEvent(new Event("input", { bubbles: true }));
+    await soon();
+};
+const drawn = (who, x, y) => $("image-" + who).getContext("2d").getImageData(x, y, 1, 1).data;
+const cells = k => [...$("values").querySelectorAll("tbody tr")[k].children].map(c => c.textContent);
+const mouse = (fx, fy, buttons) => {
+    const view = document.querySelector(".a .view"), box = view.getBoundingClientRect();
+    view.dispatchEvent(new PointerEvent("pointermove", { bubbles: true, buttons,
+        clientX: box.left + fx * box.width, clientY: box.top + fy * box.height }));
+};
+)js";
+    write_page(sample, "build/trade", preview, folder.path.string());
+    folder.write("trade.html",
+                 folder.read("trade.html") + "<script>{" + tools +
+                     "addEventListener(\"load\", async () => {\nwhile (!root.dataset.ready) await "
+                     "soon();\n" +
+                     script + "say(\"done\", 1); }); }</script>");
+}
+
+// What a browser prints to stdout, or an empty string if it does not come to an end.
+std::string browse(const Folder& folder, const std::string& flags, const std::string& address) {
+    const std::string command = text(
+        "timeout 120 %s --headless=new --no-sandbox --disable-gpu --hide-scrollbars "
+        "--virtual-time-budget=6000 --user-data-dir='%s' %s 'file://%s' >'%s' 2>/dev/null",
+        browser(), folder / "profile", flags, folder / address, folder / "out");
+    return std::system(command.c_str()) == 0 ? folder.read("out") : "";
+}
+
+// Attributes of the root of a page, without "data-".
+std::map<std::string, std::string> said(const std::string& dom) {
+    std::map<std::string, std::string> all;
+    const size_t html = std::min(dom.find("<html"), dom.size());
+    const std::string root = dom.substr(html);
+    for (size_t at = 0; (at = root.find("data-", at)) < root.find("<head");) {
+        const size_t quote = root.find('"', at), end = root.find('"', quote + 1);
+        all[root.substr(at + 5, quote - at - 6)] = root.substr(quote + 1, end - quote - 1);
+        at = end;
+    }
+    return all;
+}
+
+std::map<std::string, std::string> driven(const std::string& fragment, const std::string& script) {
+    const Folder folder;
+    write_driven(folder, script);
+    auto seen = said(browse(folder, "--dump-dom", "trade.html" + fragment));
+    CHECK(seen["error"] == "");
+    CHECK(seen["done"] == "1");
+    return seen;
+}
+
+std::string bytes_of(const std::array<float, 3>& pixel, double exposure) {
+    std::string words;
+    for (float channel : pixel) words += std::to_string(to_byte(exposure * double(channel))) + ",";
+    return words + "255";
+}
+
+// As in Green's paper: start 2.6, 0.7 rotations, hue 1.4.
+std::string cubehelix(double t) {
+    const double angle = 2 * pi * (2.6 / 3 + 0.7 * t), a = 1.4 * t * (1 - t) / 2;
+    std::string words;
+    for (const auto& [c, s] : {std::pair{-0.14861, 1.78277}, {-0.29227, -0.90649}, {1.97294, 0.0}})
+        words +=
+            std::to_string(std::lround(
+                255 * std::clamp(t + a * (c * std::cos(angle) + s * std::sin(angle)), 0.0, 1.0))) +
+            ",";
+    return words + "255";
+}
+
+double pixel_error(const Study& s, size_t k, int x, int y) {
+    double sum = 0, norm = 0;
+    for (const auto& pixel : s.shots[0].image.pixels)
+        for (float channel : pixel) norm += std::pow(double(channel), 2);
+    for (size_t c = 0; c < 3; ++c)
+        sum += std::pow(double(s.shots[k].image.at(x, y)[c] - s.shots[0].image.at(x, y)[c]), 2);
+    return std::sqrt(sum / norm * double(s.shots[0].image.pixels.size()));
 }
 
 }  // namespace
 
-TEST_CASE("the judge of pages judges") {
-    CHECK(Html("<!doctype html><p id=\"a\">1 &lt; 2<br></p>").by_id("a").words == "1 < 2");
-    CHECK(Html("<script>a < b && c</script>").elements.size() == 1);
-    CHECK(
-        Html("<table><caption>c</caption><thead><tr><th>1</th></tr></thead></table>").table("c") ==
-        Rows{{"1"}});
-}
-
-TEST_CASE("the answers on the page are the measured ones") {
-    const Html page(trade_page(sample_trade()));
-    const Rows rows = page.table(cheapest_on + "first" + answers_end);
-    CHECK(rows ==
-          Rows{{"Error", "Cheapest setting", "Its time", "The default's"},
-               {"10 %", "--sampler halton --light needouble, unbiased", "0.0151 s",
-                "0.0400 s · 2.65×"},
-               {"3 %", "--sampler sobol --light misfloat, unbiased", "0.400 s", "0.444 s · 1.11×"},
-               {"1 %", "--sampler halton --light needouble, unbiased", "1.51 s", "4.00 s · 2.64×"},
-               {"0.3 %", "none measured gets there", "–", "–"}});
-    const Rows all = page.table(
-        "Time of the cheapest setting · how many times that the default takes; –: nothing "
-        "measured gets there");
-    CHECK(all == Rows{{"Scene", "10 %", "3 %", "1 %", "0.3 %"},
-                      {"first", "0.0151 s · 2.65×", "0.400 s · 1.11×", "1.51 s · 2.64×", "–"},
-                      {"second", "0.0151 s · 2.65×", "0.400 s · 1.11×", "1.51 s · 2.64×", "–"}});
-}
-
-TEST_CASE("the page's numbers are those of the report's table") {
-    const Trade trade = sample_trade();
-    const Html page(trade_page(trade));
-    for (const TradeScene& scene : trade.scenes) {
-        const Rows rows = page.table(cheapest_on + scene.name + answers_end);
-        REQUIRE(rows.size() == scene.answers.size() + 1);
-        for (size_t k = 0; k < scene.answers.size(); ++k) {
-            const std::string cell = trade::cell(scene, scene.answers[k]);
-            const std::vector<std::string>& row = rows[k + 1];
-            CHECK_MESSAGE(cell.starts_with(row[2]), cell);
-            const std::string own = row[3].substr(0, row[3].find(" ·"));
-            CHECK_MESSAGE(cell.ends_with("default " + own), cell);
-        }
-    }
-}
-
-TEST_CASE("a scene that was asked for other errors has its answers in their columns") {
-    Trade trade = sample_trade();
-    trade.scenes[1].answers.erase(trade.scenes[1].answers.begin());
-    const Rows all =
-        Html(trade_page(trade))
-            .table(
-                "Time of the cheapest setting · how many times that the default takes; –: nothing "
-                "measured gets there");
-    CHECK(all[2] ==
-          std::vector<std::string>{"second", "–", "0.400 s · 1.11×", "1.51 s · 2.64×", "–"});
-}
-
-TEST_CASE("all settings, and those that may be the default, are on the page") {
-    const Html page(trade_page(sample_trade()));
-    const Rows rows =
-        page.table("All settings on second, each with the last count that was measured");
-    REQUIRE(rows.size() == 5);
-    CHECK(rows[1] == std::vector<std::string>{"--sampler sobol --light mis", "double, unbiased",
-                                              "2 % · t^−0.50", "4.08 %", "64", "0.640 s", "2.5 %",
-                                              ""});
-    CHECK(rows[3][1] == "double, biased");
-    CHECK(rows[3][7] == "after 64 samples: 1/11 of the best's efficiency");
-    CHECK(rows[4][1] == "float, unbiased");
-    CHECK(page.table("Unbiased settings that take every scene: their time over the cheapest such "
-                     "one's") ==
-          Rows{{"Setting", "Numbers", "Geometric mean of scenes", "Worst", "There"},
-               {"--sampler sobol --light mis", "double", "1.08×", "1.31×", "second"},
-               {"--sampler halton --light mis", "float", "1.20×", "2.50×", "first"}});
-}
-
-TEST_CASE("beside each picture stand its setting, precision, bias, time and error") {
-    const Html page(trade_page(sample_trade()));
-    const std::vector<Element> captions = page.all("figcaption");
-    auto told = [&](const std::string& words) {
-        return std::count_if(captions.begin(), captions.end(),
-                             [&](const Element& e) { return e.words == words; });
-    };
-    CHECK(told("Referenceknown to 0.12 %") == 2);
-    CHECK(told("--sampler sobol --light misdouble, unbiased0.310 s, error 3.59 %") == 2);
-    CHECK(told("--sampler halton --light nee --direct ratiodouble, biased0.290 s, error 9.12 %") ==
-          2);
-    CHECK(told("--sampler sobol --light misfloat, unbiased0.300 s, error 3.45 %") == 2);
-    CHECK(
-        contains(page.by_id("scene-second").words, "In float a sphere of this scene is 5 % off."));
-    CHECK(!contains(page.by_id("scene-first").words, "5 % off"));
-}
-
-TEST_CASE("the page needs nothing but itself") {
-    const std::string bytes = trade_page(sample_trade());
-    for (const Element& e : Html(bytes).elements)
-        for (const char* name : {"src", "href", "srcset", "action", "data", "poster", "xlink:href"})
-            if (e.has(name))
-                CHECK_MESSAGE((e.of(name).starts_with("#") || e.of(name).starts_with("data:")),
-                              e.of(name));
+TEST_CASE("the page needs nothing but what lies beside it, and is short") {
+    const std::string page = read_file("src/labs/trade.html");
     for (const char* outside : {"http", "//www", "@import", "url(", "fetch(", "import("})
-        CHECK_MESSAGE(!contains(bytes, outside), outside);
+        CHECK_MESSAGE(page.find(outside) == page.npos, outside);
+    CHECK(std::count(page.begin(), page.end(), '\n') <= 350);
+    std::istringstream in(page);
+    for (std::string line; std::getline(in, line);) CHECK_MESSAGE(line.size() <= 105, line);
 }
 
-TEST_CASE("the script is at most 150 lines, none of which hides another") {
-    CHECK(lines(trade_script) <= 150);
-    std::istringstream in(trade_script);
-    for (std::string line; std::getline(in, line);) CHECK_MESSAGE(line.size() <= 100, line);
-    CHECK(Html(trade_page(sample_trade())).all("script").size() == 1);
+TEST_CASE("answers are the measured ones, with their commands; what is not known is not ranked") {
+    if (browser().empty()) return;
+    auto seen = driven("", R"js(
+const rows = (id, k) => [...$(id).querySelectorAll("table")[0].rows[k].cells]
+    .map(c => c.textContent).join("|");
+say("heads", rows("answers", 0));
+say("answers", rows("answers", 1));
+say("candidates", rows("candidates", 1));
+say("preview", $("preview").hidden);
+say("closed", $("scenes").textContent);
+for (const details of document.querySelectorAll("details")) details.open = true;
+await soon(300);
+for (const k of [1, 2, 3]) say("rank" + k, rows("scenes", k));
+say("command", document.querySelector("#scenes li").textContent);
+say("points", document.querySelectorAll("#scenes svg")[0].querySelectorAll(".unknown").length);
+say("title", document.querySelector("#scenes circle.unknown title").textContent);
+say("shots", document.querySelectorAll("#scenes .shots canvas").length);
+say("lines", document.querySelectorAll("polyline").length);
+say("bad", (document.body.innerText.match(/NaN|\bnan\b|null|undefined|Infinity/) || []).join());
+say("markup", document.querySelectorAll("i").length);
+)js");
+    CHECK(seen["heads"] == "Scene|10 %|3 %|1 %|0.3 %");
+    CHECK(seen["answers"] ==
+          "first|0.04 s · 1.44×penumbra --light nee --spp 4|"
+          "0.347 s · 1.85×penumbra --light nee --spp 35|"
+          "2.56 s · –penumbra --light nee --spp 256|–");
+    CHECK(seen["candidates"] == "penumbra --light nee|1|1|first");
+    CHECK(seen["preview"] == "true");
+    CHECK(seen["closed"] == "firstsecond");
+    CHECK(seen["rank1"].starts_with("1|penumbra --light nee|0.04 s|0.347 s|2.56 s|–|t^-0.56|256 "));
+    CHECK(
+        seen["rank2"].starts_with("2|penumbra|0.0576 s|0.64 s|–|–|t^-0.50|64 samples, 0.64 "
+                                  "s: 3 %|after 64 samples"));
+    CHECK(seen["rank3"] == "–|penumbra-float &lt;i&gt;|–|–|–|–|–|64 samples, 0.64 s: not known|");
+    CHECK(seen["command"] == "10 %: penumbra --light nee --spp 4 --size 12x8 scenes/first.scene");
+    CHECK(seen["points"] == "3");
+    CHECK(seen["title"] == "penumbra-float &lt;i&gt; --spp 4: 0.04 s, not known");
+    CHECK(seen["shots"] == "8");
+    CHECK(seen["lines"] == "6");
+    CHECK(seen["bad"] == "");
+    CHECK(seen["markup"] == "0");
 }
 
-TEST_CASE("whatever words a trade has, they are words on the page") {
-    Trade trade = sample_trade();
-    const std::string words = "<b>\"R&D\"</b> &lt; 'x'";
-    trade.default_words = trade.command = trade.scenes[0].remark = trade.scenes[0].name =
-        trade.scenes[0].settings[0].words = trade.scenes[0].settings[0].dropped =
-            trade.scenes[0].pictures[0].words = trade.candidates[0].words =
-                trade.candidates[0].worst_scene = words;
-    const Html page(trade_page(trade));  // well-formed
-    for (const Element& e : page.all("b")) CHECK(e.words != "\"R&D\"");
-    CHECK(page.by_id("scene-" + words).of("data-name") == words);
-    for (const char* tag : {"h2", "p", "td", "th", "a", "code", "li", "figcaption"}) {
-        const std::vector<Element> all = page.all(tag);
-        CHECK_MESSAGE(std::any_of(all.begin(), all.end(),
-                                  [&](const Element& e) { return contains(e.words, words); }),
-                      tag);
+TEST_CASE("a link leads to a scene, two images, a mode and a pixel; the values are that pixel's") {
+    if (browser().empty()) return;
+    auto seen = driven("#scene=second&a=1&b=3&mode=wipe&wipe=30&at=5,2", R"js(
+say("at", stage.dataset.at + " " + stage.dataset.mode);
+say("chosen", ["scene", "a", "b"].map(id => $(id).selectedIndex));
+for (const k of [0, 1, 2]) say("values" + k, cells(k).join(" "));
+for (const who of ["a", "b"]) say(who, drawn(who, 5, 2)), say("corner" + who, drawn(who, 1, 6));
+say("clip", getComputedStyle(document.querySelector(".frame.b")).clipPath);
+say("focus", document.activeElement.id);
+say("names", $("name-a").textContent + "; " + $("image-b").ariaLabel);
+)js");
+    CHECK(seen["at"] == "5,2 wipe");
+    CHECK(seen["chosen"] == "1,1,3");
+    CHECK(seen["clip"] == "inset(0px 0px 0px 30%)");
+    CHECK(seen["focus"] == "compare");
+    CHECK(seen["names"] == "A: shot 1: 0.3 s, error 1 %; B: shot 3: 0.3 s, error not known");
+    const Study& s = sample[1];
+    const size_t shown[] = {0, 1, 3};
+    for (size_t k = 0; k < 3; ++k) {
+        std::istringstream in(seen["values" + std::to_string(k)]);
+        std::string name;
+        double x[4] = {};
+        in >> name >> x[0] >> x[1] >> x[2] >> x[3];
+        for (size_t c = 0; c < 3; ++c)
+            CHECK(x[c] ==
+                  doctest::Approx(double(s.shots[shown[k]].image.at(5, 2)[c])).epsilon(0.006));
+        CHECK(x[3] == doctest::Approx(100 * pixel_error(s, shown[k], 5, 2)).epsilon(0.006));
+    }
+    // Neither turned nor mirrored.
+    for (const auto& [who, k] : {std::pair{"a", 1}, {"b", 3}}) {
+        CHECK(seen[who] == bytes_of(s.shots[size_t(k)].image.at(5, 2), 0.75));
+        CHECK(seen[std::string("corner") + who] ==
+              bytes_of(s.shots[size_t(k)].image.at(1, 6), 0.75));
     }
 }
 
-TEST_CASE("who sees no pictures is told them; who uses no mouse reaches all") {
-    const Html page(trade_page(sample_trade()));
-    std::set<std::string> ids;
-    for (const Element& e : page.elements)
-        if (e.has("id")) CHECK_MESSAGE(ids.insert(e.of("id")).second, "twice " << e.of("id"));
-    for (const Element& e : page.elements) {
-        const bool viewer = e.of("id").starts_with("image-");  // the script says what they show
-        if (e.tag == "img" && !viewer) CHECK(!e.of("alt").empty());
-        if (e.tag == "svg" || e.tag == "canvas")
-            CHECK_MESSAGE((e.of("role") == "img" && !e.of("aria-label").empty()), e.tag);
-        if (e.tag == "input" || e.tag == "select") CHECK(page.within(e, "label"));
-        if (e.tag == "button") CHECK(!e.words.empty());
-        if (e.tag == "th") CHECK((e.of("scope") == "col" || e.of("scope") == "row"));
-        if (e.tag == "table") CHECK(!page.elements[e.parent].tag.empty());
-        for (const char* name : {"aria-describedby", "aria-labelledby"})
-            if (e.has(name)) CHECK(ids.contains(e.of(name)));
-        const std::string link = e.of("href");
-        if (link.starts_with("#") && !link.starts_with("#scene="))
-            CHECK(ids.contains(link.substr(1)));
-    }
-    CHECK(page.by_id("live").of("aria-live") == "polite");
-    CHECK(page.by_id("stage").of("tabindex") == "0");
-    CHECK(page.all("html")[0].of("lang") == "en");
+TEST_CASE("arrow keys move the examined pixel, no farther than the border") {
+    if (browser().empty()) return;
+    auto seen = driven("#scene=first&at=5,2", R"js(
+key("ArrowRight"); say("right", stage.dataset.at);
+key("ArrowDown"); say("down", stage.dataset.at);
+key("ArrowLeft", true); say("left", stage.dataset.at);
+key("ArrowUp"); say("up", stage.dataset.at);
+key("ArrowDown", true); say("bottom", stage.dataset.at);
+say("taken", !key("ArrowLeft"));
+say("alone", key("a"));
+await soon(1000);
+say("live", $("live").textContent);
+say("address", location.hash);
+)js");
+    CHECK(seen["right"] == "6,2");
+    CHECK(seen["down"] == "6,3");
+    CHECK(seen["left"] == "0,3");
+    CHECK(seen["up"] == "0,2");
+    CHECK(seen["bottom"] == "0,7");
+    CHECK(seen["taken"] == "true");
+    CHECK(seen["alone"] == "true");
+    CHECK(seen["live"].starts_with("Pixel 0, 7: A is off by "));
+    CHECK(seen["address"] ==
+          "#scene=first&amp;at=0%2C7&amp;a=1&amp;b=2&amp;mode=side&amp;wipe=50&amp;exposure=0&amp;"
+          "zoom=1");
 }
 
-TEST_CASE("headings: one of the first order, and none skips an order") {
-    int before = 0, first = 0;
-    for (const Element& e : Html(trade_page(sample_trade())).elements)
-        if (e.tag.size() == 2 && e.tag[0] == 'h' && std::isdigit(e.tag[1])) {
-            const int order = e.tag[1] - '0';
-            first += order == 1;
-            CHECK(order <= before + 1);
-            before = order;
-        }
-    CHECK(first == 1);
+TEST_CASE("the mouse picks a pixel and wipes; images flip by button and space bar") {
+    if (browser().empty()) return;
+    auto seen = driven("#scene=unheard-of&mode=flip", R"js(
+say("mode", stage.dataset.mode);
+const visible = () => ["a", "b"].map(who => getComputedStyle($("image-" + who)).visibility).join();
+mouse(3.5 / 12, 6.5 / 8, 0); say("at", stage.dataset.at + " " + $("wipe").value);
+await choose("mode", "wipe"); mouse(0.25, 0.5, 1); say("wiped", $("wipe").value);
+await choose("mode", "flip"); say("one", visible());
+$("flip").click(); await soon(); say("two", visible());
+key(" "); await soon(); say("three", visible());
+say("live", $("live").textContent);
+)js");
+    CHECK(seen["mode"] == "side");  // nobody knows that scene
+    CHECK(seen["at"] == "3,6 50");
+    CHECK(seen["wiped"] == "25");
+    CHECK(seen["one"] == "visible,hidden");
+    CHECK(seen["two"] == "hidden,visible");
+    CHECK(seen["three"] == "visible,hidden");
+    CHECK(seen["live"].starts_with("Image A. "));
 }
 
-TEST_CASE("without its script the page shows pictures, maps and curves") {
-    const Html page(trade_page(sample_trade()));
-    size_t pictures = 0, maps = 0;
-    for (const Element& e : page.all("img")) {
-        pictures += e.of("class") == "picture";
-        maps += e.of("class") == "map";
-    }
-    CHECK(pictures == 8);
-    CHECK(maps == 6);
-    CHECK(page.all("svg").size() == 2);
-    CHECK(page.by_id("compare").of("class") == "scripted");  // which the style hides
+TEST_CASE("keys change mode, exposure and zoom, and ask for help; a mouse points into the zoom") {
+    if (browser().empty()) return;
+    auto seen = driven("#scene=first&a=1&b=2&at=2,1", R"js(
+key("e"); key("e"); await soon(); say("bright", drawn("a", 5, 2));
+key("E"); key("E"); key("E"); key("E"); await soon(); say("dark", drawn("a", 5, 2));
+key("z"); key("z"); say("zoom", getComputedStyle(document.querySelector(".view")).transform);
+mouse(9.5 / 12, 4.5 / 8, 0); say("at", stage.dataset.at);
+key("Z"); say("out", $("zoom").value);
+key("m"); key("m"); say("mode", stage.dataset.mode);
+key("?"); say("help", $("help").open);
+)js");
+    CHECK(seen["bright"] == bytes_of(sample[0].shots[1].image.at(5, 2), 1.5));
+    CHECK(seen["dark"] == bytes_of(sample[0].shots[1].image.at(5, 2), 0.375));
+    CHECK(seen["zoom"] == "matrix(4, 0, 0, 4, 0, 0)");
+    CHECK(seen["at"] == "9,4");
+    CHECK(seen["out"] == "2");
+    CHECK(seen["mode"] == "wipe");
+    CHECK(seen["help"] == "true");
 }
 
-TEST_CASE("the default's curve has the first colour; settings that answer have a name") {
-    const Trade trade = sample_trade();
-    CHECK(named_settings(trade, trade.scenes[0]) == std::vector<size_t>{0, 1, 3});
-    Trade other = trade;
-    for (int k = 0; k < 20; ++k)
-        other.scenes[0].settings.push_back(sample_setting(text("--seed %d", k), 0.1)),
-            other.scenes[0].answers.push_back({0.001, size_t(4 + k), 1, 1});
-    CHECK(named_settings(other, other.scenes[0]).size() == most_named);
-    CHECK(named_settings(other, other.scenes[0])[0] == 0);
-    other.default_words = "--unheard-of";
-    CHECK(named_settings(other, other.scenes[0])[0] == 1);
-    const std::string svg = curves_svg(trade.scenes[0], {0, 1, 3}).file();
-    CHECK(contains(svg, text("stroke=\"%s\"", svg::colours[2])));
-    CHECK(!contains(svg, text("stroke=\"%s\"", svg::colours[3])));
-    CHECK(contains(svg, text("stroke=\"%s\"", unnamed)));
-    CHECK(contains(svg, "stroke-dasharray"));  // float
-    CHECK(!contains(curves_svg(trade.scenes[0], {0, 1}).file(), "stroke-dasharray"));
-}
-
-TEST_CASE("axes hold all points, and are marked at 1 and 3 times powers of ten") {
-    const Axis axes[] = {axis_of("", {0.02, 5, NAN, 0, -1}), axis_of("", {1, 1e4}),
-                         axis_of("", {})};
-    CHECK(axes[0].lo < 0.02);
-    CHECK(axes[0].hi > 5);
-    CHECK(axes[0].ticks.size() == 5);  // 0.03, 0.1, 0.3, 1, 3; 5 × 1.5 is below 10
-    CHECK(axes[0].ticks.front() == doctest::Approx(0.03));
-    CHECK(axes[1].ticks.size() == 5);  // powers of ten: 1 ... 10 000
-    CHECK(axes[2].lo < axes[2].hi);
-}
-
-TEST_CASE("a law is drawn through what it says at the ends of its points") {
-    TradeSetting s = sample_setting("", 0.02);
-    s.points[1].error = 1;  // the law does not follow
-    const Curve law = fitted(s);
-    CHECK(law.seconds == std::vector<double>{0.04, 0.64});
-    CHECK(law.percent[0] == doctest::Approx(10));
-    CHECK(law.percent[1] == doctest::Approx(2.5));
-    CHECK(measured(s).percent[1] == 100);
-    s.c = NAN;
-    CHECK(fitted(s).seconds.empty());
-}
-
-TEST_CASE("a picture of another size, or with what is no number, is refused") {
-    Trade trade = sample_trade();
-    trade.scenes[1].pictures[2].image = sample_image(9, 8, 3);
-    CHECK_THROWS_WITH_AS(trade_page(trade), "second: a picture is not as large as the reference",
-                         UserError);
-    trade = sample_trade();
-    trade.scenes[0].pictures[1].image.at(3, 2)[1] = NAN;
-    CHECK_THROWS_WITH_AS(trade_page(trade), "first: no number in a picture's pixel 3,2", UserError);
-}
-
-TEST_CASE("pictures of many pixels are thinned; errors stay in parts of all the reference's mean") {
-    Trade trade = sample_trade();
-    TradeScene& scene = trade.scenes[0];
-    scene.reference = sample_image(256, 64, 0);
-    for (TradePicture& p : scene.pictures) p.image = sample_image(256, 64, 1);
-    const Html page(trade_page(trade));
-    const Element section = page.by_id("scene-first");
-    CHECK(section.of("data-width") == "128");
-    CHECK(section.of("data-height") == "32");
-    CHECK(std::stod(section.of("data-mean")) ==
-          doctest::Approx(quadratic_mean(scene.reference)).epsilon(1e-6));
-    CHECK(contains(section.words, "Of every 2×2 pixels of a picture one is shown."));
-    CHECK(!contains(page.by_id("scene-second").words, "one is shown"));
-    for (const Element& e : page.all("img"))
-        if (e.of("class") == "picture")
-            CHECK(e.of("width") == (e.of("alt").starts_with("first") ? "128" : "9"));
-}
-
-TEST_CASE("a trade without pictures, answers, points or scenes has a page, too") {
-    Trade trade = sample_trade();
-    trade.scenes[0].pictures.clear(), trade.scenes[0].reference = {};
-    trade.scenes[1].answers.clear();
-    for (TradeSetting& s : trade.scenes[1].settings) s.points.clear(), s.c = NAN;
-    CHECK(Html(trade_page(trade)).all("svg").size() == 2);
-    CHECK(Html(trade_page(Trade{})).all("section").size() == 1);
-}
-
-TEST_CASE("fifteen scenes of seven pictures of 8192 pixels of noise are less than 9 MB") {
-    auto noise = [](uint64_t seed) {
-        Rng rng{seed};
-        return painted(128, 64, [&](int, int) {
-            const auto x = float(rng.uniform()), y = float(rng.uniform()), z = float(rng.uniform());
-            return Colour{x, y, z};
-        });
+TEST_CASE("error maps show each pixel's error, the worse the brighter; another scene has its own") {
+    if (browser().empty()) return;
+    auto seen = driven("#scene=first&a=0&b=2&mode=error&at=5,2", R"js(
+say("map", drawn("b", 5, 2));
+say("reference", drawn("a", 5, 2));
+const light = e => colour_of(e).map((x, c) => [0.2126, 0.7152, 0.0722][c] *
+    (Math.max(x, 0) / 255) ** 2.2).reduce((a, b) => a + b);
+const steps = [...Array(17).keys()].map(k => light(10 ** (3 * k / 16 - 3)));
+say("rising", steps.every((x, k) => k === 0 || x > steps[k - 1]));
+say("ends", [0, 1e-3, NaN, 7].map(e => colour_of(e).map(Math.round)).join(" "));
+await choose("scene", "second");
+say("other", stage.dataset.at + " " + drawn("b", 4, 3));
+location.hash = "#scene=second&a=99&b=-1&mode=magic&wipe=x&at=1e9";
+await soon(300);
+say("nonsense", stage.dataset.at + " " + stage.dataset.mode + " " + $("a").selectedIndex +
+    $("b").selectedIndex);
+)js");
+    auto colour = [](const Study& s, int x, int y) {
+        return cubehelix(1 + std::log10(pixel_error(s, 2, x, y)) / 3);
     };
-    Trade trade = sample_trade();
-    trade.scenes.resize(1);
-    trade.scenes[0].reference = noise(0);
-    for (size_t k = 0; k < 3; ++k) trade.scenes[0].pictures[k].image = noise(k + 1);
-    const size_t three = trade_page(trade).size();
-    trade.scenes[0].pictures.resize(2);
-    const double one = double(three - trade_page(trade).size());
-    CHECK(15 * 7 * one < 9e6);
+    CHECK(seen["map"] == colour(sample[0], 5, 2));
+    CHECK(seen["reference"] == bytes_of(sample[0].shots[0].image.at(5, 2), 0.75));
+    CHECK(seen["rising"] == "true");
+    CHECK(seen["ends"] == "0,0,0 0,0,0 255,255,255 255,255,255");
+    CHECK(seen["other"] == "4,3 " + colour(sample[1], 4, 3));
+    CHECK(seen["nonsense"] == "8,0 error 30");
+}
+
+TEST_CASE(
+    "on a telephone nothing is wider than the page but what can be scrolled; a preview says so") {
+    if (browser().empty()) return;
+    const Folder folder;
+    write_driven(folder, "", true);
+    folder.write("phone.html", R"html(<!doctype html><html><head></head><body>
+<iframe id="phone" src="trade.html#scene=first" style="width: 380px; height: 800px"></iframe><script>
+addEventListener("load", () => setTimeout(() => {
+    const page = document.getElementById("phone").contentDocument, root = page.documentElement;
+    const say = document.documentElement.dataset;
+    say.wide = root.scrollWidth - root.clientWidth;
+    say.inner = root.clientWidth <= 380;
+    say.preview = !page.getElementById("preview").hidden;
+    say.cut = [...page.querySelectorAll("body *")].filter(e => !e.closest(".scroll, svg, select") &&
+        e.getBoundingClientRect().right > root.clientWidth + 1).map(e => e.tagName + e.id);
+}, 1000));</script></body></html>)html");
+    auto seen = said(browse(folder, "--allow-file-access-from-files --dump-dom", "phone.html"));
+    CHECK(seen["wide"] == "0");
+    CHECK(seen["inner"] == "true");
+    CHECK(seen["preview"] == "true");
+    CHECK(seen["cut"] == "");
 }

@@ -1,0 +1,220 @@
+// labs/trade.h  6  which setting reaches an error in the least time; the data of trade.html
+#pragma once
+#include "base/json.h"
+#include "labs/grid.h"
+
+namespace trade {
+
+// ---- What is measured ---------------------------------------------------------------------------
+
+// Samples a pixel by a setting, CPU seconds, and d_rel, which is NaN where it is not known.
+struct Point {
+    double spp = 0, seconds = NAN, error = NAN;
+};
+
+// The error of an image that is `off` a reference whose own error is independent of it; NaN if that
+// may be most of the distance.
+inline double known_error(double off, double own) {
+    return own <= 0.8 * off ? std::sqrt(off * off - own * own) : NAN;
+}
+
+inline std::vector<Point> known(std::vector<Point> points) {
+    std::erase_if(points, [](const Point& p) { return !(p.error > 0); });
+    return points;
+}
+
+// A setting is named by its command.
+struct Choice {
+    Setting setting;
+    bool may_be_default = true, is_kept = false;  // unbiased on every scene; is never dropped
+    std::vector<Point> points = {};
+    std::string dropped = "";  // when, and why
+};
+using Choices = std::vector<Choice>;  // the first is the default
+
+// error ~ seconds^-gamma: least squares of the logarithms; NaN: fewer than two errors are known.
+inline double gamma_of(const Choice& c) {
+    std::vector<double> t, e;
+    for (const Point& p : known(c.points)) t.push_back(p.seconds), e.push_back(p.error);
+    return t.size() < 2 ? NAN : -slope(t, e);
+}
+
+// ---- Answers ------------------------------------------------------------------------------------
+
+// The first point if that has no more than this error; or between two points, by powers.  Of errors
+// that were not measured nothing is said.
+inline Point reach(const Choice& c, double error) {
+    const std::vector<Point> points = known(c.points);
+    const auto to = std::find_if(points.begin(), points.end(),
+                                 [&](const Point& p) { return p.error <= error; });
+    if (to == points.end()) return {};
+    if (to == points.begin()) return *to;
+    const Point& from = to[-1];
+    const double part = std::log(error / from.error) / std::log(to->error / from.error);
+    auto between = [&](double a, double b) { return a * std::pow(b / a, part); };
+    return {between(from.spp, to->spp), between(from.seconds, to->seconds), error};
+}
+
+// The least seconds, of the first that takes them; NaN: none does.
+struct Answer {
+    size_t choice = 0;
+    Point at = {};
+};
+inline Answer cheapest(const Choices& all, double error, bool among_defaults = false) {
+    Answer a;
+    for (size_t k = 0; k < all.size(); ++k)
+        if (const Point p = reach(all[k], error); all[k].may_be_default || !among_defaults)
+            if (p.seconds < a.at.seconds || std::isnan(a.at.seconds)) a = {k, p};
+    return a;
+}
+
+inline constexpr double asked[] = {0.10, 0.03, 0.01, 0.003};
+
+// A setting's seconds over those of the best default: geometric mean over the errors asked for.
+// If it was dropped before it had such an error, the last that it had counts.
+inline double ratio_to_best(const Choices& all, const Choice& c) {
+    double last = INFINITY;
+    for (const Point& p : known(c.points)) last = std::min(last, p.error);
+    Moments logs;
+    for (double error : asked) {
+        const double had = std::max(error, last);
+        if (cheapest(all, error, true).at.seconds > 0 && std::isfinite(had))
+            logs.add(std::log(reach(c, had).seconds / cheapest(all, had, true).at.seconds));
+    }
+    return logs.n ? std::exp(logs.mean) : NAN;
+}
+
+// Drops what had less than 1/8 of the best's efficiency, 1 / (error^2 seconds), at two counts in
+// sequence.  Where an error is not known, nothing is dropped.
+inline void drop_hopeless(Choices& all) {
+    auto efficiency = [](const Choice& c, size_t k) {
+        return 1 / (c.points[k].error * c.points[k].error * c.points[k].seconds);
+    };
+    size_t now = 0;
+    for (const Choice& c : all) now = std::max(now, c.points.size());
+    std::vector<double> best(now);
+    for (const Choice& c : all)
+        for (size_t k = 0; k < c.points.size(); ++k) best[k] = std::fmax(best[k], efficiency(c, k));
+    for (Choice& c : all) {
+        if (now < 2 || c.points.size() < now || c.is_kept) continue;
+        const double after = best[now - 1] / efficiency(c, now - 1);
+        if (after > 8 && best[now - 2] / efficiency(c, now - 2) > 8)
+            c.dropped = text("after %.0f samples: 1/%.0f of the best's efficiency",
+                             c.points.back().spp, after);
+    }
+}
+
+// ---- A study ------------------------------------------------------------------------------------
+
+// An image in as many CPU seconds as the scene's other shots; the first is the reference.
+struct Shot {
+    std::string command;
+    Point at;
+    Image image;
+};
+
+struct Study {
+    std::string scene, remark = "";
+    double exposure = 1, own = NAN;  // own: d_rel of the reference
+    Choices choices = {};
+    std::vector<Shot> shots = {};
+};
+
+// ratio_to_best of what may be the default: the geometric mean of scenes, and the greatest.
+struct Candidate {
+    std::string command;
+    double ratio = NAN, most = 0;
+    std::string where = "";
+};
+
+// The best first.
+inline std::vector<Candidate> candidates(const std::vector<Study>& studies) {
+    std::map<std::string, std::pair<Moments, Candidate>> all;
+    for (const Study& s : studies)
+        for (const Choice& c : s.choices) {
+            const double ratio = c.may_be_default ? ratio_to_best(s.choices, c) : NAN;
+            if (std::isnan(ratio)) continue;
+            auto& [logs, of] = all[c.setting.name];
+            logs.add(std::log(ratio));
+            if (ratio > of.most) of.most = ratio, of.where = s.scene;
+            of.command = c.setting.name, of.ratio = std::exp(logs.mean);
+        }
+    std::vector<Candidate> sorted;
+    for (const auto& [command, both] : all) sorted.push_back(both.second);
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.ratio < b.ratio; });
+    return sorted;
+}
+
+// ---- JSON ---------------------------------------------------------------------------------------
+
+// Items of an array, each by json_of.
+template <class Item>
+std::string array(const std::vector<Item>& items) {
+    std::string words;
+    for (const Item& item : items) words += (words.empty() ? "" : ",\n") + json_of(item);
+    return "[" + words + "]";
+}
+// Names and values by turns.
+inline std::string object(const std::vector<std::string>& words) {
+    std::string out;
+    for (size_t k = 0; k < words.size(); k += 2)
+        out += (k ? ", \"" : "\"") + words[k] + "\": " + words[k + 1];
+    return "{" + out + "}";
+}
+inline std::string json_of(const Point& p) {
+    return object({"spp", json::number(p.spp), "seconds", json::number(p.seconds), "error",
+                   json::number(p.error)});
+}
+inline std::string json_of(const Choice& c) {
+    std::string seconds;  // for each error asked for
+    for (double error : asked)
+        seconds += (seconds.empty() ? "" : ", ") + json::number(reach(c, error).seconds);
+    return object({"command", json::string(c.setting.name), "dropped", json::string(c.dropped),
+                   "gamma", json::number(gamma_of(c)), "seconds", "[" + seconds + "]", "points",
+                   array(c.points)});
+}
+inline std::string json_of(const Shot& s) {
+    return object({"command", json::string(s.command), "at", json_of(s.at)});
+}
+inline std::string json_of(const Candidate& c) {
+    return object({"command", json::string(c.command), "ratio", json::number(c.ratio), "most",
+                   json::number(c.most), "where", json::string(c.where)});
+}
+inline std::string json_of(const Study& s) {
+    std::string answers;  // for each error asked for
+    for (double error : asked) {
+        const auto [k, at] = cheapest(s.choices, error);
+        answers += (answers.empty() ? "" : ", ") +
+                   object({"choice", at.seconds > 0 ? json::number(double(k)) : "null", "spp",
+                           json::number(at.spp)});
+    }
+    const Image& f = s.shots.at(0).image;
+    return object({"name", json::string(s.scene), "remark", json::string(s.remark), "width",
+                   json::number(f.width), "height", json::number(f.height), "exposure",
+                   json::number(s.exposure), "own", json::number(s.own), "answers",
+                   "[" + answers + "]", "choices", array(s.choices), "shots", array(s.shots)});
+}
+
+// A browser opens files without a server, but lets a page read scripts alone: trade.js says what
+// trade.json says, and NAME.js has a scene's images as floats, row by row from the top left pixel.
+inline void write_page(const std::vector<Study>& studies, const std::string& command, bool preview,
+                       const std::string& folder) {
+    const std::string data =
+        object({"command", json::string(command), "preview", json::truth(preview), "asked",
+                "[0.1, 0.03, 0.01, 0.003]", "candidates", array(candidates(studies)), "scenes",
+                array(studies)});
+    write_file(folder + "/trade.json", data);
+    write_file(folder + "/trade.js", "const trade = " + data + ";\n");
+    write_file(folder + "/trade.html", read_file("src/labs/trade.html"));
+    for (const Study& s : studies) {
+        std::string floats;
+        for (const Shot& shot : s.shots)
+            floats.append(reinterpret_cast<const char*>(shot.image.pixels.data()),
+                          shot.image.pixels.size() * sizeof shot.image.pixels[0]);
+        write_file(folder + "/" + s.scene + ".js",
+                   text("pixels(%s, \"%s\");\n", json::string(s.scene), svg::base64(floats)));
+    }
+}
+
+}  // namespace trade
