@@ -101,70 +101,6 @@ inline double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC
 
 // ---- Reports ------------------------------------------------------------------------------------
 
-// What an experiment has to say, in Markdown: on stdout as it comes, and in the end in a file.
-class Report {
-public:
-    // Writes FOLDER/NAME.md, and pictures beside it.
-    Report(const std::string& folder, const std::string& name) : folder_(folder), name_(name) {
-        std::filesystem::create_directories(folder);
-        check_writable(file(name + ".md"));
-        std::setvbuf(stdout, nullptr, _IOLBF, 0);
-    }
-
-    // A paragraph, a heading.
-    void say(const std::string& words) { add(words + "\n\n"); }
-
-    // A table: its head, then rows.
-    void head(const std::vector<std::string>& cells) {
-        row(cells);
-        add("|");
-        for (size_t i = 0; i < cells.size(); ++i) add("---|");
-        add("\n");
-    }
-    void row(const std::vector<std::string>& cells) {
-        add("|");
-        for (const std::string& cell : cells) add(" " + cell + " |");
-        add("\n");
-    }
-    void end_of_table() { add("\n"); }
-
-    // Writes a plot or a sheet beside the report and shows it.
-    void picture(const std::string& name, const Svg& svg, const std::string& what) {
-        write_file(file(name + ".svg"), svg.file());
-        say("![" + what + "](" + name + ".svg)");
-    }
-
-    // The word for a claim, which counts if it fails.
-    std::string verdict(bool holds, const char* yes = "ok", const char* no = "**FAILS**") {
-        failures_ += !holds;
-        return holds ? yes : no;
-    }
-    // A point of a list, with its verdict.
-    void claim(bool holds, const std::string& words) {
-        say(text("* %s: %s.", words, verdict(holds)));
-    }
-
-    // Writes the report; the exit status: 1 if a claim failed.
-    int finish() {
-        write_file(file(name_ + ".md"), markdown_);
-        std::fprintf(stderr, "wrote %s; %d claims failed\n", file(name_ + ".md").c_str(),
-                     failures_);
-        return failures_ > 0;
-    }
-
-    // Of a name in the report's folder.
-    std::string file(const std::string& name) const { return folder_ + "/" + name; }
-
-private:
-    std::string folder_, name_, markdown_;
-    int failures_ = 0;
-
-    void add(const std::string& words) {
-        markdown_ += words;
-        std::fputs(words.c_str(), stdout);
-    }
-};
-
 // Where reports go: what is committed comes from all runs, in double.
 inline std::string report_folder(bool quick) {
     return quick || sizeof(real) < sizeof(double) ? "out" : "reference";
@@ -215,22 +151,6 @@ private:
 
 // ---- Renders ------------------------------------------------------------------------------------
 
-// The numbers that a statistics file has under `key`: one, or one a channel; NaN: not known.
-inline std::vector<double> stats(const std::string& json, const std::string& key) {
-    const std::string before = "\"" + key + "\": ";
-    const size_t at = json.find(before);
-    if (at == json.npos) throw UserError("statistics without " + key);
-    std::string line = json.substr(at + before.size());
-    line = line.substr(0, line.find('\n'));
-    for (char& c : line)
-        if (c == '[' || c == ']' || c == ',') c = ' ';
-    std::vector<double> numbers;
-    std::istringstream words(line);
-    for (std::string word; words >> word;)
-        numbers.push_back(word == "null" ? NAN : parse_number(word, HUGE_VAL));
-    return numbers;
-}
-
 // All that stand alone, by their names; NaN: null.
 inline std::map<std::string, double> numbers_of(const std::string& json) {
     std::map<std::string, double> numbers;
@@ -246,39 +166,17 @@ inline std::map<std::string, double> numbers_of(const std::string& json) {
     return numbers;
 }
 
-struct Rendering {
-    Image image;
-    std::string stats;  // JSON
-    double core_seconds() const { return ::stats(stats, "cpu_seconds")[0]; }
-    uint64_t samples() const { return uint64_t(::stats(stats, "samples_per_pixel")[0]); }
-};
-
-// One that was kept: FILE.pfm and FILE.json.
-inline Rendering read_rendering(const std::string& pfm) {
-    const auto json = std::filesystem::path(pfm).replace_extension(".json");
-    return {read_pfm(pfm), read_file(json.string())};
-}
-
-// Runs build/penumbra with these words, which name a scene and no output; unless they say otherwise
-// with one set of samples, for then a pixel has as many samples as its fellows.
-inline Rendering rendering(const std::vector<std::string>& program,
-                           std::vector<std::string> words) {
+// The image that a program renders by these words, which name no output.
+inline Image rendering(const std::string& command) {
     std::filesystem::create_directories("out");
-    const std::string stem = "out/lab" + std::to_string(::getpid()), pfm = stem + ".pfm",
-                      json = stem + ".json";
-    if (std::find(words.begin(), words.end(), "--sets") == words.end())
-        words.insert(words.begin(), {"--sets", "1"});
-    words.insert(words.begin(), program.begin(), program.end());
-    words.insert(words.end(), {"--quiet", "-o", pfm, "--stats", json});
+    const std::string pfm = "out/lab" + std::to_string(::getpid()) + ".pfm";
+    std::vector<std::string> words = words_in(command);
+    words.insert(words.end(), {"--quiet", "-o", pfm, "--stats", pfm + ".json"});
     execute(words);
-    Rendering r{read_pfm(pfm), read_file(json)};
+    Image image = read_pfm(pfm);
     std::filesystem::remove(pfm);
-    std::filesystem::remove(json);
-    return r;
-}
-
-inline Rendering rendering(const std::string& program, const std::vector<std::string>& words) {
-    return rendering(std::vector<std::string>{program}, words);
+    std::filesystem::remove(pfm + ".json");
+    return image;
 }
 
 // ---- Command lines ------------------------------------------------------------------------------

@@ -111,9 +111,8 @@ std::string all_settings(Page& page, const Rows& rows) {
 Svg pictures(const std::string& program, const std::vector<Setting>& all, const std::string& spp) {
     std::vector<Picture> shown;
     for (const Setting& s : all) {
-        std::vector<std::string> words = words_in(scene + " " + s.words + " --spp " + spp);
-        const Image image =
-            rendering(words_in(s.program.empty() ? program : s.program), words).image;
+        const Image image = rendering(text(
+            "%s %s %s --spp %s", s.program.empty() ? program : s.program, scene, s.words, spp));
         shown.push_back({part_of(image, 50, 0, {168, image.height}), s.name, spp + " samples"});
     }
     return contact_sheet(shown, 4, 0.6);  // the scene's exposure

@@ -81,21 +81,15 @@ TEST_CASE("a part of an image begins at its left and its top") {
     CHECK(part.at(2, 0) == image.at(3, 2));
 }
 
-TEST_CASE("the statistics reader: numbers, channels, null, a key that is missing") {
-    const std::string json =
+TEST_CASE("numbers of statistics: those that stand alone, by their whole names; null is NaN") {
+    const auto of = numbers_of(
         "{\n  \"scene\": \"a.scene\",\n  \"cpu_seconds\": 25,\n  \"seconds\": 12.5,\n"
-        "  \"mean\": [1, null, 3e-05],\n  \"roulette\": null,\n  \"last\": 7\n}\n";
-    CHECK(stats(json, "seconds") == std::vector<double>{12.5});
-    CHECK(stats(json, "cpu_seconds") == std::vector<double>{25});
-    CHECK(stats(json, "last") == std::vector<double>{7});
-    const std::vector<double> mean = stats(json, "mean");
-    REQUIRE(mean.size() == 3);
-    CHECK(mean[0] == 1);
-    CHECK(std::isnan(mean[1]));
-    CHECK(mean[2] == 3e-5);
-    CHECK(std::isnan(stats(json, "roulette").at(0)));
-    CHECK_THROWS_AS(stats(json, "samples"), UserError);
-    CHECK_THROWS_AS(stats(json, "scene"), UserError);
+        "  \"mean\": [1, null, 3e-05],\n  \"roulette\": null,\n  \"last\": 7\n}\n");
+    CHECK(of.size() == 4);
+    CHECK(of.at("cpu_seconds") == 25);
+    CHECK(of.at("seconds") == 12.5);
+    CHECK(of.at("last") == 7);
+    CHECK(std::isnan(of.at("roulette")));
 }
 
 TEST_CASE("flags set what they say; without flags the work is done all the same") {
@@ -120,25 +114,6 @@ TEST_CASE("--help: exit status 0, and no work") {
     const Called c = call({"--quick", "--help"});
     CHECK(c.status == 0);
     CHECK(!c.worked);
-}
-
-TEST_CASE("a report is written as it was said, and counts the claims that failed") {
-    const Folder folder;
-    Report good(folder.path.string(), "good"), bad(folder.path.string(), "bad");
-    good.say("# Title");
-    good.head({"a", "b"});
-    good.row({"1", good.verdict(true)});
-    good.end_of_table();
-    good.picture("curve", Svg(10, 10), "A curve");
-    CHECK(good.finish() == 0);
-    CHECK(folder.read("good.md") ==
-          "# Title\n\n| a | b |\n|---|---|\n| 1 | ok |\n\n![A curve](curve.svg)\n\n");
-    CHECK(folder.read("curve.svg") == Svg(10, 10).file());
-    bad.say(bad.verdict(true) + bad.verdict(false));
-    bad.claim(true, "One");
-    CHECK(bad.finish() == 1);
-    CHECK(folder.read("bad.md").find("* One: ok.") != std::string::npos);
-    CHECK(folder.read("bad.md").find("FAILS") != std::string::npos);
 }
 
 TEST_CASE("what is committed comes from all runs, in double; a report says what made it") {
