@@ -42,7 +42,7 @@ std::vector<Subject> all_subjects(const Effort& plan) {
     return all;
 }
 
-Rows all_rows(Grid& grid, const std::vector<Subject>& subjects, const Effort& plan) {
+Rows all_rows(RenderGrid& grid, const std::vector<Subject>& subjects, const Effort& plan) {
     std::vector<Subject> hard, others;
     for (const Subject& s : subjects) (is_hard(s) ? hard : others).push_back(s);
     auto settings = [](const std::vector<std::string>& words, const std::string& program = "") {
@@ -218,7 +218,7 @@ std::string every_scene(const Rows& rows) {
 
 int run(const Effort& plan, const std::string& program, const std::string& command) {
     Page page(report_folder(plan.quick), "calibration");
-    Grid grid("calibration", program, plan.kept);
+    RenderGrid grid("calibration", program, plan.kept);
     const Rows rows = all_rows(grid, all_subjects(plan), plan);
     page.set("table", all_measures(rows));
     page.data("calibration", every_scene(rows));

@@ -56,7 +56,7 @@ int run(const Effort& plan, const std::string& program, const std::string& comma
         subjects.push_back({name, "scenes/" + name + ".scene --size 96x48", 256 * plan.spp});
     std::vector<Setting> settings = {{standard, "--sets 1"}};
     for (const std::string& words : plan.choices) settings.push_back({words, "--sets 1 " + words});
-    Grid grid("efficiency", program, plan.kept);
+    RenderGrid grid("efficiency", program, plan.kept);
     const Rows rows = grid.run(subjects, settings, {plan.spp}, plan.seeds);
     std::vector<std::vector<std::string>> lines;
     for (const std::string& choice : plan.choices) lines.push_back(overall(rows, choice));

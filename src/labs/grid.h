@@ -1,6 +1,6 @@
 // labs/grid.h  5  renders of scenes by settings: how far each is from the truth, and what it took
 //
-//   Grid grid("efficiency", "build/penumbra");
+//   RenderGrid grid("efficiency", "build/penumbra");
 //   const Rows rows = grid.run({{"cornell", "scenes/cornell.scene --size 64x32"}},
 //                              {{"the default", ""}, {"NEE", "--light nee"}}, {16, 64}, 8);
 //   table(rows, of_setting, of_count, [](const Rows& r) { return told(d_rel(r), "%.3f"); });
@@ -51,7 +51,7 @@ inline double d_rel(const Image& truth, const Image& image) {
     return std::sqrt(mse(truth, image) * 3 * double(truth.pixels.size()) / square);
 }
 
-inline double mean_of(const Image& image) {
+inline double image_mean(const Image& image) {
     double sum = 0;
     for (const auto& pixel : image.pixels)
         for (float x : pixel) sum += double(x);
@@ -60,11 +60,11 @@ inline double mean_of(const Image& image) {
 
 // ---- Running ------------------------------------------------------------------------------------
 
-class Grid {
+class RenderGrid {
 public:
     // Renders by `program`, unless a setting has its own; as many at a time as there are cores,
     // each by one thread. Kept: rows by whatever program there are, and nothing is rendered.
-    Grid(std::string name, std::string program, bool kept = false)
+    RenderGrid(std::string name, std::string program, bool kept = false)
         : name_(std::move(name)), program_(std::move(program)), is_kept_(kept) {
         std::filesystem::create_directories("out/truth");
         std::ifstream in(file());
@@ -182,7 +182,7 @@ private:
         for (const char* suffix : {".pfm", ".json"}) std::filesystem::remove(stem + suffix);
         Row row = job.row;
         row.of = numbers_of(json);
-        row.of["mean"] = mean_of(image);
+        row.of["mean"] = image_mean(image);
         row.of["stated"] = row["error"];
         row.of["error"] = json.find("\"stopped_by\": \"error\"") != json.npos;
         if (!job.subject->has_truth()) return row;

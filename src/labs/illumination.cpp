@@ -89,7 +89,7 @@ struct Race {
     double limit() const { return without(std::sqrt(rows[0]["limit2"]), own); }
 };
 
-Race run_race(Grid& grid, const Course& c, const Truth* traced, bool kept) {
+Race run_race(RenderGrid& grid, const Course& c, const Truth* traced, bool kept) {
     Race race{c, {}, {}, 0, {}, {}};
     auto add = [&](const std::vector<Setting>& settings, const Truth* last, uint64_t seeds) {
         grid.measure = [=](Row& r, const Image& image, const Truth& f) {
@@ -183,8 +183,9 @@ void tell_races(Page& page, const std::vector<Race>& races) {
     page.set("references",
              table({"room", "k", "exponent", "predicted", "measured", "", "error of the reference"},
                    references));
-    page.data("radiosity-races", csv(all, {"elements", "unshot", "shots", "rays", "map_cpu_seconds",
-                                           "realistic", "optimistic", "particles"}));
+    page.data("radiosity-races",
+              csv_of(all, {"elements", "unshot", "shots", "rays", "map_cpu_seconds", "realistic",
+                           "optimistic", "particles"}));
     page.set("rooms", text("%zu of %zu", realistic, races.size()));
     page.set("flat", percent(flat)), page.set("hierarchy", percent(hierarchy));
     page.set("caught", caught);
@@ -264,7 +265,7 @@ void tell_total(Page& page, const std::vector<Race>& races, const Rows& traced) 
 
 void tell_growth(Page& page, const Scope& plan, const std::string& radiosity) {
     using List = std::vector<double>;
-    Grid grid("illumination-costs", radiosity, plan.kept);
+    RenderGrid grid("illumination-costs", radiosity, plan.kept);
     const List fine = plan.quick ? List{90, 50} : List{90, 50, 28, 16, 9};
     const List flat = plan.quick ? List{130, 90} : List{90, 65, 48, 35};
     Rows all;
@@ -298,7 +299,7 @@ void tell_growth(Page& page, const Scope& plan, const std::string& radiosity) {
                               "shots at 100 000", "rays", "seconds"},
                              orders));
     page.data("radiosity-costs",
-              csv(all, {"elements", "vertices", "shots", "rays", "map_cpu_seconds"}));
+              csv_of(all, {"elements", "vertices", "shots", "rays", "map_cpu_seconds"}));
     page.set("growth-rays", text("n^%.2f to n^%.2f", by_elements, by_faces));
     page.set("growth-ok", plan.quick
                               ? "not by these meshes"
@@ -320,7 +321,7 @@ void tell_growth(Page& page, const Scope& plan, const std::string& radiosity) {
 // Core nanoseconds a ray of both programs, over seeds.
 void tell_speed(Page& page, const Scope& plan, const std::string& penumbra,
                 const std::string& radiosity) {
-    Grid grid("illumination-speed", penumbra, plan.kept);
+    RenderGrid grid("illumination-speed", penumbra, plan.kept);
     Lines lines;
     double most = 0;
     for (const auto& [scene, H, lights] :
@@ -334,7 +335,7 @@ void tell_speed(Page& page, const Scope& plan, const std::string& penumbra,
                           {"particles",
                            text("--size 8x4 --method particles --sampler independent --mesh %g "
                                 "--particles %d",
-                                H, 1 << (plan.quick ? 17 : 19)),
+                                H, 1 << (plan.quick ? 19 : 22)),
                            radiosity}},
                          {0}, plan.quick ? 2 : 5);
             std::vector<double> paths, walks, ratio;
@@ -357,8 +358,8 @@ void tell_speed(Page& page, const Scope& plan, const std::string& penumbra,
 int study(const std::string& penumbra, const std::string& radiosity, const Scope& plan,
           const std::string& command) {
     Page page(report_folder(plan.quick), "radiosity");
-    Grid grid("illumination", radiosity, plan.kept);
-    Grid paths("illumination-paths", penumbra + " --depth 64", plan.kept);
+    RenderGrid grid("illumination", radiosity, plan.kept);
+    RenderGrid paths("illumination-paths", penumbra + " --depth 64", plan.kept);
     const Subject room{"cornell36", "scenes/cornell36.scene --size 128x64",
                        plan.quick ? 256u : 4096u};
     const Rows traced = paths.run({room}, {{"path tracer", "--sets 1"}}, {2, 4, 8, 16, 32, 64}, 2);

@@ -314,8 +314,8 @@ int study(const Extent& extent, const std::string& folder, const std::string& co
     Rows all = {known};
     for (const Rows* some : {&rows, &of_n}) all.insert(all.end(), some->begin(), some->end());
     page.data("radiosity-cube",
-              csv(all, {"A", "B", "C", "D", "E", "F", "mean", "off walls", "unshot", "short by",
-                        "from limit", "reported", "particles", "cpu_seconds"}));
+              csv_of(all, {"A", "B", "C", "D", "E", "F", "mean", "off walls", "unshot", "short by",
+                           "from limit", "reported", "particles", "cpu_seconds"}));
     const Rows shown =
         where(rows, [](const Row& r) { return r["cpu_seconds"] != r["cpu_seconds"]; });
     auto cells = [](const Rows& r) { return double(r[0].count); };

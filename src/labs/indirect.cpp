@@ -109,7 +109,7 @@ double bound(const Rows& rows) {
     return v * c / (sum * sum);
 }
 
-void tell_ways(Page& page, Grid& grid, const std::string& draw, const Scope& plan) {
+void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, const Scope& plan) {
     std::vector<Subject> subjects;
     for (const std::string& scene : scenes)
         subjects.push_back(
@@ -144,12 +144,12 @@ void tell_ways(Page& page, Grid& grid, const std::string& draw, const Scope& pla
     page.set("ways", table({"way", scenes[0], scenes[1], scenes[2]}, lines));
     page.set("bounds",
              table({"scene", "two levels", "with Sobol' points", "`control`", ""}, bounds));
-    page.data("indirect-ways", csv(all, {"d2", "bias2", "path_seconds", "map_cpu_seconds"}));
+    page.data("indirect-ways", csv_of(all, {"d2", "bias2", "path_seconds", "map_cpu_seconds"}));
 }
 
 // ---- How fine -----------------------------------------------------------------------------------
 
-void tell_meshes(Page& page, Grid& grid, const std::string& radiosity, double diagonal,
+void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, double diagonal,
                  const Scope& plan) {
     std::vector<Setting> settings;
     for (int part : {8, 16, 32, 64})
@@ -165,8 +165,8 @@ void tell_meshes(Page& page, Grid& grid, const std::string& radiosity, double di
     page.set("meshes", table(rows, part, particles, [](const Rows& r) {
                  return bias(r) + ", " + percent(std::sqrt(noise2(r)));
              }));
-    page.data("indirect-meshes", csv(rows, {"map_triangles", "map_error", "map_seconds", "d2",
-                                            "bias2", "bias2_error", "cpu_seconds"}));
+    page.data("indirect-meshes", csv_of(rows, {"map_triangles", "map_error", "map_seconds", "d2",
+                                               "bias2", "bias2_error", "cpu_seconds"}));
 }
 
 int study(const std::string& penumbra, const std::string& radiosity, const std::string& draw,
@@ -174,7 +174,7 @@ int study(const std::string& penumbra, const std::string& radiosity, const std::
     Page page(report_folder(plan.quick), "indirect");
     Pairs pairs;
     // References: without an end that is felt, .8^64 is 10^-6.
-    Grid grid("indirect", penumbra + " --depth 64", plan.kept);
+    RenderGrid grid("indirect", penumbra + " --depth 64", plan.kept);
     grid.measure = [&](Row& r, const Image& image, const Truth& f) { pairs(r, image, f); };
     const std::vector<Setting> methods = {{"path", "--sets 1", penumbra},
                                           {"map", "--final-gather --sets 1", radiosity},

@@ -141,7 +141,7 @@ int run(bool quick, bool kept, uint64_t seeds, const std::string& self, const st
     Rows rows;
     auto add = [&](const std::string& name, const std::string& program,
                    const std::vector<Setting>& settings) {
-        const Rows more = Grid(name, program, kept).run(both, settings, {spp}, seeds);
+        const Rows more = RenderGrid(name, program, kept).run(both, settings, {spp}, seeds);
         rows.insert(rows.end(), more.begin(), more.end());
     };
     add("peers-cycles", self + " --render cycles", {{cycles, "--sets 1"}});

@@ -165,8 +165,8 @@ int study(bool quick, const std::string& command) {
              text("%.3f", std::sqrt(mean_square(walked, "true") / mean_square(walked, "stated"))));
     const std::vector<std::string> numbers = {"asked",     "stated", "uncertainty", "true",
                                               "particles", "unshot", "cpu_seconds", "seconds"};
-    page.data("radiosity-error-particles", csv(walked, numbers));
-    page.data("radiosity-error-shooting", csv(shot, numbers));
+    page.data("radiosity-error-particles", csv_of(walked, numbers));
+    page.data("radiosity-error-shooting", csv_of(shot, numbers));
     page.set("seeds", quick ? "8" : "32"), page.set("made", made_by(command));
     return page.finish();
 }

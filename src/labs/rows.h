@@ -175,7 +175,7 @@ std::string table(const Rows& rows, By by, Across across, Value value) {
 }
 
 // Numbers of every row for who doubts; nothing where a row has none.
-inline std::string csv(const Rows& rows, const std::vector<std::string>& numbers) {
+inline std::string csv_of(const Rows& rows, const std::vector<std::string>& numbers) {
     std::vector<std::string> head = {"scene", "setting", "count", "seed"};
     head.insert(head.end(), numbers.begin(), numbers.end());
     std::vector<std::vector<std::string>> lines;

@@ -130,7 +130,7 @@ void tell_bias(Page& page, const ShadowPlan& plan) {
 // ---- Efficiency ---------------------------------------------------------------------------------
 
 // Whole renders: 1 / (squared error x CPU seconds) over stochastic's.
-void tell_efficiency(Page& page, Grid& grid, const ShadowPlan& plan) {
+void tell_efficiency(Page& page, RenderGrid& grid, const ShadowPlan& plan) {
     std::vector<Subject> subjects;
     const std::string size = plan.quick ? " --size 32x16" : " --size 128x64";
     for (const char* name : {"penumbra", "panel", "lanterns", "coursework", "cornell"})
@@ -161,7 +161,7 @@ int run(const ShadowPlan& plan, bool kept, const std::string& program, const std
     Page page(report_folder(plan.quick), "shadows");
     tell_noise(page, plan);
     tell_bias(page, plan);
-    Grid grid("shadows", program, kept);
+    RenderGrid grid("shadows", program, kept);
     tell_efficiency(page, grid, plan);
     for (const char* scene : {"penumbra", "lanterns"})
         page.plot(std::string("shadows-") + scene, shadow_sheet(load(scene, plan.shrink / 2)));

@@ -77,8 +77,9 @@ void measure(Row& r, const Image& image, const Truth& f) {
     Image black = f.image;
     for (auto& pixel : black.pixels) pixel = {0, 0, 0};
     const double rms = std::sqrt(mse(f.image, black) / double(image.pixels.size()));
-    r.of["ratio"] = r["mean"] / mean_of(f.image);
-    r.of["ratio variance"] = (r["d2"] + r["own"] * r["own"]) * std::pow(rms / mean_of(f.image), 2);
+    r.of["ratio"] = r["mean"] / image_mean(f.image);
+    r.of["ratio variance"] =
+        (r["d2"] + r["own"] * r["own"]) * std::pow(rms / image_mean(f.image), 2);
     r.of["neighbours"] = neighbours(f.image, image);
 }
 
@@ -124,7 +125,7 @@ int run(bool quick, bool kept, const std::string& self, const std::string& progr
     const uint64_t spp = quick ? 16 : 64, seeds = quick ? 2 : 8;
     const Subject subject{"coursework", scene, 64 * spp};
     const std::vector<Setting> all = settings(self), naives(all.end() - 2, all.end());
-    Grid grid("techniques", program, kept);
+    RenderGrid grid("techniques", program, kept);
     grid.measure = measure;
     const Rows equal = grid.run({subject}, all, {spp}, seeds),
                many = grid.run({subject}, all, {4 * spp}, seeds / 2),

@@ -49,7 +49,7 @@ Point point_of(const Rows& rows) {
 }
 
 // From count to count the hopeless go.
-Rows tournament(Grid& grid, const Effort& plan, const Subject& subject, Choices& choices) {
+Rows tournament(RenderGrid& grid, const Effort& plan, const Subject& subject, Choices& choices) {
     Rows all;
     for (uint64_t count : plan.counts) {
         std::vector<Setting> alive;
@@ -81,7 +81,7 @@ std::vector<size_t> shown(const Choices& choices) {
 
 // In the CPU seconds that the default takes for 3 %: samples are tried until they take these within
 // 3 %.  Of the second seed, for the first has chosen the settings.
-void add_shots(Grid& grid, const Subject& subject, Study& s) {
+void add_shots(RenderGrid& grid, const Subject& subject, Study& s) {
     const double by_default = reach(s.choices[0], 0.03).seconds,
                  seconds = std::isnan(by_default) ? 1 : std::clamp(by_default, 0.5, 2.0);
     for (size_t k : shown(s.choices)) {
@@ -112,7 +112,7 @@ std::string remark_on_float(const Rows& rows, uint64_t count) {
                 more > 0 ? "bright" : "dark");
 }
 
-Study study(Grid& grid, const Effort& plan, const std::string& name,
+Study study(RenderGrid& grid, const Effort& plan, const std::string& name,
             const std::string& float_program, Rows& all) {
     const std::string file = "scenes/" + name + ".scene";
     const Scene scene = read_scene(file).scene;
@@ -209,7 +209,7 @@ int run(const Effort& plan, const std::string& program, const std::string& float
         const std::string& command) {
     std::filesystem::create_directories(folder);
     Page page(report_folder(plan.quick), "trade");
-    Grid grid(plan.part > 2 ? "trade-quick" : "trade", program, plan.kept);
+    RenderGrid grid(plan.part > 2 ? "trade-quick" : "trade", program, plan.kept);
     grid.measure = [](Row& row, const Image& image, const Truth&) {
         if (row.setting.starts_with(shot) && row.seed == 2) write_image(image_of(row), image, 1);
     };

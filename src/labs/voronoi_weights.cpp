@@ -142,7 +142,7 @@ int run(bool quick, bool kept, uint64_t most, const std::string& penumbra,
         const std::vector<Region> regions = regions_of(scene);
         const Subject subject{name, text("%s --size %dx%d", file, side, side),
                               uint64_t(quick ? 1024 : 8192)};
-        Grid grid("voronoi", penumbra, kept);
+        RenderGrid grid("voronoi", penumbra, kept);
         grid.measure = [&](Row& r, const Image& image, const Truth& f) {
             add_regions(r, image, f, regions);
         };

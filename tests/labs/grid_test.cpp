@@ -54,7 +54,7 @@ const std::vector<Subject> subjects = {{"a", "a.scene --size 1x1", 64}};
 const std::vector<Setting> settings = {{"the default", ""}, {"NEE", "--light nee"}};
 
 Rows run(bool kept = false) {
-    Grid grid("study", "./program", kept);
+    RenderGrid grid("study", "./program", kept);
     grid.jobs = 1;  // so that calls have an order
     return grid.run(subjects, settings, {4, 16}, 2);
 }
@@ -124,7 +124,7 @@ TEST_CASE("kept rows are tables without a render, by whatever program they are")
 TEST_CASE("more numbers of an image are measured beside its reference, and kept") {
     const Studio studio;
     for (int turn = 0; turn < 2; ++turn) {
-        Grid grid("study", "./program");
+        RenderGrid grid("study", "./program");
         grid.measure = [](Row& r, const Image& image, const Truth& f) {
             r.of["more"] = double(image.pixels[0][0]) + 10 * double(f.image.pixels[0][0]);
         };
@@ -134,7 +134,7 @@ TEST_CASE("more numbers of an image are measured beside its reference, and kept"
 
 TEST_CASE("a setting may have a program of its own, with words") {
     const Studio studio;
-    Grid grid("study", "./program");
+    RenderGrid grid("study", "./program");
     grid.run(subjects, {{"x", "--y", "./program --z"}}, {0}, 1);
     CHECK(studio.calls().back().find("--z a.scene --size 1x1 --y --seed 1 --threads 1") == 0);
 }
@@ -149,7 +149,7 @@ TEST_CASE("programs have references of their own") {
     const Studio studio;
     run();
     std::filesystem::copy("program", "other");
-    Grid("others", "./other").run(subjects, settings, {4}, 1);
+    RenderGrid("others", "./other").run(subjects, settings, {4}, 1);
     const auto calls = studio.calls();
     REQUIRE(calls.size() == 12);
     CHECK(calls[9].find("--sets 16") != std::string::npos);
