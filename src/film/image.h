@@ -17,7 +17,7 @@
 #include <stb/stb_image_write.h>
 
 #include "base/files.h"
-#include "base/same.h"
+#include "base/portable.h"
 
 // Row by row from the top left pixel (0,0); linear values.  Starts as NaN, so that a pixel nobody
 // wrote is an error and not a black dot.
@@ -44,7 +44,7 @@ inline std::optional<std::string> first_non_finite(const Image& image) {
 
 // Linear to sRGB (IEC 61966-2-1), both in [0,1].
 inline double encode_srgb(double x) {
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * same::pow(x, 1 / 2.4) - 0.055;
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * portable::pow(x, 1 / 2.4) - 0.055;
 }
 
 inline uint8_t to_byte(double linear) {

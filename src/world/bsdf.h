@@ -53,7 +53,8 @@ inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
     if (m.is_delta() || wi.z <= 0) return {};
     if (m.ks == rgb{}) return m.kd * (1 / pi);
     real cos_alpha = dot(mirrored(wo), wi);
-    real lobe = cos_alpha > 0 ? (m.exponent + 2) / (2 * pi) * same::pow(cos_alpha, m.exponent) : 0;
+    real lobe =
+        cos_alpha > 0 ? (m.exponent + 2) / (2 * pi) * portable::pow(cos_alpha, m.exponent) : 0;
     return m.kd * (1 / pi) + m.ks * lobe;
 }
 

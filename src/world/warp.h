@@ -3,7 +3,7 @@
 // Every sampler stands above its density.  Densities are per solid angle (1/sr) unless the name
 // ends in _area (1/length^2).  Local z is the axis.
 #pragma once
-#include "base/same.h"
+#include "base/portable.h"
 #include "base/vec.h"
 
 // The point at u turns of the unit circle, 0 <= u <= 1.  The nearest quarter of a turn is taken
@@ -68,11 +68,11 @@ inline real pdf_cosine_hemisphere(real cos_theta) {
 // The density is (n+1)/(2 pi) cos^n(alpha), and cos(alpha) = (1-u)^(1/(n+1)); 1 - cos^2 by expm1
 // keeps its digits for large n.
 inline vec3 sample_phong_lobe(vec2 u, real n) {
-    double log_cos = same::log1p(-u.x) / (n + 1);
-    return spherical(same::exp(log_cos), std::sqrt(-same::expm1(2 * log_cos)), u.y);
+    double log_cos = portable::log1p(-u.x) / (n + 1);
+    return spherical(portable::exp(log_cos), std::sqrt(-portable::expm1(2 * log_cos)), u.y);
 }
 inline real pdf_phong_lobe(real cos_alpha, real n) {
-    return cos_alpha > 0 ? (n + 1) / (2 * pi) * same::pow(cos_alpha, n) : 0;
+    return cos_alpha > 0 ? (n + 1) / (2 * pi) * portable::pow(cos_alpha, n) : 0;
 }
 // end
 

@@ -1,4 +1,4 @@
-// base/same.h  1  exponentials and logarithms with the same bits everywhere
+// base/portable.h  1  exponentials and logarithms with the same bits everywhere
 //
 // C libraries round exp, log and pow each in its own way, and glibc by the processor: one result of
 // a thousand differs.  What an image depends on is these, `turned` of world/warp.h for sines, and
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace same {
+namespace portable {
 
 inline constexpr double ln2_high = 0x1.62e42feep-1, ln2_low = 0x1.a39ef35793c76p-33;
 
@@ -47,4 +47,4 @@ inline double expm1(double x) { return exp_less(x, 1); }
 // x^n for 0 < x <= 1 and n >= 0.
 inline double pow(double x, double n) { return exp(n * log(x)); }
 
-}  // namespace same
+}  // namespace portable
