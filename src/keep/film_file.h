@@ -89,8 +89,10 @@ public:
     double number(std::string_view key, double most = 0x1p53, char after = '\0') const {
         const std::string value = said(key);
         const char* const from = value.data() + (after ? value.find(after) + 1 : 0);
-        const double x = std::strtod(from, nullptr);
-        if (!(x >= 0 && x <= most)) refuse("its " + std::string(key) + " is " + in_quotes(value));
+        char* end = nullptr;
+        const double x = std::strtod(from, &end);
+        if (end == from || !(x >= 0 && x <= most))
+            refuse("its " + std::string(key) + " is " + in_quotes(value));
         return x;
     }
     uint64_t left() const { return left_; }  // bytes of numbers to be read

@@ -56,10 +56,8 @@ inline std::vector<Refusal> refused_words() {
                             option + ": '@' is not a whole number"});
     for (const std::string option : {"--time", "--exposure"})
         for (const auto& [values, why] : {std::pair{"0;-1", "is not positive"},
-                                          {"nan;inf", "is not finite"},
-                                          {"1e999", "is out of range"},
-                                          {"1e31", "is too large"},
-                                          {"soon;1.0x;0x1p3;~;+-1;1s", "is not a number"}})
+                                          {"inf;1e999;1e31", "is too large"},
+                                          {"soon;nan;1.0x;0x1p3;~;+-1;1s", "is not a number"}})
             families.push_back({option + " @", values, option + ": '@' " + why});
     return members(families);
 }

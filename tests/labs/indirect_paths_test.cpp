@@ -200,7 +200,7 @@ TEST_CASE("control sees what whole paths see in a room with lamps") {
 }
 
 TEST_CASE("control meets the exact luminance of the cube, its maps three times too bright, too") {
-    const Scene s = endless(cube());
+    const Scene s = endless(cubic_room());
     const Mesh mesh = make_mesh(s, 2.5);
     const IlluminationMap good = by_particles(s, mesh, 50000);
     for (double factor : {1.0, 0.0, 3.0}) {
@@ -241,7 +241,7 @@ TEST_CASE("map: paths end on what the maps hold, whatever that is; a coloured ro
 }
 
 TEST_CASE("map: its bias is that of the maps and falls with the mesh") {
-    const Scene s = endless(cube());
+    const Scene s = endless(cubic_room());
     double before = 1;
     for (int cells : {2, 4, 8}) {
         const Mesh mesh = make_mesh(s, 10 * std::sqrt(2.0) / cells);

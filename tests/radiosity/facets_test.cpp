@@ -32,7 +32,7 @@ const std::string camera = "camera 0 0 50  0 0 0  40\n";
 Scene parsed(const std::string& text) { return parse_scene(camera + text, "a.scene").scene; }
 
 std::string complaint(const std::string& text) {
-    return complaint_of([&] { check_diffuse(parsed(text), "a.scene"); });
+    return ::complaint([&] { check_diffuse(parsed(text), "a.scene"); });
 }
 
 double area(const Scene& s) {

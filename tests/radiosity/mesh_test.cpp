@@ -69,7 +69,7 @@ void check_sizes(const Scene& s, const Mesh& mesh, double H) {
 }
 
 std::string refusal(const Scene& s, double H, double memory) {
-    return complaint_of([&] { check_fits(s, H, {}, memory); });
+    return ::complaint([&] { check_fits(s, H, {}, memory); });
 }
 
 }  // namespace
@@ -98,7 +98,8 @@ TEST_CASE("no edge is longer than H, and cells are few; sizes are known before t
 
 TEST_CASE("squares are cut into squares; H that divides them is not missed by rounding") {
     for (int n : {1, 2, 3, 4, 7, 10, 49}) {
-        const Mesh mesh = make_mesh(cube(), 10 * std::sqrt(2.0) / n * (single ? 1 + 1e-6 : 1));
+        const Mesh mesh =
+            make_mesh(cubic_room(), 10 * std::sqrt(2.0) / n * (single ? 1 + 1e-6 : 1));
         REQUIRE(mesh.faces.size() == 6);
         for (const Face& f : mesh.faces) {
             CHECK(f.quad);

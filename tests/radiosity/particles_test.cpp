@@ -175,7 +175,7 @@ TEST_CASE("batches are randomisations of their own; without one there is no erro
 }
 
 TEST_CASE("where noise is all that there is, the reported error does not stop at 100 %") {
-    const Scene s = cube();
+    const Scene s = cubic_room();
     const Mesh mesh = make_mesh(s, 0.7);  // many more vertices than hits
     CHECK(run(s, mesh, SamplerKind::independent, 32, 1).error() > 2);
 }
@@ -225,7 +225,7 @@ TEST_CASE("plates: what a receiver gets, by closed forms, and each of its hats, 
 }
 
 TEST_CASE("the cube: sums over hats of 2 x 2 cells, against the exact solution") {
-    const Scene s = cube();
+    const Scene s = cubic_room();
     const Mesh mesh = make_mesh(s, 10 * std::sqrt(2.0) / 2 * (1 + 1e-6));
     REQUIRE(mesh.vertices() == 54);
     for (SamplerKind kind : all_samplers) {

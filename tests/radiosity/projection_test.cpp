@@ -222,7 +222,7 @@ TEST_CASE("square() is the integral of a map's square") {
 }
 
 TEST_CASE("a face of a mesh of several has its own vertices and elements") {
-    const Scene s = cube();
+    const Scene s = cubic_room();
     const Mesh mesh = make_mesh(s, 4);
     Rng rng{seed_here()};
     const Sums b = random_sums(mesh.faces[0].vertices(), rng);

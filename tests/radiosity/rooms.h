@@ -83,7 +83,7 @@ inline Scene furniture() {
 }
 
 // Khodulev's theoretical case: see exact.h.
-inline Scene cube() {
+inline Scene cubic_room() {
     Scene s;
     const uint32_t wall = add(s, diffuse(grey(2.0 / 3)));
     add_box(s, {10, 10, 10}, 0, {-5, -5, -5}, wall);

@@ -254,7 +254,7 @@ TEST_CASE("the stated error is a bound, and close where walls are alike and retu
             CAPTURE(worst);
             CHECK(worst > (s.shapes.size() == bright.shapes.size() ? 0.7 : 0.2));
         }
-    const Scene pointed = cube();  // whose only light has no area
+    const Scene pointed = cubic_room();  // whose only light has no area
     const Mesh mesh = make_mesh(pointed, 8);
     CHECK(Shooting(pointed, mesh, Shooter::face, 1).error() == 1);
 }
@@ -409,7 +409,7 @@ TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one 
     // reflected everywhere, so that every point errs so.  What is smooth errs by H^2.  Measured
     // from 4 to 8 cells a side: 1.5 to 1.85; the errors are at most 5.8 % and 2.1 %, 8.3 % and 3 %
     // of the mean.
-    const Scene s = cube();
+    const Scene s = cubic_room();
     for (Shooter shooter : shooters) {
         std::array<double, 7> before{}, error{};
         for (int n : {4, 8}) {

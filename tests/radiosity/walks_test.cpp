@@ -101,7 +101,7 @@ TEST_CASE("--error alone: where no particle loses light the run ends with a mess
     for (const auto& row : rows) {
         CAPTURE(&row - rows);
         const Mesh mesh = make_mesh(row.scene, 2.2);
-        const std::string found = complaint_of([&] { walk_to(row.scene, mesh, row.target, 1); });
+        const std::string found = ::complaint([&] { walk_to(row.scene, mesh, row.target, 1); });
         CHECK(found.substr(0, message.size()) == row.message);
     }
 }

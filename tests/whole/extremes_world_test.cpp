@@ -75,7 +75,7 @@ double met_again() {
 }
 
 // Rays from inside, aimed at corners and edges, that find a way out of the mesh.
-double leaks(Mesh mesh, vec3 move) {
+double leaks(Triangles mesh, vec3 move) {
     for (Shape& s : mesh) s = {s.a + move, s.b + move, s.c + move};
     const Tree bvh(mesh);
     Dice random{{oracle::seed_of("leaks")}};

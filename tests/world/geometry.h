@@ -97,17 +97,17 @@ inline Shape placed(const Shape& s, const Placement& p, Dice& random) {
 }
 
 // A surface about the origin; corners that triangles share are the same numbers.
-using Mesh = std::vector<Shape>;
+using Triangles = std::vector<Shape>;
 
 // Two cones on a ring of n corners and their twins, `gap` further on.
-inline Mesh cones(int n, real gap) {
+inline Triangles cones(int n, real gap) {
     std::vector<vec3> ring;
     for (int i = 0; i < n; ++i) {
         const real phi = 2 * pi * real(i) / real(n);
         const vec3 p{std::cos(phi), std::sin(phi), 0};
         ring.insert(ring.end(), {p, p + gap * vec3{-p.y, p.x, 0}});
     }
-    Mesh mesh;
+    Triangles mesh;
     for (size_t i = 0; i < ring.size(); ++i)
         for (real z : {real(-1), real(1)})
             mesh.push_back({{0, 0, z}, ring[i], ring[(i + 1) % ring.size()]});
@@ -115,14 +115,14 @@ inline Mesh cones(int n, real gap) {
 }
 
 // The octahedron, refined and blown up.
-inline Mesh ball(int levels) {
-    Mesh mesh;
+inline Triangles ball(int levels) {
+    Triangles mesh;
     for (int i = 0; i < 8; ++i) {
         const real x = i & 1 ? -1 : 1, y = i & 2 ? -1 : 1, z = i & 4 ? -1 : 1;
         mesh.push_back({{x, 0, 0}, {0, y, 0}, {0, 0, z}});
     }
     for (int level = 0; level < levels; ++level) {
-        Mesh finer;
+        Triangles finer;
         for (const auto& [a, b, c, r] : mesh) {
             const vec3 ab = unit(a + b), bc = unit(b + c), ca = unit(c + a);
             finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});

@@ -60,19 +60,19 @@ struct SphereVerdict {
 // ---- Triangles ----------------------------------------------------------------------------------
 
 // Meshes surround all points within 0.3 of the origin (times the needle's axes).
-Mesh outwards(Mesh mesh) {
+Triangles outwards(Triangles mesh) {
     for (Shape& s : mesh)
         if (dot(cross(s.b - s.a, s.c - s.a), s.a + s.b + s.c) < 0) std::swap(s.b, s.c);
     return mesh;
 }
 
-Mesh icosphere() {
+Triangles icosphere() {
     constexpr real g = std::numbers::phi_v<real>;
     std::vector<vec3> p;
     for (real x : {real(-1), real(1)})
         for (real y : {-g, g}) p.insert(p.end(), {{0, x, y}, {x, y, 0}, {y, 0, x}});
     auto adjacent = [&](size_t i, size_t j) { return dot(p[i] - p[j], p[i] - p[j]) < 5; };
-    Mesh mesh;
+    Triangles mesh;
     for (size_t i = 0; i < p.size(); ++i)
         for (size_t j = 0; j < i; ++j)
             for (size_t k = 0; k < j; ++k) {
@@ -84,8 +84,8 @@ Mesh icosphere() {
     return outwards(mesh);
 }
 
-Mesh box() {
-    Mesh mesh;
+Triangles box() {
+    Triangles mesh;
     for (int a = 0; a < 3; ++a)
         for (real side : {real(-1), real(1)}) {
             auto corner = [&](real u, real v) {
@@ -100,7 +100,7 @@ Mesh box() {
 }
 
 template <class Map>
-Mesh mapped(Mesh mesh, Map map) {
+Triangles mapped(Triangles mesh, Map map) {
     for (Shape& s : mesh) s = {map(s.a), map(s.b), map(s.c)};
     return mesh;
 }
@@ -291,7 +291,7 @@ TEST_CASE("closed meshes let no ray out at an edge or a corner") {
     const real flat = std::exp2(real(20)) * ulp;  // thin, but 2^20 times what rounding moves
     const vec3 needle{1, real(0.01), flat};
     const struct {
-        Mesh mesh;
+        Triangles mesh;
         vec3 size;
     } meshes[] = {{icosphere(), {1, 1, 1}},
                   {box(), {1, 1, 1}},
@@ -311,7 +311,7 @@ TEST_CASE("closed meshes let no ray out at an edge or a corner") {
                        : kind == 4 ? real(1e3) * q
                                    : real(1e-3) * q;
             };
-            const Mesh scene = mapped(mesh, place);
+            const Triangles scene = mapped(mesh, place);
             int leaks = 0;
             const int n = 20000;
             for (int i = 0; i < n; ++i) {
