@@ -56,7 +56,7 @@ Scene plates(bool above, bool twosided) {
         add_quad(s, {}, {2, 0, 0}, y, lamp);
     }
     add_quad(s, above ? z : vec3{}, y, above ? x : z, black);
-    add_quad(s, -z, above ? x : z, y, black);
+    add_quad(s, above ? -z : vec3{}, above ? x : -z, y, black);
     prepare(s);
     return s;
 }
