@@ -11,8 +11,8 @@ constexpr const char* before_options =
     "by path tracing.\n\n";
 
 constexpr const char* after_options = R"(
-A .pfm holds linear radiance, a .hdr too, of 8 bits and an exponent; a .png
-holds exposure times radiance, clamped to [0,1], as sRGB.  Pixel (0,0) is the top left one.
+A .pfm and a .hdr hold linear radiance; a .png holds exposure times radiance,
+clamped to [0,1], as sRGB.  Pixel (0,0) is the top left one.
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,

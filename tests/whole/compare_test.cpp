@@ -247,7 +247,7 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
              {"one.pfm one.pfm --limit %", "", "--limit: '' is not a number"},
              {"one.pfm one.pfm --limit @", "2",
               "--limit: '@' is more than 100 %; for percent say 2%"},
-             {"one.pfm one.pfm --limit @%", "nan", "--limit: '@' is not finite"},
+             {"one.pfm one.pfm --limit @%", "nan", "--limit: '@' is not a number"},
              {"one.pfm one.pfm --limit @", "one.pfm", "--limit: '@' is not a number"},
              {"two.film two.pfm --alpha 1e-6", "", "--alpha: needs two films of --sets 2 or more"},
              {"two.film two.film --alpha @", "0;100%", "--alpha: must be between 0 and 1"},

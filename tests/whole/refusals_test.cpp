@@ -134,12 +134,11 @@ TEST_CASE("every statement is refused with a word too few or too many, or a numb
     CHECK(known.size() == shortest.size());
 
     std::vector<Refusal> bad_numbers = {
-        {"nan", "is not finite"}, {"inf", "is not finite"}, {"1e999", "is out of range"}};
+        {"nan", "is not a number"}, {"inf", "is too large"}, {"1e999", "is too large"}};
     for (const auto& [words, why] :
          members({{"@", "1.0x;one;0x10;1,5;--1;+-1;1e;++1;-;1.5.2", "is not a number"},
-                  {"@", "-inf;infinity;NAN", "is not finite"},
-                  {"@", "-1e999", "is out of range"},
-                  {"@", "1e31", "is too large"}}))
+                  {"@", "NAN", "is not a number"},
+                  {"@", "-inf;infinity;-1e999;1e31", "is too large"}}))
         bad_numbers.push_back({words, why});
     size_t other = 3;
     for (const std::string& text : shortest) {
