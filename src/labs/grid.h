@@ -87,13 +87,15 @@ public:
                 for (uint64_t count : counts)
                     for (uint64_t seed = seeds > 0; seed <= seeds; ++seed)
                         all.push_back(job(s, setting, count, seed));
-        for (uint64_t seed = seeds > 0; seed <= seeds; ++seed)
-            for (size_t k = 0; k < all.size(); ++k) {
-                // Of each scene another setting begins.
-                const size_t turn = (k + (seed - 1) * counts.size() * seeds) % all.size();
-                if (all[turn].row.seed == seed && !done_.count(all[turn].key))
-                    missing.push_back(all[turn]);
-            }
+        const size_t each = std::max<uint64_t>(seeds, 1);  // of a scene, setting and count
+        for (size_t seed = 0; seed < each; ++seed)
+            for (size_t s = 0; s < subjects.size(); ++s)
+                for (size_t c = 0; c < counts.size(); ++c)
+                    for (size_t k = 0; k < settings.size(); ++k) {
+                        const size_t setting = s * settings.size() + (k + seed) % settings.size();
+                        const Job& j = all[(setting * counts.size() + c) * each + seed];
+                        if (!done_.count(j.key)) missing.push_back(j);
+                    }
         if (!is_kept_) render_all(missing);
         Rows rows;
         for (const Job& j : all)

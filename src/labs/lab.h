@@ -84,6 +84,13 @@ inline std::vector<std::string> words_in(const std::string& line) {
     return {std::istream_iterator<std::string>(in), {}};
 }
 
+// What stands after an option.
+inline std::string value_of(const std::vector<std::string>& words, const std::string& option) {
+    const auto at = std::find(words.begin(), words.end(), option);
+    if (at == words.end() || at + 1 == words.end()) throw UserError(option + ": needs a value");
+    return *(at + 1);
+}
+
 // But cornell36obj, which is cornell36 again.
 inline std::vector<std::string> scenes_in(const std::string& folder) {
     std::vector<std::string> names;

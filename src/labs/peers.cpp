@@ -11,13 +11,6 @@ namespace {
 
 // ---- Other renderers, as programs that know penumbra's options ----------------------------------
 
-// The value of an option.
-std::string value_of(const std::vector<std::string>& words, const std::string& option) {
-    const auto at = std::find(words.begin(), words.end(), option);
-    if (at == words.end() || at + 1 == words.end()) throw UserError("peers: " + option + "?");
-    return *(at + 1);
-}
-
 struct Taken {
     Image image;
     double seconds = 0;

@@ -38,22 +38,16 @@ std::vector<Setting> settings(const std::string& self) {
 
 // Naive points, in place of penumbra.
 int render(const std::vector<std::string>& words) {
-    auto value = [&](const char* option) {
-        const auto at = std::find(words.begin(), words.end(), option);
-        if (at == words.end() || at + 1 == words.end())
-            throw UserError(std::string("techniques: ") + option + "?");
-        return *(at + 1);
-    };
     Technique t;
-    t.direction = value("--direction") == "bsdf" ? Direction::bsdf : Direction::uniform;
-    t.light = value("--light") == "nee" ? LightMode::nee : LightMode::none;
-    const uint64_t spp = parse_count(value("--spp"), 1, UINT32_MAX);
+    t.direction = value_of(words, "--direction") == "bsdf" ? Direction::bsdf : Direction::uniform;
+    t.light = value_of(words, "--light") == "nee" ? LightMode::nee : LightMode::none;
+    const uint64_t spp = parse_count(value_of(words, "--spp"), 1, UINT32_MAX);
     const double start = processor_seconds();
     const Image image = naive_halton::render(read_scene(words.at(0)).scene, t, spp);
     json::Object stats;
     stats.add("cpu_seconds", json::number(processor_seconds() - start));
-    write_image(value("-o"), image, 1);
-    write_file(value("--stats"), stats.text() + "\n");
+    write_image(value_of(words, "-o"), image, 1);
+    write_file(value_of(words, "--stats"), stats.text() + "\n");
     return 0;
 }
 

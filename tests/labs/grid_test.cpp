@@ -82,6 +82,10 @@ TEST_CASE("a row for each scene, setting, count and seed, and one reference") {
     REQUIRE(calls.size() == 9);
     CHECK(calls[0].find("a.scene --size 1x1 --spp 64 --sets 16") == 0);
     for (size_t k = 1; k <= 4; ++k) CHECK(calls[k].find("--seed 1 ") != std::string::npos);
+    // Settings take turns.
+    auto is_nee = [&](size_t k) { return calls[k].find("--light nee") != std::string::npos; };
+    CHECK(is_nee(1) != is_nee(2));
+    CHECK(is_nee(1) != is_nee(5));
     for (size_t k = 5; k <= 8; ++k) CHECK(calls[k].find("--seed 2 ") != std::string::npos);
 }
 
