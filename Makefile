@@ -39,7 +39,7 @@ PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test test-everywhere test-farm mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
+.PHONY: all programs test test-all test-everywhere test-farm mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
         survival starter starter-check mistakes handout grade plant hunted
 .DELETE_ON_ERROR:
@@ -79,10 +79,14 @@ build/knot.obj: build/knot$(SUFFIX)
 
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
 SUITE := $(OBJECTS)/all-tests
+# What a student does not wait for: tests of the course, of experiments, of the oracle's power, of this Makefile's tools,
+# and what many small runs look for.
+LATER := course/|labs/|oracle/|fuzz/|whole/(faults|memory|mutants|runner)_
 
-test: packages  ## build and run the tests, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
+test test-all: packages  ## build and run the tests of the renderer, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
 	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
-	    LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
+	    LATER='$(if $(filter test,$@),$(LATER))' LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
+test-all:  ## and those of the course, the experiments and the oracle: what CI runs
 
 test-everywhere: packages build/knot.obj  ## the same bits from all compilers, C++ libraries and processors? (15 minutes); ONLY='clang++ -O2'
 	@FLAGS="$(filter-out -M% -W% -march% -DREAL%,$(FLAGS))" tests/everywhere $(if $(ONLY),'$(ONLY)')
@@ -213,12 +217,15 @@ $(OBJECTS)/tests/%: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 $(HEAVY:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/%-heavy.exe $(OBJECTS)/programs.exe: OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
 $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 
-# By name, a test is a program of its own.  All of them are compiled by folders, which takes a third of the time:
-# a unit has all tests of a folder that compute much, or all others; ALONE, those that others must not see.
-ALONE := oracle/hosts_test
-UNIT   = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(patsubst %/,%,$(dir $1))$(if $(filter $(HEAVY),$1),-heavy))
+# By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
+# for all that compute much in the folders of TOGETHER, one for all others there, and two for every other folder; ALONE,
+# those that others must not see.
+TOGETHER := world wide path film keep unseen app shadow voronoi radiosity
+ALONE    := oracle/hosts_test
+FOLDER   = $(patsubst %/,%,$(dir $1))
+UNIT     = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(if $(filter $(TOGETHER),$(call FOLDER,$1)),core,$(call FOLDER,$1))$(if $(filter $(HEAVY),$1),-heavy))
 UNITS := $(sort $(foreach t,$(TESTS),$(call UNIT,$t)))
-$(foreach t,$(TESTS),$(eval IN_$(call UNIT,$t) += $t))
+$(foreach t,$(foreach f,$(TOGETHER),$(filter $f/%,$(TESTS))) $(filter-out $(TOGETHER:%=%/%),$(TESTS)),$(eval IN_$(call UNIT,$t) += $t))
 $(foreach t,$(TESTS),$(eval $(OBJECTS)/tests/$t.run: $(if $(JOINED),$(call UNIT,$t),$(OBJECTS)/tests/$t).exe))
 
 # Tells tests/run, which listens at 9, what is built.  It does not wait until make has begun with all else, so a unit

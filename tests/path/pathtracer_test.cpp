@@ -116,7 +116,7 @@ bool all_different(std::vector<real> numbers) {
 }  // namespace
 
 TEST_CASE("a furnace has the radiance Le (1 - rho^(D+1)) / (1 - rho) at every depth D") {
-    Scene scene = scene_of(furnace);
+    Scene scene = scene_of(glowing_room);
     for (const Named& t : techniques)
         for (int depth : {0, 1, 2, 5, 20}) {
             // Light samples alone have infinite variance where emitting walls meet (1 / d^2).
@@ -130,7 +130,7 @@ TEST_CASE("a furnace has the radiance Le (1 - rho^(D+1)) / (1 - rho) at every de
 }
 
 TEST_CASE("a furnace by cosine sampling alone has no noise") {
-    Scene scene = scene_of(furnace);
+    Scene scene = scene_of(glowing_room);
     scene.depth = 7;
     const Technique t{bsdf, none, 0};
     const real truth = real(0.4) * (1 - std::pow(real(0.5), real(8))) / real(0.5);
@@ -212,7 +212,7 @@ quad 0.4 -1 0  0.6 0 0  0 1 0  lamp
 }
 
 TEST_CASE("every pixel has random numbers of its own, and every bounce, and every light sample") {
-    Scene scene = scene_of(furnace);
+    Scene scene = scene_of(glowing_room);
     scene.size = {9, 5};
     const Pattern pattern{SamplerKind::independent, seed_here()};
     std::vector<real> across, down;
@@ -416,7 +416,7 @@ quad -5 0 -5  0 0 10  10 0 0  white
 TEST_CASE("Russian roulette keeps paths at its threshold T: log2(1 / T) + 2 rays of albedo 1/2") {
     // Closed box, no light sampling.  log2(1 / T) scatterings lead to T, and from there one in two
     // of any further ones: geometric, of mean 1.
-    Scene scene = scene_of(furnace);
+    Scene scene = scene_of(glowing_room);
     scene.depth = 1000;
     const Pattern pattern{SamplerKind::independent, seed_here()};
     for (real threshold : {real(1), real(0.25)}) {

@@ -6,7 +6,7 @@
 
 inline Scene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
 
-inline const char* const furnace = R"(
+inline const char* const glowing_room = R"(
 size 8 4
 camera 0 0.3 1.8  0 0 0  60
 diffuse half 0.5 0.5 0.5

@@ -1,18 +1,12 @@
 // radiosity/rooms.h  scenes and sums that the tests of illumination maps share
 #pragma once
-#include <doctest/doctest.h>
-
+#include "base/approx.h"
 #include "radiosity/projection.h"
 
 namespace rooms {
 
-inline constexpr bool single = sizeof(real) == 4;
 inline constexpr SamplerKind all_samplers[] = {SamplerKind::independent, SamplerKind::stratified,
                                                SamplerKind::halton, SamplerKind::sobol};
-
-inline doctest::Approx approx(double x, double in_double = 1e-12, double in_float = 2e-5) {
-    return doctest::Approx(x).epsilon(single ? in_float : in_double).scale(0);  // relative
-}
 
 inline Material diffuse(rgb kd, rgb Le = {}, bool twosided = false) {
     Material m;

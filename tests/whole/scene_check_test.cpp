@@ -3,14 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include "base/approx.h"
 #include "base/cases.h"
 #include "base/complaint.h"
 #include "path/paths.h"
 #include "world/scene_file.h"
 
 namespace {
-
-constexpr bool single = sizeof(real) == 4;
 
 const std::string room =
     "size 4 4\ncamera 0 1 4  0 0.5 0  50\ndepth 3\ndiffuse grey 0.5 0.5 0.5\n"

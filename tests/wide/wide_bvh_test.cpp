@@ -1,14 +1,8 @@
 // wide/wide_bvh_test.cpp  the wide tree answers as a loop over all shapes does, only sooner
 #include "wide/wide_bvh.h"
 
+#include "wide/planes.h"
 #include "world/tree_cases.h"
-
-// Planes as the nodes have them.
-template <>
-inline Box stored_box<WideBvh>(const Shape& s) {
-    const wide::Planes p = wide::planes(wide::outwards(bounds(s)));
-    return {{-real(p[0]), -real(p[1]), -real(p[2])}, {real(p[3]), real(p[4]), real(p[5])}};
-}
 
 namespace {
 

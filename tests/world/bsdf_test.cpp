@@ -1,11 +1,11 @@
 // world/bsdf_test.cpp  how surfaces scatter: densities, energy, reciprocity, the laws of reflection
 #include "world/bsdf.h"
 
+#include "base/approx.h"
 #include "oracle/expect.h"
 
 namespace {
 
-constexpr bool single = sizeof(real) == 4;
 using std::numbers::pi_v;
 
 Material rough(real kd, real ks, real exponent) {

@@ -1,13 +1,12 @@
 // world/light_choice_test.cpp  which of a few lights is worth a sample
 #include "world/light_choice.h"
 
+#include "base/approx.h"
 #include "oracle/expect.h"
 #include "world/geometry.h"
 #include "world/scene.h"
 
 namespace {
-
-constexpr bool single = sizeof(real) == 4;
 
 Light shining(Light l, real L, bool twosided = false) {
     l.L = {L / 2, L, 3 * L / 2};

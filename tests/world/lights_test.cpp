@@ -2,12 +2,11 @@
 // choices
 #include "world/lights.h"
 
+#include "base/approx.h"
 #include "oracle/expect.h"
 #include "world/scene.h"
 
 namespace {
-
-constexpr bool single = sizeof(real) == 4;
 
 Light shining(Light l) { return l.L = {1, 2, 3}, l; }
 Light polygon_light(Light::Kind kind, vec3 p, vec3 u, vec3 v) {
