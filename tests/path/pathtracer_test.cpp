@@ -201,7 +201,7 @@ quad -1 1 -1  2 0 0  0 0 2  lamp
     const oracle::Estimate reference = image_mean(scene, {uniform, none, 0}, 99, 100000);
     for (real roulette : {real(0), real(1)}) {
         const Technique t{bsdf, none, roulette};
-        EXPECT(oracle::expect_equal(image_mean(scene, t, seed_here(), 100000), reference), 0.07);
+        EXPECT(oracle::expect_equal(image_mean(scene, t, seed_here(), 100000), reference), 0.09);
     }
 }
 
@@ -372,13 +372,13 @@ sphere 1 1 0  0.7  lamp
 }
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {
-    expect_same_mean(scene_of(unequal), 400, 55, 0.06);
+    expect_same_mean(scene_of(unequal), 400, 55, 0.08);
 }
 
 // Next-event estimation has no answer to a caustic seen in a mirror but the same one: all three
 // count light that arrives by way of mirror or glass when they hit it.
 TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustics") {
-    expect_same_mean(scene_of(shiny), 300, 115, 0.06);
+    expect_same_mean(scene_of(shiny), 300, 115, 0.08);
 }
 
 TEST_CASE("every way finds the same inside a two-sided sphere light, and by a lobe of exponent 0") {
@@ -396,7 +396,7 @@ sphere -0.4 0 0  0.3  grey
 sphere 0.4 0 0  0.3  lobe
 sphere 0 0.9 0  0.2  lamp
 )");
-    expect_same_mean(scene, 100, 25, 0.012);
+    expect_same_mean(scene, 100, 25, 0.015);
 }
 
 TEST_CASE(
@@ -474,6 +474,6 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
         };
         Moments replicates;
         for (double mean : side_by_side(24, replicate)) replicates.add(mean);
-        EXPECT(oracle::expect_equal(estimate(replicates, ulp), reference), 0.04);
+        EXPECT(oracle::expect_equal(estimate(replicates, ulp), reference), 0.05);
     }
 }
