@@ -145,8 +145,8 @@ TEST_CASE_TEMPLATE_DEFINE("of identical triangles the first is hit", Tree, ident
     CHECK(hits > 10);
 }
 
-TEST_CASE_TEMPLATE_DEFINE("triangles at exponentially spaced places do not exhaust the stack",
-                          Tree, exponentially_spaced) {
+TEST_CASE_TEMPLATE_DEFINE("triangles at exponentially spaced places do not exhaust the stack", Tree,
+                          exponentially_spaced) {
     // As far as the cubes of coordinates are numbers; in double beyond the floats of the boxes.
     const real octaves = sizeof(real) == 8 ? 300 : 40;
     Dice random{{7}};
