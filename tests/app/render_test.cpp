@@ -56,6 +56,15 @@ const Scene& unequal_picture() {
     static const Scene scene = small(unequal, {24, 12});
     return scene;
 }
+// Of half the noise and a fourth of the work: no light but what one scattering brings.
+const Scene& direct_picture() {
+    static const Scene scene = [] {
+        Scene s = small(unequal, {16, 8});
+        s.depth = 1;
+        return s;
+    }();
+    return scene;
+}
 
 }  // namespace
 
@@ -157,7 +166,7 @@ TEST_CASE("images of few samples: one has no error, two and three have two repli
 }
 
 TEST_CASE("the stated error is the spread from seed to seed; replications do not move the mean") {
-    const Scene& scene = unequal_picture();
+    const Scene& scene = direct_picture();
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         Moments of_two;
         for (uint32_t sets : {2u, 0u}) {
@@ -170,11 +179,12 @@ TEST_CASE("the stated error is the spread from seed to seed; replications do not
                 const Picture p = rendered(o, scene);
                 spread.add(p.image, p.run.error.d2());
                 means.add(p.run.error.mean[1]);
-                stated.add(p.run.error.square[1] / (24 * 12));
+                stated.add(p.run.error.square[1] / (16 * 8));
             }
             const std::string name =
                 "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
-            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.5);
+            // Half or twice what is right would be seen.
+            EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.7);
             // A variance from 150 means is known within sqrt(2 / 149) = 12 % (normal means), the
             // mean of what is stated far better.
             INFO(name, ": ", means.variance() / stated.mean);
@@ -293,13 +303,19 @@ TEST_CASE("of a black image no error is known: light may have been missed") {
 }
 
 TEST_CASE("what half the error costs follows from its course, of samples that end as they do") {
-    const Scene& scene = unequal_picture();
-    const Picture independent = rendered(quick(SamplerKind::independent, 256), scene),
-                  sobol = rendered(quick(SamplerKind::sobol, 256), scene);
-    CHECK(independent.run.exponent_of_cost > 1.5);
-    CHECK(independent.run.exponent_of_cost <= 2);
-    CHECK(sobol.run.exponent_of_cost < 1.9);
-    CHECK(sobol.run.exponent_of_cost >= 1);
+    const Scene& scene = direct_picture();
+    auto exponent = [&](SamplerKind kind) {
+        Moments exponents;
+        Options o = quick(kind, 256);
+        for (int run = 0; run < 16; ++run, ++o.seed) {
+            exponents.add(rendered(o, scene).run.exponent_of_cost);
+            CHECK(exponents.mean >= 1);
+            CHECK(exponents.mean <= 2);
+        }
+        return exponents.mean;
+    };
+    CHECK(exponent(SamplerKind::independent) > 1.5);
+    CHECK(exponent(SamplerKind::sobol) < 1.65);
 }
 
 TEST_CASE("an interrupted image says so, and is of the samples that it has") {

@@ -45,7 +45,6 @@ TEST_CASE("what does not end is refused once it is longer than files may be") {
     folder.write("long", "");
     fs::resize_file(folder / "long", (uint64_t(1) << 30) + 1);
     CHECK(unread(folder / "long").ends_with("/long: is longer than 1073741824 bytes"));
-    CHECK(unread("/dev/zero", true) == "/dev/zero: is longer than 1073741824 bytes");
     fs::resize_file(folder / "long", uint64_t(1) << 30);
     CHECK(read_file(folder / "long").size() == uint64_t(1) << 30);
 }

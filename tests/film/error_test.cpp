@@ -166,7 +166,7 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
         double truth = 0;
         for (int x = 0; x < 100; ++x) truth += std::pow(1 + x % 10, 2) / sets / 100;
         Rng rng{hash(seed_here(), sets)};
-        for (int r = 0; r < 3000; ++r) {
+        for (int r = 0; r < 1000; ++r) {
             const ImageError e =
                 error_of(filled({100, 1}, sets, 1, [&](const PixelSample& s, Tally&) {
                     const real v = real((1 + s.x % 10) * normal(rng));
@@ -176,39 +176,39 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
             spread2.add(e.spread * e.spread);
         }
         INFO("sets ", sets);
-        EXPECT(oracle::expect_mean(truth, estimate(d2, double(ulp))), 0.03);
-        // Both are known within 3 %: the fourth moment of a sum of a hundred terms is about 3.3.
+        EXPECT(oracle::expect_mean(truth, estimate(d2, double(ulp))), 0.05);
+        // Both are known within 5 and 8 %: the fourth moment of a sum of a hundred terms is
+        // about 3.3.
         const double ratio = spread2.mean / d2.variance();
         CAPTURE(ratio);
         CHECK(std::abs(ratio - 1) <
-              4.9 * std::hypot(std::sqrt(2.5 / 3000), spread2.standard_error() / spread2.mean));
-        CHECK(spread2.standard_error() < 0.05 * spread2.mean);
+              4.9 * std::hypot(std::sqrt(2.5 / 1000), spread2.standard_error() / spread2.mean));
+        CHECK(spread2.standard_error() < 0.09 * spread2.mean);
     }
 }
 
 TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, samples that differ") {
     for (SamplerKind kind : samplers)
-        for (uint64_t others : {4, 24})
-            for (uint32_t sets : {0u, 3u}) {
-                Spread spread;
-                for (uint64_t r = 0; r < 400; ++r) {
-                    const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1, 24);
-                    const Radiance L = [&](const PixelSample& s, Tally&) {
-                        const uint64_t pixel = uint64_t(s.y * 12 + s.x);
-                        const Sampler sampler(pattern, pixel, s.i, s.set);
-                        return heteroscedastic(s.x, s.y, sampler.get2(film_x));
-                    };
-                    Film film = make_film({12, 9}, sets);
-                    if (sets == 0) {
-                        fill(film, 8, L);
-                        choose_sets(film, INFINITY);
-                    }
-                    fill(film, others, L);
-                    spread.add(image_of(film), error_of(film).d2());
+        for (const auto& [sets, others] : {std::pair(0u, 4), std::pair(3u, 24)}) {
+            Spread spread;
+            for (uint64_t r = 0; r < 200; ++r) {
+                const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1, 24);
+                const Radiance L = [&](const PixelSample& s, Tally&) {
+                    const uint64_t pixel = uint64_t(s.y * 12 + s.x);
+                    const Sampler sampler(pattern, pixel, s.i, s.set);
+                    return heteroscedastic(s.x, s.y, sampler.get2(film_x));
+                };
+                Film film = make_film({12, 9}, sets);
+                if (sets == 0) {
+                    fill(film, 8, L);
+                    choose_sets(film, INFINITY);
                 }
-                INFO("sampler ", int(kind), ", sets ", sets, ", others ", others);
-                EXPECT(oracle::expect_mean(1, spread.ratio()), 0.25);
+                fill(film, uint64_t(others), L);
+                spread.add(image_of(film), error_of(film).d2());
             }
+            INFO("sampler ", int(kind), ", sets ", sets, ", others ", others);
+            EXPECT(oracle::expect_mean(1, spread.ratio()), 0.4);
+        }
 }
 
 TEST_CASE("the course of an error: exponents of known laws, from 1/2 to 1") {

@@ -89,16 +89,12 @@ TEST_CASE("the first signal to end asks for an end, a second Ctrl-C kills; what 
     for (int i = 0; i < 5; ++i) sigaction(signals[i], &before[i], nullptr);
 }
 
-TEST_CASE("an interrupted pass is told to be incomplete") {
-    auto work = [](size_t k) { interrupted = k == 1; };
-    CHECK(!in_parallel(100, 1, work, [](double) {}));
-    interrupted = 0;
-}
-
-TEST_CASE("last work that is cut short is no end of the pass") {
-    auto work = [](size_t k) { interrupted = k == 9; };
-    CHECK(!in_parallel(10, 1, work, [](double) {}));
-    interrupted = 0;
+TEST_CASE("an interrupted pass is told to be incomplete, though only its last work was cut short") {
+    for (const auto& [count, last] : {std::pair(100u, 1u), std::pair(10u, 9u)}) {
+        CHECK(!in_parallel(
+            count, 1, [at = last](size_t k) { interrupted = k == at; }, [](double) {}));
+        interrupted = 0;
+    }
 }
 
 TEST_CASE("work that nobody waits for any more leaves its thread, and is no failure") {
@@ -245,7 +241,7 @@ TEST_CASE("no pass goes further than the one who watches allows; no further than
 
 TEST_CASE("a time is kept by films of replications that are chosen, of which the pilot has half") {
     // 48 pixels; a sample of the picture takes 48 ticks.
-    for (double seconds : {2.0, 300.0, 2000.0, 40000.0}) {
+    for (double seconds : {2.0, 300.0, 2000.0, 5000.0}) {
         const Run r = run({8, 6}, 0, {{0, seconds}}, noisy, nullptr, 1.0 / 48);
         CAPTURE(seconds);
         CHECK(!r.film.sets.empty());
@@ -361,7 +357,7 @@ TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, a
     const Size size{24, 12};
     for (uint32_t sets : {0u, 3u}) {
         const Film whole = filled(size, sets, 20, noisy);
-        for (uint64_t at = 1; at < uint64_t(whole.total()); at += 331) {
+        for (uint64_t at = 1; at < uint64_t(whole.total()); at += 997) {
             Film film = make_film(size, sets);
             Watch watch;
             watch.elapsed = [] { return 1.0; };

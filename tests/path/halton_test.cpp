@@ -68,17 +68,6 @@ TEST_CASE("no radical inverse is 1, scrambled or not") {
             CHECK(scrambled_radical_inverse(base, i, UINT64_MAX, UINT64_MAX) < 1);
 }
 
-TEST_CASE("indices 0 ... b^k - 1 have the mean (1 - b^-k) / 2") {
-    for (uint32_t base : {2u, 3u, 5u}) {
-        const int k = base == 2 ? 12 : 6;
-        uint64_t n = 1;
-        for (int j = 0; j < k; ++j) n *= base;
-        double sum = 0;
-        for (uint64_t i = 0; i < n; ++i) sum += double(radical_inverse(base, i));
-        CHECK(sum / double(n) == doctest::Approx((1 - 1 / double(n)) / 2).epsilon(4 * double(ulp)));
-    }
-}
-
 TEST_CASE("aligned blocks of 2^i 3^j indices put one point into every 2^-i x 3^-j box") {
     Rng rng{seed_here()};
     for (int trial = 0; trial < 20; ++trial) {

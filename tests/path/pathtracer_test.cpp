@@ -1,6 +1,8 @@
 // path/pathtracer_test.cpp  radiance: closed forms, and every way to find light finds the same
 #include "path/pathtracer.h"
 
+#include <span>
+
 #include "base/moments.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
@@ -39,9 +41,9 @@ struct Named : Technique {
     const char* name;
 };
 constexpr Named techniques[] = {
+    {{bsdf, none, 0}, "bsdf, none"},
     {{bsdf, mis, 0}, "bsdf, mis"},
     {{bsdf, nee, 0}, "bsdf, nee"},
-    {{bsdf, none, 0}, "bsdf, none"},
     {{uniform, mis, 0}, "uniform, mis"},
     {{uniform, nee, 0}, "uniform, nee"},
     {{uniform, none, 0}, "uniform, none"},
@@ -96,14 +98,18 @@ Purpose purpose(Draw what, bool glossy) {
     }
 }
 
-// That each technique finds the mean that `reference` finds; `chance` times as many samples where
-// light is found by chance alone, in rare large parts.
-void expect_same_mean(const Scene& scene, const Technique& reference, uint64_t reference_spp,
-                      uint64_t spp, uint64_t chance, double largest) {
-    const oracle::Estimate truth = image_mean(scene, reference, ~seed_here(), reference_spp);
+// What finds light by chance alone has no light samples that could err.
+oracle::Estimate by_chance(const Scene& scene, uint64_t spp) {
+    return image_mean(scene, techniques[0], ~seed_here(), spp);
+}
+
+// That all others find the mean that chance finds in `reference` samples a pixel; twice as many
+// samples where light is found by chance, in rare large parts.
+void expect_same_mean(const Scene& scene, uint64_t reference, uint64_t spp, double largest) {
+    const oracle::Estimate truth = by_chance(scene, reference);
     uint64_t seed = seed_here();
-    for (const Named& t : techniques) {
-        const uint64_t n = t.light == none ? chance * spp : spp;
+    for (const Named& t : std::span(techniques).subspan(1)) {
+        const uint64_t n = t.light == none ? 2 * spp : spp;
         EXPECT(oracle::expect_equal(image_mean(scene, t, seed++, n), truth).of(t.name), largest);
     }
 }
@@ -158,7 +164,7 @@ sphere 0.6 0 0  0.5  mirror
     const Technique t{bsdf, none, 0};
     const Pattern pattern{SamplerKind::independent, seed_here()};
     real worst = 0;
-    for (uint64_t i = 0; i < 20; ++i)
+    for (uint64_t i = 0; i < 8; ++i)
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) {
                 const vec3 off = radiance(scene, t, pattern, x, y, i) / real(0.8) - rgb{1, 1, 1};
@@ -178,7 +184,7 @@ light lamp 1 1 1
 sphere 0 0 0  1  glass
 sphere 0 0 0  0.5  lamp
 )");
-    EXPECT(oracle::expect_mean(0.96 / 2.25, image_mean(scene, techniques[0], seed_here(), 60000)),
+    EXPECT(oracle::expect_mean(0.96 / 2.25, image_mean(scene, techniques[1], seed_here(), 60000)),
            0.01);
 }
 
@@ -192,10 +198,10 @@ light lamp 1 1 1
 quad -9 0 -9  0 0 18  18 0 0  floor
 quad -1 1 -1  2 0 0  0 0 2  lamp
 )");
-    const oracle::Estimate reference = image_mean(scene, {uniform, none, 0}, 99, 400000);
+    const oracle::Estimate reference = image_mean(scene, {uniform, none, 0}, 99, 100000);
     for (real roulette : {real(0), real(1)}) {
         const Technique t{bsdf, none, roulette};
-        EXPECT(oracle::expect_equal(image_mean(scene, t, seed_here(), 400000), reference), 0.04);
+        EXPECT(oracle::expect_equal(image_mean(scene, t, seed_here(), 100000), reference), 0.09);
     }
 }
 
@@ -208,7 +214,7 @@ depth 0
 light lamp 1 1 1
 quad 0.4 -1 0  0.6 0 0  0 1 0  lamp
 )");
-    EXPECT(oracle::expect_mean(0.15, image_mean(scene, techniques[0], seed_here(), 40000)), 0.1);
+    EXPECT(oracle::expect_mean(0.15, image_mean(scene, techniques[1], seed_here(), 40000)), 0.1);
 }
 
 TEST_CASE("every pixel has random numbers of its own, and every bounce, and every light sample") {
@@ -234,7 +240,7 @@ box 2 2 2  0  -1 -1 -1   half
 quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
 )");
     std::vector<real> cosines, on_the_lamp;
-    radiance(scene, techniques[1], pattern, 0, 0, 0, [&](const Segment&, const Step& e) {
+    radiance(scene, techniques[2], pattern, 0, 0, 0, [&](const Segment&, const Step& e) {
         if (!e.end) cosines.push_back(e.scattered.wi.z);
         if (e.direct.light) on_the_lamp.push_back(e.direct.sample.at.p.x);
     });
@@ -255,7 +261,6 @@ light ball  1 1 1  half
 light panel 1 1 1  half
 box 4 4 4  0  -2 -2 -2  half
 sphere -1 0.5 0  0.3  ball
-sphere 1 -0.5 0.3  0.2  ball
 quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
 )";
     for (bool glossy : {false, true}) {
@@ -367,13 +372,13 @@ sphere 1 1 0  0.7  lamp
 }
 
 TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Phong") {
-    expect_same_mean(scene_of(unequal), techniques[0], 300, 50, 3, 0.06);
+    expect_same_mean(scene_of(unequal), 400, 55, 0.08);
 }
 
 // Next-event estimation has no answer to a caustic seen in a mirror but the same one: all three
 // count light that arrives by way of mirror or glass when they hit it.
 TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustics") {
-    expect_same_mean(scene_of(shiny), techniques[0], 300, 230, 4, 0.06);
+    expect_same_mean(scene_of(shiny), 300, 115, 0.08);
 }
 
 TEST_CASE("every way finds the same inside a two-sided sphere light, and by a lobe of exponent 0") {
@@ -391,7 +396,7 @@ sphere -0.4 0 0  0.3  grey
 sphere 0.4 0 0  0.3  lobe
 sphere 0 0.9 0  0.2  lamp
 )");
-    expect_same_mean(scene, techniques[5], 375, 100, 1, 0.007);
+    expect_same_mean(scene, 100, 25, 0.015);
 }
 
 TEST_CASE(
@@ -413,17 +418,17 @@ quad -5 0 -5  0 0 10  10 0 0  white
     CHECK(radiance(shadowed, t, {SamplerKind::independent}, 0, 0, 0).x == 0);
 }
 
-TEST_CASE("Russian roulette keeps paths at its threshold T: log2(1 / T) + 2 rays of albedo 1/2") {
-    // Closed box, no light sampling.  log2(1 / T) scatterings lead to T, and from there one in two
-    // of any further ones: geometric, of mean 1.
+TEST_CASE("Russian roulette keeps paths at its threshold T: the rays that they have in the mean") {
+    // Closed box of albedo 1/2, no light sampling.  m scatterings lead to T or above it; the next
+    // is survived by 2^-(m+1) / T, and from there one in two of any further ones.
     Scene scene = scene_of(glowing_room);
     scene.depth = 1000;
     const Pattern pattern{SamplerKind::independent, seed_here()};
-    for (real threshold : {real(1), real(0.25)}) {
+    for (const auto& [threshold, mean] : {std::pair{1., 2.}, {0.7, 1 + 1 / 0.7}, {0.25, 4.}}) {
         Moments rays;
-        for (uint64_t i = 0; i < 100000; ++i)
-            rays.add(double(rays_of(scene, {bsdf, none, threshold}, pattern, 1, 1, i)));
-        EXPECT(oracle::expect_mean(2 - std::log2(double(threshold)), estimate(rays)), 0.02);
+        for (uint64_t i = 0; i < 20000; ++i)
+            rays.add(double(rays_of(scene, {bsdf, none, real(threshold)}, pattern, 1, 1, i)));
+        EXPECT(oracle::expect_mean(mean, estimate(rays)), 0.05);
     }
 }
 
@@ -452,9 +457,10 @@ TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^
 }
 
 TEST_CASE("quasi-random and stratified samples find what independent ones find") {
-    const Scene scene = scene_of(unequal);
-    const Technique& t = techniques[0];
-    const oracle::Estimate reference = image_mean(scene, t, ~seed_here(), 300);
+    Scene scene = scene_of(unequal);
+    const Technique& t = techniques[1];
+    const oracle::Estimate reference = image_mean(scene, t, ~seed_here(), 100);
+    scene.size = {32, 16};
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
         // A replicate is one randomisation of every pixel's whole point set.
         const auto replicate = [&, first = seed_here()](int k) {
@@ -468,6 +474,6 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
         };
         Moments replicates;
         for (double mean : side_by_side(24, replicate)) replicates.add(mean);
-        EXPECT(oracle::expect_equal(estimate(replicates, ulp), reference), 0.03);
+        EXPECT(oracle::expect_equal(estimate(replicates, ulp), reference), 0.05);
     }
 }

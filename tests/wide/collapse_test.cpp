@@ -80,7 +80,7 @@ double cost(const BinaryTree& tree, const wide::Collapse& collapse, uint32_t i) 
 TEST_CASE("no wide tree within a binary one is cheaper than what is chosen") {
     Dice random{{1}};
     int dearer = 0, wide = 0, merged = 0;
-    for (int trial = 0; trial < 300; ++trial) {
+    for (int trial = 0; trial < 100; ++trial) {
         const BinaryTree tree = random_tree(3 + int(random.below(8)), random);
         if (tree.branches[0].count <= largest_leaf) continue;
         const wide::Collapse collapse(tree, largest_leaf);
@@ -93,8 +93,8 @@ TEST_CASE("no wide tree within a binary one is cheaper than what is chosen") {
                 collapse.is_leaf(children.branch[k]) && !tree.branches[children.branch[k]].leaf();
     }
     CHECK(dearer == 0);
-    CHECK(wide > 100);
-    CHECK(merged > 30);
+    CHECK(wide > 30);
+    CHECK(merged > 10);
 }
 
 TEST_CASE("triangles and spheres share no leaf, be they ever so few") {

@@ -50,7 +50,7 @@ TEST_CASE("directions follow pdf: diffuse, lobe and mixture, exponents 0 to 10^5
     auto expect = [&](const Material& m, vec3 wo, Direction direction, const std::string& name) {
         oracle::Options o;
         o.axis = oracle::point(direction == Direction::bsdf ? mirrored(wo) : vec3{0, 0, 1});
-        o.n = 32000;
+        o.n = 8000;
         o.name = name;
         auto draw_one = [&](double u, double v) {
             const vec2 at{real(u), real(v)};
@@ -60,12 +60,16 @@ TEST_CASE("directions follow pdf: diffuse, lobe and mixture, exponents 0 to 10^5
             return s.wi;
         };
         auto density = [&](vec3 wi) { return pdf(m, wo, wi, direction); };
-        EXPECT(oracle::expect_density(random, draw_one, density, o), 0.07);
+        EXPECT(oracle::expect_density(random, draw_one, density, o), 0.13);
     };
-    for (const auto& [kd, ks] : {std::pair{0.5, 0.0}, {0, 0.9}, {0.3, 0.6}})
-        for (double exponent : {0.0, 1.0, 20.0, 1e3, 1e5})
+    struct Row {
+        double kd, ks;
+        std::vector<double> exponents;
+    };
+    for (const auto& [kd, ks, exponents] :
+         {Row{0.5, 0, {0}}, {0, 0.9, {20, 1e5}}, {0.3, 0.6, {0, 1, 20, 1e3, 1e5}}})
+        for (double exponent : exponents)
             for (real z : cosines) {
-                if (ks == 0 && exponent > 0) continue;
                 const Material m = rough(real(kd), real(ks), real(exponent));
                 const std::string name =
                     oracle::say("kd %g, ks %g, exponent %g, cos %g", kd, ks, exponent, double(z));

@@ -4,7 +4,6 @@
 
 #include "base/approx.h"
 #include "oracle/expect.h"
-#include "world/scene.h"
 
 namespace {
 
@@ -182,26 +181,4 @@ TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels
           {polygon_light(Light::Kind::triangle, {}, {3, 0, 0}, {1, 2, 0}), 2.0 * 3},
           {point_light({}, {1, 2, 3}), 8.0}})
         CHECK(power(l) == doctest::Approx(std::numbers::pi * over_pi).epsilon(1e-6));
-}
-
-TEST_CASE("lights of all kinds are chosen in proportion to unequal powers") {
-    Scene s;
-    s.materials.resize(2);
-    s.materials[0].Le = {1, 1, 1}, s.materials[1].Le = {4, 5, 6};
-    add_sphere(s, {0, 0, 0}, 1, 0);
-    add_sphere(s, {5, 0, 0}, real(0.5), 1);
-    add_quad(s, {0, 5, 0}, {2, 0, 0}, {0, 0, 1}, 1);
-    add_point_light(s, {0, 9, 0}, {3, 3, 3});
-    add_triangle(s, {0, 7, 0}, {1, 7, 0}, {0, 7, 1}, 0);
-    prepare(s);
-    double sum = 0, all = 0;
-    for (const Light& l : s.lights) all += power(l);
-    for (const Light& l : s.lights) {
-        sum += double(l.pick);
-        CHECK(std::abs(double(l.pick) - power(l) / all) < 4 * double(ulp));
-        CHECK(&choose_light(s, real(sum) - l.pick / 2) == &l);
-    }
-    CHECK(std::abs(sum - 1) < 8 * double(ulp));
-    CHECK(&choose_light(s, 0) == &s.lights.front());
-    CHECK(&choose_light(s, below_one) == &s.lights.back());
 }
