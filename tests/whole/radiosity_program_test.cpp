@@ -58,14 +58,10 @@ struct Room : Place {
     }
 };
 
-// Runs what would last for hours until something is found, then sends a signal.
+// Of what would last for hours, ended once something was found.
 Outcome interrupted_run(const Folder& folder, const std::string& options, int signal) {
-    Outcome o;
-    // A busy machine may not have begun: then again, with more patience.
-    for (double patience = 0.2; patience < 20 && !folder.has("a.pfm"); patience *= 3)
-        o = cut_short(folder, "radiosity -o a.pfm -o a.png file.scene " + options, patience,
-                      signal);
-    return o;
+    return cut_short_late_enough(folder, "radiosity -o a.pfm -o a.png file.scene " + options,
+                                 signal, [&](const Outcome&) { return folder.has("a.pfm"); });
 }
 
 }  // namespace
