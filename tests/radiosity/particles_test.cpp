@@ -203,13 +203,13 @@ TEST_CASE("plates: what a receiver gets, by closed forms, and each of its hats, 
                 REQUIRE(mesh.faces[first].elements() == 2);
                 std::vector<IlluminationMap> maps, means;
                 for (uint64_t r = 0; r < 64; ++r) {
-                    const Particles p = run(s, mesh, kind, 6400, r);
+                    const Particles p = run(s, mesh, kind, 1600, r);
                     maps.push_back(p.map()), means.push_back(p.map(Functional::mean));
                 }
                 for (size_t face = 0; face < first + 2; ++face) {
                     CHECK(flux(mesh, maps[0], face, true) == 0);
                     if (face >= first && face < first + receivers)
-                        expect_mean(maps, Pi * F, 0.06,
+                        expect_mean(maps, Pi * F, 0.12,
                                     [&](const auto& map) { return flux(mesh, map, face); });
                     else
                         CHECK(flux(mesh, maps[0], face) == 0);
@@ -217,7 +217,7 @@ TEST_CASE("plates: what a receiver gets, by closed forms, and each of its hats, 
                 for (uint32_t k = 0; k < 4; ++k) {
                     const double hat = k == 0 || k == 3 ? 1 / 3.0 : 1 / 6.0;  // its own integral
                     const uint32_t v = mesh.faces[first].vertex + k;
-                    expect_mean(means, b[k] / hat, 0.15,
+                    expect_mean(means, b[k] / hat, 0.3,
                                 [&](const auto& map) { return map[2 * v].y; });
                 }
             }
@@ -264,9 +264,9 @@ TEST_CASE("a sphere in a sphere, of facets: as the closed form of spheres of the
     const exact::OfSpheres truth = exact::illuminances(
         {std::sqrt(inner / (4 * Pi)), std::sqrt(outer / (4 * Pi)), 0.3, 0.8, exitance, 0});
     for (SamplerKind kind : all_samplers) {
-        const auto maps = maps_of_runs(lit, mesh, kind, 6400, 32);
+        const auto maps = maps_of_runs(lit, mesh, kind, 1600, 32);
         for (bool of_inner : {true, false})
-            expect_mean(maps, of_inner ? truth.inner * inner : truth.outer * outer, 0.05,
+            expect_mean(maps, of_inner ? truth.inner * inner : truth.outer * outer, 0.1,
                         [&](const IlluminationMap& map) {
                             double E = 0;
                             for (size_t k = 0; k < mesh.faces.size(); ++k)
@@ -279,18 +279,23 @@ TEST_CASE("a sphere in a sphere, of facets: as the closed form of spheres of the
 TEST_CASE("the reported error is right: its square is the mean of squares, whatever the sampler") {
     const Scene s = furnace();
     const Mesh mesh = make_mesh(s, 2.2);
-    for (SamplerKind kind : all_samplers)
-        for (Functional f : {Functional::projection, Functional::mean}) {
-            Moments actual, reported;
-            for (uint64_t r = 0; r < 128; ++r) {
-                const Particles p = run(s, mesh, kind, 1600, r);
-                const IlluminationMap map = p.map(f);
+    constexpr Functional functionals[] = {Functional::projection, Functional::mean};
+    for (SamplerKind kind : all_samplers) {
+        Moments actual[2], reported[2];
+        for (uint64_t r = 0; r < 128; ++r) {
+            const Particles p = run(s, mesh, kind, 1600, r);
+            for (size_t k : {0, 1}) {
+                const IlluminationMap map = p.map(functionals[k]);
                 for (size_t v = 1; v < map.size(); v += 2) REQUIRE(map[v] == rgb{});
-                actual.add(furnace_error2(mesh, map)), reported.add(p.error(f) * p.error(f));
+                actual[k].add(furnace_error2(mesh, map));
+                reported[k].add(std::pow(p.error(functionals[k]), 2));
             }
-            EXPECT(oracle::expect_equal(estimate(actual), estimate(reported)), 0.3);
-            CHECK(reported.mean < 0.03 * 0.03 * 32000 / 1600);
         }
+        for (size_t k : {0, 1}) {
+            EXPECT(oracle::expect_equal(estimate(actual[k]), estimate(reported[k])), 0.3);
+            CHECK(reported[k].mean < 0.03 * 0.03 * 32000 / 1600);
+        }
+    }
 }
 
 // Checks that the mean square of what is stated is the variance of the errors.
@@ -328,8 +333,8 @@ TEST_CASE("the stated error's own uncertainty is its spread from run to run") {
     const Mesh mesh = make_mesh(s, 1);
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::halton}) {
         std::vector<MapError> stated;
-        for (uint64_t r = 0; r < 400; ++r) stated.push_back(run(s, mesh, kind, 1600, r).stated());
-        expect_uncertainty(stated, 0.7);
+        for (uint64_t r = 0; r < 200; ++r) stated.push_back(run(s, mesh, kind, 1600, r).stated());
+        expect_uncertainty(stated, 1.2);
     }
 }
 

@@ -80,6 +80,21 @@ private:
     }
 };
 
+// Where shooting in the study comes to.
+struct Study {
+    Scene scene = study();
+    Mesh mesh = make_mesh(scene, 1.5);
+    IlluminationMap of_elements = shot(scene, mesh, Shooter::element, {3e-4, 0, 0}),
+                    of_faces = shot(scene, mesh, Shooter::face, {3e-4, 0, 0});
+    const IlluminationMap& limit(Shooter by) const {
+        return by == Shooter::face ? of_faces : of_elements;
+    }
+};
+const Study& solved_study() {
+    static const Study solved;
+    return solved;
+}
+
 // In the quadratic mean over all surfaces, over that of the reference.
 double apart(const Mesh& mesh, const IlluminationMap& map, const IlluminationMap& reference) {
     return std::sqrt(square(mesh, reference, map) /
@@ -110,7 +125,7 @@ TEST_CASE("a furnace is uniform: L = Le / (1 - rho) on every wall, nothing behin
         }
 }
 
-TEST_CASE("what is not yet sent is known; lights send first, then always what has most to send") {
+TEST_CASE("what is not yet sent is known; lights send first, then what has most; no vertex falls") {
     const Scene s = study();
     const Mesh mesh = make_mesh(s, 0.9);
     for (Shooter shooter : shooters) {
@@ -121,6 +136,8 @@ TEST_CASE("what is not yet sent is known; lights send first, then always what ha
         double off = 0, first = 0;
         const uint64_t most = faces ? 40 : 300;  // before rounding is all that is left
         uint64_t shots = 0;
+        IlluminationMap before(number_of_sides(mesh));
+        int fallen = 0, grown = 0;
         shooting.run({0, 0, most}, [&](const Shooting& now) {
             if (now.shots() == shots) return;  // the last call: nobody was chosen
             // The point light counts as sent as soon as it is chosen.
@@ -128,7 +145,15 @@ TEST_CASE("what is not yet sent is known; lights send first, then always what ha
                 off = std::max(off, std::abs(now.unshot() / books.unshot(now.map()) - 1));
             if (shots == 2) first = now.unshot();
             books.shoot(now.map(), shooter);
+            for (size_t k = 0; k < before.size(); ++k)
+                for (auto a : axis) {
+                    fallen += now.map()[k].*a < before[k].*a;
+                    grown += now.map()[k].*a > before[k].*a;
+                }
+            before = now.map();
         });
+        CHECK(fallen == 0);
+        CHECK(grown > 3000);
         CHECK(shots == most);
         CHECK(shooting.shots() == most);
         CHECK(off <= (single ? 1e-3 : 1e-11));
@@ -140,32 +165,12 @@ TEST_CASE("what is not yet sent is known; lights send first, then always what ha
     }
 }
 
-TEST_CASE("solutions grow: no vertex ever falls, in no shot") {
-    const Scene s = study();
-    const Mesh mesh = make_mesh(s, 0.9);
-    for (Shooter shooter : shooters) {
-        IlluminationMap before(number_of_sides(mesh));
-        int fallen = 0, grown = 0;
-        Shooting shooting(s, mesh, shooter, 1);
-        shooting.run({0, 0, 200}, [&](const Shooting& now) {
-            for (size_t k = 0; k < before.size(); ++k)
-                for (auto a : axis) {
-                    fallen += now.map()[k].*a < before[k].*a;
-                    grown += now.map()[k].*a > before[k].*a;
-                }
-            before = now.map();
-        });
-        CHECK(fallen == 0);
-        CHECK(grown > 10000);
-    }
-}
-
 TEST_CASE("bit for bit the same for 1, 2, 3 and 5 threads, and in several runs") {
     const Scene s = study();
     const Mesh mesh = make_mesh(s, 0.9);
     for (Shooter shooter : shooters) {
         Shooting one(s, mesh, shooter, 1);
-        one.run({0, 0, 60}, silent);
+        one.run({0, 0, 20}, silent);
         auto check = [&](unsigned threads, const std::vector<uint64_t>& runs) {
             CAPTURE(threads);
             Shooting other(s, mesh, shooter, threads);
@@ -177,8 +182,8 @@ TEST_CASE("bit for bit the same for 1, 2, 3 and 5 threads, and in several runs")
             CHECK(other.rays() == one.rays());
             CHECK(other.unshot() == one.unshot());
         };
-        for (unsigned threads : {2u, 3u, 5u}) check(threads, {60});
-        check(2, {1, 2, 17, 17, 60});
+        for (unsigned threads : {2u, 3u, 5u}) check(threads, {20});
+        check(2, {1, 2, 7, 7, 20});
     }
 }
 
@@ -231,14 +236,18 @@ TEST_CASE("the stated error is a bound, and close where walls are alike and retu
     for (int k = 0; k < 5; ++k) add(bright, diffuse(grey(0.8)));
     add_room(bright, {1, 1, 1}, lamp, 6);
     prepare(bright);
-    for (const Scene& s : {bright, study()})
-        for (Shooter shooter : shooters) {
-            const Mesh mesh = make_mesh(s, 0.7);
-            const IlluminationMap limit = shot(s, mesh, shooter, {1e-4, 0, 0});
+    const Mesh walls = make_mesh(bright, 0.7);
+    const Study& lit = solved_study();
+    for (Shooter shooter : shooters)
+        for (bool alike : {true, false}) {
+            const Scene& s = alike ? bright : lit.scene;
+            const Mesh& mesh = alike ? walls : lit.mesh;
+            const IlluminationMap limit =
+                alike ? shot(s, mesh, shooter, {1e-4, 0, 0}) : lit.limit(shooter);
             Shooting run(s, mesh, shooter, 1);
             CHECK(run.error() == 1);
             double worst = 0;
-            for (double error : {0.7, 0.5, 0.2, 0.1, 0.05, 0.02}) {
+            for (double error : {0.7, 0.3, 0.1, 0.05}) {
                 double before = 1;
                 run.run({0, 0, 0, error}, [&](const Shooting& now) {
                     if (now.error() > error) before = now.error();
@@ -252,7 +261,7 @@ TEST_CASE("the stated error is a bound, and close where walls are alike and retu
                 worst = std::max(worst, off / run.error());
             }
             CAPTURE(worst);
-            CHECK(worst > (s.shapes.size() == bright.shapes.size() ? 0.7 : 0.2));
+            CHECK(worst > (alike ? 0.7 : 0.2));
         }
     const Scene pointed = cubic_room();  // whose only light has no area
     const Mesh mesh = make_mesh(pointed, 8);
@@ -277,24 +286,21 @@ TEST_CASE("the bound by hand: squares of what is linear between corners, over wh
 }
 
 TEST_CASE("light of a shot that is cut short is part of the stated error for good") {
-    const Scene s = study();
-    const Mesh mesh = make_mesh(s, 1.5);
-    const ShootingTarget end = {1e-5, 0, 0};
-    for (Shooter shooter : shooters) {
-        const IlluminationMap limit = shot(s, mesh, shooter, end);
+    const Study& lit = solved_study();
+    const ShootingTarget end = {1e-3, 0, 0};
+    for (Shooter shooter : shooters)
         for (uint64_t cut : {1, 2}) {
             CAPTURE(cut);
-            Shooting run(s, mesh, shooter, 1);
+            Shooting run(lit.scene, lit.mesh, shooter, 1);
             run.run(end, [&](const Shooting& now) {
                 if (now.shots() == cut) interrupted = 1;
             });
             interrupted = 0;
             run.run(end, silent);
-            const double off = apart(mesh, run.map(), limit);
-            CHECK(off > 1e-3);
+            const double off = apart(lit.mesh, run.map(), lit.limit(shooter));
+            CHECK(off > 1e-2);
             CHECK(run.error() >= off);
         }
-    }
 }
 
 TEST_CASE("a point light: I cos / d^2 at every vertex that sees it, exactly 0 at all others") {
@@ -413,6 +419,7 @@ TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one 
     for (Shooter shooter : shooters) {
         std::array<double, 7> before{}, error{};
         for (int n : {4, 8}) {
+            if (n == 8 && shooter == Shooter::element) continue;  // within 0.3 % of those of faces
             CAPTURE(n);
             const Mesh mesh = make_mesh(s, 10 * std::sqrt(2.0) / n * (1 + 1e-6));
             const IlluminationMap map = shot(s, mesh, shooter, {1e-4, 0, 0});
@@ -439,31 +446,26 @@ TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one 
     }
 }
 
-TEST_CASE("faces that shoot as wholes come to another limit, less than 1 % from that of elements") {
+TEST_CASE("faces that shoot as wholes come to another limit, some 0.4 % from that of elements") {
     // What is smaller than an eighth of its distance sends its mean, by one shadow ray: an error of
-    // a 64th of the differences of its radiance, and of shadows that H does not know.  So the two
-    // are the closer, the coarser the mesh; measured 0.55 % at H = 0.8.
-    const Scene s = study();
-    for (double H : {1.6, 0.8}) {
-        const Mesh mesh = make_mesh(s, H);
-        const IlluminationMap flat = shot(s, mesh, Shooter::element, {1e-4, 0, 0});
-        const double off = apart(mesh, shot(s, mesh, Shooter::face, {1e-4, 0, 0}), flat);
-        CAPTURE(off);
-        CHECK(off < 0.01);
-        CHECK(off > 0);
-    }
+    // a 64th of the differences of its radiance, and of shadows that H does not know.
+    const Study& lit = solved_study();
+    const double off = apart(lit.mesh, lit.of_faces, lit.of_elements);
+    CAPTURE(off);
+    CHECK(off < 0.006);
+    CHECK(off > 0);
 }
 
 TEST_CASE("a dim room is lit as if it were alone, however bright another one is") {
     const std::string dim =
         "camera 0 0 0  0 0 1  40\n"
-        "diffuse w .6 .6 .6\nlight dim 1 1 1\nlight bright 3000 3000 3000\nbox 4 3 4  0  -2 0 -2  "
+        "diffuse w .4 .4 .4\nlight dim 1 1 1\nlight bright 3000 3000 3000\nbox 4 3 4  0  -2 0 -2  "
         "w\n"
         "quad -.5 2.9 -.5  1 0 0  0 0 1  dim\nbox .8 .8 .8  20  -.4 .3 -.4  w\n";
     const std::string bright = "box 2 2 2  0  20 0 0  w\nquad 20.5 1.9 .5  1 0 0  0 0 1  bright\n";
     auto mean = [&](const std::string& text, double unshot) {
         const Scene s = parse_scene(text, "s").scene;
-        const Mesh mesh = make_mesh(s, 0.5);
+        const Mesh mesh = make_mesh(s, 2);
         const IlluminationMap map = shot(s, mesh, Shooter::face, {unshot, 0, 0});
         double sum = 0;
         for (size_t k = 0; k < 13; ++k)  // the faces of what is in the dim room
@@ -471,5 +473,5 @@ TEST_CASE("a dim room is lit as if it were alone, however bright another one is"
                 sum += double(integral(mesh, map, mesh.faces[k], back).x);
         return sum;
     };
-    CHECK(mean(dim + bright, 1e-7) == approx(mean(dim, 1e-3), 0.01, 0.01));
+    CHECK(mean(dim + bright, 3e-7) == approx(mean(dim, 1e-3), 0.01, 0.01));
 }

@@ -66,18 +66,18 @@ TEST_CASE("the stated d^2 of weighted means is that from seed to seed, on any nu
                 const Sampler numbers(pattern, uint64_t(6 * s.y + s.x), s.i, s.set);
                 return heteroscedastic(s.x, s.y, numbers.get2(film_x));
             };
-            const Radiance L = weighted_mean(scene, pattern, kind, 12, sample, troubles);
+            const Radiance L = weighted_mean(scene, pattern, kind, 6, sample, troubles);
             Options o;
             o.sets = 2, o.quiet = true;
             auto rendered = [&](unsigned threads) {
                 o.threads = threads;
                 Plan plan = plan_of(o, scene);
-                plan.target.samples = 1, plan.at_once = 12;
+                plan.target.samples = 1, plan.at_once = 6;
                 return render(o, plan, L);
             };
             const Picture p = rendered(1);
             if (r == 0) CHECK(rendered(3).image.pixels == p.image.pixels);
-            CHECK(p.run.spp == 24);
+            CHECK(p.run.spp == 12);
             spread.add(p.image, p.run.error.d2());
         }
         EXPECT(oracle::expect_mean(1, spread.ratio()).of("weighting " + std::to_string(int(kind))),

@@ -5,42 +5,33 @@ namespace {
 
 bool has_begun(const Outcome& o) { return contains(o.err, "no light"); }
 
-void expect_samples_so_far(int signal, int status) {
-    const Place place(diffuse);
-    Outcome o;
-    // A busy machine may not have begun, or not have chosen sets: then again, with more patience.
-    for (double patience = 0.25; patience < 20 && !summary(o.err).error.starts_with("d_rel ");
-         patience *= 3)
-        o = cut_short(place, "penumbra --spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene",
-                      patience, signal);
-    INFO(o.err);
-    CHECK(o.status == status);
-    CHECK(place.files() == 3);
-    const Summary s = summary(o.err);
-    REQUIRE(s.found);
-    CHECK(s.interrupted);
-    REQUIRE(s.samples > 0);
-    CHECK(s.samples < 1000000000);
-    // It shows what a run of some samples shows.
-    const Image image = read_pfm(place / "a.pfm"), other = place.image("--spp 64 --size 33x17");
-    CHECK(all_finite(image));
-    double square = 0, norm = 0;
-    for (size_t i = 0; i < image.pixels.size(); ++i) {
-        square += std::pow(double(image.pixels[i][1]) - double(other.pixels[i][1]), 2);
-        norm += std::pow(double(other.pixels[i][1]), 2);
-    }
-    CHECK(square < 0.04 * norm);
-}
-
 }  // namespace
 
-TEST_CASE("Ctrl-C writes the samples so far, and says how many they are") {
-    expect_samples_so_far(SIGINT, 130);
-}
-
-TEST_CASE("SIGTERM and SIGHUP do what Ctrl-C does, and the exit status tells them apart") {
-    expect_samples_so_far(SIGTERM, 143);
-    expect_samples_so_far(SIGHUP, 129);
+TEST_CASE("SIGTERM, SIGHUP and Ctrl-C write the samples so far; the exit status tells them apart") {
+    for (const auto& [signal, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGHUP, 129}}) {
+        const Place place(diffuse);
+        // Once sets are chosen there is an error.
+        const Outcome o = cut_short_late_enough(
+            place, "penumbra --spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene", signal,
+            [](const Outcome& so_far) { return summary(so_far.err).error.starts_with("d_rel "); });
+        INFO(o.err);
+        CHECK(o.status == status);
+        CHECK(place.files() == 3);
+        const Summary s = summary(o.err);
+        REQUIRE(s.found);
+        CHECK(s.interrupted);
+        REQUIRE(s.samples > 0);
+        CHECK(s.samples < 1000000000);
+        // It shows what a run of some samples shows.
+        const Image image = read_pfm(place / "a.pfm"), other = place.image("--spp 64 --size 33x17");
+        CHECK(all_finite(image));
+        double square = 0, norm = 0;
+        for (size_t i = 0; i < image.pixels.size(); ++i) {
+            square += std::pow(double(image.pixels[i][1]) - double(other.pixels[i][1]), 2);
+            norm += std::pow(double(other.pixels[i][1]), 2);
+        }
+        CHECK(square < 0.04 * norm);
+    }
 }
 
 TEST_CASE("a signal that was ignored from the start stays ignored") {

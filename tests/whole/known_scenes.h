@@ -125,7 +125,7 @@ struct Known {
     std::string text;
     double truth;                   // mean of the channels
     Start start;                    // of rays; if none: the camera's
-    int aimed, chance;              // samples in units of 8192; chance: of --light none
+    int aimed, chance;              // samples in units of 4096; chance: of --light none
     const char* no_none = nullptr;  // reasons not to run --light none, nee
     const char* no_nee = nullptr;
 };

@@ -145,9 +145,9 @@ TEST_CASE("a part that is interrupted, or given more samples, goes on, and is me
 TEST_CASE("memory of merging: the picture, and of each film a row and 2 bytes a pixel") {
     const Scenes folder;
     folder.write("unequal.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
-    folder.merge_parts(folder.of("--spp 2 --sets 2 --depth 0") + split("--size 2048x1024"),
+    folder.merge_parts(folder.of("--spp 2 --sets 2 --depth 0") + split("--size 1024x1024"),
                        {"--seed 0", "--seed 1", "--seed 2"}, "all");
-    const double pixels = 2048.0 * 1024, memory = folder.number("all", "peak_memory_bytes");
+    const double pixels = 1024.0 * 1024, memory = folder.number("all", "peak_memory_bytes");
     INFO(memory, " bytes of ", pixels, " pixels");
     CHECK(memory < pixels * (12 + 2 * 3) * 1.1 + 8e6);  // the program itself: 8 MB
 }

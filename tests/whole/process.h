@@ -193,6 +193,17 @@ inline Outcome cut_short(const Folder& folder, const Command& command, double se
     return process.finish();
 }
 
+// The same until what it has done is `enough`: a busy machine may not have begun, so each run gets
+// three times the patience of the one before.
+template <class Enough>
+Outcome cut_short_late_enough(const Folder& folder, const Command& command, int signal,
+                              Enough enough) {
+    Outcome o;
+    for (double patience = 0.2; patience < 20 && !enough(o); patience *= 3)
+        o = cut_short(folder, command, patience, signal);
+    return o;
+}
+
 inline bool terminal_to_be_had() {
     const int trial = ::posix_openpt(O_RDWR | O_NOCTTY);
     if (trial >= 0) ::close(trial);

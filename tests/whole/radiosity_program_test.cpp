@@ -58,14 +58,10 @@ struct Room : Place {
     }
 };
 
-// Runs what would last for hours until something is found, then sends a signal.
+// Of what would last for hours, ended once something was found.
 Outcome interrupted_run(const Folder& folder, const std::string& options, int signal) {
-    Outcome o;
-    // A busy machine may not have begun: then again, with more patience.
-    for (double patience = 0.2; patience < 20 && !folder.has("a.pfm"); patience *= 3)
-        o = cut_short(folder, "radiosity -o a.pfm -o a.png file.scene " + options, patience,
-                      signal);
-    return o;
+    return cut_short_late_enough(folder, "radiosity -o a.pfm -o a.png file.scene " + options,
+                                 signal, [&](const Outcome&) { return folder.has("a.pfm"); });
 }
 
 }  // namespace
@@ -225,7 +221,7 @@ TEST_CASE("radiosity: the files do not depend on threads, and on time only where
     for (const std::string& method : methods) {
         const std::string amount = method == "particles" ? " --particles 2000" : " --shots 6";
         auto files = [&](const std::string& options) {
-            place.maps("--method " + method + amount + " --mesh 2 -o a.pfm -o a.png " + options);
+            place.maps("--method " + method + amount + " --mesh 3 -o a.pfm -o a.png " + options);
             return place.read("a.pfm") + place.read("a.png");
         };
         const std::string one = files("--threads 1");
@@ -251,13 +247,13 @@ TEST_CASE("radiosity: three methods, one image, and that of the path tracer") {
     // deviation of 0.2 %); vertices know E where they are, and the ceiling's are too few for the
     // lamp's glow.
     CHECK(place.mean("--mesh 2.5 --method particles --particles 300000") == about(truth, 0.01));
-    const double shooting = place.mean("--mesh 2.5 --method shooting");
+    const double shooting = place.mean("--mesh 3 --method shooting");
     CHECK(shooting == about(truth, 0.1));
-    CHECK(place.mean("--mesh 2.5") == about(shooting, 0.01));
-    const double coarse = place.mean("--mesh 5");
-    CHECK(place.mean("--mesh 5 --method hierarchy --unshot 1%") == about(coarse, 1e-12));
-    CHECK(place.mean("--mesh 5 --unshot 1e-3") > coarse);
-    CHECK(place.mean("--mesh 5 --unshot 50%") < coarse);
+    CHECK(place.mean("--mesh 3") == about(shooting, 0.01));
+    const double coarse = place.mean("--mesh 9");
+    CHECK(place.mean("--mesh 9 --method hierarchy --unshot 1%") == about(coarse, 1e-12));
+    CHECK(place.mean("--mesh 9 --unshot 1e-3") > coarse);
+    CHECK(place.mean("--mesh 9 --unshot 50%") < coarse);
 }
 
 TEST_CASE("radiosity --view illuminance: pi L in a closed room that glows; its PNG is of white") {

@@ -79,7 +79,7 @@ TEST_CASE("a binomial tail, by hand") {
 }
 
 TEST_CASE("true d_rel / E at a stop: median in [0.95, 1], 95 % of runs below 1.05") {
-    constexpr int runs = 200;
+    constexpr int runs = 80;
     struct Asked {
         SamplerKind kind;
         double E;
