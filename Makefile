@@ -242,7 +242,7 @@ $(SUITE): $(UNITS:%=%.exe)
 	$(CXX) $(LINK) -o $@ $(^:.exe=.o) $(OBJECTS)/tests/main.o
 
 # The programs that tests run are one, which goes by its name.  Images are the same, bit for bit, however it is optimised.
-TESTED  := $(filter-out course/%,$(RENDERERS:src/%.cpp=%)) labs/compare labs/knot
+TESTED  := $(filter-out course/%,$(RENDERERS:src/%.cpp=%)) labs/knot
 RUNNERS := $(patsubst tests/%.cpp,%,$(shell grep -lE 'build/penumbra|whole/process.h' tests/*/*_test.cpp))
 $(RUNNERS:%=$(OBJECTS)/tests/%.run): | programs-to-test
 .PHONY: programs-to-test

@@ -4,9 +4,9 @@
 //   build/techniques --render SCENE --direction D --light L --spp N -o FILE.pfm --stats FILE.json
 //   ...
 #include "base/json.h"
+#include "keep/p_of_z.h"
 #include "labs/grid.h"
 #include "labs/naive_halton.h"
-#include "labs/p_of_z.h"
 #include "world/scene_file.h"
 
 namespace {
