@@ -95,56 +95,22 @@ void tell_images(Page& page, const Rows& all, const std::vector<Setting>& method
 
 // ---- When to go on ------------------------------------------------------------------------------
 
-const std::vector<std::string> ways = {
-    "whole:0.25", "whole:0",    "whole:1", "map",    "first:0.3", "first:0.5", "first:0.7",
-    "always:0.5", "always:0.7", "over:2",  "over:1", "control",   "over:0.4",  "over:0.25"};
-
-// Two levels, the map and what whole paths add to it: with as many samples of each as is best,
-// variance times cost is (sqrt(v1 c1) + sqrt(v2 c2))^2.  Over that of whole paths.
-double bound(const Rows& rows) {
-    const Rows whole = by_setting(rows, ways[0]), map = by_setting(rows, "map");
-    const double v = noise2(whole), c = mean(whole, "path_seconds"), v1 = noise2(map),
-                 c1 = mean(map, "path_seconds");
-    const double sum = std::sqrt(v1 * c1) + std::sqrt(std::max(0.0, v - v1) * (c - c1));
-    return v * c / (sum * sum);
-}
-
 void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, const Scope& plan) {
     std::vector<Subject> subjects;
     for (const std::string& scene : scenes)
         subjects.push_back(
             {scene, "scenes/" + scene + ".scene --size 64x32", plan.quick ? 512u : 16384u});
-    std::map<std::string, Rows> rows;
-    Rows all;
-    for (const std::string sampler : {"independent", "sobol"}) {
-        std::vector<Setting> settings;
-        for (const std::string& way : ways)
-            settings.push_back({way + " " + sampler,
-                                "--particles 300000 --sampler " + sampler + " --way " + way, draw});
-        for (Row r : grid.run(subjects, settings, {16}, plan.quick ? 2 : 8)) {
-            all.push_back(r);
-            r.setting = words_in(r.setting)[0];
-            rows[sampler].push_back(r);
-        }
-    }
-    Lines lines, bounds;
-    for (const std::string& way : ways) {
-        lines.push_back({way == "control" ? "**over:2/3** (`control`)" : way});
+    std::vector<Setting> ways;
+    for (const char* way : {"whole:0.25", "map", "over:2", "over:1", "control", "over:0.4"})
+        ways.push_back({way, std::string("--particles 300000 --way ") + way, draw});
+    const Rows rows = grid.run(subjects, ways, {16}, plan.quick ? 2 : 8);
+    Lines lines;
+    for (const Setting& way : ways) {
+        lines.push_back({way.name == "control" ? "**over:2/3** (`control`)" : way.name});
         for (const std::string& scene : scenes)
-            lines.back().push_back(gain(in_scene(rows["sobol"], scene), way, ways[0], of_paths));
-    }
-    for (const std::string& scene : scenes) {
-        const Rows sobol = in_scene(rows["sobol"], scene);
-        const double own = over(sobol, "control", ways[0], of_paths);
-        bounds.push_back({scene,
-                          told(jackknife(in_scene(rows["independent"], scene), bound), "%.2f"),
-                          told(jackknife(sobol, bound), "%.2f"), text("%.2f", own),
-                          page.verdict(own >= 0.8 * bound(sobol))});
+            lines.back().push_back(gain(in_scene(rows, scene), way.name, ways[0].name, of_paths));
     }
     page.set("ways", table({"way", scenes[0], scenes[1], scenes[2]}, lines));
-    page.set("bounds",
-             table({"scene", "two levels", "with Sobol' points", "`control`", ""}, bounds));
-    page.data("indirect-ways", csv_of(all, {"d2", "bias2", "path_seconds", "map_cpu_seconds"}));
 }
 
 // ---- How fine -----------------------------------------------------------------------------------
@@ -165,8 +131,6 @@ void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, dou
     page.set("meshes", table(rows, part, particles, [](const Rows& r) {
                  return bias(r) + ", " + percent(std::sqrt(noise2(r)));
              }));
-    page.data("indirect-meshes", csv_of(rows, {"map_triangles", "map_error", "map_seconds", "d2",
-                                               "bias2", "bias2_error", "cpu_seconds"}));
 }
 
 int study(const std::string& penumbra, const std::string& radiosity, const std::string& draw,
