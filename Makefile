@@ -120,7 +120,7 @@ radiosity:                 ## illumination maps by shooting and by particles (20
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
 indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## paths that end on illumination maps, beside whole ones (20 minutes)
 voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
-bench:                     ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
+bench: build/knot.obj       ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 4 hours)
