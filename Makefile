@@ -124,12 +124,11 @@ bench: build/knot.obj       ## rays a second of both trees, beside Embree if lib
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 4 hours)
-calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours; BASELINE=PROGRAM: samples beside those of an older one)
+calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
 EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
                calibration cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
-calibration: LAB_FLAGS := $(BASELINE:%=--baseline %)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 trade: LAB_FLAGS := $(if $(FULL),--full)
 peers: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
