@@ -191,12 +191,8 @@ int study(bool quick, const std::string& command) {
         const Rows some = rows_of(c, trials);
         rows.insert(rows.end(), some.begin(), some.end());
     }
-    page.plot("estimators1d",
-              plot(
-                  in_scene(rows, "e"), {"samples N", 1, 65536, true, {1, 16, 256, 4096, 65536}},
-                  {"rmse × √N / W", 0, 1.1, false, {0, 0.25, 0.5, 0.75, 1}}, of_setting,
-                  [](const Rows& r) { return double(r[0].count); },
-                  [](const Rows& r) { return r[0]["rmse"]; }, "case e"));
+    page.plot("estimators1d", plot(in_scene(rows, "e"), "samples N", "rmse × √N / W", of_setting,
+                                   count_of, mean_of("rmse"), "case e"));
     page.data("estimators1d", csv_of(rows, {"rmse", "deviation", "variance off", "bias off"}));
     page.set("table", paper_table(page, rows));
     const double spread = std::sqrt(2 / double(trials)), limit = 4.5 * spread,

@@ -160,10 +160,9 @@ void tell_races(Page& page, const std::vector<Race>& races) {
 }
 
 void plot_race(Page& page, const Race& r) {
-    Rows shown;
+    std::vector<Series> all;
     auto add = [&](const std::string& name, const Curve& c) {
-        for (size_t k = 0; k < c.error.size(); ++k)
-            shown.push_back({r.name, name, k, 0, {{"s", c.seconds[k]}, {"e", c.error[k]}}});
+        all.push_back({name, c.seconds, c.error});
     };
     add("particles", r.particles);
     add("particles, Halton", curve_of(r.rows, "halton", "d2"));
@@ -171,12 +170,7 @@ void plot_race(Page& page, const Race& r) {
         add(method + ", realistic", curve_of(r.rows, method, "d2"));
         add(method + ", optimistic", curve_of(r.rows, method, "optimistic2"));
     }
-    const std::vector<double> s = all_of(shown, "s");
-    page.plot("radiosity-time",
-              plot(
-                  shown, {"CPU seconds", quantile(s, 0), quantile(s, 1)},
-                  {"error (d_rel)", 5e-4, 1}, of_setting, [](const Rows& c) { return c[0]["s"]; },
-                  [](const Rows& c) { return c[0]["e"]; }, r.name));
+    page.plot("radiosity-time", plot(all, "CPU seconds", "error (d_rel)", r.name));
 }
 
 // The path tracer's long run is the truth of triangles, too.

@@ -242,12 +242,9 @@ int study(const Extent& extent, const std::string& folder, const std::string& co
     page.data("radiosity-cube", csv_of(rows, {"A", "B", "C", "D", "E", "F", "mean", "off", "unshot",
                                               "short by", "from limit", "reported"}));
     page.plot("radiosity-cube",
-              plot(
-                  where(rows, [](const Row& r) { return std::isnan(r["from limit"]); }),
-                  {"cells a side", 4, double(extent.finest)}, {"error of E", 1e-4, 1}, of_setting,
-                  [](const Rows& r) { return double(r[0].count); },
-                  [](const Rows& r) { return r[0]["off"]; },
-                  "Discretisation: from a method's limit to the exact solution"));
+              plot(where(rows, [](const Row& r) { return std::isnan(r["from limit"]); }),
+                   "cells a side", "error of E", of_setting, count_of, mean_of("off"),
+                   "Discretisation: from a method's limit to the exact solution"));
     page.set("made", made_by(command));
     return page.finish();
 }

@@ -87,10 +87,9 @@ void tell_images(Page& page, const Rows& all, const std::vector<Setting>& method
     for (const char* name : {"map", "control"})
         page.set(name, gain(rows, name, "path", efficiency));
     page.set("endless", gain(rows, "control", "path --roulette 0", efficiency));
-    auto seconds = [](const Rows& r) { return mean(r, "cpu_seconds"); };
     page.plot("indirect-time",
-              plot(in_scene(all, "cornell36"), {"CPU seconds", 0.05, 30},
-                   {"error (d_rel)", 0.003, 1}, of_setting, seconds, relative_error, "cornell36"));
+              plot(in_scene(all, "cornell36"), "CPU seconds", "error (d_rel)", of_setting,
+                   mean_of("cpu_seconds"), relative_error, "cornell36"));
 }
 
 // ---- When to go on ------------------------------------------------------------------------------

@@ -187,18 +187,21 @@ inline std::string csv_of(const Rows& rows, const std::vector<std::string>& numb
     return csv(head, lines);
 }
 
+// What a curve is drawn over: the count of rows, or a number's mean.
+inline double count_of(const Rows& rows) { return double(rows[0].count); }
+inline auto mean_of(const std::string& number) {
+    return [number](const Rows& rows) { return mean(rows, number); };
+}
+
 // A curve for each word of `series`, a point for each count: numbers of the rows there.
-template <class Series, class X, class Y>
-Svg plot(const Rows& rows, const Axis& x, const Axis& y, Series series, X x_of, Y y_of,
+template <class Word, class X, class Y>
+Svg plot(const Rows& rows, const std::string& x, const std::string& y, Word series, X x_of, Y y_of,
          const std::string& title) {
-    Svg sheet(860, 400);
-    size_t k = 0;
-    Plot plot(sheet, {80, 40}, {560, 300}, x, y, title);
+    std::vector<Series> all;
     for (const auto& [word, group] : grouped(rows, series)) {
-        std::vector<double> xs, ys;
+        Series& s = all.emplace_back(word);
         for (const auto& [count, cell] : grouped(group, of_count))
-            xs.push_back(x_of(cell)), ys.push_back(y_of(cell));
-        plot.curve(xs, ys, {.colour = svg::colours[k++ % std::size(svg::colours)]}, word);
+            s.x.push_back(x_of(cell)), s.y.push_back(y_of(cell));
     }
-    return sheet;
+    return plot(all, x, y, title);
 }

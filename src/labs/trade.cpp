@@ -139,8 +139,7 @@ Svg curves(const Rows& rows, const Study& s) {
         named.insert(s.choices[cheapest(s.choices, error).choice].setting.name);
     return plot(
         where(in_scene(rows, s.scene), [&](const Row& r) { return named.count(r.setting) > 0; }),
-        {"CPU seconds", 1e-2, 100}, {"d_rel", 1e-3, 10}, of_setting,
-        [](const Rows& r) { return point_of(r).seconds; },
+        "CPU seconds", "d_rel", of_setting, mean_of("cpu_seconds"),
         [](const Rows& r) { return point_of(r).error; }, s.scene);
 }
 

@@ -223,10 +223,8 @@ void tell(Page& page, uint64_t trials) {
                              [&](const Rows& r) { return text("%.1e", error(r)); }));
     page.data("voronoi2d",
               csv_of(rows, {"error", "deviation", "bias", "standard error", "seconds"}));
-    page.plot("voronoi2d",
-              plot(
-                  in_scene(rows, "holder_1"), {"points, N", 64, 4096}, {"rmse", 1e-7, 1e-2},
-                  of_setting, [](const Rows& r) { return double(r[0].count); }, error, "holder_1"));
+    page.plot("voronoi2d", plot(in_scene(rows, "holder_1"), "points, N", "rmse", of_setting,
+                                count_of, mean_of("error"), "holder_1"));
     tell_findings(page, rows, last);
 }
 

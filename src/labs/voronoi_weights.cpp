@@ -107,11 +107,8 @@ int run(bool quick, bool kept, uint64_t most, const std::string& penumbra,
     page.set("regions",
              table({"scene", "region", "pixels", "mc", "vor", "fvor", "cvor", "torus", stratified},
                    areas));
-    page.plot("voronoi",
-              plot(
-                  in_scene(rows, "cornell"), {"samples a pixel", 16, double(4 * most)},
-                  {"error (d_rel)", 0.003, 1}, of_setting,
-                  [](const Rows& r) { return double(r[0].count); }, relative_error, "cornell"));
+    page.plot("voronoi", plot(in_scene(rows, "cornell"), "samples a pixel", "error (d_rel)",
+                              of_setting, count_of, relative_error, "cornell"));
     page.claim("halves", halves);
     page.claim("border", at_border);
     page.claim("strata", strata);
