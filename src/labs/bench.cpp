@@ -253,9 +253,9 @@ std::string mean_ratio(const Outcome& o, size_t scenes) {
                 mean("shadow"));
 }
 
-int study(bool quick, const std::string& command) {
-    const Effort effort = quick ? Effort{256, 3, 0.01} : Effort{};
-    Page page(report_folder(quick), "bench");
+int study(const Scope& scope) {
+    const Effort effort = scope.quick ? Effort{256, 3, 0.01} : Effort{};
+    Page page(scope, "bench");
     std::map<std::string, Outcome> outcomes;
     std::vector<std::vector<std::string>> lines;
     const Case cases[] = {scene_of("cornell36", effort.width), scene_of("mesh", effort.width),
@@ -275,15 +275,12 @@ int study(bool quick, const std::string& command) {
     page.set("width", text("%d", effort.width));
     page.set("rounds", text("%d", effort.rounds));
     page.set("bytes", text("%zu", sizeof(real)));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
-    const Lab lab{
-        "bench", "Measures rays a second, beside Embree if it is installed.", {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return study(quick, command_of(argc, argv)); });
+    return experiment(
+        argc, argv, {"bench", "Measures rays a second, beside Embree if it is installed."}, study);
 }

@@ -15,7 +15,6 @@ const std::vector<std::string> counts = {"--spp 16", "--spp 32", "--spp 64", "--
 const std::string more[] = {"--spp 1024", "--spp 4096"};  // of hard scenes
 
 struct Effort {
-    bool quick = false, kept = false;
     uint64_t seeds = 10, error_seeds = 10, truth = 16384;
     std::string part;  // of the names of scenes; "": all
 };
@@ -150,16 +149,17 @@ std::string all_measures(const Rows& rows) {
     return table({"64×32 pixels", sets[0], sets[1], sets[2], sets[3], "aim"}, lines);
 }
 
-int run(const Effort& plan, const std::string& program, const std::string& command) {
-    Page page(report_folder(plan.quick), "calibration");
-    RenderGrid grid("calibration", program, plan.kept);
+int study(Scope scope, Effort plan) {
+    if (scope.quick) plan.seeds = 2, plan.error_seeds = 1, plan.truth = 4096;
+    scope.quick = scope.quick || !plan.part.empty();
+    Page page(scope, "calibration");
+    RenderGrid grid("calibration", scope.beside(), scope.kept);
     const Rows rows = all_rows(grid, all_subjects(plan), plan);
     page.set("table", all_measures(rows));
     page.data("calibration", csv_of(rows, {"d_rel", "d_rel_by_spread", "off", "own", "error"}));
     const std::vector<std::pair<std::string, uint64_t>> numbers = {
         {"seeds", plan.seeds}, {"error seeds", plan.error_seeds}, {"truth", plan.truth}};
     for (const auto& [word, n] : numbers) page.set(word, text("%.0f", double(n)));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
@@ -167,22 +167,15 @@ int run(const Effort& plan, const std::string& program, const std::string& comma
 
 int main(int argc, char** argv) {
     Effort plan;
-    auto count = [](uint64_t& n, uint64_t most) {
-        return [&n, most](const std::string& word) { n = parse_count(word, 1, most); };
+    auto count = [](uint64_t& n) {
+        return [&n](const std::string& word) { n = parse_count(word, 1, 1000); };
     };
-    const Lab lab{
-        "calibration",
-        "Compares the errors that penumbra states with true ones.",
-        {{"--seeds", "N", "runs of each count of samples (10)", count(plan.seeds, 1000)},
-         {"--error-seeds", "N", "runs of each --error (10)", count(plan.error_seeds, 1000)},
-         {"--scene", "PART", "only those with PART in SET/NAME; writes into out/",
-          [&](auto& name) { plan.quick = true, plan.part = name; }},
-         kept_flag(plan.kept),
-         {"--quick", "", "two seeds, one of --error, references of a quarter, into out/",
-          [&](auto&) {
-              plan.quick = true, plan.seeds = 2, plan.error_seeds = 1, plan.truth = 4096;
-          }}}};
-    return lab_main(argc, argv, lab, [&] {
-        return run(plan, renderer_beside(lab, argv[0]), command_of(argc, argv));
-    });
+    const Lab lab{"calibration",
+                  "Compares the errors that penumbra states with true ones.",
+                  {{"--seeds", "N", "runs of each count of samples (10)", count(plan.seeds)},
+                   {"--error-seeds", "N", "runs of each --error (10)", count(plan.error_seeds)},
+                   {"--scene", "PART", "only those with PART in SET/NAME; writes into out/",
+                    [&](auto& name) { plan.part = name; }}},
+                  true};
+    return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, plan); });
 }

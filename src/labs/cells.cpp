@@ -69,9 +69,9 @@ std::vector<std::string> race(size_t n, size_t sites, size_t rounds) {
             HAVE_CGAL ? with_range(ratio, "%.2f") : "–"};
 }
 
-int run(bool quick, const std::string& command) {
-    const size_t sites = quick ? 20000 : 200000, rounds = quick ? 3 : 15;
-    Page page(report_folder(quick), "cells");
+int study(const Scope& scope) {
+    const size_t sites = scope.quick ? 20000 : 200000, rounds = scope.quick ? 3 : 15;
+    Page page(scope, "cells");
     std::vector<std::vector<std::string>> lines;
     for (size_t n : {64, 256, 1024, 4096, 65536}) lines.push_back(race(n, sites, rounds));
     const std::vector<std::string>& last = lines.back();
@@ -82,16 +82,13 @@ int run(bool quick, const std::string& command) {
     page.set("table", table({"sites", "areas, ns per site", "CGAL, ns per site", "ratio"}, lines));
     page.set("lanes", text("%d", cell::lanes));
     page.set("rounds", text("%zu", rounds)), page.set("sites", text("%zu", sites));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
-    const Lab lab{"cells",
-                  "Measures Voronoi cells a second, beside CGAL if it is installed.",
-                  {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return run(quick, command_of(argc, argv)); });
+    return experiment(argc, argv,
+                      {"cells", "Measures Voronoi cells a second, beside CGAL if it is installed."},
+                      study);
 }

@@ -1,4 +1,4 @@
-// labs/estimators1d.cpp  4  four estimators of a shadowed integral, on the unit interval
+// labs/estimators1d.cpp  5  four estimators of a shadowed integral, on the unit interval
 //
 //   build/estimators1d [--quick]
 //
@@ -98,7 +98,7 @@ Tally run_trials(const Case& c, uint64_t key, uint64_t first, uint64_t last) {
 }
 
 // The same numbers whatever the number of threads: trials come in 64 blocks, merged in order.
-Tally experiment(const Case& c, uint64_t trials) {
+Tally all_trials(const Case& c, uint64_t trials) {
     constexpr uint64_t blocks = 64;
     const uint64_t key = hash(0, uint64_t(c.letter[0]));
     std::vector<Tally> parts(blocks);
@@ -119,7 +119,7 @@ Tally experiment(const Case& c, uint64_t trials) {
 // variance and bias are from what is predicted for large N, as parts of it.
 Rows rows_of(const Case& c, uint64_t trials) {
     constexpr double zero = 1e-15;  // what a formula leaves of it
-    const Tally tally = experiment(c, trials);
+    const Tally tally = all_trials(c, trials);
     const ShadowPopulation p = c.population();
     Rows rows;
     for (size_t k = 0; k < steps; ++k)
@@ -183,9 +183,9 @@ double regression_over_best(const Rows& rows) {
     return most;
 }
 
-int study(bool quick, const std::string& command) {
-    const uint64_t trials = quick ? 512 : 32768;
-    Page page(report_folder(quick), "estimators1d");
+int study(const Scope& scope) {
+    const uint64_t trials = scope.quick ? 512 : 32768;
+    Page page(scope, "estimators1d");
     Rows rows;
     for (const Case& c : cases) {
         const Rows some = rows_of(c, trials);
@@ -207,16 +207,13 @@ int study(bool quick, const std::string& command) {
     page.set("regression", text("%.3f", regression));
     page.set("spread", percent(spread)), page.set("limit", percent(limit));
     page.set("trials", text("%.0f", double(trials)));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
-    const Lab lab{"estimators1d",
-                  "Measures four estimators of a shadowed integral in 1D.",
-                  {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return study(quick, command_of(argc, argv)); });
+    return experiment(argc, argv,
+                      {"estimators1d", "Measures four estimators of a shadowed integral in 1D."},
+                      study);
 }

@@ -15,10 +15,6 @@ namespace {
 using namespace illumination;
 using Lines = std::vector<std::vector<std::string>>;
 
-struct Scope {
-    bool quick = false, kept = false;
-};
-
 // A scene, the longest edge, the longest Monte Carlo run, and where shooting and hierarchy end.
 struct Course {
     std::string scene;
@@ -36,8 +32,8 @@ struct Course {
     }
 };
 
-std::vector<Course> courses(const Scope& plan) {
-    if (plan.quick)
+std::vector<Course> courses(bool quick) {
+    if (quick)
         return {{"cube", 3.6, 1 << 18, 1e-3, 1e-3},
                 {"cornell36", 320, 1 << 18, 1e-2, 1e-2},
                 {"cornell36", 160, 1 << 18, 1e-2, 1e-2}};
@@ -191,33 +187,27 @@ void tell_total(Page& page, const std::vector<Race>& races) {
 }
 
 // The reference of paths has no end that is felt: .73^64 is 10^-9.
-int study(const std::string& penumbra, const std::string& radiosity, const Scope& plan,
-          const std::string& command) {
-    Page page(report_folder(plan.quick), "radiosity");
-    RenderGrid grid("illumination", radiosity, plan.kept);
-    RenderGrid paths("illumination-paths", penumbra + " --depth 64", plan.kept);
+int study(const Scope& scope) {
+    Page page(scope, "radiosity");
+    RenderGrid grid("illumination", scope.beside("radiosity"), scope.kept);
+    RenderGrid paths("illumination-paths", scope.beside() + " --depth 64", scope.kept);
     const Subject room{"cornell36", "scenes/cornell36.scene --size 128x64",
-                       plan.quick ? 256u : 4096u};
-    const Truth* truth = plan.kept ? nullptr : &paths.truth(room);
+                       scope.quick ? 256u : 4096u};
+    const Truth* truth = scope.kept ? nullptr : &paths.truth(room);
     std::vector<Race> races;
-    for (const Course& c : courses(plan))
-        races.push_back(run_race(grid, c, c.scene == "cornell36" ? truth : nullptr, plan.kept));
+    for (const Course& c : courses(scope.quick))
+        races.push_back(run_race(grid, c, c.scene == "cornell36" ? truth : nullptr, scope.kept));
     tell_races(page, races);
     plot_race(page, races.back());
     tell_total(page, races);
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Scope plan;
-    const Lab lab{"illumination",
-                  "Compares deterministic and Monte Carlo illumination maps.",
-                  {quick_flag(plan.quick), kept_flag(plan.kept)}};
-    return lab_main(argc, argv, lab, [&] {
-        return study(renderer_beside(lab, argv[0]), renderer_beside(lab, argv[0], "radiosity"),
-                     plan, command_of(argc, argv));
-    });
+    return experiment(
+        argc, argv,
+        {"illumination", "Compares deterministic and Monte Carlo illumination maps.", {}, true},
+        study);
 }

@@ -233,8 +233,9 @@ void tell_runs(Page& page, const Rows& rows) {
     page.claim("reported-ok", std::abs(ratio.mean - 1) < 0.08);
 }
 
-int study(const Extent& extent, const std::string& folder, const std::string& command) {
-    Page page(folder, "radiosity-cube");
+int study(const Scope& scope) {
+    const Extent extent = scope.quick ? Extent{16, 8, 1 << 16} : Extent{};
+    Page page(scope, "radiosity-cube");
     const cube::Solution exact;
     const Rows rows = run_all(exact, extent);
     tell_limits(page, exact, rows);
@@ -245,20 +246,14 @@ int study(const Extent& extent, const std::string& folder, const std::string& co
               plot(where(rows, [](const Row& r) { return std::isnan(r["from limit"]); }),
                    "cells a side", "error of E", of_setting, count_of, mean_of("off"),
                    "Discretisation: from a method's limit to the exact solution"));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Extent extent;
-    bool quick = false;
-    const Lab lab{"illumination_cube",
-                  "Compares illumination maps of a cube with its exact solution.",
-                  {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        if (quick) extent = {16, 8, 1 << 16};
-        return study(extent, report_folder(quick), command_of(argc, argv));
-    });
+    return experiment(
+        argc, argv,
+        {"illumination_cube", "Compares illumination maps of a cube with its exact solution."},
+        study);
 }

@@ -6,9 +6,6 @@
 
 namespace {
 
-struct Scope {
-    bool quick = false, kept = false;
-};
 using Lines = std::vector<std::vector<std::string>>;
 
 const std::vector<std::string> scenes = {"cornell36", "cube", "atelier"};
@@ -94,15 +91,15 @@ void tell_images(Page& page, const Rows& all, const std::vector<Setting>& method
 
 // ---- When to go on ------------------------------------------------------------------------------
 
-void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, const Scope& plan) {
+void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, bool quick) {
     std::vector<Subject> subjects;
     for (const std::string& scene : scenes)
         subjects.push_back(
-            {scene, "scenes/" + scene + ".scene --size 64x32", plan.quick ? 512u : 16384u});
+            {scene, "scenes/" + scene + ".scene --size 64x32", quick ? 512u : 16384u});
     std::vector<Setting> ways;
     for (const char* way : {"whole:0.25", "map", "over:2", "over:1", "control", "over:0.4"})
         ways.push_back({way, std::string("--particles 300000 --way ") + way, draw});
-    const Rows rows = grid.run(subjects, ways, {16}, plan.quick ? 2 : 8);
+    const Rows rows = grid.run(subjects, ways, {16}, quick ? 2 : 8);
     Lines lines;
     for (const Setting& way : ways) {
         lines.push_back({way.name == "control" ? "**over:2/3** (`control`)" : way.name});
@@ -115,7 +112,7 @@ void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, const Scop
 // ---- How fine -----------------------------------------------------------------------------------
 
 void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, double diagonal,
-                 const Scope& plan) {
+                 bool quick) {
     std::vector<Setting> settings;
     for (int part : {8, 16, 32, 64})
         for (int particles : {30000, 100000, 300000, 1000000})
@@ -123,8 +120,8 @@ void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, dou
                                 text("--final-gather --sets 1 --mesh %g --particles %d",
                                      diagonal / part, particles),
                                 radiosity});
-    const Subject s{"cornell36", "scenes/cornell36.scene --size 64x32", plan.quick ? 512u : 16384u};
-    const Rows rows = grid.run({s}, settings, {plan.quick ? 64u : 1024u}, plan.quick ? 2 : 4);
+    const Subject s{"cornell36", "scenes/cornell36.scene --size 64x32", quick ? 512u : 16384u};
+    const Rows rows = grid.run({s}, settings, {quick ? 64u : 1024u}, quick ? 2 : 4);
     auto part = [](const Row& r) { return r.setting.substr(0, r.setting.find(',')); };
     auto particles = [](const Row& r) { return r.setting.substr(r.setting.find(' ') + 1); };
     page.set("meshes", table(rows, part, particles, [](const Rows& r) {
@@ -132,12 +129,14 @@ void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, dou
              }));
 }
 
-int study(const std::string& penumbra, const std::string& radiosity, const std::string& draw,
-          const Scope& plan, const std::string& command) {
-    Page page(report_folder(plan.quick), "indirect");
+int study(const Scope& scope) {
+    const bool quick = scope.quick;
+    const std::string penumbra = scope.beside(), radiosity = scope.beside("radiosity"),
+                      draw = scope.beside("indirect_draw") + " --scene";
+    Page page(scope, "indirect");
     Pairs pairs;
     // References: without an end that is felt, .8^64 is 10^-6.
-    RenderGrid grid("indirect", penumbra + " --depth 64", plan.kept);
+    RenderGrid grid("indirect", penumbra + " --depth 64", scope.kept);
     grid.measure = [&](Row& r, const Image& image, const Truth& f) { pairs(r, image, f); };
     const std::vector<Setting> methods = {{"path", "--sets 1", penumbra},
                                           {"map", "--final-gather --sets 1", radiosity},
@@ -147,28 +146,23 @@ int study(const std::string& penumbra, const std::string& radiosity, const std::
     std::vector<Subject> subjects;
     for (const std::string& scene : scenes)
         subjects.push_back(
-            {scene, "scenes/" + scene + ".scene --size 128x64", plan.quick ? 512u : 8192u});
+            {scene, "scenes/" + scene + ".scene --size 128x64", quick ? 512u : 8192u});
     using Counts = std::vector<uint64_t>;
-    const Counts counts = plan.quick ? Counts{4, 16} : Counts{8, 64, 512};
-    const Rows images = grid.run(subjects, methods, counts, plan.quick ? 2 : 4);
+    const Counts counts = quick ? Counts{4, 16} : Counts{8, 64, 512};
+    const Rows images = grid.run(subjects, methods, counts, quick ? 2 : 4);
     tell_images(page, images, methods);
-    tell_ways(page, grid, draw, plan);
+    tell_ways(page, grid, draw, quick);
     const double diagonal = 16 * by_setting(in_scene(images, "cornell36"), "map")[0]["map_mesh"];
-    tell_meshes(page, grid, radiosity, diagonal, plan);
-    page.set("spp", text("%.0f", double(counts.back()))), page.set("made", made_by(command));
+    tell_meshes(page, grid, radiosity, diagonal, quick);
+    page.set("spp", text("%.0f", double(counts.back())));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Scope plan;
-    const Lab lab{"indirect",
-                  "Measures what illumination maps bring to paths that end on them.",
-                  {quick_flag(plan.quick), kept_flag(plan.kept)}};
-    return lab_main(argc, argv, lab, [&] {
-        auto beside = [&](const char* name) { return renderer_beside(lab, argv[0], name); };
-        return study(beside("penumbra"), beside("radiosity"), beside("indirect_draw") + " --scene",
-                     plan, command_of(argc, argv));
-    });
+    return experiment(
+        argc, argv,
+        {"indirect", "Measures what illumination maps bring to paths that end on them.", {}, true},
+        study);
 }

@@ -121,8 +121,9 @@ std::string shot_cell(Page& page, const Rows& runs) {
     return text("%.2g–%.2g: ", quantile(x, 0), quantile(x, 1)) + page.verdict(quantile(x, 1) <= 1);
 }
 
-int study(bool quick, const std::string& command) {
-    Page page(report_folder(quick), "radiosity-error");
+int study(const Scope& scope) {
+    const bool quick = scope.quick;
+    Page page(scope, "radiosity-error");
     using Places = std::vector<std::pair<std::string, double>>;
     const Places places =
         quick ? Places{{"cube", 0.03}, {"penumbra", 0.03}}
@@ -150,16 +151,15 @@ int study(bool quick, const std::string& command) {
     const std::vector<std::string> numbers = {"asked", "stated", "true"};
     page.data("radiosity-error-particles", csv_of(walked, numbers));
     page.data("radiosity-error-shooting", csv_of(shot, numbers));
-    page.set("seeds", quick ? "8" : "32"), page.set("made", made_by(command));
+    page.set("seeds", quick ? "8" : "32");
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
-    const Lab lab{"radiosity_error",
-                  "Measures true errors of illumination maps over those asked for.",
-                  {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return study(quick, command_of(argc, argv)); });
+    return experiment(
+        argc, argv,
+        {"radiosity_error", "Measures true errors of illumination maps over those asked for."},
+        study);
 }

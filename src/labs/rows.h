@@ -176,15 +176,15 @@ std::string table(const Rows& rows, By by, Across across, Value value) {
 
 // Numbers of every row for who doubts; nothing where a row has none.
 inline std::string csv_of(const Rows& rows, const std::vector<std::string>& numbers) {
-    std::vector<std::string> head = {"scene", "setting", "count", "seed"};
-    head.insert(head.end(), numbers.begin(), numbers.end());
-    std::vector<std::vector<std::string>> lines;
+    std::string out = "scene,setting,count,seed";
+    for (const std::string& name : numbers) out += "," + name;
     for (const Row& r : rows) {
-        lines.push_back({r.scene, r.setting, of_count(r), text("%.0f", double(r.seed))});
+        out +=
+            text("\n\"%s\",\"%s\",%.0f,%.0f", r.scene, r.setting, double(r.count), double(r.seed));
         for (const std::string& name : numbers)
-            lines.back().push_back(std::isnan(r[name]) ? "" : text("%.6g", r[name]));
+            out += std::isnan(r[name]) ? "," : text(",%.6g", r[name]);
     }
-    return csv(head, lines);
+    return out + "\n";
 }
 
 // What a curve is drawn over: the count of rows, or a number's mean.

@@ -11,10 +11,6 @@ namespace {
 
 constexpr const char* names[] = {"stochastic", "control", "ratio", "regression"};
 
-struct Scope {
-    bool quick = false, kept = false;
-};
-
 // ---- Noise --------------------------------------------------------------------------------------
 
 enum Region { lit, penumbra, umbra, other };
@@ -62,18 +58,18 @@ Pixel measure_pixel(const Scene& scene, PixelSample p, uint64_t trials) {
     return pixel;
 }
 
-void tell_noise(Page& page, const Scope& plan) {
+void tell_noise(Page& page, bool quick) {
     std::vector<std::vector<std::string>> lines;
     bool exact = true;
     for (const char* name : {"penumbra", "panel", "lanterns"}) {
         Scene scene = read_scene(text("scenes/%s.scene", name)).scene;
-        scene.size = plan.quick ? Size{32, 16} : Size{64, 32};
+        scene.size = quick ? Size{32, 16} : Size{64, 32};
         std::vector<Pixel> pixels(size_t(scene.size.width) * size_t(scene.size.height));
         in_parallel(
             pixels.size(), all_cores(),
             [&](size_t i) {
                 const PixelSample p{int(i) % scene.size.width, int(i) / scene.size.width};
-                pixels[i] = measure_pixel(scene, p, plan.quick ? 16 : 256);
+                pixels[i] = measure_pixel(scene, p, quick ? 16 : 256);
             },
             [](double) {});
         for (Region region : {lit, penumbra, umbra}) {
@@ -130,11 +126,12 @@ void tell_efficiency(Page& page, RenderGrid& grid, bool quick) {
     page.set("efficiency", table({"scene", "sampler", names[1], names[2], names[3]}, lines));
 }
 
-int run(const Scope& plan, const std::string& program, const std::string& command) {
-    Page page(report_folder(plan.quick), "shadows");
-    tell_noise(page, plan);
-    RenderGrid grid("shadows", program, plan.kept);
-    tell_efficiency(page, grid, plan.quick);
+int study(const Scope& scope) {
+    const std::string program = scope.beside("shadow");
+    Page page(scope, "shadows");
+    tell_noise(page, scope.quick);
+    RenderGrid grid("shadows", program, scope.kept);
+    tell_efficiency(page, grid, scope.quick);
     std::vector<Picture> pictures;
     for (const char* e : names)
         pictures.push_back({rendering(text("%s scenes/penumbra.scene --size 256x128 --depth 1 "
@@ -144,18 +141,13 @@ int run(const Scope& plan, const std::string& program, const std::string& comman
     page.plot(
         "shadows-penumbra",
         contact_sheet(pictures, 2, double(read_scene("scenes/penumbra.scene").scene.exposure)));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Scope plan;
-    const Lab lab{"shadows",
-                  "Measures four estimators of direct light on images.",
-                  {kept_flag(plan.kept), quick_flag(plan.quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        return run(plan, renderer_beside(lab, argv[0], "shadow"), command_of(argc, argv));
-    });
+    return experiment(argc, argv,
+                      {"shadows", "Measures four estimators of direct light on images.", {}, true},
+                      study);
 }

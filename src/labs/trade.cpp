@@ -12,8 +12,7 @@ namespace {
 using namespace trade;
 
 struct Effort {
-    bool quick = false, kept = false;
-    std::vector<std::string> scenes = scenes_in("scenes");
+    std::vector<std::string> scenes = {};  // none: all
     std::vector<uint64_t> counts = {1, 4, 16, 64, 256};
     uint64_t seeds = 1, truth = 4096;
     int part = 2;  // of the scenes' widths and heights
@@ -153,11 +152,14 @@ void tell_default(Page& page, const std::vector<Candidate>& all) {
     page.claim("is best", at->ratio <= 1.05 * all[0].ratio);
 }
 
-int run(const Effort& plan, const std::string& program, const std::string& float_program,
-        const std::string& command) {
+int study(Scope scope, Effort plan) {
+    if (scope.quick) plan.part = 4, plan.truth = 256, plan.counts = {1, 4, 16};
+    RenderGrid grid(scope.quick ? "trade-quick" : "trade", scope.beside(), scope.kept);
+    scope.quick = scope.quick || !plan.scenes.empty();
+    if (plan.scenes.empty()) plan.scenes = scenes_in("scenes");
+    const std::string float_program = scope.beside("penumbra-float");
     std::filesystem::create_directories(folder);
-    Page page(report_folder(plan.quick), "trade");
-    RenderGrid grid(plan.part > 2 ? "trade-quick" : "trade", program, plan.kept);
+    Page page(scope, "trade");
     grid.measure = [](Row& row, const Image& image, const Truth&) {
         if (row.setting.starts_with(shot) && row.seed == 2) write_image(image_of(row), image, 1);
     };
@@ -166,7 +168,8 @@ int run(const Effort& plan, const std::string& program, const std::string& float
     Lines lines;
     for (const std::string& name : plan.scenes) {
         const Study& s = studies.emplace_back(study(grid, plan, name, float_program, rows));
-        write_page(studies, command, plan.quick, folder);  // what is there, should the rest fail
+        write_page(studies, scope.command, scope.quick,
+                   folder);  // what is there, should the rest fail
         lines.push_back({name});
         for (double error : asked) lines.back().push_back(told_answer(s.choices, error));
     }
@@ -177,7 +180,6 @@ int run(const Effort& plan, const std::string& program, const std::string& float
     page.set("samples", text("%.0f", double(plan.counts.back())));
     page.set("truth", text("%.0f", double(plan.truth)));
     page.set("part", text("1/%d", plan.part));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
@@ -185,22 +187,12 @@ int run(const Effort& plan, const std::string& program, const std::string& float
 
 int main(int argc, char** argv) {
     Effort plan;
-    std::vector<std::string> scenes;
     const Lab lab{"trade",
                   "Measures error over time by every setting, on every scene.",
                   {{"--scene", "NAME", "this one alone; may be repeated, writes into out/",
-                    [&](auto& name) { plan.quick = true, scenes.push_back(name); }},
+                    [&](auto& name) { plan.scenes.push_back(name); }},
                    {"--full", "", "more samples and seeds",
-                    [&](auto&) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }},
-                   {"--quick", "", "fewer samples and pixels, into out/",
-                    [&](auto&) {
-                        plan.quick = true, plan.part = 4, plan.truth = 256;
-                        plan.counts = {1, 4, 16};
-                    }},
-                   kept_flag(plan.kept)}};
-    return lab_main(argc, argv, lab, [&] {
-        if (!scenes.empty()) plan.scenes = scenes;
-        return run(plan, renderer_beside(lab, argv[0]),
-                   renderer_beside(lab, argv[0], "penumbra-float"), command_of(argc, argv));
-    });
+                    [&](auto&) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }}},
+                  true};
+    return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, plan); });
 }

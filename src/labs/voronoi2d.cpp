@@ -214,7 +214,8 @@ void tell_findings(Page& page, const Rows& rows, const Rows& last) {
                           -list[0].rim / (4 * std::numbers::pi)));
 }
 
-void tell(Page& page, uint64_t trials) {
+int study(const Scope& scope, uint64_t trials) {
+    Page page(scope, "voronoi2d");
     const Rows rows = run_all(trials);
     const Rows last = where(rows, [&](const Row& r) { return r.count == rows.back().count; });
     auto error = [](const Rows& r) { return r[0]["error"]; };
@@ -226,22 +227,17 @@ void tell(Page& page, uint64_t trials) {
     page.plot("voronoi2d", plot(in_scene(rows, "holder_1"), "points, N", "rmse", of_setting,
                                 count_of, mean_of("error"), "holder_1"));
     tell_findings(page, rows, last);
+    return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
     uint64_t trials = 2000;
     const Lab lab{"voronoi2d",
                   "Integrates functions over a square by Voronoi cells, strata and Halton points.",
                   {{"--trials", "N", "estimates of each kind (2000)",
-                    [&](auto& word) { trials = parse_count(word, 2, 1000000); }},
-                   quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        Page page(report_folder(quick), "voronoi2d");
-        tell(page, quick ? 50 : trials);
-        page.set("made", made_by(argc, argv));
-        return page.finish();
-    });
+                    [&](auto& word) { trials = parse_count(word, 2, 1000000); }}}};
+    return experiment(argc, argv, lab,
+                      [&](const Scope& scope) { return study(scope, scope.quick ? 50 : trials); });
 }

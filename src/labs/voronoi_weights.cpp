@@ -54,15 +54,16 @@ double less(const Rows& rows, const std::string& other, const std::string& numbe
     return mean(by_setting(rows, mc), number) / mean(by_setting(rows, other), number);
 }
 
-int run(bool quick, bool kept, uint64_t most, const std::string& penumbra,
-        const std::string& voronoi, const std::string& command) {
-    Page page(report_folder(quick), "voronoi");
+int study(const Scope& scope, uint64_t most) {
+    const bool quick = scope.quick;
+    if (quick) most = 64;
+    Page page(scope, "voronoi");
     const int side = quick ? 64 : 128;
     std::vector<Setting> settings;
     for (const char* weights : {"mc", "vor", "fvor", "cvor", "torus"})
         settings.push_back({weights,
                             std::string("--sets 1 --light nee --roulette 0 --weights ") + weights,
-                            voronoi});
+                            scope.beside("voronoi")});
     settings.push_back({stratified, "--sets 1 --light nee --roulette 0 --sampler stratified"});
     std::vector<uint64_t> counts;
     for (uint64_t n = 64; n <= most; n *= 4) counts.push_back(n);
@@ -73,7 +74,7 @@ int run(bool quick, bool kept, uint64_t most, const std::string& penumbra,
         scene.size = {side, side};
         const Subject subject{name, text("%s --size %dx%d", file, side, side),
                               uint64_t(quick ? 1024 : 8192)};
-        RenderGrid grid("voronoi", penumbra, kept);
+        RenderGrid grid("voronoi", scope.beside(), scope.kept);
         grid.measure = [&](Row& r, const Image& image, const Truth& f) {
             add_regions(r, image, f, scene);
         };
@@ -113,23 +114,17 @@ int run(bool quick, bool kept, uint64_t most, const std::string& penumbra,
     page.claim("border", at_border);
     page.claim("strata", strata);
     page.set("size", text("%d×%d", side, side));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false, kept = false;
     uint64_t most = 256;
     const Lab lab{"voronoi_weights",
                   "Weighs pixels' samples by their Voronoi cells, as published and beside strata.",
                   {{"--most", "N", "samples a pixel (256; published: 4096)",
-                    [&](auto& s) { most = parse_count(s, 64, 1 << 16); }},
-                   kept_flag(kept),
-                   quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        return run(quick, kept, quick ? 64 : most, renderer_beside(lab, argv[0]),
-                   renderer_beside(lab, argv[0], "voronoi"), command_of(argc, argv));
-    });
+                    [&](auto& s) { most = parse_count(s, 64, 1 << 16); }}},
+                  true};
+    return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, most); });
 }

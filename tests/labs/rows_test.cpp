@@ -75,6 +75,11 @@ TEST_CASE("a table has a line and a column for each word, in their order") {
     CHECK(by_setting(rows, "x").size() == 3);
 }
 
+TEST_CASE("every row is a line of the CSV, with nothing where it has no number") {
+    CHECK(csv_of({row("a", "--x 1", 7, .5)}, {"d2", "none"}) ==
+          "scene,setting,count,seed,d2,none\n\"a\",\"--x 1\",4,7,0.5,\n");
+}
+
 TEST_CASE("a plot has a curve for each word, and its label") {
     Rows rows = {row("a", "x", 1, .01), row("a", "x", 1, .001), row("a", "y", 1, .02)};
     rows[1].count = 16;
