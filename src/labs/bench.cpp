@@ -217,8 +217,8 @@ struct Outcome {
     double differ = 0;
 };
 
-void race(std::vector<std::vector<std::string>>& lines, std::map<std::string, Outcome>& outcomes,
-          const Case& c, const Effort& effort) {
+void race(Lines& lines, std::map<std::string, Outcome>& outcomes, const Case& c,
+          const Effort& effort) {
     std::vector<Tracer> all = {{"wide", ours<WideBvh>(c)}, {"plain", ours<Bvh>(c)}};
 #if HAVE_EMBREE
     all.push_back({"Embree", embree(c)});
@@ -257,7 +257,7 @@ int study(const Scope& scope) {
     const Effort effort = scope.quick ? Effort{256, 3, 0.01} : Effort{};
     Page page(scope, "bench");
     std::map<std::string, Outcome> outcomes;
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     const Case cases[] = {scene_of("cornell36", effort.width), scene_of("mesh", effort.width),
                           soup(1000, effort.width), soup(100000, effort.width)};
     for (const Case& c : cases) race(lines, outcomes, c, effort);

@@ -31,8 +31,8 @@ inline PathRunner path_runner(const std::string& name, const Scene& scene, const
 }
 
 // Lines for the scenes that the textbook's tracer knows: diffuse quadrangles.
-inline std::vector<std::vector<std::string>> all_paths(int rounds) {
-    std::vector<std::vector<std::string>> lines;
+inline Lines all_paths(int rounds) {
+    Lines lines;
     for (const char* name : {"cornell36", "cornell36b"}) {
         const Scene scene = read_scene(text("scenes/%s.scene", name)).scene;
         textbook::Room room = textbook::room_of(scene);

@@ -47,8 +47,7 @@ Rows all_rows(RenderGrid& grid, const std::vector<Subject>& subjects, const Effo
                    uint64_t seeds) {
         std::vector<Setting> settings;
         for (const std::string& words : all) settings.push_back({words, words});
-        const Rows some = grid.run(which, settings, {0}, seeds);
-        rows.insert(rows.end(), some.begin(), some.end());
+        append(rows, grid.run(which, settings, {0}, seeds));
     };
     add(subjects, counts, plan.seeds), add(subjects, errors, plan.error_seeds);
     add(hard, {more[0]}, plan.seeds), add(hard, {more[1]}, plan.error_seeds);
@@ -69,7 +68,7 @@ bool is_among(const std::vector<std::string>& words, const Row& r) {
 Sample sample_of(const Rows& rows) {
     const Rows asked = where(rows, [](const Row& r) { return is_among(errors, r); });
     Rows plain = where(rows, [](const Row& r) { return is_among(counts, r); });
-    plain.insert(plain.end(), asked.begin(), asked.end());
+    append(plain, asked);
     return {plain, asked,
             where(rows, [](const Row& r) { return r.setting == more[0] || r.setting == more[1]; })};
 }
@@ -136,7 +135,7 @@ const Measure measures[] = {
      [](const Sample& s) { return number_of(quantile(over_asked(s.asked), 0.95)); }, "≤ 1.25"}};
 
 std::string all_measures(const Rows& rows) {
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     std::vector<Sample> samples;
     for (const char* set : sets)
         samples.push_back(

@@ -72,7 +72,7 @@ std::vector<std::string> race(size_t n, size_t sites, size_t rounds) {
 int study(const Scope& scope) {
     const size_t sites = scope.quick ? 20000 : 200000, rounds = scope.quick ? 3 : 15;
     Page page(scope, "cells");
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (size_t n : {64, 256, 1024, 4096, 65536}) lines.push_back(race(n, sites, rounds));
     const std::vector<std::string>& last = lines.back();
     page.set("verdict",

@@ -17,7 +17,7 @@ std::vector<std::string> overall(const Rows& rows, const std::string& choice) {
     std::vector<std::pair<double, std::string>> each;
     for (const auto& [scene, all] : grouped(rows, of_scene)) {
         if (gain(all, choice, standard, efficiency) == "=") continue;
-        changed.insert(changed.end(), all.begin(), all.end());
+        append(changed, all);
         each.push_back({over(all, choice, standard, efficiency), scene});
     }
     if (each.empty()) return {choice, "0", "", "", "", ""};
@@ -41,7 +41,7 @@ int study(const Scope& scope) {
     for (const std::string& words : choices) settings.push_back({words, "--sets 1 " + words});
     RenderGrid grid("efficiency", scope.beside(), scope.kept);
     const Rows rows = grid.run(subjects, settings, {spp}, seeds);
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const std::string& choice : choices) lines.push_back(overall(rows, choice));
     page.set("table", table({"choice", "scenes", "1 / error, × default", "efficiency, × default",
                              "least", "greatest"},

@@ -148,7 +148,7 @@ constexpr double low_variance = 0.4;                    // of W: standard deviat
 
 // Standard deviations of one sample over W, and the paper's marks of the low ones.
 std::string paper_table(Page& page, const Rows& rows) {
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const Case& c : cases) {
         lines.push_back({c.letter, c.w.formula, c.V_formula});
         bool same = true;
@@ -188,8 +188,7 @@ int study(const Scope& scope) {
     Page page(scope, "estimators1d");
     Rows rows;
     for (const Case& c : cases) {
-        const Rows some = rows_of(c, trials);
-        rows.insert(rows.end(), some.begin(), some.end());
+        append(rows, rows_of(c, trials));
     }
     page.plot("estimators1d", plot(in_scene(rows, "e"), "samples N", "rmse × √N / W", of_setting,
                                    count_of, mean_of("rmse"), "case e"));

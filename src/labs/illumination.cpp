@@ -13,8 +13,6 @@
 namespace {
 
 using namespace illumination;
-using Lines = std::vector<std::vector<std::string>>;
-
 // A scene, the longest edge, the longest Monte Carlo run, and where shooting and hierarchy end.
 struct Course {
     std::string scene;
@@ -79,7 +77,7 @@ Race run_race(RenderGrid& grid, const Course& c, const Truth* traced, bool kept)
         Rows rows = grid.run({c.subject()}, settings, {0}, seeds);
         for (Row& r : rows)  // near the last solution the distance to it says nothing any more
             if (!(r["unshot"] > 4 * rows.back()["unshot"])) r.of["optimistic2"] = NAN;
-        race.rows.insert(race.rows.end(), rows.begin(), rows.end());
+        append(race.rows, rows);
     };
     std::vector<Setting> walks;
     for (const char* kind : {"independent", "halton"})
@@ -142,7 +140,7 @@ void tell_races(Page& page, const std::vector<Race>& races) {
                 ahead_of.back().push_back(cell);
         }
         realistic += always;
-        all.insert(all.end(), r.rows.begin(), r.rows.end());
+        append(all, r.rows);
     }
     page.set("ahead", table({"room", "exponent", "ahead of shooting, realistic", "optimistic",
                              "floor", "of hierarchy, realistic", "optimistic", "floor"},

@@ -193,7 +193,7 @@ Rows run_all(const cube::Solution& exact, const Extent& extent) {
 
 // From the limit to the exact E, by the finest mesh and the one before.
 void tell_limits(Page& page, const cube::Solution& exact, const Rows& rows) {
-    std::vector<std::vector<std::string>> lines = {{"exact", "", "", ""}};
+    Lines lines = {{"exact", "", "", ""}};
     for (const NamedPoint& p : points) lines[0].push_back(text("%.1f", exact.luminance(p.x, p.y)));
     lines[0].push_back(text("%.2f", exact_mean));
     bool dark = true;

@@ -6,8 +6,6 @@
 
 namespace {
 
-using Lines = std::vector<std::vector<std::string>>;
-
 const std::vector<std::string> scenes = {"cornell36", "cube", "atelier"};
 
 // What two images of other seeds have in common: the product of their differences from a reference

@@ -5,9 +5,10 @@
 
 #include "labs/lab.h"
 
+using Lines = std::vector<std::vector<std::string>>;  // of a table, by cells
+
 // A table in Markdown.
-inline std::string table(const std::vector<std::string>& head,
-                         const std::vector<std::vector<std::string>>& lines) {
+inline std::string table(const std::vector<std::string>& head, const Lines& lines) {
     auto line_of = [](const std::vector<std::string>& cells) {
         std::string line = "|";
         for (const std::string& cell : cells) line += cell.empty() ? " |" : " " + cell + " |";

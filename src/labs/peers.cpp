@@ -105,7 +105,7 @@ int render(const std::vector<std::string>& words) {
 const std::string cycles = "Cycles";
 
 std::string views(const Rows& rows) {
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const auto& [scene, all] : grouped(rows, of_scene))
         for (const auto& [name, some] : grouped(all, of_setting)) {
             auto time = [](const Rows& r) { return mean(r, "cpu_seconds"); };
@@ -135,8 +135,7 @@ int study(const Scope& scope, uint64_t seeds) {
     Rows rows;
     auto add = [&](const std::string& name, const std::string& program,
                    const std::vector<Setting>& settings) {
-        const Rows more = RenderGrid(name, program, scope.kept).run(both, settings, {spp}, seeds);
-        rows.insert(rows.end(), more.begin(), more.end());
+        append(rows, RenderGrid(name, program, scope.kept).run(both, settings, {spp}, seeds));
     };
     add("peers-cycles", scope.self + " --render cycles", {{cycles, "--sets 1"}});
     add("peers-textbook", scope.self + " --render textbook", {{"a textbook's tracer", "--sets 1"}});

@@ -25,6 +25,9 @@ struct Row {
     }
 };
 using Rows = std::vector<Row>;
+inline void append(Rows& rows, const Rows& more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+}
 
 // A line, with tabs between; numbers come back as they were.
 inline std::string line_of(const Row& r, const std::string& print) {
@@ -158,7 +161,7 @@ std::vector<std::pair<std::string, Rows>> grouped(const Rows& rows, Key key) {
 template <class By, class Across, class Value>
 std::string table(const Rows& rows, By by, Across across, Value value) {
     const auto columns = grouped(rows, across);
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const auto& [word, group] : grouped(rows, by)) {
         std::vector<std::string>& line = lines.emplace_back(1, word);
         const auto cells = grouped(group, across);

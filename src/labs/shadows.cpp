@@ -59,7 +59,7 @@ Pixel measure_pixel(const Scene& scene, PixelSample p, uint64_t trials) {
 }
 
 void tell_noise(Page& page, bool quick) {
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     bool exact = true;
     for (const char* name : {"penumbra", "panel", "lanterns"}) {
         Scene scene = read_scene(text("scenes/%s.scene", name)).scene;
@@ -110,7 +110,7 @@ void tell_efficiency(Page& page, RenderGrid& grid, bool quick) {
         {"penumbra, depth 1", text("scenes/penumbra.scene%s --depth 1", size), 64 * samples}};
     for (const char* name : {"penumbra", "panel", "lanterns", "coursework", "cornell"})
         subjects.push_back({name, text("scenes/%s.scene%s", name, size), 64 * samples});
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const std::string sampler : {"independent", "sobol"}) {
         std::vector<Setting> settings;
         for (const char* e : names)

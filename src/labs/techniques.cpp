@@ -85,7 +85,7 @@ double z_of(const Rows& rows) {
 double error_after_a_second(const Rows& rows) { return std::sqrt(1 / efficiency(rows)); }
 
 std::string all_settings(Page& page, const Rows& rows) {
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const auto& [name, some] : grouped(rows, of_setting)) {
         const bool is_naive = name.starts_with("naive");
         const double z = z_of(some);

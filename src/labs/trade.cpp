@@ -58,7 +58,7 @@ Rows tournament(RenderGrid& grid, const Effort& plan, const Subject& subject, Ch
         for (Choice& c : choices)
             if (c.dropped.empty()) c.points.push_back(point_of(by_setting(rows, c.setting.name)));
         if (count != plan.counts.back()) drop_hopeless(choices);
-        all.insert(all.end(), rows.begin(), rows.end());
+        append(all, rows);
     }
     return all;
 }
@@ -109,7 +109,7 @@ Study study(RenderGrid& grid, const Effort& plan, const std::string& name,
     const Subject subject{name, text("%s --size %dx%d", file, width, height), plan.truth};
     Study s{name, double(scene.exposure), NAN, all_choices(scene, float_program)};
     const Rows rows = tournament(grid, plan, subject, s.choices);
-    all.insert(all.end(), rows.begin(), rows.end());
+    append(all, rows);
     const Truth& f = grid.truth(subject);
     s.own = f.own;
     s.shots.push_back({"the reference", {}, f.image});
@@ -128,8 +128,6 @@ std::string told_answer(const Choices& choices, double error) {
                 std::ceil(at.spp)) +
            (k ? "; default " + told_seconds(reach(choices[0], error).seconds) : "");
 }
-
-using Lines = std::vector<std::vector<std::string>>;
 
 // The default and whatever answers, on the first scene.
 Svg curves(const Rows& rows, const Study& s) {

@@ -78,10 +78,9 @@ int study(const Scope& scope, uint64_t most) {
         grid.measure = [&](Row& r, const Image& image, const Truth& f) {
             add_regions(r, image, f, scene);
         };
-        const Rows some = grid.run({subject}, settings, counts, 4);
-        rows.insert(rows.end(), some.begin(), some.end());
+        append(rows, grid.run({subject}, settings, counts, 4));
     }
-    std::vector<std::vector<std::string>> lines, areas;
+    Lines lines, areas;
     bool halves = true, at_border = true, strata = true;
     for (const auto& [scene, all] : grouped(rows, of_scene))
         for (const auto& [count, some] : grouped(all, of_count)) {
