@@ -124,16 +124,15 @@ radiosity:                 ## illumination maps by shooting and by particles (20
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
 indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## paths that end on illumination maps, beside whole ones (20 minutes)
 voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
-bench:                     ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
+bench: build/knot.obj       ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
 peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 4 hours)
-calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours; BASELINE=PROGRAM: samples beside those of an older one)
+calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours)
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
 EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
                calibration cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
-calibration: LAB_FLAGS := $(BASELINE:%=--baseline %)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 trade: LAB_FLAGS := $(if $(FULL),--full)
 peers: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
@@ -249,7 +248,7 @@ $(SUITE): $(UNITS:%=%.exe)
 	$(CXX) $(LINK) -o $@ $(^:.exe=.o) $(OBJECTS)/tests/main.o
 
 # The programs that tests run are one, which goes by its name.  Images are the same, bit for bit, however it is optimised.
-TESTED  := $(filter-out course/%,$(RENDERERS:src/%.cpp=%)) labs/compare labs/knot
+TESTED  := $(filter-out course/%,$(RENDERERS:src/%.cpp=%)) labs/knot
 RUNNERS := $(patsubst tests/%.cpp,%,$(shell grep -lE 'build/penumbra|whole/process.h' tests/*/*_test.cpp))
 $(RUNNERS:%=$(OBJECTS)/tests/%.run): | programs-to-test
 .PHONY: programs-to-test

@@ -3,9 +3,9 @@
 //   build/bench [--quick]
 //
 // On one thread.  All answer the same rays in the same triangles, rounded to float, since Embree
-// knows nothing else.  They take turns, two at a time, so that a busy machine slows both.
+// knows nothing else.  They take turns, so that a busy machine slows all.
+#include "base/rng.h"
 #include "labs/bench_paths.h"
-#include "labs/bench_rays.h"
 #include "wide/wide_bvh.h"
 #include "world/bvh.h"
 
@@ -18,68 +18,128 @@
 
 namespace {
 
-using namespace bench;
+// ---- Scenes and their rays ----------------------------------------------------------------------
 
-struct Effort {
-    int width = 512, rounds = 9, builds = 3;
-    double seconds = 0.1;  // of each measurement, at least
+// primary: closest hit along jittered camera rays, row by row: neighbours take the same way;
+// bounce: closest hit from the primary hits in cosine-weighted directions: no two alike;
+// shadow: any hit between the primary hits and random points of a quad.
+enum Kind { primary, bounce, shadow };
+constexpr std::pair<Kind, const char*> kinds[] = {
+    {primary, "primary"}, {bounce, "bounce"}, {shadow, "shadow"}};
+
+struct Case {
+    std::string name;
+    std::vector<Shape> shapes;
+    Camera camera;
+    vec3 p, u, v;                               // shadow rays go to this quad
+    std::array<std::vector<Ray>, 3> rays = {};  // of each kind
 };
+
+// Draws come one after the other: the order of a call's arguments is not specified.
+vec2 random2(Rng& rng) {
+    const real x = to_unit(rng.bits()), y = to_unit(rng.bits());
+    return {x, y};
+}
+vec3 random3(Rng& rng) {
+    const vec2 xy = random2(rng);
+    return {xy.x, xy.y, to_unit(rng.bits())};
+}
+
+// volatile: the vectoriser of g++ 12 drops a conversion to float and back.
+real to_float(real x) {
+    volatile float y = float(x);
+    return y;
+}
+vec3 to_float(vec3 a) { return {to_float(a.x), to_float(a.y), to_float(a.z)}; }
+Ray to_float(const Ray& r) { return {to_float(r.o), to_float(r.d), to_float(r.tmax)}; }
+
+// A point of a surface whose error is that of float, so that no ray meets what it leaves.
+Surface float_surface(Surface x) {
+    x.error *= real(std::numeric_limits<float>::epsilon() / 2) / ulp;
+    return x;
+}
+
+Case with_rays(Case c, int width) {
+    for (Shape& s : c.shapes) s = {to_float(s.a), to_float(s.b), to_float(s.c)};
+    const Tree tree(c.shapes);
+    const vec3 light_normal = unit(cross(c.u, c.v));
+    Rng rng{mix(c.shapes.size())};
+    for (int y = 0; y < width; ++y)
+        for (int x = 0; x < width; ++x) {
+            const vec2 jitter = random2(rng), direction = random2(rng), place = random2(rng);
+            const Ray ray = to_float(
+                camera_ray(c.camera, {width, width}, real(x) + jitter.x, real(y) + jitter.y));
+            c.rays[primary].push_back(ray);
+            const auto hit = tree.closest(ray);
+            if (!hit) continue;
+            Surface from = float_surface(surface(c.shapes[hit->id], ray, *hit));
+            if (dot(from.n, ray.d) > 0) from.n = -from.n;
+            const vec3 wi = frame(from.n).to_world(sample_cosine_hemisphere(direction));
+            c.rays[bounce].push_back(to_float(spawn(from, wi)));
+            const vec3 p = c.p + sample_quad(place, c.u, c.v);
+            const Surface to{p, light_normal, rounding_error({p, p, p})};
+            c.rays[shadow].push_back(to_float(spawn_to(from, float_surface(to))));
+        }
+    return c;
+}
+
+// The triangles of a scene; shadow rays go to its first lamp.
+Case scene_of(const std::string& name, int width) {
+    const Scene s = read_scene("scenes/" + name + ".scene").scene;
+    const Light& lamp = s.lights.at(0);
+    Case c{name, s.shapes, s.camera, lamp.p, lamp.u, lamp.v};
+    std::erase_if(c.shapes, [](const Shape& x) { return x.is_sphere(); });
+    return with_rays(std::move(c), width);
+}
+
+// Corners within n^(-1/3) of a random point of the unit cube: however many, it looks as full.
+Case soup(int n, int width) {
+    const vec3 middle = {real(0.5), real(0.5), real(0.5)};
+    Case c{text("%d, random", n), {},        look_at({real(0.5), real(0.5), 2}, middle, 45),
+           {0, real(1.5), 0},     {1, 0, 0}, {0, 0, 1}};
+    const real size = 1 / std::cbrt(real(n));
+    Rng rng{uint64_t(n)};
+    for (int i = 0; i < n; ++i) {
+        const vec3 centre = random3(rng);
+        auto corner = [&] { return centre + size * (2 * random3(rng) - vec3{1, 1, 1}); };
+        const vec3 p = corner(), q = corner(), r = corner();
+        c.shapes.push_back({p, q, r});
+    }
+    return with_rays(std::move(c), width);
+}
 
 // ---- The tracers --------------------------------------------------------------------------------
 
-template <class Either>
-struct Ours {
-    const Case& c;
-    Either tree = {};
+using Column = std::vector<double>;
+using Trace = std::function<void(Kind, Column&)>;  // distances of all rays of a kind; any hit: 0
 
-    explicit Ours(const Case& source) : c(source) {}
-
-    void build() { tree = Either(c.shapes); }
-
-    // Distance of the hit of ray i (any hit: 0), or infinity.
-    real find(Kind kind, size_t i) const {
-        const Ray& ray = c.rays[kind][i];
-        if (kind == shadow) return tree.occluded(ray) ? 0 : infinity;
-        const auto hit = tree.closest(ray);
-        return hit ? hit->t : infinity;
-    }
-};
-using Wide = Ours<WideBvh>;
-using Plain = Ours<Bvh>;
-double bytes_of(const Wide& t) { return double(t.tree.bytes()); }
+template <class OurTree>
+Trace ours(const Case& c) {
+    return [&c, tree = std::make_shared<const OurTree>(c.shapes)](Kind kind, Column& t) {
+        for (size_t i = 0; i < t.size(); ++i) {
+            const Ray& ray = c.rays[kind][i];
+            if (kind == shadow) {
+                t[i] = tree->occluded(ray) ? 0 : HUGE_VAL;
+            } else {
+                const auto hit = tree->closest(ray);
+                t[i] = hit ? double(hit->t) : HUGE_VAL;
+            }
+        }
+    };
+}
 
 #if HAVE_EMBREE
 struct Embree {
-    const Case& c;
     RTCDevice device = rtcNewDevice("threads=1,verbose=0");
-    RTCScene scene = nullptr;
-    mutable RTCIntersectContext context;
+    RTCScene scene = rtcNewScene(device);
     std::array<std::vector<RTCRay>, 3> rays;
-    ssize_t held = 0;  // bytes, also of the vertices
 
-    explicit Embree(const Case& source) : c(source) {
+    explicit Embree(const Case& c) {
         if (!device) throw SystemError("embree: no device");
-        rtcInitIntersectContext(&context);
-        auto count = [](void* self, ssize_t n, bool) {
-            static_cast<Embree*>(self)->held += n;
-            return true;
-        };
-        rtcSetDeviceMemoryMonitorFunction(device, count, this);
-        for (Kind kind : kinds)
+        for (const auto& [kind, name] : kinds)
             for (const auto& [o, d, tmax] : c.rays[kind])
                 rays[kind].push_back({float(o.x), float(o.y), float(o.z), 0, float(d.x), float(d.y),
                                       float(d.z), 0, float(tmax), ~0u, 0, 0});
-    }
-    ~Embree() {
-        if (scene) rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-    Embree(const Embree&) = delete;
-    Embree& operator=(const Embree&) = delete;
-
-    void build() {
-        if (scene) rtcReleaseScene(scene);
-        scene = rtcNewScene(device);
         RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         const size_t n = c.shapes.size();
         auto* xyz = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -96,182 +156,131 @@ struct Embree {
         rtcCommitScene(scene);
         if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw SystemError("embree: no tree");
     }
-
-    float find(Kind kind, size_t i) const {
-        RTCRayHit hit{rays[kind][i], {}};
-        if (kind == shadow) {
-            rtcOccluded1(scene, &context, &hit.ray);
-            return hit.ray.tfar < 0 ? 0 : HUGE_VALF;
-        }
-        hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene, &context, &hit);
-        return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? HUGE_VALF : hit.ray.tfar;
+    ~Embree() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
     }
+    Embree(const Embree&) = delete;
+    Embree& operator=(const Embree&) = delete;
 };
-double bytes_of(const Embree& t) { return double(t.held); }
-#else
-using Embree = Wide;  // to be compiled, never run
+
+Trace embree(const Case& c) {
+    return [e = std::make_shared<const Embree>(c)](Kind kind, Column& t) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        for (size_t i = 0; i < t.size(); ++i) {
+            RTCRayHit hit{e->rays[kind][i], {}};
+            if (kind == shadow) {
+                rtcOccluded1(e->scene, &context, &hit.ray);
+                t[i] = hit.ray.tfar < 0 ? 0 : HUGE_VAL;
+                continue;
+            }
+            hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(e->scene, &context, &hit);
+            t[i] = hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? HUGE_VAL : double(hit.ray.tfar);
+        }
+    };
+}
 #endif
 
-// ---- Measuring ----------------------------------------------------------------------------------
+// ---- The race -----------------------------------------------------------------------------------
 
-using Column = std::vector<double>;  // a number a round
-
-// A tracer in the race, built, and how it did.
-template <class Tracer>
-struct Runner {
-    Tracer tracer;
-    double build_seconds = 0;
-    std::array<size_t, 3> hits{};
-    std::array<Column, 3> speed{};  // millions of rays a second
-
-    Runner(const Case& c, int builds) : tracer(c) {
-        Column times;
-        for (int i = 0; i < builds; ++i) {
-            const double start = processor_seconds();
-            tracer.build();
-            times.push_back(processor_seconds() - start);
-        }
-        build_seconds = median(times);
-        for (Kind kind : kinds) hits[kind] = count_hits(kind);
-    }
-
-    size_t count_hits(Kind kind) const {
-        size_t count = 0;
-        for (size_t i = 0; i < tracer.c.rays[kind].size(); ++i)
-            count += std::isfinite(tracer.find(kind, i));
-        return count;
-    }
-
-    // That the hits are looked at keeps the compiler from dropping the work.
-    void run(Kind kind, double least_seconds) {
-        const double start = processor_seconds();
-        double elapsed = 0, rays = 0;
-        while (elapsed < least_seconds) {
-            if (count_hits(kind) != hits[kind]) throw SystemError("other hits every time");
-            rays += double(tracer.c.rays[kind].size());
-            elapsed = processor_seconds() - start;
-        }
-        speed[kind].push_back(rays / elapsed / 1e6);
-    }
+struct Effort {
+    int width = 512, rounds = 9;
+    double seconds = 0.1;  // of each measurement, at least
 };
 
-// Per cent of the rays whose answers differ: hit or not, or by more than 1e-4 of the distance.
-template <class First, class Second>
-double disagreement(const First& a, const Second& b, Kind kind) {
-    size_t count = 0;
-    const size_t rays = a.c.rays[kind].size();
-    for (size_t i = 0; i < rays; ++i) {
-        const double s = double(a.find(kind, i)), t = double(b.find(kind, i));
-        count += s != t && !(std::abs(s - t) <= 1e-4 * std::min(s, t));
+struct Tracer {
+    std::string name;
+    Trace trace;
+    Column answers = {}, speed = {};  // millions of rays a second, of each round
+};
+
+// One kind of rays: nobody may answer otherwise the second time.
+void run(Tracer& t, Kind kind, double least_seconds) {
+    const double start = processor_seconds();
+    double elapsed = 0, rays = 0;
+    while (elapsed < least_seconds) {
+        Column again(t.answers.size());
+        t.trace(kind, again);
+        if (rays > 0 && again != t.answers) throw SystemError(t.name + ": other hits every time");
+        t.answers = std::move(again), rays += double(t.answers.size());
+        elapsed = processor_seconds() - start;
     }
-    return 100 * double(count) / double(rays);
+    t.speed.push_back(rays / elapsed / 1e6);
 }
 
+// Over the wide tree's speed, by kinds, and per cent of its answers that are others: hit or not, or
+// by more than 1e-4 of the distance.
 struct Outcome {
-    std::array<double, 3> ratio{};  // of the first's speed to the second's
-    double differ = 0;              // the most of the three, per cent
+    std::map<std::string, double> ratio = {};  // logarithms, summed over scenes
+    double differ = 0;
 };
 
-// Adds what of a scene's row tells of speed.  Without the second, "–" stands for it.
-template <class First, class Second>
-Outcome race(std::vector<std::string>& cells, Runner<First>& first,
-             std::optional<Runner<Second>>& second, const Effort& effort) {
-    Outcome o;
-    std::array<Column, 3> ratios;
-    for (int round = 0; round < effort.rounds; ++round)
-        for (Kind kind : kinds) {
-            first.run(kind, effort.seconds);
-            if (!second) continue;
-            second->run(kind, effort.seconds);
-            ratios[kind].push_back(first.speed[kind].back() / second->speed[kind].back());
+void race(Lines& lines, std::map<std::string, Outcome>& outcomes, const Case& c,
+          const Effort& effort) {
+    std::vector<Tracer> all = {{"wide", ours<WideBvh>(c)}, {"plain", ours<Bvh>(c)}};
+#if HAVE_EMBREE
+    all.push_back({"Embree", embree(c)});
+#endif
+    for (const auto& [kind, name] : kinds) {
+        for (Tracer& t : all) t.answers.assign(c.rays[kind].size(), 0), t.speed.clear();
+        for (int round = 0; round < effort.rounds; ++round)
+            for (Tracer& t : all) run(t, kind, effort.seconds);
+        lines.push_back({c.name, name, text("%.2f", median(all[0].speed))});
+        for (size_t k = 1; k < all.size(); ++k) {
+            Column ratios;
+            for (size_t i = 0; i < all[k].speed.size(); ++i)
+                ratios.push_back(all[0].speed[i] / all[k].speed[i]);
+            lines.back().push_back(with_range(ratios, "%.2f"));
+            size_t count = 0;
+            for (size_t i = 0; i < all[k].answers.size(); ++i) {
+                const double s = all[0].answers[i], t = all[k].answers[i];
+                count += s != t && !(std::abs(s - t) <= 1e-4 * std::min(s, t));
+            }
+            if (count > 0 && all[k].name == "plain") throw SystemError("the trees' answers differ");
+            Outcome& o = outcomes[all[k].name];
+            o.ratio[name] += std::log(median(ratios));
+            o.differ = std::max(o.differ, 100 * double(count) / double(c.rays[kind].size()));
         }
-    for (Kind kind : kinds) {
-        cells.push_back(text("%.2f", median(first.speed[kind])));
-        cells.push_back(second ? with_range(ratios[kind], "%.2f") : "–");
-        if (!second) continue;
-        o.ratio[kind] = median(ratios[kind]);
-        o.differ = std::max(o.differ, disagreement(first.tracer, second->tracer, kind));
     }
-    cells.push_back(text("%.2g", first.build_seconds));
-    cells.push_back(second ? text("%.2g", second->build_seconds) : "–");
-    return o;
 }
-
-std::vector<std::string> race_with_embree(std::vector<Outcome>& all, const Case& c,
-                                          const Effort& effort) {
-    Runner<Wide> ours(c, effort.builds);
-    std::optional<Runner<Embree>> theirs;
-    if (HAVE_EMBREE) theirs.emplace(c, effort.builds);
-    std::vector<std::string> cells = {c.name};
-    all.push_back(race(cells, ours, theirs, effort));
-    const double n = double(c.shapes.size());
-    cells.push_back(text("%.0f", bytes_of(ours.tracer) / n));
-    cells.push_back(theirs ? text("%.0f", bytes_of(theirs->tracer) / n) : "–");
-    return cells;
-}
-
-std::vector<std::string> race_of_trees(std::vector<Outcome>& all, const Case& c,
-                                       const Effort& effort) {
-    Runner<Plain> plain(c, 1);
-    std::optional<Runner<Wide>> wide(std::in_place, c, 1);
-    std::vector<std::string> cells = {c.name};
-    all.push_back(race(cells, plain, wide, effort));
-    if (all.back().differ > 0) throw SystemError("the trees' answers differ");
-    return cells;
-}
-
-// ---- The report ---------------------------------------------------------------------------------
 
 // "1.1 primary, 0.9 bounce and 1.2 shadow rays": geometric means over scenes.
-std::string mean_ratio(const std::vector<Outcome>& all) {
-    std::array<double, 3> mean = {1, 1, 1};
-    for (const Outcome& o : all)
-        for (Kind kind : kinds) mean[kind] *= std::pow(o.ratio[kind], 1 / double(all.size()));
-    return text("%.2f primary, %.2f bounce and %.2f shadow rays", mean[primary], mean[bounce],
-                mean[shadow]);
+std::string mean_ratio(const Outcome& o, size_t scenes) {
+    auto mean = [&](const char* kind) { return std::exp(o.ratio.at(kind) / double(scenes)); };
+    return text("%.2f primary, %.2f bounce and %.2f shadow rays", mean("primary"), mean("bounce"),
+                mean("shadow"));
 }
 
-int run(bool quick, const std::string& command) {
-    const Effort effort = quick ? Effort{256, 3, 1, 0.01} : Effort{};
-    Page page(report_folder(quick), "bench");
-    std::vector<Case> cases = {cornell(effort.width)};
-    for (int level : {5, 7, 8}) cases.push_back(icosphere(level, effort.width));
-    for (int n : {1000, 100000}) cases.push_back(soup(n, effort.width));
-    std::vector<Outcome> embree, trees;
-    std::vector<std::vector<std::string>> lines, plain;
-    for (const Case& c : cases) lines.push_back(race_with_embree(embree, c, effort));
-    for (const Case& c : cases) plain.push_back(race_of_trees(trees, c, effort));
-    double differ = 0;
-    for (const Outcome& o : embree) differ = std::max(differ, o.differ);
-    page.set("embree", table({"triangles", "primary, Mrays/s", "× Embree", "bounce, Mrays/s",
-                              "× Embree", "shadow, Mrays/s", "× Embree", "build, s", "Embree's",
-                              "bytes a triangle", "Embree's"},
-                             lines));
-    page.set("plain", table({"triangles", "primary, Mrays/s", "× wide", "bounce, Mrays/s", "× wide",
-                             "shadow, Mrays/s", "× wide", "build, s", "the wide one's"},
-                            plain));
-    page.set("paths", table({"scene", "tracer", "µs a path", "rays a path", "µs a ray",
-                             "time, × textbook's"},
+int study(const Scope& scope) {
+    const Effort effort = scope.quick ? Effort{256, 3, 0.01} : Effort{};
+    Page page(scope, "bench");
+    std::map<std::string, Outcome> outcomes;
+    Lines lines;
+    const Case cases[] = {scene_of("cornell36", effort.width), scene_of("mesh", effort.width),
+                          soup(1000, effort.width), soup(100000, effort.width)};
+    for (const Case& c : cases) race(lines, outcomes, c, effort);
+    std::vector<std::string> head = {"triangles", "rays", "Mrays/s", "× plain"};
+    if (HAVE_EMBREE) head.push_back("× Embree");
+    page.set("rays", table(head, lines));
+    page.set("paths", table({"scene", "tracer", "µs a path", "time, × textbook's"},
                             all_paths(effort.rounds)));
     page.set("verdict",
              HAVE_EMBREE
                  ? text("It traces %s per ray of Embree.  At most %.4f %% of the answers differ.",
-                        mean_ratio(embree), differ)
+                        mean_ratio(outcomes["Embree"], std::size(cases)), outcomes["Embree"].differ)
                  : "Embree was not measured: its header is missing (Debian: libembree-dev).");
-    page.set("verdict of the plain tree", mean_ratio(trees));
+    page.set("over plain", mean_ratio(outcomes["plain"], std::size(cases)));
     page.set("width", text("%d", effort.width));
     page.set("rounds", text("%d", effort.rounds));
     page.set("bytes", text("%zu", sizeof(real)));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
-    const Lab lab{
-        "bench", "Measures rays a second, beside Embree if it is installed.", {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return run(quick, command_of(argc, argv)); });
+    return experiment(
+        argc, argv, {"bench", "Measures rays a second, beside Embree if it is installed."}, study);
 }

@@ -1,7 +1,5 @@
 // labs/calibration.h  5  a stated error against the true one
 #pragma once
-#include <tuple>
-
 #include "labs/rows.h"
 
 namespace calibration {
@@ -45,27 +43,6 @@ template <class Which>
 double share(const Rows& rows, Which which) {
     const Rows known = where(rows, is_known);
     return double(where(known, which).size()) / double(known.size());
-}
-
-struct Worst {
-    std::string scene;
-    size_t count = 0, runs = 0;
-    double most = 0;  // true over stated, or the like
-};
-
-// Scenes by how many of their runs are so, and then by the greatest number of those.
-template <class Which, class Number>
-std::vector<Worst> worst_of(const Rows& rows, Which which, Number number) {
-    std::vector<Worst> all;
-    for (const auto& [scene, some] : grouped(rows, of_scene)) {
-        Worst w{scene, 0, some.size(), 0};
-        for (const Row& r : where(some, which)) ++w.count, w.most = std::max(w.most, number(r));
-        if (w.count > 0) all.push_back(w);
-    }
-    std::stable_sort(all.begin(), all.end(), [](const Worst& a, const Worst& b) {
-        return std::tie(a.count, a.most) > std::tie(b.count, b.most);
-    });
-    return all;
 }
 
 }  // namespace calibration

@@ -1,6 +1,7 @@
 // labs/illumination_cube.cpp  6  the cube, whose illuminance is known: maps of it by both methods
 //
 //   build/illumination_cube [--quick]
+#include "base/json.h"
 #include "labs/cube.h"
 #include "labs/room.h"
 #include "labs/rows.h"
@@ -14,20 +15,13 @@ struct NamedPoint {
 constexpr NamedPoint points[] = {{"A", 0, 0}, {"B", 0.5, 0}, {"C", 0.5, 0.5},
                                  {"D", 1, 0}, {"E", 1, 0.5}, {"F", 1, 1}};
 
-constexpr double nit_per_lux = cube::albedo / cube::pi;
+constexpr double nit_per_lux = cube::albedo / cube::pi,
+                 exact_mean = cube::mean_illuminance * nit_per_lux;
 
-// Exponent p of the distance s from an edge in E - E(edge): a right angle takes s^p to
-// B(1 + p/2, (1 - p)/2) / 4 s^p, of which rho has to make s^p again.
-double edge_exponent() {
-    double low = 0, high = 1;
-    for (int k = 0; k < 60; ++k) {
-        const double p = (low + high) / 2;
-        const double factor =
-            std::tgamma(1 + p / 2) * std::tgamma((1 - p) / 2) / std::tgamma(1.5) / 4;
-        (factor * cube::albedo < 1 ? low : high) = p;
-    }
-    return low;
-}
+constexpr const char *elements = "shooting, elements", *faces = "shooting, faces",
+                     *projection = "particles, projection", *hat_mean = "particles, hat mean",
+                     *particles_run = "particles: run";
+constexpr const char* limits[] = {elements, faces, projection, hat_mean};
 
 // The cube cut into n x n cells a face, a power of two from 4 on; and what linear maps on it would
 // be if the exact E were known.
@@ -120,9 +114,9 @@ double distance(const Walls& w, const IlluminationMap& a, const IlluminationMap&
                      (3 * double(mesh.faces.size()) * w.square));
 }
 
-// Of a map, with n for the count: luminance in nit over all points like A ... F on six faces, the
-// relative error there ("off A"), the greatest spread among such points; the mean over the walls;
-// and its distance from E by Pythagoras, as the projection is the foot of the perpendicular.
+// Of a map, with n for the count: luminance in nit over all points like A ... F on six faces; the
+// mean over the walls; and its distance from E by Pythagoras, as the projection is the foot of the
+// perpendicular.
 Row row_of(const Walls& w, const std::string& method, const IlluminationMap& map) {
     Row r{"cube", method, w.n, 0};
     const Mesh& mesh = w.room.mesh;
@@ -138,210 +132,128 @@ Row row_of(const Walls& w, const std::string& method, const IlluminationMap& map
                     if (std::max(along(i), along(j)) == p.x && std::min(along(i), along(j)) == p.y)
                         L.add(value(f, vertex_at(f, i, j)));
         r.of[p.name] = L.mean;
-        r.of[std::string("off ") + p.name] = std::abs(L.mean / w.exact->luminance(p.x, p.y) - 1);
-        r.of["spread"] = std::max(r.of["spread"], std::sqrt(L.variance()) / L.mean);
     }
     for (const Face& f : mesh.faces)
         for (uint32_t e = f.element; e < f.element + f.elements(); ++e)
             for (uint32_t v : mesh.corners[e])
                 r.of["mean"] += value(f, v) / (3 * double(mesh.elements()));
-    r.of["off walls"] = std::hypot(distance(w, map, w.projection), std::sqrt(w.beyond / w.square));
+    r.of["off"] = std::hypot(distance(w, map, w.projection), std::sqrt(w.beyond / w.square));
     return r;
 }
 
 // The limit and a run to 1 % unshot.  What is missing is nearly proportional to what is not yet
 // sent: two maps tell the limit.
-void add_shot(Rows& rows, const Walls& w, const std::string& name, Shooter shooter, bool check) {
+void add_shot(Rows& rows, const Walls& w, const std::string& name, Shooter shooter) {
     Shooting run(w.room.scene, w.room.mesh, shooter, all_cores());
     std::vector<IlluminationMap> maps;
-    std::vector<double> unshot, seconds;
-    const double start = processor_seconds();
+    std::vector<double> unshot;
     for (double until : {1e-2, 1e-3, 1e-4}) {
         shoot_on(run, {until, 0, 0});
         maps.push_back(run.map()), unshot.push_back(run.unshot());
-        seconds.push_back(processor_seconds() - start);
     }
     const auto limit = beyond(maps[2], maps[1], unshot[2] / (unshot[1] - unshot[2]));
     rows.push_back(row_of(w, name, limit));
-    if (check) shoot_on(run, {1e-6, 0, 0}), rows.back().of["check"] = distance(w, limit, run.map());
     const double mean = rows.back()["mean"];
-    rows.push_back(row_of(w, name + ": run", maps[0]));
-    Row& r = rows.back();
-    r.of["unshot"] = unshot[0], r.of["short by"] = (mean - r["mean"]) * 3 / 2000;
-    r.of["cpu_seconds"] = seconds[0], r.of["from limit"] = distance(w, maps[0], limit);
+    Row r = row_of(w, name + ": run", maps[0]);
+    r.of["unshot"] = unshot[0], r.of["short by"] = (mean - r["mean"]) / exact_mean;
+    r.of["from limit"] = distance(w, maps[0], limit);
+    rows.push_back(r);
 }
 
-Row walked(const Walls& w, const std::string& name, SamplerKind kind, uint64_t seed, uint64_t n) {
-    const double start = processor_seconds();
-    Particles particles(w.room.scene, w.room.mesh, Particles::pattern(kind, seed, n));
+Row walked(const Walls& w, uint64_t n) {
+    Particles particles(w.room.scene, w.room.mesh,
+                        Particles::pattern(SamplerKind::independent, w.n, n));
     walk(particles, n);
     const IlluminationMap map = particles.map();
-    Row r = row_of(w, name, map);
-    r.of["cpu_seconds"] = processor_seconds() - start, r.of["particles"] = double(n);
-    r.of["reported"] = particles.error(), r.of["from limit"] = distance(w, map, w.projection);
+    Row r = row_of(w, particles_run, map);
+    r.of["particles"] = double(n), r.of["reported"] = particles.error();
+    r.of["from limit"] = distance(w, map, w.projection);
     return r;
 }
 
-constexpr const char *elements = "shooting, elements", *faces = "shooting, faces",
-                     *projection = "particles, projection", *hat_mean = "particles, hat mean";
-constexpr const char* limits[] = {elements, faces, projection, hat_mean};
-constexpr std::pair<const char*, SamplerKind> samplers[] = {
-    {"particles, independent: run", SamplerKind::independent},
-    {"particles, Halton: run", SamplerKind::halton}};
-
-// ---- The verdicts -------------------------------------------------------------------------------
-
-// The order p of an error like h^p, by the last meshes.
-double order(const Rows& rows, const std::string& what, size_t last) {
-    std::vector<double> n, e;
-    for (size_t k = rows.size() - std::min(last, rows.size()); k < rows.size(); ++k)
-        n.push_back(double(rows[k].count)), e.push_back(rows[k][what]);
-    return -slope(n, e);
-}
+// ---- The report ---------------------------------------------------------------------------------
 
 struct Extent {
     uint32_t finest = 64, finest_by_elements = 16;  // cells a side
-    uint64_t particles = 1 << 20, most = 1 << 22;
+    uint64_t particles = 1 << 20;
 };
 
-// Limits and runs over meshes; then, at 16 cells, runs over particles.
-std::pair<Rows, Rows> run_all(const cube::Solution& exact, const Extent& extent) {
-    Rows rows, of_n;
+Rows run_all(const cube::Solution& exact, const Extent& extent) {
+    Rows rows;
     for (uint32_t n = 4; n <= extent.finest; n *= 2) {
         const Walls w = walls(exact, n);
-        if (n <= extent.finest_by_elements) add_shot(rows, w, elements, Shooter::element, n == 8);
-        add_shot(rows, w, faces, Shooter::face, false);
+        if (n <= extent.finest_by_elements) add_shot(rows, w, elements, Shooter::element);
+        add_shot(rows, w, faces, Shooter::face);
         rows.push_back(row_of(w, projection, w.projection));
         rows.push_back(row_of(w, hat_mean, w.mean));
-        for (const auto& [name, kind] : samplers)
-            rows.push_back(walked(w, name, kind, n, extent.particles));
-        for (uint64_t N = 1 << 14; n == 16 && N <= extent.most; N *= 4)
-            for (const auto& [name, kind] : samplers)
-                of_n.push_back(walked(w, name, kind, N + 100, N));
+        rows.push_back(walked(w, extent.particles));
     }
-    return {rows, of_n};
+    return rows;
 }
 
-// From the limit to the exact E.
-void tell_limits(Page& page, const cube::Solution& exact, const Rows& rows, const Extent& extent) {
-    const double p = edge_exponent();
-    double worst = 0, off = 0;
-    for (double y : {0.0, 0.5}) {
-        auto rise = [&](double s) { return exact.illuminance(1 - s, y) - exact.illuminance(1, y); };
-        worst = std::max(worst, std::abs(std::log10(rise(1e-3) / rise(1e-4)) - p));
-    }
-    page.set("edge", text("s^%.3f", p)), page.set("edge-off", text("%.4f", worst));
-    page.claim("edge-ok", worst < 0.005);
-    std::vector<std::vector<std::string>> lines;
+// From the limit to the exact E, by the finest mesh and the one before.
+void tell_limits(Page& page, const cube::Solution& exact, const Rows& rows) {
+    Lines lines = {{"exact", "", "", ""}};
+    for (const NamedPoint& p : points) lines[0].push_back(text("%.1f", exact.luminance(p.x, p.y)));
+    lines[0].push_back(text("%.2f", exact_mean));
+    bool dark = true;
     for (const char* name : limits) {
         const Rows all = by_setting(rows, name);
-        const Row& at = all[std::min<size_t>(2, all.size() - 1)];
-        std::vector<std::string>& line = lines.emplace_back(1, name);
-        line.push_back(of_count(all.back()));
-        for (const char* what : {"off A", "off D", "off F", "off walls"})
-            line.push_back(text("%.2f", order(all, what, std::max<size_t>(2, all.size() - 1))));
-        for (double x : {at["off walls"], at["mean"] * 3 / 2000 - 1, at["spread"]})
-            line.push_back(text("%.2f %%", 100 * x));
+        const Row &last = all.back(), &before = all[all.size() - 2];
+        lines.push_back({name, of_count(last), text("%.2f", std::log2(before["off"] / last["off"])),
+                         percent(last["off"])});
+        for (const NamedPoint& p : points) {
+            lines.back().push_back(text("%.1f", last[p.name]));
+            const bool shot = name == elements || name == faces;
+            for (const Row& r : all)
+                dark = dark && !(shot && r[p.name] > exact.luminance(p.x, p.y));
+        }
+        lines.back().push_back(text("%.2f", last["mean"]));
     }
-    page.set("orders", table({"limit of", "finest", "order at A", "at D", "at F", "walls",
-                              "error at 16: walls", "mean", "spread"},
-                             lines));
+    page.set("limits",
+             table({"limit of", "cells", "order", "error", "A", "B", "C", "D", "E", "F", "mean"},
+                   lines));
     const Rows best = by_setting(rows, projection), hats = by_setting(rows, hat_mean);
     bool nearer = true;
-    std::string factors, orders;
-    for (const char* what : {"off D", "off E", "off F", "off walls"}) {
-        for (size_t i = 0; i < best.size(); ++i) nearer = nearer && best[i][what] < hats[i][what];
-        factors += text(factors.empty() ? "%.1f" : ", %.1f", hats.back()[what] / best.back()[what]);
-    }
-    for (const auto& [what, wanted] : {std::pair("off D", p), {"off walls", p + 0.5}})
-        for (const Rows& all : {best, hats}) {
-            off = std::max(off, std::abs(order(all, what, 2) - wanted));
-            orders += text(orders.empty() ? "%.2f" : ", %.2f", order(all, what, 2));
-        }
-    page.set("factors", factors), page.claim("projection-ok", nearer);
-    page.set("last-orders", orders), page.set("wanted-orders", text("%.2f and %.2f", p, p + 0.5));
-    page.set("orders-ok", extent.finest < 64 ? "not by these meshes" : page.verdict(off < 0.06));
+    for (size_t i = 0; i < best.size(); ++i) nearer = nearer && best[i]["off"] < hats[i]["off"];
+    page.set("factor", text("%.1f", hats.back()["off"] / best.back()["off"]));
+    page.claim("projection-ok", nearer), page.claim("dark-ok", dark);
 }
 
-void tell_shooting(Page& page, const cube::Solution& exact, const Rows& rows) {
+// From a run to its limit.
+void tell_runs(Page& page, const Rows& rows) {
     double missing = 0;
-    bool dark = true;
-    for (const char* name : {elements, faces}) {
-        for (const Row& r : by_setting(rows, name + std::string(": run")))
-            missing = std::max(missing, std::abs(r["short by"] / r["unshot"] - 1));
-        for (const Row& r : by_setting(rows, name))
-            for (const NamedPoint& p : points) dark = dark && r[p.name] < exact.luminance(p.x, p.y);
-    }
-    const double check = by_setting(rows, elements)[1]["check"];
-    page.set("missing", text("%.1f %%", 100 * missing)), page.set("check", text("%.1e", check));
-    page.claim("missing-ok", missing < 0.02), page.claim("check-ok", check < 1e-5);
-    page.claim("dark-ok", dark);
-}
-
-void tell_particles(Page& page, const Rows& rows, const Rows& of_n) {
     Moments ratio;
-    double most = 0;
-    std::string least, noise, in_n;
-    for (const auto& [name, kind] : samplers) {
-        const Rows runs = by_setting(rows, name), by_n = by_setting(of_n, name);
-        const Row* best = &runs[0];
-        for (const Row& r : runs) {
-            ratio.add(r["from limit"] / r["reported"]);
-            most = std::max(most, std::abs(r["from limit"] / r["reported"] - 1));
-            if (r["off walls"] < (*best)["off walls"]) best = &r;
-        }
-        const char* separator = least.empty() ? "" : ", Halton ";
-        const double falls = slope(all_of(by_n, "particles"), all_of(by_n, "from limit"));
-        least += separator + of_count(*best);
-        noise += text("%sn^%.2f", separator, -order(runs, "reported", runs.size()));
-        in_n += text("%sN^%.2f", separator, falls);
-        if (kind == SamplerKind::independent) page.claim("root-ok", std::abs(falls + 0.5) < 0.03);
+    for (const Row& r : rows) {
+        if (r["unshot"] > 0) missing = std::max(missing, std::abs(r["short by"] / r["unshot"] - 1));
+        if (r["reported"] > 0) ratio.add(r["from limit"] / r["reported"]);
     }
-    page.set("least-at", least), page.set("noise", noise), page.set("in-n", in_n);
-    page.set("reported", text("%.3f", ratio.mean)), page.set("most", text("%.0f %%", 100 * most));
-    page.claim("reported-ok", most < 0.2 && std::abs(ratio.mean - 1) < 0.04);
+    page.set("missing", percent(missing)), page.claim("missing-ok", missing < 0.02);
+    page.set("reported", plus_minus(ratio, "%.3f"));
+    page.claim("reported-ok", std::abs(ratio.mean - 1) < 0.08);
 }
 
-int study(const Extent& extent, const std::string& folder, const std::string& command) {
-    Page page(folder, "radiosity-cube");
+int study(const Scope& scope) {
+    const Extent extent = scope.quick ? Extent{16, 8, 1 << 16} : Extent{};
+    Page page(scope, "radiosity-cube");
     const cube::Solution exact;
-    const auto [rows, of_n] = run_all(exact, extent);
-    tell_limits(page, exact, rows, extent);
-    tell_shooting(page, exact, rows);
-    tell_particles(page, rows, of_n);
-    Row known{"cube", "exact", 0, 0, {{"mean", exact.mean() * nit_per_lux}}};
-    for (const NamedPoint& at : points) known.of[at.name] = exact.luminance(at.x, at.y);
-    Rows all = {known};
-    for (const Rows* some : {&rows, &of_n}) all.insert(all.end(), some->begin(), some->end());
-    page.data("radiosity-cube",
-              csv_of(all, {"A", "B", "C", "D", "E", "F", "mean", "off walls", "unshot", "short by",
-                           "from limit", "reported", "particles", "cpu_seconds"}));
-    const Rows shown =
-        where(rows, [](const Row& r) { return r["cpu_seconds"] != r["cpu_seconds"]; });
-    auto cells = [](const Rows& r) { return double(r[0].count); };
+    const Rows rows = run_all(exact, extent);
+    tell_limits(page, exact, rows);
+    tell_runs(page, rows);
+    page.data("radiosity-cube", csv_of(rows, {"A", "B", "C", "D", "E", "F", "mean", "off", "unshot",
+                                              "short by", "from limit", "reported"}));
     page.plot("radiosity-cube",
-              plot(
-                  shown, {"cells a side", 4, double(extent.finest)}, {"error of E", 1e-4, 1},
-                  of_setting, cells, [](const Rows& r) { return r[0]["off walls"]; },
-                  "Discretisation: from a method's limit to the exact solution"));
-    page.set("particles", text("%.0f", double(extent.particles)));
-    page.set("made", made_by(command));
+              plot(where(rows, [](const Row& r) { return std::isnan(r["from limit"]); }),
+                   "cells a side", "error of E", of_setting, count_of, mean_of("off"),
+                   "Discretisation: from a method's limit to the exact solution"));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
-    Extent extent;
-    const Lab lab{"illumination_cube",
-                  "Compares illumination maps of a cube with its exact solution.",
-                  {
-                      {"--quick", "", "coarse meshes, into out/",
-                       [&](auto&) {
-                           quick = true, extent = {16, 8, 1 << 16, 1 << 18};
-                       }},
-                  }};
-    return lab_main(argc, argv, lab,
-                    [&] { return study(extent, report_folder(quick), command_of(argc, argv)); });
+    return experiment(
+        argc, argv,
+        {"illumination_cube", "Compares illumination maps of a cube with its exact solution."},
+        study);
 }

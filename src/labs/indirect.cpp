@@ -6,11 +6,6 @@
 
 namespace {
 
-struct Scope {
-    bool quick = false, kept = false;
-};
-using Lines = std::vector<std::vector<std::string>>;
-
 const std::vector<std::string> scenes = {"cornell36", "cube", "atelier"};
 
 // What two images of other seeds have in common: the product of their differences from a reference
@@ -87,70 +82,35 @@ void tell_images(Page& page, const Rows& all, const std::vector<Setting>& method
     for (const char* name : {"map", "control"})
         page.set(name, gain(rows, name, "path", efficiency));
     page.set("endless", gain(rows, "control", "path --roulette 0", efficiency));
-    auto seconds = [](const Rows& r) { return mean(r, "cpu_seconds"); };
     page.plot("indirect-time",
-              plot(in_scene(all, "cornell36"), {"CPU seconds", 0.05, 30},
-                   {"error (d_rel)", 0.003, 1}, of_setting, seconds, relative_error, "cornell36"));
+              plot(in_scene(all, "cornell36"), "CPU seconds", "error (d_rel)", of_setting,
+                   mean_of("cpu_seconds"), relative_error, "cornell36"));
 }
 
 // ---- When to go on ------------------------------------------------------------------------------
 
-const std::vector<std::string> ways = {
-    "whole:0.25", "whole:0",    "whole:1", "map",    "first:0.3", "first:0.5", "first:0.7",
-    "always:0.5", "always:0.7", "over:2",  "over:1", "control",   "over:0.4",  "over:0.25"};
-
-// Two levels, the map and what whole paths add to it: with as many samples of each as is best,
-// variance times cost is (sqrt(v1 c1) + sqrt(v2 c2))^2.  Over that of whole paths.
-double bound(const Rows& rows) {
-    const Rows whole = by_setting(rows, ways[0]), map = by_setting(rows, "map");
-    const double v = noise2(whole), c = mean(whole, "path_seconds"), v1 = noise2(map),
-                 c1 = mean(map, "path_seconds");
-    const double sum = std::sqrt(v1 * c1) + std::sqrt(std::max(0.0, v - v1) * (c - c1));
-    return v * c / (sum * sum);
-}
-
-void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, const Scope& plan) {
+void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, bool quick) {
     std::vector<Subject> subjects;
     for (const std::string& scene : scenes)
         subjects.push_back(
-            {scene, "scenes/" + scene + ".scene --size 64x32", plan.quick ? 512u : 16384u});
-    std::map<std::string, Rows> rows;
-    Rows all;
-    for (const std::string sampler : {"independent", "sobol"}) {
-        std::vector<Setting> settings;
-        for (const std::string& way : ways)
-            settings.push_back({way + " " + sampler,
-                                "--particles 300000 --sampler " + sampler + " --way " + way, draw});
-        for (Row r : grid.run(subjects, settings, {16}, plan.quick ? 2 : 8)) {
-            all.push_back(r);
-            r.setting = words_in(r.setting)[0];
-            rows[sampler].push_back(r);
-        }
-    }
-    Lines lines, bounds;
-    for (const std::string& way : ways) {
-        lines.push_back({way == "control" ? "**over:2/3** (`control`)" : way});
+            {scene, "scenes/" + scene + ".scene --size 64x32", quick ? 512u : 16384u});
+    std::vector<Setting> ways;
+    for (const char* way : {"whole:0.25", "map", "over:2", "over:1", "control", "over:0.4"})
+        ways.push_back({way, std::string("--particles 300000 --way ") + way, draw});
+    const Rows rows = grid.run(subjects, ways, {16}, quick ? 2 : 8);
+    Lines lines;
+    for (const Setting& way : ways) {
+        lines.push_back({way.name == "control" ? "**over:2/3** (`control`)" : way.name});
         for (const std::string& scene : scenes)
-            lines.back().push_back(gain(in_scene(rows["sobol"], scene), way, ways[0], of_paths));
-    }
-    for (const std::string& scene : scenes) {
-        const Rows sobol = in_scene(rows["sobol"], scene);
-        const double own = over(sobol, "control", ways[0], of_paths);
-        bounds.push_back({scene,
-                          told(jackknife(in_scene(rows["independent"], scene), bound), "%.2f"),
-                          told(jackknife(sobol, bound), "%.2f"), text("%.2f", own),
-                          page.verdict(own >= 0.8 * bound(sobol))});
+            lines.back().push_back(gain(in_scene(rows, scene), way.name, ways[0].name, of_paths));
     }
     page.set("ways", table({"way", scenes[0], scenes[1], scenes[2]}, lines));
-    page.set("bounds",
-             table({"scene", "two levels", "with Sobol' points", "`control`", ""}, bounds));
-    page.data("indirect-ways", csv_of(all, {"d2", "bias2", "path_seconds", "map_cpu_seconds"}));
 }
 
 // ---- How fine -----------------------------------------------------------------------------------
 
 void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, double diagonal,
-                 const Scope& plan) {
+                 bool quick) {
     std::vector<Setting> settings;
     for (int part : {8, 16, 32, 64})
         for (int particles : {30000, 100000, 300000, 1000000})
@@ -158,23 +118,23 @@ void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, dou
                                 text("--final-gather --sets 1 --mesh %g --particles %d",
                                      diagonal / part, particles),
                                 radiosity});
-    const Subject s{"cornell36", "scenes/cornell36.scene --size 64x32", plan.quick ? 512u : 16384u};
-    const Rows rows = grid.run({s}, settings, {plan.quick ? 64u : 1024u}, plan.quick ? 2 : 4);
+    const Subject s{"cornell36", "scenes/cornell36.scene --size 64x32", quick ? 512u : 16384u};
+    const Rows rows = grid.run({s}, settings, {quick ? 64u : 1024u}, quick ? 2 : 4);
     auto part = [](const Row& r) { return r.setting.substr(0, r.setting.find(',')); };
     auto particles = [](const Row& r) { return r.setting.substr(r.setting.find(' ') + 1); };
     page.set("meshes", table(rows, part, particles, [](const Rows& r) {
                  return bias(r) + ", " + percent(std::sqrt(noise2(r)));
              }));
-    page.data("indirect-meshes", csv_of(rows, {"map_triangles", "map_error", "map_seconds", "d2",
-                                               "bias2", "bias2_error", "cpu_seconds"}));
 }
 
-int study(const std::string& penumbra, const std::string& radiosity, const std::string& draw,
-          const Scope& plan, const std::string& command) {
-    Page page(report_folder(plan.quick), "indirect");
+int study(const Scope& scope) {
+    const bool quick = scope.quick;
+    const std::string penumbra = scope.beside(), radiosity = scope.beside("radiosity"),
+                      draw = scope.beside("indirect_draw") + " --scene";
+    Page page(scope, "indirect");
     Pairs pairs;
     // References: without an end that is felt, .8^64 is 10^-6.
-    RenderGrid grid("indirect", penumbra + " --depth 64", plan.kept);
+    RenderGrid grid("indirect", penumbra + " --depth 64", scope.kept);
     grid.measure = [&](Row& r, const Image& image, const Truth& f) { pairs(r, image, f); };
     const std::vector<Setting> methods = {{"path", "--sets 1", penumbra},
                                           {"map", "--final-gather --sets 1", radiosity},
@@ -184,28 +144,23 @@ int study(const std::string& penumbra, const std::string& radiosity, const std::
     std::vector<Subject> subjects;
     for (const std::string& scene : scenes)
         subjects.push_back(
-            {scene, "scenes/" + scene + ".scene --size 128x64", plan.quick ? 512u : 8192u});
+            {scene, "scenes/" + scene + ".scene --size 128x64", quick ? 512u : 8192u});
     using Counts = std::vector<uint64_t>;
-    const Counts counts = plan.quick ? Counts{4, 16} : Counts{8, 64, 512};
-    const Rows images = grid.run(subjects, methods, counts, plan.quick ? 2 : 4);
+    const Counts counts = quick ? Counts{4, 16} : Counts{8, 64, 512};
+    const Rows images = grid.run(subjects, methods, counts, quick ? 2 : 4);
     tell_images(page, images, methods);
-    tell_ways(page, grid, draw, plan);
+    tell_ways(page, grid, draw, quick);
     const double diagonal = 16 * by_setting(in_scene(images, "cornell36"), "map")[0]["map_mesh"];
-    tell_meshes(page, grid, radiosity, diagonal, plan);
-    page.set("spp", text("%.0f", double(counts.back()))), page.set("made", made_by(command));
+    tell_meshes(page, grid, radiosity, diagonal, quick);
+    page.set("spp", text("%.0f", double(counts.back())));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    Scope plan;
-    const Lab lab{"indirect",
-                  "Measures what illumination maps bring to paths that end on them.",
-                  {quick_flag(plan.quick), kept_flag(plan.kept)}};
-    return lab_main(argc, argv, lab, [&] {
-        auto beside = [&](const char* name) { return renderer_beside(lab, argv[0], name); };
-        return study(beside("penumbra"), beside("radiosity"), beside("indirect_draw") + " --scene",
-                     plan, command_of(argc, argv));
-    });
+    return experiment(
+        argc, argv,
+        {"indirect", "Measures what illumination maps bring to paths that end on them.", {}, true},
+        study);
 }

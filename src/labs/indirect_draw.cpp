@@ -1,5 +1,4 @@
-// labs/indirect_draw.cpp  6  the program: an image by paths that end on maps or go on, as
-// build/radiosity draws one
+// labs/indirect_draw.cpp  6  the program: an image by paths that end on maps or go on
 #include "labs/indirect_draw.h"
 
 #include "base/json.h"
@@ -14,7 +13,7 @@ int main(int argc, char** argv) {
         "indirect_draw",
         "Draws an image by paths that end on illumination maps, or go on beyond them.",
         {{"--scene", "FILE", "", [&](auto& word) { a.scene = word; }},
-         {"--way", "WAY", "whole:0.25|map|control|regression|first:q|always:q|over:t",
+         {"--way", "WAY", "whole:0.25|map|control|regression|over:t",
           [&](auto& word) { a.way = word; }},
          {"--size", "WxH", "",
           [&](auto& word) {

@@ -15,33 +15,27 @@ struct Asked {
     unsigned threads = all_cores();
 };
 
-// When paths go on; whole paths never ask.  `is_scattered`: as often as the scene says, not without
-// end.
+// Where paths end; whole paths know no maps.  `is_scattered`: as often as the scene says, not
+// without end.
 struct Way {
     bool is_whole = false, is_scattered = false, has_slope = false;
-    real roulette = 0;  // of whole paths, and of the rest after the first vertex
-    GoOn go_on = by_throughput;
+    real roulette = 0;  // of whole paths
+    real threshold = by_throughput;
 };
 
-// "whole:ROULETTE", "endless:ROULETTE" (depth 64), "map", "control", "regression", and by a
-// probability or a threshold "first:q", "always:q", "over:t".
+// "whole:ROULETTE", "endless:ROULETTE" (depth 64), "map", "control", "regression", and by another
+// threshold than control "over:t".
 inline Way way_of(const std::string& words) {
-    constexpr real by_default = real(0.25);
     const size_t at = words.find(':');
     const std::string kind = words.substr(0, at);
     const real x = at == words.npos ? 0 : real(parse_number(words.substr(at + 1), 100));
-    if (kind == "whole") return {true, true, false, x, never};
-    if (kind == "endless") return {true, false, false, x, never};
-    if (kind == "map") return {false, false, false, 0, never};
+    if (kind == "whole") return {true, true, false, x};
+    if (kind == "endless") return {true, false, false, x};
+    if (kind == "map") return {.threshold = never};
     if (kind == "control") return {};
     if (kind == "regression") return {.has_slope = true};
-    if (kind == "over") return {.go_on = over(x)};
-    if (kind == "always") return {.go_on = [=](const Segment&) { return x; }};
-    if (kind == "first")  // its number may have been played by roulette
-        return {false, true, false, by_default,
-                [=](const Segment& s) { return s.k == 1 && max_of(s.beta) > by_default ? x : 1; }};
-    throw UserError(
-        unknown("way", kind, {"whole", "map", "control", "regression", "over", "always", "first"}));
+    if (kind == "over") return {.threshold = x};
+    throw UserError(unknown("way", kind, {"whole", "map", "control", "regression", "over"}));
 }
 
 struct Drawn {
@@ -75,7 +69,7 @@ inline Drawn draw(const Asked& a) {
         drawn.map_error = p.error(), drawn.triangles = double(mesh.elements());
         known = known_light(scene, std::move(mesh), p.map());
     }
-    Gather g{scene, {Direction::bsdf, LightMode::mis, way.roulette}, known, way.go_on};
+    Gather g{scene, {Direction::bsdf, LightMode::mis, way.roulette}, known, way.threshold};
     const Pattern rest = EndlessNumbers::independent(a.seed);
     if (way.has_slope) g.slope = slope_of(g, EndlessNumbers::independent(hash(a.seed, 2)), 1 << 14);
     drawn.map_cpu_seconds = way.is_whole ? 0 : processor_seconds() - start_of_all;

@@ -16,8 +16,6 @@
 //
 // Light is scattered without end, as in the maps: the scene's depth must be too large to be met.
 #pragma once
-#include <functional>
-
 #include "radiosity/gather.h"
 
 // ---- Numbers ------------------------------------------------------------------------------------
@@ -46,20 +44,15 @@ private:
 
 // ---- When to go on ------------------------------------------------------------------------------
 
-// The probability q to go on where a segment ends.
-using GoOn = std::function<real(const Segment&)>;
+// Paths go on with probability throughput / threshold, the rule of step; two thirds by measurement
+// (`make indirect`).
+inline constexpr real by_throughput = real(2) / 3, never = infinity;
 
-inline real never(const Segment&) { return 0; }
-
-// What the path still counts for over a threshold, the rule of step; two thirds by measurement
-// (`make indirect`).  But a path must end between white walls, too.
-inline GoOn over(real threshold) {
-    return [=](const Segment& s) {
-        const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
-        return std::min(most, max_of(s.beta) / threshold);
-    };
+// The probability at the end of a segment.  A path must end between white walls, too.
+inline real probability(real threshold, const Segment& s) {
+    const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
+    return std::min(most, max_of(s.beta) / threshold);
 }
-inline const GoOn by_throughput = over(real(2) / 3);
 
 // ---- The path -----------------------------------------------------------------------------------
 
@@ -67,7 +60,7 @@ struct Gather {
     const Scene& scene;
     Technique technique;  // its roulette is 0: there is another here
     const KnownLight& known;
-    GoOn go_on = by_throughput;
+    real threshold = by_throughput;
     rgb slope{1, 1, 1};
 };
 
@@ -75,7 +68,7 @@ struct Gather {
 inline rgb radiance_along(const Gather& g, const Segment& first, const EndlessNumbers& u) {
     rgb L;
     for (Segment s = first;;) {
-        const real q = s.k > first.k ? g.go_on(s) : 1;
+        const real q = s.k > first.k ? probability(g.threshold, s) : 1;
         const bool goes = s.k == first.k || (q > 0 && u.xi(s.k) < q);
         // Of what the maps know: 1 - [xi < q] / q.
         const real weight = s.k == first.k ? 0 : goes ? 1 - 1 / q : 1;

@@ -129,7 +129,6 @@ inline std::string command_of(int argc, char** argv) {
     for (int k = 1; k < argc; ++k) command += std::string(" ") + argv[k];
     return command;
 }
-inline std::string made_by(int argc, char** argv) { return made_by(command_of(argc, argv)); }
 
 // "17 of 96, 40 s left: cosine + NEE", on stderr: drawn over itself on a terminal, else a line
 // each.
@@ -195,19 +194,9 @@ struct Flag {
 
 struct Lab {
     std::string_view name, purpose;
-    std::vector<Flag> flags;
+    std::vector<Flag> flags = {};
+    bool has_rows = false;  // of a grid: knows --kept
 };
-
-// Of every experiment.
-inline Flag quick_flag(bool& quick) {
-    return {"--quick", "", "fewer runs, into out/", [&](const std::string&) { quick = true; }};
-}
-
-// Of every experiment on a grid.
-inline Flag kept_flag(bool& kept) {
-    return {"--kept", "", "tables from rows of former runs, without a render",
-            [&](const std::string&) { kept = true; }};
-}
 
 inline void print_help(const Lab& lab) {
     std::printf("usage: %s [options]\n\n%s\n\n", std::string(lab.name).c_str(),
@@ -249,4 +238,27 @@ int lab_main(int argc, char** argv, const Lab& lab, Work work) try {
     return finished(work());
 } catch (...) {
     return failed();
+}
+
+// What an experiment is asked for, and by whom.
+struct Scope {
+    std::string name, self, command;
+    bool quick = false;
+    bool kept = false;  // tables from rows of former runs, without a render
+
+    std::string beside(const std::string& program = "penumbra") const {
+        return renderer_beside({name, "", {}}, self, program);
+    }
+};
+
+// An experiment's main: study(scope) is its exit status.
+template <class Study>
+int experiment(int argc, char** argv, Lab lab, Study study) {
+    Scope scope{std::string(lab.name), argv[0], command_of(argc, argv)};
+    lab.flags.push_back(
+        {"--quick", "", "fewer runs, into out/", [&](auto&) { scope.quick = true; }});
+    if (lab.has_rows)
+        lab.flags.push_back({"--kept", "", "tables from rows of former runs, without a render",
+                             [&](auto&) { scope.kept = true; }});
+    return lab_main(argc, argv, lab, [&] { return study(scope); });
 }

@@ -5,9 +5,10 @@
 
 #include "labs/lab.h"
 
+using Lines = std::vector<std::vector<std::string>>;  // of a table, by cells
+
 // A table in Markdown.
-inline std::string table(const std::vector<std::string>& head,
-                         const std::vector<std::vector<std::string>>& lines) {
+inline std::string table(const std::vector<std::string>& head, const Lines& lines) {
     auto line_of = [](const std::vector<std::string>& cells) {
         std::string line = "|";
         for (const std::string& cell : cells) line += cell.empty() ? " |" : " " + cell + " |";
@@ -21,25 +22,6 @@ inline std::string table(const std::vector<std::string>& head,
     return words;
 }
 
-// Numbers for who doubts: one head, and lines.
-inline std::string csv(const std::vector<std::string>& head,
-                       const std::vector<std::vector<std::string>>& lines) {
-    std::string words;
-    auto add = [&](const std::vector<std::string>& cells) {
-        for (size_t i = 0; i < cells.size(); ++i) {
-            words += i ? "," : "";
-            const bool is_plain = cells[i].find_first_of(",\"\n") == std::string::npos;
-            if (!is_plain) words += '"';
-            for (char c : cells[i]) words += c == '"' ? "\"\"" : std::string(1, c);
-            if (!is_plain) words += '"';
-        }
-        words += "\n";
-    };
-    add(head);
-    for (const auto& line : lines) add(line);
-    return words;
-}
-
 // reference/NAME.md.in says {{word}} where a table, a number or a verdict goes, and
 // {{plot FILE The caption}} where a picture goes.
 class Page {
@@ -49,6 +31,11 @@ public:
         : folder_(folder), name_(name), prose_(read_file("reference/" + name + ".md.in")) {
         std::filesystem::create_directories(folder + "/data");
         check_writable(file(name + ".md"));
+    }
+
+    // Of an experiment, whose command {{made}} tells.
+    Page(const Scope& scope, const std::string& name) : Page(report_folder(scope.quick), name) {
+        set("made", made_by(scope.command));
     }
 
     void set(const std::string& word, const std::string& words) { words_[word] = words; }

@@ -105,7 +105,7 @@ int render(const std::vector<std::string>& words) {
 const std::string cycles = "Cycles";
 
 std::string views(const Rows& rows) {
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const auto& [scene, all] : grouped(rows, of_scene))
         for (const auto& [name, some] : grouped(all, of_setting)) {
             auto time = [](const Rows& r) { return mean(r, "cpu_seconds"); };
@@ -120,10 +120,11 @@ std::string views(const Rows& rows) {
 }
 
 // Each by references of its own, so that what models differ by is no error.
-int run(bool quick, bool kept, uint64_t seeds, const std::string& self, const std::string& penumbra,
-        const std::string& command) {
-    Page page(report_folder(quick), "peers");
-    const uint64_t spp = quick ? 16 : 64;
+int study(const Scope& scope, uint64_t seeds) {
+    if (std::system("command -v blender >/dev/null") != 0)
+        return std::puts("peers: nothing is measured without Cycles; install blender"), 0;
+    Page page(scope, "peers");
+    const uint64_t spp = scope.quick ? 16 : 64;
     const std::vector<Subject> both = {{"A", "scenes/cornell36.scene", 16 * spp},
                                        {"B", "scenes/cornell36b.scene", 16 * spp}};
     std::vector<Setting> ours = {{"penumbra, the default", "--sets adaptive"}};
@@ -134,26 +135,23 @@ int run(bool quick, bool kept, uint64_t seeds, const std::string& self, const st
     Rows rows;
     auto add = [&](const std::string& name, const std::string& program,
                    const std::vector<Setting>& settings) {
-        const Rows more = RenderGrid(name, program, kept).run(both, settings, {spp}, seeds);
-        rows.insert(rows.end(), more.begin(), more.end());
+        append(rows, RenderGrid(name, program, scope.kept).run(both, settings, {spp}, seeds));
     };
-    add("peers-cycles", self + " --render cycles", {{cycles, "--sets 1"}});
-    add("peers-textbook", self + " --render textbook", {{"a textbook's tracer", "--sets 1"}});
-    add("peers", penumbra, ours);
+    add("peers-cycles", scope.self + " --render cycles", {{cycles, "--sets 1"}});
+    add("peers-textbook", scope.self + " --render textbook", {{"a textbook's tracer", "--sets 1"}});
+    add("peers", scope.beside(), ours);
     page.set("table", views(rows));
     for (const auto& [word, camera] : {std::pair{"time", "A"}, std::pair{"time B", "B"}})
         page.set(word,
                  text("%.2f", 1 / over(in_scene(rows, camera), ours[0].name, cycles, efficiency)));
     page.set("samples", text("%.0f", double(spp)));
     page.set("seeds", text("%.0f", double(seeds)));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false, kept = false;
     uint64_t seeds = 3;
     if (argc > 2 && argv[1] == std::string("--render")) try {
             return render({argv + 2, argv + argc});
@@ -163,13 +161,7 @@ int main(int argc, char** argv) {
     const Lab lab{
         "peers",
         "Measures efficiency beside Cycles, if blender is installed.",
-        {{"--seeds", "N", "renders of each (3)", [&](auto& n) { seeds = parse_count(n, 3, 100); }},
-         kept_flag(kept),
-         quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        if (std::system("command -v blender >/dev/null") != 0)
-            return std::puts("peers: nothing is measured without Cycles; install blender"), 0;
-        return run(quick, kept, seeds, argv[0], renderer_beside(lab, argv[0]),
-                   command_of(argc, argv));
-    });
+        {{"--seeds", "N", "renders of each (3)", [&](auto& n) { seeds = parse_count(n, 3, 100); }}},
+        true};
+    return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, seeds); });
 }

@@ -17,16 +17,15 @@ struct Run {
 };
 using Runs = std::vector<Run>;
 
-Run run_of(const Room& room, const char* method, double asked, const MapError& stated,
+Run run_of(const Room& room, const char* method, double asked, double stated,
            std::map<std::string, double> of, IlluminationMap map) {
-    of.insert({{"asked", asked}, {"stated", stated.error}, {"uncertainty", stated.uncertainty}});
+    of.insert({{"asked", asked}, {"stated", stated}});
     const std::string scene = text("%s, %zu triangles", room.name, room.mesh.elements());
     return {{scene, method, 0, 0, of}, std::move(map)};
 }
 void add_true(Run& run, double error) {
     Row& r = run.row;
     r.of["true"] = error, r.of["over asked"] = error / r["asked"];
-    r.of["over stated"] = error / r["stated"], r.of["over unshot"] = error / r["unshot"];
 }
 double mean_square(const Rows& rows, const char* name) {
     double sum = 0;
@@ -42,18 +41,16 @@ std::string of_asked(const Row& r) { return percent(r["asked"]); }
 
 // ---- Particles ----------------------------------------------------------------------------------
 
-Runs walks(const Room& room, const char* method, SamplerKind kind, double asked, uint64_t n) {
+Runs walks(const Room& room, double asked, uint64_t n) {
     Runs runs;
     CommonOptions o;
     o.quiet = true;
     for (uint64_t r = 0; r < n; ++r) {
-        const double start = processor_seconds();
-        const auto p = Particles::pattern(kind, hash(r, std::bit_cast<uint64_t>(asked)), 0);
+        const auto p =
+            Particles::pattern(SamplerKind::halton, hash(r, std::bit_cast<uint64_t>(asked)), 0);
         Walked w = walk_all(room.scene, room.mesh, p, {0, 0, asked}, o);
-        runs.push_back(run_of(
-            room, method, asked, w.stated,
-            {{"particles", double(w.particles)}, {"cpu_seconds", processor_seconds() - start}},
-            std::move(w.map)));
+        runs.push_back(run_of(room, "particles", asked, w.stated.error,
+                              {{"particles", double(w.particles)}}, std::move(w.map)));
     }
     return runs;
 }
@@ -77,17 +74,13 @@ void add_true_errors(const Mesh& mesh, Runs& runs, const Runs& reference, bool i
 // E from the smallest on: its runs are the reference of the others.
 void add_walks(Rows& rows, const Room& room, double least, uint64_t seeds) {
     Runs reference;
-    auto add = [&](const char* method, SamplerKind kind, double asked) {
-        Runs runs = walks(room, method, kind, asked, seeds);
+    for (double asked : {0.01, 0.03, 0.1}) {
+        if (asked < least) continue;
+        Runs runs = walks(room, asked, seeds);
         add_true_errors(room.mesh, runs, reference.empty() ? runs : reference, reference.empty());
         for (const Run& run : runs) rows.push_back(run.row);
         if (reference.empty()) reference = std::move(runs);
-    };
-    for (double asked : {0.01, 0.03, 0.1})
-        if (asked >= least) add("halton", SamplerKind::halton, asked);
-    if (room.name != "cornell36" || least > 0.01) return;
-    add("independent", SamplerKind::independent, 0.03);
-    add("stratified", SamplerKind::stratified, 0.03), add("sobol", SamplerKind::sobol, 0.03);
+    }
 }
 
 // Runs hardly longer than the first look, before which none ends, may be better than asked.
@@ -109,8 +102,7 @@ void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {
         shoot_on(run, {0, patience, 0, asked});
         if (run.error() > asked && !runs.empty()) break;  // its last shot is cut short
         runs.push_back(run_of(room, shooter == Shooter::face ? "hierarchy" : "shooting", asked,
-                              {run.error()}, {{"unshot", run.unshot()}, {"seconds", run.seconds()}},
-                              run.map()));
+                              run.error(), {}, run.map()));
         if (run.error() > asked) break;
     }
     const double left = runs.back().row["stated"], whole = square_of(room.mesh, runs.back().map);
@@ -122,21 +114,16 @@ void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {
     }
 }
 
-std::vector<std::string> told(Page& page, const Rows& runs) {
+std::string shot_cell(Page& page, const Rows& runs) {
     const Rows rows = where(runs, [](const Row& r) { return !std::isnan(r["true"]); });
-    std::vector<std::string> line = {runs[0].scene, runs[0].setting};
-    if (rows.empty()) line.push_back(text("not below %s in time", percent(runs.back()["stated"])));
-    if (rows.empty()) return line.insert(line.end(), 3, ""), line;
-    for (const char* name : {"over asked", "over stated", "over unshot"}) {
-        const std::vector<double> x = all_of(rows, name);
-        line.push_back(text("%.2g–%.2g", quantile(x, 0), quantile(x, 1)));
-    }
-    line.push_back(page.verdict(quantile(all_of(rows, "over asked"), 1) <= 1));
-    return line;
+    if (rows.empty()) return text("not below %s in time", percent(runs.back()["stated"]));
+    const std::vector<double> x = all_of(rows, "over asked");
+    return text("%.2g–%.2g: ", quantile(x, 0), quantile(x, 1)) + page.verdict(quantile(x, 1) <= 1);
 }
 
-int study(bool quick, const std::string& command) {
-    Page page(report_folder(quick), "radiosity-error");
+int study(const Scope& scope) {
+    const bool quick = scope.quick;
+    Page page(scope, "radiosity-error");
     using Places = std::vector<std::pair<std::string, double>>;
     const Places places =
         quick ? Places{{"cube", 0.03}, {"penumbra", 0.03}}
@@ -155,28 +142,24 @@ int study(bool quick, const std::string& command) {
             for (Shooter shooter : {Shooter::face, Shooter::element})
                 add_shots(shot, room(parts), shooter, quick ? 5 : 60);
     }
-    auto of_run = [](const Row& r) { return r.scene + ", " + r.setting; };
-    page.set("particles",
-             table(walked, of_run, of_asked, [&](const Rows& r) { return walked_cell(page, r); }));
-    std::vector<std::vector<std::string>> lines;
-    for (const auto& [name, rows] : grouped(shot, of_run)) lines.push_back(told(page, rows));
-    page.set("shooting", table({"scene", "method", "true / E", "k", "true / unshot", ""}, lines));
+    page.set("particles", table(walked, of_scene, of_asked,
+                                [&](const Rows& r) { return walked_cell(page, r); }));
+    page.set("shooting",
+             table(shot, of_scene, of_setting, [&](const Rows& r) { return shot_cell(page, r); }));
     page.set("ratio",
              text("%.3f", std::sqrt(mean_square(walked, "true") / mean_square(walked, "stated"))));
-    const std::vector<std::string> numbers = {"asked",     "stated", "uncertainty", "true",
-                                              "particles", "unshot", "cpu_seconds", "seconds"};
+    const std::vector<std::string> numbers = {"asked", "stated", "true"};
     page.data("radiosity-error-particles", csv_of(walked, numbers));
     page.data("radiosity-error-shooting", csv_of(shot, numbers));
-    page.set("seeds", quick ? "8" : "32"), page.set("made", made_by(command));
+    page.set("seeds", quick ? "8" : "32");
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false;
-    const Lab lab{"radiosity_error",
-                  "Measures true errors of illumination maps over those asked for.",
-                  {quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] { return study(quick, command_of(argc, argv)); });
+    return experiment(
+        argc, argv,
+        {"radiosity_error", "Measures true errors of illumination maps over those asked for."},
+        study);
 }

@@ -25,6 +25,9 @@ struct Row {
     }
 };
 using Rows = std::vector<Row>;
+inline void append(Rows& rows, const Rows& more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+}
 
 // A line, with tabs between; numbers come back as they were.
 inline std::string line_of(const Row& r, const std::string& print) {
@@ -158,7 +161,7 @@ std::vector<std::pair<std::string, Rows>> grouped(const Rows& rows, Key key) {
 template <class By, class Across, class Value>
 std::string table(const Rows& rows, By by, Across across, Value value) {
     const auto columns = grouped(rows, across);
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const auto& [word, group] : grouped(rows, by)) {
         std::vector<std::string>& line = lines.emplace_back(1, word);
         const auto cells = grouped(group, across);
@@ -176,29 +179,32 @@ std::string table(const Rows& rows, By by, Across across, Value value) {
 
 // Numbers of every row for who doubts; nothing where a row has none.
 inline std::string csv_of(const Rows& rows, const std::vector<std::string>& numbers) {
-    std::vector<std::string> head = {"scene", "setting", "count", "seed"};
-    head.insert(head.end(), numbers.begin(), numbers.end());
-    std::vector<std::vector<std::string>> lines;
+    std::string out = "scene,setting,count,seed";
+    for (const std::string& name : numbers) out += "," + name;
     for (const Row& r : rows) {
-        lines.push_back({r.scene, r.setting, of_count(r), text("%.0f", double(r.seed))});
+        out +=
+            text("\n\"%s\",\"%s\",%.0f,%.0f", r.scene, r.setting, double(r.count), double(r.seed));
         for (const std::string& name : numbers)
-            lines.back().push_back(std::isnan(r[name]) ? "" : text("%.6g", r[name]));
+            out += std::isnan(r[name]) ? "," : text(",%.6g", r[name]);
     }
-    return csv(head, lines);
+    return out + "\n";
+}
+
+// What a curve is drawn over: the count of rows, or a number's mean.
+inline double count_of(const Rows& rows) { return double(rows[0].count); }
+inline auto mean_of(const std::string& number) {
+    return [number](const Rows& rows) { return mean(rows, number); };
 }
 
 // A curve for each word of `series`, a point for each count: numbers of the rows there.
-template <class Series, class X, class Y>
-Svg plot(const Rows& rows, const Axis& x, const Axis& y, Series series, X x_of, Y y_of,
+template <class Word, class X, class Y>
+Svg plot(const Rows& rows, const std::string& x, const std::string& y, Word series, X x_of, Y y_of,
          const std::string& title) {
-    Svg sheet(860, 400);
-    size_t k = 0;
-    Plot plot(sheet, {80, 40}, {560, 300}, x, y, title);
+    std::vector<Series> all;
     for (const auto& [word, group] : grouped(rows, series)) {
-        std::vector<double> xs, ys;
+        Series& s = all.emplace_back(word);
         for (const auto& [count, cell] : grouped(group, of_count))
-            xs.push_back(x_of(cell)), ys.push_back(y_of(cell));
-        plot.curve(xs, ys, {.colour = svg::colours[k++ % std::size(svg::colours)]}, word);
+            s.x.push_back(x_of(cell)), s.y.push_back(y_of(cell));
     }
-    return sheet;
+    return plot(all, x, y, title);
 }

@@ -136,17 +136,9 @@ def kills():
             f'bit by bit; no file was damaged, none was left over.\n\n')
 
 
-def cores():
-    rows = []
-    for threads in [1, os.cpu_count()]:
-        run = render('--size', '16384x1', '--spp', 2048, '--threads', threads, scene('cornell36'))
-        rows.append([threads, f"{run['seconds']:.2f} s", f"{run['cpu_seconds'] / run['seconds']:.2f}"])
-    return '## A picture of one row\n\n16384x1, 2048 samples.\n\n' + table(['threads', 'time', 'cores in use'], rows)
-
-
 report = ('# What it costs to survive\n\nWritten by `make survival`'
           + (' (`QUICK=1`)' if QUICK else '') + f', on {os.cpu_count()} cores.\n\n'
-          + memory() + cost() + ctrl_c() + kills() + cores())
+          + memory() + cost() + ctrl_c() + kills())
 where = 'out/survival.md' if QUICK else 'reference/survival.md'
 os.makedirs(os.path.dirname(where), exist_ok=True)
 with open(where, 'w', encoding='utf8') as file:

@@ -64,17 +64,14 @@ inline std::string base64(std::string_view bytes) {
     return out;
 }
 
-// 10⁻³, or 0.25: as short as it can be read.
+// Of a power of ten: 10⁻³, or 0.01.
 inline std::string tick(double x) {
-    const double exponent = std::log10(std::abs(x)), nearest = std::round(exponent);
-    const bool far = x != 0 && (exponent < -2.5 || exponent > 5.5);
-    if (far && std::abs(exponent - nearest) < 1e-9) {
-        constexpr const char* raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-        std::string out = text(exponent < 0 ? "%s10⁻" : "%s10", x < 0 ? "-" : "");
-        for (char digit : text("%.0f", std::abs(nearest))) out += raised[digit - '0'];
-        return out;
-    }
-    return text(x == std::round(x) && !far ? "%.0f" : "%.4g", x);  // %g: 65536 is 6.554e+04
+    const double exponent = std::round(std::log10(x));
+    if (exponent > -3 && exponent < 6) return text("%.6g", x);
+    constexpr const char* raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string out = exponent < 0 ? "10⁻" : "10";
+    for (char digit : text("%.0f", std::abs(exponent))) out += raised[digit - '0'];
+    return out;
 }
 
 }  // namespace svg
@@ -88,33 +85,28 @@ public:
     struct Type {
         const char* anchor = "start";  // what is at the place; or "middle", "end"
         const char* colour = svg::ink;
-        double size = svg::letter;
         bool bold = false;
         double turn = 0;  // degrees, clockwise
     };
     void words(Place at, std::string_view words) { this->words(at, words, Type()); }
     void words(Place at, std::string_view words, const Type& type) {
         body_ += text(R"(<text x="%.1f" y="%.1f" text-anchor="%s" fill="%s" font-size="%.1f")",
-                      at.x, at.y, type.anchor, type.colour, type.size);
+                      at.x, at.y, type.anchor, type.colour, svg::letter);
         if (type.bold) body_ += R"( font-weight="bold")";
         if (type.turn != 0)
             body_ += text(" transform=\"rotate(%.1f %.1f %.1f)\"", type.turn, at.x, at.y);
         body_ += text(">%s</text>\n", svg::escaped(words));
     }
 
-    void line(const std::vector<Place>& through, const char* colour, double width = 1,
-              bool dashed = false) {
+    void line(const std::vector<Place>& through, const char* colour, double width = 1) {
+        body_ += text("<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" points=\"",
+                      colour, width);
+        for (const Place& p : through) body_ += text("%.1f,%.1f ", p.x, p.y);
+        body_ += "\"/>\n";
+    }
+    void dot(Place at, const char* colour) {
         body_ +=
-            text("<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\"%s points=\"%s\"/>\n",
-                 colour, width, dashed ? R"( stroke-dasharray="5 4")" : "", points(through));
-    }
-    void area(const std::vector<Place>& outline, const char* colour, double opacity = 1) {
-        body_ += text("<polygon fill=\"%s\" fill-opacity=\"%.1f\" points=\"%s\"/>\n", colour,
-                      opacity, points(outline));
-    }
-    void dot(Place at, const char* colour, double radius = 3) {
-        body_ += text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\"/>\n", at.x, at.y,
-                      radius, colour);
+            text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n", at.x, at.y, colour);
     }
     // The pixels of a picture, enlarged to that width without smoothing.
     void picture(Place at, double width, const Image& image, double exposure) {
@@ -136,12 +128,6 @@ public:
 private:
     double width_, height_;
     std::string body_;
-
-    static std::string points(const std::vector<Place>& places) {
-        std::string out;
-        for (const Place& p : places) out += text("%.1f,%.1f ", p.x, p.y);
-        return out;
-    }
 };
 
 struct Picture {
@@ -164,125 +150,84 @@ inline Svg contact_sheet(const std::vector<Picture>& pictures, size_t columns, d
     return sheet;
 }
 
-// ---- Axes ---------------------------------------------------------------------------------------
+// ---- Plots --------------------------------------------------------------------------------------
 
+// A curve of a plot; its words stand at its right end.
+struct Series {
+    std::string words;
+    std::vector<double> x, y;
+};
+
+// Logarithmic, from one power of ten to another.
 struct Axis {
-    std::string label;  // with its unit
-    double lo = 0, hi = 1;
-    bool log = true;
-    std::vector<double> ticks = {};  // none: powers of ten, or five even steps
+    double lo = 1, hi = 10;
 
-    // 0 at lo, 1 at hi; beyond, at the nearer end.
-    double part(double x) const {
-        const double t = log ? std::log(x / lo) / std::log(hi / lo) : (x - lo) / (hi - lo);
-        return std::clamp(t, 0.0, 1.0);
-    }
+    // 0 at lo, 1 at hi.
+    double part(double x) const { return std::log(x / lo) / std::log(hi / lo); }
     std::vector<double> marks() const {
-        if (!ticks.empty()) return ticks;
         std::vector<double> out;
-        // With room for the rounding of a logarithm: lo and hi may be powers of ten.
-        for (double e = std::ceil(std::log10(lo) - 1e-9); log && e <= std::log10(hi) + 1e-9; ++e)
-            out.push_back(std::pow(10, e));
-        for (int k = 0; !log && k <= 4; ++k) out.push_back(lo + (hi - lo) * k / 4);
+        for (double x = lo; x < 2 * hi; x *= 10) out.push_back(x);
         return out;
     }
 };
+inline bool is_shown(double x) { return x > 0 && std::isfinite(x); }
+inline Axis axis_of(const std::vector<Series>& all, std::vector<double> Series::*numbers) {
+    double lo = INFINITY, hi = 0;
+    for (const Series& s : all)
+        for (double x : s.*numbers)
+            if (is_shown(x)) lo = std::min(lo, x), hi = std::max(hi, x);
+    if (hi == 0) return {};
+    const double first = std::floor(std::log10(lo)), last = std::ceil(std::log10(hi));
+    return {std::pow(10, first), std::pow(10, std::max(last, first + 1))};
+}
 
-// A part of a sheet with two axes; labels of curves stand at their right ends.
-class Plot {
-public:
-    // The frame's corner and size; ticks and labels need some 60 to its left, 45 below, 25 above.
-    Plot(Svg& sheet, Place corner, Place size, Axis x, Axis y, std::string_view title)
-        : sheet_(sheet), corner_(corner), size_(size), x_(std::move(x)), y_(std::move(y)) {
-        for (double t : x_.marks()) {
-            const double at = place(t, y_.lo).x;
-            sheet_.line({{at, corner_.y}, {at, bottom()}}, svg::grid);
-            sheet_.words({at, bottom() + 16}, svg::tick(t), {.anchor = "middle"});
-        }
-        for (double t : y_.marks()) {
-            const double at = place(x_.lo, t).y;
-            sheet_.line({{corner_.x, at}, {right(), at}}, svg::grid);
-            sheet_.words({corner_.x - 6, at + 4}, svg::tick(t), {.anchor = "end"});
-        }
-        sheet_.line(
-            {corner_, {right(), corner_.y}, {right(), bottom()}, {corner_.x, bottom()}, corner_},
-            svg::frame);
-        sheet_.words({corner_.x, corner_.y - 8}, title, {.bold = true});
-        sheet_.words({corner_.x + size_.x / 2, bottom() + 34}, x_.label, {.anchor = "middle"});
-        sheet_.words({corner_.x - 46, corner_.y + size_.y / 2}, y_.label,
-                     {.anchor = "middle", .turn = -90});
-    }
-    Plot(const Plot&) = delete;
-    Plot& operator=(const Plot&) = delete;
-    // Labels find their places when all are known: a line apart, and none below the frame.
-    ~Plot() {
-        std::stable_sort(labels_.begin(), labels_.end(),
-                         [](const Label& a, const Label& b) { return a.y < b.y; });
-        double room = -INFINITY;
-        for (Label& l : labels_) room = l.y = std::max(l.y, room + line_height);
-        room = bottom() + line_height;
-        for (size_t k = labels_.size(); k-- > 0;)
-            room = labels_[k].y = std::min(labels_[k].y, room - line_height);
-        for (const Label& l : labels_)
-            sheet_.words({right() + 6, l.y + 4}, l.words, {.colour = l.colour});
-    }
-
-    Place place(double x, double y) const {
-        return {corner_.x + size_.x * x_.part(x), corner_.y + size_.y * (1 - y_.part(y))};
-    }
-
-    struct Style {
-        const char* colour = svg::ink;
-        bool dots = true, dashed = false;
-        double width = 2, radius = 3;  // of the line (0: none) and of the dots
+// Numbers that a logarithm does not have are left out.
+inline Svg plot(const std::vector<Series>& all, std::string_view x_label, std::string_view y_label,
+                std::string_view title) {
+    constexpr Place corner = {80, 40}, size = {560, 300};
+    constexpr double right = corner.x + size.x, bottom = corner.y + size.y,
+                     line_height = svg::letter + 2;
+    Svg sheet(860, 400);
+    const Axis x = axis_of(all, &Series::x), y = axis_of(all, &Series::y);
+    auto place = [&](double a, double b) {
+        return Place{corner.x + size.x * x.part(a), corner.y + size.y * (1 - y.part(b))};
     };
-    // Points that are not finite are left out.
-    void curve(const std::vector<double>& x, const std::vector<double>& y, const Style& style,
-               const std::string& words = "") {
+    for (double t : x.marks()) {
+        const double at = place(t, y.lo).x;
+        sheet.line({{at, corner.y}, {at, bottom}}, svg::grid);
+        sheet.words({at, bottom + 16}, svg::tick(t), {.anchor = "middle"});
+    }
+    for (double t : y.marks()) {
+        const double at = place(x.lo, t).y;
+        sheet.line({{corner.x, at}, {right, at}}, svg::grid);
+        sheet.words({corner.x - 6, at + 4}, svg::tick(t), {.anchor = "end"});
+    }
+    sheet.line({corner, {right, corner.y}, {right, bottom}, {corner.x, bottom}, corner},
+               svg::frame);
+    sheet.words({corner.x, corner.y - 8}, title, {.bold = true});
+    sheet.words({corner.x + size.x / 2, bottom + 34}, x_label, {.anchor = "middle"});
+    sheet.words({corner.x - 46, corner.y + size.y / 2}, y_label, {.anchor = "middle", .turn = -90});
+    std::vector<std::pair<double, size_t>> labels;  // their heights
+    for (size_t i = 0; i < all.size(); ++i) {
         std::vector<Place> through;
-        for (size_t k = 0; k < x.size(); ++k)
-            if (std::isfinite(x[k]) && std::isfinite(y[k])) through.push_back(place(x[k], y[k]));
-        if (through.empty()) return;
-        if (style.width > 0) sheet_.line(through, style.colour, style.width, style.dashed);
-        for (const Place& p : through)
-            if (style.dots) sheet_.dot(p, style.colour, style.radius);
-        if (!words.empty()) labels_.push_back({through.back().y, words, style.colour});
+        for (size_t k = 0; k < all[i].x.size(); ++k)
+            if (is_shown(all[i].x[k]) && is_shown(all[i].y[k]))
+                through.push_back(place(all[i].x[k], all[i].y[k]));
+        if (through.empty()) continue;
+        const char* colour = svg::colours[i % std::size(svg::colours)];
+        sheet.line(through, colour, 2);
+        for (const Place& p : through) sheet.dot(p, colour);
+        labels.push_back({through.back().y, i});
     }
-    // At the right border.
-    void label(double y, const std::string& words, const char* colour) {
-        labels_.push_back({place(x_.hi, y).y, words, colour});
-    }
-    // Between two curves.
-    void band(const std::vector<double>& x, const std::vector<double>& low,
-              const std::vector<double>& high, const char* colour) {
-        std::vector<Place> outline;
-        for (size_t k = 0; k < x.size(); ++k) outline.push_back(place(x[k], low[k]));
-        for (size_t k = x.size(); k-- > 0;) outline.push_back(place(x[k], high[k]));
-        sheet_.area(outline, colour, 0.2);
-    }
-    // A curve in a band of y ± deviation.
-    void spread(const std::vector<double>& x, const std::vector<double>& y,
-                const std::vector<double>& deviation, const char* colour,
-                const std::string& words) {
-        std::vector<double> low = y, high = y;
-        for (size_t k = 0; k < y.size(); ++k) low[k] -= deviation[k], high[k] += deviation[k];
-        band(x, low, high, colour);
-        curve(x, y, {.colour = colour}, words);
-    }
-
-private:
-    struct Label {
-        double y;
-        std::string words;
-        const char* colour;
-    };
-    Svg& sheet_;
-    Place corner_, size_;
-    Axis x_, y_;
-    std::vector<Label> labels_;
-
-    static constexpr double line_height = svg::letter + 2;
-
-    double right() const { return corner_.x + size_.x; }
-    double bottom() const { return corner_.y + size_.y; }
-};
+    // A line apart, and none below the frame.
+    std::sort(labels.begin(), labels.end());
+    double room = -INFINITY;
+    for (auto& [at, i] : labels) room = at = std::max(at, room + line_height);
+    room = bottom + line_height;
+    for (size_t k = labels.size(); k-- > 0;)
+        room = labels[k].first = std::min(labels[k].first, room - line_height);
+    for (const auto& [at, i] : labels)
+        sheet.words({right + 6, at + 4}, all[i].words,
+                    {.colour = svg::colours[i % std::size(svg::colours)]});
+    return sheet;
+}

@@ -4,9 +4,9 @@
 //   build/techniques --render SCENE --direction D --light L --spp N -o FILE.pfm --stats FILE.json
 //   ...
 #include "base/json.h"
+#include "keep/p_of_z.h"
 #include "labs/grid.h"
 #include "labs/naive_halton.h"
-#include "labs/p_of_z.h"
 #include "world/scene_file.h"
 
 namespace {
@@ -82,11 +82,10 @@ double z_of(const Rows& rows) {
            std::sqrt(mean(rows, "ratio variance") / double(rows.size()));
 }
 
-double square(const Rows& rows) { return mean(rows, "d2"); }
 double error_after_a_second(const Rows& rows) { return std::sqrt(1 / efficiency(rows)); }
 
 std::string all_settings(Page& page, const Rows& rows) {
-    std::vector<std::vector<std::string>> lines;
+    Lines lines;
     for (const auto& [name, some] : grouped(rows, of_setting)) {
         const bool is_naive = name.starts_with("naive");
         const double z = z_of(some);
@@ -113,16 +112,15 @@ Svg pictures(const std::string& program, const std::vector<Setting>& all, const 
     return contact_sheet(shown, 4, 0.6);  // the scene's exposure
 }
 
-int run(bool quick, bool kept, const std::string& self, const std::string& program,
-        const std::string& command) {
-    Page page(report_folder(quick), "techniques");
-    const uint64_t spp = quick ? 16 : 64, seeds = quick ? 2 : 8;
+int study(const Scope& scope) {
+    const std::string program = scope.beside();
+    Page page(scope, "techniques");
+    const uint64_t spp = scope.quick ? 16 : 64, seeds = scope.quick ? 2 : 8;
     const Subject subject{"coursework", scene, 64 * spp};
-    const std::vector<Setting> all = settings(self), naives(all.end() - 2, all.end());
-    RenderGrid grid("techniques", program, kept);
+    const std::vector<Setting> all = settings(scope.self), naives(all.end() - 2, all.end());
+    RenderGrid grid("techniques", program, scope.kept);
     grid.measure = measure;
     const Rows equal = grid.run({subject}, all, {spp}, seeds),
-               many = grid.run({subject}, all, {4 * spp}, seeds / 2),
                limits = grid.run({subject}, naives, {spp, 8 * spp, 64 * spp}, 1);
     page.set("table", all_settings(page, equal));
     page.plot("techniques", pictures(program, all, text("%.0f", double(spp))));
@@ -144,30 +142,26 @@ int run(bool quick, bool kept, const std::string& self, const std::string& progr
         {"mis", gain_of(mis, all_three)},
         {"all", gain_of(mis, uniform)}};
     for (const auto& [word, x] : gains) page.set(word, text("%.1f", x));
-    page.set("square nee", gain(many, nee, halton_nee, square));
-    page.set("square both", gain(many, cosine_nee, all_three, square));
     for (const auto& [word, name] :
          {std::pair{"neighbours naive", naive}, std::pair{"neighbours uniform", uniform},
           std::pair{"neighbours halton", halton}})
         page.set(word, text("%.3f", mean(by_setting(equal, name), "neighbours")));
     page.set("seeds", text("%.0f", double(seeds)));
-    page.set("made", made_by(command));
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool quick = false, kept = false;
     if (argc > 2 && argv[1] == std::string("--render")) try {
             return render({argv + 2, argv + argc});
         } catch (...) {
             return failed();
         }
-    const Lab lab{"techniques",
-                  "Measures what cosine, Halton points and next-event estimation bring.",
-                  {kept_flag(kept), quick_flag(quick)}};
-    return lab_main(argc, argv, lab, [&] {
-        return run(quick, kept, argv[0], renderer_beside(lab, argv[0]), command_of(argc, argv));
-    });
+    return experiment(argc, argv,
+                      {"techniques",
+                       "Measures what cosine, Halton points and next-event estimation bring.",
+                       {},
+                       true},
+                      study);
 }

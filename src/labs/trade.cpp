@@ -12,8 +12,7 @@ namespace {
 using namespace trade;
 
 struct Effort {
-    bool quick = false, kept = false;
-    std::vector<std::string> scenes = scenes_in("scenes");
+    std::vector<std::string> scenes = {};  // none: all
     std::vector<uint64_t> counts = {1, 4, 16, 64, 256};
     uint64_t seeds = 1, truth = 4096;
     int part = 2;  // of the scenes' widths and heights
@@ -59,7 +58,7 @@ Rows tournament(RenderGrid& grid, const Effort& plan, const Subject& subject, Ch
         for (Choice& c : choices)
             if (c.dropped.empty()) c.points.push_back(point_of(by_setting(rows, c.setting.name)));
         if (count != plan.counts.back()) drop_hopeless(choices);
-        all.insert(all.end(), rows.begin(), rows.end());
+        append(all, rows);
     }
     return all;
 }
@@ -102,27 +101,17 @@ void add_shots(RenderGrid& grid, const Subject& subject, Study& s) {
     }
 }
 
-// Rounding, where it changes the image's mean.
-std::string remark_on_float(const Rows& rows, uint64_t count) {
-    const Rows last = where(rows, [&](const Row& r) { return r.count == count; });
-    const double more =
-        mean(by_setting(last, in_float), "mean") / mean(by_setting(last, own), "mean") - 1;
-    if (!(std::abs(more) > 0.01)) return "";
-    return text("In float the image is %.1f %% too %s: rounding.", 100 * std::abs(more),
-                more > 0 ? "bright" : "dark");
-}
-
 Study study(RenderGrid& grid, const Effort& plan, const std::string& name,
             const std::string& float_program, Rows& all) {
     const std::string file = "scenes/" + name + ".scene";
     const Scene scene = read_scene(file).scene;
     const int width = scene.size.width / plan.part, height = scene.size.height / plan.part;
     const Subject subject{name, text("%s --size %dx%d", file, width, height), plan.truth};
-    Study s{name, "", double(scene.exposure), NAN, all_choices(scene, float_program)};
+    Study s{name, double(scene.exposure), NAN, all_choices(scene, float_program)};
     const Rows rows = tournament(grid, plan, subject, s.choices);
-    all.insert(all.end(), rows.begin(), rows.end());
+    append(all, rows);
     const Truth& f = grid.truth(subject);
-    s.own = f.own, s.remark = remark_on_float(rows, plan.counts.back());
+    s.own = f.own;
     s.shots.push_back({"the reference", {}, f.image});
     add_shots(grid, subject, s);
     return s;
@@ -140,35 +129,18 @@ std::string told_answer(const Choices& choices, double error) {
            (k ? "; default " + told_seconds(reach(choices[0], error).seconds) : "");
 }
 
-Svg curves(const std::vector<Study>& studies) {
-    constexpr double width = 680, height = 290;
-    Svg sheet(2 * width, height * std::ceil(double(studies.size()) / 2));
-    for (size_t k = 0; k < studies.size(); ++k) {
-        const Choices& choices = studies[k].choices;
-        Plot plot(sheet, {width * double(k % 2) + 70, height * double(k / 2) + 30}, {340, 200},
-                  {"CPU seconds", 1e-2, 100}, {"d_rel", 1e-3, 10}, studies[k].scene);
-        auto draw = [&](const Choice& c, const Plot::Style& style, const std::string& words) {
-            std::vector<double> t, e;
-            for (const Point& p : known(c.points)) t.push_back(p.seconds), e.push_back(p.error);
-            plot.curve(t, e, style, words);
-        };
-        for (const Choice& c : choices) draw(c, {"#cccccc", false, false, 0.7}, "");
-        std::set<size_t> named = {0};
-        for (double error : asked) named.insert(cheapest(choices, error).choice);
-        size_t colour = 0;
-        for (size_t i : named)
-            draw(choices[i], {svg::colours[colour++]}, choices[i].setting.name.substr(6));
-    }
-    return sheet;
+// The default and whatever answers, on the first scene.
+Svg curves(const Rows& rows, const Study& s) {
+    std::set<std::string> named = {own};
+    for (double error : asked)
+        named.insert(s.choices[cheapest(s.choices, error).choice].setting.name);
+    return plot(
+        where(in_scene(rows, s.scene), [&](const Row& r) { return named.count(r.setting) > 0; }),
+        "CPU seconds", "d_rel", of_setting, mean_of("cpu_seconds"),
+        [](const Rows& r) { return point_of(r).error; }, s.scene);
 }
 
-using Lines = std::vector<std::vector<std::string>>;
-
 void tell_default(Page& page, const std::vector<Candidate>& all) {
-    Lines lines;
-    for (const Candidate& c : all)
-        lines.push_back({c.command, text("%.3f", c.ratio), text("%.3f", c.most), c.where});
-    page.data("trade-defaults", csv({"command", "ratio", "most", "where"}, lines));
     const auto at = std::find_if(all.begin(), all.end(), [](auto& c) { return c.command == own; });
     if (at == all.end()) throw UserError("no error of the default is known on any scene");
     page.set("ratio", text("%.2f", at->ratio));
@@ -178,62 +150,34 @@ void tell_default(Page& page, const std::vector<Candidate>& all) {
     page.claim("is best", at->ratio <= 1.05 * all[0].ratio);
 }
 
-// What one setting brings over another at the last count.
-void tell_pairs(Page& page, const Rows& rows, uint64_t count) {
-    const Rows last = where(rows, [&](const Row& r) {
-        return r.count == count && known_error(r["off"], r["own"]) > 0;
-    });
-    auto set = [&](const char* word, const std::string& one, const std::string& other,
-                   auto number) {
-        page.set(word, told({over(last, one, other, number), NAN}, "%.2f"));
-    };
-    set("float seconds", in_float, own, [](const Rows& r) { return mean(r, "cpu_seconds"); });
-    set("float error", in_float, own, relative_error);
-    set("sets", own, own + " --sets 1", efficiency);
-}
-
-void tell_points(Page& page, const std::vector<Study>& studies) {
-    Lines points, dropped;
-    for (const Study& s : studies)
-        for (const Choice& c : s.choices) {
-            for (const Point& p : c.points)
-                points.push_back({s.scene, c.setting.name, significant(p.spp, 4),
-                                  text("%.4g", p.seconds), told({p.error, NAN}, "%.4g")});
-            if (!c.dropped.empty()) dropped.push_back({s.scene, c.setting.name, c.dropped});
-        }
-    page.data("trade", csv({"scene", "command", "spp", "CPU seconds", "d_rel"}, points));
-    write_file(folder + "/dropped.csv", csv({"scene", "command", "dropped"}, dropped));
-}
-
-int run(const Effort& plan, const std::string& program, const std::string& float_program,
-        const std::string& command) {
+int study(Scope scope, Effort plan) {
+    if (scope.quick) plan.part = 4, plan.truth = 256, plan.counts = {1, 4, 16};
+    RenderGrid grid(scope.quick ? "trade-quick" : "trade", scope.beside(), scope.kept);
+    scope.quick = scope.quick || !plan.scenes.empty();
+    if (plan.scenes.empty()) plan.scenes = scenes_in("scenes");
+    const std::string float_program = scope.beside("penumbra-float");
     std::filesystem::create_directories(folder);
-    Page page(report_folder(plan.quick), "trade");
-    RenderGrid grid(plan.part > 2 ? "trade-quick" : "trade", program, plan.kept);
+    Page page(scope, "trade");
     grid.measure = [](Row& row, const Image& image, const Truth&) {
         if (row.setting.starts_with(shot) && row.seed == 2) write_image(image_of(row), image, 1);
     };
     std::vector<Study> studies;
     Rows rows;
     Lines lines;
-    std::string remarks;
     for (const std::string& name : plan.scenes) {
         const Study& s = studies.emplace_back(study(grid, plan, name, float_program, rows));
-        write_page(studies, command, plan.quick, folder);  // what is there, should the rest fail
+        write_page(studies, scope.command, scope.quick,
+                   folder);  // what is there, should the rest fail
         lines.push_back({name});
         for (double error : asked) lines.back().push_back(told_answer(s.choices, error));
-        if (!s.remark.empty()) remarks += text("  On %s: %s", name, s.remark);
     }
     page.set("table", table({"scene", "10 %", "3 %", "1 %", "0.3 %"}, lines));
-    page.plot("trade", curves(studies));
+    page.plot("trade", curves(rows, studies[0]));
     tell_default(page, candidates(studies));
-    tell_pairs(page, rows, plan.counts.back());
-    tell_points(page, studies);
+    page.data("trade", csv_of(rows, {"cpu_seconds", "off", "own"}));
     page.set("samples", text("%.0f", double(plan.counts.back())));
     page.set("truth", text("%.0f", double(plan.truth)));
     page.set("part", text("1/%d", plan.part));
-    page.set("remarks", remarks);
-    page.set("made", made_by(command));
     return page.finish();
 }
 
@@ -241,22 +185,12 @@ int run(const Effort& plan, const std::string& program, const std::string& float
 
 int main(int argc, char** argv) {
     Effort plan;
-    std::vector<std::string> scenes;
     const Lab lab{"trade",
                   "Measures error over time by every setting, on every scene.",
                   {{"--scene", "NAME", "this one alone; may be repeated, writes into out/",
-                    [&](auto& name) { plan.quick = true, scenes.push_back(name); }},
+                    [&](auto& name) { plan.scenes.push_back(name); }},
                    {"--full", "", "more samples and seeds",
-                    [&](auto&) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }},
-                   {"--quick", "", "fewer samples and pixels, into out/",
-                    [&](auto&) {
-                        plan.quick = true, plan.part = 4, plan.truth = 256;
-                        plan.counts = {1, 4, 16};
-                    }},
-                   kept_flag(plan.kept)}};
-    return lab_main(argc, argv, lab, [&] {
-        if (!scenes.empty()) plan.scenes = scenes;
-        return run(plan, renderer_beside(lab, argv[0]),
-                   renderer_beside(lab, argv[0], "penumbra-float"), command_of(argc, argv));
-    });
+                    [&](auto&) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }}},
+                  true};
+    return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, plan); });
 }

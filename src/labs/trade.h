@@ -114,7 +114,7 @@ struct Shot {
 };
 
 struct Study {
-    std::string scene, remark = "";
+    std::string scene;
     double exposure = 1, own = NAN;  // own: d_rel of the reference
     Choices choices = {};
     std::vector<Shot> shots = {};
@@ -190,21 +190,20 @@ inline std::string json_of(const Study& s) {
                            json::number(at.spp)});
     }
     const Image& f = s.shots.at(0).image;
-    return object({"name", json::string(s.scene), "remark", json::string(s.remark), "width",
-                   json::number(f.width), "height", json::number(f.height), "exposure",
-                   json::number(s.exposure), "own", json::number(s.own), "answers",
-                   "[" + answers + "]", "choices", array(s.choices), "shots", array(s.shots)});
+    return object({"name", json::string(s.scene), "width", json::number(f.width), "height",
+                   json::number(f.height), "exposure", json::number(s.exposure), "own",
+                   json::number(s.own), "answers", "[" + answers + "]", "choices", array(s.choices),
+                   "shots", array(s.shots)});
 }
 
 // A browser opens files without a server, but lets a page read scripts alone: trade.js says what
-// trade.json says, and NAME.js has a scene's images as floats, row by row from the top left pixel.
+// was measured, and NAME.js has a scene's images as floats, row by row from the top left pixel.
 inline void write_page(const std::vector<Study>& studies, const std::string& command, bool preview,
                        const std::string& folder) {
     const std::string data =
         object({"command", json::string(command), "preview", json::truth(preview), "asked",
                 "[0.1, 0.03, 0.01, 0.003]", "candidates", array(candidates(studies)), "scenes",
                 array(studies)});
-    write_file(folder + "/trade.json", data);
     write_file(folder + "/trade.js", "const trade = " + data + ";\n");
     write_file(folder + "/trade.html", read_file("src/labs/trade.html"));
     for (const Study& s : studies) {

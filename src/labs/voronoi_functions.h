@@ -13,13 +13,11 @@
 
 // On [-1/2, 1/2]^2.
 struct Function {
-    std::string name, formula;
+    std::string name;
     double (*at)(Site);
     double integral;
     double rim = NAN;  // integral of the outward derivative over the border; NaN: there is none
-    double exponent = -0.75;  // of N in the deviation of vor, undivided, at most; NaN: infinite
-
-    bool has_variance() const { return !std::isnan(exponent); }
+    bool has_variance = true;
 };
 
 namespace functions {
@@ -28,8 +26,7 @@ inline double power_of_xy(double alpha, Site p) { return std::pow(std::abs(p.x *
 // On x = 1/2 its outward derivative is alpha (1/2)^(alpha - 1) |y|^alpha.
 inline Function holder(const std::string& alpha, double a, double (*at)(Site)) {
     const double side = 2 * std::pow(0.5, a + 1) / (a + 1);  // integral of |x|^alpha
-    return {"holder_" + alpha, "\\|xy\\|^" + alpha, at, side * side,
-            4 * a * std::pow(0.5, a - 1) * side};
+    return {"holder_" + alpha, at, side * side, 4 * a * std::pow(0.5, a - 1) * side};
 }
 
 // -1 / ln r over the square: in polar coordinates int r dr / -ln r = E1(-2 ln r), over the distance
@@ -61,25 +58,20 @@ inline std::vector<Function> all() {
         holder("0.5", 0.5, [](Site p) { return power_of_xy(0.5, p); }),
         holder("0.1", 0.1, [](Site p) { return power_of_xy(0.1, p); }),
         holder("0.01", 0.01, [](Site p) { return power_of_xy(0.01, p); }),
-        {"not_holder", "−1 / ln r", [](Site p) { return -1 / std::log(std::hypot(p.x, p.y)); },
+        // -1 / ln r, 1 / r, and x y sin(1/x) sin(1/y).
+        {"not_holder", [](Site p) { return -1 / std::log(std::hypot(p.x, p.y)); },
          integral_of_not_holder()},
-        {"discontinuity", "1 / r", [](Site p) { return 1 / std::hypot(p.x, p.y); },
-         4 * std::log(1 + std::numbers::sqrt2), NAN, NAN},
-        {"not_c1", "x y sin(1/x) sin(1/y)",
-         [](Site p) { return p.x * p.y * std::sin(1 / p.x) * std::sin(1 / p.y); },
+        {"discontinuity", [](Site p) { return 1 / std::hypot(p.x, p.y); },
+         4 * std::log(1 + std::numbers::sqrt2), NAN, false},
+        {"not_c1", [](Site p) { return p.x * p.y * std::sin(1 / p.x) * std::sin(1 / p.y); },
          integral_of_not_c1()},
         // Its outward derivative on x = 1/2 is -2 (1 - 2 |y|).
-        {"hat", "(1 − 2\\|x\\|) (1 − 2\\|y\\|)", [](Site p) { return tent(p.x) * tent(p.y); }, 0.25,
-         -4, -1},
+        {"hat", [](Site p) { return tent(p.x) * tent(p.y); }, 0.25, -4},
         // Its Laplacian is 5/4 of it, which Gauss's theorem takes to the border.
-        {"exp", "e^(x + y/2)", [](Site p) { return std::exp(p.x + p.y / 2); }, of_exp,
-         1.25 * of_exp},
-        {"disc", "1 if r < 0.3, else 0",
-         [](Site p) { return p.x * p.x + p.y * p.y < 0.09 ? 1.0 : 0.0; }, 0.09 * std::numbers::pi},
+        {"exp", [](Site p) { return std::exp(p.x + p.y / 2); }, of_exp, 1.25 * of_exp},
+        {"disc", [](Site p) { return p.x * p.x + p.y * p.y < 0.09 ? 1.0 : 0.0; },
+         0.09 * std::numbers::pi},
     };
 }
-
-// Their numbers in that list.
-enum { holder_1, holder_05, holder_01, holder_001, not_holder, discontinuity, not_c1, hat, expo };
 
 }  // namespace functions

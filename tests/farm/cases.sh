@@ -2,7 +2,7 @@
 
 size=${SIZE:-128x96} spp=${SPP:-512} scene=${SCENE:-$here/scenes/cornell36.scene}
 resumed='^farm: goes on from its film'
-. src/labs/farm.sh  # what it knows of a folder's parts
+. src/keep/farm.sh  # what it knows of a folder's parts
 
 # What a farm renders, and $whole, the picture of one render.  Sets are fixed: adaptive ones of a band
 # are chosen by its own rows.
@@ -18,7 +18,7 @@ longer() { picture_of $((16 * spp)); }
 # Submits; $job is the array, $merge_job the one behind it.
 by_slurm() {  # OPTION...
     local status=0
-    bash src/labs/farm_slurm.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- "${picture[@]}" \
+    bash src/keep/farm_slurm.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- "${picture[@]}" \
         >"$folder.out" 2>"$folder.err" || status=$?
     job=$(sed -n 's/^farm: job \([0-9]*\) renders.*/\1/p' "$folder.out")
     merge_job=$(sed -n 's/.*job \([0-9]*\) merges.*/\1/p' "$folder.out")
@@ -228,7 +228,7 @@ case_slurm_refused() {
 # ---- By GNU parallel ----------------------------------------------------------------------------
 
 by_parallel() {  # OPTION...
-    bash src/labs/farm_parallel.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- "${picture[@]}" \
+    bash src/keep/farm_parallel.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- "${picture[@]}" \
         >"$folder.out" 2>"$folder.err"
 }
 parallel_in_mid_run() {

@@ -73,17 +73,3 @@ TEST_CASE("--error: what it asked for, and whether it was reached") {
     CHECK_FALSE(is_reached(r));
     CHECK(set_of("blind hard/lake") == "blind hard");
 }
-
-TEST_CASE("the worst scenes: by how many runs, then by how much") {
-    const Rows rows = {row(.1, 1, "a"),  row(1, 1, "a"),   row(.01, 1, "b"),
-                       row(.01, 1, "c"), row(.02, 1, "c"), row(1, 1, "d")};
-    const auto worst =
-        worst_of(rows, is_understated, [](const Row& r) { return true_d(r) / r["d_rel"]; });
-    REQUIRE(worst.size() == 3);
-    CHECK(worst[0].scene == "c");
-    CHECK(worst[0].most == doctest::Approx(50));
-    CHECK(worst[1].scene == "b");
-    CHECK(worst[2].scene == "a");
-    CHECK(worst[2].count == 1);
-    CHECK(worst[2].runs == 2);
-}

@@ -16,11 +16,6 @@ Image grey(std::initializer_list<float> values) {
     return image;
 }
 
-// A run that is off by so much, and states so much of its maps.
-Row run_of(double off, double stated, double reference) {
-    return {"", "", 0, 0, {{"off", off}, {"stated", stated}, {"reference", reference}}};
-}
-
 }  // namespace
 
 TEST_CASE("d_rel is the distance over the quadratic mean of the first image") {
@@ -30,38 +25,19 @@ TEST_CASE("d_rel is the distance over the quadratic mean of the first image") {
     CHECK(d_rel(grey({0, 2}), grey({1, 2})) == doctest::Approx(0.5).epsilon(1e-12));
 }
 
-TEST_CASE("a power is found again in points of it, scattered or not") {
-    Curve c;
-    for (double t : {0.1, 0.2, 0.5, 3.0}) c.add(t, 0.7 * std::pow(t, -0.5));
-    const Power p = power_through(c);
-    CHECK(p.exponent == doctest::Approx(-0.5).epsilon(1e-12));
-    CHECK(p(1) == doctest::Approx(0.7).epsilon(1e-12));
-    CHECK(p(4) == doctest::Approx(0.35).epsilon(1e-12));
-}
-
-TEST_CASE("the error of a reference is inferred by proportion") {
-    // Errors are k times what runs state; that of the reference adds in squares.
+TEST_CASE("errors of runs over what they and the reference state, by proportion") {
     const double k = 0.7, reference = 0.005;
-    Rows shorter;
+    Rows rows;
     for (double stated : {0.4, 0.2, 0.1, 0.05})
-        shorter.push_back(run_of(k * std::hypot(stated, reference), stated, reference));
-    Rows longer = {run_of(k * std::hypot(0.01, reference), 0.01, reference)};
-    const Proportion p = proportion(shorter, longer);
-    CHECK(p.k.n == 4);
-    CHECK(p.k.mean == doctest::Approx(k).epsilon(1e-9));
-    CHECK(p.exponent == doctest::Approx(1).epsilon(1e-9));
-    CHECK(p.predicted == doctest::Approx(0.01 * k).epsilon(1e-9));
-    CHECK(p.measured == doctest::Approx(0.01 * k).epsilon(1e-9));
-    // What is not proportional does not hold.
-    longer[0].of["off"] *= 2;
-    CHECK_FALSE(proportion(shorter, longer).holds());
-    shorter[0].of["off"] *= 3, shorter[1].of["off"] *= 2;
-    CHECK(proportion(shorter, longer).exponent > 1.3);
-}
-
-TEST_CASE("the reference's own error is taken off in squares") {
-    CHECK(without(5, 4) == 3);
-    CHECK(without(3, 4) == 0);
+        rows.push_back({"",
+                        "",
+                        0,
+                        0,
+                        {{"off", k * std::hypot(stated, reference)},
+                         {"stated", stated},
+                         {"reference", reference}}});
+    CHECK(proportion(rows).n == 4);
+    CHECK(proportion(rows).mean == doctest::Approx(k).epsilon(1e-9));
 }
 
 TEST_CASE(
@@ -90,13 +66,6 @@ TEST_CASE("an error between two points of a curve lies on a power, beyond them o
     CHECK(error_at(c, 8) == doctest::Approx(0.1 * std::sqrt(2)));
     CHECK(error_at(c, 64) == doctest::Approx(0.05));
     CHECK(error_at(c, 0.25) == doctest::Approx(1.6));
-}
-
-TEST_CASE("cameras from which on a map is cheaper") {
-    CHECK(cameras(10, 1, 3) == 5);  // 5 + 10 = 15
-    CHECK(cameras(10, 1, 3.1) == 5);
-    CHECK(cameras(1, 1, 100) == 1);
-    CHECK(std::isinf(cameras(1, 2, 2)));
 }
 
 TEST_CASE("what remains unshot is looked at by decades") {

@@ -61,11 +61,7 @@ TEST_CASE("ways are named, with a number") {
     CHECK(double(way_of("whole:0.5").roulette) == 0.5);
     Segment s;
     s.k = 1, s.beta = {real(0.5), real(0.25), 0};
-    CHECK(double(way_of("over:2").go_on(s)) == 0.25);
-    CHECK(double(way_of("always:0.7").go_on(s)) == doctest::Approx(0.7));
-    CHECK(double(way_of("first:0.7").go_on(s)) == doctest::Approx(0.7));
-    CHECK(way_of("map").go_on(s) == 0);
-    s.k = 2;
-    CHECK(way_of("first:0.7").go_on(s) == 1);
+    CHECK(double(probability(way_of("over:2").threshold, s)) == 0.25);
+    CHECK(probability(way_of("map").threshold, s) == 0);
     CHECK_THROWS_AS(way_of("ball:1"), UserError);
 }

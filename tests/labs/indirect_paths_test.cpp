@@ -269,8 +269,8 @@ TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light fou
     const Scene s = glowing();
     const Mesh mesh = make_mesh(s, 1);
     const KnownLight known = known_light(s, mesh, of_glow(mesh));
-    for (const GoOn& go_on : {GoOn(never), by_throughput}) {
-        const Gather g{s, {Direction::bsdf, LightMode::none, 0}, known, go_on};
+    for (real threshold : {never, by_throughput}) {
+        const Gather g{s, {Direction::bsdf, LightMode::none, 0}, known, threshold};
         for (int r = 0; r < 100; ++r)
             CHECK(double(mean_of_paths(g, SamplerKind::independent, r, 1, [](vec2 u) {
                              return Ray{{1, 1, 1}, sample_uniform_sphere(u)};

@@ -75,13 +75,16 @@ TEST_CASE("a table has a line and a column for each word, in their order") {
     CHECK(by_setting(rows, "x").size() == 3);
 }
 
+TEST_CASE("every row is a line of the CSV, with nothing where it has no number") {
+    CHECK(csv_of({row("a", "--x 1", 7, .5)}, {"d2", "none"}) ==
+          "scene,setting,count,seed,d2,none\n\"a\",\"--x 1\",4,7,0.5,\n");
+}
+
 TEST_CASE("a plot has a curve for each word, and its label") {
     Rows rows = {row("a", "x", 1, .01), row("a", "x", 1, .001), row("a", "y", 1, .02)};
     rows[1].count = 16;
-    auto n = [](const Rows& r) { return double(r[0].count); };
     const std::string svg =
-        plot(rows, {"samples", 1, 100}, {"error", .001, 1}, of_setting, n, relative_error, "Title")
-            .file();
+        plot(rows, "samples", "error", of_setting, count_of, relative_error, "Title").file();
     for (const char* words : {"Title", ">x<", ">y<", "samples", "error"})
         CHECK(svg.find(words) != std::string::npos);
 }

@@ -34,7 +34,7 @@ Choice choice(const std::string& command, std::vector<double> errors) {
 }
 
 Study sample_study(const std::string& name, int width, int height) {
-    Study s{name, "", 0.75, 0.004};
+    Study s{name, 0.75, 0.004};
     s.choices = {choice("penumbra", {0.12, 0.06, 0.03}),
                  choice("penumbra --light nee", {0.1, 0.05, 0.02, 0.01}),
                  choice("penumbra-float <i>", {NAN, NAN, NAN})};

@@ -103,7 +103,7 @@ TEST_CASE("the one default: the least mean ratio to the best, and where it is wo
         Choices all = {by_law("even", even, 0.5), by_law("sharp", sharp, 0.5),
                        by_law("float", 0.01, 0.5)};
         all[2].may_be_default = false;
-        return Study{name, "", 1, 0, all};
+        return Study{name, 1, 0, all};
     };
     const std::vector<Candidate> c = candidates(
         {scene("room", 0.04, 0.02), scene("hall", 0.02, 0.04), scene("attic", 0.02, 0.08)});
@@ -163,7 +163,7 @@ TEST_CASE("what is not known is null in the page's data, and words are escaped")
           "{\"command\": \"a \\\"b\\\"\", \"dropped\": \"\", \"gamma\": null, \"seconds\": "
           "[0.040000000000000001, null, null, null], \"points\": [{\"spp\": 4, \"seconds\": "
           "0.040000000000000001, \"error\": 0.10000000000000001}]}");
-    Study s{"room", "", 1, 0.01, {c}, {{"the reference", {}, Image(2, 1)}}};
+    Study s{"room", 1, 0.01, {c}, {{"the reference", {}, Image(2, 1)}}};
     CHECK(contains(json_of(s), "\"answers\": [{\"choice\": 0, \"spp\": 4}, {\"choice\": null"));
     CHECK(contains(json_of(s), "\"width\": 2, \"height\": 1, "));
     CHECK(!contains(json_of(s), "nan"));

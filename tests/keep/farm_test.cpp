@@ -1,4 +1,4 @@
-// labs/farm_test.cpp  farms without their engines: plans, parts that are stopped and killed, merges
+// keep/farm_test.cpp  farms without their engines: plans, parts that are stopped and killed, merges
 //
 // `make test-farm` runs the same scripts on a real Slurm, by GNU parallel and over ssh.
 #include <doctest/doctest.h>
@@ -36,11 +36,11 @@ printf 'penumbra film 2\ncomplete yes\n\n' >"$film"
         folder.write(name, "#!/bin/bash\n" + lines);
         fs::permissions(folder.path / name, fs::perms::owner_all);
     }
-    // A script of src/labs, in the folder; those in bin/ are found first.
+    // A script of src/keep, in the folder; those in bin/ are found first.
     Said run(const std::string& words, const std::string& variables = "") const {
         const std::string command =
             "cd '" + folder.path.string() + "' || exit; exec >out 2>err; PATH=\"$PWD/bin:$PATH\" " +
-            variables + " bash '" + fs::absolute("src/labs").string() + "'/" + words;
+            variables + " bash '" + fs::absolute("src/keep").string() + "'/" + words;
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
                 folder.read("out"), folder.read("err")};
@@ -270,7 +270,7 @@ TEST_CASE("parts, one of them stopped in between, merge into the picture of one 
     folder.write("a.scene",
                  "camera 0 0 5  0 0 0  40\ndiffuse grey .5 .5 .5\nlight lamp 9 9 9\n"
                  "quad -2 -1 -2  0 0 4  4 0 0  grey\nsphere 0 0 0  .5  lamp\n");
-    const std::string script = "bash '" + fs::absolute("src/labs/farm.sh").string() + "' ",
+    const std::string script = "bash '" + fs::absolute("src/keep/farm.sh").string() + "' ",
                       words = "--size 24x18 --sets 2 --spp 600 a.scene";
     auto run = [&](const std::string& command) {
         const int status = std::system(

@@ -1,8 +1,8 @@
-# labs/farm.sh  1  a picture in parts, rendered by many machines: the plan, one part, the merge
+# keep/farm.sh  1  a picture in parts, rendered by many machines: the plan, one part, the merge
 #
-#   bash src/labs/farm.sh plan --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
-#   bash src/labs/farm.sh part FOLDER NUMBER [THREADS]   renders a part, from its film if there is one
-#   bash src/labs/farm.sh merge FOLDER                   joins the parts, or says which are missing
+#   bash src/keep/farm.sh plan --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
+#   bash src/keep/farm.sh part FOLDER NUMBER [THREADS]   renders a part, from its film if there is one
+#   bash src/keep/farm.sh merge FOLDER                   joins the parts, or says which are missing
 #
 # farm_slurm.sh and farm_parallel.sh do these three, and say what the options are; another engine needs no
 # more.  FOLDER holds all of a farm's files: farm.plan (what is rendered, and into which parts it is cut),

@@ -1,6 +1,6 @@
-# labs/farm_parallel.sh  2  renders a picture in parts by GNU parallel, here or on other machines
+# keep/farm_parallel.sh  2  renders a picture in parts by GNU parallel, here or on other machines
 #
-#   bash src/labs/farm_parallel.sh --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
+#   bash src/keep/farm_parallel.sh --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
 #
 #     --folder FOLDER   for the parts and their logs; all machines see it under this name
 #     -o FILE           the picture, .pfm or .png; may be repeated

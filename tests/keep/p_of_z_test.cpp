@@ -1,5 +1,5 @@
-// labs/p_of_z_test.cpp  p-values against known quantiles
-#include "labs/p_of_z.h"
+// keep/p_of_z_test.cpp  p-values against known quantiles
+#include "keep/p_of_z.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// labs/p_of_z.h  1  the p-value of z
+// keep/p_of_z.h  1  the p-value of z
 #pragma once
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// labs/compare.cpp  3  how far is one image from another?
+// keep/compare.cpp  3  how far is one image from another?
 //
 //   build/compare REFERENCE IMAGE [--limit 2%] [--alpha 1e-6] [--heatmap FILE.png]
 //
@@ -10,8 +10,8 @@
 // limit, or p below alpha.
 #include "base/program.h"
 #include "keep/keep.h"
+#include "keep/p_of_z.h"
 #include "keep/read_pfm.h"
-#include "labs/p_of_z.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
-# labs/farm_slurm.sh  2  renders a picture as a Slurm job array, and joins its parts by a job behind it
+# keep/farm_slurm.sh  2  renders a picture as a Slurm job array, and joins its parts by a job behind it
 #
-#   bash src/labs/farm_slurm.sh --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
+#   bash src/keep/farm_slurm.sh --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
 #
 #     --folder FOLDER   for the parts and their logs; all machines see it under this name
 #     -o FILE           the picture, .pfm or .png; may be repeated
