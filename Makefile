@@ -80,12 +80,14 @@ build/knot.obj: build/knot$(SUFFIX)
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
 SUITE := $(OBJECTS)/all-tests
 # What a student does not wait for: tests of the course, of experiments, of the oracle's power, of this Makefile's tools,
-# and what many small runs look for.
-LATER := course/|labs/|oracle/|fuzz/|whole/(faults|memory|mutants|runner)_
+# and those that draw many small pictures, or read huge files, to see what is rare.
+space := $() $()
+LATER := course/% labs/% oracle/% fuzz/% world/scene_file_bounds% $(foreach t,faults memory mutants parts \
+         radiosity_program resume runner stopping,whole/$t_test)
 
 test test-all: packages  ## build and run the tests of the renderer, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
 	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
-	    LATER='$(if $(filter test,$@),$(LATER))' LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
+	    LATER='$(if $(filter test,$@),$(subst $(space),|,$(subst %,,$(strip $(LATER)))))' LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
 test-all:  ## and those of the course, the experiments and the oracle: what CI runs
 
 test-everywhere: packages build/knot.obj  ## the same bits from all compilers, C++ libraries and processors? (15 minutes); ONLY='clang++ -O2'
@@ -217,12 +219,12 @@ $(HEAVY:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/%-heavy.exe $(OBJECTS)/programs
 $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 
 # By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
-# for all that compute much in the folders of TOGETHER, one for all others there, and two for every other folder; ALONE,
+# for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
 # those that others must not see.
 TOGETHER := world wide path film keep unseen app shadow voronoi radiosity
 ALONE    := oracle/hosts_test
 FOLDER   = $(patsubst %/,%,$(dir $1))
-UNIT     = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(if $(filter $(TOGETHER),$(call FOLDER,$1)),core,$(call FOLDER,$1))$(if $(filter $(HEAVY),$1),-heavy))
+UNIT     = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(if $(filter $(TOGETHER),$(call FOLDER,$1)),core,$(call FOLDER,$1))$(if $(filter $(LATER),$1),-later)$(if $(filter $(HEAVY),$1),-heavy))
 UNITS := $(sort $(foreach t,$(TESTS),$(call UNIT,$t)))
 $(foreach t,$(foreach f,$(TOGETHER),$(filter $f/%,$(TESTS))) $(filter-out $(TOGETHER:%=%/%),$(TESTS)),$(eval IN_$(call UNIT,$t) += $t))
 $(foreach t,$(TESTS),$(eval $(OBJECTS)/tests/$t.run: $(if $(JOINED),$(call UNIT,$t),$(OBJECTS)/tests/$t).exe))
@@ -262,6 +264,11 @@ $(OBJECTS)/programs.exe: $(TESTED:%=src/%.cpp) tests/join.awk Makefile
 $(OBJECTS)/tests/%.o: tests/%.cpp $(OBJECTS)/std.h.gch Makefile | packages
 	@mkdir -p $(@D)
 	$(CXX) $(FLAGS) $(OPTIMISE) -Itests -include $(OBJECTS)/std.h -c -o $@ $<
+
+# At once, for all wait for it.
+$(OBJECTS)/tests/main.o: tests/main.cpp Makefile | packages
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -Itests -c -o $@ $<
 
 # The compiler takes it for $(OBJECTS)/std.h, which need not be there.
 $(OBJECTS)/std.h.gch: tests/std.h Makefile | packages
