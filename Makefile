@@ -80,9 +80,9 @@ build/knot.obj: build/knot$(SUFFIX)
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
 SUITE := $(OBJECTS)/all-tests
 # What a student does not wait for: tests of the course, of experiments, of the oracle's power, of this Makefile's tools,
-# and those that draw many small pictures, or read huge files, to see what is rare.
+# and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
-LATER := course/% labs/% oracle/% fuzz/% world/scene_file_bounds% $(foreach t,faults memory mutants parts \
+LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% world/scene_file_bounds% $(foreach t,faults memory mutants parts \
          radiosity_program resume runner stopping,whole/$t_test)
 
 test test-all: packages  ## build and run the tests of the renderer, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
