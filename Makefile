@@ -221,7 +221,7 @@ $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 # By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
 # for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
 # those that others must not see.
-TOGETHER := world wide path film keep unseen app shadow voronoi radiosity
+TOGETHER := world wide path film keep unseen app shadow voronoi radiosity whole
 ALONE    := oracle/hosts_test
 FOLDER   = $(patsubst %/,%,$(dir $1))
 UNIT     = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(if $(filter $(TOGETHER),$(call FOLDER,$1)),core,$(call FOLDER,$1))$(if $(filter $(LATER),$1),-later)$(if $(filter $(HEAVY),$1),-heavy))

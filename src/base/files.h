@@ -40,8 +40,8 @@ inline size_t read_from(std::istream& in, const std::string& path, std::span<std
 }
 
 // All of it.  Files of /proc do not tell how long they are, and what is no file may never end.
-inline std::string read_file(const std::string& path, bool of_any_kind = false) {
-    constexpr size_t most = 1 << 30;
+inline std::string read_file(const std::string& path, bool of_any_kind = false,
+                             size_t most = 1 << 30) {
     std::ifstream in = open_file(path, of_any_kind);
     std::string bytes, piece(1 << 16, '\0');
     while (const size_t n = read_from(in, path, std::as_writable_bytes(std::span(piece)))) {

@@ -327,7 +327,7 @@ TEST_CASE("a sample that no image can hold: exit status 1, told where, nothing w
 
 TEST_CASE("variance and error are right however bright the light: 2^93 and 2^-80 times") {
     auto stats = [&](const std::string& light, const std::string& options) {
-        const Place place(replaced(diffuse, "1 1 1", light + " " + light + " " + light));
+        const Place place(replaced(diffuse_scene, "1 1 1", light + " " + light + " " + light));
         place.render("--spp 8 --stats s.json -o a.pfm " + options);
         return place.read("s.json");
     };
@@ -350,7 +350,7 @@ TEST_CASE("variance and error are right however bright the light: 2^93 and 2^-80
 }
 
 TEST_CASE("the summary states the error, or why it is not known; --error says what ended it") {
-    const Place place(diffuse);
+    const Place place(diffuse_scene);
     auto told = [&](const std::string& options) {
         const Outcome o = place.render("-o a.pfm " + options);
         INFO(o.err);
@@ -378,7 +378,7 @@ TEST_CASE("the summary states the error, or why it is not known; --error says wh
 }
 
 TEST_CASE("--pixel replays a sample of any set: the mean of two is the pixel") {
-    const Place place(diffuse);
+    const Place place(diffuse_scene);
     for (const std::string more : {"", "--light nee "}) {
         const std::string line = more + "--size 6x6 --seed 4 ";
         auto L = [&](const std::string& set) {

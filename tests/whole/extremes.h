@@ -20,7 +20,7 @@ struct Bounds {
 };
 constexpr Bounds ulps(double n) { return {n * d_ulp, n * f_ulp}; }
 constexpr Bounds within(double in_double, double in_float) { return {in_double, in_float}; }
-inline constexpr Bounds exact = {0, 0};
+inline constexpr Bounds to_the_bit = {0, 0};
 
 // The error of a configuration with these numbers.
 template <class F, class... Numbers>

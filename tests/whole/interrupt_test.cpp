@@ -9,7 +9,7 @@ bool has_begun(const Outcome& o) { return contains(o.err, "no light"); }
 
 TEST_CASE("SIGTERM, SIGHUP and Ctrl-C write the samples so far; the exit status tells them apart") {
     for (const auto& [signal, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGHUP, 129}}) {
-        const Place place(diffuse);
+        const Place place(diffuse_scene);
         // Once sets are chosen there is an error.
         const Outcome o = cut_short_late_enough(
             place, "penumbra --spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene", signal,

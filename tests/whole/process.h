@@ -369,7 +369,7 @@ inline const std::string good = "size 8 4\n" + camera +
                                 "sphere 0 0 0  1  m\n"
                                 "sphere 0 5 0  1  l\n";  // six lines
 // Diffuse surfaces alone, for maps.
-inline const std::string diffuse = good + "quad -9 -1 -9  0 0 18  18 0 0  m\n";
+inline const std::string diffuse_scene = good + "quad -9 -1 -9  0 0 18  18 0 0  m\n";
 
 // A closed box of mirrors, no light: a path ends only with the scene's depth.
 inline std::string hall_of_mirrors(const std::string& size, int depth) {
