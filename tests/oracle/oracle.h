@@ -151,6 +151,18 @@ inline double gamma_q(double a, double x) {
 // P(X >= chi2) for chi-squared with k degrees of freedom.
 inline double p_of_chi2(double chi2, double k) { return gamma_q(k / 2, chi2 / 2); }
 
+// The same of the noncentral distribution: chi-squared with k + 2 j degrees, j Poisson variables.
+inline double p_of_chi2(double chi2, double k, double noncentrality) {
+    if (!(noncentrality > 0)) return p_of_chi2(chi2, k);
+    if (!(noncentrality < chi2)) return 1;  // nearly, and all that is asked is whether it is small
+    const double mean = noncentrality / 2, width = 10 * std::sqrt(mean) + 20;
+    double sum = 0;
+    for (double j = std::max(0.0, std::floor(mean - width)); j < mean + width; ++j)
+        sum +=
+            std::exp(-mean + j * std::log(mean) - std::lgamma(j + 1)) * p_of_chi2(chi2, k + 2 * j);
+    return std::min(1.0, sum);
+}
+
 // Regularised incomplete beta function I_x(a, b) by continued fraction (Abramowitz, Stegun 26.5.8).
 inline double beta_i(double a, double b, double x) {
     if (x <= 0 || x >= 1) return x <= 0 ? 0 : 1;
@@ -213,6 +225,11 @@ inline double smallest_shift(double df, double significance = 1e-6) {
     return at->second;
 }
 
+// Noncentrality of n counts whose probabilities are within this relative error, once they sum to 1.
+inline double forgiven(double n, double tolerance) {
+    return tolerance < 1 ? n * tolerance * tolerance / (1 - tolerance * tolerance) : infinity;
+}
+
 // Distortion sqrt(sum (p - q)^2 / q) of the cells' probabilities that chi-squared over n samples
 // sees with 99.9 % power: from the exact noncentral distribution, a Poisson mixture.
 inline double smallest_distortion(int df, double n, double significance = 1e-6) {
@@ -221,15 +238,7 @@ inline double smallest_distortion(int df, double n, double significance = 1e-6) 
     if (is_new) {
         const double critical =
             where_equal([&](double x) { return p_of_chi2(x, df); }, significance);
-        auto missed = [&](double noncentrality) {
-            const double mode = noncentrality / 2, width = 10 * std::sqrt(mode) + 20;
-            double sum = 0;
-            for (double j = std::max(0.0, std::floor(mode - width)); j < mode + width; ++j)
-                sum += std::exp(-mode + (j > 0 ? j * std::log(mode) : 0) - std::lgamma(j + 1)) *
-                       (1 - p_of_chi2(critical, df + 2 * j));
-            return sum;
-        };
-        at->second = where_equal(missed, 1e-3);
+        at->second = where_equal([&](double x) { return 1 - p_of_chi2(critical, df, x); }, 1e-3);
     }
     return std::sqrt(at->second / n);
 }
@@ -330,6 +339,12 @@ inline Verdict named(const Verdict& v, const Options& o) {
     return o.name.empty() ? v : v.of(o.name);
 }
 
+// Floats cannot tell their rounding from a small mistake.
+inline constexpr const char* if_double = "; it is rounding if doubles pass";
+inline const char* rounding_of(double unit) {
+    return unit > 1e-10 ? if_double : "; could be rounding";
+}
+
 // Two numbers, equal but for 64 roundings.
 inline bool same_but_rounding(double a, double b, double unit, double roundings = 64) {
     return std::abs(a - b) <= roundings * unit * std::max(std::abs(a), std::abs(b));
@@ -345,9 +360,8 @@ inline Verdict judge_exact(const char* what, double value, double truth, double 
     if (v.pass) return v;
     if (value == 0) {
         v.text = say("%s is 0 in every sample, expected %.7g", what, truth);
-    } else if (same_but_rounding(value, truth, unit, 1e5)) {
-        v.text += say(": off by %.1e, which could be rounding%s", value / truth - 1,
-                      unit > 1e-10 ? ": take double" : "");
+    } else if (same_but_rounding(value, truth, unit, 1000)) {
+        v.text += say(": off by %.1e%s", value / truth - 1, rounding_of(unit));
     } else if (truth != 0) {
         v.text +=
             "; ratio " + times(value / truth, 1e-6) + cause_of(value / truth, 1e-6, o.factors);
@@ -375,8 +389,8 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
                           : say("%.1e of itself away", std::abs(e.mean - truth) / std::abs(e.mean));
     v.text = say("%s %.7g +- %.2g, expected %.7g: %s, %s", what, e.mean, e.standard_error, truth,
                  sigma.c_str(), say_p(v.p).c_str());
-    if (!v.pass && same_but_rounding(e.mean, truth, e.unit, 1e5)) {
-        v.text += say("; could be rounding%s", e.unit > 1e-10 ? ": take double" : "");
+    if (!v.pass && same_but_rounding(e.mean, truth, e.unit, 1000)) {
+        v.text += rounding_of(e.unit);
     } else if (!v.pass && truth != 0) {
         const double within = 5 * e.standard_error / std::abs(e.mean);
         if (std::abs(e.mean) <= 5 * e.standard_error)
@@ -671,6 +685,7 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
 
 // Counts follow the probabilities: chi-squared, on cells where 100 or more are expected, so that
 // its p-value is good down to 1e-6.  `variances`: of the probabilities, where they are estimates.
+// Probabilities that are off by o.tolerance of themselves give a noncentral chi-squared.
 template <class Counts, class Probabilities>
 Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
                       const Options& o = {}, const std::vector<double>& variances = {}) {
@@ -694,7 +709,7 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
     }
     if (cells < 2) return named(failure("fewer than two cells"), o);
     Verdict v;
-    v.p = p_of_chi2(chi2, cells - 1);
+    v.p = p_of_chi2(chi2, cells - 1, forgiven(n, o.tolerance));
     if (v.p > o.alpha && fewest < 100)
         return named(failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n,
                                  fewest, std::ceil(100 * n / fewest))),
@@ -702,7 +717,7 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
     ++statistical_checks;
     alpha_spent += o.alpha;
     v.pass = v.p > o.alpha;
-    v.delta_min = smallest_distortion(cells - 1, n, o.alpha);
+    v.delta_min = smallest_distortion(cells - 1, n, o.alpha) + o.tolerance;
     v.text = say("chi2 = %.1f on %d cells (n = %.0f), %s; smallest distortion seen with "
                  "99.9 %% power: ",
                  chi2, cells, n, say_p(v.p).c_str()) +
@@ -1036,8 +1051,9 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
         if (rare >= 100)
             cell(rare, rare_seen);
         else if (rare_seen > 0)
-            chance = 2 * p_at_least(rare_seen, rare);
-        const double p_cells = cells > 1 ? p_of_chi2(chi2, cells - 1) : 1;
+            chance = 2 * p_at_least(rare_seen, rare * (1 + o.tolerance));
+        const double p_cells =
+            cells > 1 ? p_of_chi2(chi2, cells - 1, forgiven(samples, o.tolerance)) : 1;
         return Fit{chi2, cells,
                    impossible > 0
                        ? 0
@@ -1049,7 +1065,8 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
     ++statistical_checks;
     alpha_spent += o.alpha;
     v.pass = v.p > o.alpha;
-    v.delta_min = smallest_distortion(int(std::max(1.0, cells - 1)), samples, o.alpha);
+    v.delta_min =
+        smallest_distortion(int(std::max(1.0, cells - 1)), samples, o.alpha) + o.tolerance;
     v.text = say("%.0f choices among %zu, chi2 = %.1f on %.0f cells, %s; smallest distortion seen "
                  "with 99.9 %% power: ",
                  samples, count, chi2, cells, say_p(v.p).c_str()) +
@@ -1163,7 +1180,8 @@ struct Square : Box<2> {
     Square() : Box<2>{{0, 0}, {1, 1}} {}
 };
 
-// All of space in D dimensions: x = median + width tan(pi (c - 1/2)) along each.
+// All of space in D dimensions: x = median + width tan(pi (c - 1/2)) along each.  Nothing lies
+// outside.
 template <size_t D>
 struct Space {
     static constexpr size_t dimensions = D;
@@ -1401,7 +1419,7 @@ struct Sheets {
 };
 
 template <size_t D, size_t N>
-Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double tolerance,
+Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double tolerance, double forgiven,
                        bool both_sides) {
     Sheets<N, D> s;
     std::vector<double> errors;
@@ -1415,14 +1433,14 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
         errors.push_back(l->error + 4 * l->noise);
         const double off = l->product() - 1;
         const bool beyond =
-            l->p > 0 && (both_sides ? std::abs(off) : -off) > tolerance + errors.back();
+            l->p > 0 && (both_sides ? std::abs(off) : -off) > forgiven + tolerance + errors.back();
         if (beyond && (!s.off || std::abs(off) > std::abs(s.off->product() - 1))) {
-            const int side = off_about(model, u, random, tolerance);
+            const int side = off_about(model, u, random, forgiven + tolerance);
             if (side < 0 || (both_sides && side > 0)) s.off = l, s.u = u;
         }
     }
     if (!errors.empty()) s.blind = std::max(tolerance, median(errors, 0.9));
-    if (s.off && std::abs(s.off->product() - 1) <= tolerance + 2 * s.blind) s.off = {};
+    if (s.off && std::abs(s.off->product() - 1) <= forgiven + tolerance + 2 * s.blind) s.off = {};
     return s;
 }
 
@@ -1613,8 +1631,7 @@ struct Mistake {
             // The cosine of a cone so narrow has no more digits.
             std::vector<double> heights;
             for (const Local<N>& l : good) heights.push_back(l.p);
-            if (single && std::abs(c - 1) < 2 * pi * unit * median(heights))
-                cause += "; could be rounding: take double";
+            if (single && std::abs(c - 1) < 2 * pi * unit * median(heights)) cause += if_double;
             return "the pdf is " + times(c, 0.003) +
                    " times the density of the samples, everywhere" + cause;
         }
@@ -1761,12 +1778,12 @@ struct Mistake {
 
 template <size_t D, size_t N>
 Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
-    const double tolerance = std::max(model.single ? 1e-3 : 1e-6, o.tolerance);
-    const Sheets<N, D> s = sheets_of(model, random, tolerance, true);
+    const double least = model.single ? 1e-3 : 1e-6, tolerance = least + o.tolerance;
+    const Sheets<N, D> s = sheets_of(model, random, least, o.tolerance, true);
     Verdict v;
     v.pass = s.all.size() >= 100 && !s.off;
     v.p = v.pass ? 1 : 0;
-    v.delta_min = std::max(s.blind, tolerance);
+    v.delta_min = o.tolerance + s.blind;
     v.text = say("pdf sqrt(det J^T J) = 1 within %.1e at %zu points", v.delta_min, s.all.size());
     if (s.all.size() < 100)
         v.text = "the map is smooth at " +
@@ -1781,8 +1798,7 @@ Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& 
                       ? why
                       : say("samples are %.4g times as dense as the pdf says", 1 / product);
         v.text += ", at " + say_point(s.off->x) + ", u = " + say_point(s.u);
-        if (model.single && std::abs(product - 1) < 10 * s.blind)
-            v.text += "; could be rounding: take double";
+        if (model.single && std::abs(product - 1) < 10 * s.blind) v.text += if_double;
     }
     return named(v, o);
 }
@@ -1926,6 +1942,7 @@ struct DensityCheck {
                               say_point(w));
             return failed("pdf 0 at " + at(w));
         }
+        if constexpr (requires { domain.width; }) return c;  // all of space
         const Point<N> back = domain.at(c);
         double off = 0, size = 1e-300;
         for (size_t k = 0; k < N; ++k) off += std::pow(back[k] - w[k], 2), size += w[k] * w[k];
@@ -1995,6 +2012,36 @@ struct DensityCheck {
 
     double allowed() const {
         return std::max(1e-6, 512 * model.pdf_unit) + 2 * rounding + 8 * jumps + o.tolerance;
+    }
+
+    // Part of a cell's samples that four units of rounding may take to another cell: of each
+    // coordinate, and of the cosine to the lobe's axis, from which samplers have the sine.  The
+    // root of its mean square over the samples.
+    double moved(const Cells<D>& cells) {
+        std::array<double, 32> all{}, others{};
+        for (int i = 0; i < 4096; ++i) {  // others than the pilot's, at which cells end
+            const auto x = model.sample(model.draw(random));
+            if (!x || !(model.pdf(*x) > 0)) continue;
+            const size_t cell = cells.of(domain.coordinates(*x));
+            double length = 0;
+            for (double k : *x) length = std::max(length, std::abs(k));
+            for (int jitter = 0; jitter < 8; ++jitter) {
+                Point<N> near = *x;
+                for (double& k : near) k += (random() - 0.5) * 8 * length * model.unit;
+                auto there = domain.coordinates(near);
+                if constexpr (directions) {
+                    const double s = std::sin(there[0] / 2),
+                                 versine = 2 * s * s + (random() - 0.5) * 8 * model.unit;
+                    there[0] = 2 * std::asin(std::sqrt(std::min(1.0, std::abs(versine) / 2)));
+                }
+                ++all[cell];
+                others[cell] += cells.of(there) != cell;
+            }
+        }
+        double sum = 0, n = 0;
+        for (size_t i = 0; i < 32; ++i)
+            if (all[i] > 0) sum += others[i] * others[i] / all[i], n += all[i];
+        return n > 0 ? std::sqrt(sum / n) : 0;
     }
 
     // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
@@ -2147,9 +2194,9 @@ struct DensityCheck {
         const double close = allowed() + 6 * parts.error;
         Sheets<N, M> sheets;
         if constexpr (M == D)
-            sheets = sheets_of(
-                model, random,
-                std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)) + o.tolerance, false);
+            sheets = sheets_of(model, random,
+                               std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)),
+                               o.tolerance, false);
         const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
         const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
         const bool off_already = sheets.off || parts.total > 1 + close;
@@ -2179,6 +2226,7 @@ struct DensityCheck {
         }
         Options plain = o;
         plain.name = "";
+        plain.tolerance += moved(cells);
         if (none > 0) plain.alpha = o.alpha / 2;
         Verdict v = expect_counts(counts, expected, plain, variances);
         if (none > 0) alpha_spent += o.alpha / 2;
@@ -2217,7 +2265,7 @@ struct DensityCheck {
         if constexpr (M != D)
             return "";
         else {
-            const auto sheets = sheets_of(model, random, 1, false);
+            const auto sheets = sheets_of(model, random, 1, 0, false);
             const std::string why = explained(sheets.all, 1);
             return why.empty() ? "" : "; " + why;
         }
@@ -2245,8 +2293,9 @@ struct DensityCheck {
         const double total = parts.total, share = none / samples;
         std::string rounded;
         if (model.single && counted && std::abs(total - 1 + share) < 10 * close &&
-            (!sheets.off || std::abs(sheets.off->product() - 1) < 10 * sheets.blind))
-            rounded = "; could be rounding: take double";
+            (!sheets.off ||
+             std::abs(sheets.off->product() - 1) < 3 * (sheets.off->error + 4 * sheets.off->noise)))
+            rounded = if_double;
         if (M == D)
             if (const std::string why = explained(sheets.all, total); !why.empty())
                 return why + rounded;
