@@ -154,7 +154,7 @@ inline double p_of_chi2(double chi2, double k) { return gamma_q(k / 2, chi2 / 2)
 // The same of the noncentral distribution: chi-squared with k + 2 j degrees, j Poisson variables.
 inline double p_of_chi2(double chi2, double k, double noncentrality) {
     if (!(noncentrality > 0)) return p_of_chi2(chi2, k);
-    if (!(noncentrality < chi2)) return 1;  // nearly, and all that is asked is whether it is small
+    if (!(noncentrality - chi2 < 20 * std::sqrt(k + noncentrality))) return 1;  // within 1e-20
     const double mean = noncentrality / 2, width = 10 * std::sqrt(mean) + 20;
     double sum = 0;
     for (double j = std::max(0.0, std::floor(mean - width)); j < mean + width; ++j)
@@ -2015,8 +2015,8 @@ struct DensityCheck {
     }
 
     // Part of a cell's samples that four units of rounding may take to another cell: of each
-    // coordinate, and of the cosine to the lobe's axis, from which samplers have the sine.  The
-    // root of its mean square over the samples.
+    // coordinate, and in float of the cosine to the lobe's axis, from which samplers have the sine.
+    // The root of its mean square over the samples.
     double moved(const Cells<D>& cells) {
         std::array<double, 32> all{}, others{};
         for (int i = 0; i < 4096; ++i) {  // others than the pilot's, at which cells end
@@ -2029,7 +2029,7 @@ struct DensityCheck {
                 Point<N> near = *x;
                 for (double& k : near) k += (random() - 0.5) * 8 * length * model.unit;
                 auto there = domain.coordinates(near);
-                if constexpr (directions) {
+                if (directions && model.single) {
                     const double s = std::sin(there[0] / 2),
                                  versine = 2 * s * s + (random() - 0.5) * 8 * model.unit;
                     there[0] = 2 * std::asin(std::sqrt(std::min(1.0, std::abs(versine) / 2)));
