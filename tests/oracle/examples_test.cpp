@@ -180,12 +180,38 @@ TEST_CASE("BSDFs") {
     CHECK(v.pass);
 }
 
+TEST_CASE("a density that comes with the sample") {
+    oracle::Random random(oracle::seed_of("beside"));
+    // [beside
+    struct Lobe { Vec wi; float pdf; };
+    auto sample = [](float u, float v) {
+        const Vec w = sample_cosine(u, v);
+        return Lobe{w, pdf_cosine(w) / 2};  // "the pdf that sample returns is 0.5 (1/2, half) times what pdf says, in every sample"
+    };
+    oracle::Verdict v = oracle::expect_density(random, sample, pdf_cosine);
+    // ]
+    CHECK(v.text == "the pdf that sample returns is 0.5 (1/2, half) times what pdf says, in every sample");
+}
+
+TEST_CASE("arrays") {
+    oracle::Random random(oracle::seed_of("arrays"));
+    // [arrays
+    // Arrays: the host evaluates its density at points that the oracle chooses.
+    const auto points = oracle::points_in(random, oracle::Sphere{}, 100000);
+    std::vector<Vec> samples;   // from elsewhere
+    std::vector<float> pdfs;
+    for (int i = 0; i < 40000; ++i) samples.push_back(sample_cosine(float(random.single()), float(random.single())));
+    for (const auto& w : points) pdfs.push_back(pdf_cosine({float(w[0]), float(w[1]), float(w[2])}));
+    oracle::Verdict v = oracle::expect_samples(samples, points, pdfs, oracle::Sphere{});
+    // ]
+    CHECK(v.pass);
+}
+
 TEST_CASE("images") {
     // [image
     const size_t width = 4, height = 2;
     const std::vector<float> truth = {1, 2, 3, 4, 5, 6, 7, 8}, errors(8, 0.01f);
     const std::vector<float> image = {5, 6, 7, 8, 1, 2, 3, 4};
-    oracle::pictures = "";  // draw none
     oracle::Verdict v = oracle::expect_image(width, height, image, errors, truth);
     // ]
     CHECK(v.text.starts_with(

@@ -128,6 +128,157 @@ TEST_CASE("samples that fail, as an optional, a null pointer, or with a density 
     check(pointer, above);
 }
 
+// What sample returns beside the direction.
+struct Lobe {
+    Vec wi;
+    float pdf, roughness;
+};
+
+TEST_CASE("a density that comes with the sample is that of pdf, too") {
+    oracle::Random random(seed_here());
+    auto pdf = [](Vec w) { return float(cosine_pdf(double(w.z))); };
+    auto draw = [](float u, float v) { return made<Vec>(cosine(u, v)); };
+    auto times = [&](float c) {
+        return [=](float u, float v) {
+            const Vec w = draw(u, v);
+            return u < 0.25f ? Lobe{w, c * pdf(w), 0.5f} : Lobe{w, pdf(w), 0.5f};
+        };
+    };
+    auto maybe = [=](float u, float v) { return optional(times(1)(u, v)); };
+    auto pairs = [=](float u, float v) { return pair(draw(u, v), pdf(draw(u, v))); };
+    auto without_pi = [=](float u, float v) { return pair(draw(u, v), draw(u, v).z); };
+    auto uniform = [=](float u, float v) { return pair(draw(u, v), 1 / (2 * pi)); };
+    auto unknown = [=](float u, float v) { return Lobe{draw(u, v), float(NAN), 0.5f}; };
+    EXPECT(oracle::expect_density(random, times(1), pdf, quick), 0.06);
+    EXPECT(oracle::expect_density(random, maybe, pdf, quick), 0.06);
+    EXPECT(oracle::expect_density(random, pairs, pdf, quick), 0.06);
+    const oracle::Aside aside;
+    oracle::says(oracle::expect_density(random, times(2), pdf, quick),
+                 "the pdf that sample returns is 2 (2, twice) times what pdf says, in 2");
+    oracle::says(oracle::expect_density(random, without_pi, pdf, quick),
+                 "is 3.142 (pi) times what pdf says, in every sample");
+    oracle::says(oracle::expect_density(random, uniform, pdf, quick),
+                 "is 0.5 (1/2, half) cos(theta)^-1 times what pdf says");
+    oracle::says(oracle::expect_density(random, unknown, pdf, quick), "sample returns is nan");
+}
+
+TEST_CASE("a sampler that draws by itself") {
+    oracle::Random own(oracle::seed_of("own"));
+    check([&] { return cosine(own(), own()); },
+          [](array<double, 3> w) { return cosine_pdf(w[2]); });
+}
+
+TEST_CASE("a mirror in a mixture, of which .discrete says how often it is") {
+    oracle::Random random(seed_here());
+    auto mixed = [](double choice, double u, double v) {
+        return choice < 0.3 ? array{0.6, 0.0, 0.8} : cosine(u, v);
+    };
+    auto pdf_of = [](double part) {
+        return [=](array<double, 3> w) { return part * cosine_pdf(w[2]); };
+    };
+    auto with = [](double part) { return oracle::Options{.sees = 0.05, .discrete = part}; };
+    EXPECT(oracle::expect_density(random, mixed, pdf_of(0.7), with(0.3)), 0.06);
+    const oracle::Aside aside;
+    oracle::says(oracle::expect_density(random, mixed, pdf_of(0.7), quick), "looks like a mirror");
+    oracle::says(oracle::expect_density(random, mixed, pdf_of(1), with(0.3)),
+                 "the pdf integrates to 1, expected 0.7");
+    oracle::says(oracle::expect_density(random, mixed, pdf_of(0.65), with(0.35)),
+                 "of the samples are mirrors', 35 % were announced");
+}
+
+TEST_CASE("0 and the number next to 1 are always tried") {
+    const oracle::Aside aside;
+    oracle::Random random(seed_here());
+    for (double edge : {0.0, 1 - 0x1p-53})
+        for (size_t k : {0, 1}) {
+            auto broken_there = [=](const array<double, 2>& u) {
+                auto w = cosine(u[0], u[1]);
+                if (u[k] == edge) w[1] = NAN;
+                return w;
+            };
+            oracle::says(oracle::expect_density(
+                             random, broken_there,
+                             [](array<double, 3> w) { return cosine_pdf(w[2]); }, quick),
+                         "is not finite, u = ");
+        }
+    // A pdf may be infinite at one end.
+    EXPECT(oracle::expect_density(
+               random, [](double u) { return u * u; },
+               [](double x) { return x >= 0 && x <= 1 ? 0.5 / sqrt(x) : 0; },
+               oracle::Interval{0, 1}, quick),
+           0.06);
+}
+
+TEST_CASE("choices from two numbers") {
+    oracle::Random random(seed_here());
+    // An alias table of 1/8, 3/8, 1/2.
+    auto alias = [](double u, double v) {
+        const int i = int(3 * u);
+        return v < array{0.375, 1.0, 1.0}[size_t(i)] ? i : 1;
+    };
+    auto shares = [](int i) { return array{0.125, 0.375 + 1 / 6.0, 1 / 3.0}[size_t(i)]; };
+    auto table = [&](int i) { return i == 1 ? 1 - shares(0) - shares(2) : shares(i); };
+    EXPECT(oracle::expect_choice(random, alias, table, 3), 0.01);
+    const oracle::Aside aside;
+    auto halved = [&](double u, double v) { return alias(u, v / 2); };
+    CHECK(!oracle::expect_choice(random, halved, table, 3).pass);
+}
+
+TEST_CASE("arrays of samples, and of the pdf at points") {
+    oracle::Random random(seed_here());
+    vector<Vec> samples;
+    for (int i = 0; i < 40000; ++i)
+        samples.push_back(made<Vec>(cosine(float(random.single()), float(random.single()))));
+    const oracle::Sphere sphere;
+    const auto points = oracle::points_in(random, sphere, 100000);
+    auto judged = [&](double part, double side, double tried) {
+        vector<float> pdfs;
+        for (const auto& w : points)
+            pdfs.push_back(float(part * cosine_pdf(w[2]) * (1 + (w[0] > 0 ? side : -side))));
+        return oracle::expect_samples(samples, points, pdfs, sphere,
+                                      {.n = uint64_t(tried * 40000)});
+    };
+    EXPECT(judged(1, 0, 1), 0.09);
+    EXPECT(judged(0.5, 0, 2), 0.09);
+    const oracle::Aside aside;
+    oracle::says(judged(1, 0.1, 1), "times as dense as the pdf says, around direction");
+    oracle::says(judged(1.1, 0, 1), ", expected 1");
+    oracle::says(judged(1, 0, 2), "expected 0.5");
+    samples.resize(10000);
+    oracle::says(judged(1, 0, 1), "take 20000 or more");
+}
+
+TEST_CASE("BSDFs that transmit, from three numbers") {
+    oracle::Random random(seed_here());
+    const oracle::Options o{.sees = 0.05};
+    // 0.4 go through, and radiance is twice what it was above: eta^2 = 2.
+    auto sample = [](Vec wo, float choice, float u, float v) {
+        Vec w = made<Vec>(cosine(u, v));
+        if ((wo.z < 0) != (choice < 0.4f)) w.z = -w.z;
+        return w;
+    };
+    auto pdf = [](Vec wo, Vec wi) {
+        return (wo.z * wi.z < 0 ? 0.4f : 0.6f) * float(cosine_pdf(double(abs(wi.z))));
+    };
+    auto eval = [](Vec wo, Vec wi) {
+        return (wo.z * wi.z > 0 ? 0.6f : wo.z > 0 ? 0.4f / sqrt(2.0f) : 0.4f * sqrt(2.0f)) / ::pi;
+    };
+    EXPECT(oracle::expect_bsdf(random, sample, pdf, eval, o), 0.06);
+    oracle::says(oracle::expect_bsdf(random, sample, pdf, eval, o), "scaled by 0.5");
+    const oracle::Aside aside;
+    auto bright = [=](Vec wo, Vec wi) { return eval(wo, wi) * (wo.z * wi.z > 0 ? 1.5f : 1); };
+    auto lopsided = [=](Vec wo, Vec wi) {
+        return eval(wo, wi) * (wo.z * wi.z < 0 ? 0.5f + 0.5f * abs(wo.z) : 1);
+    };
+    auto grazing = [=](Vec wo, Vec wi) {
+        return pdf(wo, wi) * (wo.z > 0 && wo.z < 0.1f ? 1.1f : 1);
+    };
+    oracle::says(oracle::expect_bsdf(random, sample, pdf, bright, o), "more leaves than comes");
+    oracle::says(oracle::expect_bsdf(random, sample, pdf, lopsided, o),
+                 "not reciprocal through the surface");
+    oracle::says(oracle::expect_bsdf(random, sample, grazing, eval, o), "1.1");
+}
+
 TEST_CASE("the host's own names are as they were") {
     CHECK(dot(Vec{1, 2, 3}, Vec{1, 1, 1}) == 6);
     CHECK(alpha + n > pi - 2);

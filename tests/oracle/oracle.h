@@ -1,16 +1,20 @@
 // oracle/oracle.h  verdicts about random numbers, each with its significance and its power
 //
-// Copy this one file to any renderer: it needs the standard library (C++20) alone, and all of it is
-// in namespace oracle.  Every check returns a Verdict.  It refuses what is right with a probability
-// of at most `alpha` = 1e-6 (0 where the check is exact), and passes what is off by
-// delta_min with one of 1e-3.  Nothing is forgiven but rounding, which it measures.
+// Part of Penumbra, version 2, MIT licence (the text of LICENSE, if you copy this file alone).
+// Needs C++20 and the standard library:  g++ -std=c++20 -O1 my_tests.cpp
 //
 //   oracle::Random random(oracle::seed_of("cosine hemisphere"));
 //   oracle::Verdict v = oracle::expect_density(random, my_sample, my_pdf);
 //   if (!v.pass) std::puts(v.text.c_str());  // its first line says what is wrong
 //
-// README.md beside this file has every check with an example.
+// A check refuses what is right with a probability of at most `alpha` = 1e-6 (0 where it is exact),
+// and passes what is off by delta_min with one of 1e-3.  It forgives rounding, which it measures,
+// and nothing else.  Part one of the file has the checks in the order of reading, part two the
+// hints and pictures.  README.md beside this file has every check with an example.
 #pragma once
+#if __cplusplus < 202002L
+#error "oracle.h needs C++20: compile with -std=c++20"
+#endif
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -80,12 +84,13 @@ struct Options {
     std::string name = {};  // begins the text, and names the picture
     std::vector<Factor> factors = {};
     Triple axis{0, 0, 0};  // of a hemisphere or lobe; (0,0,0): the mean of its samples
+    double discrete = 0;   // part of the samples that are mirrors' and no part of the pdf
 };
 
 // Where failed checks draw what they saw: a folder, or "" for none.
 inline std::string pictures = [] {
     const char* folder = std::getenv("ORACLE_PICTURES");
-    return std::string(folder ? folder : ".");
+    return std::string(folder ? folder : "");
 }();
 
 // Checks that have used up their alpha, and the sum of it: a bound of the probability that any of
@@ -243,7 +248,7 @@ inline double smallest_distortion(int df, double n, double significance = 1e-6) 
     return std::sqrt(at->second / n);
 }
 
-// ---- What went wrong, in words ------------------------------------------------------------------
+// ---- Words --------------------------------------------------------------------------------------
 
 inline std::string say(const char* format, auto... values) {
     char text[512];
@@ -256,73 +261,10 @@ inline std::string percent(double x) { return say("%.3g %%", 100 * x); }
 
 inline Verdict failure(const std::string& why) { return {false, 0, infinity, why}; }
 
-// The number in words, if it is one of those that are forgotten.
-inline std::string constant_named(double x, double tolerance) {
-    const struct {
-        double value;
-        const char* name;
-    } known[] = {{1 / pi, "1/pi"},  {pi, "pi"},
-                 {2 * pi, "2 pi"},  {1 / (2 * pi), "1/(2 pi)"},
-                 {4 * pi, "4 pi"},  {1 / (4 * pi), "1/(4 pi)"},
-                 {pi / 2, "pi/2"},  {2 / pi, "2/pi"},
-                 {pi * pi, "pi^2"}, {1 / (pi * pi), "1/pi^2"},
-                 {0.5, "1/2"},      {0.25, "1/4"},
-                 {2.0 / 3, "2/3"},  {1.5, "3/2"},
-                 {1.0 / 3, "1/3"},  {0.75, "3/4"},
-                 {4.0 / 3, "4/3"}};
-    const char* name = nullptr;
-    for (const auto& k : known)
-        if (std::abs(x / k.value - 1) <= tolerance) {
-            if (name) return "";  // two are as near
-            name = k.name;
-        }
-    return name ? name : "";
-}
-inline std::string times(double x, double tolerance) {
-    if (std::abs(x / 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (2, twice)", x);
-    if (std::abs(x * 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/2, half)", x);
-    if (std::abs(x / 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (4, four times)", x);
-    if (std::abs(x * 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/4)", x);
-    const std::string name = tolerance <= 0.005 ? constant_named(x, tolerance) : "";
-    return say("%.4g", x) + (name.empty() ? "" : " (" + name + ")");
-}
-
-// Why an estimate may be `ratio` times the truth, known within `tolerance`: the causes that explain
-// it, unless there are many.
-inline std::string cause_of(double ratio, double tolerance, const std::vector<Factor>& factors) {
-    if (!(tolerance < 0.05)) return "";
-    const double close = std::max(1e-9, std::min(0.02, tolerance));
-    std::vector<std::string> causes;
-    auto may_be = [&](double x, const std::string& cause) {
-        if (std::abs(ratio / x - 1) <= close) causes.push_back(cause);
-    };
-    for (const Factor& f : factors) {
-        const double x = f.at({});
-        if (std::abs(x - 1) <= 3 * close || !(std::abs(x) > 0)) continue;
-        may_be(1 / x, f.name + " forgotten, or divided by twice");
-        may_be(x, "a factor " + f.name + " too many, or 1/(" + f.name + ") forgotten");
-        if (0 < x && x < 1) {
-            may_be(x / (1 - x), "divided by 1 - " + f.name + " in place of " + f.name);
-            may_be((1 - x) / x, "multiplied by 1 - " + f.name + " in place of " + f.name);
-        }
-        may_be(1 / (x * x), "divided by " + f.name + " in place of multiplied");
-        may_be(x * x, "multiplied by " + f.name + " in place of divided");
-        if (x > 0) may_be(std::sqrt(x), "a root of " + f.name);
-        if (x > 0) may_be(1 / std::sqrt(x), "a root of " + f.name + " in place of it");
-    }
-    may_be(pi, "1/pi forgotten (an albedo is not a BRDF)");
-    may_be(1 / pi, "divided by pi twice, or pi forgotten");
-    may_be(2 * pi, "1/(2 pi) forgotten");
-    may_be(1 / (2 * pi), "2 pi forgotten, or divided by it twice");
-    may_be(4 * pi, "1/(4 pi) forgotten");
-    may_be(1 / (4 * pi), "4 pi forgotten, or divided by it twice");
-    may_be(-1, "the sign reversed");
-    // 2 and 1/2 have too many: counted twice, a choice not divided by, a half domain.
-    if (causes.empty() || causes.size() > 3) return "";
-    std::string text = "; looks like " + causes[0];
-    for (size_t i = 1; i < causes.size(); ++i) text += " or " + causes[i];
-    return text;
-}
+// The number, and its name if it has one within `tolerance`: "3.142 (pi)".
+std::string times(double x, double tolerance);
+// Why an estimate may be `ratio` times the truth, known within `tolerance`.
+std::string cause_of(double ratio, double tolerance, const std::vector<Factor>& factors);
 
 // ---- Judgement ----------------------------------------------------------------------------------
 
@@ -403,58 +345,6 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
     const std::string seen = truth != 0 ? percent(v.delta_min) : say("%.2g", v.delta_min);
     v.text += (v.pass ? "; " : "\n") + ("smallest bias seen with 99.9 % power: " + seen);
     return v;
-}
-
-// ---- Pictures -----------------------------------------------------------------------------------
-
-// A picture in SVG of a width and height in pixels; y points down.
-struct Drawing {
-    double width, height;
-    std::string body = {};
-
-    void rectangle(double x, double y, double w, double h, const std::string& style) {
-        body += say("<rect x='%.2f' y='%.2f' width='%.2f' height='%.2f' style='%s'/>\n", x, y, w, h,
-                    style.c_str());
-    }
-    void text(double x, double y, const std::string& words) {
-        body += say("<text x='%.1f' y='%.1f'>", x, y);
-        for (char c : words) body += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-        body += "</text>\n";
-    }
-    void curve(const std::vector<std::pair<double, double>>& points, const std::string& style) {
-        body += "<polyline points='";
-        for (const auto& [x, y] : points) body += say("%.1f,%.1f ", x, y);
-        body += "' style='fill:none;" + style + "'/>\n";
-    }
-
-    // Into the folder of pictures; "" or "\nsee PATH".
-    std::string written(const std::string& name) const {
-        if (pictures.empty()) return "";
-        static int unnamed = 0;
-        std::string file;
-        for (char c : name.empty() ? say("check-%d", ++unnamed) : name)
-            file += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
-        std::error_code ignored;
-        std::filesystem::create_directories(pictures, ignored);
-        const std::string path = pictures + "/oracle-" + file.substr(0, 100) + ".svg";
-        std::ofstream out(path);
-        out << say("<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f' ", width,
-                   height)
-            << "font-family='sans-serif' font-size='12' shape-rendering='crispEdges'>\n<rect "
-               "width='100%' height='100%' fill='white'/>\n"
-            << body << "</svg>\n";
-        return out ? "\nsee " + path : "\n" + path + ": cannot be written";
-    }
-};
-
-// White at 0, black at 1; or blue at -1, white at 0, red at 1.
-inline std::string grey(double x) {
-    const int level = int(255 * (1 - std::clamp(x, 0.0, 1.0)));
-    return say("fill:rgb(%d,%d,%d)", level, level, level);
-}
-inline std::string blue_white_red(double x) {
-    const int fade = int(255 * (1 - std::min(1.0, std::abs(x))));
-    return x < 0 ? say("fill:rgb(%d,%d,255)", fade, fade) : say("fill:rgb(255,%d,%d)", fade, fade);
 }
 
 // ---- Means --------------------------------------------------------------------------------------
@@ -565,43 +455,10 @@ struct Draws {
     std::string few_text() const {
         return say("n = %.0f is too small to know how skewed the numbers are: take 1000", n());
     }
-
-    // The running mean, and the band in which it would be with a mean of `truth`.
-    Drawing drawing(double truth, double significance) const {
-        const Estimate e = estimate();
-        const double t = where_equal([&](double x) { return p_of_t(x, e.df); }, significance);
-        std::vector<std::pair<double, double>> running, above, below;
-        const double deviation = std::sqrt(variance());
-        const double half = std::max(1.5 * std::abs(e.mean - truth), 3 * t * e.standard_error);
-        auto add = [&](auto& curve, double i, double y) {
-            curve.emplace_back(60 + 520 * i / n(),
-                               180 - 140 * std::clamp((y - truth) / half, -1.1, 1.1));
-        };
-        double sum = 0;
-        const size_t step = std::max<size_t>(1, values.size() / 260);
-        for (size_t i = 0; i < values.size(); ++i) {
-            sum += values[i];
-            if ((i + 1) % step != 0) continue;
-            const double k = double(i + 1), band = t * deviation / std::sqrt(k);
-            add(running, k, sum / k);
-            add(above, k, truth + band);
-            add(below, k, truth - band);
-        }
-        Drawing d{600, 350};
-        d.curve({{60, 180}, {580, 180}}, "stroke:black");
-        d.curve(above, "stroke:grey");
-        d.curve(below, "stroke:grey");
-        d.curve(running, "stroke:rgb(200,0,0);stroke-width:2");
-        d.text(60, 20,
-               say("running mean (red) of %.0f samples; grey: where it is with a mean of %.6g", n(),
-                   truth));
-        d.text(2, 184, say("%.4g", truth));
-        d.text(2, 44, say("%.4g", truth + half));
-        d.text(2, 324, say("%.4g", truth - half));
-        d.text(500, 345, say("n = %.0f", n()));
-        return d;
-    }
 };
+
+// Draws the running mean; says where.
+std::string picture_of(const Draws& d, double truth, const Options& o);
 
 template <class F>
 Draws draw(uint64_t n, F f) {
@@ -618,8 +475,7 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
         v = judge_exact(what, d.mean(), truth, d.unit, o);
     else
         v = judge(what, d.estimate(), truth, o);
-    if (!v.pass && d.n() >= 2 && std::isfinite(d.variance()))
-        v.text += d.drawing(truth, o.alpha).written(o.name);
+    if (!v.pass && d.n() >= 2 && std::isfinite(d.variance())) v.text += picture_of(d, truth, o);
     return named(v, o);
 }
 
@@ -758,7 +614,8 @@ Rule rule(const F& f, double a, double b) {
         r.gauss += node.gauss * (left + right);
         if (&node == nodes) low = left, high = right;
     }
-    for (const auto& [end, inside] : {std::pair{f(a), low}, std::pair{f(b), high}})
+    const double near = 1e-9 * half;  // at the end itself a density may be infinite
+    for (const auto& [end, inside] : {std::pair{f(a + near), low}, std::pair{f(b - near), high}})
         if (const double step = std::abs(end - inside);
             step > 0.25 * std::max(std::abs(end), std::abs(inside)))
             r.ends = std::max(r.ends, step * half * (1 - nodes[0].x));
@@ -948,12 +805,82 @@ auto call(F& f, const Point<D>& u) {
     (std::make_index_sequence<D>());
 }
 
+// What a sampler returns may be nothing: an optional or a pointer.
+template <class R>
+constexpr bool may_fail = requires(const R& r) {
+    bool(r);
+    *r;
+};
+template <class R>
+const auto& arrived(const R& r) {
+    if constexpr (may_fail<R>)
+        return *r;
+    else
+        return r;
+}
+
+// The point in what a sampler returns: all of it; or, beside a density, its member w, wi, direction
+// or point, or the first of a pair.
+template <class R>
+const auto& point_in(const R& r) {
+    if constexpr (requires {
+                      r.pdf;
+                      r.w;
+                  })
+        return r.w;
+    else if constexpr (requires {
+                           r.pdf;
+                           r.wi;
+                       })
+        return r.wi;
+    else if constexpr (requires {
+                           r.pdf;
+                           r.direction;
+                       })
+        return r.direction;
+    else if constexpr (requires {
+                           r.pdf;
+                           r.point;
+                       })
+        return r.point;
+    else if constexpr (
+        requires {
+            r.first[0];
+            r.second + 1.0;
+        } ||
+        requires {
+            r.first.x;
+            r.second + 1.0;
+        })
+        return r.first;
+    else
+        return r;
+}
+// The density beside it, or NaN.
+template <class R>
+double pdf_in(const R& r) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(oracle::point_in(r))>, R>)
+        return std::numeric_limits<double>::quiet_NaN();
+    else if constexpr (requires { r.pdf; })
+        return double(r.pdf);
+    else
+        return double(r.second);
+}
+
+// A point, and the density that the sampler returned with it, or NaN.
+template <size_t N>
+struct Drawn : Point<N> {
+    double pdf;
+};
+
 // A host's sampler and density without the host's types, so that the checks are compiled once: a
-// map from the unit cube to points, or to nothing where it fails, and their density.
+// map from the unit cube to points, or to nothing where it fails, and their density.  M is 0 for a
+// sampler that draws by itself.
 template <size_t M, size_t N>
 struct Model {
-    std::function<std::optional<Point<N>>(const Point<M>&)> sample;
+    std::function<std::optional<Drawn<N>>(const Point<M>&)> sample;
     std::function<double(const Point<N>&)> pdf;
+    bool says_pdf;    // sample returns a density, too
     bool single;      // coordinates are floats
     bool floats;      // so are the numbers that sample takes
     double unit;      // of their rounding,
@@ -969,39 +896,37 @@ struct Model {
 template <class Sample, class Pdf>
 auto model(Sample& sample, Pdf& pdf) {
     constexpr size_t M = numbers_of<Sample>();
-    static_assert(M > 0, "sample takes numbers u, v, ... or one argument made from {u, v, ...}");
+    static_assert(
+        M > 0 || requires { sample(); },
+        "sample takes numbers u, v, ..., one argument made from {u, v, ...}, or nothing");
     using Raw = decltype(oracle::call(sample, Point<M>{}));
-    constexpr bool may_fail = requires(const Raw& r) {
-        bool(r);
-        *r;
-    };
-    using V = std::decay_t<decltype([](const Raw& r) {
-        if constexpr (may_fail)
-            return *r;
-        else
-            return r;
-    }(std::declval<Raw>()))>;
+    using Arrived = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
+    using V = std::decay_t<decltype(oracle::point_in(std::declval<const Arrived&>()))>;
     constexpr size_t N = coordinates_of<V>();
     using T = Coordinate<V>;
-    return Model<M, N>{[&sample](const Point<M>& u) -> std::optional<Point<N>> {
-                           const Raw r = oracle::call(sample, u);
-                           if constexpr (may_fail)
-                               return r ? std::optional(oracle::point(*r)) : std::nullopt;
-                           else
-                               return oracle::point(r);
-                       },
-                       [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
-                       std::is_same_v<T, float>,
-                       takes_floats<Sample, M>,
-                       unit_of(T{}),
-                       unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
+    return Model<M, N>{
+        [&sample](const Point<M>& u) -> std::optional<Drawn<N>> {
+            const Raw r = oracle::call(sample, u);
+            if constexpr (may_fail<Raw>)
+                if (!r) return {};
+            const auto& here = oracle::arrived(r);
+            return Drawn<N>{oracle::point(oracle::point_in(here)), oracle::pdf_in(here)};
+        },
+        [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
+        !std::is_same_v<V, Arrived>,
+        std::is_same_v<T, float>,
+        takes_floats<Sample, M>,
+        unit_of(T{}),
+        unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
 }
 
-// choose(u) is an index below count, or a negative one for none, drawn with probability(index):
+// choose(u), or choose(u, v), is an index below count, or a negative one for none, as often as
+// probability(index) says:
 // they sum to 1 less the part that fails; chi-squared over the indices, rare ones together.
 template <class Choose, class Probability>
 Verdict expect_choice(Random& random, Choose choose, Probability probability, size_t count,
                       const Options& o = {}) {
+    constexpr size_t M = numbers_of<Choose>();
     const uint64_t n =
         o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
     std::vector<double> expected(count);
@@ -1016,11 +941,12 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
     std::vector<double> seen(count);
     double none = 0;
     for (uint64_t k = 0; k < n; ++k) {
-        const Point<1> u{takes_floats<Choose, 1> ? random.single() : random()};
+        Point<M> u;
+        for (double& x : u) x = takes_floats<Choose, M> ? random.single() : random();
         const auto index = static_cast<long long>(oracle::call(choose, u));
         if (index >= static_cast<long long>(count))
-            return done(
-                say("index %lld of %zu chosen, at u = %.9g: beyond the last", index, count, u[0]));
+            return done(say("index %lld of %zu chosen, beyond the last, at u = ", index, count) +
+                        say_point(u));
         index < 0 ? ++none : ++seen[size_t(index)];
     }
     const double unit = unit_of(probability(0));
@@ -1444,6 +1370,1028 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
     return s;
 }
 
+// What the sheets say of the mistake behind a density; "" if nothing.  total: integral of the pdf;
+// share: of the samples that failed.
+template <size_t N, class PdfOf>
+std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model, bool directions,
+                           double total, double share, const Triple& lobe, const Options& o);
+
+template <size_t D, size_t N>
+Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
+    const double least = model.single ? 1e-3 : 1e-6, tolerance = least + o.tolerance;
+    const Sheets<N, D> s = sheets_of(model, random, least, o.tolerance, true);
+    Verdict v;
+    v.pass = s.all.size() >= 100 && !s.off;
+    v.p = v.pass ? 1 : 0;
+    v.delta_min = o.tolerance + s.blind;
+    v.text = say("pdf sqrt(det J^T J) = 1 within %.1e at %zu points", v.delta_min, s.all.size());
+    if (s.all.size() < 100)
+        v.text = "the map is smooth at " +
+                 say("%zu of 300 points only: is it one map, without choices?", s.all.size());
+    if (s.off) {
+        const double product = s.off->product();
+        v.text = say("pdf sqrt(det J^T J) = %.8g, expected 1 +- %.0e: ", product, tolerance);
+        const std::string why = mistake_behind(s.all, model, false, product, 0, {}, o);
+        v.text += !why.empty()
+                      ? why
+                      : say("samples are %.4g times as dense as the pdf says", 1 / product);
+        v.text += ", at " + say_point(s.off->x) + ", u = " + say_point(s.u);
+        if (model.single && std::abs(product - 1) < 10 * s.blind) v.text += if_double;
+    }
+    return named(v, o);
+}
+
+// Samples x(u) of a smooth one-to-one map of the unit cube have the density pdf(x): pdf sqrt(det
+// J^T J) = 1, by differences, without noise.  Of directions, points of surfaces in space, anything.
+template <class Sample, class Pdf>
+Verdict expect_jacobian(Random& random, Sample sample, Pdf pdf, const Options& o = {}) {
+    return judge_jacobian(random, model(sample, pdf), o);
+}
+
+// ---- Densities ----------------------------------------------------------------------------------
+
+template <size_t D>
+struct Range {
+    Point<D> lower, upper;
+    Point<D> middle() const {
+        Point<D> c;
+        for (size_t k = 0; k < D; ++k) c[k] = (lower[k] + upper[k]) / 2;
+        return c;
+    }
+};
+
+// 32 cells that a few points fill alike: halved at medians, along each dimension in turn.
+template <size_t D>
+struct Cells {
+    static constexpr size_t levels = 5, count = 32;
+    std::array<double, count> split{};  // of node k into 2k and 2k + 1
+
+    explicit Cells(std::vector<Point<D>> points) { halve(1, 0, points, 0, points.size()); }
+    void halve(size_t node, size_t level, std::vector<Point<D>>& points, size_t begin, size_t end) {
+        if (level == levels) return;
+        const size_t k = level % D, middle = (begin + end) / 2;
+        std::nth_element(points.begin() + long(begin), points.begin() + long(middle),
+                         points.begin() + long(end),
+                         [k](const auto& a, const auto& b) { return a[k] < b[k]; });
+        split[node] = points[middle][k];
+        halve(2 * node, level + 1, points, begin, middle);
+        halve(2 * node + 1, level + 1, points, middle, end);
+    }
+    size_t of(const Point<D>& c) const {
+        size_t node = 1;
+        for (size_t level = 0; level < levels; ++level)
+            node = 2 * node + (c[level % D] >= split[node]);
+        return node - count;
+    }
+    Range<D> range(size_t cell, Range<D> all) const {
+        for (size_t level = 0; level < levels; ++level) {
+            const size_t node = (cell + count) >> (levels - level);
+            const bool above = (cell + count) >> (levels - level - 1) & 1;
+            (above ? all.lower : all.upper)[level % D] = split[node];
+        }
+        return all;
+    }
+};
+
+// Integral of f over a range: by nested rules while `enough` allows.
+template <size_t K = 0, size_t D, class F, class Enough>
+double nested(const F& f, Point<D>& c, const Range<D>& range, const Agreement& g,
+              const Enough& enough) {
+    if constexpr (K == D)
+        return f(c);
+    else {
+        auto along = [&](double x) {
+            c[K] = x;
+            Agreement inner = g;
+            inner.tolerance *= 0.1 / (range.upper[K] - range.lower[K]);
+            inner.halves = false;
+            return oracle::nested<K + 1>(f, c, range, inner, enough);
+        };
+        Agreement here = g;
+        if (K == 0 && D > 1) here.noise *= 2;
+        return oracle::integral(along, range.lower[K], range.upper[K], here, enough);
+    }
+}
+
+// The part of a density in each cell, and the variance of what is not known exactly.
+struct Parts {
+    std::array<double, 32> value{}, variance{};
+    double total = 0, error = 0;  // standard error of the total
+};
+
+// What a check of a density found.
+template <size_t N, size_t M, size_t D>
+struct Found {
+    const Cells<D>& cells;
+    const Parts& parts;
+    const Sheets<N, M>& sheets;
+    double close;  // how well the integral is known
+    std::array<uint64_t, 32> counts{};
+    std::vector<double> expected = {};
+    bool counted = false, balanced = false;
+
+    size_t worst_cell() const {
+        double n = 0, most = -1;
+        for (uint64_t c : counts) n += double(c);
+        size_t worst = 0;
+        for (size_t i = 0; i < 32; ++i)
+            if (const double off =
+                    std::abs(double(counts[i]) - n * expected[i]) / std::sqrt(n * expected[i] + 1);
+                off > most)
+                most = off, worst = i;
+        return worst;
+    }
+};
+
+// One check of a sampler against a density; its steps in the order of their costs.
+template <size_t M, size_t N, class Domain>
+struct DensityCheck {
+    static constexpr size_t D = Domain::dimensions;
+    static constexpr bool directions = std::is_same_v<Domain, Sphere>;
+
+    Random& random;
+    const Model<M, N>& model;
+    Domain domain;
+    const Options& o;
+
+    std::string wrong = {};  // the first thing that no right sampler or pdf does
+    double samples = 0, none = 0, mirrored = 0;
+    std::string first_none = {};
+    std::vector<Point<N>> mirrors = {};  // points that are drawn again and again, as was said,
+    std::string repeated = {};           // or was not
+    std::vector<Point<D>> pilot = {};
+    std::vector<Point<D>> places = {};  // theirs, and mirror images where the pdf is positive, too:
+    std::vector<double> per_dc = {}, heights = {};  // the pdf there per dc, and by itself
+    double extent = 0;                              // median of the pilot's squared distances
+    double arriving = 1;  // part of the samples that does not fail, nearly
+    double rounding = 0;  // relative, of the pdf in the host's type
+    double grain = 0;     // what borders may be off by, where coordinates are rounded
+    double jumps = 0;     // part of the samples that an ulp or two move across one
+    std::function<double(const Point<N>&)> weight = {};  // what the pdf may lack
+    double most_negative = 0;
+    std::string where_negative = {};
+
+    double density_at(const Point<D>& c) {
+        const Point<N> x = domain.at(c);
+        const double p = model.pdf(x);
+        if (wrong.empty() && !std::isfinite(p))
+            wrong = say("the pdf is %g, not finite, at ", p) + at(x);
+        if (p < most_negative) most_negative = p, where_negative = at(x);
+        const double measure = domain.weight(c) * (weight ? weight(x) : 1);
+        return measure > 0 ? p * measure : 0;
+    }
+    static std::string at(const Point<N>& x) {
+        return std::string(Domain::place) + " " + say_point(x);
+    }
+
+    // One sample, in the domain's coordinates; nothing if it failed.
+    std::optional<Point<D>> one() { return at_numbers(model.draw(random)); }
+    std::optional<Point<D>> at_numbers(const Point<M>& u, bool rim = false) {
+        const auto x = model.sample(u);
+        ++samples;
+        auto failed = [&](const std::string& how) {
+            if (none++ == 0) first_none = how + " at u = " + say_point(u);
+            return std::nullopt;
+        };
+        if (!x) return failed("nothing");
+        const Point<N> w = *x;
+        if (is_mirror(w)) return ++mirrored, std::nullopt;
+        if (!std::all_of(w.begin(), w.end(), [](double k) { return std::isfinite(k); }))
+            return broken("sample " + say_point(w) + " is not finite, u = " + say_point(u));
+        const auto c = domain.coordinates(w);
+        const double p = model.pdf(w);
+        if (!(p > 0 && std::isfinite(p))) {
+            if (p != 0 && !(rim && p > 0))
+                return broken(say("the pdf is %s, %.4g, at the sample ",
+                                  p < 0 ? "negative" : "not finite", p) +
+                              say_point(w));
+            return failed("pdf 0 at " + at(w));
+        }
+        if (rim) return c;
+        if constexpr (requires { domain.width; }) return c;  // all of space
+        const Point<N> back = domain.at(c);
+        double off = 0, size = 1e-300;
+        for (size_t k = 0; k < N; ++k) off += std::pow(back[k] - w[k], 2), size += w[k] * w[k];
+        const double ulps = 64 * model.unit * std::sqrt(size);
+        bool inside = off <= (directions ? 1e-6 : 1e-6 * extent + ulps * ulps);
+        for (size_t k = 0; k < D; ++k) {
+            const double slack =
+                1e-5 * (domain.upper[k] - domain.lower[k]) + (directions ? 0 : ulps);
+            inside = inside && c[k] >= domain.lower[k] - slack && c[k] <= domain.upper[k] + slack;
+        }
+        if (!inside)
+            return broken(directions ? say("a sample is no direction: its length is %.6g, ",
+                                           std::sqrt(size)) +
+                                           say_point(w)
+                                     : "a sample lies outside of the domain, " + say_point(w));
+        return c;
+    }
+    std::nullopt_t broken(const std::string& how) {
+        if (wrong.empty()) wrong = how;
+        return std::nullopt;
+    }
+
+    // 0 and the number next to 1, alone and together, which random numbers meet too seldom.
+    void try_rims() {
+        const double last = 1 - (model.single || model.floats ? 0x1p-24 : 0x1p-53);
+        const double before = none;
+        size_t all = 1;
+        for (size_t k = 0; k < std::min<size_t>(M, 4); ++k) all *= 3;
+        for (size_t i = 1; i < all; ++i) {
+            Point<M> u = model.draw(random);
+            size_t digits = i;
+            for (double& x : u) {
+                if (digits % 3 > 0) x = digits % 3 == 1 ? 0 : last;
+                digits /= 3;
+            }
+            (void)at_numbers(u, true);
+        }
+        if (before == 0 && none > 0) none = 0;  // first_none is that of one()
+    }
+
+    bool is_mirror(const Point<N>& x) const {
+        return std::find(mirrors.begin(), mirrors.end(), x) != mirrors.end();
+    }
+    // Points that one in a hundred samples repeats: a mirror's, unless a cap that rounding takes to
+    // one point has as many.
+    void find_mirrors() {
+        std::vector<Point<N>> points;
+        for (int i = 0; i < 4096; ++i)
+            if (const auto x = model.sample(model.draw(random)))
+                if (o.discrete > 0 || model.pdf(*x) > 0) points.push_back(*x);
+        std::sort(points.begin(), points.end());
+        for (size_t i = 0, j = 0; i < points.size(); i = j) {
+            while (j < points.size() && points[j] == points[i]) ++j;
+            const double part = double(j - i) / double(points.size());
+            if (part < 0.01 || points[i] == Point<N>{}) continue;
+            if (o.discrete > 0)
+                mirrors.push_back(points[i]);
+            else if (part < 0.9 && part > 200 * model.unit * model.pdf(points[i]))
+                repeated = percent(part) + " of the samples are " + at(points[i]) +
+                           ": looks like a mirror (.discrete says how many samples are)";
+        }
+    }
+
+    // What sample says the pdf is, beside what pdf says.
+    std::string other_pdf() {
+        if (!model.says_pdf) return "";
+        std::vector<double> ratios;
+        std::vector<Point<N>> where;
+        std::string first;
+        double compared = 0;
+        for (int i = 0; i < 2048; ++i) {
+            const auto x = model.sample(model.draw(random));
+            if (!x || is_mirror(*x)) continue;
+            const double p = model.pdf(*x), said = x->pdf;
+            if (std::isnan(said)) return "the pdf that sample returns is nan, at " + at(*x);
+            if (p == 0 && said <= 0) continue;
+            ++compared;
+            double close = 64 * model.pdf_unit;
+            for (int j = 0; j < 4; ++j)
+                close = std::max(close, std::abs(model.pdf(jittered(*x)) / p - 1));
+            if (std::abs(said / p - 1) <= 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance)
+                continue;
+            if (ratios.empty()) first = say("%.4g, but pdf says %.4g, at ", said, p) + at(*x);
+            ratios.push_back(said / p);
+            where.push_back(*x);
+        }
+        const double off = double(ratios.size());
+        if (off <= 8 + 16 * jumps * compared) return "";
+        const std::string often =
+            off == compared ? ", in every sample" : ", in " + percent(off / compared) + " of them";
+        if (const std::string law = law_of_pdfs(ratios, where); !law.empty())
+            return "the pdf that sample returns is " + law + " times what pdf says" + often;
+        return "the pdf that sample returns is " + first + often;
+    }
+
+    // Four units of rounding away, or less.
+    Point<N> jittered(Point<N> x) {
+        double length = 0;
+        for (double k : x) length = std::max(length, std::abs(k));
+        for (double& k : x) k += (random() - 0.5) * 8 * length * model.unit;
+        return x;
+    }
+
+    void fly_pilot() {
+        std::vector<Point<N>> points;
+        int drawn = 0;
+        for (; drawn < 400000 && points.size() < 4096; ++drawn) {
+            const auto x = model.sample(model.draw(random));
+            if (x && model.pdf(*x) > 0 && !is_mirror(*x)) points.push_back(*x);
+        }
+        if (points.size() < 1024) return;
+        arriving = double(points.size()) / drawn;
+        domain.fit(points, o.axis);
+        std::vector<double> squares(points.size());
+        for (size_t i = 0; i < points.size(); ++i)
+            for (size_t k = 0; k < N; ++k) squares[i] += std::pow(points[i][k] - points[0][k], 2);
+        extent = median(squares);
+        const int jitters = model.single ? 8 : 1;
+        for (size_t i = 0; i < points.size(); ++i) {
+            const auto c = domain.coordinates(points[i]);
+            pilot.push_back(c);
+            const double p = model.pdf(points[i]);
+            heights.push_back(p);
+            places.push_back(c);
+            per_dc.push_back(p * domain.weight(c));
+            if constexpr (directions)
+                for (size_t k = 0; i % 8 == 0 && k < 3; ++k) {
+                    Triple image = points[i];
+                    image[k] = -image[k];
+                    const double there = model.pdf(image);
+                    if (!(there > 0)) continue;
+                    places.push_back(domain.coordinates(image));
+                    per_dc.push_back(there * domain.weight(places.back()));
+                }
+            // What an ulp or two of the coordinates changes; jumps are met by few.
+            for (int j = 0; j < jitters; ++j) {
+                const double change = std::abs(model.pdf(jittered(points[i])) / p - 1);
+                (change < 0.5 ? rounding : jumps) += std::min(1.0, change);
+            }
+        }
+        for (size_t k = 0; k < N && !directions; ++k) {
+            std::vector<double> x, size;
+            for (const auto& p : points) x.push_back(p[k]), size.push_back(std::abs(p[k]));
+            if (const double width = median(x, 0.75) - median(x, 0.25); width > 0)
+                grain = std::max(grain, 4 * model.unit * median(size) / width);
+        }
+        rounding /= double(points.size()) * jitters;
+        jumps /= double(points.size()) * jitters;
+    }
+
+    double allowed() const {
+        return std::max(1e-6, 512 * model.pdf_unit) + 2 * rounding + 8 * jumps + grain +
+               o.tolerance;
+    }
+
+    // Part of a cell's samples that four units of rounding may take to another cell: of each
+    // coordinate, and in float of the cosine to the lobe's axis, from which samplers have the sine.
+    // The root of its mean square over the samples.
+    double moved(const Cells<D>& cells) {
+        std::array<double, 32> all{}, others{};
+        for (int i = 0; i < 4096; ++i) {  // others than the pilot's, at which cells end
+            const auto x = model.sample(model.draw(random));
+            if (!x || is_mirror(*x) || !(model.pdf(*x) > 0)) continue;
+            const size_t cell = cells.of(domain.coordinates(*x));
+            for (int jitter = 0; jitter < 8; ++jitter) {
+                auto there = domain.coordinates(jittered(*x));
+                if (directions && model.single) {
+                    const double s = std::sin(there[0] / 2),
+                                 versine = 2 * s * s + (random() - 0.5) * 8 * model.unit;
+                    there[0] = 2 * std::asin(std::sqrt(std::min(1.0, std::abs(versine) / 2)));
+                }
+                ++all[cell];
+                others[cell] += cells.of(there) != cell;
+            }
+        }
+        double sum = 0, n = 0;
+        for (size_t i = 0; i < 32; ++i)
+            if (all[i] > 0) sum += others[i] * others[i] / all[i], n += all[i];
+        return n > 0 ? std::sqrt(sum / n) : 0;
+    }
+
+    // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
+    // rule: none longer than 0.3 of the domain, none of which points fill a corner alone, none in
+    // which the density differs much.
+    void divide(const Range<D>& range, const std::vector<size_t>& inside,
+                std::vector<Range<D>>& parts, int depth) const {
+        auto split = [&](size_t k, double border) {
+            Range<D> low = range, high = range;
+            low.upper[k] = high.lower[k] = border;
+            std::vector<size_t> below, above;
+            for (size_t i : inside) (places[i][k] < border ? below : above).push_back(i);
+            divide(low, below, parts, depth - 1);
+            divide(high, above, parts, depth - 1);
+        };
+        if (depth == 0) return parts.push_back(range);
+        size_t widest = 0;
+        double share = 0;
+        for (size_t k = 0; k < D; ++k)
+            if (const double s =
+                    (range.upper[k] - range.lower[k]) / (domain.upper[k] - domain.lower[k]);
+                s > share)
+                share = s, widest = k;
+        if (share > 0.3) return split(widest, range.middle()[widest]);
+        if (inside.size() < 4) return parts.push_back(range);
+        double least = infinity, most = 0;
+        for (size_t i : inside) {
+            least = std::min(least, per_dc[i]);
+            most = std::max(most, per_dc[i]);
+        }
+        for (size_t k = 0; k < D; ++k) {
+            double first = infinity, last = -infinity;
+            for (size_t i : inside) {
+                first = std::min(first, places[i][k]);
+                last = std::max(last, places[i][k]);
+            }
+            const double spread = last - first;
+            if (!(spread > 0)) continue;
+            if (range.upper[k] - last > 4 * spread) return split(k, last + 2 * spread);
+            if (first - range.lower[k] > 4 * spread) return split(k, first - 2 * spread);
+        }
+        if (most <= 16 * least) return parts.push_back(range);
+        std::vector<double> x;
+        for (size_t i : inside) x.push_back(places[i][widest]);
+        const double border = median(x);
+        if (border > range.lower[widest] && border < range.upper[widest])
+            return split(widest, border);
+        parts.push_back(range);
+    }
+
+    Parts integrate(const Cells<D>& cells) {
+        std::array<std::vector<size_t>, 32> inside;
+        for (size_t i = 0; i < places.size(); ++i) inside[cells.of(places[i])].push_back(i);
+        std::vector<Range<D>> ranges;
+        std::vector<size_t> of_cell;
+        for (size_t cell = 0; cell < 32; ++cell) {
+            divide(cells.range(cell, {domain.lower, domain.upper}), inside[cell], ranges, 16);
+            of_cell.resize(ranges.size(), cell);
+        }
+        size_t evaluations = 0;
+        auto f = [&](const Point<D>& c) {
+            ++evaluations;
+            return density_at(c);
+        };
+        const size_t budget = weight ? 200'000 : 4'000'000;  // a guess need not be exact
+        auto enough = [&] { return evaluations > budget; };
+        Parts parts;
+        double left = 0;
+        if constexpr (D <= 2) {
+            const double close = weight ? 3e-3 : allowed();
+            // No finer than f can tell where it jumps.
+            const Agreement g{close / 300, close / 8, 1 - std::ilogb(close / 8), true, &left};
+            for (size_t i = 0; i < ranges.size() && !enough(); ++i) {
+                Point<D> c{};
+                parts.value[of_cell[i]] += oracle::nested(f, c, ranges[i], g, enough);
+            }
+        }
+        // Where borders cut across the coordinates rules may not agree: then a total that is nearly
+        // right is known no better than points tell.
+        double sum = 0;
+        for (double value : parts.value) sum += value;
+        const bool doubtful = model.single && D == 2 && left > 0 && std::abs(sum - 1) < 0.01 &&
+                              std::abs(sum - 1) > allowed() && arriving > 0.9999;
+        if (D > 2 || enough() || doubtful) parts = scatter(f, ranges, of_cell);
+        for (size_t cell = 0; cell < 32; ++cell) {
+            parts.total += parts.value[cell];
+            parts.error += parts.variance[cell];
+        }
+        parts.error = std::sqrt(parts.error) + (D == 1 ? left : 0);
+        return parts;
+    }
+
+    // More dimensions or jumps than rules can follow: 16 shifts of a lattice (Roberts's generalised
+    // golden ratio) in each range.
+    template <class F>
+    Parts scatter(const F& f, const std::vector<Range<D>>& ranges,
+                  const std::vector<size_t>& of_cell) {
+        double golden = 1.5;
+        for (int i = 0; i < 60; ++i) golden = std::pow(1 + golden, 1 / (double(D) + 1));
+        Point<D> step;
+        for (size_t k = 0; k < D; ++k) step[k] = std::pow(golden, -double(k + 1));
+        const size_t points =
+            std::max<size_t>(64, (weight ? 300'000 : 3'000'000) / 16 / ranges.size());
+        Parts parts;
+        for (size_t i = 0; i < ranges.size(); ++i) {
+            const Range<D>& r = ranges[i];
+            double volume = 1;
+            for (size_t k = 0; k < D; ++k) volume *= r.upper[k] - r.lower[k];
+            Draws shifts;
+            for (int shift = 0; shift < 16; ++shift) {
+                Point<D> x;
+                for (double& s : x) s = random();
+                double sum = 0;
+                for (size_t j = 0; j < points; ++j) {
+                    Point<D> c;
+                    for (size_t k = 0; k < D; ++k) {
+                        x[k] += step[k];
+                        x[k] -= std::floor(x[k]);
+                        c[k] = r.lower[k] + x[k] * (r.upper[k] - r.lower[k]);
+                    }
+                    sum += f(c);
+                }
+                shifts.add(sum / double(points) * volume);
+            }
+            parts.value[of_cell[i]] += shifts.mean();
+            parts.variance[of_cell[i]] += shifts.variance() / 16;
+        }
+        return parts;
+    }
+
+    Verdict run() {
+        find_mirrors();
+        fly_pilot();
+        if (pilot.empty()) {
+            for (int i = 0; i < 100; ++i) (void)one();
+            if (!wrong.empty()) return failure(wrong);
+            return failure("of " + say("%.0f", samples) +
+                           " samples hardly any comes where the pdf is positive: " + first_none +
+                           symmetry());
+        }
+        for (size_t i = 0; i < 4096 && wrong.empty(); ++i) (void)one();
+        if (!wrong.empty()) return failure(wrong);
+        try_rims();
+        if (!wrong.empty()) return failure(wrong);
+        if (const std::string why = other_pdf(); !why.empty()) return failure(why);
+        samples = none = mirrored = 0;
+        const Cells<D> cells(pilot);
+        const Parts parts = integrate(cells);
+        if (!wrong.empty()) return failure(wrong);
+        // Rounding may make a 0 negative.
+        if (most_negative < -1e-12 * median(heights))
+            return failure(say("the pdf is negative, %.4g, at ", most_negative) + where_negative);
+
+        const double close = allowed() + 6 * parts.error;
+        Sheets<N, M> sheets;
+        if constexpr (M == D)
+            sheets = sheets_of(model, random,
+                               std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)),
+                               o.tolerance, false);
+        const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
+        const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
+        const bool off_already = sheets.off || parts.total > 1 - o.discrete + close;
+        Found<N, M, D> found{cells, parts, sheets, close};
+        for (uint64_t i = 0; i < (off_already ? std::min<uint64_t>(n, 100000) : n); ++i)
+            if (const auto c = one()) ++found.counts[cells.of(*c)];
+        if (!wrong.empty()) return failure(wrong);
+
+        const std::string integral_is =
+            "the pdf integrates to " + say("%.8g over the %s", parts.total, Domain::measure);
+        // What fails is missing from the integral, as closely as it is known.
+        const double others = samples * (1 - o.discrete),
+                     fewest = others - samples * (parts.total + close),
+                     most = others - samples * (parts.total - close);
+        found.balanced =
+            none == 0 ? std::abs(parts.total - (1 - o.discrete)) <= close ||
+                            (parts.total < 1 - o.discrete && fewest < -std::log(o.alpha / 4))
+                      : p_at_least(none, samples, most / samples) > o.alpha / 4 &&
+                            1 - p_at_least(none + 1, samples, fewest / samples) > o.alpha / 4;
+        std::vector<double> variances;
+        for (size_t i = 0; i < 32; ++i) {
+            found.expected.push_back(parts.value[i] / parts.total);
+            variances.push_back(parts.variance[i] / (parts.total * parts.total));
+        }
+        Options plain = o;
+        plain.name = "";
+        plain.tolerance += moved(cells);
+        plain.alpha = o.alpha / (o.discrete > 0 ? 4 : none > 0 ? 2 : 1);
+        Verdict v = expect_counts(found.counts, found.expected, plain, variances);
+        alpha_spent += o.alpha - plain.alpha;
+        if (o.discrete > 0 && (p_at_least(mirrored, samples, o.discrete) < o.alpha / 8 ||
+                               1 - p_at_least(mirrored + 1, samples, o.discrete) < o.alpha / 8))
+            return failure(percent(mirrored / samples) + " of the samples are mirrors', " +
+                           percent(o.discrete) + " were announced (.discrete)");
+        found.counted = v.pass;
+        v.text += "; " + integral_is;
+        if (parts.error > 0) v.text += say(" +- %.1e", parts.error);
+        if (none > 0) v.text += "; " + percent(none / samples) + " of the samples fail";
+        if (sheets.blind > 0) v.text += say("; Jacobian within %.1e", sheets.blind);
+        v.delta_min = std::max(v.delta_min, close);  // where rounding rules
+        v.pass = found.counted && found.balanced && !sheets.off;
+        if (v.pass) return v;
+        if (!found.balanced || sheets.off) v.p = 0;
+        v.text = first_line(found) + "\n" + v.text + picture(found);
+        return v;
+    }
+
+    // Hints, which part two defines: the first line of a refusal, its picture, and what symmetry
+    // says of samples that all come where the pdf is 0.
+    std::string first_line(const Found<N, M, D>& found);
+    std::string picture(const Found<N, M, D>& found);
+    std::string symmetry();
+    std::string explained(const std::vector<Local<N>>& all, double total);
+    std::string law_of_cells(const Found<N, M, D>& found);
+    std::string law_of_pdfs(const std::vector<double>& ratios, const std::vector<Point<N>>& where);
+};
+
+// Samples of sample(u, v, ...) have the density pdf(sample), which integrates to 1 over the domain
+// less the part of samples that fail (nothing returned, or pdf 0): by quadrature; by the Jacobian,
+// where the map is smooth, as far as samples may be sparser than the pdf of one sheet but not
+// denser; by chi-squared.
+template <size_t M, size_t N, class Domain>
+Verdict judge_density(Random& random, const Model<M, N>& model, const Domain& domain,
+                      const Options& o) {
+    static_assert(N == std::tuple_size_v<decltype(domain.at({}))>,
+                  "the domain has other coordinates than the samples");
+    DensityCheck<M, N, Domain> check{random, model, domain, o};
+    const Verdict v = check.run();
+    return named(v, o);
+}
+template <class Sample, class Pdf, class Domain>
+requires requires { Domain::dimensions; }
+Verdict expect_density(Random& random, Sample sample, Pdf pdf, const Domain& domain,
+                       const Options& o = {}) {
+    return judge_density(random, model(sample, pdf), domain, o);
+}
+template <class Sample, class Pdf>
+Verdict expect_density(Random& random, Sample sample, Pdf pdf, const Options& o = {}) {
+    const auto erased = model(sample, pdf);
+    return [&]<size_t M, size_t N>(const Model<M, N>& m) {
+        return judge_density(random, m, usual_domain<N>(), o);
+    }(erased);
+}
+
+// ---- Arrays of samples and densities ------------------------------------------------------------
+
+// Points of a domain at which a host is to evaluate its density, for expect_samples.
+template <class Domain>
+auto points_in(Random& random, const Domain& domain, size_t n) {
+    std::vector<decltype(domain.at({}))> points;
+    for (size_t i = 0; i < n; ++i) {
+        auto c = domain.lower;
+        for (size_t k = 0; k < c.size(); ++k)
+            c[k] += random() * (domain.upper[k] - domain.lower[k]);
+        points.push_back(domain.at(c));
+    }
+    return points;
+}
+
+// Samples that were drawn elsewhere (by a GPU, by Python) have the density of which pdfs[i] is the
+// value at points[i], where points = points_in(random, domain, n): chi-squared.  o.n: how many
+// samples were tried, if some failed and are no part of the array.
+template <class Samples, class Points, class Pdfs, class Domain>
+Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs& pdfs,
+                       const Domain& domain, const Options& o = {}) {
+    constexpr size_t D = Domain::dimensions;
+    auto refuse = [&](const std::string& why) { return named(failure(why), o); };
+    const size_t n = std::size(samples), first = n / 4;
+    const double m = double(std::size(points)), arriving = o.n ? double(n) / double(o.n) : 1;
+    if (n < 20000 || m < 20000 || std::size(points) != std::size(pdfs))
+        return refuse(
+            say("%zu samples, %zu points, %zu values of the pdf: take 20000 or more of "
+                "each, and as many values as points",
+                n, std::size(points), std::size(pdfs)));
+    std::vector<Point<D>> places;
+    for (size_t i = 0; i < n; ++i) places.push_back(domain.coordinates(oracle::point(samples[i])));
+    const Cells<D> cells({places.begin(), places.begin() + long(first)});
+    std::array<uint64_t, 32> counts{};
+    for (size_t i = first; i < n; ++i) ++counts[cells.of(places[i])];
+    double box = 1;
+    for (size_t k = 0; k < D; ++k) box *= domain.upper[k] - domain.lower[k];
+    std::array<double, 32> sum{}, squares{};
+    double total = 0, total_squares = 0;
+    for (size_t i = 0; i < std::size(points); ++i) {
+        const double p = double(pdfs[i]);
+        const auto x = oracle::point(points[i]);
+        if (!(p >= 0 && std::isfinite(p)))
+            return refuse(say("the pdf is %g at ", p) + say_point(x));
+        const auto c = domain.coordinates(x);
+        const double value = p * domain.weight(c) * box;
+        sum[cells.of(c)] += value, squares[cells.of(c)] += value * value;
+        total += value, total_squares += value * value;
+    }
+    const double integral = total / m,
+                 error = std::sqrt(total_squares / m - integral * integral) / std::sqrt(m);
+    if (std::abs(integral - arriving) > smallest_shift(infinity, o.alpha / 2) * error + 1e-6)
+        return refuse(say("the pdf integrates to %.5g +- %.1g", integral, error) + ", expected " +
+                      say("%.5g", arriving));
+    std::vector<double> expected, variances;
+    for (size_t i = 0; i < 32; ++i) {
+        const double mean = sum[i] / m;
+        expected.push_back(mean / integral);
+        variances.push_back((squares[i] / m - mean * mean) / m / (integral * integral));
+    }
+    Options half = o;
+    half.alpha = o.alpha / 2;
+    Verdict v = expect_counts(counts, expected, half, variances);
+    double blind = 0;  // by so few points
+    for (size_t i = 0; i < 32; ++i) blind += variances[i] / std::max(1e-300, expected[i]);
+    v.delta_min =
+        std::hypot(v.delta_min, smallest_distortion(31, 1, half.alpha) * std::sqrt(blind / 32));
+    if (v.pass) return v;
+    size_t worst = 0;
+    auto off = [&](size_t i) {
+        return std::abs(double(counts[i]) / double(n - first) - expected[i]) /
+               std::sqrt(expected[i] / double(n - first) + variances[i]);
+    };
+    for (size_t i = 1; i < 32; ++i)
+        if (off(i) > off(worst)) worst = i;
+    v.text = say("samples are %.4g times as dense as the pdf says, around ",
+                 double(counts[worst]) / double(n - first) / expected[worst]) +
+             Domain::place + " " +
+             say_point(domain.at(cells.range(worst, {domain.lower, domain.upper}).middle())) +
+             "\n" + v.text;
+    return v;
+}
+
+// ---- BSDFs --------------------------------------------------------------------------------------
+
+template <class C>
+double brightness(const C& c) {
+    if constexpr (std::is_arithmetic_v<C>)
+        return double(c);
+    else if constexpr (requires {
+                           c.r;
+                           c.g;
+                           c.b;
+                       })
+        return (double(c.r) + double(c.g) + double(c.b)) / 3;
+    else {
+        const auto rgb = oracle::point(c);
+        double sum = 0;
+        for (double x : rgb) sum += x / double(rgb.size());
+        return sum;
+    }
+}
+
+// The type of a function's first argument.
+template <class R, class C, class A, class... More>
+std::decay_t<A> first_argument(R (C::*)(A, More...) const);
+template <class R, class C, class A, class... More>
+std::decay_t<A> first_argument(R (C::*)(A, More...));
+template <class R, class A, class... More>
+std::decay_t<A> first_argument(R (*)(A, More...));
+template <class F>
+auto first_argument_of() {
+    if constexpr (requires { &F::operator(); })
+        return decltype(first_argument(&F::operator())){};
+    else
+        return decltype(first_argument(std::declval<F>())){};
+}
+
+// A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
+// if it transmits for these from below, too: samples sample(wo, u, v, ...) have the density
+// pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not negative and reciprocal; no more
+// leaves than comes.  What is transmitted may be scaled by a constant, eta^2, in one direction.
+template <class Sample, class Pdf, class Eval>
+Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Options& o = {}) {
+    using V = decltype(first_argument_of<Pdf>());  // the host's direction
+    using T = Coordinate<V>;
+    constexpr bool single = std::is_same_v<T, float>;
+    auto refuse = [&](const std::string& why) { return named(failure(why), o); };
+    auto between = [](const Triple& a, const Triple& b) {
+        return "wo = " + say_point(a) + ", wi = " + say_point(b);
+    };
+    auto unit_at = [](double z, double phi) {
+        const double s = std::sqrt(1 - z * z);
+        return Triple{s * std::cos(phi), s * std::sin(phi), z};
+    };
+    auto f = [&](const Triple& a, const Triple& b) {
+        return brightness(eval(of_host<V>(a), of_host<V>(b)));
+    };
+
+    // Pairs above the surface, then through it.
+    std::array<std::vector<double>, 2> ratios;  // f(wo, wi) / f(wi, wo)
+    const double close = single ? 0.02 : 1e-6;  // half vectors of exchanged directions are rounded
+    double with_cosine = 0, with_inverse = 0;
+    for (size_t through = 0; through < 2; ++through) {
+        std::vector<std::pair<Triple, Triple>> pairs;
+        for (int i = 0; i < 2000; ++i) {
+            const Triple a = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
+            Triple b = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
+            if (through) b[2] = -b[2];
+            const double there = f(a, b), back = f(b, a);
+            for (double x : {there, back})
+                if (!(x >= 0 && std::isfinite(x)))
+                    return refuse(
+                        say("eval is %s, %.4g, for ", x < 0 ? "negative" : "not finite", x) +
+                        between(a, b));
+            if (there == 0 && back == 0) continue;
+            ratios[through].push_back(there / back);
+            pairs.emplace_back(a, b);
+            with_cosine += std::abs(there * a[2] / (back * std::abs(b[2])) - 1) < close;
+            with_inverse += std::abs(there * std::abs(b[2]) / (back * a[2]) - 1) < close;
+        }
+        if (pairs.empty()) continue;
+        const double c = through ? median(ratios[1]) : 1;
+        size_t worst = 0;
+        auto off = [&](size_t i) {
+            const double r = ratios[through][i] / c;
+            return std::isfinite(r) ? 1 - std::min(r, 1 / r) : 1;
+        };
+        for (size_t i = 1; i < pairs.size(); ++i)
+            if (off(i) > off(worst)) worst = i;
+        if (off(worst) <= close) continue;
+        const double all = 0.95 * double(ratios[0].size() + ratios[1].size());
+        return refuse(std::string("eval is not reciprocal") +
+                      (through ? " through the surface" : "") +
+                      ": f(wo, wi) and f(wi, wo) differ by " + percent(off(worst)) + ", for " +
+                      between(pairs[worst].first, pairs[worst].second) +
+                      (with_cosine > all    ? "; looks like the cosine of wi included in eval"
+                       : with_inverse > all ? "; looks like eval divided by the cosine of wi"
+                                            : ""));
+    }
+    const bool transmits = !ratios[1].empty();
+    if (ratios[0].empty() && !transmits) return refuse("eval is 0 for all directions");
+    const double scale = transmits ? std::sqrt(median(ratios[1])) : 1;
+
+    Verdict all{true, 1, 0, ""};
+    for (double side : {1.0, -1.0})
+        for (const auto& [z, phi] : {std::pair{0.95, 1.0}, {0.6, 3.0}, {0.2, 5.0}, {0.02, 2.0}}) {
+            if (side < 0 && !transmits) break;
+            const Triple out = unit_at(side * z, phi);
+            const V wo = of_host<V>(out);
+            auto half = [out](const Triple& w) {
+                Triple h;
+                for (size_t k = 0; k < 3; ++k) h[k] = w[k] + out[k];
+                const double length = std::sqrt(dot(h, h));
+                for (double& x : h) x /= length;
+                return h;
+            };
+            Options here = o;
+            here.alpha = o.alpha / (transmits ? 8 : 4);
+            here.name += (o.name.empty() ? "" : " ") + ("wo = " + say_point(out));
+            here.factors.emplace_back("4 wo.h",
+                                      [=](const Triple& w) { return 4 * dot(out, half(w)); });
+            here.factors.emplace_back("n.h", [=](const Triple& w) { return half(w)[2]; });
+            auto from_wo = [&](auto... u) requires requires { sample(wo, T(u)...); }
+            { return sample(wo, T(u)...); };
+            auto pdf_of = [&](const V& wi) { return pdf(wo, wi); };
+            const auto erased = model(from_wo, pdf_of);
+            const Verdict v = judge_density(random, erased, usual_domain<3>(), here);
+            if (!v.pass) return v;
+            all.p = std::min(all.p, v.p);
+            all.delta_min = std::max(all.delta_min, v.delta_min);
+            Draws albedo;
+            for (int i = 0; i < 100000; ++i) {
+                const auto wi = erased.sample(erased.draw(random));
+                double weight = 0;
+                if (const double p = wi ? erased.pdf(*wi) : 0; p > 0)
+                    weight = f(out, *wi) * std::abs((*wi)[2]) / p *
+                             ((*wi)[2] * side < 0 ? std::pow(scale, -side) : 1);
+                if (!std::isfinite(weight))
+                    return refuse("eval cos / pdf is not finite for " + between(out, *wi));
+                albedo.add(weight);
+            }
+            const Estimate e = albedo.estimate();
+            if (e.mean > 1 + 1e-3 + 5 * e.standard_error)
+                return refuse("an albedo of " +
+                              times(e.mean, std::max(0.003, 3 * e.standard_error / e.mean)) +
+                              ": more leaves than comes, for wo = " + say_point(out));
+        }
+    all.text = std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
+               (transmits ? say(", below and through it (scaled by %.4g)", scale * scale) : "");
+    return named(all, o);
+}
+
+// ---- Images -------------------------------------------------------------------------------------
+
+// How far an image is from a reference.
+struct ImageResult {
+    double p = 1, mean = 0, mean_p = 1, z = 0;
+    size_t worst = 0, block = 0;
+    bool by_block = false;  // a block is further off than any pixel
+};
+struct Image {
+    size_t width, height;
+    std::vector<double> f, s, truth;  // values, their standard errors, the reference
+    const Options& o;
+    size_t n() const { return width * height; }
+
+    // Of the image divided by c against these values.
+    ImageResult against(const std::vector<double>& g, double c = 1) const {
+        struct Sum {
+            double off = 0, variance = 0;
+            double z() const {
+                return off == 0 ? 0 : variance > 0 ? off / std::sqrt(variance) : infinity;
+            }
+        };
+        Sum whole;
+        std::array<Sum, 16> blocks;
+        ImageResult r;
+        double most = 0;
+        for (size_t i = 0; i < n(); ++i) {
+            const double off = f[i] / c - g[i], error = s[i] / c;
+            Sum one{std::abs(off) <= 1e-6 * std::abs(g[i]) ? 0 : off, error * error};
+            for (Sum* sum :
+                 {&whole, &blocks[(i / width) * 4 / height * 4 + (i % width) * 4 / width]})
+                sum->off += one.off, sum->variance += one.variance;
+            if (const double z = std::abs(one.z()); z > most) most = z, r.worst = i;
+        }
+        double block = 0;
+        for (size_t b = 0; b < 16; ++b)
+            if (std::abs(blocks[b].z()) > block) block = std::abs(blocks[b].z()), r.block = b;
+        auto sidak = [](double p, double m) {
+            return -std::expm1(m * std::log1p(-std::min(p, 1 - 1e-16)));
+        };
+        const double of_pixel = o.n > 1 ? p_of_t(most, double(o.n) - 1) : p_of_z(most);
+        r.by_block = sidak(p_of_z(block), 16) < sidak(of_pixel, double(n())) || block > 2 * most;
+        r.mean = whole.off / double(n());
+        r.mean_p = p_of_z(whole.z());
+        r.z = most;
+        r.p = std::min(
+            1.0, 3 * std::min({r.mean_p, sidak(p_of_z(block), 16), sidak(of_pixel, double(n()))}));
+        return r;
+    }
+    std::string hint(const ImageResult& r) const;
+    std::string picture() const;
+
+    Verdict judge() const {
+        auto pixel = [&](size_t i) { return say("pixel (%zu, %zu)", i % width, i / width); };
+        for (size_t i = 0; i < n(); ++i) {
+            if (!std::isfinite(f[i])) return failure(pixel(i) + say(" is %g, not finite", f[i]));
+            if (!(s[i] >= 0 && std::isfinite(s[i])))
+                return failure(pixel(i) + say(" has the standard error %g", s[i]));
+        }
+        const ImageResult r = against(truth);
+        Verdict v;
+        v.p = r.p;
+        v.pass = r.p > o.alpha;
+        ++statistical_checks;
+        alpha_spent += o.alpha;
+        double sum = 0, variance = 0;
+        for (size_t i = 0; i < n(); ++i) sum += truth[i], variance += s[i] * s[i];
+        v.delta_min = smallest_shift(infinity, o.alpha / 3) * std::sqrt(variance) /
+                      (sum != 0 ? std::abs(sum) : 1);
+        v.text = say("%zux%zu pixels, mean off by %.3g (%s), largest %.2f sigma at ", width, height,
+                     r.mean, say_p(r.mean_p).c_str(), r.z) +
+                 pixel(r.worst) + ", " + say_p(r.p) +
+                 "; smallest bias of all seen with 99.9 % power: " + percent(v.delta_min);
+        if (!v.pass) v.text = hint(r) + "\n" + v.text + picture();
+        return v;
+    }
+};
+
+// An image with the standard errors of its values against a reference: all pixels together, 16
+// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
+// normal, means of 256 samples or more; options.n says how many, for Student's t.  Anything with []
+// will do for values, errors and reference, row by row from the top.
+template <class Values, class Errors, class Reference>
+Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
+                     const Reference& reference, const Options& o = {}) {
+    Image image{width, height, {}, {}, {}, o};
+    if (image.n() == 0) return named(failure("no pixel"), o);
+    for (size_t i = 0; i < image.n(); ++i) {
+        image.f.push_back(double(values[i]));
+        image.s.push_back(double(errors[i]));
+        image.truth.push_back(double(reference[i]));
+    }
+    return named(image.judge(), o);
+}
+
+// =================================================================================================
+// Part two: hints and pictures.  Nothing of it decides whether a check passes.
+
+// ---- Numbers and causes by name -----------------------------------------------------------------
+
+// The number in words, if it is one of those that are forgotten.
+inline std::string constant_named(double x, double tolerance) {
+    const struct {
+        double value;
+        const char* name;
+    } known[] = {{1 / pi, "1/pi"},  {pi, "pi"},
+                 {2 * pi, "2 pi"},  {1 / (2 * pi), "1/(2 pi)"},
+                 {4 * pi, "4 pi"},  {1 / (4 * pi), "1/(4 pi)"},
+                 {pi / 2, "pi/2"},  {2 / pi, "2/pi"},
+                 {pi * pi, "pi^2"}, {1 / (pi * pi), "1/pi^2"},
+                 {0.5, "1/2"},      {0.25, "1/4"},
+                 {2.0 / 3, "2/3"},  {1.5, "3/2"},
+                 {1.0 / 3, "1/3"},  {0.75, "3/4"},
+                 {4.0 / 3, "4/3"}};
+    const char* name = nullptr;
+    for (const auto& k : known)
+        if (std::abs(x / k.value - 1) <= tolerance) {
+            if (name) return "";  // two are as near
+            name = k.name;
+        }
+    return name ? name : "";
+}
+inline std::string times(double x, double tolerance) {
+    if (std::abs(x / 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (2, twice)", x);
+    if (std::abs(x * 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/2, half)", x);
+    if (std::abs(x / 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (4, four times)", x);
+    if (std::abs(x * 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/4)", x);
+    const std::string name = tolerance <= 0.005 ? constant_named(x, tolerance) : "";
+    return say("%.4g", x) + (name.empty() ? "" : " (" + name + ")");
+}
+
+// Why an estimate may be `ratio` times the truth, known within `tolerance`: the causes that explain
+// it, unless there are many.
+inline std::string cause_of(double ratio, double tolerance, const std::vector<Factor>& factors) {
+    if (!(tolerance < 0.05)) return "";
+    const double close = std::max(1e-9, std::min(0.02, tolerance));
+    std::vector<std::string> causes;
+    auto may_be = [&](double x, const std::string& cause) {
+        if (std::abs(ratio / x - 1) <= close) causes.push_back(cause);
+    };
+    for (const Factor& f : factors) {
+        const double x = f.at({});
+        if (std::abs(x - 1) <= 3 * close || !(std::abs(x) > 0)) continue;
+        may_be(1 / x, f.name + " forgotten, or divided by twice");
+        may_be(x, "a factor " + f.name + " too many, or 1/(" + f.name + ") forgotten");
+        if (0 < x && x < 1) {
+            may_be(x / (1 - x), "divided by 1 - " + f.name + " in place of " + f.name);
+            may_be((1 - x) / x, "multiplied by 1 - " + f.name + " in place of " + f.name);
+        }
+        may_be(1 / (x * x), "divided by " + f.name + " in place of multiplied");
+        may_be(x * x, "multiplied by " + f.name + " in place of divided");
+        if (x > 0) may_be(std::sqrt(x), "a root of " + f.name);
+        if (x > 0) may_be(1 / std::sqrt(x), "a root of " + f.name + " in place of it");
+    }
+    may_be(pi, "1/pi forgotten (an albedo is not a BRDF)");
+    may_be(1 / pi, "divided by pi twice, or pi forgotten");
+    may_be(2 * pi, "1/(2 pi) forgotten");
+    may_be(1 / (2 * pi), "2 pi forgotten, or divided by it twice");
+    may_be(4 * pi, "1/(4 pi) forgotten");
+    may_be(1 / (4 * pi), "4 pi forgotten, or divided by it twice");
+    may_be(-1, "the sign reversed");
+    // 2 and 1/2 have too many: counted twice, a choice not divided by, a half domain.
+    if (causes.empty() || causes.size() > 3) return "";
+    std::string text = "; looks like " + causes[0];
+    for (size_t i = 1; i < causes.size(); ++i) text += " or " + causes[i];
+    return text;
+}
+
 // ---- The mistake behind a density ---------------------------------------------------------------
 
 // A function of the place that pdfs or samplers are known to forget.
@@ -1604,9 +2552,16 @@ struct Mistake {
         if (std::abs(c - 1) <= tolerance)
             return total + share > 1 + close() &&
                            *std::max_element(ratios.begin(), ratios.end()) <= c + 3 * tolerance
-                       ? "the pdf is right where samples come, but also positive where none comes" +
+                       ? "the pdf is right for nearly all samples, but also positive where none "
+                         "comes" +
                              where_none() + ": it integrates to " + times(total, tolerance)
                        : "";
+        if (c > 1 && share > 0.02 && std::abs(1 / c + share - 1) < close() &&
+            std::abs(total - 1) < close())
+            return percent(share) + " of the samples come where the pdf is 0, and the others are " +
+                   times(1 / c, 0.003) +
+                   " times as dense as it says: looks like samples of a larger domain than the "
+                   "pdf's";
         const bool gap = c < 1 && std::abs(total + share - 1) < (1 - c) / 3;
         if (!gap && std::abs((total / c + share) - 1) <= close()) {
             std::string cause;
@@ -1691,10 +2646,10 @@ struct Mistake {
         auto rank = [&](const Fit& f) {
             return 2 * (std::abs(f.factor - 1) > tolerance) + (f.base->kind != Base<N>::named);
         };
-        std::stable_sort(fits.begin(), fits.end(),
-                         [&](const Fit& a, const Fit& b) { return rank(a) < rank(b); });
         if (fits.empty()) return "";
-        const Fit f = fits[0];
+        const Fit f = *std::min_element(fits.begin(), fits.end(), [&](const Fit& a, const Fit& b) {
+            return rank(a) < rank(b);
+        });
         std::string cause = cause_of_base(*f.base, f.power, normalised);
         // With a constant left over, a named factor is one of several that vary alike.
         if (f.base->kind == Base<N>::named && fits.size() > 1 && std::abs(f.factor - 1) > tolerance)
@@ -1776,940 +2731,159 @@ struct Mistake {
     }
 };
 
-template <size_t D, size_t N>
-Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
-    const double least = model.single ? 1e-3 : 1e-6, tolerance = least + o.tolerance;
-    const Sheets<N, D> s = sheets_of(model, random, least, o.tolerance, true);
-    Verdict v;
-    v.pass = s.all.size() >= 100 && !s.off;
-    v.p = v.pass ? 1 : 0;
-    v.delta_min = o.tolerance + s.blind;
-    v.text = say("pdf sqrt(det J^T J) = 1 within %.1e at %zu points", v.delta_min, s.all.size());
-    if (s.all.size() < 100)
-        v.text = "the map is smooth at " +
-                 say("%zu of 300 points only: is it one map, without choices?", s.all.size());
-    if (s.off) {
-        const double product = s.off->product();
-        v.text = say("pdf sqrt(det J^T J) = %.8g, expected 1 +- %.0e: ", product, tolerance);
-        Mistake<N> mistake{
-            model.pdf, false, model.single, model.unit, product, 0, bases_of<N>(o, false, {})};
-        const std::string why = mistake.name(s.all);
-        v.text += !why.empty()
-                      ? why
-                      : say("samples are %.4g times as dense as the pdf says", 1 / product);
-        v.text += ", at " + say_point(s.off->x) + ", u = " + say_point(s.u);
-        if (model.single && std::abs(product - 1) < 10 * s.blind) v.text += if_double;
-    }
-    return named(v, o);
+template <size_t N, class PdfOf>
+std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model, bool directions,
+                           double total, double share, const Triple& lobe, const Options& o) {
+    Mistake<N> mistake{model.pdf,
+                       directions,
+                       model.single,
+                       model.unit,
+                       total,
+                       share,
+                       bases_of<N>(o, directions, lobe)};
+    if (const double length = std::sqrt(dot(o.axis, o.axis)); length > 0)
+        for (size_t k = 0; k < 3; ++k) mistake.normal[k] = o.axis[k] / length;
+    return mistake.name(all);
 }
 
-// Samples x(u) of a smooth one-to-one map of the unit cube have the density pdf(x): pdf sqrt(det
-// J^T J) = 1, by differences, without noise.  Of directions, points of surfaces in space, anything.
-template <class Sample, class Pdf>
-Verdict expect_jacobian(Random& random, Sample sample, Pdf pdf, const Options& o = {}) {
-    return judge_jacobian(random, model(sample, pdf), o);
-}
-
-// ---- Densities ----------------------------------------------------------------------------------
-
-template <size_t D>
-struct Range {
-    Point<D> lower, upper;
-    Point<D> middle() const {
-        Point<D> c;
-        for (size_t k = 0; k < D; ++k) c[k] = (lower[k] + upper[k]) / 2;
-        return c;
-    }
-};
-
-// 32 cells that a few points fill alike: halved at medians, along each dimension in turn.
-template <size_t D>
-struct Cells {
-    static constexpr size_t levels = 5, count = 32;
-    std::array<double, count> split{};  // of node k into 2k and 2k + 1
-
-    explicit Cells(std::vector<Point<D>> points) { halve(1, 0, points, 0, points.size()); }
-    void halve(size_t node, size_t level, std::vector<Point<D>>& points, size_t begin, size_t end) {
-        if (level == levels) return;
-        const size_t k = level % D, middle = (begin + end) / 2;
-        std::nth_element(points.begin() + long(begin), points.begin() + long(middle),
-                         points.begin() + long(end),
-                         [k](const auto& a, const auto& b) { return a[k] < b[k]; });
-        split[node] = points[middle][k];
-        halve(2 * node, level + 1, points, begin, middle);
-        halve(2 * node + 1, level + 1, points, middle, end);
-    }
-    size_t of(const Point<D>& c) const {
-        size_t node = 1;
-        for (size_t level = 0; level < levels; ++level)
-            node = 2 * node + (c[level % D] >= split[node]);
-        return node - count;
-    }
-    Range<D> range(size_t cell, Range<D> all) const {
-        for (size_t level = 0; level < levels; ++level) {
-            const size_t node = (cell + count) >> (levels - level);
-            const bool above = (cell + count) >> (levels - level - 1) & 1;
-            (above ? all.lower : all.upper)[level % D] = split[node];
-        }
-        return all;
-    }
-};
-
-// Integral of f over a range: by nested rules while `enough` allows.
-template <size_t K = 0, size_t D, class F, class Enough>
-double nested(const F& f, Point<D>& c, const Range<D>& range, const Agreement& g,
-              const Enough& enough) {
-    if constexpr (K == D)
-        return f(c);
-    else {
-        auto along = [&](double x) {
-            c[K] = x;
-            Agreement inner = g;
-            inner.tolerance *= 0.1 / (range.upper[K] - range.lower[K]);
-            inner.halves = false;
-            return oracle::nested<K + 1>(f, c, range, inner, enough);
-        };
-        Agreement here = g;
-        if (K == 0 && D > 1) here.noise *= 2;
-        return oracle::integral(along, range.lower[K], range.upper[K], here, enough);
-    }
-}
-
-// The part of a density in each cell, and the variance of what is not known exactly.
-struct Parts {
-    std::array<double, 32> value{}, variance{};
-    double total = 0, error = 0;  // standard error of the total
-};
-
-// One check of a sampler against a density; its steps in the order of their costs.
+// Of samples that all come where the pdf is 0.
 template <size_t M, size_t N, class Domain>
-struct DensityCheck {
-    static constexpr size_t D = Domain::dimensions;
-    static constexpr bool directions = std::is_same_v<Domain, Sphere>;
-
-    Random& random;
-    const Model<M, N>& model;
-    Domain domain;
-    const Options& o;
-
-    std::string wrong = {};  // the first thing that no right sampler or pdf does
-    double samples = 0, none = 0;
-    std::string first_none = {};
-    std::vector<Point<D>> pilot = {};
-    std::vector<Point<D>> places = {};  // theirs, and mirror images where the pdf is positive, too:
-    std::vector<double> per_dc = {}, heights = {};  // the pdf there per dc, and by itself
-    double extent = 0;                              // median of the pilot's squared distances
-    double arriving = 1;  // part of the samples that does not fail, nearly
-    double rounding = 0;  // relative, of the pdf in the host's type
-    double jumps = 0;     // part of the samples that an ulp or two move across one
-    std::function<double(const Point<N>&)> weight = {};  // what the pdf may lack
-    double most_negative = 0;
-    std::string where_negative = {};
-
-    double density_at(const Point<D>& c) {
-        const Point<N> x = domain.at(c);
-        const double p = model.pdf(x);
-        if (wrong.empty() && !std::isfinite(p))
-            wrong = say("the pdf is %g, not finite, at ", p) + at(x);
-        if (p < most_negative) most_negative = p, where_negative = at(x);
-        const double measure = domain.weight(c) * (weight ? weight(x) : 1);
-        return measure > 0 ? p * measure : 0;
-    }
-    static std::string at(const Point<N>& x) {
-        return std::string(Domain::place) + " " + say_point(x);
-    }
-
-    // One sample, in the domain's coordinates; nothing if it failed.
-    std::optional<Point<D>> one() {
-        const auto u = model.draw(random);
-        const auto x = model.sample(u);
-        ++samples;
-        auto failed = [&](const std::string& how) {
-            if (none++ == 0) first_none = how + " at u = " + say_point(u);
-            return std::nullopt;
-        };
-        if (!x) return failed("nothing");
-        const Point<N> w = *x;
-        const auto c = domain.coordinates(w);
-        if (const double p = model.pdf(w); !(p > 0 && std::isfinite(p))) {
-            bool finite = true;
-            for (double k : w) finite = finite && std::isfinite(k);
-            if (!finite)
-                return broken("sample " + say_point(w) + " is not finite, u = " + say_point(u));
-            if (p != 0)
-                return broken(say("the pdf is %s, %.4g, at the sample ",
-                                  p < 0 ? "negative" : "not finite", p) +
-                              say_point(w));
-            return failed("pdf 0 at " + at(w));
-        }
-        if constexpr (requires { domain.width; }) return c;  // all of space
-        const Point<N> back = domain.at(c);
-        double off = 0, size = 1e-300;
-        for (size_t k = 0; k < N; ++k) off += std::pow(back[k] - w[k], 2), size += w[k] * w[k];
-        const double ulps = 64 * model.unit * std::sqrt(size);
-        bool inside = off <= (directions ? 1e-6 : 1e-6 * extent + ulps * ulps);
-        for (size_t k = 0; k < D; ++k) {
-            const double slack =
-                1e-5 * (domain.upper[k] - domain.lower[k]) + (directions ? 0 : ulps);
-            inside = inside && c[k] >= domain.lower[k] - slack && c[k] <= domain.upper[k] + slack;
-        }
-        if (!inside)
-            return broken(directions ? say("a sample is no direction: its length is %.6g, ",
-                                           std::sqrt(size)) +
-                                           say_point(w)
-                                     : "a sample lies outside of the domain, " + say_point(w));
-        return c;
-    }
-    std::nullopt_t broken(const std::string& how) {
-        if (wrong.empty()) wrong = how;
-        return std::nullopt;
-    }
-
-    void fly_pilot() {
-        std::vector<Point<N>> points;
-        int drawn = 0;
-        for (; drawn < 400000 && points.size() < 4096; ++drawn) {
-            const auto x = model.sample(model.draw(random));
-            if (x && model.pdf(*x) > 0) points.push_back(*x);
-        }
-        if (points.size() < 1024) return;
-        arriving = double(points.size()) / drawn;
-        domain.fit(points, o.axis);
-        std::vector<double> squares(points.size());
-        for (size_t i = 0; i < points.size(); ++i)
-            for (size_t k = 0; k < N; ++k) squares[i] += std::pow(points[i][k] - points[0][k], 2);
-        extent = median(squares);
-        const int jitters = model.single ? 8 : 1;
-        for (size_t i = 0; i < points.size(); ++i) {
-            const auto c = domain.coordinates(points[i]);
-            pilot.push_back(c);
-            const double p = model.pdf(points[i]);
-            heights.push_back(p);
-            places.push_back(c);
-            per_dc.push_back(p * domain.weight(c));
-            if constexpr (directions)
-                for (size_t k = 0; i % 8 == 0 && k < 3; ++k) {
-                    Triple image = points[i];
-                    image[k] = -image[k];
-                    const double there = model.pdf(image);
-                    if (!(there > 0)) continue;
-                    places.push_back(domain.coordinates(image));
-                    per_dc.push_back(there * domain.weight(places.back()));
-                }
-            // What an ulp or two of the coordinates changes; jumps are met by few.
-            double length = 0;
-            for (double k : points[i]) length = std::max(length, std::abs(k));
-            for (int j = 0; j < jitters; ++j) {
-                Point<N> near = points[i];
-                for (double& k : near) k += (random() - 0.5) * 8 * length * model.unit;
-                const double change = std::abs(model.pdf(near) / p - 1);
-                (change < 0.5 ? rounding : jumps) += std::min(1.0, change);
-            }
-        }
-        rounding /= double(points.size()) * jitters;
-        jumps /= double(points.size()) * jitters;
-    }
-
-    double allowed() const {
-        return std::max(1e-6, 512 * model.pdf_unit) + 2 * rounding + 8 * jumps + o.tolerance;
-    }
-
-    // Part of a cell's samples that four units of rounding may take to another cell: of each
-    // coordinate, and in float of the cosine to the lobe's axis, from which samplers have the sine.
-    // The root of its mean square over the samples.
-    double moved(const Cells<D>& cells) {
-        std::array<double, 32> all{}, others{};
-        for (int i = 0; i < 4096; ++i) {  // others than the pilot's, at which cells end
-            const auto x = model.sample(model.draw(random));
-            if (!x || !(model.pdf(*x) > 0)) continue;
-            const size_t cell = cells.of(domain.coordinates(*x));
-            double length = 0;
-            for (double k : *x) length = std::max(length, std::abs(k));
-            for (int jitter = 0; jitter < 8; ++jitter) {
-                Point<N> near = *x;
-                for (double& k : near) k += (random() - 0.5) * 8 * length * model.unit;
-                auto there = domain.coordinates(near);
-                if (directions && model.single) {
-                    const double s = std::sin(there[0] / 2),
-                                 versine = 2 * s * s + (random() - 0.5) * 8 * model.unit;
-                    there[0] = 2 * std::asin(std::sqrt(std::min(1.0, std::abs(versine) / 2)));
-                }
-                ++all[cell];
-                others[cell] += cells.of(there) != cell;
-            }
-        }
-        double sum = 0, n = 0;
-        for (size_t i = 0; i < 32; ++i)
-            if (all[i] > 0) sum += others[i] * others[i] / all[i], n += all[i];
-        return n > 0 ? std::sqrt(sum / n) : 0;
-    }
-
-    // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
-    // rule: none longer than 0.3 of the domain, none of which points fill a corner alone, none in
-    // which the density differs much.
-    void divide(const Range<D>& range, const std::vector<size_t>& inside,
-                std::vector<Range<D>>& parts, int depth) const {
-        auto split = [&](size_t k, double border) {
-            Range<D> low = range, high = range;
-            low.upper[k] = high.lower[k] = border;
-            std::vector<size_t> below, above;
-            for (size_t i : inside) (places[i][k] < border ? below : above).push_back(i);
-            divide(low, below, parts, depth - 1);
-            divide(high, above, parts, depth - 1);
-        };
-        if (depth == 0) return parts.push_back(range);
-        size_t widest = 0;
-        double share = 0;
-        for (size_t k = 0; k < D; ++k)
-            if (const double s =
-                    (range.upper[k] - range.lower[k]) / (domain.upper[k] - domain.lower[k]);
-                s > share)
-                share = s, widest = k;
-        if (share > 0.3) return split(widest, range.middle()[widest]);
-        if (inside.size() < 4) return parts.push_back(range);
-        double least = infinity, most = 0;
-        for (size_t i : inside) {
-            least = std::min(least, per_dc[i]);
-            most = std::max(most, per_dc[i]);
-        }
-        for (size_t k = 0; k < D; ++k) {
-            double first = infinity, last = -infinity;
-            for (size_t i : inside) {
-                first = std::min(first, places[i][k]);
-                last = std::max(last, places[i][k]);
-            }
-            const double spread = last - first;
-            if (!(spread > 0)) continue;
-            if (range.upper[k] - last > 4 * spread) return split(k, last + 2 * spread);
-            if (first - range.lower[k] > 4 * spread) return split(k, first - 2 * spread);
-        }
-        if (most <= 16 * least) return parts.push_back(range);
-        std::vector<double> x;
-        for (size_t i : inside) x.push_back(places[i][widest]);
-        const double border = median(x);
-        if (border > range.lower[widest] && border < range.upper[widest])
-            return split(widest, border);
-        parts.push_back(range);
-    }
-
-    Parts integrate(const Cells<D>& cells) {
-        std::array<std::vector<size_t>, 32> inside;
-        for (size_t i = 0; i < places.size(); ++i) inside[cells.of(places[i])].push_back(i);
-        std::vector<Range<D>> ranges;
-        std::vector<size_t> of_cell;
-        for (size_t cell = 0; cell < 32; ++cell) {
-            divide(cells.range(cell, {domain.lower, domain.upper}), inside[cell], ranges, 16);
-            of_cell.resize(ranges.size(), cell);
-        }
-        size_t evaluations = 0;
-        auto f = [&](const Point<D>& c) {
-            ++evaluations;
-            return density_at(c);
-        };
-        const size_t budget = weight ? 200'000 : 4'000'000;  // a guess need not be exact
-        auto enough = [&] { return evaluations > budget; };
-        Parts parts;
-        double left = 0;
-        if constexpr (D <= 2) {
-            const double close = weight ? 3e-3 : allowed();
-            // No finer than f can tell where it jumps.
-            const Agreement g{close / 300, close / 8, 1 - std::ilogb(close / 8), true, &left};
-            for (size_t i = 0; i < ranges.size() && !enough(); ++i) {
-                Point<D> c{};
-                parts.value[of_cell[i]] += oracle::nested(f, c, ranges[i], g, enough);
-            }
-        }
-        // Where borders cut across the coordinates rules may not agree: then a total that is nearly
-        // right is known no better than points tell.
-        double sum = 0;
-        for (double value : parts.value) sum += value;
-        const bool doubtful = model.single && D == 2 && left > 0 && std::abs(sum - 1) < 0.01 &&
-                              std::abs(sum - 1) > allowed() && arriving > 0.9999;
-        if (D > 2 || enough() || doubtful) parts = scatter(f, ranges, of_cell);
-        for (size_t cell = 0; cell < 32; ++cell) {
-            parts.total += parts.value[cell];
-            parts.error += parts.variance[cell];
-        }
-        parts.error = std::sqrt(parts.error) + (D == 1 ? left : 0);
-        return parts;
-    }
-
-    // More dimensions or jumps than rules can follow: 16 shifts of a lattice (Roberts's generalised
-    // golden ratio) in each range.
-    template <class F>
-    Parts scatter(const F& f, const std::vector<Range<D>>& ranges,
-                  const std::vector<size_t>& of_cell) {
-        double golden = 1.5;
-        for (int i = 0; i < 60; ++i) golden = std::pow(1 + golden, 1 / (double(D) + 1));
-        Point<D> step;
-        for (size_t k = 0; k < D; ++k) step[k] = std::pow(golden, -double(k + 1));
-        const size_t points =
-            std::max<size_t>(64, (weight ? 300'000 : 3'000'000) / 16 / ranges.size());
-        Parts parts;
-        for (size_t i = 0; i < ranges.size(); ++i) {
-            const Range<D>& r = ranges[i];
-            double volume = 1;
-            for (size_t k = 0; k < D; ++k) volume *= r.upper[k] - r.lower[k];
-            Draws shifts;
-            for (int shift = 0; shift < 16; ++shift) {
-                Point<D> x;
-                for (double& s : x) s = random();
-                double sum = 0;
-                for (size_t j = 0; j < points; ++j) {
-                    Point<D> c;
-                    for (size_t k = 0; k < D; ++k) {
-                        x[k] += step[k];
-                        x[k] -= std::floor(x[k]);
-                        c[k] = r.lower[k] + x[k] * (r.upper[k] - r.lower[k]);
-                    }
-                    sum += f(c);
-                }
-                shifts.add(sum / double(points) * volume);
-            }
-            parts.value[of_cell[i]] += shifts.mean();
-            parts.variance[of_cell[i]] += shifts.variance() / 16;
-        }
-        return parts;
-    }
-
-    Verdict run() {
-        fly_pilot();
-        if (pilot.empty()) {
-            for (int i = 0; i < 100; ++i) (void)one();
-            if (!wrong.empty()) return failure(wrong);
-            return failure("of " + say("%.0f", samples) +
-                           " samples hardly any comes where the pdf is positive: " + first_none +
-                           symmetry());
-        }
-        for (size_t i = 0; i < 4096 && wrong.empty(); ++i) (void)one();
-        if (!wrong.empty()) return failure(wrong);
-        samples = none = 0;
-        const Cells<D> cells(pilot);
-        const Parts parts = integrate(cells);
-        if (!wrong.empty()) return failure(wrong);
-        // Rounding may make a 0 negative.
-        if (most_negative < -1e-12 * median(heights))
-            return failure(say("the pdf is negative, %.4g, at ", most_negative) + where_negative);
-
-        const double close = allowed() + 6 * parts.error;
-        Sheets<N, M> sheets;
-        if constexpr (M == D)
-            sheets = sheets_of(model, random,
-                               std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)),
-                               o.tolerance, false);
-        const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
-        const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
-        const bool off_already = sheets.off || parts.total > 1 + close;
-        Histogram<D> histogram(pilot, {domain.lower, domain.upper});
-        std::array<uint64_t, 32> counts{};
-        for (uint64_t i = 0; i < (off_already ? std::min<uint64_t>(n, 100000) : n); ++i)
-            if (const auto c = one()) {
-                ++counts[cells.of(*c)];
-                histogram.add(*c);
-            }
-        if (!wrong.empty()) return failure(wrong);
-
-        const std::string integral_is =
-            "the pdf integrates to " + say("%.8g over the %s", parts.total, Domain::measure);
-        // What fails is missing from the integral, as closely as it is known.
-        const double fewest = samples * (1 - parts.total - close),
-                     most = samples * (1 - parts.total + close);
-        const bool balanced =
-            none == 0 ? std::abs(parts.total - 1) <= close ||
-                            (parts.total < 1 && fewest < -std::log(o.alpha / 4))
-                      : p_at_least(none, samples, most / samples) > o.alpha / 4 &&
-                            1 - p_at_least(none + 1, samples, fewest / samples) > o.alpha / 4;
-        std::vector<double> expected, variances;
-        for (size_t i = 0; i < 32; ++i) {
-            expected.push_back(parts.value[i] / parts.total);
-            variances.push_back(parts.variance[i] / (parts.total * parts.total));
-        }
-        Options plain = o;
-        plain.name = "";
-        plain.tolerance += moved(cells);
-        if (none > 0) plain.alpha = o.alpha / 2;
-        Verdict v = expect_counts(counts, expected, plain, variances);
-        if (none > 0) alpha_spent += o.alpha / 2;
-        const bool counted = v.pass;
-        v.text += "; " + integral_is;
-        if (parts.error > 0) v.text += say(" +- %.1e", parts.error);
-        if (none > 0) v.text += "; " + percent(none / samples) + " of the samples fail";
-        if (sheets.blind > 0) v.text += say("; Jacobian within %.1e", sheets.blind);
-        v.delta_min = std::max(v.delta_min, close);  // where rounding rules
-        v.pass = counted && balanced && !sheets.off;
-        if (v.pass) return v;
-        if (!balanced || sheets.off) v.p = 0;
-        v.text = finding(parts, close, counted, balanced, sheets, cells, counts, expected) + "\n" +
-                 v.text +
-                 (D > 2 ? ""
-                        : histogram.drawing(*this, parts.total, worst_cell(counts, expected), cells)
-                              .written(o.name));
-        return v;
-    }
-
-    static size_t worst_cell(const std::array<uint64_t, 32>& counts,
-                             const std::vector<double>& expected) {
-        double n = 0, most = -1;
-        for (uint64_t c : counts) n += double(c);
-        size_t worst = 0;
-        for (size_t i = 0; i < 32; ++i)
-            if (const double off =
-                    std::abs(double(counts[i]) - n * expected[i]) / std::sqrt(n * expected[i] + 1);
-                off > most)
-                most = off, worst = i;
-        return worst;
-    }
-
-    // Of samples that all come where the pdf is 0.
-    std::string symmetry() {
-        if constexpr (M != D)
-            return "";
-        else {
-            const auto sheets = sheets_of(model, random, 1, 0, false);
-            const std::string why = explained(sheets.all, 1);
-            return why.empty() ? "" : "; " + why;
-        }
-    }
-    std::string explained(const std::vector<Local<N>>& all, double total) {
-        Triple lobe{0, 0, 1};
-        if constexpr (directions) lobe = domain.z;
-        Mistake<N> mistake{model.pdf,
-                           directions,
-                           model.single,
-                           model.unit,
-                           total,
-                           none / std::max(1.0, samples),
-                           bases_of<N>(o, directions, lobe)};
-        if (const double length = std::sqrt(dot(o.axis, o.axis)); length > 0)
-            for (size_t k = 0; k < 3; ++k) mistake.normal[k] = o.axis[k] / length;
-        return mistake.name(all);
-    }
-
-    // The first line of a refusal.
-    std::string finding(const Parts& parts, double close, bool counted, bool balanced,
-                        const auto& sheets, const Cells<D>& cells,
-                        const std::array<uint64_t, 32>& counts,
-                        const std::vector<double>& expected) {
-        const double total = parts.total, share = none / samples;
-        std::string rounded;
-        if (model.single && counted && std::abs(total - 1 + share) < 10 * close &&
-            (!sheets.off ||
-             std::abs(sheets.off->product() - 1) < 3 * (sheets.off->error + 4 * sheets.off->noise)))
-            rounded = if_double;
-        if (M == D)
-            if (const std::string why = explained(sheets.all, total); !why.empty())
-                return why + rounded;
-        const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
-        if (!balanced && none > 0) {
-            const std::string fails = percent(share) + " of the samples fail (" + first_none + ")";
-            if (std::abs(total - 1) <= close)
-                return fails + ", though the pdf integrates to 1, as if none did";
-            return fails + ", but " + integral_is +
-                   say(": together %.6g, expected 1", total + share) + rounded;
-        }
-        if (!balanced) return integral_is + say(", expected 1 +- %.0e", close) + rounded;
-        if (sheets.off && M == D)
-            return "samples are " + say("%.4g", 1 / sheets.off->product()) +
-                   " times as dense as the pdf says, at " + at(sheets.off->x) +
-                   ", u = " + say_point(sheets.u) + rounded;
-        if (const std::string why = counted || samples < 50000 ? "" : law_of_cells(cells, counts);
-            !why.empty())
-            return why + rounded;
-        const size_t worst = worst_cell(counts, expected);
-        const double mean = expected[worst] * (samples - none);
-        // In the middle of those that the pilot found there: the range's may be where nothing is.
-        std::vector<Point<D>> there;
-        for (const Point<D>& c : pilot)
-            if (cells.of(c) == worst) there.push_back(c);
-        if (there.empty())
-            there.push_back(cells.range(worst, {domain.lower, domain.upper}).middle());
-        const auto where = domain.at(there[there.size() / 2]);
-        if (!(mean > 0)) return "samples come where the pdf is 0, near " + at(where);
-        return "samples are " + say("%.4g", double(counts[worst]) / mean) +
-               " times as dense as the pdf says, around " + at(where);
-    }
-
-    // Whether counts follow the pdf times a power of a base: for samplers whose map tells nothing.
-    std::string law_of_cells(const Cells<D>& cells, const std::array<uint64_t, 32>& counts) {
-        const Options plain{.alpha = 1e-3};
-        const auto [checks, spent] =
-            std::pair{statistical_checks, alpha_spent};  // guesses are none
-        Triple lobe{0, 0, 1};
-        if constexpr (directions) lobe = domain.z;
-        for (const double k : {1.0, -1.0, 2.0, -2.0})
-            for (const Base<N>& b : bases_of<N>(o, directions, lobe)) {
-                weight = [&](const Point<N>& x) { return std::pow(b.at(x), k); };
-                const Parts parts = integrate(cells);
-                weight = {};
-                if (!(parts.total > 0 && std::isfinite(parts.total))) continue;
-                std::vector<double> p, variances;
-                for (size_t i = 0; i < 32; ++i) {
-                    p.push_back(parts.value[i] / parts.total);
-                    variances.push_back(parts.variance[i] / (parts.total * parts.total));
-                }
-                const bool fits = expect_counts(counts, p, plain, variances).pass;
-                statistical_checks = checks, alpha_spent = spent;
-                if (fits) return "samples have the density of the pdf times " + power(b.name, k);
-            }
+std::string DensityCheck<M, N, Domain>::symmetry() {
+    if constexpr (M != D)
         return "";
-    }
-
-    // Maps of the samples, of the pdf, and of their difference.
-    template <size_t Dims>
-    struct Histogram {
-        static constexpr size_t across = 48, down = Dims == 1 ? 1 : 32;
-        Range<Dims> shown;
-        std::vector<double> bins = std::vector<double>(across * down);
-        double total = 0;
-
-        Histogram(const std::vector<Point<Dims>>& points, Range<Dims> all) : shown(all) {
-            for (size_t k = 0; k < Dims; ++k) {
-                shown.lower[k] = infinity, shown.upper[k] = -infinity;
-                for (const auto& c : points)
-                    shown.lower[k] = std::min(shown.lower[k], c[k]),
-                    shown.upper[k] = std::max(shown.upper[k], c[k]);
-                const double margin = 0.05 * (shown.upper[k] - shown.lower[k]) + 1e-12;
-                shown.lower[k] = std::max(all.lower[k], shown.lower[k] - margin);
-                shown.upper[k] = std::min(all.upper[k], shown.upper[k] + margin);
-            }
-        }
-        // phi (or the first coordinate) runs to the right, theta downwards.
-        static constexpr size_t right = Dims == 1 ? 0 : 1;
-        void add(const Point<Dims>& c) {
-            ++total;
-            const double x =
-                (c[right] - shown.lower[right]) / (shown.upper[right] - shown.lower[right]);
-            const double y =
-                Dims == 1 ? 0 : (c[0] - shown.lower[0]) / (shown.upper[0] - shown.lower[0]);
-            if (x >= 0 && x < 1 && y >= 0 && y < 1)
-                ++bins[size_t(y * double(down)) * across + size_t(x * double(across))];
-        }
-        Drawing drawing(DensityCheck& check, double integral_of_pdf, size_t worst,
-                        const Cells<Dims>& cells) const {
-            Drawing d{Dims == 1 ? 620.0 : 1100.0, 330};
-            std::vector<double> claimed;
-            double area = 1, most = 1;
-            for (size_t k = 0; k < Dims; ++k)
-                area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
-            for (size_t i = 0; i < bins.size(); ++i) {
-                double sum = 0;
-                for (int s = 0; s < 9; ++s) {
-                    Point<Dims> c;
-                    for (size_t k = 0; k < Dims; ++k) {
-                        const size_t index = k == right ? i % across : i / across,
-                                     bins_here = k == right ? across : down;
-                        const double sub = ((k == right ? s % 3 : s / 3) + 0.5) / 3;
-                        c[k] = shown.lower[k] + (double(index) + sub) / double(bins_here) *
-                                                    (shown.upper[k] - shown.lower[k]);
-                        c[k] = std::clamp(c[k], check.domain.lower[k], check.domain.upper[k]);
-                    }
-                    sum += check.density_at(c) / 9;
-                }
-                claimed.push_back(sum * area * total / integral_of_pdf);
-                most = std::max({most, bins[i], claimed[i]});
-            }
-            const Range<Dims> cell = cells.range(worst, {check.domain.lower, check.domain.upper});
-            const double size = 350.0 / across;
-            auto place = [&](double c, size_t k, double length) {
-                return length * std::clamp((c - shown.lower[k]) / (shown.upper[k] - shown.lower[k]),
-                                           0.0, 1.0);
-            };
-            if (Dims == 1) {
-                std::vector<std::pair<double, double>> line;
-                for (size_t i = 0; i < across; ++i) {
-                    d.rectangle(40 + 11.5 * double(i), 290 - 240 * bins[i] / most, 10,
-                                240 * bins[i] / most, "fill:rgb(170,170,170)");
-                    line.emplace_back(45 + 11.5 * double(i), 290 - 240 * claimed[i] / most);
-                }
-                d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
-                d.text(40, 20, "samples (grey) and pdf (red); worst cell below");
-                d.rectangle(40 + place(cell.lower[0], 0, 552), 300,
-                            place(cell.upper[0], 0, 552) - place(cell.lower[0], 0, 552), 6,
-                            "fill:black");
-                d.text(40, 322, say_point(check.domain.at(shown.lower)));
-                d.text(560, 322, say_point(check.domain.at(shown.upper)));
-                return d;
-            }
-            const char* titles[] = {"samples", "pdf", "samples - pdf: red too many, blue too few"};
-            for (size_t map_of = 0; map_of < 3; ++map_of) {
-                const double left = 10 + 362 * double(map_of);
-                d.text(left, 20, titles[map_of]);
-                for (size_t i = 0; i < bins.size(); ++i) {
-                    const double off =
-                        (bins[i] - claimed[i]) / (std::sqrt(claimed[i] + bins[i] + 1) * 6);
-                    d.rectangle(left + size * double(i % across), 30 + 8 * double(i / across),
-                                size + 0.1, 8.1,
-                                map_of == 2
-                                    ? blue_white_red(off)
-                                    : grey(std::sqrt((map_of == 0 ? bins : claimed)[i] / most)));
-                }
-                d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
-                const double x0 = place(cell.lower[right], right, 350),
-                             y0 = place(cell.lower[0], 0, 256);
-                d.rectangle(left + x0, 30 + y0, place(cell.upper[right], right, 350) - x0,
-                            place(cell.upper[0], 0, 256) - y0,
-                            "fill:none;stroke:rgb(0,140,0);stroke-width:3");
-            }
-            const std::string from = say_point(check.domain.at(shown.lower)),
-                              to = say_point(check.domain.at(shown.upper));
-            d.text(10, 304,
-                   (directions
-                        ? say("to the right phi from %.4g to %.4g, down theta from %.4g to %.4g",
-                              shown.lower[1], shown.upper[1], shown.lower[0], shown.upper[0])
-                        : "the second coordinate to the right, the first down, from " + from +
-                              " to " + to) +
-                       "; worst cell in green");
-            return d;
-        }
-    };
-};
-
-// Samples of sample(u, v, ...) have the density pdf(sample), which integrates to 1 over the domain
-// less the part of samples that fail (nothing returned, or pdf 0): by quadrature; by the Jacobian,
-// where the map is smooth, as far as samples may be sparser than the pdf of one sheet but not
-// denser; by chi-squared.
-template <size_t M, size_t N, class Domain>
-Verdict judge_density(Random& random, const Model<M, N>& model, const Domain& domain,
-                      const Options& o) {
-    static_assert(N == std::tuple_size_v<decltype(domain.at({}))>,
-                  "the domain has other coordinates than the samples");
-    DensityCheck<M, N, Domain> check{random, model, domain, o};
-    const Verdict v = check.run();
-    return named(v, o);
-}
-template <class Sample, class Pdf, class Domain>
-requires requires { Domain::dimensions; }
-Verdict expect_density(Random& random, Sample sample, Pdf pdf, const Domain& domain,
-                       const Options& o = {}) {
-    return judge_density(random, model(sample, pdf), domain, o);
-}
-template <class Sample, class Pdf>
-Verdict expect_density(Random& random, Sample sample, Pdf pdf, const Options& o = {}) {
-    const auto erased = model(sample, pdf);
-    return [&]<size_t M, size_t N>(const Model<M, N>& m) {
-        return judge_density(random, m, usual_domain<N>(), o);
-    }(erased);
-}
-
-// ---- BSDFs --------------------------------------------------------------------------------------
-
-template <class C>
-double brightness(const C& c) {
-    if constexpr (std::is_arithmetic_v<C>)
-        return double(c);
-    else if constexpr (requires {
-                           c.r;
-                           c.g;
-                           c.b;
-                       })
-        return (double(c.r) + double(c.g) + double(c.b)) / 3;
     else {
-        const auto rgb = oracle::point(c);
-        double sum = 0;
-        for (double x : rgb) sum += x / double(rgb.size());
-        return sum;
+        const auto sheets = sheets_of(model, random, 1, 0, false);
+        const std::string why = explained(sheets.all, 1);
+        return why.empty() ? "" : "; " + why;
     }
 }
-
-// The type of a function's first argument.
-template <class R, class C, class A, class... More>
-std::decay_t<A> first_argument(R (C::*)(A, More...) const);
-template <class R, class C, class A, class... More>
-std::decay_t<A> first_argument(R (C::*)(A, More...));
-template <class R, class A, class... More>
-std::decay_t<A> first_argument(R (*)(A, More...));
-template <class F>
-auto first_argument_of() {
-    if constexpr (requires { &F::operator(); })
-        return decltype(first_argument(&F::operator())){};
-    else
-        return decltype(first_argument(std::declval<F>())){};
+template <size_t M, size_t N, class Domain>
+std::string DensityCheck<M, N, Domain>::explained(const std::vector<Local<N>>& all, double total) {
+    Triple lobe{0, 0, 1};
+    if constexpr (directions) lobe = domain.z;
+    return mistake_behind(all, model, directions, total, none / std::max(1.0, samples) + o.discrete,
+                          lobe, o);
 }
 
-// A reflecting BSDF in the frame whose z is the normal, for three directions wo: samples
-// sample(wo, u, v) have the density pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not
-// negative and reciprocal; no more is reflected than comes.
-template <class Sample, class Pdf, class Eval>
-Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Options& o = {}) {
-    using V = decltype(first_argument_of<Pdf>());  // the host's direction
-    using T = Coordinate<V>;
-    constexpr bool single = std::is_same_v<T, float>;
-    auto unit_at = [](double z, double phi) {
-        const double s = std::sqrt(1 - z * z);
-        return Triple{s * std::cos(phi), s * std::sin(phi), z};
-    };
-    Verdict all{true, 1, 0, ""};
-    for (const auto& [z, phi] : {std::pair{0.95, 1.0}, std::pair{0.6, 3.0}, std::pair{0.2, 5.0}}) {
-        const Triple out = unit_at(z, phi);
-        const V wo = of_host<V>(out);
-        auto half = [out](const Triple& w) {
-            Triple h;
-            for (size_t k = 0; k < 3; ++k) h[k] = w[k] + out[k];
-            const double length = std::sqrt(dot(h, h));
-            for (double& x : h) x /= length;
-            return h;
-        };
-        Options here = o;
-        here.alpha = o.alpha / 4;
-        here.name += (o.name.empty() ? "" : " ") + ("wo = " + say_point(out));
-        here.factors.emplace_back("4 wo.h", [=](const Triple& w) { return 4 * dot(out, half(w)); });
-        here.factors.emplace_back("n.h", [=](const Triple& w) { return half(w)[2]; });
-        const Verdict v = expect_density(
-            random, [&](T a, T b) { return sample(wo, a, b); },
-            [&](const V& w) { return pdf(wo, w); }, here);
-        if (!v.pass) return v;
-        all.p = std::min(all.p, v.p);
-        all.delta_min = std::max(all.delta_min, v.delta_min);
+// The pdf beside the density of the samples, where their map tells it.
+template <size_t N>
+std::string compared(const std::vector<Local<N>>& all) {
+    std::vector<double> ratios;
+    for (const Local<N>& l : all)
+        if (l.p > 0 && l.q < infinity && l.error < 0.05) ratios.push_back(l.product());
+    if (ratios.size() < 50) return "";
+    const double low = median(ratios, 0.05), high = median(ratios, 0.95);
+    if (high - low < 0.02)
+        return "the pdf is " + times(median(ratios), 0.01) +
+               " times the density of nearly all samples, but ";
+    return say("the pdf is %.3g to %.3g times the density of the samples (median %.3g), and ", low,
+               high, median(ratios));
+}
 
-        Draws albedo;
-        for (int i = 0; i < 100000; ++i) {
-            const T a = T(single ? random.single() : random()),
-                    b = T(single ? random.single() : random());
-            const auto w = sample(wo, a, b);
-            double weight = 0;
-            auto weigh = [&](const V& wi) {
-                const double p = double(pdf(wo, wi));
-                if (p > 0) weight = brightness(eval(wo, wi)) * std::abs(oracle::point(wi)[2]) / p;
-            };
-            if constexpr (requires {
-                              bool(w);
-                              *w;
-                          }) {
-                if (w) weigh(*w);
-            } else {
-                weigh(w);
-            }
-            if (!std::isfinite(weight))
-                return named(failure("eval cos / pdf is not finite for wo = " + say_point(out)), o);
-            albedo.add(weight);
+// The ratio of two pdfs at these points: a constant, or one and a power of a base.
+template <size_t M, size_t N, class Domain>
+std::string DensityCheck<M, N, Domain>::law_of_pdfs(const std::vector<double>& ratios,
+                                                    const std::vector<Point<N>>& where) {
+    if (const Law law = law_of(ratios, 0.01); law.holds) return times(law.factor, 0.003);
+    Triple lobe{0, 0, 1};
+    if constexpr (directions) lobe = domain.z;
+    for (const double k : {1.0, -1.0})
+        for (const Base<N>& b : bases_of<N>(o, directions, lobe)) {
+            std::vector<double> rest;
+            for (size_t i = 0; i < where.size(); ++i)
+                rest.push_back(ratios[i] / std::pow(b.at(where[i]), k));
+            if (const Law law = law_of(rest, 0.01); law.holds)
+                return (std::abs(law.factor - 1) < 0.01 ? "" : times(law.factor, 0.003) + " ") +
+                       power(b.name, k);
         }
-        const Estimate e = albedo.estimate();
-        if (e.mean > 1 + 1e-3 + 5 * e.standard_error)
-            return named(failure("an albedo of " +
-                                 times(e.mean, std::max(0.003, 3 * e.standard_error / e.mean)) +
-                                 ": more is reflected than comes, for wo = " + say_point(out)),
-                         o);
-    }
-    double worst = 0, with_cosine = 0, with_inverse = 0, compared = 0;
-    Triple worst_o{}, worst_i{};
-    for (int i = 0; i < 2000; ++i) {
-        const Triple a = unit_at(0.05 + 0.95 * random(), 2 * pi * random()),
-                     b = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
-        const V wo = of_host<V>(a), wi = of_host<V>(b);
-        const double there = brightness(eval(wo, wi)), back = brightness(eval(wi, wo));
-        for (double f : {there, back})
-            if (!(f >= 0 && std::isfinite(f)))
-                return named(failure(say("eval is %s, %.4g, for wo = ",
-                                         f < 0 ? "negative" : "not finite", f) +
-                                     say_point(a) + ", wi = " + say_point(b)),
-                             o);
-        const double largest = std::max(there, back);
-        if (largest <= 0) continue;
-        ++compared;
-        const double close = single ? 0.02 : 1e-6, off = std::abs(there - back) / largest;
-        with_cosine += std::abs(there * a[2] / (back * b[2]) - 1) < close;
-        with_inverse += std::abs(there * b[2] / (back * a[2]) - 1) < close;
-        if (off > worst) worst = off, worst_o = a, worst_i = b;
-    }
-    // Narrow lobes in float: half vectors of exchanged directions differ by rounding.
-    if (worst > (single ? 0.02 : 1e-6)) {
-        Verdict v = failure(
-            say("eval is not reciprocal: f(wo, wi) and f(wi, wo) differ by %.3g %%, for wo = ",
-                100 * worst) +
-            say_point(worst_o) + ", wi = " + say_point(worst_i));
-        if (with_cosine > 0.95 * compared)
-            v.text += "; looks like the cosine of wi included in eval";
-        if (with_inverse > 0.95 * compared)
-            v.text += "; looks like eval divided by the cosine of wi";
-        return named(v, o);
-    }
-    if (compared == 0) return named(failure("eval is 0 for all directions above the surface"), o);
-    all.text = "density, albedo <= 1 and, above the surface, reciprocity as expected";
-    return named(all, o);
+    return "";
 }
 
-// ---- Images -------------------------------------------------------------------------------------
-
-// An image with the standard errors of its values against a reference: all pixels together, 16
-// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
-// normal, means of 256 samples or more; options.n says how many, for Student's t.  Anything with []
-// will do for values, errors and reference, row by row from the top.
-template <class Values, class Errors, class Reference>
-Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
-                     const Reference& reference, const Options& o = {}) {
-    const size_t n = width * height;
-    if (n == 0) return named(failure("no pixel"), o);
-    auto pixel = [&](size_t i) { return say("pixel (%zu, %zu)", i % width, i / width); };
-    std::vector<double> f(n), s(n), truth(n);
-    for (size_t i = 0; i < n; ++i) {
-        f[i] = double(values[i]), s[i] = double(errors[i]), truth[i] = double(reference[i]);
-        if (!std::isfinite(f[i]))
-            return named(failure(pixel(i) + say(" is %g, not finite", f[i])), o);
-        if (!(s[i] >= 0 && std::isfinite(s[i])))
-            return named(failure(pixel(i) + say(" has the standard error %g", s[i])), o);
-    }
-    struct Result {
-        double p = 1, mean = 0, mean_p = 1, z = 0;
-        size_t worst = 0;
-    };
-    // Of the image divided by c against these values.
-    auto against = [&](const std::vector<double>& g, double c = 1) {
-        struct Sum {
-            double off = 0, variance = 0;
-            double z() const {
-                return off == 0 ? 0 : variance > 0 ? off / std::sqrt(variance) : infinity;
+// Whether counts follow the pdf times a power of a base: for samplers whose map tells nothing.
+template <size_t M, size_t N, class Domain>
+std::string DensityCheck<M, N, Domain>::law_of_cells(const Found<N, M, D>& found) {
+    const Options plain{.alpha = 1e-3};
+    const auto [checks, spent] = std::pair{statistical_checks, alpha_spent};  // guesses are none
+    Triple lobe{0, 0, 1};
+    if constexpr (directions) lobe = domain.z;
+    for (const double k : {1.0, -1.0, 2.0, -2.0})
+        for (const Base<N>& b : bases_of<N>(o, directions, lobe)) {
+            weight = [&](const Point<N>& x) { return std::pow(b.at(x), k); };
+            const Parts parts = integrate(found.cells);
+            weight = {};
+            if (!(parts.total > 0 && std::isfinite(parts.total))) continue;
+            std::vector<double> p, variances;
+            for (size_t i = 0; i < 32; ++i) {
+                p.push_back(parts.value[i] / parts.total);
+                variances.push_back(parts.variance[i] / (parts.total * parts.total));
             }
-        };
-        Sum whole;
-        std::array<Sum, 16> blocks;
-        Result r;
-        double most = 0;
-        for (size_t i = 0; i < n; ++i) {
-            const double off = f[i] / c - g[i], error = s[i] / c;
-            Sum one{std::abs(off) <= 1e-6 * std::abs(g[i]) ? 0 : off, error * error};
-            for (Sum* sum :
-                 {&whole, &blocks[(i / width) * 4 / height * 4 + (i % width) * 4 / width]})
-                sum->off += one.off, sum->variance += one.variance;
-            if (const double z = std::abs(one.z()); z > most) most = z, r.worst = i;
+            const bool fits = expect_counts(found.counts, p, plain, variances).pass;
+            statistical_checks = checks, alpha_spent = spent;
+            if (fits) return "samples have the density of the pdf times " + power(b.name, k);
         }
-        double block = 0;
-        for (const Sum& b : blocks) block = std::max(block, std::abs(b.z()));
-        auto sidak = [](double p, double m) {
-            return -std::expm1(m * std::log1p(-std::min(p, 1 - 1e-16)));
-        };
-        const double of_pixel = o.n > 1 ? p_of_t(most, double(o.n) - 1) : p_of_z(most);
-        r.mean = whole.off / double(n);
-        r.mean_p = p_of_z(whole.z());
-        r.z = most;
-        r.p = std::min(
-            1.0, 3 * std::min({r.mean_p, sidak(p_of_z(block), 16), sidak(of_pixel, double(n))}));
-        return r;
-    };
-    const Result r = against(truth);
-    Verdict v;
-    v.p = r.p;
-    v.pass = r.p > o.alpha;
-    ++statistical_checks;
-    alpha_spent += o.alpha;
+    return "";
+}
+
+// The first line of a refusal.
+template <size_t M, size_t N, class Domain>
+std::string DensityCheck<M, N, Domain>::first_line(const Found<N, M, D>& found) {
+    const auto& [cells, parts, sheets, close, counts, expected, counted, balanced] = found;
+    const double total = parts.total, share = none / samples + o.discrete;
+    std::string rounded;
+    if (model.single && counted && std::abs(total - 1 + share) < 10 * close &&
+        (!sheets.off ||
+         std::abs(sheets.off->product() - 1) < 3 * (sheets.off->error + 4 * sheets.off->noise)))
+        rounded = if_double;
+    if (!repeated.empty()) return repeated;
+    if (M == D)
+        if (const std::string why = explained(sheets.all, total); !why.empty())
+            return why + rounded;
+    const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
+    if (!balanced && none > 0) {
+        const std::string fails = (M == D ? oracle::compared(sheets.all) : "") +
+                                  percent(none / samples) + " of the samples fail (" + first_none +
+                                  ")";
+        if (std::abs(total - 1) <= close)
+            return fails + ", though the pdf integrates to 1, as if none did";
+        return fails + ", but " + integral_is + say(": together %.6g, expected 1", total + share) +
+               rounded;
+    }
+    if (!balanced)
+        return integral_is + say(", expected %.6g +- %.0e", 1 - o.discrete, close) + rounded;
+    if (sheets.off && M == D)
+        return "samples are " + say("%.4g", 1 / sheets.off->product()) +
+               " times as dense as the pdf says, at " + at(sheets.off->x) +
+               ", u = " + say_point(sheets.u) + rounded;
+    if (const std::string why = counted || samples < 50000 ? "" : law_of_cells(found); !why.empty())
+        return why + rounded;
+    const size_t worst = found.worst_cell();
+    const double mean = expected[worst] * (samples - none);
+    // In the middle of those that the pilot found there: the range's may be where nothing is.
+    std::vector<Point<D>> there;
+    for (const Point<D>& c : pilot)
+        if (cells.of(c) == worst) there.push_back(c);
+    if (there.empty()) there.push_back(cells.range(worst, {domain.lower, domain.upper}).middle());
+    const auto where = domain.at(there[there.size() / 2]);
+    if (!(mean > 0)) return "samples come where the pdf is 0, near " + at(where);
+    return "samples are " + say("%.4g", double(counts[worst]) / mean) +
+           " times as dense as the pdf says, around " + at(where);
+}
+
+// ---- What is wrong with an image ----------------------------------------------------------------
+
+inline std::string Image::hint(const ImageResult& r) const {
     double sum = 0, sum_f = 0, variance = 0;
-    for (size_t i = 0; i < n; ++i) sum += truth[i], sum_f += f[i], variance += s[i] * s[i];
-    v.delta_min = smallest_shift(infinity, o.alpha / 3) * std::sqrt(variance) /
-                  (sum != 0 ? std::abs(sum) : 1);
-    v.text = say("%zux%zu pixels, mean off by %.3g (%s), largest %.2f sigma at ", width, height,
-                 r.mean, say_p(r.mean_p).c_str(), r.z) +
-             pixel(r.worst) + ", " + say_p(r.p) +
-             "; smallest bias of all seen with 99.9 % power: " + percent(v.delta_min);
-    if (v.pass) return named(v, o);
-
+    for (size_t i = 0; i < n(); ++i) sum += truth[i], sum_f += f[i], variance += s[i] * s[i];
     std::string first;
     auto explains = [&](const std::vector<double>& g, const std::string& cause, double c = 1) {
         if (first.empty() && against(g, c).p > std::max(1e-5, 10 * o.alpha)) first = cause;
     };
-    std::vector<double> turned(n);
-    for (size_t i = 0; i < n; ++i) turned[i] = truth[(height - 1 - i / width) * width + i % width];
+    std::vector<double> turned(n());
+    for (size_t i = 0; i < n(); ++i)
+        turned[i] = truth[(height - 1 - i / width) * width + i % width];
     explains(turned,
              "the image is the reference upside down: looks like rows written in the other order");
-    for (size_t i = 0; i < n; ++i) turned[i] = truth[i / width * width + (width - 1 - i % width)];
+    for (size_t i = 0; i < n(); ++i) turned[i] = truth[i / width * width + (width - 1 - i % width)];
     explains(turned, "the image is the reference mirrored: looks like x reversed");
     if (sum != 0 && sum_f / sum > 0) {
         const double within = 5 * std::sqrt(variance) / std::abs(sum_f);
@@ -2719,37 +2893,250 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
                  sum_f / sum);
     }
     for (double gamma : {1 / 2.2, 2.2, 0.5, 2.0}) {
-        for (size_t i = 0; i < n; ++i) turned[i] = std::pow(std::max(0.0, truth[i]), gamma);
+        for (size_t i = 0; i < n(); ++i) turned[i] = std::pow(std::max(0.0, truth[i]), gamma);
         explains(turned, say("the image is the reference to the power of %.4g: looks like gamma %s",
                              gamma, gamma < 1 ? "applied" : "removed twice"));
     }
     const auto shifted = [&](int dx, int dy, const char* where) {
-        for (size_t i = 0; i < n; ++i) {
+        for (size_t i = 0; i < n(); ++i) {
             const long x = std::clamp(long(i % width) + dx, 0L, long(width) - 1),
                        y = std::clamp(long(i / width) + dy, 0L, long(height) - 1);
             turned[i] = truth[size_t(y) * width + size_t(x)];
         }
         // The border has no neighbour to compare with.
-        for (size_t i = 0; i < n; ++i)
-            if (i % width == 0 || i % width == width - 1 || i < width || i >= n - width)
+        for (size_t i = 0; i < n(); ++i)
+            if (i % width == 0 || i % width == width - 1 || i < width || i >= n() - width)
                 turned[i] = f[i];
         explains(turned, std::string("the image is the reference one pixel further ") + where);
     };
     // Only where it is the inside that differs.
-    for (size_t i = 0; i < n; ++i) {
-        const bool border = i % width == 0 || i % width == width - 1 || i < width || i >= n - width;
+    for (size_t i = 0; i < n(); ++i) {
+        const bool border =
+            i % width == 0 || i % width == width - 1 || i < width || i >= n() - width;
         turned[i] = border ? f[i] : truth[i];
     }
     if (width > 4 && height > 4 && against(turned).p <= o.alpha)
         shifted(1, 0, "left"), shifted(-1, 0, "right"), shifted(0, 1, "up"), shifted(0, -1, "down");
+    if (first.empty() && r.by_block) {
+        const size_t x0 = (r.block % 4 * width + 3) / 4, x1 = ((r.block % 4 + 1) * width + 3) / 4,
+                     y0 = (r.block / 4 * height + 3) / 4, y1 = ((r.block / 4 + 1) * height + 3) / 4;
+        double seen = 0, wanted = 0;
+        for (size_t y = y0; y < y1; ++y)
+            for (size_t x = x0; x < x1; ++x)
+                seen += f[y * width + x], wanted += truth[y * width + x];
+        first = say("the block of pixels (%zu, %zu) to (%zu, %zu) is %.4g times the reference", x0,
+                    y0, x1 - 1, y1 - 1, seen / wanted) +
+                say(", all pixels %.4g times", sum_f / sum);
+    }
     if (first.empty())
-        first = pixel(r.worst) +
+        first = say("pixel (%zu, %zu)", r.worst % width, r.worst / width) +
                 say(" is %.6g +- %.2g, expected %.6g", f[r.worst], s[r.worst], truth[r.worst]) +
                 say("; all pixels: %.4g times the reference", sum_f / sum);
+    return first;
+}
+
+// ---- Pictures -----------------------------------------------------------------------------------
+
+// A picture in SVG of a width and height in pixels; y points down.
+struct Drawing {
+    double width, height;
+    std::string body = {};
+
+    void rectangle(double x, double y, double w, double h, const std::string& style) {
+        body += say("<rect x='%.2f' y='%.2f' width='%.2f' height='%.2f' style='%s'/>\n", x, y, w, h,
+                    style.c_str());
+    }
+    void text(double x, double y, const std::string& words) {
+        body += say("<text x='%.1f' y='%.1f'>", x, y);
+        for (char c : words) body += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+        body += "</text>\n";
+    }
+    void curve(const std::vector<std::pair<double, double>>& points, const std::string& style) {
+        body += "<polyline points='";
+        for (const auto& [x, y] : points) body += say("%.1f,%.1f ", x, y);
+        body += "' style='fill:none;" + style + "'/>\n";
+    }
+
+    // Into the folder of pictures; "" or "\nsee PATH".
+    std::string written(const std::string& name) const {
+        if (pictures.empty()) return "";
+        static int unnamed = 0;
+        std::string file;
+        for (char c : name.empty() ? say("check-%d", ++unnamed) : name)
+            file += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
+        std::error_code ignored;
+        std::filesystem::create_directories(pictures, ignored);
+        const std::string path = pictures + "/oracle-" + file.substr(0, 100) + ".svg";
+        std::ofstream out(path);
+        out << say("<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f' ", width,
+                   height)
+            << "font-family='sans-serif' font-size='12' shape-rendering='crispEdges'>\n<rect "
+               "width='100%' height='100%' fill='white'/>\n"
+            << body << "</svg>\n";
+        return out ? "\nsee " + path : "\n" + path + ": cannot be written";
+    }
+};
+
+// White at 0, black at 1; or blue at -1, white at 0, red at 1.
+inline std::string grey(double x) {
+    const int level = int(255 * (1 - std::clamp(x, 0.0, 1.0)));
+    return say("fill:rgb(%d,%d,%d)", level, level, level);
+}
+inline std::string blue_white_red(double x) {
+    const int fade = int(255 * (1 - std::min(1.0, std::abs(x))));
+    return x < 0 ? say("fill:rgb(%d,%d,255)", fade, fade) : say("fill:rgb(255,%d,%d)", fade, fade);
+}
+
+// The running mean, and the band in which it would be with a mean of `truth`.
+inline std::string picture_of(const Draws& draws, double truth, const Options& o) {
+    const Estimate e = draws.estimate();
+    const double t = where_equal([&](double x) { return p_of_t(x, e.df); }, o.alpha);
+    std::vector<std::pair<double, double>> running, above, below;
+    const double deviation = std::sqrt(draws.variance());
+    const double half = std::max(1.5 * std::abs(e.mean - truth), 3 * t * e.standard_error);
+    auto add = [&](auto& curve, double i, double y) {
+        curve.emplace_back(60 + 520 * i / draws.n(),
+                           180 - 140 * std::clamp((y - truth) / half, -1.1, 1.1));
+    };
+    double sum = 0;
+    const size_t step = std::max<size_t>(1, draws.values.size() / 260);
+    for (size_t i = 0; i < draws.values.size(); ++i) {
+        sum += draws.values[i];
+        if ((i + 1) % step != 0) continue;
+        const double k = double(i + 1), band = t * deviation / std::sqrt(k);
+        add(running, k, sum / k);
+        add(above, k, truth + band);
+        add(below, k, truth - band);
+    }
+    Drawing d{600, 350};
+    d.curve({{60, 180}, {580, 180}}, "stroke:black");
+    d.curve(above, "stroke:grey");
+    d.curve(below, "stroke:grey");
+    d.curve(running, "stroke:rgb(200,0,0);stroke-width:2");
+    d.text(60, 20,
+           say("running mean (red) of %.0f samples; grey: where it is with a mean of %.6g",
+               draws.n(), truth));
+    d.text(2, 184, say("%.4g", truth));
+    d.text(2, 44, say("%.4g", truth + half));
+    d.text(2, 324, say("%.4g", truth - half));
+    d.text(500, 345, say("n = %.0f", draws.n()));
+    return d.written(o.name);
+}
+
+// Maps of the samples, of the pdf, and of their difference.
+template <size_t Dims>
+struct Histogram {
+    static constexpr size_t across = 48, down = Dims == 1 ? 1 : 32;
+    Range<Dims> shown;
+    std::vector<double> bins = std::vector<double>(across * down);
+    double total = 0;
+
+    Histogram(const std::vector<Point<Dims>>& points, Range<Dims> all) : shown(all) {
+        for (size_t k = 0; k < Dims; ++k) {
+            shown.lower[k] = infinity, shown.upper[k] = -infinity;
+            for (const auto& c : points)
+                shown.lower[k] = std::min(shown.lower[k], c[k]),
+                shown.upper[k] = std::max(shown.upper[k], c[k]);
+            const double margin = 0.05 * (shown.upper[k] - shown.lower[k]) + 1e-12;
+            shown.lower[k] = std::max(all.lower[k], shown.lower[k] - margin);
+            shown.upper[k] = std::min(all.upper[k], shown.upper[k] + margin);
+        }
+    }
+    // phi (or the first coordinate) runs to the right, theta downwards.
+    static constexpr size_t right = Dims == 1 ? 0 : 1;
+    void add(const Point<Dims>& c) {
+        ++total;
+        const double x =
+            (c[right] - shown.lower[right]) / (shown.upper[right] - shown.lower[right]);
+        const double y =
+            Dims == 1 ? 0 : (c[0] - shown.lower[0]) / (shown.upper[0] - shown.lower[0]);
+        if (x >= 0 && x < 1 && y >= 0 && y < 1)
+            ++bins[size_t(y * double(down)) * across + size_t(x * double(across))];
+    }
+    template <class Check>
+    Drawing drawing(Check& check, double integral_of_pdf, size_t worst,
+                    const Cells<Dims>& cells) const {
+        Drawing d{Dims == 1 ? 620.0 : 1100.0, 330};
+        std::vector<double> claimed;
+        double area = 1, most = 1;
+        for (size_t k = 0; k < Dims; ++k)
+            area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
+        for (size_t i = 0; i < bins.size(); ++i) {
+            double sum = 0;
+            for (int s = 0; s < 9; ++s) {
+                Point<Dims> c;
+                for (size_t k = 0; k < Dims; ++k) {
+                    const size_t index = k == right ? i % across : i / across,
+                                 bins_here = k == right ? across : down;
+                    const double sub = ((k == right ? s % 3 : s / 3) + 0.5) / 3;
+                    c[k] = shown.lower[k] + (double(index) + sub) / double(bins_here) *
+                                                (shown.upper[k] - shown.lower[k]);
+                    c[k] = std::clamp(c[k], check.domain.lower[k], check.domain.upper[k]);
+                }
+                sum += check.density_at(c) / 9;
+            }
+            claimed.push_back(sum * area * total / integral_of_pdf);
+            most = std::max({most, bins[i], claimed[i]});
+        }
+        const Range<Dims> cell = cells.range(worst, {check.domain.lower, check.domain.upper});
+        const double size = 350.0 / across;
+        auto place = [&](double c, size_t k, double length) {
+            return length *
+                   std::clamp((c - shown.lower[k]) / (shown.upper[k] - shown.lower[k]), 0.0, 1.0);
+        };
+        if (Dims == 1) {
+            std::vector<std::pair<double, double>> line;
+            for (size_t i = 0; i < across; ++i) {
+                d.rectangle(40 + 11.5 * double(i), 290 - 240 * bins[i] / most, 10,
+                            240 * bins[i] / most, "fill:rgb(170,170,170)");
+                line.emplace_back(45 + 11.5 * double(i), 290 - 240 * claimed[i] / most);
+            }
+            d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
+            d.text(40, 20, "samples (grey) and pdf (red); worst cell below");
+            d.rectangle(40 + place(cell.lower[0], 0, 552), 300,
+                        place(cell.upper[0], 0, 552) - place(cell.lower[0], 0, 552), 6,
+                        "fill:black");
+            d.text(40, 322, say_point(check.domain.at(shown.lower)));
+            d.text(560, 322, say_point(check.domain.at(shown.upper)));
+            return d;
+        }
+        const char* titles[] = {"samples", "pdf", "samples - pdf: red too many, blue too few"};
+        for (size_t map_of = 0; map_of < 3; ++map_of) {
+            const double left = 10 + 362 * double(map_of);
+            d.text(left, 20, titles[map_of]);
+            for (size_t i = 0; i < bins.size(); ++i) {
+                const double off =
+                    (bins[i] - claimed[i]) / (std::sqrt(claimed[i] + bins[i] + 1) * 6);
+                d.rectangle(
+                    left + size * double(i % across), 30 + 8 * double(i / across), size + 0.1, 8.1,
+                    map_of == 2 ? blue_white_red(off)
+                                : grey(std::sqrt((map_of == 0 ? bins : claimed)[i] / most)));
+            }
+            d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
+            const double x0 = place(cell.lower[right], right, 350),
+                         y0 = place(cell.lower[0], 0, 256);
+            d.rectangle(left + x0, 30 + y0, place(cell.upper[right], right, 350) - x0,
+                        place(cell.upper[0], 0, 256) - y0,
+                        "fill:none;stroke:rgb(0,140,0);stroke-width:3");
+        }
+        const std::string from = say_point(check.domain.at(shown.lower)),
+                          to = say_point(check.domain.at(shown.upper));
+        d.text(10, 304,
+               (check.directions
+                    ? say("to the right phi from %.4g to %.4g, down theta from %.4g to %.4g",
+                          shown.lower[1], shown.upper[1], shown.lower[0], shown.upper[0])
+                    : "the second coordinate to the right, the first down, from " + from + " to " +
+                          to) +
+                   "; worst cell in green");
+        return d;
+    }
+};
+
+inline std::string Image::picture() const {
     // The three, by blocks of pixels.
     const size_t across = std::min<size_t>(width, 64), down = std::min<size_t>(height, 48);
     std::vector<double> image(across * down), wanted(across * down), weight(across * down);
-    for (size_t i = 0; i < n; ++i) {
+    for (size_t i = 0; i < n(); ++i) {
         const size_t b = (i / width) * down / height * across + (i % width) * across / width;
         image[b] += f[i], wanted[b] += truth[i], ++weight[b];
     }
@@ -2775,8 +3162,22 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
                                            1 / 2.2)));
     }
     d.text(10, 50 + h * double(down), say("white is %.4g; full red and blue %.4g", most, most_off));
-    v.text = first + "\n" + v.text + d.written(o.name);
-    return named(v, o);
+    return d.written(o.name);
+}
+
+// Of 100 000 samples more.
+template <size_t M, size_t N, class Domain>
+std::string DensityCheck<M, N, Domain>::picture(const Found<N, M, D>& found) {
+    if constexpr (D > 2)
+        return "";
+    else {
+        if (pictures.empty()) return "";
+        Histogram<D> histogram(pilot, {domain.lower, domain.upper});
+        for (int i = 0; i < 100000; ++i)
+            if (const auto c = one()) histogram.add(*c);
+        return histogram.drawing(*this, found.parts.total, found.worst_cell(), found.cells)
+            .written(o.name);
+    }
 }
 
 }  // namespace oracle
