@@ -1829,8 +1829,9 @@ struct DensityCheck {
         // right is known no better than points tell.
         double sum = 0;
         for (double value : parts.value) sum += value;
-        const bool doubtful = model.single && D == 2 && left > 0 && std::abs(sum - 1) < 0.01 &&
-                              std::abs(sum - 1) > allowed() && arriving > 0.9999;
+        const double off = std::abs(sum - (1 - o.discrete));
+        const bool doubtful = D == 2 && left > 0 && off > allowed() &&
+                              off < (model.single ? 0.01 : 1e-4) && arriving > 0.9999;
         if (D > 2 || enough() || doubtful) parts = scatter(f, ranges, of_cell);
         for (size_t cell = 0; cell < 32; ++cell) {
             parts.total += parts.value[cell];
