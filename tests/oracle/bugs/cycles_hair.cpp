@@ -25,9 +25,9 @@ int main() {
         float2 roughness;
         bsdf_hair_reflection_sample(&hair, hair.N, I, u, v, &eval, &wi, &sampled, &roughness);
         bsdf_hair_reflection_eval(&hair, I, wi, &evaluated);
-        return sampled > 0.01f ? evaluated / sampled : 1;
+        return sampled > 0.05f ? evaluated / sampled : 1;
     };
     // Both are computed from rounded angles, most at the rim, where they are small.
-    auto rounded = [&] { return std::round(200 * ratio()) / 200; };
+    auto rounded = [&] { return std::round(10 * ratio()) / 10; };
     return answer(oracle::expect_mean(1, 10000, rounded, {.name = "pdf of eval / pdf of sample"}));
 }
