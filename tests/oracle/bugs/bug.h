@@ -1,6 +1,7 @@
 // bugs/bug.h  what shaders need to be C++, and how a program of this folder answers
 //
-// `run` cuts lines of a published renderer into excerpt.h; the program includes it after this header.
+// `run` cuts lines of a published renderer into excerpt.h; the program includes it after this
+// header.
 #pragma once
 #include <float.h>
 #include <math.h>
@@ -29,10 +30,10 @@ struct float3 {
 using vec2 = float2;
 using vec3 = float3;
 
-#define VECTOR_OPERATOR(op)                                                                      \
-    inline float2 operator op(float2 a, float2 b) { return {a.x op b.x, a.y op b.y}; }           \
+#define VECTOR_OPERATOR(op)                                                                        \
+    inline float2 operator op(float2 a, float2 b) { return {a.x op b.x, a.y op b.y}; }             \
     inline float3 operator op(float3 a, float3 b) { return {a.x op b.x, a.y op b.y, a.z op b.z}; } \
-    inline float2& operator op##=(float2& a, float2 b) { return a = a op b; }                    \
+    inline float2& operator op##=(float2& a, float2 b) { return a = a op b; }                      \
     inline float3& operator op##=(float3& a, float3 b) { return a = a op b; }
 VECTOR_OPERATOR(+)
 VECTOR_OPERATOR(-)

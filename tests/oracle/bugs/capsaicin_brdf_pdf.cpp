@@ -1,4 +1,4 @@
-// bugs/capsaicin_brdf_pdf.cpp  Capsaicin: the lobe is chosen by one half vector, its pdf takes another
+// bugs/capsaicin_brdf_pdf.cpp  Capsaicin: one half vector chooses the lobe, another its pdf
 //
 // source: GPUOpen-LibrariesAndSDKs/Capsaicin 5a3bf2a2b9b736bf660a6f4da17a6959ab4fc836 src/core/src/math/sampling.hlsl
 // cut: /^float3 mapToCosineHemisphere(float2 samples)$/,/^}/

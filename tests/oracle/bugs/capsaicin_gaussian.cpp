@@ -16,5 +16,6 @@ int main() {
         const float2 d = (p - 0.5f) * 6;  // the deviation is 1/6
         return 36 * std::exp(-0.5 * dot(d, d)) / (2 * oracle::pi);
     };
-    return answer(oracle::expect_density(random, sample, pdf, oracle::Plane{}, {.name = "Gaussian"}));
+    return answer(
+        oracle::expect_density(random, sample, pdf, oracle::Plane{}, {.name = "Gaussian"}));
 }

@@ -6,8 +6,16 @@
 #define ccl_device_inline static inline
 #define ccl_device_forceinline static inline
 #define ccl_private
-constexpr float M_PI_F = 3.14159265f, M_PI_2_F = M_PI_F / 2, M_2PI_F = 2 * M_PI_F, M_1_PI_F = 1 / M_PI_F;
-enum { LABEL_NONE = 0, LABEL_REFLECT = 1, LABEL_GLOSSY = 2, LABEL_SINGULAR = 4, LABEL_TRANSMIT = 8, LABEL_DIFFUSE = 16 };
+constexpr float M_PI_F = 3.14159265f, M_PI_2_F = M_PI_F / 2, M_2PI_F = 2 * M_PI_F,
+                M_1_PI_F = 1 / M_PI_F;
+enum {
+    LABEL_NONE = 0,
+    LABEL_REFLECT = 1,
+    LABEL_GLOSSY = 2,
+    LABEL_SINGULAR = 4,
+    LABEL_TRANSMIT = 8,
+    LABEL_DIFFUSE = 16
+};
 using Spectrum = float3;
 inline Spectrum make_spectrum(float f) { return f; }
 inline Spectrum zero_spectrum() { return 0; }

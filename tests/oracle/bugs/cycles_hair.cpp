@@ -1,4 +1,4 @@
-// bugs/cycles_hair.cpp  Cycles: the pdf of a hair's sample takes an azimuth that is scaled already
+// bugs/cycles_hair.cpp  Cycles: the pdf of a hair sample takes an azimuth that is scaled already
 //
 // source: blender/blender v3.4.1 intern/cycles/kernel/closure/bsdf_hair.h
 // cut: /^ccl_device Spectrum bsdf_hair_reflection_eval/,/^}/

@@ -1,4 +1,4 @@
-// bugs/donut_vndf.cpp  Donut (and RTXDI): the pdf of visible GGX normals lacks G1 and has V.H for N.V
+// bugs/donut_vndf.cpp  Donut, RTXDI: the pdf of visible normals lacks G1, and has V.H for N.V
 //
 // source: NVIDIAGameWorks/donut 59489813934ea13b7e141a3888e206d8d52dfc1a include/donut/shaders/brdf.hlsli
 // cut: /^float G1_Smith/,/^}/
@@ -24,7 +24,8 @@ int main() {
     oracle::Options o{.name = "GGX"};
     const float G1 = G1_Smith(roughness, V.z);
     o.factors = {{"G1 / N.V", G1 / V.z}, {"V.H", [&](const oracle::Triple& l) {
-                      return dot(V, normalize(V + float3(l[0], l[1], l[2])));
-                  }}};
+                                              return dot(V,
+                                                         normalize(V + float3(l[0], l[1], l[2])));
+                                          }}};
     return answer(oracle::expect_density(random, sample, pdf, o));
 }

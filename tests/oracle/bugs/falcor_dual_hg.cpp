@@ -13,7 +13,9 @@ inline float3 sampleNext3D(oracle::Random& r) {
     const float x = float(r.single()), y = float(r.single()), z = float(r.single());
     return {x, y, z};
 }
-inline float3 perp_stark(float3 u) { return normalize(cross(u, fabs(u.x) < 0.5f ? float3(1, 0, 0) : float3(0, 1, 0))); }
+inline float3 perp_stark(float3 u) {
+    return normalize(cross(u, fabs(u.x) < 0.5f ? float3(1, 0, 0) : float3(0, 1, 0)));
+}
 #include "excerpt.h"
 
 int main() {

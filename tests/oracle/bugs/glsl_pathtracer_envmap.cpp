@@ -1,4 +1,5 @@
-// bugs/glsl_pathtracer_envmap.cpp  GLSL-PathTracer: light of an environment comes from corners of texels
+// bugs/glsl_pathtracer_envmap.cpp  GLSL-PathTracer: light of an environment comes from texel
+// corners
 //
 // source: knightcrawler25/GLSL-PathTracer 32fa794b72689520e5f90b1c6ff8cd6b2a6ed1c6 src/shaders/common/envmap.glsl
 // cut: /^vec2 BinarySearch(/,/^}/
@@ -22,7 +23,8 @@ inline float grey(int i) { return 1 + 0.1f * float(i); }
 inline float sum_to(int i) { return float(i + 1) + 0.05f * float(i * (i + 1)); }
 const float envMapTotalSum = sum_to(width * height - 1);
 inline vec4 texture(Texture t, vec2 uv) {
-    const int x = std::min(int(uv.x * width), width - 1), y = std::min(int(uv.y * height), height - 1);
+    const int x = std::min(int(uv.x * width), width - 1),
+              y = std::min(int(uv.y * height), height - 1);
     const int i = x + width * y;
     const float g = t == envMapTex ? grey(i) : sum_to(i);
     return {g, g, g, 1};

@@ -47,7 +47,8 @@ int main() {
     };
     auto pdf = [&](Vector3 h) {
         const bool seen = h.z > 0 && dot(h, wi) > 0;
-        return seen ? GTR2(h.z, roughness) * smith_masking_gtr2(wi, roughness) * dot(h, wi) / wi.z : 0;
+        return seen ? GTR2(h.z, roughness) * smith_masking_gtr2(wi, roughness) * dot(h, wi) / wi.z
+                    : 0;
     };
     return answer(oracle::expect_density(random, sample, pdf, {.name = "visible normals"}));
 }

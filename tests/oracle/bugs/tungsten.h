@@ -26,7 +26,9 @@ struct Vec3 {
     T& z() { return v[2]; }
     T dot(const Vec3& o) const { return v[0] * o.v[0] + v[1] * o.v[1] + v[2] * o.v[2]; }
     Vec3 normalized() const { return *this * (1 / std::sqrt(dot(*this))); }
-    friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.v[0] + b.v[0], a.v[1] + b.v[1], a.v[2] + b.v[2]}; }
+    friend Vec3 operator+(Vec3 a, Vec3 b) {
+        return {a.v[0] + b.v[0], a.v[1] + b.v[1], a.v[2] + b.v[2]};
+    }
     friend Vec3 operator-(Vec3 a, Vec3 b) { return a + b * T(-1); }
     friend Vec3 operator-(Vec3 a) { return a * T(-1); }
     friend Vec3 operator*(Vec3 a, T s) { return {a.v[0] * s, a.v[1] * s, a.v[2] * s}; }
@@ -51,7 +53,12 @@ struct StringableEnum {
 };
 
 struct BsdfLobes {
-    enum Lobe { GlossyReflectionLobe = 1, GlossyTransmissionLobe = 2, DiffuseReflectionLobe = 4, DiffuseTransmissionLobe = 8 };
+    enum Lobe {
+        GlossyReflectionLobe = 1,
+        GlossyTransmissionLobe = 2,
+        DiffuseReflectionLobe = 4,
+        DiffuseTransmissionLobe = 8
+    };
     int lobes = 0;
     BsdfLobes(int l = 0) : lobes(l) {}
     bool test(BsdfLobes l) const { return (lobes & l.lobes) != 0; }
@@ -62,7 +69,10 @@ struct Numbers {
     float u[3];
     int next = 0;
     float next1D() { return u[next++]; }
-    Vec2f next2D() { next += 2; return {u[next - 2], u[next - 1]}; }
+    Vec2f next2D() {
+        next += 2;
+        return {u[next - 2], u[next - 1]};
+    }
     bool nextBoolean(float p) { return next1D() < p; }
 };
 struct SurfaceScatterEvent {

@@ -4,8 +4,8 @@
 // cut: /^static inline Vec3f uniformCylinder(/,/^}/
 // cut: /^static inline float uniformCylinderPdf(/,/^}/
 // repair: s/return INV_PI;/return INV_FOUR_PI;/
-#include "tungsten.h"
 #include "excerpt.h"
+#include "tungsten.h"
 
 int main() {
     oracle::Random random(oracle::seed_of("Tungsten, uniformCylinder"));

@@ -1,4 +1,4 @@
-// bugs/tungsten_diffuse_transmission.cpp  Tungsten: the pdf of a sample lacks the choice of the side
+// bugs/tungsten_diffuse_transmission.cpp  Tungsten: the pdf of a sample lacks the choice of side
 //
 // source: tunabrain/tungsten 1e1fd82e90963b79d91ffab040fd1fa6c31ee488 src/core/sampling/SampleWarp.hpp
 // cut: /^static inline Vec3f cosineHemisphere(/,/^}/

@@ -1,4 +1,4 @@
-// bugs/yocto_weights.cpp  yocto-gl: small weights choose the first, and weights are no probabilities
+// bugs/yocto_weights.cpp  yocto-gl: small weights choose the first; weights are no probabilities
 //
 // source: xelatihy/yocto-gl 8db180f3dc9bba03687d3fd190d2e09f099819d4 libs/yocto/yocto_sampling.h
 // cut: /^inline int sample_discrete_weights(const vector<float>& weights, float r) {/,/^}/
@@ -8,7 +8,9 @@
 #include "bug.h"
 using std::vector;
 template <class T>
-T clamp(T x, T a, T b) { return x < a ? a : x > b ? b : x; }
+T clamp(T x, T a, T b) {
+    return x < a ? a : x > b ? b : x;
+}
 #include "excerpt.h"
 
 int main() {
