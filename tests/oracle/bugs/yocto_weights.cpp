@@ -1,8 +1,8 @@
 // bugs/yocto_weights.cpp  yocto-gl: small weights choose the first; weights are no probabilities
 //
 // source: xelatihy/yocto-gl 8db180f3dc9bba03687d3fd190d2e09f099819d4 libs/yocto/yocto_sampling.h
-// cut: /^inline int sample_discrete_weights(const vector<float>& weights, float r) {/,/^}/
-// cut: /^inline float sample_discrete_weights_pdf($/,/^}/
+// cut: /^inline int sample_discrete_weights(const vector<float>& weights, float r) {/,/^  return weights/
+// C++: s/^  return weights\[idx\];/&\n}/
 // repair: s/sum - \(float\)0.00001/std::nextafter(sum, 0.0f)/
 // repair: s/return weights\[idx\];/float sum = 0; for (float w : weights) sum += w; return weights[idx] \/ sum;/
 #include "bug.h"
