@@ -640,7 +640,8 @@ double integral(const F& f, double a, double b, const Agreement& g, const Enough
                 const Rule& whole, int depth) {
     const double rules = std::max(std::abs(whole.kronrod - whole.gauss), whole.ends);
     const double agree = std::max(g.tolerance, g.noise * std::abs(whole.kronrod));
-    if (depth == 0 && g.left) *g.left += rules;
+    // Beside a singularity neither rule sees what is left of it.
+    if (depth == 0 && g.left) *g.left += std::max(rules, std::abs(whole.kronrod));
     if (depth == 0 || enough() || (!g.halves && rules <= agree)) return whole.kronrod;
     const double middle = (a + b) / 2;
     const Rule left = rule(f, a, middle), right = rule(f, middle, b);
@@ -1751,8 +1752,8 @@ struct DensityCheck {
     }
 
     // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
-    // rule: none longer than 0.3 of the domain, none of which points fill a corner alone, none in
-    // which the density differs much.
+    // rule: none longer than 0.3 of the domain (on a line, where many cost little, 0.001), none of
+    // which points fill a corner alone, none in which the density differs much.
     void divide(const Range<D>& range, const std::vector<size_t>& inside,
                 std::vector<Range<D>>& parts, int depth) const {
         auto split = [&](size_t k, double border) {
@@ -1771,7 +1772,7 @@ struct DensityCheck {
                     (range.upper[k] - range.lower[k]) / (domain.upper[k] - domain.lower[k]);
                 s > share)
                 share = s, widest = k;
-        if (share > 0.3) return split(widest, range.middle()[widest]);
+        if (share > (D == 1 ? 1e-3 : 0.3)) return split(widest, range.middle()[widest]);
         if (inside.size() < 4) return parts.push_back(range);
         double least = infinity, most = 0;
         for (size_t i : inside) {
@@ -1819,7 +1820,8 @@ struct DensityCheck {
         if constexpr (D <= 2) {
             const double close = weight ? 3e-3 : allowed();
             // No finer than f can tell where it jumps.
-            const Agreement g{close / 300, close / 8, 1 - std::ilogb(close / 8), true, &left};
+            const int halvings = D == 1 ? 60 : 1 - std::ilogb(close / 8);
+            const Agreement g{close / 300, close / 8, halvings, true, &left};
             for (size_t i = 0; i < ranges.size() && !enough(); ++i) {
                 Point<D> c{};
                 parts.value[of_cell[i]] += oracle::nested(f, c, ranges[i], g, enough);
@@ -1922,11 +1924,15 @@ struct DensityCheck {
         const double others = samples * (1 - o.discrete),
                      fewest = others - samples * (parts.total + close),
                      most = others - samples * (parts.total - close);
-        found.balanced =
-            none == 0 ? std::abs(parts.total - (1 - o.discrete)) <= close ||
-                            (parts.total < 1 - o.discrete && fewest < -std::log(o.alpha / 4))
-                      : p_at_least(none, samples, most / samples) > o.alpha / 4 &&
-                            1 - p_at_least(none + 1, samples, fewest / samples) > o.alpha / 4;
+        double p_share = 0;
+        if (none == 0)
+            found.balanced = std::abs(parts.total - (1 - o.discrete)) <= close ||
+                             (parts.total < 1 - o.discrete && fewest < -std::log(o.alpha / 4));
+        else {
+            p_share = 2 * std::min(p_at_least(none, samples, most / samples),
+                                   1 - p_at_least(none + 1, samples, fewest / samples));
+            found.balanced = p_share > o.alpha / 2;
+        }
         std::vector<double> variances;
         for (size_t i = 0; i < 32; ++i) {
             found.expected.push_back(parts.value[i] / parts.total);
@@ -1950,7 +1956,7 @@ struct DensityCheck {
         v.delta_min = std::max(v.delta_min, close);  // where rounding rules
         v.pass = found.counted && found.balanced && !sheets.off;
         if (v.pass) return v;
-        if (!found.balanced || sheets.off) v.p = 0;
+        if (!found.balanced || sheets.off) v.p = sheets.off ? 0 : p_share;
         v.text = first_line(found) + "\n" + v.text + picture(found);
         return v;
     }
