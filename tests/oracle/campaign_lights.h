@@ -101,10 +101,11 @@ void areas(Codes& codes) {
         const char* name;
         T x0, x1, y0, y1, height;
     };
-    for (const auto& [name, x0, x1, y0, y1, height] :
-         {Lamp{"rectangle 2 x 2, at 2", -1, 1, -1, 1, 2},
-          {"rectangle beside the foot, at 1", 1, 4, T(-0.5), T(0.5), 1},
-          {"rectangle 10 x 10, at 0.5", -5, 5, -5, 5, T(0.5)}})
+    for (const auto& c : {Lamp{"rectangle 2 x 2, at 2", -1, 1, -1, 1, 2},
+                          {"rectangle beside the foot, at 1", 1, 4, T(-0.5), T(0.5), 1},
+                          {"rectangle 10 x 10, at 0.5", -5, 5, -5, 5, T(0.5)}}) {
+        const char* name = c.name;
+        const T x0 = c.x0, x1 = c.x1, y0 = c.y0, y1 = c.y1, height = c.height;
         add<T>(
             codes, family, name,
             [=](T u, T v) {
@@ -116,6 +117,7 @@ void areas(Codes& codes) {
                 if (!(x >= x0 && x <= x1 && y >= y0 && y <= y1)) return T(0);
                 return s * s / ((x1 - x0) * (y1 - y0) * w.z);
             });
+    }
     for (const T height : {T(0.5), T(3)})
         add<T>(
             codes, family, say("disc of radius 1, at %g", height),

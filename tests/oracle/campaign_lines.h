@@ -16,11 +16,13 @@ T linear_pdf(T x, T a, T b) {
 template <class T>
 void slopes(Codes& codes) {
     const std::string family = "slopes and curves";
-    for (const auto& [a, b] : {std::pair<T, T>{0, 1}, {5, 0}, {1, 3}, {1, T(1.002)}})
+    for (const auto& c : {std::pair<T, T>{0, 1}, {5, 0}, {1, 3}, {1, T(1.002)}}) {
+        const T a = c.first, b = c.second;
         add<T>(
             codes, family, say("linear, %g to %g", a, b),
             [a, b](T u) { return linear_sample(u, a, b); },
             [a, b](T x) { return linear_pdf(x, a, b); });
+    }
     for (const T r : {T(0.1), T(2)})
         add<T>(
             codes, family, say("tent of radius %g", r),
@@ -60,7 +62,8 @@ void slopes(Codes& codes) {
             const T e = std::exp(-2 * std::abs(x));
             return 2 * e / ((1 + e) * (1 + e) * (high - low));
         });
-    for (const auto& [a, b] : {std::pair<T, T>{0, 1}, {-2, 5}})
+    for (const auto& c : {std::pair<T, T>{0, 1}, {-2, 5}}) {
+        const T a = c.first, b = c.second;
         add<T>(
             codes, family, say("smoothstep from %g to %g", a, b),
             // The density 2 (3 t^2 - 2 t^3) has the distribution 2 t^3 - t^4.
@@ -76,6 +79,7 @@ void slopes(Codes& codes) {
                 const T t = (x - a) / (b - a);
                 return t >= 0 && t <= 1 ? 2 * t * t * (3 - 2 * t) / (b - a) : 0;
             });
+    }
     add<T>(
         codes, family, "derivative of smoothstep",
         [](T u) { return T(0.5) - std::sin(std::asin(1 - 2 * u) / 3); },
@@ -97,7 +101,8 @@ void slopes(Codes& codes) {
     struct Segment {
         T d, a, b;
     };
-    for (const auto& [d, a, b] : {Segment{1, -2, 3}, {T(0.05), -1, 4}, {2, 10, 30}})
+    for (const auto& c : {Segment{1, -2, 3}, {T(0.05), -1, 4}, {2, 10, 30}}) {
+        const T d = c.d, a = c.a, b = c.b;
         add<T>(
             codes, family, say("equi-angular, %g away, (%g, %g)", d, a, b),
             [=](T u) {
@@ -108,6 +113,7 @@ void slopes(Codes& codes) {
                 if (x < a || x > b) return T(0);
                 return d / ((std::atan(b / d) - std::atan(a / d)) * (d * d + x * x));
             });
+    }
     for (const T k : {T(-0.5), T(0.5), T(3), T(20)})
         add<T>(
             codes, family, say("x to the power of %g", k),
@@ -138,7 +144,8 @@ void exponentials(Codes& codes) {
         add<T>(
             codes, family, say("rate %g", rate), [rate](T u) { return -std::log1p(-u) / rate; },
             [rate](T x) { return exponential_pdf(x, rate); });
-    for (const auto& [rate, end] : {std::pair<T, T>{1, 3}, {T(0.01), 5}, {20, 2}}) {
+    for (const auto& c : {std::pair<T, T>{1, 3}, {T(0.01), 5}, {20, 2}}) {
+        const T rate = c.first, end = c.second;
         auto sample = [=](T u) { return -std::log1p(u * std::expm1(-rate * end)) / rate; };
         auto pdf = [=](T x) {
             return x <= end ? exponential_pdf(x, rate) / -std::expm1(-rate * end) : 0;
@@ -159,7 +166,8 @@ void exponentials(Codes& codes) {
 template <class T>
 void tails(Codes& codes) {
     const std::string family = "heavy tails";
-    for (const auto& [at, width] : {std::pair<T, T>{0, 1}, {T(1e3), T(0.01)}, {-5, 100}})
+    for (const auto& c : {std::pair<T, T>{0, 1}, {T(1e3), T(0.01)}, {-5, 100}}) {
+        const T at = c.first, width = c.second;
         add<T>(
             codes, family, say("Cauchy at %g, width %g", at, width),
             [=](T u) { return at + width * std::tan(pi<T> * (u - T(0.5))); },
@@ -167,6 +175,7 @@ void tails(Codes& codes) {
                 const T t = (x - at) / width;
                 return 1 / (pi<T> * width * (1 + t * t));
             });
+    }
     for (const T k : {T(0.3), T(0.5), T(1.1), T(3)})
         add<T>(
             codes, family, say("Pareto %g", k), [k](T u) { return std::pow(1 - u, -1 / k); },
@@ -216,11 +225,13 @@ void peaks(Codes& codes) {
     struct Peak {
         T at, width;
     };
-    for (const auto& [at, width] : {Peak{0, 1}, {T(1e4), 1}, {-50, T(1e-3)}})
+    for (const auto& c : {Peak{0, 1}, {T(1e4), 1}, {-50, T(1e-3)}}) {
+        const T at = c.at, width = c.width;
         add<T>(
             codes, family, say("normal at %g, width %g", at, width),
             [=](T u, T v) { return at + width * normal(u, v); },
             [=](T x) { return normal_pdf(x - at, width); });
+    }
     add<T>(
         codes, family, "uniform from 1000 to 1001, line", [](T u) { return 1000 + u; },
         [](T x) { return x >= 1000 && x <= 1001 ? 1 : 0; });
@@ -274,7 +285,8 @@ inline std::vector<double> unequal(size_t n, double largest) {
 template <class T>
 void steps(Codes& codes) {
     const std::string family = "steps";
-    for (const auto& [a, b] : {std::pair<T, T>{0, 1}, {-3, 7}}) {
+    for (const auto& c : {std::pair<T, T>{0, 1}, {-3, 7}}) {
+        const T a = c.first, b = c.second;
         auto sample = [=](T u) { return a + u * (b - a); };
         auto pdf = [=](T x) { return x >= a && x <= b ? 1 / (b - a) : 0; };
         add<T>(codes, family, say("uniform from %g to %g, line", a, b), sample, pdf);

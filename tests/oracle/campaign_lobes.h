@@ -139,12 +139,13 @@ T ashikhmin(Vec<T> h, T nu, T nv) {
 template <class T>
 void ashikhmins(Codes& codes) {
     const std::string family = "Ashikhmin and Shirley";
-    for (const auto& [nu, nv] :
-         {std::pair<T, T>{0, 0}, {10, 10}, {100, 10}, {10, 1000}, {1e4, 1e3}})
+    for (const auto& c : {std::pair<T, T>{0, 0}, {10, 10}, {100, 10}, {10, 1000}, {1e4, 1e3}}) {
+        const T nu = c.first, nv = c.second;
         add<T>(
             codes, family, say("h, (%g, %g)", nu, nv),
             [nu, nv](T u, T v) { return ashikhmin_normal(u, v, nu, nv); },
             [nu, nv](Vec<T> h) { return ashikhmin(h, nu, nv); });
+    }
     const Vec<T> wo = polar(T(0.6), T(1));
     add<T>(
         codes, family, "wi, (100, 20)",

@@ -29,7 +29,8 @@ void discs(Codes& codes) {
     struct Lens {
         T x, y, r;
     };
-    for (const auto& [x, y, r] : {Lens{0, 0, T(1e-3)}, {0, 0, T(1e3)}, {100, -30, 2}})
+    for (const auto& c : {Lens{0, 0, T(1e-3)}, {0, 0, T(1e3)}, {100, -30, 2}}) {
+        const T x = c.x, y = c.y, r = c.r;
         add<T>(
             codes, family, say("disc of radius %g at (%g, %g)", r, x, y),
             [=](T u, T v) {
@@ -40,6 +41,7 @@ void discs(Codes& codes) {
                 const T dx = (p.first - x) / r, dy = (p.second - y) / r;
                 return dx * dx + dy * dy <= 1 ? 1 / (pi<T> * r * r) : 0;
             });
+    }
     add<T>(
         codes, family, "annulus",
         [](T u, T v) {
@@ -167,8 +169,8 @@ void surfaces(Codes& codes) {
     struct Bell {
         T x, y, a, b;
     };
-    for (const auto& [x, y, a, b] :
-         {Bell{0, 0, 1, 1}, {0, 0, 1, T(0.1)}, {50, -20, T(0.01), T(0.01)}})
+    for (const auto& c : {Bell{0, 0, 1, 1}, {0, 0, 1, T(0.1)}, {50, -20, T(0.01), T(0.01)}}) {
+        const T x = c.x, y = c.y, a = c.a, b = c.b;
         add<T>(
             codes, family, say("normal at (%g, %g), widths %g and %g", x, y, a, b),
             [=](T u, T v) {
@@ -176,6 +178,7 @@ void surfaces(Codes& codes) {
                 return Pair<T>{x + a * r * std::cos(phi), y + b * r * std::sin(phi)};
             },
             [=](Pair<T> p) { return normal_pdf(p.first - x, a) * normal_pdf(p.second - y, b); });
+    }
     add<T>(
         codes, family, "normal by Marsaglia's disc",
         [](T u, T v) -> std::optional<Pair<T>> {
