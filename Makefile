@@ -39,7 +39,7 @@ PENUMBRA := build/penumbra$(SUFFIX)
 PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
-.PHONY: all programs test test-all test-everywhere test-farm mutants soak penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
+.PHONY: all programs test test-all test-everywhere test-farm mutants soak oracle-campaign penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
         survival starter starter-check mistakes handout grade plant hunted
 .DELETE_ON_ERROR:
@@ -131,6 +131,10 @@ peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (
 efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 4 hours)
 calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours)
+oracle-campaign: build/oracle-campaign$(SUFFIX)  ## does the oracle refuse right code?  100 seeds of 600 codes (2 hours); SEEDS=5, ONLY=GGX: out/
+	@mkdir -p out
+	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
+	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
 cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
 EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
                calibration cells
@@ -199,6 +203,11 @@ $(foreach cpp,$(RENDERERS),$(eval $(OBJECTS)/$(basename $(notdir $(cpp))).exe: $
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
 	$(CXX) $(LINK) -o $@ $^ $(LIBRARIES)
+
+# It lies beside the oracle, and includes it alone.
+$(OBJECTS)/oracle-campaign.exe: tests/oracle/campaign.cpp Makefile
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -MF $(@:.exe=.d) -MT $@ -o $@ $<
 
 # bench.cpp asks for the same header in the same way.
 $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>\n' | \
