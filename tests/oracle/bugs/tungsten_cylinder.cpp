@@ -4,8 +4,9 @@
 // cut: /^static inline Vec3f uniformCylinder(/,/^}/
 // cut: /^static inline float uniformCylinderPdf(/,/^}/
 // repair: s/return INV_PI;/return INV_FOUR_PI;/
-#include "excerpt.h"
 #include "tungsten.h"
+// After the types that it needs:
+#include "excerpt.h"
 
 int main() {
     oracle::Random random(oracle::seed_of("Tungsten, uniformCylinder"));
