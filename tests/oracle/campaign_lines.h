@@ -6,6 +6,7 @@ namespace campaign {
 
 template <class T>
 T linear_sample(T u, T a, T b) {
+    if (a + b == 0) return u;  // pbrt-v4 has no such line, and 0 / 0 there
     return u == 0 && a == 0 ? 0 : u * (a + b) / (a + std::sqrt((1 - u) * a * a + u * b * b));
 }
 template <class T>
