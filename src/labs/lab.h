@@ -113,15 +113,35 @@ inline std::string report_folder(bool quick) {
     return quick || sizeof(real) < sizeof(double) ? "out" : "reference";
 }
 
-// The last words of a report: the command that wrote it and what that ran on.
+// The first line that a command of the shell prints, or nothing.
+inline std::string said_by(const char* command) {
+    std::string line;
+    if (std::FILE* out = ::popen(command, "r")) {
+        for (int c; (c = std::fgetc(out)) != EOF && c != '\n';) line += char(c);
+        ::pclose(out);
+    }
+    return line;
+}
+
+// The last words of a report.  `pictures` is the checksum of the renderer's pictures: tests/reports
+// finds reports of a renderer that drew others.
 inline std::string made_by(const std::string& command) {
 #ifdef __clang__
     const char* compiler = __VERSION__;
 #else
     const char* compiler = "g++ " __VERSION__;
 #endif
-    return text("Written by `%s`: %u threads, numbers in %s, compiled by %s.", command, all_cores(),
-                sizeof(real) == sizeof(double) ? "double" : "float", compiler);
+    const std::string day = said_by("date +%F"),
+                      commit = said_by("git rev-parse --short HEAD 2>/dev/null || echo unknown"),
+                      pictures = said_by("tests/reports --pictures"),
+                      processor = said_by(
+                          "{ sed -n 's/^model name.*: //p' /proc/cpuinfo || "
+                          "sysctl -n machdep.cpu.brand_string; } 2>/dev/null");
+    return text(
+        "Written on %s by `%s`: commit %s, pictures %s, %u threads of %s, numbers in %s, "
+        "compiled by %s.",
+        day.c_str(), command.c_str(), commit.c_str(), pictures.c_str(), all_cores(),
+        processor.c_str(), sizeof(real) == sizeof(double) ? "double" : "float", compiler);
 }
 
 inline std::string command_of(int argc, char** argv) {

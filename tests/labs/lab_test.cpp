@@ -121,5 +121,6 @@ TEST_CASE("what is committed comes from all runs, in double; a report says what 
     CHECK(report_folder(false) == (sizeof(real) == 8 ? "reference" : "out"));
     const std::string words = made_by("build/lab --quick");
     CHECK(words.find("`build/lab --quick`") != std::string::npos);
+    CHECK(words.find(", pictures " + said_by("tests/reports --pictures")) != std::string::npos);
     CHECK(words.find(sizeof(real) == 8 ? "double" : "float") != std::string::npos);
 }
