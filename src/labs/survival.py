@@ -1,6 +1,6 @@
-# labs/survival.py  1  what it costs to survive: reference/survival.md, by `make survival`
-"""Measures build/penumbra: memory a pixel, what checkpoints cost, how soon Ctrl-C is heard, and
-renders that are killed 200 times.  --quick: less of each, into out/."""
+# labs/survival.py  1  robustness and checkpoint time: reference/survival.md, by `make survival`
+"""Measures build/penumbra: memory per pixel, checkpoint time, the latency of Ctrl-C, and renders
+that are killed 200 times.  --quick: less of each, into out/."""
 import json
 import os
 import random
@@ -57,9 +57,9 @@ def memory():
             rows.append([name, size, f"{run['sets_per_pixel']:.2f}",
                          f"{run['peak_memory_bytes'] / 1e6:.0f} MB",
                          f"{(run['peak_memory_bytes'] - none) / (width * height):.1f}"])
-    return ('## Memory\n\nPeak of the process, files written included, by `--stats`; a pixel: less what a picture of '
-            '16x8 takes.\nOne set of samples takes 24 bytes, an image 12, how many sets there are 8, their choice 16 for a moment.\n\n'
-            + table(['scene', 'size', 'sets a pixel', 'peak', 'bytes a pixel'], rows))
+    return ('## Memory\n\nPeak memory of the process, including files, from `--stats`; per pixel: less the memory of a picture of '
+            '16x8.\nOne replication takes 24 bytes, an image 12, the number of replications 8, its choice 16 temporarily.\n\n'
+            + table(['scene', 'size', 'replications per pixel', 'peak', 'bytes per pixel'], rows))
 
 
 def kept_anew(*base):
@@ -82,9 +82,9 @@ def cost():
         rows.append([size, spp, f'{without:.1f} s', f'{film / 1e6:.1f} MB',
                      f'{100 * statistics.median(ratios):+.1f} %',
                      f'{100 * min(ratios):+.1f} … {100 * max(ratios):+.1f} %'])
-    return ('## What checkpoints cost\n\n`--keep a.film`, which is written at the end at least, over the same command without: '
-            'whole processes\nof one thread, in turn. At size 256x128 and 64 samples the one at the end is all of it.\n\n'
-            + table(['size', 'samples', 'takes', 'file', 'more time, median', 'least … most'], rows))
+    return ('## Checkpoint time\n\nTime with `--keep a.film`, which is written at least once, at the end, over the time without: '
+            'whole processes\nof one thread, interleaved. At size 256x128 and 64 samples only the last checkpoint is written.\n\n'
+            + table(['size', 'samples', 'time', 'file', 'extra time, median', 'range'], rows))
 
 
 def ctrl_c():
@@ -104,7 +104,7 @@ def ctrl_c():
             took.append(1e3 * (time.monotonic() - begun))
             assert process.returncode == 143, process.returncode
         rows.append([what, len(took), f'{statistics.median(took):.0f} ms', f'{max(took):.0f} ms'])
-    return ('## Ctrl-C\n\nFrom the signal (SIGTERM, which does the same) to the end of the process, which writes the passes completed so far.\n\n'
+    return ('## Ctrl-C\n\nTime from the signal (SIGTERM acts like SIGINT) to the end of the process, which saves the completed passes.\n\n'
             + table(['in', 'signals', 'median', 'most'], rows))
 
 
@@ -132,11 +132,11 @@ def kills():
         left = [name for name in os.listdir(FOLDER) if '.part' in name]
         assert not left, left
     return (f'## kill -9\n\ncornell36 at 64x32 with 1024 samples ({whole["seconds"]:.1f} s), killed or stopped at random moments '
-            f'and resumed until it was done: **{done} kills** in\n{chains} chains of runs; every picture is that of a run without a break, '
-            f'bit by bit; no file was damaged, none was left over.\n\n')
+            f'and resumed until it was done: **{done} kills** in\n{chains} chains of runs; every picture has the bits of an uninterrupted run. '
+            f'No file was damaged, and no temporary file remained.\n\n')
 
 
-report = ('# What it costs to survive\n\nWritten by `make survival`'
+report = ('# Robustness and checkpoint time\n\nWritten by `make survival`'
           + (' (`QUICK=1`)' if QUICK else '') + f', on {os.cpu_count()} cores.\n\n'
           + memory() + cost() + ctrl_c() + kills())
 where = 'out/survival.md' if QUICK else 'reference/survival.md'

@@ -388,7 +388,8 @@ TEST_CASE("extremes of shapes and directions: no more error than they may have")
          within(5e-16, 3e-7), [&] { return near.point_off; }},
         {"sphere 10^4 radii away: part of the rays within 0.99 R that miss", to_the_bit,
          [&] { return near.missed; }},
-        {"sphere 10^7 radii away: part of the rays within 0.99 R that miss", within(0, 0.5),
+        // In float those 3 ulp are 1.8 radii.
+        {"sphere 10^7 radii away: part of the rays within 0.99 R that miss", within(0, any),
          [&] { return far.missed; }},
         {"sphere 10^7 radii away: hit off the surface, mean, in radii", within(8e7 * d_ulp, any),
          [&] { return far.hit_mean; }},
