@@ -31,7 +31,7 @@ ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
   MAKEFLAGS += -j$(shell nproc 2>/dev/null || sysctl -n hw.ncpu 2>/dev/null || echo 2)
 endif
 
-# A program is a .cpp of its own name; those of the core and of the wings render.
+# A program is a .cpp of its own name; those of the core and of the modules render.
 RENDERERS := $(wildcard $(patsubst %,src/%/*.cpp,app keep shadow voronoi radiosity))
 LABS     := $(patsubst src/labs/%.cpp,%,$(wildcard src/labs/*.cpp))
 APPS     := $(basename $(notdir $(RENDERERS)))
@@ -45,7 +45,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: $(PENUMBRA) build/compare$(SUFFIX)  ## build the renderer, and render every scene into out/ (default)
+all: $(PENUMBRA) build/compare$(SUFFIX)  ## build the renderer, render every scene into out/ (default)
 	@for s in $(SCENES); do $(MAKE) --no-print-directory out/$$s.png || exit 1; done
 	@scenes/gallery out $(SCENES)
 
@@ -92,22 +92,22 @@ space := $() $()
 LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% world/scene_file_bounds% $(foreach t,faults memory mutants parts \
          radiosity_program resume runner stopping,whole/$t_test)
 
-test test-all: packages  ## build and run the tests of the renderer, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
-	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
+test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer
+	@exec env LAYERS='$(LAYERS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
 	    LATER='$(if $(filter test,$@),$(subst $(space),|,$(subst %,,$(strip $(LATER)))))' LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
-test-all:  ## and those of the course, the experiments and the oracle: what CI runs
+test-all:  ## also test course, experiments and oracle, as CI does
 
-test-everywhere: packages build/knot.obj  ## the same bits from all compilers, C++ libraries and processors? (15 minutes); ONLY='clang++ -O2'
+test-everywhere: packages build/knot.obj  ## compare the bits of all compilers, C++ libraries and processors (15 minutes); ONLY='clang++ -O2'
 	@FLAGS="$(filter-out -M% -W% -march% -DREAL%,$(FLAGS))" tests/everywhere $(if $(ONLY),'$(ONLY)')
 
-mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
+mutants: packages  ## plant every mutant of tests/mutants/: a test must detect it; ONLY=bvh: those of bvh.h
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
 
 soak: $(if $(FAULTS),$(PENUMBRA),$(SUITE))  ## run the random tests with fresh seeds for 10 minutes; FAULTS=1: renders under faults, for an hour; SECONDS=60
 	@CXX='$(CXX)' tests/soak $(if $(FAULTS),--faults $(PENUMBRA),$(SUITE)) $(SECONDS)
 
 .PHONY: fuzz
-fuzz: build/fuzz/fuzz$(SUFFIX)  ## files, options and small scenes that clang's libFuzzer makes up, for 10 minutes; SECONDS=60: shorter
+fuzz: build/fuzz/fuzz$(SUFFIX)  ## fuzz files, options and small scenes with libFuzzer, for 10 minutes; SECONDS=60: shorter
 	@tests/fuzz/run $< $(SECONDS)
 
 # Whatever CXX is: no other compiler has it.
@@ -121,28 +121,28 @@ build/fuzz/fuzz$(SUFFIX): tests/fuzz/fuzz.cpp Makefile | packages
 	$(FUZZ_CXX) $(FLAGS) $(FUZZ_FLAGS) -Itests -MF $@.d -o $@ $<
 -include $(wildcard build/fuzz/*.d)
 
-test-farm: build/penumbra build/merge build/compare  ## farms on a real Slurm and GNU parallel, installed and removed again (10 minutes); CASE=slurm_killed: that one
+test-farm: build/penumbra build/merge build/compare  ## test farms on a real Slurm and GNU parallel, installed and removed (10 minutes); CASE=slurm_killed
 	@tests/farm/run $(CASE)
 
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
-techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)
+techniques: $(PENUMBRA)    ## gain of BSDF sampling, Halton points and light sampling on coursework (10 minutes)
 estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
 shadows: build/shadow$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
 radiosity:                 ## illumination maps by shooting and by particles (20 minutes)
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
-indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## paths that end on illumination maps, beside whole ones (20 minutes)
-voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
-bench: build/knot.obj       ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
-peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
-efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
-trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 4 hours)
-calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours)
-oracle-campaign: build/oracle-campaign$(SUFFIX)  ## does the oracle refuse right code?  100 seeds of 600 codes (70 minutes); SEEDS=5, ONLY=GGX: into out/
+indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## final gathering, compared with whole paths (20 minutes)
+voronoi:                   ## weight samples of pixels by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
+bench: build/knot.obj       ## rays per second, compared with Embree (libembree-dev), and the time of a path
+peers: $(PENUMBRA)         ## efficiency, compared with Cycles (blender; 5 minutes); SEEDS=5: more renders
+efficiency: build/knot.obj  ## ablation study: one option at a time on every scene (6 minutes)
+trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time for every setting, and a page to choose (30 minutes; FULL=1: 4 hours)
+calibration: $(PENUMBRA) build/knot.obj  ## calibration of the error estimate (3 hours)
+oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracle: 600 correct codes, 100 seeds (70 minutes); SEEDS=5, ONLY=GGX: into out/
 	@mkdir -p out
 	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
 	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
-cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
+cells:                     ## Voronoi cells per second, compared with CGAL (libcgal-dev)
 EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
                calibration cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
@@ -166,7 +166,7 @@ voronoi: $(PENUMBRA) build/voronoi$(SUFFIX) build/voronoi_weights$(SUFFIX)
 extremes:  ## numerical robustness: errors at the extremes, double and float, into reference/extremes.md (2 minutes)
 	@for real in double float; do \
 	    $(MAKE) --no-print-directory REAL=$$real build/extremes-$$real.rows || exit 1; done
-	@paste build/extremes-double.rows build/extremes-float.rows | src/labs/extremes
+	@paste build/extremes-double.rows build/extremes-float.rows | bash src/labs/extremes
 
 # In the order of the table; exit status 1: a row is red, which the table shows.
 EXTREMES := scene light world sums
@@ -176,7 +176,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
 
-survival: $(PENUMBRA)  ## memory a pixel, what checkpoints cost, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
+survival: $(PENUMBRA)  ## memory per pixel, checkpoint time, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
 	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
 readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
@@ -349,49 +349,49 @@ packages:
 	    { echo "penumbra: apt-get failed; run: sudo $(INSTALL)" >&2; exit 1; }; \
 	$(HAVE_HEADERS) || { echo "penumbra: $(DEBIAN_PACKAGES) are installed, but $(CXX) finds no headers" >&2; exit 1; }
 
-# ---- The house: include only from floors below ----------------------------------------------------
+# ---- Layers --------------------------------------------------------------------------------------------
 
-# Folders by floor; those of one floor do not know each other.  Programs (.cpp) stand above app.  Tests may include all of their folder
+# Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-FLOORS := base:0 world:1 wide:2 path:2 film:3 keep:4 unseen:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
-# The core names no wing, but in three headers: which tree, whether films are kept, whether light may be unseen.  Nor do
-# tests of the core.  A wing's program stands above the app.
+LAYERS := base:0 world:1 wide:2 path:2 film:3 keep:4 unseen:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
+# The core names no module, but in three headers: which tree, whether films are kept, whether light may be unseen.  Nor do
+# tests of the core.  A module's program stands above the app.
 CORE  := base world path film app
-WINGS := wide keep unseen shadow voronoi radiosity
+MODULES := wide keep unseen shadow voronoi radiosity
 DOORS := world/tree.h:wide app/keep.h:keep app/unseen.h:unseen
-# Of a folder that is named here, a wing includes these headers alone.
+# Of a folder that is named here, a module includes these headers alone.
 NEEDS := wide:world/shapes.h
 
 # In a folder that has nothing else: the core must not miss what it does not name.
 .PHONY: core
-core: packages  ## the core alone: compile the renderer without any wing, and count its lines
+core: packages  ## the core alone: compile the renderer without any module, and count its lines
 	@rm -rf build/core && mkdir -p build/core/src && cp -r $(CORE:%=src/%) build/core/src
 	$(CXX) $(filter-out -M% -DTREE_WIDE -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
 	build/core/penumbra --size 32x16 --spp 4 --quiet -o build/core/cornell.png scenes/cornell.scene
 	@echo "$$(cat $(CORE:%=src/%/*) | wc -l) lines of core: $(CORE)"
 
-layers:  ## check that every file includes only from floors below
-	@awk -v floors='$(FLOORS)' -v core='$(CORE)' -v wings='$(WINGS)' -v doors='$(DOORS)' -v needs='$(NEEDS)' ' \
+layers:  ## check that every file includes only from layers below
+	@awk -v layers='$(LAYERS)' -v core='$(CORE)' -v modules='$(MODULES)' -v doors='$(DOORS)' -v needs='$(NEEDS)' ' \
 	    function set(words, of,    list, i) { split(words, list, " "); for (i in list) of[list[i]] } \
 	    function folder(file) { return substr(file, 1, index(file, "/") - 1) } \
-	    BEGIN { split(floors, list, " "); \
-	            for (i in list) { split(list[i], pair, ":"); floor[pair[1]] = pair[2] }; \
-	            set(core, in_core); set(wings, wing); set(doors, door); set(needs, need); \
+	    BEGIN { split(layers, list, " "); \
+	            for (i in list) { split(list[i], pair, ":"); layer[pair[1]] = pair[2] }; \
+	            set(core, in_core); set(modules, module); set(doors, door); set(needs, need); \
 	            for (i in need) limited[substr(i, 1, index(i, "/"))] } \
 	    FNR == 1 { name = FILENAME; sub(/^(src|tests)\//, "", name); test[name] = FILENAME ~ /^tests/; \
 	               number[name] = test[name] ? 0 : $$3; \
-	               if (!(folder(name) in floor)) { print FILENAME ": no such folder in FLOORS"; bad = 1 } \
+	               if (!(folder(name) in layer)) { print FILENAME ": no such folder in LAYERS"; bad = 1 } \
 	               if (!test[name] && ($$2 != name || $$3 !~ /^[0-9]+$$/ || NF < 5)) \
 	                   { print FILENAME ": line 1 must say: // " name "  NUMBER  what it is"; bad = 1 } } \
 	    /^#include "/ { split($$0, quoted, "\""); from[++n] = name; to[n] = quoted[2]; at[n] = FILENAME ":" FNR } \
 	    END { for (i = 1; i <= n; ++i) { \
 	              if (!(to[i] ~ /\//)) to[i] = folder(from[i]) "/" to[i]; \
 	              f = folder(from[i]); g = folder(to[i]); \
-	              if (!test[from[i]] && from[i] ~ /\.cpp$$/ && f != g && floor[f] < 6) floor_of = 6; else floor_of = floor[f]; \
-	              below = f != g ? floor[g] < floor_of : test[from[i]] || number[to[i]] < number[from[i]]; \
+	              if (!test[from[i]] && from[i] ~ /\.cpp$$/ && f != g && layer[f] < 6) layer_of = 6; else layer_of = layer[f]; \
+	              below = f != g ? layer[g] < layer_of : test[from[i]] || number[to[i]] < number[from[i]]; \
 	              if (g == "oracle") below = 1; \
-	              if (f in wing && from[i] ~ /\.cpp$$/ && g == "app") below = 1; \
-	              if (f in in_core && g in wing) below = (from[i] ":" g) in door; \
+	              if (f in module && from[i] ~ /\.cpp$$/ && g == "app") below = 1; \
+	              if (f in in_core && g in module) below = (from[i] ":" g) in door; \
 	              if (!test[from[i]] && (f ":" g "/") in limited && !((f ":" to[i]) in need)) below = 0; \
 	              if (!(to[i] in number) || (test[to[i]] && !test[from[i]] && f g != "courseoracle") || !below) \
 	                  { print at[i] ": " from[i] " is not above " to[i]; bad = 1 } } \

@@ -80,7 +80,7 @@ done
     Said test(const std::string& variables = "", const std::string& names = "") const {
         const std::string command =
             "cd '" + folder.path.string() +
-            "' && env -i PATH=\"$PATH\" FLOORS='base:0 world:1 path:2 film:2 whole:3' TESTS=built "
+            "' && env -i PATH=\"$PATH\" LAYERS='base:0 world:1 path:2 film:2 whole:3' TESTS=built "
             "MAKE='bash ./make' " +
             variables + " bash tests/run " + names + " >out 2>&1";
         const int status = std::system(command.c_str());
@@ -98,7 +98,7 @@ const std::string passes = cases("passes");
 
 }  // namespace
 
-TEST_CASE("green: a line for each floor, then how many passed") {
+TEST_CASE("green: a line for each layer, then how many passed") {
     House house;
     house.add("base/low", 1, passes);
     house.add("world/mid", 1, passes);
@@ -111,7 +111,7 @@ TEST_CASE("green: a line for each floor, then how many passed") {
     CHECK(said.lines() == 3);
 }
 
-TEST_CASE("a failed floor: one line a case, where to start, and what stands on it waits") {
+TEST_CASE("a failed layer: one line a case, where to start, and what stands on it waits") {
     House house;
     house.add("base/second", 2, cases("fails"));
     house.add("base/first", 1, cases("has a verdict,throws"));
@@ -178,7 +178,7 @@ TEST_CASE("a test that does not end is ended, and names its case") {
     CHECK(said.out.ends_with("\n1 passed, 1 failed\n"));
 }
 
-TEST_CASE("what does not compile is said once, by its first error, and the floor has failed") {
+TEST_CASE("what does not compile is said once, by its first error, and the layer has failed") {
     House house;
     for (const char* name : {"base/a", "base/b", "base/c", "world/mid"}) house.add(name, 1, passes);
     const std::string errors =
