@@ -53,7 +53,7 @@ real to_float(real x) {
 vec3 to_float(vec3 a) { return {to_float(a.x), to_float(a.y), to_float(a.z)}; }
 Ray to_float(const Ray& r) { return {to_float(r.o), to_float(r.d), to_float(r.tmax)}; }
 
-// A point of a surface whose error is that of float, so that no ray meets what it leaves.
+// The surface point with the error bound of float: rays do not hit the surface that they leave.
 Surface float_surface(Surface x) {
     x.error *= real(std::numeric_limits<float>::epsilon() / 2) / ulp;
     return x;

@@ -38,7 +38,7 @@ inline double asked_in(const std::string& setting) {
 // "blind hard/lake": "blind hard".
 inline std::string set_of(const std::string& scene) { return scene.substr(0, scene.find('/')); }
 
-// Over those whose truth is known.
+// Share of the runs with a known true error.
 template <class Which>
 double share(const Rows& rows, Which which) {
     const Rows known = where(rows, is_known);

@@ -1,4 +1,4 @@
-// labs/cube.h  1  the room whose radiosity is known: a cube lit from its centre
+// labs/cube.h  1  a room of known radiosity: a cube lit from its centre
 //
 //   const cube::Solution room;
 //   room.luminance(0, 0);  // 892.7981 nit in the middle of a face
@@ -260,8 +260,8 @@ private:
 struct Point {
     double x, y;
 };
-// Of L (nit) times f(x, y), a number or rgb, over a triangle of the face, whose area is 4: n^2
-// nodes that crowd towards its sides, because these may lie on edges of the cube.  With n = 16 its
+// The integral of L (nit) times f(x, y), a number or rgb, over a triangle of the face (area 4), by
+// n^2 nodes.  They crowd towards its sides, which may lie on edges of the cube.  With n = 16 the
 // error is 3e-5 for half a face, and below 10^-8 for triangles of a grid of 4 x 4 and finer.
 template <class F>
 auto integral(const Solution& room, const std::array<Point, 3>& corners, F f, int n = 16) {

@@ -11,7 +11,7 @@ const std::vector<std::string> choices = {
 
 const std::string standard = "the default";
 
-// Over all scenes in which the choice changes anything.
+// Over all scenes that the choice changes.
 std::vector<std::string> overall(const Rows& rows, const std::string& choice) {
     Rows changed;
     std::vector<std::pair<double, std::string>> each;

@@ -75,7 +75,7 @@ struct Tally {
     std::array<Moments, steps> excess;
 };
 
-// Trials first ... last-1, each one stream of numbers, of which the first N are the sample.
+// Trials first ... last-1.  Each has a stream of numbers; the stream's first N are the sample.
 Tally run_trials(const Case& c, uint64_t key, uint64_t first, uint64_t last) {
     Tally tally;
     const Weight w = c.w;

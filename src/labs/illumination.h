@@ -1,4 +1,4 @@
-// labs/illumination.h  5  error over time of two methods, and references whose error is inferred
+// labs/illumination.h  5  error over time of two methods, and references of inferred error
 #pragma once
 #include "labs/rows.h"
 

@@ -1,4 +1,4 @@
-// labs/illumination_cube.cpp  6  the cube, whose illuminance is known: maps of it by both methods
+// labs/illumination_cube.cpp  6  maps of a cube of known illuminance by both methods
 //
 //   build/illumination_cube [--quick]
 #include "base/json.h"

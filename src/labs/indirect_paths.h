@@ -6,9 +6,10 @@
 // map:        R_map(y) ends the path (final gathering; Reichert 1992).  Biased by the maps' error,
 //             in the mean over what one bounce sees of it.
 // control:    R_map(y) + [xi < q] / q (R^(y) - R_map(y)).  R^ is the path's own estimate, by a
-//             light sample and one more bounce, where the same happens: Russian roulette whose end
-//             returns what is known, and not 0 (Szecsi, Szirmay-Kalos, Kelemen 2003, Variance
-//             reduction for Russian roulette).  Unbiased, whatever the maps hold.
+//             light sample and one more bounce, where the same happens: Russian roulette that
+//             returns the maps' value, and not 0, when it ends a path (Szecsi, Szirmay-Kalos,
+//             Kelemen 2003, Variance reduction for Russian roulette).  Unbiased, whatever the maps
+//             hold.
 // regression: a slope times R_map in both places.  Unbiased, for the slope is that of other paths.
 //
 // All of this is about the scene of triangles that the maps lie on: where these stand for balls
@@ -64,7 +65,7 @@ struct Gather {
     rgb slope{1, 1, 1};
 };
 
-// Radiance that comes along a segment, from whose end the path goes on in any case.
+// Radiance along a segment; the path continues at its end in any case.
 inline rgb radiance_along(const Gather& g, const Segment& first, const EndlessNumbers& u) {
     rgb L;
     for (Segment s = first;;) {

@@ -33,7 +33,7 @@ public:
         check_writable(file(name + ".md"));
     }
 
-    // Of an experiment, whose command {{made}} tells.
+    // The page of an experiment; {{made}} is its command.
     Page(const Scope& scope, const std::string& name) : Page(report_folder(scope.quick), name) {
         set("made", made_by(scope.command));
     }

@@ -55,8 +55,8 @@ Runs walks(const Room& room, double asked, uint64_t n) {
     return runs;
 }
 
-// Distances to the mean of the reference's runs, whose own error is taken off in squares; a run
-// that is one of them is left out of its own reference.
+// Distances to the mean of the reference's runs.  The reference's own error is subtracted in
+// squares.  A run of the reference is left out of its own reference.
 void add_true_errors(const Mesh& mesh, Runs& runs, const Runs& reference, bool is_own) {
     const double all = double(reference.size()), n = all - is_own;
     IlluminationMap sum(number_of_sides(mesh));

@@ -142,7 +142,7 @@ inline std::string of_scene(const Row& r) { return r.scene; }
 inline std::string of_setting(const Row& r) { return r.setting; }
 inline std::string of_count(const Row& r) { return text("%.0f", double(r.count)); }
 
-// Rows by a word of them, in the order in which these words are met.
+// Rows grouped by one word, in the order of its first appearances.
 template <class Key>
 std::vector<std::pair<std::string, Rows>> grouped(const Rows& rows, Key key) {
     std::vector<std::pair<std::string, Rows>> groups;

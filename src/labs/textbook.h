@@ -30,7 +30,7 @@ inline Quad quad_of(vec3 p, vec3 u, vec3 v, const Material& m) {
     return {p, u, v, du, dv, f, dot(f.n, p), dot(p, du), dot(p, dv), length(n), m.kd, m.Le};
 }
 
-// Of a scene whose triangles come in pairs (a, b, c), (a, c, d), as `quad` and `box` make them.
+// The room of a scene with triangles in pairs (a, b, c), (a, c, d), as `quad` and `box` make them.
 inline Room room_of(const Scene& scene) {
     Room room;
     for (size_t i = 0; i + 1 < scene.shapes.size(); i += 2) {

@@ -12,8 +12,8 @@ struct Point {
     double spp = 0, seconds = NAN, error = NAN;
 };
 
-// The error of an image that is `off` a reference whose own error is independent of it; NaN if that
-// may be most of the distance.
+// The error of an image at distance `off` from a reference with the independent error `own`.  NaN
+// if the reference's error may be most of the distance.
 inline double known_error(double off, double own) {
     return own <= 0.8 * off ? std::sqrt(off * off - own * own) : NAN;
 }

@@ -1,4 +1,4 @@
-// labs/voronoi_weights.cpp  6  pixels whose samples weigh as much as their Voronoi cells
+// labs/voronoi_weights.cpp  6  pixels with samples weighted by their Voronoi cells
 //
 //   build/voronoi_weights [--most N] [--quick] [--kept]
 //
