@@ -180,7 +180,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 survival: $(PENUMBRA)  ## memory a pixel, what checkpoints cost, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
 	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
-readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
+readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write the tables of options and statements into reference/
 	build/readme$(SUFFIX)
 
 clean:  ## remove build/ and out/
@@ -197,8 +197,13 @@ build/%$(SUFFIX): $(OBJECTS)/%.exe always
 	@cmp -s $< $@ || cp $< $@
 
 # No two programs have the same name.
-$(APPS:%=$(OBJECTS)/%.exe):
+$(APPS:%=$(OBJECTS)/%.exe): $(OBJECTS)/commit.o
 	$(CXX) $(LINK) -o $@ $^
+
+# What --version names.  It is linked, so that no program is compiled again after a commit.
+$(OBJECTS)/commit.o: always
+	@mkdir -p $(@D); echo 'const char* commit() { return "$(or $(shell git describe --always --dirty 2>/dev/null),unknown commit)"; }' >$@.new; \
+	    cmp -s $@.new $(@:.o=.cpp) || { mv $@.new $(@:.o=.cpp) && $(CXX) -c -o $@ $(@:.o=.cpp); }
 $(foreach cpp,$(RENDERERS),$(eval $(OBJECTS)/$(basename $(notdir $(cpp))).exe: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(cpp))))
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o

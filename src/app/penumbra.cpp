@@ -8,11 +8,18 @@ namespace {
 
 constexpr const char* before_options =
     "usage: penumbra [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) "
-    "by path tracing.\n\n";
+    "by path tracing.\n\n"
+    "examples:\n"
+    "  penumbra scenes/cornell.scene                      writes out/cornell.png and .pfm\n"
+    "  penumbra --error 1% -o room.png scenes/atelier.scene    to an error of 1 %\n"
+    "  penumbra --time 10 --size 512x512 scenes/cornell.scene  in ten seconds\n\n";
 
 constexpr const char* after_options = R"(
+The estimated error is the relative RMSE d_rel: the root mean square error of the
+image, divided by the RMS of the image without noise.
+
 A .pfm and a .hdr hold linear radiance; a .png holds exposure times radiance,
-clamped to [0,1], as sRGB.  Pixel (0,0) is the top left one.
+clamped to [0,1], in sRGB.  Pixel (0,0) is at the top left.
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
@@ -63,10 +70,7 @@ int penumbra(const std::vector<std::string>& words) {
     Options o;
     OptionTable table = option_table(o);
     parse_options(table, o, words);
-    if (o.help) {
-        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
-        return 0;
-    }
+    if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
     Plan plan = plan_of(o, scene);

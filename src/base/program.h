@@ -1,4 +1,4 @@
-// base/program.h  2  how programs end, and the machine that they run on
+// base/program.h  2  how programs end, how they were built, and the machine that they run on
 #pragma once
 #include <cerrno>
 #include <cstdio>
@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "base/vec.h"
 #include "base/words.h"
 
 // The exit status of main, after all of stdout is written; throws SystemError if it cannot be.
@@ -33,6 +34,24 @@ inline int failed() {
     } catch (const std::exception& e) {
         return tell(1, e.what());
     }
+}
+
+// The commit that a program was built from.  The Makefile links another definition, which replaces
+// this weak one.
+[[gnu::weak]] const char* commit() { return "unknown commit"; }
+
+inline std::string compiler() {
+#ifdef __clang__
+    return __VERSION__;
+#else
+    return "g++ " __VERSION__;
+#endif
+}
+
+// What --version prints.
+inline std::string version() {
+    return std::string("Penumbra ") + commit() + ", " +
+           (sizeof(real) == sizeof(double) ? "double" : "float") + " precision, " + compiler();
 }
 
 inline double bytes_of_machine() {

@@ -77,10 +77,10 @@ Image merge(const std::vector<Part>& parts, Size size, Run& run) {
 int program(const std::vector<std::string>& words) {
     CommonOptions o;
     std::vector<std::string> paths;
-    OptionTable table = without(common_rows(o), {"--seed", "--threads", "--size"});
-    table.insert(table.begin(), output_row(o, "out/NAME.png, out/NAME.pfm"));
+    OptionTable table = without(output_rows(o, "out/NAME.png, out/NAME.pfm") + general_rows(o),
+                                {"--threads", "--size"});
     parse_words(table, words, [&](const std::string& word) { paths.push_back(word); });
-    if (o.help) return std::printf("%s%s", before_options, option_lines(table).c_str()), 0;
+    if (print_manual(o, table, before_options, "")) return 0;
     if (paths.empty()) throw UserError("no parts given (try --help)");
 
     const FilmReader any(paths[0]);

@@ -115,13 +115,8 @@ inline std::string report_folder(bool quick) {
 
 // The last words of a report: the command that wrote it and what that ran on.
 inline std::string made_by(const std::string& command) {
-#ifdef __clang__
-    const char* compiler = __VERSION__;
-#else
-    const char* compiler = "g++ " __VERSION__;
-#endif
     return text("Written by `%s`: %u threads, numbers in %s, compiled by %s.", command, all_cores(),
-                sizeof(real) == sizeof(double) ? "double" : "float", compiler);
+                sizeof(real) == sizeof(double) ? "double" : "float", compiler().c_str());
 }
 
 inline std::string command_of(int argc, char** argv) {

@@ -5,14 +5,15 @@
 namespace {
 
 constexpr const char* before_options =
-    "usage: radiosity [options] SCENE\n\nFinds the illumination of SCENE (a file in the format of "
-    "scenes/*.scene, all\ndiffuse) on triangles of its faces, and draws what "
-    "its camera sees of them,\nitself or by paths that end on them.  Light is scattered without\n"
-    "end, whatever the scene's depth.\n\n";
+    "usage: radiosity [options] SCENE\n\nComputes illumination maps of SCENE (a file in the format "
+    "of "
+    "scenes/*.scene, all\ndiffuse) on triangles of its faces, and renders them as its camera sees "
+    "them, or\nby paths that end on them (--final-gather).  The number of bounces is "
+    "unlimited,\nwhatever the scene's depth.\n\n";
 
 constexpr const char* after_options = R"(
 A .pfm and a .hdr hold linear radiance; a .png holds exposure times radiance,
-clamped to [0,1], as sRGB.  Pixel (0,0) is the top left one.
+clamped to [0,1], in sRGB.  Pixel (0,0) is at the top left.
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
@@ -93,10 +94,7 @@ int radiosity(const std::vector<std::string>& words) {
     RadiosityOptions o;
     OptionTable table = radiosity_table(o);
     parse_radiosity(table, o, words);
-    if (o.help) {
-        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
-        return 0;
-    }
+    if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const double H = edge_length(o, parsed.scene, bytes_of(o));
     const auto outputs = outputs_of(o, parsed, "-radiosity", parsed.scene.size);
