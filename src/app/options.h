@@ -146,6 +146,7 @@ inline void parse_options(OptionTable& table, Options& o, const std::vector<std:
     if (is_given(table, "--sample") && !is_given(table, "--pixel"))
         throw UserError("--sample: goes with --pixel X,Y (for samples per pixel use --spp N)");
     if (o.replay && !o.keep.empty()) throw UserError("--keep: goes without --pixel");
+    if (o.error > 0 && o.view != View::radiance) throw UserError("--error: needs --view radiance");
     if (o.error > 0 && o.sets == 1) throw UserError("--error: needs --sets 2 or more, or adaptive");
     if (o.rows && o.keep.empty() && o.outputs.empty())
         throw UserError("--rows: needs --keep F.film, which build/merge takes, or -o");

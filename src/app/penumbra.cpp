@@ -8,15 +8,14 @@ namespace {
 
 constexpr const char* before_options =
     "usage: penumbra [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) "
-    "by path tracing.\n\n"
-    "examples:\n"
-    "  penumbra scenes/cornell.scene                      writes out/cornell.png and .pfm\n"
-    "  penumbra --error 1% -o room.png scenes/atelier.scene    to an error of 1 %\n"
+    "by path tracing.\n\nexamples:\n"
+    "  penumbra scenes/cornell.scene                           to out/cornell.png\n"
+    "  penumbra --error 3% -o a.png scenes/atelier.scene       to an error of 3 %\n"
     "  penumbra --time 10 --size 512x512 scenes/cornell.scene  in ten seconds\n\n";
 
 constexpr const char* after_options = R"(
-The estimated error is the relative RMSE d_rel: the root mean square error of the
-image, divided by the RMS of the image without noise.
+The estimated error is the relative RMSE d_rel: the root mean square error of
+the image, divided by the RMS of the image without noise.
 
 A .pfm and a .hdr hold linear radiance; a .png holds exposure times radiance,
 clamped to [0,1], in sRGB.  Pixel (0,0) is at the top left.

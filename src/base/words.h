@@ -83,6 +83,14 @@ inline uint64_t parse_count(std::string_view text, uint64_t least, uint64_t most
     return n;
 }
 
+// "1 sample", "2 samples"
+inline std::string counted(const std::string& number, const std::string& noun) {
+    return number + " " + noun + (number == "1" ? "" : "s");
+}
+inline std::string counted(uint64_t n, const std::string& noun) {
+    return counted(std::to_string(n), noun);
+}
+
 // Width and height of an image, refused before anything is allocated for it.
 struct Size {
     int width = 0, height = 0;

@@ -76,13 +76,16 @@ inline std::string sum_of_files(const std::vector<std::string>& files) {
     return sum.text();
 }
 
-// Throws UserError by the first fact that the file does not say; `as`: " as in a.film".
-inline void check_agrees(const FilmReader& file, const Facts& expected,
-                         const std::string& as = "") {
+// Throws UserError about the first fact that the file does not have.  `as`: " as in a.film";
+// `scene`: the name of the scene expected.
+inline void check_agrees(const FilmReader& file, const Facts& expected, const std::string& as = "",
+                         const std::string& scene = "") {
     for (const auto& [key, value] : expected) {
-        const std::string its = file.said(key);
+        const std::string its = file.said(key), name = file.said("name");
         if (its == value) continue;
-        if (key == "scene") file.refuse("its scene is another one");
+        if (key == "scene")
+            file.refuse(name == scene ? "was rendered from another version of " + name
+                                      : "was rendered from " + name + ", not from " + scene + as);
         file.refuse("its " + key + " is " + its + ", not " + value + as);
     }
 }
@@ -103,7 +106,10 @@ public:
     Spent restore(Film& f) const {
         if (path_.empty() || !std::filesystem::exists(path_)) return {};
         FilmReader file(path_);
-        check_agrees(file, samples_);
+        std::string name;
+        for (const auto& [key, value] : head_)
+            if (key == "name") name = value;
+        check_agrees(file, samples_, "", name);
         check_agrees(file, {{"evidence", std::to_string(f.evidence.size())}});
         f.sum = std::vector<Sum>();  // before there are others
         f.sum.resize(read_but_sums(file, f));
@@ -118,7 +124,7 @@ public:
         if (path_.empty() || start < next_) return;
         const std::string failed = write(f, spent, false);
         if (!failed.empty())
-            std::fprintf(stderr, "%s; the render goes on\n", printable(failed).c_str());
+            std::fprintf(stderr, "%s; the render continues\n", printable(failed).c_str());
         const auto end = clock::now();
         next_ = end + std::max<clock::duration>(interval_, 100 * (end - start));
     }

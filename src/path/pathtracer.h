@@ -56,14 +56,15 @@ inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
 // ---- Light by aiming at it ----------------------------------------------------------------------
 
 struct DirectLight {
-    rgb L;  // radiance that it sends by way of the vertex to wo
-    // How it came about; only if a shadow ray was traced.
+    rgb L;  // radiance reflected towards wo
+    // These are set only if a shadow ray was traced.
     const Light* light = nullptr;
     LightSample sample = {};
     real cosine = 0;  // between the normal and the direction to the light
-    real pdf = 0;     // of all choices that led to it (1/sr)
-    real weight = 0;  // beside light found by hitting it
+    real pdf = 0;     // of the light and of the point on it (1/sr)
+    real weight = 0;  // MIS weight against BSDF sampling
     bool occluded = false;
+    const char* none = nullptr;  // why no shadow ray was traced
 };
 
 // By one light, chosen at random.  Unbiased for the sum of all lights; under MIS, for the weighted
@@ -71,16 +72,23 @@ struct DirectLight {
 PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
                               const Sampler& sampler, int vertex) {
     const Material& m = *x.material;
-    if (t.light == LightMode::none || scene.lights.empty() || m.is_delta()) return {};
+    auto none = [](const char* why) {
+        DirectLight d;
+        d.none = why;
+        return d;
+    };
+    if (t.light == LightMode::none) return none("--light none");
+    if (scene.lights.empty()) return none("the scene has no light");
+    if (m.is_delta()) return none("the surface is a mirror or glass");
     const bool one = scene.lights.size() == 1;
     const real u_pick = one ? 0 : sampler.choice(vertex, Draw::pick);
     const LightPick chosen = one ? LightPick{} : choose_light(scene, x.at.p, x.local.n, u_pick);
     const Light& light = scene.lights[chosen.light];
     const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
-    if (!s) return {};
+    if (!s) return none("the light does not emit towards the surface");
     const vec3 wi = x.local.to_local(s->wi);
     const rgb f = eval(m, x.wo, wi);
-    if (max_of(f) <= 0) return {};
+    if (max_of(f) <= 0) return none(wi.z > 0 ? "the BSDF is 0" : "the light is behind the surface");
     // exercise 3.3
     // f L cos / pdf where nothing is in the way; pdf is of the light and of the point on it.
     const real pdf_light = chosen.pick * s->pdf;
@@ -151,15 +159,15 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
         e.Le = emitted(m, x.cos_o);
         e.weight = weight_of_emission(scene, t, s, x);
     }
-    if (ends(s.k == scene.depth, "the scene's depth")) return e;
-    if (ends(x.cos_o == 0, "a ray within the surface")) return e;
+    if (ends(s.k == scene.depth, "the maximum number of bounces")) return e;
+    if (ends(x.cos_o == 0, "the ray lies in the surface")) return e;
     e.direct = direct_light(scene, t, x, sampler, s.k);
 
     const vec2 u = sampler.get2(dimension(s.k, Draw::wi_x));
     const real u_lobe = m.has_choice() ? sampler.choice(s.k, Draw::lobe) : 0;
     const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
     e.wi = x.local.to_world(b.wi);
-    if (ends(max_of(b.f) <= 0, "nothing is reflected that way")) return e;
+    if (ends(max_of(b.f) <= 0, "the sampled direction reflects nothing")) return e;
     // exercise 3.2
     // The product of f |cos| / pdf over all scatterings.
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));

@@ -16,9 +16,9 @@ inline const char* other_than_diffuse(const Material& m) {
 inline void check_diffuse(const Scene& s, const std::string& name) {
     for (size_t i = 0; i < s.shapes.size(); ++i)
         if (const char* what = other_than_diffuse(s.materials[s.material_of[i]]))
-            throw UserError(name + ":" + std::to_string(s.line_of[i]) + ": " +
+            throw UserError(name + ":" + std::to_string(s.line_of[i]) + ": " + "material " +
                             in_quotes(s.names[s.material_of[i]]) + " is " + what +
-                            ": illumination maps hold diffuse surfaces alone");
+                            "; radiosity supports diffuse surfaces only");
 }
 
 // The line of the first shape that absorbs nothing of a channel; 0: none.
@@ -159,14 +159,14 @@ inline Faceted faceted(const Scene& from, double H) {
         result.has_balls = true;
         char less[32];
         std::snprintf(less, sizeof less, "%.2g", 100 * (1 - part));
-        result.warnings.push_back(
-            std::to_string(from.line_of[i]) + ": the sphere becomes " +
-            std::to_string(facets.size()) + " triangles, faces of their own, whose area is " +
-            less + " % less" + (own == no_light ? "" : ", and their radiance as much more"));
+        result.warnings.push_back(std::to_string(from.line_of[i]) + ": the sphere becomes " +
+                                  std::to_string(facets.size()) + " triangles; their area is " +
+                                  less + " % less" +
+                                  (own == no_light ? "" : ", and their radiance as much more"));
     }
     if (const uint32_t line = line_of_white(to))
         result.warnings.push_back(std::to_string(line) +
-                                  ": reflects all light: in a closed room there is no end to it");
+                                  ": reflects all light: in a closed room it never ends");
     prepare(to);
     return result;
 }

@@ -20,7 +20,7 @@ struct Stage {
 inline double edge_length(const RadiosityOptions& o, const Scene& scene, const Bytes& bytes) {
     if (const uint32_t line = line_of_white(scene); line && o.error > 0 && !is_random(o))
         throw UserError("--error: " + o.scene + ":" + std::to_string(line) +
-                        ": reflects all light, so nothing bounds what is not yet sent: say "
+                        ": reflects all light, so that nothing bounds the unshot power: use "
                         "--method particles");
     check_diffuse(scene, o.scene);
     const double H = o.mesh.value_or(double(diagonal(scene)) / (o.final_gather ? 16 : 32));
@@ -57,7 +57,7 @@ struct Solution {
 };
 
 inline std::string shot(uint64_t shots, double unshot) {
-    return std::to_string(shots) + " shots, " + percent(unshot) + " unshot";
+    return counted(shots, "shot") + ", " + percent(unshot) + " unshot";
 }
 
 inline Solution shoot(const RadiosityOptions& o, const Stage& stage) {
@@ -124,19 +124,21 @@ inline std::string stopped_by(const RadiosityOptions& o, const Solution& s) {
     return o.seconds > 0 && s.seconds >= o.seconds ? "--time" : "";
 }
 
+inline std::string error_of(const RadiosityOptions& o, const Solution& s) {
+    if (!std::isfinite(s.stated.error)) return "error not known";
+    const std::string words = is_random(o) ? "estimated " + error_words(s.stated)
+                                           : "error at most " + percent(s.stated.error);
+    return words + ", without that of the triangles";
+}
+
 inline std::string summary(const RadiosityOptions& o, const Mesh& mesh, const Solution& s) {
     std::string line = o.scene + ": " + std::to_string(mesh.elements()) + " triangles, " +
-                       (is_random(o) ? walked(s.particles, s.stated) : shot(s.shots, s.unshot));
-    if (!std::isfinite(s.stated.error))
-        line += ", error not known";
-    else if (!is_random(o))
-        line += ", error at most " + percent(s.stated.error);
-    if (std::isfinite(s.stated.error) && o.error > 0) line += " without that of the triangles";
-    line += ", " + fixed(s.seconds, 2) + " s, " + fixed(double(s.rays) / s.seconds * 1e-6, 2) +
-            " Mrays/s";
-    const std::string what = stopped_by(o, s);
-    if (s.signal) return line + " (interrupted)";
-    return o.error > 0 && !what.empty() ? line + " (stopped by " + what + ")" : line;
+                       (is_random(o) ? counted(s.particles, "particle") : shot(s.shots, s.unshot)) +
+                       ", " + fixed(s.seconds, 2) + " s, " +
+                       fixed(double(s.rays) / s.seconds * 1e-6, 2) + " Mrays/s, ";
+    const std::string by = stopped_by(o, s), error = error_of(o, s);
+    if (s.signal) return line + error + " (interrupted)";
+    return line + (o.error > 0 && !by.empty() ? outcome_words(o.error, by, error) : error);
 }
 
 inline std::string encode_stats(const RadiosityOptions& o, const OptionTable& table,

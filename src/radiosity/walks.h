@@ -3,12 +3,15 @@
 #include "app/report.h"
 #include "radiosity/particles.h"
 
-// How far it is, for the bar and for the line that stays.
+// "error 2.9 % ± 0.05 %"
+inline std::string error_words(const MapError& e) {
+    return "error " + percent(e.error) +
+           (std::isfinite(e.uncertainty) ? " ± " + percent(e.uncertainty) : "");
+}
+
+// Progress for the bar.
 inline std::string walked(uint64_t particles, const MapError& e) {
-    std::string words = std::to_string(particles) + " particles";
-    if (std::isfinite(e.error)) words += ", error " + percent(e.error);
-    if (std::isfinite(e.uncertainty)) words += " ± " + percent(e.uncertainty);
-    return words;
+    return counted(particles, "particle") + (std::isfinite(e.error) ? ", " + error_words(e) : "");
 }
 
 // What walks stop after, whichever comes first; 0: no limit.
@@ -85,8 +88,9 @@ public:
             if (limit == 0 && target_.seconds == 0 && particles_.is_endless())
                 throw UserError(
                     "--error: none of " + std::to_string(particles_.particles()) +
-                    " particles lost light of some channel, so there is no end to it, and no error "
-                    "to meet: say --particles or --time as well, or let a surface absorb some");
+                    " particles lost light of some channel, so that it never ends, and its error "
+                    "is not known: give --particles or --time as well, or let a surface absorb "
+                    "some");
             to = reachable(enough.next(to, look()));
         }
     }

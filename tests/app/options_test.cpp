@@ -139,7 +139,7 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
 }
 )");
     CHECK(stats("--threads 5 --error 12.5% --sets 12 --sampler halton --direction uniform "
-                "--light nee --roulette 0.5 --view bvh --rows 4-7 -o a.pfm "
+                "--light nee --roulette 0.5 --rows 4-7 -o a.pfm "
                 "--seed 18446744073709551615") == R"({
   "scene": "a \"b\"\\",
   "width": 9,
@@ -151,7 +151,7 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
   "direction": "uniform",
   "light": "nee",
   "roulette": 0.5,
-  "view": "bvh",
+  "view": "radiance",
   "rows": "4-7",
   "threads": 5
 }

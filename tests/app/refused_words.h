@@ -49,6 +49,7 @@ inline std::vector<Refusal> refused_words() {
         // What goes together.
         {"--sample 1", "", "--sample: goes with --pixel X,Y (for samples per pixel use --spp N)"},
         {"--pixel 1,2 --keep a.film", "", "--keep: goes without --pixel"},
+        {"--error 1% --view @", "normal;bvh", "--error: needs --view radiance"},
         {"--error 1% --sets 1", "", "--error: needs --sets 2 or more, or adaptive"},
         {"--rows 1-2", "", "--rows: needs --keep F.film, which build/merge takes, or -o"},
     };
