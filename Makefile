@@ -31,7 +31,7 @@ ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
   MAKEFLAGS += -j$(shell nproc 2>/dev/null || sysctl -n hw.ncpu 2>/dev/null || echo 2)
 endif
 
-# A program is a .cpp of its own name; those of the core and of the wings render.
+# A program is a .cpp of its own name; those of the core and of the modules render.
 RENDERERS := $(wildcard $(patsubst %,src/%/*.cpp,app keep shadow voronoi radiosity))
 LABS     := $(patsubst src/labs/%.cpp,%,$(wildcard src/labs/*.cpp))
 APPS     := $(basename $(notdir $(RENDERERS)))
@@ -85,22 +85,22 @@ space := $() $()
 LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% world/scene_file_bounds% $(foreach t,faults memory mutants parts \
          radiosity_program resume runner stopping,whole/$t_test)
 
-test test-all: packages  ## build and run the tests of the renderer, lowest floor first; ONLY=bvh: those of bvh.h; ALL=1: all floors
+test test-all: packages  ## build and run the tests of the renderer, lowest layer first; ONLY=bvh: those of bvh.h; ALL=1: above a failed layer, too
 	@exec env FLOORS='$(FLOORS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
 	    LATER='$(if $(filter test,$@),$(subst $(space),|,$(subst %,,$(strip $(LATER)))))' LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
-test-all:  ## and those of the course, the experiments and the oracle: what CI runs
+test-all:  ## build and run all tests, also those of the course, the experiments and the oracle (as CI does)
 
-test-everywhere: packages build/knot.obj  ## the same bits from all compilers, C++ libraries and processors? (15 minutes); ONLY='clang++ -O2'
+test-everywhere: packages build/knot.obj  ## compare images of all compilers, C++ libraries and processors, bit for bit (15 minutes); ONLY='clang++ -O2'
 	@FLAGS="$(filter-out -M% -W% -march% -DREAL%,$(FLAGS))" tests/everywhere $(if $(ONLY),'$(ONLY)')
 
-mutants: packages  ## plant every wrong line of tests/mutants/: a test must see it; ONLY=bvh: those
+mutants: packages  ## inject every mutant of tests/mutants/: a test must fail; ONLY=bvh: those of bvh.h
 	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
 
 soak: $(if $(FAULTS),$(PENUMBRA),$(SUITE))  ## run the random tests with fresh seeds for 10 minutes; FAULTS=1: renders under faults, for an hour; SECONDS=60
 	@CXX='$(CXX)' tests/soak $(if $(FAULTS),--faults $(PENUMBRA),$(SUITE)) $(SECONDS)
 
 .PHONY: fuzz
-fuzz: build/fuzz/fuzz$(SUFFIX)  ## files, options and small scenes that clang's libFuzzer makes up, for 10 minutes; SECONDS=60: shorter
+fuzz: build/fuzz/fuzz$(SUFFIX)  ## fuzz files, options and small scenes by clang's libFuzzer for 10 minutes; SECONDS=60: shorter
 	@tests/fuzz/run $< $(SECONDS)
 
 # Whatever CXX is: no other compiler has it.
@@ -114,28 +114,28 @@ build/fuzz/fuzz$(SUFFIX): tests/fuzz/fuzz.cpp Makefile | packages
 	$(FUZZ_CXX) $(FLAGS) $(FUZZ_FLAGS) -Itests -MF $@.d -o $@ $<
 -include $(wildcard build/fuzz/*.d)
 
-test-farm: build/penumbra build/merge build/compare  ## farms on a real Slurm and GNU parallel, installed and removed again (10 minutes); CASE=slurm_killed: that one
+test-farm: build/penumbra build/merge build/compare  ## test distributed renders on a real Slurm and GNU parallel, installed and removed again (10 minutes); CASE=slurm_killed: that one
 	@tests/farm/run $(CASE)
 
 # Experiments: each writes its report and pictures into reference/; with --quick (QUICK=1), less of them into out/.
-techniques: $(PENUMBRA)    ## what cosine, Halton and next-event estimation bring on coursework (10 minutes)
+techniques: $(PENUMBRA)    ## gain of cosine sampling, Halton points and next-event estimation on coursework (10 minutes)
 estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
 shadows: build/shadow$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
-radiosity:                 ## illumination maps by shooting and by particles (20 minutes)
+radiosity:                 ## illumination maps by shooting and by particle tracing (20 minutes)
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
-indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## paths that end on illumination maps, beside whole ones (20 minutes)
-voronoi:                   ## weigh pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
-bench: build/knot.obj       ## rays a second of both trees, beside Embree if libembree-dev is installed, and the time of a path
-peers: $(PENUMBRA)         ## efficiency beside Cycles if blender is installed (5 minutes); SEEDS=5: more renders
-efficiency: build/knot.obj  ## what one option at a time brings on every scene (6 minutes)
-trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time by every setting, and a page to choose on (30 minutes; FULL=1: 4 hours)
-calibration: $(PENUMBRA) build/knot.obj  ## is a stated error true? (3 hours)
-oracle-campaign: build/oracle-campaign$(SUFFIX)  ## does the oracle refuse right code?  100 seeds of 600 codes (70 minutes); SEEDS=5, ONLY=GGX: into out/
+indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## paths that end on illumination maps, against complete paths (20 minutes)
+voronoi:                   ## weight pixels' samples by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
+bench: build/knot.obj       ## rays per second of both BVHs, and of Embree if libembree-dev is installed; time per path
+peers: $(PENUMBRA)         ## efficiency against Cycles if blender is installed (5 minutes); SEEDS=5: more renders
+efficiency: build/knot.obj  ## ablation study: one option at a time on every scene (6 minutes)
+trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time of every setting, and a page to compare them (30 minutes; FULL=1: 4 hours)
+calibration: $(PENUMBRA) build/knot.obj  ## true error over estimated error (3 hours)
+oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false alarms of the oracle: 100 seeds of 600 correct programs (70 minutes); SEEDS=5, ONLY=GGX: into out/
 	@mkdir -p out
 	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
 	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
-cells:                     ## Voronoi cells a second, beside CGAL if libcgal-dev is installed
+cells:                     ## Voronoi cells per second, and those of CGAL if libcgal-dev is installed
 EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
                calibration cells
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
@@ -156,7 +156,7 @@ radiosity: $(PENUMBRA) build/radiosity$(SUFFIX) build/illumination$(SUFFIX) buil
 voronoi: $(PENUMBRA) build/voronoi$(SUFFIX) build/voronoi_weights$(SUFFIX)
 	build/voronoi_weights$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
 
-extremes:  ## what precision buys: errors at the extremes into reference/extremes.md (2 minutes)
+extremes:  ## errors of double and float at the extremes: reference/extremes.md (2 minutes)
 	@for real in double float; do \
 	    $(MAKE) --no-print-directory REAL=$$real build/extremes-$$real.rows || exit 1; done
 	@{ printf '# What precision buys\n\nWritten by `make extremes`.  Errors are relative, or counts; the bound is what is demanded of\n'; \
@@ -177,7 +177,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
 
-survival: $(PENUMBRA)  ## memory a pixel, what checkpoints cost, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
+survival: $(PENUMBRA)  ## memory per pixel, cost of checkpoints, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
 	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
 readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write the tables of options and statements into reference/
@@ -186,7 +186,7 @@ readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write the
 clean:  ## remove build/ and out/
 	rm -rf build out
 
-help:  ## print this
+help:  ## show this help
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [TREE=wide|plain] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST)) $(wildcard src/course/course.mk)
 
@@ -301,34 +301,34 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 include src/course/course.mk
 JUDGES := $(patsubst tests/course/%.cpp,$(COURSE)/%,$(wildcard tests/course/judge_*.cpp))
 
-starter:  ## what students get, as build/starter/ and .tar.gz; WEEKS=1-3: of these weeks, those before come solved
+starter:  ## write the students' starter, build/starter/ and .tar.gz; WEEKS=1-3: these weeks, with earlier weeks solved
 	@python3 src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
 starter: build/draw$(SUFFIX)
 
 # Students' code is compiled and run in bubblewrap alone.
-grade: packages  ## grade what students handed in: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WEEKS=1-3, SEED=N, JOBS=2
+grade: packages  ## grade submissions: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WEEKS=1-3, SEED=N, JOBS=2
 	@$(if $(SUBMISSIONS),,echo "make grade SUBMISSIONS=FOLDER: a folder or a .tar.gz for each student" >&2; exit 2;) \
 	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/grade.py \
 	    $(if $(OUT),--out '$(OUT)') $(if $(WEEKS),--weeks '$(WEEKS)') $(if $(SEED),--seed $(SEED)) \
 	    $(if $(JOBS),--jobs $(JOBS)) '$(SUBMISSIONS)'
 
-plant:  ## find the bug: a solved copy with a mutant in it, unnamed, as build/plant/N/ and .tar.gz; M=NAME or M=random, WEEKS=1-3
+plant:  ## write a bug hunt: a solved copy with one mutant, as build/plant/N/ and .tar.gz; M=NAME or M=random, WEEKS=1-3
 	@$(if $(M),,echo "make plant M=NAME: which of tests/mutants/?  M=random draws one" >&2; exit 2;) \
 	CXX='$(CXX)' SUFFIX=$(SUFFIX) python3 src/course/plant.py --mutant '$(M)' $(if $(WEEKS),--weeks '$(WEEKS)') build/plant
 plant: build/draw$(SUFFIX)
 
-hunted: packages  ## was the bug found?  N=3: of the copy build/plant/3, HUNT=FILE: the test that was handed in
+hunted: packages  ## grade a bug hunt; N=3: of the copy build/plant/3, HUNT=FILE: the submitted test
 	@$(if $(and $(N),$(HUNT)),,echo "make hunted N=NUMBER HUNT=FILE: which copy, and its test?" >&2; exit 2;) \
 	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/hunted.py 'build/plant/$(N)' '$(HUNT)'
 
-mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
+mistakes:  ## regenerate the table of known mistakes, tests/course/mistakes.txt (5 minutes)
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
 mistakes: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%)
 
 handout:  ## sheets of the course as HTML, and as PDF where that can be made: build/handout/index.html
 	@python3 src/course/handout.py build/handout
 
-starter-check:  ## does the starter keep its promises?  FULL=1: each pair of stubs, too
+starter-check:  ## test the starter; FULL=1: each pair of stubs, too
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full) $(if $(DRAW),--draw '$(DRAW)')
 starter-check: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%) build/draw$(SUFFIX)
 
@@ -355,28 +355,28 @@ packages:
 	    { echo "penumbra: apt-get failed; run: sudo $(INSTALL)" >&2; exit 1; }; \
 	$(HAVE_HEADERS) || { echo "penumbra: $(DEBIAN_PACKAGES) are installed, but $(CXX) finds no headers" >&2; exit 1; }
 
-# ---- The house: include only from floors below ----------------------------------------------------
+# ---- Layers: include only from those below ---------------------------------------------------------
 
-# Folders by floor; those of one floor do not know each other.  Programs (.cpp) stand above app.  Tests may include all of their folder
+# Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
 FLOORS := base:0 world:1 wide:2 path:2 film:3 keep:4 unseen:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
-# The core names no wing, but in three headers: which tree, whether films are kept, whether light may be unseen.  Nor do
-# tests of the core.  A wing's program stands above the app.
+# The core names no module, except in three headers: for the BVH, for films in files, for light that may be unseen.  Nor do
+# tests of the core.  A module's program stands above the app.
 CORE  := base world path film app
 WINGS := wide keep unseen shadow voronoi radiosity
 DOORS := world/tree.h:wide app/keep.h:keep app/unseen.h:unseen
-# Of a folder that is named here, a wing includes these headers alone.
+# Of a folder that is named here, a module includes only these headers.
 NEEDS := wide:world/shapes.h
 
 # In a folder that has nothing else: the core must not miss what it does not name.
 .PHONY: core
-core: packages  ## the core alone: compile the renderer without any wing, and count its lines
+core: packages  ## compile the core without any module, and count its lines
 	@rm -rf build/core && mkdir -p build/core/src && cp -r $(CORE:%=src/%) build/core/src
 	$(CXX) $(filter-out -M% -DTREE_WIDE -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
 	build/core/penumbra --size 32x16 --spp 4 --quiet -o build/core/cornell.png scenes/cornell.scene
 	@echo "$$(cat $(CORE:%=src/%/*) | wc -l) lines of core: $(CORE)"
 
-layers:  ## check that every file includes only from floors below
+layers:  ## check that every file includes only from layers below
 	@awk -v floors='$(FLOORS)' -v core='$(CORE)' -v wings='$(WINGS)' -v doors='$(DOORS)' -v needs='$(NEEDS)' ' \
 	    function set(words, of,    list, i) { split(words, list, " "); for (i in list) of[list[i]] } \
 	    function folder(file) { return substr(file, 1, index(file, "/") - 1) } \

@@ -31,7 +31,7 @@ Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& patter
     return [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         if (o.view != View::radiance) return ++tally.rays, view_along(scene, o.view, at.ray);
-        auto misses = witness.account(tally);
+        auto misses = witness.visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {
                       if (interrupted) throw Interrupted();

@@ -78,7 +78,7 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent,
     run.error = error_of(film);
     run.doubt = doubt_of(film, run.error, plan.judge);
     run.sets = film.sets_per_pixel();
-    run.exponent_of_cost = 1 / checks.course().exponent();
+    run.exponent_of_cost = 1 / checks.history().exponent();
     return run;
 }
 

@@ -88,7 +88,7 @@ inline ImageError error_of(const Film& film) { return terms_of(film).error(); }
 // ---- How it falls, and when it is small enough --------------------------------------------------
 
 // The fitted rate: d_rel = c n^-gamma by the last two of errors whose samples double.
-class ErrorCourse {
+class ErrorHistory {
 public:
     bool is_due(uint64_t samples) const { return double(samples) >= 2 * last_.samples; }
     void add(uint64_t samples, double d_rel) {
@@ -153,14 +153,14 @@ public:
         if (film.sets.empty()) return UINT64_MAX;
         const bool is_even = n > 0 && n == film.most_taken();  // no film that was interrupted
         const bool checks = wanted_ > 0 && is_even && next_check(n - 1, first, period_) == n;
-        if (checks || (is_even && course_.is_due(n))) {
+        if (checks || (is_even && history_.is_due(n))) {
             const ImageError e = error_of(film);
-            course_.add(n, e.d_rel());
+            history_.add(n, e.d_rel());
             const bool is_known = !checks || doubt_of(film, e, judge_).empty();
             is_enough_ = checks && is_known && is_small_enough(e, wanted_);
             is_hopeless_ = !is_known && film.total() >= most_unknown * double(film.pixels());
             const double too_much = std::isfinite(e.d_rel()) ? e.d_rel() / wanted_ : HUGE_VAL;
-            expected_ = double(n) * course_.cost_of(std::max(1.0, too_much));
+            expected_ = double(n) * history_.cost_of(std::max(1.0, too_much));
         }
         return is_enough_ || is_hopeless_ ? n
                : wanted_ > 0              ? next_check(n, first, period_)
@@ -169,7 +169,7 @@ public:
 
     bool is_enough() const { return is_enough_; }
     bool is_hopeless() const { return is_hopeless_; }  // not known, after so many samples
-    const ErrorCourse& course() const { return course_; }
+    const ErrorHistory& history() const { return history_; }
     // Samples of each replication in the end, by the last look; infinite: not known.
     double expected() const { return wanted_ > 0 ? expected_ : HUGE_VAL; }
 
@@ -179,7 +179,7 @@ private:
     const double wanted_;
     const uint64_t period_;
     const Judge judge_;
-    ErrorCourse course_;
+    ErrorHistory history_;
     bool is_enough_ = false, is_hopeless_ = false;
     double expected_ = HUGE_VAL;
 };

@@ -187,22 +187,22 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
 
 // ---- The path -----------------------------------------------------------------------------------
 
-struct NoAccount {
+struct NoVisitor {
     void operator()(const Segment&, const Step&) const {}
 };
 
 // Radiance that comes along a ray, against its direction.  Unbiased, but for the scene's depth.
-// Calls account(segment, step) at every vertex.
-template <class Account = NoAccount>
+// Calls visit(segment, step) at every vertex.
+template <class Visitor = NoVisitor>
 rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
-       Account account = {}) {
+       Visitor visit = {}) {
     // exercise 3.1
     rgb L;
     for (Segment s{ray, ray.o};;) {
         const Step e = step(scene, t, s, sampler);
         L += s.beta * e.Le * e.weight;
         L += s.beta * e.direct.L;
-        account(s, e);
+        visit(s, e);
         if (e.end) return L;
         s = e.next;
     }

@@ -74,15 +74,15 @@ struct ShadowSample {
 };
 
 // By steps as Li adds them up.
-template <class Account>
-ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, Account account) {
+template <class Visitor>
+ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, Visitor visit) {
     ShadowSample sample;
     Li(scene, t, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
         auto& [rest, first] = sample;
         rest += s.beta * e.Le * e.weight;
         if (s.k == 0) first = shadowed(scene, e);
         rest += s.k == 0 ? e.direct.L - first.wV : s.beta * e.direct.L;
-        account(s, e);
+        visit(s, e);
     });
     return sample;
 }

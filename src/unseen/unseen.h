@@ -272,7 +272,7 @@ public:
             return unseen.doubt(e.d2(), e.norm, double(f.pixels()));
         };
     }
-    NearMisses account(Tally& tally) const { return {scene_, technique_, groups_, tally}; }
+    NearMisses visitor(Tally& tally) const { return {scene_, technique_, groups_, tally}; }
 
 private:
     const Scene& scene_;

@@ -269,7 +269,7 @@ TEST_CASE("three scenes that float gets wrong are told; in double they are not n
                        "sphere 0 -1e6 0  1e6 d\nsphere 0 2e3 0  900 l\n"),
                 "distance to the eye") == single);
     for (const char* lamp : {"sphere 1.9997 .0349 0  .1 l\n", "sphere 6.9 .1204 0  .345 l\n"})
-        CHECK(warns(parsed(eye + head + floor + lamp), "its distance to line 4") == single);
+        CHECK(warns(parsed(eye + head + floor + lamp), "distance to line 4") == single);
 }
 
 // Maps of its light have one side and no sky.  In float a ray that starts 10 micrometres from an
