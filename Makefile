@@ -129,7 +129,7 @@ techniques: $(PENUMBRA)    ## gain of BSDF sampling, Halton points and light sam
 estimators1d:              ## four estimators of a shadowed integral in 1D (a minute)
 shadows: build/shadow$(SUFFIX)  ## four estimators of direct light on images (5 minutes)
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
-radiosity:                 ## illumination maps by shooting and by particles (20 minutes)
+radiosity:                 ## illumination maps by shooting and by particle tracing (20 minutes)
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
 indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## final gathering, compared with whole paths (20 minutes)
 voronoi:                   ## weight samples of pixels by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
@@ -179,13 +179,13 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 survival: $(PENUMBRA)  ## memory per pixel, checkpoint time, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
 	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
-readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write tables of options and statements into README.md and reference/
+readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write the tables of options and statements into reference/
 	build/readme$(SUFFIX)
 
 clean:  ## remove build/ and out/
 	rm -rf build out
 
-help:  ## print this
+help:  ## show this help
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [TREE=wide|plain] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST)) $(wildcard src/course/course.mk)
 
@@ -196,8 +196,13 @@ build/%$(SUFFIX): $(OBJECTS)/%.exe always
 	@cmp -s $< $@ || cp $< $@
 
 # No two programs have the same name.
-$(APPS:%=$(OBJECTS)/%.exe):
+$(APPS:%=$(OBJECTS)/%.exe): $(OBJECTS)/commit.o
 	$(CXX) $(LINK) -o $@ $^
+
+# What --version names.  It is linked, so that no program is compiled again after a commit.
+$(OBJECTS)/commit.o: always
+	@mkdir -p $(@D); echo 'const char* commit() { return "$(or $(shell git describe --always --dirty 2>/dev/null),unknown commit)"; }' >$@.new; \
+	    cmp -s $@.new $(@:.o=.cpp) || { mv $@.new $(@:.o=.cpp) && $(CXX) -c -o $@ $(@:.o=.cpp); }
 $(foreach cpp,$(RENDERERS),$(eval $(OBJECTS)/$(basename $(notdir $(cpp))).exe: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(cpp))))
 
 $(LABS:%=$(OBJECTS)/%.exe): $(OBJECTS)/%.exe: $(OBJECTS)/labs/%.o
@@ -295,34 +300,34 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 include src/course/course.mk
 JUDGES := $(patsubst tests/course/%.cpp,$(COURSE)/%,$(wildcard tests/course/judge_*.cpp))
 
-starter:  ## what students get, as build/starter/ and .tar.gz; WEEKS=1-3: of these weeks, those before come solved
+starter:  ## write the students' starter, build/starter/ and .tar.gz; WEEKS=1-3: these weeks, with earlier weeks solved
 	@python3 src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
 starter: build/draw$(SUFFIX)
 
 # Students' code is compiled and run in bubblewrap alone.
-grade: packages  ## grade what students handed in: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WEEKS=1-3, SEED=N, JOBS=2
+grade: packages  ## grade submissions: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WEEKS=1-3, SEED=N, JOBS=2
 	@$(if $(SUBMISSIONS),,echo "make grade SUBMISSIONS=FOLDER: a folder or a .tar.gz for each student" >&2; exit 2;) \
 	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/grade.py \
 	    $(if $(OUT),--out '$(OUT)') $(if $(WEEKS),--weeks '$(WEEKS)') $(if $(SEED),--seed $(SEED)) \
 	    $(if $(JOBS),--jobs $(JOBS)) '$(SUBMISSIONS)'
 
-plant:  ## find the bug: a solved copy with a mutant in it, unnamed, as build/plant/N/ and .tar.gz; M=NAME or M=random, WEEKS=1-3
+plant:  ## write a bug hunt: a solved copy with one mutant, as build/plant/N/ and .tar.gz; M=NAME or M=random, WEEKS=1-3
 	@$(if $(M),,echo "make plant M=NAME: which of tests/mutants/?  M=random draws one" >&2; exit 2;) \
 	CXX='$(CXX)' SUFFIX=$(SUFFIX) python3 src/course/plant.py --mutant '$(M)' $(if $(WEEKS),--weeks '$(WEEKS)') build/plant
 plant: build/draw$(SUFFIX)
 
-hunted: packages  ## was the bug found?  N=3: of the copy build/plant/3, HUNT=FILE: the test that was handed in
+hunted: packages  ## grade a bug hunt; N=3: of the copy build/plant/3, HUNT=FILE: the submitted test
 	@$(if $(and $(N),$(HUNT)),,echo "make hunted N=NUMBER HUNT=FILE: which copy, and its test?" >&2; exit 2;) \
 	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/hunted.py 'build/plant/$(N)' '$(HUNT)'
 
-mistakes:  ## write tests/course/mistakes.txt: by which answers known mistakes are told (5 minutes)
+mistakes:  ## regenerate the table of known mistakes, tests/course/mistakes.txt (5 minutes)
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
 mistakes: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%)
 
 handout:  ## sheets of the course as HTML, and as PDF where that can be made: build/handout/index.html
 	@python3 src/course/handout.py build/handout
 
-starter-check:  ## does the starter keep its promises?  FULL=1: each pair of stubs, too
+starter-check:  ## test the starter; FULL=1: each pair of stubs, too
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full) $(if $(DRAW),--draw '$(DRAW)')
 starter-check: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%) build/draw$(SUFFIX)
 

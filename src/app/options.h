@@ -1,4 +1,4 @@
-// app/options.h  1  what the user asks of penumbra
+// app/options.h  1  the options of penumbra
 #pragma once
 #include "base/option.h"
 #include "film/film.h"
@@ -6,9 +6,10 @@
 
 // What the image shows.
 enum class View { radiance, normal, depth, albedo, bvh };
+inline constexpr Text view_names = "radiance|normal|depth|albedo|bvh";
 
 struct Rows {
-    int first = 0, last = 0;  // of the picture, from the top
+    int first = 0, last = 0;  // row 0 is at the top of the picture
 
     int count() const { return last - first + 1; }
 };
@@ -16,7 +17,7 @@ struct Rows {
 struct Options : CommonOptions {
     uint64_t spp = 0;   // 0: the scene's, unless seconds or an error are given
     double error = 0;   // d_rel to stop at; 0: none
-    uint32_t sets = 0;  // replications of each pixel; 0: two, and more where noise is
+    uint32_t sets = 0;  // replications per pixel; 0: adaptive
     SamplerKind sampler = SamplerKind::sobol;
     Technique technique;
     std::optional<int> depth;  // default: the scene's
@@ -58,83 +59,100 @@ inline std::string parse_film(Text v) {
     return std::string(v);
 }
 
-// When to stop.
-inline OptionTable target_rows(Options& o) {
-    return {
-        output_row(o, "out/NAME.png, out/NAME.pfm"),
-        {"--spp", "N", "stop after N samples a pixel, more where noise is",
+inline OptionTable stop_rows(Options& o) {
+    OptionTable rows = {
+        {"--spp", "N",
+         "stop after N samples per pixel; noisy pixels take more (see --sets adaptive)",
          "the scene's, unless --time or --error is given",
          [&o](Text v) { o.spp = parse_count(v, 1, most_samples); }},
         {"--time", "S", "stop after S seconds; with --spp, whichever comes first", "",
          [&o](Text v) { o.seconds = parse_positive(v); }},
         {"--error", "E",
-         "stop once the error d_rel, as estimated, is at most E, e.g. 1%; with --spp or --time, "
-         "whichever comes first",
+         "stop once the estimated relative RMSE (d_rel) is at most E, e.g. 1%; with --spp or "
+         "--time, whichever comes first",
          "", [&o](Text v) { o.error = parse_error(v); },
-         [&o] { return o.error > 0 ? json::number(o.error) : "null"; }},
-        {"--sets", "K|adaptive",
-         "replications of each pixel, randomised independently, whose spread tells the error; "
-         "adaptive: two, and up to 32 where noise is",
-         "adaptive",
-         [&o](Text v) { o.sets = v == "adaptive" ? 0 : uint32_t(parse_count(v, 1, most_sets)); },
-         [&o] { return o.sets ? std::to_string(o.sets) : json::string("adaptive"); }}};
+         [&o] { return o.error > 0 ? json::number(o.error) : "null"; }}};
+    rows[0].also = "--samples";
+    return in_group("Stop when", rows);
 }
 
-// What samples are of.
-inline OptionTable sample_rows(Options& o) {
-    return {
-        one_of("--sampler", "independent|stratified|halton|sobol", "source of the random numbers",
-               o.sampler),
-        one_of("--direction", "uniform|bsdf",
-               "directions at rough surfaces: uniform over the hemisphere, or BSDF sampling",
-               o.technique.direction),
-        one_of("--light", "none|nee|mis",
-               "light found by hitting it, by aiming at it (next-event estimation), or by both, "
-               "weighted",
-               o.technique.light),
-        {"--depth", "N", "scatterings a path may have, 0: emission only", "the scene's",
-         [&o](Text v) { o.depth = int(parse_count(v, 0, most_depth)); }},
-        {"--roulette", "T",
-         "Russian roulette: a path whose throughput (its greatest channel) has fallen below T goes "
-         "on with a probability of throughput / T; 0: no path ends so",
-         significant(double(o.technique.roulette), 3),
-         [&o](Text v) { o.technique.roulette = real(parse_fraction(v)); },
-         [&o] { return json::number(double(o.technique.roulette)); }},
-        one_of("--view", "radiance|normal|depth|albedo|bvh",
-               "the image shows radiance; (normal + 1) / 2; distance; albedo; nodes (red) and "
-               "shapes (green) visited by a ray",
-               o.view)};
+inline OptionTable sampling_rows(Options& o) {
+    return in_group(
+        "Sampling",
+        {{"--sets", "K|adaptive",
+          "number of independent replications per pixel; their sample variance gives the error "
+          "estimate; adaptive: 2, and up to 32 where the image is noisy",
+          "adaptive",
+          [&o](Text v) { o.sets = v == "adaptive" ? 0 : uint32_t(parse_count(v, 1, most_sets)); },
+          [&o] { return o.sets ? std::to_string(o.sets) : json::string("adaptive"); }},
+         one_of("--sampler", "independent|stratified|halton|sobol", "source of the random numbers",
+                o.sampler)});
 }
 
-// What is left of a render, and what part of it is looked at.
+inline OptionTable transport_rows(Options& o) {
+    return in_group(
+        "Light transport",
+        {one_of("--direction", "uniform|bsdf",
+                "scattering directions on diffuse and glossy surfaces: uniform over the "
+                "hemisphere, or BSDF sampling",
+                o.technique.direction),
+         one_of("--light", "none|nee|mis",
+                "direct light by BSDF sampling only, by light sampling (next-event estimation) "
+                "only, or by both with MIS",
+                o.technique.light),
+         {"--depth", "N", "maximum number of bounces; 0: emission only", "the scene's",
+          [&o](Text v) { o.depth = int(parse_count(v, 0, most_depth)); }},
+         {"--roulette", "T",
+          "Russian roulette: a path survives with probability throughput / T (largest component) "
+          "where that is below 1; 0 disables Russian roulette",
+          significant(double(o.technique.roulette), 3),
+          [&o](Text v) { o.technique.roulette = real(parse_fraction(v)); },
+          [&o] { return json::number(double(o.technique.roulette)); }}});
+}
+
+inline OptionTable view_rows(Options& o) {
+    return in_group(
+        "Views and debugging",
+        {one_of("--view", view_names,
+                "the image shows radiance; (normal + 1) / 2; distance; albedo; or the BVH nodes "
+                "(red) and shapes (green) that a ray visits",
+                o.view),
+         {"--pixel", "X,Y", "print every event of one path of pixel X,Y instead of rendering", "",
+          [&o](Text v) { set_pixel(o.replay, v); }},
+         {"--sample", "I[,K]", "index of the sample, and of its replication, for --pixel", "0,0",
+          [&o](Text v) { set_sample(o.replay, v); }}});
+}
+
 inline OptionTable part_rows(Options& o) {
-    return {{"--keep", "F.film", "keep the film in F.film, and go on from there if it exists", "",
-             [&o](Text v) { o.keep = parse_film(v); }},
-            {"--rows", "A-B", "render these rows alone, 0 at the top (for build/merge)", "all",
-             [&o](Text v) { o.rows = parse_rows(v); },
-             [&o] { return o.rows ? json::string(as_text(*o.rows)) : "null"; }},
-            {"--pixel", "X,Y", "print every event of one path of pixel X,Y instead of rendering",
-             "", [&o](Text v) { set_pixel(o.replay, v); }},
-            {"--sample", "I[,K]", "sample I of replication K, with --pixel", "0,0",
-             [&o](Text v) { set_sample(o.replay, v); }}};
+    return in_group(
+        "Checkpoints and parts",
+        {{"--keep", "F.film",
+          "write a checkpoint every 10 seconds and at the end; resume from it if it exists", "",
+          [&o](Text v) { o.keep = parse_film(v); }},
+         {"--rows", "A-B", "render only these rows; row 0 is at the top (for build/merge)", "all",
+          [&o](Text v) { o.rows = parse_rows(v); },
+          [&o] { return o.rows ? json::string(as_text(*o.rows)) : "null"; }}});
 }
 
 inline OptionTable option_table(Options& o) {
-    return target_rows(o) + sample_rows(o) + part_rows(o) + common_rows(o);
+    return output_rows(o, "out/NAME.png, out/NAME.pfm") + stop_rows(o) + sampling_rows(o) +
+           OptionTable{seed_row(o)} + transport_rows(o) + view_rows(o) + part_rows(o) +
+           general_rows(o);
 }
 
-// Throws UserError about the first word that cannot be used, or goes with no other.
+// Throws UserError about the first word that cannot be used, or does not go with the others.
 inline void parse_options(OptionTable& table, Options& o, const std::vector<std::string>& words) {
     parse_words(table, words, o);
     if (is_given(table, "--sample") && !is_given(table, "--pixel"))
-        throw UserError("--sample: goes with --pixel X,Y");
+        throw UserError("--sample: goes with --pixel X,Y (for samples per pixel use --spp N)");
     if (o.replay && !o.keep.empty()) throw UserError("--keep: goes without --pixel");
+    if (o.error > 0 && o.view != View::radiance) throw UserError("--error: needs --view radiance");
     if (o.error > 0 && o.sets == 1) throw UserError("--error: needs --sets 2 or more, or adaptive");
     if (o.rows && o.keep.empty() && o.outputs.empty())
         throw UserError("--rows: needs --keep F.film, which build/merge takes, or -o");
 }
 
-// Samples of each replication, of N a pixel; 0: not known.
+// Samples of each replication, for N samples per pixel; 0: not known.
 inline uint64_t samples_each(const Options& o, uint64_t N) {
     const uint64_t K = o.sets ? o.sets : 2;
     return (N + K - 1) / K;

@@ -1,13 +1,14 @@
-// app/outputs.h  2  the files that a program leaves: checked before it renders, written after it
+// app/outputs.h  3  output files: checked before the render, written after it
 #pragma once
 #include <set>
 
 #include "app/report.h"
+#include "app/views.h"
 #include "film/image.h"
 
-// Images to write: those that were asked for, or `stem`.png and .pfm, where NAME is the scene's;
-// none if it is empty.  Throws UserError if one of all the files (`others`, too) cannot be written,
-// would replace another or what is `used`, or has no room for the picture.
+// Images to write: those that the user named, or `stem`.png and .pfm, with the scene's name for
+// NAME; none if `stem` is empty.  Throws UserError if one of these files, of `others` or of --stats
+// cannot be written, is one that is `used`, comes twice, or cannot hold so many pixels.
 inline std::vector<std::string> outputs_of(const CommonOptions& o, std::string stem,
                                            const std::vector<std::string>& used,
                                            const std::vector<std::string>& others, Size size) {
@@ -33,13 +34,17 @@ inline std::vector<std::string> outputs_of(const CommonOptions& o, std::string s
     return outputs;
 }
 
-// Writes one picture to every file; throws SystemError, before it writes any, if there is a pixel
-// that files do not hold.
+// Writes one picture to every file; a PNG gets a view scaled.  Throws SystemError, before it writes
+// any, if a pixel is too bright for a file.
 inline void write_images(const std::vector<std::string>& paths, const Image& picture,
-                         double exposure) {
+                         double exposure, View view = View::radiance) {
     if (const auto at = first_non_finite(picture))
         throw SystemError("pixel " + *at + " is more than a file can hold; nothing was written");
-    for (const std::string& path : paths) write_image(path, picture, exposure);
+    for (const std::string& path : paths)
+        if (path.ends_with(".png") && view != View::radiance)
+            write_image(path, scaled(picture, view), exposure);
+        else
+            write_image(path, picture, exposure);
 }
 
 // Says which files were written.
@@ -50,8 +55,9 @@ inline void tell_written(const CommonOptions& o, std::vector<std::string> files)
     tell(o, "wrote " + names);
 }
 
-// A hint at the most frequent reason.
+// With a hint at the most frequent reason.
 inline void tell_black(const CommonOptions& o) {
-    tell(o, o.scene + ": all is black: no light reaches the camera (lights emit on one side " +
+    tell(o, o.scene +
+                ": the image is black: no light reaches the camera (lights emit on one side "
                 "only, unless they are twosided)");
 }

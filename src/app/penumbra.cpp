@@ -8,24 +8,30 @@ namespace {
 
 constexpr const char* before_options =
     "usage: penumbra [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) "
-    "by path tracing.\n\n";
+    "by path tracing.\n\nexamples:\n"
+    "  penumbra scenes/cornell.scene                           to out/cornell.png\n"
+    "  penumbra --error 3% -o a.png scenes/atelier.scene       to an error of 3 %\n"
+    "  penumbra --time 10 --size 512x512 scenes/cornell.scene  in ten seconds\n\n";
 
 constexpr const char* after_options = R"(
+The estimated error is the relative RMSE d_rel: the root mean square error of
+the image, divided by the RMS of the image without noise.
+
 A .pfm and a .hdr hold linear radiance; a .png holds exposure times radiance,
-clamped to [0,1], as sRGB.  Pixel (0,0) is the top left one.
+clamped to [0,1], in sRGB.  Pixel (0,0) is at the top left.
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
 129 SIGHUP), after writing the image of the samples so far.
 )";
 
-// The samples of one pixel after the other.  A path ends early once nobody waits for it.
+// The function that renders a sample.  It abandons a path after an interrupt.
 Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
                      const Witness& witness) {
     return [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         if (o.view != View::radiance) return ++tally.rays, view_along(scene, o.view, at.ray);
-        auto misses = witness.account(tally);
+        auto misses = witness.visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {
                       if (interrupted) throw Interrupted();
@@ -35,7 +41,7 @@ Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& patter
     };
 }
 
-// What must agree when a film is gone on with, or merged with others.
+// Facts that must agree when a film is resumed, or merged with others.
 FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, const Plan& plan,
                const Pattern& p) {
     const Scene& scene = parsed.scene;
@@ -63,10 +69,7 @@ int penumbra(const std::vector<std::string>& words) {
     Options o;
     OptionTable table = option_table(o);
     parse_options(table, o, words);
-    if (o.help) {
-        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
-        return 0;
-    }
+    if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
     Plan plan = plan_of(o, scene);

@@ -1,4 +1,4 @@
-// app/render.h  3  from options to an image: a film, its target, its error, its file
+// app/render.h  4  from options to an image: a film, its target, its error, its file
 #pragma once
 #include "app/keep.h"
 #include "app/options.h"
@@ -10,13 +10,14 @@
 
 // ---- The scene ----------------------------------------------------------------------------------
 
-// The scene as the user wants it; throws UserError if it is not to be had.
+// The scene with the user's options; throws UserError if it cannot be read or rendered.
 inline ParsedScene load(const Options& o) {
     ParsedScene parsed = read_scene(o.scene);
     Scene& scene = parsed.scene;
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
-    scene.exposure = o.exposure ? real(*o.exposure) : default_exposure(scene, o.view);
+    if (o.view != View::radiance) scene.exposure = 1;  // a scene's own is meant for radiance
+    if (o.exposure) scene.exposure = real(*o.exposure);
     for (size_t i = 0; i < scene.lights.size(); ++i)
         if (scene.lights[i].kind == Light::Kind::point && o.technique.light == LightMode::none)
             throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
@@ -32,7 +33,7 @@ inline ParsedScene load(const Options& o) {
 
 // A scene without light is black, whatever error is asked for.
 inline Plan plan_of(const Options& o, const Scene& scene) {
-    const double error = scene.lights.empty() && o.view == View::radiance ? 0 : o.error;
+    const double error = scene.lights.empty() ? 0 : o.error;
     const bool ends = o.spp > 0 || o.seconds > 0 || error > 0;
     const uint64_t N = ends ? o.spp : scene.samples;
     Plan plan{{samples_each(o, N), o.seconds, error}, 1, o.threads, bytes_of_machine(), scene.size};
@@ -41,7 +42,7 @@ inline Plan plan_of(const Options& o, const Scene& scene) {
     return plan;
 }
 
-// A film that memory has room for; throws UserError if it has none.
+// Throws UserError if memory has no room for the film.
 inline Film film_for(const Plan& plan) {
     if (bytes_of(plan.size, std::max(2u, plan.sets)) > plan.memory)
         throw UserError(std::to_string(plan.size.width) + "x" + std::to_string(plan.size.height) +
@@ -55,12 +56,12 @@ inline Film film_for(const Plan& plan) {
 // A NaN is an error and no black dot.
 inline void check_finite(const NonFinite& bad) {
     if (bad.count == 0) return;
-    throw SystemError(std::to_string(bad.count) + " samples were not finite, the first at " +
-                      in_words(bad.first) + " (replay it by " +
+    throw SystemError(counted(bad.count, "sample") + (bad.count == 1 ? " was" : " were") +
+                      " not finite, the first at " + in_words(bad.first) + " (replay it by " +
                       in_words(bad.first, "--pixel ", " --sample ") + "); nothing was written");
 }
 
-// What a film tells.
+// The results of a film.
 inline Run run_of(const Film& film, const Plan& plan, const Spent& spent,
                   const ErrorChecks& checks) {
     Run run;
@@ -77,7 +78,7 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent,
     run.error = error_of(film);
     run.doubt = doubt_of(film, run.error, plan.judge);
     run.sets = film.sets_per_pixel();
-    run.exponent_of_cost = 1 / checks.course().exponent();
+    run.exponent_of_cost = 1 / checks.history().exponent();
     return run;
 }
 
@@ -93,6 +94,9 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     Film film = film_for(plan);
     Keeper keeper(o.keep, what);
     const Spent before = keeper.restore(film);
+    if (film.total() > 0)
+        tell(o, "resuming " + o.keep + " at " +
+                    significant(film.total() / double(film.pixels()), 3) + " samples per pixel");
     Progress progress(plan.target.seconds, o.quiet, before.seconds);
     ErrorChecks checks(plan.target.error, plan.period, plan.judge);
     Watch watch;
@@ -116,25 +120,25 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     if (loop.most_sets_chosen() < Allocation().most)
         tell(o, "a pixel has at most " + std::to_string(loop.most_sets_chosen()) +
                     " replications: more do not fit into memory");
-    const Run run =
-        run_of(film, plan, spent(), checks);  // asks once: a signal may come at any time
+    Run run = run_of(film, plan, spent(), checks);  // once: a signal may come at any time
+    run.is_radiance = o.view == View::radiance;
     return {image_of(film), run, keeper.write(film, run, !run.interrupted)};
 }
 
 // ---- A program that renders ---------------------------------------------------------------------
 
-// Writes all that was asked for, and says so.  Returns the exit status.
+// Writes the image and the statistics, and prints the summary.  Returns the exit status.
 inline int write_picture(const Options& o, const OptionTable& table, const Scene& scene,
                          const std::vector<std::string>& outputs, const Picture& picture) {
     const auto& [image, run, not_kept] = picture;
     if (run.spp > 0) {
-        write_images(outputs, image, double(scene.exposure));
+        write_images(outputs, image, double(scene.exposure), o.exposure ? View::radiance : o.view);
         json::Object stats = asked_for(table, o.scene, {image.width, image.height});
         stats.add("depth", std::to_string(scene.depth));
         add_run(stats, run, {image.width, image.height});
         if (!o.stats.empty()) write_file(o.stats, stats.text());
     }
-    tell(o, summary(o.scene, run, o.error > 0));
+    tell(o, summary(o.scene, run, o.error));
     std::vector<std::string> files = outputs;
     if (!o.keep.empty() && not_kept.empty()) files.push_back(o.keep);
     if (run.spp > 0) tell_written(o, files);
@@ -144,10 +148,12 @@ inline int write_picture(const Options& o, const OptionTable& table, const Scene
     return run.interrupted ? 128 + interrupted : 0;
 }
 
-// Images to write: none by default if it is a band, which is for build/merge.
+// Images to write: none by default if it is a band, which is for build/merge.  A view has a file of
+// its own.
 inline std::vector<std::string> outputs_of(const Options& o, const ParsedScene& parsed,
                                            const std::string& suffix, Size size) {
     std::vector<std::string> kept;
     if (!o.keep.empty()) kept.push_back(o.keep);
-    return outputs_of(o, o.rows ? "" : "out/NAME" + suffix, parsed.files, kept, size);
+    const std::string stem = o.rows ? "" : "out/NAME" + suffix + suffix_of(o.view);
+    return outputs_of(o, stem, parsed.files, kept, size);
 }

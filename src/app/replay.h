@@ -1,18 +1,17 @@
-// app/replay.h  4  one path in words (--pixel)
+// app/replay.h  4  prints the events of one path (--pixel)
 #pragma once
 #include <cstdio>
 
 #include "app/views.h"
 #include "path/start.h"
 
-// Writes down what happens on a path, a line an event, with every digit: what it prints is what
-// the image was made of.
+// Prints the events of a path, one per line and with every digit: these numbers made the image.
 class PathLog {
 public:
     PathLog(const Scene& scene, std::FILE* out) : scene_(scene), out_(out) {}
 
     void film(const Start& at) const {
-        print("film", {at.u.x, at.u.y});
+        print("position in the pixel", {at.u.x, at.u.y});
         print("ray from", at.ray.o);
         print("ray towards", at.ray.d);
     }
@@ -28,9 +27,10 @@ public:
         print("  throughput", s.beta);
         if (x.material->emits()) {
             print("  emission", e.Le);
-            print("  its weight", {e.weight});
+            print("  MIS weight", {e.weight});
         }
         if (e.direct.light) light(e.direct);
+        if (e.direct.none) std::fprintf(out_, "  no light sample: %s\n", e.direct.none);
         if (e.scattered.pdf > 0) {
             print("  wi", e.wi);
             print("  f", e.scattered.f);
@@ -48,7 +48,7 @@ private:
     const Scene& scene_;
     std::FILE* out_;
 
-    // Where the scene's file has this shape.
+    // The material of this shape, and its line in the scene's file.
     std::string origin(uint32_t shape) const {
         if (scene_.line_of.empty()) return "";
         return ", material " + in_quotes(scene_.names[scene_.material_of[shape]]) + ", line " +
@@ -63,7 +63,7 @@ private:
         print("    at", d.sample.at.p);
         print("    wi", d.sample.wi);
         print("    pdf", {d.pdf});
-        print("    its weight", {d.weight});
+        print("    MIS weight", {d.weight});
         print("    reflected", d.L);
     }
     void print(const char* what, std::initializer_list<real> numbers) const {
@@ -78,6 +78,9 @@ private:
 inline void replay(const Options& o, const Scene& scene, const Pattern& pattern) {
     const PathLog log(scene, stdout);
     const Start at = start(scene, pattern, *o.replay);
+    const auto& [x, y, i, set] = *o.replay;
+    std::printf("pixel %d,%d, sample %llu of replication %u, seed %llu\n", x, y,
+                static_cast<unsigned long long>(i), set, static_cast<unsigned long long>(o.seed));
     log.film(at);
     if (o.view != View::radiance)
         return log.end("a view, not radiance", view_along(scene, o.view, at.ray));

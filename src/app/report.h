@@ -1,4 +1,4 @@
-// app/report.h  1  what a run tells: progress and a summary on stderr, statistics in JSON
+// app/report.h  1  progress and a summary on stderr, statistics in JSON
 #pragma once
 #include <sys/resource.h>
 #include <unistd.h>
@@ -14,11 +14,11 @@ inline void tell(const CommonOptions& o, const std::string& line) {
 
 // ---- Progress -----------------------------------------------------------------------------------
 
-// On a terminal a bar that is drawn over itself and goes at the end, elsewhere a plain line now and
-// then; on stderr.
+// On stderr: a bar on a terminal, which is redrawn and erased at the end; elsewhere a line every
+// two seconds.
 class Progress {
 public:
-    // Of a run that ends after so many seconds, `before` of them in earlier runs; 0: no limit.
+    // A run ends after `limit` seconds, 0: no limit.  `before` is the time of earlier runs.
     Progress(double limit, bool quiet, double before = 0)
         : limit_(limit), quiet_(quiet), before_(before) {}
     Progress(const Progress&) = delete;
@@ -30,7 +30,7 @@ public:
         return before_ + std::chrono::duration<double>(clock::now() - start_).count();
     }
 
-    // `done` is the fraction of all work, 0 if the clock alone ends it; `words` say it in its unit.
+    // `done` is the fraction of all work; 0 if only the clock ends it.
     void show(double done, const std::string& words) {
         const double now = elapsed();
         if (quiet_ || now < next_) return;
@@ -59,18 +59,19 @@ private:
     bool shown_ = false;
 };
 
-// ---- What a run measured ------------------------------------------------------------------------
+// ---- Measurements of a run ----------------------------------------------------------------------
 
 struct Run : Spent {
-    double spp = 0;  // samples a pixel, in the mean; 0: some pixel has none
+    double spp = 0;  // mean samples per pixel; 0: some pixel has none
     bool interrupted = false;
-    std::string stopped_by;  // "samples", "time", "error", "error not known" or "interrupt"
+    std::string stopped_by;   // "samples", "time", "error", "error not known" or "interrupt"
+    bool is_radiance = true;  // false: a view; its error is not reported
     ImageError error;
     std::string doubt;              // why that may be far too small, or ""
-    double sets = 1;                // replications a pixel, in the mean
+    double sets = 1;                // mean replications per pixel
     double exponent_of_cost = 2;    // seconds ~ d_rel^-this
     std::string bias = "unbiased";  // class of the estimator
-    Facts more;                     // of this program alone: keys and JSON values
+    Facts more;                     // keys and JSON values of one program only
 
     double mrays_per_second() const { return double(rays) / seconds * 1e-6; }
 };
@@ -86,39 +87,61 @@ inline int64_t peak_memory_bytes() {
 
 // ---- In words -----------------------------------------------------------------------------------
 
-// Why there is no error to state; "": there is.
+// Why no error is reported; "": it is.
 inline std::string why_no_error(const Run& run) {
+    if (!run.is_radiance) return "a view, not radiance";
     if (run.spp <= 1) return "one sample";
     if (run.sets == 1) return run.interrupted ? "interrupted early" : "one replication";
     if (run.error.d2() >= 0 || run.error.norm == 0) return run.doubt;
     return run.interrupted ? "interrupted early" : "too little time";
 }
 
-// "d_rel 2.1 % ± 0.1 %; 1 % needs 34 s"
-inline std::string told_error(const Run& run) {
-    if (const std::string why = why_no_error(run); !why.empty()) return "d_rel not known: " + why;
+// "estimated error 2.1 % ± 0.1 %; about 27 s more for 1 %": for `wanted`, or for half of the error
+// if that is not less.
+inline std::string error_words(const Run& run, double wanted = 0) {
+    if (const std::string why = why_no_error(run); !why.empty()) return "error not known: " + why;
     const double d = run.error.d_rel();
-    std::string words = "d_rel " + significant(100 * d, 2) + " % ± " +
-                        significant(100 * run.error.standard_error(), 1) + " %";
-    if (run.bias != "unbiased") words += " without its bias (" + run.bias + ")";
+    const std::string number =
+        significant(100 * d, 2) + " % ± " + significant(100 * run.error.standard_error(), 1) + " %";
+    const std::string words =
+        run.bias == "unbiased"
+            ? "estimated error " + number
+            : "error " + number + " (noise only; the estimator is " + run.bias + ")";
     if (d == 0) return words;
     const double unit = std::pow(10, std::floor(std::log10(d / 2)));
-    const double half = std::round(d / 2 / unit) * unit;
-    return words + "; " + significant(100 * half, 1) + " % needs " +
-           significant(run.seconds * std::pow(d / half, run.exponent_of_cost), 2) + " s";
+    const bool is_less = wanted > 0 && wanted < d;
+    const double goal = is_less ? wanted : std::round(d / 2 / unit) * unit;
+    const double more = run.seconds * (std::pow(d / goal, run.exponent_of_cost) - 1);
+    return words + "; about " + significant(more, 2) + " s more for " +
+           significant(100 * goal, is_less ? 3 : 1) + " %";
 }
 
-// The line that stays.
-inline std::string summary(const std::string& scene, const Run& run, bool wants_error) {
-    std::string line = scene + ": " + significant(run.spp, 3) + " samples per pixel, " +
-                       fixed(run.seconds, 2) + " s, " + fixed(run.mrays_per_second(), 2) +
-                       " Mrays/s";
-    if (run.spp > 0) line += ", " + told_error(run);
-    if (wants_error && !run.interrupted) line += " (stopped by " + run.stopped_by + ")";
-    return line + (run.interrupted ? " (interrupted)" : "");
+// Whether --error was met: "reached 3 % (ERROR)" or "did not reach 3 % (stopped by --time; ERROR)".
+// `by` is the option that ended the run; "": the reason is in the words about the error.
+inline std::string outcome_words(double wanted, const std::string& by, const std::string& error) {
+    const std::string goal = "reach" + std::string(by == "--error" ? "ed " : " ") +
+                             significant(100 * wanted, 3) + " % (";
+    if (by == "--error") return goal + error + ")";
+    return "did not " + goal + (by.empty() ? "" : "stopped by " + by + "; ") + error + ")";
 }
 
-// Adds it to what was asked for.
+// The line that stays.  `wanted`: the error that was asked for, or 0.
+inline std::string summary(const std::string& scene, const Run& run, double wanted = 0) {
+    if (run.spp == 0 && run.interrupted)
+        return scene + ": interrupted before the first pass was complete: no image written";
+    const std::string line = scene + ": " + counted(significant(run.spp, 3), "sample") +
+                             " per pixel, " + fixed(run.seconds, 2) + " s, " +
+                             fixed(run.mrays_per_second(), 2) + " Mrays/s";
+    if (!run.is_radiance) return line + (run.interrupted ? " (interrupted)" : "");
+    if (run.interrupted) return line + ", " + error_words(run, wanted) + " (interrupted)";
+    if (wanted == 0) return line + ", " + error_words(run);
+    const std::string by = run.stopped_by == "error not known" ? ""
+                           : run.stopped_by == "samples"       ? "--spp"
+                                                               : "--" + run.stopped_by;
+    return line + ", " + outcome_words(wanted, by, error_words(run, wanted));
+}
+
+// Adds the measurements to the options.
 inline void add_run(json::Object& object, const Run& run, Size size) {
     object.add("precision", sizeof(real) == 4 ? "\"float\"" : "\"double\"");
     object.add("interrupted", json::truth(run.interrupted));
@@ -136,7 +159,7 @@ inline void add_run(json::Object& object, const Run& run, Size size) {
     auto if_known = [&](double x) { return json::number(reason.empty() ? x : double(NAN)); };
     object.add("d_rel", if_known(run.error.d_rel()));
     object.add("d_rel_standard_error", if_known(run.error.standard_error()));
-    object.add("d_rel_by_spread", json::number(run.error.d_rel()));  // known or not
+    object.add("d_rel_by_spread", json::number(run.error.d_rel()));  // also if it is not reported
     object.add("d_rel_reason", reason.empty() ? "null" : json::string(reason));
     const bool falls = run.error.d2() > 0;  // or is 0
     object.add("seconds_to_half_d_rel",

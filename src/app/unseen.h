@@ -13,6 +13,6 @@ struct Unseen {
 struct Witness {
     Witness(const Scene&, const Technique&) {}
     void watch(Plan&) {}
-    NoAccount account(Tally&) const { return {}; }
+    NoVisitor visitor(Tally&) const { return {}; }
 };
 #endif

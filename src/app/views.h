@@ -1,8 +1,9 @@
-// app/views.h  2  other things to look at than radiance (--view)
+// app/views.h  2  views of a scene other than its radiance (--view)
 #pragma once
 #include "app/options.h"
+#include "film/image.h"
 
-// What a ray sees; black where it meets nothing.
+// The value of a view along a ray; black where it meets nothing.
 inline rgb view_along(const Scene& scene, View view, const Ray& ray) {
     if (view == View::bvh) {
         const Tree::Work work = scene.bvh.work(ray);
@@ -16,11 +17,28 @@ inline rgb view_along(const Scene& scene, View view, const Ray& ray) {
     return m.kind == Material::Kind::glass ? rgb{1, 1, 1} : m.kd + m.ks;
 }
 
-// Factor to PNG: a scene's own is meant for radiance.  Depth reaches white at the diagonal of the
-// scene's box, work at 64 visits.
-inline real default_exposure(const Scene& scene, View view) {
-    if (view == View::radiance) return scene.exposure;
-    if (view == View::bvh) return real(1) / 64;
-    if (view != View::depth) return 1;
-    return 1 / diagonal(scene);
+// The end of a file's name: "-depth"; "" for radiance.
+inline std::string suffix_of(View view) {
+    std::string suffix;
+    if (view != View::radiance) suffix.append("-").append(words_of(view_names)[size_t(view)]);
+    return suffix;
+}
+
+// A view as a PNG shows it: depth from black (nearest) to white (farthest), work relative to that
+// of the most expensive pixel.  The other views stay as they are.  The nearest percent of depths is
+// black: some of these pixels are partly background, which has depth 0.
+inline Image scaled(Image image, View view) {
+    if (view != View::depth && view != View::bvh) return image;
+    std::vector<float> values;
+    for (const auto& pixel : image.pixels)
+        for (const float x : pixel)
+            if (x > 0) values.push_back(x);
+    if (values.empty()) return image;
+    const auto nearest = values.begin() + std::ptrdiff_t(values.size() / 100);
+    std::nth_element(values.begin(), nearest, values.end());
+    const float least = view == View::depth ? *nearest : 0;
+    const float range = *std::max_element(nearest, values.end()) - least;
+    for (auto& pixel : image.pixels)
+        for (float& x : pixel) x = range > 0 ? std::max(0.f, (x - least) / range) : float(x > 0);
+    return image;
 }

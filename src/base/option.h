@@ -1,7 +1,7 @@
 // base/option.h  3  a program's options: one table of rows
 //
-// Parsing, --help, suggestions, the first lines of --stats and the README's tables follow from the
-// rows.  A row holds functions that read and write the program's own variables.
+// Parsing, --help, suggestions, the first lines of --stats and the tables in reference/ follow from
+// the rows.  A row holds functions that read and write the program's own variables.
 #pragma once
 #include <functional>
 #include <optional>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "base/program.h"
 #include "base/words.h"
 
 using Text = std::string_view;
@@ -22,7 +23,9 @@ struct Option {
     std::string otherwise;  // the default; "": nothing
     std::function<void(Text)> set;
     std::function<std::string()> json = {};  // its value in --stats; none: not there
-    bool given = false;                      // by the user
+    Text also = {};                          // another name
+    Text group = {};                         // heading in --help
+    bool given = false;                      // the user gave this option
 };
 using OptionTable = std::vector<Option>;
 
@@ -30,8 +33,9 @@ using OptionTable = std::vector<Option>;
 inline Option& row(OptionTable& table, Text name) {
     std::vector<Text> known;
     for (Option& r : table) {
-        if (r.name == name) return r;
+        if (name == r.name || name == r.also) return r;
         known.push_back(r.name);
+        if (!r.also.empty()) known.push_back(r.also);
     }
     throw UserError(unknown("option", name, known));
 }
@@ -39,6 +43,11 @@ inline bool is_given(OptionTable& table, Text name) { return row(table, name).gi
 inline OptionTable operator+(OptionTable a, const OptionTable& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
+}
+// The rows under one heading.
+inline OptionTable in_group(Text group, OptionTable rows) {
+    for (Option& r : rows) r.group = group;
+    return rows;
 }
 // Without the rows of these names.
 inline OptionTable without(OptionTable table, const std::vector<Text>& names) {
@@ -112,60 +121,75 @@ struct CommonOptions {
     std::optional<Size> size;        // default: the scene's
     std::optional<double> exposure;  // default: the scene's
     std::string stats;               // file, or empty
-    bool quiet = false, help = false;
+    bool quiet = false, help = false, version = false;
 };
 
-inline Option output_row(CommonOptions& o, std::string otherwise) {
+inline OptionTable output_rows(CommonOptions& o, std::string otherwise) {
     auto set = [&o](Text v) {
         if (!v.ends_with(".png") && !v.ends_with(".pfm") && !v.ends_with(".hdr"))
             throw UserError(in_quotes(v) + " ends in none of .png, .pfm and .hdr");
         o.outputs.emplace_back(v);
     };
-    return {"-o", "FILE", "image to write, .png, .pfm or .hdr; may be repeated",
-            std::move(otherwise), set};
-}
-
-inline OptionTable common_rows(CommonOptions& o) {
     auto set_size = [&o](Text v) {
         const auto [width, height] = parts_of(v, 'x', "WIDTHxHEIGHT");
         o.size = parse_size(width, height);
     };
-    Option seed = whole_number("--seed", "another seed, another noise", "0", o.seed, 0, UINT64_MAX);
-    seed.json = [&o] { return std::to_string(o.seed); };
-    Option threads = whole_number("--threads", "the image does not depend on it", "all cores",
-                                  o.threads, 1, 1024);
-    threads.json = [&o] { return std::to_string(o.threads); };
-    return {
-        seed,
-        threads,
-        {"--size", "WxH", "pixels, e.g. 256x128; they are square, the field of view is vertical",
+    OptionTable rows = {
+        {"-o", "FILE", "image to write (.png, .pfm or .hdr); may be repeated", std::move(otherwise),
+         set},
+        {"--size", "WxH", "width and height in pixels, e.g. 256x128; the field of view is vertical",
          "the scene's", set_size},
         {"--exposure", "E", "factor from radiance to PNG", "the scene's",
          [&o](Text v) { o.exposure = parse_positive(v); }},
-        {"--stats", "FILE", "write what was measured, as JSON", "", [&o](Text v) { o.stats = v; }},
-        {"--quiet", "", "print nothing but errors", "", [&o](Text) { o.quiet = true; }},
-        {"--help", "", "print this, as -h does", "", [&o](Text) { o.help = true; }}};
+        {"--stats", "FILE", "write options and measurements as JSON", "",
+         [&o](Text v) { o.stats = v; }}};
+    rows[0].also = "--output";
+    return in_group("Output", rows);
+}
+
+inline Option seed_row(CommonOptions& o) {
+    Option seed = whole_number("--seed", "random seed", "0", o.seed, 0, UINT64_MAX);
+    seed.json = [&o] { return std::to_string(o.seed); };
+    seed.group = "Sampling";
+    return seed;
+}
+
+inline OptionTable general_rows(CommonOptions& o) {
+    OptionTable rows = {whole_number("--threads", "number of threads; it does not change the image",
+                                     "all cores", o.threads, 1, 1024),
+                        {"--quiet", "", "print errors only", "", [&o](Text) { o.quiet = true; }},
+                        {"--help", "", "show this help", "", [&o](Text) { o.help = true; }},
+                        {"--version", "", "show commit, precision and compiler", "",
+                         [&o](Text) { o.version = true; }}};
+    rows[0].json = [&o] { return std::to_string(o.threads); };
+    rows[2].also = "-h";
+    return in_group("General", rows);
 }
 
 // ---- Words to options ---------------------------------------------------------------------------
 
-// Hands words that are no options, and all that follow "--", to `other`.  Throws UserError about
+// Passes words that are no options, and all words after "--", to `other`.  Throws UserError about
 // the first word that cannot be used.
 inline void parse_words(OptionTable& table, const std::vector<std::string>& words,
                         const std::function<void(const std::string&)>& other) {
     bool is_ended = false;
     for (size_t i = 0; i < words.size(); ++i) {
-        const std::string word = words[i] == "-h" ? "--help" : words[i];
-        if (is_ended || !word.starts_with('-')) {
+        if (is_ended || !words[i].starts_with('-')) {
             other(words[i]);
             continue;
         }
-        is_ended = word == "--";
+        is_ended = words[i] == "--";
         if (is_ended) continue;
+        // "--spp=64" is "--spp 64".
+        const size_t equals = words[i].starts_with("--") ? words[i].find('=') : std::string::npos;
+        const std::string word = words[i].substr(0, equals);
         Option& r = row(table, word);
-        if (!r.value.empty() && i + 1 == words.size()) throw UserError(word + ": needs a value");
+        const bool joined = equals != std::string::npos;
+        if (joined && r.value.empty()) throw UserError(word + ": takes no value");
+        if (!joined && !r.value.empty() && i + 1 == words.size())
+            throw UserError(word + ": needs a value");
         try {
-            r.set(r.value.empty() ? "" : words[++i]);
+            r.set(r.value.empty() ? "" : joined ? words[i].substr(equals + 1) : words[++i]);
             r.given = true;
         } catch (const UserError& e) {
             throw UserError(word + ": " + e.what());
@@ -182,12 +206,12 @@ inline void parse_words(OptionTable& table, const std::vector<std::string>& word
             throw UserError("two scenes: " + in_quotes(o.scene) + " and " + in_quotes(word));
         o.scene = word;
     });
-    if (!o.help && o.scene.empty()) throw UserError("no scene given (try --help)");
+    if (!o.help && !o.version && o.scene.empty()) throw UserError("no scene given (try --help)");
 }
 
 // ---- Options to words ---------------------------------------------------------------------------
 
-// What the user asked for: --stats begins with it.
+// The user's options, which come first in --stats.
 inline json::Object asked_for(const OptionTable& table, const std::string& scene, Size size) {
     json::Object object;
     object.add("scene", json::string(scene));
@@ -212,18 +236,41 @@ inline void wrap(std::string& page, const std::string& text, size_t indent) {
     page.back() = '\n';
 }
 
-// A line or two for every option.
+// "-o, --output FILE"
+inline std::string usage_of(const Option& r) {
+    return std::string(r.name) + (r.also.empty() ? "" : ", ") + std::string(r.also) +
+           (r.value.empty() ? "" : " ") + std::string(r.value);
+}
+
+// A line or two for every option, under the headings of groups; these come in the order of their
+// first rows.
 inline std::string option_lines(const OptionTable& table) {
     constexpr size_t indent = 24;
+    std::vector<Text> groups;
+    for (const Option& r : table)
+        if (std::find(groups.begin(), groups.end(), r.group) == groups.end())
+            groups.push_back(r.group);
     std::string page;
-    for (const Option& r : table) {
-        std::string line = "  " + std::string(r.name) + " " + std::string(r.value) + " ";
-        if (line.size() > indent) line.back() = '\n';
-        line.append(line.size() > indent ? indent : indent - line.size(), ' ');
-        page += line;
-        std::string text(r.help);
-        if (!r.otherwise.empty()) text += " (default: " + r.otherwise + ")";
-        wrap(page, text, indent);
+    for (const Text group : groups) {
+        if (!group.empty()) page += (page.empty() ? "" : "\n") + std::string(group) + ":\n";
+        for (const Option& r : table) {
+            if (r.group != group) continue;
+            std::string line = "  " + usage_of(r) + " ";
+            if (line.size() > indent) line.back() = '\n';
+            line.append(line.size() > indent ? indent : indent - line.size(), ' ');
+            page += line;
+            std::string text(r.help);
+            if (!r.otherwise.empty()) text += " (default: " + r.otherwise + ")";
+            wrap(page, text, indent);
+        }
     }
     return page;
+}
+
+// Prints the help, between these texts, or the version; false: the user asked for neither.
+inline bool print_manual(const CommonOptions& o, const OptionTable& table, const char* before,
+                         const char* after) {
+    if (o.help) std::printf("%s%s%s", before, option_lines(table).c_str(), after);
+    if (o.version && !o.help) std::printf("%s\n", version().c_str());
+    return o.help || o.version;
 }

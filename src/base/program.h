@@ -1,4 +1,4 @@
-// base/program.h  2  how programs end, and the machine that they run on
+// base/program.h  2  how programs end, how they were built, and the machine that they run on
 #pragma once
 #include <cerrno>
 #include <cstdio>
@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "base/vec.h"
 #include "base/words.h"
 
 // The exit status of main, after all of stdout is written; throws SystemError if it cannot be.
@@ -18,7 +19,7 @@ inline int finished(int status) {
     return status;
 }
 
-// The same for main's catch (...), with a line on stderr: 2 if the user can mend it, else 1.
+// Prints the error that main caught.  Returns 2 if the user can fix it, else 1.
 inline int failed() {
     auto tell = [](int status, const char* why) {
         std::fprintf(stderr, "%s\n", printable(why).c_str());
@@ -33,6 +34,24 @@ inline int failed() {
     } catch (const std::exception& e) {
         return tell(1, e.what());
     }
+}
+
+// The commit that a program was built from.  The Makefile links another definition, which replaces
+// this weak one.
+[[gnu::weak]] const char* commit() { return "unknown commit"; }
+
+inline std::string compiler() {
+#ifdef __clang__
+    return __VERSION__;
+#else
+    return "g++ " __VERSION__;
+#endif
+}
+
+// What --version prints.
+inline std::string version() {
+    return std::string("Penumbra ") + commit() + ", " +
+           (sizeof(real) == sizeof(double) ? "double" : "float") + " precision, " + compiler();
 }
 
 inline double bytes_of_machine() {

@@ -34,8 +34,7 @@ Option direct_row([[maybe_unused]] Drawing& d) {
 OptionTable table_of(Order& o) {
     Drawing& d = o.drawing;
     d.technique.roulette = real(0.25);
-    OptionTable table = {output_row(o, "out/SCENE.png"),
-                         one_of("--view", "normal|occlusion|radiance",
+    OptionTable table = {one_of("--view", "normal|occlusion|radiance",
                                 "what it shows; occlusion: how open a place is", d.picture),
                          whole_number("--spp", "samples a pixel", "16", d.samples, 1, 1 << 20),
                          one_of("--sampler", "independent|stratified|halton|sobol",
@@ -50,10 +49,8 @@ OptionTable table_of(Order& o) {
                          {"--beside", "FILE.pfm",
                           "beside it what is expected, and the difference, doubled, about grey", "",
                           [&o](Text v) { o.beside = v; }}};
-    for (const Option& r :
-         without(common_rows(o), {"--threads", "--exposure", "--stats", "--quiet"}))
-        table.push_back(r);
-    return table;
+    table = output_rows(o, "out/SCENE.png") + table + OptionTable{seed_row(o)} + general_rows(o);
+    return in_group("", without(table, {"--threads", "--exposure", "--stats", "--quiet"}));
 }
 
 // Yours, what is expected, and grey plus twice the difference: grey is equal.
@@ -88,10 +85,7 @@ int run(const std::vector<std::string>& words) {
     Order o;
     OptionTable table = table_of(o);
     parse_words(table, words, o);
-    if (o.help) {
-        std::printf("usage: draw [options] SCENE\n\n%s", option_lines(table).c_str());
-        return 0;
-    }
+    if (print_manual(o, table, "usage: draw [options] SCENE\n\n", "")) return 0;
     o.drawing.seed = o.seed;
     ParsedScene parsed = read_scene(o.scene);
     Scene& scene = parsed.scene;

@@ -49,7 +49,7 @@ inline rgb pixel_in_shadow(const Scene& scene, const Drawing& d, const Pattern& 
                            int y) {
     ShadowPixel pixel;
     for (uint64_t i = 0; i < d.samples; ++i)
-        pixel.add(shadow_Li(scene, d.technique, start(scene, pattern, {x, y, i}), NoAccount{}));
+        pixel.add(shadow_Li(scene, d.technique, start(scene, pattern, {x, y, i}), NoVisitor{}));
     return pixel.value(*d.direct);
 }
 #endif

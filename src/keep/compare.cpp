@@ -1,14 +1,13 @@
-// keep/compare.cpp  3  how far is one image from another?
+// keep/compare.cpp  3  build/compare: the error of an image against a reference
 //
 //   build/compare REFERENCE IMAGE [--limit 2%] [--alpha 1e-6] [--heatmap FILE.png]
 //
-// With f the reference, g the image and N numbers (three a pixel):
+// With the reference f, the image g and N numbers (three per pixel):
 //   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
 //
-// Both are .pfm or .film.  Two films know the variances of their pixels: then also Welch's test
-// whether they show the same.  The verdict, and the exit status 1 if they differ: d_rel above the
-// limit, or p below alpha.
-#include "base/program.h"
+// Both are .pfm or .film.  Two films know the variances of their pixels, so that Welch's test
+// applies.  The images differ, with exit status 1, if d_rel is above the limit or p below alpha.
+#include "base/option.h"
 #include "keep/keep.h"
 #include "keep/p_of_z.h"
 #include "keep/read_pfm.h"
@@ -42,14 +41,14 @@ Difference difference(const Image& f, const Image& g) {
     return result;
 }
 
-// Whether the means of both images over all pixels are equal, by channel (Welch 1947; Jung, Hanika,
-// Dachsbacher 2020 do so by pixel, which sees far less).  Pixels are independent, and means of that
+// Welch's test (1947) of the means of both images over all pixels, per channel.  Jung, Hanika,
+// Dachsbacher 2020 test per pixel, with far less power.  Pixels are independent, and means of that
 // many are normal.
 struct Equality {
-    size_t channel = 0;  // that differs most
-    double sigmas = 0;   // by so many
-    // Two-sided: of so large a difference in that channel, and in any of three.  Channels go
-    // together, which only makes the latter rarer (Sidak 1967).
+    size_t channel = 0;  // the channel that differs most
+    double sigmas = 0;   // its difference in standard errors
+    // Two-sided p-values of that channel, and of the worst of three.  Correlation of the channels
+    // only makes the latter smaller (Sidak 1967).
     double p_alone = 1, p = 1;
 };
 
@@ -96,7 +95,7 @@ void check_same_size(const Image& f, const Image& g) {
                         std::to_string(g.height));
 }
 
-// An image, and the variances of its pixels if a film knows them.
+// An image, and the variances of its pixels if it comes from a film.
 struct Known {
     Image image;
     std::optional<Image> variance = {};
@@ -129,64 +128,39 @@ Known read_known(const std::string& path) {
     return known;
 }
 
-// ---- What is asked, and what is answered --------------------------------------------------------
+// ---- Options and verdict ------------------------------------------------------------------------
 
-struct Request {
+struct Request : CommonOptions {
     std::vector<std::string> images;
     std::string map;
     std::optional<double> limit, alpha;
-    bool help = false;
 };
 
-const std::string usage =
-    "usage: compare REFERENCE IMAGE [--limit 2%] [--alpha 1e-6] [--heatmap FILE.png]";
-
-// The number after an option.
-double fraction_after(const std::vector<std::string>& words, size_t& i) {
-    const std::string& option = words[i];
-    if (++i == words.size()) throw UserError(option + ": needs a value");
-    try {
-        return parse_fraction(words[i]);
-    } catch (const UserError& e) {
-        throw UserError(option + ": " + e.what());
-    }
-}
-
-void check(const Request& r) {
-    if (r.help) return;
-    if (r.images.size() != 2) throw UserError(usage);
-    if (r.alpha && !(*r.alpha > 0 && *r.alpha < 1))
-        throw UserError("--alpha: must be between 0 and 1");
-}
-
-Request parse(const std::vector<std::string>& words) {
-    Request r;
-    for (size_t i = 0; i < words.size(); ++i) {
-        const std::string& word = words[i];
-        if (word == "--help" || word == "-h") {
-            r.help = true;
-        } else if (word == "--heatmap") {
-            if (++i == words.size()) throw UserError("--heatmap: needs a value");
-            r.map = words[i];
-            if (!r.map.ends_with(".png"))
-                throw UserError("--heatmap: " + in_quotes(r.map) + " does not end in .png");
-        } else if (word == "--limit") {
-            r.limit = fraction_after(words, i);
-        } else if (word == "--alpha") {
-            r.alpha = fraction_after(words, i);
-        } else if (word.starts_with('-')) {
-            throw UserError(unknown("option", word, {"--limit", "--alpha", "--heatmap", "--help"}));
-        } else {
-            r.images.push_back(word);
-        }
-    }
-    check(r);
-    return r;
+OptionTable table_of(Request& r) {
+    return OptionTable{{"--limit", "D", "they differ if d_rel is greater than D, e.g. 2%", "",
+                        [&r](Text v) { r.limit = parse_fraction(v); }},
+                       {"--alpha", "P",
+                        "films differ if chance alone makes so large a difference of their means "
+                        "with a probability p below P",
+                        "1e-6",
+                        [&r](Text v) {
+                            r.alpha = parse_fraction(v);
+                            if (!(*r.alpha > 0 && *r.alpha < 1))
+                                throw UserError("must be between 0 and 1");
+                        }},
+                       {"--heatmap", "FILE.png",
+                        "draw the errors: black where the images agree, white from 4 d on", "",
+                        [&r](Text v) {
+                            r.map = v;
+                            if (!v.ends_with(".png"))
+                                throw UserError(in_quotes(v) + " does not end in .png");
+                        }}} +
+           in_group("", without(general_rows(r), {"--threads", "--quiet"}));
 }
 
 void print(const Difference& d, const std::optional<Equality>& e) {
-    std::printf("d: %.6g\nd_rel: %.6g\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n", d.d,
-                d.d_rel, d.ratio_of_means, d.largest, d.x, d.y);
+    std::printf("d: %.6g\nd_rel: %.6g %%\nratio of means: %.6g\nlargest error: %.6g at %d,%d\n",
+                d.d, 100 * d.d_rel, d.ratio_of_means, d.largest, d.x, d.y);
     const char* const channels[] = {"red", "green", "blue"};
     if (e)
         std::printf(
@@ -195,7 +169,7 @@ void print(const Difference& d, const std::optional<Equality>& e) {
             channels[e->channel], e->sigmas, e->p_alone, e->p);
 }
 
-// "same: " or "differ: " and why, one comparison for each thing asked; the exit status.
+// Prints "same: " or "differ: " with a comparison for each limit; returns the exit status.
 int judge(const Request& r, const Difference& d, const std::optional<Equality>& e) {
     const double alpha = r.alpha.value_or(1e-6);
     const bool far = r.limit && d.d_rel > *r.limit, unlikely = e && e->p < alpha;
@@ -208,24 +182,20 @@ int judge(const Request& r, const Difference& d, const std::optional<Equality>& 
     return far || unlikely ? 1 : 0;
 }
 
-const char* const help = R"(
-Prints how far IMAGE is from REFERENCE: d is the root of the mean squared difference,
-d_rel that over the root of the mean square of REFERENCE.  Both are .pfm or .film.
-Of two films (penumbra --keep) also by how much their means differ.  The last line and
-the exit status say whether they show the same (0) or differ (1):
-
-  --limit 2%           they differ if d_rel is greater than this; .02 is the same
-  --alpha 1e-6         films differ if so large a difference of their means has a
-                       probability p below this, by chance alone
-  --heatmap FILE.png   draws the errors: black where they agree, white from 4 d on
-)";
+const char* const before_options =
+    "usage: compare [options] REFERENCE IMAGE\n\nPrints the error of IMAGE against REFERENCE: d is "
+    "the root mean square error,\nd_rel the relative RMSE: d divided by the RMS of REFERENCE.  "
+    "Both "
+    "are .pfm or\n.film.  Of two films (penumbra --keep) it also compares the means.  The last "
+    "line\nand the exit status tell whether they show the same (0) or differ (1).\n\n";
 
 int compare(const std::vector<std::string>& words) {
-    const Request r = parse(words);
-    if (r.help) {
-        std::printf("%s\n%s", usage.c_str(), help);
-        return 0;
-    }
+    Request r;
+    OptionTable table = table_of(r);
+    parse_words(table, words, [&r](const std::string& word) { r.images.push_back(word); });
+    if (print_manual(r, table, before_options, "")) return 0;
+    if (r.images.size() != 2)
+        throw UserError("usage: compare [options] REFERENCE IMAGE (try --help)");
     const auto [f, variance_f] = read_known(r.images[0]);
     const auto [g, variance_g] = read_known(r.images[1]);
     check_same_size(f, g);
@@ -236,6 +206,7 @@ int compare(const std::vector<std::string>& words) {
     const Difference d = difference(f, g);
     print(d, e);
     if (!r.map.empty()) write_image(r.map, heatmap(f, g, d.d), 1);
+    if (!r.map.empty()) std::fprintf(stderr, "wrote %s\n", printable(r.map).c_str());
     return judge(r, d, e);
 }
 

@@ -1,4 +1,4 @@
-// keep/merge.cpp  4  build/merge: bands and seeds of one picture, rendered one by one, put together
+// keep/merge.cpp  4  build/merge: merges films of bands and of other seeds into one picture
 #include <deque>
 
 #include "app/outputs.h"
@@ -10,17 +10,18 @@ namespace {
 
 constexpr const char* before_options =
     "usage: merge [options] PART.film...\n\nMerges films of `penumbra --keep PART.film` into "
-    "one\npicture: bands (--rows A-B), and other seeds of them (--seed N).\n\n"
-    "Bands of fixed --sets are the picture of one render, bit for bit.  Those of\n--sets adaptive "
-    "choose by their own rows: unbiased, but another picture.\nSeeds are independent pictures: "
-    "each pixel is their mean, weighed by samples,\nwith the variance of that mean.\n\n";
+    "one\npicture: bands (--rows A-B), and independent renders of them (--seed N).\n\n"
+    "Bands with a fixed number of --sets make the picture of one render, bit for bit.\n"
+    "Bands with --sets adaptive choose replications by their own rows: the picture is\nunbiased, "
+    "but another one.  Seeds are averaged per pixel, weighted by samples.\n\n";
 
 struct Part {
     std::string path, seed, rows;
-    int first, last;  // of the rows
+    int first, last;  // rows
 };
 
-// From the top.  Throws UserError unless they make up the picture, the same rows by other seeds.
+// Throws UserError unless the parts, from the top, make up the picture.  Bands of the same rows
+// have different seeds.
 void check_cover(const std::vector<Part>& parts, int height) {
     int next = 0;
     for (size_t k = 0; k <= parts.size(); ++k) {
@@ -32,13 +33,16 @@ void check_cover(const std::vector<Part>& parts, int height) {
         const Part &p = parts[k], &before = parts[k > 0 ? k - 1 : 0];
         if (p.rows == before.rows && p.seed != before.seed) continue;
         if (first < next)
-            throw UserError(p.path + ": has rows " + p.rows + " by seed " + p.seed +
-                            ", which overlap those of " + before.path);
+            throw UserError(p.rows == before.rows
+                                ? "rows " + p.rows + " of seed " + p.seed +
+                                      " appear twice: " + before.path + " and " + p.path
+                                : "rows " + p.rows + " of " + p.path + " overlap rows " +
+                                      before.rows + " of " + before.path);
         next = p.last + 1;
     }
 }
 
-// The picture, row by row; memory holds it, and a row of each film.
+// Merges row by row; memory holds the picture, and a row of each film.
 Image merge(const std::vector<Part>& parts, Size size, Run& run) {
     ErrorTerms terms;
     Unseen unseen;
@@ -77,14 +81,14 @@ Image merge(const std::vector<Part>& parts, Size size, Run& run) {
 int program(const std::vector<std::string>& words) {
     CommonOptions o;
     std::vector<std::string> paths;
-    OptionTable table = without(common_rows(o), {"--seed", "--threads", "--size"});
-    table.insert(table.begin(), output_row(o, "out/NAME.png, out/NAME.pfm"));
+    OptionTable table = without(output_rows(o, "out/NAME.png, out/NAME.pfm") + general_rows(o),
+                                {"--threads", "--size"});
     parse_words(table, words, [&](const std::string& word) { paths.push_back(word); });
-    if (o.help) return std::printf("%s%s", before_options, option_lines(table).c_str()), 0;
+    if (print_manual(o, table, before_options, "")) return 0;
     if (paths.empty()) throw UserError("no parts given (try --help)");
 
     const FilmReader any(paths[0]);
-    Facts picture = any.head();  // but for the seed, and what follows it
+    Facts picture = any.head();  // without the seed and the facts after it
     const auto seed = std::ranges::find(picture, "seed", [](auto& fact) { return fact[0]; });
     picture.erase(seed, picture.end());
     const Size size{int(any.number("size", 65536)), int(any.number("size", 65536, 'x'))};
@@ -93,10 +97,10 @@ int program(const std::vector<std::string>& words) {
     std::vector<Part> parts;
     for (const std::string& path : paths) {
         const FilmReader file(path);
-        check_agrees(file, picture, " as in " + paths[0]);
+        check_agrees(file, picture, " as in " + paths[0], any.said("name"));
         check_agrees(file, {{"precision", sizeof(real) == 4 ? "float" : "double"}});
         if (file.said("complete") != "yes")
-            file.refuse("is not complete: go on by penumbra --keep " + path);
+            file.refuse("is not complete: resume it with penumbra --keep " + path);
         const double last = file.number("rows", size.height - 1, '-');
         parts.push_back({path, file.said("seed"), file.said("rows"), int(file.number("rows", last)),
                          int(last)});
@@ -107,15 +111,19 @@ int program(const std::vector<std::string>& words) {
                              [](const Part& p) { return std::tie(p.first, p.last, p.seed); });
     check_cover(parts, size.height);
     o.scene = any.said("name");
-    const auto outputs = outputs_of(o, "out/NAME", paths, {}, size);
+    const auto views = words_of(view_names);
+    const View view = View(std::ranges::find(views, any.said("view")) - views.begin());
+    run.is_radiance = view == View::radiance;
+    const auto outputs = outputs_of(o, "out/NAME" + suffix_of(view), paths, {}, size);
     catch_interrupt();
     const Image image = merge(parts, size, run);
     if (interrupted) return 128 + interrupted;  // and no file is written
-    write_images(outputs, image, o.exposure ? *o.exposure : any.number("exposure"));
+    write_images(outputs, image, o.exposure ? *o.exposure : any.number("exposure"),
+                 o.exposure ? View::radiance : view);
     json::Object stats = asked_for(table, o.scene, size);
     add_run(stats, run, size);
     if (!o.stats.empty()) write_file(o.stats, stats.text());
-    tell(o, summary(o.scene, run, false));
+    tell(o, summary(o.scene, run));
     tell_written(o, outputs);
     return 0;
 }

@@ -126,11 +126,6 @@ inline std::string said_by(const char* command) {
 // The last words of a report.  `pictures` is the checksum of the renderer's pictures: tests/reports
 // finds reports of a renderer that drew others.
 inline std::string made_by(const std::string& command) {
-#ifdef __clang__
-    const char* compiler = __VERSION__;
-#else
-    const char* compiler = "g++ " __VERSION__;
-#endif
     const std::string day = said_by("date +%F"),
                       commit = said_by("git rev-parse --short HEAD 2>/dev/null || echo unknown"),
                       pictures = said_by("tests/reports --pictures"),
@@ -141,7 +136,7 @@ inline std::string made_by(const std::string& command) {
         "Written on %s by `%s`: commit %s, pictures %s, %u threads of %s, numbers in %s, "
         "compiled by %s.",
         day.c_str(), command.c_str(), commit.c_str(), pictures.c_str(), all_cores(),
-        processor.c_str(), sizeof(real) == sizeof(double) ? "double" : "float", compiler);
+        processor.c_str(), sizeof(real) == sizeof(double) ? "double" : "float", compiler().c_str());
 }
 
 inline std::string command_of(int argc, char** argv) {

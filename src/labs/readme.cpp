@@ -2,8 +2,9 @@
 //
 //   build/readme
 //
-// What stands between <!-- options --> and <!-- /options --> of README.md becomes penumbra's table,
-// and so do the statements of a scene's file, and in reference/ the options of radiosity.
+// It replaces the text between <!-- options --> and <!-- /options --> of reference/options.md by
+// the options of penumbra, and of reference/radiosity-options.md by those of radiosity.  The
+// statements of a scene's file go to reference/scenes.md.
 #include "labs/lab.h"
 #include "world/grammar.h"
 
@@ -27,11 +28,17 @@ std::string row_markdown(const std::string& words, const std::string& meaning,
            (otherwise.empty() ? "|\n" : " |\n");
 }
 
-// Of what a program prints of itself: an option begins two columns in, its meaning 24.
+// The tables of a program's --help, one for each group: a heading ends with a colon, an option is
+// indented by 2 columns, and its meaning by 24.
 std::string option_markdown(const std::string& help) {
-    std::string table = "| option | meaning | default |\n|---|---|---|\n", option, meaning;
+    std::string table, heading, option, meaning;
     auto end = [&] {
         if (option.empty()) return;
+        if (!heading.empty()) {
+            table.append(table.empty() ? "### " : "\n### ").append(heading);
+            table += "\n\n| option | meaning | default |\n|---|---|---|\n";
+            heading.clear();
+        }
         const size_t at = meaning.rfind(" (default: ");
         const bool has = at != meaning.npos && meaning.back() == ')';
         table += row_markdown(option, meaning.substr(0, has ? at : meaning.npos),
@@ -43,6 +50,7 @@ std::string option_markdown(const std::string& help) {
         const bool begins = line.starts_with("  -"),
                    goes_on = line.starts_with(std::string(24, ' ')) && !option.empty();
         if (!goes_on) end();
+        if (line.ends_with(':') && line[0] != ' ') heading = line.substr(0, line.size() - 1);
         if (!begins && !goes_on) continue;
         const size_t gap = begins ? line.find("  ", 2) : 0;
         if (begins) option = line.substr(2, gap - 2), meaning = "";
@@ -73,14 +81,16 @@ std::string grammar_markdown() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const Lab lab{"readme", "Writes tables of options and statements into README.md.", {}};
+    const Lab lab{"readme", "Writes tables of options and statements into reference/.", {}};
     return lab_main(argc, argv, lab, [&] {
-        const std::string penumbra = option_markdown(help_of(renderer_beside(lab, argv[0]))),
-                          page = "reference/radiosity-options.md";
-        const std::string options = with_table(read_file("README.md"), "options", penumbra);
-        write_file("README.md", with_table(options, "statements", grammar_markdown()));
-        const std::string radiosity = help_of(renderer_beside(lab, argv[0], "radiosity"));
-        write_file(page, with_table(read_file(page), "options", option_markdown(radiosity)));
+        auto write = [](const std::string& page, const char* name, const std::string& table) {
+            write_file(page, with_table(read_file(page), name, table));
+        };
+        const std::string penumbra = help_of(renderer_beside(lab, argv[0])),
+                          radiosity = help_of(renderer_beside(lab, argv[0], "radiosity"));
+        write("reference/options.md", "options", option_markdown(penumbra));
+        write("reference/radiosity-options.md", "options", option_markdown(radiosity));
+        write("reference/scenes.md", "statements", grammar_markdown());
         return 0;
     });
 }

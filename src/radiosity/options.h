@@ -1,20 +1,20 @@
-// radiosity/options.h  6  what the user asks of radiosity
+// radiosity/options.h  6  the options of radiosity
 #pragma once
 #include "app/options.h"
 
-// How the illumination maps are filled.
+// The method that fills the illumination maps.
 enum class Method {
     shooting,   // the element with the most unshot power shoots it, then the next
     hierarchy,  // whole faces shoot, in parts as small as their receivers need
     particles   // random walks from the lights
 };
 
-// What the image of the maps shows.
+// Quantity that the image of the maps shows.
 enum class MapView { luminance, illuminance, mesh };
 
 // An error is that of the maps; of the image, with final gathering.
 struct RadiosityOptions : Options {
-    bool final_gather = false;  // by paths, of spp, sets, technique and sampler
+    bool final_gather = false;  // render paths, with spp, sets, technique and sampler
     Method method = Method::hierarchy;
     std::optional<double> mesh;  // longest edge of an element
     double unshot = 0;           // fraction of all power; 0: no limit
@@ -28,57 +28,71 @@ inline bool is_random(const RadiosityOptions& o) { return o.method == Method::pa
 
 inline OptionTable radiosity_table(RadiosityOptions& o) {
     o.sampler = SamplerKind::halton;
-    OptionTable table = {
-        output_row(o, "out/NAME-radiosity.png, .pfm"),
-        one_of("--method", "shooting|hierarchy|particles",
-               "how light spreads: elements shoot what they have not yet shot, those of most power "
-               "first; whole faces do, in parts as small as a receiver needs; or random walks from "
-               "the lights",
-               o.method),
-        {"--mesh", "H", "longest edge of the triangles that faces are cut into",
-         "a 32nd of the scene's diagonal; a 16th with --final-gather",
-         [&o](Text v) { o.mesh = parse_positive(v); }},
-        {"--unshot", "F",
-         "stop once this fraction of the emitted power is yet to be sent on (which is no error of "
-         "the picture): 0.01, or 1%; not with particles",
-         "1%, unless --error, --shots or --time is given",
-         [&o](Text v) { o.unshot = parse_error(v); }},
-        whole_number("--shots", "stop after N shots; not with particles", "", o.shots, 1,
-                     most_samples),
-        whole_number("--particles",
-                     "stop after N walks, a multiple of 16 batches, each one thread's work; needs "
-                     "--method particles",
-                     "1000000, unless --error or --time is given; with --final-gather a walk for "
-                     "16 paths, or a 16th of the time",
-                     o.particles, 1, most_samples),
-        {"--error", "E",
-         "stop once the illumination maps' error is at most E: 0.05, or 5%; it is the quadratic "
-         "mean over all surfaces relative to that of their light, and leaves out what the "
-         "triangles cost; that of particles is estimated by their spread, that of the other "
-         "methods bounded by what is unshot.  With --final-gather: the error of the image, without "
-         "that of the maps",
-         "", [&o](Text v) { o.error = parse_error(v); }},
-        {"--time", "S", "stop after S seconds, or by another limit that comes first", "",
-         [&o](Text v) { o.seconds = parse_positive(v); }},
-        {"--final-gather", "", "paths end on the maps after one bounce; particles fill these", "",
-         [&o](Text) { o.final_gather = true; }, [&o] { return json::truth(o.final_gather); }},
-        {"--rays", "K", "K x K rays a pixel, on a grid, without --final-gather", "2",
-         [&o](Text v) { o.rays = int(parse_count(v, 1, 64)); }},
-        one_of("--view", "luminance|illuminance|mesh",
-               "what the image shows: radiance; illuminance (in a .pfm lux, if radiances are "
-               "cd/m2; in a .png as if all were white); radiance and the edges of the triangles",
-               o.shows)};
     OptionTable all = option_table(o);
-    for (Text name : {"--spp", "--sets", "--sampler", "--direction", "--light"})
-        table.push_back(row(all, name));
-    row(table, "--spp").help = "samples a pixel of paths, more where noise is";
-    row(table, "--sampler").help = "source of the random numbers of particles, or of paths";
+    auto taken = [&all](Text name, Text help) {
+        Option r = row(all, name);
+        if (!help.empty()) r.help = help;
+        return r;
+    };
+    OptionTable table =
+        output_rows(o, "out/NAME-radiosity.png, .pfm") +
+        in_group("Radiosity",
+                 {one_of("--method", "shooting|hierarchy|particles",
+                         "the element with the most unshot power shoots first; whole faces shoot, "
+                         "in parts as small as a receiver needs; or random walks of particles from "
+                         "the lights",
+                         o.method),
+                  {"--mesh", "H", "longest edge of the triangles that faces are cut into",
+                   "a 32nd of the scene's diagonal; a 16th with --final-gather",
+                   [&o](Text v) { o.mesh = parse_positive(v); }},
+                  {"--final-gather", "",
+                   "paths end on the maps after one bounce; particles fill the maps", "",
+                   [&o](Text) { o.final_gather = true; },
+                   [&o] { return json::truth(o.final_gather); }}}) +
+        in_group(
+            "Stop when",
+            {{"--unshot", "F",
+              "stop once this fraction of the emitted power is unshot: 0.01, or 1%; it is not the "
+              "error of the picture; not with particles",
+              "1%, unless --error, --shots or --time is given",
+              [&o](Text v) { o.unshot = parse_error(v); }},
+             whole_number("--shots", "stop after N shots; not with particles", "", o.shots, 1,
+                          most_samples),
+             whole_number("--particles",
+                          "stop after N particles, a multiple of 16 batches; one thread traces a "
+                          "batch; needs --method particles",
+                          "1000000, unless --error or --time is given; with --final-gather one "
+                          "for 16 paths, or a 16th of the time",
+                          o.particles, 1, most_samples),
+             {"--error", "E",
+              "stop once the error of the illumination maps is at most E: 0.05, or 5%.  It is the "
+              "relative RMSE over all surfaces, without that of the triangles: estimated from the "
+              "spread of particles, or bounded by the unshot power of the other methods.  With "
+              "--final-gather: the error of the image, without that of the maps",
+              "", [&o](Text v) { o.error = parse_error(v); }},
+             {"--time", "S", "stop after S seconds; with other limits, whichever comes first", "",
+              [&o](Text v) { o.seconds = parse_positive(v); }},
+             taken("--spp", "stop after N paths per pixel; noisy pixels take more (see --sets)")}) +
+        in_group("Sampling",
+                 {{"--rays", "K", "K x K rays per pixel, on a grid, without --final-gather", "2",
+                   [&o](Text v) { o.rays = int(parse_count(v, 1, 64)); }},
+                  taken("--sets", ""),
+                  taken("--sampler", "source of the random numbers of particles, or of paths"),
+                  seed_row(o)}) +
+        in_group("Light transport", {taken("--direction", ""), taken("--light", "")}) +
+        in_group(
+            "Views and debugging",
+            {one_of("--view", "luminance|illuminance|mesh",
+                    "the image shows radiance; illuminance (a .pfm in lux, if radiances are in "
+                    "cd/m2; a .png as if all were white); or radiance and the edges of the "
+                    "triangles",
+                    o.shows)}) +
+        general_rows(o);
     row(table, "--sampler").otherwise = "halton; sobol with --final-gather";
-    for (Option& r : common_rows(o)) table.push_back(std::move(r));
     return table;
 }
 
-// Throws UserError about the first word that cannot be used, or says nothing to the method.
+// Throws UserError about the first word that cannot be used, or that does not go with the method.
 inline void parse_radiosity(OptionTable& table, RadiosityOptions& o,
                             const std::vector<std::string>& words) {
     parse_words(table, words, o);

@@ -1,18 +1,19 @@
-// radiosity/radiosity.cpp  9  the program: a scene's illumination maps, and what its camera sees
+// radiosity/radiosity.cpp  9  the program: illumination maps of a scene, and images of them
 #include "radiosity/gather.h"
 #include "radiosity/solution.h"
 
 namespace {
 
 constexpr const char* before_options =
-    "usage: radiosity [options] SCENE\n\nFinds the illumination of SCENE (a file in the format of "
-    "scenes/*.scene, all\ndiffuse) on triangles of its faces, and draws what "
-    "its camera sees of them,\nitself or by paths that end on them.  Light is scattered without\n"
-    "end, whatever the scene's depth.\n\n";
+    "usage: radiosity [options] SCENE\n\nComputes illumination maps of SCENE (a file in the format "
+    "of "
+    "scenes/*.scene, all\ndiffuse) on triangles of its faces, and renders them as its camera sees "
+    "them, or\nby paths that end on them (--final-gather).  The number of bounces is "
+    "unlimited,\nwhatever the scene's depth.\n\n";
 
 constexpr const char* after_options = R"(
 A .pfm and a .hdr hold linear radiance; a .png holds exposure times radiance,
-clamped to [0,1], as sRGB.  Pixel (0,0) is the top left one.
+clamped to [0,1], in sRGB.  Pixel (0,0) is at the top left.
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
@@ -28,7 +29,7 @@ Image picture_of(const RadiosityOptions& o, const Stage& stage, const Illuminati
     return image;
 }
 
-// The picture to its end even after Ctrl-C, which ends the search for light alone; a second one
+// Completes the picture even after Ctrl-C, which only stops the search for light.  A second one
 // kills.
 Image picture_to_the_end(const RadiosityOptions& o, const Stage& stage, Solution& s) {
     Image image = picture_of(o, stage, s.map);
@@ -39,7 +40,7 @@ Image picture_to_the_end(const RadiosityOptions& o, const Stage& stage, Solution
     return image;
 }
 
-// What the camera sees of the maps; returns the exit status.
+// Renders the maps; returns the exit status.
 int show_maps(const RadiosityOptions& o, const OptionTable& table, const Stage& stage,
               const std::vector<std::string>& outputs) {
     Solution s = solve(o, stage);
@@ -59,8 +60,8 @@ int show_maps(const RadiosityOptions& o, const OptionTable& table, const Stage& 
     return s.signal ? 128 + s.signal : 0;
 }
 
-// Paths that end on the maps; returns the exit status.  Particles and paths have keys of their own:
-// they are independent.
+// Renders by paths that end on the maps; returns the exit status.  Particles and paths have keys of
+// their own: they are independent.
 int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
            const std::vector<std::string>& outputs) {
     Scene& scene = stage.scene;
@@ -75,7 +76,7 @@ int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
     const KnownLight known = known_light(scene, std::move(stage.mesh), std::move(s.map));
     const double seconds = clock.elapsed();
     of_maps.push_back({"map_seconds", json::number(seconds)});
-    // If no time is left, the shortest: 0 would be no limit.
+    // If no time is left, a tiny limit: 0 would be no limit.
     if (o.seconds > 0) plan.target.seconds = std::max(1e-9, o.seconds - seconds);
     scene.depth = 1;
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples());
@@ -93,10 +94,7 @@ int radiosity(const std::vector<std::string>& words) {
     RadiosityOptions o;
     OptionTable table = radiosity_table(o);
     parse_radiosity(table, o, words);
-    if (o.help) {
-        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
-        return 0;
-    }
+    if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const double H = edge_length(o, parsed.scene, bytes_of(o));
     const auto outputs = outputs_of(o, parsed, "-radiosity", parsed.scene.size);

@@ -1,4 +1,4 @@
-// shadow/shadow.cpp  9  the program: images whose direct light is found by its shadows alone
+// shadow/shadow.cpp  9  the program: direct light as analytic light minus sampled shadows
 #include "shadow/shadow.h"
 
 #include "app/render.h"
@@ -8,12 +8,12 @@ namespace {
 
 constexpr const char* before_options =
     "usage: shadow [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) by "
-    "light\nsamples.  Visible diffuse surfaces would get known light from each lamp, were\n"
-    "nothing in the way; samples find what shadows take from it.\n\n";
+    "light\nsampling.  The unshadowed light of each lamp on visible diffuse surfaces is\n"
+    "computed; samples estimate only the shadows.\n\n";
 
 constexpr const char* after_options = R"(
-An estimate takes all samples of a replication, N / K of them, so that a run is
-one pass: it ends by --spp alone, and Ctrl-C leaves no image.
+An estimate needs all N / K samples of a replication.  A run is one pass: only
+--spp ends it, and Ctrl-C leaves no image.
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
@@ -27,21 +27,23 @@ struct ShadowOptions : Options {
 OptionTable shadow_table(ShadowOptions& o) {
     o.sets = 2;
     o.technique.light = LightMode::nee;
-    OptionTable table = {
-        output_row(o, "out/NAME-shadow.png, .pfm"),
-        one_of("--estimator", "stochastic|control|ratio|regression",
-               "light samples as they are; or the known light less what shadows take from it: by "
-               "their difference, by the part that is visible, or by as much as correlation tells",
-               o.estimator),
-        whole_number("--sets", "replications of each pixel, whose spread tells the error", "2",
-                     o.sets, 1, most_sets)};
-    table[2].value = "K";
-    table[2].json = [&o] { return std::to_string(o.sets); };
-    for (Option& r :
-         without(option_table(o), {"-o", "--sets", "--light", "--time", "--error", "--keep",
-                                   "--rows", "--view", "--pixel", "--sample"}))
-        table.push_back(std::move(r));
-    row(table, "--spp").help = "samples a pixel, of all replications together";
+    OptionTable table =
+        without(option_table(o), {"--sets", "--light", "--time", "--error", "--keep", "--rows",
+                                  "--view", "--pixel", "--sample"}) +
+        in_group("Light transport",
+                 {one_of("--estimator", "stochastic|control|ratio|regression",
+                         "direct light where the camera sees a diffuse surface: plain Monte Carlo; "
+                         "or a control variate, "
+                         "ratio or regression estimator on the analytic unshadowed radiance",
+                         o.estimator)}) +
+        in_group("Sampling", {whole_number("--sets",
+                                           "number of independent replications per pixel; their "
+                                           "sample variance gives the error estimate",
+                                           "2", o.sets, 1, most_sets)});
+    row(table, "-o").otherwise = "out/NAME-shadow.png, .pfm";
+    row(table, "--sets").value = "K";
+    row(table, "--sets").json = [&o] { return std::to_string(o.sets); };
+    row(table, "--spp").help = "samples per pixel, of all replications together";
     row(table, "--spp").otherwise = "the scene's";
     return table;
 }
@@ -51,10 +53,7 @@ int shadow(const std::vector<std::string>& words) {
     ShadowOptions o;
     OptionTable table = shadow_table(o);
     parse_words(table, words, o);
-    if (o.help) {
-        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
-        return 0;
-    }
+    if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
     Plan plan = plan_of(o, scene);

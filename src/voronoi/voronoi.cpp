@@ -1,4 +1,4 @@
-// voronoi/voronoi.cpp  9  the program: images whose samples weigh as their Voronoi cells do
+// voronoi/voronoi.cpp  9  the program: samples of a pixel weighted by their Voronoi cells
 #include "app/render.h"
 #include "base/program.h"
 #include "voronoi/weighted.h"
@@ -7,11 +7,11 @@ namespace {
 
 constexpr const char* before_options =
     "usage: voronoi [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) by "
-    "independent paths.\nThe samples of a pixel weigh as much as their Voronoi cells in it.\n\n";
+    "independent paths.\nThe area of its Voronoi cell weights each sample of a pixel.\n\n";
 
 constexpr const char* after_options = R"(
-Weights take all samples of a replication, N / K of them, so that a run is one
-pass: it ends by --spp alone, and Ctrl-C leaves no image.
+Weights need all N / K samples of a replication.  A run is one pass: only --spp
+ends it, and Ctrl-C leaves no image.
 
 Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 2 the scene or an option cannot be used; 130 interrupted (Ctrl-C; 143 SIGTERM,
@@ -25,26 +25,29 @@ struct VoronoiOptions : Options {
 OptionTable voronoi_table(VoronoiOptions& o) {
     o.sets = 2;
     o.sampler = SamplerKind::independent;
-    OptionTable table = {
-        output_row(o, "out/NAME-voronoi.png, .pfm"),
-        one_of("--weights", "mc|vor|fvor|cvor|torus",
-               "equal; or areas of cells: bounded by random sites in a strip around the pixel, the "
-               "same without cells that leave the strip, clipped to the pixel, or on a torus",
-               o.weights),
-        whole_number("--sets", "replications of each pixel, whose spread tells the error", "2",
-                     o.sets, 1, most_sets)};
-    table[2].value = "K";
-    table[2].json = [&o] { return std::to_string(o.sets); };
-    for (Option& r :
-         without(option_table(o), {"-o", "--sets", "--sampler", "--time", "--error", "--keep",
-                                   "--rows", "--view", "--pixel", "--sample"}))
-        table.push_back(std::move(r));
-    row(table, "--spp").help = "samples a pixel, of all replications together";
+    OptionTable table =
+        without(option_table(o), {"--sets", "--sampler", "--time", "--error", "--keep", "--rows",
+                                  "--view", "--pixel", "--sample"}) +
+        in_group(
+            "Sampling",
+            {one_of("--weights", "mc|vor|fvor|cvor|torus",
+                    "weights of a pixel's samples: equal; or areas of Voronoi cells, bounded by "
+                    "random sites in a strip around the pixel, the same without cells that leave "
+                    "the strip, clipped to the pixel, or on a torus",
+                    o.weights),
+             whole_number("--sets",
+                          "number of independent replications per pixel; their sample variance "
+                          "gives the error estimate",
+                          "2", o.sets, 1, most_sets)});
+    row(table, "-o").otherwise = "out/NAME-voronoi.png, .pfm";
+    row(table, "--sets").value = "K";
+    row(table, "--sets").json = [&o] { return std::to_string(o.sets); };
+    row(table, "--spp").help = "samples per pixel, of all replications together";
     row(table, "--spp").otherwise = "the scene's";
     return table;
 }
 
-// One of the samples, none of which the film sees.
+// The radiance of one path; the film gets only weighted means of paths.
 Radiance path_of(const Options& o, const Scene& scene, const Pattern& pattern) {
     return [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
@@ -63,10 +66,7 @@ int voronoi_main(const std::vector<std::string>& words) {
     VoronoiOptions o;
     OptionTable table = voronoi_table(o);
     parse_words(table, words, o);
-    if (o.help) {
-        std::printf("%s%s%s", before_options, option_lines(table).c_str(), after_options);
-        return 0;
-    }
+    if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
     Plan plan = plan_of(o, scene);

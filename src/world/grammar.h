@@ -1,6 +1,6 @@
 // world/grammar.h  1  the statements of a scene's file: one table
 //
-// Parsing, messages and the README's table all follow from `grammar`.
+// Parsing, messages and the table of reference/scenes.md all follow from `grammar`.
 #pragma once
 #include <sstream>
 #include <string>
@@ -16,12 +16,13 @@ struct Statement {
 };
 
 inline constexpr Statement grammar[] = {
-    {Statement::setting, "size", "WIDTH HEIGHT", "pixels, which are square", "256 128"},
+    {Statement::setting, "size", "WIDTH HEIGHT", "width and height in pixels, which are square",
+     "256 128"},
     {Statement::setting, "camera", "EYE_X EYE_Y EYE_Z  TARGET_X TARGET_Y TARGET_Z  VERTICAL_FOV",
-     "a pinhole, +y is up; field of view in degrees"},
-    {Statement::setting, "depth", "SCATTERINGS", "that a path may have, 0: emission only", "8"},
-    {Statement::setting, "samples", "PER_PIXEL", "if the user asks for no others", "64"},
-    {Statement::setting, "exposure", "FACTOR", "from radiance to PNG", "1"},
+     "pinhole camera; +y is up; field of view in degrees"},
+    {Statement::setting, "depth", "BOUNCES", "maximum number of bounces; 0: emission only", "8"},
+    {Statement::setting, "samples", "PER_PIXEL", "default samples per pixel", "64"},
+    {Statement::setting, "exposure", "FACTOR", "factor from radiance to PNG", "1"},
     {Statement::material, "diffuse", "NAME  R G B", "albedo ρ: f = ρ/π"},
     {Statement::material, "phong",
      "NAME  DIFFUSE_R DIFFUSE_G DIFFUSE_B  LOBE_R LOBE_G LOBE_B  EXPONENT",
@@ -38,10 +39,10 @@ inline constexpr Statement grammar[] = {
     {Statement::content, "quad", "X Y Z  UX UY UZ  VX VY VZ  MATERIAL",
      "a parallelogram: a corner and two edges; emits on the side of U×V"},
     {Statement::content, "mesh", "FILE.obj  SCALE  X Y Z  [MATERIAL]",
-     "polygons (`v`, `f`, `usemtl`, `mtllib` with `Kd` and `Ke`), scaled, then moved; MATERIAL for "
-     "faces that name none; FILE is relative to the scene's own"},
+     "polygons (`v`, `f`, `usemtl`, `mtllib` with `Kd` and `Ke`), scaled, then moved; MATERIAL is "
+     "for faces that name none; FILE is relative to the scene's folder"},
     {Statement::content, "box", "WIDTH HEIGHT DEPTH  DEGREES_ABOUT_Y  X Y Z  MATERIAL",
-     "from the origin, rotated about y, moved; emits outwards"},
+     "axis-aligned with a corner at the origin, then rotated about y and moved; emits outwards"},
 };
 
 // The statement that these words are; throws UserError if there is none, or if they are too few or

@@ -7,7 +7,7 @@
 #include "world/obj.h"
 #include "world/scene_check.h"
 
-// A scene, what its author should know about it, and the files that it was read from.
+// A scene, warnings to its author, and the files that it was read from.
 struct ParsedScene {
     Scene scene;
     std::vector<std::string> warnings, files;
@@ -30,18 +30,21 @@ public:
         scene_.line_of_light.resize(scene_.lights.size(), line);
     }
 
-    // What only the whole scene can tell.  The scene's file is called `name`.
+    // Checks the whole scene.  `name` is the name of the scene's file.
     ParsedScene finish(const std::string& name) {
         Scene& s = scene_;
         if (!seen_.contains("camera")) throw UserError(name + ": no camera");
-        if (s.shapes.empty()) throw UserError(name + ": empty scene: nothing to look at");
+        const std::string dropped = "dropped " + counted(s.dropped, "triangle") + " without area";
+        if (s.shapes.empty())
+            throw UserError(name +
+                            ": empty scene: " + (s.dropped > 0 ? dropped : "it has no shape"));
         auto warn = [&](const std::string& what) { warnings_.push_back(what); };
-        if (s.dropped > 0) warn("dropped triangles without area: " + std::to_string(s.dropped));
+        if (s.dropped > 0) warn(dropped);
         const auto lifted = lift_lights(s, name);
         for (const auto& [line, other] : lifted)
             warn("line " + std::to_string(line) + ": this light lies in the surface of line " +
                  std::to_string(other) +
-                 ": it shines in front of it (of two lights in one place the first does)");
+                 ": it is moved in front of it (of two lights in one place, the first)");
         prepare(s);
         for (size_t k = 0; k < s.lights.size(); ++k)
             for (size_t i = 0; s.lights[k].kind == Light::Kind::point && i < s.shapes.size(); ++i)
@@ -50,10 +53,13 @@ public:
                                    "this point light lies on the surface of line " +
                                        std::to_string(s.line_of[i]) + ": move it off");
         for (const auto& [length, line] : coarse_lengths(s, !lifted.empty()))
-            warn("line " + std::to_string(line) + ": numbers of " + std::to_string(sizeof(real)) +
-                 " bytes are coarse here: rays start off this shape by more than 1 % of its " +
-                 length + "; light may be wrong: use REAL=double, or move all nearer to 0");
-        if (s.lights.empty()) warn("no light: all will be black");
+            warn("line " + std::to_string(line) + ": " + (sizeof(real) == 4 ? "float" : "double") +
+                 " precision is too low here: ray origins are offset by more than 1 % of this "
+                 "shape's " +
+                 length + ", and light may be wrong; " +
+                 (sizeof(real) == 4 ? "use REAL=double, or " : "") +
+                 "move the scene nearer to the origin");
+        if (s.lights.empty()) warn("no light: the image will be black");
         return {std::move(scene_), std::move(warnings_), std::move(files_)};
     }
 

@@ -36,6 +36,13 @@ TEST_CASE("every option sets what it is named after") {
     CHECK(said(o.sets, o.error, o.quiet, o.help) == "3 0.025 yes no");
     CHECK(Parsed({"--help"}).o.help);
     CHECK(Parsed({"-h"}).o.help);
+    CHECK(Parsed({"--version"}).o.version);
+    const Options joined = parse("--spp=7 --output=a=b.pfm --output c.png --samples=8 --error=2%");
+    CHECK(said(joined.spp, joined.outputs[0], joined.outputs[1], joined.error) ==
+          "8 a=b.pfm c.png 0.02");
+    CHECK(version().starts_with("Penumbra "));
+    CHECK(version().find(sizeof(real) == 4 ? ", float precision, " : ", double precision, ") !=
+          std::string::npos);
     const Options band = parse("--rows 3-17 --keep a.film --sets 4 --sets adaptive");
     CHECK(said(band.keep, band.rows->first, band.rows->last, band.rows->count(), band.sets) ==
           "a.film 3 17 15 0");
@@ -122,17 +129,17 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
   "error": null,
   "sets": "adaptive",
   "sampler": "sobol",
+  "seed": 0,
   "direction": "bsdf",
   "light": "mis",
   "roulette": 0.25,
   "view": "radiance",
   "rows": null,
-  "seed": 0,
   "threads": 3
 }
 )");
     CHECK(stats("--threads 5 --error 12.5% --sets 12 --sampler halton --direction uniform "
-                "--light nee --roulette 0.5 --view bvh --rows 4-7 -o a.pfm "
+                "--light nee --roulette 0.5 --rows 4-7 -o a.pfm "
                 "--seed 18446744073709551615") == R"({
   "scene": "a \"b\"\\",
   "width": 9,
@@ -140,12 +147,12 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
   "error": 0.125,
   "sets": 12,
   "sampler": "halton",
+  "seed": 18446744073709551615,
   "direction": "uniform",
   "light": "nee",
   "roulette": 0.5,
-  "view": "bvh",
+  "view": "radiance",
   "rows": "4-7",
-  "seed": 18446744073709551615,
   "threads": 5
 }
 )");
@@ -154,14 +161,14 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
 TEST_CASE("every option is in --help, with its value and its default, in lines that fit a screen") {
     Parsed all({"--help"});
     const std::string page = "\n" + option_lines(all.table);
-    CHECK(all.table.size() == 22);
+    CHECK(all.table.size() == 23);
     for (const Option& r : all.table) {
-        const std::string name(r.name), value(r.value);
-        INFO(name);
-        const size_t at = page.find("\n  " + name + " " + value + (value.empty() ? " " : ""));
+        const std::string usage = usage_of(r);
+        INFO(usage);
+        const size_t at = page.find("\n  " + usage);
         REQUIRE(at != page.npos);
         // Its words, whatever lines they stand on.
-        std::istringstream lines(page.substr(at + 4 + name.size() + value.size()));
+        std::istringstream lines(page.substr(at + 3 + usage.size()));
         std::string words = std::string(r.help);
         if (!r.otherwise.empty()) words += " (default: " + r.otherwise + ")";
         std::istringstream wanted(words);
@@ -171,17 +178,22 @@ TEST_CASE("every option is in --help, with its value and its default, in lines t
         }
     }
     std::istringstream lines(page);
+    std::string headings;
     for (std::string line; std::getline(lines, line);) {
         CHECK(line.size() < 80);
         CHECK(!line.ends_with(' '));
+        if (!line.starts_with(' ')) headings += line;
     }
+    CHECK(headings ==
+          "Output:Stop when:Sampling:Light transport:Views and debugging:Checkpoints and parts:"
+          "General:");
 }
 
 TEST_CASE("a table without some of its rows has the others in order") {
     Options o;
     const OptionTable some = without(option_table(o), {"--rows", "-o"});
-    CHECK(some.size() == 20);
-    CHECK(some.front().name == "--spp");
+    CHECK(some.size() == 21);
+    CHECK(some.front().name == "--size");
     CHECK(std::none_of(some.begin(), some.end(), [](auto& r) { return r.name == "--rows"; }));
     OptionTable table = option_table(o);
     CHECK(row(table, "--seed").name == "--seed");

@@ -4,12 +4,14 @@
 
 inline std::vector<Refusal> refused_words() {
     std::vector<Family> families = {
-        {"@ 4", "--sp;--spp=4", "unknown option '@' (did you mean '--spp'?)"},
+        {"@ 4", "--sp;--spq", "unknown option '@' (did you mean '--spp'?)"},
         {"@ 4", "--deph", "unknown option '@' (did you mean '--depth'?)"},
         {"@ 4", "--thread", "unknown option '@' (did you mean '--threads'?)"},
         {"@ mis", "--ligth", "unknown option '@' (did you mean '--light'?)"},
         {"@", "-x;-O", "unknown option '@' (did you mean '-o'?)"},
         {"@", "-", "unknown option '@'"},
+        {"--quiet=@", "1", "--quiet: takes no value"},
+        {"--spp=@", "many", "--spp: '@' is not a whole number"},
         {"@", "--quiett", "unknown option '@' (did you mean '--quiet'?)"},
         {"--light @", "nope", "--light: unknown value '@' (did you mean 'none'?)"},
         {"--light @", "mix", "--light: unknown value '@' (did you mean 'mis'?)"},
@@ -45,8 +47,9 @@ inline std::vector<Refusal> refused_words() {
         {"--rows @ -o a.pfm", "2-1", "--rows: '@' ends before it begins"},
         {"--rows 7- -o a.pfm", "", "--rows: '' is not a whole number"},
         // What goes together.
-        {"--sample 1", "", "--sample: goes with --pixel X,Y"},
+        {"--sample 1", "", "--sample: goes with --pixel X,Y (for samples per pixel use --spp N)"},
         {"--pixel 1,2 --keep a.film", "", "--keep: goes without --pixel"},
+        {"--error 1% --view @", "normal;bvh", "--error: needs --view radiance"},
         {"--error 1% --sets 1", "", "--error: needs --sets 2 or more, or adaptive"},
         {"--rows 1-2", "", "--rows: needs --keep F.film, which build/merge takes, or -o"},
     };

@@ -1,4 +1,4 @@
-// app/report_test.cpp  what a run tells: progress, the error in words, JSON
+// app/report_test.cpp  progress, the error in words, JSON
 #include "app/report.h"
 
 #include <doctest/doctest.h>
@@ -83,59 +83,79 @@ TEST_CASE("numbers for people") {
     CHECK(significant(64, 3) == "64");
 }
 
-TEST_CASE("an image's error in words: with its standard error, and what half of it would cost") {
-    CHECK(told_error(run_of(0.021, 0.0011)) == "d_rel 2.1 % ± 0.1 %; 1 % needs 35 s");
+TEST_CASE("an image's error in words: its standard error, and the time for half of it") {
+    const std::string some = "estimated error 2.1 % ± 0.1 %; about ";
+    CHECK(error_words(run_of(0.021, 0.0011)) == some + "27 s more for 1 %");
     Run run = run_of(0.021, 0.0011);
     run.exponent_of_cost = 1;
-    CHECK(told_error(run) == "d_rel 2.1 % ± 0.1 %; 1 % needs 17 s");
-    CHECK(told_error(run_of(0.2, 0.11)) == "d_rel 20 % ± 11 %; 10 % needs 32 s");
-    CHECK(told_error(run_of(1.25, 0.4)) == "d_rel 125 % ± 40 %; 60 % needs 35 s");
-    CHECK(told_error(run_of(0.00032, 0.00001)) == "d_rel 0.032 % ± 0.001 %; 0.02 % needs 20 s");
+    CHECK(error_words(run) == some + "8.8 s more for 1 %");
+    CHECK(error_words(run, 0.007) == some + "16 s more for 0.7 %");
+    CHECK(error_words(run, 0.03) == some + "8.8 s more for 1 %");
+    auto words = [](double d_rel, double standard_error) {
+        return error_words(run_of(d_rel, standard_error));
+    };
+    CHECK(words(0.2, 0.11) == "estimated error 20 % ± 11 %; about 24 s more for 10 %");
+    CHECK(words(1.25, 0.4) == "estimated error 125 % ± 40 %; about 27 s more for 60 %");
+    CHECK(words(0.00032, 0.00001) ==
+          "estimated error 0.032 % ± 0.001 %; about 12 s more for 0.02 %");
     run = run_of(0.02, 0.001), run.seconds = 1000;
-    CHECK(told_error(run) == "d_rel 2 % ± 0.1 %; 1 % needs 4000 s");
-    CHECK(told_error(run_of(0, 0)) == "d_rel 0 % ± 0 %");
+    CHECK(error_words(run) == "estimated error 2 % ± 0.1 %; about 3000 s more for 1 %");
+    CHECK(words(0, 0) == "estimated error 0 % ± 0 %");
     run = run_of(0.02, 0.001), run.bias = "consistent";
-    CHECK(told_error(run) == "d_rel 2 % ± 0.1 % without its bias (consistent); 1 % needs 32 s");
+    CHECK(error_words(run) ==
+          "error 2 % ± 0.1 % (noise only; the estimator is consistent); about 24 s more for 1 %");
 }
 
-TEST_CASE("where there is no error to state, the reason is said") {
-    auto told = [](double spp, double sets, bool early) {
+TEST_CASE("where no error is reported, the reason is") {
+    auto why = [](double spp, double sets, bool early) {
         Run run;
         run.spp = spp, run.sets = sets, run.interrupted = early;
-        return told_error(run);
+        return error_words(run);
     };
-    CHECK(told(1, 1, false) == "d_rel not known: one sample");
-    CHECK(told(64, 1, false) == "d_rel not known: one replication");
-    CHECK(told(64, 1, true) == "d_rel not known: interrupted early");
-    CHECK(told(64, 2.5, true) == "d_rel not known: interrupted early");
-    CHECK(told(64, 2.5, false) == "d_rel not known: too little time");
+    CHECK(why(1, 1, false) == "error not known: one sample");
+    CHECK(why(64, 1, false) == "error not known: one replication");
+    CHECK(why(64, 1, true) == "error not known: interrupted early");
+    CHECK(why(64, 2.5, true) == "error not known: interrupted early");
+    CHECK(why(64, 2.5, false) == "error not known: too little time");
     Run run = run_of(0.02, 0.001);
     run.doubt = "it hangs on few pixels";
-    CHECK(told_error(run) == "d_rel not known: it hangs on few pixels");
+    CHECK(error_words(run) == "error not known: it hangs on few pixels");
     run.error.norm = 0, run.doubt = "no light was met";
-    CHECK(told_error(run) == "d_rel not known: no light was met");
+    CHECK(error_words(run) == "error not known: no light was met");
     run.spp = 1;
-    CHECK(told_error(run) == "d_rel not known: one sample");
+    CHECK(error_words(run) == "error not known: one sample");
     run = run_of(0.02, 0.001), run.spp = 2;
-    CHECK(told_error(run).starts_with("d_rel 2 %"));  // two replications of one sample
+    CHECK(error_words(run).starts_with("estimated error 2 %"));  // two replications of one sample
 }
 
-TEST_CASE("the line that stays: the error, what ended an image that asked for one, interrupts") {
+TEST_CASE("the line that stays: the error, whether it was reached, interrupts") {
     Run run = run_of(0.02, 0.001);
     run.spp = 70.25;
-    const std::string line =
-        "a.scene: 70.2 samples per pixel, 8.00 s, 2.00 Mrays/s, d_rel 2 % ± 0.1 %; 1 % needs 32 s";
-    CHECK(summary("a.scene", run, false) == line);
-    for (const char* by : {"samples", "time", "error"}) {
+    const std::string line = "a.scene: 70.2 samples per pixel, 8.00 s, 2.00 Mrays/s",
+                      error = "estimated error 2 % ± 0.1 %; about ";
+    CHECK(summary("a.scene", run) == line + ", " + error + "24 s more for 1 %");
+    run.stopped_by = "error";
+    CHECK(summary("a.scene", run, 0.03) == line + ", reached 3 % (" + error + "24 s more for 1 %)");
+    for (const auto& [by, option] : {std::pair{"samples", "--spp"}, {"time", "--time"}}) {
         run.stopped_by = by;
-        CHECK(summary("a.scene", run, true) == line + " (stopped by " + by + ")");
+        CHECK(summary("a.scene", run, 0.015) == line + ", did not reach 1.5 % (stopped by " +
+                                                    option + "; " + error +
+                                                    "6.2 s more for 1.5 %)");
     }
     run.interrupted = true;
-    CHECK(summary("a.scene", run, true) == line + " (interrupted)");
+    CHECK(summary("a.scene", run, 0.01) == line + ", " + error + "24 s more for 1 % (interrupted)");
+    run.is_radiance = false;
+    CHECK(summary("a.scene", run) == line + " (interrupted)");
+    run.interrupted = false, run.spp = 1;
+    CHECK(summary("a.scene", run) == "a.scene: 1 sample per pixel, 8.00 s, 2.00 Mrays/s");
+    run = run_of(0.02, 0.001);
+    run.doubt = "no light was met", run.stopped_by = "error not known";
+    CHECK(summary("a.scene", run, 0.01)
+              .ends_with(", did not reach 1 % (error not known: no light was met)"));
     run = Run();
     run.seconds = 8, run.interrupted = true;
-    CHECK(summary("a.scene", run, false) ==
-          "a.scene: 0 samples per pixel, 8.00 s, 0.00 Mrays/s (interrupted)");
+    CHECK(summary("a.scene", run) ==
+          "a.scene: interrupted before the first pass was complete: no image written");
 }
 
 TEST_CASE("the statistics of a run, all keys in their order, null where nothing is known") {
@@ -168,6 +188,8 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     CHECK(more[more.size() / 2] == 1);
     CHECK(grown > 60 << 20);
     CHECK(grown < 1.01 * bytes + (70 << 20));
+    run.is_radiance = false;
+    CHECK(json_of(run, {2, 1}).find("\"d_rel_reason\": \"a view, not radiance\"") != text.npos);
     run = Run();
     run.interrupted = true;
     text = json_of(run, {2, 1});

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/cases.h"
 #include "world/scene_file.h"
 
 namespace {
@@ -28,18 +29,33 @@ sphere 0 0 0  1  gloss
         CHECK(view_along(scene, v, miss) == rgb{0, 0, 0});
 }
 
-TEST_CASE("glass is as white as it is clear; a view has an exposure of its own") {
+TEST_CASE("glass is as white as it is clear") {
     const Scene scene = scene_of(R"(
-exposure 3
 camera 0 0 5  0 0 0  40
 glass clear 1.5
 sphere 0 0 0  1  clear
 )");
     CHECK(view_along(scene, View::albedo, {{0, 0, 5}, {0, 0, -1}}) == rgb{1, 1, 1});
-    CHECK(default_exposure(scene, View::radiance) == 3);
-    CHECK(default_exposure(scene, View::normal) == 1);
-    CHECK(default_exposure(scene, View::albedo) == 1);
-    CHECK(default_exposure(scene, View::bvh) == real(1) / 64);
-    // The box of the sphere, padded by 16 ulp of it.
-    CHECK(std::abs(default_exposure(scene, View::depth) * 2 * std::sqrt(real(3)) - 1) < 64 * ulp);
+}
+
+TEST_CASE("a PNG shows depth from the nearest to the farthest, and work relative to the most") {
+    Image image(3, 1);
+    image.pixels = {{0, 0, 0}, {4, 4, 4}, {8, 8, 8}};
+    auto shown = [&](View view) {
+        std::string words;
+        for (const auto& pixel : scaled(image, view).pixels) words += said(pixel[0]) + " ";
+        return words;
+    };
+    CHECK(shown(View::depth) == "0 0 1 ");
+    CHECK(shown(View::bvh) == "0 0.5 1 ");
+    CHECK(shown(View::normal) == "0 4 8 ");
+    image.pixels[1] = {2, 2, 2};
+    image.pixels.resize(300, {3, 3, 3});
+    image.width = 300;
+    CHECK(scaled(image, View::depth).pixels[3][0] == 0);  // the one at 2 is less than a percent
+    image.pixels.assign(300, {3, 3, 3});
+    CHECK(scaled(image, View::depth).pixels[0][0] == 1);
+    image.pixels.assign(300, {0, 0, 0});
+    CHECK(scaled(image, View::depth).pixels[0][0] == 0);
+    CHECK(suffix_of(View::radiance) + suffix_of(View::bvh) == "-bvh");
 }

@@ -78,7 +78,7 @@ class Conditions:
 class Outcome:
     def __init__(self, status, killed_by, err, faults, seconds):
         self.status, self.killed_by, self.err, self.faults, self.seconds = status, killed_by, err, faults, seconds
-        told = re.findall(r': (\S+) samples per pixel, .*', err)
+        told = re.findall(r': (\S+) samples? per pixel, .*', err)
         self.samples = float(told[-1]) if told else None
 
     def __str__(self):

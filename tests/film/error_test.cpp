@@ -125,7 +125,7 @@ TEST_CASE("an error that is not known is no number; that of an image without noi
                                            : e.standard_error() == 0));
             CHECK(is_small_enough(e, 0.01) == (sets != 1 && level > 0));
         }
-    CHECK(ErrorCourse().cost_of(HUGE_VAL) == HUGE_VAL);
+    CHECK(ErrorHistory().cost_of(HUGE_VAL) == HUGE_VAL);
     CHECK(std::isnan(error_of(make_film({1, 1}, 2)).d_rel()));  // before any sample
     // Of the pilot alone; while some blocks catch up; then it is known.
     const Radiance L = [](const PixelSample& s, Tally&) { return rgb{2, 2, real(2 + s.set)}; };
@@ -212,44 +212,44 @@ TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, sam
 }
 
 TEST_CASE("the course of an error: exponents of known laws, from 1/2 to 1") {
-    CHECK(ErrorCourse().exponent() == 0.5);
-    CHECK(ErrorCourse().cost_of(2) == 4);
+    CHECK(ErrorHistory().exponent() == 0.5);
+    CHECK(ErrorHistory().cost_of(2) == 4);
     for (const auto& row : std::initializer_list<std::pair<double, double>>{
              {0.5, 0.5}, {0.75, 0.75}, {1, 1}, {1.5, 1}, {0.2, 0.5}, {-1, 0.5}}) {
         const auto [gamma, found] = row;
-        ErrorCourse course;
-        for (uint64_t n : {16, 40, 90, 200}) course.add(n, 3 * std::pow(double(n), -gamma));
+        ErrorHistory history;
+        for (uint64_t n : {16, 40, 90, 200}) history.add(n, 3 * std::pow(double(n), -gamma));
         CAPTURE(row.first);
-        CHECK(course.exponent() == about(found, 1e-12));
-        CHECK(course.cost_of(4) == about(std::pow(4, 1 / found), 1e-12));
+        CHECK(history.exponent() == about(found, 1e-12));
+        CHECK(history.cost_of(4) == about(std::pow(4, 1 / found), 1e-12));
     }
 }
 
 TEST_CASE("the course is of the last two errors whose samples have doubled") {
-    ErrorCourse course;
-    CHECK(course.is_due(1));
-    course.add(16, 8);
-    CHECK(!course.is_due(31));
-    CHECK(course.is_due(32));
-    CHECK(course.exponent() == 0.5);
-    course.add(31, 1);  // not twice as many
-    CHECK(course.exponent() == 0.5);
-    course.add(32, 8 * std::pow(2, -0.75));  // beside 16
-    CHECK(course.exponent() == doctest::Approx(0.75).epsilon(1e-12));
-    course.add(64, 8 * std::pow(2, -0.75) / std::pow(2, 0.6));  // beside 32, not 16
-    CHECK(course.exponent() == doctest::Approx(0.6).epsilon(1e-12));
+    ErrorHistory history;
+    CHECK(history.is_due(1));
+    history.add(16, 8);
+    CHECK(!history.is_due(31));
+    CHECK(history.is_due(32));
+    CHECK(history.exponent() == 0.5);
+    history.add(31, 1);  // not twice as many
+    CHECK(history.exponent() == 0.5);
+    history.add(32, 8 * std::pow(2, -0.75));  // beside 16
+    CHECK(history.exponent() == doctest::Approx(0.75).epsilon(1e-12));
+    history.add(64, 8 * std::pow(2, -0.75) / std::pow(2, 0.6));  // beside 32, not 16
+    CHECK(history.exponent() == doctest::Approx(0.6).epsilon(1e-12));
 }
 
 TEST_CASE("an error that vanishes, grows or is not known leaves an exponent that can be used") {
     for (const auto& row : std::initializer_list<std::pair<double, double>>{
              {0, 0}, {1, 0}, {0, 1}, {NAN, 1}, {1, NAN}, {HUGE_VAL, 1}, {1, HUGE_VAL}}) {
-        ErrorCourse course;
-        course.add(16, row.first);
-        course.add(32, row.second);
+        ErrorHistory history;
+        history.add(16, row.first);
+        history.add(32, row.second);
         CAPTURE(row.first);
         CAPTURE(row.second);
-        CHECK(course.exponent() >= 0.5);
-        CHECK(course.exponent() <= 1);
+        CHECK(history.exponent() >= 0.5);
+        CHECK(history.exponent() <= 1);
     }
 }
 
@@ -345,8 +345,8 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     // Without an error that is asked for only its course is looked at.
     CHECK(none.next(rough) == UINT64_MAX);
     CHECK(none.expected() == HUGE_VAL);
-    CHECK(!none.course().is_due(15));
-    CHECK(none.course().is_due(16));
+    CHECK(!none.history().is_due(15));
+    CHECK(none.history().is_due(16));
 }
 
 TEST_CASE("d_rel is over the truth, not over an image that is mostly noise") {

@@ -161,7 +161,9 @@ TEST_CASE("a film of other samples is refused by the first thing that differs") 
     lit.evidence.resize(2);
     CHECK(complaint([&] { restored(path, lit, what); }) == path + ": its evidence is 0, not 2");
     folder.write("scene", "boxk"), folder.write("mesh", "not");
-    CHECK(why(what) == "its scene is another one");
+    CHECK(why(what) == "was rendered from another version of cube");
+    what.notes = {{"name", "other"}};
+    CHECK(why(what) == "was rendered from cube, not from other");
 }
 
 TEST_CASE("a film that could be none is refused, by what is wrong") {

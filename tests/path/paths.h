@@ -9,11 +9,11 @@
 #include "path/start.h"
 
 // Radiance of sample i of pixel (x, y).
-template <class Account = NoAccount>
+template <class Visitor = NoVisitor>
 rgb radiance(const Scene& scene, const Technique& t, const Pattern& pattern, int x, int y,
-             uint64_t i, Account account = {}) {
+             uint64_t i, Visitor visit = {}) {
     const Start at = start(scene, pattern, {x, y, i});
-    return Li(scene, t, at.ray, at.sampler, account);
+    return Li(scene, t, at.ray, at.sampler, visit);
 }
 
 // Rays that its path took.

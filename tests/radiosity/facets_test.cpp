@@ -106,8 +106,7 @@ TEST_CASE(
         const double less = 1 - area(f.scene) / (16 * std::numbers::pi);
         REQUIRE(f.warnings.size() == 1);
         CHECK(f.warnings[0] ==
-              oracle::say("3: the sphere becomes %zu triangles, faces of their own, whose area is "
-                          "%.2g %% less",
+              oracle::say("3: the sphere becomes %zu triangles; their area is %.2g %% less",
                           facets.size(), 100 * less));
         CHECK(double(facets.size()) == facets_of_sphere(2, 2 * H));
         // A facet of edge h lies h^2 / 8 or so deeper than its sphere: the error is of second
@@ -203,16 +202,17 @@ TEST_CASE(
     "what scatters otherwise than diffusely is refused by its line, and only if it is there") {
     const std::string light = "light l 1 1 1\nquad 0 9 0  1 0 0  0 0 1  l\ndiffuse d .5 .5 .5\n",
                       glossy = "phong p .1 .1 .1  0 .4 0  7\n",
-                      end = ": illumination maps hold diffuse surfaces alone";
+                      end = "; radiosity supports diffuse surfaces only";
     const std::pair<std::string, std::string> rows[] = {
         {"sphere 0 0 0  1  d\n", ""},
         {"mirror m .9 .9 .9\nsphere 0 0 0  1  d\n", ""},
-        {"mirror m .9 .9 .9\nsphere 0 0 0  1  m\n", "a.scene:6: 'm' is a mirror" + end},
-        {"glass g 1.5\nsphere 9 0 0  1  d\nsphere 0 0 0  1  g\n", "a.scene:7: 'g' is glass" + end},
-        {glossy + "sphere 0 0 0  1  p\n", "a.scene:6: 'p' is glossy" + end},
+        {"mirror m .9 .9 .9\nsphere 0 0 0  1  m\n", "a.scene:6: material 'm' is a mirror" + end},
+        {"glass g 1.5\nsphere 9 0 0  1  d\nsphere 0 0 0  1  g\n",
+         "a.scene:7: material 'g' is glass" + end},
+        {glossy + "sphere 0 0 0  1  p\n", "a.scene:6: material 'p' is glossy" + end},
         {"phong p .1 .1 .1  0 0 0  7\nsphere 0 0 0  1  p\n", ""},
         {glossy + "light k 1 1 1 twosided p\nquad 0 0 0  1 0 0  0 1 0  k\n",
-         "a.scene:7: 'k' is glossy" + end}};
+         "a.scene:7: material 'k' is glossy" + end}};
     for (const auto& [text, why] : rows) CHECK(complaint(light + text) == why);
 }
 
@@ -222,5 +222,5 @@ TEST_CASE("a room whose walls absorb nothing is warned of, by its first line") {
         "quad 0 0 0  1 0 0  0 1 0  grey\nquad 0 0 2  1 0 0  0 1 0  white\n";
     const Faceted f = faceted(parsed(text), 1);
     REQUIRE(f.warnings.size() == 1);
-    CHECK(f.warnings[0] == "6: reflects all light: in a closed room there is no end to it");
+    CHECK(f.warnings[0] == "6: reflects all light: in a closed room it never ends");
 }

@@ -64,7 +64,7 @@ TEST_CASE("estimates: all of them find what paths find; their parts are those of
         for (uint64_t i = 0; i < 200; ++i) {
             const Start at = start(scene, pattern, {int(i % 8), int(i / 8 % 8), i});
             const rgb plain = Li(scene, nee, at.ray, at.sampler);
-            const ShadowSample s = shadow_Li(scene, nee, at, NoAccount{});
+            const ShadowSample s = shadow_Li(scene, nee, at, NoVisitor{});
             CHECK(double(max_abs(s.rest + s.first.wV - plain)) < 1e-5);
         }
     }
@@ -124,7 +124,7 @@ TEST_CASE("estimates do not depend on threads, and take the samples of each repl
             for (uint32_t set : {0u, 1u}) {
                 const ShadowMoments m = moments_of(n, [&, i = uint64_t(0)]() mutable {
                     const Start at = start(scene, pattern, {2, 1, i++, set});
-                    const Shadowed s = shadow_Li(scene, nee, at, NoAccount{}).first;
+                    const Shadowed s = shadow_Li(scene, nee, at, NoVisitor{}).first;
                     return std::array{s.U.z, s.w.z, s.wV.z};
                 });
                 sum += estimate(e, m) / 2;

@@ -27,12 +27,12 @@ TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped i
     };
     const Row rows[] = {
         {good},
-        {good + "triangle 0 0 0 1 1 1 2 2 2 m\n", "", "dropped triangles without area: 1"},
+        {good + "triangle 0 0 0 1 1 1 2 2 2 m\n", "", "dropped 1 triangle without area"},
         {good + "triangle 1 2 3 1 2 3 1 2 3 m\n" + in_the_plane + "triangle 0 0 0 1 0 0 1 0 0 l\n",
-         "", "dropped triangles without area: 4"},
-        {good + "quad 0 0 0 0 0 0 0 1 0 l\n", "", "dropped triangles without area: 2"},
+         "", "dropped 4 triangles without area"},
+        {good + "quad 0 0 0 0 0 0 0 1 0 l\n", "", "dropped 2 triangles without area"},
         {camera + "size 8 4\ndiffuse m 1 1 1\nsphere 0 0 0 1 m\n", "",
-         "no light: all will be black"},
+         "no light: the image will be black"},
         {camera + "size 1 1\n" + lamp, "", "", 1, 1},
         {camera + "size 16384 1\n" + lamp, "", "", 16384, 1},
         {camera + "size 1 16384\n" + lamp, "", "", 1, 16384},
@@ -73,7 +73,8 @@ TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped i
         CHECK(all_finite(image));
         CHECK(summary(o.err).found);
         const std::string warning = "file.scene: warning: " + row.warning + "\n";
-        const bool coarse = sizeof(real) == 4 && contains(o.err, "are coarse here");  // said, too
+        const bool coarse =
+            sizeof(real) == 4 && contains(o.err, "precision is too low here");  // said, too
         if (!coarse)
             CHECK(contains(o.err, row.warning.empty() ? "warning" : warning) ==
                   !row.warning.empty());
@@ -110,13 +111,14 @@ TEST_CASE("a scene's meaning does not depend on its line ends, comments, blanks 
 TEST_CASE("--help names every option on one page of stdout") {
     const Folder folder;
     for (const std::string line : {"--help", "--help file.scene", "--spp 3 --quiet --help", "-h"})
-        expect_help(folder, "penumbra " + line, 64,
-                    "penumbra [options] SCENE;-o FILE;--spp N;--time S;--error E;--sets K|adaptive;"
+        expect_help(folder, "penumbra " + line, 92,
+                    "penumbra [options] SCENE;-o, --output FILE;--spp, --samples N;--time "
+                    "S;--error E;--sets K|adaptive;"
                     "uniform|bsdf;--direction;--light none|nee|mis;"
                     "--sampler independent|stratified|halton|sobol;"
                     "--view radiance|normal|depth|albedo|bvh;--keep F.film;--rows A-B;--pixel X,Y;"
                     "--sample I[,K];Exit status: 0 done;--depth N;--roulette T;--seed N;"
-                    "--threads N;--size WxH;--exposure E;--quiet;--help;.png;.pfm");
+                    "--threads N;--size WxH;--exposure E;--quiet;--help, -h;--version;.png;.pfm");
     CHECK(folder.files() == 0);
 }
 
@@ -173,12 +175,12 @@ TEST_CASE("a picture that is black, though there are lights, gets a hint") {
     const std::string quad = camera + "size 4 4\nlight l 1 1 1\nquad -1 -1 0 ";
     const Place faces(quad + "2 0 0  0 2 0  l\n"), turned(quad + "0 2 0  2 0 0  l\n");
     CHECK(contains(turned.render("--spp 2").err,
-                   "file.scene: all is black: no light reaches the camera"));
+                   "file.scene: the image is black: no light reaches the camera"));
     CHECK(turned.render("--spp 2 --quiet").err == "");
     CHECK_FALSE(contains(faces.render("--spp 2").err, "black"));
-    CHECK_FALSE(contains(turned.render("--spp 2 --view albedo").err, "all is black"));
+    CHECK_FALSE(contains(turned.render("--spp 2 --view albedo").err, "the image is black"));
     const std::string band = turned.render("--spp 2 --rows 0-1 -o a.pfm").err;
-    CHECK_FALSE(contains(band, "all is black"));  // others may be lit
+    CHECK_FALSE(contains(band, "the image is black"));  // others may be lit
 }
 
 TEST_CASE("--pixel names the material and the line of what a path meets") {
@@ -207,6 +209,19 @@ TEST_CASE("--pixel names each kind of light") {
         const Outcome o = run(place, "penumbra --pixel 1,2 file.scene");
         INFO(o.out);
         CHECK(contains(o.out, "  light sample: " + kind + " light, chosen with probability 1, "));
+        CHECK(o.out.starts_with(
+            "pixel 1,2, sample 0 of replication 0, seed 0\nposition in the pixel: "));
+    }
+    for (const auto& [words, why] : std::map<std::string, std::string>{
+             {"diffuse l .5 .5 .5\nquad -9 -1 -9  0 0 18  18 0 0  l\npointlight 0 -5 0 1 1 1",
+              "the light is behind the surface"},
+             {"mirror l .5 .5 .5\nquad -9 -1 -9  0 0 18  18 0 0  l\npointlight 0 5 0 1 1 1",
+              "the surface is a mirror or glass"},
+             {"diffuse l .5 .5 .5\nquad -9 -1 -9  0 0 18  18 0 0  l", "the scene has no light"}}) {
+        const Place place("size 3 3\n" + camera + words + "\n");
+        const Outcome o = run(place, "penumbra --pixel 1,2 file.scene");
+        INFO(o.out);
+        CHECK(contains(o.out, "  no light sample: " + why + "\n"));
     }
 }
 
@@ -357,16 +372,17 @@ TEST_CASE("the summary states the error, or why it is not known; --error says wh
         CHECK(summary(o.err).found);
         return summary(o.err);
     };
-    for (const std::string options : {"", "--sampler halton", "--sets 2", "--view normal"}) {
+    for (const std::string options : {"", "--sampler halton", "--sets 2"}) {
         INFO(options);
         const Summary s = told(options);
-        CHECK(s.error.starts_with("d_rel "));
+        CHECK(s.error.starts_with("estimated error "));
         CHECK(contains(s.error, " % ± "));
-        CHECK(contains(s.error, " % needs "));
+        CHECK(contains(s.error, " s more for "));
         CHECK(s.stopped_by == "");
     }
-    CHECK(told("--sets 1").error == "d_rel not known: one replication");
-    CHECK(told("--spp 1").error == "d_rel not known: one sample");
+    CHECK(told("--sets 1").error == "error not known: one replication");
+    CHECK(told("--spp 1").error == "error not known: one sample");
+    CHECK(told("--view normal").error == "");
     const Summary error = told("--error 10%"), samples = told("--error 1e-5 --spp 20 --sets 2"),
                   time = told("--error 1e-6 --time 0.05 --spp 1000000000");
     CHECK(error.stopped_by == "error");

@@ -13,7 +13,9 @@ TEST_CASE("SIGTERM, SIGHUP and Ctrl-C write the samples so far; the exit status 
         // Once sets are chosen there is an error.
         const Outcome o = cut_short_late_enough(
             place, "penumbra --spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene", signal,
-            [](const Outcome& so_far) { return summary(so_far.err).error.starts_with("d_rel "); });
+            [](const Outcome& so_far) {
+                return summary(so_far.err).error.starts_with("estimated error ");
+            });
         INFO(o.err);
         CHECK(o.status == status);
         CHECK(place.files() == 3);

@@ -61,7 +61,8 @@ TEST_CASE("another scene, by one byte of any of its files; the same one elsewher
         INFO(name);
         const std::string bytes = folder.read(name);
         folder.write(name, bytes + "\n");
-        folder.refuse("--spp 2 --keep a.film", "a.film: its scene is another one\n");
+        folder.refuse("--spp 2 --keep a.film",
+                      "a.film: was rendered from another version of file.scene\n");
         folder.write(name, bytes);
         folder.write("other/" + name, bytes);
     }

@@ -139,7 +139,7 @@ TEST_CASE("a part that is interrupted, or given more samples, goes on, and is me
     const Words endless = words + split("--spp 1000000000 --keep c.film -o c.pfm");
     CHECK(cut_short(folder, endless, 0.4).status == 130);
     expect_refusal(folder, "merge -o x.pfm c.film",
-                   "c.film: is not complete: go on by penumbra --keep c.film\n");
+                   "c.film: is not complete: resume it with penumbra --keep c.film\n");
 }
 
 TEST_CASE("memory of merging: the picture, and of each film a row and 2 bytes a pixel") {

@@ -333,9 +333,11 @@ struct Summary {
     bool interrupted = false, found = false;
 };
 
-// Of the line that tells of the samples, where a bar may have stood.
+// Of the line with the number of samples, where a bar may have stood.
 inline Summary summary(const std::string& err) {
     Summary s;
+    if (contains(err, ": interrupted before the first pass was complete: no image written\n"))
+        s.interrupted = s.found = true;
     const size_t end = err.find('\n', err.find(" Mrays/s"));
     if (end == err.npos) return s;
     const size_t start = err.rfind('\n', end - 1) + 1;
@@ -345,7 +347,7 @@ inline Summary summary(const std::string& err) {
     s.scene = line.substr(0, name);
     line.erase(0, name);
     int read_to = 0;
-    const int read = std::sscanf(line.c_str(), ": %lf samples per pixel, %lf s, %lf Mrays/s%n",
+    const int read = std::sscanf(line.c_str(), ": %lf %*s per pixel, %lf s, %lf Mrays/s%n",
                                  &s.samples, &s.seconds, &s.speed, &read_to);
     line.erase(0, size_t(read_to));
     auto cut = [&](const std::string& words) {
@@ -354,11 +356,12 @@ inline Summary summary(const std::string& err) {
         return has;
     };
     s.interrupted = cut(" (interrupted)");
-    for (const char* by : {"samples", "time", "error"})
-        if (cut(" (stopped by " + std::string(by) + ")")) s.stopped_by = by;
-    if (line.starts_with(", ")) s.error = line.substr(2);
-    const bool told = s.error.starts_with("d_rel ") || s.error.starts_with("d_rel not known: ");
-    s.found = read == 3 && (s.samples > 0 ? told : line.empty());
+    for (const auto& [by, option] :
+         {std::pair{"samples", "--spp"}, {"time", "--time"}, {"error", ", reached "}})
+        if (contains(line, *option == '-' ? "(stopped by " + std::string(option) + "; " : option))
+            s.stopped_by = by;
+    s.error = line.empty() ? "" : line.substr(2);
+    s.found = read == 3 && (s.error.empty() || contains(s.error, "error "));
     return s;
 }
 

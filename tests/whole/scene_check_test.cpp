@@ -182,21 +182,23 @@ TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {
                       "light glow .4 .4 .4 twosided half\nbox 4 3 4  0  " + wall +
                       " -1.5 -2   glow\n");
     };
-    CHECK(warns(box_at(1e6), "are coarse here") == single);
-    CHECK(!warns(box_at(1e3), "are coarse here"));
-    if (!single) CHECK(warns(box_at(1e14), "line 4: numbers of 8 bytes are coarse here"));
+    CHECK(warns(box_at(1e6), "precision is too low here") == single);
+    CHECK(!warns(box_at(1e3), "precision is too low here"));
+    if (!single) CHECK(warns(box_at(1e14), "line 4: double precision is too low here"));
     for (const char* name : {"atelier", "cornell", "cornell36", "cornellglossy", "coursework",
                              "cube", "furnace", "lanterns", "materials", "panel", "penumbra"})
-        CHECK(warns(read_scene("scenes/" + std::string(name) + ".scene"), "are coarse") ==
+        CHECK(warns(read_scene("scenes/" + std::string(name) + ".scene"), "precision is too low") ==
               (single && name == std::string_view("atelier")));
-    CHECK(warns(read_scene("scenes/extremes.scene"), "are coarse here") == single);
+    CHECK(warns(read_scene("scenes/extremes.scene"), "precision is too low here") == single);
 }
 
 TEST_CASE("where rays start more than 1 % of the way to something near, it is told") {
-    const std::string start = "line 4: numbers of " + std::to_string(sizeof(real)) +
-                              " bytes are coarse here: rays start off this shape by more than 1 % "
-                              "of its distance to ",
-                      end = "; light may be wrong: use REAL=double, or move all nearer to 0";
+    const std::string start = "line 4: " + std::string(single ? "float" : "double") +
+                              " precision is too low here: ray origins are offset by more than 1 % "
+                              "of this shape's distance to ",
+                      end = ", and light may be wrong; " +
+                            std::string(single ? "use REAL=double, or " : "") +
+                            "move the scene nearer to the origin";
     const std::string& eye = from_above;
     const struct {
         std::string eye, others, what;
@@ -217,14 +219,14 @@ TEST_CASE("where rays start more than 1 % of the way to something near, it is to
         INFO(other);
         const std::string near = told(eye, off(other, 90));
         CHECK(near.starts_with("line 5: "));
-        CHECK(near.ends_with(" its distance to line 4" + end));
+        CHECK(near.ends_with(" distance to line 4" + end));
         CHECK(told(eye, off(other, 110)) == "");
     }
     // A small ball by its centre, on the floor or above it; its size is that of many more offsets.
     auto ball = [&](double height) {
         return told(eye, panel + off("sphere 0 @ 0  ", height) + off("@ d\n", 40));
     };
-    CHECK(ball(90).ends_with(" its distance to line 4" + end));
+    CHECK(ball(90).ends_with(" distance to line 4" + end));
     CHECK(ball(110) == "");
 }
 
@@ -252,7 +254,7 @@ TEST_CASE("plates on a slope touch it within rounding; a small ball far away is 
     }
     CHECK(told(eye, panel + slope) == "");
     const std::string ball = told(eye, panel + off("sphere 900 50 0  @ d\n", 30));
-    CHECK(ball.find(" of its size;") != ball.npos);
+    CHECK(ball.find("shape's size,") != ball.npos);
     CHECK(ball.find("distance") == ball.npos);
 }
 
@@ -265,9 +267,9 @@ TEST_CASE("three scenes that float gets wrong are told; in double they are not n
                   .warnings.size() == (single ? 1 : 0));
     CHECK(warns(parsed("camera 0 1e-3 0  5 1e-3 0  50\n" + head +
                        "sphere 0 -1e6 0  1e6 d\nsphere 0 2e3 0  900 l\n"),
-                "its distance to the eye") == single);
+                "distance to the eye") == single);
     for (const char* lamp : {"sphere 1.9997 .0349 0  .1 l\n", "sphere 6.9 .1204 0  .345 l\n"})
-        CHECK(warns(parsed(eye + head + floor + lamp), "its distance to line 4") == single);
+        CHECK(warns(parsed(eye + head + floor + lamp), "distance to line 4") == single);
 }
 
 // Maps of its light have one side and no sky.  In float a ray that starts 10 micrometres from an
