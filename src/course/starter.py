@@ -40,7 +40,7 @@ class Plan:
         for part in words.split(','):
             ends = part.split('-')
             if len(ends) > 2 or not all(w in weeks for w in ends) or weeks.index(ends[0]) > weeks.index(ends[-1]):
-                raise SystemExit(f'starter: WEEKS={words}: say weeks of {" ".join(weeks)}, such as 1-3 or 2 or 1-6,V')
+                raise regions.Malformed(f'WEEKS={words}: say weeks of {" ".join(weeks)}, such as 1-3 or 2 or 1-6,V')
             self.weeks += weeks[weeks.index(ends[0]):weeks.index(ends[-1]) + 1]
         self.weeks = [w for w in weeks if w in self.weeks]
         first = weeks.index(self.weeks[0])
@@ -54,8 +54,8 @@ class Plan:
         for e in self.open:
             for need in e.needs:
                 if need.split('.')[0] not in given:
-                    raise SystemExit(f'starter: WEEKS={words}: {e.number} needs {need}: add week {need.split(".")[0]}, '
-                                     f'or give week {e.week} alone')
+                    raise regions.Malformed(f'WEEKS={words}: {e.number} needs {need}: add week {need.split(".")[0]}, '
+                                            f'or give week {e.week} alone')
         self.wings = [wing for week, wing in WINGS.items() if week in self.weeks + self.solved_weeks]
         if 'radiosity' in self.wings and 'shadow' not in self.wings:
             self.wings.insert(0, 'shadow')  # its form factors
@@ -218,7 +218,8 @@ def main():
     folder = words.folder.resolve()
     make_starter(plan, folder, draw)
     pack(folder)
-    print(f'{words.folder}, {words.folder}.tar.gz: {len(plan.open)} exercises of weeks {" ".join(plan.weeks)}')
+    count = f'{len(plan.open)} exercise' + ('s' if len(plan.open) > 1 else '')
+    print(f'{words.folder}, {words.folder}.tar.gz: {count} of week{"s" if len(plan.weeks) > 1 else ""} {" ".join(plan.weeks)}')
 
 
 if __name__ == '__main__':
