@@ -124,8 +124,11 @@ def write_checks(plan, to):
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
-    if '2' not in plan.weeks:  # its examples sample spheres and triangles
-        write(to / 'tests/oracle/README.md', (ROOT / 'tests/oracle/README.md').read_text())
+    text = re.sub(r'\[bugs-found.md\].*?\n\n', '', (ROOT / 'tests/oracle/README.md').read_text(), flags=re.S)
+    if '2' in plan.weeks:  # two examples sample spheres and triangles
+        text = re.sub(r'```cpp\n((?!```).)*(std::cos|Triangle<3>)((?!```).)*```\n', '*(This example is an exercise of week 2.)*\n',
+                      text, flags=re.S)
+    write(to / 'tests/oracle/README.md', text)
 
 
 def sheet_of(week):
@@ -168,6 +171,7 @@ def write_rest(plan, to):
           HAND_IN + '\n\n'
           '| exercise | | file | points | hours |\n|---|---|---|---|---|\n' +
           ''.join(f'| {e.number} | {e.title} | src/{e.file} | {e.points} | {e.hours:g} |\n' for e in plan.open))
+    write(to / '.clang-format', (ROOT / '.clang-format').read_text() + 'ReflowComments: false\n')
     write(to / 'LICENSE', (ROOT / 'LICENSE').read_text())
 
 

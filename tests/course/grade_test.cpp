@@ -187,7 +187,8 @@ TEST_CASE("archives are read, not unpacked; a folder may have another name") {
     CHECK(!fs::exists(house().folder.path.parent_path() / "x"));
 }
 
-TEST_CASE("numbers of students go into tables for Moodle and Canvas; what is not judged is flagged") {
+TEST_CASE(
+    "numbers of students go into tables for Moodle and Canvas; what is not judged is flagged") {
     if (!sandboxed()) return;
     Course course("tables");
     course.hand_in("Ada Lovelace_4711_assignsubmission_file_", {{"1.1", whole}}, "penumbra/");

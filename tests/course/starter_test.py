@@ -2,12 +2,15 @@
 """Each function test_... is a test; starter_test.cpp runs them one by one."""
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
 import mistakes
 import mutants
+import region
 import regions
 import starter
 import starter_check
@@ -179,6 +182,8 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
             expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
         expect('wide' not in (made.folder / 'src/world/tree.h').read_text(), 'the wide tree')
+        guide = (made.folder / 'tests/oracle/README.md').read_text()
+        expect('expect_density(random, sample, pdf)' in guide and guide.count('exercise of week 2') == 2 and 'bugs-found' not in guide, guide)
 
 
 def test_all_that_a_starter_includes_is_there():
@@ -190,6 +195,25 @@ def test_all_that_a_starter_includes_is_there():
             for name in re.findall(r'^#include "(.*)"', file.read_text(), re.M):
                 found = [f for f in ('src', 'tests', 'tests/course') if (pathlib.Path(temporary) / f / name).exists()]
                 expect(found, f'{file.name} includes {name}')
+
+
+def test_marks_survive_every_style_of_clang_format():
+    if not shutil.which('clang-format'):
+        return print('not tested: clang-format is not installed')
+    found = regions.solution_files()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        starter.make_starter(starter.Plan('1-6,V,R'), folder)
+        files = {name: (folder / name).read_bytes() for name in sorted({name for name, _ in found.values()})}
+        for style in ('LLVM', 'Google', 'Chromium', 'Mozilla', 'WebKit', 'file'):
+            for name, data in files.items():
+                if style == 'file':  # a student's comment flows into no mark
+                    data = re.sub(rb'([ \t]*// END)', rb'// ' + rb'word ' * 30 + rb'\n\1', data)
+                (folder / name).write_bytes(data)
+            subprocess.run(['clang-format', '-i', f'--style={style}', *files], cwd=folder, check=True)
+            for number, (name, solution) in found.items():
+                text = region.region((folder / name).read_bytes(), number, name).text
+                expect(region.canonical(text) == region.canonical('\n'.join(solution.stub)), style, number, text)
 
 
 def test_a_solved_copy_has_all_solutions():
