@@ -17,6 +17,7 @@ import sys
 import tarfile
 
 import regions
+import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
@@ -143,18 +144,18 @@ def write_rest(plan, to):
     for path in sorted((ROOT / 'scenes').iterdir()):
         if path.suffix in ('.scene', '.obj', '.mtl') and 'build/' not in path.read_text():
             write(to / 'scenes' / path.name, path.read_text())
-    sheets = []
+    listed = []
     for week in plan.weeks:
         sheet = sheet_of(week)
         if sheet:
-            text = sheet.read_text()
+            text = sheets.for_students(sheet.read_text())
             for picture in re.findall(r'!\[[^]]*\]\(([\w.-]+\.(?:png|svg))\)', text):
                 (to / 'sheets').mkdir(exist_ok=True)
                 if not (sheet.parent / picture).exists():
                     raise regions.Malformed(f"{sheet.name}: there is no picture {picture}")
                 shutil.copy(sheet.parent / picture, to / "sheets" / picture)
             write(to / 'sheets' / sheet.name, text)
-            sheets.append((week, sheet.name, text.split('\n', 1)[0].lstrip('# ')))
+            listed.append((week, sheet.name, text.split('\n', 1)[0].lstrip('# ')))
     makefile = (ROOT / 'src/course/starter.mk').read_text()
     write(to / 'Makefile', makefile)
     points = sum(e.points for e in plan.open)
@@ -165,7 +166,7 @@ def write_rest(plan, to):
           '    make check           # what is right, and what is to do\n\n' % plan.open[0].number +
           'You need make, g++ 12 or clang++ 15, and stb (Debian, Ubuntu: `libstb-dev`).  Start with the sheet of the\n'
           f'week.  {len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
-          ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in sheets) +
+          ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in listed) +
           '\nAn exercise is what stands between `// BEGIN 2.2 ...` and `// END 2.2` in `src`: replace it.  What is there is\n'
           'wrong, but it compiles, and pictures can be drawn from the first day.\n\n' +
           HAND_IN + '\n\n'

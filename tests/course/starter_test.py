@@ -12,6 +12,7 @@ import mistakes
 import mutants
 import region
 import regions
+import sheets
 import starter
 import starter_check
 import testing
@@ -222,6 +223,25 @@ def test_a_solved_copy_has_all_solutions():
         text = '\n'.join(p.read_text() for p in sorted(pathlib.Path(temporary).rglob('*.h')))
         for number, (_, region) in regions.solution_files().items():
             expect('\n'.join(region.solution) in text, number)
+
+
+def test_answers_stand_behind_blanks_and_stay_there():
+    text = 'is ____<!-- $2\\pi$ -->, and $a (\\underline{\\qquad}, \\_\\_\\_\\_)$<!-- x | y -->\n$$\\underline{\\qquad}$$\n<!-- z -->\n'
+    students = 'is ____, and $a (\\underline{\\qquad}, \\_\\_\\_\\_)$\n$$\\underline{\\qquad}$$\n'
+    expect(sheets.for_students(text) == students, sheets.for_students(text))
+    key = sheets.with_answers('x', text, '[{}]'.format, '<{}>'.format)
+    expect(key == 'is [$2\\pi$], and $a (<x>, <y>)$\n$$<z>$$\n', key)
+    for bad in (students, text.replace(' | y', ''), text.replace('<!-- z -->', ''), '____<!-- a | b -->'):
+        refused(lambda: sheets.with_answers('x', bad, str, str), 'x: ')
+    count = 0
+    for sheet in sorted((regions.ROOT / 'reference/course').glob('*.md')):
+        key = sheets.with_answers(sheet.name, sheet.read_text(), str, str)
+        expect(not sheets.BLANK.search(key) and '<!--' not in key, sheet.name)
+        count += len(sheets.BLANK.findall(sheet.read_text()))
+    expect(count > 250, count)
+    with Made() as made:
+        texts = [p.read_text() for p in (made.folder / 'sheets').glob('*.md')]
+        expect(texts and all('____' in t and '<!--' not in t for t in texts), 'a starter has answers')
 
 
 def test_the_archive_is_the_same_for_the_same_content():
