@@ -12,5 +12,5 @@ build/draw$(SUFFIX): src/course/draw.cpp | packages
 -include $(wildcard $(COURSE)/*.d build/draw$(SUFFIX).d)
 
 .PHONY: check
-check:  ## EX=2.1: is that exercise right?  Without EX: what is right, wrong, open
-	@MAKE='$(MAKE)' SUFFIX=$(SUFFIX) tests/course/check $(EX) || [ $$? = 1 ]
+check:  ## EX=2.1: is that exercise right?  WATCH=1: again at every save.  Without EX: what is right, wrong, open
+	@MAKE='$(MAKE)' SUFFIX=$(SUFFIX) tests/course/check $(if $(WATCH),--watch) $(EX) || [ $$? = 1 ]
