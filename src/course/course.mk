@@ -11,6 +11,9 @@ build/draw$(SUFFIX): src/course/draw.cpp | packages
 	@$(CXX) $(FLAGS) -O2 -MF $@.d -MT $@ -o $@ $<
 -include $(wildcard $(COURSE)/*.d build/draw$(SUFFIX).d)
 
-.PHONY: check
+.PHONY: check update
 check:  ## EX=2.1: is that exercise right?  WATCH=1: again at every save.  Without EX: what is right, wrong, open
 	@MAKE='$(MAKE)' SUFFIX=$(SUFFIX) tests/course/check $(if $(WATCH),--watch) $(EX) || [ $$? = 1 ]
+
+update:  ## STARTER=FILE.tar.gz: take a later week's starter into this folder, and keep what you wrote
+	@tests/course/update '$(STARTER)'

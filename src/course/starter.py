@@ -25,7 +25,7 @@ FOLDERS = ['base', 'world', 'path', 'film']
 ALSO = ['src/keep/read_pfm.h']  # build/draw compares pictures
 UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
 COURSE = ['draw.h', 'draw.cpp', 'course.mk']  # of src/course
-KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'pictures.txt']  # of tests/course
+KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'update', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
 Leave these lines as they are, and write between them plain C++: no `#include`, `#define`, `asm` or names with two
 underscores, which graders refuse.'''
@@ -121,7 +121,7 @@ def write_checks(plan, to):
     numbers = {e.number for e in plan.open}
     files = KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]
     for file in with_headers(course, files):
-        write(to / 'tests/course' / file, (course / file).read_text(), file == 'check')
+        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'update'))
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())

@@ -13,7 +13,7 @@ import testing
 from testing import expect
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SAID = '''2.2 wrong: half < of it
+SAID = '''2.2 wrong: half <i>of it
   right  exact        a length is 1
   WRONG  statistical  it follows 1 < 2 & 3: p = 1e-9
 '''
@@ -74,7 +74,7 @@ def test_the_page_has_verdict_items_picture_and_scale():
     with Room() as room:
         room.check('2.2')
         dom = shown(room)
-        for part in ('>2.2 wrong: half &lt; of it</h1>', '<td>statistical</td><td>it follows 1 &lt; 2 &amp; 3: p = 1e-9', 'src="2.2.png?',
+        for part in ('>2.2 wrong: half &lt;i&gt;of it</h1>', '<td>statistical</td><td>it follows 1 &lt; 2 &amp; 3: p = 1e-9', 'src="2.2.png?',
                      '<b>yours</b><b>expected</b><b>difference</b>', '>+0.4</span>', 'h1 class="other"'):
             expect(not dom or part in dom, part, dom)
         (room.top / 'said').write_text('2.1 right: 1 of 1\n')
