@@ -156,16 +156,21 @@ def write_rest(plan, to):
                 shutil.copy(sheet.parent / picture, to / "sheets" / picture)
             write(to / 'sheets' / sheet.name, text)
             listed.append((week, sheet.name, text.split('\n', 1)[0].lstrip('# ')))
-    makefile = (ROOT / 'src/course/starter.mk').read_text()
-    write(to / 'Makefile', makefile)
+    for name in ('systems', 'contest'):
+        text = (ROOT / f'reference/course/{name}.md').read_text()
+        write(to / f'sheets/{name}.md', text)
+        listed.append((None, f'{name}.md', text.split('\n', 1)[0].lstrip('# ')))
+    for name, place in (('starter.mk', 'Makefile'), ('Dockerfile', 'Dockerfile'), ('students-ci.yml', '.github/workflows/check.yml')):
+        write(to / place, (ROOT / 'src/course' / name).read_text())
     points = sum(e.points for e in plan.open)
     hours = sum(e.hours for e in plan.open)
     write(to / 'README.md', '# A course with Penumbra\n\n'
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
           '    make check           # what is right, and what is to do\n\n' % plan.open[0].number +
-          'You need make, g++ 12 or clang++ 15, and stb (Debian, Ubuntu: `libstb-dev`).  Start with the sheet of the\n'
-          f'week.  {len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
+          'You need make, g++ 12 or clang++ 15, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
+          'Start with the sheet of the week.  '
+          f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
           ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in listed) +
           '\nAn exercise is what stands between `// BEGIN 2.2 ...` and `// END 2.2` in `src`: replace it.  What is there is\n'
           'wrong, but it compiles, and pictures can be drawn from the first day.\n\n' +

@@ -182,6 +182,8 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         for table in ('exercises.txt', 'mistakes.txt'):
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
             expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
+        for name in ('Dockerfile', '.github/workflows/check.yml', '.clang-format', 'sheets/systems.md', 'tests/course/update'):
+            expect((made.folder / name).exists(), f'no {name}')
         expect('wide' not in (made.folder / 'src/world/tree.h').read_text(), 'the wide tree')
         guide = (made.folder / 'tests/oracle/README.md').read_text()
         expect('expect_density(random, sample, pdf)' in guide and guide.count('exercise of week 2') == 2 and 'bugs-found' not in guide, guide)
@@ -240,7 +242,7 @@ def test_answers_stand_behind_blanks_and_stay_there():
         count += len(sheets.BLANK.findall(sheet.read_text()))
     expect(count > 250, count)
     with Made() as made:
-        texts = [p.read_text() for p in (made.folder / 'sheets').glob('*.md')]
+        texts = [p.read_text() for p in (made.folder / 'sheets').glob('?-*.md')]
         expect(texts and all('____' in t and '<!--' not in t for t in texts), 'a starter has answers')
 
 
