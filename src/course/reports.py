@@ -62,7 +62,7 @@ def headline(number, verdict):
 
 
 def write(path, text):
-    """By a new name first: whoever reads it finds all or nothing."""
+    """Under a new name first: readers find all of it or nothing."""
     with open(path + '.partial', 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
         file.write(text)
         file.flush()

@@ -1,4 +1,4 @@
-# course/sheets.py  6  blanks of the sheets, and the answers that stand behind them
+# course/sheets.py  5  blanks of the sheets, and the answers that stand behind them
 """In reference/course/*.md an answer is a comment behind its blank:
 
     it is ____<!-- $2\\pi \\sin\\theta$ --> long

@@ -3,8 +3,8 @@
 
 Writes FOLDER and FOLDER.tar.gz.  Exercises of these weeks are open: their stubs stand between
 `// BEGIN N.M` and `// END N.M`.  Those of earlier weeks come solved, those of later ones are stubs that
-nobody is asked to replace, so that no solution is given away.  --solved: all come solved, for whoever
-wants to look for a planted bug.
+nobody is asked to replace, so that no solution is given away.  --solved: all come solved, to look for a
+planted bug.
 """
 import argparse
 import io
@@ -26,9 +26,9 @@ ALSO = ['src/keep/read_pfm.h']  # build/draw compares pictures
 UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
 COURSE = ['draw.h', 'draw.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'update', 'pictures.txt']  # of tests/course
-HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
-Leave these lines as they are, and write between them plain C++: no `#include`, `#define`, `asm` or names with two
-underscores, which graders refuse.'''
+HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
+Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
+names with two underscores.'''
 
 
 class Plan:
@@ -173,7 +173,7 @@ def write_rest(plan, to):
           f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
           ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in listed) +
           '\nAn exercise is what stands between `// BEGIN 2.2 ...` and `// END 2.2` in `src`: replace it.  What is there is\n'
-          'wrong, but it compiles, and pictures can be drawn from the first day.\n\n' +
+          'wrong, but it compiles, and you can draw pictures from the first day.\n\n' +
           HAND_IN + '\n\n'
           '| exercise | | file | points | hours |\n|---|---|---|---|---|\n' +
           ''.join(f'| {e.number} | {e.title} | src/{e.file} | {e.points} | {e.hours:g} |\n' for e in plan.open))

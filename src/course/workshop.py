@@ -182,7 +182,7 @@ class Workshop:
         return dict(verdict)
 
     def once(self, known, key, work):
-        """work(), by whoever asks first; others wait for it."""
+        """work(), by the first who asks; others wait for it."""
         with self.lock:
             mine = key not in known
             if mine:
