@@ -219,6 +219,17 @@ def test_marks_survive_every_style_of_clang_format():
                 expect(region.canonical(text) == region.canonical('\n'.join(solution.stub)), style, number, text)
 
 
+def test_another_compiler_builds_anew():
+    with Made() as made:
+        for name in ('one', 'two'):
+            starter.write(made.folder / name, '#!/bin/sh\necho x >>asked\n[ "$1" = -x ] && exit\necho x >>built\n'
+                          'while [ "$1" != -o ]; do shift; done\necho >"$2"\n', True)
+        for name, times in (('one', 1), ('one', 1), ('two', 2), ('two', 2)):
+            done = subprocess.run(['make', 'build/draw', f'CXX=./{name}'], cwd=made.folder, capture_output=True, text=True)
+            expect(done.returncode == 0, done.stderr)
+            expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
+
+
 def test_a_solved_copy_has_all_solutions():
     with tempfile.TemporaryDirectory() as temporary:
         starter.make_starter(starter.Plan('1-6,V,R', solved=True), pathlib.Path(temporary) / 's')
