@@ -41,7 +41,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all gallery programs test test-all test-everywhere test-farm mutants soak oracle-campaign penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
         cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
-        survival starter starter-check mistakes handout grade plant hunted
+        survival starter starter-check mistakes handout key grade plant hunted
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -324,8 +324,11 @@ mistakes:  ## regenerate the table of known mistakes, tests/course/mistakes.txt 
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
 mistakes: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%)
 
-handout:  ## sheets of the course as HTML, and as PDF where that can be made: build/handout/index.html
-	@python3 src/course/handout.py build/handout
+handout:  ## sheets for students as HTML, and as PDF where Chromium is installed: build/handout/index.html; PAPER=letter
+	@python3 src/course/handout.py $(if $(PAPER),--paper $(PAPER)) build/handout
+
+key:  ## for instructors: the sheets with their answers, plans of the sessions, grading: build/key/index.html; PAPER=letter
+	@python3 src/course/handout.py --key $(if $(PAPER),--paper $(PAPER)) build/key
 
 starter-check:  ## test the starter; FULL=1: each pair of stubs, too
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full) $(if $(DRAW),--draw '$(DRAW)')

@@ -104,11 +104,18 @@ int run(const std::vector<std::string>& words) {
         told = text;
         image = both;
     }
+    if (o.drawing.picture == Picture::normal) {
+        const MeanWork work = mean_work(scene);
+        char text[64];
+        std::snprintf(text, sizeof text, ", %.4g boxes and %.4g shapes per ray", work.boxes,
+                      work.shapes);
+        told = text + told;
+    }
     if (o.outputs.empty())
         o.outputs = {"out/" + std::filesystem::path(o.scene).stem().string() + ".png"};
     for (const std::string& path : o.outputs) {
         write_image(path, image, exposure);
-        std::printf("%s: %dx%d, %llu samples a pixel, %.1f s%s\n", path.c_str(), image.width,
+        std::printf("%s: %dx%d, %llu samples per pixel, %.2g s%s\n", path.c_str(), image.width,
                     image.height, static_cast<unsigned long long>(o.drawing.samples), took.count(),
                     told.c_str());
     }

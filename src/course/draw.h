@@ -33,6 +33,22 @@ inline rgb normal_seen(const Scene& scene, const Ray& ray) {
     return x ? (x->local.n + vec3{1, 1, 1}) / 2 : rgb{};
 }
 
+// What the tree does for a ray through the centre of a pixel, on average (week 1).
+struct MeanWork {
+    double boxes = 0, shapes = 0;
+};
+inline MeanWork mean_work(const Scene& scene) {
+    MeanWork sum;
+    const auto [w, h] = scene.size;
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+            const auto work = scene.bvh.work(
+                camera_ray(scene.camera, scene.size, real(x) + real(0.5), real(y) + real(0.5)));
+            sum.boxes += work.nodes, sum.shapes += work.shapes;
+        }
+    return {sum.boxes / (w * h), sum.shapes / (w * h)};
+}
+
 // Ambient occlusion (Landis 2002): the mean over cos(theta) / pi of whether nothing is near.
 inline rgb occlusion_seen(const Scene& scene, const Start& at, real far) {
     const auto x = meet(scene, at.ray);

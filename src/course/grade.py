@@ -1,11 +1,12 @@
 # course/grade.py  15  grades what students handed in
 """grade.py [--weeks 1-3] [--seed N] [--jobs N] [--out FOLDER] SUBMISSIONS
 
-Every folder or .tar.gz in SUBMISSIONS is what one student handed in.  Of it only the regions of the
-exercises are taken.  Each is put alone into the solution, then all together; both are compiled and
-run in bubblewrap, and judged by numbers that come over a pipe.  Writes FOLDER/students/NAME/grade.md
-and grade.json, and FOLDER/grades.csv; FOLDER is SUBMISSIONS-grades unless it is said.  Whoever has a grade.json of the same hand-in, seed and solution
-is not graded again: what was stopped goes on.
+Every folder or archive in SUBMISSIONS is what one student handed in, or part of it.  Of it only the
+regions of the exercises are taken.  Each is put alone into the solution, then all together; both are
+compiled and run in bubblewrap, and judged by numbers that come over a pipe.  Writes grade.md and
+grade.json into FOLDER/students/NAME, and FOLDER/grades.csv, moodle.csv and canvas.csv; FOLDER is
+SUBMISSIONS-grades unless it is said.  A student with a grade.json of the same submission, seed and
+solution is not graded again: a grading that was stopped resumes.
 """
 import argparse
 import concurrent.futures
@@ -33,20 +34,20 @@ WASTE = 100  # seconds of processor time of a submission that its endless loops 
 
 
 class Student:
-    """One submission: his regions, or what is wrong with them, and his verdicts."""
+    """One submission: its regions, or what is wrong with them, and their verdicts."""
 
-    def __init__(self, name, path, shop, numbers):
-        self.name, self.shop, self.numbers = name, shop, numbers
+    def __init__(self, handed_in, shop, numbers):
+        self.name, self.number, self.shop, self.numbers = handed_in.name, handed_in.number, shop, numbers
         self.verdicts, self.texts, self.original, self.wasted = {}, {}, {}, 0
         self.lock = threading.Lock()
-        files = submission.read(path, list(dict.fromkeys(shop.solutions[n][0] for n in numbers)))
+        files = submission.read(handed_in.paths, list(dict.fromkeys(shop.solutions[n][0] for n in numbers)))
         for number in numbers:
             self.take(number, files)
-        self.key = digest_of([shop.key, str(shop.seed), name,
+        self.key = digest_of([shop.key, str(shop.seed), self.name,
                               *(f'{n} {self.original[n].text if n in self.original else self.verdicts[n]}' for n in numbers)])
 
     def take(self, number, files):
-        """His region, if it is one that may be compiled."""
+        """Their region, if it is one that may be compiled."""
         file, solution = self.shop.solutions[number]
         try:
             if isinstance(files[file], Problem):
@@ -87,7 +88,7 @@ class Student:
         self.shop.forget(scratch)
         self.verdicts.update(alone)
         parts = {n: self.part(n, together.get(n), worth[n]) for n in self.numbers}
-        return {'student': reports.plain(self.name), 'key': self.key, 'seed': self.shop.seed, 'course': self.shop.key,
+        return {'student': reports.plain(self.name), 'number': self.number, 'key': self.key, 'seed': self.shop.seed, 'course': self.shop.key,
                 'sum': round(sum(p['points'] for p in parts.values()), 6), 'of': sum(p['of'] for p in parts.values()),
                 'exercises': parts}
 
@@ -102,7 +103,7 @@ class Student:
             messages = reports.own_messages(found['compiler'], self.original[number]) or [
                 'no error lies in your own lines: is a brace, a bracket or a semicolon missing, or one too many?']
         return {'title': exercise.title, 'points': round(exercise.points * reports.share(found, *worth), 6),
-                'of': exercise.points, 'state': found['state'], 'line': reports.headline(number, found), 'items': items,
+                'of': exercise.points, 'state': found['state'], 'says': reports.plain(found['says']), 'line': reports.headline(number, found), 'items': items,
                 'compiler': messages, 'together': together['state'] if together else ''}
 
 
@@ -136,7 +137,7 @@ def seed_of(words, out):
 def grade_all(words, out):
     """Every student who is not graded yet; the table after each, so that it holds all that is known."""
     shop = Workshop(words.cache, seed_of(words, out))
-    numbers = [e.number for e in Plan(words.weeks or every_week()).open if e.number in shop.solutions]
+    numbers = [e.number for e in Plan(words.weeks or weekly()).open if e.number in shop.solutions]
     if not numbers:
         raise Broken('no exercise of these weeks has a region, answers and a judge')
     say('the solution and its stubs are judged first')
@@ -148,12 +149,12 @@ def grade_all(words, out):
     with scratch_in(work) as scratch:
         worth = shop.weigh(words.jobs, scratch)
     handed_in = submission.submissions(words.submissions)
-    say(f'{len(handed_in)} submissions, {len(numbers)} exercises, seed {shop.seed}')
+    say(f'{reports.counted(len(handed_in), "submission")}, {reports.counted(len(numbers), "exercise")}, seed {shop.seed}')
     grades, began, fresh = [], time.monotonic(), 0
     with concurrent.futures.ThreadPoolExecutor(words.jobs) as pool:
-        for count, (name, path) in enumerate(handed_in, 1):
-            student = Student(name, path, shop, numbers)
-            folder = str(out / 'students' / name)
+        for count, one in enumerate(handed_in, 1):
+            student = Student(one, shop, numbers)
+            folder = str(out / 'students' / one.name)
             grade = reports.load(folder)
             if not grade or grade.get('key') != student.key:
                 start = time.monotonic()
@@ -166,12 +167,15 @@ def grade_all(words, out):
                 say(f'{count} of {len(handed_in)}  {grade["student"]}: {reports.points(grade["sum"])} of {grade["of"]} points, '
                     f'{now - start:.1f} s; {duration(left)} left')
             grades.append(grade)
-    reports.table(str(out / 'grades.csv'), numbers, grades)
-    say(f'{out}/grades.csv: {len(grades)} students, {fresh} of them graded now')
+    reports.tables(str(out), numbers, grades)
+    flagged = sum(bool(reports.flags(g)) for g in grades)
+    say(f'{out}/grades.csv: {reports.counted(len(grades), "student")}, {fresh} graded now'
+        + (f'; {flagged} to look at: see the last column' if flagged else ''))
 
 
-def every_week():
-    return ','.join(dict.fromkeys(e.week for e in regions.exercises()))
+def weekly():
+    """The weeks of the course, without its projects."""
+    return ','.join(dict.fromkeys(e.week for e in regions.exercises() if e.week.isdigit()))
 
 
 class scratch_in:
@@ -198,7 +202,7 @@ def main():
     parser.add_argument('submissions')
     words = parser.parse_args()
     if not os.path.isdir(words.submissions):
-        raise Broken(f'{words.submissions} is no folder of submissions')
+        raise Broken(f'{words.submissions} is no folder of submissions: unpack what Moodle or Canvas gave you')
     sandbox.demand()
     out = (words.out or pathlib.Path(words.submissions.rstrip('/') + '-grades')).resolve()
     out.mkdir(parents=True, exist_ok=True)
@@ -206,7 +210,7 @@ def main():
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            raise Broken(f'somebody grades into {out} already') from None
+            raise Broken(f'another grading is writing into {out}') from None
         grade_all(words, out)
 
 
@@ -216,4 +220,4 @@ if __name__ == '__main__':
     except (Broken, sandbox.Missing, regions.Malformed) as error:
         sys.exit(f'grade: {error}')
     except KeyboardInterrupt:
-        sys.exit('grade: stopped; the same command goes on')
+        sys.exit('grade: stopped; the same command resumes')

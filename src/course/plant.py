@@ -27,19 +27,19 @@ from regions import ROOT
 
 README = '''# Find the bug
 
-One idea of this renderer is wrong; all else is right.
+One line of this renderer is wrong; everything else is right.
 
     make                 # draws every scene into out/
-    make check           # pictures beside what they ought to be (out/check/), and your test
+    make check           # pictures beside the expected ones (out/check/), and your test
 
 1. Where does it show?  `make check` draws a picture for each week, beside the expected one and their
    difference.  Not every bug shows in a picture.
-2. Write a test into `tests/course/hunt.cpp` that is red in this copy and would be green without the bug.
-   It is yours from its first line to its last; `tests/oracle/README.md` says what the oracle can do.
+2. Write a test into `tests/course/hunt.cpp` that fails in this copy and would pass without the bug.
+   You may change the whole file; `tests/oracle/README.md` says what the oracle can do.
 3. Say in its first line where the bug is: `// FOUND src/folder/file.h:LINE`.
 
-Hand in `tests/course/hunt.cpp`.  Points: the file, the line (within two lines), the test red with the bug,
-the test green without it.
+Hand in `tests/course/hunt.cpp`.  Points: the file, the line (within two lines), a test that fails with the bug
+and passes without it.
 '''
 
 
@@ -54,7 +54,7 @@ def candidates(plan):
 
 
 def formatted(text, name):
-    """As the house has it, if clang-format is there: a line of another shape would be seen from afar."""
+    """Formatted like this project, if clang-format is there: a line of another shape would be conspicuous."""
     if not shutil.which('clang-format'):
         return text
     done = subprocess.run(['clang-format', f'--assume-filename={ROOT / name}'], input=text, cwd=ROOT,

@@ -23,8 +23,8 @@ TOKEN = re.compile(r'''
 
 RESERVED = re.compile(r'__|^_[A-Z]')
 WORDS = {'asm', 'import', 'gnu', 'clang'}
-REFUSED = {'#': 'a # (directives have no place in a region)', '%:': 'a %: (directives have no place in a region)',
-           '??=': 'a ??= (directives have no place in a region)', '/*': 'a comment that never ends',
+REFUSED = {'#': 'a # (directives are not allowed in a region)', '%:': 'a %: (directives are not allowed in a region)',
+           '??=': 'a ??= (directives are not allowed in a region)', '/*': 'a comment that never ends',
            '"': 'a string that does not end on its line', "'": 'a character that does not end on its line',
            '\\': 'a backslash'}
 
@@ -85,7 +85,7 @@ def without_comments(given):
         elif kind == 'raw':
             refuse('a raw string', at)
         elif kind == 'name' and (RESERVED.search(text) or text in WORDS):
-            refuse(f'{text[:40]}: names that C++ and compilers keep to themselves have no place in a region', at)
+            refuse(f'{text[:40]}: names that C++ and compilers reserve are not allowed in a region', at)
         elif kind == 'other' and text in REFUSED:
             refuse(REFUSED[text], at)
         elif kind == 'literal' and re.search(r'#|%:|\?\?|//|/\*', text):

@@ -25,6 +25,7 @@ STUBS = 'src/course/stubs'
 
 BEGIN = re.compile(r'^([ \t]*)// exercise (\w+\.\d+)$', re.M)
 END = re.compile(r'^[ \t]*// end$', re.M)
+MARK = re.compile(r'^[ \t]*// (?:BEGIN|END) \w+\.\d+')  # of a starter
 MARKLIKE = re.compile(r'//\s*(?:(?:exercise|begin|end)\s+\w+\.\d|(?:exercise|end)(?:\s+\w)?\s*$)', re.I)
 HEAD = re.compile(r'// (\S+)  (\S.*)\n// instead: \S.*\n')
 
@@ -87,7 +88,12 @@ def rewrite(text, name, replace, root=ROOT):
     lines, out, at = text.split('\n'), [], 0
     for r in regions(text, name, root):
         new = replace(r)
-        out += lines[at:r.first] + (r.solution if new is None else new)
+        out += lines[at:r.first]
+        if new is None:
+            out += r.solution
+        else:  # formatters let a comment flow into the next one: not into a mark
+            for line in new:
+                out += ['', line] if MARK.match(line) and out and out[-1].lstrip().startswith('//') else [line]
         at = r.last + 1
     return '\n'.join(out + lines[at:])
 

@@ -1,4 +1,4 @@
-# course/reports.py  14  what becomes of verdicts: points, grade.json and grade.md, grades.csv
+# course/reports.py  14  what becomes of verdicts: points, grade.json and grade.md, tables
 #
 # What students wrote, and what a compiler says of it, is shown as text: no marks of Markdown or HTML,
 # no formulas of a spreadsheet.  Of compilers only words about the student's own lines are shown, since
@@ -71,7 +71,7 @@ def headline(number, verdict):
 
 
 def write(path, text):
-    """By a new name first: whoever reads it finds all or nothing."""
+    """Under a new name first: readers find all of it or nothing."""
     with open(path + '.partial', 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
         file.write(text)
         file.flush()
@@ -114,17 +114,41 @@ def cell(text):
     return "'" + text if text[:1] in ('=', '+', '-', '@') and not re.fullmatch(r'-?[0-9.]+', text) else text
 
 
-def table(path, numbers, grades):
-    """grades.csv: a line a student."""
+def counted(n, what):
+    return f'{n} {what}' + ('s' if n != 1 else '')
+
+
+def flags(grade):
+    """What an instructor should look at: points that may be missing for no fault of the code, by their reasons."""
+    parts, reasons = grade['exercises'], {}
+    for number, e in parts.items():
+        if e['state'] in ('missing', 'not judged'):
+            reasons.setdefault(e['says'], []).append(number)
+    return '; '.join(f'{"all" if len(numbers) == len(parts) > 1 else " ".join(numbers)}: {says}' for says, numbers in reasons.items())
+
+
+def table(path, rows):
     with open(path + '.partial', 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
-        rows = csv.writer(file)
-        rows.writerow(['student', *numbers, 'sum', 'of', 'look at'])
-        for g in grades:
-            parts = g['exercises']
-            rows.writerow([cell(g['student']), *(points(parts[n]['points']) if n in parts else '' for n in numbers),
-                           points(g['sum']), points(g['of']),
-                           cell(' '.join(n for n, e in parts.items() if e['state'] == 'not judged'))])
+        csv.writer(file).writerows([cell(c) for c in row] for row in rows)
     os.replace(path + '.partial', path)
+
+
+def tables(folder, numbers, grades):
+    """grades.csv has a line per student; moodle.csv and canvas.csv are what these import, of students with a number."""
+    known = [g for g in grades if g['number']]
+    of = points(grades[0]['of']) if grades else '0'
+    table(os.path.join(folder, 'grades.csv'), [['student', 'number', *numbers, 'sum', 'of', 'look at']] + [
+        [g['student'], g['number'], *(points(g['exercises'][n]['points']) for n in numbers), points(g['sum']), points(g['of']), flags(g)]
+        for g in grades])
+    table(os.path.join(folder, 'moodle.csv'), [['Identifier', 'Full name', 'Grade', 'Maximum Grade', 'Feedback comments']] + [
+        [f'Participant {g["number"]}', g['student'], points(g['sum']), of, feedback(g)] for g in known])
+    table(os.path.join(folder, 'canvas.csv'), [['Student', 'ID', 'SIS User ID', 'SIS Login ID', 'Section', 'Penumbra'],
+                                               ['    Points Possible', '', '', '', '', of]] + [
+        [g['student'], g['number'], '', '', '', points(g['sum'])] for g in known])
+
+
+def feedback(grade):
+    return '; '.join(f'{n}: {points(e["points"])} of {e["of"]}' for n, e in grade['exercises'].items())
 
 
 def save(folder, grade):

@@ -66,7 +66,7 @@ def environment():
 
 
 def prefix():
-    """No network, no other processes, no rights, no environment; ends with whoever started it."""
+    """No network, no other processes, no rights, no environment; ends with the process that started it."""
     return [shutil.which('bwrap'), '--unshare-all', '--die-with-parent', '--new-session', '--clearenv',
             '--cap-drop', 'ALL', '--uid', '65534', '--gid', '65534', '--hostname', 'sandbox']
 

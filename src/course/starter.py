@@ -3,8 +3,8 @@
 
 Writes FOLDER and FOLDER.tar.gz.  Exercises of these weeks are open: their stubs stand between
 `// BEGIN N.M` and `// END N.M`.  Those of earlier weeks come solved, those of later ones are stubs that
-nobody is asked to replace, so that no solution is given away.  --solved: all come solved, for whoever
-wants to look for a planted bug.
+nobody is asked to replace, so that no solution is given away.  --solved: all come solved, to look for a
+planted bug.
 """
 import argparse
 import io
@@ -17,6 +17,7 @@ import sys
 import tarfile
 
 import regions
+import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
@@ -24,10 +25,10 @@ FOLDERS = ['base', 'world', 'path', 'film']
 ALSO = ['src/keep/read_pfm.h']  # build/draw compares pictures
 UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
 COURSE = ['draw.h', 'draw.cpp', 'course.mk']  # of src/course
-KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'pictures.txt']  # of tests/course
-HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
-Leave these lines as they are, and write between them plain C++: no `#include`, `#define`, `asm` or names with two
-underscores, which graders refuse.'''
+KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'update', 'pictures.txt']  # of tests/course
+HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
+Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
+names with two underscores.'''
 
 
 class Plan:
@@ -40,7 +41,7 @@ class Plan:
         for part in words.split(','):
             ends = part.split('-')
             if len(ends) > 2 or not all(w in weeks for w in ends) or weeks.index(ends[0]) > weeks.index(ends[-1]):
-                raise SystemExit(f'starter: WEEKS={words}: say weeks of {" ".join(weeks)}, such as 1-3 or 2 or 1-6,V')
+                raise regions.Malformed(f'WEEKS={words}: say weeks of {" ".join(weeks)}, such as 1-3 or 2 or 1-6,V')
             self.weeks += weeks[weeks.index(ends[0]):weeks.index(ends[-1]) + 1]
         self.weeks = [w for w in weeks if w in self.weeks]
         first = weeks.index(self.weeks[0])
@@ -54,8 +55,8 @@ class Plan:
         for e in self.open:
             for need in e.needs:
                 if need.split('.')[0] not in given:
-                    raise SystemExit(f'starter: WEEKS={words}: {e.number} needs {need}: add week {need.split(".")[0]}, '
-                                     f'or give week {e.week} alone')
+                    raise regions.Malformed(f'WEEKS={words}: {e.number} needs {need}: add week {need.split(".")[0]}, '
+                                            f'or give week {e.week} alone')
         self.wings = [wing for week, wing in WINGS.items() if week in self.weeks + self.solved_weeks]
         if 'radiosity' in self.wings and 'shadow' not in self.wings:
             self.wings.insert(0, 'shadow')  # its form factors
@@ -120,12 +121,15 @@ def write_checks(plan, to):
     numbers = {e.number for e in plan.open}
     files = KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]
     for file in with_headers(course, files):
-        write(to / 'tests/course' / file, (course / file).read_text(), file == 'check')
+        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'update'))
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
-    if '2' not in plan.weeks:  # its examples sample spheres and triangles
-        write(to / 'tests/oracle/README.md', (ROOT / 'tests/oracle/README.md').read_text())
+    text = re.sub(r'\[bugs-found.md\].*?\n\n', '', (ROOT / 'tests/oracle/README.md').read_text(), flags=re.S)
+    if '2' in plan.weeks:  # two examples sample spheres and triangles
+        text = re.sub(r'```cpp\n((?!```).)*(std::cos|Triangle<3>)((?!```).)*```\n', '*(This example is an exercise of week 2.)*\n',
+                      text, flags=re.S)
+    write(to / 'tests/oracle/README.md', text)
 
 
 def sheet_of(week):
@@ -140,34 +144,40 @@ def write_rest(plan, to):
     for path in sorted((ROOT / 'scenes').iterdir()):
         if path.suffix in ('.scene', '.obj', '.mtl') and 'build/' not in path.read_text():
             write(to / 'scenes' / path.name, path.read_text())
-    sheets = []
+    listed = []
     for week in plan.weeks:
         sheet = sheet_of(week)
         if sheet:
-            text = sheet.read_text()
+            text = sheets.for_students(sheet.read_text())
             for picture in re.findall(r'!\[[^]]*\]\(([\w.-]+\.(?:png|svg))\)', text):
                 (to / 'sheets').mkdir(exist_ok=True)
                 if not (sheet.parent / picture).exists():
                     raise regions.Malformed(f"{sheet.name}: there is no picture {picture}")
                 shutil.copy(sheet.parent / picture, to / "sheets" / picture)
             write(to / 'sheets' / sheet.name, text)
-            sheets.append((week, sheet.name, text.split('\n', 1)[0].lstrip('# ')))
-    makefile = (ROOT / 'src/course/starter.mk').read_text()
-    write(to / 'Makefile', makefile)
+            listed.append((week, sheet.name, text.split('\n', 1)[0].lstrip('# ')))
+    for name in ('systems', 'contest'):
+        text = (ROOT / f'reference/course/{name}.md').read_text()
+        write(to / f'sheets/{name}.md', text)
+        listed.append((None, f'{name}.md', text.split('\n', 1)[0].lstrip('# ')))
+    for name, place in (('starter.mk', 'Makefile'), ('Dockerfile', 'Dockerfile'), ('students-ci.yml', '.github/workflows/check.yml')):
+        write(to / place, (ROOT / 'src/course' / name).read_text())
     points = sum(e.points for e in plan.open)
     hours = sum(e.hours for e in plan.open)
     write(to / 'README.md', '# A course with Penumbra\n\n'
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
           '    make check           # what is right, and what is to do\n\n' % plan.open[0].number +
-          'You need make, g++ 12 or clang++ 15, and stb (Debian, Ubuntu: `libstb-dev`).  Start with the sheet of the\n'
-          f'week.  {len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
-          ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in sheets) +
+          'You need make, g++ 12 or clang++ 15, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
+          'Start with the sheet of the week.  '
+          f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
+          ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in listed) +
           '\nAn exercise is what stands between `// BEGIN 2.2 ...` and `// END 2.2` in `src`: replace it.  What is there is\n'
-          'wrong, but it compiles, and pictures can be drawn from the first day.\n\n' +
+          'wrong, but it compiles, and you can draw pictures from the first day.\n\n' +
           HAND_IN + '\n\n'
           '| exercise | | file | points | hours |\n|---|---|---|---|---|\n' +
           ''.join(f'| {e.number} | {e.title} | src/{e.file} | {e.points} | {e.hours:g} |\n' for e in plan.open))
+    write(to / '.clang-format', (ROOT / '.clang-format').read_text() + 'ReflowComments: false\n')
     write(to / 'LICENSE', (ROOT / 'LICENSE').read_text())
 
 
@@ -218,7 +228,8 @@ def main():
     folder = words.folder.resolve()
     make_starter(plan, folder, draw)
     pack(folder)
-    print(f'{words.folder}, {words.folder}.tar.gz: {len(plan.open)} exercises of weeks {" ".join(plan.weeks)}')
+    count = f'{len(plan.open)} exercise' + ('s' if len(plan.open) > 1 else '')
+    print(f'{words.folder}, {words.folder}.tar.gz: {count} of week{"s" if len(plan.weeks) > 1 else ""} {" ".join(plan.weeks)}')
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 # course/trial.py  2  the solution with some files replaced: compiled, asked, judged
-"""Whoever uses this is run by make, which says CXX and FLAGS."""
+"""For programs that make runs: it sets CXX and FLAGS."""
 import concurrent.futures
 import json
 import os

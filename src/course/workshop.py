@@ -190,7 +190,7 @@ class Workshop:
         return dict(verdict)
 
     def once(self, known, key, work):
-        """work(), by whoever asks first; others wait for it."""
+        """work(), by the first who asks; others wait for it."""
         with self.lock:
             mine = key not in known
             if mine:
@@ -251,13 +251,17 @@ class Workshop:
         The solution must have all right by this seed, and no stub may; else nobody can be graded.
         """
         path = self.cache / f'worth-{self.seed}.json'
-        if not path.exists():
-            with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-                worth = dict(pool.map(lambda n: (n, self.weigh_one(n, scratch)), self.solutions))
-            partial = path.with_suffix('.partial')
-            partial.write_text(json.dumps(worth))
-            partial.rename(path)
-        worth = json.loads(path.read_text())
+        worth = json.loads(path.read_text()) if path.exists() else {}
+
+        def weigh(number):
+            found = self.weigh_one(number, scratch)
+            with self.lock:  # a grading that is stopped keeps what it knows
+                worth[number] = found
+                partial = path.with_suffix('.partial')
+                partial.write_text(json.dumps(worth))
+                partial.rename(path)
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(weigh, [n for n in self.solutions if n not in worth]))
         self.limits = {n: (5 + int(4 * w['compile']), 3 + int(3 * w['run'])) for n, w in worth.items()}
         return {n: (w['items'], w['stub']) for n, w in worth.items()}
 

@@ -2,13 +2,17 @@
 """Each function test_... is a test; starter_test.cpp runs them one by one."""
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
 import mistakes
 import mutants
+import region
 import regions
+import sheets
 import starter
 import starter_check
 import testing
@@ -178,7 +182,11 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         for table in ('exercises.txt', 'mistakes.txt'):
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
             expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
+        for name in ('Dockerfile', '.github/workflows/check.yml', '.clang-format', 'sheets/systems.md', 'tests/course/update'):
+            expect((made.folder / name).exists(), f'no {name}')
         expect('wide' not in (made.folder / 'src/world/tree.h').read_text(), 'the wide tree')
+        guide = (made.folder / 'tests/oracle/README.md').read_text()
+        expect('expect_density(random, sample, pdf)' in guide and guide.count('exercise of week 2') == 2 and 'bugs-found' not in guide, guide)
 
 
 def test_all_that_a_starter_includes_is_there():
@@ -192,12 +200,61 @@ def test_all_that_a_starter_includes_is_there():
                 expect(found, f'{file.name} includes {name}')
 
 
+def test_marks_survive_every_style_of_clang_format():
+    if not shutil.which('clang-format'):
+        return print('not tested: clang-format is not installed')
+    found = regions.solution_files()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        starter.make_starter(starter.Plan('1-6,V,R'), folder)
+        files = {name: (folder / name).read_bytes() for name in sorted({name for name, _ in found.values()})}
+        for style in ('LLVM', 'Google', 'Chromium', 'Mozilla', 'WebKit', 'file'):
+            for name, data in files.items():
+                if style == 'file':  # a student's comment flows into no mark
+                    data = re.sub(rb'([ \t]*// END)', rb'// ' + rb'word ' * 30 + rb'\n\1', data)
+                (folder / name).write_bytes(data)
+            subprocess.run(['clang-format', '-i', f'--style={style}', *files], cwd=folder, check=True)
+            for number, (name, solution) in found.items():
+                text = region.region((folder / name).read_bytes(), number, name).text
+                expect(region.canonical(text) == region.canonical('\n'.join(solution.stub)), style, number, text)
+
+
+def test_another_compiler_builds_anew():
+    with Made() as made:
+        for name in ('one', 'two'):
+            starter.write(made.folder / name, '#!/bin/sh\necho x >>asked\n[ "$1" = -x ] && exit\necho x >>built\n'
+                          'while [ "$1" != -o ]; do shift; done\necho >"$2"\n', True)
+        for name, times in (('one', 1), ('one', 1), ('two', 2), ('two', 2)):
+            done = subprocess.run(['make', 'build/draw', f'CXX=./{name}'], cwd=made.folder, capture_output=True, text=True)
+            expect(done.returncode == 0, done.stderr)
+            expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
+
+
 def test_a_solved_copy_has_all_solutions():
     with tempfile.TemporaryDirectory() as temporary:
         starter.make_starter(starter.Plan('1-6,V,R', solved=True), pathlib.Path(temporary) / 's')
         text = '\n'.join(p.read_text() for p in sorted(pathlib.Path(temporary).rglob('*.h')))
         for number, (_, region) in regions.solution_files().items():
             expect('\n'.join(region.solution) in text, number)
+
+
+def test_answers_stand_behind_blanks_and_stay_there():
+    text = 'is ____<!-- $2\\pi$ -->, and $a (\\underline{\\qquad}, \\_\\_\\_\\_)$<!-- x | y -->\n$$\\underline{\\qquad}$$\n<!-- z -->\n'
+    students = 'is ____, and $a (\\underline{\\qquad}, \\_\\_\\_\\_)$\n$$\\underline{\\qquad}$$\n'
+    expect(sheets.for_students(text) == students, sheets.for_students(text))
+    key = sheets.with_answers('x', text, '[{}]'.format, '<{}>'.format)
+    expect(key == 'is [$2\\pi$], and $a (<x>, <y>)$\n$$<z>$$\n', key)
+    for bad in (students, text.replace(' | y', ''), text.replace('<!-- z -->', ''), '____<!-- a | b -->'):
+        refused(lambda: sheets.with_answers('x', bad, str, str), 'x: ')
+    count = 0
+    for sheet in sorted((regions.ROOT / 'reference/course').glob('*.md')):
+        key = sheets.with_answers(sheet.name, sheet.read_text(), str, str)
+        expect(not sheets.BLANK.search(key) and '<!--' not in key, sheet.name)
+        count += len(sheets.BLANK.findall(sheet.read_text()))
+    expect(count > 250, count)
+    with Made() as made:
+        texts = [p.read_text() for p in (made.folder / 'sheets').glob('?-*.md')]
+        expect(texts and all('____' in t and '<!--' not in t for t in texts), 'a starter has answers')
 
 
 def test_the_archive_is_the_same_for_the_same_content():

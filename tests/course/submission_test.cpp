@@ -1,0 +1,8 @@
+// course/submission_test.cpp  how submissions are read: tests written in Python, a case each
+#include <doctest/doctest.h>
+
+#include "course/python.h"
+
+TEST_CASE("submissions: archives, downloads of Moodle and Canvas, twice the same, what is damaged") {
+    run_python_tests("tests/course/submission_test.py");
+}
