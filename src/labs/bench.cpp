@@ -1,9 +1,9 @@
-// labs/bench.cpp  5  rays a second of both trees and of Embree, and the time of a path
+// labs/bench.cpp  5  rays per second of both BVHs and of Embree, and CPU time per path
 //
 //   build/bench [--quick]
 //
-// On one thread.  All answer the same rays in the same triangles, rounded to float, since Embree
-// knows nothing else.  They take turns, so that a busy machine slows all.
+// Uses one thread.  All three trace the same rays through the same triangles.  Numbers are rounded
+// to float because Embree has no doubles.  The tracers take turns, so load slows them alike.
 #include "base/rng.h"
 #include "labs/bench_paths.h"
 #include "wide/wide_bvh.h"
@@ -20,8 +20,8 @@ namespace {
 
 // ---- Scenes and their rays ----------------------------------------------------------------------
 
-// primary: closest hit along jittered camera rays, row by row: neighbours take the same way;
-// bounce: closest hit from the primary hits in cosine-weighted directions: no two alike;
+// primary: closest hit along jittered camera rays, row by row.  Neighbouring rays are coherent.
+// bounce: closest hit from the primary hits in cosine-weighted directions.  Rays are incoherent.
 // shadow: any hit between the primary hits and random points of a quad.
 enum Kind { primary, bounce, shadow };
 constexpr std::pair<Kind, const char*> kinds[] = {
@@ -32,10 +32,10 @@ struct Case {
     std::vector<Shape> shapes;
     Camera camera;
     vec3 p, u, v;                               // shadow rays go to this quad
-    std::array<std::vector<Ray>, 3> rays = {};  // of each kind
+    std::array<std::vector<Ray>, 3> rays = {};  // by kind
 };
 
-// Draws come one after the other: the order of a call's arguments is not specified.
+// Draws into named variables, because C++ does not specify the evaluation order of arguments.
 vec2 random2(Rng& rng) {
     const real x = to_unit(rng.bits()), y = to_unit(rng.bits());
     return {x, y};
@@ -45,7 +45,7 @@ vec3 random3(Rng& rng) {
     return {xy.x, xy.y, to_unit(rng.bits())};
 }
 
-// volatile: the vectoriser of g++ 12 drops a conversion to float and back.
+// `volatile` is needed: the vectoriser of g++ 12 drops a conversion to float and back.
 real to_float(real x) {
     volatile float y = float(x);
     return y;
@@ -53,7 +53,7 @@ real to_float(real x) {
 vec3 to_float(vec3 a) { return {to_float(a.x), to_float(a.y), to_float(a.z)}; }
 Ray to_float(const Ray& r) { return {to_float(r.o), to_float(r.d), to_float(r.tmax)}; }
 
-// The surface point with the error bound of float: rays do not hit the surface that they leave.
+// Sets the error bound to that of float, so that rays do not hit the surface that they leave.
 Surface float_surface(Surface x) {
     x.error *= real(std::numeric_limits<float>::epsilon() / 2) / ulp;
     return x;
@@ -83,7 +83,7 @@ Case with_rays(Case c, int width) {
     return c;
 }
 
-// The triangles of a scene; shadow rays go to its first lamp.
+// The triangles of a scene file.  Shadow rays end on the first light of the scene.
 Case scene_of(const std::string& name, int width) {
     const Scene s = read_scene("scenes/" + name + ".scene").scene;
     const Light& lamp = s.lights.at(0);
@@ -92,7 +92,7 @@ Case scene_of(const std::string& name, int width) {
     return with_rays(std::move(c), width);
 }
 
-// Corners within n^(-1/3) of a random point of the unit cube: however many, it looks as full.
+// n triangles in the unit cube, each within n^(-1/3) of a random point: equally dense for every n.
 Case soup(int n, int width) {
     const vec3 middle = {real(0.5), real(0.5), real(0.5)};
     Case c{text("%d, random", n), {},        look_at({real(0.5), real(0.5), 2}, middle, 45),
@@ -108,10 +108,10 @@ Case soup(int n, int width) {
     return with_rays(std::move(c), width);
 }
 
-// ---- The tracers --------------------------------------------------------------------------------
+// ---- Tracers ------------------------------------------------------------------------------------
 
 using Column = std::vector<double>;
-using Trace = std::function<void(Kind, Column&)>;  // distances of all rays of a kind; any hit: 0
+using Trace = std::function<void(Kind, Column&)>;  // writes distances of all rays; occluded: 0
 
 template <class OurTree>
 Trace ours(const Case& c) {
@@ -183,20 +183,20 @@ Trace embree(const Case& c) {
 }
 #endif
 
-// ---- The race -----------------------------------------------------------------------------------
+// ---- Measurements -------------------------------------------------------------------------------
 
 struct Effort {
     int width = 512, rounds = 9;
-    double seconds = 0.1;  // of each measurement, at least
+    double seconds = 0.1;  // minimum CPU time of each measurement
 };
 
 struct Tracer {
     std::string name;
     Trace trace;
-    Column answers = {}, speed = {};  // millions of rays a second, of each round
+    Column answers = {}, speed = {};  // distances; Mrays/s of each round
 };
 
-// One kind of rays: nobody may answer otherwise the second time.
+// Measures the speed for one kind of rays.  Throws if a repetition finds other hits.
 void run(Tracer& t, Kind kind, double least_seconds) {
     const double start = processor_seconds();
     double elapsed = 0, rays = 0;
@@ -210,10 +210,10 @@ void run(Tracer& t, Kind kind, double least_seconds) {
     t.speed.push_back(rays / elapsed / 1e6);
 }
 
-// Over the wide tree's speed, by kinds, and per cent of its answers that are others: hit or not, or
-// by more than 1e-4 of the distance.
+// Compares a tracer with the wide BVH.  `ratio`: speed of the wide BVH over that of the tracer.
+// `differ`: largest percentage of rays with another hit, or a distance that differs by over 1e-4.
 struct Outcome {
-    std::map<std::string, double> ratio = {};  // logarithms, summed over scenes
+    std::map<std::string, double> ratio = {};  // by kind; logarithms, summed over scenes
     double differ = 0;
 };
 
@@ -264,7 +264,7 @@ int study(const Scope& scope) {
     std::vector<std::string> head = {"triangles", "rays", "Mrays/s", "× plain"};
     if (HAVE_EMBREE) head.push_back("× Embree");
     page.set("rays", table(head, lines));
-    page.set("paths", table({"scene", "tracer", "µs a path", "time, × textbook's"},
+    page.set("paths", table({"scene", "tracer", "µs per path", "time, × textbook"},
                             all_paths(effort.rounds)));
     page.set("verdict",
              HAVE_EMBREE
@@ -282,5 +282,5 @@ int study(const Scope& scope) {
 
 int main(int argc, char** argv) {
     return experiment(
-        argc, argv, {"bench", "Measures rays a second, beside Embree if it is installed."}, study);
+        argc, argv, {"bench", "Measures rays per second, compared with Embree if present."}, study);
 }

@@ -1,4 +1,4 @@
-// labs/bench_paths.h  4  how long a path takes, beside the textbook's tracer, for bench
+// labs/bench_paths.h  4  CPU time per path, compared with a textbook path tracer, for bench
 #pragma once
 #include "labs/page.h"
 #include "labs/textbook.h"
@@ -6,14 +6,14 @@
 #include "path/start.h"
 #include "world/scene_file.h"
 
-// What traces paths in turns with others, row by row of an image.
+// A path tracer that renders an image row by row, in turns with others.
 struct PathRunner {
     std::string name;
     std::function<void(int y, uint64_t seed)> trace;
-    std::vector<double> seconds = {};  // a round
+    std::vector<double> seconds = {};  // CPU time of each round
 };
 
-inline constexpr uint64_t path_samples = 16;  // a pixel and round
+inline constexpr uint64_t path_samples = 16;  // per pixel and round
 
 inline PathRunner path_runner(const std::string& name, const Scene& scene, const Technique& t,
                               SamplerKind kind) {
@@ -30,7 +30,7 @@ inline PathRunner path_runner(const std::string& name, const Scene& scene, const
     return {name, trace};
 }
 
-// Lines for the scenes that the textbook's tracer knows: diffuse quadrangles.
+// Table lines for scenes that the textbook path tracer supports: diffuse quadrilaterals.
 inline Lines all_paths(int rounds) {
     Lines lines;
     for (const char* name : {"cornell36", "cornell36b"}) {

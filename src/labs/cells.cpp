@@ -1,4 +1,4 @@
-// labs/cells.cpp  4  Voronoi cells a second, beside CGAL's Delaunay triangulation
+// labs/cells.cpp  4  Voronoi cells per second, compared with CGAL's Delaunay triangulation
 //
 //   build/cells [--quick]
 #include "base/rng.h"
@@ -18,7 +18,7 @@ namespace {
 
 using Sites = std::vector<Site>;
 
-// Something that depends on the work, so that it is done.
+// Returns a number that depends on the work, so that the compiler cannot remove the work.
 double our_cells(const Sites& sites) {
     static Voronoi cells;
     return cells.clipped(sites, {{0, 0}, {1, 1}})[0].area;
@@ -33,11 +33,11 @@ double their_triangles(const TheirSites& sites) {
     return double(t.number_of_vertices());
 }
 #else
-using TheirSites = Sites;  // to be compiled, never run
+using TheirSites = Sites;  // compiles without CGAL, but never runs
 double their_triangles(const TheirSites& sites) { return our_cells(sites); }
 #endif
 
-// Nanoseconds a site, over about as many sites.
+// CPU time per site in nanoseconds, measured over about `sites` sites.
 template <class Set, class Run>
 double time_of(const std::vector<Set>& sets, size_t sites, Run run) {
     const size_t n = sets[0].size(), times = std::max<size_t>(1, sites / n);
@@ -48,7 +48,7 @@ double time_of(const std::vector<Set>& sets, size_t sites, Run run) {
     return (processor_seconds() - start) / double(times * n) * 1e9;
 }
 
-// The line of n sites.
+// The table line for n sites.
 std::vector<std::string> race(size_t n, size_t sites, size_t rounds) {
     Rng random{mix(n)};
     std::vector<Sites> sets(std::clamp<size_t>(sites / n, 1, 64));
@@ -88,7 +88,7 @@ int study(const Scope& scope) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return experiment(argc, argv,
-                      {"cells", "Measures Voronoi cells a second, beside CGAL if it is installed."},
-                      study);
+    return experiment(
+        argc, argv, {"cells", "Measures Voronoi cells per second, compared with CGAL if present."},
+        study);
 }

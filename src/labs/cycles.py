@@ -1,9 +1,9 @@
-# labs/cycles.py  3  renders a room by Cycles, as peers.cpp asks, inside Blender
+# labs/cycles.py  3  renders a room with Cycles inside Blender, for peers.cpp
 #
 #   blender -b --python-exit-code 1 --python cycles.py -- ROOM.json SEED OUT
 #
-# Writes OUT.pfm, and OUT.seconds: processor seconds of the samples.  Those of starting, reading the
-# scene and one sample are not counted: a render of SPP + 1 samples less one of a single sample.
+# Writes OUT.pfm, and OUT.seconds with the CPU seconds of the samples: those of a render with
+# SPP + 1 samples less those of a render with one.  The difference excludes start-up and loading.
 import array, json, sys, time
 
 import bpy
@@ -11,13 +11,13 @@ from mathutils import Matrix
 
 room_file, seed, out = sys.argv[sys.argv.index("--") + 1:]
 room = json.load(open(room_file))
-scale = 0.01  # Blender thinks in metres, and clips far away
+scale = 0.01  # Blender's unit is the metre, and it clips distant objects
 
 bpy.ops.wm.read_factory_settings(use_empty=True)
 scene = bpy.context.scene
 
 
-# f = albedo / pi, or radiance on the side of the normal and nothing on the other.
+# A diffuse material, f = albedo / pi, or an emitter with radiance on the normal's side only.
 def material(albedo, radiance):
     made = bpy.data.materials.new("m")
     made.use_nodes = True
@@ -67,13 +67,13 @@ def build():
     scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0
 
 
-# Plain path tracing: no denoiser, no adaptive sampling, nothing clamped or blurred, no light left
-# out, pixels as boxes.
+# Sets up plain path tracing: box pixels, every light sampled.  Turns off denoising, adaptive
+# sampling, clamping and blurring.
 def settle():
     render, cycles = scene.render, scene.cycles
     render.engine, cycles.device, cycles.seed = "CYCLES", "CPU", int(seed)
     cycles.use_adaptive_sampling = cycles.use_denoising = False
-    bounces = room["depth"] - 1  # light samples at the last one are the last scattering
+    bounces = room["depth"] - 1  # penumbra counts the light sample at the last vertex, too
     cycles.max_bounces = cycles.diffuse_bounces = bounces
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.blur_glossy = cycles.light_sampling_threshold = cycles.time_limit = 0
@@ -86,7 +86,7 @@ def settle():
     render.filepath, render.use_file_extension = out + ".exr", False
 
 
-# Processor seconds of a render of so many samples.
+# CPU seconds of a render with this many samples.
 def run(samples, keep=False):
     scene.cycles.samples = samples
     start = time.process_time()
@@ -104,7 +104,7 @@ def write_pfm():
 
 build()
 settle()
-run(1)  # what is loaded and compiled but once
+run(1)  # loads and compiles what later runs reuse
 one, all_and_one = run(1), run(room["samples"] + 1)
 with open(out + ".seconds", "w") as seconds:
     seconds.write("%.6f\n" % (all_and_one - one))

@@ -1,4 +1,4 @@
-// labs/execute.h  1  one program runs another
+// labs/execute.h  1  runs another program and checks its exit status
 #pragma once
 #include <spawn.h>
 #include <sys/wait.h>
@@ -11,7 +11,7 @@
 
 #include "base/words.h"
 
-// Runs a program with its arguments, and waits for it; SystemError unless it succeeds.
+// Runs a program and waits for it.  Throws SystemError unless its exit status is 0.
 inline void execute(std::vector<std::string> words) {
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());

@@ -2,8 +2,8 @@
 //
 //   build/knot FILE.obj
 //
-// A tube of radius 0.42 about the (2,3) torus knot p(t) = ((2 + cos 3t) cos 2t, (2 + cos 3t) sin
-// 2t, sin 3t), 600 rings of 20 corners, each ring normal to the tangent p'(t).
+// The mesh is a tube of radius 0.42 about the (2,3) torus knot p(t) = ((2 + cos 3t) cos 2t,
+// (2 + cos 3t) sin 2t, sin 3t).  It has 600 rings of 20 corners, each normal to the tangent p'(t).
 #include "base/files.h"
 #include "base/program.h"
 #include "base/vec.h"
@@ -29,7 +29,7 @@ std::string knot() {
     char line[128];
     for (int i = 0; i < rings; ++i) {
         const auto [centre, tangent] = ring(2 * std::numbers::pi * i / rings);
-        // The radial direction of the torus never lies along the tangent: no twist, no seam.
+        // The tangent is never radial on the torus, so the tube has no twist and no seam.
         const vec3 axis_point = unit(vec3{centre.x, centre.y, 0}) * real(2);
         const vec3 b = unit(cross(tangent, centre - axis_point)), a = unit(cross(b, tangent));
         for (int j = 0; j < corners; ++j) {

@@ -1,4 +1,4 @@
-// labs/peers.cpp  6  efficiency beside Cycles and a textbook's tracer
+// labs/peers.cpp  6  efficiency compared with Cycles and a textbook path tracer
 //
 //   build/peers [--seeds N] [--quick] [--kept]
 //   build/peers --render cycles|textbook SCENE --spp N --seed N -o FILE.pfm --stats FILE.json ...
@@ -9,7 +9,7 @@
 
 namespace {
 
-// ---- Other renderers, as programs that know penumbra's options ----------------------------------
+// ---- Other renderers, as programs with penumbra's options ---------------------------------------
 
 struct Taken {
     Image image;
@@ -18,7 +18,7 @@ struct Taken {
 
 std::string json_of(vec3 v) { return json::numbers({double(v.x), double(v.y), double(v.z)}); }
 
-// What cycles.py reads.
+// The JSON text that cycles.py reads.
 std::string room_of(const Scene& s, uint64_t spp) {
     std::string materials, faces;
     for (const Material& m : s.materials)
@@ -71,7 +71,7 @@ Taken by_textbook(const Scene& scene, uint64_t spp, uint64_t seed) {
     return taken;
 }
 
-// An image, and where --sets asks for more than one replication the error of two halves' mean.
+// Renders an image.  Unless --sets is 1, renders halves and reports the error of their mean.
 int render(const std::vector<std::string>& words) {
     const std::string &who = words.at(0), out = value_of(words, "-o");
     const Scene scene = read_scene(words.at(1)).scene;
@@ -100,7 +100,7 @@ int render(const std::vector<std::string>& words) {
     return 0;
 }
 
-// ---- The study ----------------------------------------------------------------------------------
+// ---- Study --------------------------------------------------------------------------------------
 
 const std::string cycles = "Cycles";
 
@@ -119,7 +119,7 @@ std::string views(const Rows& rows) {
                  lines);
 }
 
-// Each by references of its own, so that what models differ by is no error.
+// Each renderer has its own reference, so differences between models do not count as errors.
 int study(const Scope& scope, uint64_t seeds) {
     if (std::system("command -v blender >/dev/null") != 0)
         return std::puts("peers: nothing is measured without Cycles; install blender"), 0;
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
         }
     const Lab lab{
         "peers",
-        "Measures efficiency beside Cycles, if blender is installed.",
+        "Measures efficiency compared with Cycles, if blender is installed.",
         {{"--seeds", "N", "renders of each (3)", [&](auto& n) { seeds = parse_count(n, 3, 100); }}},
         true};
     return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, seeds); });

@@ -1,4 +1,4 @@
-// labs/readme.cpp  3  writes tables of options and statements from the programs' own
+// labs/readme.cpp  3  writes tables of options and scene statements into documents
 //
 //   build/readme
 //
@@ -10,7 +10,7 @@
 
 namespace {
 
-// The text with a table between its marks.
+// Replaces the text between the two marks of a table.
 std::string with_table(const std::string& text, const std::string& name, const std::string& table) {
     const std::string before = "<!-- " + name + " -->\n", after = "<!-- /" + name + " -->";
     const size_t start = text.find(before), end = text.find(after, start);
@@ -18,7 +18,7 @@ std::string with_table(const std::string& text, const std::string& name, const s
     return text.substr(0, start).append(before).append(table).append(text, end);
 }
 
-// One row: `word arguments`, and what is said about it.
+// One row of a table: `word arguments`, their meaning and the default.
 std::string row_markdown(const std::string& words, const std::string& meaning,
                          const std::string& otherwise) {
     std::string code;

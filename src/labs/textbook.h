@@ -1,7 +1,7 @@
-// labs/textbook.h  3  a first path tracer, as textbooks print it, to measure ours by
+// labs/textbook.h  3  a minimal path tracer as in textbooks, the baseline for speed
 //
-// Quadrangles in a loop, diffuse, one of them the light; independent numbers, directions by the
-// cosine, the light by aiming at it (next-event estimation); neither MIS nor roulette.
+// All surfaces are diffuse quadrilaterals, tested in a loop.  One is the light.  Samples are
+// independent.  Uses cosine-weighted directions and next-event estimation, no MIS and no roulette.
 #pragma once
 #include "base/program.h"
 #include "base/rng.h"
@@ -47,8 +47,8 @@ inline Room room_of(const Scene& scene) {
 
 // ---- The tracer ---------------------------------------------------------------------------------
 
-// Distance to a quad along o + t d, 0 if it lies behind or beside.  All is compared at once: a
-// branch for each would be guessed wrong too often.
+// Distance to a quad along o + t d, or 0 if the ray misses it.  Combines all comparisons without
+// branches, because the processor would mispredict these too often.
 inline real meet(const Quad& q, vec3 o, vec3 d, real tmax) {
     const real t = (q.plane - dot(q.frame.n, o)) / dot(q.frame.n, d);
     const vec3 x = o + t * d;
@@ -57,7 +57,7 @@ inline real meet(const Quad& q, vec3 o, vec3 d, real tmax) {
     return inside ? t : 0;
 }
 
-// Whether something else is between two points of quads: no ray meets the plane that it leaves.
+// True if another quad lies between two points of quads.  No ray hits the quad that it leaves.
 inline bool between(Room& room, const Quad* from, vec3 x, const Quad* to, vec3 y) {
     ++room.rays;
     for (const Quad& q : room.quads)
@@ -90,7 +90,7 @@ inline rgb radiance(Room& room, vec3 o, vec3 d, int depth, Rng& random) {
         const vec2 u = draw2(random);
         const vec3 y = light.p + u.x * light.u + u.y * light.v, w = y - x;
         const real cos_x = side * dot(hit->frame.n, w), cos_y = -dot(light.frame.n, w);
-        const real d2 = dot(w, w);  // the cosines are both times its root
+        const real d2 = dot(w, w);  // both cosines have a factor sqrt(d2)
         if (cos_x > 0 && cos_y > 0 && !between(room, hit, x, &light, y))
             L += beta * light.Le * (cos_x * cos_y * light.area / (pi * d2 * d2));
 
@@ -101,7 +101,7 @@ inline rgb radiance(Room& room, vec3 o, vec3 d, int depth, Rng& random) {
     }
 }
 
-// Row y of the image, each pixel the mean of spp samples.
+// Renders row y of the image.  Each pixel is the mean of spp samples.
 inline void render_row(Room& room, const Scene& s, uint64_t seed, uint64_t spp, int y, Image& out) {
     for (int x = 0; x < s.size.width; ++x) {
         Rng random{hash(hash(seed, uint64_t(y)), uint64_t(x))};
