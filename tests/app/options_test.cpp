@@ -1,4 +1,4 @@
-// app/options_test.cpp  what words mean, which are refused, and what --help and --stats say of them
+// app/options_test.cpp  effects of options, refused options, their text in --help and --stats
 #include "app/options.h"
 
 #include <doctest/doctest.h>
@@ -78,7 +78,7 @@ TEST_CASE("without options: Sobol' samples, importance-sampled, MIS, adaptive") 
 
 TEST_CASE("--spp is of all replications together, rounded up; two of them if they are chosen") {
     auto each = [](const std::string& line, uint64_t N) { return samples_each(parse(line), N); };
-    CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: not known
+    CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: unknown
     CHECK(said(each("--sets 1", 7), each("--sets 3", 7), each("--sets 1024", 7)) == "7 3 1");
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("every option is in --help, with its value and its default, in lines t
         INFO(name);
         const size_t at = page.find("\n  " + name + " " + value + (value.empty() ? " " : ""));
         REQUIRE(at != page.npos);
-        // Its words, whatever lines they stand on.
+        // Compares the words of the help text, whatever its line breaks are.
         std::istringstream lines(page.substr(at + 4 + name.size() + value.size()));
         std::string words = std::string(r.help);
         if (!r.otherwise.empty()) words += " (default: " + r.otherwise + ")";

@@ -1,4 +1,4 @@
-// app/refused_words.h  options that are wrong, whatever the scene and its folder
+// app/refused_words.h  options that are wrong for every scene and folder
 #pragma once
 #include "base/cases.h"
 
@@ -44,7 +44,7 @@ inline std::vector<Refusal> refused_words() {
         {"--rows @ -o a.pfm", "2", "--rows: '@' is not FIRST-LAST"},
         {"--rows @ -o a.pfm", "2-1", "--rows: '@' ends before it begins"},
         {"--rows 7- -o a.pfm", "", "--rows: '' is not a whole number"},
-        // What goes together.
+        // Combinations of options.
         {"--sample 1", "", "--sample: goes with --pixel X,Y"},
         {"--pixel 1,2 --keep a.film", "", "--keep: goes without --pixel"},
         {"--error 1% --sets 1", "", "--error: needs --sets 2 or more, or adaptive"},

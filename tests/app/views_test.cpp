@@ -1,4 +1,4 @@
-// app/views_test.cpp  what is shown instead of radiance, and how bright
+// app/views_test.cpp  views other than radiance, and their exposure
 #include "app/views.h"
 
 #include <doctest/doctest.h>
@@ -40,6 +40,6 @@ sphere 0 0 0  1  clear
     CHECK(default_exposure(scene, View::normal) == 1);
     CHECK(default_exposure(scene, View::albedo) == 1);
     CHECK(default_exposure(scene, View::bvh) == real(1) / 64);
-    // The box of the sphere, padded by 16 ulp of it.
+    // The box of the sphere is padded by 16 ulp of its size.
     CHECK(std::abs(default_exposure(scene, View::depth) * 2 * std::sqrt(real(3)) - 1) < 64 * ulp);
 }
