@@ -1,4 +1,4 @@
-// whole/behaviour_test.cpp  what the program accepts, says and shows; an image depends on its seed
+// whole/behaviour_test.cpp  accepted scenes and options, output, images that depend on the seed
 #include <set>
 
 #include "base/vec.h"
@@ -39,14 +39,14 @@ TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped i
         {good, "--size 1x1", "", 1, 1},
         {good, "--size 16384x1", "", 16384, 1},
         {good, "--size 3x5", "", 3, 5},
-        // Inside balls, inside a box of light, and a turned one: coplanar points.
+        // Cameras inside balls, inside a glowing box, and inside a rotated one: coplanar points.
         {good + "glass g 1.5\nsphere 0 0 5 1 g\n"},
         {good + "sphere 1 0 5 3 l\n"},
-        {good + "light t 1 1 1 twosided m\nsphere 0 0 3 2 t\n"},  // on it
+        {good + "light t 1 1 1 twosided m\nsphere 0 0 3 2 t\n"},  // the eye is on the sphere
         {good + "box 1 1 1 0 -.5 -.5 4.5 l\n"},
         {camera + in_light, "--spp 200"},
         {camera + in_light, "--spp 200 --light nee --direction uniform"},
-        // Extremes of every number.
+        // The extremes of every number.
         {good + "phong p .5 .5 .5 .5 .5 .5 1e6\nphong q 0 0 0 1 1 1 0\nsphere 1 0 0 1 p\n"
                 "sphere -1 0 0 1 q\n",
          "--spp 200"},
@@ -73,7 +73,7 @@ TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped i
         CHECK(all_finite(image));
         CHECK(summary(o.err).found);
         const std::string warning = "file.scene: warning: " + row.warning + "\n";
-        const bool coarse = sizeof(real) == 4 && contains(o.err, "are coarse here");  // said, too
+        const bool coarse = sizeof(real) == 4 && contains(o.err, "are coarse here");  // warned, too
         if (!coarse)
             CHECK(contains(o.err, row.warning.empty() ? "warning" : warning) ==
                   !row.warning.empty());
@@ -93,7 +93,7 @@ TEST_CASE("a scene's meaning does not depend on its line ends, comments, blanks 
         good.substr(0, good.size() - 1),
         replaced(good, ".5", "+5e-1"),
         "# sphere\n" + good + "# size 3 3\n#",
-        good + "light other 3 3 3\n",  // nothing is made of it
+        good + "light other 3 3 3\n",  // an unused light
     };
     for (const std::string& scene : scenes)
         for (const std::string name :
@@ -178,7 +178,7 @@ TEST_CASE("a picture that is black, though there are lights, gets a hint") {
     CHECK_FALSE(contains(faces.render("--spp 2").err, "black"));
     CHECK_FALSE(contains(turned.render("--spp 2 --view albedo").err, "all is black"));
     const std::string band = turned.render("--spp 2 --rows 0-1 -o a.pfm").err;
-    CHECK_FALSE(contains(band, "all is black"));  // others may be lit
+    CHECK_FALSE(contains(band, "all is black"));  // other bands may be lit
 }
 
 TEST_CASE("--pixel names the material and the line of what a path meets") {
@@ -258,7 +258,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         } else if (of_samples.contains(key)) {
             CHECK(three.at(key) == value);
             CHECK(number(one, key) > 0);
-            // The same pilot chooses the same replications.
+            // The same pilot samples lead to the same replications.
             CHECK((value == twice.at(key)) == (key == "sets_per_pixel"));
         } else {
             CHECK(of_time.contains(key));
@@ -274,7 +274,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
     const auto band = stats(line + "--rows 2-5");
     CHECK(band.at("rows") == "\"2-5\"");
     CHECK(band.at("height") == "4");
-    const auto view = stats(line + "--view normal");  // a ray a sample
+    const auto view = stats(line + "--view normal");  // one ray per sample
     CHECK(number(view, "rays") == number(view, "samples_per_pixel") * 16 * 8);
 }
 
@@ -310,7 +310,7 @@ TEST_CASE("on a terminal a bar shows time elapsed and time left, and goes; --qui
 }
 
 TEST_CASE("a sample that no image can hold: exit status 1, told where, nothing written") {
-    // A lamp of 1e30 at 1e-6 of a quad that just fills pixel 2,1: 1e41, too much for float.
+    // A lamp of 1e30 on 1e-6 of a quad that fills pixel 2,1 exactly: 1e41 exceeds float.
     const Place place(
         "size 3 2\ncamera 0 0 3.2e-6  0 0 0  3.579821\ndiffuse m .5 .5 .5\n"
         "quad .5e-7 -1e-7 0  1e-7 0 0  0 1e-7 0  m\npointlight 1e-7 0 1e-6 1e30 1e30 1e30\n");
