@@ -1,4 +1,4 @@
-// app/options_test.cpp  what words mean, which are refused, and what --help and --stats say of them
+// app/options_test.cpp  effects of options, refused options, their text in --help and --stats
 #include "app/options.h"
 
 #include <doctest/doctest.h>
@@ -85,7 +85,7 @@ TEST_CASE("without options: Sobol' samples, importance-sampled, MIS, adaptive") 
 
 TEST_CASE("--spp is of all replications together, rounded up; two of them if they are chosen") {
     auto each = [](const std::string& line, uint64_t N) { return samples_each(parse(line), N); };
-    CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: not known
+    CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: unknown
     CHECK(said(each("--sets 1", 7), each("--sets 3", 7), each("--sets 1024", 7)) == "7 3 1");
 }
 

@@ -1,4 +1,4 @@
-// app/refused_words.h  options that are wrong, whatever the scene and its folder
+// app/refused_words.h  options that are wrong for every scene and folder
 #pragma once
 #include "base/cases.h"
 

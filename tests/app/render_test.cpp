@@ -1,4 +1,4 @@
-// app/render_test.cpp  images as options ask for them: samples, error, time, rows, replay
+// app/render_test.cpp  images as requested by options: samples, error, time, rows, replay
 #include "app/render.h"
 
 #include "app/replay.h"
@@ -56,7 +56,7 @@ const Scene& unequal_picture() {
     static const Scene scene = small(unequal, {24, 12});
     return scene;
 }
-// Of half the noise and a fourth of the work: no light but what one scattering brings.
+// The picture has direct light only: half the noise and a fourth of the work.
 const Scene& direct_picture() {
     static const Scene scene = [] {
         Scene s = small(unequal, {16, 8});
@@ -88,7 +88,7 @@ TEST_CASE("a plan is what options and scene ask for") {
     CHECK(target() == "0 0 0.1");
     o.spp = 9;
     CHECK(target() == "5 0 0.1");
-    CHECK(plan_of(o, scene).known_samples() == 0);  // its error may end it
+    CHECK(plan_of(o, scene).known_samples() == 0);  // the error may end it earlier
     o.error = 0;
     CHECK(plan_of(o, scene).known_samples() == 5);
     o.sets = 4, o.rows = {3, 6};
@@ -96,7 +96,7 @@ TEST_CASE("a plan is what options and scene ask for") {
     CHECK(picture() == "24 4 3 4");
     for (uint32_t sets : {0u, 1u, 2u}) {
         o.spp = 1, o.sets = sets;
-        CHECK(plan_of(o, scene).sets == std::max(1u, sets));  // one sample has no second
+        CHECK(plan_of(o, scene).sets == std::max(1u, sets));  // one sample makes one replication
         o.spp = 2;
         CHECK(plan_of(o, scene).sets == sets);
     }
@@ -124,7 +124,7 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
         const PathLog log(scene, out);
         for (int y = 0; y < 4; ++y)
             for (int x = 0; x < 6; ++x) {
-                double sum[2] = {};  // as the film adds them
+                double sum[2] = {};  // in the film's order of addition
                 for (uint32_t set : {0u, 1u})
                     for (uint64_t i = 0; i < 4; ++i) {
                         const Start at = start(scene, pattern, {x, y, i, set});
@@ -180,10 +180,10 @@ TEST_CASE("the stated error is the spread from seed to seed; replications do not
             }
             const std::string name =
                 "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
-            // Half or twice what is right would be seen.
+            // The check detects half or twice the right value.
             EXPECT(oracle::expect_mean(1, spread.ratio()).of(name), 0.7);
-            // A variance from 150 means is known within sqrt(2 / 149) = 12 % (normal means), the
-            // mean of what is stated far better.
+            // The variance of 150 means has a standard error of sqrt(2 / 149) = 12 % (normal
+            // means); that of the mean estimate is far smaller.
             INFO(name, ": ", means.variance() / stated.mean);
             CHECK(std::abs(means.variance() / stated.mean - 1) < 4.9 * std::sqrt(2.0 / (runs - 1)));
             if (sets)
@@ -240,7 +240,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             CAPTURE(int(kind));
             CAPTURE(E);
             CHECK(p.run.stopped_by == "error");
-            // By the rule itself, applied to a film of each number of samples that is checked.
+            // The reference applies the rule to a film at every number of samples with a check.
             const Work j(o, scene);
             const uint64_t period = j.pattern.period(), first = (8 + period - 1) / period * period;
             const Radiance L = j.radiance(o, scene);
@@ -256,7 +256,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             CHECK(p.image.pixels == image_of(film).pixels);
             CHECK(p.run.error.d_rel() == error_of(film).d_rel());
             CHECK((checks > 3 || E > 0.05 || period > 1));
-            // The number of samples follows from options and seed, not from time or threads.
+            // The number of samples depends on options and seed, not on time or threads.
             o.threads = 3;
             CHECK(rendered(o, scene).image.pixels == p.image.pixels);
         }
@@ -330,7 +330,7 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     CHECK(p.run.stopped_by == "interrupt");
     CHECK(p.run.spp > 0);
     CHECK(first_non_finite(p.image) == std::nullopt);
-    // In the first pass: some pixels have none, and nothing is there to be written.
+    // Ctrl-C in the first pass leaves pixels without samples: no image can be written.
     uint64_t calls = 0;
     const Radiance L = [&](const PixelSample&, Tally&) {
         if (++calls == 100) interrupted = SIGINT;
@@ -340,7 +340,7 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     interrupted = 0;
     CHECK(none.run.spp == 0);
     CHECK(none.run.interrupted);
-    // After the pilot, which is all that most pixels have.
+    // Ctrl-C comes just after the pilot, when most pixels have only its samples.
     const Radiance others = [](const PixelSample& s, Tally&) {
         if (s.set > 0) interrupted = SIGINT;
         return rgb{1, 1, 1};
@@ -374,7 +374,7 @@ TEST_CASE("a sample that is not finite is an error that tells how to replay it")
 
 TEST_CASE("a film that the machine does not hold is refused before it is made") {
     const Options o = quick(SamplerKind::sobol, 4);
-    // A thousand bytes a pixel: enough for two replications of each, not for 1024.
+    // A thousand bytes per pixel suffice for two replications of each, not for 1024.
     const Size size{1 << 14, int(bytes_of_machine() / 1000 / (1 << 14))};
     Plan plan{{4}, 1, 1, bytes_of_machine(), size};
     plan.sets = 1024;
@@ -383,7 +383,7 @@ TEST_CASE("a film that the machine does not hold is refused before it is made") 
     const std::string why = refused();
     CHECK(why.starts_with("16384x" + std::to_string(size.height) + " pixels do not fit into the "));
     CHECK(why.ends_with(" GB of this machine: render fewer rows at a time (--rows)"));
-    // Adaptive, it has two replications of each pixel or more.
+    // An adaptive film has at least two replications per pixel.
     plan.size = {8, 4}, plan.sets = 0, plan.memory = bytes_of(plan.size, 1.9);
     CHECK(refused().starts_with("8x4 pixels do not fit"));
     plan.memory = bytes_of(plan.size, 2);

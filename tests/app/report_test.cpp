@@ -26,7 +26,7 @@ std::string json_of(const Run& run, Size size) {
     return object.text();
 }
 
-// What is printed on stderr meanwhile.
+// Returns the output to stderr during the work.
 template <class Work>
 std::string told(Work work) {
     const Folder folder;
@@ -50,8 +50,8 @@ TEST_CASE("JSON: every digit of a number, every letter of a name") {
     CHECK(json::numbers({1, 2, NAN}) == "[1, 2, null]");
     CHECK(json::string("a\"b\\c\x01\n") == R"("a\"b\\c\u0001\u000a")");
     CHECK(json::string("\xc3\xa9") == "\"\xc3\xa9\"");
-    // Of two, three and four bytes, the first and the last of each; then what is cut short, too
-    // long, a surrogate, beyond the last, or no beginning.
+    // The first and last characters of two, three and four bytes are valid.  Cut, overlong and
+    // surrogate sequences, those beyond the last and those without a first byte are not.
     for (const std::string good :
          {"\x7f", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
           "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
@@ -162,7 +162,7 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     Run run;
     run.spp = 64.5, run.seconds = 2, run.cpu_seconds = 3.5, run.rays = 4000000, run.sets = 2.75;
     run.error.mean = {2, 3, 4};
-    run.error.square = {4, 8, 12};             // of two pixels
+    run.error.square = {4, 8, 12};             // two pixels
     run.error.norm = 4, run.error.spread = 2;  // |F|^2 = 8
     run.exponent_of_cost = 1.5, run.bias = "consistent", run.stopped_by = "time";
     std::string text = json_of(run, {2, 1});
@@ -181,7 +181,7 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
                       "  \"seconds_to_half_d_rel\": " +
                       json::number(2 * std::pow(2, 1.5)) +
                       ",\n  \"bias\": \"consistent\",\n  \"stopped_by\": \"time\",\n");
-    // What this process takes is more than a megabyte, and is told in bytes.
+    // The memory of this process exceeds a megabyte; its unit is the byte.
     CHECK(bytes > 2e6);
     const std::vector<char> more(size_t(bytes) + (64 << 20), 1);
     const double grown = double(peak_memory_bytes()) - bytes;
@@ -216,7 +216,7 @@ TEST_CASE("progress in a log: a plain line every two seconds; quiet: none") {
             while (progress.elapsed() < until) progress.show(done, "7 samples");
         });
     };
-    CHECK(shown(0, false, 0, 0.5) == "");  // not yet two seconds
+    CHECK(shown(0, false, 0, 0.5) == "");  // less than two seconds
     CHECK(shown(0, true, 8, 0.5) == "");
     CHECK(shown(0, false, 8, 0.5) == "50 %  7 samples, 8.0 s elapsed, 8.0 s left\n");
     CHECK(shown(0, false, 8, 0) == "0 %  7 samples, 8.0 s elapsed\n");

@@ -1,4 +1,4 @@
-// app/views_test.cpp  what is shown instead of radiance, and how bright
+// app/views_test.cpp  views other than radiance, and their exposure
 #include "app/views.h"
 
 #include <doctest/doctest.h>

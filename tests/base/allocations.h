@@ -1,4 +1,4 @@
-// base/allocations.h  how often memory was allocated: main.cpp counts
+// base/allocations.h  the number of memory allocations; main.cpp counts them
 #pragma once
 #include <atomic>
 #include <cstddef>

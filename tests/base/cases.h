@@ -1,11 +1,11 @@
-// base/cases.h  tables of cases, written shortly
+// base/cases.h  compact tables of test cases
 #pragma once
 #include <charconv>
 #include <sstream>
 #include <string>
 #include <vector>
 
-// "--spp 1 ''" is three words, the last of them empty.
+// Splits a command line into words: "--spp 1 ''" has three, and the last is empty.
 inline std::vector<std::string> split(const std::string& line) {
     std::vector<std::string> words;
     std::istringstream in(line);
@@ -13,7 +13,7 @@ inline std::vector<std::string> split(const std::string& line) {
     return words;
 }
 
-// Its parts between semicolons.
+// Splits text at its semicolons.
 inline std::vector<std::string> parts_of(const std::string& text) {
     std::vector<std::string> parts;
     std::istringstream in(text);
@@ -21,7 +21,7 @@ inline std::vector<std::string> parts_of(const std::string& text) {
     return parts;
 }
 
-// `text` with the value in the place of each @.
+// Replaces each @ in `text` with the value.
 inline std::string with(std::string text, const std::string& value) {
     for (size_t at; (at = text.find('@')) != text.npos;) text.replace(at, 1, value);
     return text;
@@ -31,7 +31,7 @@ struct Refusal {
     std::string words, why;
 };
 
-// The same words with one value after another, of which each is refused; ~ is no letter at all.
+// Words with a placeholder @, and values for it that must all be refused; ~ is the empty value.
 struct Family {
     std::string words, values, why;
 };
@@ -44,8 +44,8 @@ inline std::vector<Refusal> members(const std::vector<Family>& families) {
     return rows;
 }
 
-// A value in as few letters as tell it from its neighbours; several, parted by blanks: a failed
-// comparison of them shows them all.
+// The shortest text that distinguishes a value from its neighbours.  Several values are separated
+// by blanks, so that a failed comparison shows all of them.
 template <class T>
 std::string said(const T& value) {
     if constexpr (std::is_same_v<T, bool>) {

@@ -1,6 +1,6 @@
-// base/closed_forms.h  formulas of light that nothing of the renderer went into
+// base/closed_forms.h  closed forms of light, independent of the renderer's code
 //
-// E is irradiance.
+// E denotes irradiance.
 #pragma once
 #include <cmath>
 #include <numbers>
@@ -22,10 +22,10 @@ inline Point turned(Point a, Point b) {  // the cross product
 }
 inline double size_of(Point a) { return std::sqrt(times(a, a)); }
 
-// 1 + rho + ... of n terms: scattering after scattering.
+// 1 + rho + ... (n terms): the sum over bounces.
 inline double geometric(double rho, int n) { return (1 - std::pow(rho, n)) / (1 - rho); }
 
-// E from a sphere of radiance 1, s = radius / distance, c = cosine between the normal and the
+// E from a sphere of radiance 1; s = radius / distance, c = cosine between the normal and the
 // direction to its centre (Martinez, Radiative view factors; Lagarde, de Rousiers 2014).
 inline double sphere_irradiance(double s, double c) {
     if (c >= s) return Pi * s * s * c;
@@ -35,15 +35,15 @@ inline double sphere_irradiance(double s, double c) {
     return s * s * (c * std::acos(y) - x * q) + std::atan(q / x);
 }
 
-// E from the half of that sphere that is seen past an edge through its axis; n_a and n_h: the
-// normal along the axis and along the direction that leads from the edge to what is seen.  All of
-// it above the horizon.  Lambert's integral along half the rim and back along the edge.
+// E from the half of that sphere behind an edge through its axis, all above the horizon. n_a and
+// n_h are the normal's components along the axis and from the edge towards the visible half.  This
+// is Lambert's integral along half the rim and back along the edge.
 inline double half_sphere_irradiance(double s, double n_a, double n_h) {
     return Pi / 2 * s * s * n_a + (std::asin(s) - s * std::sqrt(1 - s * s)) * n_h;
 }
 
-// E at the origin, normal +y, from a convex polygon of radiance 1: clipped at the horizon, then
-// Lambert's sum over its edges of their angle times the cosine of their plane (Arvo 1995).
+// E at the origin, normal +y, from a convex polygon of radiance 1, clipped at the horizon.
+// Lambert: the sum over the edges of their angle times the cosine of their plane (Arvo 1995).
 inline double polygon_irradiance(const std::vector<Point>& corners) {
     std::vector<Point> above;
     for (size_t i = 0; i < corners.size(); ++i) {
@@ -60,7 +60,7 @@ inline double polygon_irradiance(const std::vector<Point>& corners) {
     return std::abs(sum) / 2;
 }
 
-// Form factor of equal rectangles a x b, opposed at distance c: x = a / c, y = b / c (Howell C-11).
+// Form factor of equal opposed rectangles a x b at distance c: x = a / c, y = b / c (Howell C-11).
 inline double opposed(double x, double y) {
     const double u = std::sqrt(1 + x * x), v = std::sqrt(1 + y * y);
     return 2 / (Pi * x * y) *
@@ -68,8 +68,8 @@ inline double opposed(double x, double y) {
             y * u * std::atan(y / u) - x * std::atan(x) - y * std::atan(y));
 }
 
-// From a rectangle of width w (over the common edge) to its neighbour of height h at a right angle
-// (Howell C-14).
+// Form factor from a rectangle of width w (over the common edge) to its neighbour of height h at a
+// right angle (Howell C-14).
 inline double perpendicular(double w, double h) {
     const double W = w * w, H = h * h, S = W + H;
     return (w * std::atan(1 / w) + h * std::atan(1 / h) -
@@ -80,13 +80,13 @@ inline double perpendicular(double w, double h) {
            (Pi * w);
 }
 
-// From a disc of radius a to the coaxial one of radius b, at distance h (Howell C-41).
+// Form factor from a disc of radius a to a coaxial disc of radius b at distance h (Howell C-41).
 inline double coaxial(double a, double b, double h) {
     const double A = a / h, B = b / h, x = 1 + (1 + B * B) / (A * A);
     return (x - std::sqrt(x * x - 4 * (b / a) * (b / a))) / 2;
 }
 
-// From an element to a parallel disc of radius r at height h, the axis at distance a.
+// Form factor from an element to a parallel disc of radius r at height h, axis at distance a.
 inline double element_to_disc(double a, double r, double h) {
     const double H = h * h / (a * a), K = r * r / (a * a), z = 1 + H + K;
     return (1 - (1 + H - K) / std::sqrt(z * z - 4 * K)) / 2;
@@ -94,7 +94,7 @@ inline double element_to_disc(double a, double r, double h) {
 
 inline double sphere_solid_angle(double s) { return 2 * Pi * s * s / (1 + std::sqrt(1 - s * s)); }
 
-// Of a rectangle seen along its axis, p and q the tangents of its half-angles.
+// Solid angle of a rectangle seen along its axis; p and q are the tangents of its half-angles.
 inline double rectangle_solid_angle(double p, double q) {
     return 4 * std::atan(p * q / std::sqrt(1 + p * p + q * q));
 }

@@ -1,10 +1,10 @@
-// base/complaint.h  why something cannot be done
+// base/complaint.h  the messages of errors
 #pragma once
 #include <string>
 
 #include "base/words.h"
 
-// The message of the error that `work` throws; "" if it throws none.
+// Returns the message of the error that `work` throws; "" if it throws none.
 template <class Error = UserError>
 std::string complaint(const auto& work) {
     try {

@@ -1,4 +1,4 @@
-// base/files_test.cpp  files are read whole, written whole or not at all, and under the right name
+// base/files_test.cpp  reading, atomic writing and naming of files
 #include "base/files.h"
 
 #include <fcntl.h>
@@ -34,7 +34,7 @@ TEST_CASE("a file is read to its end; an error on the way is none") {
     CHECK(read_file(folder / "a") == bytes);
     folder.write("empty", "");
     CHECK(read_file(folder / "empty") == "");
-    // Nothing is mapped at 0.
+    // No memory is mapped at address 0.
     CHECK(complaint<SystemError>([] { read_file("/proc/self/mem"); }) ==
           "/proc/self/mem: cannot read: Input/output error");
     CHECK(unread(folder / "b").ends_with("/b: cannot open: No such file or directory"));
@@ -101,7 +101,7 @@ TEST_CASE("a pipe is written to, and not replaced") {
     ::close(reader);
     CHECK(fs::is_fifo(folder / "pipe"));
     CHECK(folder.files() == 1);
-    CHECK(is_stream("/dev/stdout"));  // though it may lead to a file
+    CHECK(is_stream("/dev/stdout"));  // even if it leads to a file
     CHECK(!is_stream(folder / "a"));
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("what a killed process left beside a file goes; what a living one writ
     check_writable(folder / "a.pfm");
     CHECK_FALSE(folder.has(nobody + dead));
     CHECK(folder.files() == 5);
-    // One that had our number, which comes again: nothing of it is in the file.
+    // An earlier process with the same number left this file; none of its bytes may survive.
     std::ofstream(aside(folder / "a.pfm")) << "half";
     write_file(folder / "a.pfm", "x");
     CHECK(folder.read("a.pfm") == "x");
@@ -168,7 +168,7 @@ TEST_CASE("a file that cannot be written whole leaves the old one, and nothing b
     CHECK(read_file(path) == "new and longer");
     CHECK(folder.files() == 1);
 
-    // A disk that is full after 1000 bytes: after some of the bytes.
+    // The disk is full after 1000 bytes, so that writing fails part of the way.
     for (size_t size : {size_t(2000), size_t(1000000)}) {
         rlimit old_limit;
         REQUIRE(getrlimit(RLIMIT_FSIZE, &old_limit) == 0);
@@ -236,10 +236,10 @@ TEST_CASE("whatever fails on the way to a file is an error with its name") {
             return complaint<SystemError>([&] { calls_of({{}, call, error}, work); });
         };
         CHECK(with(EIO) == path + ": cannot write: Input/output error");
-        const bool late = std::string(call) == "fsync folder";  // it has its name by then
+        const bool late = std::string(call) == "fsync folder";  // the file is already renamed
         CHECK(folder.read("a") == (late ? "bytes" : "old"));
         CHECK(folder.files() == 1);
-        if (std::string(call) != "rename") CHECK(with(EINTR) == "");  // it is asked again
+        if (std::string(call) != "rename") CHECK(with(EINTR) == "");  // the call is repeated
         if (late) CHECK(with(EINVAL) == "");
     }
 }

@@ -1,4 +1,4 @@
-// base/folder.h  a place for a test's files
+// base/folder.h  a temporary folder for a test's files
 #pragma once
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@
 
 namespace fs = std::filesystem;
 
-// A directory of its own, removed at the end.
+// A temporary folder; the destructor removes it.
 struct Folder {
     fs::path path;
     Folder() {
@@ -34,9 +34,9 @@ struct Folder {
         REQUIRE(has(name));
         return read_file(*this / name);
     }
-    // Of two files; a failed CHECK prints no bytes.
+    // Compares two files; a failed CHECK prints no bytes.
     bool same(const std::string& a, const std::string& b) const { return read(a) == read(b); }
-    // Everything that is there, with its bytes; links as what they lead to.
+    // Returns all files with their bytes; links count as the files that they lead to.
     std::map<std::string, std::string> all() const {
         std::map<std::string, std::string> found;
         for (const auto& entry : fs::recursive_directory_iterator(path))

@@ -1,4 +1,4 @@
-// base/moments.h  the program's moments as an estimate that the oracle judges
+// base/moments.h  converts the program's moments to estimates that the oracle judges
 #pragma once
 #include "base/stats.h"
 #include "oracle/oracle.h"

@@ -1,4 +1,4 @@
-// base/portable_test.cpp  exponentials and logarithms against long double, and their bits
+// base/portable_test.cpp  exponentials and logarithms against long double, and bit for bit
 #include "base/portable.h"
 
 #include "base/rng.h"
@@ -24,7 +24,7 @@ double worst_error(double low, double high, double (*f)(double),
 }  // namespace
 
 TEST_CASE("log, log1p, exp and expm1 within 3 of 2^-53, where they cancel, too") {
-    if (std::numeric_limits<long double>::digits < 64) return;  // nothing to compare with
+    if (std::numeric_limits<long double>::digits < 64) return;  // no reference of higher precision
     for (double most : {1., 1e-3, 1e-300, 1e300})
         CHECK(worst_error(0, most, portable::log, std::log) < 3);
     CHECK(worst_error(0.999, 1.001, portable::log, std::log) < 3);

@@ -1,4 +1,4 @@
-// base/stats_test.cpp  moments where sums of squares fail
+// base/stats_test.cpp  moments of data that defeat sums of squares
 #include "base/stats.h"
 
 #include <initializer_list>

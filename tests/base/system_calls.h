@@ -1,4 +1,4 @@
-// base/system_calls.h  what files ask of the system, noted, and refused at will
+// base/system_calls.h  records the system calls for files, and injects failures
 #pragma once
 #include <dlfcn.h>
 #include <sys/stat.h>
@@ -11,17 +11,17 @@
 #include <string>
 #include <vector>
 
-// Calls of the system come by here first, since a program's own functions stand before a library's;
-// weak, for several tests may be one program.
+// Intercepts system calls: a program's own functions precede those of its libraries.  The functions
+// are weak symbols, because one program may contain several tests.
 struct Asked {
     std::vector<std::string> calls;
     std::string failing;     // the call that fails
-    int error = 0;           // as this; EINTR: once
-    size_t most = SIZE_MAX;  // bytes that one call writes
+    int error = 0;           // its errno; EINTR occurs only once
+    size_t most = SIZE_MAX;  // limit of bytes per write
 };
-inline Asked* asked = nullptr;  // nullptr: nobody listens
+inline Asked* asked = nullptr;  // nullptr: calls are not recorded
 
-// Notes the call; returns whether it fails.
+// Records the call; returns whether it must fail.
 inline bool fails(const std::string& call) {
     if (!asked) return false;
     asked->calls.push_back(call);
@@ -59,7 +59,7 @@ extern "C" [[gnu::weak]] int close(int fd) {
     return failed ? -1 : closed;
 }
 
-// Those of `work`; Asked says what fails.
+// Returns the system calls of `work`; Asked configures the failures.
 inline std::vector<std::string> calls_of(Asked a, const auto& work) {
     asked = &a;
     try {

@@ -1,4 +1,4 @@
-// base/vec_test.cpp  frames, cross products, numbers of [0,1)
+// base/vec_test.cpp  frames, cross products, numbers in [0,1)
 #include "base/vec.h"
 
 #include "base/rng.h"
@@ -6,7 +6,7 @@
 
 namespace {
 
-// The larger of both; infinite if either is not a number.
+// The larger of the two numbers; infinite if either is NaN.
 real worse(real a, real b) { return a <= b ? b : b <= a ? a : infinity; }
 
 real largest_flaw(const Frame& f) {
@@ -35,7 +35,7 @@ TEST_CASE("frames are right-handed and orthonormal, at the poles too") {
 }
 
 TEST_CASE("unit vectors are unit, and as long as they were they point there") {
-    using big = long double;  // of a wider range than real, and 40 or 11 bits more
+    using big = long double;  // has a wider range than real, and 40 or 11 more bits
     Rng rng{seed_here()};
     auto u = [&] { return 2 * to_unit(rng.bits()) - 1; };
     constexpr int digits = std::numeric_limits<real>::digits,
@@ -43,8 +43,8 @@ TEST_CASE("unit vectors are unit, and as long as they were they point there") {
                   highest = std::numeric_limits<real>::max_exponent - 1;
     big worst = 0;
     for (int i = 0; i < 200000; ++i) {
-        // Every binary exponent of real.  What is denormal has lost digits, so that it is rounded
-        // before the reference sees it.
+        // Tries every binary exponent of real.  Denormal numbers have fewer digits: a value is
+        // rounded before the reference uses it.
         const int e = lowest + i % (highest - lowest + 1);
         const vec3 v{std::ldexp(u(), e), std::ldexp(u(), e), std::ldexp(u(), e)};
         if (v == vec3{}) continue;
@@ -55,11 +55,11 @@ TEST_CASE("unit vectors are unit, and as long as they were they point there") {
             worst = off <= worst ? worst : off;
         }
     }
-    // Products and sums 3 ulp, of which the root halves, and 1; the reciprocal 1, the product 1.
+    // Products and sums err by 3 ulp, halved by the root, which adds 1; the other two add 1 each.
     CHECK(worst < 4.5);
     CHECK(unit({0, std::numeric_limits<real>::denorm_min(), 0}) == vec3{0, 1, 0});
     CHECK(unit({0, 0, -std::numeric_limits<real>::max()}) == vec3{0, 0, -1});
-    CHECK(std::isnan(unit({}).x));  // what has no direction says so
+    CHECK(std::isnan(unit({}).x));  // no direction: NaN
 }
 
 TEST_CASE("a frame's local coordinates invert its world coordinates") {
@@ -70,7 +70,7 @@ TEST_CASE("a frame's local coordinates invert its world coordinates") {
 }
 
 TEST_CASE("cross products keep their digits where the factors are nearly parallel") {
-    // (1, e, 0) x (1, 2e, 0) = (0, 0, e): naive rounding loses nothing here, the next one all.
+    // (1, e, 0) x (1, 2e, 0) = (0, 0, e): naive rounding is exact here, and loses all digits below.
     const real e = 64 * ulp;
     const real a = 1 + e, b = 1 - e;  // a b - 1 = -e^2, far below the rounding of a b
     CHECK(cross({a, 1, 0}, {1, b, 0}).z == -e * e);

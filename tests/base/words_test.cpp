@@ -1,4 +1,4 @@
-// base/words_test.cpp  numbers, sizes and words as users write them
+// base/words_test.cpp  numbers, sizes and words in the notation of users
 #include "base/words.h"
 
 #include <doctest/doctest.h>
@@ -33,7 +33,7 @@ TEST_CASE("a number is the whole word, finite and within its limits") {
 
 TEST_CASE("a number is the nearest double, rounded to even from a tie") {
     CHECK(parse_number("0.1") == 0.1);
-    CHECK(parse_number("9007199254740993") == 9007199254740992);  // a tie, to even
+    CHECK(parse_number("9007199254740993") == 9007199254740992);  // a tie rounds to even
     CHECK(parse_number("9007199254740993.0000000000000000000001") == 9007199254740994);
     CHECK(parse_number("2.2250738585072012e-308") == 0x1p-1022);
     CHECK(parse_number("2e-324") == 0);
@@ -101,14 +101,14 @@ TEST_CASE("only a near word is meant") {
     };
     CHECK(hint("Mis", {"none", "nee", "mis"}) == meant("mis"));
     CHECK(hint("gray", {"red", "grey"}) == meant("grey"));
-    CHECK(hint("abcd", {"abxy"}) == meant("abxy"));  // half of them
+    CHECK(hint("abcd", {"abxy"}) == meant("abxy"));  // half of the letters match
     CHECK(hint("abcd", {"axyz"}) == "");
     CHECK(hint("-O", options) == meant("-o"));
     CHECK(hint("x", options) == "");
     CHECK(hint("-spp", options) == meant("--spp"));
-    CHECK(hint("--heat", options) == meant("--heatmap"));  // not --help, by two edits
+    CHECK(hint("--heat", options) == meant("--heatmap"));  // not --help: two edits
     CHECK(hint("", {"a", "none"}) == "");
-    CHECK(hint("nea", {"nee", "neo"}) == meant("nee"));  // the first of two
+    CHECK(hint("nea", {"nee", "neo"}) == meant("nee"));  // the first of equals
     CHECK(hint("a", {}) == "");
     CHECK(hint(std::string(1 << 20, 'x'), {"x"}) == "");
     CHECK(hint("a\n", {"a\n\n"}) == meant("a??"));
@@ -125,7 +125,7 @@ TEST_CASE("a message keeps its letters, and loses what would move the cursor") {
     CHECK(printable("a \xc3\xa9 ~") == "a \xc3\xa9 ~");
     CHECK(printable("\x1b[2J\n\x7f\t") == "?[2J???");
     CHECK(printable("\xc2\x9b"
-                    "2J \xc2\xa0") == "\xc2?2J \xc2\xa0");  // CSI, a blank
+                    "2J \xc2\xa0") == "\xc2?2J \xc2\xa0");  // CSI; no-break space
 }
 
 TEST_CASE("what the user wrote is shown short and printable") {

@@ -3,6 +3,7 @@
 
 #include "course/python.h"
 
-TEST_CASE("submissions: archives, downloads of Moodle and Canvas, twice the same, what is damaged") {
+TEST_CASE(
+    "submissions: archives, downloads of Moodle and Canvas, twice the same, what is damaged") {
     run_python_tests("tests/course/submission_test.py");
 }

@@ -1,4 +1,5 @@
-// course/update_test.cpp  a later starter in a student's folder: tests written in Python, a case each
+// course/update_test.cpp  a later starter in a student's folder: tests written in Python, a case
+// each
 #include <doctest/doctest.h>
 
 #include "course/python.h"

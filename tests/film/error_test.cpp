@@ -1,4 +1,4 @@
-// film/error_test.cpp  d^2 as films state it, beside what it is; its course, and when it is small
+// film/error_test.cpp  estimates of d^2 against the truth, error histories, stopping
 #include "film/error.h"
 
 #include "base/about.h"
@@ -21,8 +21,8 @@ const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
 }  // namespace
 
 TEST_CASE("d^2 of an image, by hand") {
-    // Replications of 1, 5, 3 (variance 4), of 2, 6, 1 (variance 7), of 7 alike; green twice, blue
-    // without noise.
+    // The replications are 1, 5, 3 (variance 4), then 2, 6, 1 (variance 7), then 7, 7, 7.  Green is
+    // twice as much, blue has no noise.
     const Film film = filled({3, 1}, 3, 2, [](const PixelSample& s, Tally&) {
         constexpr real values[3][3] = {{1, 5, 3}, {2, 6, 1}, {7, 7, 7}};
         return rgb{values[s.x][s.set], 2 * values[s.x][s.set], 1};
@@ -38,7 +38,7 @@ TEST_CASE("d^2 of an image, by hand") {
     CHECK(e.square[1] == about(4 * red, 1e-15));
     CHECK(e.square[2] == 0);
     CHECK(e.d2() == about(5 * red / 3, 1e-15));
-    // Values 3, 3, 7.
+    // The pixels' values are 3, 3, 7.
     CHECK(e.norm == doctest::Approx(std::sqrt((5 * (9 + 9 + 49) + 3) / 9.0)).epsilon(1e-15));
     // E |f|^2 = |F|^2 + d^2.
     const double F = std::sqrt((5 * (9 + 9 + 49) + 3) / 9.0 - 5 * red / 3);
@@ -46,10 +46,10 @@ TEST_CASE("d^2 of an image, by hand") {
     CHECK(e.d_rel() == about(std::sqrt(e.d2()) / F, 1e-15));
     const double first = 4 / 3.0 * 5 / 3, second = 7 / 3.0 * 5 / 3;
     CHECK(e.greatest == about(second / 3, 1e-15));
-    // E[T]^2 = (K - 1) / (K + 1) E[T^2]: a half.
+    // E[T]^2 = (K - 1) / (K + 1) E[T^2], here a half of it.
     const double spread = std::sqrt((first * first + second * second) / 2) / 3;
     CHECK(e.spread == about(spread, 1e-15));
-    // Of sqrt(s / (N - s)) the slope is N / (2 sqrt(s) (N - s)^3/2).
+    // The slope of sqrt(s / (N - s)) is N / (2 sqrt(s) (N - s)^3/2).
     CHECK(e.standard_error() ==
           about(e.spread * e.norm * e.norm / (2 * std::sqrt(e.d2()) * F * F * F), 1e-14));
     CHECK(e.d_rel_and_unseen() == about(std::sqrt(e.d2() + e.greatest) / F, 1e-15));
@@ -78,7 +78,7 @@ TEST_CASE("the error of a film against brute force") {
     CHECK(e.d2() == about(square / 561, 1e-12));
     CHECK(e.norm == about(std::sqrt(norm2 / 561), 1e-12));
     CHECK(e.greatest == about(worst / 561, 1e-12));
-    // A pixel of one replication is not measured, and the image's error is not known.
+    // A pixel of one replication has no error estimate, so that the image's error is unknown.
     ErrorTerms terms = terms_of(film);
     terms.add(Pixel{{film.sum.data(), 1}, 24, 24});
     CHECK(terms.pixels == 562);
@@ -87,7 +87,7 @@ TEST_CASE("the error of a film against brute force") {
 }
 
 TEST_CASE("of independent pictures, weighed by their samples: value, variance, and its spread") {
-    // Of 8 samples: replications of mean 1 and 3 (variance 1); of 24: 2, 3, 7 (variance 7 / 3).
+    // 8 samples: replications with means 1 and 3 (variance 1). 24: means 2, 3, 7 (variance 7 / 3).
     const std::vector<Sum> few = {{{4, 8, 0}}, {{12, 24, 0}}},
                            many = {{{16, 0, 8}}, {{24, 0, 8}}, {{56, 0, 8}}};
     const std::vector<Pixel> pictures = {{few, 4, 4}, {many, 8, 8}};
@@ -104,7 +104,7 @@ TEST_CASE("of independent pictures, weighed by their samples: value, variance, a
     const double first = 5 / 16.0 / 3, second = 9 * 7 / 3.0 / 16 / 3;
     CHECK(e.spread ==
           doctest::Approx(std::sqrt(first * first * 2 / 3 + second * second / 2)).epsilon(1e-14));
-    // One that is not measured leaves the pixel so.
+    // A picture without an error estimate leaves its pixel without one.
     terms.add(std::vector<Pixel>{pictures[0], {{few.data(), 1}, 4, 4}});
     CHECK(terms.pixels == 2);
     CHECK(terms.measured == 1);
@@ -127,7 +127,7 @@ TEST_CASE("an error that is not known is no number; that of an image without noi
         }
     CHECK(ErrorHistory().cost_of(HUGE_VAL) == HUGE_VAL);
     CHECK(std::isnan(error_of(make_film({1, 1}, 2)).d_rel()));  // before any sample
-    // Of the pilot alone; while some blocks catch up; then it is known.
+    // The error is unknown after the pilot and while blocks catch up; then it is known.
     const Radiance L = [](const PixelSample& s, Tally&) { return rgb{2, 2, real(2 + s.set)}; };
     Film film = make_film({2, 2}, 0);
     fill(film, 4, L);
@@ -160,7 +160,7 @@ TEST_CASE("what float cannot hold: d_rel at radiance 2^-50 and 2^50 is that at 1
 }
 
 TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
-    // Grey pixels of normal numbers, 1 to 10 large.
+    // Grey pixels of normal numbers with standard deviations from 1 to 10.
     for (uint32_t sets : {2u, 3u, 8u}) {
         Moments d2, spread2;
         double truth = 0;
@@ -177,8 +177,8 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
         }
         INFO("sets ", sets);
         EXPECT(oracle::expect_mean(truth, estimate(d2, double(ulp))), 0.05);
-        // Both are known within 5 and 8 %: the fourth moment of a sum of a hundred terms is
-        // about 3.3.
+        // The standard errors are 5 and 8 %: the fourth moment of a sum of a hundred terms is about
+        // 3.3.
         const double ratio = spread2.mean / d2.variance();
         CAPTURE(ratio);
         CHECK(std::abs(ratio - 1) <
@@ -265,14 +265,14 @@ TEST_CASE(
         REQUIRE(e.standard_error() == doctest::Approx(standard_error));
         return e;
     };
-    // Enough: only with its margin.
+    // The error is small enough only with its margin.
     CHECK(is_small_enough(error(0.0099, 0.0001), 0.01));
     CHECK(!is_small_enough(error(0.0100, 0.0002), 0.01));
     CHECK(!is_small_enough(error(0.0096, 0.0010), 0.01));
     CHECK(is_small_enough(error(0.0094, 0.0010), 0.01));
     CHECK(is_small_enough(error(0, 0), 0.01));
-    CHECK(!is_small_enough(ImageError(), 0.01));  // not known
-    // And only if another pixel like the worst would not be too much: .0099 and a quarter of d^2.
+    CHECK(!is_small_enough(ImageError(), 0.01));  // unknown
+    // One more pixel like the worst must not be too much, either: .0099 and a quarter of d^2.
     ImageError spotted = error(0.009, 0);
     CHECK(is_small_enough(spotted, 0.01));
     spotted.greatest = spotted.d2() / 4;
@@ -295,9 +295,9 @@ TEST_CASE("checks are a lattice: whole periods, about a 32nd apart, wherever one
             const uint64_t step = checks[k] - checks[k - 1], part = checks[k - 1] / 32;
             CHECK(step > 0);
             CHECK(step % period == 0);
-            CHECK(step > part);  // seldom enough
+            CHECK(step > part);  // not too often
             CHECK(step <= part + period);
-            // From anywhere between two of them: the one ahead.
+            // From anywhere between two checks the next one is returned.
             for (uint64_t n : {checks[k - 1], checks[k - 1] + step / 2, checks[k] - 1})
                 CHECK(next_check(n, first, period) == checks[k]);
         }
@@ -309,7 +309,7 @@ TEST_CASE("checks are a lattice: whole periods, about a 32nd apart, wherever one
 TEST_CASE("checks look at whole films when they are due, and tell what they expect") {
     const Radiance one = [](const PixelSample&, Tally&) { return rgb{1, 1, 1}; };
     const Size size{12, 9};
-    // A pilot, which has no error, goes on; then the first check is at 8, in whole grids.
+    // A pilot has no error and continues; the first check after it is at 8 samples, in whole grids.
     Film film = make_film(size, 0);
     fill(film, 8, one);
     ErrorChecks checks(0.1, 1);
@@ -318,9 +318,9 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     CHECK(checks.next(film) == 8);
     CHECK(ErrorChecks(0.1, 6).next(film) == 12);
     fill(film, 7, one);
-    CHECK(checks.next(film) == 8);  // no check, though the error is 0
+    CHECK(checks.next(film) == 8);  // no check, although the error is 0
     CHECK(!checks.is_enough());
-    // A film that was interrupted is completed first.
+    // An interrupted film is completed first.
     fill_blocks(film, 0, 1, 9, one);
     fill_blocks(film, 1, film.taken.size(), 8, one);
     CHECK(checks.next(film) == 9);
@@ -328,7 +328,7 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     fill(film, 9, one);
     CHECK(checks.next(film) == 9);
     CHECK(checks.is_enough());
-    // One that is still too much: as the square of what it should fall by.
+    // If the error is too large, the samples grow with the square of the ratio of the errors.
     Film rough = make_film(size, 2);
     fill(rough, 8, noisy);
     const double d = error_of(rough).d_rel();
@@ -336,13 +336,13 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     CHECK(strict.next(rough) == 9);
     CHECK(!strict.is_enough());
     CHECK(strict.expected() == doctest::Approx(8 * 25));
-    // Of a black film it is not known.
+    // The cost of a black film is unknown.
     Film black = make_film(size, 2);
     fill(black, 8, [](const PixelSample&, Tally&) { return rgb{}; });
     ErrorChecks dark(0.1, 1);
     CHECK(dark.next(black) == 9);
     CHECK(dark.expected() == HUGE_VAL);
-    // Without an error that is asked for only its course is looked at.
+    // Without a requested error the checks only record the error history.
     CHECK(none.next(rough) == UINT64_MAX);
     CHECK(none.expected() == HUGE_VAL);
     CHECK(!none.history().is_due(15));
@@ -350,8 +350,8 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
 }
 
 TEST_CASE("d_rel is over the truth, not over an image that is mostly noise") {
-    // F = 3, and noise of variance 400 / 12 in one sample.  Of a pixel f^2 and its variance have a
-    // deviation of about 24 each.
+    // F = 3, and the noise has variance 400 / 12 per sample.  In a pixel, f^2 and its variance have
+    // a standard deviation of about 24 each.
     const ImageError e =
         error_of(filled({100, 100}, 2, 1, random_radiance(11, [](const PixelSample&, vec2 u) {
                             const real L = 3 + 20 * (u.x - real(0.5));
@@ -375,17 +375,17 @@ TEST_CASE("an error is in doubt: black, by few pixels, lost in noise, or as a ju
     CHECK(doubt_of(film, error(0, 0, 30), silent).empty());
     CHECK(doubt_of(film, error(0, 0, 0), doubtful) == "no light was met");
     CHECK(doubt_of(film, error(4, 0, 30), doubtful) == "rare light");
-    // d +- a quarter of it: d^2 +- half of it.
+    // d +- d / 4 corresponds to d^2 +- d^2 / 2.
     CHECK(doubt_of(film, error(4, 1.97, 30), silent).empty());
     CHECK(doubt_of(film, error(4, 2.01, 30), silent) == "it hangs on few pixels");
     CHECK(doubt_of(film, error(4, 2.01, 3), silent) == "it hangs on few pixels");
     CHECK(doubt_of(film, error(4, 2.01, 30), doubtful) == "rare light");
-    // |F|^2 = 9 - 4, and so d_rel +- 9 / 5 times as much; or nothing is left of the picture.
+    // |F|^2 = 9 - 4, so that d_rel has 9 / 5 of the relative spread; or |F|^2 would be negative.
     CHECK(doubt_of(film, error(4, 1.1, 3), silent).empty());
     CHECK(doubt_of(film, error(4, 1.12, 3), silent) == "the picture is mostly noise");
     CHECK(doubt_of(film, error(4, 0.01, 1.9), silent) == "the picture is mostly noise");
     CHECK(doubt_of(film, error(4, 0.01, 1.9), doubtful) == "rare light");
-    // Of one replication there is none to doubt.
+    // One replication has no error to doubt.
     CHECK(doubt_of(film, error(NAN, NAN, 3), doubtful).empty());
 }
 
@@ -407,7 +407,7 @@ TEST_CASE("an error that is in doubt stops no render before 4096 samples a pixel
     CHECK(checks.next(film) == 1024);
     CHECK(checks.is_hopeless());
     CHECK(!checks.is_enough());
-    // Without an error that is asked for nobody minds.
+    // Without a requested error, doubts have no effect.
     ErrorChecks none(0, 512, judge);
     CHECK(none.next(film) == UINT64_MAX);
     CHECK(!none.is_hopeless());

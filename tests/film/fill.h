@@ -1,10 +1,10 @@
-// film/fill.h  films filled as renders fill them, but by one thread
+// film/fill.h  films filled as renders fill them, by one thread
 #pragma once
 #include <cstring>
 
 #include "film/film.h"
 
-// Brings the blocks from `first` on, up to `last`, to n samples.
+// Brings the blocks from `first` up to `last` to n samples.
 inline NonFinite fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
     const std::vector<size_t> at = offsets(f);
     NonFinite bad;
@@ -16,7 +16,7 @@ inline NonFinite fill(Film& f, uint64_t n, const Radiance& L) {
     return fill_blocks(f, 0, f.taken.size(), n, L);
 }
 
-// A film of n samples a replication; 0 sets: chosen.
+// A film with n samples per replication; 0 sets: adaptive.
 inline Film filled(Size size, uint32_t sets, uint64_t n, const Radiance& L) {
     Film f = make_film(size, sets);
     if (sets == 0) {
@@ -36,7 +36,7 @@ inline Radiance random_radiance(uint64_t seed, std::function<rgb(const PixelSamp
     };
 }
 
-// All that films hold, to the bit.
+// Compares everything in two films bit for bit.
 template <class T>
 bool same(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() &&

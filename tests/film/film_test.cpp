@@ -1,4 +1,4 @@
-// film/film_test.cpp  sums of samples, what they tell of a pixel, and where it has more of them
+// film/film_test.cpp  sums of samples, statistics per pixel, and adaptive replications
 #include "film/film.h"
 
 #include <map>
@@ -13,7 +13,7 @@ namespace {
 
 using Colour = std::array<float, 3>;
 
-// A number for every sample, whose sum depends on the order of addition.
+// A value for every sample; the rounded sum depends on the order of addition.
 const Radiance numbered = [](const PixelSample& s, Tally& tally) {
     tally.rays += 1 + s.i;
     const uint64_t bits = hash(hash(hash(uint64_t(s.y), uint64_t(s.x)), s.set), s.i);
@@ -21,7 +21,7 @@ const Radiance numbered = [](const PixelSample& s, Tally& tally) {
     return rgb{v, real(s.i), real(s.set)};
 };
 
-// One to four replications of a pixel, in turn.
+// Pixels have one to four replications in turn.
 Film film_of_kinds(Size size) {
     Film f = make_film(size, 1);
     size_t all = 0;
@@ -30,7 +30,7 @@ Film film_of_kinds(Size size) {
     return f;
 }
 
-// Its middle is 1000 in one sample of 50, else 0; its neighbours 30 in one of 4; others up to 35.
+// The middle is 1000 in one sample of 50, else 0; its neighbours 30 in one of 4; others up to 35.
 rgb rare_light(const PixelSample& s, vec2 u) {
     real v = 35 * u.x;
     if (std::abs(s.x - 4) < 2 && std::abs(s.y - 4) < 2) v = u.x < real(0.25) ? 30 : 0;
@@ -127,7 +127,7 @@ TEST_CASE("a film adds up in double: 2^24 ones and more, beside numbers of 1e-9"
 
 TEST_CASE("samples that no file can hold are counted, and the first of them told") {
     const real nan = std::numeric_limits<real>::quiet_NaN();
-    // By sample, replication, row, column.
+    // The keys are sample, replication, row, column.
     const std::map<std::array<int, 4>, rgb> bad = {{{7, 0, 0, 0}, {nan, 1, 1}},
                                                    {{4, 1, 2, 1}, {1, nan, 1}},
                                                    {{4, 1, 1, 2}, {1, 1, -infinity}},
@@ -149,7 +149,7 @@ TEST_CASE("samples that no file can hold are counted, and the first of them told
         }
         CHECK(said(all.count, all.first.i, all.first.set, all.first.y, all.first.x) == "5 4 1 1 2");
     }
-    const real beyond = real(1e30) * real(1e10);  // finite, but files hold float
+    const real beyond = real(1e30) * real(1e10);  // finite, but beyond float
     for (real bad_number : {beyond, nan, -infinity})
         for (auto channel : axis) {
             rgb v{1, 1, 1};
@@ -222,7 +222,7 @@ TEST_CASE("a pixel without samples is no number; one replication has no variance
 
 TEST_CASE(
     "value and variance of a pixel are unbiased if its replications differ in samples: exact") {
-    // Over all outcomes of tosses of a coin, each sample 0 or 1.
+    // All outcomes of coin tosses are enumerated; each sample is 0 or 1.
     for (const auto& row :
          std::initializer_list<std::pair<uint64_t, uint64_t>>{{1, 1}, {3, 1}, {2, 2}, {4, 2}})
         for (uint64_t K : {2, 3, 4}) {
@@ -271,7 +271,7 @@ TEST_CASE("until the others have samples a pixel is its pilot; then they are mea
 
 TEST_CASE(
     "the spread of a pilot is the root of squared distances to its mean, all channels together") {
-    // 1, 5, 3, 7: mean 4, 9 + 1 + 1 + 9, twice as far in green; the same far from 0.
+    // 1, 5, 3, 7: mean 4, 9 + 1 + 1 + 9, with twice the deviations in green; also far from 0.
     for (real far : {0, 1024})
         for (const auto& passes : {std::vector<uint64_t>{4}, {1, 2, 3, 4}, {2, 4}}) {
             Film f = make_film({2, 1}, 0);
@@ -289,7 +289,7 @@ TEST_CASE(
 
 TEST_CASE(
     "replications: 3.5 times the root of the noise around over the mean of the other colour") {
-    // By hand, from the definition, for pictures of all shapes.
+    // The reference follows the definition, for pictures of all shapes.
     Rng rng{seed_here()};
     for (Size size :
          {Size{1, 1}, Size{2, 1}, Size{1, 2}, Size{1, 40}, Size{40, 1}, Size{2, 2}, Size{9, 7}}) {
@@ -309,12 +309,12 @@ TEST_CASE(
             CHECK(sets[size_t(i)] == std::clamp(std::floor(K + 0.5), 2.0, 32.0));
         }
     }
-    // All alike: 3.5, which is rounded up; nothing, or noise that cannot be told: two.
+    // Equal noise gives 3.5, rounded up; no noise, or noise of unknown size, gives two.
     CHECK(sets_where_noise_is(std::vector<float>(12, 5), {4, 3}) == std::vector<uint16_t>(12, 4));
     for (float none : {0.f, NAN, INFINITY})
         CHECK(sets_where_noise_is(std::vector<float>(12, none), {4, 3}) ==
               std::vector<uint16_t>(12, 2));
-    for (float level : {1e-30f, 1e30f})  // whose squares are no floats
+    for (float level : {1e-30f, 1e30f})  // their squares are no floats
         CHECK(sets_where_noise_is(std::vector<float>(12, level), {4, 3})[5] == 4);
     CHECK(sets_where_noise_is({7}, {1, 1}) == std::vector<uint16_t>{2});
     CHECK(sets_where_noise_is(std::vector<float>(12, 5), {4, 3}, {9, 1024})[5] == 9);
@@ -338,7 +338,7 @@ TEST_CASE("a pixel's own samples have no say in its replications, however large 
         }
         noise[i] = before;
     }
-    CHECK(matters);  // to others
+    CHECK(matters);  // for other pixels
 }
 
 TEST_CASE("chosen replications keep the pilot, and fit into the memory that there is") {
@@ -363,7 +363,7 @@ TEST_CASE("chosen replications keep the pilot, and fit into the memory that ther
         CHECK(f.sets_per_pixel() <= std::max(2.0, K));
         if (K > 100) CHECK(most == 32);
         if (K < 2) CHECK(most == 2);
-        // No more was cut than had to be.
+        // The limit is the largest that fits into the memory.
         if (most < 32) {
             double all = 0;
             for (uint16_t k : sets_where_noise_is(pilot.spread, size, {3.5, most + 1})) all += k;
@@ -386,8 +386,8 @@ TEST_CASE("chosen replications keep the pilot, and fit into the memory that ther
 }
 
 TEST_CASE("chosen replications leave every pixel's mean unbiased, that of rare light, too") {
-    // Were a pixel's own samples to choose its replications, those that found rare light early
-    // would be averaged with more that did not: 14 instead of 20.
+    // If a pixel's own samples chose its replications, pixels that found rare light early would be
+    // averaged with more samples that did not: 14 instead of 20.
     const size_t middle = 40;
     Moments early, outlier, neighbour, pooled, sets;
     for (uint64_t r = 0; r < 5000; ++r) {

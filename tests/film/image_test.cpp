@@ -64,7 +64,7 @@ TEST_CASE("a Radiance file holds 8 bits of each channel and an exponent, from th
     Image image(3, 2);
     image.at(0, 0) = {1, 0.5f, 0.25f};
     image.at(1, 0) = {0, 0, 0};
-    image.at(2, 0) = {-1, 3e38f, 0x1p126f};  // as near as it gets
+    image.at(2, 0) = {-1, 3e38f, 0x1p126f};  // the nearest representable value
     image.at(0, 1) = {-3, -0.25f, -1e30f};
     image.at(1, 1) = {1e-30f, 255.99f, 256};
     image.at(2, 1) = {0x1p-149f, 0, 0};
@@ -82,7 +82,7 @@ TEST_CASE("a Radiance file holds 8 bits of each channel and an exponent, from th
 }
 
 TEST_CASE("a Radiance file is what others read, each number at most 2^-7 of the greatest less") {
-    for (int width : {1, 8, 300}) {  // others look for run lengths from 8 on
+    for (int width : {1, 8, 300}) {  // decoders expect run lengths from 8 on
         Image image = variegated(width, 5);
         float scale = 1e-30f;
         for (Colour& pixel : image.pixels) {
@@ -124,7 +124,7 @@ TEST_CASE("sRGB has the values of its standard") {
         CHECK(int(to_byte(value.first)) == value.second);
     }
     for (int byte = 0; byte < 256; ++byte) {
-        const double s = byte / 255.0;  // decoded as the standard has it, written independently
+        const double s = byte / 255.0;  // the standard's decoding, written independently
         const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
         CHECK(int(to_byte(linear)) == byte);
     }
@@ -179,11 +179,11 @@ TEST_CASE("a PNG for which there is no memory is an error, and no end of the pro
 #else
     Image image(250, 350);
     float k = 0;
-    for (Colour& pixel : image.pixels)  // noise, which nothing compresses
+    for (Colour& pixel : image.pixels)  // incompressible noise
         for (float& channel : pixel) k = channel = std::fmod(k * 997 + 0.123f, 1.f);
     rlimit old_limit;
     REQUIRE(::getrlimit(RLIMIT_AS, &old_limit) == 0);
-    auto allow_more = [&](rlim_t bytes) {  // than the process has now
+    auto allow_more = [&](rlim_t bytes) {  // beyond the current size of the process
         std::ifstream statm("/proc/self/statm");
         rlim_t pages = 0;
         statm >> pages;
@@ -194,7 +194,7 @@ TEST_CASE("a PNG for which there is no memory is an error, and no end of the pro
     const std::string expected = encode_png(image, 1);
     int written = 0, refused = 0;
     for (rlim_t room = 0; room < 2 << 20; room += 1 << 16) {
-        std::vector<std::unique_ptr<char[]> > taken;  // what was freed before is room, too
+        std::vector<std::unique_ptr<char[]> > taken;  // takes freed memory, too
         taken.reserve(100000);
         allow_more(0);
         try {

@@ -1,4 +1,4 @@
-// film/passes_test.cpp  when to stop, Ctrl-C, threads, and the loop over them
+// film/passes_test.cpp  stopping, Ctrl-C, threads, and the loop over passes
 #include "film/passes.h"
 
 #include <doctest/doctest.h>
@@ -23,21 +23,21 @@ TEST_CASE("passes end at the samples or the seconds asked for, and there is alwa
             CHECK(passes(spp, 0, speed).first == spp);
             CHECK(passes(spp, 1e30, speed).first == spp);
         }
-    CHECK(passes(0, 100, 7).first == 15);  // the pass that crosses the end is short
-    CHECK(passes(5, 100, 7).first == 5);   // whichever comes first
+    CHECK(passes(0, 100, 7).first == 15);  // the last pass is short
+    CHECK(passes(5, 100, 7).first == 5);   // the first limit counts
     CHECK(passes(50, 100, 7).first == 15);
     const auto [samples, sizes] = passes(0, 10, 1e-3);
     CHECK(samples >= 10000);
     CHECK(samples < 10100);
-    CHECK(*std::max_element(sizes.begin(), sizes.end()) < 400);  // so that Ctrl-C is soon obeyed
-    CHECK(sizes.size() < 200);                                   // and threads are seldom idle
+    CHECK(*std::max_element(sizes.begin(), sizes.end()) < 400);  // bounds the latency of Ctrl-C
+    CHECK(sizes.size() < 200);                                   // threads are seldom idle
     for (uint64_t n : passes(100, 0, 7).second) CHECK(n == 1);
-    // One pass at least, that of which nobody knows what it takes.
+    // The first pass has at least one sample, although its time is unknown.
     CHECK(end_of_pass({0, 1e-9}, 16, 0, 1, 0) == 16);
     CHECK(end_of_pass({0, 1e-9}, 16, 16, 2, 1) == 16);
-    // A film that has more than is asked for keeps it.
+    // A film with more samples than requested keeps them.
     CHECK(end_of_pass({10, 0}, 1, 12, 0, 0) == 12);
-    // By a clock that stands passes about double, and do not overflow.
+    // If the clock stands still, passes about double, and do not overflow.
     for (uint64_t n = 1, pass = 0, to; pass < 40; ++pass, n = to) {
         to = end_of_pass({}, 1, n, 1, 0);
         CHECK(to == 2 * n + 1);
@@ -46,7 +46,7 @@ TEST_CASE("passes end at the samples or the seconds asked for, and there is alwa
 }
 
 TEST_CASE("passes are whole grids, and shrink when samples take longer") {
-    uint64_t n = 5, longest = 0, last = 0;  // a run that goes on from half a grid
+    uint64_t n = 5, longest = 0, last = 0;  // resumes in the middle of a grid
     double elapsed = 0;
     for (int pass = 0; pass < 40; ++pass) {
         const double a_sample = pass < 20 ? 1e-5 : 1e-2;
@@ -71,7 +71,7 @@ TEST_CASE("the first signal to end asks for an end, a second Ctrl-C kills; what 
     struct sigaction before[5], caught{};
     const int signals[5] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
     for (int i = 0; i < 5; ++i) sigaction(signals[i], nullptr, &before[i]);
-    std::signal(SIGHUP, SIG_IGN);  // nohup
+    std::signal(SIGHUP, SIG_IGN);  // as nohup does
     catch_interrupt();
     for (int signal : {SIGPIPE, SIGXFSZ, SIGHUP}) {
         sigaction(signal, nullptr, &caught);
@@ -130,7 +130,7 @@ TEST_CASE("who waits is told what part of the work is done") {
     std::vector<double> parts;
     auto work = [&](size_t k) {
         if (k != 3) return;
-        // The call under way may have looked before piece 2 was done, the one after it has not.
+        // A call that has begun may precede the end of piece 2; the call after it cannot.
         for (const int before = calls; calls < before + 2;) std::this_thread::yield();
     };
     auto meanwhile = [&](double part) {
@@ -171,10 +171,10 @@ struct Run {
     Film film;
     uint64_t rays, non_finite;
     uint32_t most;
-    std::vector<uint64_t> ends;  // of passes
+    std::vector<uint64_t> ends;  // ends of passes
 };
 
-// By a clock that ticks once a sample of one pixel, or stands.
+// The clock ticks once per sample of one pixel, or stands still.
 Run run(Size size, uint32_t sets, const Plan& plan, const Radiance& L = noisy,
         std::function<uint64_t(const Film&)> between = nullptr, double tick = 0) {
     Run r{make_film(size, sets), 0, 0, 0, {}};
@@ -240,7 +240,7 @@ TEST_CASE("no pass goes further than the one who watches allows; no further than
 }
 
 TEST_CASE("a time is kept by films of replications that are chosen, of which the pilot has half") {
-    // 48 pixels; a sample of the picture takes 48 ticks.
+    // The picture has 48 pixels: one sample of each takes 48 ticks.
     for (double seconds : {2.0, 300.0, 2000.0, 5000.0}) {
         const Run r = run({8, 6}, 0, {{0, seconds}}, noisy, nullptr, 1.0 / 48);
         CAPTURE(seconds);
@@ -256,11 +256,11 @@ TEST_CASE("a time is kept by films of replications that are chosen, of which the
     const Run r = run({8, 6}, 0, {{0, 8}}, noisy, nullptr, 1.0 / 48);
     CHECK(r.film.pilot >= 4);  // half of the time
     CHECK(r.film.pilot < 8);
-    // A picture's sample of 10 ms: passes grow, and the first after the pilot is cut short.
+    // A sample of all pixels takes 10 ms: passes grow, and the one after the pilot is cut short.
     const Run fast = run({8, 6}, 0, {{0, 0.1}}, noisy, nullptr, 0.01 / 48);
     CHECK(fast.film.least_taken() > 0);
     CHECK(fast.film.total() / 48 <= 10 + fast.film.sets_per_pixel());
-    // A time that is over at once: nothing is chosen before there is a sample.
+    // The time is over at once: replications are not chosen before the first sample.
     CHECK(run({8, 6}, 0, {{0, 1e-9}}, noisy, nullptr, 1.0 / 48).film.pilot == 1);
     // Grids of 6 samples by two replications take 0.12 s: a pass has one of them.
     CHECK(run({8, 6}, 2, {{60}, 6}, noisy, nullptr, 0.01 / 48).ends.size() == 10);
@@ -291,7 +291,7 @@ TEST_CASE("progress is told in samples a pixel, now and in the end; then the clo
     film = make_film({5, 5}, 0);
     plan.target.samples = 20;
     Loop(film, plan, noisy, watch).run();
-    CHECK(shown.front().second == 40);  // two replications, as far as is known
+    CHECK(shown.front().second == 40);  // assumes two replications
     CHECK(shown.back().first == 20 * film.sets_per_pixel());
     CHECK(shown.back().second == doctest::Approx(20 * film.sets_per_pixel()));
     shown.clear();
@@ -299,8 +299,8 @@ TEST_CASE("progress is told in samples a pixel, now and in the end; then the clo
     film = make_film({5, 5}, 1);
     watch.between = [](const Film& f) { return std::max<uint64_t>(3, f.least_taken()); };
     Loop(film, plan, noisy, watch).run();
-    for (const auto& [now, all] : shown) CHECK(all == 0);  // nobody knows
-    // A pass that ends at its 13th pixel of 25.
+    for (const auto& [now, all] : shown) CHECK(all == 0);  // the end is unknown
+    // The interrupted pass ends at its 13th pixel of 25.
     film = make_film({5, 5}, 3);
     plan.target.samples = 7;
     watch.between = [](const Film& f) { return interrupted ? f.least_taken() : UINT64_MAX; };
@@ -334,7 +334,7 @@ TEST_CASE("a pilot that Ctrl-C left in part is completed before replications are
     Watch watch;
     watch.elapsed = [&] { return now; };
     watch.between = [](const Film& f) {
-        CHECK(interrupted == 0);  // after Ctrl-C there is no other pass
+        CHECK(interrupted == 0);  // no pass may follow Ctrl-C
         return interrupted ? f.least_taken() : UINT64_MAX;
     };
     const Radiance L = [&](const PixelSample& s, Tally& tally) {
@@ -345,7 +345,7 @@ TEST_CASE("a pilot that Ctrl-C left in part is completed before replications are
     Loop(film, plan, L, watch).run();
     interrupted = 0;
     REQUIRE(film.least_taken() < film.most_taken());
-    now = 60;  // though the pilot's half of the time is over
+    now = 60;  // the pilot's half of the time is over
     Loop(film, plan, noisy, watch).run();
     CHECK(film.least_taken() == 20);
     CHECK(film.pilot < 8);
@@ -374,7 +374,7 @@ TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, a
             {
                 Loop loop(film, plan, L, watch);
                 loop.run();
-                CHECK(calls <= at + 20 * 32);  // the block is finished, if that
+                CHECK(calls <= at + 20 * 32);  // at most to the end of the block
                 CHECK(double(loop.rays()) == film.total());
             }
             interrupted = 0;

@@ -1,4 +1,4 @@
-// film/png.h  PNG files, decoded
+// film/png.h  decodes PNG files
 #pragma once
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@
 
 struct Decoded {
     int width = 0, height = 0;
-    std::vector<int> bytes;  // three a pixel
+    std::vector<int> bytes;  // three per pixel
     int at(int x, int y, int channel) const { return bytes[size_t(3 * (y * width + x) + channel)]; }
 };
 

@@ -1,13 +1,13 @@
-// film/spread.h  images of films whose spread from seed to seed is known, or is measured
+// film/spread.h  images of known noise, and the measured spread of images between seeds
 #pragma once
 #include "base/moments.h"
 #include "film/fill.h"
 
-// Two images of different seeds differ by both their errors, whatever bias they share: half the
-// mean square of their difference is what both state in the mean.
+// Two images of different seeds differ by both their errors, whatever their common bias is: half
+// the mean square of their difference is, on average, the d^2 that both estimate.
 class Spread {
 public:
-    // An image, and its d^2 as it states it.
+    // Adds an image and its estimate of d^2.
     void add(const Image& image, double d2) {
         stated_.add(d2);
         if (stated_.n % 2 == 0) {
@@ -20,7 +20,7 @@ public:
         last_ = image, last_d2_ = d2;
     }
 
-    // Measured over stated: 1.
+    // Measured error over estimated error: 1 is right.
     oracle::Estimate ratio() const {
         return {1 + excess_.mean / stated_.mean, excess_.standard_error() / stated_.mean,
                 double(excess_.n) - 1};
@@ -29,12 +29,12 @@ public:
 
 private:
     static double square(double x) { return x * x; }
-    Moments stated_, excess_;  // excess: what is measured less what is stated, a pair at a time
+    Moments stated_, excess_;  // excess: measured minus estimated, per pair
     Image last_;
     double last_d2_ = 0;
 };
 
-// An image whose noise differs by 100 from left to right, smooth in places, with an edge in others.
+// Noise differs by 100 from left to right; some rows are smooth, others have an edge.
 inline rgb heteroscedastic(int x, int y, vec2 u) {
     const real scale = real(std::exp2(-0.3 * x));
     const real v = y % 3 == 0 ? real(u.x + u.y < real(0.7)) : u.x * u.y;

@@ -1,10 +1,10 @@
-// film/variegated.h  an image of which no two numbers are alike
+// film/variegated.h  an image of distinct numbers
 #pragma once
 #include "film/image.h"
 
 using Colour = std::array<float, 3>;
 
-// All values different, in every pixel and channel, with signs, zeros and subnormal numbers.
+// All values differ in every pixel and channel, with signs, zeros and subnormal numbers.
 inline Image variegated(int width, int height) {
     Image image(width, height);
     float k = 0;

@@ -1,8 +1,8 @@
-// keep/change_head.h  films whose heads say something else
+// keep/change_head.h  films with edited heads
 #pragma once
 #include "keep/film_file.h"
 
-// Another film of the same numbers, some of whose facts are others.
+// Copies a film with the same numbers and some other facts.
 inline void change_head(const std::string& from, const std::string& to, const Facts& changed) {
     FilmReader file(from);
     Facts head = file.head();

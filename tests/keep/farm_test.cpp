@@ -1,4 +1,4 @@
-// keep/farm_test.cpp  farms without their engines: plans, parts that are stopped and killed, merges
+// keep/farm_test.cpp  farms without their engines: plans, stopped and killed parts, merges
 //
 // `make test-farm` runs the same scripts on a real Slurm, by GNU parallel and over ssh.
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ struct Said {
 const std::string picture = "--size 8x6 --spp 5 a.scene";
 const std::string farm_words = "--build build --folder farm -o a.pfm ";
 
-// A folder for farms, whose programs are scripts: they print what they are told, and leave films.
+// A folder for farms.  Scripts replace the programs: they print their arguments and write films.
 struct Yard {
     Folder folder;
 
@@ -36,7 +36,7 @@ printf 'penumbra film 2\ncomplete yes\n\n' >"$film"
         folder.write(name, "#!/bin/bash\n" + lines);
         fs::permissions(folder.path / name, fs::perms::owner_all);
     }
-    // A script of src/keep, in the folder; those in bin/ are found first.
+    // Runs a script of src/keep in the folder; programs in bin/ precede those of the system.
     Said run(const std::string& words, const std::string& variables = "") const {
         const std::string command =
             "cd '" + folder.path.string() + "' || exit; exec >out 2>err; PATH=\"$PWD/bin:$PATH\" " +
@@ -177,7 +177,7 @@ TEST_CASE("whoever stops a part stops penumbra, and waits until it has written i
     CHECK(yard.log("1").find("farm: stops after signal TERM") != std::string::npos);
 }
 
-// ---- What farm_slurm.sh makes of it -------------------------------------------------------------
+// ---- Signals and Slurm --------------------------------------------------------------------------
 
 namespace {
 
@@ -188,7 +188,7 @@ struct Slurm : Yard {
         script("bin/squeue", "cat queue 2>/dev/null\n");
         script("bin/sbatch", "printf '%s\\n' \"$*\" >>submitted; wc -l <submitted\n");
     }
-    // Part 2 on a node, the job 77; it is told a signal once it has begun.
+    // Runs part 2 on a node as job 77, and sends it a signal once it has begun.
     Said part(const std::string& penumbra, const std::string& variables,
               const std::string& signal = "") {
         script("build/penumbra", penumbra);
@@ -214,7 +214,7 @@ TEST_CASE("a part queues again that its limit of time stops, or that is killed; 
     Slurm slurm;
     CHECK(slurm.part(works, "", "USR1").status == 143);
     CHECK(slurm.queues_again());
-    // Cancelled: it would queue for ever.
+    // A cancelled part must not queue again for ever.
     CHECK(slurm.part(works, "", "TERM").status == 143);
     CHECK_FALSE(slurm.queues_again());
     const std::string killed = "kill -KILL $$\n";
@@ -224,7 +224,7 @@ TEST_CASE("a part queues again that its limit of time stops, or that is killed; 
     CHECK(slurm.queues_again());
     CHECK(slurm.part(killed, "SLURM_RESTART_COUNT=2").status == 137);
     CHECK_FALSE(slurm.queues_again());
-    // A limit of time is no failure.
+    // Reaching a time limit is not a failure.
     CHECK(slurm.part(works, "SLURM_RESTART_COUNT=20", "USR1").status == 143);
     CHECK(slurm.queues_again());
     for (const int status : {0, 1, 2}) {

@@ -1,4 +1,4 @@
-// keep/film_file_test.cpp  .film files hold what was written, or are refused by name
+// keep/film_file_test.cpp  .film files return what was written, or are refused with their names
 #include "keep/film_file.h"
 
 #include <sys/stat.h>
@@ -27,7 +27,7 @@ std::vector<T> read(FilmReader& film, size_t count) {
     return numbers;
 }
 
-// Why it is refused, without its name; "" if all of it is read.
+// Why a file is refused, without its name; "" if all of it is read.
 std::string refusal(const Folder& folder, const std::string& name) {
     const std::string start = folder / name + ": ", why = complaint([&] {
                                                         FilmReader film(folder / name);
@@ -50,7 +50,7 @@ struct Sample {
 
 TEST_CASE("a film is read as it was written: its lines in their order, its numbers bit by bit") {
     const Folder folder;
-    const std::vector<double> many(100000, 1e-310);  // more than one call writes
+    const std::vector<double> many(100000, 1e-310);  // exceeds one write call
     const std::vector<float> few = {NAN, -0.0f, 1e-42f};
     write_film_file(folder / "a.film", head,
                     {bytes_of(few), {}, bytes_of(many), bytes_of(std::string("x"))});
@@ -71,7 +71,7 @@ TEST_CASE("a film is read as it was written: its lines in their order, its numbe
 
 TEST_CASE("`head` shows a film's first lines; films of version 2 stay what they are") {
     const Sample film("abc");
-    // The checksum by a program in another language.
+    // A program in another language computed the checksum.
     CHECK(film.bytes ==
           "penumbra film 2\nbytes 00000000000000000003\nchecksum 50feca0aaa5a1aa0\n"
           "scene scenes/a b.scene\noptions \nsize 3x2\n\nabc");

@@ -1,4 +1,4 @@
-// keep/keep_test.cpp  films come out of files as they went in, go on, or are refused
+// keep/keep_test.cpp  checkpoints return the film that was written, resume it, or are refused
 #include "keep/keep.h"
 
 #include <sys/wait.h>
@@ -16,14 +16,14 @@ namespace {
 
 constexpr Size size = {37, 25};  // 925 pixels: blocks of 3, and one of 1
 
-// Noisy at the left, smooth at the right.
+// Noise at the left, smooth values at the right.
 rgb noise(const PixelSample& s) {
     const uint64_t key = hash(hash(hash(s.set, s.i), uint64_t(s.x)), uint64_t(s.y));
     const real u = real(to_unit(key));
     return s.x < 9 ? rgb{u, 0, 5 * u} : rgb{1, real(s.y), u / 100};
 }
 
-// Adds samples to a film until each replication has n; after so many, as of Ctrl-C, stops.
+// Fills a film to n samples per replication; stops after `stop_after` samples, as Ctrl-C does.
 Film fill(Film film, uint64_t n, unsigned threads = 2, int64_t stop_after = INT64_MAX) {
     std::atomic<int64_t> left = stop_after;
     const Radiance L = [&](const PixelSample& s, Tally& tally) {
@@ -193,7 +193,7 @@ TEST_CASE("a film that could be none is refused, by what is wrong") {
     auto why_not_read = [&](const std::string& name, Size of_it) {
         return complaint([&] { FilmPixels(folder / name, of_it); }).substr((folder / name).size());
     };
-    // More than any memory holds.
+    // The size exceeds any memory.
     CHECK(why_not_read("a.film", {1 << 30, 1 << 30}) == ": holds less than it should");
     Keeper(folder / "b.film", {}).write(empty, {}, true);
     CHECK(why_not_read("b.film", size) == ": has no samples");
@@ -222,7 +222,7 @@ TEST_CASE("films are written once in an interval, and a hundredth of the time at
     const int count = writes(200);
     CHECK(count >= 1);
     CHECK(count <= 7);
-    // A film whose writing takes a while comes seldom: 100 times as long after the last one.
+    // Slow writes are rare: the next one waits for 100 times the duration of the last one.
     const Film large = make_film({256, 256}, 2);
     Film one = large;
     one.taken[0] = 1;
@@ -247,7 +247,7 @@ TEST_CASE("a film without samples replaces none; one that cannot be written says
     const std::string bytes = folder.read("a.film");
     CHECK(keeper.write(empty, {}, true) == "");
     CHECK(folder.read("a.film") == bytes);
-    Film chosen = empty;  // a pilot is samples
+    Film chosen = empty;  // a pilot counts as samples
     chosen.pilot = 16;
     CHECK(keeper.write(chosen, {}, true) == "");
     CHECK(folder.read("a.film") != bytes);

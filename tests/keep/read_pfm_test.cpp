@@ -1,4 +1,4 @@
-// keep/read_pfm_test.cpp  images come back from PFM files as they went in; other files are refused
+// keep/read_pfm_test.cpp  PFM files return the images that were written; other files are refused
 #include "keep/read_pfm.h"
 
 #include "base/complaint.h"
@@ -28,7 +28,7 @@ TEST_CASE("what is written to a PFM is read back bit by bit, NaN and infinity to
         REQUIRE(back.pixels.size() == image.pixels.size());
         CHECK(std::memcmp(back.pixels.data(), image.pixels.data(), size_t(12 * w * h)) == 0);
     }
-    folder.write("b.pfm", "PF 1\t1 -1\n" + one_pixel.substr(12));  // any white space will do
+    folder.write("b.pfm", "PF 1\t1 -1\n" + one_pixel.substr(12));  // any white space is valid
     CHECK(read_pfm(folder / "b.pfm").at(0, 0) == Colour{1, -2, 0.5f});
 }
 
@@ -45,7 +45,7 @@ TEST_CASE("no part of a PFM passes for a whole one, nor does anything else") {
           "P6\n1 1\n-1.0\n" + pixel, "PF\n1 2\n-1.0\n" + pixel, "PF\n0 1\n-1.0\n" + pixel,
           "PF\n-1 -1\n-1.0\n" + pixel, "PF\n1.0 1\n-1.0\n" + pixel, "PF\n1 1\nnan\n" + pixel,
           std::string("PF\n1000000 1000000\n-1.0\n"), std::string("PF\n65536 65536\n-1.0\n"),
-          // As long as the header it lacks the rest of: 12 bytes.
+          // The header is cut short, but has the 12 bytes of a complete one.
           std::string("PF\n1 1\n-1.00")}) {
         folder.write("a.pfm", bytes);
         INFO(bytes);

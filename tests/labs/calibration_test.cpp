@@ -1,4 +1,4 @@
-// labs/calibration_test.cpp  rows made by hand, and what is said of them
+// labs/calibration_test.cpp  the statistics of rows made by hand
 #include "labs/calibration.h"
 
 #include <doctest/doctest.h>
@@ -7,7 +7,7 @@ namespace {
 
 using namespace calibration;
 
-// Of a true error of .5; its reference errs by .3.
+// A row with a true error of .5; its reference has an error of .3.
 Row row(double stated, double by_spread, const std::string& scene = "hard/spark") {
     return {scene,
             "--spp 16",

@@ -1,4 +1,4 @@
-// labs/cube_test.cpp  the cube's radiosity, derived: no table has to be believed
+// labs/cube_test.cpp  the cube's radiosity, derived without tables
 #include "labs/cube.h"
 
 #include <doctest/doctest.h>
@@ -16,10 +16,10 @@ const Solution& room() {
 
 double relative(double value, double truth) { return std::abs(value / truth - 1); }
 
-// Off the nodes, from the middle to where the light is least.
+// Points off the nodes, from the middle to the darkest place.
 const double places[] = {0, 0.3, 0.77, 0.99, 0.9999, 1 - 1e-7};
 
-// E where a ray from the point (x, y) of the face z = -1 ends.
+// E at the end of a ray from the point (x, y) of the face z = -1.
 double at_end_of_ray(double x, double y, double sin2, double phi) {
     const double dx = std::sqrt(sin2) * std::cos(phi), dy = std::sqrt(sin2) * std::sin(phi),
                  dz = std::sqrt(1 - sin2);
@@ -31,8 +31,8 @@ double at_end_of_ray(double x, double y, double sin2, double phi) {
                        : room().illuminance(hit_x, hit_z);
 }
 
-// What comes from all directions, of density cos / pi: sin^2 and the azimuth are uniform (Malley).
-// Pieces end where rays change walls.  Shares nothing with the solver but E where rays end, and
+// The irradiance over all directions of density cos / pi: sin^2 and azimuth are uniform (Malley).
+// Pieces end where rays change walls.  It shares with the solver only E at the ends of rays, and
 // nodes for integrals.
 double by_rays(double x, double y) {
     const std::vector<cube::Graded> rule = cube::graded(48);
@@ -70,7 +70,7 @@ TEST_CASE("the cube at A to F and in the mean: the numbers of radiosity/exact.h,
     CHECK(relative(room().mean(), cube::mean_illuminance) < 1e-10);
     for (double x : places)
         CHECK(cube::direct(x, 0.3) == doctest::Approx(exact::cube_direct(x, 0.3)));
-    // As published, to 0.1 nit; C alone was printed 0.1 too low.
+    // The published value, to 0.1 nit; only C was printed 0.1 too low.
     CHECK(std::abs(room().luminance(0, 0) - 892.8) < 0.05);
     CHECK(std::abs(room().luminance(0.5, 0) - 768.7) < 0.05);
     CHECK(std::abs(room().luminance(0.5, 0.5) - 686.6) < 0.1);
@@ -90,10 +90,10 @@ TEST_CASE("the cube's solution converges: each step from 12 to 24 nodes brings a
         CHECK(first < 1e-5);
         CHECK(second < 1e-6);
         CHECK(third < 1e-7);
-        // What is left if steps go on to shrink as these did (Aitken); the last are rounding.
+        // The limit if steps keep their ratio (Aitken); the last steps are rounding.
         CHECK((third < 1e-10 || third * third / (second - third) < 1e-8));
     }
-    // Integrals of more nodes change no digit of it.
+    // Integrals with more nodes do not change any digit.
     const Solution closer({12, 16, 48});
     for (const exact::CubePoint& p : exact::cube_points)
         CHECK(relative(closer.luminance(p.x, p.y), coarse.luminance(p.x, p.y)) < 1e-9);
@@ -120,8 +120,8 @@ TEST_CASE("the cube's equation holds between the nodes, and E goes on steadily t
 }
 
 TEST_CASE("towards an edge E falls as s^0.69, as two walls at a right angle want it") {
-    // E = E_edge + c s^a with the kernel s t / (2 (s^2 + t^2)^(3/2)) between the walls wants
-    // 1 / rho = int_0^inf t^a t / (2 (1 + t^2)^(3/2)) dt, a beta function.
+    // E = E_edge + c s^a with the kernel s t / (2 (s^2 + t^2)^(3/2)) between the walls requires 1 /
+    // rho = int_0^inf t^a t / (2 (1 + t^2)^(3/2)) dt, a beta function.
     auto bounce = [](double a) {
         return std::tgamma(a / 2 + 1) * std::tgamma((1 - a) / 2) / (4 * std::tgamma(1.5));
     };
@@ -160,7 +160,7 @@ TEST_CASE("integrals over triangles of the face: they add up, and hats to the wh
     CHECK(relative(
               cube::integral(room(), {a, b, d}, f, 40) + cube::integral(room(), {b, c, d}, f, 40),
               of_f) < 1e-8);
-    // Hats of the three corners at once.
+    // The hats of the three corners add up to 1.
     const cube::Point p{0.5, 0.5}, q{1, 0.5}, r{1, 1};
     auto near_p = [](double x, double) { return 2 - 2 * x; };
     auto near_r = [](double, double y) { return 2 * y - 1; };
@@ -172,7 +172,7 @@ TEST_CASE("integrals over triangles of the face: they add up, and hats to the wh
 }
 
 TEST_CASE("integrals of E times the hats of 2 x 2 cells: the numbers of radiosity/exact.h") {
-    // Halves of the cells, each from one corner to the opposite one; n = 24: these are coarse.
+    // Cells are halved from one corner to the opposite one; they are coarse, hence n = 24.
     for (const exact::CubeHat& hat : exact::cube_hats)
         for (int vertex : hat.vertices) {
             double nit = 0;  // over [-1,1]^2
@@ -198,7 +198,7 @@ TEST_CASE("integrals of E times the hats of 2 x 2 cells: the numbers of radiosit
                                 24);
                         }
                     }
-            const double lumen = 25 * nit * cube::pi / cube::albedo;  // 10 m a side: 25 times
+            const double lumen = 25 * nit * cube::pi / cube::albedo;  // 10 m per side: 25 times
             CHECK(lumen == doctest::Approx(hat.flux).epsilon(1e-7).scale(0));
         }
 }

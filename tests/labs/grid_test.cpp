@@ -1,4 +1,4 @@
-// labs/grid_test.cpp  a grid of renders by a program that is a shell script
+// labs/grid_test.cpp  a grid of renders; a shell script replaces the renderer
 #include "labs/grid.h"
 
 #include <doctest/doctest.h>
@@ -7,9 +7,8 @@
 
 namespace {
 
-// Works in a folder of its own, with a scene and a program there.  The program's image is one
-// pixel: 1 where 16 replications are asked for, else 1.5, and 2 by --light nee; its own d_rel is
-// .3.  Each call leaves a line.
+// A folder with a scene and a program.  The program's image is one pixel: 1 for 16 replications,
+// else 1.5, and 2 by --light nee; its own d_rel is .3.  It logs a line per call.
 struct Studio {
     const Folder folder;
     const std::filesystem::path back = std::filesystem::current_path();
@@ -55,7 +54,7 @@ const std::vector<Setting> settings = {{"the default", ""}, {"NEE", "--light nee
 
 Rows run(bool kept = false) {
     RenderGrid grid("study", "./program", kept);
-    grid.jobs = 1;  // so that calls have an order
+    grid.jobs = 1;  // gives calls an order
     return grid.run(subjects, settings, {4, 16}, 2);
 }
 
@@ -82,7 +81,7 @@ TEST_CASE("a row for each scene, setting, count and seed, and one reference") {
     REQUIRE(calls.size() == 9);
     CHECK(calls[0].find("a.scene --size 1x1 --spp 64 --sets 16") == 0);
     for (size_t k = 1; k <= 4; ++k) CHECK(calls[k].find("--seed 1 ") != std::string::npos);
-    // Settings take turns.
+    // Settings alternate.
     auto is_nee = [&](size_t k) { return calls[k].find("--light nee") != std::string::npos; };
     CHECK(is_nee(1) != is_nee(2));
     CHECK(is_nee(1) != is_nee(5));

@@ -1,4 +1,4 @@
-// labs/indirect_draw_test.cpp  what says that it is unbiased has the path tracer's mean
+// labs/indirect_draw_test.cpp  methods that claim to be unbiased have the path tracer's mean
 #include "labs/indirect_draw.h"
 
 #include <doctest/doctest.h>
@@ -20,7 +20,7 @@ double mean_of(const Image& image) {
     return sum / double(image.pixels.size());
 }
 
-// Means of images of several seeds, without an end that is felt.
+// Means of images of several seeds; the bound on the path length is too large to matter.
 Moments means_of(Asked a, bool& is_biased) {
     Moments means;
     for (uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -47,7 +47,7 @@ TEST_CASE("what says that it is unbiased has the path tracer's mean, and says so
             const Moments found = means_of(a, is_biased);
             INFO(name, ", ", std::string(way), ": ", found.mean, ", whole paths ", truth.mean);
             CHECK(is_biased == (balls || a.way == "map"));
-            // Facets of balls, whose radiance was that of the balls, were 1.5 to 1.9 % too dark.
+            // When facets had the radiance of their balls, images were 1.5 to 1.9 % too dark.
             if (is_biased)
                 CHECK(found.mean == doctest::Approx(truth.mean).epsilon(0.005));
             else

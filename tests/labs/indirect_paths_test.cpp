@@ -1,5 +1,5 @@
-// labs/indirect_paths_test.cpp  paths that end on maps: unbiased whatever the maps hold, or as far
-// off as these
+// labs/indirect_paths_test.cpp  paths that end on maps: unbiased for any maps, or biased by their
+// error
 #include "labs/indirect_paths.h"
 
 #include "base/moments.h"
@@ -35,9 +35,9 @@ IlluminationMap times(IlluminationMap map, rgb factor) {
     return map;
 }
 
-// ---- Rooms whose light is known -----------------------------------------------------------------
+// ---- Rooms of known light -----------------------------------------------------------------------
 
-// Coloured, closed, lit by a coloured point; over its walls E has the mean Phi / (A (1 - rho)).
+// A closed coloured room, lit by a coloured point; E over its walls averages Phi / (A (1 - rho)).
 constexpr double sides[] = {3, 2, 2.5};
 const double area = 2 * (3 * 2 + 2 * 2.5 + 2.5 * 3);
 constexpr double rho[] = {0.7, 0.5, 0.2}, intensity[] = {2, 3, 5};
@@ -52,7 +52,7 @@ double mean_radiance(size_t c) {
     return rho[c] / Pi * (4 * Pi * intensity[c] / area) / (1 - rho[c]);
 }
 
-// A ray that hits a wall at a right angle; u.x tells which wall, and where on it.
+// A ray that hits a wall at a right angle; u.x selects the wall and the point on it.
 Ray onto_wall(vec2 u) {
     double place = double(u.x) * area;
     for (size_t n = 0; n < 3; ++n) {
@@ -72,8 +72,8 @@ Ray onto_wall(vec2 u) {
     return {{1, 1, 1}, {0, 0, 1}};
 }
 
-// Lit by a lamp, half of it covered, and by a triangle that emits on both sides; no symmetry, two
-// colours.  Where light samples go matters.
+// An asymmetric room of two colours, with a half-covered lamp and a triangle that emits on both
+// sides.  The choice of light samples matters here.
 Scene lamps() {
     Scene s;
     const uint32_t walls = add(s, diffuse({real(0.7), real(0.5), real(0.2)}));
@@ -101,7 +101,7 @@ IlluminationMap of_glow(const Mesh& mesh) {
 
 // ---- Estimates ----------------------------------------------------------------------------------
 
-// The mean of n paths along rays that two numbers choose; replicate r.
+// The mean of n paths along rays that two numbers choose, in replication r.
 template <class RayOf>
 rgb mean_of_paths(const Gather& g, SamplerKind kind, int r, uint64_t n, RayOf ray_of) {
     const uint64_t seed = hash(seed_here(), uint64_t(r));
@@ -116,7 +116,7 @@ rgb mean_of_paths(const Gather& g, SamplerKind kind, int r, uint64_t n, RayOf ra
     return sum / real(n);
 }
 
-// Every channel of such means is that of the truth; errors of `seen` of it would be noticed.
+// Every channel of these means equals the truth; the test detects errors of `seen` of it.
 template <class RayOf>
 void expect_radiance(std::array<double, 3> truth, double seen, const Gather& g, SamplerKind kind,
                      RayOf ray_of) {
@@ -216,9 +216,8 @@ TEST_CASE("control meets the exact luminance of the cube, its maps three times t
     }
 }
 
-// In a closed room one bounce from all walls alike meets all walls alike: mean L = rho (mean E0 /
-// pi
-// + mean R_map), E0 direct.
+// In a closed room one bounce from all walls reaches all walls equally often: mean L = rho (mean E0
+// / pi + mean R_map), with E0 direct.
 TEST_CASE("map: paths end on what the maps hold, whatever that is; a coloured room") {
     const Scene s = coloured();
     const Mesh mesh = make_mesh(s, 0.5);
@@ -276,7 +275,7 @@ TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light fou
                              return Ray{{1, 1, 1}, sample_uniform_sphere(u)};
                          }).x) == approx(glow));
     }
-    // By light samples, too, but for where walls meet, whose variance is infinite.
+    // Light samples agree, too, except where walls meet: their variance is infinite there.
     expect_radiance({glow, glow, glow}, 0.05, {s, techniques[0], known}, SamplerKind::halton,
                     always({{1, 1, 1}, {0, 0, 1}}));
 }
@@ -287,13 +286,13 @@ TEST_CASE("the slope is what paths find over what maps know") {
     const Mesh mesh = make_mesh(s, 1);
     const Technique none{Direction::bsdf, LightMode::none, 0};
     const Pattern pattern = EndlessNumbers::independent(seed_here());
-    // Exact: paths that start from exact maps find the same whatever they do.
+    // Exact case: paths that start from exact maps return exact values.
     const KnownLight known = known_light(s, mesh, of_glow(mesh));
     CHECK(double(max_abs(slope_of({s, none, known}, pattern, 100) - grey(1))) < 1e-5);
-    // Without maps nothing is to be scaled.
+    // Without maps there is nothing to scale.
     const KnownLight dark = known_light(s, mesh, IlluminationMap(number_of_sides(mesh)));
     CHECK(slope_of({s, none, dark}, pattern, 100) == grey(1));
-    // Coloured, 3, 2 and 1/2 times too bright.
+    // The map is 3, 2 and 1/2 times too bright in its channels.
     const KnownLight wrong = known_light(s, mesh, times(of_glow(mesh), {3, 2, real(0.5)}));
     const double truth[] = {1 / 3.0, 1 / 2.0, 2};
     for (size_t c = 0; c < 3; ++c)

@@ -1,4 +1,4 @@
-// labs/lab_test.cpp  what experiments say is what their numbers say
+// labs/lab_test.cpp  the kit of the experiments: options, statistics, reports
 #include "labs/lab.h"
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace {
 
-// Calls a lab that knows --quick and --time S; what it saw, and its exit status.
+// Calls a lab with the options --quick and --time S; records what it reads and its exit status.
 struct Called {
     int status = 0;
     bool worked = false, quick = false;

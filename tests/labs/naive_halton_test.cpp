@@ -1,4 +1,4 @@
-// labs/naive_halton_test.cpp  the naive loop sees one bounce as paths do, and more of them awry
+// labs/naive_halton_test.cpp  the naive loop agrees with paths at one bounce, and errs at more
 #include "labs/naive_halton.h"
 
 #include "oracle/expect.h"
@@ -7,7 +7,7 @@
 
 namespace {
 
-// Diffuse, with one lamp: at one bounce no number serves two choices.
+// A diffuse room with one lamp: at one bounce no dimension serves two choices.
 Scene room(int depth) {
     Scene s = parse_scene(R"(
 camera 0 1 3  0 0.3 0  50

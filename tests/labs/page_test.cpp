@@ -1,4 +1,4 @@
-// labs/page_test.cpp  prose is filled in, and what is missing or too much is refused
+// labs/page_test.cpp  pages fill in their prose, and refuse missing or surplus values
 #include "labs/page.h"
 
 #include <doctest/doctest.h>

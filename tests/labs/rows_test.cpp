@@ -16,7 +16,7 @@ TEST_CASE("a row comes back from its line, and nothing from a part of it") {
     Row r = row("a scene", "--x 1", 7, 1.0 / 3);
     r.of["unknown"] = NAN;
     std::string line = line_of(r, "print");
-    line.pop_back();  // its end
+    line.pop_back();  // its newline
     const auto back = row_of(line);
     REQUIRE(back);
     CHECK(back->second == "print");
@@ -58,7 +58,7 @@ TEST_CASE("the jackknife of a mean is its standard error") {
 TEST_CASE("a gain has the error of its ratio; the same images are told") {
     Rows rows = {row("a", "x", 1, 1), row("a", "x", 2, 1), row("a", "base", 1, 2),
                  row("a", "base", 2, 4)};
-    // Without a seed 4 and 2.
+    // Without a seed, the values are 4 and 2.
     CHECK(gain(rows, "x", "base", efficiency) == "3.00 ± 1.00");
     rows[0].of["off"] = 2, rows[1].of["off"] = 4;
     CHECK(gain(rows, "x", "base", efficiency) == "=");

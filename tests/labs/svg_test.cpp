@@ -1,12 +1,12 @@
-// labs/svg_test.cpp  plots are well-formed, and show the numbers where the axes say
+// labs/svg_test.cpp  plots are well-formed, and show the numbers at the right coordinates
 #include "labs/svg.h"
 
 #include <doctest/doctest.h>
 
 namespace {
 
-// What is wrong with a file of XML, if anything: tags that do not match, attributes without quotes,
-// a second root, characters that must be escaped.
+// Returns the first error of an XML file, if any: mismatched tags, attributes without quotes, a
+// second root, characters that must be escaped.
 std::string wrong_with(std::string_view xml) {
     std::vector<std::string> open;
     int roots = 0;
@@ -44,7 +44,7 @@ struct Words {
     double x, y;
 };
 
-// All words of a sheet and their places.
+// All words of a sheet and their coordinates.
 std::vector<Words> all_words(const std::string& file) {
     std::vector<Words> out;
     for (size_t at = 0; (at = file.find("<text x=\"", at)) != file.npos; ++at) {
@@ -161,7 +161,7 @@ TEST_CASE("a plot: ticks, titles and labels stand at their places, labels a line
     CHECK(std::abs(bottom - above) >= svg::letter);
     CHECK(std::max(bottom, above) == doctest::Approx(340 + 4));
     CHECK(find(file, "high").x > 640);
-    // On the axes: x 1 to 100, y 1 to 100.
+    // These points lie on the axes: x 1 to 100, y 1 to 100.
     CHECK(file.find("<circle cx=\"80.0\" cy=\"340.0\"") != file.npos);
     CHECK(file.find("<circle cx=\"640.0\" cy=\"340.0\"") != file.npos);
     for (const char* words : {"nan", "inf", "no point"}) CHECK(file.find(words) == file.npos);

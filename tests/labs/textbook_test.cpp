@@ -1,4 +1,4 @@
-// labs/textbook_test.cpp  the textbook's tracer shows what ours shows
+// labs/textbook_test.cpp  the textbook's tracer and ours agree
 #include "labs/textbook.h"
 
 #include "oracle/expect.h"
@@ -8,7 +8,7 @@
 
 namespace {
 
-// Through a random point of the image.
+// A ray through a random point of the image.
 Ray random_ray(const Scene& scene, oracle::Random& random) {
     const real x = real(random()) * real(scene.size.width),
                y = real(random()) * real(scene.size.height);

@@ -1,7 +1,7 @@
-// labs/trade_page_test.cpp  the page in a browser: it says what was measured, by mouse and keys
+// labs/trade_page_test.cpp  the page in a browser: it shows the data by mouse and keys
 //
-// A test adds a script to the page, which uses it as a reader would and writes what it saw into
-// attributes of the root; Chromium prints the page as it then is.
+// A test adds a script to the page.  The script operates the page and writes its results into
+// attributes of the root; Chromium then prints the page.
 #include <cstdlib>
 
 #include "base/folder.h"
@@ -12,7 +12,7 @@ using namespace trade;
 
 namespace {
 
-// ---- A small trade that nobody measured ---------------------------------------------------------
+// ---- A small invented trade-off -----------------------------------------------------------------
 
 // Every pixel, channel and image has another value; image 0 is a reference.
 Image sample_image(int width, int height, int k) {
@@ -57,7 +57,7 @@ std::string browser() {
     return "";
 }
 
-// The page of two small scenes, followed by a script that may use these.
+// The page of two small scenes, followed by a script that may use these functions.
 void write_driven(const Folder& folder, const std::string& script, bool preview = false) {
     constexpr const char* tools = R"js(
 const root = document.documentElement, say = (name, value) => root.setAttribute("data-" + name, value);
@@ -85,7 +85,7 @@ const mouse = (fx, fy, buttons) => {
                      script + "say(\"done\", 1); }); }</script>");
 }
 
-// What a browser prints to stdout, or an empty string if it does not come to an end.
+// The browser's stdout, or an empty string if the browser does not end.
 std::string browse(const Folder& folder, const std::string& flags, const std::string& address) {
     const std::string command = text(
         "timeout 120 %s --headless=new --no-sandbox --disable-gpu --hide-scrollbars "
@@ -94,7 +94,7 @@ std::string browse(const Folder& folder, const std::string& flags, const std::st
     return std::system(command.c_str()) == 0 ? folder.read("out") : "";
 }
 
-// Attributes of the root of a page, without "data-".
+// The attributes of a page's root, without "data-".
 std::map<std::string, std::string> said(const std::string& dom) {
     std::map<std::string, std::string> all;
     const size_t html = std::min(dom.find("<html"), dom.size());
@@ -122,7 +122,7 @@ std::string bytes_of(const std::array<float, 3>& pixel, double exposure) {
     return words + "255";
 }
 
-// As in Green's paper: start 2.6, 0.7 rotations, hue 1.4.
+// Green's parameters: start 2.6, 0.7 rotations, hue 1.4.
 std::string cubehelix(double t) {
     const double angle = 2 * pi * (2.6 / 3 + 0.7 * t), a = 1.4 * t * (1 - t) / 2;
     std::string words;
@@ -225,7 +225,7 @@ say("names", $("name-a").textContent + "; " + $("image-b").ariaLabel);
                   doctest::Approx(double(s.shots[shown[k]].image.at(5, 2)[c])).epsilon(0.006));
         CHECK(x[3] == doctest::Approx(100 * pixel_error(s, shown[k], 5, 2)).epsilon(0.006));
     }
-    // Neither turned nor mirrored.
+    // The image is neither rotated nor mirrored.
     for (const auto& [who, k] : {std::pair{"a", 1}, {"b", 3}}) {
         CHECK(seen[who] == bytes_of(s.shots[size_t(k)].image.at(5, 2), 0.75));
         CHECK(seen[std::string("corner") + who] ==
@@ -272,7 +272,7 @@ $("flip").click(); await soon(); say("two", visible());
 key(" "); await soon(); say("three", visible());
 say("live", $("live").textContent);
 )js");
-    CHECK(seen["mode"] == "side");  // nobody knows that scene
+    CHECK(seen["mode"] == "side");  // unknown scene
     CHECK(seen["at"] == "3,6 50");
     CHECK(seen["wiped"] == "25");
     CHECK(seen["one"] == "visible,hidden");

@@ -1,4 +1,4 @@
-// labs/trade_test.cpp  errors, answers, one default, and who is hopeless
+// labs/trade_test.cpp  errors, answers, the default, and hopeless settings
 #include "labs/trade.h"
 
 #include <doctest/doctest.h>
@@ -7,7 +7,7 @@ using namespace trade;
 
 namespace {
 
-// error = c seconds^-gamma at 4, 16, ... 1024 samples, a hundred a second.
+// error = c seconds^-gamma at 4, 16, ... 1024 samples, at a hundred samples per second.
 Choice by_law(const std::string& name, double c, double gamma) {
     Choice choice{{name, ""}};
     for (double spp : {4.0, 16.0, 64.0, 256.0, 1024.0})
@@ -15,7 +15,7 @@ Choice by_law(const std::string& name, double c, double gamma) {
     return choice;
 }
 
-// Of these efficiencies at 1, 4, 16 ... samples, a second each.
+// A setting of these efficiencies at 1, 4, 16 ... samples, a second each.
 Choice efficient(const std::vector<double>& efficiencies) {
     Choice c;
     double spp = 1;
@@ -64,7 +64,7 @@ TEST_CASE("what takes a setting to an error: between its points by powers, and n
     CHECK(reach(c, 0.01).seconds == doctest::Approx(4));
     CHECK(reach(c, 0.00626).seconds == doctest::Approx(10.2).epsilon(0.01));
     CHECK(std::isnan(reach(c, 0.0062).seconds));
-    CHECK(reach(c, 5).seconds == doctest::Approx(0.04));  // fewer samples were not measured
+    CHECK(reach(c, 5).seconds == doctest::Approx(0.04));  // fewer samples are not measured
     CHECK(reach(c, 5).error == doctest::Approx(0.1));
     CHECK(std::isnan(reach(Choice{}, 0.1).seconds));
 }
@@ -82,7 +82,7 @@ TEST_CASE("errors that are not known answer nothing") {
 }
 
 TEST_CASE("the cheapest changes where curves cross; of equal ones the first answers") {
-    // They cross at 1 s and 2 %; the default is never the cheapest.
+    // The lines cross at 1 s and 2 %; the default is never the cheapest.
     Choices all = {by_law("default", 0.06, 0.6), by_law("steep", 0.02, 1),
                    by_law("flat", 0.02, 0.5)};
     CHECK(cheapest(all, 0.05).choice == 2);
@@ -97,8 +97,8 @@ TEST_CASE("the cheapest changes where curves cross; of equal ones the first answ
 }
 
 TEST_CASE("the one default: the least mean ratio to the best, and where it is worst") {
-    // "even" takes 4 times the seconds of "sharp" in the first scene, and a quarter in the second;
-    // "float" is cheaper than both, and no default.
+    // "even" takes 4 times as long as "sharp" in the first scene, and a quarter in the second;
+    // "float" is cheaper than both, but cannot be the default.
     auto scene = [](const std::string& name, double even, double sharp) {
         Choices all = {by_law("even", even, 0.5), by_law("sharp", sharp, 0.5),
                        by_law("float", 0.01, 0.5)};

@@ -8,7 +8,7 @@
 
 namespace {
 
-// Radical inverse as an exact fraction, in 128 bits: digits / power.
+// The radical inverse as an exact fraction of 128-bit integers: digits / power.
 __extension__ typedef unsigned __int128 uint128;
 struct Fraction {
     uint128 digits = 0, power = 1;
@@ -22,7 +22,7 @@ Fraction exact(uint32_t base, uint64_t i) {
     return f;
 }
 
-// Relative distance of x from the fraction, in ulp of real.
+// Relative distance between x and the fraction, in ulp of real.
 double ulps_off(real x, Fraction f) {
     const long double truth = (long double)(f.digits) / (long double)(f.power);
     return double(std::abs((long double)(x)-truth) / truth) / double(ulp);
@@ -54,7 +54,7 @@ TEST_CASE("radical inverses are the exact fractions, rounded; also beyond 2^32 a
                 if (i == 0 || exact(base, i).digits >> 64) continue;
                 worst = std::max(worst, ulps_off(radical_inverse(base, i), exact(base, i)));
             }
-    // Digits to double, power to double, quotient, result to real: one rounding each.
+    // Rounding occurs four times: digits to double, power to double, quotient, result to real.
     CHECK(worst <= 4);
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("aligned blocks of 2^i 3^j indices put one point into every 2^-i x 3^-
                                              : radical_inverse(2, i);
                     const real y = scrambled ? scrambled_radical_inverse(3, i, shift3, factor3)
                                              : radical_inverse(3, i);
-                    // A point on a boundary may be rounded across it: 1/3 is not a number here.
+                    // Rounding may move a point across a boundary: 1/3 is not representable.
                     const auto row = uint64_t(y * real(rows) * (1 + 8 * ulp));
                     ++hits[uint64_t(x * real(columns)) * rows + std::min(row, rows - 1)];
                 }
@@ -119,7 +119,7 @@ TEST_CASE("scrambling permutes the digits: the first b points fall into b differ
 }
 
 TEST_CASE("the factors 1 ... b-1 have equal shares of the bits, the first and the last, too") {
-    // Index 1 has one digit, 1, which the factor multiplies; half a digit more is the shift.
+    // Index 1 has the digit 1, so that the factor shows; the shift is half a digit more.
     for (uint32_t base : {2u, 3u, 5u, 29u, 541u}) {
         const uint64_t share = 1000, n = share * (base - 1), half = (uint64_t(1) << 63) / base;
         std::vector<uint64_t> hits(base);

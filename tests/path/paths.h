@@ -1,4 +1,4 @@
-// path/paths.h  single paths of a scene, for tests
+// path/paths.h  single paths through a scene
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -16,7 +16,7 @@ rgb radiance(const Scene& scene, const Technique& t, const Pattern& pattern, int
     return Li(scene, t, at.ray, at.sampler, visit);
 }
 
-// Rays that its path took.
+// The number of rays of that path.
 inline uint64_t rays_of(const Scene& scene, const Technique& t, const Pattern& pattern, int x,
                         int y, uint64_t i) {
     uint64_t rays = 0;
@@ -25,7 +25,7 @@ inline uint64_t rays_of(const Scene& scene, const Technique& t, const Pattern& p
     return rays;
 }
 
-// f(i) of every i < n, in this order; as many at a time as there are cores.
+// Computes f(i) for every i < n on all cores; returns the results in order.
 template <class F>
 auto side_by_side(int n, F f) {
     std::vector<decltype(f(0))> results(static_cast<size_t>(n));

@@ -1,4 +1,4 @@
-// path/pathtracer_test.cpp  radiance: closed forms, and every way to find light finds the same
+// path/pathtracer_test.cpp  radiance: closed forms, and agreement of all techniques
 #include "path/pathtracer.h"
 
 #include <span>
@@ -11,7 +11,7 @@
 namespace {
 
 // Mean of an image over pixels, samples and channels.  Its standard error pools the variances
-// within pixels: one test of the whole image sees what no test of a pixel would.
+// within pixels: one test of the whole image detects more than a test per pixel.
 oracle::Estimate image_mean(const Scene& scene, const Technique& t, uint64_t seed, uint64_t spp) {
     const Pattern pattern{SamplerKind::independent, seed};
     const auto pixel_mean = [&](int pixel) {
@@ -52,9 +52,9 @@ constexpr Named techniques[] = {
     {{uniform, none, 1}, "uniform, none, roulette"},
 };
 
-// What numbers decide at a vertex: which light, where on it, the direction that goes on, if any.
+// The decisions at a vertex: which light, the point on it, the next direction, and termination.
 struct Decision {
-    const Light* light;  // none if the place is below a horizon
+    const Light* light;  // null below a horizon
     vec3 on_light, wi;
     bool goes_on;
     bool operator==(const Decision&) const = default;
@@ -68,7 +68,7 @@ std::vector<Decision> decisions(const Scene& scene, const Technique& t, const Pa
     return path;
 }
 
-// Which of them differ at a vertex.
+// A set of decisions that differ at a vertex.
 enum Differs { of_light = 1, of_place = 2, of_direction = 4, of_end = 8 };
 int difference(const Decision& a, const Decision& b) {
     const bool other_light = a.light && b.light && a.light != b.light;
@@ -76,7 +76,7 @@ int difference(const Decision& a, const Decision& b) {
            !(a.wi == b.wi) * of_direction + (a.goes_on != b.goes_on) * of_end;
 }
 
-// What a number may move at its vertex, and what it must, sometimes.
+// The decisions that a dimension may change at its vertex, and those that it must change sometimes.
 struct Purpose {
     int may, must;
 };
@@ -98,13 +98,13 @@ Purpose purpose(Draw what, bool glossy) {
     }
 }
 
-// What finds light by chance alone has no light samples that could err.
+// The reference: BSDF sampling only has no light samples that could be wrong.
 oracle::Estimate by_chance(const Scene& scene, uint64_t spp) {
     return image_mean(scene, techniques[0], ~seed_here(), spp);
 }
 
-// That all others find the mean that chance finds in `reference` samples a pixel; twice as many
-// samples where light is found by chance, in rare large parts.
+// Expects all other techniques to agree with BSDF sampling of `reference` samples per pixel.
+// Techniques without light samples take twice as many samples, because their noise is heavy-tailed.
 void expect_same_mean(const Scene& scene, uint64_t reference, uint64_t spp, double largest) {
     const oracle::Estimate truth = by_chance(scene, reference);
     uint64_t seed = seed_here();
@@ -125,7 +125,7 @@ TEST_CASE("a furnace has the radiance Le (1 - rho^(D+1)) / (1 - rho) at every de
     Scene scene = scene_of(glowing_room);
     for (const Named& t : techniques)
         for (int depth : {0, 1, 2, 5, 20}) {
-            // Light samples alone have infinite variance where emitting walls meet (1 / d^2).
+            // Light sampling only has infinite variance where emitting walls meet (1 / d^2).
             if (t.light == nee) continue;
             scene.depth = depth;
             const double truth = 0.4 * (1 - std::pow(0.5, depth + 1)) / (1 - 0.5);
@@ -206,7 +206,7 @@ quad -1 1 -1  2 0 0  0 0 2  lamp
 }
 
 TEST_CASE("what covers part of a pixel gives that part of its radiance") {
-    // The pixel spans [-1, 1]^2 at z = 0, the light [0.4, 1] x [-1, 0] of it: 15 %.
+    // The pixel covers [-1, 1]^2 at z = 0; the light covers [0.4, 1] x [-1, 0] of it: 15 %.
     const Scene scene = scene_of(R"(
 size 1 1
 camera 0 0 5  0 0 0  22.619864948040426
@@ -230,7 +230,7 @@ TEST_CASE("every pixel has random numbers of its own, and every bounce, and ever
         }
     CHECK(all_different(across));
     CHECK(all_different(down));
-    // Diffuse: a cosine is a function of one number; the lamp is seen by all vertices.
+    // On diffuse surfaces a cosine depends on one dimension; all vertices see the lamp.
     scene = scene_of(R"(
 camera 0 0 0.5  0 0 0  60
 depth 60
@@ -251,8 +251,8 @@ quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
 }
 
 TEST_CASE("every number of a path moves what it is for, and nothing else at or before its vertex") {
-    // With another base a Halton point has another number in that dimension, and the same in all
-    // others.  Diffuse paths end by roulette, glossy ones have two lobes and end below the surface.
+    // Another base changes the Halton point in that dimension only.  Diffuse paths end by roulette;
+    // glossy ones have two lobes and end below the surface.
     const std::string room = R"(
 size 400 1
 camera 0 0.1 1.9  0 0 0  60
@@ -272,10 +272,10 @@ quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
         for (uint32_t dim = dimension(0, Draw(0)); dim < pattern.bases.size(); ++dim) {
             const Draw what = Draw((dim - dimension(0, Draw(0))) % uint32_t(Draw::count));
             const size_t k = (dim - dimension(0, Draw(0))) / uint32_t(Draw::count);
-            const bool last = int(k) == scene.depth;  // where a path ends anyhow
+            const bool last = int(k) == scene.depth;  // the path ends here anyway
             const auto [may, must] = last ? Purpose{0, 0} : purpose(what, glossy);
             Pattern other = pattern;
-            other.bases[dim] = 2;  // all of them have greater ones
+            other.bases[dim] = 2;  // all bases are greater than 2
             int moved = 0, wrong = 0;
             for (int x = 0; x < scene.size.width; ++x) {
                 const auto a = decisions(scene, t, pattern, x), b = decisions(scene, t, other, x);
@@ -303,8 +303,8 @@ quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
 
 TEST_CASE(
     "the weights of a light's point, aimed at and hit, add up to 1 above a vast ground, too") {
-    // A ray starts 32 ulp of the ground's size above it: 7e-12 in double, 4e-3 in float.  What it
-    // hits is weighed from the ground itself, as what is aimed at is.
+    // A ray starts 32 ulp of the ground's size above it: 7e-12 in double, 4e-3 in float.  MIS
+    // weighs hits from the ground itself, as it does light samples.
     const Scene scene = scene_of(R"(
 size 20 20
 camera 0 2 0.1  0 0 0  60
@@ -375,8 +375,8 @@ TEST_CASE("every way to find light finds the same: unequal lights, occlusion, Ph
     expect_same_mean(scene_of(unequal), 400, 55, 0.08);
 }
 
-// Next-event estimation has no answer to a caustic seen in a mirror but the same one: all three
-// count light that arrives by way of mirror or glass when they hit it.
+// NEE has no light samples for a caustic seen in a mirror: all three modes count light that arrives
+// via mirror or glass when a path hits the light.
 TEST_CASE("every way to find light finds the same: mirror, glass, glossy caustics") {
     expect_same_mean(scene_of(shiny), 300, 115, 0.08);
 }
@@ -419,8 +419,8 @@ quad -5 0 -5  0 0 10  10 0 0  white
 }
 
 TEST_CASE("Russian roulette keeps paths at its threshold T: the rays that they have in the mean") {
-    // Closed box of albedo 1/2, no light sampling.  m scatterings lead to T or above it; the next
-    // is survived by 2^-(m+1) / T, and from there one in two of any further ones.
+    // A closed box of albedo 1/2 without light sampling.  After m bounces the throughput is T or
+    // more.  The next bounce has survival probability 2^-(m+1) / T, and each later one 1/2.
     Scene scene = scene_of(glowing_room);
     scene.depth = 1000;
     const Pattern pattern{SamplerKind::independent, seed_here()};
@@ -436,7 +436,7 @@ TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^
     const Camera camera = look_at({3, -2, 5}, {-1, 4, 2}, 50);
     const Size size{96, 40};
     const double q = double(camera.tan_half), p = q * size.width / size.height;
-    // Jacobian of camera_ray by central differences, summed over 4 x 4 points a pixel.
+    // Jacobian of camera_ray by central differences, summed over 4 x 4 points per pixel.
     double sum = 0;
     const real h = real(0.125);
     for (int y = 0; y < 4 * size.height; ++y)
@@ -450,7 +450,7 @@ TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^
         }
     const double truth = 4 * std::atan(p * q / std::sqrt(1 + p * p + q * q));
     CHECK(std::abs(sum / truth - 1) < 2e-5);  // midpoint rule: (1/4 pixel)^2 / 24 of the curvature
-    // Corners: exactly on the frustum's edges, top left first.
+    // Corners lie exactly on the frustum's edges; the top left is first.
     const vec3 d = camera_ray(camera, size, 0, 0).d;
     CHECK(std::abs(double(dot(d, camera.right) / dot(d, camera.forward)) + p) < 1e-5);
     CHECK(std::abs(double(dot(d, camera.up) / dot(d, camera.forward)) - q) < 1e-5);
@@ -462,7 +462,7 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
     const oracle::Estimate reference = image_mean(scene, t, ~seed_here(), 100);
     scene.size = {32, 16};
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
-        // A replicate is one randomisation of every pixel's whole point set.
+        // A replication is one randomisation of every pixel's whole point set.
         const auto replicate = [&, first = seed_here()](int k) {
             const Pattern pattern = make_pattern(kind, first + uint64_t(k), scene.depth, 16);
             double sum = 0;

@@ -1,5 +1,4 @@
-// path/sampler_test.cpp  every dimension uniform, none correlated with another, nor pixel with
-// pixel
+// path/sampler_test.cpp  every dimension is uniform; dimensions and pixels are uncorrelated
 #include "path/sampler.h"
 
 #include "base/moments.h"
@@ -11,8 +10,7 @@ namespace {
 constexpr int depth = 8;
 const uint32_t dimensions = dimension(depth, Draw::light_x);
 
-// The numbers as the path tracer draws them: pairs where it wants pairs, and what chooses beside
-// them.
+// Draws like the path tracer: pairs where it takes pairs, choices where it makes choices.
 real draw(const Sampler& s, uint32_t dim) {
     if (dim < 2) return dim == 0 ? s.get2(0).x : s.get2(0).y;
     const uint32_t k = (dim - 2) % uint32_t(Draw::count);
@@ -50,7 +48,7 @@ TEST_CASE("seed, pixel, set, sample, dimension: whichever is another, the number
                 }
                 equal += u == Sampler(pattern, pixel, 3).get(dim + 1);
             }
-        // 3000 pairs; numbers of 24 bits are equal by chance with probability 1.8e-4 in all.
+        // Two of 3000 pairs of 24-bit numbers are equal by chance with a probability of 1.8e-4.
         INFO(std::string(sampler_names[int(kind)]));
         CHECK(equal < 2);
     }
@@ -64,7 +62,7 @@ TEST_CASE("a number of the last cell never rounds to 1") {
 }
 
 TEST_CASE("every number of every sampler is uniform over [0,1)") {
-    // Over pixels, whose numbers are independent: sample i of each, whatever i is.
+    // The check is over pixels, because these are independent, for every sample index i.
     for (SamplerKind kind : samplers) {
         const Pattern pattern = make_pattern(kind, seed_here(), depth, 64);
         for (uint32_t dim = 0; dim < dimensions; ++dim)
@@ -80,9 +78,9 @@ TEST_CASE("every number of every sampler is uniform over [0,1)") {
 }
 
 TEST_CASE("dimensions of a path and neighbouring pixels are uncorrelated") {
-    // One pooled check a sampler.  For independent u, v the products (u - 1/2)(v - 1/2) have mean 0
-    // and variance 1/144; a replicate is the sum over one pixel, for its samples are not
-    // independent of each other.  Each dimension meets the next three, so each pair the next pair.
+    // One pooled check per sampler.  For independent u, v the products (u - 1/2)(v - 1/2) have mean
+    // 0 and variance 1/144.  A replication is the sum over one pixel, because its samples are
+    // dependent.  Each dimension meets the next three, so that each pair meets the next pair.
     for (SamplerKind kind : samplers) {
         const Pattern pattern = make_pattern(kind, seed_here(), depth, 16);
         Moments between_dimensions, between_pixels;
@@ -103,7 +101,7 @@ TEST_CASE("dimensions of a path and neighbouring pixels are uncorrelated") {
             between_dimensions.add(dims / (3 * 16 * dimensions));
             between_pixels.add(pixels / (16 * dimensions));
         }
-        // 1/12 is what full correlation would give: the bias is stated in its units.
+        // Full correlation would give 1/12: the smallest detected bias is in these units.
         const std::string name = sampler_names[int(kind)];
         EXPECT(oracle::expect_mean(0, estimate(between_dimensions)).of(name), 0.02 / 12);
         EXPECT(oracle::expect_mean(0, estimate(between_pixels)).of(name), 0.02 / 12);
@@ -112,8 +110,8 @@ TEST_CASE("dimensions of a path and neighbouring pixels are uncorrelated") {
 
 TEST_CASE("no two numbers of a path come in the same order") {
     // The squared sum of products (u - 1/2)(v - 1/2) over the 16 samples of a pixel, relative to
-    // that of independent numbers.  One order for both would make it 3.2 or more on average: for
-    // v = u + c modulo 1 the mean product is B2(c) / 2, its square 1 / 720, times 16 * 144.
+    // that of independent numbers.  One order for both would make it 3.2 or more on average: for v
+    // = u + c modulo 1 the mean product is B2(c) / 2, its square 1 / 720, times 16 * 144.
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
         const Pattern pattern = make_pattern(kind, seed_here(), depth, 16);
         for (uint32_t dim : {film_x, film_y, dimension(0, Draw::light_x), dimension(1, Draw::pick),
@@ -136,7 +134,7 @@ TEST_CASE("no two numbers of a path come in the same order") {
 }
 
 TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
-    // The first 2 * 3 samples: one in each of 2 x 3 boxes of the film, in every pixel.
+    // The first 2 * 3 samples of every pixel lie in different boxes of a 2 x 3 grid on the film.
     const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), depth, 64);
     for (uint64_t pixel = 0; pixel < 1000; ++pixel) {
         int boxes[6] = {};
@@ -183,7 +181,7 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
         CHECK(period == cells);
         CHECK(cells <= 256);
         CHECK(p.columns <= 2 * p.rows);
-        CHECK((spp % period == 0 || cells == 16));  // or nothing fits
+        CHECK((spp % period == 0 || cells == 16));  // 16 if none fits
         for (uint64_t pixel = 0; pixel < 20; ++pixel)
             for (uint32_t set : {0u, 1u, 7u}) {
                 std::vector<int> film(cells), pick(cells);
@@ -204,7 +202,7 @@ TEST_CASE("stratified samples put one into every cell of every grid, whatever th
 
 TEST_CASE("every pass shuffles its cells anew") {
     const Pattern p = make_pattern(SamplerKind::stratified, 3, depth, 16);
-    int alike = 0;  // passes of the same order: by chance 1 in 16!
+    int alike = 0;  // passes of equal order: by chance 1 in 16!
     for (uint64_t pixel = 0; pixel < 100; ++pixel) {
         bool same = true;
         for (uint64_t i = 0; i < 16; ++i) {
@@ -225,8 +223,8 @@ TEST_CASE("permute is a permutation, and takes every value at every place equall
         for (uint32_t i = 0; i < n; ++i) ++seen[permute(i, n, key)];
         for (int s : seen) REQUIRE(s == 1);
         if (n != 16) continue;
-        // Every value at place 5.  Pairs of places 0 and 1 are hashed, not proven: measured chi2
-        // 326 for 239 degrees of freedom, where cyclic shifts alone would give 336 000.
+        // Every value occurs at place 5.  Pairs of places 0 and 1 are hashed without proof: chi2 is
+        // 326 for 239 degrees of freedom, and would be 336 000 for cyclic shifts only.
         std::vector<uint64_t> values(n), pairs(n * n);
         for (int k = 0; k < 24000; ++k) {
             const uint64_t random = rng.bits();
@@ -263,15 +261,15 @@ TEST_CASE("the samples of a set are one point set") {
 }
 
 TEST_CASE("means over a set are uncorrelated with those of the pixel's other sets") {
-    // Products (mean - 1/2)(mean of another set - 1/2), over the root mean square of the means:
-    // 1 if both had one randomisation.
+    // Products (mean - 1/2)(mean of another replication - 1/2), over the RMS of the means: 1 if
+    // both had the same randomisation.
     for (SamplerKind kind : samplers) {
         const Pattern pattern = make_pattern(kind, seed_here(), depth, 16);
         Moments products, squares;
         for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
             double mean[2] = {};
             for (uint32_t set : {0u, 1u})
-                for (uint64_t i = 0; i < 5; ++i)  // of a net of 16: they are not the same for all
+                for (uint64_t i = 0; i < 5; ++i)  // part of a net of 16: means differ
                     mean[set] += (double(draw(Sampler(pattern, pixel, i, set), 2)) - 0.5) / 5;
             products.add(mean[0] * mean[1]);
             squares.add(mean[0] * mean[0]);
@@ -289,7 +287,7 @@ TEST_CASE("samples 2^32 apart differ, whatever the sampler, in every set") {
             for (uint64_t i = 0; i < 100; ++i)
                 for (uint64_t far : {uint64_t(1) << 32, uint64_t(1) << 33}) {
                     const Sampler near(pattern, 7, i, set), beyond(pattern, 7, i + far, set);
-                    // Base 3: in base 2 the samples' digits differ from the 33rd on.
+                    // This dimension has base 3: in base 2 only the digits from the 33rd on differ.
                     equal += near.get2(film_x).y == beyond.get2(film_x).y;
                 }
             INFO("sampler ", int(kind), ", set ", set);
@@ -298,7 +296,7 @@ TEST_CASE("samples 2^32 apart differ, whatever the sampler, in every set") {
 }
 
 TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in every pixel") {
-    // The first digit of sample 1 is 1, that of sample 0 is 0: scrambled they differ by the factor.
+    // Samples 1 and 0 have the first digits 1 and 0: after scrambling they differ by the factor.
     const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), depth, 64);
     auto factor = [&](uint64_t pixel, uint32_t dim) {
         const uint32_t base = pattern.bases[dim];
@@ -307,8 +305,8 @@ TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in e
         };
         return (digit(1) + base - digit(0)) % base;
     };
-    // Where in its range a factor is, from -1/2 to 1/2: of variance 1/12 but for the smallest
-    // bases, which are left out.
+    // The place of a factor in its range, from -1/2 to 1/2.  Its variance is 1/12 except for the
+    // smallest bases, which are omitted.
     Moments places, between_dimensions;
     for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
         double sum = 0, products = 0, last = 0;

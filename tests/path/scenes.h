@@ -1,4 +1,4 @@
-// path/scenes.h  scenes on which techniques part if something is wrong
+// path/scenes.h  scenes on which the techniques disagree if one of them is wrong
 #pragma once
 #include <string>
 
@@ -16,8 +16,8 @@ box 4 3 4  0  -2 -1.5 -2   glow
 sphere -0.7 0 0  0.5  glow
 )";
 
-// A light behind a wall, unequal lights, one of them a triangle and one two-sided, a Phong floor:
-// where the techniques would part if a weight, a density or a visibility were wrong.
+// A light behind a wall, unequal lights (one a triangle, one two-sided) and a Phong floor: the
+// techniques disagree here if a weight, a density or a visibility is wrong.
 inline const char* const unequal = R"(
 size 64 32
 camera 0 1.5 6  0 0.8 0  50
@@ -36,7 +36,7 @@ triangle -0.5 2.6 -1  0.9 2.6 -1  0.2 2.9 0.6   both
 quad 0.3 0 -1  0 0 2.5  0 1.4 0  wall
 )";
 
-// Two quad lights, one seen only through reflections; spheres of Phong, mirror and glass.
+// Two quad lights, one seen only in reflections; spheres of Phong, mirror and glass.
 inline const char* const shiny = R"(
 size 64 32
 camera 0 1.2 6  0 0.8 0  45

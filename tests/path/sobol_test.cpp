@@ -1,5 +1,5 @@
-// path/sobol_test.cpp  each elementary interval holds one point, each number has an order of its
-// own
+// path/sobol_test.cpp  each elementary interval contains one point; each dimension has an order of
+// its own
 #include "path/sobol.h"
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace {
 
-// The pairs of one randomisation, as they come.
+// The pairs of one randomisation in the order of the sampler.
 struct Points {
     uint64_t a = 0, b = 0;
     vec2 operator()(uint64_t i) const { return sobol_pair(mirrored(i), a, b); }
@@ -24,8 +24,8 @@ Points random_points(Rng& rng) {
     return {a, b};
 }
 
-// A nested uniform shuffle as it is defined: every aligned block of 2^j indices has a coin of its
-// own, which exchanges its halves or not.
+// A nested uniform shuffle by its definition: for every aligned block of 2^j indices a coin decides
+// whether its halves are exchanged.
 uint64_t textbook_shuffled(uint64_t i, int digits, uint64_t key) {
     uint64_t result = 0;
     for (int j = digits - 1; j >= 0; --j) {
@@ -69,7 +69,7 @@ TEST_CASE("an index is mirrored bit by bit") {
 }
 
 TEST_CASE("the digits of y are sums of those of x by Pascal's triangle, modulo 2") {
-    uint64_t odd[64];  // bit j of row k: whether C(k, j) is odd
+    uint64_t odd[64];  // bit j of row k: C(k, j) is odd
     odd[0] = 1;
     for (int k = 1; k < 64; ++k) odd[k] = odd[k - 1] ^ odd[k - 1] << 1;
     Rng rng{seed_here()};
@@ -87,7 +87,7 @@ TEST_CASE("the digits of z are those of the index, a polynomial modulo 2, in bas
     for (int n = 0; n < 100; ++n) {
         const uint64_t i = rng.bits();
         uint64_t z = 0, rest = i;
-        for (int k = 0; k < 64; k += 2) {  // divided by the base, again and again
+        for (int k = 0; k < 64; k += 2) {  // repeated division by the base
             uint64_t quotient = 0;
             for (int d = 63; d >= 2; --d)
                 if (rest >> d & 1)
@@ -183,7 +183,7 @@ TEST_CASE("points are uniform over the square, in their first digits and in thei
 }
 
 TEST_CASE("two indices are shuffled as by a coin for every block") {
-    // The places of two of 16 indices: all 240 outcomes of a pair, counted.
+    // Counts the places of two of 16 indices; a pair has 240 outcomes.
     Rng rng{seed_here()};
     const std::pair<uint64_t, uint64_t> pairs[] = {{0, 1}, {0, 2}, {5, 6}, {3, 12}, {8, 15}};
     for (auto [i, k] : pairs) {
@@ -194,8 +194,8 @@ TEST_CASE("two indices are shuffled as by a coin for every block") {
             auto place = [&](uint64_t at) { return mirrored(shuffled(mirrored(at), a, b)) & 15; };
             ++counts[place(i) * 16 + place(k)];
         }
-        // They part where they differ first, from the highest bit; what follows is independent.
-        const int first = int(std::bit_width(i ^ k)) - 1;  // of its bits, from below
+        // Places first differ at the highest bit where the indices do; lower bits are independent.
+        const int first = int(std::bit_width(i ^ k)) - 1;  // counted from the lowest bit
         for (uint64_t p = 0; p < 16; ++p)
             for (uint64_t q = 0; q < 16; ++q)
                 if (int(std::bit_width(p ^ q)) - 1 == first)
@@ -213,7 +213,7 @@ TEST_CASE("two indices are shuffled as by a coin for every block") {
 }
 
 TEST_CASE("the first four points are any four that can be, each equally often") {
-    // One in each row, column, half and quadrant of 4 x 4 cells, told by the rows.
+    // A net has one point in each row, column, half and quadrant of 4 x 4 cells; code has its rows.
     auto is_net = [](const uint64_t(&row)[4]) {
         return (row[0] < 2) != (row[1] < 2) && (row[2] < 2) != (row[3] < 2) &&
                std::set<uint64_t>(row, row + 4).size() == 4;
@@ -242,7 +242,7 @@ TEST_CASE("pairs of other words stand beside each other like pairs shuffled by c
         const Points u = random_points(rng);
         Points v = random_points(rng);
         const uint64_t key = rng.bits(), n = 16;
-        if (textbook) v.a = 0;  // its order is that of the index
+        if (textbook) v.a = 0;  // the order of the index
         double sum = 0;
         for (uint64_t i = 0; i < n; ++i) {
             const vec2 p = u(i), q = v(textbook ? textbook_shuffled(i, 4, key) : i);
@@ -269,8 +269,8 @@ TEST_CASE("means over points are unbiased, at powers of two and between them") {
 
 TEST_CASE(
     "the error falls faster than that of independent numbers, on smooth and other functions") {
-    // Four times the points: independent numbers halve the error, squared a quarter.  A smooth
-    // function's falls like (log n) / n, squared about a 16th; an edge leaves n^(3/4), an eighth.
+    // For four times the points the squared error falls to a quarter by independent numbers, to
+    // about a 16th for smooth functions (error (log n) / n), to an eighth for edges (n^(-3/4)).
     Rng rng{seed_here()};
     auto squared = [&](uint64_t n, auto f) {
         Moments m;

@@ -9,8 +9,8 @@ namespace exact {
 // ---- The cube -----------------------------------------------------------------------------------
 
 // Inside of a cube of 10 m, a point light of 50 000 cd at its centre, walls of reflectance 2/3.
-// Points of a face are (x, y) in [-1,1]^2.  L in nit, +-10^-5: labs/cube_test.cpp derives it from
-// the integral equation.  On an edge it is the limit from within the face.
+// Points of a face are (x, y) in [-1,1]^2.  L is in nit, +-10^-5: labs/cube_test.cpp derives it
+// from the integral equation.  On an edge it is the limit from within the face.
 inline constexpr double cube_half_width = 5, cube_intensity = 50000, cube_albedo = 2.0 / 3;
 
 struct CubePoint {
@@ -31,8 +31,8 @@ inline double cube_direct(double x, double y) {
     return cube_intensity / (cube_half_width * cube_half_width) / std::pow(1 + x * x + y * y, 1.5);
 }
 
-// Integrals of E times the hats of 2 x 2 cells (lm), cut from (-1, -1) towards (1, 1): of vertices
-// 3 j + i at (i - 1, j - 1), a hat over so many triangles of 12.5 m^2.
+// Integrals of E times the hats of 2 x 2 cells (lm), cut from (-1, -1) towards (1, 1).  Vertex 3 j
+// + i is at (i - 1, j - 1); its hat covers so many triangles of 12.5 m^2.
 struct CubeHat {
     std::vector<int> vertices;
     int triangles;
@@ -45,13 +45,13 @@ inline const std::array<CubeHat, 4> cube_hats = {{{{0, 8}, 2, 24009.1885},
 
 // ---- Form factors -------------------------------------------------------------------------------
 
-// From the inside of a sphere of radius R to one of radius r within it, wherever it lies, and to
-// itself (F_21 and F_22 of Howell's C-136): by reciprocity, since all that leaves the inner one
-// arrives.
+// Form factors from the inside of a sphere of radius R to one of radius r anywhere inside, and to
+// itself (F_21 and F_22 of Howell's C-136).  They follow by reciprocity, since all light from the
+// inner sphere arrives.
 inline double to_inner_sphere(double r, double R) { return (r / R) * (r / R); }
 inline double to_itself(double r, double R) { return (1 - r / R) * (1 + r / R); }
 
-// Two such spheres about one centre, of reflectances rho and exitances M: E on each.
+// Two such concentric spheres with reflectances rho and exitances M.
 struct Spheres {
     double r, R, rho_inner, rho_outer, M_inner, M_outer;
 };

@@ -1,4 +1,4 @@
-// radiosity/exact_light_test.cpp  what radiosity is compared with, against integrals and energy
+// radiosity/exact_light_test.cpp  the references for radiosity, against integrals and energy
 #include "radiosity/exact.h"
 
 #include <doctest/doctest.h>
@@ -35,7 +35,7 @@ TEST_CASE("the cube's direct light: a sixth of what the light sends falls on eac
 
 TEST_CASE("rectangles: form factors are means of those at points, and sum to 1 in a box") {
     for (const std::array<double, 3>& box : {std::array{1.0, 1.0, 1.0}, {2.0, 3.0, 1.5}}) {
-        // Seen from a floor of w x d: the ceiling at height h, and the wall over the edge x = 0.
+        // A floor of w x d sees the ceiling at height h, and the wall over the edge x = 0.
         const double w = box[0], d = box[1], h = box[2];
         CAPTURE(w);
         const double to_ceiling = mean(400, [&](double x, double z) {
@@ -51,7 +51,7 @@ TEST_CASE("rectangles: form factors are means of those at points, and sum to 1 i
         const double sum = opposed(w / h, d / h) + 2 * perpendicular(w / d, h / d) +
                            2 * perpendicular(d / w, h / w);
         CHECK(std::abs(sum - 1) < 4e-15);
-        // Reciprocity, of areas w d and h d.
+        // Reciprocity for the areas w d and h d.
         CHECK(w * perpendicular(w / d, h / d) ==
               doctest::Approx(h * perpendicular(h / d, w / d)).epsilon(1e-14));
     }

@@ -1,4 +1,4 @@
-// radiosity/facets_test.cpp  icospheres; what becomes of lights; what is refused
+// radiosity/facets_test.cpp  icospheres, the conversion of lights, refused scenes
 #include "radiosity/facets.h"
 
 #include <map>
@@ -78,20 +78,20 @@ TEST_CASE("as many quarterings as an edge needs: none is longer than H, one less
             CAPTURE(r);
             const int k = quarterings(real(r), H * r);
             CHECK(longest_edge(icosphere(k)) <= H);
-            // A spare of 5 %: an edge that is half as long at once is no shorter than that.
+            // The margin of 5 % allows for edges that are slightly shorter than half.
             if (k > 2) CHECK(longest_edge(icosphere(k - 1)) * 1.05 > H);
             CHECK(k >= 2);
             CHECK(facets_of_sphere(real(r), H * r) == double(icosphere(k).size()));
         }
     for (int k = 2; k < 7; ++k) {
-        const double H = edge_of_facets(1, k);  // the shortest for which k will do
+        const double H = edge_of_facets(1, k);  // the smallest H with k
         CHECK(quarterings(1, H) == k);
         CHECK(quarterings(1, H * (1 - 1e-6)) == k + 1);
         const double longest = longest_edge(icosphere(k));
         CHECK(longest <= H);
         CHECK(longest > 0.97 * H);
     }
-    CHECK(quarterings(1, 1e-9) == 10);  // what is longer is cut as part of a mesh
+    CHECK(quarterings(1, 1e-9) == 10);  // the mesh cuts longer edges
 }
 
 TEST_CASE(
@@ -109,7 +109,7 @@ TEST_CASE(
               oracle::say("3: the sphere becomes %zu triangles; their area is %.2g %% less",
                           facets.size(), 100 * less));
         CHECK(double(facets.size()) == facets_of_sphere(2, 2 * H));
-        // A facet of edge h lies h^2 / 8 or so deeper than its sphere: the error is of second
+        // A facet of edge h lies about h^2 / 8 deeper than its sphere: the error is of second
         // order.
         CHECK(less > 0);
         if (before > 0) CHECK(before / less == doctest::Approx(4).epsilon(0.02));
@@ -142,7 +142,7 @@ sphere 0 9 0  1  b
     REQUIRE(f.line_of.size() == f.shapes.size());
     REQUIRE(f.line_of_light.size() == f.lights.size());
     std::vector<int> shapes_of(f.lights.size());
-    double small = 0;  // of a unit sphere's facets
+    double small = 0;  // the facets of a unit sphere
     for (size_t i = 0; i < f.shapes.size(); ++i) {
         if (i < facets) small += double(length(area_vector(f.shapes[i]))) / 2;
         const Material& m = f.materials[f.material_of[i]];
@@ -173,7 +173,7 @@ sphere 0 9 0  1  b
     const rgb power = emitted_power(f);  // a, b on both sides, the point, a
     CHECK(double(power.x) == approx(Pi * (4 * Pi + 10 + 2 * 5 * 4 * Pi + 4 * 7 + 0.5)));
     CHECK(double(power.z) == approx(Pi * (3 * 4 * Pi + 10 + 2 * 5 * 4 * Pi + 4 * 7 + 1.5)));
-    // Lights are chosen by their power again.
+    // The choice of lights is again proportional to power.
     double total = 0, picks = 0;
     for (const Light& l : f.lights) total += ::power(l), picks += double(l.pick);
     CHECK(picks == approx(1, 1e-13, 1e-4));

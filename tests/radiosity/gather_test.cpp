@@ -1,4 +1,4 @@
-// radiosity/gather_test.cpp  final gathering: as far off as the maps, in the mean over a bounce
+// radiosity/gather_test.cpp  final gathering: its error is that of the maps, averaged over a bounce
 #include "radiosity/gather.h"
 
 #include "base/moments.h"
@@ -10,7 +10,7 @@ using namespace rooms;
 
 namespace {
 
-// Walls that glow, seen from within: everywhere L = Le + rho L.
+// Walls that glow, seen from inside: everywhere L = Le + rho L.
 constexpr double glow = 0.4 / (1 - 0.5);
 Scene glowing() {
     Scene s = room({3, 2, 2}, diffuse(grey(0.5), grey(0.4), true));
@@ -65,7 +65,7 @@ TEST_CASE("paths end on what the maps hold, whatever that is") {
                     means.push_back(sum / real(n));
                 }
                 for (size_t c = 0; c < 3; ++c) {
-                    // Le, what one bounce sees of Le, and rho times what the maps hold there.
+                    // The sum of Le, of Le after one bounce, and of rho times the maps' light.
                     const double known_light = 0.5 * glow * double(factor.*axis[c]),
                                  truth = 0.4 + 0.5 * (0.4 + known_light);
                     CAPTURE(int(t.light));

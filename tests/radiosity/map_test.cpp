@@ -1,4 +1,4 @@
-// radiosity/map_test.cpp  what a map says of a point, and what a camera sees of it
+// radiosity/map_test.cpp  the value of a map at a point, and its image in a camera
 #include "radiosity/map.h"
 
 #include "base/rng.h"
@@ -9,7 +9,7 @@ using namespace rooms;
 
 namespace {
 
-// A reflecting panel in the plane z = 0, seen from both sides, whose front emits; a triangle above.
+// A reflecting panel in z = 0, seen from both sides, that emits on its front; a triangle above.
 Scene panel(bool twosided = false) {
     Scene s;
     add_quad(s, {0, 0, 0}, {2, 0, 0}, {0, 2, 0},
@@ -21,7 +21,7 @@ Scene panel(bool twosided = false) {
     return s;
 }
 
-// Other numbers on every side of every vertex.
+// Different values on every side of every vertex.
 IlluminationMap random_map(const Mesh& mesh, Rng& rng) {
     IlluminationMap map(number_of_sides(mesh));
     for (rgb& E : map)

@@ -1,4 +1,4 @@
-// radiosity/mesh_test.cpp  grids of faces, and where a hit lies in them
+// radiosity/mesh_test.cpp  grids of faces, and the position of hits in them
 #include "radiosity/mesh.h"
 
 #include <bit>
@@ -14,9 +14,9 @@ using namespace rooms;
 
 namespace {
 
-constexpr double slack = single ? 1e-5 : 1e-9;  // of a length
+constexpr double slack = single ? 1e-5 : 1e-9;  // relative to a length
 
-// Of all grids of a parallelogram whose edges are no longer than H.
+// The fewest cells of a parallelogram's grid with edges no longer than H.
 double fewest_cells(const Face& f, double H) {
     const vec3 u = f.b - f.a, v = f.d - f.a;
     double fewest = 1e9;
@@ -37,13 +37,13 @@ std::array<double, 2> in_cells(const Face& f, vec3 p) {
     return {(pu * vv - pv * uv) / det * f.columns, (pv * uu - pu * uv) / det * f.rows};
 }
 
-// How far in cells that is from the nearest border, at the least.
+// The distance to the nearest border, in cells.
 double from_border(const Face& f, std::array<double, 2> at) {
     const auto [x, y] = at;
     return std::min({x, y, f.quad ? std::min(f.columns - x, f.rows - y) : f.rows - x - y});
 }
 
-// Of each shape: inside, on its edges, at its corners, on the lines of its grid.
+// Visits points of each shape: inside, on its edges, at its corners, on the lines of its grid.
 template <class Visit>
 void for_hits(const Scene& s, const Mesh& mesh, Visit visit) {
     Rng rng{seed_here()};
@@ -165,7 +165,7 @@ TEST_CASE("vertices are shared within a face alone; elements are its equal parts
         }
         CHECK(area == approx(double(f.area()), 1e-12, 1e-5));
         CHECK(area == approx(of_shapes[&f - mesh.faces.data()], 1e-12, 1e-5));
-        // One to three triangles at corners, three at edges (of triangles, too), six inside.
+        // Corners touch one to three triangles, edges (of triangles, too) three, inner points six.
         std::map<int, int> count;
         for (int k : used) ++count[k];
         const int m = int(f.columns), n = int(f.rows);
@@ -188,7 +188,7 @@ TEST_CASE("vertices receive light where they are; on a border, a thousandth of a
         for (uint32_t k = 0; k < f.vertices(); ++k) {
             const vec3 p = mesh.at[f.vertex + k];
             const auto at = in_cells(f, p), meant = in_cells(f, grid[k]);
-            CHECK(from_border(f, at) >= (single ? 0.8 : 0.99) / 1024);  // of a triangle: scaled
+            CHECK(from_border(f, at) >= (single ? 0.8 : 0.99) / 1024);  // scaled for triangles
             CHECK(std::abs(at[0] - meant[0]) <= 2.01 / 1024);
             CHECK(std::abs(at[1] - meant[1]) <= 2.01 / 1024);
             if (from_border(f, meant) >= (single ? 1e-3 : 1e-9))
@@ -224,7 +224,7 @@ TEST_CASE("a hit is where its three vertices and weights say: every shape, insid
             of_an_element &= std::find(first, end, vertex) != end;
         };
         for_hits(s, mesh, [&](const Hit& hit) { see(hit, point_of(s, hit)); });
-        // The same of rays, from both sides.
+        // The same checks for hits by rays, from both sides.
         Rng rng{seed_here()};
         for (int k = 0; k < 3000; ++k) {
             vec3 d;
@@ -238,7 +238,7 @@ TEST_CASE("a hit is where its three vertices and weights say: every shape, insid
         CHECK(of_an_element);
         CHECK(sum_off <= 8 * double(ulp));
         CHECK(place_off <= 64 * double(ulp) * 5);
-        // Rounding may put a hit on a line of the grid beyond it.
+        // Rounding may move a hit across a line of the grid.
         CHECK(negative >= -64 * double(ulp) * 40);
     }
 }
@@ -257,8 +257,8 @@ TEST_CASE("sizes of spheres are those of their facets; at most, where facets are
         check_sizes(s, mesh, H);
         CHECK(longest_edge(mesh) <= H * (1 + slack));
     }
-    // Facets of ten quarterings are at most 1.3e-3 radii long: H of a thirtieth of that takes 32^2
-    // triangles of each.
+    // Facets after ten quarterings have edges of at most 1.3e-3 radii.  H is a thirtieth of that:
+    // 32^2 triangles each.
     const std::string quad = before + "quad 9 9 9  1 0 0  0 1 0  d\n";
     const Sizes fine = sizes(parse_scene(quad, "a.scene").scene, 4e-5),
                 all = sizes(parse_scene(quad + "sphere 0 0 0  1  d\n", "a.scene").scene, 4e-5);
@@ -289,7 +289,7 @@ TEST_CASE("what does not fit is refused, with a mesh that does; and nothing that
         CHECK(triangles == approx(n.elements, 0.005, 0.005));
         CHECK(needs * 1e9 == approx(Bytes{}.of(n), 0.005, 0.005));
         CHECK(has == 0.001);
-        // As it is printed, and not much coarser than it must be.
+        // The printed H fits, and is not much coarser than it must be.
         CHECK(refusal(s, would_fit, memory) == "");
         CHECK(would_fit > H);
         CHECK(refusal(s, would_fit / 1.3, memory) != "");
@@ -297,7 +297,7 @@ TEST_CASE("what does not fit is refused, with a mesh that does; and nothing that
     CHECK(refused >= 3);
     CHECK(taken >= 2);
     CHECK(refusal(s, 0.1, 100).ends_with("no mesh would fit"));
-    // Numbers of 32 bits would overflow: refused however much memory there is.
+    // Indices of 32 bits would overflow: the mesh is refused for any memory.
     CHECK(refusal(s, 1e-4, 1e300) != "");
     CHECK(bytes_of_machine() > 1e8);
     CHECK(bytes_of_machine() < 1e15);

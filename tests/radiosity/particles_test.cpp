@@ -1,4 +1,4 @@
-// radiosity/particles_test.cpp  particles are unbiased for their functionals, and know their error
+// radiosity/particles_test.cpp  particles are unbiased for their functionals; the reported error
 #include "radiosity/particles.h"
 
 #include <random>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-// A whole run: n particles, and a seed of the test's name.
+// A complete run of n particles; its seed depends on the test's name.
 Particles run(const Scene& s, const Mesh& mesh, SamplerKind kind, uint64_t n, uint64_t seed) {
     Particles p(s, mesh, Particles::pattern(kind, hash(seed_here(), seed), n));
     for (size_t batch = 0; batch < Particles::batches; ++batch)
@@ -34,7 +34,7 @@ std::vector<IlluminationMap> maps_of_runs(const Scene& s, const Mesh& mesh, Samp
     return maps;
 }
 
-// Checks the mean of a functional of maps, or of what else runs have told.
+// Checks the mean of a functional of maps, or of other results of runs.
 template <class Told>
 void expect_mean(const std::vector<Told>& runs, double truth, double largest, auto value) {
     EXPECT(oracle::expect_replicates(truth, int(runs.size()),
@@ -42,8 +42,8 @@ void expect_mean(const std::vector<Told>& runs, double truth, double largest, au
            largest);
 }
 
-// An emitting plate 2 x 1 at z = 0, two triangles if it emits on both sides, and a black one of 1 x
-// 1 above, or beyond the shorter edge; and its image in the plate.
+// An emitting plate 2 x 1 at z = 0, two triangles if it emits on both sides, and a black plate 1 x
+// 1 above or beyond the shorter edge.  The black plate has a mirror image in the emitting one.
 Scene plates(bool above, bool twosided) {
     Scene s;
     const uint32_t lamp = add(s, diffuse(grey(0), grey(1), twosided)),
@@ -61,15 +61,15 @@ Scene plates(bool above, bool twosided) {
     return s;
 }
 
-// The integral of E times hat number k over a unit square of one cell, E from the closed form, by
-// midpoints, 400 x 400.  Corners: 0 at (0, 0), 1 at (1, 0), 2 at (0, 1), 3 at (1, 1).
+// The integral of E times hat number k over a unit square of one cell, for a closed form E, by 400
+// x 400 midpoints.  Corners: 0 at (0, 0), 1 at (1, 0), 2 at (0, 1), 3 at (1, 1).
 std::array<double, 4> hats_of_one_cell(auto E) {
     std::array<double, 4> b{};
     const int n = 400;
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
             const double s = (i + 0.5) / n, t = (j + 0.5) / n, e = E(s, t) / (n * n);
-            const bool half = t > s;  // of the diagonal from 0 to 3
+            const bool half = t > s;  // halves at the diagonal from 0 to 3
             b[0] += e * (half ? 1 - t : 1 - s), b[3] += e * (half ? s : t);
             b[half ? 2 : 1] += e * (half ? t - s : s - t);
         }
@@ -88,7 +88,7 @@ TEST_CASE("what is emitted is absorbed or escapes: coloured, open and closed, ev
             for (auto a : axis) {
                 CHECK(double(b.emitted.*a) == approx(double(found.*a), 1e-11, 1e-3));
                 CHECK((b.escaped.*a > 0) == open);
-                // Each light is chosen in proportion to its power, so colours differ by chance.
+                // The choice of lights is proportional to power, so that colours differ by chance.
                 CHECK(double(b.emitted.*a) == approx(double(emitted.*a), 0.1, 0.1));
             }
             CHECK(double(mean_of(b.emitted)) == approx(double(mean_of(emitted)), 1e-9, 1e-3));
@@ -215,7 +215,7 @@ TEST_CASE("plates: what a receiver gets, by closed forms, and each of its hats, 
                         CHECK(flux(mesh, maps[0], face) == 0);
                 }
                 for (uint32_t k = 0; k < 4; ++k) {
-                    const double hat = k == 0 || k == 3 ? 1 / 3.0 : 1 / 6.0;  // its own integral
+                    const double hat = k == 0 || k == 3 ? 1 / 3.0 : 1 / 6.0;  // integral of the hat
                     const uint32_t v = mesh.faces[first].vertex + k;
                     expect_mean(means, b[k] / hat, 0.3,
                                 [&](const auto& map) { return map[2 * v].y; });
@@ -232,7 +232,7 @@ TEST_CASE("the cube: sums over hats of 2 x 2 cells, against the exact solution")
         const auto means = maps_of_runs(s, mesh, kind, 1600, 96, Functional::mean);
         for (const exact::CubeHat& hat : exact::cube_hats) {
             CAPTURE(hat.triangles);
-            // A hat's own integral: a third of its triangles, of 12.5 m^2.
+            // The integral of a hat is a third of the area of its triangles, 12.5 m^2 each.
             const double size = 12.5 * hat.triangles / 3;
             expect_mean(means, hat.flux / size, 0.05, [&](const IlluminationMap& map) {
                 double sum = 0;
@@ -245,8 +245,8 @@ TEST_CASE("the cube: sums over hats of 2 x 2 cells, against the exact solution")
 }
 
 TEST_CASE("a sphere in a sphere, of facets: as the closed form of spheres of their areas") {
-    // All that leaves the inner one, which is convex, arrives at the outer one, so reciprocity
-    // takes areas alone; that facets are lit as evenly as a sphere is true but for their size.
+    // All light from the convex inner sphere arrives at the outer one, so that reciprocity needs
+    // only areas.  The facets are lit evenly up to their size.
     const Scene from = parse_scene(
                            "camera 0 0 50  0 0 0  40\ndiffuse d .8 .8 .8\n"
                            "diffuse g .3 .3 .3\nlight l 1 1 1 g\n"
@@ -260,7 +260,7 @@ TEST_CASE("a sphere in a sphere, of facets: as the closed form of spheres of the
     for (size_t k = 0; k < mesh.faces.size(); ++k)
         (is_inner(k) ? inner : outer) += double(mesh.faces[k].area());
     CHECK(inner == doctest::Approx(16 * Pi).epsilon(0.05));
-    const double exitance = Pi * 16 * Pi / inner;  // the power is that of the sphere
+    const double exitance = Pi * 16 * Pi / inner;  // the power equals that of the sphere
     const exact::OfSpheres truth = exact::illuminances(
         {std::sqrt(inner / (4 * Pi)), std::sqrt(outer / (4 * Pi)), 0.3, 0.8, exitance, 0});
     for (SamplerKind kind : all_samplers) {
@@ -298,7 +298,7 @@ TEST_CASE("the reported error is right: its square is the mean of squares, whate
     }
 }
 
-// Checks that the mean square of what is stated is the variance of the errors.
+// Checks that the mean square of the reported uncertainty is the variance of the errors.
 static void expect_uncertainty(const std::vector<MapError>& stated, double largest) {
     Moments errors, actual, claimed;
     for (const MapError& e : stated) errors.add(e.error);
@@ -352,7 +352,7 @@ TEST_CASE("batches that differ in one thing tell its error, and twice as much is
         const double own = x * x / 15;
         CHECK(of(x).error == doctest::Approx(std::sqrt(own / (1 - own))).epsilon(1e-12));
     }
-    // All are alike off the mean: without one of them the variance falls or rises by as much.
+    // All have the same distance to the mean: omitting one changes the variance by the same amount.
     CHECK(of(0.1).uncertainty < 0.05 * of(0.1).error);
     BatchSquares<16> one;  // that alone is off (but for the mean, which is beside it)
     one.whole = 1, one.off.fill(1e-4 / 225), one.off[3] = 1e-4;
@@ -369,5 +369,5 @@ TEST_CASE("walls that reflect all light end, too, and what is emitted is absorbe
     const Particles p = run(s, mesh, SamplerKind::halton, 1600, 1);
     CHECK(double(p.balance().absorbed.x) == approx(double(p.balance().emitted.x), 1e-11, 1e-3));
     CHECK(p.rays() / p.particles() > 20);
-    CHECK(p.rays() / p.particles() < 100);  // 1 / (1 - 0.98) are survived
+    CHECK(p.rays() / p.particles() < 100);  // expected survivors: 1 / (1 - 0.98)
 }

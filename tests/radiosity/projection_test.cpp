@@ -1,5 +1,5 @@
-// radiosity/projection_test.cpp  least squares: exact where they must be, of the order they are
-// said
+// radiosity/projection_test.cpp  least squares: exact where they must be, with errors of the stated
+// order elsewhere
 #include "radiosity/projection.h"
 
 #include "base/rng.h"
@@ -10,11 +10,11 @@ using namespace rooms;
 
 namespace {
 
-// The faces that are tried: their area is 3 each.
+// The faces under test have an area of 3 each.
 const Scene scenes[] = {one_quad({1, 2, 0}, {2, 0, 0}, {0.5, 1.5, 0}),
                         one_triangle({0, 0, 1}, {2, 0, 0}, {0.4, 3, 0})};
 
-// A point of an element: of its hats' weights, and of its share in an integral over the face.
+// A point of an element: the weights of its hats, and its share in an integral over the face.
 struct At {
     std::array<uint32_t, 3> vertex;
     std::array<real, 3> hat;
@@ -36,7 +36,7 @@ std::vector<At> points(const Mesh& mesh) {
     return all;
 }
 
-// Integrals of what has a value at each point, times each hat: b_v.
+// Integrals of each hat times a function with a value at each point: b_v.
 template <class Value>
 Sums against_hats(const Mesh& mesh, Value value) {
     Sums b(mesh.vertices());
@@ -66,7 +66,7 @@ Sums random_sums(size_t n, Rng& rng) {
     return b;
 }
 
-// The quadratic mean over the face of a map's distance from E.
+// The RMS distance over the face between a map and E.
 template <class E>
 double distance(const Mesh& mesh, const Sums& x, E value) {
     const Sums grid = grid_points(mesh.faces[0]);
@@ -111,7 +111,7 @@ TEST_CASE(
             off = std::max(off, double(max_abs(E[v] - linear(at[v]))));
         }
         CHECK(within <= (single ? 1e-4 : 1e-12));
-        CHECK(border > 0.1);  // a hat there lies on one side of its vertex
+        CHECK(border > 0.1);  // here a hat lies on one side of its vertex
     }
 }
 
@@ -126,8 +126,8 @@ TEST_CASE(
             int k = 0;
             for (Functional f : {Functional::projection, Functional::mean}) {
                 const double error = distance(mesh, onto(b, f), curved);
-                // A strip of width H along the border has errors of order H: their quadratic mean
-                // is H sqrt(H).  Triangles are halved, and quads nearly so.
+                // A strip of width H along the border has errors of order H: their RMS is H
+                // sqrt(H).  Triangles are halved, and quads nearly so.
                 const double order = std::log2(before[k] / error);
                 if (before[k] > 0) CHECK(order == doctest::Approx(k ? 1.5 : 2).epsilon(0.12));
                 before[k++] = error;
@@ -192,6 +192,6 @@ TEST_CASE("a face of a mesh of several has its own vertices and elements") {
         const Sums first = Projection(mesh, mesh.faces[0])(b, f);
         for (const Face& face : mesh.faces)
             CHECK(worst(Projection(mesh, face)(b, f), first) <=
-                  (single ? 1e-3 : 1e-12));  // cells are equal but for rounding
+                  (single ? 1e-3 : 1e-12));  // cells are equal up to rounding
     }
 }

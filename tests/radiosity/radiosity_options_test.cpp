@@ -1,4 +1,4 @@
-// radiosity/radiosity_options_test.cpp  what words mean to radiosity, and which are refused
+// radiosity/radiosity_options_test.cpp  the effects of options of radiosity, and refused ones
 #include "radiosity/options.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// radiosity/rooms.h  scenes and sums that the tests of illumination maps share
+// radiosity/rooms.h  shared scenes and sums of the tests of illumination maps
 #pragma once
 #include "base/approx.h"
 #include "radiosity/projection.h"
@@ -15,14 +15,14 @@ inline Material diffuse(rgb kd, rgb Le = {}, bool twosided = false) {
 }
 inline rgb grey(double x) { return {real(x), real(x), real(x)}; }
 
-// Adds a material, and says where it is.
+// Adds a material and returns its index.
 inline uint32_t add(Scene& s, const Material& m) {
     s.materials.push_back(m);
     return uint32_t(s.materials.size()) - 1;
 }
 
-// The inside of a box between 0 and `size`: its six faces look inwards.  Face k has material
-// first + k % several.
+// The inside of a box between 0 and `size`: its six faces look inwards.  Face k has material first
+// + k % several.
 inline void add_room(Scene& s, vec3 size, uint32_t first, uint32_t several = 1) {
     vec3 c[8];
     for (int i = 0; i < 8; ++i)
@@ -43,8 +43,8 @@ inline Scene room(vec3 size, const Material& m) {
 // Walls that glow and reflect: E = pi (2, 2.5, 2), which is in the span of the hats of any mesh.
 inline Scene furnace() { return room({2, 3, 1}, diffuse({0.5, 0.2, 0.7}, {1, 2, 0.6})); }
 
-// A room of colours without symmetry: a lamp, a screen whose both sides reflect, a triangle that
-// emits on both sides and a point.  Open: its last wall is missing.
+// A coloured room without symmetry: a lamp, a screen that reflects on both sides, a triangle that
+// emits on both sides, and a point.  An open room has no last wall.
 inline Scene study(bool open = false) {
     Scene s;
     const uint32_t walls = add(s, diffuse({0.7, 0.5, 0.2}));
@@ -61,7 +61,7 @@ inline Scene study(bool open = false) {
     return s;
 }
 
-// Quads that are long, high, skew and tiny, on the axes and off them; triangles, too.
+// Quads that are long, high, skew and tiny, on the axes and off them; also triangles.
 inline Scene furniture() {
     Scene s;
     const uint32_t d = add(s, diffuse(grey(0.5)));
@@ -86,7 +86,7 @@ inline Scene cubic_room() {
     return s;
 }
 
-// The parallelogram a, a + u, a + u + v, a + v, or the triangle a, a + u, a + v, in a scene alone.
+// A scene with only the parallelogram a, a + u, a + u + v, a + v, or the triangle a, a + u, a + v.
 inline Scene one_quad(vec3 a, vec3 u, vec3 v) {
     Scene s;
     add_quad(s, a, u, v, add(s, diffuse(grey(0.5))));
@@ -115,8 +115,7 @@ inline double longest_edge(const Mesh& mesh) {
     return longest;
 }
 
-// Where the grid has each vertex of a face, in the order in which meshes number them; those of
-// mesh.at are a little within.
+// The grid points of a face in the meshes' order of vertices; those of mesh.at lie slightly inside.
 inline std::vector<vec3> grid_points(const Face& f) {
     std::vector<vec3> points;
     for (uint32_t j = 0; j <= f.rows; ++j)
@@ -126,7 +125,7 @@ inline std::vector<vec3> grid_points(const Face& f) {
     return points;
 }
 
-// Which face each element belongs to.
+// Returns the face of each element.
 inline std::vector<uint32_t> face_of_element(const Mesh& mesh) {
     std::vector<uint32_t> face(mesh.elements());
     for (uint32_t k = 0; k < mesh.faces.size(); ++k)
@@ -134,7 +133,7 @@ inline std::vector<uint32_t> face_of_element(const Mesh& mesh) {
     return face;
 }
 
-// Emitted power, a channel at a time (watts; lumen): pi L times the area, 4 pi I of a point.
+// Emitted power per channel (watts; lumen): pi L times the area, 4 pi I for a point.
 inline rgb emitted_power(const Scene& s) {
     rgb power;
     for (const Light& l : s.lights)
@@ -152,7 +151,7 @@ inline rgb integral(const Mesh& mesh, const IlluminationMap& map, const Face& f,
     return sum;
 }
 
-// Of the difference of two maps, over all surfaces and channels.
+// The integral of the squared difference of two maps, over all surfaces and channels.
 inline double square(const Mesh& mesh, const IlluminationMap& a, const IlluminationMap& b) {
     double sum = 0;
     for (const Face& f : mesh.faces)
@@ -166,7 +165,7 @@ inline double square(const Mesh& mesh, const IlluminationMap& a, const Illuminat
     return sum;
 }
 
-// Of a furnace's map: its squared error over the square of what it should be.
+// The squared error of a furnace's map over the square of the right map.
 inline double furnace_error2(const Mesh& mesh, const IlluminationMap& map) {
     const IlluminationMap none(map.size());
     IlluminationMap truth = none;
@@ -174,7 +173,7 @@ inline double furnace_error2(const Mesh& mesh, const IlluminationMap& map) {
     return square(mesh, map, truth) / square(mesh, truth, none);
 }
 
-// The point of a shape that a hit names.
+// The point of a shape at a hit.
 inline vec3 point_of(const Scene& s, const Hit& hit) {
     const Shape& t = s.shapes[hit.id];
     return (1 - hit.v - hit.w) * t.a + hit.v * t.b + hit.w * t.c;

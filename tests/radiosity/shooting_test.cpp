@@ -21,7 +21,7 @@ IlluminationMap shot(const Scene& s, const Mesh& mesh, Shooter shooter,
     return shooting.map();
 }
 
-// Our own books: what every side of an element has sent, recomputed from the map.
+// Independent accounts: what every side of an element has sent, recomputed from the map.
 class Books {
 public:
     Books(const Scene& s, const Mesh& mesh)
@@ -33,13 +33,13 @@ public:
     double unshot(const IlluminationMap& map) const { return unsent(map) / emitted_; }
     int lamps() const { return lamps_; }
 
-    // Whoever should be next has sent.
+    // Marks the next shooter as sent.
     void shoot(const IlluminationMap& map, Shooter shooter) {
         if (next_ < points_.size()) {
             ++next_;
             return;
         }
-        // Sides of elements, or of faces: their power, of those that emit and have not sent first.
+        // The power of sides of elements or faces; unsent emitters come first.
         auto owner = [&](size_t k) {
             return shooter == Shooter::face ? 2 * size_t(face_[k / 2]) + k % 2 : k;
         };
@@ -80,7 +80,7 @@ private:
     }
 };
 
-// Where shooting in the study comes to.
+// The converged maps of the study.
 struct Study {
     Scene scene = study();
     Mesh mesh = make_mesh(scene, 1.5);
@@ -95,7 +95,7 @@ const Study& solved_study() {
     return solved;
 }
 
-// In the quadratic mean over all surfaces, over that of the reference.
+// The RMS difference over all surfaces, relative to the reference.
 double apart(const Mesh& mesh, const IlluminationMap& map, const IlluminationMap& reference) {
     return std::sqrt(square(mesh, reference, map) /
                      square(mesh, reference, IlluminationMap(map.size())));
@@ -112,8 +112,8 @@ TEST_CASE("a furnace is uniform: L = Le / (1 - rho) on every wall, nothing behin
             Shooting shooting(s, mesh, shooter, 1);
             shooting.run({single ? 1e-5 : 1e-14, 0, 10000}, silent);
             CHECK(shooting.unshot() <= (single ? 1e-5 : 1e-14));
-            // Walls that have not received from all others are not uniform.  Elements send what
-            // they have, exactly; nodes their means, where these are faint: measured 2.7e-3.
+            // Walls that have not received from all others are not uniform.  Elements send exactly
+            // what they have; faint nodes send their means: measured 2.7e-3.
             const double room = shooter == Shooter::face ? 5e-3 : 1e-12;
             for (size_t v = 0; v < mesh.vertices(); ++v) {
                 const rgb E = shooting.map()[2 * v];
@@ -134,12 +134,12 @@ TEST_CASE("what is not yet sent is known; lights send first, then what has most;
         Books books(s, mesh);
         CHECK(shooting.unshot() == 1);
         double off = 0, first = 0;
-        const uint64_t most = faces ? 40 : 300;  // before rounding is all that is left
+        const uint64_t most = faces ? 40 : 300;  // before only rounding is left
         uint64_t shots = 0;
         IlluminationMap before(number_of_sides(mesh));
         int fallen = 0, grown = 0;
         shooting.run({0, 0, most}, [&](const Shooting& now) {
-            if (now.shots() == shots) return;  // the last call: nobody was chosen
+            if (now.shots() == shots) return;  // the last call: no shooter
             // The point light counts as sent as soon as it is chosen.
             if (++shots > 1)
                 off = std::max(off, std::abs(now.unshot() / books.unshot(now.map()) - 1));
@@ -159,7 +159,7 @@ TEST_CASE("what is not yet sent is known; lights send first, then what has most;
         CHECK(off <= (single ? 1e-3 : 1e-11));
         CHECK(shooting.unshot() == approx(books.unshot(shooting.map()), 1e-11, 1e-3));
         CHECK(shooting.unshot() < first / 3);
-        // The point sent before; the lamp and both sides of the triangle follow.
+        // The point has sent before; the lamp and both sides of the triangle follow.
         CHECK(books.lamps() ==
               (faces ? 3 : int(mesh.faces[6].elements() + 2 * mesh.faces[8].elements())));
     }
@@ -201,10 +201,10 @@ TEST_CASE("shooting stops: at a part that is unshot, a number of shots, a time, 
         const uint64_t shots = shooting.shots();
         shooting.run({0.3, 0, 0}, silent);
         CHECK(shooting.shots() == shots);
-        shooting.run({0.01, 0, shots + 2}, silent);  // whichever comes first
+        shooting.run({0.01, 0, shots + 2}, silent);  // the first limit counts
         CHECK(shooting.shots() == shots + 2);
         const double spent = shooting.seconds();
-        shooting.run({0, 1e-9, 0}, silent);  // of all runs together: it is over
+        shooting.run({0, 1e-9, 0}, silent);  // limits the total over all runs
         CHECK(shooting.seconds() >= spent);
         CHECK(shooting.shots() == shots + 2);
         CHECK(spent > 0);
@@ -215,7 +215,7 @@ TEST_CASE("shooting stops: at a part that is unshot, a number of shots, a time, 
         shooting.run({0.01, 0, 0}, silent);
         CHECK(shooting.unshot() <= 0.01);
     }
-    // Nothing is left: a lamp in the void, whose light meets nothing.
+    // Nothing remains: a lamp in the void, and its light hits nothing.
     Scene dark;
     add_quad(dark, {}, {1, 0, 0}, {0, 1, 0}, add(dark, diffuse(grey(0.5), grey(1), true)));
     prepare(dark);
@@ -224,7 +224,7 @@ TEST_CASE("shooting stops: at a part that is unshot, a number of shots, a time, 
     all.run({}, silent);
     CHECK(all.unshot() == 0);
     CHECK(all.shots() == 2 * lone.elements());
-    CHECK(all.map() == IlluminationMap(number_of_sides(lone)));  // no shot at oneself
+    CHECK(all.map() == IlluminationMap(number_of_sides(lone)));  // no shot at the shooter itself
     Scene black = room({1, 1, 1}, diffuse(grey(0.5)));
     Shooting none(black, make_mesh(black, 1), Shooter::face, 1);
     CHECK(none.unshot() == 0);
@@ -263,7 +263,7 @@ TEST_CASE("the stated error is a bound, and close where walls are alike and retu
             CAPTURE(worst);
             CHECK(worst > (alike ? 0.7 : 0.2));
         }
-    const Scene pointed = cubic_room();  // whose only light has no area
+    const Scene pointed = cubic_room();  // its only light has no area
     const Mesh mesh = make_mesh(pointed, 8);
     CHECK(Shooting(pointed, mesh, Shooter::face, 1).error() == 1);
 }
@@ -274,14 +274,14 @@ TEST_CASE("the bound by hand: squares of what is linear between corners, over wh
     CHECK(m.error(grey(0.5)) == 0);
     m.add(6, {none, none, none}, {one, none, none});  // the integral of a hat's square is A / 6
     CHECK(m.error(grey(0.5)) == 1);
-    m.add(6, {one, one, one}, {none, none, none});  // A, of three channels
+    m.add(6, {one, one, one}, {none, none, none});  // A, for three channels
     CHECK(m.light == approx(18));
     CHECK(m.unsent[1] == approx(1));
     // b = 1 / (1 - rho) in each of three channels.
     CHECK(m.error(grey(0.5)) == approx(std::sqrt(12.0 / 30)));
     CHECK(m.error({0, 0, real(0.5)}) == approx(std::sqrt(6.0 / 24)));
     CHECK(m.error(grey(1)) == 1);
-    m.lose(m);  // as much again: twice the exitance
+    m.lose(m);  // the same amount again: twice the exitance
     CHECK(m.unsent[1] == approx(4));
 }
 
@@ -320,7 +320,7 @@ TEST_CASE("a point light: I cos / d^2 at every vertex that sees it, exactly 0 at
             for (uint32_t v = f.vertex; v < f.vertex + f.vertices(); ++v) {
                 const vec3 x = mesh.at[v], d = p - x;
                 const double cosine = double(dot(d, f.n)) / double(length(d));
-                // Where the way to the light crosses the shelf's height.
+                // Where the segment to the light crosses the shelf's height.
                 const vec3 at = x + d * ((1 - x.y) / d.y);
                 const double across = double(std::max(std::abs(at.x - 1), std::abs(at.z - 1)));
                 const bool shaded = x.y < real(0.999) && across < 0.5;
@@ -346,9 +346,9 @@ TEST_CASE(
         Scene s;
         const uint32_t lamp = add(s, diffuse(grey(0), grey(1), twosided));
         const uint32_t wall = add(s, diffuse(grey(0)));
-        add_quad(s, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, lamp);    // looks to +z
+        add_quad(s, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, lamp);    // faces +z
         add_quad(s, {-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, wall);    // its back is lit
-        add_quad(s, {-9, -9, 3}, {18, 0, 0}, {0, 18, 0}, wall);  // in part hidden by it
+        add_quad(s, {-9, -9, 3}, {18, 0, 0}, {0, 18, 0}, wall);  // partly hidden by it
         add_quad(s, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, wall);
         prepare(s);
         const Mesh mesh = make_mesh(s, 1.5);
@@ -373,7 +373,7 @@ TEST_CASE(
             for (uint32_t v = far.vertex; v < far.vertex + far.vertices(); ++v) {
                 const vec3 p = mesh.at[v];
                 CHECK(map[2 * v] == rgb{});
-                // The pyramid over lamp and screen, whose edges run straight up.
+                // The pyramid over lamp and screen; its edges run straight up.
                 if (std::max(std::abs(p.x), std::abs(p.y)) < real(0.999)) {
                     CHECK(map[2 * v + 1] == rgb{});
                     ++hidden;
@@ -386,11 +386,11 @@ TEST_CASE(
 }
 
 TEST_CASE("what falls on a back is sent from the back") {
-    // A point light above a panel that looks down, between two ceilings that look up and down.
+    // A point light above a panel that faces down, between two ceilings that face up and down.
     Scene s;
     const uint32_t panel = add(s, diffuse({real(0.5), 0, 0})), black = add(s, diffuse(grey(0)));
-    add_quad(s, {-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, panel);  // x x z: looks to -y
-    add_quad(s, {-1, 2, -1}, {0, 0, 2}, {2, 0, 0}, black);  // looks to +y
+    add_quad(s, {-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, panel);  // x x z: faces -y
+    add_quad(s, {-1, 2, -1}, {0, 0, 2}, {2, 0, 0}, black);  // faces +y
     add_quad(s, {-1, -2, -1}, {0, 0, 2}, {2, 0, 0}, black);
     add_point_light(s, {0, 1, 0}, grey(1));
     prepare(s);
@@ -410,11 +410,11 @@ TEST_CASE("what falls on a back is sent from the back") {
 }
 
 TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one with H^1.7") {
-    // At distance s from an edge E has a part like s^0.69 (labs/cube.h), so the linear function
-    // between vertices, which are exact in this, errs in the mean by H^1.69; what it lacks is
-    // reflected everywhere, so that every point errs so.  What is smooth errs by H^2.  Measured
-    // from 4 to 8 cells a side: 1.5 to 1.85; the errors are at most 5.8 % and 2.1 %, 8.3 % and 3 %
-    // of the mean.
+    // At distance s from an edge E has a part like s^0.69 (labs/cube.h).  The linear function
+    // between exact vertices has an average error of H^1.69 there.  Walls reflect the missing light
+    // everywhere, so that every point has that error; smooth parts have H^2.  Measured from 4 to 8
+    // cells per side: 1.5 to 1.85; the errors are at most 5.8 % and 2.1 %, 8.3 % and 3 % of the
+    // mean.
     const Scene s = cubic_room();
     for (Shooter shooter : shooters) {
         std::array<double, 7> before{}, error{};
@@ -424,7 +424,7 @@ TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one 
             const Mesh mesh = make_mesh(s, 10 * std::sqrt(2.0) / n * (1 + 1e-6));
             const IlluminationMap map = shot(s, mesh, shooter, {1e-4, 0, 0});
             const Face& f = mesh.faces[0];
-            // The box looks outwards: its faces are lit on their backs.
+            // The box faces outwards: its faces are lit on their backs.
             for (size_t k = 0; k < 6; ++k) {
                 const exact::CubePoint& p = exact::cube_points[k];
                 const uint32_t v = vertex_at(f, uint32_t(std::lround((1 + p.x) / 2 * f.columns)),
@@ -447,8 +447,8 @@ TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one 
 }
 
 TEST_CASE("faces that shoot as wholes come to another limit, some 0.4 % from that of elements") {
-    // What is smaller than an eighth of its distance sends its mean, by one shadow ray: an error of
-    // a 64th of the differences of its radiance, and of shadows that H does not know.
+    // Nodes smaller than an eighth of their distance send their mean, by one shadow ray.  The error
+    // is a 64th of the differences of radiance, plus that of shadows, which H does not bound.
     const Study& lit = solved_study();
     const double off = apart(lit.mesh, lit.of_faces, lit.of_elements);
     CAPTURE(off);
@@ -468,7 +468,7 @@ TEST_CASE("a dim room is lit as if it were alone, however bright another one is"
         const Mesh mesh = make_mesh(s, 2);
         const IlluminationMap map = shot(s, mesh, Shooter::face, {unshot, 0, 0});
         double sum = 0;
-        for (size_t k = 0; k < 13; ++k)  // the faces of what is in the dim room
+        for (size_t k = 0; k < 13; ++k)  // faces in the dim room
             for (bool back : {true, false})
                 sum += double(integral(mesh, map, mesh.faces[k], back).x);
         return sum;

@@ -17,14 +17,14 @@ Receiver receiver(const Mesh& mesh, const Face& f, uint32_t v) {
     return receiver(mesh.at[v], f.n, f.error);
 }
 
-// A scene's parts that shoot and receive.
+// The shooting and receiving parts of a scene.
 struct Parts {
     const Scene& scene;
     Mesh mesh;
     Trees trees;
     Parts(const Scene& s, double H) : scene(s), mesh(make_mesh(s, H)), trees(mesh) {}
 
-    // From the front of an element, of radiance 1.
+    // Irradiance from the front of an element of radiance 1.
     double from(const Receiver& to, const Face& f, uint32_t e) const {
         Transfer transfer(scene);
         const Corners one{{grey(1), grey(1), grey(1)}};
@@ -35,7 +35,7 @@ struct Parts {
         for (uint32_t e = f.element; e < f.element + f.elements(); ++e) sum += from(to, f, e);
         return sum;
     }
-    // The integral over the front of a face of what it gets from another, over its radiance.
+    // The integral over a face's front of its irradiance from another face of radiance 1.
     template <class From>
     double flux(const Face& to, From irradiance) const {
         IlluminationMap map(number_of_sides(mesh));
@@ -48,7 +48,7 @@ struct Parts {
     }
 };
 
-// Errors at H, H / 2, H / 4: each a quarter of the one before, if they are of second order.
+// Errors at H, H / 2, H / 4: second order divides each by four.
 void check_second_order(const std::array<double, 3>& errors, double give = 0.05) {
     INFO("errors ", errors[0], " ", errors[1], " ", errors[2]);
     CHECK(std::abs(std::log2(errors[0] / errors[1]) - 2) <= give);
@@ -81,8 +81,8 @@ TEST_CASE("in a closed box what a vertex sees sums to 1: within a face, on its e
 }
 
 TEST_CASE("opposed and perpendicular plates: area means come to the closed forms as H^2 falls") {
-    // 2 x 1 on the floor; half as much above it, or on the wall beyond its shorter edge.  By
-    // symmetry, the half above gets half of what all above would, 2 F.
+    // A plate of 2 x 1 on the floor, and half as much above it, or on the wall beyond its shorter
+    // edge.  By symmetry, the half above gets half of what all above would, 2 F.
     for (bool opposed : {true, false}) {
         CAPTURE(opposed);
         Scene s;
@@ -90,7 +90,7 @@ TEST_CASE("opposed and perpendicular plates: area means come to the closed forms
         add_quad(s, {}, {2, 0, 0}, {0, 1, 0}, d);
         add_quad(s, {0, 0, real(opposed)}, {0, 1, 0}, {real(opposed), 0, real(!opposed)}, d);
         prepare(s);
-        // Both ways, by reciprocity.
+        // The same in both directions, by reciprocity.
         const double flux =
             opposed ? closed_forms::opposed(2, 1) : 2 * closed_forms::perpendicular(2, 1);
         std::array<double, 3> there, back, apart;
@@ -101,10 +101,10 @@ TEST_CASE("opposed and perpendicular plates: area means come to the closed forms
             there[k] = std::abs(to_b / flux - 1), back[k] = std::abs(to_a / flux - 1);
             apart[k] = std::abs(to_b - to_a) / flux;
         }
-        // Each vertex is exact, so only the means over receivers err: by the trapezoidal rule.
+        // Each vertex is exact, so that only the means over receivers err: by the trapezoidal rule.
         check_second_order(there), check_second_order(back);
         CHECK(back[2] < 1e-3);
-        // The mean over parallel plates errs by its border, which both have in the same proportion.
+        // For parallel plates the error is at the border, in the same proportion on both.
         if (!opposed) check_second_order(apart);
     }
 }
@@ -133,8 +133,8 @@ TEST_CASE("in a closed box all that a shot sends arrives, but for an error of th
     check_second_order(wall), check_second_order(middle, 0.2);
     CHECK(wall[2] < 1e-4);
     CHECK(middle[2] < 3e-3);
-    // What an element at an edge sends to the face beside it, to a few of its vertices, errs by a
-    // part of itself, whatever H: such are 1/n of all.  It is gained by one and lost by the next,
+    // The light from an element at an edge to a few vertices of the adjacent face has a relative
+    // error that does not depend on H.  Such elements are 1/n of all.  Errors of neighbours cancel,
     // or the walls would not be so exact.
     INFO(mean[0], " ", mean[1], " ", mean[2]);
     CHECK(std::log2(mean[1] / mean[2]) == doctest::Approx(1).epsilon(0.25));
@@ -151,7 +151,7 @@ TEST_CASE("an element's radiance is linear: a receiver close by sees where it is
         const int n = 256;
         auto part = [&](double x0, double y0, double x1, double y1, double x2, double y2) {
             const double px = double(p.x), py = double(p.y), pz = double(p.z);
-            // The receiver looks down: its +y is -z here.
+            // The receiver faces down: its +y is -z here.
             sum += value((x0 + x1 + x2) / 3, (y0 + y1 + y2) / 3) *
                    closed_forms::polygon_irradiance(
                        {{x0 - px, pz, y0 - py}, {x1 - px, pz, y1 - py}, {x2 - px, pz, y2 - py}});
@@ -172,9 +172,9 @@ TEST_CASE("an element's radiance is linear: a receiver close by sees where it is
         const Receiver to = receiver(p, {0, 0, -1});
         const double E = double(transfer.from_element(to, {{0, 0, 1}, 0}, node, L).y);
         const double exact = truth(p, [](double x, double y) { return 1 - x - y + 4 * y; });
-        // Parts are smaller than a quarter of their distance, so what they err by is less than a
-        // sixteenth of what their radiance differs: 1 % and less.  Farther away than four radii
-        // the element is one part.
+        // Parts are smaller than a quarter of their distance.  So their error is less than a
+        // sixteenth of the differences of radiance: 1 % and less.  Beyond four radii the element is
+        // one part.
         const double flat = truth(p, [](double, double) { return 5.0 / 3; });
         CHECK(E == approx(p.z < 2 ? exact : flat, 0.012, 0.012));
         CHECK(std::abs(flat / exact - 1) > 0.04);
@@ -192,7 +192,7 @@ TEST_CASE("a point light sends I cos / d^2, to what looks at it, if nothing is i
     Transfer transfer(s);
     CHECK(transfer.from_point(receiver({}, {0, 0, 1}), light) == rgb{});  // behind the panel
     CHECK(transfer.rays == 1);
-    CHECK(transfer.from_point(receiver({}, {0, 0, -1}), light) == rgb{});  // turned away: no ray
+    CHECK(transfer.from_point(receiver({}, {0, 0, -1}), light) == rgb{});  // faces away: no ray
     CHECK(transfer.rays == 1);
     const vec3 p{4, 0, 0}, n = unit({-1, 0, 2});
     const rgb E = transfer.from_point(receiver(p, n), light);
@@ -200,7 +200,7 @@ TEST_CASE("a point light sends I cos / d^2, to what looks at it, if nothing is i
     CHECK(double(E.x) == approx(expected));
     CHECK(double(E.z) == approx(7 * expected));
     CHECK(transfer.rays == 2);
-    // From the panel itself, whose own plane is no obstacle.
+    // The receiver lies on the panel; its own plane is no obstacle.
     const rgb on =
         transfer.from_point(receiver({0, 0, 1}, {0, 0, 1}, rounding_error(s.shapes[0])), light);
     CHECK(double(on.y) == approx(0.5));
@@ -209,7 +209,7 @@ TEST_CASE("a point light sends I cos / d^2, to what looks at it, if nothing is i
 TEST_CASE("what is hidden sends exactly nothing; by quarters, what is hidden in part") {
     Scene s;
     const uint32_t d = add(s, diffuse(grey(0.5)));
-    add_quad(s, {-1, -1, 4}, {2, 0, 0}, {0, 2, 0}, d);                  // what sends
+    add_quad(s, {-1, -1, 4}, {2, 0, 0}, {0, 2, 0}, d);                  // the source
     add_quad(s, {real(-0.5), -1, 2}, {real(0.5), 0, 0}, {0, 2, 0}, d);  // hides x < 0 of it
     prepare(s);
     const Parts parts(s, 99);
@@ -229,13 +229,13 @@ TEST_CASE("what is hidden sends exactly nothing; by quarters, what is hidden in 
     const Receiver aside = receiver({real(-0.3), 0, 0}, {0, 0, 1});
     CHECK(sent(aside, node, 1).first == 0);  // its centre is hidden
     CHECK(sent(aside, node, 4).first > 0);
-    // All of it.
+    // The panel hides the whole source.
     const Receiver under = receiver({real(-0.25), 0, real(1.9)}, {0, 0, 1});
     for (int rays : {1, 4}) {
         CHECK(sent(under, node, rays).first == 0);
         CHECK(sent(under, node, rays).second == uint64_t(rays));
     }
-    // Behind the receiver, or dark: no ray.
+    // Sources behind the receiver or without light take no ray.
     CHECK(sent(receiver({}, {0, 0, -1}), node, 4) == std::pair(0.0, uint64_t(0)));
     Transfer transfer(s);
     CHECK(transfer.from_whole(below, from, node, {}, 4) == rgb{});
@@ -256,7 +256,7 @@ TEST_CASE("an element gets four shadow rays within eight radii, one beyond; its 
     CHECK(rays(8.01) == 1);
     CHECK(rays(7.99) == 4);
     CHECK(rays(4.01) == 4);
-    CHECK(rays(3.99) == 4);  // four quarters, from afar
+    CHECK(rays(3.99) == 4);  // four quarters
     CHECK(rays(2.5) == 4);
     CHECK(rays(1.5) == 16);
     CHECK(rays(0.1) > 100);

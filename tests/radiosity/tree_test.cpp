@@ -1,4 +1,4 @@
-// radiosity/tree_test.cpp  children are their parents, leaves are elements
+// radiosity/tree_test.cpp  nodes contain their children, leaves are elements
 #include "radiosity/tree.h"
 
 #include "base/rng.h"
@@ -16,7 +16,7 @@ struct OfFurniture {
     std::vector<uint32_t> face = face_of_element(mesh);
 };
 
-// By edge functions, for points of its plane.
+// Uses edge functions, for points in its plane.
 bool contains(const Node& n, vec3 normal, vec3 p) {
     for (uint32_t k = 0; k < n.corners; ++k) {
         const vec3 a = n.corner[k], b = n.corner[(k + 1) % n.corners];
@@ -52,7 +52,7 @@ TEST_CASE("every element is one leaf; every node but a root has one parent, whic
         CHECK(parents[0] == 0);
         for (uint32_t k = 1; k < to - from; ++k) CHECK(parents[k] == 1);
         for (uint32_t e = 0; e < mesh.elements(); ++e) CHECK(leaves[e] == (face[e] == f));
-        // What the memory is asked for: a face of n elements has fewer than 2 n nodes.
+        // The estimate of memory assumes this: a face of n elements has fewer than 2 n nodes.
         CHECK(to - from <= 2 * mesh.faces[f].elements());
     }
 }
@@ -62,7 +62,7 @@ TEST_CASE("leaves have the corners of their elements, in the same order") {
     for (uint32_t e = 0; e < mesh.elements(); ++e) {
         const Face& f = mesh.faces[face[e]];
         const Node& n = trees[trees.leaf(e)];
-        // Vertices receive within their face's border, by a thousandth of a cell.
+        // Vertices receive a thousandth of a cell inside their face's border.
         for (size_t k = 0; k < 3; ++k)
             CHECK(length(n.corner[k] - corner_of(mesh, e, k)) <= 0.3 * 3 / 1024);
         CHECK(double(n.area) == approx(double(area_of(f)), 1e-12, 1e-4));

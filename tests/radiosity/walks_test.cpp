@@ -1,4 +1,4 @@
-// radiosity/walks_test.cpp  particles walk until their error is what was asked for, and no farther
+// radiosity/walks_test.cpp  particle runs end when their error is as requested, and no later
 #include "radiosity/walks.h"
 
 #include "base/complaint.h"
@@ -77,7 +77,7 @@ TEST_CASE("--error alone: where no particle loses light the run ends with a mess
     const rgb glow{1, 1, 1};
     const Scene white = room(size, diffuse({0.5, 1, 0.7}, glow)),
                 red_and_blue = room(size, diffuse({0.5, 1, 0.7}, {1, 0, 1}));
-    Scene absorbs, open;  // one wall of two; a way out
+    Scene absorbs, open;  // one wall of two; an opening
     const uint32_t walls = add(absorbs, diffuse(grey(1), glow));
     add(absorbs, diffuse(grey(0.5), glow));
     add_room(absorbs, size, walls, 2);
@@ -113,7 +113,7 @@ TEST_CASE("--error: the run is the same for any number of threads, and that of a
 }
 
 TEST_CASE("--error: light that is rare but bright is seen before the run may end") {
-    // A lamp of 1/1000 of the power, a plate as small as itself beside it: of |E|^2 most.
+    // A lamp of 1/1000 of the power beside an equally small plate, which has most of |E|^2.
     Scene s = room(grey(10), diffuse(grey(0.5)));
     const uint32_t black = add(s, diffuse(grey(0)));
     add_quad(s, {4, real(9.9), 4}, {1, 0, 0}, {0, 0, 1}, add(s, diffuse(grey(0), grey(1))));

@@ -1,4 +1,4 @@
-// shadow/checks.h  what tests of shadowed light share
+// shadow/checks.h  helpers of the tests of shadowed light
 #pragma once
 #include "base/approx.h"
 #include "oracle/expect.h"

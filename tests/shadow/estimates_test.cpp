@@ -1,4 +1,4 @@
-// shadow/estimates_test.cpp  images whose samples are estimates by all light samples of a
+// shadow/estimates_test.cpp  images whose samples are estimates from all light samples of a
 // replication
 #include "app/render.h"
 #include "film/spread.h"
@@ -9,7 +9,7 @@
 
 namespace {
 
-// The ground under a sphere light, a wall between them in part; every pixel sees the same point.
+// A ground under a sphere light, partly covered by a wall; every pixel sees the same point.
 const char* const half_shadow = R"(
 size 8 4
 camera 0 6 6  0 0 0  0.001
@@ -24,7 +24,7 @@ const std::string in_half = half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 
 
 const Technique nee{Direction::bsdf, LightMode::nee, 0};
 
-// As the program does, of n samples a replication.
+// Renders as the program does, with n samples per replication.
 Picture render(const Scene& scene, Estimator e, uint64_t n, uint64_t seed, uint32_t sets,
                unsigned threads = 1, SamplerKind kind = SamplerKind::independent) {
     Options o;
@@ -48,7 +48,7 @@ TEST_CASE("estimates: all of them find what paths find; their parts are those of
     for (const char* text : {unequal, shiny}) {
         Scene scene = scene_of(text);
         scene.size = {8, 8};
-        // Ratio and regression: at 64 samples their bias is some thousandths of their noise.
+        // The bias of ratio and regression at 64 samples is some thousandths of their noise.
         oracle::Estimate reference;
         for (Estimator e : estimators) {
             Moments means;
@@ -75,8 +75,8 @@ TEST_CASE("estimates: what is fully lit or fully dark has no noise at all") {
     const Scene dark = scene_of(half_shadow + std::string("quad -3 1 -3  0 0 3.9  6 0 0  wall\n"));
     for (Estimator e : estimators) {
         const Image lit = render(open, e, 16, 1, 1).image, umbra = render(dark, e, 16, 1, 1).image;
-        // rho L / pi E, at 30 degrees' half-angle: E = pi sin^2.  Pixels differ by their own
-        // places.
+        // rho L / pi E, at 30 degrees' half-angle: E = pi sin^2.  Pixels differ slightly, because
+        // their points do.
         double spread = 0, brightest = 0;
         for (const auto& p : lit.pixels)
             spread = std::max(spread, std::abs(double(p[0]) / (0.5 * 3 * 0.25) - 1));
@@ -90,7 +90,7 @@ TEST_CASE("estimates: what is fully lit or fully dark has no noise at all") {
 }
 
 TEST_CASE("estimates: the error that a run states is the spread from seed to seed") {
-    // A lobe, too: light beside that of the closed form.
+    // A glossy lobe adds light that the closed form omits.
     std::string text = in_half;
     text.replace(text.find("diffuse grey 0.5 0.25 0.75"), 26,
                  "phong grey 0.5 0.25 0.75 .2 .2 .2 2");
@@ -117,7 +117,7 @@ TEST_CASE("estimates do not depend on threads, and take the samples of each repl
             CHECK(render(scene, e, n, 7, 2, 3, kind).image.pixels == two.image.pixels);
             CHECK(two.run.spp == 2 * n);
             CHECK(two.run.sets == 2);
-            // From the camera, to the light, and scattered.
+            // A path has a camera ray, a shadow ray and a scattered ray.
             CHECK(two.run.rays == 3 * n * 2 * two.image.pixels.size());
             const Pattern pattern = make_pattern(kind, 7, scene.depth, n);
             double sum = 0;

@@ -1,4 +1,4 @@
-// shadow/estimators_test.cpp  exact zeros, unbiased means, variances and biases as predicted
+// shadow/estimators_test.cpp  exact zeros, unbiased means, predicted variances and biases
 #include "shadow/estimators.h"
 
 #include <vector>
@@ -30,15 +30,14 @@ ShadowMoments of_ramp(oracle::Random& random, uint64_t n) {
     return sums.moments();
 }
 
-// What light samples of a pixel look like: U differs from sample to sample, w is unbiased for it,
-// V depends on both.  E[U] = 1.5; w = U (1/2 + t), V = [t < s], U = 1 + s: S = E[(1 + s) (s/2 +
-// s^2/2)].
+// Light samples of a pixel: U differs from sample to sample, w is unbiased for it, V depends on
+// both.  E[U] = 1.5; w = U (1/2 + t), V = [t < s], U = 1 + s: S = E[(1 + s) (s/2 + s^2/2)].
 LightTriple pixel_sample(oracle::Random& random) {
     const double s = random(), t = random(), U = 1 + s, w = U * (0.5 + t);
     return {U, w, t < s ? w : 0};
 }
 
-// The mean of some f(): squares and products have long tails, means of 32 of them shorter ones.
+// The mean of 32 values of f(): squares and products have long tails, their means shorter ones.
 template <class F>
 double of_many(F f) {
     double sum = 0;
@@ -48,7 +47,7 @@ double of_many(F f) {
 
 constexpr double pixel_truth = (1.0 / 2 + 1.0 / 3 + 1.0 / 3 + 1.0 / 4) / 2;
 
-// Checks the mean of estimates of n samples of a pixel each.
+// Checks the mean of estimates with n samples per pixel.
 void expect_pixel(oracle::Random& random, Estimator e, uint64_t n, uint64_t trials,
                   double largest) {
     EXPECT(oracle::expect_mean(pixel_truth, trials,
@@ -59,8 +58,8 @@ void expect_pixel(oracle::Random& random, Estimator e, uint64_t n, uint64_t tria
            largest);
 }
 
-// Checks that n times the bias comes to its constant: of an estimator less w V - beta (w - 1),
-// whose mean is known.
+// Checks the limit of n times the bias.  It measures an estimator minus w V - beta (w - 1), which
+// is unbiased and correlated with it.
 void expect_bias(Estimator e, double beta, double largest) {
     oracle::Random random(seed_here());
     auto less = [&](uint64_t n) {
@@ -80,7 +79,7 @@ TEST_CASE("estimators: eight samples by hand, where U differs and means do") {
         const double U = 1 + i % 2, w = U + (i < 4 ? 1 : -0.5), V = i % 4 != 3;
         samples.push_back({U, w, V ? w : 0});
     }
-    // w: 2 3 2 3 .5 1.5 .5 1.5; wV: 2 3 2 0 .5 1.5 .5 0; b: four of 1, four of -.5.
+    // w: 2 3 2 3 .5 1.5 .5 1.5; wV: 2 3 2 0 .5 1.5 .5 0; b: four times 1, four times -.5.
     const ShadowMoments m = moments(samples);
     const double U = 1.5, w = 14.0 / 8, wV = 9.5 / 8, R = wV / w, bb = 8 * 0.75 * 0.75;
     const double b_wV = 0.75 * (7 - 2.5), b_U = 0.75 * (6 - 6), beta = (b_wV - R * b_U) / bb;
@@ -88,13 +87,13 @@ TEST_CASE("estimators: eight samples by hand, where U differs and means do") {
     CHECK(control(m) == doctest::Approx(U - w + wV));
     CHECK(ratio(m) == doctest::Approx(U * wV / w));
     CHECK(regression(m) == doctest::Approx(wV - beta * (w - U)));
-    const ShadowMoments few = moments({{2, 1, 1}, {2, 3, 0}, {3.5, 5, 5}});  // to tell a slope
+    const ShadowMoments few = moments({{2, 1, 1}, {2, 3, 0}, {3.5, 5, 5}});  // too few for a slope
     CHECK(regression(few) == ratio(few));
     CHECK(ratio(few) == doctest::Approx(2.5 * 2 / 3));
 }
 
 TEST_CASE("estimators: the part of beta that only follows U is left out") {
-    // w V = U / 2 whatever b: the light is half in shadow, and beta must be 0, not the chance
+    // w V = U / 2 whatever b is: the light is half in shadow.  So beta must be 0, not the chance
     // correlation of U and b.
     std::vector<LightTriple> samples;
     for (int i = 0; i < 16; ++i) {
@@ -136,7 +135,7 @@ TEST_CASE("estimators: no sample that found light, no sample at all, constant w"
     }
     CHECK(ratio(moments({{1, 0, 0}, {1, 0, 0}})) == 0);
     CHECK(regression(moments(std::vector<LightTriple>(20, {1, 0, 0}))) == 0);
-    // Where w is constant every form is the mean of w V.
+    // If w is constant, every form equals the mean of w V.
     std::vector<LightTriple> half(20, {2, 2, 2});
     half.resize(40, {2, 2, 0});
     for (Estimator e : estimators) CHECK(estimate(e, moments(half)) == doctest::Approx(1));
@@ -169,7 +168,7 @@ TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in
         UU += (U - mean_U) * (U - mean_U);
         vv += (wV - mean_wV) * (wV - mean_wV);
     }
-    // Of what a product could be: a covariance may be small by chance.
+    // Errors are relative to the largest possible product: a covariance may be small by chance.
     const double most_wV = std::sqrt(bb * vv), most_U = std::sqrt(bb * UU);
     for (const ShadowMoments& m :
          {one, merge(even, odd), merge(odd, even), merge(ShadowMoments{}, one)}) {
@@ -207,7 +206,7 @@ TEST_CASE("estimators: regression's bias falls as predicted") {
 }
 
 TEST_CASE("estimators: ratio and regression converge to the pixel where U varies in it") {
-    // Their bias at n = 4096 is of the order of 1e-4, a tenth of what the test sees.
+    // Their bias at n = 4096 is about 1e-4, a tenth of what the test detects.
     oracle::Random random(seed_here());
     for (Estimator e : {Estimator::ratio, Estimator::regression})
         expect_pixel(random, e, 4096, 400, 0.01);
@@ -231,14 +230,14 @@ TEST_CASE("estimators: predicted biases are those of their definitions, w = 3x^2
 }
 
 TEST_CASE("estimators: variances are those predicted, and regression's is the least") {
-    // n variance, about the truth: mean of n (estimate - S)^2 over trials.
+    // n times the variance about the truth: the mean of n (estimate - S)^2 over trials.
     const double published[] = {5.0 / 48, 29.0 / 48};  // 0.104, 0.604
     for (size_t i = 0; i < 2; ++i)
         CHECK(ramp.variance(estimators[i]) == doctest::Approx(published[i]));
     for (Estimator e : estimators) {
         oracle::Random random(seed_here() + uint64_t(e));
         CHECK(ramp.variance(Estimator::regression) <= ramp.variance(e));
-        // Of ratio and regression at n = 256 the variance still differs by some 1/n.
+        // At n = 256 the variance of ratio and regression still differs by some 1/n.
         const oracle::Verdict v = oracle::expect_mean(ramp.variance(e), 2000, [&] {
             return of_many([&] {
                 const double error = estimate(e, of_ramp(random, 256)) - ramp.S;
@@ -247,7 +246,7 @@ TEST_CASE("estimators: variances are those predicted, and regression's is the le
         });
         EXPECT(v, 0.1);
     }
-    // (e) of the 1D experiment in closed form: w = 3x^2, V = [x < 0.8].
+    // Case (e) of the 1D experiment in closed form: w = 3x^2, V = [x < 0.8].
     const ShadowPopulation e{1, 0.512, 1.8, 1.8 * 0.32768, 0, 0};
     CHECK(e.variance(Estimator::stochastic) == doctest::Approx(0.589824 - 0.262144));
     CHECK(e.variance(Estimator::control) == doctest::Approx(1.210176 - 0.238144));

@@ -1,12 +1,12 @@
-// shadow/irradiance_needles_test.cpp  lights that are thin or tiny beside their distance
+// shadow/irradiance_needles_test.cpp  lights that are thin or tiny compared with their distance
 #include "shadow/checks.h"
 #include "shadow/irradiance.h"
 #include "world/geometry.h"
 
 namespace {
 
-// The integral of s max(0, z) / r^4 over p + s d for s from 0 to 1: Simpson's rule on what is above
-// the horizon.
+// The integral of s max(0, z) / r^4 over p + s d for s from 0 to 1, by Simpson's rule on the part
+// above the horizon.
 big along(big3 p, big3 d) {
     const big end = p.z + d.z;
     if (p.z <= 0 && end <= 0) return 0;
@@ -22,8 +22,8 @@ big along(big3 p, big3 d) {
     return sum * (to - from) / (3 * n);
 }
 
-// In long double, for products of nearly parallel edges cancel, nine digits of twenty.
-// A triangle with the longest side e, cut in two by its height g: fans of lines from the ends of
+// Long double: products of nearly parallel edges cancel 9 of 20 digits.  The height g cuts a
+// triangle at its longest side e; fans of lines lead from its ends to Gauss' three points on g.
 // that side to g, on which they stand by Gauss' rule of three points.
 big fans(big3 a, big3 e, big3 f) {
     const big foot = dot(e, f) / dot(e, e), root = std::sqrt(0.15L);
@@ -46,8 +46,8 @@ double quad_by_fans(big3 a, big3 u, big3 v) {
     return triangle_by_fans(a, u, v) + triangle_by_fans(a + u + v, -1 * u, -1 * v);
 }
 
-// A corner and two edges.  The first is the longest side, the height about `width`, and the third
-// corner above some part of that side.  No receiver sees it edge-on: rounding would decide there.
+// A corner and two edges.  The first is the longest side, the height is about `width`, and the
+// third corner lies above that side.  No receiver sees it edge-on: rounding would decide there.
 struct Needle {
     vec3 a, e, f;
 };
@@ -95,7 +95,7 @@ TEST_CASE("needles: a tiny light is its area times both cosines over the square 
         const double bound = single ? 2e-5 : power > -16 ? 1e-6 : 1e-9;
         INFO("side 2^", power);
         CHECK(double(irradiance_quad(corner, u, v)) == approx(quad, bound, bound));
-        const vec3 third = centre - (u + v) / 3;  // its centre is the mean of its corners
+        const vec3 third = centre - (u + v) / 3;  // centre: mean of corners
         CHECK(double(irradiance_triangle(third, u, v)) == approx(quad / 2, bound, bound));
     }
 }
@@ -105,7 +105,7 @@ TEST_CASE("needles: below the horizon or seen from their ends they send nothing"
     CHECK(irradiance_quad({1, 0, -1}, {real(0.5), 0, real(0.2)}, {0, thin, 0}) == 0);
     CHECK(irradiance_triangle({1, 0, 1}, {1, 0, 1}, {0, thin, 0}) == 0);
     CHECK(irradiance_quad({1, 0, 1}, {1, 0, 1}, {0, thin, 0}) == 0);
-    // The upper half of one that stands across it.
+    // The upper half of a needle across the horizon.
     const double half = double(irradiance_quad({1, 0, -1}, {0, 0, 2}, {0, thin, 0}));
     const double upper = double(irradiance_quad({1, 0, 0}, {0, 0, 1}, {0, thin, 0}));
     CHECK(half == approx(upper, 1e-11, 1e-5));
@@ -113,7 +113,7 @@ TEST_CASE("needles: below the horizon or seen from their ends they send nothing"
 }
 
 TEST_CASE("needles: what is thin beside its ends but passes near by is no needle") {
-    // A strip whose middle is five widths above the receiver: four times the closed form of a
+    // A strip with its middle five widths above the receiver: four times the closed form of a
     // rectangle with one corner on the normal.
     const real width = single ? real(0x1p-10) : real(0x1p-20);
     const double E = double(irradiance_quad({-1, -width / 2, 5 * width}, {2, 0, 0}, {0, width, 0}));

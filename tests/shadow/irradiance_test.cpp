@@ -29,9 +29,9 @@ Rule gauss(int n) {
     return rule;
 }
 
-// The integral of cos+ over the cone of half-angle sigma about an axis at this elevation above the
-// horizon: over the azimuth in closed form, over the polar angle theta by quadrature, split where
-// the horizon first cuts the circle; theta = k + (..) u^2 smooths the root that begins there.
+// The integral of cos+ over the cone of half-angle sigma about an axis at this elevation: in closed
+// form over the azimuth, by quadrature over the polar angle theta.  The horizon first cuts the
+// circle at theta = k.  A split there and theta = k + (..) u^2 smooth the root.
 double cone_by_quadrature(double elevation, double sigma) {
     static const Rule rule = gauss(40);
     const double pi_ = std::numbers::pi, kink = std::abs(elevation);
@@ -52,8 +52,8 @@ double cone_by_quadrature(double elevation, double sigma) {
     return sum;
 }
 
-// Seven-point rule of degree 5 (Radon 1948) on triangles split until none is cut by the horizon, or
-// small: area form, its own clipping.
+// Seven-point rule of degree 5 (Radon 1948).  It splits triangles until they are small or the
+// horizon cuts none: area form, with its own clipping.
 double area_by_subdivision(vec3 a, vec3 b, vec3 c, int depth) {
     if (a.z <= 0 && b.z <= 0 && c.z <= 0) return 0;
     const bool cut = a.z < 0 || b.z < 0 || c.z < 0;
@@ -85,7 +85,7 @@ Polygon polygon(std::initializer_list<vec3> corners) {
 Polygon quad(vec3 p, vec3 u, vec3 v) { return polygon({p, p + u, p + u + v, p + v}); }
 
 // A differential element and the rectangle a x b at distance h above it, one corner on its normal
-// (Howell, catalogue, C-11 of a differential element), times pi.
+// (Howell, catalogue, C-11 for a differential element), times pi.
 double corner(double a, double b, double h) {
     const double x = a / h, y = b / h, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
     return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / 2;
@@ -188,7 +188,7 @@ TEST_CASE("polygon irradiance: parts add up; order, sense and scale of the corne
         const real t = real(random());
         const Polygon q = quad(p, u, v);
         const double whole = E(q);
-        // Of the solid angle, which the horizon may leave little of; the corners themselves round.
+        // The horizon may leave little of the solid angle; the corners have rounding errors.
         const double distance = double(length(p)) + 1;
         const double angle = double(length(cross(u, v))) / sqr(distance);
         const double slack = angle * (64 * double(ulp) * distance + (single ? 3e-4 : 1e-11));
@@ -204,7 +204,7 @@ TEST_CASE("polygon irradiance: parts add up; order, sense and scale of the corne
 
 TEST_CASE(
     "polygon irradiance: a disc of slices tends to the disc, tilted as a sphere's cap would be") {
-    // A sphere and the disc in which its cone meets a plane across the axis look the same.
+    // A sphere looks the same as the disc where its cone meets a plane across the axis.
     const int slices = 2000;
     for (double degrees : {0.0, 40.0, 75.0, 100.0}) {
         const double beta = degrees * std::numbers::pi / 180, s = 0.5, r = s / std::sqrt(1 - s * s);

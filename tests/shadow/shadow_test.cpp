@@ -8,14 +8,14 @@
 
 namespace {
 
-// A surface that no ray can hit, seen straight from above: what its light samples bring.
+// A surface that no ray can hit, seen straight from above, and its light samples.
 struct Receiver {
     Scene scene;
     Surface x;
     Frame local;
     Material material;
 
-    // What happens at the receiver, as far as direct light goes.
+    // The step of a path at the receiver, with direct light only.
     Step sample(uint64_t i, uint64_t seed = 1) const {
         const Pattern pattern{SamplerKind::independent, seed};
         Step e;
@@ -27,7 +27,7 @@ struct Receiver {
     Shadowed shadowed_sample(uint64_t i, uint64_t seed = 1) const {
         return shadowed(scene, sample(i, seed));
     }
-    // Red, of the samples from i on.
+    // The red channel of n samples, from sample i on.
     ShadowMoments moments(uint64_t n, uint64_t& i, const std::string& seed) const {
         return moments_of(n, [&, this] {
             const Shadowed s = shadowed_sample(i++, oracle::seed_of(seed));
@@ -40,7 +40,7 @@ struct Receiver {
     }
 };
 
-// Statements are lights and obstacles about the origin.
+// Statements describe lights and obstacles about the origin.
 Receiver receiver(const std::string& statements, vec3 n = {0, 1, 0}) {
     const std::string before =
         "camera 0 0 9  0 0 0  40\ndiffuse black 0 0 0\nsphere 0 -99 0  1  black\n";
@@ -59,8 +59,8 @@ std::string sphere_at(double degrees) {
                        2 * std::cos(a));
 }
 
-// Half of that sphere, at 30 degrees, behind a wall across the axis whose edge meets the axis; the
-// visible half is the one on the side of h = +-(cos 30, -sin 30, 0).
+// Half of that sphere, at 30 degrees, behind a wall across the axis with its edge on the axis.  The
+// visible half is on the side of h = +-(cos 30, -sin 30, 0).
 std::string knife_edge(int side) {
     const double c = std::cos(std::numbers::pi / 6), s = 0.5;
     // Corner on the axis at distance 0.8, 4 to the front; edges 8 along z and 4 towards -h.
@@ -130,7 +130,7 @@ TEST_CASE("direct: U is the mean of w, for every light, tilt and side") {
 }
 
 TEST_CASE("direct: the sphere at 75 and 105 degrees, with albedo and radiance") {
-    // A second light, below the horizon, sends nothing.
+    // A second light below the horizon contributes nothing.
     const std::string below = "sphere 0 -9 0  1  lamp\n";
     for (const auto& [scene, E] :
          {std::pair{sphere_at(75) + below, 0.221200880053}, {sphere_at(105), 0.017924877377}}) {
@@ -165,7 +165,7 @@ TEST_CASE("direct: the knife edge by four estimators") {
         for (Estimator e : estimators) {
             const Receiver r = receiver(knife_edge(side));
             uint64_t i = 0;
-            // The bias of ratio and regression at 512 is below a tenth of what the test sees.
+            // The bias of ratio and regression at 512 is below a tenth of the detectable one.
             auto of_512 = [&] { return estimate(e, r.moments(512, i, "knife edge")); };
             const double truth = 0.5 * knife_edge_irradiance(side) / std::numbers::pi;
             EXPECT(oracle::expect_mean(truth, 200, of_512)
@@ -185,7 +185,7 @@ TEST_CASE("direct: parts add up to the plain sample, lobes and point lights amon
         const Shadowed s = r.shadowed_sample(i);
         lobes += max_of(d.L - s.wV) > 0;
         shadows += d.occluded;
-        // What is left: the lobe, and light that has no closed form.
+        // The remainder is the lobe, and lights without a closed form.
         if (!d.light) continue;
         const bool known = has_closed_form(*d.light, r.x);
         const vec3 wi = r.local.to_local(d.sample.wi);
@@ -201,7 +201,7 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
     const Receiver point = receiver("pointlight 0 1 0  2 2 2\n");
     CHECK(point.has_none());
     CHECK(double(point.sample(0).direct.L.x) == doctest::Approx(0.5 / std::numbers::pi * 2));
-    // From within a sphere, and from a point on it, or in the plane of a quad.
+    // Receivers lie inside a sphere, on its surface, or in the plane of a quad.
     for (const char* shape : {"sphere 0 1 0  2  lamp\n", "sphere 0 1 0  1  lamp\n",
                               "quad -1 0 -1  0 0 2  2 0 0  lamp\n"}) {
         Receiver r = receiver(std::string("light lamp 1 1 1 twosided\n") + shape);
@@ -211,13 +211,13 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
             CHECK(r.shadowed_sample(i).w == rgb{});
         }
     }
-    // The back of a light; a surface without a diffuse part.
+    // The receiver sees the back of a light, or it has no diffuse part.
     CHECK(receiver("light lamp 1 1 1\nquad -1 1 -1  0 0 2  2 0 0  lamp\n").has_none());
     Receiver gloss = receiver(sphere_at(30)), mirror = gloss, dark = gloss;
     gloss.material = {Material::Kind::rough, {}, {1, 1, 1}, 5, 1, {}, false};
     CHECK(gloss.has_none());
     CHECK(max_of(gloss.sample(0).direct.L) > 0);
-    // Mirrors; paths that do not scatter.
+    // Mirrors, and paths without scattering.
     mirror.material.kind = Material::Kind::mirror;
     CHECK(mirror.shadowed_sample(0).U == rgb{});
     CHECK(dark.shadowed_sample(0).U.x > 0);

@@ -15,7 +15,7 @@ Scene with_light(const Light& l) {
     return s;
 }
 
-// A polygon grown s times about its middle; of a quad one half.
+// A polygon scaled by s about its middle; for a quad, one half of it.
 Shape grown(const Light& l, real s) {
     auto corner = [&](vec3 p) { return l.centre + s * (p - l.centre); };
     return {corner(l.p), corner(l.p + l.u), corner(l.p + l.v)};
@@ -23,7 +23,7 @@ Shape grown(const Light& l, real s) {
 
 Material perfect_mirror() { return {Material::Kind::mirror, {}, {1, 1, 1}, 0, 1, {}, false}; }
 
-// A floor of a mirror, a ball light above it that the eye does not see, a black wall behind.
+// A mirror as the floor, a ball light above it outside the view, a black wall behind.
 Scene mirror_scene(real r, bool direct = false) {
     Scene s;
     s.size = {8, 8};
@@ -40,7 +40,7 @@ Scene mirror_scene(real r, bool direct = false) {
     return s;
 }
 
-// Evidence of n samples of every pixel, each of which has so many replications.
+// The evidence of n samples per pixel, divided among K replications.
 struct Evidence {
     std::vector<LightGroup> groups;
     std::vector<FixedPoint> sums;
@@ -78,7 +78,7 @@ TEST_CASE("a ray meets a grown light where it would meet that shape, from its br
         const uint32_t mask = growths_met(l, ray);
         auto meets = [&](real s) {
             if (l.kind == Light::Kind::sphere) {
-                // The disc about its centre that faces the ray.
+                // The light is represented by the disc about its centre that faces the ray.
                 const vec3 d = ray.d, f = l.p - ray.o;
                 return length(cross(f, d)) <= s * l.r && dot(f, d) > 0 && dot(f, d) < ray.tmax &&
                        length(f) > s * l.r;
@@ -95,7 +95,7 @@ TEST_CASE("a ray meets a grown light where it would meet that shape, from its br
         for (size_t k = 0; k < growths; ++k) {
             const real s = real(1 << k), part = real(1e-4);
             const bool expected = meets(s);
-            // Where the two round differently.
+            // Rounding may differ here.
             if (meets(s * (1 - part)) != meets(s * (1 + part))) continue;
             CHECK(bool(mask >> k & 1) == expected);
             (expected ? met : missed) += 1;
@@ -121,18 +121,18 @@ TEST_CASE("the part of pixels that lights cover, in view of the eye") {
         CHECK(view.groups[0].line == 7);
         if (r < real(0.05))
             CHECK(view.groups[0].a == doctest::Approx(area * (1 - area)).epsilon(0.02));
-        // The pixels are those of the light; bands of rows share them out.
+        // The noisy pixels are those of the light; bands of rows partition them.
         CHECK(view.noisy.size() == (r < real(0.05) ? 1 : 4));
         double parts = 0;
         for (int row = 0; row < s.size.height; row += 2)
             parts += lights_in_view(s, row, 2).groups[0].area;
         CHECK(parts == doctest::Approx(view.groups[0].area));
     }
-    // One that covers 16 pixels is no small one.
+    // A light that covers 16 pixels is not small.
     const LightsInView large = lights_in_view(mirror_scene(real(0.9), true), 0, 8);
     CHECK(large.groups[0].area > 16);
     CHECK(large.noisy.empty());
-    // In view of mirrors alone, or behind something: none.
+    // A light seen only in mirrors, or behind something, does not count.
     CHECK(lights_in_view(mirror_scene(real(0.1)), 0, 8).groups[0].area == 0);
     Scene hidden = mirror_scene(real(0.1), true);
     add_quad(hidden, {-1, -1, 1}, {2, 0, 0}, {0, 4, 0}, 0);
@@ -141,23 +141,23 @@ TEST_CASE("the part of pixels that lights cover, in view of the eye") {
 }
 
 TEST_CASE("near misses tell the light that is met, at every growth") {
-    // A mean of c / s^2 that does not depend on s, while the light stays small.
+    // The mean of c / s^2 does not depend on s while the light stays small.
     const Evidence e = evidence_of(mirror_scene(real(0.08)), {}, 10000);
     const double met = e.c(0, 0);
-    REQUIRE(met > 1000);  // hits: five of their deviations are less than a quarter of them
+    REQUIRE(met > 1000);  // hits: five standard deviations are less than a quarter
     for (size_t k = 1; k < 3; ++k) {
         const double told = e.c(0, k) / std::pow(4.0, k);
         CHECK(told == doctest::Approx(met).epsilon(5 / std::sqrt(met)));
         CHECK(e.c(0, k) > 2 * e.c(0, k - 1));
     }
-    // Of a mirror that reflects all, c is 1 and so is its square; nothing is of the other kind.
+    // For a perfect mirror c and its square are 1; there is no evidence of the other kind.
     CHECK(e.c(0, 0, 1) == doctest::Approx(met));
     for (size_t k = 0; k < growths; ++k) CHECK(e.c(1, k) == 0);
-    // A pixel's replications share.
+    // The replications of a pixel share its evidence.
     const Evidence half = evidence_of(mirror_scene(real(0.08)), {}, 10000, 2);
     CHECK(half.c(0, 0) == doctest::Approx(met / 4));
     CHECK(half.c(0, 0, 1) == doctest::Approx(met / 16));
-    // In view of the eye it is not counted by chance.
+    // Hits by eye rays do not count as chance hits.
     const Evidence direct = evidence_of(mirror_scene(real(0.02), true), {}, 100);
     CHECK(direct.c(0, 0) < direct.groups[0].area * 100);
 }
@@ -165,7 +165,7 @@ TEST_CASE("near misses tell the light that is met, at every growth") {
 TEST_CASE("behind a rough surface it is another kind, and where light is aimed at it is none") {
     Scene s = mirror_scene(real(0.05));
     s.materials[0] = {Material::Kind::rough, {0.5, 0.5, 0.5}, {}, 0, 1, {}, false};
-    // A mirror above: floor, mirror, light.
+    // With a mirror above, paths go from the floor by the mirror to the light.
     add_material(s, perfect_mirror(), "above");
     add_quad(s, {-9, 3, -9}, {18, 0, 0}, {0, 0, 18}, 2);
     s.depth = 3;
@@ -187,22 +187,22 @@ TEST_CASE(
         u.add(evidence, t);
         return u.doubt(d2, 2, 25);
     };
-    // Six near misses at s = 2, each of c = 1: of 4 * 6 / 4 over 25 pixels.
+    // Six near misses at s = 2, each with c = 1, give 4 * 6 / 4 over 25 pixels.
     CHECK(doubt(0, 6, 0, 0.01) ==
           "the light of line 12 in mirrors or glass was met 0 times; light not yet seen may amount "
           "to 24 %");
     CHECK(doubt(9, 9, 1, 0.01)
               .starts_with("the light of line 12 by way of mirrors or glass was "
                            "met 9 times"));
-    CHECK(doubt(10, 10, 0, 0.01).empty());  // often enough
-    CHECK(doubt(0, 4, 0, 0).empty());       // too few to tell
+    CHECK(doubt(10, 10, 0, 0.01).empty());  // enough hits
+    CHECK(doubt(0, 4, 0, 0).empty());       // too few to judge
     CHECK(!doubt(0, 5, 0, 0).empty());
-    // Three times the variance that is seen.
+    // The unseen light has three times the observed variance.
     CHECK(!doubt(0, 6, 0, 6 / 25.0 / 3 * 0.999).empty());
     CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 1.001).empty());
     CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 0.999 / 4, 2).size() > 0);
     CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 1.001 / 4, 2).empty());
-    // A light of a part of a pixel, by eye rays.
+    // Eye rays see a light that covers a part of a pixel.
     groups = {{0, 4, 0.1, 0.09, 8}};
     CHECK(
         doubt(0, 0, 0, 0, 12) ==
@@ -235,7 +235,7 @@ TEST_CASE("many lights share groups, and one near miss in many counts for all") 
     prepare(many);
     CHECK(lights_in_view(many, 0, 8).groups.size() == most_light_groups);
     const Evidence one = evidence_of(few, {}, 2000), all = evidence_of(many, {}, 2000);
-    CHECK(all.c(0, 0) == one.c(0, 0));  // those that are met
+    CHECK(all.c(0, 0) == one.c(0, 0));  // actual hits
     const double expected = one.c(0, 6), sigma = std::sqrt(expected * 1000);
     CHECK(std::abs(all.c(0, 6) - expected) < 4 * sigma);
     CHECK(all.c(0, 6) > 0);

@@ -1,4 +1,4 @@
-// voronoi/cell_test.cpp  one cell: wrapping and cutting agree, ties and near-ties too
+// voronoi/cell_test.cpp  one cell: wrapping and cutting agree, also for ties and near-ties
 #include "voronoi/cell.h"
 
 #include <numbers>
@@ -23,7 +23,7 @@ struct Both {
     ConvexPolygon polygon;
     Outline wrapped;
 
-    // The cell of the origin.
+    // Makes the cell of the origin.
     void make(const std::vector<Site>& others) {
         std::vector<double> x, y;
         for (const Site& p : others) x.push_back(p.x), y.push_back(p.y);
@@ -61,7 +61,7 @@ TEST_CASE("a cell that is wrapped is the cell that is cut: scattered, lattices, 
         while (int(others.size()) < n) {
             double x = 2 * random() - 1, y = 2 * random() - 1;
             if (kind == 1) x = std::round(x * steps) / steps, y = std::round(y * steps) / steps;
-            if (kind == 2) {  // bisectors through few points, but for rounding
+            if (kind == 2) {  // bisectors through few points, up to rounding
                 const double phi = turn + 2 * std::numbers::pi * std::round(x * steps) / steps;
                 x = std::cos(phi), y = std::sin(phi);
             }
@@ -72,7 +72,7 @@ TEST_CASE("a cell that is wrapped is the cell that is cut: scattered, lattices, 
         off = std::max(off, std::abs(area_of(both.wrapped) - area_of(both.polygon.outline())));
         corners = std::max(corners, int(both.wrapped.size()));
     }
-    CHECK(off < 2e-14);  // of up to 12
+    CHECK(off < 2e-14);  // distances are up to 12
     CHECK(corners >= 10);
 }
 
@@ -104,13 +104,13 @@ TEST_CASE("only lines that cut a corner off are kept") {
     both.make({{1, 0}, {0, 1}, {-1, 0}, {0, -1}});
     const int before = both.lines.size();
     std::vector<double> x = {2, 0.9, 0.6, 5, -3}, y = {0, 0, 0.6, 5, 0};
-    x.resize(16, 0.1), y.resize(16, 0.1);  // not to be looked at: they would cut
+    x.resize(16, 0.1), y.resize(16, 0.1);  // must stay unread: they would cut
     REQUIRE(both.lines.add(x.data(), y.data(), 0, 5, {0, 0}));
     both.lines.keep_cutters(before, both.wrapped);
     CHECK(both.lines.size() == before + 2);
     const Outline o = both.lines.wrap(both.lines.nearest());
-    // The unit square without a strip of 0.05 and a corner: x + y < 0.6, between (0.45, 0.15) and
-    // (0.1, 0.5).
+    // The unit square minus a strip of 0.05 and minus a corner: x + y < 0.6, between (0.45, 0.15)
+    // and (0.1, 0.5).
     CHECK(area_of(o) == doctest::Approx(0.95 - 0.35 * 0.35 / 2).epsilon(1e-14));
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("a neighbour within rounding of the site does not cut the site away") 
     oracle::Random random(seed_here());
     ConvexPolygon polygon;
     for (int trial = 0; trial < 1000; ++trial) {
-        // Corners are rounded to 1e-16 or so, farther than these neighbours are.
+        // Rounding moves corners by 1e-16 or so, more than the distance of these neighbours.
         const double d = 1e-18 * (1 + random()), turn = 2 * std::numbers::pi * random();
         polygon.start({{-random(), -random()}, {random(), random()}});
         for (int k = 0; k < 6; ++k) {

@@ -1,4 +1,4 @@
-// voronoi/sites_test.cpp  every site is in its bucket, and in the tree where it is looked for
+// voronoi/sites_test.cpp  every site is in its bucket, and in its place in the tree
 #include "voronoi/sites.h"
 
 #include <optional>
@@ -32,7 +32,7 @@ TEST_CASE("buckets hold every site once, where it is") {
                     ++seen[b.id[k]];
                 }
         CHECK(std::count(seen.begin(), seen.end(), 1) == n);
-        if (n == 1000) {  // about square, and about as many as was meant
+        if (n == 1000) {  // about square, and near the intended number
             CHECK(b.columns == doctest::Approx(4 * b.rows).epsilon(0.1));
             CHECK(double(n) / (b.rows * b.columns) ==
                   doctest::Approx(Buckets::per_bucket).epsilon(0.1));
@@ -98,13 +98,13 @@ TEST_CASE("the tree looks at few of many sites: scattered, clustered, along a li
         tree.grow(b);
         for (int trial = 0; trial < 50; ++trial) {
             const Site p = b.site(uint32_t(20000 * random()));
-            int seen = 0;  // this one and the one that is nearest, at least
+            int seen = 0;  // at least this site and the nearest one
             tree.nearest(b, p, {}, -INFINITY, [&](uint32_t k) {
                 ++seen;
                 return b.x[k] == p.x && b.y[k] == p.y;
             });
             CHECK(seen >= 2);
-            CHECK(seen <= 100);  // of 20 000
+            CHECK(seen <= 100);  // out of 20 000
         }
     }
 }

@@ -1,4 +1,4 @@
-// voronoi/voronoi_test.cpp  cell areas: exact cases, brute force, and the bias that clipping has
+// voronoi/voronoi_test.cpp  cell areas: exact cases, brute force, and the bias of clipping
 #include "voronoi/voronoi.h"
 
 #include <atomic>
@@ -23,7 +23,7 @@ struct Point {
     long double x, y;
 };
 
-// What of a convex polygon is nearer to the origin than to d.
+// The part of a convex polygon that is nearer to the origin than to d.
 std::vector<Point> half(const std::vector<Point>& in, Point d) {
     auto excess = [&](Point p) { return d.x * (p.x - d.x / 2) + d.y * (p.y - d.y / 2); };
     std::vector<Point> out;
@@ -40,8 +40,8 @@ std::vector<Point> half(const std::vector<Point>& in, Point d) {
 }
 
 struct Measure {
-    double area, x, y;  // centroid, from the site
-    bool bounded;       // does not touch the start
+    double area, x, y;  // centroid, relative to the site
+    bool bounded;       // does not touch the initial polygon
 };
 
 Measure brute_force(const Points& sites, size_t i, const Rectangle& start) {
@@ -69,9 +69,9 @@ Measure brute_force(const Points& sites, size_t i, const Rectangle& start) {
     return m;
 }
 
-// ---- Sites that are hard, each in its own way ---------------------------------------------------
+// ---- Hard sites ---------------------------------------------------------------------------------
 
-// Sites that the rounding to 2^-50 leaves alone.
+// Rounds sites to multiples of 2^-50, so that the program does not round them again.
 Points rounded(Points sites) {
     for (Site& p : sites) p = {(p.x + 4) - 4, (p.y + 4) - 4};
     return sites;
@@ -105,7 +105,7 @@ std::vector<Hard> hard_cases(oracle::Random& random) {
         const double phi = 2 * std::numbers::pi * i / 20, r = i < 20 ? 0.1 : 0;
         return Site{0.6 + r * std::cos(phi), 0.3 + r * std::sin(phi)};
     });
-    make("a turned lattice", 400, [](int i) {  // four sites about every corner, but for rounding
+    make("a turned lattice", 400, [](int i) {  // four sites about each corner, up to rounding
         const double x = (i % 20 - 9.5) / 40, y = (i / 20 - 9.5) / 40, c = std::cos(0.3),
                      s = std::sin(0.3);
         return Site{0.5 + c * x - s * y, 0.5 + s * x + c * y};
@@ -156,7 +156,7 @@ TEST_CASE("exact areas: one site, two, four, on the border, in a corner") {
         // A diamond about the centre: half the diagonal of the cell is 1/4.
         {{{0.5, 0.5}, {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}},
          {0.125, 0.21875, 0.21875, 0.21875, 0.21875}},
-        // The same place, three times over, and another one.
+        // Three sites coincide, and one does not.
         {{{0.25, 0.5}, {0.5, 0.5}, {0.25, 0.5}, {0.25, 0.5}}, {0.125, 0.625, 0.125, 0.125}}};
     Voronoi v;
     for (const auto& [sites, areas] : rows) {
@@ -194,8 +194,8 @@ TEST_CASE("areas and centroids equal those of brute force in long double, hard c
         CHECK(area < 1e-15 * double(c.sites.size()) + 4e-15);
         CHECK(centroid < 1e-9);
         CHECK(std::abs(total(cells) - 1) <= 1e-12 * double(c.sites.size()));
-        // Around the window the outward normals add up to 0, on one side of it to its length, less
-        // what cells hide that reach from side to side.
+        // The outward normals around the window add up to 0.  On one side they add up to its
+        // length, minus what cells that reach from side to side hide.
         Site all;
         double east = 0;
         for (const VoronoiCell& cell : cells) {
@@ -225,7 +225,7 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
     Voronoi v;
     for (const Rectangle& window : {unit_square, Rectangle{{-1, 2}, {1, 3}}})
         for (uint64_t n : {1, 2, 3, 7, 40, 100}) {
-            // A cluster of 100: its cells reach far beyond what its number suggests.
+            // The cells of a cluster of 100 are larger than their number suggests.
             const Rectangle tenth = {
                 window.lo,
                 {window.lo.x + 0.1 * window.width(), window.lo.y + 0.1 * window.height()}};
@@ -250,7 +250,7 @@ TEST_CASE("a torus: brute force with all copies around; translations change noth
                 CHECK(again[i].area == doctest::Approx(cells[i].area).epsilon(1e-12));
         }
     CHECK(v.torus(Points{{0.5, 0.5}, {0.5, 0.5}}, unit_square)[1].area == 0.5);
-    // Opposite borders are the same place, where the period is no binary fraction, too.
+    // Opposite borders coincide, also for periods that are no binary fractions.
     CHECK(v.torus(Points{{0, 0.5}, {1, 0.5}}, unit_square)[1].area == 0.5);
     const auto& shared = v.torus(Points{{0.2, 0.1}, {0.2, 0.4}, {0.6, 0.2}}, {{0, 0.1}, {1, 0.4}});
     CHECK(shared[0].copies == 2);
@@ -272,7 +272,7 @@ TEST_CASE("a strip about the window: brute force; what is bounded, inside, settl
         sites = rounded(sites);
         const auto cells = v.stretched(sites, n, domain);
         REQUIRE(cells.size() == n);
-        Points more = sites;  // a site that may be anywhere outside the domain
+        Points more = sites;  // with sites anywhere outside the domain
         for (int k = 0; k < 40; ++k) {
             const Site p = {5 * random() - 2, 5 * random() - 2};
             if (p.x < -0.5 || p.y < -0.5 || p.x > 1.5 || p.y > 1.5) more.push_back(p);
@@ -317,7 +317,7 @@ TEST_CASE("who is a neighbour: it shares an edge, and it is mutual") {
             one_way += std::find(back.begin(), back.end(), i) == back.end();
         }
     CHECK(one_way == 0);
-    // Euler: at most 3 n - 6 edges, each seen twice; the window hides a few of the border.
+    // Euler: at most 3 n - 6 edges, each seen twice; the window hides a few at the border.
     CHECK(edges <= 2 * (3 * 300 - 6));
     CHECK(edges > 2 * (3 * 300 - 6 - 2 * 4 * 18));
 }
@@ -326,7 +326,7 @@ TEST_CASE("many sites, scattered, in crowds, clustered or in line: the tree, and
     oracle::Random random(seed_here());
     Voronoi v;
     Points sites = scattered(250000, random), crowds = sites, line = sites, cluster;
-    crowds.resize(30000);  // at 1000 places
+    crowds.resize(30000);  // at 1000 distinct points
     for (size_t i = 1000; i < crowds.size(); ++i) crowds[i] = crowds[i % 1000];
     line.resize(20000);
     for (Site& p : line) p.y = 0.25 + p.x / 2;

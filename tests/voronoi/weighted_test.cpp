@@ -1,5 +1,4 @@
-// voronoi/weighted_test.cpp  a pixel's weighted mean: sum of w L, with the weights of its own
-// samples
+// voronoi/weighted_test.cpp  a pixel's weighted mean: sum of w L, with weights from its own samples
 #include "voronoi/weighted.h"
 
 #include "app/render.h"

@@ -1,5 +1,4 @@
-// voronoi/weights_test.cpp  Voronoi weights: sums, constants, biases where there are any and none
-// elsewhere
+// voronoi/weights_test.cpp  Voronoi weights: sums, constants, and biases where the theory has any
 #include "voronoi/weights.h"
 
 #include "voronoi/scattered.h"
@@ -9,7 +8,7 @@ namespace {
 constexpr Weighting all[] = {Weighting::mc, Weighting::vor, Weighting::fvor, Weighting::cvor,
                              Weighting::torus};
 
-// Weighted sum of f over n samples.
+// The weighted sum of f over n samples.
 template <class F>
 double estimate(Weigher& weigher, Weighting kind, uint64_t n, oracle::Random& random, F f) {
     const auto samples = scattered(n, random);
@@ -22,10 +21,10 @@ double estimate(Weigher& weigher, Weighting kind, uint64_t n, oracle::Random& ra
 double tilted_bowl(Site p) { return p.x * p.x + 2 * p.y * p.y + p.x; }
 constexpr double mean_of_bowl = 1.0 / 3 + 2.0 / 3 + 0.5;
 
-// Has the same values on opposite sides: on a torus it is continuous.  Its Laplacian is -4.
+// Opposite sides have the same values: on a torus it is continuous.  Its Laplacian is -4.
 double bump(Site p) { return p.x * (1 - p.x) + p.y * (1 - p.y); }
 
-// cvor less the unbiased torus of the same samples: the bias, with little noise.
+// cvor minus the unbiased torus of the same samples: the bias with little noise.
 struct Pair {
     Weigher clipped, torus;
 
@@ -92,15 +91,15 @@ TEST_CASE("vor, undivided: unbiased for a Poisson process (Slivnyak, Mecke), str
 }
 
 TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1/n") {
-    // X = sum A (f - mean of f) has the mean 0 and S = sum A the mean 1, so that X / S - X has that
-    // of -X (S - 1).  Only cells at the border make S differ from 1, each as much wherever it is:
+    // X = sum A (f - mean of f) has mean 0, and S = sum A has mean 1.  So X / S - X has the mean of
+    // -X (S - 1).  Only cells at the border make S differ from 1, equally all along the border:
     //   E X (S - 1) -> Var S (mean of f on the border - mean of f),  Var S = O(n^-3/2).
-    // With that taken away, O(n^-2) is left.
+    // The test subtracts this limit; O(n^-2) is left.
     constexpr double on_border = (5.0 / 6 + 17.0 / 6 + 2.0 / 3 + 8.0 / 3) / 4;  // side by side
     oracle::Random random(seed_here());
     Weigher weigher;
     weigher.divide = false;
-    weigher.unbounded = 1e-9;  // or one cell in a million is large, which a mean cannot judge
+    weigher.unbounded = 1e-9;  // larger: a cell in a million is too large for a mean
     const oracle::Verdict v = oracle::expect_bias_decay(0, 32, 10000, [&](uint64_t n) {
         weigher.intensity = double(n);
         Rng rng{random.bits()};
@@ -119,7 +118,7 @@ TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1
 TEST_CASE("vor draws its strip anew until every cell is bounded, whichever is not") {
     oracle::Random random(seed_here());
     Weigher weigher;
-    weigher.unbounded = 20;  // cells a square, as a bound: a narrow strip
+    weigher.unbounded = 20;  // expected cells as a bound: a narrow strip
     int without_weight = 0;
     for (int k = 0; k < 400; ++k)
         for (double w : weigher(Weighting::vor, scattered(20, random), random.bits()))
@@ -132,7 +131,7 @@ TEST_CASE("vor draws its strip anew until every cell is bounded, whichever is no
 TEST_CASE("fvor without a cell inside falls back to the plain mean, and counts it") {
     oracle::Random random(seed_here());
     Weigher weigher;
-    weigher.intensity = 1e-3;  // nobody in the strip, whose width is set by it
+    weigher.intensity = 1e-3;  // a strip of this width is empty
     uint64_t uniform = 0;
     for (int k = 0; k < 400; ++k) {
         const auto& w = weigher(Weighting::fvor, scattered(3, random), random.bits());
@@ -154,7 +153,7 @@ TEST_CASE("torus: unbiased, however few the samples") {
 }
 
 TEST_CASE("clipped: n times the bias has the limit that the border's half-plane gives") {
-    // Samples near a border sit on its inner side: with sites of intensity 1 in a half-plane, the
+    // Samples near a border sit on its inner side.  For sites of intensity 1 in a half-plane, the
     // displacement from a point to its nearest site, integrated over the distance of the point, is
     //   c = int_0^1 sqrt(1 - s^2) / k(s)^2 ds,  k = pi - acos s + s sqrt(1 - s^2)
     // inwards; inside, E r^2 = 1/pi.  With f to second order and Gauss's theorem,
@@ -167,7 +166,7 @@ TEST_CASE("clipped: n times the bias has the limit that the border's half-plane 
         c += root / (area * area) / steps;
     }
     CHECK(c == doctest::Approx(1 / (2 * std::numbers::pi)).epsilon(1e-6));
-    const double limit = (1 / (4 * std::numbers::pi) - c) * -4;  // of bump: 1/pi
+    const double limit = (1 / (4 * std::numbers::pi) - c) * -4;  // for bump: 1/pi
     oracle::Random random(seed_here());
     Pair pair;
     const oracle::Verdict v = oracle::expect_bias_decay(
@@ -179,7 +178,7 @@ TEST_CASE("gradients, reconstruction and border correction are exact for planes"
     oracle::Random random(seed_here());
     Voronoi v;
     v.with_neighbours = true;
-    // A jittered lattice: no cell has its neighbours in line.
+    // A jittered lattice: no cell has collinear neighbours.
     std::vector<Site> sites;
     for (int i = 0; i < 400; ++i) {
         const double x = i % 20 + 0.2 + 0.6 * random(), y = i / 20 + 0.2 + 0.6 * random();
@@ -198,9 +197,9 @@ TEST_CASE("gradients, reconstruction and border correction are exact for planes"
 }
 
 TEST_CASE("border correction: 4 pi n times it tends to the integral of the outward derivative") {
-    // Of the bowl that is the integral of its Laplacian, 6.  Neighbours at the border are on one
-    // side, which costs the gradients O(n^-1/2); 2 C(4n) - C(n) has lost that, and O(1/n) is left:
-    // some 0.003 here.
+    // For the bowl, the integral of the Laplacian is 6.  At the border all neighbours are on one
+    // side: gradients err by O(n^-1/2). 2 C(4n) - C(n) cancels that and leaves O(1/n), some 0.003
+    // here.
     oracle::Random random(seed_here());
     Voronoi v;
     v.with_neighbours = true;
@@ -225,8 +224,8 @@ TEST_CASE("a site whose neighbours are in line has no gradient, nor has one of t
     v.clipped(sites, unit_square);
     const std::vector<double> f = {1, 2};
     CHECK(gradient(v, sites, f, 0).x == 0);
-    // From the middle to neighbours east and west, one of them turned: the plane's slopes are there
-    // only if it is turned enough.
+    // The middle has neighbours to the east and west, one of them rotated.  The plane's slopes are
+    // determined only if the rotation is large enough.
     for (double turn : {0.02, 0.5}) {
         const std::vector<Site> line = {
             {0.5, 0.5}, {0.9, 0.5}, {0.5 - 0.4 * std::cos(turn), 0.5 - 0.4 * std::sin(turn)}};

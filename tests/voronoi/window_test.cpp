@@ -1,4 +1,4 @@
-// voronoi/window_test.cpp  sites of a window: units, images of a torus, copies
+// voronoi/window_test.cpp  sites in a window: units, images on a torus, copies
 #include "voronoi/window.h"
 
 #include <doctest/doctest.h>

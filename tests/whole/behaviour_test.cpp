@@ -1,4 +1,4 @@
-// whole/behaviour_test.cpp  what the program accepts, says and shows; an image depends on its seed
+// whole/behaviour_test.cpp  accepted scenes and options, output, images that depend on the seed
 #include <set>
 
 #include "base/vec.h"
@@ -39,14 +39,14 @@ TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped i
         {good, "--size 1x1", "", 1, 1},
         {good, "--size 16384x1", "", 16384, 1},
         {good, "--size 3x5", "", 3, 5},
-        // Inside balls, inside a box of light, and a turned one: coplanar points.
+        // Cameras inside balls, inside a glowing box, and inside a rotated one: coplanar points.
         {good + "glass g 1.5\nsphere 0 0 5 1 g\n"},
         {good + "sphere 1 0 5 3 l\n"},
-        {good + "light t 1 1 1 twosided m\nsphere 0 0 3 2 t\n"},  // on it
+        {good + "light t 1 1 1 twosided m\nsphere 0 0 3 2 t\n"},  // the eye is on the sphere
         {good + "box 1 1 1 0 -.5 -.5 4.5 l\n"},
         {camera + in_light, "--spp 200"},
         {camera + in_light, "--spp 200 --light nee --direction uniform"},
-        // Extremes of every number.
+        // The extremes of every number.
         {good + "phong p .5 .5 .5 .5 .5 .5 1e6\nphong q 0 0 0 1 1 1 0\nsphere 1 0 0 1 p\n"
                 "sphere -1 0 0 1 q\n",
          "--spp 200"},
@@ -94,7 +94,7 @@ TEST_CASE("a scene's meaning does not depend on its line ends, comments, blanks 
         good.substr(0, good.size() - 1),
         replaced(good, ".5", "+5e-1"),
         "# sphere\n" + good + "# size 3 3\n#",
-        good + "light other 3 3 3\n",  // nothing is made of it
+        good + "light other 3 3 3\n",  // an unused light
     };
     for (const std::string& scene : scenes)
         for (const std::string name :
@@ -273,7 +273,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         } else if (of_samples.contains(key)) {
             CHECK(three.at(key) == value);
             CHECK(number(one, key) > 0);
-            // The same pilot chooses the same replications.
+            // The same pilot samples lead to the same replications.
             CHECK((value == twice.at(key)) == (key == "sets_per_pixel"));
         } else {
             CHECK(of_time.contains(key));
@@ -289,7 +289,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
     const auto band = stats(line + "--rows 2-5");
     CHECK(band.at("rows") == "\"2-5\"");
     CHECK(band.at("height") == "4");
-    const auto view = stats(line + "--view normal");  // a ray a sample
+    const auto view = stats(line + "--view normal");  // one ray per sample
     CHECK(number(view, "rays") == number(view, "samples_per_pixel") * 16 * 8);
 }
 
@@ -325,7 +325,7 @@ TEST_CASE("on a terminal a bar shows time elapsed and time left, and goes; --qui
 }
 
 TEST_CASE("a sample that no image can hold: exit status 1, told where, nothing written") {
-    // A lamp of 1e30 at 1e-6 of a quad that just fills pixel 2,1: 1e41, too much for float.
+    // A lamp of 1e30 on 1e-6 of a quad that fills pixel 2,1 exactly: 1e41 exceeds float.
     const Place place(
         "size 3 2\ncamera 0 0 3.2e-6  0 0 0  3.579821\ndiffuse m .5 .5 .5\n"
         "quad .5e-7 -1e-7 0  1e-7 0 0  0 1e-7 0  m\npointlight 1e-7 0 1e-6 1e30 1e30 1e30\n");

@@ -11,8 +11,8 @@ using namespace closed_forms;
 
 namespace {
 
-// Of scenes that maps hold: what is known if light is scattered without end.  Most have nothing
-// that would scatter it twice.
+// A scene that maps support, and its radiance for unlimited bounces.  In most of these scenes light
+// scatters at most once.
 struct Endless {
     std::string name;
     Scene scene;
@@ -35,7 +35,7 @@ std::vector<Endless> endless_scenes(const std::vector<Known>& rows) {
     return list;
 }
 
-// Paths that end on maps of a wrong scale, 0 or one of particles.
+// Maps for the ends of paths, with a wrong scale: 0, or a multiple of the particles' map.
 KnownLight maps_of(const Scene& scene, double scale) {
     Mesh mesh = make_mesh(scene, double(diagonal(scene)) / 8);
     constexpr uint64_t n = 4096;
@@ -46,7 +46,7 @@ KnownLight maps_of(const Scene& scene, double scale) {
     return known_light(scene, std::move(mesh), std::move(map));
 }
 
-// One sample of what is known.
+// One sample of the known radiance.
 double measure(const Endless& e, const Gather& g, const Pattern& pattern, const Pattern& rest,
                uint64_t i) {
     const Sampler first(pattern, 0, i);
@@ -70,7 +70,7 @@ TEST_CASE("control and regression meet every closed form of diffuse triangles") 
                 const bool nee = !e.known->no_nee && kind == SamplerKind::halton;
                 Gather g{e.scene, {Direction::bsdf, LightMode::mis, 0}, known};
                 g.technique.light = nee ? LightMode::nee : LightMode::mis;
-                // The slope is another run's.
+                // The slope is that of another run.
                 if (scale == 3) g.slope = {real(0.3), real(0.3), real(0.4)};
                 CAPTURE(e.name);
                 CAPTURE(scale);

@@ -1,5 +1,4 @@
-// whole/closed_forms_test.cpp  scenes whose radiance is known, by every technique, at one
-// significance
+// whole/closed_forms_test.cpp  scenes of known radiance, by every technique, at one significance
 #include "app/options.h"
 #include "base/moments.h"
 #include "oracle/expect.h"
@@ -11,7 +10,7 @@ using namespace closed_forms;
 
 namespace {
 
-// As the user says them: a new option is one more row.
+// The options as a user writes them: a new option takes one more row.
 const char* const samplers[] = {"--sampler independent", "--sampler stratified", "--sampler halton",
                                 "--sampler sobol"};
 const char* const techniques[] = {
@@ -48,7 +47,7 @@ const char* why_empty(const Known& k, const Scene& scene, const Options& o, bool
     return nullptr;
 }
 
-// One sample of what is known.
+// One sample of the known radiance.
 double measure(const Known& k, const Scene& scene, const Options& o, const Pattern& pattern,
                uint64_t sample) {
     if (!k.start) return double(mean_of(radiance(scene, o.technique, pattern, 0, 0, sample)));
@@ -57,13 +56,13 @@ double measure(const Known& k, const Scene& scene, const Options& o, const Patte
     return double(mean_of(Li(scene, o.technique, k.start(u), sampler)));
 }
 
-// A cell of the matrix: why it is empty, or its verdict.
+// A cell of the matrix: the reason why it is empty, or its verdict.
 struct Cell {
     const char* empty = nullptr;
     oracle::Verdict verdict;
-    double score = 0;    // standard normal if all is right
+    double score = 0;    // standard normal if correct
     double error = 0;    // standard error relative to the truth
-    bool exact = false;  // nothing but rounding
+    bool exact = false;  // only rounding errors
 };
 
 // The standard normal number with the p-value of t with df degrees of freedom.
@@ -75,9 +74,9 @@ double normal_score(double t, double df) {
     return std::copysign(low, t);
 }
 
-// n independent samples; or, where samples depend on each other, n in 64 randomisations.  Samples
-// are bounded (cells in which they are not stay empty), so that only skewness can mislead the
-// t-test; it keeps its alpha from n = 1000 skewness^2 on.
+// n independent samples, or n in 64 randomisations if samples are dependent.  Samples are bounded
+// (cells with unbounded ones stay empty).  So only skewness can mislead the t-test, and it keeps
+// its alpha from n = 1000 skewness^2 on.
 Cell check(const Known& k, const Scene& scene, const Options& o, uint64_t n) {
     const bool independent = o.sampler == SamplerKind::independent;
     const int replicates = independent ? 1 : 64;
@@ -109,9 +108,9 @@ Cell check(const Known& k, const Scene& scene, const Options& o, uint64_t n) {
     return cell;
 }
 
-// All cells of one scene as one verdict: they share its truth, and most of the program.  The sum of
-// m standard normals over sqrt m is one (Stouffer 1949); a common relative bias moves it by the sum
-// of bias / error over sqrt m.
+// One verdict for all cells of a scene, which share its truth and most of the program.  The sum of
+// m standard normals over sqrt m is standard normal (Stouffer 1949).  A common relative bias shifts
+// it by the sum of bias / error over sqrt m.
 struct Pooled {
     double score = 0;
     oracle::Verdict verdict{true, 1, 0, "exact"};
@@ -206,7 +205,7 @@ TEST_CASE("polygons stand for discs within 1e-5") {
 TEST_CASE("every technique finds every closed form") {
     const std::vector<Known> rows = known_scenes();
     std::vector<std::vector<Cell>> matrix;
-    std::vector<Pooled> all;  // of each row
+    std::vector<Pooled> all;  // for each row
     double chi2 = 0, scores = 0;
     for (const Known& k : rows) {
         const Scene scene = parse_scene(k.text, k.name).scene;
@@ -232,7 +231,7 @@ TEST_CASE("every technique finds every closed form") {
         matrix.push_back(cells);
     }
     print_matrix(rows, matrix, all);
-    // Standard errors tell the truth: the sigmas are standard normal.
+    // If the standard errors are right, the scores are standard normal.
     const double above = oracle::p_of_chi2(chi2, scores), p = 2 * std::min(above, 1 - above);
     ++oracle::statistical_checks;
     oracle::alpha_spent += 1e-6;

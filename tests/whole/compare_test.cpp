@@ -1,4 +1,4 @@
-// whole/compare_test.cpp  compare by hand, and how programs run others
+// whole/compare_test.cpp  comparisons verified by hand, and how programs run other programs
 #include "base/complaint.h"
 #include "base/program.h"
 #include "film/png.h"
@@ -30,8 +30,8 @@ Comparison compare(const Folder& folder, const std::string& words) {
     return c;
 }
 
-// A film of one row whose pixels have two replications of one sample, m - s and m + s: a mean of m
-// with a variance of s^2.
+// A film of one row.  Pixels have two replications of one sample, m - s and m + s: the mean is m
+// and its variance is s^2.
 void write_film(const Folder& folder, const std::string& name, const std::vector<float>& m,
                 const std::vector<float>& variance) {
     const int width = int(m.size() / 3);
@@ -56,14 +56,14 @@ TEST_CASE("compare: d, d_rel, ratio of means, largest error and where, as by han
     g[7] = 3;  // -5 at the bottom left, pixel 0,1
     folder.write("f.pfm", pfm(2, 2, f));
     folder.write("g.pfm", pfm(2, 2, g));
-    // Sums: 78 and 75, squares of f: 650, of g: 623, squares of the errors: 29.
+    // The sums are 78 and 75, squares of f: 650, of g: 623, squares of the errors: 29.
     const Comparison c = compare(folder, "f.pfm g.pfm"), back = compare(folder, "g.pfm f.pfm"),
                      same = compare(folder, "f.pfm f.pfm");
     CHECK(c.d == doctest::Approx(std::sqrt(29 / 12.0)).epsilon(1e-5));
     CHECK(c.d_rel == doctest::Approx(std::sqrt(29 / 650.0)).epsilon(1e-5));
     CHECK(c.ratio == doctest::Approx(75 / 78.0).epsilon(1e-5));
     CHECK(said(c.largest, c.x, c.y) == "5 0 1");
-    // The other is the reference.
+    // The other image is the reference.
     CHECK(back.d == c.d);
     CHECK(back.d_rel == doctest::Approx(std::sqrt(29 / 623.0)).epsilon(1e-5));
     CHECK(back.ratio == doctest::Approx(78 / 75.0).epsilon(1e-5));
@@ -117,13 +117,13 @@ TEST_CASE("compare: two films show the same, or not") {
         CHECK(o.status == (p < 1e-6 ? 1 : 0));
         return std::pair{sigmas, p};
     };
-    // Variance of the difference 2 x 2.25: 3 / sqrt(4.5) = 1.41 sigma, p = .1573 of one channel,
-    // 1 - .8427^3 of the worst of three; of 2 sigma .0455 and .1304.
+    // The variance of the difference is 2 x 2.25: 3 / sqrt(4.5) = 1.41 sigma.  One channel has p =
+    // .1573, the worst of three 1 - .8427^3; for 2 sigma these are .0455 and .1304.
     CHECK(verdict("f.film g.film") == std::pair{1.41, 0.402});
     CHECK(verdict("g0.film f.film") == std::pair{-2.0, 0.13});
     CHECK(verdict("f0.film f0.film") == std::pair{0.0, 1.0});
     CHECK(verdict("f0.film g0.film").second == 0);
-    // Renders: another seed shows the same, another depth does not.
+    // Renders agree for another seed, and differ for another depth.
     const std::string scene =
         "camera 0 1 5 0 0 0 60\ndiffuse grey 0.5 0.5 0.5\nlight lamp 9 9 9\n"
         "quad -5 0 -5 0 0 10 10 0 0 grey\nsphere 0 3 0 1 lamp\nsphere 1 0.5 1 0.5 grey\n";
@@ -135,12 +135,12 @@ TEST_CASE("compare: two films show the same, or not") {
                                      {"d", "--sets 1"}}) {
         const std::string film = folder / (name + ".film"), image = folder / (name + ".pfm");
         place.render(options + more + " -o " + image + " --keep " + film);
-        // A film's image is the image.
+        // The film and the image have the same pixels.
         CHECK(run(folder, "compare " + film + " " + image + " --limit 0").status == 0);
     }
     CHECK(verdict("a.film b.film").second > 1e-6);
     CHECK(verdict("a.film c.film").second < 1e-6);
-    // One replication tells no variance: neither do images.
+    // One replication has no variance, and images have none, either.
     for (const std::string words : {"a.film d.film", "a.film b.pfm", "a.pfm b.film"}) {
         const Outcome o = run(folder, "compare " + words);
         CHECK(o.status == 0);
@@ -152,13 +152,13 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
     const Folder folder;
     folder.write("f.pfm", pfm(1, 1, {50, 50, 50}));
     folder.write("g.pfm", pfm(1, 1, {51, 51, 51}));         // d_rel = 1/50
-    write_film(folder, "h.film", {50, 52, 50}, {0, 0, 0});  // 2 / 50 / sqrt(3), by 2 sigma
+    write_film(folder, "h.film", {50, 52, 50}, {0, 0, 0});  // 2 / 50 / sqrt(3), 2 sigma
     write_film(folder, "f1.film", {50, 50, 50}, {1, 1, 1});
     write_film(folder, "f.film", {50, 50, 50}, {0, 0, 0});
     write_film(folder, "g.film", {51, 51, 51}, {0, 0, 0});
     write_film(folder, "black.film", {0, 0, 0}, {0, 0, 0});
     folder.write("black.pfm", pfm(1, 1, {0, 0, 0}));
-    // p of 2 sigma in one of three channels is .130384.
+    // The p-value of 2 sigma in one of three channels is .130384.
     const std::string h = "f1.film h.film ";
     const struct {
         std::string words;
@@ -195,7 +195,7 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
         CHECK(o.out.substr(last + 1) == row.verdict + "\n");
         CHECK(o.status == (row.verdict.starts_with("same: ") ? 0 : 1));
     }
-    CHECK(run(folder, "compare f.pfm g.pfm").status == 0);  // nothing is asked
+    CHECK(run(folder, "compare f.pfm g.pfm").status == 0);  // without a limit
 }
 
 TEST_CASE("compare: images that cannot be compared are refused, and nothing is written") {
@@ -208,7 +208,7 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
     folder.write("inf.pfm", pfm(1, 2, {1, 1, 1, 1, 1, -INFINITY}));
     folder.write("cut.pfm", one.substr(0, one.size() - 1));
     folder.write("head.pfm", "PF\n1 1\n");
-    folder.write("last.pfm", "PF\n1 1\n-1.00");  // 12 bytes, as many as a pixel
+    folder.write("last.pfm", "PF\n1 1\n-1.00");  // 12 bytes, like one pixel
     folder.write("long.pfm", one + "x");
     folder.write("empty.pfm", "");
     folder.write("text.pfm", "a picture\n");

@@ -1,7 +1,7 @@
-// whole/extremes.h  what precision buys: each configuration with the error it may have
+// whole/extremes.h  the gain from precision: configurations with bounds on their errors
 //
-// The rows of extremes_*_test.cpp are asserted there in the precision of the build; `make extremes`
-// runs them in both and writes reference/extremes.md.
+// The extremes_*_test.cpp assert their rows in the precision of the build. `make extremes` runs
+// them in both precisions and writes reference/extremes.md.
 #pragma once
 #include <cstdio>
 #include <cstdlib>
@@ -28,17 +28,16 @@ std::function<double()> of(F error, Numbers... numbers) {
     return [=] { return error(numbers...); };
 }
 
-// `error` runs the configuration with this build's `real`.  Where any error will do in float, it
-// cannot tell the configuration from another.
+// `error` runs the configuration with this build's `real`.  A bound of `any` in float means that
+// float cannot represent the configuration.
 struct Row {
     const char* name;
     Bounds bounds;
     std::function<double()> error;
-    bool in_suite = true;  // else too long for it: `make extremes` alone
+    bool in_suite = true;  // too long otherwise: only by `make extremes`
 };
 
-// With EXTREMES=FILE every row, also the long ones, is added to that file: name, both bounds,
-// error.
+// EXTREMES=FILE appends every row, also the long ones, to that file: name, both bounds, error.
 inline void check_rows(const std::vector<Row>& rows) {
     const char* path = std::getenv("EXTREMES");
     std::FILE* out = path ? std::fopen(path, "a") : nullptr;
@@ -60,14 +59,14 @@ inline double relative(big value, big truth) {
     return double(std::abs(value - truth) / std::abs(truth));
 }
 
-// Midpoints of n x n cells of the unit square.
+// Visits the midpoints of n x n cells of the unit square.
 template <class F>
 void each_cell(int n, F f) {
     for (int i = 0; i < n * n; ++i)
         f(vec2{(real(i % n) + real(0.5)) / real(n), (real(i / n) + real(0.5)) / real(n)});
 }
 
-// The worst that `f` sees at these cells, or in n trials.
+// The worst error that `f` finds in these cells, or in n trials.
 template <class F>
 double worst_of_cells(int n, F f) {
     Worst worst;

@@ -1,4 +1,4 @@
-// whole/extremes_light_test.cpp  lights near, far, faint, clipped and edge-on
+// whole/extremes_light_test.cpp  near, far, faint, clipped and edge-on lights
 #include "whole/extremes.h"
 #include "world/scene.h"
 
@@ -12,7 +12,7 @@ Light bright_sphere(vec3 centre, real r) {
     return l;
 }
 
-// Irradiance at p, n up from light l, by midpoints: mean of cos / pdf.
+// Irradiance at p, normal up, from light l by midpoints: the mean of cos / pdf.
 double irradiance(const Light& l, vec3 p, int cells) {
     double sum = 0;
     each_cell(cells, [&](vec2 u) {
@@ -39,7 +39,7 @@ double cone_sines() {
     });
 }
 
-// 1 / pdf is the solid angle; light of radius 1 seen from a distance of d.
+// 1 / pdf is the solid angle; a light of radius 1 is seen from a distance of d.
 double sphere_light_pdf(real d) {
     return worst_of("pdf of a sphere light", 1000, [&](Dice& random, Worst& worst) {
         const Light l = bright_sphere(random.direction(), 1);
@@ -53,8 +53,8 @@ double sphere_light_pdf(real d) {
     });
 }
 
-// Normal where the ray meets the sphere: beta between it and -wi has sin(beta) = sin(theta) /
-// sin(sigma), so the angle at the centre is beta - theta.  From u in long double.
+// The normal at the ray's hit on the sphere: the angle beta between it and -wi has sin(beta) =
+// sin(theta) / sin(sigma), so the angle at the centre is beta - theta. u is in long double.
 double sphere_light_normal(real d) {
     return worst_of("normal of a sphere light", 20000, [&](Dice& random, Worst& worst) {
         const Light l = bright_sphere({}, real(0.01));
@@ -74,7 +74,7 @@ double sphere_light_normal(real d) {
     });
 }
 
-// E = pi sin^2(sigma) under the middle of the light, h above whose surface the receiver is.
+// E = pi sin^2(sigma) under the middle of the light; the receiver is h below the light's surface.
 double sphere_light_from(real r, real h) {
     const Light l = bright_sphere({0, 0, r + h}, r);
     const big d = l.p.z;
@@ -82,7 +82,7 @@ double sphere_light_from(real r, real h) {
 }
 
 // k = cos / sin(sigma): E = s^3 (k acos(-k) + sqrt(1 - k^2) (2 + k^2) / 3) for small s (relative
-// error 1.4 s^2); 0 is half above the horizon.
+// error 1.4 s^2).  For k = 0 half of the light is above the horizon.
 double clipped_sphere_light(real s, real k) {
     const real c = k * s;
     const Light l = bright_sphere({std::sqrt(1 - c * c), 0, c}, s);
@@ -96,7 +96,7 @@ bool sane(const std::optional<LightSample>& s) {
                   !std::isnan(s->pdf));
 }
 
-// From the surface of a sphere light, one number below and above, and its inside.
+// Receivers on the surface of a sphere light, one ulp below and above it, and inside.
 double insane_on_a_light() {
     Dice random{{oracle::seed_of("on a light")}};
     int insane = 0;
@@ -112,7 +112,7 @@ double insane_on_a_light() {
     return insane;
 }
 
-// From corners, edges, the plane of a quad and points next to it.
+// Receivers at corners, on edges, in the plane of a quad and next to it.
 double insane_beside_a_light() {
     Dice random{{oracle::seed_of("beside a light")}};
     int insane = 0;
@@ -131,8 +131,8 @@ double insane_beside_a_light() {
     return insane;
 }
 
-// A quad seen at a grazing angle from h above its plane, point by point: cos / pdf is
-// x h A / d^4 for the normal +x.
+// A quad seen at a grazing angle from h above its plane, point by point: cos / pdf is x h A / d^4
+// for the normal +x.
 double edge_on(real h) {
     const Light l = quad_light({1, real(-0.5), h}, {0, 1, 0}, {1, 0, 0});
     return worst_of_cells(32, [&](Worst& worst, vec2 u) {
@@ -148,7 +148,7 @@ big exact_difference(double a, double b, double c, double d) {
     return (big(ab) - cd) + (big(std::fma(a, b, -ab)) - std::fma(c, d, -cd));
 }
 
-// Area of a triangle whose edges differ by 2^-narrow.
+// Area of a triangle with edges that differ by 2^-narrow.
 double sliver_light(int narrow) {
     const real off = std::exp2(real(-narrow));
     return worst_of("sliver light", 10000, [&](Dice& random, Worst& worst) {
@@ -159,7 +159,7 @@ double sliver_light(int narrow) {
     });
 }
 
-// Point light at a distance of 1e-9 to 1e9: L d^2 = I.
+// A point light at a distance of 1e-9 to 1e9: L d^2 = I.
 double light_of_a_point() {
     Light l;
     l.L = {1, 1, 1};
@@ -170,8 +170,8 @@ double light_of_a_point() {
     });
 }
 
-// A light `ratio` times as powerful as another: the part of all random numbers that choose each
-// against the probability that estimates are divided by.
+// One light is `ratio` times as powerful as another.  Compares the part of all random numbers that
+// choose each with the probability that estimates divide by.
 double choice_of_lights(double ratio) {
     Scene s;
     Material faint, bright;
@@ -181,7 +181,7 @@ double choice_of_lights(double ratio) {
     prepare(s);
     constexpr int digits = std::numeric_limits<real>::digits;
     const uint64_t all = uint64_t(1) << digits;
-    auto first_of = [&](size_t light) {  // number that chooses this light or a later one
+    auto first_of = [&](size_t light) {  // the first number for this light or a later one
         uint64_t low = 0, high = all;
         while (low < high) {
             const uint64_t middle = (low + high) / 2;
@@ -222,7 +222,7 @@ TEST_CASE("extremes of lights: no more error than they may have") {
         {"sphere light of 10^-12 sr: 1 / pdf", ulps(16), of(sphere_light_pdf, 1.7725e6)},
         {"sphere light 10 radii away: normal", ulps(32), of(sphere_light_normal, 10)},
         {"sphere light 10^7 radii away: normal", ulps(32), of(sphere_light_normal, 1e7)},
-        // So near that float cannot tell outside from inside: no light samples there.
+        // Float cannot separate outside from inside so near the light: there are no light samples.
         {"10^-7 above a sphere light: irradiance", within(64 * d_ulp, any),
          of(sphere_light_from, 1, 1e-7)},
         {"10^-3 above a light of radius 10^6: irradiance", within(64 * d_ulp, any),

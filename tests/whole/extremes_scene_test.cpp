@@ -1,4 +1,4 @@
-// whole/extremes_scene_test.cpp  a scene anywhere, at any size and brightness
+// whole/extremes_scene_test.cpp  a scene at any place, size and brightness
 #include "oracle/oracle.h"
 #include "path/paths.h"
 #include "whole/extremes.h"
@@ -6,7 +6,7 @@
 
 namespace {
 
-// Lights of every kind, every material; lengths times k, then moved.
+// Lights of every kind and every material; lengths are multiplied by k, then translated.
 std::string room(double k, vec3 move = {}, double brightness = 1, bool point_light = true) {
     auto number = [](double x) { return oracle::say("%.17g ", x); };
     auto length = [&](double x) { return number(k * x); };
@@ -34,7 +34,7 @@ std::string room(double k, vec3 move = {}, double brightness = 1, bool point_lig
     return s;
 }
 
-// Radiance of every sample of every pixel.
+// The radiance of every sample of every pixel.
 std::vector<rgb> samples_of(const std::string& text, int spp) {
     const Scene scene = parse_scene(text, "extreme").scene;
     const Pattern pattern{SamplerKind::independent, oracle::seed_of("room")};
@@ -57,7 +57,7 @@ const std::vector<rgb>& plain_room() {
     return samples;
 }
 
-// Samples that are not factor times the others, bit for bit.
+// Counts samples that differ from factor times the others, bit for bit.
 double different(const std::vector<rgb>& a, real factor, const std::vector<rgb>& b) {
     int n = 0;
     for (size_t i = 0; i < a.size(); ++i) n += !(a[i] * factor == b[i]);
@@ -72,8 +72,8 @@ double mean_of_all(const std::vector<rgb>& samples) {
 
 double room_scaled(int by) { return different(plain_room(), 1, room_samples(std::ldexp(1.0, by))); }
 
-// The largest and the smallest lengths of a scene file; without the point light, whose intensity
-// would not fit.
+// The largest and smallest lengths of a scene file.  The scene has no point light: its intensity
+// would overflow.
 double room_at_its_limits() {
     const int most = is_double ? 96 : 26;
     auto at = [](int by) { return samples_of(room(std::ldexp(1.0, by), {}, 1, false), room_spp); };
@@ -90,7 +90,7 @@ double room_mean(double k, real move) {
     return relative(mean_of_all(room_samples(k, {move, -move, move})), mean_of_all(plain_room()));
 }
 
-// rho = 1 - 1e-7 and Le = 1 everywhere, 1e4 scatterings: L = (1 - rho^(D+1)) / (1 - rho).
+// rho = 1 - 1e-7 and Le = 1 everywhere, 1e4 bounces: L = (1 - rho^(D+1)) / (1 - rho).
 double white_furnace() {
     const Scene scene = parse_scene(
                             "camera 0 0 1.8  0 0.1 0  60\ndepth 10000\n"
@@ -112,7 +112,7 @@ double white_furnace() {
 
 TEST_CASE("extremes of scenes: no more error than they may have") {
     check_rows({
-        // A few of 4096 paths may part where float rounds another way.
+        // A few of 4096 paths may diverge where float rounds differently.
         {"scene scaled by 2^20: samples not the same, bit for bit", to_the_bit,
          of(room_scaled, 20)},
         {"scene scaled by 2^-20: samples not the same", to_the_bit, of(room_scaled, -20)},

@@ -1,4 +1,4 @@
-// whole/extremes_sums_test.cpp  numbers of paths, and sums over them
+// whole/extremes_sums_test.cpp  large numbers of paths, and sums over them
 #include "base/stats.h"
 #include "film/fill.h"
 #include "path/samplers.h"
@@ -6,7 +6,7 @@
 
 namespace {
 
-// Radical inverses at and beside an index, against the sum of d_k b^(-k-1).
+// Radical inverses at an index and below it, against the sum of d_k b^(-k-1).
 double halton_at(uint64_t index) {
     Worst worst;
     for (uint32_t base : {2u, 3u, 5u, 541u, 104729u})
@@ -20,7 +20,7 @@ double halton_at(uint64_t index) {
     return worst.value;
 }
 
-// Blocks of b^k scrambled points at the far end of the indices: intervals of b^-k without exactly
+// Blocks of b^k scrambled points at very large indices: counts intervals of b^-k without exactly
 // one point.
 double halton_blocks() {
     Dice random{{oracle::seed_of("blocks")}};
@@ -32,7 +32,7 @@ double halton_blocks() {
             std::vector<int> points(n);
             for (uint64_t i = start; i < start + n; ++i) {
                 const real x = scrambled_radical_inverse(base, i, shift, factor);
-                // A point on a border may be rounded across it.
+                // Rounding may move a point across a border.
                 ++points[std::min<uint64_t>(uint64_t(x * real(n) * (1 + 8 * ulp)), n - 1)];
             }
             for (int p : points) wrong += p != 1;
@@ -40,7 +40,7 @@ double halton_blocks() {
     return wrong;
 }
 
-// The 2^40th sample of a pixel: grids are still complete, and no number leaves [0,1).
+// The 2^40th sample of a pixel: grids are still complete, and all numbers are in [0,1).
 double late_samples() {
     int wrong = 0;
     const uint64_t late = uint64_t(1) << 40;
@@ -61,8 +61,8 @@ double late_samples() {
     return wrong + !(to_unit(0xffffffff80u) < 1) + !(to_unit(UINT64_MAX) < 1);
 }
 
-// 1e9 numbers, 0 ... 999 a million times each, in 1000 parts: mean 499.5, variance
-// (1000^2 - 1) / 12 n / (n - 1).
+// 1e9 numbers in 1000 parts, each of 0 ... 999 a million times: mean 499.5, variance (1000^2 - 1) /
+// 12 n / (n - 1).
 double merged_billion() {
     Moments part, all;
     for (int i = 0; i < 1000000; ++i) part.add(i % 1000);
@@ -71,25 +71,25 @@ double merged_billion() {
     return std::max(relative(all.mean, 499.5), relative(all.variance(), truth));
 }
 
-// The film's mean of 1e9 samples of one pixel, 0.1 and 0.3 by turns, one by one.
+// The film's mean of 1e9 samples of one pixel, alternately 0.1 and 0.3, one by one.
 double billion_one_by_one() {
     const real low = real(0.1), high = real(0.3);
     const Film film = filled({1, 1}, 1, 1000000000, [&](const PixelSample& s, Tally&) {
         const real L = s.i % 2 ? high : low;
         return rgb{L, L, L};
     });
-    // The image is stored as float: rounded once more, by 6e-8.
+    // The image stores float: one more rounding, 6e-8.
     return relative(image_of(film).at(0, 0)[0], (double(low) + double(high)) / 2);
 }
 
-// Mean 1e8, sigma 1: moments of doubles.
+// Moments of doubles with mean 1e8 and sigma 1.
 double variance_far_from_zero() {
     Moments m;
     for (int i = 0; i < 100000; ++i) m.add(1e8 + (i % 2 ? 1 : -1));
     return relative(m.variance(), 1e5 / (1e5 - 1));
 }
 
-// The same as radiance, in the film.
+// The same numbers as radiance in the film.
 double film_far_from_zero() {
     Film film = make_film({1, 1}, 0);
     fill(film, 1000, [](const PixelSample& s, Tally&) {

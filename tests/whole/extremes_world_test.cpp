@@ -7,8 +7,8 @@ namespace {
 
 // ---- Spheres and triangles ----------------------------------------------------------------------
 
-// Part of the rays that miss; how far o + t d, and the point that paths use, are off the surface,
-// in distances at most and in radii in the mean.
+// The part of rays that miss, and the distance of o + t d and of the paths' point from the surface:
+// the maximum in distances, the mean in radii.
 struct FarSphere {
     double missed = 0, hit_off = 0, hit_mean = 0, point_off = 0, point_mean = 0;
 };
@@ -45,7 +45,7 @@ double over_a_planet() {
     return hit ? relative(hit->t, real(1e-3)) : HUGE_VAL;
 }
 
-// Rays that leave a surface point outwards, at any angle, and meet their own shape.
+// Counts rays that leave a surface point outwards, at any angle, and hit their own shape.
 double met_again() {
     Dice random{{oracle::seed_of("met again")}};
     int again = 0;
@@ -74,7 +74,7 @@ double met_again() {
     return again;
 }
 
-// Rays from inside, aimed at corners and edges, that find a way out of the mesh.
+// Counts rays from inside, aimed at corners and edges, that leave the mesh.
 double leaks(Triangles mesh, vec3 move) {
     for (Shape& s : mesh) s = {s.a + move, s.b + move, s.c + move};
     const Tree bvh(mesh);
@@ -92,7 +92,7 @@ double leaks(Triangles mesh, vec3 move) {
     return leaked;
 }
 
-// Rays along axes, within the faces of boxes and of the tree: tree against loop.
+// Rays along axes, in the faces of boxes and of the BVH: compares the BVH with a loop.
 double along_axes() {
     Dice random{{oracle::seed_of("along axes")}};
     Scene boxes;
@@ -120,7 +120,7 @@ double along_axes() {
     return wrong;
 }
 
-// Of coincident shapes the first is seen, whatever surrounds them.
+// A ray sees the first of coincident shapes, whatever surrounds them.
 double coincident() {
     Dice random{{oracle::seed_of("coincident")}};
     int wrong = 0;
@@ -142,7 +142,7 @@ double coincident() {
     return wrong;
 }
 
-// A sheet `gap` before a wall, seen from about 10 away: part of the rays that see the wall.
+// A sheet `gap` before a wall, about 10 away: the part of rays that hit the wall.
 double sheet_before_wall(real gap) {
     std::vector<Shape> shapes;
     for (real z : {real(0), gap}) shapes.push_back({{-20, -20, z}, {20, -20, z}, {0, 30, z}});
@@ -158,7 +158,7 @@ double sheet_before_wall(real gap) {
     return double(wall) / n;
 }
 
-// The same sheet over a floor: part of the shadow rays from the floor that pass it.
+// The same sheet over a floor: the part of the floor's shadow rays that miss the sheet.
 double shadow_of_sheet(real gap) {
     const Shape floor{{-20, -20, 0}, {20, -20, 0}, {0, 30, 0}};
     const Tree bvh({floor, {{-20, -20, gap}, {20, -20, gap}, {0, 30, gap}}});
@@ -172,8 +172,8 @@ double shadow_of_sheet(real gap) {
     return double(lit) / n;
 }
 
-// Triangles with edges of 10^-k, and with no area, as scenes take them: each is dropped, or has
-// its normal: the product of its edges as rounded.
+// Triangles with edges of 10^-k, and without area, as scenes accept them.  Each is dropped, or has
+// as its normal the product of its rounded edges.
 double tiny_normals() {
     Scene scene;
     scene.materials.resize(1);
@@ -205,7 +205,7 @@ double few_shapes() {
 
 // ---- Directions ---------------------------------------------------------------------------------
 
-// Largest scalar product of two axes.
+// The largest scalar product of two axes.
 double skewness(const Frame& f) {
     return double(std::max({std::abs(dot(big3(f.s), f.t)), std::abs(dot(big3(f.t), f.n)),
                             std::abs(dot(big3(f.n), f.s))}));
@@ -218,7 +218,7 @@ double frames_anywhere() {
     return worst.value;
 }
 
-// Down to 1e-9, 1e-20 and 0 from both poles.
+// Directions 1e-9, 1e-20 and 0 from both poles.
 double frames_at_poles() {
     Worst worst;
     for (real z : {real(-1), real(1)})
@@ -229,7 +229,7 @@ double frames_at_poles() {
     return worst.value;
 }
 
-// Directions from the corners of the unit square: lengths off 1.
+// Directions from the corners of the unit square: the error of their lengths.
 double corners_of_the_square() {
     Worst worst;
     const real ends[] = {0, std::numeric_limits<real>::denorm_min(), ulp, real(0.5), below_one};
@@ -265,8 +265,8 @@ double lobe_sines() {
     });
 }
 
-// Mirrored at a cosine of 1e-6 by a lobe of exponent 1e5: its density, as `pdf` finds it from wi
-// against that from u; and the weight f cos / pdf, which must be ks (n+2) / (n+1) cos.
+// Reflection at a cosine of 1e-6 by a lobe of exponent 1e5.  Compares the density by `pdf` from wi
+// with that from u; the weight f cos / pdf must be ks (n+2) / (n+1) cos.
 struct Lobe {
     double density = 0, weight = 0;
 };
@@ -294,7 +294,7 @@ Material glass(real ior) {
 }
 vec3 at_cosine(real z) { return {std::sqrt((1 - z) * (1 + z)), 0, z}; }
 
-// Reflectance as sample_glass has it, against Fresnel's in long double.
+// The reflectance of sample_glass against Fresnel's in long double.
 double glass_off(real ior, bool outside, real z) {
     const BsdfSample s = sample(glass(ior), at_cosine(z), outside, 0, {}, Direction::bsdf);
     const big reflectance = s.wi.z > 0 ? big(s.pdf) : 1 - big(s.pdf);
@@ -330,7 +330,7 @@ double critical_glass() {
     return worst.value;
 }
 
-// f cos / pdf is 1 for what is reflected, eta^2 for what is refracted: index 10^-30 to 10^30.
+// f cos / pdf is 1 for reflection, eta^2 for refraction: index 10^-30 to 10^30.
 double glass_weights() {
     return worst_of("glass", 100000, [&](Dice& random, Worst& worst, int i) {
         const real ior = i % 3 ? random.decades(-30, 30) : random(real(0.5), 2);
@@ -358,14 +358,14 @@ double telescope(real degrees) {
     return worst.value;
 }
 
-// A field of view of 179.99 degrees: height of the image plane.
+// The height of the image plane for a field of view of 179.99 degrees.
 double wide_angle() {
     const real degrees = real(179.99);
     const Camera c = look_at({}, {0, 0, -1}, degrees);
     return relative(c.tan_half, std::tan(big(degrees) * big_pi / 360));
 }
 
-// Looking almost straight down: axes not orthonormal.
+// A view almost straight down: how far the axes are from orthonormal.
 double from_above(real off) {
     const Camera c = look_at({real(0.3) + off, 1, off / 3}, {real(0.3), real(0.2), 0}, 40);
     return double(
@@ -409,7 +409,7 @@ TEST_CASE("extremes of shapes and directions: no more error than they may have")
          of(sheet_before_wall, 1e-6)},
         {"sheet 10^-6 above a floor: part of the shadow rays that pass", within(0, any),
          of(shadow_of_sheet, 1e-6)},
-        // 1.5 ulp a component of the product, 3.5 of the unit vector; times sqrt(3).
+        // The product has 1.5 ulp per component, the unit vector 3.5; times sqrt(3).
         {"triangles from 1 to denormal, and without area: normal", ulps(9), tiny_normals},
         {"no shape, one shape, a ray that is not a number: wrong answers", to_the_bit, few_shapes},
 
@@ -426,8 +426,8 @@ TEST_CASE("extremes of shapes and directions: no more error than they may have")
         {"glass of index 1, cosines down to 10^-12: reflectance", ulps(8), glass_like_air},
         {"glass of index 1.5 ... 100, cosines down to 10^-12: reflectance", ulps(16),
          grazing_glass},
-        // 4 ulp of cos^2 cancel, the root of which is the refracted cosine over n cos; 1 - R is
-        // 2 (n + 1 / n) / cos times that: 2 (n^2 + 1) sqrt(4 ulp), n = 2.4.
+        // 4 ulp of cos^2 cancel; their root is the refracted cosine over n cos. 1 - R is 2 (n + 1 /
+        // n) / cos times that: 2 (n^2 + 1) sqrt(4 ulp), n = 2.4.
         {"glass at its critical angle: reflectance", within(2.9e-7, 6.6e-3), critical_glass},
         {"glass of index 10^-30 ... 10^30: weights", ulps(16), glass_weights},
         {"field of view of 10^-4 degrees: angle between pixels", within(1e-6, any),

@@ -1,11 +1,11 @@
-// whole/faults_test.cpp  renders while disk, clock and power fail: right to the bit, or absent
+// whole/faults_test.cpp  renders under faults of disk, clock and power: bit-identical, or absent
 #include <doctest/doctest.h>
 
 #include "course/python.h"
 
 namespace {
 
-// What soak.py finds; build/penumbra is what it runs.
+// Runs soak.py on build/penumbra and expects no findings.
 void expect_nothing_wrong(const std::string& options) {
     const char *seed = std::getenv("TEST_SEED"), *suffix = std::getenv("PROGRAM_SUFFIX");
     const Printed printed = output_of("python3 tests/faults/soak.py --seed faults_test" +

@@ -1,4 +1,4 @@
-// whole/interrupt_test.cpp  Ctrl-C: when it is heard, and what is kept
+// whole/interrupt_test.cpp  Ctrl-C: its latency, and the files that it leaves
 #include "whole/process.h"
 
 namespace {
@@ -10,7 +10,7 @@ bool has_begun(const Outcome& o) { return contains(o.err, "no light"); }
 TEST_CASE("SIGTERM, SIGHUP and Ctrl-C write the samples so far; the exit status tells them apart") {
     for (const auto& [signal, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGHUP, 129}}) {
         const Place place(diffuse_scene);
-        // Once sets are chosen there is an error.
+        // An error is known once replications are chosen.
         const Outcome o = cut_short_late_enough(
             place, "penumbra --spp 1000000000 --size 33x17 -o a.pfm -o a.png file.scene", signal,
             [](const Outcome& so_far) {
@@ -24,7 +24,7 @@ TEST_CASE("SIGTERM, SIGHUP and Ctrl-C write the samples so far; the exit status 
         CHECK(s.interrupted);
         REQUIRE(s.samples > 0);
         CHECK(s.samples < 1000000000);
-        // It shows what a run of some samples shows.
+        // The image approximates that of a complete run with some samples.
         const Image image = read_pfm(place / "a.pfm"), other = place.image("--spp 64 --size 33x17");
         CHECK(all_finite(image));
         double square = 0, norm = 0;
@@ -50,14 +50,14 @@ TEST_CASE("a signal that was ignored from the start stays ignored") {
 }
 
 TEST_CASE("Ctrl-C is heard within a path, too") {
-    const Place place(hall_of_mirrors("8192 1", 1000000));  // an hour a pass, 0.2 s a sample
+    const Place place(hall_of_mirrors("8192 1", 1000000));  // an hour per pass, 0.2 s per sample
     for (const std::string sets : {"", "--sets 3"}) {
         const Untouched all(place);
         Process process(place, "penumbra -o a.pfm file.scene " + sets);
         REQUIRE(process.listen(30, has_begun));
         process.listen(0.3);
         process.interrupt();
-        const Outcome o = process.finish();  // which waits for a minute
+        const Outcome o = process.finish();  // waits up to a minute
         INFO(o.err);
         CHECK(o.status == 130);
         CHECK(summary(o.err).samples == 0);
@@ -65,11 +65,11 @@ TEST_CASE("Ctrl-C is heard within a path, too") {
 }
 
 TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no terminal is, no bar") {
-    const Place place(hall_of_mirrors("1024 1024", 1000));  // minutes a pass, 40 ms a block
+    const Place place(hall_of_mirrors("1024 1024", 1000));  // minutes per pass, 40 ms per block
     place.write("out/file.png", "old");
     const Untouched all(place);
     Process process(place, "penumbra --threads 1 file.scene");
-    // The first line about progress comes after two seconds.
+    // The first progress line appears after two seconds.
     REQUIRE(process.listen(30, [](const Outcome& o) { return contains(o.err, " s elapsed"); }));
     process.interrupt();
     const Outcome o = process.finish();
@@ -85,19 +85,19 @@ TEST_CASE("Ctrl-C before the first pass is complete leaves no file; where no ter
 }
 
 TEST_CASE("a second Ctrl-C kills at once, and leaves no file") {
-    // Minutes a pass; a film of so many pixels takes a moment to add up after it, too.
+    // A pass takes minutes; a film of so many pixels also takes a moment to add up.
     const Place place(hall_of_mirrors("4096 2048", 1000000));
     const Untouched all(place);
     Outcome o;
     double seconds = 0;
-    // A busy machine may not have begun the pass, or end a path at once: then again, with more
-    // patience.
+    // A busy machine may be too late for the pass, or end a path at once.  The test then repeats
+    // with more patience.
     for (double patience = 0.1; patience < 20 && o.signal == 0; patience *= 3) {
         Process process(place, "penumbra -o a.pfm file.scene");
         REQUIRE(process.listen(30, has_begun));
         process.listen(patience);
         const auto start = std::chrono::steady_clock::now();
-        for (int i = 0; i < 50 && !process.ended(); ++i) {  // signals that follow too soon are one
+        for (int i = 0; i < 50 && !process.ended(); ++i) {  // signals in quick succession merge
             process.interrupt();
             process.listen(0.002);
         }

@@ -1,10 +1,10 @@
-// whole/kept.h  renders that are kept in .film files, and what two of them must share
+// whole/kept.h  renders that write .film files, and the results that two of them must share
 #pragma once
 #include "keep/change_head.h"
 #include "path/scenes.h"
 #include "whole/process.h"
 
-// Image and statistics, bit by bit; `merge` leaves fewer of these.
+// Compares image and statistics bit for bit; merged runs have fewer of these statistics.
 inline void expect_same_run(const Folder& folder, const std::string& a, const std::string& b,
                             bool is_merged = false) {
     CHECK(folder.same(a + ".pfm", b + ".pfm"));
@@ -26,7 +26,7 @@ inline std::string in_head(const Folder& folder, const std::string& film, const 
     return FilmReader(folder / film).said(key);
 }
 
-// A scene of unequal lights, and what is kept of it.
+// A scene of unequal lights, with its checkpoints and outputs.
 struct Unequal : Folder {
     std::string size;
     explicit Unequal(const std::string& s) : size(s) { write("unequal.scene", unequal); }

@@ -1,4 +1,4 @@
-// whole/kept_refusals_test.cpp  films that are not gone on from, and names that are not written to
+// whole/kept_refusals_test.cpp  films that cannot be resumed, and names that cannot be written
 #include <sys/stat.h>
 
 #include "whole/kept.h"
@@ -39,7 +39,7 @@ TEST_CASE("a film of other samples is refused by what differs, and nothing is to
           {"--view normal", "view is radiance, not normal"},
           {"--rows 0-1", "rows is 0-3, not 0-1"}})
         folder.refuse("--spp 20 --keep a.film " + options, "a.film: its " + why + "\n");
-    // What samples do not depend on is another matter.
+    // Options that samples do not depend on may change.
     folder.render(
         "--spp 18 --keep a.film --threads 3 --exposure 2 -o z.pfm --stats z.json "
         "--error 50% --time 9");

@@ -1,4 +1,4 @@
-// whole/known_scenes.h  scenes whose radiance is known
+// whole/known_scenes.h  scenes of known radiance
 //
 // L is radiance, rho an albedo; a diffuse receiver shows L = rho E / pi.
 #pragma once
@@ -22,9 +22,9 @@ inline std::string sphere(Point centre, double r, const char* material) {
     std::string text = "sphere";
     return text + words(centre) + words({r}) + " " + material + "\n";
 }
-// A sphere about the origin whose lower half has another material than its upper one, as seen from
-// within: two spheres, `apart` times the radius apart, of which each is the nearer on one side.
-// They are the sphere but for that part of its radius, and so is the radiance within.
+// A sphere about the origin, seen from within, with different materials in its lower and upper
+// halves.  It consists of two spheres, `apart` times the radius apart; each is the nearer one on
+// its side.  Geometry and radiance are those of the sphere up to that fraction.
 inline std::string two_halves(double r, const char* lower, const char* upper) {
     const double apart = sizeof(real) == 4 ? 1e-3 : 1e-5;
     return sphere({0, apart * r / 2, 0}, r, lower) + sphere({0, -apart * r / 2, 0}, r, upper);
@@ -69,7 +69,7 @@ light bright 4 4 4
 quad -0.04 0 -0.05  0 0 0.1  0.1 0 0  grey
 )";
 
-// Seen from the origin under the angle of `degrees` with the receiver's normal.
+// A point seen from the origin at an angle of `degrees` to the receiver's normal.
 inline Point at_angle(double degrees, double distance) {
     const double angle = degrees * Pi / 180;
     return {distance * std::sin(angle), distance * std::cos(angle), 0};
@@ -113,7 +113,7 @@ inline Start on_walls(Point box, Point centre, double r) {
     };
 }
 
-// Why a cell of the matrix is empty.
+// Reasons why a cell of the matrix is empty.
 inline const char* const never_hit = "a point light is never hit";
 inline const char* const meeting = "infinite variance of light samples where emitting walls meet";
 inline const char* const rare = "fewer than one path in a hundred finds the light";
@@ -161,7 +161,7 @@ sphere 0 0 0  0.5  grey
 )";
     add({"ball in a bright room", bright_room, 0.7 * 0.5, none, 6, 1});
 
-    // Closed room: whatever the shape, the area mean of the k-th scattered E is rho^k Phi / A.
+    // Closed room of any shape: the area mean of E after k bounces is rho^k Phi / A.
     const std::string room =
         "camera 1 1 1  0 0 0  40\ndepth 3\ndiffuse wall 0.7 0.7 0.7\n"
         "light lamp 5 4 3 wall\nbox 2 3 1.5  0  0 0 0  wall\n";
@@ -174,7 +174,7 @@ sphere 0 0 0  0.5  grey
          4, 4});
 
     // Integrating sphere: E(x) = E0(x) + mean(rho E0) (1 + mean(rho) + ...).  The light, I = 3, is
-    // h above the plane that divides the albedos, through which the flux of a cone goes down.
+    // h above the plane that divides the albedos.  The flux of a cone goes down through this plane.
     const double R = 2, h = 1.2, up = 0.8, low = 0.3;
     const Point x{0.48 * R, 0.6 * R, 0.64 * R}, to_light = Point{0, h, 0} - x;
     const double d = size_of(to_light), cosine = -times(to_light, x) / (d * R);
@@ -260,12 +260,12 @@ diffuse up 0.8 0.8 0.8
                            (8 * sphere_irradiance(0.4, std::cos(50 * Pi / 180)) +
                             4 * polygon_irradiance(ceiling(0.5, 2.5, 1, 1)));
     add({"unequal lights, two turned away", text, unequal, none, 4, 4});
-    // So many that each is chosen by its power.
+    // With so many lights the choice is by power.
     for (const double left : {1.0, 2.0, 3.0})
         text += triangle({left, 3, 0}, {left, 3, 1}, {left + 1, 3, 0}, "lamp");
     add({"seven unequal lights, five turned away", text, unequal, none, 8, 4});
 
-    // Eclipse: E = pi cos (sin^2 of the light - sin^2 of what is before it).
+    // Eclipse: E = pi cos (sin^2 of the light - sin^2 of the body before it).
     text = patch + sphere(at_angle(30, 3), 1.5, "lamp");
     text += sphere(at_angle(30, 1), 0.3, "black");
     add({"sphere eclipsed by a sphere", text, 0.8 * std::cos(Pi / 6) * (0.5 * 0.5 - 0.3 * 0.3),
@@ -309,7 +309,7 @@ diffuse up 0.8 0.8 0.8
     add({"sphere in a bright sphere", bright_shell, 0.8, on_inner, 1, 1});
     add({"bright sphere around a sphere", bright_shell, 1 + 0.8 * 3 / 4, on_outer, 1, 1});
 
-    // Solid angles: of uniform directions a part Omega / 4 pi sees the light.
+    // Solid angles: a part Omega / 4 pi of uniform directions sees the light.
     const Start all_round = [](vec2 u) {
         const Point n = on_sphere(double(u.x), double(u.y));
         return Ray{{0, 0, 0}, unit(vec3{real(n.x), real(n.y), real(n.z)})};

@@ -1,4 +1,4 @@
-// whole/memory_test.cpp  large pictures: what they take
+// whole/memory_test.cpp  the memory of large images
 #include "whole/process.h"
 
 TEST_CASE("a large picture takes at most 32 bytes a pixel, and 24 for each replication") {
@@ -16,6 +16,6 @@ TEST_CASE("a large picture takes at most 32 bytes a pixel, and 24 for each repli
     CAPTURE(bytes);
     CAPTURE(K);
     CHECK(bytes <= 32 + 24 * K);
-    CHECK(bytes > 24 * K);  // of the sums alone
+    CHECK(bytes > 24 * K);  // bytes of the sums
 #endif
 }

@@ -1,4 +1,4 @@
-// whole/merge_refusals_test.cpp  what is not put together: gaps, overlaps, strangers
+// whole/merge_refusals_test.cpp  films that merge refuses: gaps, overlaps, foreign parts
 #include <cmath>
 #include <cstring>
 
@@ -20,7 +20,7 @@ struct Parts : Place {
     }
 };
 
-// Rows 0-2 and 3-6.
+// Two parts: rows 0-2 and 3-6.
 struct TwoParts : Parts {
     TwoParts() {
         part("a.film", "--spp 20 --rows 0-2");
@@ -130,7 +130,7 @@ TEST_CASE("a merge writes over none of its parts, and no file twice") {
                      {"-o y.pfm -o ./y.pfm", "./y.pfm" + why}});
     expect_success(folder, "merge -o y.pfm a.film");
     CHECK(folder.same("a.pfm", "y.pfm"));
-    // Without -o they are named after the scene, as a render's are.
+    // Without -o the files have the scene's name, like those of a render.
     const Outcome o = expect_success(folder, "merge a.film");
     CHECK(folder.same("a.pfm", "out/file.pfm"));
     CHECK(contains(o.err, "wrote out/file.png, out/file.pfm\n"));
@@ -142,7 +142,7 @@ TEST_CASE("a pixel that no file can hold is told, and nothing is written") {
     FilmReader file(folder / "a.film");
     std::vector<std::byte> numbers(file.left());
     file.read(numbers);
-    const double infinite = INFINITY;  // in the last sum
+    const double infinite = INFINITY;  // becomes the last sum
     std::memcpy(numbers.data() + numbers.size() - sizeof infinite, &infinite, sizeof infinite);
     write_film_file(folder / "b.film", file.head(), {numbers});
     const Untouched all(folder);
@@ -158,7 +158,7 @@ TEST_CASE("merging stops at Ctrl-C, and leaves no file") {
     const Untouched all(folder);
     const double took = seconds_of(folder, "merge -o y.pfm a.film");
     fs::remove(folder / "y.pfm");
-    // A signal may come before anyone listens, or after the last row.
+    // A signal may precede the handler, or follow the last row.
     bool heard = false;
     for (uint64_t k = 0; k < 100 && !heard; ++k) {
         const double moment = took * double(to_unit(mix(seed_here() + k)));

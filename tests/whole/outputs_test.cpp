@@ -1,4 +1,4 @@
-// whole/outputs_test.cpp  which files are written, and that they are whole
+// whole/outputs_test.cpp  the names and completeness of written files
 #include "base/files.h"
 #include "whole/process.h"
 
@@ -6,7 +6,7 @@ TEST_CASE("without -o the images are out/NAME.png and out/NAME.pfm; with it, tho
     const Folder folder;
     folder.write("deep/down/my.first scene.scene", good);
     expect_success(folder, Words{"penumbra", "--spp", "2", "deep/down/my.first scene.scene"});
-    CHECK(folder.files() == 6);  // with three directories
+    CHECK(folder.files() == 6);  // includes three directories
 
     const Place other(good);
     other.render("-o a.pfm -o b.png --spp 2 -o c.pfm -o d.png");
@@ -24,7 +24,7 @@ TEST_CASE("without -o the images are out/NAME.png and out/NAME.pfm; with it, tho
     CHECK(other.read("a.pfm").starts_with("PF\n8 4\n"));
     CHECK(other.read("b.png").starts_with("\x89PNG"));
 
-    // Of a band none but its film, which is for `merge`.
+    // A band writes only its film, for `merge`.
     const Place band(good);
     band.render("--spp 2 --rows 1-2 --keep a.film");
     CHECK(band.files() == 2);
@@ -45,7 +45,7 @@ TEST_CASE("a name as long as names may be, and a link, are written; what a kille
     const std::string name = std::string(251, 'a') + ".pfm";
     place.write("deep/old.pfm", "old");
     fs::create_symlink("deep/old.pfm", place / "link.pfm");
-    // More than Linux gives to processes; beside the link, and beside what is written.
+    // No process of Linux has this number.  One file is next to the link, one next to its target.
     const std::string beside = ".link.pfm.part2147483646";
     place.write(beside, "not beside what is written");
     const fs::path left = aside(place / "link.pfm", "2147483646");
@@ -83,8 +83,8 @@ TEST_CASE("two things never get one file, nor does anything the file of the scen
 TEST_CASE("a picture too large for a PNG is refused before it is rendered; a PFM has room for it") {
     const Place place(good);
     const std::string why = "32768x16384 pixels are too many for a PNG, which holds 268435456; say";
-    // build/penumbra says the same, on a machine that has memory for the film.  Nothing is wrong
-    // with the size of a PFM, so that another thing is.
+    // build/penumbra prints the same message if the machine has memory for the film.  A PFM may
+    // have this size: the last row has another mistake.
     expect_refusals(place, "radiosity --size 32768x16384 file.scene",
                     {{"-o a.pfm -o a.png", "a.png: " + why},
                      {"", "out/file-radiosity.png: " + why},

@@ -1,4 +1,4 @@
-// whole/parts_test.cpp  bands and seeds, rendered one by one, make up a picture
+// whole/parts_test.cpp  bands and seeds that are rendered separately merge to one picture
 #include <cmath>
 
 #include "whole/kept.h"
@@ -18,7 +18,7 @@ struct Scenes : Unequal {
         expect_success(*this, split("merge -o " + name + ".png") + outputs(name) + films);
         for (const std::string& film : films) fs::remove(*this / film);
     }
-    // That parts are the picture, and what is said of it.
+    // Expects the merged parts to equal the whole picture and its statistics.
     void expect_whole(const std::string& options, const Words& parts) const {
         INFO(options);
         const Words words = of(options);
@@ -43,7 +43,7 @@ TEST_CASE("a film alone is its picture, whatever its sets") {
     const Scenes folder;
     for (const std::string options : {"--spp 60", "--spp 1", "--spp 2", "--spp 17 --seed 5"})
         folder.expect_whole(options, {""});
-    // By another exposure than it was rendered with.
+    // The exposure differs from that of the render.
     expect_success(folder, folder.of("--keep a.film --exposure 3 -o a.png"));
     expect_success(folder, folder.of("--exposure 9 -o bright.png"));
     expect_success(folder, "merge --exposure 9 -o b.png a.film");
@@ -71,7 +71,7 @@ TEST_CASE("seeds are independent pictures: their mean by samples, and the varian
     for (const std::string options : {"--sets 8", "--sets adaptive"}) {
         INFO(options);
         const Words words = folder.of(options);
-        // 16, 16 and 96 samples of fixed sets: weights 1/8, 1/8, 3/4.
+        // 16, 16 and 96 samples with fixed replications: weights 1/8, 1/8, 3/4.
         const Words parts = {"--spp 16 --seed 1", "--spp 16 --seed 2", "--spp 96 --seed 3"};
         std::array<Image, 3> images;
         double d2 = 0, sum = 0, fourth = 0;
@@ -82,7 +82,7 @@ TEST_CASE("seeds are independent pictures: their mean by samples, and the varian
             for (const auto& p : images[k].pixels)
                 for (float c : p) norm2 += double(c) * double(c) / 252;
             const double w = k == 2 ? 0.75 : 0.125, d_rel = folder.number("one", "d_rel");
-            const double all = 1 + d_rel * d_rel;  // of |f|^2 over |F|^2
+            const double all = 1 + d_rel * d_rel;  // |f|^2 over |F|^2
             const double its = d_rel * d_rel * norm2 / all,
                          err = 2 * its * folder.number("one", "d_rel_standard_error") / d_rel / all;
             d2 += w * w * its, fourth += std::pow(w, 4) * err * err;
@@ -100,7 +100,7 @@ TEST_CASE("seeds are independent pictures: their mean by samples, and the varian
                 worst = std::max(worst, std::abs(mean - its) / std::max(1e-30, mean));
                 norm2 += its * its / 252;
             }
-        CHECK(worst < 1e-6);  // of floats
+        CHECK(worst < 1e-6);  // float rounding
         const double d_rel = std::sqrt(d2 / (norm2 - d2));
         CHECK(folder.number("all", "d_rel") == doctest::Approx(d_rel).epsilon(1e-5));
         CHECK(folder.number("all", "d_rel_standard_error") ==
@@ -135,7 +135,7 @@ TEST_CASE("a part that is interrupted, or given more samples, goes on, and is me
     expect_success(folder, split("merge a.film b.film") + outputs("parts"));
     expect_same_run(folder, "whole", "parts", true);
 
-    // A whole picture, cut short in mid-pass, is no part yet.
+    // An interrupted whole picture ends in mid-pass and is not a valid part yet.
     const Words endless = words + split("--spp 1000000000 --keep c.film -o c.pfm");
     CHECK(cut_short(folder, endless, 0.4).status == 130);
     expect_refusal(folder, "merge -o x.pfm c.film",
@@ -149,5 +149,5 @@ TEST_CASE("memory of merging: the picture, and of each film a row and 2 bytes a 
                        {"--seed 0", "--seed 1", "--seed 2"}, "all");
     const double pixels = 1024.0 * 1024, memory = folder.number("all", "peak_memory_bytes");
     INFO(memory, " bytes of ", pixels, " pixels");
-    CHECK(memory < pixels * (12 + 2 * 3) * 1.1 + 8e6);  // the program itself: 8 MB
+    CHECK(memory < pixels * (12 + 2 * 3) * 1.1 + 8e6);  // the program takes 8 MB
 }

@@ -1,4 +1,4 @@
-// whole/pictures_test.cpp  what is up, right and round in a scene is so in its picture
+// whole/pictures_test.cpp  up, right and round in a scene are the same in its picture
 #include <numbers>
 
 #include "film/png.h"
@@ -6,8 +6,8 @@
 
 namespace {
 
-// Bounds of the pixels that are not black, and their centre of mass weighted by radiance, in
-// pixels from the top left corner.
+// Bounds of the pixels that are not black, and their centre of mass weighted by radiance, in pixels
+// from the top left corner.
 struct Bright {
     int left = 1 << 20, right = -1, top = 1 << 20, bottom = -1;
     double x = 0, y = 0, sum = 0;
@@ -33,7 +33,7 @@ Bright bright(const Image& image) {
 }  // namespace
 
 TEST_CASE("up is up and right is right, in wide and in tall pictures") {
-    // One square emitter per view, +x or the view's right, +y; each in its top left quadrant.
+    // Each view has one square emitter, in its top left quadrant; +x or the view's right, +y.
     struct Case {
         const char *camera, *quad;
     };
@@ -56,13 +56,14 @@ TEST_CASE("up is up and right is right, in wide and in tall pictures") {
             const Bright b = bright(image);
             CHECK(b.right < w / 2);
             CHECK(b.bottom < h / 2);
-            // The square's centre (-0.6, 0.8) at distance 5; a pixel is 2 tan(20 degrees) / h wide.
+            // The square's centre (-0.6, 0.8) has distance 5; pixels are 2 tan(20 degrees) / h
+            // wide.
             const double pixel = 2 * std::tan(20 * std::numbers::pi / 180) / h;
             CHECK(std::abs(b.x - (w / 2.0 - 0.6 / 5 / pixel)) < 0.3);
             CHECK(std::abs(b.y - (h / 2.0 - 0.8 / 5 / pixel)) < 0.3);
             CHECK(std::abs(b.width() - 0.4 / 5 / pixel) < 2.01);
             CHECK(std::abs(b.height() - 0.6 / 5 / pixel) < 2.01);
-            // Channels in order; the PNG shows the same.
+            // The channels are in order; the PNG shows the same.
             const int x = int(b.x), y = int(b.y);
             CHECK(image.at(x, y) == std::array<float, 3>{0.5f, 0.25f, 1});
             bool same = png.width == w && png.height == h;

@@ -1,4 +1,4 @@
-// whole/process.h  programs as their user meets them: processes, and what to expect of them
+// whole/process.h  complete programs: processes, and expectations of their results
 #pragma once
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -29,7 +29,7 @@ inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != text.npos;
 }
 
-// A program and its words, which a line parts at its blanks.
+// A program and its arguments; a line is split at blanks.
 struct Command {
     Words words;
     Command(const char* line) : words(split(line)) {}
@@ -38,12 +38,12 @@ struct Command {
 };
 
 struct Outcome {
-    int status = -1;  // of an exit
-    int signal = 0;   // or what killed it
+    int status = -1;  // the exit status
+    int signal = 0;   // or the signal that killed it
     std::string out, err;
 };
 
-// Both ends of a pipe or, to be written to, of a terminal.
+// Both ends of a pipe or, for writing only, of a terminal.
 struct Channel {
     int from = -1, to = -1;
 };
@@ -69,9 +69,9 @@ inline Channel terminal_channel() {
 }
 
 struct Setting {
-    bool terminal = false;                // stderr is one, and no pipe
-    bool deaf = false;                    // nobody reads stderr
-    std::string input = {}, output = {};  // what stdin brings, a file for stdout
+    bool terminal = false;                // stderr: terminal or pipe
+    bool deaf = false;                    // stderr has no reader
+    std::string input = {}, output = {};  // bytes for stdin, a file for stdout
     int ignored = 0;                      // a signal
     rlim_t largest_file = RLIM_INFINITY;
 };
@@ -104,7 +104,7 @@ public:
             err.from = -1;
             open_[1] = false;
         }
-        // A signal that comes at once is the program's, and nothing to do for handlers of ours.
+        // An early signal must reach the program, not the handlers of this process.
         sigset_t all, before;
         ::sigfillset(&all);
         ::sigprocmask(SIG_SETMASK, &all, &before);
@@ -136,7 +136,7 @@ public:
             if (fd >= 0) ::close(fd);
     }
 
-    // Reads what the program prints for so many seconds, until it is enough (true) or ends (false).
+    // Reads output for so many seconds, until `enough` holds (true) or the program ends (false).
     bool listen(double seconds, bool (*enough)(const Outcome&) = nullptr) {
         using clock = std::chrono::steady_clock;
         const auto end = clock::now() + std::chrono::duration<double>(seconds);
@@ -161,7 +161,7 @@ public:
     bool ended() const { return !open_[0] && !open_[1]; }
     void interrupt(int signal = SIGINT) const { ::kill(pid_, signal); }
 
-    // Waits for its end; kills it after a minute.
+    // Waits for the end of the program; kills it after a minute.
     Outcome finish() {
         listen(60);
         if (!ended()) ::kill(pid_, SIGKILL);
@@ -175,7 +175,7 @@ public:
 
 private:
     pid_t pid_ = 0;
-    std::array<int, 2> from_{-1, -1};  // its stdout and stderr
+    std::array<int, 2> from_{-1, -1};  // read stdout and stderr
     std::array<bool, 2> open_{true, true};
     Outcome outcome_;
 };
@@ -184,7 +184,7 @@ inline Outcome run(const Folder& folder, const Command& command, const Setting& 
     return Process(folder, command, setting).finish();
 }
 
-// Sends a signal after so many seconds, unless it ends before.
+// Sends a signal after so many seconds, unless the program ends before.
 inline Outcome cut_short(const Folder& folder, const Command& command, double seconds,
                          int signal = SIGINT) {
     Process process(folder, command);
@@ -193,8 +193,8 @@ inline Outcome cut_short(const Folder& folder, const Command& command, double se
     return process.finish();
 }
 
-// The same until what it has done is `enough`: a busy machine may not have begun, so each run gets
-// three times the patience of the one before.
+// Repeats cut_short until the outcome is `enough`.  A busy machine may be too slow to begin, so
+// each run gets three times the time of the one before.
 template <class Enough>
 Outcome cut_short_late_enough(const Folder& folder, const Command& command, int signal,
                               Enough enough) {
@@ -210,11 +210,11 @@ inline bool terminal_to_be_had() {
     return trial >= 0;
 }
 
-// That not a file is made, changed or left.
+// Checks that no file is made, changed or left.
 class Untouched {
 public:
     explicit Untouched(const Folder& folder) : folder_(folder), before_(folder.all()) {}
-    ~Untouched() noexcept(false) {  // a failed check may end the run by throwing
+    ~Untouched() noexcept(false) {  // a failed check may throw
         if (std::uncaught_exceptions() > 0) return;
         const auto after = folder_.all();
         std::string changed;
@@ -230,7 +230,7 @@ private:
     const std::map<std::string, std::string> before_;
 };
 
-// Refused: exit status 2, one printable line that says why, and no file touched.
+// Refused: exit status 2, one printable line with the reason, and no file touched.
 inline void expect_refusal(const Folder& folder, const Command& command, const std::string& why) {
     std::string line;
     for (const std::string& word : command.words) line.append(word, 0, 100).append(" ");
@@ -250,13 +250,13 @@ inline void expect_refusal(const Folder& folder, const Command& command, const s
     CHECK(o.err.ends_with('\n'));
 }
 
-// By words behind `start`.
+// Each row has the words after `start`.
 inline void expect_refusals(const Folder& folder, const std::string& start,
                             const std::vector<Refusal>& rows) {
     for (const auto& [words, why] : rows) expect_refusal(folder, start + " " + words, why);
 }
 
-// Done: exit status 0.
+// Success: exit status 0.
 inline Outcome expect_success(const Folder& folder, const Command& command) {
     const Outcome o = run(folder, command);
     std::string line;
@@ -274,7 +274,7 @@ inline double seconds_of(const Folder& folder, const Command& command) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// One page on stdout, with each of these parts.
+// Expects one page on stdout, with each of these parts.
 inline void expect_help(const Folder& folder, const Command& command, long lines,
                         const std::string& parts) {
     const Outcome o = run(folder, command);
@@ -290,7 +290,7 @@ inline void expect_help(const Folder& folder, const Command& command, long lines
     for (std::string text; std::getline(in, text);) CHECK(text.size() <= 80);
 }
 
-// A folder with a scene, which penumbra renders.
+// A folder with a scene for penumbra.
 struct Place : Folder {
     explicit Place(const std::string& scene) { write("file.scene", scene); }
     Outcome render(const std::string& options) const {
@@ -302,7 +302,7 @@ struct Place : Folder {
     }
 };
 
-// What stands behind "KEY": in statistics.
+// The value after "KEY": in statistics.
 inline std::string stated(const std::string& json, const std::string& key) {
     const std::string start = "\n  \"" + key + "\": ";
     const size_t at = json.find(start);
@@ -311,7 +311,7 @@ inline std::string stated(const std::string& json, const std::string& key) {
     if (value.ends_with(',')) value.pop_back();
     return value;
 }
-// The number, or the first of a list; of null none.
+// The number, or the first of a list; NaN for null.
 inline double number_of(const std::string& json, const std::string& key) {
     const std::string value = stated(json, key);
     return value.starts_with("null") ? NAN
@@ -329,7 +329,7 @@ struct Summary {
     std::string scene;
     double samples = 0;
     double seconds = -1, speed = -1;
-    std::string error, stopped_by;  // as they are told
+    std::string error, stopped_by;  // as printed
     bool interrupted = false, found = false;
 };
 
@@ -371,10 +371,10 @@ inline const std::string good = "size 8 4\n" + camera +
                                 "light l 1 1 1\n"
                                 "sphere 0 0 0  1  m\n"
                                 "sphere 0 5 0  1  l\n";  // six lines
-// Diffuse surfaces alone, for maps.
+// A scene of diffuse surfaces only, for maps.
 inline const std::string diffuse_scene = good + "quad -9 -1 -9  0 0 18  18 0 0  m\n";
 
-// A closed box of mirrors, no light: a path ends only with the scene's depth.
+// A closed box of mirrors without light: only the scene's depth ends a path.
 inline std::string hall_of_mirrors(const std::string& size, int depth) {
     return "size " + size + "\n" + camera + "depth " + std::to_string(depth) +
            "\nmirror m 1 1 1\nbox 20 20 20  7  -10 -10 -10  m\n";

@@ -1,4 +1,4 @@
-// whole/radiosity_program_test.cpp  build/radiosity as its user meets it
+// whole/radiosity_program_test.cpp  build/radiosity as a user runs it
 #include "base/about.h"
 #include "film/png.h"
 #include "whole/process.h"
@@ -23,7 +23,7 @@ struct RunSummary {
     bool interrupted = false, complete = false;
 };
 
-// Of the line "NAME: 8 triangles, 3 shots, 1 % unshot, 0.1 s, 1 Mrays/s", or "..., 3 particles".
+// Parses "NAME: 8 triangles, 3 shots, 1 % unshot, 0.1 s, 1 Mrays/s", or "..., 3 particles".
 RunSummary line_of(const std::string& err, const std::string& name) {
     RunSummary s;
     const std::string line = err.substr(0, err.find('\n', err.find(" Mrays/s")));
@@ -58,7 +58,7 @@ struct Room : Place {
     }
 };
 
-// Of what would last for hours, ended once something was found.
+// Interrupts a run of several hours once it has found something.
 Outcome interrupted_run(const Folder& folder, const std::string& options, int signal) {
     return cut_short_late_enough(folder, "radiosity -o a.pfm -o a.png file.scene " + options,
                                  signal, [&](const Outcome&) { return folder.has("a.pfm"); });
@@ -66,7 +66,7 @@ Outcome interrupted_run(const Folder& folder, const std::string& options, int si
 
 }  // namespace
 
-// ---- What it says and writes --------------------------------------------------------------------
+// ---- Messages and files -------------------------------------------------------------------------
 
 TEST_CASE("radiosity --help names every option on one page of stdout") {
     const Folder folder;
@@ -87,9 +87,9 @@ TEST_CASE(
         const Room place(room);
         const Outcome o = place.maps("--mesh 5 --stats s.json --method " + method);
         INFO(o.err);
-        CHECK(place.files() == 5);  // with out/ and the scene
+        CHECK(place.files() == 5);  // includes out/ and the scene
         CHECK(o.err.ends_with("\nwrote out/file-radiosity.png, out/file-radiosity.pfm, s.json\n"));
-        // A busy machine shows progress after two seconds.
+        // A busy machine prints progress after two seconds.
         int lines = 0;
         std::istringstream in(o.err);
         for (std::string line; std::getline(in, line);) lines += !contains(line, " s elapsed, ");
@@ -157,7 +157,7 @@ TEST_CASE("radiosity --error: what came first ends the run, and is said") {
         CHECK(asked == (contains(options, "--error 20%") ? 0.2 : 1e-9));
         CHECK((error <= asked) == (stopped_by == "--error"));
     }
-    // Where nothing walks, nothing tells an error.
+    // Without particles there is no error estimate.
     const Room dark(room.substr(0, room.find("quad")));
     const Outcome o = dark.maps("-o a.pfm --stats s.json --error 5% --method particles");
     INFO(o.err);
@@ -245,8 +245,8 @@ TEST_CASE("radiosity: the files do not depend on threads, and on time only where
 TEST_CASE("radiosity: three methods, one image, and that of the path tracer") {
     const Room place(room);
     const double truth = mean_of(place.image("--spp 64 --depth 30"));
-    // Particles know the mean over a triangle, whatever its size (their mean has a standard
-    // deviation of 0.2 %); vertices know E where they are, and the ceiling's are too few for the
+    // Particles estimate the mean over a triangle of any size (their mean has a standard deviation
+    // of 0.2 %).  Vertices have E only at their positions; the ceiling has too few of them for the
     // lamp's glow.
     CHECK(place.mean("--mesh 2.5 --method particles --particles 300000") == about(truth, 0.01));
     const double shooting = place.mean("--mesh 3 --method shooting");
@@ -265,7 +265,7 @@ TEST_CASE("radiosity --view illuminance: pi L in a closed room that glows; its P
         place.maps("--view illuminance --mesh 4 -o a.pfm -o a.png --method " + method +
                    (walks ? "" : " --unshot 1e-9"));
         INFO(method);
-        // By particles of 10^6 on some 100 vertices: one of them is known within 1 %, 5 sigma.
+        // 10^6 particles on some 100 vertices: the error of each is 1 %; the tolerance is 5 sigma.
         for (const auto& pixel : read_pfm(place / "a.pfm").pixels)
             CHECK(double(pixel[0]) == about(0.18 * std::numbers::pi, walks ? 0.05 : 1e-5));
         if (!walks) CHECK(std::abs(decode_png(place.read("a.png")).bytes[0] - 118) <= 1);  // of .18
@@ -289,17 +289,17 @@ TEST_CASE("radiosity --view mesh: lines over what is there, the more the finer i
         for (size_t i = 0; i < plain.size(); ++i) n += plain[i] != drawn[i];
         return n;
     };
-    // 2 x 2 of a view of 2 x 5 tan 20 degrees: s = 35.2 pixels.  Two triangles have four sides and
-    // a diagonal, which a path of steps to the right and down crosses once a row and once a column.
+    // The square is 2 x 2 in a view of 2 x 5 tan 20 degrees: s = 35.2 pixels.  Two triangles have
+    // four sides and a diagonal.  The diagonal crosses every row and every column once.
     const double s = 64 * 2 / (10 * std::tan(20 * std::numbers::pi / 180));
     CHECK(lines("--mesh 9") == about(5 * s, 0.1));
-    // Four cells a side: 3 more lines across, 3 more down, 4 times as long diagonals ... minus
+    // Four cells per side: 3 more lines across, 3 more down, 4 times the length of diagonals, minus
     // crossings, which count once.
     CHECK(lines("--mesh 0.8") > 2.5 * lines("--mesh 9"));
 }
 
-// Particles know the mean over a triangle, and so does one bounce: the mean of the image is off by
-// the noise of 100 000 particles, some .4 %, and by what small triangles cost.
+// Particles and one bounce estimate means over triangles.  So the image's mean has the noise of 100
+// 000 particles, some .4 %, and the error of small triangles.
 TEST_CASE("radiosity --final-gather: the image of the path tracer, by options of paths") {
     const Room place(room);
     const double truth = mean_of(place.image("--spp 64 --depth 30"));
@@ -317,7 +317,7 @@ TEST_CASE("radiosity --final-gather: the image of the path tracer, by options of
     CHECK(number("map_error") > 0);
     CHECK(number("seconds") > number("map_seconds"));
     CHECK(number("rays") > number("map_rays"));
-    // A particle for 16 paths, unless it is said.
+    // By default there is a particle per 16 paths.
     place.maps("--final-gather --spp 64 --stats s.json -o b.pfm");
     CHECK(number_of(place.read("s.json"), "map_particles") == 33 * 17 * 64 / 16 / 16 * 16 + 16);
     const Outcome e = place.maps("--final-gather --error 20% -o b.pfm");
@@ -412,7 +412,7 @@ TEST_CASE(
             place.maps(common + " -o b.pfm --shots " + std::to_string(shots));
             return read_pfm(place / "b.pfm").pixels;
         };
-        // Light only grows: what is seen lies between this shot and the one before.
+        // Light only grows: the image lies between this shot and the one before.
         const auto seen = read_pfm(place / "a.pfm").pixels, most = image_of(s.found),
                    least = s.found > 1 ? image_of(s.found - 1) : decltype(seen)(seen.size());
         REQUIRE(seen.size() == most.size());
@@ -438,8 +438,8 @@ TEST_CASE("radiosity: SIGTERM writes the image of the particles so far, and its 
     CHECK(s.found < 1099511627776);
     CHECK(stated(place.read("s.json"), "interrupted") == "true");
     CHECK(number_of(place.read("s.json"), "particles") == double(s.found));
-    // Its mean is that of a run to the end: nothing was lost on the way.  A particle alone brings
-    // the mean with a standard deviation of 120 %; of the difference, 5 of them.
+    // The mean equals that of a complete run, so that interruption loses nothing.  One particle
+    // gives the mean with a standard deviation of 120 %; the tolerance is 5 of the difference's.
     const double tolerance = 5 * 1.2 * std::sqrt(1 / double(s.found) + 1e-5);
     CHECK(mean_of(read_pfm(place / "a.pfm")) ==
           about(place.mean(walk + "--particles 100000"), tolerance));
@@ -453,7 +453,7 @@ TEST_CASE("radiosity: a bar shows what is left, in the method's own words, and g
     const Place place(room);
     struct Row {
         std::string method;
-        double patience;  // the error of particles is asked for once they have walked for a second
+        double patience;  // particles have an error estimate only after a second
         std::string parts;
     };
     const std::string all = "\r[#; s elapsed, ; s left;";
@@ -463,7 +463,7 @@ TEST_CASE("radiosity: a bar shows what is left, in the method's own words, and g
     for (const auto& [method, patience, parts] : rows) {
         Outcome o;
         std::string missing = "a bar";
-        // A busy machine may have shown nothing: then again, with more patience.
+        // A busy machine may have printed nothing.  The test then repeats with more patience.
         for (double seconds = patience; seconds < 20 && missing != ""; seconds *= 3) {
             o = run(place,
                     "radiosity --mesh 1 -o a.pfm file.scene --method " + method + " --time " +

@@ -1,4 +1,4 @@
-// whole/refusals_test.cpp  what is refused, in one line, with no file touched
+// whole/refusals_test.cpp  refused input: one line of message, and no file touched
 #include <sys/stat.h>
 
 #include <set>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// The shortest form of every statement; material m is there.
+// The shortest form of every statement; material m is defined.
 const Words shortest = parts_of(
     "size 8 4;camera 0 0 5 0 0 0 40;depth 3;samples 3;exposure 2;diffuse n .1 .2 .3;"
     "phong n .1 .2 .3 .4 .5 .6 7;mirror n .7 .8 .9;glass n 1.5;light n 1 2 3;"
@@ -31,7 +31,7 @@ bool is_number(const std::string& word) {
 
 TEST_CASE("a scene that is wrong is refused with its line, and no file is touched") {
     const std::string nul(1, '\0');
-    // In the seventh line.
+    // The mistakes are in the seventh line.
     const std::vector<Family> statements = {
         {"@", "spere 0 0 0 1 m", "unknown keyword 'spere' (did you mean 'sphere'?)"},
         {"@", "Quad 0 0 0 1 0 0 0 1 0 m", "unknown keyword 'Quad' (did you mean 'quad'?)"},
@@ -40,7 +40,7 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
         {"light k 1 1 1 @", "twosidd;x;k", "unknown material '@'"},
         {"light k 1 1 1 m twosided", "", "unknown word 'twosided'"},
         {"sphere 0 0 0 1 m\xc3\xa9", "", "unknown material 'm?\?'"},
-        // Numbers that are not what they measure.
+        // Numbers outside the range of their quantity.
         {"sphere 0 0 0 @ m", "-1;0;-0.0", "radius must be positive, not '@'"},
         {"sphere 0 0 0 1e-200 l", "", "radius "},  // its square would vanish
         {"box @ 1 1 0 0 0 0 m", "0", "width must be positive, not '@'"},
@@ -57,7 +57,7 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
         {"phong n .1 .1 .1 .1 .1 .1 @", "-1", "the exponent must not be negative"},
         {"phong n .1 .1 .1 .1 .1 .1 @", "1e20", "'@' is too large"},
         {"sphere 0 0 @ 1 m", "1e31", "'@' is too large"},
-        // Materials, and what stands only once.
+        // Materials, and statements that may occur only once.
         {"sphere 0 0 0 1 glas", "", "unknown material 'glas'\n"},
         {"triangle 0 0 0 1 0 0 0 1 0 x", "", "unknown material 'x'"},
         {"quad 0 0 0 1 0 0 0 1 0 M", "", "unknown material 'M'"},
@@ -76,7 +76,7 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
         {"camrea 0 0 5 0 0 0 40\n", "1: unknown keyword 'camrea' (did you mean 'camera'?)"},
         {"\r\n# c\r\n\r\n\t tringle\r\n",
          "4: unknown keyword 'tringle' (did you mean 'triangle'?)"},
-        // Rubbish.
+        // Invalid characters and garbage.
         {"\x7f"
          "ELF\x02\x01\x01" +
              nul + nul + "\xff\xfe\n",
@@ -94,7 +94,7 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
         {good + "exposure 1\nexposure 1\n", "8: a second exposure"},
     };
     const std::vector<Family> first_lines = {
-        // Sizes, before anything is allocated.
+        // Sizes are checked before memory is allocated.
         {"size @ 1000000", "1000000", "'@' is not a whole number from 1 to 65536"},
         {"size 65536 65536", "", "an image of 65536x65536 has more than 1073741824 pixels"},
         {"size 65536 16385", "", "an image of 65536x16385 has more than"},
@@ -115,7 +115,7 @@ TEST_CASE("a scene that is wrong is refused with its line, and no file is touche
     for (const auto& [statement, why] : members(statements)) expect(good + statement, "7: " + why);
     for (const auto& [line, why] : members(first_lines)) expect(line, "1: " + why);
     for (const auto& [scene, why] : scenes) expect(scene, why);
-    place.write("file.scene", good);  // which is not wrong itself
+    place.write("file.scene", good);  // valid by itself
     place.render("");
     CHECK(place.read("out/file.pfm") != "old");
 }
@@ -130,7 +130,7 @@ TEST_CASE("every statement is refused with a word too few or too many, or a numb
     };
     std::set<std::string> known;
     for (const Statement& s : grammar) known.emplace(s.keyword);
-    known.erase("mesh");  // in obj_test.cpp
+    known.erase("mesh");  // tested in obj_test.cpp
     CHECK(known.size() == shortest.size());
 
     std::vector<Refusal> bad_numbers = {
@@ -159,7 +159,7 @@ TEST_CASE("every statement is refused with a word too few or too many, or a numb
         longer.insert(longer.end() - 1, keyword == "light" ? 3 : 1, "1");
         expect(longer, "too many words (");
 
-        // The first three everywhere, of the others one.
+        // The first three are tried everywhere, and one of the others.
         for (size_t i = 1; i < words.size(); ++i) {
             if (!is_number(words[i])) continue;
             other = other + 1 < bad_numbers.size() ? other + 1 : 3;
@@ -215,7 +215,7 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
     for (const auto& [words, why] : refused_words())
         expect_refusal(place, "penumbra " + words + " file.scene", why);
 
-    // Every option: without its value; wrong, though a right one follows or goes before.
+    // Each option without its value; with a wrong value before or after a right one.
     for (const std::string& row :
          parts_of("-o a.png a.gif;--spp 1 0;--time 1 0;--light mis miss;--error 1% 100%;"
                   "--sets adaptive 0;--rows 0-1 1;--keep a.film a;--depth 1 -1;--roulette 1 2;"
@@ -229,7 +229,7 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
                          {option + right + " file.scene " + option + wrong, option + ": "}});
     }
 
-    const Place blocked(good);  // the default outputs have no place to go
+    const Place blocked(good);  // the default outputs cannot be written
     blocked.write("out", "not a directory");
     expect_refusal(blocked, "penumbra file.scene", "out: ");
     fs::remove(blocked.path / "out");

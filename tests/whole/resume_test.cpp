@@ -1,4 +1,4 @@
-// whole/resume_test.cpp  --keep: a run that goes on is one that never stopped
+// whole/resume_test.cpp  --keep: a resumed run equals one without interruption
 #include "base/rng.h"
 #include "oracle/expect.h"
 #include "whole/kept.h"
@@ -6,8 +6,8 @@
 
 namespace {
 
-// Random moments in runs whose length is not known, on a machine that is now slow, now fast:
-// earlier after each that came too late and later after the others, so that about half are in time.
+// Random moments in runs of unknown length, on a machine of varying speed.  Each moment is earlier
+// after one that came too late and later after the others: about half are in time.
 class RandomMoments {
 public:
     explicit RandomMoments(double seconds) : most_(seconds) {}
@@ -30,13 +30,13 @@ TEST_CASE("with more samples than before: the same image as at once, by any numb
         INFO(options);
         const Words words = folder.of(options);
         expect_success(folder, words + split("--spp 71") + outputs("whole"));
-        // The pilot, then others.
+        // The first run ends with the pilot.
         for (const std::string spp : {"16", "32", "45", "71"})
             expect_success(
                 folder, words + outputs("parts") + split("--keep a.film --threads 3 --spp " + spp));
         CHECK(in_head(folder, "a.film", "complete") == "yes");
         expect_same_run(folder, "whole", "parts");
-        // What is complete ends at once, with the same image; fewer samples take none away.
+        // A complete film ends at once, with the same image; a smaller target removes no samples.
         for (const std::string spp : {"71", "20"}) {
             expect_success(folder, words + outputs("again") + split("--keep a.film --spp " + spp));
             CHECK(folder.same("whole.pfm", "again.pfm"));
@@ -60,8 +60,8 @@ TEST_CASE("interrupted at random moments, mostly in a pass: the same image in th
             const Outcome o = cut_short(folder, words, moments.next(), SIGTERM);
             INFO(o.err);
             moments.was_in_time(o.status != 0);
-            // One that had not yet begun is killed by the signal.
-            if (o.status == 0) fs::remove(folder / "a.film");  // complete: begin again
+            // The signal kills a process that has not yet begun.
+            if (o.status == 0) fs::remove(folder / "a.film");  // complete: begins again
             if (o.signal == SIGTERM || o.status == 0) continue;
             CHECK(o.status == 143);
             ++interruptions, ++hits;
@@ -98,7 +98,7 @@ TEST_CASE("kill -9 at any moment: a film that is whole, or none; the last one is
     RandomMoments moments(seconds_of(folder, folder.of("--spp 240") + outputs("whole")));
     const char* const asked = std::getenv("KILLS");
     const int kills = asked ? std::atoi(asked) : 20;
-    // A run writes its film when it ends: of each that goes on a little further.
+    // A run writes its film when it ends.  Each resumed run adds a few samples.
     int killed = 0;
     uint64_t rays = 0, spp = 32;
     for (uint64_t run = 0; killed < kills; ++run) {
@@ -110,12 +110,12 @@ TEST_CASE("kill -9 at any moment: a film that is whole, or none; the last one is
         if (o.signal == 0) CHECK(o.status == 0);
         if (o.signal == 0 && spp < 240) spp += 2;
         if (!folder.has("a.film")) continue;
-        // Which reads all of it; nothing that was kept is lost.
+        // This reads the whole film; no kept sample is lost.
         const uint64_t now = std::stoull(in_head(folder, "a.film", "rays"));
         CHECK(now >= rays);
         rays = now;
     }
-    // A run removes what killed ones left beside the files that it writes.
+    // A run removes the temporary files that killed ones left next to its outputs.
     expect_success(folder, folder.of("--spp 240 --keep a.film -o x.pfm") + outputs("parts"));
     expect_same_run(folder, "whole", "parts");
     for (const auto& [name, bytes] : folder.all()) CHECK_FALSE(contains(name, ".part"));
@@ -123,7 +123,7 @@ TEST_CASE("kill -9 at any moment: a film that is whole, or none; the last one is
 
 TEST_CASE("what a killed run left beside its film, the next one removes") {
     const Unequal folder("12x6");
-    // More than Linux gives to processes.
+    // No process of Linux has this number.
     const std::string left = aside(folder / "a.film", "2147483646").filename().string();
     folder.write(left, "half");
     expect_success(folder, folder.of("--spp 2 --keep a.film -o a.pfm"));
@@ -166,5 +166,5 @@ TEST_CASE("going on takes no more memory than beginning") {
     expect_same_run(folder, "whole", "parts");
     const double whole = folder.number("whole", "peak_memory_bytes"),
                  parts = folder.number("parts", "peak_memory_bytes");
-    CHECK(parts < whole + 2e6);  // 2 bytes a pixel
+    CHECK(parts < whole + 2e6);  // 2 bytes per pixel
 }

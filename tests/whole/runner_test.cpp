@@ -1,7 +1,7 @@
-// whole/runner_test.cpp  what make test says of tests that fail, crash, never end or do not compile
+// whole/runner_test.cpp  make test for tests that fail, crash, never end or do not compile
 //
-// In a house of a few headers, whose tests are shell scripts or test cases of this file: those that
-// are skipped here do what tests should not.
+// The runner works on a small code base of a few headers.  Its tests are shell scripts or test
+// cases of this file; the skipped cases here misbehave on purpose.
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -50,7 +50,7 @@ struct Said {
     long lines() const { return std::count(out.begin(), out.end(), '\n'); }
 };
 
-// A house whose `make` finds everything built.
+// A small code base; its `make` finds everything built.
 struct House {
     Folder folder;
 
@@ -65,7 +65,7 @@ struct House {
 done
 )");
     }
-    // src/NAME.h, and tests/NAME_test, which is a script.
+    // Adds src/NAME.h, and tests/NAME_test, which is a script.
     void add(const std::string& name, int number, const std::string& script) const {
         folder.write("src/" + name + ".h",
                      "// " + name + ".h  " + std::to_string(number) + "  it\n");
@@ -76,7 +76,7 @@ done
         folder.write("built/" + name + "_test.exe", "#!/bin/sh\n" + script);
         fs::permissions(folder / ("built/" + name + "_test.exe"), fs::perms::owner_all);
     }
-    // `make test` with these variables, and ONLY= these names.
+    // Runs `make test` with these variables, and ONLY= these names.
     Said test(const std::string& variables = "", const std::string& names = "") const {
         const std::string command =
             "cd '" + folder.path.string() +
@@ -89,7 +89,7 @@ done
     std::string log(const std::string& name) const { return folder.read("build/logs/" + name); }
 };
 
-// A test that runs the case of this file with that name, after one that passes.
+// A test that runs this file's case of that name, after one that passes.
 std::string cases(const std::string& name) {
     return "exec '" + fs::read_symlink("/proc/self/exe").string() +
            "' -ns -sf='*/runner_test.cpp' -tc='passes," + name + "'\n";
@@ -223,7 +223,7 @@ TEST_CASE(
     "told") {
     House house;
     house.add("world/shapes", 1, passes);
-    house.add_test("world/shapes_spawn", "world/lights", passes);  // it stands on lights, too
+    house.add_test("world/shapes_spawn", "world/lights", passes);  // includes lights, too
     house.add("world/bvh", 3, passes);
     house.add("world/lights", 2, passes);
     house.add("base/low", 1, passes);

@@ -14,7 +14,7 @@ namespace {
 const std::string room =
     "size 4 4\ncamera 0 1 4  0 0.5 0  50\ndepth 3\ndiffuse grey 0.5 0.5 0.5\n"
     "light lamp 2 2 2\nquad -4 0 -4  0 0 8  8 0 0  grey\n";
-const std::string over = "quad -1 2 -1  2 0 0  0 0 2  ";  // six lines before it
+const std::string over = "quad -1 2 -1  2 0 0  0 0 2  ";  // six lines precede it
 
 std::string replaced(const std::string& from, const std::string& to, std::string text = room) {
     return text.replace(text.find(from), from.size(), to);
@@ -33,7 +33,7 @@ bool warns(const ParsedScene& scene, const std::string& words) {
                        [&](const std::string& w) { return w.find(words) != w.npos; });
 }
 
-// Radiance of all pixels, some samples each.
+// The radiance of all pixels, with some samples each.
 std::vector<rgb> render(const Scene& scene, LightMode mode) {
     std::vector<rgb> all;
     for (int i = 0; i < 16; ++i)
@@ -51,8 +51,8 @@ double light_of(const Scene& scene, LightMode mode = LightMode::none) {
 
 const double rounding = single ? 0.01 : 1e-9;
 
-// What the pixels of two scenes have in all, for each mode: the same paths, but for rounding. Where
-// there are two lights to choose from light samples are others: six standard errors.
+// The total light of the pixels of two scenes, for each mode: the same paths up to rounding.  With
+// two lights to choose from, light samples differ: the tolerance is six standard errors.
 void expect_same_light(const Scene& a, const Scene& b) {
     for (LightMode mode : {LightMode::none, LightMode::nee, LightMode::mis}) {
         CAPTURE(int(mode));
@@ -63,7 +63,7 @@ void expect_same_light(const Scene& a, const Scene& b) {
     }
 }
 
-// A floor whose rays start `offset` off it, and others beside it; a line too many is a warning.
+// A floor with ray origins `offset` off it, and other shapes; returns the warnings.
 constexpr double offset = 32 * double(ulp) * 1000;
 std::string told(const std::string& eye, const std::string& others) {
     std::string all;
@@ -83,7 +83,7 @@ const std::string from_above = "0 9 20  0 0 0  50", panel = "quad -9 9 -9  18 0 
 TEST_CASE("a lamp in a ceiling shines as if it were in front of it, however light is found") {
     const std::string text = replaced("depth 3", "depth 1");
     const Scene alone = parsed(text + over + "lamp\n").scene;
-    // Beside it, of the same corners in other orders, of one half, of another diagonal, over it.
+    // The covers have the same corners in other orders, one half, another diagonal, other sizes.
     for (const char* cover :
          {"quad -3 2 -3  6 0 0  0 0 6  grey\n", "quad -1 2 -1  2 0 0  0 0 2  grey\n",
           "quad -1 2 -1  0 0 2  2 0 0  grey\n", "quad 1 2 1  -2 0 0  0 0 -2  grey\n",
@@ -101,12 +101,12 @@ TEST_CASE("a lamp in a ceiling shines as if it were in front of it, however ligh
                                   : "line 7: this light lies in the surface of line 8"));
             expect_same_light(alone, both.scene);
         }
-    // What touches its edge, crosses it, or is not quite there.
+    // Shapes that touch its edge, cross it, or miss it narrowly.
     for (const char* beside :
          {"quad 1 2 -1  2 0 0  0 0 2  grey\n", "quad -1 1 0  2 0 0  0 3 0  grey\n",
           "quad -1 2.001 -1  2 0 0  0 0 2  grey\n", "quad -1 2 -1  0 .5 0  0 0 2  grey\n"})
         CHECK(parsed(text + over + "lamp\n" + beside).warnings.empty());
-    // Far from the eye, which is at 0: what rounding loses is that of the wall.
+    // Far from the eye, which is at 0: the wall determines the rounding errors.
     const std::string eye = "size 4 4\ncamera 0 0 0  0 0 -1  50\ndiffuse grey .5 .5 .5\n",
                       wall = "quad -9e3 -9e3 -1e4  18e3 0 0  0 18e3 0  ";
     for (const std::string& both :
@@ -121,7 +121,7 @@ TEST_CASE("of two lamps in one place the first shines, and the other where it is
     auto light = [&](const std::string& shapes) { return light_of(parsed(text + shapes).scene); };
     for (const std::string& two : {over + "lamp\n" + longer, longer + over + "lamp\n"})
         CHECK(light(two) == doctest::Approx(light(longer)).epsilon(rounding));
-    // Of another radiance: as if the second were cut out.
+    // Another radiance: the second lamp has no effect where they overlap.
     const std::string bright = "light bright 9 9 9\n" + over + "lamp\n";
     expect_same_light(parsed(text + bright).scene, parsed(text + bright + over + "bright\n").scene);
     CHECK(light(bright + "quad -1 2 -1  4 0 0  0 0 2  bright\n") ==
@@ -169,7 +169,7 @@ TEST_CASE("a point light on a surface is refused, off it accepted") {
          {std::pair{"0 0 0", "6"}, {"0.25 1.25 0.25", "7"}, {"2 2.5 2", "8"}})  // on the diagonal
         CHECK(at(place).starts_with("test:9: this point light lies on the surface of line " +
                                     std::string(line)));
-    // Beside the quad in its plane, beyond the long side of the triangle.
+    // Near the quad in its plane, beyond the long side of the triangle.
     for (const char* place :
          {"0.5 1e-4 0.5", "0.5 -1e-4 0.5", "5 0 0", "1 2 1", "2 2.501 2", "2 2 2"})
         CHECK(at(place) == "");
@@ -213,7 +213,7 @@ TEST_CASE("where rays start more than 1 % of the way to something near, it is to
             CHECK(told(off(row.eye, offsets), off(row.others, offsets)) == start + row.what + end);
         CHECK(told(off(row.eye, 105), off(row.others, 105)) == "");
     }
-    // From a ball or from a plate: the other is too large to look out from where it is near.
+    // Near a ball or a plate: the floor is too large to be near from most of its points.
     for (const std::string other :
          {"sphere 9 @ 9  5 l\n", "sphere 9 -@ 9  5 l\n", "quad 9 @ 9  1 0 0  0 0 1  l\n"}) {
         INFO(other);
@@ -222,7 +222,7 @@ TEST_CASE("where rays start more than 1 % of the way to something near, it is to
         CHECK(near.ends_with(" distance to line 4" + end));
         CHECK(told(eye, off(other, 110)) == "");
     }
-    // A small ball by its centre, on the floor or above it; its size is that of many more offsets.
+    // A small ball, located by its centre, on or above the floor; its size is many more offsets.
     auto ball = [&](double height) {
         return told(eye, panel + off("sphere 0 @ 0  ", height) + off("@ d\n", 40));
     };
@@ -238,7 +238,7 @@ TEST_CASE("shapes that touch are not near, nor are they with a light near by") {
         INFO(std::string(standing));
         CHECK(told(eye, panel + standing) == "");
     }
-    // A ball in a corner; a roof, a box upon a box.
+    // A ball in a corner, a roof, a box upon a box.
     CHECK(told(eye, panel + "quad -9 0 -1  18 0 0  0 9 0  d\nsphere 3 1 0  1  d\n") == "");
     CHECK(told(eye, panel + "box 2 2 2  0  -1 0 -1  d\nbox 1 1 1  20  -.5 2 -.5  d\n") == "");
 }
@@ -272,11 +272,11 @@ TEST_CASE("three scenes that float gets wrong are told; in double they are not n
         CHECK(warns(parsed(eye + head + floor + lamp), "distance to line 4") == single);
 }
 
-// Maps of its light have one side and no sky.  In float a ray that starts 10 micrometres from an
-// edge may start behind it.
+// Maps of its light have one side and no sky.  In float, a ray from a point 10 micrometres before
+// an edge may start behind the edge.
 TEST_CASE("the house of atelier is closed, and only the fronts of its faces are seen") {
     const ParsedScene atelier = read_scene("scenes/atelier.scene");
-    // The sill is a millimetre off the wall.
+    // The sill is a millimetre from the wall.
     CHECK(atelier.warnings.size() == (single ? 1 : 0));
     CHECK(atelier.scene.lights.size() == 5);
     const Scene& scene = atelier.scene;

@@ -1,4 +1,4 @@
-// whole/stopping_test.cpp  --error stops at what was asked for, on films whose truth is known
+// whole/stopping_test.cpp  --error stops at the requested error, for films of known truth
 #include <cmath>
 
 #include "film/error.h"
@@ -24,10 +24,10 @@ rgb truth(int x, int y) {
 
 struct Stop {
     double ratio;      // true d_rel / E
-    uint64_t samples;  // of each replication
+    uint64_t samples;  // per replication
 };
 
-// As renders with --error do.
+// Follows the loop of renders with --error.
 Stop stop_of(SamplerKind kind, uint64_t seed, double asked) {
     const Pattern pattern = make_pattern(kind, seed, 1, 0);
     const Radiance sample = [&](const PixelSample& s, Tally&) {
@@ -57,12 +57,12 @@ double tail(int k, int n, double p) {
     return sum;
 }
 
-// That no more than a part p of all runs is so, of which `count` of n were.
+// Expects at most a part p of all runs to have a property that `count` of n runs had.
 void expect_at_most(const std::string& what, int count, int n, double p) {
     constexpr double significance = 1e-6;
-    int seen = 0;  // the least that would be refused
+    int seen = 0;  // the least refused count
     while (tail(seen, n, p) > significance) ++seen;
-    double power = p;  // the part of which that many are seen with 99.9 %
+    double power = p;  // detected with 99.9 % power
     while (tail(seen, n, power) < 0.999) power += 0.001;
     INFO(what, ": ", count, " of ", n, ", expected at most ", 100 * p, " %; from ", seen,
          " on refused, which finds ", 100 * power, " % with 99.9 % power");
@@ -101,7 +101,7 @@ TEST_CASE("true d_rel / E at a stop: median in [0.95, 1], 95 % of runs below 1.0
 }
 
 TEST_CASE("--error goes on while light may be missing, and says so after 4096 samples") {
-    // A lamp that lights the floor, and one of a hundredth of the ball that it is seen in.
+    // One lamp lights the floor; a ball reflects another one of a hundredth of its size.
     const std::string seen =
         "camera 0 2 6  0 .7 0  40\ndepth 8\nmirror m .9 .9 .9\ndiffuse d .6 .6 .6\n"
         "light l 2e4 2e4 2e4\nlight k 5 5 5\nquad -5 0 -5  0 0 10  10 0 0  d\nsphere 0 1 0 1 m\n";

@@ -1,4 +1,4 @@
-// whole/wing_programs_test.cpp  build/shadow and build/voronoi as their user meets them
+// whole/wing_programs_test.cpp  build/shadow and build/voronoi as a user runs them
 #include "whole/process.h"
 
 namespace {
@@ -18,7 +18,7 @@ struct Shadows : Folder {
     }
 };
 
-// The greatest difference, beside the greatest value.
+// The greatest difference, relative to the greatest value.
 double apart(const Image& a, const Image& b) {
     REQUIRE(a.pixels.size() == b.pixels.size());
     double most = 0, off = 0;

@@ -1,4 +1,4 @@
-// wide/collapse_test.cpp  the wide tree is the cheapest that a binary tree contains
+// wide/collapse_test.cpp  the collapse finds the cheapest wide BVH that a binary BVH contains
 #include "wide/collapse.h"
 
 #include <functional>
@@ -9,10 +9,10 @@ namespace {
 
 using wide::BinaryTree, wide::Branch;
 
-constexpr double leaf_cost = 0.5, shape_cost = 0.05;  // as measured
+constexpr double leaf_cost = 0.5, shape_cost = 0.05;  // measured values
 constexpr uint32_t largest_leaf = 8;
 
-// A random tree: of `leaves` leaves with 1 to 4 shapes each, in boxes that grow upwards.
+// A random tree with `leaves` leaves of 1 to 4 shapes each; the boxes grow upwards.
 BinaryTree random_tree(int leaves, Dice& random) {
     BinaryTree tree{};
     std::function<void(uint32_t, int, real)> grow = [&](uint32_t i, int n, real size) {
@@ -42,7 +42,7 @@ double cost_of_leaf(const BinaryTree& tree, uint32_t i) {
     return area(tree, i) * (leaf_cost + shape_cost * tree.branches[i].count);
 }
 
-// By trying all there are: of a branch below a node that has room for so many children.
+// The cost of a branch below a node with `room` more children, by trying all ways.
 double least_cost(const BinaryTree& tree, uint32_t i, size_t room) {
     const Branch& b = tree.branches[i];
     double least = HUGE_VAL;
@@ -59,7 +59,7 @@ double least_cost(const BinaryTree& tree, uint32_t i, size_t room) {
     return least;
 }
 
-// What the wide tree costs that Collapse chooses; NaN if it is none.
+// The cost of the wide BVH that Collapse chooses; NaN if it chooses no valid one.
 double cost(const BinaryTree& tree, const wide::Collapse& collapse, uint32_t i) {
     const auto children = collapse.children(i);
     double sum = area(tree, i);
@@ -104,7 +104,7 @@ TEST_CASE("triangles and spheres share no leaf, be they ever so few") {
     const wide::Collapse collapse(tree, largest_leaf);
     CHECK(!collapse.is_leaf(0));
     CHECK(collapse.children(0).count == 2);
-    CHECK(tree.ids == std::vector<uint32_t>{1, 0});  // triangles first
+    CHECK(tree.ids == std::vector<uint32_t>{1, 0});  // triangles come first
     CHECK(tree.branches[1].count == 1);
     CHECK(!wide::build({shapes[0]}).mixed);
     CHECK(!wide::build({shapes[1]}).mixed);

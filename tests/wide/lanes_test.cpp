@@ -1,4 +1,4 @@
-// wide/lanes_test.cpp  eight numbers at once are each what one alone is
+// wide/lanes_test.cpp  every lane of eight numbers equals the scalar result
 #include "wide/lanes.h"
 
 #include "world/geometry.h"

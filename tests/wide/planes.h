@@ -1,4 +1,4 @@
-// wide/planes.h  the box of a shape as the wide tree's nodes have it
+// wide/planes.h  the box of a shape as the nodes of the wide BVH store it
 #pragma once
 #include "wide/wide_bvh.h"
 #include "world/hard_rays.h"

@@ -1,4 +1,4 @@
-// wide/wide_bvh_test.cpp  the wide tree answers as a loop over all shapes does, only sooner
+// wide/wide_bvh_test.cpp  the wide BVH gives the answers of a loop over all shapes, in less time
 #include "wide/wide_bvh.h"
 
 #include "wide/planes.h"
@@ -6,7 +6,7 @@
 
 namespace {
 
-// Of each branch.
+// Returns the depth of each branch.
 std::vector<int> depths(const wide::BinaryTree& tree) {
     std::vector<int> depth(tree.branches.size());
     for (size_t i = 0; i < depth.size(); ++i)  // children follow their parents
@@ -29,21 +29,21 @@ TEST_CASE_TEMPLATE_INVOKE(infinitely_far, WideBvh);
 TEST_CASE_TEMPLATE_INVOKE(empty_and_nan, WideBvh);
 
 TEST_CASE("a ray opens 7.8 nodes among 20000 triangles, 35.6 among 2000 large ones, no more") {
-    // Nearest first, and none behind the hit.  7.80 and 11.9; in the order of the node 9.0 and
-    // 15.1; boxes behind the hit, too, 8.1 and 12.3.
+    // Traversal is nearest first and skips boxes behind the hit: 7.80 nodes and 11.9 shapes.  In
+    // node order they are 9.0 and 15.1, with boxes behind the hit 8.1 and 12.3.
     Dice random{{8}}, again{{8}};
     const MeanWork small = work_of_rays<WideBvh>(many(20000, real(0.03), random), random);
     CHECK(small.nodes < 7.9);
     CHECK(small.shapes < 12.1);
-    // Most boxes that begin before a hit hold what is hit behind it.  35.6 and 410.5; in the order
-    // of the node 37.9 and 435.
+    // Most boxes that begin before a hit contain only later hits: 35.6 nodes and 410.5 shapes.  In
+    // node order they are 37.9 and 435.
     const MeanWork large = work_of_rays<WideBvh>(many(2000, 1, again), again);
     CHECK(large.nodes < 35.75);
     CHECK(large.shapes < 414);
 }
 
 TEST_CASE("a tree takes up 90 bytes a triangle at most in double, 54 in float") {
-    // 9 numbers, an index, and 14 bytes of nodes, which are as large in both.
+    // A triangle needs 9 numbers, an index and 14 bytes of nodes; nodes are equally large in both.
     const size_t most = 9 * sizeof(real) + 4 + 14;
     Dice random{{10}};
     const Shapes small = many(20000, real(0.03), random), large = many(20000, 1, random);
@@ -64,8 +64,8 @@ TEST_CASE("identical triangles: at most 128 bytes of nodes each") {
 }
 
 TEST_CASE("below a depth of 32 nodes are halved, on spines to the left and to the right") {
-    // Sizes and places in powers of two: each split parts the few largest from all the others, of
-    // which there are 200 octaves.
+    // Sizes and positions are powers of two over 200 octaves: each split separates the few largest
+    // shapes from all others.
     for (real side : {real(1), real(-1)}) {
         Shapes scene;
         const int n = 2000;
@@ -91,7 +91,7 @@ TEST_CASE("below a depth of 32 nodes are halved, on spines to the left and to th
 }
 
 TEST_CASE("shapes in one place, or each a thousand times as large as the last: 64 levels at most") {
-    // More would overrun the stack of its rays.
+    // A deeper tree would overflow the traversal stack.
     const Shape unit_triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     for (bool growing : {false, true}) {
         Shapes scene;

@@ -1,4 +1,4 @@
-// world/bsdf_test.cpp  how surfaces scatter: densities, energy, reciprocity, the laws of reflection
+// world/bsdf_test.cpp  scattering at surfaces: densities, energy, reciprocity, laws of reflection
 #include "world/bsdf.h"
 
 #include "base/approx.h"
@@ -13,12 +13,12 @@ Material rough(real kd, real ks, real exponent) {
 }
 Material glass(real ior) { return {Material::Kind::glass, {}, {}, 0, ior, {}, false}; }
 
-// Normal, oblique, grazing.
+// A direction at the given cosine; `cosines` has normal, oblique and grazing ones.
 vec3 at_cosine(real z) { return spherical(z, std::sqrt((1 - z) * (1 + z)), real(0.7)); }
 constexpr real cosines[] = {1, real(0.6), real(0.05), real(1e-3)};
 
-// Reflected part of light that comes from wo: int f cos dw, by quadrature about the mirror
-// direction, in bands that double in width.
+// The albedo for light from wo: int f cos dw, by quadrature about the mirror direction in bands of
+// doubling width.
 double albedo(const Material& m, vec3 wo) {
     oracle::Sphere f;
     f.fit({}, oracle::point(mirrored(wo)));
@@ -98,7 +98,7 @@ TEST_CASE("rough surfaces are reciprocal: f(wo, wi) = f(wi, wo), and black from 
         CHECK(max_abs(eval(m, a, b) - eval(m, b, a)) <= 64 * ulp * max_of(eval(m, a, b)));
         CHECK(max_of(eval(m, a, {b.x, b.y, -b.z})) == 0);
     }
-    // Off the mirror direction by 90 degrees and more the lobe is gone, for exponent 0 too.
+    // At 90 degrees and more from the mirror direction the lobe is 0, also for exponent 0.
     const Material lobe = rough(0, 1, 0);
     CHECK(eval(lobe, at_cosine(real(0.1)), at_cosine(real(0.1))).x == 0);
     CHECK(eval(lobe, {0, 0, 1}, {0, 0, 1}).x == 1 / pi);
@@ -129,8 +129,8 @@ TEST_CASE("Fresnel: normal incidence, Brewster's angle, grazing, the same from b
     for (real n : {real(1.1), real(1.5), real(2.4)}) {
         CHECK(fresnel(1, 1, 1 / n) ==
               doctest::Approx(double(sqr((n - 1) / (n + 1)))).epsilon(1e-5));
-        // Brewster: tan = n, where nothing of the parallel part is reflected and the rest is
-        // ((n^2 - 1) / (n^2 + 1))^2, half of which remains.
+        // At the Brewster angle, tan = n, the parallel part of the reflection is 0 and the other is
+        // ((n^2 - 1) / (n^2 + 1))^2.  The mean of both is half of that.
         const real c = 1 / std::sqrt(1 + n * n), cos_t = std::sqrt(1 - (1 - c * c) / (n * n));
         const double brewster = double(sqr((n * n - 1) / (n * n + 1))) / 2;
         CHECK(fresnel(c, cos_t, 1 / n) == doctest::Approx(brewster).epsilon(1e-5));
@@ -162,11 +162,11 @@ TEST_CASE(
                 CHECK(std::abs(down.wi.y + eta * wo.y) < 8 * ulp);
                 const real through = down.f.x * -down.wi.z / down.pdf;
                 CHECK(std::abs(through - sqr(eta)) < 16 * ulp * sqr(eta));
-                // Back along the same path the part that is let through is the same, and the
-                // radiance as before: f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2.
+                // The same part is transmitted back along the path, and the radiance is the
+                // original one: f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2.
                 const BsdfSample back =
                     sample(m, -down.wi, !outside, below_one, {}, Direction::bsdf);
-                const real slope = 1 + 1 / z;  // of Fresnel's part, near grazing
+                const real slope = 1 + 1 / z;  // slope of the Fresnel term near grazing
                 CHECK(std::abs(back.pdf - down.pdf) < 64 * ulp * slope);
                 CHECK(length(back.wi + wo) < 64 * ulp * slope);
                 CHECK(std::abs(back.f.x * -back.wi.z / back.pdf * through - 1) < 64 * ulp);

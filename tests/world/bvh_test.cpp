@@ -1,4 +1,4 @@
-// world/bvh_test.cpp  the plain tree answers as a loop over all shapes does, only sooner
+// world/bvh_test.cpp  the binary BVH gives the answers of a loop over all shapes, in less time
 #include "world/bvh.h"
 
 #include "world/tree_cases.h"
@@ -29,7 +29,7 @@ TEST_CASE("a ray looks at few nodes and shapes of the plain tree: nearest first,
 }
 
 TEST_CASE("boxes are entered where a point within comes first, or missed if none does") {
-    // Of points along the ray, which are in the box and which are not.
+    // Points along the ray are classified as inside or outside the box.
     Dice random{{7}};
     int wrong = 0, met = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -39,7 +39,7 @@ TEST_CASE("boxes are entered where a point within comes first, or missed if none
         const Ray ray{o, unit(to - o), random(0, 6)};
         const auto t = enter_box(b, Probe(ray));
         met += t.has_value();
-        auto depth = [&](real s) {  // how far outside the box the point at s is
+        auto depth = [&](real s) {  // distance of the point at s from the box
             const vec3 p = ray.o + s * ray.d;
             return std::max({b.lo.x - p.x, p.x - b.hi.x, b.lo.y - p.y, p.y - b.hi.y, b.lo.z - p.z,
                              p.z - b.hi.z});
@@ -70,7 +70,7 @@ TEST_CASE("nearest_hit looks for what is nearer than the best that it is given, 
     };
     nodes[0].box.lo.x = 0;
     CHECK(nearest_hit(nodes, Hit{}, enter, look).id == 1);
-    CHECK(seen == 2);  // the second begins where the first hit is
+    CHECK(seen == 2);  // the second leaf begins at the first hit
     CHECK(nearest_hit(nodes, Hit{real(1.5)}, enter, look).t == real(1.5));
     CHECK(seen == 3);
     CHECK(nearest_hit(nodes, Hit{real(0.5)}, enter, look).t == real(0.5));

@@ -1,4 +1,4 @@
-// world/geometry.h  for tests of geometry: random places, and vectors of long double
+// world/geometry.h  random placements, and vectors of long double, for tests of geometry
 #pragma once
 #include <vector>
 
@@ -26,7 +26,7 @@ struct Dice {
 
 // ---- Long double --------------------------------------------------------------------------------
 
-using big = long double;  // on x86: 11 bits more than double has
+using big = long double;  // on x86: 11 bits more than double
 
 struct big3 {
     big x, y, z;
@@ -61,7 +61,7 @@ inline std::optional<Hit> meet(const Shape& s, const Ray& ray) {
 
 inline vec3 point(const Shape& s, vec2 u) { return s.a + u.x * (s.b - s.a) + u.y * (s.c - s.a); }
 
-// From o, past the centre at a distance of x radii.
+// A ray from o that passes the centre of the shape at a distance of x radii.
 inline Ray aimed(const Shape& s, vec3 o, real x, Dice& random) {
     const real sine = x * s.r / length(s.a - o);
     const vec3 local = spherical(std::sqrt(1 - sine * sine), sine, random(0, 1));
@@ -73,7 +73,7 @@ inline Shape random_triangle(Dice& random, real edge) {
     return {a, a + edge * random.direction(), a + edge * random.direction()};
 }
 
-// Edges of about 1, a width of 2^-7 down to 2^-narrowest.
+// A triangle with edges of about 1 and a width from 2^-7 down to 2^-narrowest.
 inline Shape random_sliver(Dice& random, real narrowest) {
     const vec3 a = random.direction(), e = random.direction();
     const vec3 off = random.direction(std::exp2(random(-narrowest, -7)));
@@ -85,7 +85,7 @@ inline Shape moved(const Shape& s, vec3 v) {
     return s.is_sphere() ? Shape{s.a + v, {}, {}, s.r} : Shape{s.a + v, s.b + v, s.c + v};
 }
 
-// Unit, small, huge, and far from the origin for its size.
+// Placements: unit size, small, huge, and far from the origin compared with the size.
 struct Placement {
     real scale, distance;
 };
@@ -96,10 +96,10 @@ inline Shape placed(const Shape& s, const Placement& p, Dice& random) {
     return moved(scaled(s, p.scale), random.direction(p.distance));
 }
 
-// A surface about the origin; corners that triangles share are the same numbers.
+// A surface around the origin; triangles that share a corner have bit-identical coordinates.
 using Triangles = std::vector<Shape>;
 
-// Two cones on a ring of n corners and their twins, `gap` further on.
+// Two cones on a ring of n corners and n twins; twins are `gap` apart.
 inline Triangles cones(int n, real gap) {
     std::vector<vec3> ring;
     for (int i = 0; i < n; ++i) {
@@ -114,7 +114,7 @@ inline Triangles cones(int n, real gap) {
     return mesh;
 }
 
-// The octahedron, refined and blown up.
+// The octahedron, subdivided and projected onto the sphere.
 inline Triangles ball(int levels) {
     Triangles mesh;
     for (int i = 0; i < 8; ++i) {

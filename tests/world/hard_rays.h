@@ -1,4 +1,4 @@
-// world/hard_rays.h  rays and scenes that trees find hard
+// world/hard_rays.h  rays and scenes that are hard for a BVH
 #pragma once
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 using Shapes = std::vector<Shape>;
 
-// Rays on which tree and loop differ, be they endless or end at, just before or about the hit.
+// Counts rays with different answers, endless ones and those that end at, before or after the hit.
 template <class Tree>
 struct ComparisonOf {
     const Shapes& shapes;
@@ -38,7 +38,7 @@ struct ComparisonOf {
 
 // ---- Rays ---------------------------------------------------------------------------------------
 
-// A corner of a triangle, a pole of a sphere.
+// Returns a corner of a triangle, or a pole of a sphere.
 inline vec3 corner(const Shape& s, Dice& random) {
     const size_t i = random.below(3);
     if (!s.is_sphere()) return i == 0 ? s.a : i == 1 ? s.b : s.c;
@@ -47,7 +47,7 @@ inline vec3 corner(const Shape& s, Dice& random) {
     return p;
 }
 
-// The box of a shape as the tree stores it.
+// The box of a shape as the BVH stores it.
 template <class Tree>
 Box stored_box(const Shape& s) {
     return bounds(s);
@@ -71,7 +71,7 @@ Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
     if (aim == anywhere) return {distance * random.direction(), anyhow};
     vec3 target = corner(s, random), d = anyhow;
     const vec3 e = s.b - s.a, f = s.c - s.a;
-    if (aim == at_edge && s.is_sphere()) {  // tangent
+    if (aim == at_edge && s.is_sphere()) {  // the ray is tangent
         const vec3 n = random.direction();
         target = s.a + s.r * n, d = unit(cross(n, d));
     } else if (aim == at_edge) {
@@ -83,12 +83,12 @@ Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
         target = s.a + random(0, real(0.5)) * e + random(0, real(0.5)) * f;
         d = unit(random(-1, 1) * e + random(-1, 1) * f);
     } else if (aim == near_axis) {
-        // In double also where the inverse is beyond float.
+        // In double, the inverse may exceed the range of float.
         const real least = sizeof(real) == 8 && random.below(3) == 0 ? -44 : -8;
         for (auto a : axis) d.*a *= random.decades(least, 0);
         d.*axis[random.below(3)] += random.sign();
         d = unit(d);
-    } else if (aim == across_axis || aim == along_axis) {  // zeros of both signs, box planes
+    } else if (aim == across_axis || aim == along_axis) {  // zeros of both signs, planes of boxes
         const size_t odd = random.below(3);
         const Box box = stored_box<Tree>(s);
         for (size_t a = 0; a < 3; ++a) {
@@ -97,9 +97,9 @@ Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
         }
         d = unit(d);
     }
-    if (!is_finite(d)) d = anyhow;  // a triangle without area
+    if (!is_finite(d)) d = anyhow;  // the triangle has no area
     const vec3 o = target - distance * d;
-    // Rounding may have moved o off the line: aim again, unless the plane is what matters.
+    // Rounding may have moved o off the line: the ray is aimed again, unless the plane matters.
     const vec3 again = unit(target - o);
     if ((aim < in_plane || aim == near_axis) && is_finite(again)) d = again;
     return {o, d};
@@ -114,7 +114,7 @@ void judge(ComparisonOf<Tree>& c, int rays, real reach, Dice& random) {
 // ---- Scenes, about as large as 1 ----------------------------------------------------------------
 
 inline Shape triangle(real edge, Dice& random) {
-    const real distance = random(0, 1);  // in this order, whatever the compiler
+    const real distance = random(0, 1);  // drawn first, on every compiler
     const vec3 a = distance * random.direction();
     return {a, a + edge * random.direction(), a + edge * random.direction()};
 }
@@ -142,7 +142,7 @@ inline void add_quad(Shapes& scene, vec3 p, vec3 u, vec3 v) {
     scene.push_back({p, p + u + v, p + v});
 }
 
-// Quads of a cubic grid, all axes, every fourth of them twice.
+// Quads of a cubic grid in all three orientations; every fourth is duplicated.
 inline Shapes grid(int n) {
     Shapes scene;
     const real step = real(1) / real(n);

@@ -1,4 +1,4 @@
-// world/light_choice_test.cpp  which of a few lights is worth a sample
+// world/light_choice_test.cpp  the choice of one light for a sample
 #include "world/light_choice.h"
 
 #include "base/approx.h"
@@ -14,7 +14,7 @@ Light shining(Light l, real L, bool twosided = false) {
     return l;
 }
 
-// Of any kind, about the origin, as large as r.
+// A light of the given kind near the origin, of size r.
 Light light_of(Dice& dice, Light::Kind kind, real r) {
     const vec3 p = dice.direction(r), u = dice.direction(r), v = dice.direction(r);
     const real L = dice.decades(-2, 2);
@@ -26,7 +26,7 @@ Light light_of(Dice& dice, Light::Kind kind, real r) {
 }
 Light light_of(Dice& dice, real r) { return light_of(dice, Light::Kind(dice.below(4)), r); }
 
-// Lights alone.
+// A scene with only these lights.
 Scene scene_of(const std::vector<Light>& lights) {
     Scene s;
     s.lights = lights;
@@ -34,7 +34,7 @@ Scene scene_of(const std::vector<Light>& lights) {
     return s;
 }
 
-// Irradiance by one light sample; nothing from below the horizon.
+// Irradiance by one light sample; light from below the horizon counts as 0.
 real sends(const Light& l, vec3 p, vec3 m, vec2 u) {
     const auto s = sample_light(l, p, u);
     return s ? std::max(real(0), dot(s->wi, m)) * mean_of(s->L) / s->pdf : 0;
@@ -79,11 +79,11 @@ TEST_CASE("a light weighs nothing only where it sends nothing") {
         const real weighs = light_weight(first, p, m);
         real E = 0;
         for (int k = 0; k < 8; ++k) E += sends(lights[0], p, m, dice.pair());
-        // So little is the error of a cosine near 0.
+        // The bound is the rounding error of a cosine near 0.
         const bool sends_some = E > 64 * ulp * power(lights[0]);
         sent += sends_some;
         lost += sends_some && !(weighs > 0);
-        // All of it lies below the horizon, or it is turned away.
+        // The whole light lies below the horizon, or it faces away.
         const bool is_below = dot(m, first.centre - p) < -first.reach - 64 * ulp;
         const bool is_behind = lights[0].n != vec3{} && !lights[0].twosided &&
                                dot(lights[0].n, p - lights[0].p) < -64 * ulp * r;
@@ -123,7 +123,7 @@ TEST_CASE("far away, lights weigh what they send") {
         ++seen;
     }
     CHECK(seen > 2000);
-    CHECK(worst.value < 32 / far);  // cosines of 1/4 and more, off by radii of at most 1
+    CHECK(worst.value < 32 / far);  // cosines are 1/4 or more; radii of at most 1 move them
 }
 
 TEST_CASE("the sphere about a polygon holds its corners, and touches two of a quad's") {
@@ -156,7 +156,7 @@ TEST_CASE("near or far, strong or faint: probabilities add up to 1") {
         for (size_t k = 0; k < 4; ++k) sum += pick_of(s, k, p, m);
         REQUIRE(std::abs(sum - 1) < 8 * ulp);
     }
-    // At the point itself; and where the square of a distance is infinite.
+    // The point coincides with a light, or the square of a distance is infinite.
     const Scene s =
         scene_of({shining(point_light({}, {}), 1), shining(sphere_light({1, 0, 0}, real(0.5)), 1)});
     CHECK(light_weights(s.lights, {}, {1, 0, 0}));
@@ -184,7 +184,7 @@ TEST_CASE("a scene chooses by place if lights are few and of use, otherwise by p
             CHECK(by_place.pick == pick_of(s, by_place.light, p, down));
             const Light& by_power = choose_light(s, u);
             differs |= &s.lights[by_place.light] != &by_power;
-            // All of them are below the horizon.
+            // At this point all lights are below the horizon.
             const LightPick blind = choose_light(s, {0, 99, 0}, up, u);
             CHECK(&s.lights[blind.light] == &by_power);
             CHECK(blind.pick == by_power.pick);
@@ -195,7 +195,7 @@ TEST_CASE("a scene chooses by place if lights are few and of use, otherwise by p
 }
 
 TEST_CASE("where what shines is so faint that sums of it are denormal, power decides") {
-    // The strong one is below the horizon.
+    // The strong light is below the horizon.
     Scene s =
         scene_of({shining(sphere_light({0, -5, 0}, 1), 1), shining(sphere_light({0, 5, 0}, 1), 1)});
     s.lights[1].strength = std::numeric_limits<real>::denorm_min() * 100;
@@ -203,7 +203,7 @@ TEST_CASE("where what shines is so faint that sums of it are denormal, power dec
     s.lights[1].strength = std::numeric_limits<real>::min() * 1000;
     REQUIRE(light_weights(s.lights, {}, {0, 1, 0}));
     for (real u : {real(0), below_one}) CHECK(choose_light(s, {}, {0, 1, 0}, u).light == 1);
-    // What is too faint for its part of the other to be a number still weighs something.
+    // A light keeps a weight even where its share of the sum underflows.
     s = scene_of({shining(sphere_light({0, -5, 0}, 1), real(1e30)),
                   shining(point_light({0, real(0.5), 0}, {}), std::numeric_limits<real>::min())});
     for (real u : {real(0), below_one}) CHECK(choose_light(s, {}, {0, 1, 0}, u).light == 1);

@@ -1,4 +1,4 @@
-// world/lights_test.cpp  aiming at lights: densities per solid angle, points on the light, fair
+// world/lights_test.cpp  light sampling: densities per solid angle, points on lights, unbiased
 // choices
 #include "world/lights.h"
 
@@ -24,7 +24,7 @@ vec3 middle(const Light& l) {
     return l.p + (l.u + l.v) * real(l.kind == Light::Kind::quad ? 0.5 : 1 / 3.0);
 }
 
-// Solid angle of the triangle a, b, c seen from the origin (van Oosterom, Strackee 1983).
+// Solid angle of the triangle a, b, c from the origin (van Oosterom, Strackee 1983).
 double solid_angle(vec3 a, vec3 b, vec3 c) {
     const double A = double(length(a)), B = double(length(b)), C = double(length(c));
     return 2 * std::atan2(std::abs(double(dot(a, cross(b, c)))), A * B * C + double(dot(a, b)) * C +
@@ -43,7 +43,7 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
     const vec3 centre{real(0.3), real(-0.2), real(0.5)}, away = unit({2, 1, -3});
     const real r = real(0.25);
     for (double gap : {1e-7, 1e-3, 0.5, 1.0, 30.0, 1e4}) {
-        if (single && (gap < 1e-5 || gap > 100)) continue;  // below the rounding of p or of wi
+        if (single && (gap < 1e-5 || gap > 100)) continue;  // rounding of p or wi exceeds this
         const double d = double(r) * (1 + gap), sigma = double(r) / d;
         const double rounding = 64 * double(ulp) / std::min(sigma, std::sqrt(gap));
         const Light l = sphere_light(centre, r);
@@ -75,7 +75,7 @@ TEST_CASE("sphere light: points lie on the sphere and on the ray, on the near si
             const real rounding = 32 * ulp * (d + length(l.p));
             CHECK(std::abs(length(s->at.p - l.p) - l.r) < rounding);
             CHECK(std::abs(length(s->at.n) - 1) < 8 * ulp);
-            // Off the ray by rounding, magnified where the ray grazes.
+            // Rounding moves the point off the ray, more so at grazing angles.
             const vec3 off = cross(s->at.p - p, s->wi);
             CHECK(length(off) < 4 * rounding);
             CHECK(dot(s->at.n, s->wi) < 8 * ulp * (1 + d / l.r));
@@ -110,7 +110,7 @@ TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slante
                 const vec3 p = middle(l) + height * n + beside;
                 const std::string where =
                     oracle::say("height %g, %g beside", double(height), double(length(beside)));
-                // As the integrator evaluates it: at the point of the light that wi meets.
+                // As in the integrator, the density is at the point of the light that wi meets.
                 auto density = [&](vec3 wi) {
                     return pdf_light(l, p, {p + dot(l.p - p, n) / dot(wi, n) * wi, n, 0});
                 };

@@ -1,11 +1,11 @@
-// world/nearest.h  the nearest hit by a loop over all shapes, to compare trees with
+// world/nearest.h  the nearest hit by a loop over all shapes: the reference for BVHs
 #pragma once
 #include <optional>
 #include <vector>
 
 #include "world/shapes.h"
 
-// Of equals the first.
+// Of equally near hits it returns the first.
 inline std::optional<Hit> nearest(const std::vector<Shape>& shapes, const Ray& ray) {
     const Shear k = shear(ray.d);
     std::optional<Hit> best;

@@ -1,5 +1,5 @@
-// world/obj_test.cpp  meshes: what is read, what is refused and where, and the same picture as by
-// hand
+// world/obj_test.cpp  meshes: accepted and refused statements, line numbers of errors, images equal
+// to those of scenes written by hand
 #include "world/obj.h"
 
 #include "base/complaint.h"
@@ -16,13 +16,13 @@ Scene scene_with(const Folder& folder, const std::string& obj,
     return parse_scene(text, folder / "s.scene").scene;
 }
 
-// What reading `obj` complains about, without the folder; "" if nothing.
+// Returns the error of reading `obj`, without the folder; "" if there is none.
 std::string complaint(const Folder& folder, const std::string& obj) {
     const std::string why = ::complaint([&] { scene_with(folder, obj); }), place = folder / "";
     return why.empty() ? "" : why.substr(std::min(why.size(), why.find(place, 1) + place.size()));
 }
 
-// A vertex.
+// Returns the statement of a vertex.
 std::string at(double x, double y) {
     return "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
 }
@@ -69,7 +69,7 @@ TEST_CASE("an OBJ file that cannot be used is refused at its line") {
         {"mtllib negative.mtl\n", "negative.mtl:2: a colour must not be negative"},
         {"mtllib twice.mtl\n", "twice.mtl:2: a second material 'a'"},
         {"mtllib good.mtl\nusemtl blue\n", "m.obj:2: unknown material 'blue'"},
-        // The line that names a library, whatever the library's own lines are.
+        // The message names the line with `mtllib`, whatever the lines inside the library are.
         {"\n\n\nmtllib none_in_it.mtl\n", "m.obj:4: "},
         {"\n\nmtllib bright.mtl\n", "m.obj:3: "},
         {"mtllib good.mtl\nmtllib none_in_it.mtl\n", "none_in_it.mtl: no material in it"},
@@ -138,7 +138,7 @@ TEST_CASE("a corner between two others in line is a corner, wherever the polygon
 
 TEST_CASE(
     "of a concave face the first 16 corners are tried as the fan's, of a convex one any number") {
-    // A star about the origin, which is its last corner and the only one that sees all others.
+    // A star about the origin: only the origin, its last corner, sees all other corners.
     auto star = [](size_t n) {
         Corners tips;
         for (size_t i = 0; i < n; ++i) {

@@ -1,5 +1,5 @@
-// world/scene_file_bounds_test.cpp  what little input may ask for: each attack of less than 10 kB a
-// file is refused, or ends soon
+// world/scene_file_bounds_test.cpp  bounds on input: every attack with files of less than 10 kB is
+// refused, or ends soon
 #include "base/cases.h"
 #include "base/complaint.h"
 #include "base/folder.h"
@@ -9,14 +9,14 @@ namespace {
 
 const std::string before = "camera 0 0 5  0 0 0  40\ndiffuse d .5 .5 .5\nlight l 1 1 1\n";
 
-// `before`, and a line so many times.
+// `before`, followed by `times` copies of a line.
 std::string repeated(size_t times, const std::string& line) {
     std::string text = before;
     for (size_t i = 0; i < times; ++i) text += line;
     return text;
 }
 
-// A line again and again, as long as the text stays below 10 kB.
+// Repeats a line as long as the text stays below 10 kB.
 std::string filled(std::string text, const std::string& line) {
     while (text.size() + line.size() < 10000) text += line;
     return text;
@@ -31,8 +31,8 @@ std::string complaint(const Folder& folder, const std::string& text) {
     return why.substr(std::min(why.size(), (folder / "").size()));
 }
 
-// One polygon that goes round nine corners until 10 kB are full: two bytes a corner, and 7/9 of
-// them have an area.
+// One polygon of 10 kB that visits nine corners again and again: two bytes per corner, and 7/9 of
+// its triangles have an area.
 std::string many_cornered() {
     std::string text;
     for (int i = 0; i < 9; ++i)
@@ -73,7 +73,7 @@ TEST_CASE("materials of a mesh that a scene repeats") {
 
 TEST_CASE("a concave face of 5000 corners: few are tried") {
     const Folder folder;
-    // From all corners but two something is seen from its back; that is found out last.
+    // From every corner except two, some triangle faces backwards; the search finds this last.
     std::string arrow = "v 0 2 0\nv -1 -1 0\nv 0 0 0\nv 1 -1 0\nf";
     for (int i = 0; i < 4997; ++i) arrow += " 2";
     folder.write("m.obj", arrow + " 3 4 1\n");
@@ -95,7 +95,7 @@ TEST_CASE("a hundred lights in one place have a warning each; thousands are refu
 }
 
 TEST_CASE("a wall of so many lights that none may be in one place, across any axis, is no crowd") {
-    const int n = 160;  // each light beside each: 3e8 pairs, more than are looked at
+    const int n = 160;  // all 3e8 pairs are too many to test
     for (const char* place : {"v 0 %d %d\n", "v %d 0 %d\n", "v %d %d 0\n"}) {
         std::string obj = shining;
         for (int i = 0; i <= n; ++i)
@@ -118,9 +118,9 @@ TEST_CASE("a wall of so many lights that none may be in one place, across any ax
 TEST_CASE("hundreds of point lights beside ten thousand shapes: the first on one is told") {
     const Folder folder;
     folder.write("m.obj", filled(square, "f 1 2 3\n"));
-    const std::string beside = "pointlight .2 .9 0  1 1 1\n";  // in the plane, in the box
+    const std::string beside = "pointlight .2 .9 0  1 1 1\n";  // in the plane and in the box
     CHECK(parsed(folder, filled(repeated(10, grey_mesh), beside)).scene.lights.size() > 250);
-    // Of two that lie on shapes the first, and of its shapes the first.
+    // The message names the first of two lights on shapes, and the first shape below it.
     const std::string on = "pointlight .9 .2 0  1 1 1\n", off = "pointlight .2 .9 1  1 1 1\n";
     const std::string found = complaint(
         folder, before + off + "mesh m.obj 1 9 0 0 d\n" + on + on + grey_mesh + grey_mesh);
@@ -133,7 +133,7 @@ TEST_CASE("hundreds of point lights beside ten thousand shapes: the first on one
 
 TEST_CASE("words and lines of 10 kB, numbers of 10 000 digits, a line of 5000 words") {
     const Folder folder;
-    folder.write("m.obj", "mtllib m.obj\n" + square + "f 1 2 3\n");  // itself
+    folder.write("m.obj", "mtllib m.obj\n" + square + "f 1 2 3\n");  // names itself
     const std::string digits(9000, '1');
     CHECK(parsed(folder, before + "sphere 0 0 0  0." + digits + "  d\n").scene.shapes[0].r ==
           doctest::Approx(1. / 9));

@@ -1,4 +1,4 @@
-// world/scene_file_test.cpp  what statements mean, and which are refused and where
+// world/scene_file_test.cpp  statements of scene files: their effects, and the lines of errors
 #include "world/scene_file.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// world/scene_test.cpp  the camera's rays, what statements build, and how lights are chosen
+// world/scene_test.cpp  camera rays, the effects of statements, and the choice of lights
 #include "world/scene.h"
 
 #include <doctest/doctest.h>
@@ -60,7 +60,7 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     add_quad(s, {5, 0, 0}, {2, 0, 0}, {0, 3, 0}, panel);
     add_triangle(s, {0, 0, 7}, {1, 0, 7}, {0, 1, 7}, lamp);
     add_point_light(s, {1, 1, 1}, {2, 2, 2});
-    add_point_light(s, {1, 1, 1}, {0, 0, 0});  // dark: none
+    add_point_light(s, {1, 1, 1}, {0, 0, 0});  // dark: not a light
     CHECK(s.light_of == std::vector<int32_t>{0, no_light, 1, 1, 2});
     CHECK(s.material_of == std::vector<uint32_t>{lamp, grey, panel, panel, lamp});
     REQUIRE(s.lights.size() == 4);
@@ -68,7 +68,7 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     CHECK((ball.kind == Light::Kind::sphere && ball.r == 4));
     CHECK((ball.L == rgb{1, 2, 3} && !ball.twosided));
     CHECK((quad.kind == Light::Kind::quad && quad.twosided));
-    CHECK(quad.area_vector() == vec3{0, 0, 6});  // it faces +z, as its shapes do
+    CHECK(quad.area_vector() == vec3{0, 0, 6});  // faces +z like its shapes
     for (size_t i : {2, 3}) CHECK(area_vector(s.shapes[i]) == vec3{0, 0, 6});
     CHECK(s.lights[2].area_vector() == vec3{0, 0, 0.5});
     CHECK((point.kind == Light::Kind::point && point.L == rgb{2, 2, 2}));
@@ -160,7 +160,7 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     for (real intensity : {1, 5, 2}) add_point_light(s, {}, {intensity, intensity, intensity});
     add_sphere(s, {}, 1, grey);
     prepare(s);
-    // Of 8000 equidistant numbers those of [0, 1/8), [1/8, 6/8), [6/8, 1).
+    // The shares of 8000 equidistant numbers are [0, 1/8), [1/8, 6/8) and [6/8, 1).
     std::vector<int> count(3);
     REQUIRE(s.lights.size() == 3);
     for (int i = 0; i < 8000; ++i) {
@@ -173,13 +173,13 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     CHECK(&choose_light(s, 0) == &s.lights[0]);
     CHECK(&choose_light(s, below_one) == &s.lights[2]);
     s.pick_cdf.clear();
-    add_point_light(s, {}, {1e-30, 0, 0});  // so weak that its share rounds to 0
+    add_point_light(s, {}, {1e-30, 0, 0});  // weak: its share rounds to 0
     prepare(s);
     REQUIRE(s.lights.size() == 4);
     REQUIRE(!s.pick_cdf.empty());
     CHECK(s.lights[3].pick > 0);
     CHECK(&choose_light(s, below_one) == &s.lights[3]);
-    // The last sum may be rounded to less than 1: what lies beyond is the last light's.
+    // The last sum may round to less than 1: numbers above it select the last light.
     s.pick_cdf.back() = 0.99;
     CHECK(&choose_light(s, below_one) == &s.lights[3]);
 }

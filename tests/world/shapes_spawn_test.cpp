@@ -1,4 +1,4 @@
-// world/shapes_spawn_test.cpp  rays leave a surface for good, and segments end before their ends
+// world/shapes_spawn_test.cpp  rays leave their surface for good; segments end before their ends
 #include "world/geometry.h"
 #include "world/lights.h"
 
@@ -6,8 +6,8 @@ namespace {
 
 bool meets(const Shape& s, const Ray& ray) { return meet(s, ray).has_value(); }
 
-// A point of the shape as a path finds it: hit by a ray from a few sizes away.  Nothing if
-// rounding leaves too little of the shape to be hit.
+// A point of the shape as a path finds it: the hit of a ray from a few sizes away.  Empty if
+// rounding leaves too little of the shape to hit.
 std::optional<Surface> seen(const Shape& s, Dice& random) {
     const real size = s.is_sphere() ? s.r : max_abs(s.b - s.a);
     for (int attempt = 0; attempt < 100; ++attempt) {
@@ -22,7 +22,7 @@ std::optional<Surface> seen(const Shape& s, Dice& random) {
 
 const Shape unit_ball{{}, {}, {}, 1};
 
-// On the side of n, as often near the horizon (down to a cosine of 1e-7) as anywhere.
+// A direction on the side of n; half of them are near the horizon (down to a cosine of 1e-7).
 vec3 leaving(const Surface& x, Dice& random) {
     const real z = random.below(2) ? random(0, 1) : random.decades(-7, 0);
     const vec3 d = frame(x.n).to_world(spherical(z, std::sqrt(1 - z * z), random(0, 1)));
@@ -83,7 +83,7 @@ TEST_CASE("a ray starts 2 errors off its surface, and meets what lies 6 errors a
             const Surface x = seen(s, random).value();
             const vec3 up = i % 2 ? x.n : -x.n;
             const Ray ray = spawn(x, up);
-            // Of the 16 ulp of an error, o loses 1 a coordinate; so do the corners of the lid.
+            // The error has 16 ulp: rounding takes 1 per coordinate of o and of the lid's corners.
             off.see(length(big3(ray.o) - x.p - 2 * x.error * big3(up)) / x.error);
             const vec3 centre = x.p + 6 * x.error * up;
             const Frame f = frame(x.n);
@@ -104,10 +104,10 @@ TEST_CASE("nothing is between two surface points that see each other, and what i
                 const Shape s = i % 3 ? random_triangle(random, 1) : unit_ball;
                 return moved(scaled(moved(s, random.direction(at)), p.scale), centre);
             };
-            // Neighbours, or one up to 1e5 sizes away from the other.
+            // The shapes are neighbours, or one is up to 1e5 sizes away from the other.
             const Shape a = shape(0), b = shape(i % 2 ? real(3) : random.decades(1, 5));
             const Surface x = seen(a, random).value(), y = seen(b, random).value();
-            // Whether they do must not be a matter of rounding.
+            // Cases that rounding may decide are skipped.
             const real distance = length(y.p - x.p), doubt = x.error + y.error;
             auto faces = [&](const Shape& s, const Surface& from, const Surface& to) {
                 const real height = dot(from.n, to.p - from.p);
@@ -166,7 +166,7 @@ TEST_CASE("no light stands in its own way, near or far") {
         for (const Light& light : lights) {
             const auto y = sample_light(light, x.p, random.pair(0, 1));
             if (!y) continue;
-            // Rounding may put points of the limb behind it: from there the way is not free.
+            // Rounding may put points of the limb behind the sphere, where it shadows them.
             const bool sphere = light.kind == Light::Kind::sphere;
             const real cosine = -dot(y->at.n, y->wi);
             if ((sphere ? cosine : std::abs(cosine)) < real(1e-6)) continue;

@@ -1,4 +1,4 @@
-// world/shapes_test.cpp  rays meet what they are aimed at, where they should
+// world/shapes_test.cpp  intersections of rays with shapes, against references
 #include "world/geometry.h"
 
 namespace {
@@ -29,11 +29,11 @@ Roots roots(const Shape& s, const Ray& ray) {
     return {b - half, b + half, discriminant};
 }
 
-// Hits against the reference.  Rounding moves them, and the ray by the centre, by no more than
-// 24 ulp (D + R), D being the distance from the origin to the centre.  Along the ray: f 1 ulp D,
-// its product with d 3, |d| = 1 within 4.5 another 9, the last sum 1; c / q adds 6 (c) and 1.
-// Across: f 1, b d 1.  The discriminant loses 3 ulp R.  Terms of second order are 4 % of that at
-// D/R = 1e4 in float.  Seen along the normal, errors along the ray shrink by the cosine.
+// Hits against the reference.  Rounding moves hits, and the ray near the centre, by at most 24 ulp
+// (D + R); D is the distance from the origin to the centre.  Along the ray: f 1 ulp D, its product
+// with d 3, |d| = 1 within 4.5 another 9, the last sum 1; c / q adds 6 (c) and 1.  Across: f 1, b d
+// 1.  The discriminant loses 3 ulp R.  Second-order terms are 4 % of that at D/R = 1e4 in float.
+// Along the normal, errors along the ray shrink by the cosine.
 struct SphereVerdict {
     static constexpr big most = 24;
     Worst error;  // in ulp (D + R)
@@ -44,7 +44,7 @@ struct SphereVerdict {
         const big unit_error = ulp * (length(big3(ray.o) - s.a) + s.r);
         const auto hit = meet(s, ray);
         ++(hit ? hits : misses);
-        if (std::abs(expected.discriminant) <= 2 * most * unit_error * s.r) {  // tangent: either
+        if (std::abs(expected.discriminant) <= 2 * most * unit_error * s.r) {  // tangent
             if (hit) error.see(std::abs(length(point(ray, hit->t) - s.a) - s.r) / unit_error);
             return;
         }
@@ -59,7 +59,7 @@ struct SphereVerdict {
 
 // ---- Triangles ----------------------------------------------------------------------------------
 
-// Meshes surround all points within 0.3 of the origin (times the needle's axes).
+// Meshes enclose all points within 0.3 of the origin (times the needle's axes).
 Triangles outwards(Triangles mesh) {
     for (Shape& s : mesh)
         if (dot(cross(s.b - s.a, s.c - s.a), s.a + s.b + s.c) < 0) std::swap(s.b, s.c);
@@ -131,7 +131,7 @@ TEST_CASE("bounds contain their shape, and its surface points with their error")
         const vec2 u = random.barycentrics();
         for (const auto& [shape, hit] : {std::pair{t, Hit{0, 0, u.x, u.y}}, {s, Hit{s.r}}}) {
             const Surface x = surface(shape, {s.a, random.direction()}, hit);
-            contain(bounds(shape), x.p, x.error / 2);  // p itself is off by less than that
+            contain(bounds(shape), x.p, x.error / 2);  // the error of p is less
         }
     }
     CHECK(outside.value == 0);
@@ -187,10 +187,10 @@ TEST_CASE("a sphere of radius 1e6 is hit where it should be from 1e-3 above it")
 }
 
 TEST_CASE("from a billionth of its radius above a sphere or below, rays go as far as they should") {
-    // Where the sphere passes the origin, c = y (y + 2 r) + x^2 + z^2 does not cancel.  b is off by
-    // 4 ulp r, the root of b^2 - c >= 3/4 b^2 by 1.15 times as much, so that q is off by 5 ulp r /
-    // b of itself; c is by 4 ulp, and by 4 ulp^2 r^2 = 2 ulp^2 r / y of itself; root, sum and
-    // division add 3 ulp.
+    // Where the sphere touches the origin, c = y (y + 2 r) + x^2 + z^2 has no cancellation.  The
+    // error of b is 4 ulp r, and that of the root of b^2 - c >= 3/4 b^2 is 1.15 times as much.  So
+    // q has a relative error of 5 ulp r / b, and c of 4 ulp plus 4 ulp^2 r^2 = 2 ulp^2 r / y.
+    // Root, sum and division add 3 ulp.
     Dice random{{21}};
     Worst off;
     int wrong = 0, hits = 0;
@@ -247,7 +247,7 @@ TEST_CASE("from a point exactly on a sphere, rays out miss it and rays in meet i
             const Ray ray{s.a + q * sign, random.direction()};
             const auto hit = meet(s, ray);
             const real out = dot(q * sign, ray.d);
-            // Both products are off by 3 ulp R: beyond that their signs agree.
+            // Both products have errors of 3 ulp R: beyond that their signs agree.
             wrong += hit && out > 6 * ulp * s.r;
             wrong += !hit && out < -s.r * std::sqrt(8 * ulp);
             if (hit)
@@ -255,7 +255,7 @@ TEST_CASE("from a point exactly on a sphere, rays out miss it and rays in meet i
                           (ulp * 2 * s.r));
         }
     CHECK(wrong == 0);
-    CHECK(error.value < 24);  // as above; f is exact and c = 0
+    CHECK(error.value < 24);  // as above, with f exact and c = 0
 }
 
 TEST_CASE("surface moves a sphere's hit onto the sphere, however far the eye") {
@@ -271,12 +271,12 @@ TEST_CASE("surface moves a sphere's hit onto the sphere, however far the eye") {
         if (!hit) continue;
         const Surface x = surface(s, ray, *hit);
         const big size = max_abs(s.a) + s.r, radius = length(big3(x.p) - s.a);
-        // n is unit within 4 ulp, its product with r 1 more, the sum with a 1 of each coordinate.
+        // n is unit within 4 ulp; its product with r adds 1, the sum with a 1 of each coordinate.
         off.see(std::abs(radius - s.r) / (ulp * size));
         covered = covered && std::abs(radius - s.r) <= x.error / 2;
         tilt.see(std::abs(length(big3(x.n)) - 1) / ulp);
         tilt.see(dot(x.n, x.p - s.a) > 0 ? 0 : infinity);
-        // Along the ray hits are off by 24 ulp (D + R) / cosine, cosine >= sqrt(1 - 0.9^2).
+        // Along the ray hits err by 24 ulp (D + R) / cosine, cosine >= sqrt(1 - 0.9^2).
         shift.see(length(point(ray, hit->t) - x.p) / (ulp * (length(s.a - o) + size)));
     }
     CHECK(off.value < 4 + 1 + std::sqrt(3.0));
@@ -288,14 +288,14 @@ TEST_CASE("surface moves a sphere's hit onto the sphere, however far the eye") {
 // ---- Triangles ----------------------------------------------------------------------------------
 
 TEST_CASE("closed meshes let no ray out at an edge or a corner") {
-    const real flat = std::exp2(real(20)) * ulp;  // thin, but 2^20 times what rounding moves
+    const real flat = std::exp2(real(20)) * ulp;  // thin, but 2^20 times the rounding
     const vec3 needle{1, real(0.01), flat};
     const struct {
         Triangles mesh;
         vec3 size;
     } meshes[] = {{icosphere(), {1, 1, 1}},
                   {box(), {1, 1, 1}},
-                  {outwards(cones(150, 1 / real(50))), {1, 1, 1}},  // 300 triangles round a corner
+                  {outwards(cones(150, 1 / real(50))), {1, 1, 1}},  // 300 triangles around a corner
                   {outwards(cones(8, real(1e-8))), {1, 1, 1}},      // slivers of aspect 1e8
                   {mapped(icosphere(), [&](vec3 p) { return p * needle; }), needle}};
     const Frame turned = frame(unit({1, -2, 3}));
@@ -343,15 +343,15 @@ TEST_CASE("a triangle is hit where a long double reference hits it, from both si
         const vec3 target = point(s, random.barycentrics());
         const vec3 o = target + random.direction(length(s.b - s.a) * random.decades(-1, 3));
         const Ray ray{o, unit(target - o)};
-        // Moller, Trumbore 1997.
+        // The reference is by Moller, Trumbore 1997.
         const big3 e = big3(s.b) - s.a, f = big3(s.c) - s.a, g = big3(o) - s.a, d = ray.d;
         const big det = dot(cross(d, f), e);
         const big v = dot(cross(d, f), g) / det, w = dot(cross(g, e), d) / det;
         const big t = dot(cross(g, e), f) / det;
-        // The shear moves every corner by 5 ulp of its distance M (difference, slope 2, product,
-        // sum).  That moves the weights by twice as much over the least height of the triangle as
-        // the ray sees it, |det| over its longest edge; sqrt(3) for the slant of the shear.  t
-        // follows by the longest edge, and loses 16 ulp in products, sums and the division.
+        // The shear moves each corner by 5 ulp of its distance M (difference, slope 2, product,
+        // sum).  The weights err by twice as much over the least height of the triangle as seen
+        // from the ray, |det| over its longest edge, times sqrt(3) for the slant of the shear. t
+        // errs by that times the longest edge, plus 16 ulp for products, sums and the division.
         const big M =
             std::max({length(big3(s.a) - o), length(big3(s.b) - o), length(big3(s.c) - o)});
         const big longest = std::max({length(e), length(f), length(e - f)});
@@ -377,7 +377,7 @@ TEST_CASE("a ray past any edge of a triangle misses it, from both sides") {
         const Shape s = random_triangle(random, 1);
         const vec3 n = area_vector(s);
         if (length(n) < real(0.1)) continue;
-        // One of the weights of the target is negative.
+        // One barycentric weight of the target is negative.
         const real out = random(real(-0.5), real(-0.001)), along = random(0, 1);
         const vec2 weights[] = {{out, along}, {along, out}, {along, 1 - along - out}};
         const vec3 target = point(s, weights[i % 3]);
@@ -389,14 +389,14 @@ TEST_CASE("a ray past any edge of a triangle misses it, from both sides") {
 }
 
 TEST_CASE("every hit of a triangle lies on its ray, however thin the triangle") {
-    // The shear moves corners by 5 ulp of their distance M, the weights (products 1.5 ulp, sum 2,
-    // division 1) and sums add 7 ulp, in two coordinates; t loses 16 ulp along the ray.
+    // The shear moves corners by 5 ulp of their distance M; weights (products 1.5 ulp, sum 2,
+    // division 1) and sums add 7 ulp, in two coordinates. t loses 16 ulp along the ray.
     Dice random{{10}};
     Worst off;
     int hits = 0, infinite = 0;
     for (int i = 0; i < 300000; ++i) {
         Shape s = random_sliver(random, sizeof(real) == 8 ? 50 : 24);
-        if (i % 3 == 0) s.c = s.a + (i % 2 ? 3 : real(0.5)) * (s.b - s.a);  // no area at all
+        if (i % 3 == 0) s.c = s.a + (i % 2 ? 3 : real(0.5)) * (s.b - s.a);  // area 0
         const vec3 e = s.b - s.a, f = s.c - s.a;
         const vec2 u = i % 5 ? random.barycentrics() : random.pair(-1, 2), v = random.pair(-1, 1);
         const vec3 target = point(s, u), edge_on = unit(v.x * e + v.y * f);
@@ -451,10 +451,10 @@ TEST_CASE("a triangle's surface point and normal are those of the triangle, howe
         const vec3 d = random.direction();
         const Surface x = surface(s, {point(s, u) - hit.t * d, d}, hit);
         const big distance = length(point(s, hit) - x.p);
-        // Two sums and three products: 5 ulp a coordinate; 1 - v - w 2 more.
+        // Two sums and three products make 5 ulp per coordinate; 1 - v - w adds 2.
         off.see(distance / (ulp * std::max({max_abs(s.a), max_abs(s.b), max_abs(s.c)})));
         covered = covered && distance <= x.error / 2;
-        // b - a and c - a as rounded; 1.5 ulp a component (Jeannerod et al. 2013), 4.5 for unit.
+        // The rounded b - a and c - a; 1.5 ulp per component (Jeannerod et al. 2013), 4.5 for unit.
         const big3 n = cross(big3(s.b - s.a), big3(s.c - s.a));
         if (length(n) > 0) tilt.see(length(1 / length(n) * n - x.n) / ulp);
     }

@@ -1,10 +1,10 @@
-// world/tree_cases.h  what every tree must do: each is tested by these cases
+// world/tree_cases.h  the cases that test every BVH
 //
 //     TEST_CASE_TEMPLATE_INVOKE(random_and_awkward, Bvh);
 #pragma once
 #include "world/hard_rays.h"
 
-// Nodes and shapes looked at, in the mean of 10000 rays from a sphere of radius 1.
+// Nodes and shapes visited per ray: averages of 10000 rays from a sphere of radius 1.
 struct MeanWork {
     double nodes = 0, shapes = 0;
 };
@@ -40,8 +40,8 @@ TEST_CASE_TEMPLATE_DEFINE(
 
 TEST_CASE_TEMPLATE_DEFINE("a tree of one shape is hit exactly when the shape is, from far away too",
                           Tree, one_shape) {
-    // From there rounding moves a ray by more than the padding of a box, which is in proportion to
-    // the shape: the slabs must be wide enough.  Planes through 0 are not even rounded to float.
+    // At that distance rounding moves a ray by more than the padding of a box, which is relative to
+    // the shape: the slabs must be wide enough.  Planes through 0 are exact even in float.
     Dice random{{2}};
     int hits = 0, different = 0;
     for (int i = 0; i < 20000; ++i) {
@@ -84,7 +84,7 @@ TEST_CASE_TEMPLATE_DEFINE(
     auto one = [&](int i) { return soup(i % 2, 1 - i % 2, random)[0]; };
     Shapes mixture;
     for (int i = 0; i < 60; ++i) mixture.push_back(scaled(one(i), random.decades(-8, 8)));
-    for (int i = 0; i < 60; ++i) {  // small ones far out
+    for (int i = 0; i < 60; ++i) {  // small shapes far out
         const Shape s = one(i);
         mixture.push_back(moved(s, random.decades(0, 8) * random.direction()));
     }
@@ -108,7 +108,7 @@ TEST_CASE_TEMPLATE_DEFINE("of coincident shapes the first is hit, wherever the t
     Dice random{{5}};
     int wrong = 0;
     for (int i = 0; i < 300; ++i) {
-        // 12 shapes, 5 times over, in any order: the least index is that of the first copy.
+        // 60 draws from 12 shapes: the expected index is that of the first copy.
         const Shapes originals = soup(6, 6, random);
         Shapes scene;
         for (int k = 0; k < 60; ++k) scene.push_back(originals[random.below(12)]);
@@ -147,7 +147,7 @@ TEST_CASE_TEMPLATE_DEFINE("of identical triangles the first is hit", Tree, ident
 
 TEST_CASE_TEMPLATE_DEFINE("triangles at exponentially spaced places do not exhaust the stack", Tree,
                           exponentially_spaced) {
-    // As far as the cubes of coordinates are numbers; in double beyond the floats of the boxes.
+    // The cubes of the coordinates stay finite; in double they exceed the range of float boxes.
     const real octaves = sizeof(real) == 8 ? 300 : 40;
     Dice random{{7}};
     Shapes scene;
@@ -190,7 +190,7 @@ TEST_CASE_TEMPLATE_DEFINE(
 TEST_CASE_TEMPLATE_DEFINE(
     "rays from infinitely far, as floats see it, meet what there is and nothing else", Tree,
     infinitely_far) {
-    // Absent children's boxes are empty, but such a ray meets even those.
+    // The boxes of absent children are empty, but such a ray enters even those.
     Dice random{{11}};
     const real far = sizeof(real) == 8 ? real(1e300) : real(1e38);
     for (int n : {1, 3, 9, 20}) {

@@ -1,4 +1,4 @@
-// world/warp_test.cpp  every sampler of warp.h follows its density, and the density is one
+// world/warp_test.cpp  the samplers of warp.h follow their densities, with integral 1
 #include "world/warp.h"
 
 #include "base/rng.h"
@@ -6,25 +6,25 @@
 
 namespace {
 
-// The sampler turned so that its axis is n, as a map of (u, v).
+// The sampler rotated so that its axis is n, as a map of (u, v).
 auto about(vec3 n, auto sample) {
     const Frame f = frame(n);
     return [=](double u, double v) { return f.to_world(sample(vec2{real(u), real(v)})); };
 }
-// Checks that directions of a sampler about n have this density.
+// Checks the density of a sampler's directions about n.
 void expect_density(oracle::Random& random, vec3 n, auto sample, auto pdf,
                     const std::string& name = "") {
     oracle::Options o{.sees = 0.08, .name = name};
     o.axis = {double(n.x), double(n.y), double(n.z)};
     EXPECT(oracle::expect_density(random, about(n, sample), pdf, o), 0.09);
 }
-// Two numbers, in their order.
+// Draws two numbers in a fixed order.
 vec2 pair_of(oracle::Random& random) {
     const double u = random(), v = random();
     return {real(u), real(v)};
 }
 
-// About which frames turn.
+// An axis in general position.
 const vec3 skew = unit({1, -2, real(-0.3)});
 
 }  // namespace
@@ -36,7 +36,7 @@ TEST_CASE("u turns: within 2 ulp of 1 of cosine and sine, at quarters of a turn 
         CHECK(turned(real(i) / 4).y == quarters[i].y);
     }
     std::vector<real> turns{ulp, sqr(ulp), std::numeric_limits<real>::denorm_min(), below_one};
-    for (int i = 0; i <= 8; ++i)  // the polynomials' ends, and the middles of their ranges
+    for (int i = 0; i <= 8; ++i)  // ends and middles of the polynomials' ranges
         for (real u : {real(i) / 8, std::nextafter(real(i) / 8, real(0)),
                        std::nextafter(real(i) / 8, real(1))})
             turns.push_back(u);
@@ -85,7 +85,7 @@ TEST_CASE("Phong lobe: p(w) = (n+1)/(2 pi) cos^n(alpha), exponents 0 to 10^5") {
 }
 
 TEST_CASE("Phong lobe: the sine keeps its digits, however narrow the lobe") {
-    real worst = 0;  // relative, in ulp
+    real worst = 0;  // relative error in ulp
     for (real n : {real(0), real(1), real(10), real(1e3), real(1e6)})
         for (real u = real(0.9); u > real(1e-12); u /= 3) {
             const vec3 w = sample_phong_lobe({u, 0}, n);
@@ -103,7 +103,7 @@ TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 1
         const long double c = std::sqrt(1 - (long double)(sin2));
         const long double exact = (1 + c) / (2 * std::numbers::pi_v<long double> * sin2);
         CHECK(std::abs(double(pdf_cone(sin2) / exact - 1)) < 4 * double(ulp));
-        // Cones of few of float's directions: their samples have no density.
+        // These cones contain few float directions: their samples have no density.
         if (sizeof(real) == 4 && sin2 < real(0.99e-4)) continue;
         expect_density(
             random, {0, 0, 1}, [&](vec2 u) { return sample_cone(u, sin2); },
@@ -116,7 +116,7 @@ TEST_CASE("cone: p(w) = 1 / solid angle within, half-angles from 90 degrees to 1
 }
 
 TEST_CASE("cone: 2 pi (1 - cos), to the last digits of the smallest") {
-    // In long double; the naive form has no digit left.
+    // The reference is long double; the naive form loses all digits.
     for (double sin2 : {1.0, 0.5, 1e-3, 1e-8, 1e-16, 1e-30}) {
         const long double c = std::sqrt(1 - (long double)(real(sin2)));
         const long double exact = 2 * std::numbers::pi_v<long double> * real(sin2) / (1 + c);
@@ -132,8 +132,8 @@ TEST_CASE("triangle and quad: p = 1 / area, every part of them alike") {
     EXPECT(oracle::expect_jacobian(random, triangle, [&](vec3) { return pdf_triangle_area(e, f); }),
            1e-3);
     EXPECT(oracle::expect_jacobian(random, quad, [&](vec3) { return pdf_quad_area(e, f); }), 1e-3);
-    // Barycentric coordinates (a, b) of p = a e + b f; 4 x 4 cells of the quad, of which a triangle
-    // has 6 whole and 4 halves.
+    // (a, b) are the barycentric coordinates of p = a e + b f.  The quad has 4 x 4 cells; a
+    // triangle covers 6 of them and half of 4 more.
     const vec3 n = cross(e, f);
     for (bool of_quad : {false, true}) {
         std::vector<uint64_t> counts(16);
