@@ -1,4 +1,4 @@
-// labs/calibration.cpp  6  the error that penumbra states, beside its true one
+// labs/calibration.cpp  6  penumbra's error estimates, compared with true errors
 //
 //   build/calibration [--seeds N] [--error-seeds N] [--scene PART] [--quick] [--kept]
 #include "labs/calibration.h"
@@ -12,16 +12,16 @@ constexpr const char* sets[] = {"ordinary", "hard", "blind ordinary", "blind har
 const std::vector<std::string> counts = {"--spp 16", "--spp 32", "--spp 64", "--spp 256"},
                                errors = {"--error 10% --time 10", "--error 5% --time 10",
                                          "--error 3% --time 10", "--error 1% --time 10"};
-const std::string more[] = {"--spp 1024", "--spp 4096"};  // of hard scenes
+const std::string more[] = {"--spp 1024", "--spp 4096"};  // for hard scenes only
 
 struct Effort {
     uint64_t seeds = 10, error_seeds = 10, truth = 16384;
-    std::string part;  // of the names of scenes; "": all
+    std::string part;  // selects scenes by a part of their names; "": all
 };
 
 bool is_hard(const Subject& s) { return set_of(s.name).ends_with("hard"); }
 
-// Of a blind scene its author says the set: "# class: hard".
+// The author of a blind scene assigns its set by the line "# class: hard".
 std::vector<Subject> all_subjects(const Effort& plan) {
     std::vector<Subject> all;
     for (const char* folder : {"scenes/", "scenes/calibration/ordinary/",
@@ -54,9 +54,9 @@ Rows all_rows(RenderGrid& grid, const std::vector<Subject>& subjects, const Effo
     return rows;
 }
 
-// ---- The report ---------------------------------------------------------------------------------
+// ---- Report -------------------------------------------------------------------------------------
 
-// Rows of a set: those of the study; of --error; with more samples.
+// Rows of a set: all runs of the study, runs that --error ends, and runs with more samples.
 struct Sample {
     Rows plain, asked, longer;
 };
@@ -170,10 +170,10 @@ int main(int argc, char** argv) {
         return [&n](const std::string& word) { n = parse_count(word, 1, 1000); };
     };
     const Lab lab{"calibration",
-                  "Compares the errors that penumbra states with true ones.",
+                  "Compares penumbra's error estimates with true errors.",
                   {{"--seeds", "N", "runs of each count of samples (10)", count(plan.seeds)},
                    {"--error-seeds", "N", "runs of each --error (10)", count(plan.error_seeds)},
-                   {"--scene", "PART", "only those with PART in SET/NAME; writes into out/",
+                   {"--scene", "PART", "only scenes with PART in SET/NAME; writes to out/",
                     [&](auto& name) { plan.part = name; }}},
                   true};
     return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, plan); });

@@ -1,4 +1,4 @@
-// labs/calibration.h  5  a stated error against the true one
+// labs/calibration.h  5  an error estimate against the true error
 #pragma once
 #include "labs/rows.h"
 
@@ -6,13 +6,13 @@ namespace calibration {
 
 inline double true_d(const Row& r) { return std::sqrt(std::max(0.0, r["d2"])); }
 
-// Without a rule that hushes it, d_rel is the spread's.
+// The estimate by the spread of replications.  Programs that never withhold it call it d_rel.
 inline double by_spread(const Row& r) {
     return r[r.of.count("d_rel_by_spread") ? "d_rel_by_spread" : "d_rel"];
 }
 
-// A statement of an error against the truth, a factor of two allowed.  The truth is not known where
-// the reference's own error is most of the distance to it.
+// Judges an estimate, to a factor of two.  The true error is unknown if the reference's own error
+// is most of the distance between image and reference.
 enum class Verdict { right, too_low, too_high, unknown };
 inline bool is_known(const Row& r) { return r["own"] < 0.8 * r["off"]; }
 inline Verdict verdict(const Row& r, double stated) {
@@ -24,10 +24,10 @@ inline Verdict verdict(const Row& r, double stated) {
 inline bool is_hinted(const Row& r) { return std::isnan(r["d_rel"]); }
 inline bool is_understated(const Row& r) { return verdict(r, r["d_rel"]) == Verdict::too_low; }
 
-// Whether --error was reached, and not another limit.
+// True if --error ended the run, and not another limit.
 inline bool is_reached(const Row& r) { return r["error"] == 1 && !is_hinted(r); }
 
-// "--error 10% --time 10": 0.1; 0: these words ask for none.
+// The error that options request: 0.1 for "--error 10% --time 10", 0 without --error.
 inline double asked_in(const std::string& setting) {
     const std::vector<std::string> words = words_in(setting);
     for (size_t k = 0; k + 1 < words.size(); ++k)
@@ -35,10 +35,10 @@ inline double asked_in(const std::string& setting) {
     return 0;
 }
 
-// "blind hard/lake": "blind hard".
+// The set of a scene: "blind hard" for "blind hard/lake".
 inline std::string set_of(const std::string& scene) { return scene.substr(0, scene.find('/')); }
 
-// Share of the runs with a known true error.
+// The share of runs that satisfy `which`, among runs with a known true error.
 template <class Which>
 double share(const Rows& rows, Which which) {
     const Rows known = where(rows, is_known);

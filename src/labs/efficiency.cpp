@@ -1,4 +1,4 @@
-// labs/efficiency.cpp  6  one option changed at a time, on every scene
+// labs/efficiency.cpp  6  ablation study: changes one option at a time, on every scene
 //
 //   build/efficiency [--quick] [--kept]
 #include "labs/grid.h"
@@ -11,7 +11,7 @@ const std::vector<std::string> choices = {
 
 const std::string standard = "the default";
 
-// Over all scenes that the choice changes.
+// The table line of a choice, over all scenes that it changes.
 std::vector<std::string> overall(const Rows& rows, const std::string& choice) {
     Rows changed;
     std::vector<std::pair<double, std::string>> each;
@@ -61,6 +61,6 @@ int study(const Scope& scope) {
 int main(int argc, char** argv) {
     return experiment(
         argc, argv,
-        {"efficiency", "Measures what one option at a time brings on every scene.", {}, true},
+        {"efficiency", "Measures the gain of one option at a time on every scene.", {}, true},
         study);
 }

@@ -1,40 +1,40 @@
-// labs/grid.h  5  renders of scenes by settings: how far each is from the truth, and what it took
+// labs/grid.h  5  renders scenes with settings, and measures error and cost of each render
 //
 //   RenderGrid grid("efficiency", "build/penumbra");
 //   const Rows rows = grid.run({{"cornell", "scenes/cornell.scene --size 64x32"}},
 //                              {{"the default", ""}, {"NEE", "--light nee"}}, {16, 64}, 8);
-//   table(rows, of_setting, of_count, [](const Rows& r) { return told(d_rel(r), "%.3f"); });
+//   table(rows, of_setting, of_count, [](auto& r) { return text("%.3g", relative_error(r)); });
 //
-// Rows are kept as text in out/NAME.rows, references in out/truth/: a study that was cut short goes
-// on, and its tables are made again without a render.
+// Saves rows as text in out/NAME.rows, and references in out/truth/.  An interrupted study resumes
+// from them.  Its tables can be made again without rendering.
 #pragma once
 #include <mutex>
 
 #include "base/rng.h"
 #include "labs/rows.h"
 
-// ---- What is rendered ---------------------------------------------------------------------------
+// ---- Scenes, settings and references ------------------------------------------------------------
 
-// The words that name a scene and its size, and the samples a pixel of its reference; 0: there is
-// none, and rows have what the program states.
+// Options that name a scene and its size, and the samples per pixel of its reference.  With 0 there
+// is no reference, and rows have only what the program reports.
 struct Subject {
     std::string name, words;
     uint64_t truth = 16384;
-    std::string truth_words = {};  // of a reference that is no such number of samples
+    std::string truth_words = {};  // if not empty, they replace the options of the reference
     bool has_truth() const { return truth > 0 || !truth_words.empty(); }
 };
 
 struct Setting {
     std::string name, words;
-    std::string program = {};  // with its first words; "": the grid's
+    std::string program = {};  // and its first options; "": those of the grid
 };
 
-// A reference of many samples, by the default with 16 replications: two would not know the error
-// where one pixel has all of it.
+// A reference of many samples, by default with 16 replications.  Two could not estimate its error
+// if a single pixel had most of it.
 struct Truth {
     Image image;
-    double own = 0;                    // d_rel, by the spread of replications; NaN: not stated
-    std::map<std::string, double> of;  // its statistics
+    double own = 0;                    // relative RMSE by the spread of replications; NaN: unknown
+    std::map<std::string, double> of;  // statistics of its render
 };
 
 inline std::string fingerprint(const std::string& bytes) {
@@ -43,7 +43,7 @@ inline std::string fingerprint(const std::string& bytes) {
     return text("%012.0f", double(h >> 25));
 }
 
-// Of all numbers, three a pixel (Khodulev 1996, ch. 5).
+// Relative RMSE over all channels of all pixels (Khodulev 1996, ch. 5).
 inline double d_rel(const Image& truth, const Image& image) {
     double square = 0;
     for (const auto& pixel : truth.pixels)
@@ -58,12 +58,12 @@ inline double image_mean(const Image& image) {
     return sum / (3 * double(image.pixels.size()));
 }
 
-// ---- Running ------------------------------------------------------------------------------------
+// ---- The grid -----------------------------------------------------------------------------------
 
 class RenderGrid {
 public:
-    // Renders by `program`, unless a setting has its own; as many at a time as there are cores,
-    // each by one thread. Kept: rows by whatever program there are, and nothing is rendered.
+    // Renders with `program`, unless a setting has its own: a single-threaded render on each core.
+    // If `kept`, renders nothing and returns saved rows of any program.
     RenderGrid(std::string name, std::string program, bool kept = false)
         : name_(std::move(name)), program_(std::move(program)), is_kept_(kept) {
         std::filesystem::create_directories("out/truth");
@@ -73,12 +73,12 @@ public:
                 done_[{key(row->first), is_kept_ ? "" : row->second}] = row->first;
     }
 
-    unsigned jobs = all_cores();  // at a time
-    // More numbers of an image.
+    unsigned jobs = all_cores();  // simultaneous renders
+    // Adds numbers of an image to its row.
     std::function<void(Row&, const Image&, const Truth&)> measure;
 
-    // No seed: one run of a program that knows none.  Seed by seed, so that of a study that is cut
-    // short fewer seeds of everything are there; settings take turns, so that load hits all alike.
+    // With 0 seeds, runs each setting once without --seed.  Seeds are the outer loop, so an
+    // interrupted study has fewer seeds of all.  Settings take turns, so load affects all alike.
     Rows run(const std::vector<Subject>& subjects, const std::vector<Setting>& settings,
              const std::vector<uint64_t>& counts, uint64_t seeds) {
         std::vector<Job> all, missing;
@@ -87,7 +87,7 @@ public:
                 for (uint64_t count : counts)
                     for (uint64_t seed = seeds > 0; seed <= seeds; ++seed)
                         all.push_back(job(s, setting, count, seed));
-        const size_t each = std::max<uint64_t>(seeds, 1);  // of a scene, setting and count
+        const size_t each = std::max<uint64_t>(seeds, 1);  // runs of a scene, setting and count
         for (size_t seed = 0; seed < each; ++seed)
             for (size_t s = 0; s < subjects.size(); ++s)
                 for (size_t c = 0; c < counts.size(); ++c)
@@ -103,7 +103,7 @@ public:
         return rows;
     }
 
-    // Rendered once, by the grid's program.
+    // The reference of a subject.  The grid's program renders it once.
     const Truth& truth(const Subject& s) {
         const std::string print = print_of_truth(s);
         if (const auto at = truths_.find(print); at != truths_.end()) return at->second;
@@ -123,14 +123,14 @@ private:
     struct Job {
         Row row;
         const Subject* subject;
-        std::string command;  // but for the files that it writes
+        std::string command;  // without its output files
         std::pair<std::string, std::string> key;
     };
     std::string name_, program_;
     bool is_kept_;
-    std::map<std::pair<std::string, std::string>, Row> done_;  // by place and fingerprint
+    std::map<std::pair<std::string, std::string>, Row> done_;  // by position and fingerprint
     std::map<std::string, Truth> truths_;
-    std::map<std::string, std::string> prints_;  // of programs
+    std::map<std::string, std::string> prints_;  // fingerprints of programs
 
     std::string file() const { return "out/" + name_ + ".rows"; }
     static std::string key(const Row& r) {
@@ -196,7 +196,7 @@ private:
         return row;
     }
 
-    // Writes STEM.pfm and STEM.json, which have these names when they are whole.
+    // Writes STEM.pfm and STEM.json.  Renames complete files to these names.
     static void render(const std::string& command, unsigned threads, const std::string& stem) {
         std::vector<std::string> words = words_in(command + text(" --threads %u", threads));
         words.insert(words.end(),

@@ -1,4 +1,4 @@
-// labs/lab.h  2  what experiments share: numbers of many runs, reports, renders, command lines
+// labs/lab.h  2  shared code of experiments: statistics of runs, reports, renders, command lines
 #pragma once
 #include <unistd.h>
 
@@ -23,9 +23,9 @@
 #include "labs/execute.h"
 #include "labs/svg.h"
 
-// ---- Numbers of many runs -----------------------------------------------------------------------
+// ---- Statistics of many runs --------------------------------------------------------------------
 
-// Of n numbers sorted, number q (n - 1), between neighbours linear; NaN of none.
+// Element q (n - 1) of the n sorted numbers, linearly interpolated.  NaN if there are none.
 inline double quantile(std::vector<double> x, double q) {
     if (x.empty()) return NAN;
     std::sort(x.begin(), x.end());
@@ -35,7 +35,7 @@ inline double quantile(std::vector<double> x, double q) {
 }
 inline double median(const std::vector<double>& x) { return quantile(x, 0.5); }
 
-// Exponent p of y = c x^p: least squares of the logarithms.
+// The exponent p of y = c x^p, by least squares of the logarithms.
 inline double slope(const std::vector<double>& x, const std::vector<double>& y) {
     const double n = double(x.size());
     double mx = 0, my = 0, xx = 0, xy = 0;
@@ -47,19 +47,19 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y) 
     return xy / xx;
 }
 
-// "1.21 (1.19–1.30)": the median with the least and the greatest, by a format for one number.
+// "1.21 (1.19–1.30)": the median with the least and the greatest, in a given format.
 inline std::string with_range(const std::vector<double>& x, const char* format) {
     const auto [least, most] = std::minmax_element(x.begin(), x.end());
     return text(format, median(x)) + " (" + text(format, *least) + "–" + text(format, *most) + ")";
 }
 
-// "1.21 ± 0.03": mean and standard deviation, by a format for one number; of one run its number.
+// "1.21 ± 0.03": mean and standard deviation, in a given format.  One run has no deviation.
 inline std::string plus_minus(const Moments& m, const char* format) {
     const std::string mean = text(format, m.mean);
     return m.n > 1 ? text("%s ± %s", mean, text(format, std::sqrt(m.variance()))) : mean;
 }
 
-// Mean squared difference of two images of one size, over pixels and channels.
+// Mean squared difference of two images of equal size, over pixels and channels.
 inline double mse(const Image& f, const Image& g) {
     double sum = 0;
     for (size_t i = 0; i < f.pixels.size(); ++i)
@@ -70,7 +70,7 @@ inline double mse(const Image& f, const Image& g) {
     return sum / (3 * double(f.pixels.size()));
 }
 
-// A part of an image, from the pixel (left, top) on.
+// The part of an image with this size, from the pixel (left, top) on.
 inline Image part_of(const Image& image, int left, int top, Size size) {
     Image part(size.width, size.height);
     for (int y = 0; y < size.height; ++y)
@@ -78,20 +78,20 @@ inline Image part_of(const Image& image, int left, int top, Size size) {
     return part;
 }
 
-// Between blanks.
+// Splits a line into words at white space.
 inline std::vector<std::string> words_in(const std::string& line) {
     std::istringstream in(line);
     return {std::istream_iterator<std::string>(in), {}};
 }
 
-// What stands after an option.
+// The word after an option.
 inline std::string value_of(const std::vector<std::string>& words, const std::string& option) {
     const auto at = std::find(words.begin(), words.end(), option);
     if (at == words.end() || at + 1 == words.end()) throw UserError(option + ": needs a value");
     return *(at + 1);
 }
 
-// But cornell36obj, which is cornell36 again.
+// Names of the scenes in a folder, sorted, except cornell36obj, which is a copy of cornell36.
 inline std::vector<std::string> scenes_in(const std::string& folder) {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -103,17 +103,17 @@ inline std::vector<std::string> scenes_in(const std::string& folder) {
 
 inline unsigned all_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
 
-// Of the processor, by all threads of this program.
+// CPU seconds of all threads of this process so far.
 inline double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 // ---- Reports ------------------------------------------------------------------------------------
 
-// Where reports go: what is committed comes from all runs, in double.
+// The folder for reports.  Only full studies in double write to reference/.
 inline std::string report_folder(bool quick) {
     return quick || sizeof(real) < sizeof(double) ? "out" : "reference";
 }
 
-// The first line that a command of the shell prints, or nothing.
+// The first line that a shell command prints, or "" if it prints none.
 inline std::string said_by(const char* command) {
     std::string line;
     if (std::FILE* out = ::popen(command, "r")) {
@@ -123,8 +123,8 @@ inline std::string said_by(const char* command) {
     return line;
 }
 
-// The last words of a report.  `pictures` is the checksum of the renderer's pictures: tests/reports
-// finds reports of a renderer that drew others.
+// The last sentence of a report.  `pictures` is a checksum of the renderer's pictures.  By it
+// tests/reports finds reports of a renderer that drew other pictures.
 inline std::string made_by(const std::string& command) {
 #ifdef __clang__
     const char* compiler = __VERSION__;
@@ -150,8 +150,8 @@ inline std::string command_of(int argc, char** argv) {
     return command;
 }
 
-// "17 of 96, 40 s left: cosine + NEE", on stderr: drawn over itself on a terminal, else a line
-// each.
+// Progress on stderr, such as "17 of 96, 40 s left: cosine + NEE".  A terminal overwrites the line;
+// a file gets a line per step.
 class Steps {
 public:
     explicit Steps(size_t total) : total_(total), terminal_(::isatty(STDERR_FILENO) == 1) {}
@@ -177,7 +177,7 @@ private:
 
 // ---- Renders ------------------------------------------------------------------------------------
 
-// All that stand alone, by their names; NaN: null.
+// Numbers that have a line of their own in a JSON text, by name.  null becomes NaN.
 inline std::map<std::string, double> numbers_of(const std::string& json) {
     std::map<std::string, double> numbers;
     std::istringstream in(json);
@@ -192,7 +192,7 @@ inline std::map<std::string, double> numbers_of(const std::string& json) {
     return numbers;
 }
 
-// The image that a program renders by these words, which name no output.
+// The image that a command renders.  The command must not name output files.
 inline Image rendering(const std::string& command) {
     std::filesystem::create_directories("out");
     const std::string pfm = "out/lab" + std::to_string(::getpid()) + ".pfm";
@@ -208,14 +208,14 @@ inline Image rendering(const std::string& command) {
 // ---- Command lines ------------------------------------------------------------------------------
 
 struct Flag {
-    std::string_view name, value, help;           // value: what stands after it; "": nothing
+    std::string_view name, value, help;           // value: its placeholder; "": none
     std::function<void(const std::string&)> set;  // may throw UserError
 };
 
 struct Lab {
     std::string_view name, purpose;
     std::vector<Flag> flags = {};
-    bool has_rows = false;  // of a grid: knows --kept
+    bool has_rows = false;  // has rows of a grid, and the option --kept
 };
 
 inline void print_help(const Lab& lab) {
@@ -227,7 +227,7 @@ inline void print_help(const Lab& lab) {
     std::printf("  %-20s %s\n", "--help", "print this");
 }
 
-// The renderer beside this lab: build/techniques-float runs build/penumbra-float.
+// The renderer in this experiment's folder: build/techniques-float runs build/penumbra-float.
 inline std::string renderer_beside(const Lab& lab, const std::string& self,
                                    const std::string& name = "penumbra") {
     std::filesystem::path program = self;
@@ -237,7 +237,7 @@ inline std::string renderer_beside(const Lab& lab, const std::string& self,
     return program.string();
 }
 
-// A lab's main: reads its flags, then work() is its exit status.
+// The main function of a program: parses the flags.  work() returns the exit status.
 template <class Work>
 int lab_main(int argc, char** argv, const Lab& lab, Work work) try {
     const std::vector<std::string> words(argv + 1, argv + argc);
@@ -260,25 +260,25 @@ int lab_main(int argc, char** argv, const Lab& lab, Work work) try {
     return failed();
 }
 
-// What an experiment is asked for, and by whom.
+// The common options of an experiment, its program and its command line.
 struct Scope {
     std::string name, self, command;
     bool quick = false;
-    bool kept = false;  // tables from rows of former runs, without a render
+    bool kept = false;  // makes tables from rows of former runs, without rendering
 
     std::string beside(const std::string& program = "penumbra") const {
         return renderer_beside({name, "", {}}, self, program);
     }
 };
 
-// An experiment's main: study(scope) is its exit status.
+// The main function of an experiment with a report.  study(scope) returns the exit status.
 template <class Study>
 int experiment(int argc, char** argv, Lab lab, Study study) {
     Scope scope{std::string(lab.name), argv[0], command_of(argc, argv)};
     lab.flags.push_back(
-        {"--quick", "", "fewer runs, into out/", [&](auto&) { scope.quick = true; }});
+        {"--quick", "", "fewer runs; writes to out/", [&](auto&) { scope.quick = true; }});
     if (lab.has_rows)
-        lab.flags.push_back({"--kept", "", "tables from rows of former runs, without a render",
+        lab.flags.push_back({"--kept", "", "tables from rows of former runs, without rendering",
                              [&](auto&) { scope.kept = true; }});
     return lab_main(argc, argv, lab, [&] { return study(scope); });
 }

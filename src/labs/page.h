@@ -1,11 +1,11 @@
-// labs/page.h  3  a report: prose in Markdown, filled in with what was measured
+// labs/page.h  3  a report: a Markdown template, filled with measured values
 #pragma once
 #include <map>
 #include <set>
 
 #include "labs/lab.h"
 
-using Lines = std::vector<std::vector<std::string>>;  // of a table, by cells
+using Lines = std::vector<std::vector<std::string>>;  // the cells of each line of a table
 
 // A table in Markdown.
 inline std::string table(const std::vector<std::string>& head, const Lines& lines) {
@@ -18,22 +18,22 @@ inline std::string table(const std::vector<std::string>& head, const Lines& line
     for (size_t i = 0; i < head.size(); ++i) words += "---|";
     words += "\n";
     for (const auto& line : lines) words += line_of(line);
-    words.pop_back();  // the prose has a line's end
+    words.pop_back();  // the template has the newline
     return words;
 }
 
-// reference/NAME.md.in says {{word}} where a table, a number or a verdict goes, and
-// {{plot FILE The caption}} where a picture goes.
+// The template reference/NAME.md.in has {{word}} for a table, a number or a verdict, and
+// {{plot FILE The caption}} for a picture.
 class Page {
 public:
-    // Writes FOLDER/NAME.md, with pictures beside it and numbers in FOLDER/data/.
+    // Writes FOLDER/NAME.md, pictures into FOLDER/, and numbers into FOLDER/data/.
     Page(const std::string& folder, const std::string& name)
         : folder_(folder), name_(name), prose_(read_file("reference/" + name + ".md.in")) {
         std::filesystem::create_directories(folder + "/data");
         check_writable(file(name + ".md"));
     }
 
-    // The page of an experiment; {{made}} is its command.
+    // The page of an experiment.  {{made}} is the date, the commit and the command.
     Page(const Scope& scope, const std::string& name) : Page(report_folder(scope.quick), name) {
         set("made", made_by(scope.command));
     }
@@ -46,7 +46,7 @@ public:
     void data(const std::string& name, const std::string& numbers) {
         write_file(file("data/" + name + ".csv"), numbers);
     }
-    // The word's text is its verdict, and counts if it fails.
+    // Replaces {{word}} by the verdict, and counts failures.
     bool claim(const std::string& word, bool holds) {
         set(word, verdict(holds));
         return holds;
@@ -56,7 +56,7 @@ public:
         return holds ? "ok" : "**fails**";
     }
 
-    // Writes the report and prints it; the exit status: 1 if a claim failed.
+    // Writes and prints the report.  Returns the exit status: 1 if a claim failed.
     int finish() {
         std::string out;
         for (size_t at = 0;;) {

@@ -1,15 +1,15 @@
-// labs/readme.cpp  3  writes tables of options and statements from the programs' own
+// labs/readme.cpp  3  writes tables of options and scene statements into documents
 //
 //   build/readme
 //
-// What stands between <!-- options --> and <!-- /options --> of README.md becomes penumbra's table,
-// and so do the statements of a scene's file, and in reference/ the options of radiosity.
+// Replaces text between marks such as <!-- options --> and <!-- /options -->.  README.md gets the
+// options of penumbra and the scene statements, reference/radiosity-options.md those of radiosity.
 #include "labs/lab.h"
 #include "world/grammar.h"
 
 namespace {
 
-// The text with a table between its marks.
+// Replaces the text between the two marks of a table.
 std::string with_table(const std::string& text, const std::string& name, const std::string& table) {
     const std::string before = "<!-- " + name + " -->\n", after = "<!-- /" + name + " -->";
     const size_t start = text.find(before), end = text.find(after, start);
@@ -17,7 +17,7 @@ std::string with_table(const std::string& text, const std::string& name, const s
     return text.substr(0, start).append(before).append(table).append(text, end);
 }
 
-// One row: `word arguments`, and what is said about it.
+// One row of a table: `word arguments`, their meaning and the default.
 std::string row_markdown(const std::string& words, const std::string& meaning,
                          const std::string& otherwise) {
     std::string code;
@@ -27,7 +27,7 @@ std::string row_markdown(const std::string& words, const std::string& meaning,
            (otherwise.empty() ? "|\n" : " |\n");
 }
 
-// Of what a program prints of itself: an option begins two columns in, its meaning 24.
+// The table of options from --help: an option begins in column 2, its meaning in column 24.
 std::string option_markdown(const std::string& help) {
     std::string table = "| option | meaning | default |\n|---|---|---|\n", option, meaning;
     auto end = [&] {

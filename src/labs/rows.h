@@ -1,4 +1,4 @@
-// labs/rows.h  4  numbers of many renders, and what follows: means with their errors, tables, plots
+// labs/rows.h  4  numbers of many renders: means with standard errors, tables, plots
 #pragma once
 #include <map>
 #include <optional>
@@ -7,16 +7,16 @@
 
 // ---- A row --------------------------------------------------------------------------------------
 
-// One render: its place in the grid, and numbers of it: those of its statistics, and
-//     off    d_rel of image and reference
-//     own    d_rel that the reference states of itself; NaN: none
-//     d2     off^2 - own^2, for the two are independent: squared error over a mean square
-//     mean   of all numbers of the image
+// One render: its position in the grid and its numbers.  These are its statistics and
+//     off    relative RMSE against the reference
+//     own    relative RMSE of the reference, by its own estimate; NaN: none
+//     d2     off^2 - own^2: squared relative RMSE of the image, as the two errors are independent
+//     mean   mean over all channels of all pixels
 //     error  1 if --error ended it
-//     stated what the statistics have under "error": of build/radiosity that of its maps
+//     stated "error" of the statistics: for build/radiosity, the error of its maps
 struct Row {
     std::string scene, setting;
-    uint64_t count = 0, seed = 0;  // count: samples a pixel; 0: the setting says when to stop
+    uint64_t count = 0, seed = 0;  // count: samples per pixel; 0: the setting ends the run
     std::map<std::string, double> of = {};
 
     double operator[](const std::string& name) const {
@@ -29,7 +29,7 @@ inline void append(Rows& rows, const Rows& more) {
     rows.insert(rows.end(), more.begin(), more.end());
 }
 
-// A line, with tabs between; numbers come back as they were.
+// A row as a line of text with tabs.  row_of() reads exactly the same numbers back.
 inline std::string line_of(const Row& r, const std::string& print) {
     std::ostringstream line;
     line.precision(17);
@@ -39,7 +39,7 @@ inline std::string line_of(const Row& r, const std::string& print) {
     return line.str();
 }
 
-// The row and its fingerprint; nothing of a line that was cut short.
+// Reads a row and its fingerprint from a line.  Returns nothing if the line is incomplete.
 inline std::optional<std::pair<Row, std::string>> row_of(const std::string& line) {
     std::vector<std::string> cells;
     std::istringstream in(line);
@@ -54,7 +54,7 @@ inline std::optional<std::pair<Row, std::string>> row_of(const std::string& line
     return std::pair{r, cells[4]};
 }
 
-// ---- Numbers of rows ----------------------------------------------------------------------------
+// ---- Statistics of rows -------------------------------------------------------------------------
 
 template <class Which>
 Rows where(const Rows& rows, Which which) {
@@ -79,18 +79,17 @@ inline double mean(const Rows& rows, const std::string& name) {
     return std::accumulate(x.begin(), x.end(), 0.0) / double(x.size());
 }
 
-// Squared errors are averaged, for they have an expectation; NaN: less than what the reference
-// leaves open.
+// Averages squared errors, because d2 is unbiased.  NaN: the error is too small for the reference.
 inline double relative_error(const Rows& rows) { return std::sqrt(mean(rows, "d2")); }
 
 inline double accuracy(const Rows& rows) { return 1 / relative_error(rows); }
 
-// 1 / (squared error x CPU seconds): for unbiased estimators the same at every number of samples.
+// 1 / (squared error x CPU seconds).  It does not depend on the samples of an unbiased estimator.
 inline double efficiency(const Rows& rows) {
     return 1 / (mean(rows, "d2") * mean(rows, "cpu_seconds"));
 }
 
-// What one setting's number is over another's: the geometric mean over the scenes that have both.
+// The ratio of a number between two settings: its geometric mean over the scenes that have both.
 template <class Number>
 double over(const Rows& rows, const std::string& setting, const std::string& base, Number number) {
     double sum = 0, scenes = 0;
@@ -105,8 +104,8 @@ double over(const Rows& rows, const std::string& setting, const std::string& bas
     return std::exp(sum / scenes);
 }
 
-// A number of rows, and its standard error from what it is without each of the seeds (jackknife:
-// Quenouille 1956, Tukey 1958).
+// A number of rows, with its standard error by the jackknife over seeds (Quenouille 1956, Tukey
+// 1958).
 struct Estimate {
     double value = 0, error = 0;
 };
@@ -126,7 +125,7 @@ inline std::string told(const Estimate& e, const char* format) {
     return text(format, e.value) + (std::isnan(e.error) ? "" : " ± " + text(format, e.error));
 }
 
-// A number of one setting over that of another, over all scenes of the rows; "=": the same images.
+// The ratio of a number between two settings over all scenes.  "=": their images are identical.
 template <class Number>
 std::string gain(const Rows& rows, const std::string& setting, const std::string& base,
                  Number number, const char* format = "%.2f") {
@@ -156,8 +155,7 @@ std::vector<std::pair<std::string, Rows>> grouped(const Rows& rows, Key key) {
     return groups;
 }
 
-// Markdown: a line for each `by`, a column for each `across`, in it what `value` says of their
-// rows.
+// A Markdown table: a line per `by`, a column per `across`.  `value` makes a cell from its rows.
 template <class By, class Across, class Value>
 std::string table(const Rows& rows, By by, Across across, Value value) {
     const auto columns = grouped(rows, across);
@@ -177,7 +175,7 @@ std::string table(const Rows& rows, By by, Across across, Value value) {
     return table(head, lines);
 }
 
-// Numbers of every row for who doubts; nothing where a row has none.
+// CSV with numbers of every row.  A cell is empty if its row lacks the number.
 inline std::string csv_of(const Rows& rows, const std::vector<std::string>& numbers) {
     std::string out = "scene,setting,count,seed";
     for (const std::string& name : numbers) out += "," + name;
@@ -190,13 +188,13 @@ inline std::string csv_of(const Rows& rows, const std::vector<std::string>& numb
     return out + "\n";
 }
 
-// What a curve is drawn over: the count of rows, or a number's mean.
+// Coordinates for plot(): the count of rows, or the mean of a number.
 inline double count_of(const Rows& rows) { return double(rows[0].count); }
 inline auto mean_of(const std::string& number) {
     return [number](const Rows& rows) { return mean(rows, number); };
 }
 
-// A curve for each word of `series`, a point for each count: numbers of the rows there.
+// Draws a curve per word of `series`, a point per count.  x_of and y_of compute its coordinates.
 template <class Word, class X, class Y>
 Svg plot(const Rows& rows, const std::string& x, const std::string& y, Word series, X x_of, Y y_of,
          const std::string& title) {

@@ -1,7 +1,7 @@
-// labs/svg.h  1  plots and sheets of pictures as SVG, in one style
+// labs/svg.h  1  plots and contact sheets as SVG, in one style
 //
-// Light ground, axes with units, labels at the curves themselves, colours that the colour-blind
-// tell apart (Okabe, Ito 2008).  Lengths are in pixels from the top left corner.
+// Plots have a white background, units at the axes and labels at the curves.  Colour-blind readers
+// can distinguish the colours (Okabe, Ito 2008).  The unit is the pixel, the origin is top left.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 #include "film/image.h"
 
-// As printf; a string for %s may be a std::string.
+// Formats like printf.  The argument of %s may be a std::string.
 inline const char* for_printf(const std::string& words) { return words.c_str(); }
 inline auto for_printf(auto number) { return number; }
 inline std::string text(const char* format, const auto&... values) {
@@ -33,7 +33,7 @@ inline constexpr const char* grid = "#e2e2e2";
 inline constexpr const char* frame = "#888888";
 inline constexpr const char* colours[] = {"#000000", "#0072b2", "#d55e00", "#009e73",
                                           "#cc79a7", "#e69f00", "#56b4e9", "#888888"};
-inline constexpr double letter = 13;  // size of type
+inline constexpr double letter = 13;  // font size
 
 inline std::string escaped(std::string_view words) {
     std::string out;
@@ -64,7 +64,7 @@ inline std::string base64(std::string_view bytes) {
     return out;
 }
 
-// Of a power of ten: 10⁻³, or 0.01.
+// The label of a power of ten: 10⁻³, or 0.01.
 inline std::string tick(double x) {
     const double exponent = std::round(std::log10(x));
     if (exponent > -3 && exponent < 6) return text("%.6g", x);
@@ -83,7 +83,7 @@ public:
     Svg(double width, double height) : width_(width), height_(height) {}
 
     struct Type {
-        const char* anchor = "start";  // what is at the place; or "middle", "end"
+        const char* anchor = "start";  // or "middle", "end"
         const char* colour = svg::ink;
         bool bold = false;
         double turn = 0;  // degrees, clockwise
@@ -108,7 +108,7 @@ public:
         body_ +=
             text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n", at.x, at.y, colour);
     }
-    // The pixels of a picture, enlarged to that width without smoothing.
+    // Scales a picture to this width without smoothing.
     void picture(Place at, double width, const Image& image, double exposure) {
         body_ += text(
             "<image x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" "
@@ -135,7 +135,7 @@ struct Picture {
     std::string title, caption;
 };
 
-// Pictures of one size, pixel by pixel, `columns` a row, each above its title and its caption.
+// Pictures of equal size, unscaled, `columns` per row, with title and caption below.
 inline Svg contact_sheet(const std::vector<Picture>& pictures, size_t columns, double exposure) {
     constexpr double gap = 16, words = 48;
     const double width = pictures[0].image.width + gap, height = pictures[0].image.height + words;
@@ -152,17 +152,17 @@ inline Svg contact_sheet(const std::vector<Picture>& pictures, size_t columns, d
 
 // ---- Plots --------------------------------------------------------------------------------------
 
-// A curve of a plot; its words stand at its right end.
+// A curve of a plot.  Its label is at its right end.
 struct Series {
     std::string words;
     std::vector<double> x, y;
 };
 
-// Logarithmic, from one power of ten to another.
+// A logarithmic axis between powers of ten.
 struct Axis {
     double lo = 1, hi = 10;
 
-    // 0 at lo, 1 at hi.
+    // Position of x on the axis: 0 at lo, 1 at hi.
     double part(double x) const { return std::log(x / lo) / std::log(hi / lo); }
     std::vector<double> marks() const {
         std::vector<double> out;
@@ -181,7 +181,7 @@ inline Axis axis_of(const std::vector<Series>& all, std::vector<double> Series::
     return {std::pow(10, first), std::pow(10, std::max(last, first + 1))};
 }
 
-// Numbers that a logarithm does not have are left out.
+// A plot on logarithmic axes.  Leaves out numbers without a logarithm.
 inline Svg plot(const std::vector<Series>& all, std::string_view x_label, std::string_view y_label,
                 std::string_view title) {
     constexpr Place corner = {80, 40}, size = {560, 300};
@@ -207,7 +207,7 @@ inline Svg plot(const std::vector<Series>& all, std::string_view x_label, std::s
     sheet.words({corner.x, corner.y - 8}, title, {.bold = true});
     sheet.words({corner.x + size.x / 2, bottom + 34}, x_label, {.anchor = "middle"});
     sheet.words({corner.x - 46, corner.y + size.y / 2}, y_label, {.anchor = "middle", .turn = -90});
-    std::vector<std::pair<double, size_t>> labels;  // their heights
+    std::vector<std::pair<double, size_t>> labels;  // heights, and indices of curves
     for (size_t i = 0; i < all.size(); ++i) {
         std::vector<Place> through;
         for (size_t k = 0; k < all[i].x.size(); ++k)
@@ -219,7 +219,7 @@ inline Svg plot(const std::vector<Series>& all, std::string_view x_label, std::s
         for (const Place& p : through) sheet.dot(p, colour);
         labels.push_back({through.back().y, i});
     }
-    // A line apart, and none below the frame.
+    // Moves labels at least a line apart, and none below the frame.
     std::sort(labels.begin(), labels.end());
     double room = -INFINITY;
     for (auto& [at, i] : labels) room = at = std::max(at, room + line_height);
