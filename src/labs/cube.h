@@ -3,16 +3,16 @@
 //   const cube::Solution room;
 //   room.luminance(0, 0);  // 892.7981 nit in the middle of a face
 //
-// Inside of a cube of 10 m with walls of reflectance rho = 2/3 and a point light of 50 000 cd at
-// its centre (Khodulev's theoretical case).  All six faces are alike; a point of one is (x, y) in
-// [-1,1]^2.  Solves the integral equation of radiosity
+// The room is a cube of 10 m with walls of reflectance rho = 2/3 and a point light of 50 000 cd at
+// its centre (Khodulev's theoretical case).  All six faces are alike.  (x, y) in [-1,1]^2 is a
+// point of a face.  Solution solves the integral equation of radiosity
 //
 //     E(p) = E_direct(p) + rho int E(q) cos cos' / (pi r^2) dA(q)
 //
-// by collocation: the indirect part of E is a polynomial that fulfils it at the nodes.  At distance
-// s from an edge E has a part like s^0.69 (the kernel of two faces at a right angle takes s^0.69 to
-// 3/2 of it), to which no polynomial in x comes near.  One in u does, where
-// x = sin(pi/2 sin(pi/2 u)): there s falls as (1 - u)^4, and that part as (1 - u)^2.8.
+// by collocation: the indirect part of E is a polynomial that satisfies it at the nodes.  At
+// distance s from an edge E has a part ~ s^0.69, because the kernel of two faces at a right angle
+// maps s^0.69 to 3/2 of it.  Polynomials in x approximate this part badly, those in u well, with
+// x = sin(pi/2 sin(pi/2 u)): s falls as (1 - u)^4, and the part as (1 - u)^2.8.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -25,15 +25,14 @@ namespace cube {
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double albedo = 2.0 / 3;
-// Of E over a face, in lx, by energy: Phi / (A (1 - rho)).
+// The mean of E over a face in lx, by conservation of energy: Phi / (A (1 - rho)).
 inline constexpr double mean_illuminance = 4 * pi * 50000 / (6 * 100 * (1 - albedo));
 
 inline double direct(double x, double y) { return 2000 / std::pow(1 + x * x + y * y, 1.5); }
 
 // ---- Nodes --------------------------------------------------------------------------------------
 
-// Distances from an edge, s in x and w in u, both in [0, 2]: differences from 1 would have no digit
-// left.
+// Distances from an edge, in [0, 2]: s in x, w in u.  Differences from 1 would lose all digits.
 inline double halfway(double w) { return 2 * std::pow(std::sin(pi / 4 * w), 2); }
 inline double s_of_w(double w) { return halfway(halfway(w)); }
 inline double ds_dw(double w) {
@@ -47,7 +46,7 @@ inline double w_of_s(double s) {
 struct Node {
     double at, weight;
 };
-// Gauss and Legendre's n nodes on [0, 1], upwards: Newton's method from Tricomi's guess.
+// The n Gauss-Legendre nodes on [0, 1], ascending, by Newton's method from Tricomi's estimate.
 inline std::vector<Node> gauss(int n) {
     std::vector<Node> rule;
     for (int i = 0; i < n; ++i) {
@@ -66,7 +65,7 @@ inline std::vector<Node> gauss(int n) {
     return rule;
 }
 
-// Nodes that crowd towards both ends of [0, 1] as s(w) does: distances from 0 and from 1.
+// A node at distances `at` from 0 and `rest` from 1.  Nodes crowd at both ends of [0, 1] as s(w).
 struct Graded {
     double at, rest, weight;
 };
@@ -78,10 +77,10 @@ inline std::vector<Graded> graded(int n) {
     return rule;
 }
 
-// ---- The solution -------------------------------------------------------------------------------
+// ---- Solution -----------------------------------------------------------------------------------
 
-// How many nodes lie between the middle of a face and its edge, and of how many the integrals are
-// made: over one piece across a face, and over a line along an edge.
+// Numbers of nodes: from the middle of a face to its edge, and for integrals over a piece across a
+// face and over a line along an edge.
 struct Fineness {
     int nodes = 24, across = 12, along = 32;
 };
@@ -94,14 +93,14 @@ public:
         for (size_t i = 0; i < n_; ++i) {
             const double w = 2 * rule[i].at, weight = 2 * rule[i].weight;
             w_.push_back(w), s_.push_back(s_of_w(w)), weight_.push_back(weight * ds_dw(w));
-            // Berrut, Trefethen 2004, times u: nodes of both signs are one node in u^2.
+            // Weights by Berrut, Trefethen 2004, times u: nodes of both signs are one node in u^2.
             barycentric_.push_back((i % 2 ? -1 : 1) * (1 - w) * std::sqrt(w * (2 - w) * weight));
         }
         solve();
     }
 
-    // E in lx at a point of the face, its edges included: the polynomial, on an edge the equation,
-    // because the polynomial ends at its last node, 10^-12 before the edge.
+    // E in lx at a point of the face or its edges.  On an edge the equation gives it, because the
+    // polynomial ends at its last node, 10^-12 from the edge.
     double illuminance(double x, double y) const {
         const double s = std::max(0.0, 1 - std::abs(x)), t = std::max(0.0, 1 - std::abs(y));
         if (s == 0 || t == 0) return by_equation(x, y);
@@ -111,11 +110,11 @@ public:
         for (size_t k = 0; k < n_ * n_; ++k) sum += p[k / n_] * q[k % n_] * indirect_[k];
         return sum;
     }
-    // L in nit.
+    // L in nit at a point of the face.
     double luminance(double x, double y) const { return albedo / pi * illuminance(x, y); }
 
-    // E by the right-hand side of the equation from the polynomial: differs from illuminance() by
-    // how much that fails to fulfil it.
+    // E by the right-hand side of the equation, with the polynomial in the integral.  The
+    // difference from illuminance() is the residual.
     double by_equation(double x, double y) const {
         const double s = std::max(0.0, 1 - std::abs(x)), t = std::max(0.0, 1 - std::abs(y));
         const Received r = received(s, t);
@@ -124,7 +123,7 @@ public:
         return (direct(x, y) + albedo * sum) / (1 - albedo * r.own);
     }
 
-    // The form factor from a point to all that it sees: 1.
+    // The form factor from a point to everything visible.  The exact value is 1.
     double closure(double x, double y) const {
         const Received r = received(1 - std::abs(x), 1 - std::abs(y));
         double sum = r.own;
@@ -132,7 +131,7 @@ public:
         return sum;
     }
 
-    // Of E over the face.
+    // The mean of E over the face.
     double mean() const {
         double sum = 0;
         for (size_t k = 0; k < n_ * n_; ++k)
@@ -146,17 +145,17 @@ private:
     std::vector<Node> across_;
     std::vector<Graded> along_;
     std::vector<double> w_, s_, weight_, barycentric_;  // nodes in u > 0, from the edge inwards
-    std::vector<double> indirect_;  // E without what comes from the light, at (s_[i], s_[j])
+    std::vector<double> indirect_;                      // the indirect part of E at (s_[i], s_[j])
 
-    // What a point gets from all faces: from those of indirect light, a factor for each node; of
-    // direct light; and, on an edge or in a corner, the part that comes from the faces beside it,
-    // which in the limit fill 1/2 or 3/4 of its hemisphere and send what it sends itself.
+    // The light that a point receives: per node a factor of indirect light; the share of direct
+    // light; `own`, the part of its hemisphere that adjacent faces fill in the limit, 1/2 on an
+    // edge and 3/4 in a corner.  They send what the point sends.
     struct Received {
         std::vector<double> factor;
         double direct = 0, own = 0;
     };
 
-    // Polynomials in u^2 that are 1 at one node and 0 at the others, at u = 1 - w.
+    // Evaluates, at u = 1 - w, the polynomials in u^2 that are 1 at one node and 0 at the others.
     void basis(double w, std::vector<double>& values) const {
         const double near = std::min(w, 2 - w);
         double sum = 0;
@@ -172,7 +171,7 @@ private:
         for (double& value : values) value /= sum;
     }
 
-    // From the face opposite, at distance 2.
+    // Adds the light from the opposite face, at distance 2.
     void add_opposite(Received& r, double x, double y) const {
         for (size_t k = 0; k < n_ * n_; ++k) {
             const double a = 1 - s_[k / n_], b = 1 - s_[k % n_];
@@ -186,17 +185,17 @@ private:
         }
     }
 
-    // At R from the receiver, which is at distances a and b from the ends; t from the edge.
+    // A line at distance R from the receiver and t from the edge, with ends at distances a and b.
     struct Line {
         double R, a, b, t;
     };
-    // From the face beyond the edge at distance s, where a and b are the distances to its ends: t
-    // is the distance from the edge on that face, y' runs along it.  The kernel
-    // s t dy' / (pi (R^2 + (y' - y)^2)^2) of R^2 = s^2 + t^2 and y' = y + R tan(theta) is
-    // s t / (pi R^3) cos^2(theta) dtheta, as smooth near the edge as far from it.
+    // Adds the light from the face beyond an edge at distance s, with ends at distances a and b.
+    // There t is the distance from the edge, and y' runs along it.  With R^2 = s^2 + t^2 and
+    // y' = y + R tan(theta), the kernel s t dy' / (pi (R^2 + (y' - y)^2)^2) is
+    // s t / (pi R^3) cos^2(theta) dtheta.  It is as smooth near the edge as far from it.
     void add_adjacent(Received& r, double s, double a, double b) const {
         std::vector<double> here(n_), line(n_), value(n_);
-        // What is left is singular where t is +-i s or so, pi/8 off the axis of w.
+        // The rest of the integrand is singular near t = +-i s, pi/8 off the real axis of w.
         double to = std::min(0.5, w_of_s(s) / 2);
         for (double from = 0; from < 2; from = to, to = std::min({2.0, 1.5 * to, to + 0.5}))
             for (const Node& g : across_) {
@@ -207,13 +206,13 @@ private:
                 for (size_t i = 0; i < n_ * n_; ++i) r.factor[i] += k * here[i / n_] * line[i % n_];
             }
     }
-    // Integrals over cos^2(theta) dtheta along it: of each polynomial, and of direct light.
+    // Integrates each polynomial and direct light along a line, by the weight cos^2(theta) dtheta.
     double sum_line(const Line& l, std::vector<double>& line, std::vector<double>& value) const {
         const double top = std::atan2(l.a, l.R), whole = top + std::atan2(l.b, l.R);
         double of_direct = 0;
         line.assign(n_, 0);
         for (const Graded& g : along_) {
-            // The distance R (tan(top) - tan(theta)) from one end, without cancellation.
+            // d = R (tan(top) - tan(theta)) is the distance from one end, without cancellation.
             const double angle = whole * g.at, c = std::cos(top - angle);
             const double d = std::min(2.0, std::sin(angle) * std::hypot(l.a, l.R) / c);
             const double weight = whole * g.weight * c * c;
@@ -235,7 +234,7 @@ private:
         return r;
     }
 
-    // Bounce after bounce, each of them 2/3 of the one before; E(x, y) = E(y, x).
+    // Adds bounces, each 2/3 of the one before.  Uses the symmetry E(x, y) = E(y, x).
     void solve() {
         std::vector<Received> rows;
         for (size_t i = 0; i < n_; ++i)
@@ -260,9 +259,9 @@ private:
 struct Point {
     double x, y;
 };
-// The integral of L (nit) times f(x, y), a number or rgb, over a triangle of the face (area 4), by
-// n^2 nodes.  They crowd towards its sides, which may lie on edges of the cube.  With n = 16 the
-// error is 3e-5 for half a face, and below 10^-8 for triangles of a grid of 4 x 4 and finer.
+// The integral of L (nit) times f(x, y), a number or rgb, over a triangle of the face (area 4).
+// The n^2 nodes crowd towards the sides, which may lie on edges of the cube.  For n = 16 the error
+// is 3e-5 for half a face, and below 10^-8 for triangles of a grid of 4 x 4 and finer.
 template <class F>
 auto integral(const Solution& room, const std::array<Point, 3>& corners, F f, int n = 16) {
     const auto [a, b, c] = corners;

@@ -2,9 +2,9 @@
 //
 //   build/illumination [--quick] [--kept]
 //
-// Khodulev (1996) compared a deterministic method with Monte Carlo, both on illumination maps, by
-// accuracy over time.  Here build/radiosity does both and is measured as he did; then beside a path
-// tracer, which has no triangles.
+// Khodulev (1996) compared accuracy over time of deterministic and Monte Carlo illumination maps.
+// This program repeats the comparison with build/radiosity, which has both methods.  Then it
+// compares them with a path tracer, which needs no mesh.
 #include "labs/illumination.h"
 
 #include "base/json.h"
@@ -13,7 +13,7 @@
 namespace {
 
 using namespace illumination;
-// A scene, the longest edge, the longest Monte Carlo run, and where shooting and hierarchy end.
+// A scene, its longest edge, the most particles, and the final unshot powers (shooting, hierarchy).
 struct Course {
     std::string scene;
     double H;
@@ -43,12 +43,12 @@ std::vector<Course> courses(bool quick) {
     return all;
 }
 
-// Of settings that begin with this word, from the shortest run on.
+// Rows of the settings that begin with this word, shortest run first.
 Rows by_method(const Rows& rows, const std::string& method) {
     return where(rows, [&](const Row& r) { return words_in(r.setting)[0] == method; });
 }
 
-// Of squares by this name.
+// Error over CPU seconds of a method.  The number `squares` has the squared errors.
 Curve curve_of(const Rows& rows, const std::string& method, const char* squares) {
     Curve c;
     for (const auto& [setting, runs] : grouped(by_method(rows, method), of_setting))
@@ -59,8 +59,8 @@ Curve curve_of(const Rows& rows, const std::string& method, const char* squares)
 
 struct Race {
     std::string name;
-    Rows rows;         // d2: without the reference's own error
-    Moments k, check;  // proportion of the shorter runs, and of longer ones
+    Rows rows;         // d2: the reference's own error is subtracted
+    Moments k, check;  // proportion() of shorter runs, and of longer ones
     Curve particles;
 };
 
@@ -75,7 +75,7 @@ Race run_race(RenderGrid& grid, const Course& c, const Truth* traced, bool kept)
             if (traced) r.of["limit2"] = sqr(d_rel(traced->image, f.image)) - sqr(traced->own);
         };
         Rows rows = grid.run({c.subject()}, settings, {0}, seeds);
-        for (Row& r : rows)  // near the last solution the distance to it says nothing any more
+        for (Row& r : rows)  // the distance to the last solution is no error near it
             if (!(r["unshot"] > 4 * rows.back()["unshot"])) r.of["optimistic2"] = NAN;
         append(race.rows, rows);
     };
@@ -119,7 +119,7 @@ void tell_races(Page& page, const std::vector<Race>& races) {
     Lines ahead_of, references;
     Rows all;
     size_t realistic = 0;
-    double latest[2] = {};  // the largest error of particles at which each method catches up
+    double latest[2] = {};  // the largest error of particles where each method catches up
     for (const Race& r : races) {
         const double spread = std::sqrt(r.k.variance()) / r.k.mean;
         references.push_back({r.name, plus_minus(r.k, "%.3f"), text("%.3f", r.check.mean),
@@ -167,7 +167,7 @@ void plot_race(Page& page, const Race& r) {
     page.plot("radiosity-time", plot(all, "CPU seconds", "error (d_rel)", r.name));
 }
 
-// The path tracer's long run is the truth of triangles, too.
+// Errors against a long run of the path tracer, which is a reference without discretisation.
 void tell_total(Page& page, const std::vector<Race>& races) {
     Lines lines;
     for (const Race& r : races) {
@@ -184,7 +184,7 @@ void tell_total(Page& page, const std::vector<Race>& races) {
                             lines));
 }
 
-// The reference of paths has no end that is felt: .73^64 is 10^-9.
+// Reference paths have up to 64 bounces.  The light beyond is negligible, because .73^64 is 10^-9.
 int study(const Scope& scope) {
     Page page(scope, "radiosity");
     RenderGrid grid("illumination", scope.beside("radiosity"), scope.kept);

@@ -9,7 +9,7 @@ struct Curve {
     void add(double s, double e) { seconds.push_back(s), error.push_back(e); }
 };
 
-// Between the points of a curve by powers; beyond them like 1 / sqrt(t), as independent numbers do.
+// The error at time t: power laws between points, 1 / sqrt(t) beyond, as for independent samples.
 inline double error_at(const Curve& c, double t) {
     const auto& s = c.seconds;
     const size_t above = size_t(std::upper_bound(s.begin(), s.end(), t) - s.begin());
@@ -19,19 +19,19 @@ inline double error_at(const Curve& c, double t) {
     return c.error[above - 1] * std::pow(c.error[above] / c.error[above - 1], part);
 }
 
-// The error of an image is proportional to what a run states of its map (Khodulev 1996, ch. 5): of
-// a run and a reference, which state a and b, d = k sqrt(a^2 + b^2).  k of rows with `off`,
-// `stated` and `reference` (what that states).
+// The error of an image is proportional to the reported error of its map (Khodulev 1996, ch. 5).
+// If a run reports a and its reference b, d = k sqrt(a^2 + b^2).  Averages k over rows
+// with d in `off`, a in `stated` and b in `reference`.
 inline Moments proportion(const Rows& rows) {
     Moments k;
     for (const Row& r : rows) k.add(r["off"] / std::hypot(r["stated"], r["reference"]));
     return k;
 }
 
-// Where particles are ahead of a deterministic curve.
+// Times at which particles have a smaller error than a deterministic method.
 struct Ahead {
     bool ever = false, to_the_end = false;
-    double from = 0, to = 0, worst = 0, best = 0;  // seconds; errors of particles there
+    double from = 0, to = 0, worst = 0, best = 0;  // seconds; errors of particles then
 };
 inline Ahead ahead(const Curve& particles, const Curve& deterministic) {
     Ahead a;
@@ -44,7 +44,7 @@ inline Ahead ahead(const Curve& particles, const Curve& deterministic) {
     return a;
 }
 
-// 0.5, 0.2, 0.1, ... down to the least.
+// The numbers 0.5, 0.2, 0.1, 0.05, ... down to the least.
 inline std::vector<double> decades_down_to(double least) {
     std::vector<double> list;
     for (double decade = 1; decade > least * 0.99; decade /= 10)

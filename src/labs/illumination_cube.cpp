@@ -10,7 +10,7 @@ namespace {
 
 struct NamedPoint {
     const char* name;
-    double x, y;  // of a face, [-1,1]^2; x >= y >= 0
+    double x, y;  // a point of a face, [-1,1]^2; x >= y >= 0
 };
 constexpr NamedPoint points[] = {{"A", 0, 0}, {"B", 0.5, 0}, {"C", 0.5, 0.5},
                                  {"D", 1, 0}, {"E", 1, 0.5}, {"F", 1, 1}};
@@ -23,17 +23,17 @@ constexpr const char *elements = "shooting, elements", *faces = "shooting, faces
                      *particles_run = "particles: run";
 constexpr const char* limits[] = {elements, faces, projection, hat_mean};
 
-// The cube cut into n x n cells a face, a power of two from 4 on; and what linear maps on it would
-// be if the exact E were known.
+// The cube with n x n cells per face, n >= 4 a power of two, and the linear maps that the exact E
+// has on this mesh.
 struct Walls {
     const cube::Solution* exact;
     uint32_t n;
     Room room;
-    IlluminationMap projection = {}, mean = {};  // the functionals of particles
-    double beyond = 0, square = 0;  // over a face, lx^2 m^2: of (projection - E)^2, E^2
+    IlluminationMap projection = {}, mean = {};  // by each Functional
+    double beyond = 0, square = 0;  // integrals over a face, lx^2 m^2: (projection - E)^2, E^2
 };
 
-bool inside(const Face& f) { return dot(f.n, f.a) > 0; }  // the normals point outwards
+bool inside(const Face& f) { return dot(f.n, f.a) > 0; }  // the side that faces the room
 
 // ---- Exact integrals ----------------------------------------------------------------------------
 
@@ -49,7 +49,7 @@ Triangle corners_of(const Walls& w, uint32_t element) {
     return corner;
 }
 
-// The three hats of a triangle: barycentric coordinates.
+// The three basis functions of a triangle: barycentric coordinates of (x, y).
 rgb hats(const Triangle& t, double x, double y) {
     auto twice_area = [](cube::Point a, cube::Point b, cube::Point c) {
         return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -61,15 +61,15 @@ rgb hats(const Triangle& t, double x, double y) {
             real(twice_area(a, b, p) / all)};
 }
 
-// Of E times f(x, y) over an element, in lx m^2.  144 nodes are right to 10^-5 of the least
-// discretisation error, that of 64 x 64 cells.
+// The integral of E times f(x, y) over an element, in lx m^2.  With 144 nodes its error is 10^-5 of
+// the least discretisation error, that of 64 x 64 cells.
 template <class F>
 auto integral_of_E(const cube::Solution& exact, const Triangle& t, F f) {
-    constexpr double square_metres = 25;  // in the unit of [-1,1]^2
+    constexpr double square_metres = 25;  // per unit of area in [-1,1]^2
     return cube::integral(exact, t, f, 12) * (square_metres / nit_per_lux);
 }
 
-// A map that is the same on all faces, inside.
+// The map with these values on the inner sides of all faces.
 IlluminationMap on_all(const Mesh& mesh, const Sums& face) {
     IlluminationMap map(number_of_sides(mesh));
     for (const Face& f : mesh.faces)
@@ -107,16 +107,16 @@ Walls walls(const cube::Solution& exact, uint32_t n) {
 
 // ---- Maps as rows -------------------------------------------------------------------------------
 
-// Of two maps: the quadratic mean of their difference, relative to that of E; three channels alike.
+// The RMS of the difference of two maps, over the RMS of E.  The three channels are equal.
 double distance(const Walls& w, const IlluminationMap& a, const IlluminationMap& b) {
     const Mesh& mesh = w.room.mesh;
     return std::sqrt(square_of(mesh, difference(a, b)) /
                      (3 * double(mesh.faces.size()) * w.square));
 }
 
-// Of a map, with n for the count: luminance in nit over all points like A ... F on six faces; the
-// mean over the walls; and its distance from E by Pythagoras, as the projection is the foot of the
-// perpendicular.
+// The row of a map, with n as its count: luminance in nit at A ... F, averaged over all points that
+// are equivalent on six faces; the mean over the walls; the distance from E.  Pythagoras gives the
+// distance, because the projection is orthogonal.
 Row row_of(const Walls& w, const std::string& method, const IlluminationMap& map) {
     Row r{"cube", method, w.n, 0};
     const Mesh& mesh = w.room.mesh;
@@ -141,8 +141,8 @@ Row row_of(const Walls& w, const std::string& method, const IlluminationMap& map
     return r;
 }
 
-// The limit and a run to 1 % unshot.  What is missing is nearly proportional to what is not yet
-// sent: two maps tell the limit.
+// Adds rows of the limit, and of a run to 1 % unshot power.  The missing light is nearly
+// proportional to the unshot power, so two maps give the limit.
 void add_shot(Rows& rows, const Walls& w, const std::string& name, Shooter shooter) {
     Shooting run(w.room.scene, w.room.mesh, shooter, all_cores());
     std::vector<IlluminationMap> maps;
@@ -171,10 +171,10 @@ Row walked(const Walls& w, uint64_t n) {
     return r;
 }
 
-// ---- The report ---------------------------------------------------------------------------------
+// ---- Report -------------------------------------------------------------------------------------
 
 struct Extent {
-    uint32_t finest = 64, finest_by_elements = 16;  // cells a side
+    uint32_t finest = 64, finest_by_elements = 16;  // cells per side
     uint64_t particles = 1 << 20;
 };
 
@@ -191,7 +191,7 @@ Rows run_all(const cube::Solution& exact, const Extent& extent) {
     return rows;
 }
 
-// From the limit to the exact E, by the finest mesh and the one before.
+// Reports distances from limits to the exact E.  The finest two meshes give the order.
 void tell_limits(Page& page, const cube::Solution& exact, const Rows& rows) {
     Lines lines = {{"exact", "", "", ""}};
     for (const NamedPoint& p : points) lines[0].push_back(text("%.1f", exact.luminance(p.x, p.y)));
@@ -220,7 +220,7 @@ void tell_limits(Page& page, const cube::Solution& exact, const Rows& rows) {
     page.claim("projection-ok", nearer), page.claim("dark-ok", dark);
 }
 
-// From a run to its limit.
+// Reports distances from runs to their limits.
 void tell_runs(Page& page, const Rows& rows) {
     double missing = 0;
     Moments ratio;
@@ -244,7 +244,7 @@ int study(const Scope& scope) {
                                               "short by", "from limit", "reported"}));
     page.plot("radiosity-cube",
               plot(where(rows, [](const Row& r) { return std::isnan(r["from limit"]); }),
-                   "cells a side", "error of E", of_setting, count_of, mean_of("off"),
+                   "cells per side", "error of E", of_setting, count_of, mean_of("off"),
                    "Discretisation: from a method's limit to the exact solution"));
     return page.finish();
 }

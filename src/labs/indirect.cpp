@@ -1,4 +1,4 @@
-// labs/indirect.cpp  6  what illumination maps bring to paths that end on them
+// labs/indirect.cpp  6  the gain of illumination maps for paths that end on them
 //
 //   build/indirect [--quick] [--kept]
 #include "base/json.h"
@@ -8,8 +8,8 @@ namespace {
 
 const std::vector<std::string> scenes = {"cornell36", "cube", "atelier"};
 
-// What two images of other seeds have in common: the product of their differences from a reference
-// has no noise in its mean, but for that of the reference.
+// Squared bias from pairs of images with different seeds.  The product of their differences from a
+// reference has no noise on average, except that of the reference.
 class Pairs {
 public:
     void operator()(Row& r, const Image& image, const Truth& f) {
@@ -39,7 +39,7 @@ private:
     std::map<std::string, Image> of_;
 };
 
-// Over the rows that have a pair.
+// The mean of a number over the rows that complete a pair.
 double of_pairs(const Rows& rows, const char* name) {
     return mean(where(rows, [](const Row& r) { return !std::isnan(r["bias2"]); }), name);
 }
@@ -51,7 +51,7 @@ std::string bias(const Rows& rows) {
     return b > 2 * error ? percent(std::sqrt(b))
                          : "< " + percent(std::sqrt(std::max(0.0, b) + 2 * error));
 }
-// Without the cost of maps, and without their bias.
+// Efficiency of paths, without the cost and the bias of maps.
 double of_paths(const Rows& rows) { return 1 / (noise2(rows) * mean(rows, "path_seconds")); }
 
 Rows most_of(const Rows& rows) {
@@ -87,7 +87,7 @@ void tell_images(Page& page, const Rows& all, const std::vector<Setting>& method
                    mean_of("cpu_seconds"), relative_error, "cornell36"));
 }
 
-// ---- When to go on ------------------------------------------------------------------------------
+// ---- Russian roulette ---------------------------------------------------------------------------
 
 void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, bool quick) {
     std::vector<Subject> subjects;
@@ -107,7 +107,7 @@ void tell_ways(Page& page, RenderGrid& grid, const std::string& draw, bool quick
     page.set("ways", table({"way", scenes[0], scenes[1], scenes[2]}, lines));
 }
 
-// ---- How fine -----------------------------------------------------------------------------------
+// ---- Meshes and particles -----------------------------------------------------------------------
 
 void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, double diagonal,
                  bool quick) {
@@ -133,7 +133,7 @@ int study(const Scope& scope) {
                       draw = scope.beside("indirect_draw") + " --scene";
     Page page(scope, "indirect");
     Pairs pairs;
-    // References: without an end that is felt, .8^64 is 10^-6.
+    // References have up to 64 bounces.  The light beyond is negligible, because .8^64 is 10^-6.
     RenderGrid grid("indirect", penumbra + " --depth 64", scope.kept);
     grid.measure = [&](Row& r, const Image& image, const Truth& f) { pairs(r, image, f); };
     const std::vector<Setting> methods = {{"path", "--sets 1", penumbra},
@@ -161,6 +161,6 @@ int study(const Scope& scope) {
 int main(int argc, char** argv) {
     return experiment(
         argc, argv,
-        {"indirect", "Measures what illumination maps bring to paths that end on them.", {}, true},
+        {"indirect", "Measures the gain of illumination maps for paths ending on them.", {}, true},
         study);
 }

@@ -1,4 +1,4 @@
-// labs/indirect_draw.cpp  6  the program: an image by paths that end on maps or go on
+// labs/indirect_draw.cpp  6  program that renders images with paths that end on maps or continue
 #include "labs/indirect_draw.h"
 
 #include "base/json.h"
@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
     };
     const Lab lab{
         "indirect_draw",
-        "Draws an image by paths that end on illumination maps, or go on beyond them.",
+        "Renders an image with paths that end on illumination maps, or continue there.",
         {{"--scene", "FILE", "", [&](auto& word) { a.scene = word; }},
          {"--way", "WAY", "whole:0.25|map|control|regression|over:t",
           [&](auto& word) { a.way = word; }},

@@ -1,11 +1,11 @@
-// labs/indirect_draw.h  5  images by paths that end on maps or go on beyond them, by a rule
+// labs/indirect_draw.h  5  images by paths that end on maps or continue, by a chosen rule
 #pragma once
 #include "labs/indirect_paths.h"
 #include "labs/room.h"
 
 namespace indirect {
 
-// 0: the scene's, or the default.
+// Options of a render.  0 stands for the scene's value, or the default.
 struct Asked {
     std::string scene, way = "control";
     Size size = {};
@@ -15,16 +15,16 @@ struct Asked {
     unsigned threads = all_cores();
 };
 
-// Where paths end; whole paths know no maps.  `is_scattered`: as often as the scene says, not
-// without end.
+// The rule by which paths end.  Whole paths use no maps.  If `is_scattered`, the scene's depth
+// limits their bounces.
 struct Way {
     bool is_whole = false, is_scattered = false, has_slope = false;
-    real roulette = 0;  // of whole paths
+    real roulette = 0;  // for whole paths
     real threshold = by_throughput;
 };
 
-// "whole:ROULETTE", "endless:ROULETTE" (depth 64), "map", "control", "regression", and by another
-// threshold than control "over:t".
+// Parses "whole:ROULETTE", "endless:ROULETTE" (depth 64), "map", "control", "regression", or
+// "over:t", which is control with the threshold t.
 inline Way way_of(const std::string& words) {
     const size_t at = words.find(':');
     const std::string kind = words.substr(0, at);
@@ -41,11 +41,11 @@ inline Way way_of(const std::string& words) {
 struct Drawn {
     Image image;
     double cpu_seconds = 0, map_cpu_seconds = 0, map_error = 0, triangles = 0;
-    bool is_biased = false;  // for the scene that was read
+    bool is_biased = false;  // with respect to the scene as read
 };
 
-// Particles, paths that tell the slope, and those of the image have keys of their own: they are
-// independent.  Unless it is said how many particles: one for 64 paths; for `map`, one for 16.
+// Renders an image.  Particles, paths for the slope and paths of the image are independent: they
+// have different seeds.  The default is one particle per 64 paths, and one per 16 for `map`.
 inline Drawn draw(const Asked& a) {
     const double start_of_all = processor_seconds();
     Drawn drawn;

@@ -1,28 +1,27 @@
-// labs/indirect_paths.h  3  paths that end on illumination maps, or go on beyond them
+// labs/indirect_paths.h  3  paths that end on illumination maps, or continue there
 //
-// At a diffuse surface y the reflected radiance R(y) is known, but for noise and the mesh:
-// R_map(y) = rho E(y) / pi.  Where a path has scattered, one of three things follows.
+// At a diffuse surface point y, maps approximate the reflected radiance R(y) by R_map(y) =
+// rho E(y) / pi, with noise and discretisation error.  After a bounce there are three methods.
 //
 // map:        R_map(y) ends the path (final gathering; Reichert 1992).  Biased by the maps' error,
-//             in the mean over what one bounce sees of it.
+//             averaged over the surfaces that one bounce reaches.
 // control:    R_map(y) + [xi < q] / q (R^(y) - R_map(y)).  R^ is the path's own estimate, by a
-//             light sample and one more bounce, where the same happens: Russian roulette that
-//             returns the maps' value, and not 0, when it ends a path (Szecsi, Szirmay-Kalos,
-//             Kelemen 2003, Variance reduction for Russian roulette).  Unbiased, whatever the maps
-//             hold.
-// regression: a slope times R_map in both places.  Unbiased, for the slope is that of other paths.
+//             light sample and one more bounce, recursively.  This is Russian roulette that returns
+//             the maps' value instead of 0 when it ends a path (Szecsi, Szirmay-Kalos, Kelemen
+//             2003, Variance reduction for Russian roulette).  Unbiased for any maps.
+// regression: A slope times R_map in both places.  Unbiased, because other paths give the slope.
 //
-// All of this is about the scene of triangles that the maps lie on: where these stand for balls
-// (facets.h), its light is not that of the balls.
+// All this holds for the triangles of the maps.  Where they approximate spheres (facets.h), their
+// light differs from that of the spheres.
 //
-// Light is scattered without end, as in the maps: the scene's depth must be too large to be met.
+// The number of bounces is unlimited, as in the maps: the scene's depth must be out of reach.
 #pragma once
 #include "radiosity/gather.h"
 
-// ---- Numbers ------------------------------------------------------------------------------------
+// ---- Sample values ------------------------------------------------------------------------------
 
-// The numbers of a path that may be of any length.  From vertex `structured` on they are
-// independent, as those of particles are.
+// Sample values of a path of any length.  From vertex `structured` on they are independent, like
+// those of particles.
 class EndlessNumbers {
 public:
     static constexpr int structured = 8;
@@ -34,46 +33,46 @@ public:
     }
 
     EndlessNumbers(const Sampler& first, const Sampler& rest) : first_(first), rest_(rest) {}
-    // Those of vertex k.
+    // Sample values of vertex k.
     const Sampler& operator[](int k) const { return k < structured ? first_ : rest_; }
-    // The number that decides whether the path goes on at vertex k: the last of the one before.
+    // The value that decides if the path continues at vertex k: the last one of vertex k - 1.
     real xi(int k) const { return (*this)[k - 1].get(dimension(k - 1, Draw::roulette)); }
 
 private:
     const Sampler first_, rest_;
 };
 
-// ---- When to go on ------------------------------------------------------------------------------
+// ---- Russian roulette ---------------------------------------------------------------------------
 
-// Paths go on with probability throughput / threshold, the rule of step; two thirds by measurement
-// (`make indirect`).
+// Paths continue with probability throughput / threshold, as in step().  The threshold 2/3 was the
+// best in measurements (`make indirect`).
 inline constexpr real by_throughput = real(2) / 3, never = infinity;
 
-// The probability at the end of a segment.  A path must end between white walls, too.
+// The probability to continue.  It is below 1 in long paths, so that they end between white walls.
 inline real probability(real threshold, const Segment& s) {
     const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
     return std::min(most, max_of(s.beta) / threshold);
 }
 
-// ---- The path -----------------------------------------------------------------------------------
+// ---- Paths --------------------------------------------------------------------------------------
 
 struct Gather {
     const Scene& scene;
-    Technique technique;  // its roulette is 0: there is another here
+    Technique technique;  // its roulette is 0: probability() replaces it
     const KnownLight& known;
     real threshold = by_throughput;
     rgb slope{1, 1, 1};
 };
 
-// Radiance along a segment; the path continues at its end in any case.
+// Radiance along a segment.  The path always continues at the end of the first segment.
 inline rgb radiance_along(const Gather& g, const Segment& first, const EndlessNumbers& u) {
     rgb L;
     for (Segment s = first;;) {
         const real q = s.k > first.k ? probability(g.threshold, s) : 1;
         const bool goes = s.k == first.k || (q > 0 && u.xi(s.k) < q);
-        // Of what the maps know: 1 - [xi < q] / q.
+        // The weight of the maps' value: 1 - [xi < q] / q.
         const real weight = s.k == first.k ? 0 : goes ? 1 - 1 / q : 1;
-        // Where a path may scatter no more, emission is all that step finds.
+        // At the scene's depth step() finds emission only.
         Segment now = s;
         if (goes)
             now.beta /= q;
@@ -87,17 +86,17 @@ inline rgb radiance_along(const Gather& g, const Segment& first, const EndlessNu
     }
 }
 
-// Along a ray from the camera.
+// Radiance along a camera ray.
 inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
     return radiance_along(g, Segment{ray, ray.o}, u);
 }
 
-// ---- The slope ----------------------------------------------------------------------------------
+// ---- Slope --------------------------------------------------------------------------------------
 
-// Of what n paths find at the first vertex that they reach by scattering, over R_map there, a
-// channel at a time: the slope b for which the mean of (throughput (R^ - b R_map))^2 is least, for
-// by it the variance of Russian roulette grows.  1 where the maps are black.  The paths begin
-// anywhere on the film; their pattern of independent numbers must be no image's.
+// The slope of regression from n paths, per channel.  At the first vertex after a bounce it is the
+// b that minimises the mean of (throughput (R^ - b R_map))^2, since the variance of Russian
+// roulette grows with that mean.  It is 1 where the maps are black.  The paths begin anywhere on
+// the film.  The pattern must be of independent samples, and differ from that of any image.
 inline rgb slope_of(const Gather& g, const Pattern& pattern, uint64_t n) {
     const auto [width, height] = g.scene.size;
     std::array<double, 3> both{}, known{};

@@ -1,8 +1,8 @@
-// labs/radiosity_error.cpp  8  what build/radiosity --error delivers: true errors over those asked
+// labs/radiosity_error.cpp  8  true errors of build/radiosity --error over requested ones
 //
 //   build/radiosity_error [--quick]
 //
-// They are those of maps, over all surfaces, which no image shows: so the parts are run.
+// Errors of maps cover all surfaces, not only visible ones, so this program runs radiosity's parts.
 #include "base/json.h"
 #include "labs/room.h"
 #include "labs/rows.h"
@@ -10,7 +10,7 @@
 
 namespace {
 
-// A map that was asked for, with its statement; `true` follows.
+// A map, with its requested and its estimated error.  add_true() adds the true error.
 struct Run {
     Row row;
     IlluminationMap map;
@@ -55,8 +55,8 @@ Runs walks(const Room& room, double asked, uint64_t n) {
     return runs;
 }
 
-// Distances to the mean of the reference's runs.  The reference's own error is subtracted in
-// squares.  A run of the reference is left out of its own reference.
+// True errors are distances to the mean of the reference's runs.  The reference's own error is
+// subtracted in squares.  A run of the reference is left out of its own reference.
 void add_true_errors(const Mesh& mesh, Runs& runs, const Runs& reference, bool is_own) {
     const double all = double(reference.size()), n = all - is_own;
     IlluminationMap sum(number_of_sides(mesh));
@@ -71,7 +71,7 @@ void add_true_errors(const Mesh& mesh, Runs& runs, const Runs& reference, bool i
     }
 }
 
-// E from the smallest on: its runs are the reference of the others.
+// Adds runs for requested errors, smallest first.  These first runs are the reference of the rest.
 void add_walks(Rows& rows, const Room& room, double least, uint64_t seeds) {
     Runs reference;
     for (double asked : {0.01, 0.03, 0.1}) {
@@ -83,7 +83,7 @@ void add_walks(Rows& rows, const Room& room, double least, uint64_t seeds) {
     }
 }
 
-// Runs hardly longer than the first look, before which none ends, may be better than asked.
+// No run ends before the first error check, so short runs may be better than requested.
 std::string walked_cell(Page& page, const Rows& rows) {
     const bool is_long =
         median(all_of(rows, "particles")) > 2 * double(ErrorTarget::least * Particles::batches);
@@ -94,13 +94,13 @@ std::string walked_cell(Page& page, const Rows& rows) {
 
 // ---- Shooting -----------------------------------------------------------------------------------
 
-// Looks at one run; the last is its limit, and what that states counts as error.
+// Adds checks of one run.  The last map is the reference, and its bound is added to the distance.
 void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {
     Shooting run(room.scene, room.mesh, shooter, all_cores());
     Runs runs;
     for (double asked : {0.5, 0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 1e-4}) {
         shoot_on(run, {0, patience, 0, asked});
-        if (run.error() > asked && !runs.empty()) break;  // its last shot is cut short
+        if (run.error() > asked && !runs.empty()) break;  // its last shot is incomplete
         runs.push_back(run_of(room, shooter == Shooter::face ? "hierarchy" : "shooting", asked,
                               run.error(), {}, run.map()));
         if (run.error() > asked) break;
@@ -108,7 +108,7 @@ void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {
     const double left = runs.back().row["stated"], whole = square_of(room.mesh, runs.back().map);
     for (Run& r : runs) {
         const double d2 = square_of(room.mesh, difference(runs.back().map, r.map)) / whole;
-        // Nearer to the limit the distance says nothing.
+        // Close to the reference the distance from it is no error.
         if (r.row["asked"] >= 10 * left) add_true(r, std::sqrt(d2) + left);
         rows.push_back(r.row);
     }
@@ -131,7 +131,7 @@ int study(const Scope& scope) {
                        {"lanterns", 0.1}, {"panel", 0.01},     {"penumbra", 0.03}};
     Rows walked, shot;
     for (const auto& place : places) {
-        // Edges are a part of the scene's diagonal.
+        // The longest edge is a fraction of the scene's diagonal.
         const Scene read = scene_named(place.first);
         auto room = [&](int parts) {
             return make_room(place.first, read, double(diagonal(read)) / parts);
@@ -160,6 +160,6 @@ int study(const Scope& scope) {
 int main(int argc, char** argv) {
     return experiment(
         argc, argv,
-        {"radiosity_error", "Measures true errors of illumination maps over those asked for."},
+        {"radiosity_error", "Measures true errors of illumination maps over requested ones."},
         study);
 }

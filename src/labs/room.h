@@ -4,7 +4,7 @@
 #include "radiosity/particles.h"
 #include "radiosity/shooting.h"
 
-// No edge of a triangle is longer than H.
+// A scene cut into triangles, with its mesh.  No edge is longer than the H of make_room().
 struct Room {
     std::string name;
     Scene scene;
@@ -20,19 +20,19 @@ inline Scene scene_named(const std::string& name) {
     return read_scene("scenes/" + name + ".scene").scene;
 }
 
-// A look at a run of shooting, which goes on until then.
+// Continues a run of shooting to the target.
 inline void shoot_on(Shooting& run, const ShootingTarget& target) {
     run.run(target, [](const Shooting&) {});
 }
 
-// All particles.
+// Traces n particles.
 inline void walk(Particles& particles, uint64_t n, unsigned threads = all_cores()) {
     in_parallel(
         Particles::batches, threads,
         [&](size_t batch) { particles.add(batch, Particles::of_each(n)); }, [](double) {});
 }
 
-// Integral of the square of a map over all surfaces and channels.
+// The integral of the square of a map over all surfaces, summed over channels.
 inline double square_of(const Mesh& mesh, const IlluminationMap& map) {
     double sum = 0;
     for (const Face& f : mesh.faces)
@@ -45,7 +45,7 @@ inline double square_of(const Mesh& mesh, const IlluminationMap& map) {
     return sum;
 }
 
-// a + (a - b) * factor.
+// Extrapolates to a + (a - b) * factor.
 inline IlluminationMap beyond(IlluminationMap a, const IlluminationMap& b, double factor) {
     for (size_t i = 0; i < a.size(); ++i) a[i] += real(factor) * (a[i] - b[i]);
     return a;
