@@ -2,9 +2,9 @@
 //
 //   build/estimators1d [--quick]
 //
-// Noise and bias of each estimator of S = integral over [0,1] of w V, with W that of w, from N
-// uniform x, for six pairs (w, V) of known integrals (Heitz, Hill, McGuire 2018, supplement),
-// beside what is predicted for large N.
+// Measures noise and bias of estimators of S, the integral of w V over [0,1], from N uniform x, and
+// compares them with predictions for large N.  The integral W of w is known.  The six pairs (w, V)
+// are those of Heitz, Hill, McGuire 2018, supplement.
 #include <array>
 
 #include "base/json.h"
@@ -17,13 +17,13 @@ namespace {
 constexpr const char* names[4] = {"stochastic", "control variate", "ratio", "regression"};
 constexpr size_t steps = 17;  // N = 1, 2, 4, ... 65536
 
-// c0 + c1 x + c2 x^2.
+// The weight w(x) = c0 + c1 x + c2 x^2.
 struct Weight {
     const char* formula;
     double c0, c1, c2;
 
     double operator()(double x) const { return c0 + x * (c1 + x * c2); }
-    // Of the k-th power, k <= 3, over [a, b]: Gauss's four points are exact to degree 7.
+    // The integral of w^k over [a, b], k <= 3.  Gauss's rule of four points is exact to degree 7.
     double integral(int k, double a, double b) const {
         constexpr std::array places = {0.33998104358485626, 0.86113631159405258};
         constexpr std::array weights = {0.65214515486254614, 0.34785484513745386};
@@ -37,14 +37,14 @@ struct Weight {
 constexpr Weight steep = {"3x²", 0, 0, 3};
 constexpr Weight flat = {"(15 + 2x)/16", 15.0 / 16, 2.0 / 16, 0};
 
-// V is 1 on [from, to), or everywhere else.
+// A pair (w, V).  V is 1 in [from, to) if `inside` is true, else outside of it.
 struct Case {
     const char* letter;
     Weight w;
     const char* V_formula;
     double from, to;
     bool inside;
-    std::array<bool, 3> low;  // what the paper's Table 1 says of the variance of the first three
+    std::array<bool, 3> low;  // Table 1 of the paper: do the first three have low variance?
 
     bool V(double x) const { return (x >= from && x < to) == inside; }
     double shadowed(int k) const {
@@ -65,17 +65,17 @@ const Case cases[] = {
     {"f", flat, "0 on [0, 1/2), else 1", 0, 0.5, false, {false, false, false}},
 };
 
-// ---- The experiment -----------------------------------------------------------------------------
+// ---- Trials -------------------------------------------------------------------------------------
 
-// What the trials say of one case, by log2 N.
+// Results of the trials of one case, by log2 N.
 struct Tally {
     std::array<std::array<Moments, 4>, steps> error;  // estimate - S
-    // Ratio minus its linearisation mean(wV) + R (W - mean(w)) with the true R, which is unbiased:
-    // the mean is the bias, without most of the noise.
+    // Ratio estimate minus its linearisation mean(wV) + R (W - mean(w)) with the true R.  The
+    // linearisation is unbiased, so the mean is the bias of the ratio, without most of the noise.
     std::array<Moments, steps> excess;
 };
 
-// Trials first ... last-1.  Each has a stream of numbers; the stream's first N are the sample.
+// Runs trials first ... last-1.  The first N numbers of each trial's own stream are its sample.
 Tally run_trials(const Case& c, uint64_t key, uint64_t first, uint64_t last) {
     Tally tally;
     const Weight w = c.w;
@@ -97,7 +97,7 @@ Tally run_trials(const Case& c, uint64_t key, uint64_t first, uint64_t last) {
     return tally;
 }
 
-// The same numbers whatever the number of threads: trials come in 64 blocks, merged in order.
+// Runs all trials in 64 blocks and merges these in order: the number of threads changes no result.
 Tally all_trials(const Case& c, uint64_t trials) {
     constexpr uint64_t blocks = 64;
     const uint64_t key = hash(0, uint64_t(c.letter[0]));
@@ -115,10 +115,10 @@ Tally all_trials(const Case& c, uint64_t trials) {
     return all;
 }
 
-// A row for each N and estimator, in units of W: rmse and deviation of one sample; and how far
-// variance and bias are from what is predicted for large N, as parts of it.
+// A row for each N and estimator.  RMSE and deviation are those of one sample, in units of W.
+// "variance off" and "bias off" are relative differences from the predictions for large N.
 Rows rows_of(const Case& c, uint64_t trials) {
-    constexpr double zero = 1e-15;  // what a formula leaves of it
+    constexpr double zero = 1e-15;  // bound of the rounding errors of a formula
     const Tally tally = all_trials(c, trials);
     const ShadowPopulation p = c.population();
     Rows rows;
@@ -141,12 +141,12 @@ Rows rows_of(const Case& c, uint64_t trials) {
     return rows;
 }
 
-// ---- The report ---------------------------------------------------------------------------------
+// ---- Report -------------------------------------------------------------------------------------
 
-constexpr uint64_t asymptotic = 256, regressed = 1024;  // N from which on predictions hold
-constexpr double low_variance = 0.4;                    // of W: standard deviation of one sample
+constexpr uint64_t asymptotic = 256, regressed = 1024;  // predictions hold from these N on
+constexpr double low_variance = 0.4;                    // smaller deviations are low
 
-// Standard deviations of one sample over W, and the paper's marks of the low ones.
+// A table of the deviations of one sample over W.  It marks the low ones, as the paper does.
 std::string paper_table(Page& page, const Rows& rows) {
     Lines lines;
     for (const Case& c : cases) {
@@ -172,7 +172,7 @@ double largest(const Rows& rows, const char* number) {
     return most;
 }
 
-// Regression over the best of the others.
+// The largest RMSE of regression over the least RMSE of the other estimators.
 double regression_over_best(const Rows& rows) {
     double most = 0;
     for (size_t i = 0; i + 3 < rows.size(); i += 4) {

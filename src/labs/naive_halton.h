@@ -1,7 +1,7 @@
-// labs/naive_halton.h  3  Halton points as they are often met, and why they seem useless
+// labs/naive_halton.h  3  a common misuse of Halton points, which makes them seem useless
 //
-// Bases 2 and 3 serve every choice of a path again, and every pixel has the same points: images are
-// biased.  Three numbers would add base 5; none are drawn here.
+// All decisions of a path reuse bases 2 and 3, and all pixels have the same points, so images are
+// biased.  A decision by three numbers would add base 5, but there is none here.
 #pragma once
 #include "film/image.h"
 #include "labs/lab.h"
@@ -9,10 +9,10 @@
 
 namespace naive_halton {
 
-// Radiance along a ray by point u alone.  Light is found by hitting it, or (nee) by aiming at it.
+// Radiance along a ray from the single point u: by NEE if t.light is nee, else by BSDF sampling.
 inline rgb radiance(const Scene& scene, const Technique& t, Ray ray, vec2 u) {
     const bool nee = t.light == LightMode::nee;
-    bool count_emission = true;  // light samples do not go there
+    bool count_emission = true;  // false where NEE accounts for it
     rgb L, beta{1, 1, 1};
     for (int k = 0;; ++k) {
         const auto x = meet(scene, ray);
@@ -41,7 +41,7 @@ inline rgb radiance(const Scene& scene, const Technique& t, Ray ray, vec2 u) {
     }
 }
 
-// Each pixel the mean of the first `spp` points.
+// Renders an image.  Each pixel is the mean over the first `spp` points.
 inline Image render(const Scene& scene, const Technique& t, uint64_t spp) {
     Image image(scene.size.width, scene.size.height);
     auto row = [&](int y) {

@@ -2,7 +2,7 @@
 //
 //   build/shadows [--quick] [--kept]
 //
-// Noise in light, penumbra and umbra, and efficiency of whole renders (Heitz, Hill, McGuire 2018).
+// Measures noise in light, penumbra and umbra, and efficiency (Heitz, Hill, McGuire 2018).
 #include "labs/grid.h"
 #include "shadow/shadow.h"
 #include "world/scene_file.h"
@@ -16,16 +16,16 @@ constexpr const char* names[] = {"stochastic", "control", "ratio", "regression"}
 enum Region { lit, penumbra, umbra, other };
 constexpr const char* region_names[] = {"lit", "penumbra", "umbra"};
 
-// Estimates of a pixel, and these without its own antialiasing, by estimator.
+// Estimates of a pixel, by estimator.  `beyond_U` excludes the noise of antialiasing.
 struct Pixel {
     Region region = other;
     double U = 0;
     std::array<Moments, 4> value, beyond_U;
 };
 
-constexpr uint64_t spp = 64;  // of an estimate
+constexpr uint64_t spp = 64;  // per estimate
 
-// Green light that the camera sees, by light samples of independent numbers.
+// Measures the green channel of a pixel with independent light samples.
 Pixel measure_pixel(const Scene& scene, PixelSample p, uint64_t trials) {
     const Pattern pattern{SamplerKind::independent, 1};
     Pixel pixel;
@@ -102,7 +102,7 @@ void tell_noise(Page& page, bool quick) {
 
 // ---- Efficiency ---------------------------------------------------------------------------------
 
-// Whole renders: 1 / (squared error x CPU seconds) over stochastic's.
+// Reports 1 / (squared error x CPU seconds) of whole renders, relative to `stochastic`.
 void tell_efficiency(Page& page, RenderGrid& grid, bool quick) {
     const std::string size = quick ? " --size 32x16" : " --size 128x64";
     const uint64_t samples = quick ? 16 : 64;

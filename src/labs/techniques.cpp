@@ -1,4 +1,4 @@
-// labs/techniques.cpp  6  what each of three techniques brings
+// labs/techniques.cpp  6  the gain of cosine sampling, Halton points and next-event estimation
 //
 //   build/techniques [--quick] [--kept]
 //   build/techniques --render SCENE --direction D --light L --spp N -o FILE.pfm --stats FILE.json
@@ -36,7 +36,7 @@ std::vector<Setting> settings(const std::string& self) {
             {naive_both, words("halton", "bsdf", "nee"), own}};
 }
 
-// Naive points, in place of penumbra.
+// Renders with naive Halton points, by the options of penumbra.
 int render(const std::vector<std::string>& words) {
     Technique t;
     t.direction = value_of(words, "--direction") == "bsdf" ? Direction::bsdf : Direction::uniform;
@@ -51,7 +51,7 @@ int render(const std::vector<std::string>& words) {
     return 0;
 }
 
-// Correlation of the errors g - f of horizontal neighbours, about zero.
+// Correlation about zero of the errors g - f of horizontally adjacent pixels.
 double neighbours(const Image& f, const Image& g) {
     double together = 0, alone = 0;
     for (int y = 0; y < f.height; ++y)
@@ -65,8 +65,8 @@ double neighbours(const Image& f, const Image& g) {
     return together / alone;
 }
 
-// The image's mean over the reference's, and its standard error.  Pixels have randomisations of
-// their own, so they are independent; channels are not, and count as one.
+// Adds the image's mean over the reference's, and the variance of this ratio.  Pixels are
+// independent, because each has its own randomisation.  Channels are not, and count as one.
 void measure(Row& r, const Image& image, const Truth& f) {
     Image black = f.image;
     for (auto& pixel : black.pixels) pixel = {0, 0, 0};
@@ -101,7 +101,7 @@ std::string all_settings(Page& page, const Rows& rows) {
                  lines);
 }
 
-// Parts of the images, since noise does not compress.
+// A contact sheet of crops.  Whole images would be large, because noise does not compress.
 Svg pictures(const std::string& program, const std::vector<Setting>& all, const std::string& spp) {
     std::vector<Picture> shown;
     for (const Setting& s : all) {
@@ -158,10 +158,8 @@ int main(int argc, char** argv) {
         } catch (...) {
             return failed();
         }
-    return experiment(argc, argv,
-                      {"techniques",
-                       "Measures what cosine, Halton points and next-event estimation bring.",
-                       {},
-                       true},
-                      study);
+    return experiment(
+        argc, argv,
+        {"techniques", "Measures the gain of cosine sampling, Halton points and NEE.", {}, true},
+        study);
 }

@@ -1,10 +1,10 @@
-// labs/voronoi2d.cpp  5  integrals over a square by Voronoi cells: what they cost and bring
+// labs/voronoi2d.cpp  5  cost and gain of Voronoi cells for integrals over a square
 //
 //   build/voronoi2d [--trials N] [--quick]
 //
-// Functions on [-1/2, 1/2]^2 are integrated from N points by the weights of weights.h, jittered
-// strata and scrambled Halton points.  After Vandewiele et al. 2025, "Voronoi integration of the
-// rendering equation", Table 2.
+// Integrates functions on [-1/2, 1/2]^2 from N points, by the weights of weights.h, jittered strata
+// and scrambled Halton points.  Follows Table 2 of Vandewiele et al. 2025, "Voronoi integration of
+// the rendering equation".
 #include "labs/rows.h"
 #include "labs/voronoi_functions.h"
 #include "path/halton.h"
@@ -13,7 +13,7 @@
 namespace {
 
 const std::vector<Function> list = functions::all();
-using Values = std::vector<double>;  // of a function, at places
+using Values = std::vector<double>;  // of a function at points
 
 enum class Points { independent, jittered, halton, poisson };  // poisson: N on average
 enum class Kind { plain, weighted, corrected, linear };
@@ -55,7 +55,7 @@ std::vector<Site> draw(Points kind, uint64_t n, Rng& random) {
         const double x = random.uniform(), y = random.uniform();
         site = {x, y};
     }
-    const auto side = uint64_t(std::lround(std::sqrt(double(n))));  // all N are squares
+    const auto side = uint64_t(std::lround(std::sqrt(double(n))));  // every N is a square
     for (uint64_t i = 0; i < n && kind == Points::jittered; ++i)
         p[i] = {(double(i % side) + p[i].x) / double(side),
                 (double(i / side) + p[i].y) / double(side)};
@@ -64,8 +64,8 @@ std::vector<Site> draw(Points kind, uint64_t n, Rng& random) {
 
 struct Samples {
     std::vector<Site> places;
-    std::vector<Values> values{list.size()};  // of every function, there
-    Values seconds = Values(list.size());     // that all this took
+    std::vector<Values> values{list.size()};  // of every function at `places`
+    Values seconds = Values(list.size());     // CPU time of places and values
 };
 
 Samples sample(Points kind, uint64_t n, Rng& random) {
@@ -84,7 +84,7 @@ Samples sample(Points kind, uint64_t n, Rng& random) {
 
 // ---- Estimates ----------------------------------------------------------------------------------
 
-// What makes an estimate of the values at these places.
+// Returns a function that estimates an integral from the values at these places.
 std::function<double(const Values&)> prepared(const Estimator& e, std::span<const Site> places,
                                               Weigher& weigher, uint64_t key) {
     weigher.divide = e.divide;
@@ -106,13 +106,13 @@ std::function<double(const Values&)> prepared(const Estimator& e, std::span<cons
     };
 }
 
-// All estimates of one integral by one estimator.
+// Statistics of all estimates of one integral by one estimator.
 struct Tally {
     Moments error;
-    Values sizes;  // of errors
+    Values sizes;  // absolute errors
     double seconds = 0;
 
-    // `error`: a mean of squares is no measure of what has no variance.
+    // `error` is the RMSE, or the median error if the function has no variance.
     Row row(const Function& f, const Estimator& e, uint64_t n) const {
         const double count = double(error.n),
                      rmse = std::sqrt(error.mean * error.mean + error.m2 / count);
@@ -163,7 +163,7 @@ Rows run_all(uint64_t trials) {
     return rows;
 }
 
-// ---- The report ---------------------------------------------------------------------------------
+// ---- Report -------------------------------------------------------------------------------------
 
 void tell_findings(Page& page, const Rows& rows, const Rows& last) {
     auto of = [&](const char* function, const char* estimator, const char* number) {

@@ -1,7 +1,7 @@
 // labs/voronoi_functions.h  1  functions on a square with their integrals, for voronoi2d
 //
-// Those of Table 2 in Vandewiele et al. 2025, "Voronoi integration of the rendering equation", and
-// three more: one that vanishes on the border, one that is not even, one that jumps.
+// The functions of Table 2 in Vandewiele et al. 2025, "Voronoi integration of the rendering
+// equation", and three more: one vanishes on the border, one is not even, one jumps.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,26 +11,26 @@
 
 #include "voronoi/plane.h"
 
-// On [-1/2, 1/2]^2.
+// A function on [-1/2, 1/2]^2 with its integral.
 struct Function {
     std::string name;
     double (*at)(Site);
     double integral;
-    double rim = NAN;  // integral of the outward derivative over the border; NaN: there is none
+    double rim = NAN;  // integral of the outward derivative over the border; NaN: not given
     bool has_variance = true;
 };
 
 namespace functions {
 
 inline double power_of_xy(double alpha, Site p) { return std::pow(std::abs(p.x * p.y), alpha); }
-// On x = 1/2 its outward derivative is alpha (1/2)^(alpha - 1) |y|^alpha.
+// |x y|^alpha.  Its outward derivative on x = 1/2 is alpha (1/2)^(alpha - 1) |y|^alpha.
 inline Function holder(const std::string& alpha, double a, double (*at)(Site)) {
     const double side = 2 * std::pow(0.5, a + 1) / (a + 1);  // integral of |x|^alpha
     return {"holder_" + alpha, at, side * side, 4 * a * std::pow(0.5, a - 1) * side};
 }
 
-// -1 / ln r over the square: in polar coordinates int r dr / -ln r = E1(-2 ln r), over the distance
-// of the side, eight times (midpoint rule; the integrand is smooth).
+// The integral of -1 / ln r over the square.  In polar coordinates int r dr / -ln r = E1(-2 ln r)
+// up to the side is smooth in phi.  The midpoint rule integrates it over one of eight parts.
 inline double integral_of_not_holder() {
     constexpr int steps = 20000;
     double sum = 0;
@@ -41,7 +41,7 @@ inline double integral_of_not_holder() {
     return 8 * sum * std::numbers::pi / 4 / steps;
 }
 
-// (2 int_0^1/2 x sin(1/x) dx)^2; with t = 1/x, twice by parts,
+// The integral is (2 int_0^1/2 x sin(1/x) dx)^2.  With t = 1/x, integration by parts twice gives
 // int_2^inf sin t / t^3 dt = sin 2 / 8 + cos 2 / 4 - (pi/2 - Si(2)) / 2.
 inline double integral_of_not_c1() {
     constexpr double si = 1.6054129768026948;  // Si(2)
@@ -58,16 +58,16 @@ inline std::vector<Function> all() {
         holder("0.5", 0.5, [](Site p) { return power_of_xy(0.5, p); }),
         holder("0.1", 0.1, [](Site p) { return power_of_xy(0.1, p); }),
         holder("0.01", 0.01, [](Site p) { return power_of_xy(0.01, p); }),
-        // -1 / ln r, 1 / r, and x y sin(1/x) sin(1/y).
+        // The next three are -1 / ln r, 1 / r, and x y sin(1/x) sin(1/y).
         {"not_holder", [](Site p) { return -1 / std::log(std::hypot(p.x, p.y)); },
          integral_of_not_holder()},
         {"discontinuity", [](Site p) { return 1 / std::hypot(p.x, p.y); },
          4 * std::log(1 + std::numbers::sqrt2), NAN, false},
         {"not_c1", [](Site p) { return p.x * p.y * std::sin(1 / p.x) * std::sin(1 / p.y); },
          integral_of_not_c1()},
-        // Its outward derivative on x = 1/2 is -2 (1 - 2 |y|).
+        // The outward derivative of hat on x = 1/2 is -2 (1 - 2 |y|).
         {"hat", [](Site p) { return tent(p.x) * tent(p.y); }, 0.25, -4},
-        // Its Laplacian is 5/4 of it, which Gauss's theorem takes to the border.
+        // The Laplacian of exp is 5/4 exp, so by Gauss's theorem `rim` is 5/4 of the integral.
         {"exp", [](Site p) { return std::exp(p.x + p.y / 2); }, of_exp, 1.25 * of_exp},
         {"disc", [](Site p) { return p.x * p.x + p.y * p.y < 0.09 ? 1.0 : 0.0; },
          0.09 * std::numbers::pi},

@@ -2,7 +2,7 @@
 //
 //   build/voronoi_weights [--most N] [--quick] [--kept]
 //
-// The rendering results of Vandewiele et al. 2025, "Voronoi integration of the rendering equation".
+// Repeats results of Vandewiele et al. 2025, "Voronoi integration of the rendering equation".
 #include "labs/grid.h"
 #include "path/pathtracer.h"
 #include "world/scene_file.h"
@@ -11,12 +11,12 @@ namespace {
 
 const std::string mc = "mc", cvor = "cvor", stratified = "stratified";
 
-// ---- What a pixel shows -------------------------------------------------------------------------
+// ---- Regions ------------------------------------------------------------------------------------
 
 enum Region { light_border, plain, other };
 constexpr const char* region_names[] = {"border of the light", "one diffuse surface", "other"};
 
-// By what 64 camera rays meet.
+// The region of a pixel, by the hits of 64 camera rays.
 Region region_of(const Scene& scene, int px, int py) {
     size_t lights = 0, one = 0;
     vec3 n;
@@ -33,8 +33,7 @@ Region region_of(const Scene& scene, int px, int py) {
     return lights > 0 && lights < 64 ? light_border : one == 64 ? plain : other;
 }
 
-// Sums of squared errors by region.  The reference's own error is far below any of them, and not
-// taken off.
+// Adds squared errors by region.  The reference's own error is far below them and not subtracted.
 void add_regions(Row& r, const Image& image, const Truth& f, const Scene& scene) {
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
@@ -45,11 +44,11 @@ void add_regions(Row& r, const Image& image, const Truth& f, const Scene& scene)
         }
 }
 
-// ---- The report ---------------------------------------------------------------------------------
+// ---- Report -------------------------------------------------------------------------------------
 
 double square(const Rows& rows) { return mean(rows, "d2"); }
 
-// Squared error of mc over that of another, of all pixels or of a region.
+// The squared error of mc over that of another setting, for all pixels or for a region.
 double less(const Rows& rows, const std::string& other, const std::string& number = "d2") {
     return mean(by_setting(rows, mc), number) / mean(by_setting(rows, other), number);
 }
@@ -107,7 +106,7 @@ int study(const Scope& scope, uint64_t most) {
     page.set("regions",
              table({"scene", "region", "pixels", "mc", "vor", "fvor", "cvor", "torus", stratified},
                    areas));
-    page.plot("voronoi", plot(in_scene(rows, "cornell"), "samples a pixel", "error (d_rel)",
+    page.plot("voronoi", plot(in_scene(rows, "cornell"), "samples per pixel", "error (d_rel)",
                               of_setting, count_of, relative_error, "cornell"));
     page.claim("halves", halves);
     page.claim("border", at_border);
@@ -121,8 +120,8 @@ int study(const Scope& scope, uint64_t most) {
 int main(int argc, char** argv) {
     uint64_t most = 256;
     const Lab lab{"voronoi_weights",
-                  "Weighs pixels' samples by their Voronoi cells, as published and beside strata.",
-                  {{"--most", "N", "samples a pixel (256; published: 4096)",
+                  "Weights samples by Voronoi cells, as published, and compares with strata.",
+                  {{"--most", "N", "samples per pixel (256; published: 4096)",
                     [&](auto& s) { most = parse_count(s, 64, 1 << 16); }}},
                   true};
     return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, most); });
