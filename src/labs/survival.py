@@ -1,6 +1,6 @@
 # labs/survival.py  1  robustness and checkpoint time: reference/survival.md, by `make survival`
 """Measures build/penumbra: memory per pixel, checkpoint time, the latency of Ctrl-C, and renders
-that are killed 200 times.  --quick: less of each, into out/."""
+that are killed 200 times.  --quick: fewer runs, written to out/."""
 import json
 import os
 import random
@@ -31,7 +31,7 @@ def words(*options):
 def render(*options):
     """Statistics of a render, and the seconds of its whole process."""
     begun = time.monotonic()
-    # A child of a small shell: the peak of a process begins with the memory of whoever started it.
+    # A small shell runs it, because the peak of a process begins with its parent's memory.
     subprocess.run(['sh', '-c', '"$@"; exit $?', 'sh', *words(*options)], check=True)
     with open(path('a.json'), encoding='utf8') as file:
         return json.load(file) | {'whole': time.monotonic() - begun}
@@ -99,7 +99,7 @@ def ctrl_c():
             process = subprocess.Popen(words(*options))
             time.sleep(random.uniform(0.2, 0.7))
             begun = time.monotonic()
-            process.send_signal(signal.SIGTERM)  # a shell may have us ignore SIGINT
+            process.send_signal(signal.SIGTERM)  # the parent shell may ignore SIGINT
             process.wait()
             took.append(1e3 * (time.monotonic() - begun))
             assert process.returncode == 143, process.returncode

@@ -1,9 +1,9 @@
-// labs/trade.cpp  7  error over time, by every setting: what to choose
+// labs/trade.cpp  7  error over time of every setting, to choose the best
 //
 //   build/trade [--scene NAME] [--full] [--quick] [--kept]
 //
-// Every scene by all samplers, --light and both precisions, at five sample counts.  Writes a
-// report, and a page to choose on: out/trade/trade.html.
+// Renders every scene with all samplers, values of --light and both precisions, at five sample
+// counts.  Writes a report and an interactive page, out/trade/trade.html.
 #include "labs/trade.h"
 #include "world/scene_file.h"
 
@@ -12,10 +12,10 @@ namespace {
 using namespace trade;
 
 struct Effort {
-    std::vector<std::string> scenes = {};  // none: all
+    std::vector<std::string> scenes = {};  // empty: all
     std::vector<uint64_t> counts = {1, 4, 16, 64, 256};
     uint64_t seeds = 1, truth = 4096;
-    int part = 2;  // of the scenes' widths and heights
+    int part = 2;  // divides the scenes' widths and heights
 };
 
 const std::string own = "build/penumbra", in_float = "build/penumbra-float", folder = "out/trade",
@@ -39,7 +39,7 @@ Choices all_choices(const Scene& scene, const std::string& float_program) {
     return all;
 }
 
-// ---- Measuring ----------------------------------------------------------------------------------
+// ---- Measurements -------------------------------------------------------------------------------
 
 Point point_of(const Rows& rows) {
     if (rows.empty()) return {};
@@ -47,7 +47,7 @@ Point point_of(const Rows& rows) {
     return {double(rows[0].count), mean(rows, "cpu_seconds"), known_error(off, truth)};
 }
 
-// From count to count the hopeless go.
+// Renders with one sample count after the other, and drops inefficient settings between them.
 Rows tournament(RenderGrid& grid, const Effort& plan, const Subject& subject, Choices& choices) {
     Rows all;
     for (uint64_t count : plan.counts) {
@@ -67,7 +67,7 @@ std::string image_of(const Row& r) {
     return text("%s/%s-%s-%.0f.pfm", folder, r.scene, fingerprint(r.setting), double(r.count));
 }
 
-// The default, the cheapest at 3 %, and lessons.
+// Settings with images: the default, the fastest at 3 %, and some for comparison.
 std::vector<size_t> shown(const Choices& choices) {
     std::vector<size_t> list = {0};
     if (const Answer a = cheapest(choices, 0.03); a.choice > 0) list.push_back(a.choice);
@@ -78,8 +78,8 @@ std::vector<size_t> shown(const Choices& choices) {
     return list;
 }
 
-// In the CPU seconds that the default takes for 3 %: samples are tried until they take these within
-// 3 %.  Of the second seed, for the first has chosen the settings.
+// Adds images that take the default's CPU time for 3 %, within limits.  Tries sample counts until
+// the time is right to 3 %.  Uses the second seed, because the first chose the settings.
 void add_shots(RenderGrid& grid, const Subject& subject, Study& s) {
     const double by_default = reach(s.choices[0], 0.03).seconds,
                  seconds = std::isnan(by_default) ? 1 : std::clamp(by_default, 0.5, 2.0);
@@ -117,7 +117,7 @@ Study study(RenderGrid& grid, const Effort& plan, const std::string& name,
     return s;
 }
 
-// ---- The report ---------------------------------------------------------------------------------
+// ---- Report -------------------------------------------------------------------------------------
 
 std::string told_seconds(double x) { return std::isnan(x) ? "–" : significant(x, 2) + " s"; }
 
@@ -129,7 +129,7 @@ std::string told_answer(const Choices& choices, double error) {
            (k ? "; default " + told_seconds(reach(choices[0], error).seconds) : "");
 }
 
-// The default and whatever answers, on the first scene.
+// Curves of the default and of the fastest settings, on one scene.
 Svg curves(const Rows& rows, const Study& s) {
     std::set<std::string> named = {own};
     for (double error : asked)
@@ -167,7 +167,7 @@ int study(Scope scope, Effort plan) {
     for (const std::string& name : plan.scenes) {
         const Study& s = studies.emplace_back(study(grid, plan, name, float_program, rows));
         write_page(studies, scope.command, scope.quick,
-                   folder);  // what is there, should the rest fail
+                   folder);  // saves finished scenes if a later one fails
         lines.push_back({name});
         for (double error : asked) lines.back().push_back(told_answer(s.choices, error));
     }
@@ -186,8 +186,8 @@ int study(Scope scope, Effort plan) {
 int main(int argc, char** argv) {
     Effort plan;
     const Lab lab{"trade",
-                  "Measures error over time by every setting, on every scene.",
-                  {{"--scene", "NAME", "this one alone; may be repeated, writes into out/",
+                  "Measures error over time of every setting on every scene.",
+                  {{"--scene", "NAME", "this scene only; may be repeated, writes to out/",
                     [&](auto& name) { plan.scenes.push_back(name); }},
                    {"--full", "", "more samples and seeds",
                     [&](auto&) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }}},

@@ -1,13 +1,13 @@
-// labs/trade.h  6  which setting reaches an error in the least time; the data of trade.html
+// labs/trade.h  6  the fastest setting for an error; the data of trade.html
 #pragma once
 #include "base/json.h"
 #include "labs/grid.h"
 
 namespace trade {
 
-// ---- What is measured ---------------------------------------------------------------------------
+// ---- Measurements -------------------------------------------------------------------------------
 
-// Samples a pixel by a setting, CPU seconds, and d_rel, which is NaN where it is not known.
+// A measurement of a setting: samples per pixel, CPU seconds, relative RMSE or NaN if unknown.
 struct Point {
     double spp = 0, seconds = NAN, error = NAN;
 };
@@ -23,16 +23,16 @@ inline std::vector<Point> known(std::vector<Point> points) {
     return points;
 }
 
-// A setting is named by its command.
+// A setting, named by its command, and its measurements.
 struct Choice {
     Setting setting;
     bool may_be_default = true, is_kept = false;  // unbiased on every scene; is never dropped
     std::vector<Point> points = {};
-    std::string dropped = "";  // when, and why
+    std::string dropped = "";  // when and why; "": never
 };
 using Choices = std::vector<Choice>;  // the first is the default
 
-// error ~ seconds^-gamma: least squares of the logarithms; NaN: fewer than two errors are known.
+// The gamma of error ~ seconds^-gamma, by least squares of logarithms; NaN below two known errors.
 inline double gamma_of(const Choice& c) {
     std::vector<double> t, e;
     for (const Point& p : known(c.points)) t.push_back(p.seconds), e.push_back(p.error);
@@ -41,8 +41,8 @@ inline double gamma_of(const Choice& c) {
 
 // ---- Answers ------------------------------------------------------------------------------------
 
-// The first point if that has no more than this error; or between two points, by powers.  Of errors
-// that were not measured nothing is said.
+// The point where a setting reaches an error: its first point if that is as good, else a power law
+// between two points.  NaN if no measured error is that small: there is no extrapolation.
 inline Point reach(const Choice& c, double error) {
     const std::vector<Point> points = known(c.points);
     const auto to = std::find_if(points.begin(), points.end(),
@@ -55,7 +55,7 @@ inline Point reach(const Choice& c, double error) {
     return {between(from.spp, to->spp), between(from.seconds, to->seconds), error};
 }
 
-// The least seconds, of the first that takes them; NaN: none does.
+// The fastest setting, and the first of equals.  NaN seconds: none reaches the error.
 struct Answer {
     size_t choice = 0;
     Point at = {};
@@ -70,8 +70,8 @@ inline Answer cheapest(const Choices& all, double error, bool among_defaults = f
 
 inline constexpr double asked[] = {0.10, 0.03, 0.01, 0.003};
 
-// A setting's seconds over those of the best default: geometric mean over the errors asked for.
-// If it was dropped before it had such an error, the last that it had counts.
+// A setting's seconds over those of the best default: geometric mean over the requested errors.  If
+// it was dropped before it reached one, its smallest error counts instead.
 inline double ratio_to_best(const Choices& all, const Choice& c) {
     double last = INFINITY;
     for (const Point& p : known(c.points)) last = std::min(last, p.error);
@@ -84,8 +84,8 @@ inline double ratio_to_best(const Choices& all, const Choice& c) {
     return logs.n ? std::exp(logs.mean) : NAN;
 }
 
-// Drops what had less than 1/8 of the best's efficiency, 1 / (error^2 seconds), at two counts in
-// sequence.  Where an error is not known, nothing is dropped.
+// Drops settings below 1/8 of the best efficiency, 1 / (error^2 seconds), at two successive counts.
+// Keeps settings with unknown errors.
 inline void drop_hopeless(Choices& all) {
     auto efficiency = [](const Choice& c, size_t k) {
         return 1 / (c.points[k].error * c.points[k].error * c.points[k].seconds);
@@ -104,9 +104,9 @@ inline void drop_hopeless(Choices& all) {
     }
 }
 
-// ---- A study ------------------------------------------------------------------------------------
+// ---- Studies ------------------------------------------------------------------------------------
 
-// An image in as many CPU seconds as the scene's other shots; the first is the reference.
+// An image that took the same CPU time as the scene's other shots.  The first is the reference.
 struct Shot {
     std::string command;
     Point at;
@@ -115,19 +115,19 @@ struct Shot {
 
 struct Study {
     std::string scene;
-    double exposure = 1, own = NAN;  // own: d_rel of the reference
+    double exposure = 1, own = NAN;  // own: relative RMSE of the reference
     Choices choices = {};
     std::vector<Shot> shots = {};
 };
 
-// ratio_to_best of what may be the default: the geometric mean of scenes, and the greatest.
+// A possible default with its ratio_to_best: geometric mean over scenes, and the greatest.
 struct Candidate {
     std::string command;
     double ratio = NAN, most = 0;
     std::string where = "";
 };
 
-// The best first.
+// Possible defaults, best first.
 inline std::vector<Candidate> candidates(const std::vector<Study>& studies) {
     std::map<std::string, std::pair<Moments, Candidate>> all;
     for (const Study& s : studies)
@@ -148,14 +148,14 @@ inline std::vector<Candidate> candidates(const std::vector<Study>& studies) {
 
 // ---- JSON ---------------------------------------------------------------------------------------
 
-// Items of an array, each by json_of.
+// A JSON array of items, each by json_of.
 template <class Item>
 std::string array(const std::vector<Item>& items) {
     std::string words;
     for (const Item& item : items) words += (words.empty() ? "" : ",\n") + json_of(item);
     return "[" + words + "]";
 }
-// Names and values by turns.
+// A JSON object of alternating names and values.
 inline std::string object(const std::vector<std::string>& words) {
     std::string out;
     for (size_t k = 0; k < words.size(); k += 2)
@@ -167,7 +167,7 @@ inline std::string json_of(const Point& p) {
                    json::number(p.error)});
 }
 inline std::string json_of(const Choice& c) {
-    std::string seconds;  // for each error asked for
+    std::string seconds;  // for each requested error
     for (double error : asked)
         seconds += (seconds.empty() ? "" : ", ") + json::number(reach(c, error).seconds);
     return object({"command", json::string(c.setting.name), "dropped", json::string(c.dropped),
@@ -182,7 +182,7 @@ inline std::string json_of(const Candidate& c) {
                    json::number(c.most), "where", json::string(c.where)});
 }
 inline std::string json_of(const Study& s) {
-    std::string answers;  // for each error asked for
+    std::string answers;  // for each requested error
     for (double error : asked) {
         const auto [k, at] = cheapest(s.choices, error);
         answers += (answers.empty() ? "" : ", ") +
@@ -196,8 +196,8 @@ inline std::string json_of(const Study& s) {
                    "shots", array(s.shots)});
 }
 
-// A browser opens files without a server, but lets a page read scripts alone: trade.js says what
-// was measured, and NAME.js has a scene's images as floats, row by row from the top left pixel.
+// Writes the page and its data.  A page opened without a server can read scripts only: trade.js has
+// the measurements, NAME.js a scene's images as floats, row by row from the top left pixel.
 inline void write_page(const std::vector<Study>& studies, const std::string& command, bool preview,
                        const std::string& folder) {
     const std::string data =
