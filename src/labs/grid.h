@@ -3,7 +3,7 @@
 //   RenderGrid grid("efficiency", "build/penumbra");
 //   const Rows rows = grid.run({{"cornell", "scenes/cornell.scene --size 64x32"}},
 //                              {{"the default", ""}, {"NEE", "--light nee"}}, {16, 64}, 8);
-//   table(rows, of_setting, of_count, [](const Rows& r) { return percent(relative_error(r)); });
+//   table(rows, of_setting, of_count, [](auto& r) { return text("%.3g", relative_error(r)); });
 //
 // Saves rows as text in out/NAME.rows, and references in out/truth/.  An interrupted study resumes
 // from them.  Its tables can be made again without rendering.
