@@ -112,21 +112,24 @@ void write_report(const std::string& path, int seeds,
                   const std::vector<std::pair<std::string, Tally>>& families, const Tally& sum,
                   const std::vector<std::string>& bad) {
     std::ofstream file(path);
-    file << "# Does the oracle refuse right code?\n\n"
-         << (accepted(sum) ? "**No more often than it says.**" : "**It does.**")
-         << say(" Of %d runs of %d right samplers with their densities %d were refused at a "
-                "significance of 1e-3 (%.0f expected, at most %d accepted), ",
-                sum.runs, sum.codes, sum.refused, alpha * sum.runs, bound_of_all(sum.runs))
-         << say("%d at 1e-6 (none accepted), and %d codes more than %d times in %d seeds (none "
-                "accepted).\n\n",
-                sum.at_default, sum.codes_refused_often, bound_of_code(seeds), seeds)
-         << "Written by `make oracle-campaign`.  A code is a sampler with its density, in float or "
-            "in double; a run is\none check of it by tests/oracle/oracle.h with `{.alpha = 1e-3, "
-         << say(".sees = %g}`", sees)
-         << " and a seed that follows from its name and\nnumber.  Refused at 1e-6: the same seed, "
-            "at a significance of 1e-6.  `build/oracle-campaign --codes`\nlists all codes.\n"
-            "\n| family | codes | runs | refused at 1e-3 | expected | refused at 1e-6 | codes "
-            "refused too often |\n|---|---|---|---|---|---|---|\n";
+    file
+        << "# False positives of the oracle\n\nHow often does the oracle refuse correct samplers?  "
+        << (accepted(sum) ? "**As often as it promises.**" : "**More often than it promises.**")
+        << say(" It refused %d of %d runs of %d correct samplers with\ntheir densities at a "
+               "significance of 1e-3 (%.0f expected, at most %d accepted), ",
+               sum.refused, sum.runs, sum.codes, alpha * sum.runs, bound_of_all(sum.runs))
+        << say("%d at 1e-6 (none accepted),\nand %d codes more than %d times in %d seeds (none "
+               "accepted).\n\n",
+               sum.at_default, sum.codes_refused_often, bound_of_code(seeds), seeds)
+        << "Written by `make oracle-campaign" << (seeds == 100 ? "" : say(" SEEDS=%d", seeds))
+        << "`.  A code is a sampler with its density, in float or in double.  A run is one check\n"
+           "of a code with `{.alpha = 1e-3, "
+        << say(".sees = %g}`", sees)
+        << " and a seed that follows from its name and number.  \"Refused at 1e-6\" is a\n"
+           "check with the same seed at a significance of 1e-6.  `build/oracle-campaign --codes` "
+           "lists all codes.\n"
+           "\n| family | codes | runs | refused at 1e-3 | expected | refused at 1e-6 | codes "
+           "refused too often |\n|---|---|---|---|---|---|---|\n";
     for (const auto& [name, tally] : families) file << row(name, tally);
     file << row("all", sum);
     if (!bad.empty()) file << "\nRefused too often, or at 1e-6:\n\n";
