@@ -1,11 +1,11 @@
-# join.awk  makes one unit of many .cpp files: all headers that they include, then each in a namespace of its own
+# join.awk  joins many .cpp files into one unit: all headers that they include, then each file in its own namespace
 #
-# As every header is included before, and once, their own includes say nothing more.  With -v programs=1, what is
-# made is a program that is called by one of their names: build/merge-test is the main of merge.cpp.
+# Every header is included before, and once, so that the files' own includes have no effect.  With -v programs=1 the
+# unit is a program that runs the main of the file in its own name: build/merge-test runs that of merge.cpp.
 FNR == 1 { file[++files] = FILENAME }
 /^#include [<"]/ && !seen[$2]++ { if ($2 ~ /^</) print; else header[++headers] = $0 }
 END {
-    if (files == 1) headers = 0  # what must be alone comes as it is
+    if (files == 1) headers = 0  # a single file comes as it is
     for (i = 1; i <= headers; ++i) print header[i]
     if (programs) print "#define main main_of_it"
     for (i = 1; i <= files; ++i) {

@@ -1,10 +1,10 @@
-// reporter.h  what tests/run reads: every case as it begins, and the first line of its verdict
+// reporter.h  the report for tests/run: every case as it begins, and the first line of its verdict
 //
-// The file that TEST_REPORT names gets a line for each, in columns parted by tabs, and has it
-// before anything can crash:
-//     begin   FILE:LINE  NAME  VERDICT  it runs, and this is known of it: of its first check that
-//     failed passed failed  FILE:LINE  NAME  VERDICT sum     CHECKS  ALPHA             the end:
-//     statistical checks, probability of a false alarm
+// Every event is a line in the file that TEST_REPORT names, flushed before anything can crash.
+// Tabs separate columns:
+//     begin           FILE:LINE  NAME  VERDICT  the case runs; again when its first check fails
+//     passed, failed  FILE:LINE  NAME  VERDICT  the case has ended
+//     sum             CHECKS  ALPHA             statistical checks, probability of a false alarm
 #pragma once
 #include <doctest/doctest.h>
 
@@ -17,10 +17,10 @@
 
 #include "oracle/oracle.h"
 
-// For main.cpp alone, as is the reporter of doctest that it adds to.
+// This header, like doctest's reporter that it extends, is only for main.cpp.
 namespace {
 
-// The first line that says something; columns and lines part at control characters.
+// The first line with text; control characters would end columns and lines.
 std::string one_line(std::string text) {
     text = text.substr(0, text.find('\n', text.find_first_not_of('\n')));
     for (char& c : text)
@@ -29,7 +29,7 @@ std::string one_line(std::string text) {
 }
 
 struct Reporter : doctest::ConsoleReporter {
-    static inline unsigned ran = 0, failed = 0;  // test cases of the run that ended last
+    static inline unsigned ran = 0, failed = 0;  // test cases of the last run
 
     explicit Reporter(const doctest::ContextOptions& options) : ConsoleReporter(options) {
         if (const char* name = std::getenv("TEST_REPORT")) report = std::fopen(name, "w");
@@ -81,7 +81,7 @@ struct Reporter : doctest::ConsoleReporter {
 private:
     std::FILE* report = nullptr;
     const doctest::TestCaseData* running = nullptr;
-    std::string where, verdict;  // of its first check that failed, in its own file if possible
+    std::string where, verdict;  // of its first failed check, preferably in its own file
     std::mutex telling;
 
     static std::string place(const std::string& file, int line) {
@@ -104,13 +104,13 @@ private:
         verdict = why;
         write("begin");
     }
-    // What is not yet written is lost when a signal ends the program.
+    // A signal that ends the program loses unwritten output.
     static void flush() {
         std::cout.flush();
         std::fflush(stdout);
     }
 
-    // What the oracle says of it; else the expression, its values and what was noted around it.
+    // The oracle's verdict; otherwise the expression, its values and the notes around it.
     static std::string verdict_of(const doctest::AssertData& check) {
         const std::string expression = check.m_expr;
         const int notes = get_num_active_contexts();

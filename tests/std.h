@@ -1,4 +1,4 @@
-// std.h  what most tests include, compiled once: a test still includes what it needs
+// std.h  the common headers of tests, compiled once: a test still includes what it needs
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -167,7 +167,7 @@ TEST_CASE("every option is in --help, with its value and its default, in lines t
         INFO(usage);
         const size_t at = page.find("\n  " + usage);
         REQUIRE(at != page.npos);
-        // Its words, whatever lines they stand on.
+        // Compares the words of the help text, whatever its line breaks are.
         std::istringstream lines(page.substr(at + 3 + usage.size()));
         std::string words = std::string(r.help);
         if (!r.otherwise.empty()) words += " (default: " + r.otherwise + ")";

@@ -46,7 +46,7 @@ inline std::vector<Refusal> refused_words() {
         {"--rows @ -o a.pfm", "2", "--rows: '@' is not FIRST-LAST"},
         {"--rows @ -o a.pfm", "2-1", "--rows: '@' ends before it begins"},
         {"--rows 7- -o a.pfm", "", "--rows: '' is not a whole number"},
-        // What goes together.
+        // Combinations of options.
         {"--sample 1", "", "--sample: goes with --pixel X,Y (for samples per pixel use --spp N)"},
         {"--pixel 1,2 --keep a.film", "", "--keep: goes without --pixel"},
         {"--error 1% --view @", "normal;bvh", "--error: needs --view radiance"},

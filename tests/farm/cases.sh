@@ -1,21 +1,21 @@
-# farm/cases.sh  what may happen to a farm; the first line of each case says it
+# farm/cases.sh  the cases of farms; the first line of each is its description
 
 size=${SIZE:-128x96} spp=${SPP:-512} scene=${SCENE:-$here/scenes/cornell36.scene}
 resumed='^farm: resumes from its film'
-. src/keep/farm.sh  # what it knows of a folder's parts
+. src/keep/farm.sh  # functions for a folder's parts
 
-# What a farm renders, and $whole, the picture of one render.  Sets are fixed: adaptive ones of a band
-# are chosen by its own rows.
+# The picture that a farm renders; $whole is that of one render.  Replications are fixed: adaptive ones
+# of a band depend only on its own rows.
 picture_of() {  # SAMPLES
     picture=(--size "$size" --sets 2 --spp "$1" "$scene") whole=$work/whole-$1.pfm
     [ -e "$whole" ] || "$build/penumbra" -o "$whole" --quiet "${picture[@]}"
 }
-# Each of four bands takes longer than the ten seconds after which a film is first written.
+# Each of four bands takes longer than ten seconds, when a film is first written.
 longer() { picture_of $((16 * spp)); }
 
 # ---- By Slurm -----------------------------------------------------------------------------------
 
-# Submits; $job is the array, $merge_job the one behind it.
+# Submits the farm; $job is the array, $merge_job the job after it.
 by_slurm() {  # OPTION...
     local status=0
     bash src/keep/farm_slurm.sh --folder "$folder" --build "$build" -o "$folder.pfm" "$@" -- "${picture[@]}" \
@@ -29,7 +29,7 @@ by_slurm() {  # OPTION...
 merged() { await "${1:-900}" "the merge, job $merge_job" ended "$merge_job"; }
 merge_failed() { [ "$(state_of "$merge_job")" = FAILED ] || bad "the merge: $(state_of "$merge_job")"; }
 
-# A part that runs and has a film, but is not done.
+# Prints a part that runs and has a film, but is not complete.
 in_mid_run() {
     local number
     for number in $(parts_in "$job" RUNNING); do
@@ -192,7 +192,7 @@ case_slurm_time_limit() {
     longer
     by_slurm --bands 1 --sbatch --time=1 --grace 50 || return
     await_mid_run || return
-    # However fast the machine is, it is not done by then.
+    # No machine is fast enough to complete it by then.
     local process
     process=$(process_of 1)
     kill -STOP "$process"

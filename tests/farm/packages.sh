@@ -1,4 +1,4 @@
-# farm/packages.sh  what farms need, from the system: installed if it is missing, and removed in the end
+# farm/packages.sh  the system packages that farms need: installed if missing, and removed at the end
 
 farm_packages="slurmctld slurmd slurm-client munge parallel openssh-server openssh-client"
 farm_commands="slurmctld slurmd sbatch munged parallel sshd ssh"
@@ -7,7 +7,7 @@ installed=''
 missing_commands() { for command in $farm_commands; do command -v "$command" >/dev/null || echo "$command"; done; }
 packages_there() { dpkg-query --show --showformat='${db:Status-Abbrev} ${Package}\n' | sed -n 's/^i. *//p' | sort; }
 
-# Nothing that comes with a package may begin to listen: Debian asks this file.
+# Services of new packages must not start: Debian reads this file.
 no_services() {  # COMMAND...
     local policy=/usr/sbin/policy-rc.d ours='' status=0
     if [ ! -e "$policy" ]; then

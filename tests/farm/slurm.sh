@@ -1,7 +1,7 @@
-# farm/slurm.sh  a Slurm of one node on this machine: begun, asked, broken, ended
+# farm/slurm.sh  a Slurm of one node on this machine: start, queries, faults, stop
 #
-# All that it has lies in $slurm: configuration, state, spool, key, logs.  It listens on the loopback
-# alone, runs as whoever runs the test, and needs neither systemd nor control groups.
+# $slurm holds everything: configuration, state, spool, key, logs.  It listens only on the loopback,
+# runs as the test's user, and needs neither systemd nor control groups.
 
 port_that_is_free() {
     local port
@@ -70,7 +70,7 @@ stop_slurm() {
 }
 have_ended() { local pid; for pid; do case $(ps -o stat= -p "$pid") in '' | Z*) ;; *) return 1 ;; esac; done; }  # PID...
 
-# What a case left is ended.
+# Ends what a case left running.
 free_slurm() {
     scancel --user="$(id -un)" 2>/dev/null
     await 40 'no job runs' no_job_runs

@@ -1,6 +1,6 @@
-# farm/ssh.sh  machines to be reached by ssh: one sshd each, on the loopback, with keys of their own
+# farm/ssh.sh  hosts for ssh: one sshd each, on the loopback, with keys of their own
 #
-# Each is this machine, by another port: parts that run there have no connection with the test but ssh.
+# Each host is this machine at another port: ssh is the only connection between its parts and the test.
 
 made_run_sshd=''
 sshd_of() { echo "$work/ssh/$1"; }  # NAME
@@ -8,7 +8,7 @@ sshd_of() { echo "$work/ssh/$1"; }  # NAME
 start_ssh() {  # NAME...
     local name folder port
     mkdir -p "$work/ssh"
-    # As root it insists on a folder, which its package makes when a machine starts.
+    # As root, sshd requires a folder that its package makes at boot.
     if [ "$(id -u)" = 0 ] && [ ! -e /run/sshd ]; then mkdir /run/sshd && made_run_sshd=yes; fi
     [ -e "$work/ssh/key" ] || ssh-keygen -q -t ed25519 -N '' -f "$work/ssh/key"
     for name; do

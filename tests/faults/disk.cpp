@@ -1,19 +1,19 @@
-// faults/disk.cpp  a disk, a clock and a power line that fail; to be preloaded (LD_PRELOAD)
+// faults/disk.cpp  simulates faults of disk, clock and power; preload it (LD_PRELOAD)
 //
-// DISK_FAULTS in the environment holds words:
+// The environment variable DISK_FAULTS holds words:
 //     on=FOLDER      files below it are on this disk; may be repeated
-//     seed=N         of what is drawn
-//     log=FILE       gets a line for every fault
-//     CALL:WHAT=P    with a probability of P a call fails so: read:EIO=0.01
-//     CALL:WHAT@K    the K-th one does, counted from 1
-//     room=N         N bytes can be written, then the disk is full
+//     seed=N         seed of the random faults
+//     log=FILE       gets a line per fault
+//     CALL:WHAT=P    a call has this fault with probability P: read:EIO=0.01
+//     CALL:WHAT@K    the K-th call has this fault, counted from 1
+//     room=N         the disk is full after N bytes
 // CALL is open, read, write, fsync, rename, close, unlink, real or steady (a clock), power; WHAT is
 // EIO, ENOSPC, EINTR, SHORT (some of the bytes), STEP (of the clock), CUT (of the power).
 //
-// When the power is cut, before the K-th call that changes the disk (K = 0: when the program has
-// ended), what was not fsynced is lost or torn: of files any block may be the old one, the new one
-// or zero, and of what was made, renamed and removed in folders any end may not have happened.
-// fsync and close that fail with EIO lose half of the file at once.
+// The power is cut before the K-th call that changes the disk (K = 0: when the program has ended).
+// Data without fsync is lost or torn: each block of a file may be the old one, the new one or zero.
+// The last creations, renames and removals in folders may be undone.  An fsync or close that fails
+// with EIO loses half of the file at once.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -46,7 +46,7 @@ Call* real(const char* name) {
 }
 #define NEXT(name) real<decltype(::name)>(#name)
 
-// ---- What is asked for --------------------------------------------------------------------------
+// ---- Requested faults ---------------------------------------------------------------------------
 
 struct Rule {
     std::string call, what;
@@ -98,7 +98,7 @@ struct Plan {
         const std::string line = call + " " + what + " " + path + "\n";
         if (log >= 0) (void)!NEXT(write)(log, line.data(), line.size());
     }
-    // What becomes of this call; "": nothing.
+    // The fault of this call; "": none.
     std::string fault(const std::string& call, const std::string& path) {
         std::string what;
         for (Rule& rule : rules) {
@@ -123,13 +123,13 @@ int number_of(const std::string& what) {
     return what == "EIO" ? EIO : what == "ENOSPC" ? ENOSPC : what == "EINTR" ? EINTR : 0;
 }
 
-// Whether the call fails, with errno.
+// Whether the call fails; sets errno.
 bool fails(const std::string& what) {
     if (const int error = number_of(what)) return errno = error, true;
     return false;
 }
 
-// ---- What the disk holds ------------------------------------------------------------------------
+// ---- Contents of the disk -----------------------------------------------------------------------
 
 std::string absolute(const char* path) {
     std::error_code failed;
@@ -161,15 +161,15 @@ void put(const std::string& path, const Bytes& bytes) {
     NEXT(close)(fd);
 }
 
-// A file was made, renamed or removed, and its folder is not on the disk yet.
+// A file was made, renamed or removed, but its folder has had no fsync yet.
 struct Change {
-    std::string from, to;  // made: to alone; removed: from alone
-    Bytes lost;            // what was there, on the disk, and is replaced or removed
+    std::string from, to;  // made: only to; removed: only from
+    Bytes lost;            // the replaced or removed bytes on the disk
 };
 
 struct Disk {
-    std::map<std::string, std::string> synced;  // of files that we write, what is on the disk
-    std::map<std::string, bool> forgets;        // after an fsync that failed: see fsync(2)
+    std::map<std::string, std::string> synced;  // contents on the disk of files that we write
+    std::map<std::string, bool> forgets;        // after a failed fsync: see fsync(2)
     std::vector<Change> changes;
     uint64_t calls = 0;
 
@@ -201,7 +201,7 @@ struct Disk {
         const size_t kept = plan().below(changes.size() + 1);
         while (changes.size() > kept) undo(changes.back()), changes.pop_back();
     }
-    // Before a call that changes the disk.
+    // Every call that changes the disk calls this first.
     void may_lose_power(const char* call, const std::string& path) {
         ++calls;
         if (plan().fault("power", call + (" of " + path)) != "CUT") return;
@@ -215,7 +215,7 @@ Disk& disk() {
     return disk;
 }
 
-// When the program has ended.
+// Cuts the power when the program has ended.
 struct End {
     ~End() {
         for (const Rule& rule : plan().rules)
@@ -276,14 +276,14 @@ int remove_by(Next* next, const char* name) {
     return next(name);
 }
 
-// What waited to be written is gone, and half of the file with it.
+// Loses the unwritten data, and half of the file with it.
 void lose(int fd) {
     struct stat status {};
     if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode))
         (void)!::ftruncate(fd, status.st_size / 2);
 }
 
-timespec steps[2];  // that the clocks of the day and since the start have made
+timespec steps[2];  // steps so far of the real-time and the monotonic clock
 
 timespec sum(timespec a, timespec b, int sign) {
     const long nanoseconds = a.tv_nsec + sign * b.tv_nsec;
@@ -309,7 +309,7 @@ int open64(const char* name, int flags, ...) {
     va_end(rest);
     return open_by(real<int(const char*, int, ...)>("open64"), name, flags, mode);
 }
-// std::ifstream opens so.
+// std::ifstream opens files by this call.
 FILE* fopen64(const char* name, const char* mode) {
     const std::string path = absolute(name);
     if (!plan().is_ours(path)) return NEXT(fopen64)(name, mode);
@@ -329,7 +329,7 @@ ssize_t read(int fd, void* bytes, size_t size) {
 ssize_t write(int fd, const void* bytes, size_t size) {
     return write_by([&](size_t n) { return NEXT(write)(fd, bytes, n); }, fd, size);
 }
-// A disk that takes no time: what is lost with the power is ours to say.
+// fsync takes no time here: this library decides what a power cut loses.
 int fsync(int fd) {
     const std::string path = path_of(fd);
     if (!plan().is_ours(path + "/")) return NEXT(fsync)(fd);
@@ -363,7 +363,7 @@ int rename(const char* from_name, const char* to_name) {
     }
     return NEXT(rename)(from_name, to_name);
 }
-// A descriptor is closed whatever close() says.
+// The descriptor is closed whatever close() returns.
 int close(int fd) {
     const std::string path = path_of(fd);
     if (!plan().is_ours(path)) return NEXT(close)(fd);
@@ -388,7 +388,7 @@ int clock_gettime(clockid_t id, timespec* now) {
     *now = sum(*now, steps[steady], 1);
     return result;
 }
-// The kernel's clock has made no step.
+// The kernel's clock has no steps.
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* held, clockid_t id,
                            const timespec* until) {
     timespec step{};

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-# faults/soak.py  renders under faults: a picture is right to the bit, or absent with a message
+# faults/soak.py  renders under faults: a picture is bit-identical, or absent with a message
 """soak.py [--seconds S | --each] [--seed N] [--only KIND] [--run N] [--jobs N] PENUMBRA
 
-Renders small pictures of scenes/ under random faults until the time is up.  All that is drawn follows
-from the seed and the run's number; when signals arrive does not.  --run N is that run alone.
+Renders small pictures of scenes/ under random faults until the time is up.  All random choices depend
+on the seed and the run's number; the arrival of signals does not.  --run N repeats only that run.
 --each fails every call of one small render instead, in every way, one at a time.
 
-Wrong is: a file that is neither what it was nor right; exit status 0 without all files, another one
-without a message; death by no signal of ours; what is left beside the files by a run that was not
-killed, or that the next one does not remove; a film from which a run does not go on to the
-same picture; a damaged one that is not refused.  What is wrong is kept in build/faults/wrong-N.
+Errors are: a file that is neither the old one nor right; exit status 0 without all files, or another
+status without a message; death by a signal that was not sent; temporary files that a run leaves
+without being killed, or that the next run does not remove; a film that does not resume to the same
+picture; a damaged film that is not refused.  build/faults/wrong-N keeps the files of errors.
 """
 import argparse
 import collections
@@ -36,7 +36,7 @@ ENDS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
 def library():
-    """The disk that fails, compiled."""
+    """Compiles disk.cpp and returns its path."""
     source, made = os.path.join(ROOT, 'tests/faults/disk.cpp'), os.path.join(BUILD, 'disk.so')
     os.makedirs(BUILD, exist_ok=True)
     if not os.path.exists(made) or os.path.getmtime(made) < os.path.getmtime(source):
@@ -64,10 +64,10 @@ def write(path, content):
 # ---- Runs ----------------------------------------------------------------------------------------
 
 class Conditions:
-    """What is done to a run."""
+    """The faults and signals that a run suffers."""
     def __init__(self, faults=(), signals=(), memory=None, largest=None):
         self.faults = list(faults)    # words of disk.cpp
-        self.signals = list(signals)  # (seconds after the one before, signal)
+        self.signals = list(signals)  # (seconds after the last one, signal)
         self.memory = memory          # kB of address space
         self.largest = largest        # kB of a file
 
@@ -91,8 +91,8 @@ class Soak:
         self.disk, self.lock, self.truths = library(), threading.Lock(), {}
 
     def run(self, words, folder, conditions=Conditions(), draw=0, bare=False):
-        """bare: on the disk that there is."""
-        beside = os.path.join(self.folder, os.path.basename(folder))  # its own disk may be full
+        """bare: without simulated faults."""
+        beside = os.path.join(self.folder, os.path.basename(folder))  # its disk may be full
         log, said = beside + '.log', []
         if os.path.exists(log):
             os.remove(log)
@@ -103,7 +103,7 @@ class Soak:
             environment.update(LD_PRELOAD=self.disk, DISK_FAULTS=' '.join(words_of_disk),
                                ASAN_OPTIONS='verify_asan_link_order=0:' + os.environ.get('ASAN_OPTIONS', ''))
         limits = ''
-        if conditions.memory and not self.program.endswith('-san'):  # a sanitizer reserves terabytes
+        if conditions.memory and not self.program.endswith('-san'):  # sanitizers reserve terabytes
             limits += 'ulimit -v %d && ' % conditions.memory
         if conditions.largest is not None:
             limits += 'ulimit -f %d && ' % conditions.largest
@@ -135,7 +135,7 @@ class Soak:
                        said[0].decode('utf-8', 'replace'), faults, time.monotonic() - start)
 
     def truth(self, picture, samples):
-        """{suffix: content} of a run without faults, or None if there is none of so many samples."""
+        """{suffix: content} of a run without faults, or None if the options do not allow so many samples."""
         words = picture.words(samples)
         key = tuple(words)
         with self.lock:
@@ -170,7 +170,7 @@ class Picture:
         return [os.path.join(ROOT, 'scenes', self.scene), *self.options, *sets, '--spp', str(samples or self.spp)]
 
     def has_all(self, samples):
-        """Whether that many in the mean are what was asked for; adaptive ones are more."""
+        """Whether the average number of samples is the requested one; adaptive replications have more."""
         if not self.sets:
             return samples >= self.spp
         return samples == -(-self.spp // self.sets) * self.sets
@@ -181,7 +181,7 @@ SCENES = ['atelier', 'cornell', 'cornell36', 'cornell36obj', 'cornellglossy', 'c
 
 
 def draw_picture(rng, spp=None, stops_anywhere=False):
-    """stops_anywhere: a pixel that has n samples of more is that of a render of n."""
+    """stops_anywhere: a pixel with n of its samples equals that of a render with n."""
     scene, options = rng.choice(SCENES), ['--size', '%dx%d' % (rng.randint(1, 40), rng.randint(1, 30)),
                                           '--seed', str(rng.randrange(3))]
     spp = spp or rng.choice([1, 2, 4, 9, 16, 25, 64])
@@ -200,7 +200,7 @@ def draw_picture(rng, spp=None, stops_anywhere=False):
 
 
 def same(name, content, truth, exact=True):
-    """Whether an output is what a run without faults writes."""
+    """Whether an output equals that of a run without faults."""
     if not name.endswith('.json'):
         return content == truth[os.path.splitext(name)[1]]
     try:
@@ -219,20 +219,20 @@ def head_of(film):
 
 
 def rays_of(film):
-    """Fewer are samples lost."""
+    """The rays of a film; fewer than before means lost samples."""
     return int(head_of(film)['rays']) if film else 0
 
 
 def samples_of(film):
-    """Of each replication, pixel by pixel, in a film of fixed sets."""
+    """The samples per replication, pixel by pixel, in a film of fixed replications."""
     width, height = map(int, head_of(film)['size'].split('x'))
-    block = max(1, min(256, width * height // 256))  # as film.h has it
+    block = max(1, min(256, width * height // 256))  # as in film.h
     taken = struct.unpack_from('<%dQ' % -(-width * height // block), film, film.index(b'\n\n') + 2)
     return [taken[i // block] for i in range(width * height)]
 
 
 def truth_of(soak, picture, film):
-    """What files show of a film that was interrupted: each pixel as many samples as it has."""
+    """The expected files of an interrupted film: each pixel is that of a render with its samples."""
     samples = samples_of(film)
     if min(samples) == 0:
         return None
@@ -244,7 +244,7 @@ def truth_of(soak, picture, film):
     for i, n in enumerate(samples):
         at = len(pfm) - 12 * width * (i // width + 1) + 12 * (i % width)  # rows from the bottom up
         pfm[at:at + 12] = truths[n]['.pfm'][at:at + 12]
-    return {'.pfm': bytes(pfm)}  # of others the end alone is known
+    return {'.pfm': bytes(pfm)}  # only the final content of others is known
 
 
 def parts(folder):
@@ -258,7 +258,7 @@ def survivable(faults):
 
 
 def check_files(soak, picture, folder, names, before, outcome, sent):
-    """Which of the files are right; Wrong if one is neither that nor what it was."""
+    """Returns the right files; raises Wrong if a file is neither right nor the old one."""
     changed = [n for n in names if read(os.path.join(folder, n)) != before.get(n)]
     truth = None
     if changed and sent and outcome.status != 0:
@@ -283,7 +283,7 @@ def is_right(name, content, truth, exact):
 
 
 def check_film(soak, picture, folder, before):
-    """A run goes on from it, whatever happened, to the same picture."""
+    """Checks that a run resumes the film to the same picture, whatever happened."""
     film = read(os.path.join(folder, 'c.film'))
     if film is None:
         if before.get('c.film') is not None:
@@ -299,7 +299,7 @@ def check_film(soak, picture, folder, before):
 
 
 def verdict(soak, picture, folder, names, before, conditions, outcome):
-    """right, in part, absent or killed; raises Wrong."""
+    """Returns right, in part, absent or killed; raises Wrong."""
     sent = [s for s in ENDS if conditions.sent(s)]
     if outcome.killed_by is not None:
         cut = outcome.killed_by == signal.SIGKILL and outcome.faults['power CUT']
@@ -334,7 +334,7 @@ def verdict(soak, picture, folder, names, before, conditions, outcome):
 
 
 def clean_run(soak, picture, folder, names):
-    """What was left beside the files goes with the next run."""
+    """Checks that the next run removes the temporary files."""
     outs = [w for n in names for w in (('--stats' if n.endswith('.json') else '-o'), n)]
     kept = ['--keep', 'c.film'] if any('c.film' in n for n in os.listdir(folder)) else []
     outcome = soak.run([*picture.words(), *outs, *kept], folder)
@@ -344,9 +344,9 @@ def clean_run(soak, picture, folder, names):
 
 
 def kept(soak, picture, folder):
-    """c.film, of about half the samples."""
+    """Writes c.film with about half the samples."""
     spp = picture.spp if '--sampler stratified' in ' '.join(picture.options) else -(-picture.spp // 2)
-    if not picture.sets and spp < 16:  # a shorter pilot chooses other sets
+    if not picture.sets and spp < 16:  # a shorter pilot leads to other replications
         spp = picture.spp
     outcome = soak.run([*picture.words(spp), '-o', 'x.pfm', '--keep', 'c.film'], folder)
     if outcome.status != 0:
@@ -355,7 +355,7 @@ def kept(soak, picture, folder):
 
 
 def one_run(soak, rng, folder, picture, conditions, names=None, film=None, more=(), resume=False):
-    """A verdict and the outcome of a run with random outputs."""
+    """Returns a verdict and the outcome of a run with random outputs."""
     names = names or rng.choice([['a.pfm'], ['a.png'], ['a.pfm', 'b.png'], ['a.pfm', 'b.png', 's.json'], ['b.png', 's.json']])
     film = rng.random() < 0.4 if film is None else film
     before = {}
@@ -384,7 +384,7 @@ def one_run(soak, rng, folder, picture, conditions, names=None, film=None, more=
 # ---- Kinds of faults -----------------------------------------------------------------------------
 
 def by_chance(rng, *faults):
-    """Each at one call, or with some probability at all of them."""
+    """Draws faults: each at one call, or with some probability at all calls."""
     words = []
     for fault in rng.sample(faults, rng.randint(1, len(faults))):
         words.append('%s@%d' % (fault, rng.randint(1, 8)) if rng.random() < 0.6 else
@@ -397,7 +397,7 @@ def run_none(soak, rng, folder):
 
 
 def run_full_disk(soak, rng, folder):
-    """Of so many bytes, and where we may mount one, of so many pages."""
+    """A full disk: simulated with a limit of bytes or, where mounting is allowed, real with one of pages."""
     room = rng.randrange(1, 30000)
     if not soak.mounted or rng.random() < 0.3:
         return one_run(soak, rng, folder, draw_picture(rng), Conditions(['room=%d' % room]))
@@ -406,7 +406,7 @@ def run_full_disk(soak, rng, folder):
     picture, before = draw_picture(rng), {}
     names = ['a.pfm', 'b.png', 's.json'][:rng.randint(1, 3)]
     soak.truth(picture, picture.spp)
-    with soak.full:  # one at a time has the disk
+    with soak.full:  # one at a time uses the disk
         try:
             if rng.random() < 0.5:
                 before['a.pfm'] = OLD
@@ -474,7 +474,7 @@ def run_kill(soak, rng, folder):
 
 
 def run_memory(soak, rng, folder):
-    picture = draw_picture(rng)  # a larger one
+    picture = draw_picture(rng)  # replaced by a larger one
     size = rng.choice([64, 256, 600])
     picture.options[1] = '%dx%d' % (size, size // rng.choice([1, 2, 4]))
     picture.spp, picture.sets = 1, rng.choice([None, 1, 2, 4])
@@ -502,13 +502,13 @@ def run_mixed(soak, rng, folder):
         return one_run(soak, rng, folder, draw_picture(rng), Conditions(faults, memory=int(20000 * 2 ** rng.uniform(0, 4))))
     picture = draw_picture(rng, ENDLESS, stops_anywhere=True)
     what = rng.choice([*ENDS, signal.SIGKILL])
-    # Else files could be new, and no film would say of how many samples.
+    # These faults could leave new files without a film that has their numbers of samples.
     faults = [f for f in faults if not f.startswith(('fsync', 'write:EIO', 'rename', 'unlink', 'power'))]
     return one_run(soak, rng, folder, picture, Conditions(faults, [(rng.uniform(0.02, 0.2), what), (60, signal.SIGKILL)]),
                    names=[rng.choice(['a.pfm', 'a.png'])], film=True)
 
 
-# ---- Films that are gone on with ---------------------------------------------------------------------------------
+# ---- Resumed films -------------------------------------------------------------------------------
 
 def of_a_link(rng):
     what = rng.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGKILL, *ENDS])
@@ -517,12 +517,12 @@ def of_a_link(rng):
 
 
 def run_chain(soak, rng, folder):
-    """Killed, interrupted, without power or disk time and again, and gone on from the film."""
+    """Kills, interrupts and fails a render again and again, and resumes its film each time."""
     picture = draw_picture(rng, 1000, stops_anywhere=True)
     pixels = [int(n) for n in picture.options[1].split('x')]
     picture.spp = min(20000, 100000 // (pixels[0] * pixels[1]) + 100)
     path, all_faults, before = os.path.join(folder, 'c.film'), collections.Counter(), 0
-    last = 11  # each asks for a little more: a film is written when it has that
+    last = 11  # each adds a few samples: a film is written when it has them
     for link in range(last + 1):
         film = read(path)
         if rays_of(film) < before:
@@ -576,7 +576,7 @@ def run_damage(soak, rng, folder):
     if how == 'of another picture':
         asked = Picture(picture.scene, [*picture.options, '--seed', '77'], picture.spp, picture.sets)
     write(path, damaged)
-    if damaged == film and how != 'of another picture':  # zeros for zeros
+    if damaged == film and how != 'of another picture':  # zeros replaced zeros
         return 'right', Outcome(0, None, '', collections.Counter(), 0)
     outcome = soak.run([*asked.words(), '--keep', 'c.film', '-o', 'a.pfm'], folder)
     write(folder + '.outcome', (how + '\n' + str(outcome)).encode())

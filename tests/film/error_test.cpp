@@ -232,11 +232,11 @@ TEST_CASE("the course is of the last two errors whose samples have doubled") {
     CHECK(!history.is_due(31));
     CHECK(history.is_due(32));
     CHECK(history.exponent() == 0.5);
-    history.add(31, 1);  // not twice as many
+    history.add(31, 1);  // less than twice as many
     CHECK(history.exponent() == 0.5);
-    history.add(32, 8 * std::pow(2, -0.75));  // beside 16
+    history.add(32, 8 * std::pow(2, -0.75));  // compared with 16
     CHECK(history.exponent() == doctest::Approx(0.75).epsilon(1e-12));
-    history.add(64, 8 * std::pow(2, -0.75) / std::pow(2, 0.6));  // beside 32, not 16
+    history.add(64, 8 * std::pow(2, -0.75) / std::pow(2, 0.6));  // compared with 32, not 16
     CHECK(history.exponent() == doctest::Approx(0.6).epsilon(1e-12));
 }
 

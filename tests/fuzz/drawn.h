@@ -1,4 +1,4 @@
-// fuzz/drawn.h  bytes to a scene that is well-formed, and to options that go together
+// fuzz/drawn.h  converts bytes to a well-formed scene and to compatible options
 #pragma once
 #include <cmath>
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace fuzz {
 
-// A scene, and how to render it.
+// A scene, and the options to render it.
 struct Drawn {
     std::string scene;
     std::vector<std::string> options;
-    bool moderate = true;  // nothing in it is so large or so small that a sample might overflow
+    bool moderate = true;  // no extreme numbers: samples must not overflow
 };
 
 // ---- Options ------------------------------------------------------------------------------------
 
-// Of few samples, by one thread; some of them do not go together, which is refused.
+// Options with few samples and one thread; some combinations are invalid and get refused.
 inline std::vector<std::string> drawn_options(Choices& c) {
     std::vector<std::string> words = {"--quiet", "--threads", "1"};
     auto say = [&](const std::string& name, const std::string& value) {
@@ -68,7 +68,7 @@ private:
     }
     void end() { text_ += '\n'; }
 
-    // On a grid, so that much of it coincides; or of any size.
+    // Numbers on a grid, so that many coincide, or of any size.
     double power() {
         const int most = sizeof(real) == 4 ? 9 : 30;
         return std::pow(10, int(c_.byte()) % (2 * most + 1) - most);
@@ -140,8 +140,8 @@ inline Drawn drawn(std::string_view bytes) {
     return d;
 }
 
-// A room with lamps, of one side or two, that lie in its surfaces, in each other, or twice in one
-// place, in any order.
+// A room with one-sided and two-sided lamps in random order.  They lie in its surfaces, in each
+// other, or twice in one place.
 inline std::string drawn_lamps(Choices& c) {
     std::string text =
         "camera 0 1 3.9  0 1 0  90\ndepth 2\ndiffuse d .5 .5 .5\nlight l 1 1 1\n"

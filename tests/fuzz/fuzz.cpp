@@ -1,4 +1,4 @@
-// fuzz/fuzz.cpp  what libFuzzer calls: --target=NAME says which of targets.h
+// fuzz/fuzz.cpp  the entry point for libFuzzer: --target=NAME selects a target of targets.h
 #include <cstdlib>
 
 #include "fuzz/targets.h"
@@ -7,7 +7,7 @@ namespace {
 
 const fuzz::Target* target = nullptr;
 
-// Names, and shares of the time in hundredths.
+// Prints the names of targets, and their shares of the time in hundredths.
 [[noreturn]] void list() {
     for (const fuzz::Target& t : fuzz::targets) std::printf("%s %u\n", t.name, t.share);
     std::exit(0);

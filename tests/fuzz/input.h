@@ -1,4 +1,4 @@
-// fuzz/input.h  what targets make of the bytes that they get, and how they say what is broken
+// fuzz/input.h  how targets interpret their bytes, and how they report what is broken
 #pragma once
 #include <unistd.h>
 
@@ -13,7 +13,7 @@
 
 namespace fuzz {
 
-// What no input may bring about.  Nobody catches it: a fuzzer takes it for a crash, a test fails.
+// A violated invariant.  Nothing catches it: a fuzzer reports a crash, a test fails.
 struct Broken : std::logic_error {
     using std::logic_error::logic_error;
 };
@@ -23,7 +23,7 @@ inline void demand(bool holds, const std::string& what) {
 
 // ---- Files --------------------------------------------------------------------------------------
 
-// A folder of this process, removed when it ends.
+// A folder of this process, removed when the process ends.
 class Place {
 public:
     Place() {
@@ -53,7 +53,7 @@ inline const Place& place() {
     return p;
 }
 
-// The files of which an input consists: a line "=== NAME" begins the next.
+// The files of an input: a line "=== NAME" begins the next one.
 using Bundle = std::map<std::string, std::string_view>;
 inline Bundle bundle(std::string_view input, const std::string& first) {
     constexpr std::string_view mark = "=== ";
@@ -73,7 +73,7 @@ inline Bundle bundle(std::string_view input, const std::string& first) {
     }
 }
 
-// Meshes that scenes name, as m.obj, and their materials, as m.mtl; no others.
+// Writes the mesh of a scene, m.obj, and its materials, m.mtl; no others.
 inline void write_meshes(const Bundle& files) {
     for (const char* name : {"m.obj", "m.mtl"}) {
         const auto found = files.find(name);
@@ -83,7 +83,7 @@ inline void write_meshes(const Bundle& files) {
 
 // ---- Choices ------------------------------------------------------------------------------------
 
-// Bytes one after the other, then zeros.
+// Consumes bytes one by one; after the end all are zero.
 class Choices {
 public:
     explicit Choices(std::string_view bytes) : rest_(bytes) {}

@@ -1,4 +1,4 @@
-// fuzz/invariants.h  what holds of every scene, mesh and image that a program accepts
+// fuzz/invariants.h  invariants of every scene, mesh and image that a program accepts
 #pragma once
 #include "film/image.h"
 #include "fuzz/input.h"
@@ -39,7 +39,7 @@ inline void check_scene(const Scene& s) {
     demand(s.lights.empty() || before == 1, "probabilities of lights do not add up");
 }
 
-// The tree's answers are those of a loop over all shapes, bit for bit.
+// The BVH gives the answers of a loop over all shapes, bit for bit.
 inline void check_ray(const Scene& s, const Ray& ray) {
     const auto found = s.bvh.closest(ray), expected = nearest(s.shapes, ray);
     demand(found.has_value() == expected.has_value(), "the tree misses, or hits nothing");

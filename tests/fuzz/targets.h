@@ -1,7 +1,7 @@
-// fuzz/targets.h  what can be fed with any bytes, by its name
+// fuzz/targets.h  fuzzing targets for arbitrary bytes, by their names
 //
-// A target takes what a program would take from a file or a command line.  A UserError is an
-// answer; every other exception, a crash, a hang and a broken demand are bugs.
+// A target gets what a program would read from a file or a command line.  A UserError is a valid
+// answer; every other exception, a crash, a hang and a violated invariant are bugs.
 #pragma once
 #include "app/render.h"
 #include "fuzz/drawn.h"
@@ -12,7 +12,7 @@
 
 namespace fuzz {
 
-// Whether work(), which a user's mistake may end, was done.
+// Whether work() completed; a user's mistake may end it.
 template <class Work>
 bool accepted(Work work) {
     try {
@@ -43,7 +43,7 @@ inline void obj(std::string_view input) {
     accepted([&] { check_scene(parse_scene(around_mesh, place() / "s.scene").scene); });
 }
 
-// An image; it is what its bytes say.
+// An image; its pixels must match its bytes.
 inline void pfm(std::string_view input) {
     place().write("i.pfm", input);
     accepted([&] {
@@ -61,7 +61,7 @@ inline void pfm(std::string_view input) {
 
 // ---- Options ------------------------------------------------------------------------------------
 
-// A word a line.
+// Splits text into one word per line.
 inline std::vector<std::string> words_of(std::string_view input) {
     std::vector<std::string> words;
     for (size_t start = 0; start < input.size() && words.size() < 1000;) {
@@ -94,7 +94,7 @@ inline void options(std::string_view input) {
 
 // ---- Images -------------------------------------------------------------------------------------
 
-// Between places on a grid, along axes and not.
+// Rays between points on a grid, also along axes.
 inline void check_rays(const Scene& s, Choices c) {
     for (int i = 0; i < 16; ++i) {
         vec3 p[2];
@@ -112,7 +112,7 @@ inline Radiance radiance_of(const Scene& s, const Options& o, const Pattern& p) 
     };
 }
 
-// The scene as the options want it, and its image.
+// Renders the scene with the options, and checks its image.
 inline void render_scene(Scene s, const Options& o, bool moderate) {
     s.size = *o.size;
     s.depth = *o.depth;
@@ -123,11 +123,11 @@ inline void render_scene(Scene s, const Options& o, bool moderate) {
         const Radiance L = radiance_of(s, o, p);
         check_image(render(o, plan, L).image, plan.size, true);
     } catch (const SystemError& e) {
-        demand(!moderate, e.what());  // a sample that is not finite, and is told
+        demand(!moderate, e.what());  // a reported non-finite sample
     }
 }
 
-// A well-formed scene, by tiny renders.
+// Renders a well-formed scene at tiny sizes.
 inline void render(std::string_view input) {
     Drawn d = drawn(input);
     d.options.push_back("s.scene");
@@ -144,8 +144,8 @@ inline void render(std::string_view input) {
 
 // ---- Films --------------------------------------------------------------------------------------
 
-// Films of one small scene, as renders leave them: done, of fixed sets and of adaptive ones; and
-// kept in the midst of a pass and of the pilot.
+// Films of one small scene as renders leave them: complete ones with fixed and with adaptive
+// replications, and checkpoints within a pass and within the pilot.
 class SmallFilm {
 public:
     static constexpr unsigned kinds = 4;
@@ -158,7 +158,7 @@ public:
         o_.spp = is_adaptive() ? 10 : 4, o_.sets = is_adaptive() ? 0 : 2;
     }
 
-    // As penumbra goes on from the file.
+    // Resumes the file as penumbra does.
     void go_on(const std::string& name) {
         o_.keep = name;
         const Plan plan = plan_of(o_, s_);
@@ -169,7 +169,7 @@ public:
         Film f = make_film(size, o_.sets);
         Tally tally;
         for (size_t b = 0, at = 0; b < f.taken.size() / 2; at += f.sets_of(f.begin(b++)))
-            add_samples(f, b, at, 2, L_, tally);  // a block is a pixel
+            add_samples(f, b, at, 2, L_, tally);  // one pixel per block
         demand(Keeper(name, what()).write(f, {1, 1, tally.rays}, false).empty(),
                "no film is written");
     }
@@ -199,7 +199,7 @@ inline const std::string& small_film(unsigned kind) {
     return films[kind];
 }
 
-// Bytes changed, inserted or left out, or the end.
+// Changes, inserts or removes bytes, or cuts the end.
 inline std::string edited(std::string bytes, Choices& c) {
     while (!c.empty()) {
         const unsigned edit = c.byte();
@@ -213,7 +213,7 @@ inline std::string edited(std::string bytes, Choices& c) {
     return bytes;
 }
 
-// With a length and a sum that are right.
+// Writes the bytes with a correct length and checksum.
 inline void write_forged(const std::string& name, const std::string& bytes) {
     const size_t end = std::min(bytes.find("\n\n"), bytes.size());
     Facts head;
@@ -221,7 +221,7 @@ inline void write_forged(const std::string& name, const std::string& bytes) {
         const size_t stop = std::min(bytes.find('\n', start), end);
         const std::string text = bytes.substr(start, stop - start);
         const size_t space = std::min(text.find(' '), text.size());
-        if (line >= 3)  // the first are the writer's
+        if (line >= 3)  // the writer adds the first ones
             head.push_back({text.substr(0, space), text.substr(std::min(space + 1, text.size()))});
         start = stop + 1;
     }
@@ -229,7 +229,7 @@ inline void write_forged(const std::string& name, const std::string& bytes) {
     write_film_file(name, head, {std::as_bytes(std::span(bytes).subspan(numbers))});
 }
 
-// A picture of that film alone, as merge does.
+// Merges only that film, as merge does.
 inline void merge_alone(const std::string& name) {
     const FilmReader file(name);
     const Size size{int(file.number("size", 65536)), int(file.number("size", 65536, 'x'))};
@@ -242,8 +242,8 @@ inline void merge_alone(const std::string& name) {
     terms.error();
 }
 
-// The first byte says of which film; then edits of it: one that is not the same is refused, one
-// whose sum is forged is what it says.
+// The first byte selects a film; the others edit it.  An edited film must be refused, except when a
+// forged checksum makes it a valid other film.
 inline void film(std::string_view input) {
     Choices c(input);
     const unsigned first = c.byte(), kind = first % SmallFilm::kinds;
@@ -259,8 +259,6 @@ inline void film(std::string_view input) {
            "a damaged film is taken, or a good one not");
 }
 
-// ---- All of them --------------------------------------------------------------------------------
-
 // ---- Lights in other surfaces -------------------------------------------------------------------
 
 // The mean radiance of a picture, by independent paths.
@@ -274,8 +272,8 @@ inline Moments mean_radiance(const Scene& s, LightMode mode, uint64_t paths) {
     return m;
 }
 
-// However light is found, it is the same.  In corners light samples are so seldom so bright that
-// their spread does not tell it all.
+// All light modes must give the same light.  Light samples in corners have rare large values, and
+// their sample variance underestimates the error.
 inline void lamps(std::string_view input) {
     Choices c(input);
     const std::string text = drawn_lamps(c);

@@ -1,5 +1,5 @@
-// fuzz/targets_test.cpp  every input that was ever found to break something, and those that fuzzers
-// begin with; and that targets see what is broken
+// fuzz/targets_test.cpp  all inputs that ever broke something, the fuzzers' seeds, and the
+// detection of violated invariants
 #include "fuzz/targets.h"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a target makes of a file: "" if nothing is wrong.
+// What a target reports for a file: "" if nothing is wrong.
 std::string complaint(const fuzz::Target& target, const std::string& input) {
     try {
         target.run(input);
@@ -20,7 +20,7 @@ std::string complaint(const fuzz::Target& target, const std::string& input) {
     }
 }
 
-// Files of a folder for a target; none if there is no such folder.
+// The files of a folder for a target; none if the folder does not exist.
 std::vector<std::string> files_in(const fs::path& folder) {
     std::vector<std::string> files;
     if (fs::exists(folder))
@@ -67,7 +67,7 @@ TEST_CASE("seeds are accepted: fuzzers begin with what is right") {
     for (const std::string& file : files_in("tests/fuzz/seeds/pfm")) CHECK_NOTHROW(read_pfm(file));
     for (unsigned kind = 0; kind < SmallFilm::kinds; ++kind) {
         place().write("f.film", small_film(kind));
-        if (kind < 2) CHECK_NOTHROW(merge_alone(place() / "f.film"));  // the others are not done
+        if (kind < 2) CHECK_NOTHROW(merge_alone(place() / "f.film"));  // the others are incomplete
         CHECK_NOTHROW(SmallFilm(kind).go_on(place() / "f.film"));
     }
 }
@@ -80,7 +80,7 @@ TEST_CASE("an input's files are parted at their marks") {
     CHECK(bundle("=== a", "a") == Bundle{{"a", ""}});
 }
 
-// Of many draws most are scenes: a fuzzer that draws what is refused finds nothing.
+// Most draws must be valid scenes: a fuzzer that draws refused ones finds nothing.
 TEST_CASE(
     "drawn scenes are well-formed, of every kind of shape and material, and most are accepted") {
     std::string all;
@@ -98,7 +98,7 @@ TEST_CASE(
             check_scene(parsed.scene);
             ++accepted;
         } catch (const UserError& e) {
-            // What only the numbers can tell.
+            // These reasons depend on the numbers, which the generator does not check.
             bool expected = false;
             const std::string why = e.what();
             for (const char* reason :
@@ -118,7 +118,7 @@ TEST_CASE(
         CHECK(all.find(word) != all.npos);
 }
 
-// Most lamps that are drawn lie in a surface or in each other; two of them by hand.
+// Most drawn lamps lie in a surface or in each other; two cases are written by hand.
 TEST_CASE("light modes agree wherever lamps lie") {
     int lifted = 0;
     for (uint64_t k = 0; k < 60; ++k) {
@@ -155,7 +155,7 @@ TEST_CASE("a tree that errs is told") {
     const Scene good = scene_of("sphere 0 0 0  1  d\nsphere 3 0 0  1  d\nsphere 0 3 0  1  d\n");
     const Ray rays[] = {{{5, 0, 0}, {-1, 0, 0}}, {{0, 0, 5}, {0, 0, -1}}, {{5, 5, 5}, {1, 0, 0}}};
     for (const Ray& ray : rays) CHECK_NOTHROW(check_ray(good, ray));
-    Scene other = good;  // its tree is of other shapes
+    Scene other = good;  // its BVH has other shapes
     std::swap(other.shapes[0], other.shapes[1]);
     CHECK_THROWS_AS(check_ray(other, rays[0]), Broken);
     other.shapes.resize(1);

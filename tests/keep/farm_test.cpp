@@ -135,7 +135,7 @@ TEST_CASE("a part is told its film, from which it goes on") {
     CHECK(yard.log("7") == "");
     CHECK(yard.run("farm.sh part farm 7 3").status == 0);
     CHECK(yard.log("7") == "farm: resumes from its film\n");
-    // The folder stands in the plan by its whole name, the script is called by a short one.
+    // The plan has the folder's absolute path, while the script is called with a relative one.
     std::string told = yard.folder.read("told");
     for (size_t at; (at = told.find(" farm/")) != told.npos;)
         told.replace(at, 6, " " + yard.folder / "farm/");

@@ -1,20 +1,20 @@
-# mutants/mutants.py  reads the files of this folder: wrong lines that someone might write
-"""A file has the mutants of one source.  It begins with lines that hold for all of them:
+# mutants/mutants.py  parses the mutants in this folder: mistakes that someone might make
+"""A file has the mutants of one source.  It begins with lines that apply to all of them:
 
     file: src/world/bvh.h    the source, of src or tests, scripts among them
-    test: bvh_test           the test file that must turn red, without its folder
+    test: bvh_test           the test file that must fail, without its folder
     case: *part of a name*   only these test cases of it (doctest's -tc)
-    program: penumbra        those run build/penumbra: build that, too; or several
-    needs: bwrap             where that is not installed, its test skips, and the mutant is left out
+    program: penumbra        builds build/penumbra, too, for tests that run it; or several
+    needs: bwrap             without this command the test skips, and the mutant is left out
 
-A mutant is a block.  Its first line has a name, which no other mutant has, and says what is wrong.  The lines above may
-follow, where it differs from the other mutants, and
+A mutant is a block.  Its first line has a unique name and describes the mistake.  The lines above may follow and override
+those of the file, and so may
 
-    equivalent: proof        no test can see it, so all must stay green
+    equivalent: proof        no test can detect it, so all must pass
 
 Three more lines make it a known mistake of the course (course/mistakes.py).  Its edit is written as a diff: lines begin
-with - (right), + (wrong) or a blank (unchanged).  The right and the unchanged lines are adjacent in the source, and
-there exactly once.
+with - (right), + (wrong) or a blank (unchanged).  The right and the unchanged lines are adjacent, and occur exactly once
+in the source.
 
     @@ box_one_axis: a ray inside one slab is said to be inside the box
     exercise: 1.4
@@ -34,12 +34,12 @@ KEYS = ABOVE[1:] + ('equivalent', 'exercise', 'says', 'read')
 
 
 class Malformed(Exception):
-    """Lines that are no mutant, or do not fit their source."""
+    """Lines that are not a mutant, or do not fit their source."""
 
 
 @dataclasses.dataclass
 class Mutant:
-    """head: {key: what its block, or its file's first lines, say}.  Its keys are attributes, too."""
+    """head: {key: value in its block or in the first lines of its file}.  Its keys are attributes, too."""
     path: str
     name: str
     head: dict
@@ -83,7 +83,7 @@ def everything(root=ROOT):
 
 
 def planted(mutant, text):
-    """The text with the wrong lines in place of the right ones, which are there exactly once."""
+    """Replaces the right lines, which must occur exactly once in the text, by the wrong ones."""
     text, old = '\n' + text, '\n' + mutant.old
     at = text.find(old)
     if at < 0 or text.find(old, at + 1) >= 0:
@@ -93,7 +93,7 @@ def planted(mutant, text):
 
 @functools.cache
 def source(folder, name):
-    """The .cpp file of a test or a program, which is the only one of its name."""
+    """The .cpp file of a test or a program; its name must be unique."""
     found = [p.relative_to(ROOT) for p in ROOT.glob(f'{folder}/*/{name}.cpp')]
     if len(found) != 1:
         raise Malformed(f'there are {len(found)} files {folder}/*/{name}.cpp')
@@ -101,7 +101,7 @@ def source(folder, name):
 
 
 def misfit(mutant):
-    """Why it cannot be planted, if so."""
+    """The reason why a mutant cannot be planted; None if it can."""
     try:
         planted(mutant, (ROOT / mutant.file).read_text())
         source('tests', mutant.test)

@@ -48,7 +48,7 @@ TEST_CASE("seed, pixel, set, sample, dimension: whichever is another, the number
                 }
                 equal += u == Sampler(pattern, pixel, 3).get(dim + 1);
             }
-        // Two of 3000 pairs of 24-bit numbers are equal by chance with a probability of 1.8e-4.
+        // One of 3000 pairs of 24-bit numbers is equal by chance with a probability of 1.8e-4.
         INFO(std::string(sampler_names[int(kind)]));
         CHECK(equal < 2);
     }

@@ -93,7 +93,7 @@ TEST_CASE(
     const double absorbed =
         s.r * s.r * (1 - s.rho_inner) * E.inner + s.R * s.R * (1 - s.rho_outer) * E.outer;
     CHECK(absorbed == doctest::Approx(emitted).epsilon(1e-14));
-    // A furnace.
+    // In a furnace both have the same E.
     const exact::OfSpheres uniform = exact::illuminances({0.5, 2, 0.3, 0.8, 0.7 * 4, 0.2 * 4});
     CHECK(uniform.inner == doctest::Approx(4).epsilon(1e-14));
     CHECK(uniform.outer == doctest::Approx(4).epsilon(1e-14));

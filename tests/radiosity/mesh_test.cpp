@@ -119,7 +119,7 @@ TEST_CASE("two triangles are one face only if they are a parallelogram of one ki
     auto pair = [&](vec3 last, uint32_t first, uint32_t second) {
         add_triangle(s, a, b, c, first), add_triangle(s, a, c, last, second);
     };
-    pair(q, d, d);                // shapes 0, 1: one
+    pair(q, d, d);                // shapes 0, 1: one face
     pair({0, 1.1, 0}, d, d);      // 2, 3: a trapezium
     pair(q, d, e);                // 4, 5: two materials
     pair(q, l, l);                // 6, 7: two lights

@@ -354,7 +354,7 @@ TEST_CASE("batches that differ in one thing tell its error, and twice as much is
     }
     // All have the same distance to the mean: omitting one changes the variance by the same amount.
     CHECK(of(0.1).uncertainty < 0.05 * of(0.1).error);
-    BatchSquares<16> one;  // that alone is off (but for the mean, which is beside it)
+    BatchSquares<16> one;  // only batch 3 is off, apart from its effect on the mean
     one.whole = 1, one.off.fill(1e-4 / 225), one.off[3] = 1e-4;
     CHECK(one.stated().error ==
           doctest::Approx(std::sqrt(1e-4 * (1 + 1 / 15.0) / 240)).epsilon(1e-4));

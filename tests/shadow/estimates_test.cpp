@@ -1,5 +1,4 @@
-// shadow/estimates_test.cpp  images whose samples are estimates from all light samples of a
-// replication
+// shadow/estimates_test.cpp  images made of estimates from all light samples of a replication
 #include "app/render.h"
 #include "film/spread.h"
 #include "oracle/expect.h"

@@ -58,8 +58,8 @@ void expect_pixel(oracle::Random& random, Estimator e, uint64_t n, uint64_t tria
            largest);
 }
 
-// Checks the limit of n times the bias.  It measures an estimator minus w V - beta (w - 1), which
-// is unbiased and correlated with it.
+// Checks the limit of n times the bias.  It measures an estimator minus w V - beta (w - 1), because
+// the mean of the latter is known.
 void expect_bias(Estimator e, double beta, double largest) {
     oracle::Random random(seed_here());
     auto less = [&](uint64_t n) {

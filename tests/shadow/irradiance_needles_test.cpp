@@ -22,9 +22,9 @@ big along(big3 p, big3 d) {
     return sum * (to - from) / (3 * n);
 }
 
-// Long double: products of nearly parallel edges cancel 9 of 20 digits.  The height g cuts a
-// triangle at its longest side e; fans of lines lead from its ends to Gauss' three points on g.
-// that side to g, on which they stand by Gauss' rule of three points.
+// Long double, because products of nearly parallel edges cancel nine of twenty digits.  The height
+// g cuts a triangle with the longest side e in two.  Fans of lines lead from the ends of that side
+// to the points of Gauss' three-point rule on g.
 big fans(big3 a, big3 e, big3 f) {
     const big foot = dot(e, f) / dot(e, e), root = std::sqrt(0.15L);
     const big3 g = f - foot * e;

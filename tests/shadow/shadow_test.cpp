@@ -217,7 +217,7 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
     gloss.material = {Material::Kind::rough, {}, {1, 1, 1}, 5, 1, {}, false};
     CHECK(gloss.has_none());
     CHECK(max_of(gloss.sample(0).direct.L) > 0);
-    // Mirrors, and paths without scattering.
+    // Mirrors and paths without scattering have no unshadowed term.
     mirror.material.kind = Material::Kind::mirror;
     CHECK(mirror.shadowed_sample(0).U == rgb{});
     CHECK(dark.shadowed_sample(0).U.x > 0);

@@ -95,11 +95,11 @@ TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1
     // -X (S - 1).  Only cells at the border make S differ from 1, equally all along the border:
     //   E X (S - 1) -> Var S (mean of f on the border - mean of f),  Var S = O(n^-3/2).
     // The test subtracts this limit; O(n^-2) is left.
-    constexpr double on_border = (5.0 / 6 + 17.0 / 6 + 2.0 / 3 + 8.0 / 3) / 4;  // side by side
+    constexpr double on_border = (5.0 / 6 + 17.0 / 6 + 2.0 / 3 + 8.0 / 3) / 4;  // one term per side
     oracle::Random random(seed_here());
     Weigher weigher;
     weigher.divide = false;
-    weigher.unbounded = 1e-9;  // larger: a cell in a million is too large for a mean
+    weigher.unbounded = 1e-9;  // with larger values rare huge cells spoil the mean
     const oracle::Verdict v = oracle::expect_bias_decay(0, 32, 10000, [&](uint64_t n) {
         weigher.intensity = double(n);
         Rng rng{random.bits()};
@@ -118,7 +118,7 @@ TEST_CASE("vor, divided: its bias is that of its border, and falls faster than 1
 TEST_CASE("vor draws its strip anew until every cell is bounded, whichever is not") {
     oracle::Random random(seed_here());
     Weigher weigher;
-    weigher.unbounded = 20;  // expected cells as a bound: a narrow strip
+    weigher.unbounded = 20;  // a bound this large makes a narrow strip
     int without_weight = 0;
     for (int k = 0; k < 400; ++k)
         for (double w : weigher(Weighting::vor, scattered(20, random), random.bits()))

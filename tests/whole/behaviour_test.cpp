@@ -74,7 +74,7 @@ TEST_CASE("odd scenes are accepted: every pixel is finite, and what is dropped i
         CHECK(summary(o.err).found);
         const std::string warning = "file.scene: warning: " + row.warning + "\n";
         const bool coarse =
-            sizeof(real) == 4 && contains(o.err, "precision is too low here");  // said, too
+            sizeof(real) == 4 && contains(o.err, "precision is too low here");  // warned, too
         if (!coarse)
             CHECK(contains(o.err, row.warning.empty() ? "warning" : warning) ==
                   !row.warning.empty());
@@ -180,7 +180,7 @@ TEST_CASE("a picture that is black, though there are lights, gets a hint") {
     CHECK_FALSE(contains(faces.render("--spp 2").err, "black"));
     CHECK_FALSE(contains(turned.render("--spp 2 --view albedo").err, "the image is black"));
     const std::string band = turned.render("--spp 2 --rows 0-1 -o a.pfm").err;
-    CHECK_FALSE(contains(band, "the image is black"));  // others may be lit
+    CHECK_FALSE(contains(band, "the image is black"));  // other bands may be lit
 }
 
 TEST_CASE("--pixel names the material and the line of what a path meets") {

@@ -38,7 +38,7 @@ FarSphere far_sphere(real d) {
     return result;
 }
 
-// Height of 1e-3 over a sphere of radius 1e6, by a ray straight down.
+// A height of 1e-3 over a sphere of radius 1e6, measured by a ray straight down.
 double over_a_planet() {
     const Shape s{{0, real(-1e6), 0}, {}, {}, real(1e6)};
     const auto hit = meet(s, {{0, real(1e-3), 0}, {0, -1, 0}});

@@ -124,7 +124,7 @@ struct Known {
     const char* name;
     std::string text;
     double truth;                   // mean of the channels
-    Start start;                    // of rays; if none: the camera's
+    Start start;                    // of rays; empty: the camera's
     int aimed, chance;              // samples in units of 4096; chance: of --light none
     const char* no_none = nullptr;  // reasons not to run --light none, nee
     const char* no_nee = nullptr;

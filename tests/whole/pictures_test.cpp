@@ -56,8 +56,7 @@ TEST_CASE("up is up and right is right, in wide and in tall pictures") {
             const Bright b = bright(image);
             CHECK(b.right < w / 2);
             CHECK(b.bottom < h / 2);
-            // The square's centre (-0.6, 0.8) has distance 5; pixels are 2 tan(20 degrees) / h
-            // wide.
+            // The square's centre, (-0.6, 0.8), is 5 away; a pixel is 2 tan(20 degrees) / h wide.
             const double pixel = 2 * std::tan(20 * std::numbers::pi / 180) / h;
             CHECK(std::abs(b.x - (w / 2.0 - 0.6 / 5 / pixel)) < 0.3);
             CHECK(std::abs(b.y - (h / 2.0 - 0.8 / 5 / pixel)) < 0.3);

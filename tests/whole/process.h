@@ -333,7 +333,7 @@ struct Summary {
     bool interrupted = false, found = false;
 };
 
-// Of the line with the number of samples, where a bar may have stood.
+// Parses the line with the number of samples; a progress bar may precede it.
 inline Summary summary(const std::string& err) {
     Summary s;
     if (contains(err, ": interrupted before the first pass was complete: no image written\n"))

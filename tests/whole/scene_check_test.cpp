@@ -213,7 +213,7 @@ TEST_CASE("where rays start more than 1 % of the way to something near, it is to
             CHECK(told(off(row.eye, offsets), off(row.others, offsets)) == start + row.what + end);
         CHECK(told(off(row.eye, 105), off(row.others, 105)) == "");
     }
-    // Near a ball or a plate: the floor is too large to be near from most of its points.
+    // The message names the ball or plate, line 5: most points of the floor are far from it.
     for (const std::string other :
          {"sphere 9 @ 9  5 l\n", "sphere 9 -@ 9  5 l\n", "quad 9 @ 9  1 0 0  0 0 1  l\n"}) {
         INFO(other);

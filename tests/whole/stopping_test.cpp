@@ -120,7 +120,7 @@ TEST_CASE("--error goes on while light may be missing, and says so after 4096 sa
     CHECK(stated(stats, "stopped_by") == "\"error not known\"");
     CHECK(number_of(stats, "samples_per_pixel") >= 4096);
     CHECK(number_of(stats, "samples_per_pixel") < 6000);
-    // Without that lamp it is known early.
+    // Without the small lamp the error is known early.
     CHECK(contains(known.render(options).err, ", reached 5 % ("));
     stats = known.read("a.json");
     CHECK(number_of(stats, "samples_per_pixel") < 1000);

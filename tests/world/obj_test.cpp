@@ -131,7 +131,7 @@ TEST_CASE("a corner between two others in line is a corner, wherever the polygon
     for (size_t start = 0; start < square.size(); ++start) {
         const auto fan = fan_of(square);
         REQUIRE(fan);
-        CHECK(*fan == square);  // convex: not turned
+        CHECK(*fan == square);  // convex: not rotated
         std::rotate(square.begin(), square.begin() + 1, square.end());
     }
 }
