@@ -556,15 +556,15 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
 // Counts follow the probabilities: chi-squared, on cells where 100 or more are expected, so that
 // its p-value is good down to 1e-6.  `variances`: of the probabilities, where they are estimates.
 // Probabilities that are off by o.tolerance of themselves give a noncentral chi-squared.
-template <class Counts, class Probabilities>
-Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
-                      const Options& o = {}, const std::vector<double>& variances = {}) {
+inline Verdict judge_counts(const std::vector<double>& counts,
+                            const std::vector<double>& probabilities, const Options& o,
+                            const std::vector<double>& variances) {
     double n = 0, chi2 = 0, fewest = infinity;
     int cells = 0;
-    for (auto count : counts) n += double(count);
+    for (double count : counts) n += count;
     if (n == 0) return named(failure("no sample at all"), o);
-    for (size_t i = 0; i < std::size(counts); ++i) {
-        const double expected = n * double(probabilities[i]), seen = double(counts[i]);
+    for (size_t i = 0; i < counts.size(); ++i) {
+        const double expected = n * probabilities[i], seen = counts[i];
         if (expected <= 1e-6) {
             if (seen > 0)
                 return named(failure(say("%.0f samples of %.0f in cell %zu, where the density is 0",
@@ -593,6 +593,16 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
                  chi2, cells, n, say_p(v.p).c_str()) +
              percent(v.delta_min);
     return named(v, o);
+}
+template <class Counts, class Probabilities>
+Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
+                      const Options& o = {}, const std::vector<double>& variances = {}) {
+    std::vector<double> seen, expected;
+    for (size_t i = 0; i < std::size(counts); ++i) {
+        seen.push_back(double(counts[i]));
+        expected.push_back(double(probabilities[i]));
+    }
+    return judge_counts(seen, expected, o, variances);
 }
 
 // ---- Quadrature ---------------------------------------------------------------------------------
@@ -1304,6 +1314,8 @@ Point<D> somewhere(Random& random) {
 }
 
 inline double median(std::vector<double> x, double part = 0.5) {
+    std::erase_if(x, [](double y) { return std::isnan(y); });  // which have no order
+    if (x.empty()) return std::numeric_limits<double>::quiet_NaN();
     const auto middle = x.begin() + long(part * double(x.size() - 1));
     std::nth_element(x.begin(), middle, x.end());
     return *middle;
@@ -3485,11 +3497,14 @@ struct Drawing {
         std::string file;
         for (char c : name.empty() ? say("check-%d", ++unnamed) : name)
             file += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
+        for (size_t end = 0; end != std::string::npos;) {
+            end = pictures.find('/', end + 1);
 #ifdef _WIN32
-        (void)_mkdir(pictures.c_str());
+            (void)_mkdir(pictures.substr(0, end).c_str());
 #else
-        (void)mkdir(pictures.c_str(), 0777);
+            (void)mkdir(pictures.substr(0, end).c_str(), 0777);
 #endif
+        }
         const std::string path = pictures + "/oracle-" + file.substr(0, 100) + ".svg";
         std::FILE* out = std::fopen(path.c_str(), "w");
         if (!out) return "\n" + path + ": cannot be written";
