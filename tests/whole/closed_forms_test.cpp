@@ -1,5 +1,7 @@
 // whole/closed_forms_test.cpp  scenes whose radiance is known, by every technique, at one
 // significance
+#include <sstream>
+
 #include "app/options.h"
 #include "base/moments.h"
 #include "oracle/expect.h"
