@@ -8,7 +8,10 @@
 // right, 1 wrong, 3 the stub is still there, 2 the judge itself cannot work.
 #pragma once
 #include <bit>
+#include <fstream>
 #include <functional>
+#include <map>
+#include <sstream>
 #include <unordered_map>
 
 #include "course/program.h"

@@ -20,14 +20,12 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <cstdarg>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -35,6 +33,11 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+#ifdef _WIN32
+#include <direct.h>
+#else
+#include <sys/stat.h>
+#endif
 
 // A host may have variables called n or alpha.
 #pragma GCC diagnostic push
@@ -205,8 +208,7 @@ inline double p_at_least(double k, double n, double p) {
 }
 
 // x >= 0 where p(x), which falls from 1 to 0, has fallen to `target`.
-template <class P>
-double where_equal(P p, double target) {
+inline double where_equal(const std::function<double(double)>& p, double target) {
     double low = 0, high = 1;
     while (p(high) > target) high *= 2;
     for (int i = 0; i < 60; ++i) {
@@ -216,18 +218,28 @@ double where_equal(P p, double target) {
     return high;
 }
 
+// A number that takes long to find, by two others.
+struct Known {
+    double a, b, value;
+};
+inline double remembered(std::vector<Known>& known, double a, double b,
+                         const std::function<double()>& find) {
+    for (const Known& k : known)
+        if (k.a == a && k.b == b) return k.value;
+    known.push_back({a, b, find()});
+    return known.back().value;
+}
+
 // Standard errors by which the mean must be off for the t-test to see it with 99.9 % power: by the
 // normal approximation of noncentral t (Johnson, Welch 1940) t_alpha + 3.09 sqrt(1 + t_alpha^2 / 2
 // df), which is 8.0 for many degrees and alpha = 1e-6.  Remembers what it has found, and that is
 // for one thread alone; so does smallest_distortion.
 inline double smallest_shift(double df, double significance = 1e-6) {
-    static std::map<std::pair<double, double>, double> known;
-    const auto [at, is_new] = known.try_emplace({df, significance}, 0.0);
-    if (is_new) {
+    static std::vector<Known> known;
+    return remembered(known, df, significance, [&] {
         const double t = where_equal([&](double x) { return p_of_t(x, df); }, significance);
-        at->second = t + 3.09 * std::sqrt(1 + t * t / (2 * df));
-    }
-    return at->second;
+        return t + 3.09 * std::sqrt(1 + t * t / (2 * df));
+    });
 }
 
 // Noncentrality of n counts whose probabilities are within this relative error, once they sum to 1.
@@ -238,21 +250,23 @@ inline double forgiven(double n, double tolerance) {
 // Distortion sqrt(sum (p - q)^2 / q) of the cells' probabilities that chi-squared over n samples
 // sees with 99.9 % power: from the exact noncentral distribution, a Poisson mixture.
 inline double smallest_distortion(int df, double n, double significance = 1e-6) {
-    static std::map<std::pair<int, double>, double> known;
-    const auto [at, is_new] = known.try_emplace({df, significance}, 0.0);
-    if (is_new) {
+    static std::vector<Known> known;
+    const double noncentrality = remembered(known, df, significance, [&] {
         const double critical =
             where_equal([&](double x) { return p_of_chi2(x, df); }, significance);
-        at->second = where_equal([&](double x) { return 1 - p_of_chi2(critical, df, x); }, 1e-3);
-    }
-    return std::sqrt(at->second / n);
+        return where_equal([&](double x) { return 1 - p_of_chi2(critical, df, x); }, 1e-3);
+    });
+    return std::sqrt(noncentrality / n);
 }
 
 // ---- Words --------------------------------------------------------------------------------------
 
-inline std::string say(const char* format, auto... values) {
+[[gnu::format(printf, 1, 2)]] inline std::string say(const char* format, ...) {
     char text[512];
-    std::snprintf(text, sizeof text, format, values...);
+    va_list values;
+    va_start(values, format);
+    std::vsnprintf(text, sizeof text, format, values);
+    va_end(values);
     return text;
 }
 
@@ -542,15 +556,15 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
 // Counts follow the probabilities: chi-squared, on cells where 100 or more are expected, so that
 // its p-value is good down to 1e-6.  `variances`: of the probabilities, where they are estimates.
 // Probabilities that are off by o.tolerance of themselves give a noncentral chi-squared.
-template <class Counts, class Probabilities>
-Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
-                      const Options& o = {}, const std::vector<double>& variances = {}) {
+inline Verdict judge_counts(const std::vector<double>& counts,
+                            const std::vector<double>& probabilities, const Options& o,
+                            const std::vector<double>& variances) {
     double n = 0, chi2 = 0, fewest = infinity;
     int cells = 0;
-    for (auto count : counts) n += double(count);
+    for (double count : counts) n += count;
     if (n == 0) return named(failure("no sample at all"), o);
-    for (size_t i = 0; i < std::size(counts); ++i) {
-        const double expected = n * double(probabilities[i]), seen = double(counts[i]);
+    for (size_t i = 0; i < counts.size(); ++i) {
+        const double expected = n * probabilities[i], seen = counts[i];
         if (expected <= 1e-6) {
             if (seen > 0)
                 return named(failure(say("%.0f samples of %.0f in cell %zu, where the density is 0",
@@ -579,6 +593,16 @@ Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
                  chi2, cells, n, say_p(v.p).c_str()) +
              percent(v.delta_min);
     return named(v, o);
+}
+template <class Counts, class Probabilities>
+Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
+                      const Options& o = {}, const std::vector<double>& variances = {}) {
+    std::vector<double> seen, expected;
+    for (size_t i = 0; i < std::size(counts); ++i) {
+        seen.push_back(double(counts[i]));
+        expected.push_back(double(probabilities[i]));
+    }
+    return judge_counts(seen, expected, o, variances);
 }
 
 // ---- Quadrature ---------------------------------------------------------------------------------
@@ -922,6 +946,11 @@ auto model(Sample& sample, Pdf& pdf) {
         unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
 }
 
+// Part two says what is wrong with a choice: `explains` tells whether other probabilities fit.
+std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
+                        double none, size_t worst,
+                        const std::function<bool(const std::vector<double>&)>& explains);
+
 // choose(u), or choose(u, v), is an index below count, or a negative one for none, as often as
 // probability(index) says:
 // they sum to 1 less the part that fails; chi-squared over the indices, rare ones together.
@@ -1009,32 +1038,8 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
                                              : 0;
             if (off > most) most = off, worst = i;
         }
-        std::string first =
-            expected[worst] > 0
-                ? say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
-                      seen[worst] / (expected[worst] * samples), expected[worst])
-                : say("index %zu is chosen, though its probability is 0", worst);
-        auto explained = [&](std::vector<double> p, const char* cause) {
-            if (first.find("looks") == std::string::npos && fits(p).p > 1e-4)
-                first += std::string("; looks like ") + cause;
-        };
-        if (seen[worst] == 0 && expected[worst] > 0)
-            first = say("index %zu is never chosen, though its probability is %.4g", worst,
-                        expected[worst]);
-        if (none > 0 && std::abs(total - 1) < 1e-6)
-            first = percent(none / samples) +
-                    " of the choices are none, though the probabilities sum to 1";
-        if (count == 2)
-            explained({expected.rbegin(), expected.rend()}, "the two exchanged (p for 1 - p)");
-        auto turned = expected;
-        std::rotate(turned.begin(), turned.end() - 1, turned.end());
-        explained(turned, "index and probability shifted by one");
-        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-        explained(turned, "index and probability shifted by one");
-        explained(std::vector<double>(count, total / double(count)), "a uniform choice");
-        if (count > 2) explained({expected.rbegin(), expected.rend()}, "the order reversed");
-        v.text = first + "\n" + v.text;
+        auto explains = [&](const std::vector<double>& p) { return fits(p).p > 1e-4; };
+        v.text = choice_hint(expected, seen, none, worst, explains) + "\n" + v.text;
     }
     return named(v, o);
 }
@@ -1309,6 +1314,8 @@ Point<D> somewhere(Random& random) {
 }
 
 inline double median(std::vector<double> x, double part = 0.5) {
+    std::erase_if(x, [](double y) { return std::isnan(y); });  // which have no order
+    if (x.empty()) return std::numeric_limits<double>::quiet_NaN();
     const auto middle = x.begin() + long(part * double(x.size() - 1));
     std::nth_element(x.begin(), middle, x.end());
     return *middle;
@@ -1374,9 +1381,14 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
 
 // What the sheets say of the mistake behind a density; "" if nothing.  total: integral of the pdf;
 // share: of the samples that failed.
+template <size_t N>
+struct Scene;
 template <size_t N, class PdfOf>
-std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model, bool directions,
-                           double total, double share, const Triple& lobe, const Options& o);
+std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model,
+                           const Scene<N>& scene, double total, double share, const Options& o);
+template <size_t N, class PdfOf>
+std::string mistake_of_map(const std::vector<Local<N>>& all, const PdfOf& model, double total,
+                           const Options& o);
 
 template <size_t D, size_t N>
 Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
@@ -1393,7 +1405,7 @@ Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& 
     if (s.off) {
         const double product = s.off->product();
         v.text = say("pdf sqrt(det J^T J) = %.8g, expected 1 +- %.0e: ", product, tolerance);
-        const std::string why = mistake_behind(s.all, model, false, product, 0, {}, o);
+        const std::string why = mistake_of_map(s.all, model, product, o);
         v.text += !why.empty()
                       ? why
                       : say("samples are %.4g times as dense as the pdf says", 1 / product);
@@ -1524,22 +1536,23 @@ struct DensityCheck {
     std::vector<Point<D>> pilot = {};
     std::vector<Point<D>> places = {};  // theirs, and mirror images where the pdf is positive, too:
     std::vector<double> per_dc = {}, heights = {};  // the pdf there per dc, and by itself
+    Point<N> middle{};                              // of the pilot,
     double extent = 0;                              // median of the pilot's squared distances
     double arriving = 1;  // part of the samples that does not fail, nearly
     double rounding = 0;  // relative, of the pdf in the host's type
     double grain = 0;     // what borders may be off by, where coordinates are rounded
     double jumps = 0;     // part of the samples that an ulp or two move across one
-    std::function<double(const Point<N>&)> weight = {};  // what the pdf may lack
+    std::function<double(const Point<N>&)> claim = {};  // in place of the pdf, for a guess
     double most_negative = 0;
     std::string where_negative = {};
 
     double density_at(const Point<D>& c) {
         const Point<N> x = domain.at(c);
-        const double p = model.pdf(x);
-        if (wrong.empty() && !std::isfinite(p))
+        const double p = claim ? claim(x) : model.pdf(x);
+        if (wrong.empty() && !std::isfinite(p) && !claim)
             wrong = say("the pdf is %g, not finite, at ", p) + at(x);
-        if (p < most_negative) most_negative = p, where_negative = at(x);
-        const double measure = domain.weight(c) * (weight ? weight(x) : 1);
+        if (p < most_negative && !claim) most_negative = p, where_negative = at(x);
+        const double measure = domain.weight(c);
         return measure > 0 ? p * measure : 0;
     }
     static std::string at(const Point<N>& x) {
@@ -1629,8 +1642,10 @@ struct DensityCheck {
             if (o.discrete > 0)
                 mirrors.push_back(points[i]);
             else if (part < 0.9 && part > 200 * model.unit * model.pdf(points[i]))
-                repeated = percent(part) + " of the samples are " + at(points[i]) +
-                           ": looks like a mirror (.discrete says how many samples are)";
+                repeated =
+                    percent(part) + " of the samples are " + at(points[i]) +
+                    (directions ? ": looks like a mirror (.discrete says how many samples are)"
+                                : ": looks like numbers clamped to an end");
         }
     }
 
@@ -1714,6 +1729,7 @@ struct DensityCheck {
         for (size_t k = 0; k < N && !directions; ++k) {
             std::vector<double> x, size;
             for (const auto& p : points) x.push_back(p[k]), size.push_back(std::abs(p[k]));
+            middle[k] = median(x);
             if (const double width = median(x, 0.75) - median(x, 0.25); width > 0)
                 grain = std::max(grain, 4 * model.unit * median(size) / width);
         }
@@ -1814,13 +1830,13 @@ struct DensityCheck {
             ++evaluations;
             return density_at(c);
         };
-        const size_t budget = weight ? 200'000 : 4'000'000;  // a guess need not be exact
+        const size_t budget = claim ? 200'000 : 4'000'000;  // a guess need not be exact
         auto enough = [&] { return evaluations > budget; };
         double left = 0;
         auto by_rules = [&](bool all_halves) {
             Parts parts;
             if constexpr (D <= 2) {
-                const double close = weight ? 3e-3 : allowed();
+                const double close = claim ? 3e-3 : allowed();
                 // No finer than f can tell where it jumps.
                 const int halvings = D == 1 ? 60 : 1 - std::ilogb(close / 8);
                 const Agreement g{close / 300, close / 8, halvings, true, all_halves, &left};
@@ -1837,7 +1853,7 @@ struct DensityCheck {
         // that is nearly right is known no better than another way tells.
         const double off = std::abs(parts.total - (1 - o.discrete));
         double other = 0;
-        bool doubtful = off > allowed() && arriving > 0.9999 && !weight;
+        bool doubtful = off > allowed() && arriving > 0.9999 && !claim;
         if (doubtful && D <= 2 && !model.single && off < 1e-4) {
             const Parts again = by_rules(true);
             other = std::abs(again.total - parts.total);
@@ -1864,7 +1880,7 @@ struct DensityCheck {
         Point<D> step;
         for (size_t k = 0; k < D; ++k) step[k] = std::pow(golden, -double(k + 1));
         const size_t points =
-            std::max<size_t>(64, (weight ? 300'000 : 3'000'000) / 16 / ranges.size());
+            std::max<size_t>(64, (claim ? 300'000 : 3'000'000) / 16 / ranges.size());
         Parts parts;
         for (size_t i = 0; i < ranges.size(); ++i) {
             const Range<D>& r = ranges[i];
@@ -1977,6 +1993,9 @@ struct DensityCheck {
     std::string first_line(const Found<N, M, D>& found);
     std::string picture(const Found<N, M, D>& found);
     std::string symmetry();
+    Scene<N> scene() const;
+    double distance(const Point<N>& x) const;
+    std::string compared(const std::vector<Local<N>>& all) const;
     std::string explained(const std::vector<Local<N>>& all, double total);
     std::string law_of_cells(const Found<N, M, D>& found);
     std::string law_of_pdfs(const std::vector<double>& ratios, const std::vector<Point<N>>& where);
@@ -2127,6 +2146,16 @@ auto first_argument_of() {
         return decltype(first_argument(std::declval<F>())){};
 }
 
+struct Albedo {
+    Triple wo;
+    double mean, error;  // relative
+};
+std::string albedo_hint(const std::vector<Albedo>& all);
+
+// Whether f(a, b) / f(b, a) depends on the cosines of a and b alone: the same if b turns.
+using Pairs = std::vector<std::pair<Triple, Triple>>;
+bool by_cosines(const std::function<double(const Triple&, const Triple&)>& f, const Pairs& pairs);
+
 // A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
 // if it transmits for these from below, too: samples sample(wo, u, v, ...) have the density
 // pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not negative and reciprocal; no more
@@ -2153,7 +2182,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
     const double close = single ? 0.02 : 1e-6;  // half vectors of exchanged directions are rounded
     double with_cosine = 0, with_inverse = 0;
     for (size_t through = 0; through < 2; ++through) {
-        std::vector<std::pair<Triple, Triple>> pairs;
+        Pairs pairs;
         for (int i = 0; i < 2000; ++i) {
             const Triple a = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
             Triple b = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
@@ -2181,19 +2210,23 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
             if (off(i) > off(worst)) worst = i;
         if (off(worst) <= close) continue;
         const double all = 0.95 * double(ratios[0].size() + ratios[1].size());
-        return refuse(std::string("eval is not reciprocal") +
-                      (through ? " through the surface" : "") +
-                      ": f(wo, wi) and f(wi, wo) differ by " + percent(off(worst)) + ", for " +
-                      between(pairs[worst].first, pairs[worst].second) +
-                      (with_cosine > all    ? "; looks like the cosine of wi included in eval"
-                       : with_inverse > all ? "; looks like eval divided by the cosine of wi"
-                                            : ""));
+        return refuse(
+            std::string("eval is not reciprocal") + (through ? " through the surface" : "") +
+            ": f(wo, wi) and f(wi, wo) differ by " + percent(off(worst)) + ", for " +
+            between(pairs[worst].first, pairs[worst].second) +
+            (with_cosine > all    ? "; looks like the cosine of wi included in eval, or "
+                                    "eval divided by that of wo"
+             : with_inverse > all ? "; looks like eval divided by the cosine of wi"
+             : by_cosines(f, pairs)
+                 ? ", by a factor of their cosines alone (Fresnel or masking by one of them?)"
+                 : ""));
     }
     const bool transmits = !ratios[1].empty();
     if (ratios[0].empty() && !transmits) return refuse("eval is 0 for all directions");
     const double scale = transmits ? std::sqrt(median(ratios[1])) : 1;
 
     Verdict all{true, 1, 0, ""};
+    std::vector<Albedo> albedos;
     for (double side : {1.0, -1.0})
         for (const auto& [z, phi] : {std::pair{0.95, 1.0}, {0.6, 3.0}, {0.2, 5.0}, {0.02, 2.0}}) {
             if (side < 0 && !transmits) break;
@@ -2232,11 +2265,9 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
                 albedo.add(weight);
             }
             const Estimate e = albedo.estimate();
-            if (e.mean > 1 + 1e-3 + 5 * e.standard_error)
-                return refuse("an albedo of " +
-                              times(e.mean, std::max(0.003, 3 * e.standard_error / e.mean)) +
-                              ": more leaves than comes, for wo = " + say_point(out));
+            albedos.push_back({out, e.mean, e.standard_error / std::max(1e-300, e.mean)});
         }
+    if (const std::string why = albedo_hint(albedos); !why.empty()) return refuse(why);
     all.text = std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
                (transmits ? say(", below and through it (scaled by %.4g)", scale * scale) : "");
     return named(all, o);
@@ -2292,6 +2323,7 @@ struct Image {
         return r;
     }
     std::string hint(const ImageResult& r) const;
+    std::string all_others_right() const;
     std::string picture() const;
 
     Verdict judge() const {
@@ -2347,15 +2379,25 @@ inline std::string constant_named(double x, double tolerance) {
     const struct {
         double value;
         const char* name;
-    } known[] = {{1 / pi, "1/pi"},  {pi, "pi"},
-                 {2 * pi, "2 pi"},  {1 / (2 * pi), "1/(2 pi)"},
-                 {4 * pi, "4 pi"},  {1 / (4 * pi), "1/(4 pi)"},
-                 {pi / 2, "pi/2"},  {2 / pi, "2/pi"},
-                 {pi * pi, "pi^2"}, {1 / (pi * pi), "1/pi^2"},
-                 {0.5, "1/2"},      {0.25, "1/4"},
-                 {2.0 / 3, "2/3"},  {1.5, "3/2"},
-                 {1.0 / 3, "1/3"},  {0.75, "3/4"},
-                 {4.0 / 3, "4/3"}};
+    } known[] = {{1 / pi, "1/pi"},
+                 {pi, "pi"},
+                 {2 * pi, "2 pi"},
+                 {1 / (2 * pi), "1/(2 pi)"},
+                 {4 * pi, "4 pi"},
+                 {1 / (4 * pi), "1/(4 pi)"},
+                 {pi / 2, "pi/2"},
+                 {2 / pi, "2/pi"},
+                 {pi * pi, "pi^2"},
+                 {1 / (pi * pi), "1/pi^2"},
+                 {0.5, "1/2"},
+                 {0.25, "1/4"},
+                 {2.0 / 3, "2/3"},
+                 {1.5, "3/2"},
+                 {1.0 / 3, "1/3"},
+                 {0.75, "3/4"},
+                 {4.0 / 3, "4/3"},
+                 {std::numbers::sqrt2, "the root of 2"},
+                 {1 / std::numbers::sqrt2, "1 over the root of 2"}};
     const char* name = nullptr;
     for (const auto& k : known)
         if (std::abs(x / k.value - 1) <= tolerance) {
@@ -2417,7 +2459,7 @@ template <size_t N>
 struct Base {
     std::string name;
     std::function<double(const Point<N>&)> at;
-    enum Kind { cosine, sine, coordinate, named } kind = named;
+    enum Kind { cosine, sine, coordinate, cube, named } kind = named;
 };
 
 template <size_t N>
@@ -2448,6 +2490,11 @@ std::vector<Base<N>> bases_of(const Options& o, bool directions, const Triple& l
                 bases.push_back({"the cosine to the lobe's axis",
                                  [lobe](const Triple& w) { return std::abs(dot(w, lobe)); },
                                  Base<N>::cosine});
+            bases.push_back({"max(|x|, |y|, |z|)",
+                             [](const Triple& w) {
+                                 return std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
+                             },
+                             Base<N>::cube});
             return bases;
         }
     const char* names[] = {"x", "y", "z"};
@@ -2497,6 +2544,8 @@ std::string cause_of_base(const Base<N>& b, double k, bool normalised) {
         return normalised ? "theta drawn uniformly, or r = u without its square root: samples lack "
                             "a factor sin(theta)"
                           : "a density per (theta, phi), not per solid angle";
+    if (b.kind == Base<N>::cube)
+        return std::abs(k) == 3 ? "points of a cube, normalised without rejection" : "";
     if (normalised && b.kind == Base<N>::coordinate && k == 1)
         return b.name + " drawn uniformly, without its root";
     if (normalised) return "";
@@ -2504,17 +2553,84 @@ std::string cause_of_base(const Base<N>& b, double k, bool normalised) {
                  : "a factor " + b.name + " missing in the pdf";
 }
 
+// Where samples lie.
+template <size_t N>
+struct Scene {
+    bool directions;
+    Triple lobe{0, 0, 1}, normal{0, 0, 1};
+    Point<N> centre{};  // of a box or of the samples
+};
+
+// The cosine to an axis.
+template <size_t N>
+double along(const Point<N>& x, const Triple& axis) {
+    double sum = 0;
+    for (size_t k = 0; k < std::min<size_t>(3, N); ++k) sum += x[k] * axis[k];
+    return std::abs(sum);
+}
+
+// Linear equations by Gauss and Jordan; NaN if they have no solution.
+template <size_t R>
+std::array<double, R> solved(std::array<std::array<double, R + 1>, R> rows) {
+    std::array<double, R> x;
+    for (size_t c = 0; c < R; ++c) {
+        for (size_t r = c + 1; r < R; ++r)
+            if (std::abs(rows[r][c]) > std::abs(rows[c][c])) std::swap(rows[r], rows[c]);
+        for (size_t r = 0; r < R; ++r) {
+            const double by = r == c ? 0 : rows[r][c] / rows[c][c];
+            for (size_t k = c; k <= R && r != c; ++k) rows[r][k] -= by * rows[c][k];
+        }
+    }
+    for (size_t r = 0; r < R; ++r) x[r] = rows[r][R] / rows[r][r];
+    return x;
+}
+
+// Mirror images about the centre, by name.
+template <size_t N>
+using Map = std::function<Point<N>(const Point<N>&)>;
+template <size_t N>
+std::vector<std::pair<std::string, Map<N>>> images_in(const Scene<N>& scene) {
+    const struct {
+        const char* name;
+        std::array<size_t, 3> from;
+        Triple sign;
+    } images[] = {
+        {"z negated", {0, 1, 2}, {1, 1, -1}},
+        {"x negated", {0, 1, 2}, {-1, 1, 1}},
+        {"y negated", {0, 1, 2}, {1, -1, 1}},
+        {"the direction negated", {0, 1, 2}, {-1, -1, -1}},
+        {"x and z exchanged", {2, 1, 0}, {1, 1, 1}},
+        {"y and z exchanged", {0, 2, 1}, {1, 1, 1}},
+        {"x and y exchanged", {1, 0, 2}, {1, 1, 1}},
+        {"x, y, z in another order", {1, 2, 0}, {1, 1, 1}},
+        {"x, y, z in another order", {2, 0, 1}, {1, 1, 1}},
+    };
+    std::vector<std::pair<std::string, Map<N>>> maps;
+    for (const auto& image : images) {
+        bool here = N <= 3;
+        for (size_t k = N; k < 3; ++k) here = here && image.from[k] == k && image.sign[k] == 1;
+        if (here)
+            maps.emplace_back(image.name, [image, c = scene.centre](const Point<N>& x) {
+                auto y = x;
+                for (size_t k = 0; k < std::min<size_t>(3, N); ++k)
+                    y[k] = c[k] + image.sign[k] * (x[image.from[k]] - c[image.from[k]]);
+                return y;
+            });
+    }
+    return maps;
+}
+
 // What the sheets of a map, the integral of the pdf and its symmetries say of the mistake: a fact,
 // then "looks like" and a cause where one explains all of it.
 template <size_t N>
 struct Mistake {
     const std::function<double(const Point<N>&)>& pdf;
+    const Scene<N>& scene;
     bool directions, single;
     double unit;   // of rounding
     double total;  // integral of the pdf
     double share;  // of the samples that failed
     std::vector<Base<N>> bases;
-    Triple normal{0, 0, 1};
     std::vector<Local<N>> sheets = {};  // where the map is one-to-one about u,
     std::vector<Local<N>> good = {};    // and the pdf positive: of these
     std::vector<double> ratios = {};    // p / q
@@ -2530,16 +2646,20 @@ struct Mistake {
         std::vector<double> errors;
         for (const Local<N>& l : sheets) {
             errors.push_back(l.error);
-            if (l.p > 0) good.push_back(l), ratios.push_back(l.product());
         }
         tolerance = std::min(0.05, std::max(single ? 0.01 : 1e-4, 4 * median(errors)));
+        // At a kink of the map differences are less exact.
+        for (const Local<N>& l : sheets)
+            if (l.p > 0 && l.error <= tolerance) good.push_back(l), ratios.push_back(l.product());
         normalised = std::abs(total + share - 1) < close();
         if (good.size() >= 50) {
             if (law_of(ratios, tolerance).holds) return constant(law_of(ratios, tolerance).factor);
             for (const std::string& why : {power_law(), two_powers(), exponent()})
                 if (!why.empty()) return why;
         }
-        return symmetry();
+        for (const std::string& why : {symmetry(), linear(), moved(), sides()})
+            if (!why.empty()) return why;
+        return "";
     }
 
     // How well the integral and the failed part are known, together.
@@ -2600,7 +2720,7 @@ struct Mistake {
                 (constant_name == "pi" || constant_name == "2 pi" || constant_name == "4 pi"))
                 cause = constant_name == "pi" ? "1/pi forgotten"
                                               : "1/(" + constant_name + ") forgotten";
-            if (!cause.empty()) cause = "; looks like " + cause;
+            cause = cause.empty() ? ": a constant factor" : "; looks like " + cause;
             // The cosine of a cone so narrow has no more digits.
             std::vector<double> heights;
             for (const Local<N>& l : good) heights.push_back(l.p);
@@ -2631,7 +2751,7 @@ struct Mistake {
                     if (beyond == 0 && positive > sheets.size() / 2)
                         return std::string(": no sample has ") + names[k] +
                                (sign > 0 ? " < 0" : " > 0") +
-                               (std::abs(normal[k]) > 0.99 ? ", below the horizon" : "");
+                               (std::abs(scene.normal[k]) > 0.99 ? ", below the horizon" : "");
                 }
         }
         return "";
@@ -2657,7 +2777,7 @@ struct Mistake {
     // before others.
     std::string power_law() const {
         std::vector<Fit> fits;
-        for (const double k : {1.0, -1.0, 2.0, -2.0, 0.5, -0.5})
+        for (const double k : {1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 0.5, -0.5})
             for (const Base<N>& b : bases)
                 if (const Law law = law_without(b, k); law.holds)
                     fits.push_back({&b, k, law.factor});
@@ -2672,8 +2792,18 @@ struct Mistake {
         // With a constant left over, a named factor is one of several that vary alike.
         if (f.base->kind == Base<N>::named && fits.size() > 1 && std::abs(f.factor - 1) > tolerance)
             cause = "";
+        // Nor is it all with a cosine: a distance may be 1 / cos(theta).
+        if (f.base->kind == Base<N>::cosine && std::abs(f.factor - 1) > tolerance) cause = "";
         return over(f.factor) + power(f.base->name, f.power) +
-               (cause.empty() ? "" : ": looks like " + cause);
+               (cause.empty() ? "" : ": looks like " + cause) + uniform();
+    }
+    // Either may be the wrong one of two.
+    std::string uniform() const {
+        std::vector<double> p, q;
+        for (const Local<N>& l : good) p.push_back(l.p), q.push_back(l.q);
+        return law_of(p, tolerance).holds   ? "; the pdf is uniform, samples are not"
+               : law_of(q, tolerance).holds ? "; samples are uniform, the pdf is not"
+                                            : "";
     }
     std::string two_powers() const {
         for (const double j : {1.0, -1.0, 2.0, -2.0})
@@ -2712,56 +2842,181 @@ struct Mistake {
         return "";
     }
 
-    // Samples of which a mirror image has the pdf.
-    std::string symmetry() const {
-        struct Image {
-            const char* name;
-            std::array<size_t, 3> from;
-            Triple sign;
-        };
-        const Image images[] = {
-            {"z negated", {0, 1, 2}, {1, 1, -1}},
-            {"x negated", {0, 1, 2}, {-1, 1, 1}},
-            {"y negated", {0, 1, 2}, {1, -1, 1}},
-            {"the direction negated", {0, 1, 2}, {-1, -1, -1}},
-            {"x and z exchanged", {2, 1, 0}, {1, 1, 1}},
-            {"y and z exchanged", {0, 2, 1}, {1, 1, 1}},
-            {"x and y exchanged", {1, 0, 2}, {1, 1, 1}},
-            {"x, y, z in another order", {1, 2, 0}, {1, 1, 1}},
-            {"x, y, z in another order", {2, 0, 1}, {1, 1, 1}},
-        };
-        if constexpr (N == 3)
-            for (const Image& image : images) {
-                std::vector<double> turned;
-                for (const Local<N>& l : sheets) {
-                    Triple x;
-                    for (size_t k = 0; k < 3; ++k) x[k] = image.sign[k] * l.x[image.from[k]];
-                    if (const double p = pdf(x); p > 0) turned.push_back(p / l.q);
+    // p / q or q / p, with a cosine in its place or without, is a linear function a x + b: the
+    // cosine to a direction that nobody named, a factor that a warp lacks.  By least squares.
+    std::string linear() const {
+        if (good.size() < 50) return "";
+        for (const double k : {1.0, -1.0})
+            for (const double j : {0.0, 1.0, -1.0}) {
+                if (j != 0 && !directions) break;
+                std::array<std::array<double, N + 2>, N + 1> rows{};
+                std::vector<double> left;
+                const double one = directions ? 0 : 1;  // and no constant b
+                for (size_t i = 0; i < good.size(); ++i) {
+                    const Point<N>& x = good[i].x;
+                    left.push_back(std::pow(ratios[i] * std::pow(along(x, scene.normal), j), k));
+                    for (size_t r = 0; r <= N; ++r)
+                        for (size_t c = 0; c <= N + 1; ++c)
+                            rows[r][c] += (r < N ? x[r] : one) *
+                                          (c < N    ? x[c]
+                                           : c == N ? one
+                                                    : left[i]) /
+                                          (left[i] * left[i]);
                 }
-                if (!directions || double(turned.size()) < 0.6 * double(sheets.size())) continue;
-                if (const Law law = law_of(turned, tolerance);
-                    law.holds && std::abs(law.factor - 1) <= tolerance)
-                    return std::string("samples have the density of the pdf with ") + image.name +
-                           ": looks like " + image.name + " in one of the two" +
-                           (image.name[0] == 'z' && normal[2] == 1 ? ", below the horizon" : "");
+                rows[N][N] += 1 - one;
+                const double spread = median(left, 0.95) / median(left, 0.05);
+                const auto a = solved(rows);
+                std::vector<double> rest;
+                for (size_t i = 0; i < good.size(); ++i) {
+                    double sum = a[N];
+                    for (size_t c = 0; c < N; ++c) sum += a[c] * good[i].x[c];
+                    rest.push_back(left[i] / sum);
+                }
+                const Law law = law_of(rest, tolerance);
+                if (!(spread > 1 + 30 * tolerance) || !law.holds ||
+                    std::abs(law.factor - 1) > tolerance)
+                    continue;
+                return words_of(a, j, k);
             }
+        return "";
+    }
+    std::string words_of(const std::array<double, N + 1>& a, double j, double k) const {
+        double length = 0;
+        for (size_t c = 0; c < N; ++c) length += a[c] * a[c];
+        length = std::sqrt(length);
+        const std::string with = j == 0 ? "" : " " + power("cos(theta)", -j);
+        if (directions) {
+            Point<N> n;
+            for (size_t c = 0; c < N; ++c) n[c] = a[c] / length;
+            const std::string cosine = "the cosine to " + say_point(n);
+            return over(std::pow(length, k)) + power("(" + cosine + ")", k) + with +
+                   ": looks like " + cosine + (k > 0 ? " too many" : " forgotten") + " in the pdf" +
+                   (j == 0 ? "" : ", or taken to another normal");
+        }
+        const char* names[] = {"x", "y", "z"};
+        std::string sum;
+        for (size_t c = 0; c <= N; ++c) {
+            if (std::abs(a[c]) < 0.01 * std::hypot(length, a[N])) continue;
+            sum += sum.empty() ? (a[c] < 0 ? "-" : "") : a[c] < 0 ? " - " : " + ";
+            sum += say("%.3g", std::abs(a[c])) + (c < N ? std::string(" ") + names[c % 3] : "");
+        }
+        return over(1) + power("(" + sum + ")", k) + with +
+               (normalised && k > 0
+                    ? ": looks like a number that is not warped, or without its root"
+                    : "");
+    }
+
+    // Samples have the density of the pdf of a mirror image.
+    std::string symmetry() const {
+        for (const auto& [name, image] : images_in(scene)) {
+            const Law law = law_of_image(image, 1);
+            if (law.holds && std::abs(law.factor - 1) <= tolerance)
+                return "samples have the density of the pdf with " + name + ": looks like " + name +
+                       " in one of the two" +
+                       (directions && name[0] == 'z' && scene.normal[2] == 1 ? ", below the horizon"
+                                                                             : "");
+        }
+        return "";
+    }
+    Law law_of_image(const Map<N>& image, double stretch) const {
+        std::vector<double> turned;
+        for (const Local<N>& l : sheets)
+            if (const double p = pdf(image(l.x)); p > 0 && l.error <= tolerance)
+                turned.push_back(p / l.q / stretch);
+        if (double(turned.size()) < 0.4 * double(good.size())) return {};
+        return law_of(turned, tolerance);
+    }
+
+    // Samples have the density of the pdf stretched about 0, or moved along a coordinate.
+    std::string moved() const {
+        if (directions || sheets.empty()) return "";
+        auto stretched = [](double by) {
+            return [by](Point<N> x) {
+                for (double& c : x) c /= std::exp(by);
+                return x;
+            };
+        };
+        const double by =
+            best(-3, 3, [&](double b) { return mismatch(stretched(b), std::exp(double(N) * b)); });
+        const Law law = law_of_image(stretched(by), std::exp(double(N) * by));
+        if (law.holds && std::abs(law.factor - 1) <= tolerance && std::abs(by) > 1e-3)
+            return "samples have the density of the pdf, " + times(std::exp(by), 0.004) +
+                   " times as wide: looks like their scale";
+        for (size_t k = 0; k < N; ++k) {
+            std::vector<double> x;
+            for (const Local<N>& l : sheets) x.push_back(l.x[k]);
+            const double width = median(x, 0.95) - median(x, 0.05);
+            auto shifted = [&](double d) {
+                return [k, d](Point<N> p) {
+                    p[k] -= d;
+                    return p;
+                };
+            };
+            const double d =
+                best(-width, width, [&](double shift) { return mismatch(shifted(shift), 1); });
+            const Law there = law_of_image(shifted(d), 1);
+            if (there.holds && std::abs(there.factor - 1) <= tolerance &&
+                std::abs(d) > 0.01 * width)
+                return "samples have the density of the pdf moved by " + say("%.4g", d) +
+                       (N == 1 ? "" : std::string(" along ") + "xyz"[k % 3]) +
+                       ": looks like an offset, or an index that is off by one";
+        }
+        return "";
+    }
+    // How far the pdf at image(x) is from the density of the samples, where it is not 0.
+    double mismatch(const Map<N>& image, double stretch) const {
+        double sum = 0, n = 0;
+        for (const Local<N>& l : sheets)
+            if (const double p = pdf(image(l.x)) / stretch; p > 0)
+                sum += std::min(0.3, std::abs(std::log(p / l.q))), ++n;
+        return n < 0.4 * double(sheets.size()) ? 1 : sum / n;
+    }
+    // Where f is least: on a grid, then by ever smaller steps.
+    static double best(double low, double high, const std::function<double(double)>& f) {
+        double at = 0, least = infinity, step = (high - low) / 200;
+        for (int i = 0; i <= 200; ++i)
+            if (const double x = low + i * step, y = f(x); y < least) least = y, at = x;
+        for (; step > 1e-7 * (high - low); step /= 2)
+            for (const double x : {at - step, at + step})
+                if (const double y = f(x); y < least) least = y, at = x;
+        return at;
+    }
+
+    // A constant factor on either side of a plane of coordinates.
+    std::string sides() const {
+        if (!directions) return "";
+        for (size_t k = 0; k < N; ++k) {
+            std::vector<double> of[2];
+            for (size_t i = 0; i < good.size(); ++i) of[good[i].x[k] < 0].push_back(ratios[i]);
+            if (std::min(of[0].size(), of[1].size()) < 20) continue;
+            const Law above = law_of(of[0], tolerance), below = law_of(of[1], tolerance);
+            if (above.holds && below.holds)
+                return "the pdf is " + times(above.factor, 0.003) +
+                       " times the density of the samples where " + "xyz"[k % 3] + " > 0, " +
+                       times(below.factor, 0.003) + " times where it is < 0";
+        }
         return "";
     }
 };
 
 template <size_t N, class PdfOf>
-std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model, bool directions,
-                           double total, double share, const Triple& lobe, const Options& o) {
+std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model,
+                           const Scene<N>& scene, double total, double share, const Options& o) {
     Mistake<N> mistake{model.pdf,
-                       directions,
+                       scene,
+                       scene.directions,
                        model.single,
                        model.unit,
                        total,
                        share,
-                       bases_of<N>(o, directions, lobe)};
-    if (const double length = std::sqrt(dot(o.axis, o.axis)); length > 0)
-        for (size_t k = 0; k < 3; ++k) mistake.normal[k] = o.axis[k] / length;
+                       bases_of<N>(o, scene.directions, scene.lobe)};
     return mistake.name(all);
+}
+
+template <size_t N, class PdfOf>
+std::string mistake_of_map(const std::vector<Local<N>>& all, const PdfOf& model, double total,
+                           const Options& o) {
+    return mistake_behind(all, model, Scene<N>{false}, total, 0, o);
 }
 
 // Of samples that all come where the pdf is 0.
@@ -2776,26 +3031,76 @@ std::string DensityCheck<M, N, Domain>::symmetry() {
     }
 }
 template <size_t M, size_t N, class Domain>
+Scene<N> DensityCheck<M, N, Domain>::scene() const {
+    Scene<N> scene{directions};
+    if constexpr (directions) {
+        scene.lobe = domain.z;
+        if (const double length = std::sqrt(dot(o.axis, o.axis)); length > 0)
+            for (size_t k = 0; k < 3; ++k) scene.normal[k] = o.axis[k] / length;
+    } else if constexpr (std::is_base_of_v<Box<N>, Domain>) {
+        scene.centre = Range<N>{domain.lower, domain.upper}.middle();
+    }
+    return scene;
+}
+template <size_t M, size_t N, class Domain>
 std::string DensityCheck<M, N, Domain>::explained(const std::vector<Local<N>>& all, double total) {
-    Triple lobe{0, 0, 1};
-    if constexpr (directions) lobe = domain.z;
-    return mistake_behind(all, model, directions, total, none / std::max(1.0, samples) + o.discrete,
-                          lobe, o);
+    return mistake_behind(all, model, scene(), total, none / std::max(1.0, samples) + o.discrete,
+                          o);
+}
+
+// Whether numbers rise (1) or fall (-1) with the distance, in five groups, by a tenth or more.
+inline int trend_of(std::vector<std::pair<double, double>> distance_and_number) {
+    auto& all = distance_and_number;
+    std::sort(all.begin(), all.end());
+    std::vector<double> medians;
+    for (size_t group = 0; group < 5; ++group) {
+        std::vector<double> numbers;
+        for (size_t i = group * all.size() / 5; i < (group + 1) * all.size() / 5; ++i)
+            numbers.push_back(all[i].second);
+        if (numbers.empty()) return 0;
+        medians.push_back(median(numbers));
+    }
+    if (std::abs(medians[4] / medians[0] - 1) < 0.1) return 0;
+    return std::is_sorted(medians.begin(), medians.end())     ? 1
+           : std::is_sorted(medians.rbegin(), medians.rend()) ? -1
+                                                              : 0;
+}
+// In words, with the pdf over the density of the samples, by the distance from their middle.
+inline std::string width_of(int trend) {
+    return trend == 0
+               ? ""
+               : std::string(trend > 0 ? "wider" : "narrower") +
+                     " than the samples (a roughness, an exponent, the weights of a mixture?)";
+}
+template <size_t M, size_t N, class Domain>
+double DensityCheck<M, N, Domain>::distance(const Point<N>& x) const {
+    double square = 0;
+    if constexpr (directions)
+        for (size_t k = 0; k < 3; ++k) square += std::pow(x[k] - domain.z[k], 2);
+    else
+        for (size_t k = 0; k < N; ++k) square += std::pow(x[k] - middle[k], 2);
+    return square;
 }
 
 // The pdf beside the density of the samples, where their map tells it.
-template <size_t N>
-std::string compared(const std::vector<Local<N>>& all) {
+template <size_t M, size_t N, class Domain>
+std::string DensityCheck<M, N, Domain>::compared(const std::vector<Local<N>>& all) const {
     std::vector<double> ratios;
+    std::vector<std::pair<double, double>> by_distance;
     for (const Local<N>& l : all)
-        if (l.p > 0 && l.q < infinity && l.error < 0.05) ratios.push_back(l.product());
-    if (ratios.size() < 50) return "";
+        if (l.p > 0 && l.q < infinity && l.error < 0.05) {
+            ratios.push_back(l.product());
+            by_distance.emplace_back(distance(l.x), l.product());
+        }
+    if (M != D || ratios.size() < 50) return "";
     const double low = median(ratios, 0.05), high = median(ratios, 0.95);
     if (high - low < 0.02)
         return "the pdf is " + times(median(ratios), 0.01) +
                " times the density of nearly all samples, but ";
-    return say("the pdf is %.3g to %.3g times the density of the samples (median %.3g), and ", low,
-               high, median(ratios));
+    const std::string width = width_of(trend_of(by_distance));
+    return say("the pdf is %.3g to %.3g times the density of the samples (median %.3g)", low, high,
+               median(ratios)) +
+           (width.empty() ? "" : ", " + width) + "; ";
 }
 
 // The ratio of two pdfs at these points: a constant, or one and a power of a base.
@@ -2817,36 +3122,85 @@ std::string DensityCheck<M, N, Domain>::law_of_pdfs(const std::vector<double>& r
     return "";
 }
 
-// Whether counts follow the pdf times a power of a base: for samplers whose map tells nothing.
+// Whether counts follow the pdf times a power of a base, or one of its mirror images, or constants
+// on either side of a plane: for samplers whose map tells nothing.
 template <size_t M, size_t N, class Domain>
 std::string DensityCheck<M, N, Domain>::law_of_cells(const Found<N, M, D>& found) {
     const Options plain{.alpha = 1e-3};
-    const auto [checks, spent] = std::pair{statistical_checks, alpha_spent};  // guesses are none
-    Triple lobe{0, 0, 1};
-    if constexpr (directions) lobe = domain.z;
-    for (const double k : {1.0, -1.0, 2.0, -2.0})
-        for (const Base<N>& b : bases_of<N>(o, directions, lobe)) {
-            weight = [&](const Point<N>& x) { return std::pow(b.at(x), k); };
-            const Parts parts = integrate(found.cells);
-            weight = {};
-            if (!(parts.total > 0 && std::isfinite(parts.total))) continue;
-            std::vector<double> p, variances;
-            for (size_t i = 0; i < 32; ++i) {
-                p.push_back(parts.value[i] / parts.total);
-                variances.push_back(parts.variance[i] / (parts.total * parts.total));
-            }
-            const bool fits = expect_counts(found.counts, p, plain, variances).pass;
-            statistical_checks = checks, alpha_spent = spent;
-            if (fits) return "samples have the density of the pdf times " + power(b.name, k);
+    const int checks = statistical_checks;  // guesses are none
+    const double spent = alpha_spent;
+    auto parts_of = [&](const std::function<double(const Point<N>&)>& guess) {
+        claim = guess;
+        const Parts parts = integrate(found.cells);
+        claim = {};
+        return parts;
+    };
+    auto follow = [&](const std::array<double, 32>& p, const std::vector<double>& variances) {
+        const bool pass = expect_counts(found.counts, p, plain, variances).pass;
+        statistical_checks = checks, alpha_spent = spent;
+        return pass;
+    };
+    auto fits = [&](const std::function<double(const Point<N>&)>& guess) {
+        Parts parts = parts_of(guess);
+        if (!(parts.total > 0 && std::isfinite(parts.total))) return false;
+        std::vector<double> variances;
+        for (size_t i = 0; i < 32; ++i) {
+            parts.value[i] /= parts.total;
+            variances.push_back(parts.variance[i] / (parts.total * parts.total));
         }
+        return follow(parts.value, variances);
+    };
+    const Scene<N> here = scene();
+    for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
+        for (const Base<N>& b : bases_of<N>(o, directions, here.lobe)) {
+            if (!fits([&](const Point<N>& x) { return model.pdf(x) * std::pow(b.at(x), k); }))
+                continue;
+            const std::string cause = cause_of_base(b, -k, true);
+            return "samples have the density of the pdf times " + power(b.name, k) +
+                   (cause.empty() ? "" : ": looks like " + cause);
+        }
+    for (const auto& [name, image] : images_in(here))
+        if (fits([&, &turned = image](const Point<N>& x) { return model.pdf(turned(x)); }))
+            return "samples have the density of the pdf with " + name + ": looks like " + name +
+                   " in one of the two";
+    double n = 0;
+    for (uint64_t c : found.counts) n += double(c);
+    for (size_t k = 0; k < N && directions; ++k) {
+        const Parts above =
+            parts_of([&](const Point<N>& x) { return x[k] > 0 ? model.pdf(x) : 0; });
+        const double half = above.total / found.parts.total;
+        if (!(std::min(half, 1 - half) > 0.01)) continue;
+        // p = a above + b below sums to 1: the a that fits best.
+        std::array<double, 32> p{}, slope{};
+        double products = 0, squares = 0;
+        for (size_t i = 0; i < 32; ++i) {
+            const double up = above.value[i] / found.parts.total, down = found.expected[i] - up;
+            const double seen = double(found.counts[i]) / n, weight = 1 / (seen + 1 / n);
+            p[i] = down / (1 - half);
+            slope[i] = up - p[i] * half;
+            products += slope[i] * (seen - p[i]) * weight;
+            squares += slope[i] * slope[i] * weight;
+        }
+        const double a = products / squares, b = (1 - a * half) / (1 - half);
+        for (size_t i = 0; i < 32; ++i) p[i] += a * slope[i];
+        if (a > 0 && b > 0 && follow(p, {}))
+            return "samples are " + times(a, 0.01) + " times as dense as the pdf says where " +
+                   "xyz"[k % 3] + " > 0, " + times(b, 0.01) +
+                   " times where it is < 0: looks like the probability of one side";
+    }
     return "";
 }
 
 // The first line of a refusal.
 template <size_t M, size_t N, class Domain>
 std::string DensityCheck<M, N, Domain>::first_line(const Found<N, M, D>& found) {
-    const auto& [cells, parts, sheets, close, counts, expected, counted, balanced] = found;
-    const double total = parts.total, share = none / samples + o.discrete;
+    const auto& cells = found.cells;
+    const auto& sheets = found.sheets;
+    const auto& counts = found.counts;
+    const auto& expected = found.expected;
+    const bool counted = found.counted, balanced = found.balanced;
+    const double close = found.close;
+    const double total = found.parts.total, share = none / samples + o.discrete;
     std::string rounded;
     if (model.single && counted && std::abs(total - 1 + share) < 10 * close &&
         (!sheets.off ||
@@ -2858,36 +3212,196 @@ std::string DensityCheck<M, N, Domain>::first_line(const Found<N, M, D>& found) 
             return why + rounded;
     const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
     if (!balanced && none > 0) {
-        const std::string fails = (M == D ? oracle::compared(sheets.all) : "") +
-                                  percent(none / samples) + " of the samples fail (" + first_none +
-                                  ")";
+        const std::string fails = compared(sheets.all) + percent(none / samples) +
+                                  " of the samples fail (" + first_none + ")";
         if (std::abs(total - 1) <= close)
             return fails + ", though the pdf integrates to 1, as if none did";
         return fails + ", but " + integral_is + say(": together %.6g, expected 1", total + share) +
                rounded;
     }
     if (!balanced)
-        return integral_is + say(", expected %.6g +- %.0e", 1 - o.discrete, close) + rounded;
+        return compared(sheets.all) + integral_is +
+               say(", expected %.6g +- %.0e", 1 - o.discrete, close) + rounded;
     if (sheets.off && M == D)
-        return "samples are " + say("%.4g", 1 / sheets.off->product()) +
+        return compared(sheets.all) + "samples are " + say("%.4g", 1 / sheets.off->product()) +
                " times as dense as the pdf says, at " + at(sheets.off->x) +
                ", u = " + say_point(sheets.u) + rounded;
     if (const std::string why = counted || samples < 50000 ? "" : law_of_cells(found); !why.empty())
         return why + rounded;
-    const size_t worst = found.worst_cell();
-    const double mean = expected[worst] * (samples - none);
     // In the middle of those that the pilot found there: the range's may be where nothing is.
-    std::vector<Point<D>> there;
-    for (const Point<D>& c : pilot)
-        if (cells.of(c) == worst) there.push_back(c);
-    if (there.empty()) there.push_back(cells.range(worst, {domain.lower, domain.upper}).middle());
-    const auto where = domain.at(there[there.size() / 2]);
-    if (!(mean > 0)) return "samples come where the pdf is 0, near " + at(where);
-    return "samples are " + say("%.4g", double(counts[worst]) / mean) +
-           " times as dense as the pdf says, around " + at(where);
+    std::array<std::vector<Point<D>>, 32> inside;
+    for (const Point<D>& c : pilot) inside[cells.of(c)].push_back(c);
+    auto middle_of = [&](size_t cell) {
+        return domain.at(inside[cell].empty()
+                             ? cells.range(cell, {domain.lower, domain.upper}).middle()
+                             : inside[cell][inside[cell].size() / 2]);
+    };
+    std::vector<double> products{infinity};
+    for (const Local<N>& l : sheets.all) products.push_back(l.product());
+    double n = 0;
+    for (uint64_t c : counts) n += double(c);
+    const size_t worst = found.worst_cell();
+    if (!(expected[worst] > 0))
+        return "samples come where the pdf is 0, near " + at(middle_of(worst));
+    std::vector<double> dense;
+    std::vector<std::pair<double, double>> by_distance;
+    for (size_t i = 0; i < 32; ++i) {
+        dense.push_back(expected[i] > 0 ? double(counts[i]) / (n * expected[i]) : 1);
+        for (const Point<D>& c : inside[i])
+            by_distance.emplace_back(distance(domain.at(c)), dense[i]);
+    }
+    const size_t other = size_t((dense[worst] > 1 ? std::min_element(dense.begin(), dense.end())
+                                                  : std::max_element(dense.begin(), dense.end())) -
+                                dense.begin());
+    const std::string width = width_of(-trend_of(by_distance));
+    const bool pieces =
+        M == D && oracle::median(products, 0.1) > 0.98 && oracle::median(products, 0.9) < 1.02;
+    return (pieces ? "every piece of the map has the density of the pdf, but " : "") +
+           ("samples are " + say("%.4g", dense[worst]) +
+            " times as dense as the pdf says, around ") +
+           at(middle_of(worst)) + say(", and %.4g times around ", dense[other]) +
+           at(middle_of(other)) +
+           (pieces          ? ": looks like branches that overlap and leave a gap"
+            : width.empty() ? ""
+                            : ": the pdf is " + width);
+}
+
+// ---- What is wrong with a BSDF ------------------------------------------------------------------
+
+inline bool by_cosines(const std::function<double(const Triple&, const Triple&)>& f,
+                       const Pairs& pairs) {
+    size_t same = 0, compared = 0;
+    for (const auto& [a, b] : pairs) {
+        const Triple turned{-b[1], b[0], b[2]};
+        const double here = f(a, b) / f(b, a), there = f(a, turned) / f(turned, a);
+        if (!(here > 0 && there > 0 && std::isfinite(here * there))) continue;
+        ++compared;
+        same += std::abs(here / there - 1) < 1e-3;
+    }
+    return compared > pairs.size() / 4 && double(same) > 0.95 * double(compared);
+}
+
+// Of directions wo, from steep to grazing, the albedo and its relative error.
+inline std::string albedo_hint(const std::vector<Albedo>& all) {
+    const Albedo* worst = nullptr;
+    std::string list;
+    for (const Albedo& a : all) {
+        if (a.mean <= 1 + 1e-3 + 5 * a.error * a.mean) continue;
+        if (!worst || a.mean > worst->mean) worst = &a;
+    }
+    if (!worst) return "";
+    for (const Albedo& a : all)
+        list += (list.empty() ? "" : ", ") + say("%.3g at cos %.2g", a.mean, a.wo[2]);
+    const double steep = all[0].mean;
+    return "an albedo of " + times(worst->mean, std::max(0.003, 3 * worst->error)) +
+           ": more leaves than comes, for wo = " + say_point(worst->wo) + " (" + list + ")" +
+           (worst->mean > 2 * steep && worst->wo[2] * all[0].wo[2] < 0.3
+                ? "; looks like masking forgotten, or a division by the cosine of wo"
+            : worst->mean < 2 * steep ? "; is a constant factor (1/pi, 1/4) missing?"
+                                      : "");
+}
+
+// ---- What is wrong with a choice ----------------------------------------------------------------
+
+inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
+                               double none, size_t worst,
+                               const std::function<bool(const std::vector<double>&)>& explains) {
+    const size_t count = expected.size();
+    double samples = none, total = 0;
+    for (size_t i = 0; i < count; ++i) samples += seen[i], total += expected[i];
+    auto list = [&](const std::vector<double>& p, double scale) {
+        std::string text;
+        for (double x : p) text += (text.empty() ? "" : ", ") + say("%.3g", x / scale);
+        return text;
+    };
+    // Few are all listed.
+    const std::string all =
+        count > 8 ? "" : "; chosen are " + list(seen, samples) + ", expected " + list(expected, 1);
+    if (none > 0 && std::abs(total - 1) < 1e-6)
+        return percent(none / samples) +
+               " of the choices are none, though the probabilities sum to 1";
+    if (count == 1 && explains({1 - total}))
+        return percent(seen[0] / samples) + " are chosen, " + percent(total) +
+               " expected: looks like a comparison turned round (p for 1 - p)";
+    for (size_t i = 0; i < count; ++i) {
+        if (seen[i] > 0 || expected[i] * samples < 20) continue;
+        std::string first =
+            say("index %zu is never chosen, though its probability is %.4g", i, expected[i]);
+        for (size_t j = 0; j < count; ++j) {
+            auto merged = expected;
+            merged[j] += std::exchange(merged[i], 0);
+            if (j != i && explains(merged))
+                return first + say("; %zu takes its share", j) +
+                       (i + 1 == count || i == 0 ? ": a search that ends too early" : "");
+        }
+        return first + all;
+    }
+    std::string first = say("index %zu is chosen %.4g times as often as its probability %.4g says",
+                            worst, seen[worst] / (expected[worst] * samples), expected[worst]);
+    if (expected[worst] == 0)
+        first = say("index %zu is chosen, though its probability is 0", worst);
+    const auto even = [&](const std::vector<double>& p) {
+        const auto [low, high] = std::minmax_element(p.begin(), p.end());
+        return *high < *low * (1 + 1e-6);
+    };
+    auto turned = expected;
+    std::reverse(turned.begin(), turned.end());
+    if (count == 2 && explains(turned))
+        return first + "; looks like the two exchanged (p for 1 - p)" + all;
+    for (long by : {1L, long(count) - 1}) {
+        turned = expected;
+        std::rotate(turned.begin(), turned.begin() + by, turned.end());
+        if (count > 3 && explains(turned))
+            return first + "; looks like index and probability shifted by one" + all;
+    }
+    if (explains(std::vector<double>(count, total / double(count))))
+        return first + "; looks like a uniform choice" + all;
+    if (even(expected))
+        return first + "; looks like probabilities of a uniform choice, which this is not" + all;
+    // As often as the probabilities of others say: of few numbers by chance.
+    std::vector<size_t> by_seen(count), by_expected(count);
+    for (size_t i = 0; i < count; ++i) by_seen[i] = by_expected[i] = i;
+    std::sort(by_seen.begin(), by_seen.end(),
+              [&](size_t a, size_t b) { return seen[a] < seen[b]; });
+    std::sort(by_expected.begin(), by_expected.end(),
+              [&](size_t a, size_t b) { return expected[a] < expected[b]; });
+    for (size_t i = 0; i < count; ++i) turned[by_seen[i]] = expected[by_expected[i]];
+    if (count > 3 && explains(turned))
+        return first + "; looks like the probabilities in another order" + all;
+    return first + all;
 }
 
 // ---- What is wrong with an image ----------------------------------------------------------------
+
+// The rectangle of the pixels that are off, if most in it are, and all others are right.
+inline std::string Image::all_others_right() const {
+    size_t x0 = width, x1 = 0, y0 = height, y1 = 0, off = 0;
+    for (size_t i = 0; i < n(); ++i) {
+        if (std::abs(f[i] - truth[i]) <= 5 * s[i] + 1e-6 * std::abs(truth[i])) continue;
+        x0 = std::min(x0, i % width), x1 = std::max(x1, i % width);
+        y0 = std::min(y0, i / width), y1 = std::max(y1, i / width);
+        ++off;
+    }
+    if (off == 0) return "";
+    const size_t inside = (x1 - x0 + 1) * (y1 - y0 + 1);
+    if (2 * off < inside || 2 * inside > n()) return "";
+    std::vector<double> mended = truth;
+    double seen = 0, wanted = 0, variance = 0;
+    for (size_t y = y0; y <= y1; ++y)
+        for (size_t x = x0; x <= x1; ++x) {
+            const size_t i = y * width + x;
+            mended[i] = f[i];
+            seen += f[i], wanted += truth[i], variance += s[i] * s[i];
+        }
+    if (against(mended).p <= o.alpha) return "";
+    const double ratio = seen / wanted, error = std::sqrt(variance);
+    return (inside == 1 ? say("pixel (%zu, %zu) is ", x0, y0)
+                        : say("pixels (%zu, %zu) to (%zu, %zu) are ", x0, y0, x1, y1)) +
+           (std::abs(seen) <= 5 * error ? "black"
+            : wanted == 0               ? "not black"
+                          : times(ratio, 5 * error / std::abs(seen)) + " times the reference") +
+           ", all others are right";
+}
 
 inline std::string Image::hint(const ImageResult& r) const {
     double sum = 0, sum_f = 0, variance = 0;
@@ -2935,6 +3449,7 @@ inline std::string Image::hint(const ImageResult& r) const {
     }
     if (width > 4 && height > 4 && against(turned).p <= o.alpha)
         shifted(1, 0, "left"), shifted(-1, 0, "right"), shifted(0, 1, "up"), shifted(0, -1, "down");
+    if (first.empty()) first = all_others_right();
     if (first.empty() && r.by_block) {
         const size_t x0 = (r.block % 4 * width + 3) / 4, x1 = ((r.block % 4 + 1) * width + 3) / 4,
                      y0 = (r.block / 4 * height + 3) / 4, y1 = ((r.block / 4 + 1) * height + 3) / 4;
@@ -2982,16 +3497,23 @@ struct Drawing {
         std::string file;
         for (char c : name.empty() ? say("check-%d", ++unnamed) : name)
             file += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
-        std::error_code ignored;
-        std::filesystem::create_directories(pictures, ignored);
+        for (size_t end = 0; end != std::string::npos;) {
+            end = pictures.find('/', end + 1);
+#ifdef _WIN32
+            (void)_mkdir(pictures.substr(0, end).c_str());
+#else
+            (void)mkdir(pictures.substr(0, end).c_str(), 0777);
+#endif
+        }
         const std::string path = pictures + "/oracle-" + file.substr(0, 100) + ".svg";
-        std::ofstream out(path);
-        out << say("<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f' ", width,
-                   height)
-            << "font-family='sans-serif' font-size='12' shape-rendering='crispEdges'>\n<rect "
-               "width='100%' height='100%' fill='white'/>\n"
-            << body << "</svg>\n";
-        return out ? "\nsee " + path : "\n" + path + ": cannot be written";
+        std::FILE* out = std::fopen(path.c_str(), "w");
+        if (!out) return "\n" + path + ": cannot be written";
+        std::fprintf(out,
+                     "<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f' "
+                     "font-family='sans-serif' font-size='12' shape-rendering='crispEdges'>\n"
+                     "<rect width='100%%' height='100%%' fill='white'/>\n%s</svg>\n",
+                     width, height, body.c_str());
+        return (std::fclose(out) == 0 ? "\nsee " : "\ncannot be written: ") + path;
     }
 };
 

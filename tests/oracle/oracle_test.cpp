@@ -323,7 +323,7 @@ TEST_CASE("densities on other domains, with jumps and with failing samples, need
     CHECK(!expect_density(random, disc, denser, o).pass);
     CHECK(!expect_density(random, four, cube, box, o).pass);
     CHECK(!expect_density(random, mixed_direction, mixed_pdf(0.7), o).pass);
-    says(expect_density(random, rootless, per_area, t, o), "dense");
+    says(expect_density(random, rootless, per_area, t, o), "without its root");
     says(expect_density(random, outside, per_area, t, o), "outside of the domain");
 }
 

@@ -1,4 +1,6 @@
 // whole/closed_forms_test.cpp  scenes of known radiance, by every technique, at one significance
+#include <sstream>
+
 #include "app/options.h"
 #include "base/moments.h"
 #include "oracle/expect.h"

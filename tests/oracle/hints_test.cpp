@@ -1,0 +1,216 @@
+// oracle/hints_test.cpp  the first line of a refusal leads to the mistake
+#include <doctest/doctest.h>
+
+#include "oracle/expect.h"
+#include "oracle/textbook.h"
+
+using namespace oracle;
+
+namespace {
+
+using Pair = std::pair<double, double>;
+using Words = std::pair<Verdict, const char*>;
+
+void all_say(const std::vector<Words>& refused) {
+    for (const auto& [v, words] : refused) {
+        CHECK(!v.pass);
+        says(v, words);
+        CHECK(v.text.find(words) < v.text.find('\n'));
+    }
+}
+
+Triple about_z(double z, double phi) {
+    const double r = std::sqrt(std::max(0.0, 1 - z * z));
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+Triple unit(const Triple& a) {
+    const double length = std::sqrt(dot(a, a));
+    return {a[0] / length, a[1] / length, a[2] / length};
+}
+Triple cosine(double u, double v) { return about_z(std::sqrt(u), 2 * pi * v); }
+double cosine_pdf(const Triple& w) { return std::max(0.0, w[2]) / pi; }
+
+// The density of microfacets' normals by Trowbridge and Reitz, and its sampler.
+double facets(double z, double alpha) {
+    const double a2 = alpha * alpha, d = z * z * (a2 - 1) + 1;
+    return a2 / (pi * d * d);
+}
+Triple facet(double u, double v, double alpha) {
+    return about_z(std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), 2 * pi * v);
+}
+Triple half_of(const Triple& a, const Triple& b) {
+    return unit({a[0] + b[0], a[1] + b[1], a[2] + b[2]});
+}
+
+}  // namespace
+
+TEST_CASE("hints: directions") {
+    const Aside aside;
+    Random random(seed_here());
+    // The second wedge of the concentric map, turned too little, lies on the first.
+    auto wedges = [](double u, double v) {
+        const double a = 2 * u - 1, b = 2 * v - 1;
+        const bool first = std::abs(a) > std::abs(b);
+        const double r = first ? a : b, phi = first ? pi / 4 * (b / a) : pi / 4 * (1 - a / b);
+        return Triple{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
+    };
+    auto even = [](Triple w) { return w[2] > 0 ? 1 / (2 * pi) : 0; };
+    auto normals = [](double u, double v) { return facet(u, v, 0.4); };
+    auto narrow = [](Triple w) { return w[2] > 0 ? facets(w[2], 0.2) * w[2] : 0; };
+    // A disc at z = 3, tilted: the cosine of the receiver in place of that of the light.
+    const Triple n = unit({0.6, 0, -1}), across = unit({1, 0, 0.6});
+    auto disc = [=](double u, double v) {
+        const double a = std::sqrt(u) * std::cos(2 * pi * v),
+                     b = std::sqrt(u) * std::sin(2 * pi * v);
+        return unit({a * across[0], b, 3 + a * across[2]});
+    };
+    auto per_area = [=](Triple w) {
+        const double t = 3 * n[2] / dot(w, n);
+        const Triple p{t * w[0], t * w[1], t * w[2] - 3};
+        return dot(w, n) < 0 && dot(p, p) < 1 ? t * t / (w[2] * pi) : 0;
+    };
+    // Rows of an environment map: kinks of the map, and sin(theta) left out of the pdf.
+    const std::array<double, 4> rows{1, 3, 2, 2};
+    auto texels = [=](double u, double v) {
+        double x = 8 * v;
+        size_t j = 0;
+        while (j < 3 && x >= rows[j]) x -= rows[j++];
+        return about_z(std::cos(pi * (double(j) + x / rows[j]) / 4), 2 * pi * u);
+    };
+    auto no_sine = [=](Triple w) {
+        const double row = std::acos(std::clamp(w[2], -1.0, 1.0)) / pi * 4;
+        return rows[std::min<size_t>(3, size_t(row))] / (4 * pi * pi);
+    };
+    auto cube = [&] { return unit({2 * random() - 1, 2 * random() - 1, 2 * random() - 1}); };
+    auto mixture = [](double choice, double u, double v) {
+        return about_z(std::pow(u, choice < 0.3 ? 1 / 2.0 : 1 / 21.0), 2 * pi * v);
+    };
+    auto exchanged = [](Triple w) {
+        return w[2] > 0 ? (0.7 * 2 * w[2] + 0.3 * 21 * std::pow(w[2], 20)) / (2 * pi) : 0;
+    };
+    auto either_side = [](double choice, double u, double v) {
+        Triple w = cosine(u, v);
+        if (choice > 2.0 / 3) w[2] = -w[2];
+        return w;
+    };
+    auto half_each = [](Triple w) { return std::abs(w[2]) / (2 * pi); };
+    auto sphere = [](double u, double v) { return about_z(1 - 2 * u, 2 * pi * v); };
+    auto more_above = [](Triple w) { return (w[2] > 0 ? 0.6 : 0.4) / (2 * pi); };
+    auto forward = [](double, double u, double v) {
+        return about_z(2 * std::sqrt(u) - 1, 2 * pi * v);
+    };
+    auto backward = [](Triple w) { return (1 - w[2]) / (4 * pi); };
+    auto eighth_more = [](Triple w) { return 1.125 * cosine_pdf(w); };
+    all_say(
+        {{expect_density(random, wedges, cosine_pdf), "branches that overlap and leave a gap"},
+         {expect_density(random, cosine, even), "the pdf is uniform, samples are not"},
+         {expect_density(random, normals, narrow), "narrower than the samples (a roughness"},
+         {expect_density(random, disc, per_area), "the cosine to (-0.5145"},
+         {expect_density(random, texels, no_sine), "a density per (theta, phi)"},
+         {expect_density(random, cube, [](Triple) { return 1 / (4 * pi); }), "points of a cube"},
+         {expect_density(random, mixture, exchanged), "the pdf is wider than the samples"},
+         {expect_density(random, either_side, half_each),
+          "times where it is < 0: looks like the probability of one side"},
+         {expect_density(random, sphere, more_above),
+          "1.2 times the density of the samples where z > 0"},
+         {expect_density(random, forward, backward), "z negated in one of the two"},
+         {expect_density(random, cosine, eighth_more),
+          "times the density of the samples, everywhere: a constant factor"}});
+}
+
+TEST_CASE("hints: points") {
+    const Aside aside;
+    Random random(seed_here());
+    auto times_sigma = [](double u) { return -std::log1p(-u) * 2.5; };
+    auto exponential = [](double t) { return t < 0 ? 0 : 2.5 * std::exp(-2.5 * t); };
+    auto without_2 = [](double u, double v) {
+        const double r = std::sqrt(-std::log1p(-u));
+        return Pair{r * std::cos(2 * pi * v), r * std::sin(2 * pi * v)};
+    };
+    auto normal = [](Pair x) {
+        return std::exp(-(x.first * x.first + x.second * x.second) / 2) / (2 * pi);
+    };
+    // Angles to a light beside the line's first point; the pdf counts from that, too.
+    const double a = std::atan(-2.0), b = std::atan(4.0);
+    auto closest = [=](double u) { return 1 + 0.5 * std::tan(a + u * (b - a)); };
+    auto start = [=](double t) { return t < 0 || t > 3 ? 0 : 0.5 / ((b - a) * (0.25 + t * t)); };
+    auto slope = [](double u, double v) { return Pair{(std::sqrt(1 + 8 * u) - 1) / 2, v}; };
+    auto along_y = [](Pair x) { return (1 + 2 * x.second) / 2; };
+    const Triangle<2> triangle{{0, 0}, {1, 0}, {0, 1}};
+    auto clamped = [](double u) { return std::min(1.0, 1.5 * u); };
+    auto rootless = [](double u, double v) { return Point<2>{u, v * (1 - u)}; };
+    all_say(
+        {{expect_density(
+              random, clamped, [](double) { return 1.0; }, Interval{0, 1}),
+          "looks like numbers clamped to an end"},
+         {expect_density(random, times_sigma, exponential), "6.25 times as wide"},
+         {expect_density(random, without_2, normal), "(1 over the root of 2) times as wide"},
+         {expect_density(random, closest, start, Interval{0, 3}), "moved by 1"},
+         {expect_density(random, slope, along_y, Square{}), "x and y exchanged in one of the two"},
+         {expect_density(
+              random, rootless, [](Point<2>) { return 2.0; }, triangle),
+          "(-2 x + 2): looks like a number that is not warped"}});
+}
+
+TEST_CASE("hints: BSDFs") {
+    const Aside aside;
+    Random random(seed_here());
+    auto sample = [](Triple, double u, double v) { return cosine(u, v); };
+    auto pdf = [](Triple, Triple wi) { return cosine_pdf(wi); };
+    auto judged = [&](auto factor) {
+        auto eval = [=](Triple wo, Triple wi) {
+            return wo[2] > 0 && wi[2] > 0 ? factor(wo, wi) : 0.0;
+        };
+        return expect_bsdf(random, sample, pdf, eval, {.alpha = 1e-3, .sees = 0.03});
+    };
+    auto lobe = [](Triple wo, Triple wi) {
+        const double c = wo[2] * wi[2] - wo[0] * wi[0] - wo[1] * wi[1];
+        return std::pow(std::max(0.0, c), 4) / pi;
+    };
+    all_say(
+        {{judged([&](Triple wo, Triple wi) { return lobe(wo, wi) / wo[2]; }),
+          "eval divided by that of wo"},
+         {judged([&](Triple wo, Triple wi) { return lobe(wo, wi) * (1 + std::pow(1 - wi[2], 5)); }),
+          "by a factor of their cosines alone (Fresnel"},
+         {judged([](Triple wo, Triple wi) {
+              return facets(half_of(wo, wi)[2], 0.5) / (4 * wo[2] * wi[2]);
+          }),
+          "masking forgotten"},
+         {judged([](Triple, Triple) { return 0.7; }),
+          "is a constant factor (1/pi, 1/4) missing?"}});
+}
+
+TEST_CASE("hints: choices and images") {
+    const Aside aside;
+    Random random(seed_here());
+    auto chosen = [&](std::vector<double> seen, std::vector<double> p) {
+        auto choose = [=](double u) {
+            for (size_t i = 0; i < seen.size(); ++i)
+                if ((u -= seen[i]) < 0) return int(i);
+            return -1;
+        };
+        return expect_choice(
+            random, choose, [=](int i) { return p[size_t(i)]; }, p.size());
+    };
+    auto image = [](auto wrong) {
+        std::vector<double> values, errors, truth;
+        for (size_t i = 0; i < 16 * 12; ++i) {
+            truth.push_back(1 + double(i % 16) * double(i / 16) / 50);
+            errors.push_back(0.01);
+            values.push_back(truth.back() * wrong(i % 16, i / 16));
+        }
+        return expect_image(16, 12, values, errors, truth);
+    };
+    all_say(
+        {{chosen({0.1, 0.2, 0.7}, {0.1, 0.2, 0.3, 0.4}), "2 takes its share: a search that ends"},
+         {chosen({0.2}, {0.8}), "a comparison turned round"},
+         {chosen({0.1, 0.5, 0.4}, {1 / 3.0, 1 / 3.0, 1 / 3.0}), "which this is not"},
+         {chosen({0.1, 0.4, 0.3, 0.2}, {0.4, 0.2, 0.3, 0.1}), "in another order"},
+         {chosen({0.5, 0.2, 0.3}, {0.4, 0.3, 0.3}), "expected 0.4, 0.3, 0.3"},
+         {image([](size_t, size_t y) { return y == 11 ? 0.0 : 1.0; }),
+          "pixels (0, 11) to (15, 11) are black, all others are right"},
+         {image([](size_t x, size_t y) { return x < 4 && y > 7 ? 1.5 : 1.0; }),
+          "pixels (0, 8) to (3, 11) are 1.5 times"},
+         {image([](size_t x, size_t y) { return x == 7 && y == 9 ? 0.5 : 1.0; }),
+          "pixel (7, 9) is 0.5 (1/2, half) times the reference, all others are right"}});
+}
