@@ -1,4 +1,4 @@
-// app/keep.h  2  films in files, if this program was built with the module keep
+// app/keep.h  2  films in files, if src/keep is there
 #pragma once
 #include "film/film.h"
 

@@ -9,7 +9,7 @@ enum class View { radiance, normal, depth, albedo, bvh };
 inline constexpr Text view_names = "radiance|normal|depth|albedo|bvh";
 
 struct Rows {
-    int first = 0, last = 0;  // of the picture, from the top
+    int first = 0, last = 0;  // row 0 is at the top of the picture
 
     int count() const { return last - first + 1; }
 };
@@ -17,7 +17,7 @@ struct Rows {
 struct Options : CommonOptions {
     uint64_t spp = 0;   // 0: the scene's, unless seconds or an error are given
     double error = 0;   // d_rel to stop at; 0: none
-    uint32_t sets = 0;  // replications of each pixel; 0: two, and more where noise is
+    uint32_t sets = 0;  // replications per pixel; 0: adaptive
     SamplerKind sampler = SamplerKind::sobol;
     Technique technique;
     std::optional<int> depth;  // default: the scene's
@@ -140,7 +140,7 @@ inline OptionTable option_table(Options& o) {
            general_rows(o);
 }
 
-// Throws UserError about the first word that cannot be used, or goes with no other.
+// Throws UserError about the first word that cannot be used, or does not go with the others.
 inline void parse_options(OptionTable& table, Options& o, const std::vector<std::string>& words) {
     parse_words(table, words, o);
     if (is_given(table, "--sample") && !is_given(table, "--pixel"))
@@ -152,7 +152,7 @@ inline void parse_options(OptionTable& table, Options& o, const std::vector<std:
         throw UserError("--rows: needs --keep F.film, which build/merge takes, or -o");
 }
 
-// Samples of each replication, of N a pixel; 0: not known.
+// Samples of each replication, for N samples per pixel; 0: not known.
 inline uint64_t samples_each(const Options& o, uint64_t N) {
     const uint64_t K = o.sets ? o.sets : 2;
     return (N + K - 1) / K;

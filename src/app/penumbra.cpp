@@ -25,7 +25,7 @@ Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 129 SIGHUP), after writing the image of the samples so far.
 )";
 
-// The samples of one pixel after the other.  A path ends early once nobody waits for it.
+// The function that renders a sample.  It abandons a path after an interrupt.
 Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
                      const Witness& witness) {
     return [&](const PixelSample& s, Tally& tally) {
@@ -41,7 +41,7 @@ Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& patter
     };
 }
 
-// What must agree when a film is gone on with, or merged with others.
+// Facts that must agree when a film is resumed, or merged with others.
 FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, const Plan& plan,
                const Pattern& p) {
     const Scene& scene = parsed.scene;

@@ -1,4 +1,4 @@
-// app/replay.h  4  one path in words (--pixel)
+// app/replay.h  4  prints the events of one path (--pixel)
 #pragma once
 #include <cstdio>
 
@@ -48,7 +48,7 @@ private:
     const Scene& scene_;
     std::FILE* out_;
 
-    // Where the scene's file has this shape.
+    // The material of this shape, and its line in the scene's file.
     std::string origin(uint32_t shape) const {
         if (scene_.line_of.empty()) return "";
         return ", material " + in_quotes(scene_.names[scene_.material_of[shape]]) + ", line " +

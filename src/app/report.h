@@ -65,7 +65,7 @@ struct Run : Spent {
     double spp = 0;  // mean samples per pixel; 0: some pixel has none
     bool interrupted = false;
     std::string stopped_by;   // "samples", "time", "error", "error not known" or "interrupt"
-    bool is_radiance = true;  // false: a view, whose error is not reported
+    bool is_radiance = true;  // false: a view; its error is not reported
     ImageError error;
     std::string doubt;              // why that may be far too small, or ""
     double sets = 1;                // mean replications per pixel

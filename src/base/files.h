@@ -19,7 +19,7 @@
 
 // ---- Reading ------------------------------------------------------------------------------------
 
-// A regular file or, if asked for, whatever has that name: a pipe may keep us waiting, a device may
+// Opens a regular file, or, `of_any_kind`, also a pipe, which may block, or a device, which may
 // never end.  Throws UserError if it cannot be opened.
 inline std::ifstream open_file(const std::string& path, bool of_any_kind = false) {
     std::error_code unreachable;
@@ -32,14 +32,14 @@ inline std::ifstream open_file(const std::string& path, bool of_any_kind = false
     return in;
 }
 
-// Returns how many bytes there were: fewer than asked for only at the end.
+// Returns the number of bytes read.  It is less than asked for only at the end.
 inline size_t read_from(std::istream& in, const std::string& path, std::span<std::byte> bytes) {
     in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
     if (in.bad()) throw SystemError(path + ": cannot read: " + std::strerror(errno));
     return size_t(in.gcount());
 }
 
-// All of it.  Files of /proc do not tell how long they are, and what is no file may never end.
+// The whole file.  Files of /proc have no known length, and a device may never end.
 inline std::string read_file(const std::string& path, bool of_any_kind = false,
                              size_t most = 1 << 30) {
     std::ifstream in = open_file(path, of_any_kind);
@@ -54,7 +54,7 @@ inline std::string read_file(const std::string& path, bool of_any_kind = false,
 
 // ---- Names --------------------------------------------------------------------------------------
 
-// One name for a file, however the user writes it: what links lead to.
+// A unique name of a file, with links resolved.
 inline std::string true_name(const std::string& path) {
     std::error_code unreachable;
     const auto name = std::filesystem::absolute(path, unreachable);
@@ -62,16 +62,16 @@ inline std::string true_name(const std::string& path) {
     return unreachable ? path : plain.string();
 }
 
-// Whether the name stands for a device, a pipe or the like, which no file can replace, or for what
-// stdout leads to.
+// True for a device, a pipe or the like, which no file can replace, and for the file that stdout is
+// redirected to.
 inline bool is_stream(const std::string& path) {
     std::error_code unreachable;
     return path.starts_with("/dev/std") || path.starts_with("/dev/fd/") ||
            std::filesystem::is_other(std::filesystem::status(path, unreachable));
 }
 
-// The file that is written first: ".NAME.HOST.partPROCESS" beside it, not longer than names may be.
-// Machines that share a folder have processes of the same number.
+// The temporary file, ".NAME.HOST.partPROCESS" in the same folder, with a name of legal length.
+// Machines that share a folder may have processes of the same number.
 inline std::filesystem::path aside(const std::string& path,
                                    const std::string& process = std::to_string(::getpid())) {
     char host[65] = "";
@@ -81,7 +81,7 @@ inline std::filesystem::path aside(const std::string& path,
     return target.parent_path() / ("." + name + "." + host + ".part" + process);
 }
 
-// Removes what processes of this machine that were killed have left beside `path`.
+// Removes temporary files of `path` that killed processes of this machine have left.
 inline void remove_stale(const std::string& path) {
     const std::filesystem::path part = aside(path, "");
     const std::string start = part.filename().string();
@@ -100,10 +100,9 @@ inline void remove_stale(const std::string& path) {
 // Bytes that follow each other in a file.
 using Pieces = std::vector<std::span<const std::byte>>;
 
-// Opens `path`, writes the pieces and closes it; to be `durable` they are on the disk before that.
-// Returns 0, or errno of what failed.  What a signal interrupts is tried again, but for close(2),
-// which has closed.  fsync(2) that failed is not: what it could not write is lost, and the next one
-// succeeds.
+// Opens `path`, writes the pieces, flushes them to the disk if `durable`, and closes it.  Returns 0
+// or errno.  A call that a signal interrupts is repeated, except close(2), which has closed the
+// file.  A failed fsync(2) is not repeated: the next one would succeed although data are lost.
 inline int put(const std::string& path, int flags, const Pieces& pieces, bool durable) {
     const int fd = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
     if (fd < 0) return errno;
@@ -135,10 +134,10 @@ inline void check_writable(const std::string& path) {
     if (why) throw UserError(path + ": cannot write: " + why.message());
 }
 
-// The file is written beside `path`, and renamed: a reader never sees half of it, and if anything
-// fails, the old one stays as it was, and nothing beside it.  To survive the loss of power, its
-// bytes are on the disk before its name is, and the folder's entry before we return: 12 ms each.
-// A stream is written to directly.  Throws SystemError at whatever goes wrong.
+// Writes a temporary file and renames it: a reader never sees half of it.  On failure the old file
+// stays as it was, and no temporary file is left.  To survive a power failure, the bytes are on the
+// disk before the rename, and the folder's entry before the return: 12 ms each.  A device or a pipe
+// is written to directly.  Throws SystemError on any failure.
 inline void write_file(const std::string& path, const Pieces& pieces) {
     auto check = [&](int error) {
         if (error != 0) throw SystemError(path + ": cannot write: " + std::strerror(error));
@@ -150,7 +149,7 @@ inline void write_file(const std::string& path, const Pieces& pieces) {
     if (error != 0) ::unlink(part.c_str());
     check(error);
     error = put(aside(path).parent_path(), O_RDONLY | O_DIRECTORY, {}, true);
-    check(error == EINVAL ? 0 : error);  // of a file system that cannot do this
+    check(error == EINVAL ? 0 : error);  // EINVAL: this file system cannot flush a folder
 }
 
 inline void write_file(const std::string& path, std::string_view bytes) {

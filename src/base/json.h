@@ -20,7 +20,7 @@ inline std::string fixed(double x, int digits) {
     return text;
 }
 
-// With so many digits, wherever the point is: "0.02", and as many as there are before it: "234".
+// With so many significant digits: "0.02"; but all digits before the decimal point: "234".
 inline std::string significant(double x, int digits) {
     char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, x);
@@ -29,7 +29,7 @@ inline std::string significant(double x, int digits) {
 
 namespace json {
 
-// Bytes of the character that a text begins with; 0: what it begins with is no UTF-8.
+// Number of bytes of the text's first character; 0: the text does not begin with UTF-8.
 inline size_t utf8_length(std::string_view text) {
     const uint32_t first = static_cast<unsigned char>(text[0]);
     const size_t n = first < 0x80         ? 1
@@ -66,7 +66,7 @@ inline std::string string(std::string_view text) {
     return out + '"';
 }
 
-// JSON has no NaN: what is not known is null.
+// JSON has no NaN: an unknown number is null.
 inline std::string number(double x) {
     char text[40];
     std::snprintf(text, sizeof text, "%.17g", x);
@@ -80,7 +80,7 @@ inline std::string numbers(std::array<double, 3> x) {
 
 inline std::string truth(bool b) { return b ? "true" : "false"; }
 
-// An object of one member a line.
+// An object with one member per line.
 class Object {
 public:
     void add(const std::string& key, const std::string& value) {

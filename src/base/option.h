@@ -25,7 +25,7 @@ struct Option {
     std::function<std::string()> json = {};  // its value in --stats; none: not there
     Text also = {};                          // another name
     Text group = {};                         // heading in --help
-    bool given = false;                      // by the user
+    bool given = false;                      // the user gave this option
 };
 using OptionTable = std::vector<Option>;
 
@@ -168,7 +168,7 @@ inline OptionTable general_rows(CommonOptions& o) {
 
 // ---- Words to options ---------------------------------------------------------------------------
 
-// Hands words that are no options, and all that follow "--", to `other`.  Throws UserError about
+// Passes words that are no options, and all words after "--", to `other`.  Throws UserError about
 // the first word that cannot be used.
 inline void parse_words(OptionTable& table, const std::vector<std::string>& words,
                         const std::function<void(const std::string&)>& other) {
@@ -211,7 +211,7 @@ inline void parse_words(OptionTable& table, const std::vector<std::string>& word
 
 // ---- Options to words ---------------------------------------------------------------------------
 
-// What the user asked for: --stats begins with it.
+// The user's options, which come first in --stats.
 inline json::Object asked_for(const OptionTable& table, const std::string& scene, Size size) {
     json::Object object;
     object.add("scene", json::string(scene));

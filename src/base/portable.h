@@ -1,9 +1,9 @@
 // base/portable.h  1  exponentials and logarithms with the same bits everywhere
 //
-// C libraries round exp, log and pow each in its own way, and glibc by the processor: one result of
-// a thousand differs.  What an image depends on is these, `turned` of world/warp.h for sines, and
-// what IEEE 754 rounds: + - * / sqrt fma.  Powers of two are taken off exactly; of what is left
-// Taylor's polynomials are exact to rounding.  Errors are below 3 * 2^-53.  Always double.
+// Each C library rounds exp, log and pow in its own way, and glibc even by the processor: one
+// result in a thousand differs.  Images use only these functions, `turned` of world/warp.h, and
+// what IEEE 754 rounds: + - * / sqrt fma.  Powers of two are split off exactly.  The remainder goes
+// to Taylor polynomials that are exact to rounding.  Errors are below 3 * 2^-53.  Always double.
 #pragma once
 #include <bit>
 #include <cmath>

@@ -19,7 +19,7 @@ inline int finished(int status) {
     return status;
 }
 
-// The same for main's catch (...), with a line on stderr: 2 if the user can mend it, else 1.
+// Prints the error that main caught.  Returns 2 if the user can fix it, else 1.
 inline int failed() {
     auto tell = [](int status, const char* why) {
         std::fprintf(stderr, "%s\n", printable(why).c_str());

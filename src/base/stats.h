@@ -1,17 +1,16 @@
-// base/stats.h  1  moments that do not cancel
+// base/stats.h  1  mean and variance without cancellation
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-// A sum of numbers >= 0 that is the same in any order: in multiples of 2^-60.
+// A sum of numbers >= 0, in multiples of 2^-60: it does not depend on their order.
 __extension__ typedef unsigned __int128 FixedPoint;
 inline FixedPoint fixed_point(double x) { return FixedPoint(std::min(x, 0x1p40) * 0x1p60); }
 inline double value_of(FixedPoint sum) { return std::ldexp(double(sum), -60); }
 
-// Count, mean and squared distances to it, one number at a time (Welford 1962) or merged (Chan,
-// Golub, LeVeque 1983).  Always double: these are statements about numbers, not numbers of the
-// renderer.
+// Count, mean and sum of squared deviations, updated by one number (Welford 1962) or merged (Chan,
+// Golub, LeVeque 1983).  Always double, also where the renderer uses float.
 struct Moments {
     uint64_t n = 0;
     double mean = 0;
@@ -32,6 +31,6 @@ struct Moments {
         n += other.n;
     }
 
-    double variance() const { return n > 1 ? m2 / double(n - 1) : 0; }  // of one x, unbiased
+    double variance() const { return n > 1 ? m2 / double(n - 1) : 0; }  // unbiased, for one x
     double standard_error() const { return n ? std::sqrt(variance() / double(n)) : 0; }
 };

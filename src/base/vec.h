@@ -32,7 +32,7 @@ struct vec2 {
 struct vec3 {
     real x = 0, y = 0, z = 0;
 };
-using rgb = vec3;  // linear radiance or reflectance, one number a channel
+using rgb = vec3;  // linear radiance or reflectance, one number per channel
 
 // A coordinate axis, to be used as v.*axis[i].
 inline constexpr real vec3::*axis[3] = {&vec3::x, &vec3::y, &vec3::z};
@@ -54,14 +54,14 @@ inline real length(vec3 a) { return std::sqrt(dot(a, a)); }
 inline real max_of(vec3 a) { return std::max({a.x, a.y, a.z}); }
 inline real max_abs(vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
-// Of a vector whose square is denormal or infinite: a power of two makes it normal, exactly.
+// The square of this vector is denormal or infinite; scaling by a power of two, exactly, helps.
 [[gnu::noinline]] inline vec3 unit_of_extreme(vec3 a) {
     constexpr int exponent = std::numeric_limits<real>::max_exponent / 4 * 3;
     a = a * std::ldexp(real(1), max_abs(a) < 1 ? exponent : -exponent);
     return a / length(a);
 }
 
-// Within 4.5 ulp, whatever the length.  Inlined whatever GCC thinks of it: paths are full of it.
+// Within 4.5 ulp for any length.  Always inlined: paths call it all the time.
 [[gnu::always_inline]] inline vec3 unit(vec3 a) {
     const real a2 = dot(a, a);
     if (!std::isnormal(a2)) [[unlikely]]
@@ -101,7 +101,7 @@ struct Frame {
     vec3 to_local(vec3 v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
 };
 
-// Frame about the unit vector n, continuous but for the plane n.z = 0, stable at both poles
+// Frame about the unit vector n, continuous except at the plane n.z = 0, stable at both poles
 // (Duff et al. 2017, JCGT 6(1)).
 inline Frame frame(vec3 n) {
     real sign = std::copysign(real(1), n.z);

@@ -1,4 +1,4 @@
-// base/words.h  1  errors that the user can mend
+// base/words.h  1  user errors, numbers from words, suggestions
 #pragma once
 #include <algorithm>
 #include <cerrno>
@@ -13,18 +13,18 @@
 #include <string_view>
 #include <vector>
 
-// What the user wrote cannot be used: message for stderr, exit status 2.
+// The user's input cannot be used: message for stderr, exit status 2.
 struct UserError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// The machine failed us (a full disk, say): message for stderr, exit status 1.
+// The system failed, as with a full disk: message for stderr, exit status 1.
 struct SystemError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// A message on one line of a terminal: '?' for control characters, which might move its cursor.
-// Names of files may hold them, and other letters than ASCII's, which stay.
+// A message for one line of a terminal: '?' replaces control characters, which might move the
+// cursor.  File names may contain them.  Other characters stay, ASCII or not.
 inline std::string printable(std::string text) {
     unsigned char before = 0;
     for (char& c : text) {
@@ -36,7 +36,7 @@ inline std::string printable(std::string text) {
     return text;
 }
 
-// The user's word for a message: shortened, with '?' for what a terminal might not print.
+// The user's word for a message: shortened, with '?' for characters that are not printable ASCII.
 inline std::string in_quotes(std::string_view word) {
     std::string shown(word.substr(0, 40));
     for (char& c : shown)
@@ -44,10 +44,10 @@ inline std::string in_quotes(std::string_view word) {
     return "'" + shown + (word.size() > 40 ? "...'" : "'");
 }
 
-// The whole of `text` as a decimal number of [-largest, largest]; throws UserError otherwise.  1e30
-// is the most that any statement or option needs, and float holds it.  strtod rounds correctly, and
-// reads '.' as no program sets a locale; leading blanks and hexadecimal digits, which it takes, are
-// refused.
+// The whole of `text` as a decimal number in [-largest, largest]; throws UserError otherwise.  No
+// statement or option needs more than 1e30, and float holds it.  strtod rounds correctly, and reads
+// '.' because no program sets a locale.  It accepts leading blanks and hexadecimal digits; we do
+// not.
 inline constexpr double largest_number = 1e30;
 inline double parse_number(std::string_view text, double largest = largest_number) {
     const std::string word(text);
@@ -91,7 +91,7 @@ inline std::string counted(uint64_t n, const std::string& noun) {
     return counted(std::to_string(n), noun);
 }
 
-// Width and height of an image, refused before anything is allocated for it.
+// Width and height of an image; parse_size rejects large ones before anything is allocated.
 struct Size {
     int width = 0, height = 0;
 };
@@ -104,7 +104,7 @@ inline Size parse_size(std::string_view width, std::string_view height) {
     return {int(w), int(h)};
 }
 
-// The words of a line before a comment, as white space parts them.
+// The words of a line before a comment, separated by white space.
 using Words = std::vector<std::string>;
 inline Words words_before(std::string_view line, char comment) {
     constexpr std::string_view space = " \t\n\v\f\r";
@@ -152,9 +152,9 @@ inline size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-// "unknown WHAT 'word'", and " (did you mean 'nearest'?)" if any known word is near: what the word
-// begins, or what at most half of the longer one's letters change into.  Of long words the first
-// letters decide.
+// "unknown WHAT 'word'", and " (did you mean 'nearest'?)" if a known word is near: it begins with
+// the word, or edits of at most half of the longer word's letters lead to it.  Only the first 100
+// letters count.
 inline std::string unknown(std::string_view what, std::string_view word,
                            const std::vector<std::string_view>& known) {
     std::string_view nearest;
@@ -168,7 +168,7 @@ inline std::string unknown(std::string_view what, std::string_view word,
            (nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)");
 }
 
-// What has this name; throws UserError "unknown WHAT 'name' (did you mean 'other'?)".
+// The value of this name; throws UserError "unknown WHAT 'name' (did you mean 'other'?)".
 template <class Value>
 const Value& look_up(const std::map<std::string, Value>& defined, const std::string& name,
                      std::string_view what) {

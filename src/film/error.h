@@ -1,24 +1,24 @@
-// film/error.h  3  the error of an image, by the spread of its replications
+// film/error.h  3  the error of an image, estimated from the spread of its replications
 #pragma once
 #include <utility>
 
 #include "film/film.h"
 
-// Of an image f of a truth F: d^2 = mean over pixels and channels of (f - F)^2, in expectation and
-// without the bias of f; d_rel = d / |F|.  NaN: not known.
+// The error of an image f, with the limit F: d^2 is the expected mean of (f - F)^2 over pixels and
+// channels, without the bias of f; d_rel = d / |F|.  NaN: not known.
 struct ImageError {
-    std::array<double, 3> mean{};                 // of the image, a channel at a time
-    std::array<double, 3> square{NAN, NAN, NAN};  // d^2, a channel at a time
+    std::array<double, 3> mean{};                 // of the image, per channel
+    std::array<double, 3> square{NAN, NAN, NAN};  // d^2 per channel
     double spread = NAN;                          // standard error of d^2
-    double norm = NAN;                            // |f|, the image's own quadratic mean
+    double norm = NAN;                            // |f|, the RMS of the image itself
     double greatest = NAN;                        // part of d^2 that comes from the worst pixel
 
     double d2() const { return (square[0] + square[1] + square[2]) / 3; }
     // |F|, for E |f|^2 = |F|^2 + d^2; 0: lost in noise.
     double norm_of_truth() const { return std::sqrt(std::max(0.0, norm * norm - d2())); }
-    // Of a black image not known: all samples may have missed the light.  Infinite: all is noise.
+    // NaN for a black image: all samples may have missed the light.  Infinite if all is noise.
     double d_rel() const { return norm > 0 ? std::sqrt(d2()) / norm_of_truth() : double(NAN); }
-    // The same if there were another pixel like the worst, in which rare light was not seen.
+    // The same, as if there were a second pixel like the worst, where no sample met the light.
     double d_rel_and_unseen() const {
         return d_rel() * std::sqrt(d2() > 0 ? 1 + greatest / d2() : 1);
     }
@@ -28,9 +28,9 @@ struct ImageError {
     double standard_error() const { return d_rel() * spread_of_d_rel(); }
 };
 
-// Sums over pixels.  A pixel's term T is the mean variance of its channels.  T varies by
+// Sums over pixels.  A pixel's term T is the mean variance of its channels.  The variance of T is
 // E[T^2] - E[T]^2, and E[T]^2 = E[T^2] (K - 1) / (K + 1) if its K replications are normally
-// distributed and the channels vary as one.
+// distributed and the channels are fully correlated.
 struct ErrorTerms {
     uint64_t pixels = 0, measured = 0;  // measured: by two replications or more
     std::array<double, 3> sum{}, square{};
@@ -38,8 +38,8 @@ struct ErrorTerms {
 
     void add(const Pixel& p) { add(std::span(&p, 1)); }
 
-    // Of independent pictures f_s, weighed by their samples: Var(sum w_s f_s) = sum w_s^2 Var(f_s).
-    // Returns the pixel.
+    // Adds a pixel of independent pictures f_s, weighted by their samples, and returns its value:
+    // Var(sum w_s f_s) = sum w_s^2 Var(f_s).
     std::array<double, 3> add(std::span<const Pixel> pictures) {
         std::array<double, 3> value{}, variance{};
         double all = 0, spread2 = 0;
@@ -85,9 +85,9 @@ inline ErrorTerms terms_of(const Film& film) {
 }
 inline ImageError error_of(const Film& film) { return terms_of(film).error(); }
 
-// ---- How it falls, and when it is small enough --------------------------------------------------
+// ---- Convergence, and error checks --------------------------------------------------------------
 
-// The fitted rate: d_rel = c n^-gamma by the last two of errors whose samples double.
+// The fitted rate d_rel = c n^-gamma of the last two errors.  Samples double from one to the next.
 class ErrorHistory {
 public:
     bool is_due(uint64_t samples) const { return double(samples) >= 2 * last_.samples; }
@@ -95,14 +95,14 @@ public:
         if (is_due(samples)) before_ = std::exchange(last_, {double(samples), d_rel});
     }
 
-    // gamma; 1/2, which is that of independent samples, if it is less or not known, and at most 1.
+    // gamma, from 1/2 to 1; not known: 1/2, as for independent samples.
     double exponent() const {
         const double gamma =
             std::log(before_.d_rel / last_.d_rel) / std::log(last_.samples / before_.samples);
         return gamma > 0.5 ? std::min(gamma, 1.0) : 0.5;
     }
 
-    // How many times as much it takes to divide the last error by x.
+    // Factor of the number of samples that divides the last error by x.
     double cost_of(double x) const { return std::pow(x, 1 / exponent()); }
 
 private:
@@ -111,10 +111,10 @@ private:
     } before_, last_;
 };
 
-// Why a film's error may be far more than it says; "": no reason is known.
+// Why a film's error may be far above its estimate; "": no reason is known.
 using Judge = std::function<std::string(const Film&, const ImageError&)>;
 
-// The same of any film.  A standard error of a quarter is that of 8 degrees of freedom.
+// The same for any film.  A relative standard error of a quarter is that of 8 degrees of freedom.
 inline std::string doubt_of(const Film& film, const ImageError& e, const Judge& judge) {
     if (e.norm == 0) return "no light was met";
     const std::string why = judge && e.d2() >= 0 ? judge(film, e) : "";
@@ -123,30 +123,30 @@ inline std::string doubt_of(const Film& film, const ImageError& e, const Judge& 
     return e.spread_of_d_rel() > 0.25 ? "the picture is mostly noise" : "";
 }
 
-// The rule of --error: stop once the estimate, with another pixel like the worst and half its
-// standard error, is no more than asked for.  The margin makes up for stopping at a look that errs,
-// the pixel for some of the light that was not seen (both by `make calibration`).  An error that is
-// not known is not small.
+// The rule of --error: stop once the estimate, with a second pixel like the worst and half its
+// standard error, is at most the error wanted.  The margin corrects the optional-stopping bias; the
+// pixel stands for light that no sample has met (both by `make calibration`).  An unknown error is
+// not small.
 inline bool is_small_enough(const ImageError& e, double wanted) {
     constexpr double margin = 0.5;  // standard errors
     return e.d_rel_and_unseen() + margin * e.standard_error() <= wanted;
 }
 
-// Samples of the first check after `samples`.  They do not depend on the error that is asked for:
-// a run that goes on stops where one run would have stopped.
+// Samples of the first check after `samples`.  They do not depend on the error wanted: a resumed
+// run stops where an uninterrupted run would have stopped.
 inline uint64_t next_check(uint64_t samples, uint64_t first, uint64_t period) {
     uint64_t check = first;
     while (check <= samples) check += (check / 32 / period + 1) * period;
     return check;
 }
 
-// Looks at a film's error now and then, until it is at most `wanted`; 0: for its course alone.
+// Checks a film's error until it is at most `wanted`; 0: records only its history.
 class ErrorChecks {
 public:
     ErrorChecks(double wanted, uint64_t period, const Judge& judge = {})
         : wanted_(wanted), period_(period), judge_(judge) {}
 
-    // Samples up to which the film may go before it looks again; as many as it has: enough.
+    // The number of samples at the next check; the film's own number: it has enough.
     uint64_t next(const Film& film) {
         const uint64_t n = film.least_taken();
         const uint64_t first = (first_check + period_ - 1) / period_ * period_;
@@ -168,14 +168,14 @@ public:
     }
 
     bool is_enough() const { return is_enough_; }
-    bool is_hopeless() const { return is_hopeless_; }  // not known, after so many samples
+    bool is_hopeless() const { return is_hopeless_; }  // not known after `most_unknown` samples
     const ErrorHistory& history() const { return history_; }
-    // Samples of each replication in the end, by the last look; infinite: not known.
+    // Expected samples of each replication at the end, by the last check; infinite: not known.
     double expected() const { return wanted_ > 0 ? expected_ : HUGE_VAL; }
 
 private:
-    static constexpr uint64_t first_check = 8;    // samples; fewer tell little of a spread
-    static constexpr double most_unknown = 4096;  // samples a pixel
+    static constexpr uint64_t first_check = 8;    // samples; fewer give a poor estimate
+    static constexpr double most_unknown = 4096;  // samples per pixel
     const double wanted_;
     const uint64_t period_;
     const Judge judge_;

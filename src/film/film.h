@@ -1,7 +1,7 @@
 // film/film.h  2  a film: sums of samples, in independent replications of each pixel
 //
-// A replication is n samples with a randomisation of their own.  The mean of a pixel's replications
-// is its value, and their spread tells its error.  Pixels whose neighbours are noisy have more.
+// A replication is n samples with a randomisation of their own.  A pixel's value is the mean of its
+// replications; their sample variance gives its error.  Pixels with noisy neighbours have more.
 #pragma once
 #include <array>
 #include <cmath>
@@ -14,17 +14,17 @@
 #include "film/image.h"
 #include "path/sampler.h"
 
-// What samples leave beside their radiance.
+// Results of samples other than their radiance.
 struct Tally {
     uint64_t rays = 0;
-    double share = 1;              // of a sample of this pixel, whose replications are 1 / share
-    std::vector<FixedPoint> sums;  // evidence for whoever judges the film; see Film
+    double share = 1;              // 1 / number of the pixel's replications
+    std::vector<FixedPoint> sums;  // evidence for the judge of the film; see Film
 };
 
 // The radiance of a sample, and its tally.  Calls come from several threads.
 using Radiance = std::function<rgb(const PixelSample&, Tally&)>;
 
-// A channel at a time.
+// A sum of samples, per channel.
 struct Sum {
     std::array<double, 3> L{};
     void add(rgb sample) {
@@ -34,17 +34,17 @@ struct Sum {
 
 inline constexpr uint64_t most_sets = 1024;
 
-// The file of a film is these arrays.  Before sets are chosen a pixel has one replication, the
-// pilot, which is later the first.
+// The file of a film holds these arrays.  Before replications (`sets`) are chosen, a pixel has one,
+// the pilot.  It is later the first.
 struct Film {
     Size size;
-    int first_row = 0;            // of the picture that it holds a band of
-    uint64_t pilot = 0;           // samples that the first replications had when sets were chosen
-    std::vector<uint16_t> sets;   // replications of each pixel; empty: not yet chosen
-    std::vector<Sum> sum;         // of each replication: those of pixel 0, those of pixel 1 ...
-    std::vector<uint64_t> taken;  // samples that each replication of a block's pixels has
+    int first_row = 0;                 // row of the whole picture where this band begins
+    uint64_t pilot = 0;                // samples of the first replications when `sets` were chosen
+    std::vector<uint16_t> sets;        // replications of each pixel; empty: not yet chosen
+    std::vector<Sum> sum;              // sums of the replications of pixel 0, of pixel 1 ...
+    std::vector<uint64_t> taken;       // samples of each replication of a block's pixels
     std::vector<FixedPoint> evidence;  // sums of tallies: films that are put together add them
-    std::vector<float> spread;  // of each pixel's pilot: root of the squared distances to its mean
+    std::vector<float> spread;  // per pixel: root of the sum of squared deviations in the pilot
 
     size_t pixels() const { return size_t(size.width) * size_t(size.height); }
     uint32_t sets_of(size_t pixel) const { return sets.empty() ? 1 : sets[pixel]; }
@@ -72,7 +72,7 @@ struct Film {
     }
 };
 
-// Of `sets` replications a pixel; 0: yet to be chosen.
+// A film with `sets` replications per pixel; 0: chosen after the pilot.
 inline Film make_film(Size size, uint32_t sets, int first_row = 0) {
     Film f;
     f.size = size, f.first_row = first_row;
@@ -86,14 +86,14 @@ inline Film make_film(Size size, uint32_t sets, int first_row = 0) {
     return f;
 }
 
-// What its file says of it: keys and values.
+// The head of a film's file: keys and values.
 using Facts = std::vector<std::array<std::string, 2>>;
 struct FilmOf {
-    std::vector<std::string> files;  // of the scene
-    Facts samples, notes;            // what the samples depend on, and other things to know
+    std::vector<std::string> files;  // that the scene was read from
+    Facts samples, notes;            // facts that samples depend on, and other facts
 };
 
-// What it took so far.
+// Resources spent so far.
 struct Spent {
     double seconds = 0, cpu_seconds = 0;
     uint64_t rays = 0;
@@ -101,10 +101,10 @@ struct Spent {
 
 // ---- Pixels -------------------------------------------------------------------------------------
 
-// What the replications of a pixel tell.
+// The replications of a pixel: its value and variance.
 struct Pixel {
     std::span<const Sum> sum;
-    uint64_t first, others;  // samples of the first, of each other
+    uint64_t first, others;  // samples of the first replication, and of each other one
 
     double samples() const { return double(first) + double(others) * double(sum.size() - 1); }
     // Replications that have samples.
@@ -112,13 +112,13 @@ struct Pixel {
     double mean_of(size_t set, size_t c) const {
         return sum[set].L[c] / double(set == 0 ? first : others);
     }
-    // Their mean: unbiased, whether they have as many samples or not.  NaN: there is none.
+    // The mean of replications: unbiased, even if the first has more samples.  NaN: there is none.
     double value(size_t c) const {
         double all = 0;
         for (size_t set = 0; set < count(); ++set) all += mean_of(set, c);
         return all / double(count());
     }
-    // The variance of that, unbiased as well; NaN: fewer than two tell nothing.
+    // Unbiased variance of that value; NaN for fewer than two replications.
     double variance(size_t c) const {
         Moments m;
         for (size_t set = 0; set < count(); ++set) m.add(mean_of(set, c));
@@ -181,8 +181,8 @@ inline bool fits_float(rgb L) {
     return std::isfinite(float(L.x)) && std::isfinite(float(L.y)) && std::isfinite(float(L.z));
 }
 
-// Brings the replications of a block, which begin at `offset`, to n samples, in order: the image
-// is the same however passes and threads divide them.  If L throws, the block stays as it was.
+// Adds samples, in order, until each replication of a block has n.  Sums begin at `offset`.  The
+// image does not depend on passes and threads.  If L throws, the block stays as it was.
 inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, const Radiance& L,
                              Tally& tally) {
     const size_t from = f.begin(block), to = f.end(block), width = size_t(f.size.width);
@@ -192,7 +192,7 @@ inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, c
     sums.reserve(16 * (to - from)), spread.reserve(to - from);
     for (size_t i = from, k = offset; i < to; ++i) {
         float root = f.spread.empty() ? 0 : f.spread[i];
-        tally.share = 1.0 / std::max(2u, f.sets_of(i));  // a pilot is one of two or more
+        tally.share = 1.0 / std::max(2u, f.sets_of(i));  // the pilot is one of two or more
         for (uint32_t set = 0; set < f.sets_of(i); ++set) {
             Sum sum = f.sum[k++];
             for (uint64_t s = f.samples(block, set); s < n; ++s) {
@@ -218,24 +218,24 @@ inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, c
     return bad;
 }
 
-// ---- Replications where noise is ----------------------------------------------------------------
+// ---- Adaptive replications ----------------------------------------------------------------------
 
-// The most of a pixel, and the factor of the rule below; see reference/replications.md.
+// The factor of the rule below, and the maximum per pixel; see reference/replications.md.
 struct Allocation {
     double factor = 3.5;
     uint32_t most = 32;
 };
 
-// Replications of a pixel of which few samples tell.
+// Fewest replications of a pixel where few samples meet bright light.
 inline constexpr uint32_t least_of_noisy = 8;
 
 // Samples of the pilot.
 inline constexpr uint64_t pilot_samples = 8;
 
-// The time to a squared error is least where samples are in proportion to the root of their
-// variance (Neyman 1934): factor sqrt(noise of the neighbours / mean noise of all pixels of the
-// other colour of a checkerboard), at least 2.  A pixel's own samples have no say in that, so that
-// its mean stays unbiased.  `spread`: standard deviation of samples, up to a factor.
+// Samples proportional to the standard deviation minimise the time for an MSE (Neyman 1934).  A
+// pixel has factor sqrt(noise of its neighbours / mean noise of all pixels of the other colour of a
+// checkerboard) replications, at least 2.  Its own samples never influence its number, so that its
+// mean stays unbiased.  `spread` is the standard deviation of samples, up to a factor.
 inline std::vector<uint16_t> sets_where_noise_is(const std::vector<float>& spread, Size size,
                                                  const Allocation& by = {}) {
     const int w = size.width, h = size.height;
@@ -262,14 +262,14 @@ inline std::vector<uint16_t> sets_where_noise_is(const std::vector<float>& sprea
     return sets;
 }
 
-// Bytes that a pixel takes: 24 for each replication, and at most 32 for all else.
+// Bytes of a film: 24 for each replication of a pixel, and at most 32 per pixel for all else.
 inline double bytes_of(Size size, double sets) {
     return (32 + 24 * sets) * double(size.width) * double(size.height);
 }
 
-// Chooses sets by the pilot, which all blocks have, and 8 where it is known that few samples meet
-// what is bright (`noisy`); fewer of them where they do not fit into so many bytes.  Returns the
-// most that a pixel may have.
+// Chooses replications by the pilot, which all blocks have; `noisy` pixels, where few samples meet
+// bright light, get 8 or more.  If memory has too few bytes, the maximum per pixel is reduced.
+// Returns that maximum.
 inline uint32_t choose_sets(Film& f, double memory, const std::vector<size_t>& noisy = {}) {
     Allocation by;
     for (;; --by.most) {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-// What stb asserts is that it got the memory it asked for.
+// stb asserts only that memory was allocated.
 #define STBIW_ASSERT(condition) ((condition) ? void() : throw std::bad_alloc())
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -19,8 +19,8 @@
 #include "base/files.h"
 #include "base/portable.h"
 
-// Row by row from the top left pixel (0,0); linear values.  Starts as NaN, so that a pixel nobody
-// wrote is an error and not a black dot.
+// Row by row from the top left pixel (0,0); linear values.  Starts as NaN, so that an unwritten
+// pixel is an error and not a black dot.
 struct Image {
     int width = 0, height = 0;
     std::vector<std::array<float, 3>> pixels;
@@ -33,7 +33,7 @@ struct Image {
     }
 };
 
-// The first pixel, "x,y", that holds what is no finite number.
+// The first pixel, "x,y", that is not finite.
 inline std::optional<std::string> first_non_finite(const Image& image) {
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
@@ -95,8 +95,8 @@ inline std::string encode_hdr(const Image& image) {
     return bytes;
 }
 
-// By the ending of `path`: .png, .hdr, or .pfm, which is linear float, little-endian, the bottom
-// row first.
+// The ending of `path` chooses the format: .png, .hdr, or .pfm, which is linear float,
+// little-endian, with the bottom row first.
 inline void write_image(const std::string& path, const Image& image, double exposure) {
     static_assert(std::endian::native == std::endian::little);
     if (path.ends_with(".hdr")) return write_file(path, encode_hdr(image));

@@ -13,15 +13,15 @@
 // The signal that asks for an end, or 0.
 inline std::atomic<int> interrupted = 0;
 
-// The first Ctrl-C, or another signal to end, asks for an end; a second Ctrl-C kills.  A signal
-// that our parent ignores stays ignored.  A stderr that nobody reads is no reason to lose an image,
-// and a file that grows too large is an error of its own.
+// The first Ctrl-C, or another signal to end, asks for an end; a second Ctrl-C kills.  Signals that
+// the parent ignores stay ignored.  A closed stderr does not lose the image, and a file that grows
+// too large is reported as an error.
 inline void catch_interrupt() {
     for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
         struct sigaction action {};
         struct sigaction before {};
         action.sa_handler = [](int caught) { interrupted = caught; };
-        // A job's engine and a script may both send SIGTERM.
+        // A batch system and a script may both send SIGTERM.
         action.sa_flags = signal == SIGINT ? int(SA_RESETHAND) : 0;
         sigaction(signal, nullptr, &before);
         if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
@@ -29,14 +29,14 @@ inline void catch_interrupt() {
     for (int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
-// Thrown out of work that nobody waits for.
+// Thrown to abandon work after an interrupt.
 struct Interrupted {};
 
 // ---- Threads ------------------------------------------------------------------------------------
 
-// Calls work(k) for every k < count from several threads, and meanwhile(part done) from this one
-// ten times a second.  Returns early, with some left out, once `interrupted`; then the answer is
-// false.  An exception of work becomes its own.
+// Calls work(k) for every k < count from several threads, and meanwhile(fraction done) from this
+// one ten times per second.  Once `interrupted`, it returns false early, with some k left out.
+// Passes on exceptions of work.
 inline bool in_parallel(size_t count, unsigned threads, const std::function<void(size_t)>& work,
                         const std::function<void(double)>& meanwhile) {
     std::atomic<size_t> next = 0, done = 0;
@@ -64,39 +64,39 @@ inline bool in_parallel(size_t count, unsigned threads, const std::function<void
 
 // Whichever comes first; 0: no limit.
 struct Target {
-    uint64_t samples = 0;  // of each replication
+    uint64_t samples = 0;  // samples of each replication
     double seconds = 0;
     double error = 0;  // d_rel
 };
 
-// How a film is filled.
+// Parameters of a render loop.
 struct Plan {
     Target target;
-    uint64_t period = 1;  // samples after which a pass may end, but for the last: whole grids
+    uint64_t period = 1;  // a pass, except the last, ends after a multiple of this: whole grids
     unsigned threads = 1;
     double memory = INFINITY;  // bytes that the film may take
     Size size = {};
     int first_row = 0;
     uint32_t sets = 0;                      // replications of each pixel; 0: adaptive
-    uint64_t at_once = 1;                   // samples that one sample of the film stands for
-    std::vector<size_t> noisy = {};         // pixels of which few samples tell
-    std::vector<FixedPoint> evidence = {};  // of a film without samples
-    Judge judge = {};                       // of the error, by them
+    uint64_t at_once = 1;                   // paths that one sample of the film stands for
+    std::vector<size_t> noisy = {};         // pixels where few samples meet bright light
+    std::vector<FixedPoint> evidence = {};  // evidence of a film without samples
+    Judge judge = {};                       // judges the error by the evidence
 
-    // Of each replication; 0: not known.
+    // Samples of each replication at the end; 0: not known.
     uint64_t known_samples() const { return target.error > 0 ? 0 : target.samples; }
-    // Samples before the others are chosen: whole grids.
+    // Samples of the pilot: whole grids.
     uint64_t pilot() const {
         const uint64_t n = (pilot_samples + period - 1) / period * period;
         return target.samples ? std::min(n, target.samples) : n;
     }
 };
 
-// Samples after the next pass, if there are n after `elapsed` seconds and another period takes
-// `a_period` (0: not known): as many as fit into the time, at most about twice n.  n: enough.
+// Samples after the next pass, given n samples after `elapsed` seconds; a period takes `a_period`
+// seconds (0: not known).  As many as fit into the time, at most about twice n; n: enough.
 inline uint64_t end_of_pass(const Target& target, uint64_t period, uint64_t n, double elapsed,
                             double a_period) {
-    constexpr double longest = 0.2;  // seconds: threads are seldom idle, Ctrl-C is soon obeyed
+    constexpr double longest = 0.2;  // seconds: threads are rarely idle, Ctrl-C is quick
     uint64_t periods = n / period + 1;
     if (a_period > 0) {
         const double left = target.seconds > 0 ? target.seconds - elapsed : HUGE_VAL;
@@ -110,13 +110,13 @@ inline uint64_t end_of_pass(const Target& target, uint64_t period, uint64_t n, d
 
 // ---- The loop -----------------------------------------------------------------------------------
 
-// Between passes it says how far the next one may go (no further than the film is: enough), and
-// meanwhile it shows progress and reads the clock.
+// Callbacks of the loop.  `between` passes returns the number of samples at which the next one must
+// end; the film's own number: it has enough.
 struct Watch {
     std::function<uint64_t(const Film&)> between = [](const Film&) { return UINT64_MAX; };
-    // Samples a pixel so far, and in the end, if that is known, or 0.
+    // Samples per pixel so far, and at the end; 0: not known.
     std::function<void(double now, double all)> show = [](double, double) {};
-    std::function<double()> elapsed;  // seconds, with those of runs before this one
+    std::function<double()> elapsed;  // seconds, including those of earlier runs
 };
 
 class Loop {
@@ -124,7 +124,7 @@ public:
     Loop(Film& film, const Plan& plan, const Radiance& L, const Watch& watch)
         : film_(film), plan_(plan), L_(L), watch_(watch), offsets_(offsets(film)) {}
 
-    // Adds passes until the target is met, a sample is not finite, `interrupted` or enough.
+    // Adds passes until the target is met, a sample is not finite, or `interrupted`.
     void run() {
         while (const uint64_t to = next_end()) {
             auto work = [&](size_t block) {
@@ -139,7 +139,7 @@ public:
             };
             const double pixels = double(film_.pixels()), before = film_.total() / pixels,
                          after = film_.total(to) / pixels;
-            // Before they are chosen there will be two replications or more.
+            // Replications that are not yet chosen are two or more.
             const double all = plan_.target.samples ? film_.total(plan_.target.samples) / pixels *
                                                           (film_.sets.empty() ? 2 : 1)
                                                     : 0;
@@ -151,7 +151,7 @@ public:
 
     const NonFinite& non_finite() const { return bad_; }
     uint64_t rays() const { return rays_; }
-    uint32_t most_sets_chosen() const { return most_; }  // less than asked for: no more fit
+    uint32_t most_sets_chosen() const { return most_; }  // fewer than wanted: memory is short
 
 private:
     Film& film_;
@@ -164,7 +164,7 @@ private:
     uint32_t most_ = Allocation().most;
     std::mutex mutex_;
 
-    // The second replications take as long as the pilot: of a time that is short it gets half.
+    // The second replications take as long as the pilot, which gets at most half of the time.
     bool is_pilot_done() const {
         const uint64_t n = film_.least_taken();
         const double seconds = plan_.target.seconds;

@@ -2,12 +2,11 @@
 //
 //   build/compare REFERENCE IMAGE [--limit 2%] [--alpha 1e-6] [--heatmap FILE.png]
 //
-// With f the reference, g the image and N numbers (three a pixel):
+// With the reference f, the image g and N numbers (three per pixel):
 //   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
 //
-// Both are .pfm or .film.  Two films know the variances of their pixels: then also Welch's test
-// whether they show the same.  The verdict, and the exit status 1 if they differ: d_rel above the
-// limit, or p below alpha.
+// Both are .pfm or .film.  Two films know the variances of their pixels, so that Welch's test
+// applies.  The images differ, with exit status 1, if d_rel is above the limit or p below alpha.
 #include "base/option.h"
 #include "keep/keep.h"
 #include "keep/p_of_z.h"
@@ -42,14 +41,14 @@ Difference difference(const Image& f, const Image& g) {
     return result;
 }
 
-// Whether the means of both images over all pixels are equal, by channel (Welch 1947; Jung, Hanika,
-// Dachsbacher 2020 do so by pixel, which sees far less).  Pixels are independent, and means of that
+// Welch's test (1947) of the means of both images over all pixels, per channel.  Jung, Hanika,
+// Dachsbacher 2020 test per pixel, with far less power.  Pixels are independent, and means of that
 // many are normal.
 struct Equality {
-    size_t channel = 0;  // that differs most
-    double sigmas = 0;   // by so many
-    // Two-sided: of so large a difference in that channel, and in any of three.  Channels go
-    // together, which only makes the latter rarer (Sidak 1967).
+    size_t channel = 0;  // the channel that differs most
+    double sigmas = 0;   // its difference in standard errors
+    // Two-sided p-values of that channel, and of the worst of three.  Correlation of the channels
+    // only makes the latter smaller (Sidak 1967).
     double p_alone = 1, p = 1;
 };
 
@@ -96,7 +95,7 @@ void check_same_size(const Image& f, const Image& g) {
                         std::to_string(g.height));
 }
 
-// An image, and the variances of its pixels if a film knows them.
+// An image, and the variances of its pixels if it comes from a film.
 struct Known {
     Image image;
     std::optional<Image> variance = {};

@@ -118,7 +118,7 @@ check_render() {
     rm -f "$folder/check.film"
 }
 
-# A plan in the folder; one that is there already is gone on with if it is the same.
+# Writes the plan into the folder, or resumes the one that is there if it is the same.
 write_plan() {
     local plan
     plan=$(echo "penumbra farm 2"

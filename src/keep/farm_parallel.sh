@@ -6,14 +6,14 @@
 #     -o FILE           the picture, .pfm or .png; may be repeated
 #     --stats FILE      what was measured, as JSON
 #     --bands N         cut the picture into N bands of rows                                       1
-#     --seeds N         render each band by N seeds, all of which have --spp samples                 1
-#     --hosts FILE      machines, a line each, as ssh knows them (parallel's --sshloginfile)    this one
+#     --seeds N         render each band by N seeds, each with --spp samples                         1
+#     --hosts FILE      machines, one per line, as ssh knows them (parallel's --sshloginfile)   this one
 #     --slots N         parts at a time on each machine, which share its processors                1
 #     --retries N       how often a part is begun that is killed                                     3
 #     --build FOLDER    where penumbra and merge are                                 build/, beside src/
 #
-# OPTIONS OF PENUMBRA have --size and --spp among them.  The same command again goes on with what is not
-# finished.  Exit status: 0 the picture is there, 1 parts are missing, 2 an option cannot be used.
+# OPTIONS OF PENUMBRA include --size and --spp.  The same command again resumes unfinished parts.
+# Exit status: 0 the picture is there, 1 parts are missing, 2 an option cannot be used.
 . "$(dirname "${BASH_SOURCE[0]}")/farm.sh"
 
 slots=1 retries=3 words=()
@@ -31,8 +31,8 @@ case ${1-} in
         command -v parallel >/dev/null || fail "no parallel: install GNU parallel"
         read_words "$@"
         write_plan
-        # A part that is told to stop has a minute to write its film.  Those are begun again that were
-        # killed, or whose machine was lost; penumbra's own refusals are left to the merge, which names them.
+        # A part that gets a signal to stop has a minute to write its film.  Parts that were killed, or that lost
+        # their machine, are restarted.  The merge reports parts that penumbra itself refused.
         unfinished "$folder" | parallel --jobs "$slots" --retries "$retries" --termseq TERM,60000,KILL,25 "${words[@]}" \
             "$(printf '%q ' bash "$here/farm.sh" part "$folder") {} \$(((\$(nproc) + $slots - 1) / $slots)) || [ \$? -le 128 ]"
         merge "$folder"

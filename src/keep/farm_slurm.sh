@@ -6,15 +6,15 @@
 #     -o FILE           the picture, .pfm or .png; may be repeated
 #     --stats FILE      what was measured, as JSON
 #     --bands N         cut the picture into N bands of rows                                       1
-#     --seeds N         render each band by N seeds, all of which have --spp samples                 1
+#     --seeds N         render each band by N seeds, each with --spp samples                         1
 #     --cpus N          processors, and threads, of a part                                         1
 #     --sbatch WORD     for sbatch, e.g. --sbatch --partition=long; may be repeated
 #     --grace S         seconds before a limit of time at which a part stops and queues again    120
 #     --retries N       how often a part queues again that was killed                              5
 #     --build FOLDER    where penumbra and merge are                                 build/, beside src/
 #
-# OPTIONS OF PENUMBRA have --size and --spp among them.  The same command again goes on with what is not
-# finished.  Exit status: 0 the jobs were submitted, 1 they could not be, 2 an option cannot be used.
+# OPTIONS OF PENUMBRA include --size and --spp.  The same command again resumes unfinished parts.
+# Exit status: 0 the jobs were submitted, 1 they could not be, 2 an option cannot be used.
 . "$(dirname "${BASH_SOURCE[0]}")/farm.sh"
 
 cpus=1 grace=120 retries=5 words=()
@@ -27,7 +27,7 @@ engine_option() {
     esac
 }
 
-# The command of a job, quoted once for its shell.  Signals for the job reach that shell alone: exec.
+# The command of a job, quoted once for its shell.  Signals for the job reach only that shell: exec.
 job() { printf 'exec bash'; printf ' %q' "$@"; }
 
 submit() {
@@ -42,7 +42,7 @@ submit() {
             --signal="B:USR1@$grace" --output="$folder/part-%4a.log" \
             --wrap "$(job "$here/farm_slurm.sh" part "$folder" "$retries")") || exit 1
         echo "$array" >"$folder/farm.job"
-        # Not afterok: the merge would never run, and nobody would say which part is missing.
+        # Not afterok: the merge would never run, and would not report which part is missing.
         words+=(--dependency="afterany:${array%%;*}")
     fi
     merger=$(sbatch "${words[@]}" --job-name=penumbra-merge --output="$folder/merge.log" \
@@ -50,13 +50,13 @@ submit() {
     echo "farm: ${array:+job $array renders parts $numbers, }job $merger merges: $folder/merge.log"
 }
 
-# A part on its node.  One that a limit of time stopped, or that was killed by whoever is not Slurm, queues
-# again; Slurm itself queues those again that it takes a node from, or whose node fails.
+# A part on its node.  It queues again after a time limit, or if a process other than Slurm killed it.
+# Slurm itself requeues parts after preemption or the failure of a node.
 part() {  # FOLDER RETRIES
     local status=0 again=''
     render "$1" "$SLURM_ARRAY_TASK_ID" "${SLURM_CPUS_PER_TASK:-1}" || status=$?
     [ "$status" -gt 128 ] || return "$status"
-    sleep 1  # Slurm may tell penumbra first, and then this shell
+    sleep 1  # Slurm may signal penumbra first, and then this shell
     case $stopped in
         USR1) again=yes ;;
         '') [ "${SLURM_RESTART_COUNT:-0}" -ge "$2" ] || again=yes ;;

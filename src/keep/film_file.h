@@ -18,8 +18,8 @@ static_assert(std::endian::native == std::endian::little,
               "numbers are written as memory holds them");
 
 // FNV-1a (Fowler, Noll, Vo 1991).  A step is a bijection of the sum for any byte, and of the byte
-// for any sum: if one byte alone is damaged, the sum differs for certain.  If more are, it is the
-// same with a probability of about 2^-64.  No proof against forgery.
+// for any sum: a single damaged byte always changes the sum.  Several damaged bytes leave it the
+// same with probability about 2^-64.  It does not protect against forgery.
 struct Checksum {
     uint64_t sum = 0xcbf29ce484222325;
 
@@ -40,8 +40,8 @@ inline std::string first_lines(uint64_t bytes, const Checksum& checksum) {
            "\nchecksum " + checksum.text() + "\n";
 }
 
-// At any moment the file is the old one or the new one, though the process be killed or the power
-// fail.  Keys are words, and values have no line breaks.
+// At any moment the file is the old one or the new one, even if the process is killed or the power
+// fails.  Keys are words, and values have no line breaks.
 inline void write_film_file(const std::string& path, const Facts& head, const Pieces& numbers) {
     std::string lines;
     for (const auto& [key, value] : head) lines += key + " " + value + "\n";
@@ -56,8 +56,8 @@ inline void write_film_file(const std::string& path, const Facts& head, const Pi
     write_file(path, pieces);
 }
 
-// Refuses with UserError, by the file's name, what was not written so.  It reads all of
-// the file once before it hands out anything, so that nothing of a damaged one is used.
+// Throws UserError with the file's name about a file in another format.  It first reads all of the
+// file once, so that no part of a damaged file is used.
 class FilmReader {
 public:
     explicit FilmReader(const std::string& path) : path_(path), in_(open_file(path)) {
@@ -85,7 +85,7 @@ public:
             if (k == key) return value;
         return "not known";
     }
-    // A number of [0, most] that begins a value, or stands `after` a character of it.
+    // The number in [0, most] at the beginning of a value, or `after` a character of it.
     double number(std::string_view key, double most = 0x1p53, char after = '\0') const {
         const std::string value = said(key);
         const char* const from = value.data() + (after ? value.find(after) + 1 : 0);

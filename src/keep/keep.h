@@ -1,4 +1,4 @@
-// keep/keep.h  2  a film that is kept in a file, and gone on with
+// keep/keep.h  2  checkpoints: films in files, resumed renders
 #pragma once
 #include <chrono>
 #include <utility>
@@ -10,8 +10,8 @@ inline Spent spent_in(const FilmReader& file) {
     return {file.number("seconds"), file.number("cpu-seconds"), uint64_t(file.number("rays"))};
 }
 
-// Makes f, which has the size of the film, all of it but its sums, which come next.  Returns how
-// many there are; throws UserError if the file holds no film that could be.
+// Reads everything except the sums, which come next in the file, into a film f of the right size.
+// Returns the number of sums; throws UserError if the file holds no possible film.
 inline size_t read_but_sums(FilmReader& file, Film& f) {
     const bool is_chosen = file.said("sets-chosen") == "yes";
     const size_t n = f.pixels();
@@ -34,7 +34,7 @@ inline size_t read_but_sums(FilmReader& file, Film& f) {
     return sums;
 }
 
-// A film whose sums memory need not hold, a pixel at a time.
+// Reads a film pixel by pixel, without holding its sums in memory.
 class FilmPixels {
 public:
     FilmPixels(const std::string& path, Size size) : file_(path) {
@@ -65,7 +65,7 @@ private:
     size_t i_ = 0;
 };
 
-// A sum over all that the scene was read from.
+// Checksum of the scene's source files.
 inline std::string sum_of_files(const std::vector<std::string>& files) {
     Checksum sum;
     for (const std::string& file : files) {
@@ -102,7 +102,7 @@ public:
         head_.insert(head_.end(), what.notes.begin(), what.notes.end());
     }
 
-    // Makes f the film of the file, if there is one; throws UserError if that is another picture.
+    // Reads the film of the file, if there is one, into f; throws UserError if it does not match.
     Spent restore(Film& f) const {
         if (path_.empty() || !std::filesystem::exists(path_)) return {};
         FilmReader file(path_);
@@ -117,8 +117,8 @@ public:
         return spent_in(file);
     }
 
-    // Once in ten seconds, and at most a hundredth of the time.  A full disk is no reason to stop:
-    // the file stays as it was, and the next one may fit.
+    // At most every ten seconds, and for at most a hundredth of the time.  On a full disk the file
+    // stays as it was, the render continues, and the next checkpoint may fit.
     void write_now_and_then(const Film& f, const Spent& spent) {
         const auto start = clock::now();
         if (path_.empty() || start < next_) return;
@@ -129,8 +129,8 @@ public:
         next_ = end + std::max<clock::duration>(interval_, 100 * (end - start));
     }
 
-    // The film's arrays follow the head, the sums last.  Returns why it failed, or "".  A film
-    // without samples replaces none.
+    // Writes the head and then the film's arrays, the sums last.  Returns why it failed, or "".  A
+    // film without samples replaces no file.
     std::string write(const Film& f, const Spent& spent, bool complete) const {
         if (path_.empty()) return "";
         if (f.most_taken() == 0 && f.pilot == 0 && std::filesystem::exists(path_)) return "";
@@ -158,6 +158,6 @@ private:
     using clock = std::chrono::steady_clock;
     const std::string path_;
     const std::chrono::nanoseconds interval_;
-    Facts samples_, head_;  // what must agree, and all that is said
+    Facts samples_, head_;  // facts that must agree, and all facts
     clock::time_point next_ = clock::now() + interval_;
 };

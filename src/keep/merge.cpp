@@ -17,7 +17,7 @@ constexpr const char* before_options =
 
 struct Part {
     std::string path, seed, rows;
-    int first, last;  // of the rows
+    int first, last;  // rows
 };
 
 // Throws UserError unless the parts, from the top, make up the picture.  Bands of the same rows
@@ -42,7 +42,7 @@ void check_cover(const std::vector<Part>& parts, int height) {
     }
 }
 
-// The picture, row by row; memory holds it, and a row of each film.
+// Merges row by row; memory holds the picture, and a row of each film.
 Image merge(const std::vector<Part>& parts, Size size, Run& run) {
     ErrorTerms terms;
     Unseen unseen;
@@ -88,7 +88,7 @@ int program(const std::vector<std::string>& words) {
     if (paths.empty()) throw UserError("no parts given (try --help)");
 
     const FilmReader any(paths[0]);
-    Facts picture = any.head();  // but for the seed, and what follows it
+    Facts picture = any.head();  // without the seed and the facts after it
     const auto seed = std::ranges::find(picture, "seed", [](auto& fact) { return fact[0]; });
     picture.erase(seed, picture.end());
     const Size size{int(any.number("size", 65536)), int(any.number("size", 65536, 'x'))};

@@ -1,4 +1,4 @@
-// path/halton.h  1  radical inverses: points more even than random ones
+// path/halton.h  1  radical inverses: low-discrepancy points
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -24,8 +24,8 @@ inline std::vector<uint32_t> first_primes(size_t n) {
 // sum d_k b^(-k-1), which is never 1.
 inline real radical_inverse(uint32_t base, uint64_t i) {
     // exercise 4.1
-    // They gather as digits / power, both exact; those after the 64th bit are below every rounding
-    // and are left out.
+    // digits / power are both exact.  Digits after the 64th bit are below any rounding and are left
+    // out.
     uint64_t digits = 0, power = 1;
     while (i > 0 && power <= UINT64_MAX / base) {
         const uint64_t rest = i / base;
@@ -37,7 +37,7 @@ inline real radical_inverse(uint32_t base, uint64_t i) {
     // end
 }
 
-// The next digit of a fraction of 2^64ths, which is replaced by what follows that digit.
+// Returns the next digit of a fraction in 2^64ths, and removes it from the fraction.
 inline uint64_t next_digit(uint32_t base, uint64_t& fraction) {
     const uint64_t low = (fraction & UINT32_MAX) * base;
     const uint64_t high = (fraction >> 32) * base + (low >> 32);
@@ -45,8 +45,8 @@ inline uint64_t next_digit(uint32_t base, uint64_t& fraction) {
     return high >> 32;
 }
 
-// The same with digits scrambled at random.  For uniform random bits every point is uniform; any
-// set of points stays as even as it was.
+// The same with randomly scrambled digits.  For uniform random bits every point is uniform, and any
+// set of points keeps its discrepancy.
 inline real scrambled_radical_inverse(uint32_t base, uint64_t i, uint64_t shift_bits,
                                       uint64_t factor_bits) {
     // exercise 4.2
@@ -61,7 +61,7 @@ inline real scrambled_radical_inverse(uint32_t base, uint64_t i, uint64_t shift_
         power *= base;
         i = rest;
     }
-    const double zeros = double(to_unit(shift_bits));  // those ahead of i, scrambled: c_k alone
+    const double zeros = double(to_unit(shift_bits));  // leading zeros of i, scrambled: c_k only
     return std::min(below_one, real((double(digits) + zeros) / double(power)));
     // end
 }

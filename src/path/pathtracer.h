@@ -1,29 +1,29 @@
 // path/pathtracer.h  3  the path tracer: radiance along a ray, vertex by vertex
 //
-// Read it downwards: where a ray stops, what light is found there by aiming, what happens there in
-// all, and the sum over a path.  Directions are in world space unless they are said to be local.
+// Read it downwards: the vertex where a ray stops, light sampling at it, the rendering equation at
+// it, the sum over a path.  Directions are in world space unless they are said to be local.
 #pragma once
 #include <optional>
 
 #include "path/sampler.h"
 #include "world/scene.h"
 
-// How light is found.
+// The estimator of direct light.
 enum class LightMode {
-    none,  // by hitting it
-    nee,   // next-event estimation: by aiming at it
+    none,  // BSDF sampling only
+    nee,   // light sampling only (next-event estimation)
     mis    // both, weighted by the power heuristic
 };
 
-// What a path depends on beside its scene.
+// Parameters of paths, apart from the scene.
 struct Technique {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
     real roulette = real(0.25);  // Russian roulette for paths of a throughput below this; 0: never
 };
 
-// A path's numbers stay in registers only if its loop is compiled as one function: its parts, which
-// are used in two or three places, are not inlined unless one insists.
+// A path's numbers stay in registers only if its loop is compiled as one function.  Its parts are
+// called in two or three places, so that the compiler does not inline them by itself.
 #define PART [[gnu::always_inline]] inline
 
 // ---- Where a ray stops --------------------------------------------------------------------------
@@ -53,7 +53,7 @@ inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
     return hit ? std::optional(vertex(scene, ray, *hit)) : std::nullopt;
 }
 
-// ---- Light by aiming at it ----------------------------------------------------------------------
+// ---- Light sampling -----------------------------------------------------------------------------
 
 struct DirectLight {
     rgb L;  // radiance reflected towards wo
@@ -67,8 +67,8 @@ struct DirectLight {
     const char* none = nullptr;  // why no shadow ray was traced
 };
 
-// By one light, chosen at random.  Unbiased for the sum of all lights; under MIS, for the weighted
-// share of it.
+// Samples one light, chosen at random.  Unbiased for the sum over all lights; with MIS, for its
+// weighted share.
 PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
                               const Sampler& sampler, int vertex) {
     const Material& m = *x.material;
@@ -102,9 +102,9 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
 
 // ---- One vertex ---------------------------------------------------------------------------------
 
-// The path so far: its last ray, drawn from the point `from` with density pdf (infinite: from the
-// camera, a mirror or glass), after k scatterings.  Of radiance L that comes along this ray the eye
-// gets beta L.
+// The path so far, after k bounces.  Its last ray was sampled at the point `from` with density pdf
+// (infinite: by the camera, a mirror or glass).  Radiance L along this ray contributes beta L to
+// the eye.
 struct Segment {
     Ray ray;
     vec3 from;
@@ -114,20 +114,20 @@ struct Segment {
     vec3 n = {};  // normal of the surface at `from`, on the side of the ray
 };
 
-// What happened where it stopped.
+// The events where that ray stopped.
 struct Step {
-    bool met = false;  // whether the ray stopped: at x
+    bool met = false;  // true if the ray met a surface, at x
     Vertex x = {};
     rgb Le = {};                // emitted towards wo
-    real weight = 0;            // of Le, beside light samples
+    real weight = 0;            // MIS weight of Le against light sampling
     DirectLight direct = {};    // reflected towards wo
     BsdfSample scattered = {};  // its wi is local
     vec3 wi = {};               // the same in world space
-    const char* end = nullptr;  // why the path ends here; nothing: it goes on by
-    Segment next = {};
+    const char* end = nullptr;  // reason for termination, or null
+    Segment next = {};          // the path so far, if it does not end here
 };
 
-// Weight of emission that a ray met by chance, beside light found by aiming.
+// MIS weight of emission that a BSDF sample has met, against light sampling.
 inline real weight_of_emission(const Scene& scene, const Technique& t, const Segment& s,
                                const Vertex& x) {
     // exercise 3.4
@@ -135,15 +135,15 @@ inline real weight_of_emission(const Scene& scene, const Technique& t, const Seg
     const size_t i = size_t(scene.light_of[x.hit.id]);
     const real pick = pick_of(scene, i, s.from, s.n);
     const real pdf = pick * pdf_light(scene.lights[i], s.from, x.at);
-    // 0 where light samples do not go: the inside of a two-sided sphere light.
+    // Light samples have pdf 0 inside a two-sided sphere light.
     if (t.light == LightMode::nee) return pdf > 0 ? 0 : 1;
     return power_heuristic(s.pdf, pdf);
     // end
 }
 
 // The rendering equation (Kajiya 1986) at one vertex x:
-//   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi,
-// the integral by one direction, the light that reaches x directly by one light sample as well.
+//   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi.
+// One direction estimates the integral; one light sample also estimates the direct light.
 PART Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
     Step e;
     auto ends = [&e](bool here, const char* why) {
@@ -169,11 +169,11 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     e.wi = x.local.to_world(b.wi);
     if (ends(max_of(b.f) <= 0, "the sampled direction reflects nothing")) return e;
     // exercise 3.2
-    // The product of f |cos| / pdf over all scatterings.
+    // The product of f |cos| / pdf over all bounces.
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
     // end
     // exercise 3.5
-    // Arvo, Kirk 1990.  Those that are left have at least t.roulette.
+    // Arvo, Kirk 1990.  Surviving paths have a throughput of at least t.roulette.
     if (max_of(beta) < t.roulette) {
         const real survival = max_of(beta) / t.roulette;
         const real u_survival = sampler.get(dimension(s.k, Draw::roulette));
@@ -191,8 +191,8 @@ struct NoVisitor {
     void operator()(const Segment&, const Step&) const {}
 };
 
-// Radiance that comes along a ray, against its direction.  Unbiased, but for the scene's depth.
-// Calls visit(segment, step) at every vertex.
+// Radiance that arrives along a ray, against its direction.  Unbiased, except for the scene's
+// depth.  Calls visit(segment, step) at every vertex.
 template <class Visitor = NoVisitor>
 rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
        Visitor visit = {}) {

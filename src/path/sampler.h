@@ -1,4 +1,4 @@
-// path/sampler.h  2  the numbers of one path
+// path/sampler.h  2  samplers: the random numbers of a path
 #pragma once
 #include <bit>
 #include <vector>
@@ -8,25 +8,25 @@
 #include "path/sobol.h"
 
 enum class SamplerKind {
-    independent,  // every number for itself
+    independent,  // pseudo-random numbers
     stratified,   // jittered grids, shuffled
-    halton,       // scrambled Halton points, every pixel its own randomisation
-    sobol         // Sobol' points, every pixel and every pair of numbers its own randomisation
+    halton,       // scrambled Halton points, with a randomisation per pixel
+    sobol         // Sobol' points, with a randomisation per pixel and pair of dimensions
 };
 
-// What each number of a path is for: dimension(k, what) at vertex k, the first surface being 0.
+// Dimensions of the numbers of a path: dimension(k, what) at vertex k; the first surface has k = 0.
 enum class Draw { light_x, light_y, wi_x, wi_y, pick, lobe, roulette, count };
 inline constexpr uint32_t film_x = 0, film_y = 1;
 inline constexpr uint32_t dimension(int vertex, Draw what) {
     return 2 + uint32_t(vertex) * uint32_t(Draw::count) + uint32_t(what);
 }
 
-// What the samplers of all paths share.
+// Parameters that the samplers of all paths share.
 struct Pattern {
     SamplerKind kind = SamplerKind::sobol;
     uint64_t seed = 0;
-    uint32_t columns = 1, rows = 1;    // stratified: of a grid
-    std::vector<uint32_t> bases = {};  // halton: one prime a dimension
+    uint32_t columns = 1, rows = 1;    // stratified: cells of a grid
+    std::vector<uint32_t> bases = {};  // halton: one prime per dimension
 
     // Samples per pixel after which whole grids are complete.
     uint64_t period() const { return uint64_t(columns) * rows; }
@@ -39,9 +39,9 @@ inline uint32_t rows_of_grid(uint64_t n) {
     return rows;
 }
 
-// For paths of up to `depth` scatterings.  A grid has at most 256 cells, divides the samples
-// without rest and is at most twice as wide as high: 16 cells if nothing fits, or spp is 0
-// (unknown).  Before its last pass is complete the cells are still a fair, if random, choice.
+// For paths of up to `depth` bounces.  A grid has at most 256 cells, a divisor of the number of
+// samples, and is at most twice as wide as high.  It has 16 cells if no grid fits, or if spp is 0
+// (unknown).  The cells of an incomplete grid are an unbiased random choice.
 inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth, uint64_t spp) {
     Pattern p{kind, seed};
     if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
@@ -58,9 +58,9 @@ inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth, uint64_t
     return p;
 }
 
-// A random permutation of 0 ... n-1, at i: a keyed bijection of the next power of two, walked until
-// it comes below n (Black, Rogaway 2002; Kensler 2013), then turned, so that every value of it is
-// exactly as likely as every other.
+// A random permutation of 0 ... n-1, at i: a keyed bijection of the next power of two, repeated
+// until the value is below n (Black, Rogaway 2002; Kensler 2013), then rotated, so that all values
+// are exactly equally likely.
 inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
     const uint32_t mask = std::bit_ceil(n) - 1, half = uint32_t(std::bit_width(mask) + 1) / 2;
     do {
@@ -73,8 +73,8 @@ inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
     return uint32_t((i + (mix(key) >> 32) * n / (uint64_t(1) << 32)) % n);
 }
 
-// Strata: a number of part `part` of [0,1), of `parts` equal ones; and a point of cell `cell` of a
-// grid of the unit square, cell 0 ... columns * rows - 1.  The bits are random.
+// Strata: a number in part `part` of [0,1), one of `parts` equal ones; and a point in cell `cell`
+// of a grid of the unit square, cell 0 ... columns * rows - 1.  The bits are random.
 // exercise 4.4
 inline real in_part(uint32_t part, uint32_t parts, uint64_t bits) {
     return std::min(below_one, (real(part) + to_unit(bits)) / real(parts));
@@ -91,9 +91,9 @@ struct PixelSample {
     uint32_t set = 0;
 };
 
-// The numbers of [0,1) of one sample of one pixel, a function of (seed, pixel, set, sample,
-// dimension) alone: any thread may draw any path at any time.  Each set of a pixel's samples has a
-// randomisation of its own.
+// The numbers in [0,1) of one sample of one pixel.  They depend only on (seed, pixel, replication,
+// sample, dimension): any thread may draw any path at any time.  Each replication of a pixel, its
+// `set`, has a randomisation of its own.
 class Sampler {
 public:
     Sampler(const Pattern& pattern, uint64_t pixel, uint64_t sample, uint32_t set = 0)
@@ -135,7 +135,7 @@ public:
         return {x, y};
     }
 
-    // The number that chooses the light, or the lobe, for which the pair of the vertex is.
+    // The number that chooses the light or the lobe; the pair of the same vertex samples it.
     real choice(int vertex, Draw what) const {
         if (pattern_.kind != SamplerKind::sobol) return get(dimension(vertex, what));
         const uint32_t pair = dimension(vertex, what == Draw::pick ? Draw::light_x : Draw::wi_x);
@@ -144,12 +144,12 @@ public:
 
 private:
     const Pattern& pattern_;
-    uint64_t index_;  // of the sample; sobol: mirrored
-    uint64_t key_;    // of seed, pixel and set; independent: of the sample, too
+    uint64_t index_;  // index of the sample; sobol: mirrored
+    uint64_t key_;    // hash of seed, pixel and replication; independent: also of the sample
 
     uint64_t random(uint32_t dim) const { return mix(key_ + (dim + 1) * golden); }
 
-    // The cell of this sample in its grid, and random bits for the place in it.
+    // The cell of this sample in its grid, and random bits for the position in it.
     struct Stratum {
         uint32_t cell;
         uint64_t jitter;

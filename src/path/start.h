@@ -1,9 +1,9 @@
-// path/start.h  3  where paths start: the samples of a pixel
+// path/start.h  3  the start of a path: a sample of a pixel
 #pragma once
 #include "path/sampler.h"
 #include "world/scene.h"
 
-// The numbers of its path, its place in the pixel, its ray.
+// The sampler of the path, its position in the pixel, and its ray.
 struct Start {
     Sampler sampler;
     vec2 u;

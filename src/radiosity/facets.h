@@ -1,4 +1,4 @@
-// radiosity/facets.h  1  the scene that illumination maps can hold: diffuse triangles
+// radiosity/facets.h  1  conversion of a scene to diffuse triangles
 #pragma once
 #include <string>
 
@@ -30,12 +30,12 @@ inline uint32_t line_of_white(const Scene& s) {
 
 // ---- Spheres ------------------------------------------------------------------------------------
 
-// No edge of an icosahedron that is quartered k times is longer.  Its own are 1.052 radii; halves
-// of them grow on their way out to the sphere, by 25.9 % in all.
+// Longest edge of an icosahedron that is quartered k times.  Its own edges are 1.052 radii; their
+// halves grow on projection to the sphere, by 25.9 % in all.
 inline double edge_of_facets(real r, int k) { return 1.052 * 1.26 * std::pow(0.5, k) * double(r); }
 
-// How often the faces of an icosahedron are quartered: twice at least, and until no edge is longer
-// than H; ten times at most: a mesh cuts what is still too long.
+// Number of quarterings of an icosahedron: until no edge is longer than H, but at least two, and at
+// most ten.  The mesh cuts edges that are still too long.
 inline int quarterings(real r, double H) {
     int k = 2;
     while (k < 10 && edge_of_facets(r, k) > H) ++k;
@@ -84,7 +84,7 @@ struct Faceted {
     bool has_balls = false;             // facets stand for spheres: no estimate is unbiased
 };
 
-// A shape of `from`, and a light that it is alone, as they are in `to`.
+// Copies a shape of `from`, and its light if it is one by itself, to `to`.
 inline void add_facet(Scene& to, const Scene& from, size_t i, const Shape& shape, int32_t light) {
     add_shape(to, shape, from.material_of[i], light);
     to.line_of.push_back(from.line_of[i]);
@@ -103,15 +103,15 @@ inline std::vector<Shape> facets_of(const Shape& sphere, double H) {
     return facets;
 }
 
-// Of a sphere's facets, over the sphere's.
+// Area of a sphere's facets, divided by the area of the sphere.
 inline double part_of_area(const Shape& sphere, const std::vector<Shape>& facets) {
     double area = 0;
     for (const Shape& facet : facets) area += double(length(area_vector(facet))) / 2;
     return area / (4 * std::numbers::pi * double(sphere.r) * double(sphere.r));
 }
 
-// Adds facets of sphere i, whose area is that part of the sphere's; if they emit, then by as much
-// more as makes their power the sphere's.
+// Adds facets of sphere i, with that part of the sphere's area.  The radiance of emitting facets is
+// increased, so that their power is the sphere's.
 inline void add_facets(Scene& to, const Scene& from, size_t i, const std::vector<Shape>& facets,
                        double part) {
     const uint32_t material = from.material_of[i];
@@ -133,14 +133,14 @@ inline void add_facets(Scene& to, const Scene& from, size_t i, const std::vector
     }
 }
 
-// The same scene of triangles alone: a sphere becomes an icosphere inscribed in it, with edges of
-// at most H.  Lights keep their power; an icosphere has less area, so its radiance is larger.
+// The same scene, made of triangles only: a sphere becomes an inscribed icosphere with edges of at
+// most H.  Lights keep their power; an icosphere has less area, so its radiance is larger.
 inline Faceted faceted(const Scene& from, double H) {
     Faceted result{from, {}};
     Scene& to = result.scene;
     to.shapes.clear(), to.material_of.clear(), to.light_of.clear(), to.line_of.clear();
     to.lights.clear(), to.line_of_light.clear(), to.pick_cdf.clear();
-    std::vector<int32_t> light(from.lights.size(), no_light);  // of those that are no spheres
+    std::vector<int32_t> light(from.lights.size(), no_light);  // new lights, except for spheres
     for (size_t k = 0; k < from.lights.size(); ++k) {
         if (from.lights[k].kind == Light::Kind::sphere) continue;
         light[k] = int32_t(to.lights.size());

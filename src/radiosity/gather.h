@@ -1,8 +1,8 @@
 // radiosity/gather.h  4  final gathering: paths that end on illumination maps
 //
-// At a diffuse surface y the reflected radiance is known, but for noise and the mesh: R_map(y) =
-// rho E(y) / pi.  A path that has scattered once ends on it (Reichert 1992).  Biased by the maps'
-// error, in the mean over what one bounce sees of it.
+// The maps approximate the reflected radiance of a diffuse surface y: R_map(y) = rho E(y) / pi.
+// After one bounce, a path ends on the map (Reichert 1992).  Its bias is the error of the maps,
+// averaged over the surfaces that one bounce reaches.
 #pragma once
 #include "path/start.h"
 #include "radiosity/map.h"
@@ -22,8 +22,8 @@ inline KnownLight known_light(const Scene& s, Mesh mesh, IlluminationMap map) {
     return {std::move(mesh), std::move(map)};
 }
 
-// A film's function of a sample, of a scene whose depth is 1: paths find emission and light samples
-// as ever, and what the maps know where they end.
+// The function that renders a sample.  The scene's depth is 1: paths add emission and light samples
+// as usual, and the radiance of the maps where they end.
 inline Radiance final_gather(const Scene& scene, const Technique& t, const KnownLight& known,
                              const Pattern& pattern) {
     return [=, &scene, &known, &pattern](const PixelSample& s, Tally& tally) {

@@ -1,4 +1,4 @@
-// radiosity/map.h  3  illumination maps, and what a camera sees of them
+// radiosity/map.h  3  illumination maps, and their images
 #pragma once
 #include "film/image.h"
 #include "film/passes.h"
@@ -19,9 +19,9 @@ inline rgb irradiance(const Mesh& mesh, const IlluminationMap& map, const Hit& h
     return E;
 }
 
-// What the side of a face reflects, and the radiance that it emits.
+// Albedo of a face, and the radiance that a side of it emits.
 inline rgb albedo(const Scene& s, const Face& f) { return s.materials[s.material_of[f.shape]].kd; }
-inline rgb greatest_albedo(const Scene& s, const Mesh& mesh) {  // a channel at a time
+inline rgb greatest_albedo(const Scene& s, const Mesh& mesh) {  // per channel
     rgb most;
     for (const Face& f : mesh.faces)
         for (auto c : axis) most.*c = std::max(most.*c, albedo(s, f).*c);
@@ -48,7 +48,7 @@ inline Seen seen_along(const Scene& scene, const Mesh& mesh, const IlluminationM
     return {E, emitted(*x->material, x->cos_o) + x->material->kd * E / pi};
 }
 
-// The means over K x K rays a pixel, on a regular grid: no random numbers.
+// The mean over K x K rays per pixel, on a regular grid: no random numbers.
 template <class Value>
 rgb pixel_of(const Scene& scene, int x, int y, int K, Value value) {
     rgb sum;
@@ -84,7 +84,7 @@ inline Image irradiance_image(const Scene& scene, const Mesh& mesh, const Illumi
                          [&](const Ray& ray) { return seen_along(scene, mesh, map, ray).E; });
 }
 
-// Mean over an image, a channel at a time; NaN stays NaN.
+// Mean over an image, per channel; NaN stays NaN.
 inline std::array<double, 3> mean_of_pixels(const Image& image) {
     std::array<double, 3> sum{};
     for (const auto& pixel : image.pixels)

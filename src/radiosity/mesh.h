@@ -1,4 +1,4 @@
-// radiosity/mesh.h  2  faces cut into triangles, on whose vertices illuminance is kept
+// radiosity/mesh.h  2  faces cut into triangles; their vertices hold the illuminance
 #pragma once
 #include <unistd.h>
 
@@ -14,7 +14,7 @@ struct Face {
     bool quad = false;
     vec3 a, b, c, d;
     vec3 n;          // the shape's own normal
-    real error = 0;  // of points of it, see Surface
+    real error = 0;  // of its points, see Surface
     uint32_t columns = 1, rows = 1;
     uint32_t vertex = 0, element = 0;  // the first of it
     uint32_t vertices() const {
@@ -40,8 +40,8 @@ inline Face face_at(const Scene& s, uint32_t i) {
     return f;
 }
 
-// Few cells for which no edge is longer than H; of a triangle the fewest rows that are a power of
-// two, so that it can be quartered.  Double, for there may be too many.
+// The fewest cells without an edge longer than H; a triangle has a power of two of rows, so that it
+// can be quartered.  Double, because there may be too many.
 struct Grid {
     double columns = 1, rows = 1;
 };
@@ -76,7 +76,7 @@ struct Mesh {
     std::vector<Face> faces;
     std::vector<uint32_t> face_of;                 // of each shape
     std::vector<vec3> at;                          // where the light of each vertex is received
-    std::vector<std::array<uint32_t, 3>> corners;  // of each element: vertices
+    std::vector<std::array<uint32_t, 3>> corners;  // vertices of each element
     size_t vertices() const { return at.size(); }
     size_t elements() const { return corners.size(); }
 };
@@ -114,7 +114,7 @@ inline Between between(const Mesh& mesh, const Hit& hit) {
     const bool second = hit.id != f.shape;
     real s = f.quad ? second ? hit.v : hit.v + hit.w : hit.v;
     real t = f.quad ? second ? hit.v + hit.w : hit.w : hit.w;
-    auto split = [](real& x, uint32_t n) {  // into the cell's number and the place in it
+    auto split = [](real& x, uint32_t n) {  // into the cell's number and the position in it
         x = std::max(real(0), x * real(n));
         const uint32_t i = std::min(uint32_t(x), n - 1);
         x = std::min(x - real(i), real(1));
@@ -158,7 +158,7 @@ inline vec3 receives_at(const Face& f, uint32_t i, uint32_t j) {
     return point_at(f, s / sum * n, t / sum * n);
 }
 
-// How large a mesh would be; double, for it may be too large to be.
+// The size of a mesh; double, because it may be too large to exist.
 struct Sizes {
     double faces = 0, elements = 0, vertices = 0;
 };
@@ -183,8 +183,8 @@ inline Sizes sizes(const Scene& s, double H) {
     return sum;
 }
 
-// What one face, element and vertex need: the mesh itself, and what a method keeps of them; of a
-// face up to two shapes, in the scene and with their part of its tree, and a light, too.
+// Bytes per face, element and vertex, for the mesh itself and for the data of a method.  A face has
+// up to two shapes in the scene, with their part of its BVH, and a light.
 struct Bytes {
     double face = sizeof(Face) + sizeof(Light) + 2 * (2 * sizeof(Shape) + 64),
            element = 3 * sizeof(uint32_t), vertex = sizeof(vec3);
@@ -193,7 +193,7 @@ struct Bytes {
     }
 };
 
-// Throws UserError if what is needed exceeds the memory, or the numbers that count it.
+// Throws UserError if the mesh exceeds the memory or the range of its indices.
 inline void check_fits(const Scene& s, double H, const Bytes& bytes, double memory) {
     auto fits = [&](double h) {
         const Sizes n = sizes(s, h);

@@ -2,10 +2,10 @@
 #pragma once
 #include "radiosity/map.h"
 
-// The part of a pixel that is edge, 0 to 1.  A point is if an element ends between it and the point
-// a pixel to the right, or below: so lines are a pixel wide, whatever the image's size.
+// The part of a pixel that is edge, 0 to 1.  A point is on an edge if an element ends between it
+// and the point a pixel to the right, or below.  Lines are a pixel wide in an image of any size.
 inline real edges_in(const Scene& scene, const Mesh& mesh, int x, int y, int K) {
-    using Element = std::array<uint32_t, 3>;  // by its vertices
+    using Element = std::array<uint32_t, 3>;  // its vertices
     auto element = [&](real px, real py) {
         const auto hit = scene.bvh.closest(camera_ray(scene.camera, scene.size, px, py));
         return hit ? between(mesh, *hit).vertex : Element{};
@@ -21,7 +21,7 @@ inline real edges_in(const Scene& scene, const Mesh& mesh, int x, int y, int K) 
     return real(edges) / real(K * K);
 }
 
-// A blue veil, which shows on what is black, white or of another colour.
+// A blue veil, visible on black, white and other colours.
 inline rgb line_over(rgb L, real exposure) {
     return L * real(0.4) + rgb{real(0.05), real(0.2), real(0.6)} / exposure;
 }

@@ -1,15 +1,15 @@
-// radiosity/missing.h  4  how far a map is from its limit at most, by what is not yet sent
+// radiosity/missing.h  4  a bound on the error of a map, from the unshot exitance
 //
-// What is missing is F U + F rho F U + ..., U the exitance that is not yet sent, F its transport.
-// The kernel of F is symmetric, and nobody sees more than a hemisphere, so F makes no quadratic
-// mean larger (Schur's test), and the sum is at most b = |U| / (1 - greatest rho).  As nothing that
-// is missing is negative, limit^2 >= E^2 + missing^2.  Both hold but for the discretisation of F.
+// The missing light is F U + F rho F U + ..., with the unshot exitance U and its transport F.  The
+// kernel of F is symmetric, and no point sees more than a hemisphere, so F increases no RMS
+// (Schur's test), and the sum is at most b = |U| / (1 - greatest rho).  No missing light is
+// negative, so that limit^2 >= E^2 + missing^2.  Both hold except for the discretisation of F.
 #pragma once
 #include <array>
 
 #include "base/vec.h"
 
-// Integrals over surfaces: of the square of E, all channels together, and of that of U.
+// Integrals over surfaces: of the square of E, all channels together, and of the square of U.
 struct Missing {
     double light = 0;
     std::array<double, 3> unsent{};
@@ -19,8 +19,8 @@ struct Missing {
         for (size_t k = 0; k < 3; ++k) unsent[k] += other.unsent[k];
     }
 
-    // An element of corners E and U: the integral of the square of what is linear between them is
-    // A / 12 ((a + b + c)^2 + a^2 + b^2 + c^2).
+    // An element with E and U at its corners.  The integral of the square of a linear function with
+    // corner values a, b, c is A / 12 ((a + b + c)^2 + a^2 + b^2 + c^2).
     void add(double area, const std::array<rgb, 3>& E, const std::array<rgb, 3>& U) {
         auto square = [](const std::array<rgb, 3>& x) {
             const rgb sum = x[0] + x[1] + x[2];
@@ -33,7 +33,7 @@ struct Missing {
         }
     }
 
-    // Exitance that is missing as well, wherever it is: |U + V| <= |U| + |V|.
+    // Adds missing exitance at any place: |U + V| <= |U| + |V|.
     void lose(const Missing& other) {
         for (size_t k = 0; k < 3; ++k) {
             const double sum = std::sqrt(unsent[k]) + std::sqrt(other.unsent[k]);
@@ -41,8 +41,8 @@ struct Missing {
         }
     }
 
-    // What is missing at most, relative to the limit, in the quadratic mean over surfaces and
-    // channels: 1 while E is 0.
+    // Bound on the RMS of the missing light over surfaces and channels, relative to the limit: 1
+    // while E is 0.
     double error(rgb most_reflected) const {
         double b2 = 0;
         for (size_t k = 0; k < 3; ++k) {

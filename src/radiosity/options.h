@@ -2,19 +2,19 @@
 #pragma once
 #include "app/options.h"
 
-// How the illumination maps are filled.
+// The method that fills the illumination maps.
 enum class Method {
     shooting,   // the element with the most unshot power shoots it, then the next
     hierarchy,  // whole faces shoot, in parts as small as their receivers need
     particles   // random walks from the lights
 };
 
-// What the image of the maps shows.
+// Quantity that the image of the maps shows.
 enum class MapView { luminance, illuminance, mesh };
 
 // An error is that of the maps; of the image, with final gathering.
 struct RadiosityOptions : Options {
-    bool final_gather = false;  // by paths, of spp, sets, technique and sampler
+    bool final_gather = false;  // render paths, with spp, sets, technique and sampler
     Method method = Method::hierarchy;
     std::optional<double> mesh;  // longest edge of an element
     double unshot = 0;           // fraction of all power; 0: no limit

@@ -1,23 +1,23 @@
-// radiosity/particles.h  5  particles from the lights fill the maps
+// radiosity/particles.h  5  particle tracing from the lights fills the maps
 //
-// A particle is power (a channel at a time) that leaves a light, is added to the hats where it
-// hits, and survives by the albedo.  Unbiased for the maps of projection.h, with any sampler that
-// is.
+// A particle carries power, per channel, from a light.  It adds it to the hat functions where it
+// hits, and survives with probability albedo.  Unbiased for the maps of projection.h, with any
+// unbiased sampler.
 #pragma once
 #include "radiosity/batches.h"
 #include "radiosity/projection.h"
 
 // ---- One walk -----------------------------------------------------------------------------------
 
-// What became of the power: emitted = absorbed + escaped, but for rounding.
+// Balance of the power: emitted = absorbed + escaped, except for rounding.
 struct Balance {
     rgb emitted, absorbed, escaped;
     static constexpr rgb Balance::*parts[] = {&Balance::emitted, &Balance::absorbed,
                                               &Balance::escaped};
 };
 
-// The numbers of a walk: five for its start, three a scattering.  Beyond `structured` scatterings
-// they are independent: Halton's bases would be large, and their points no better.
+// The numbers of a walk: five for its start, three per bounce.  Beyond `structured` bounces they
+// are independent: Halton's bases would be large, and their points no better.
 class WalkNumbers {
 public:
     static constexpr uint32_t pick = 0, point = 1, direction = 3, side = 5, structured = 8;
@@ -119,13 +119,13 @@ public:
         return make_pattern(kind, seed, 5, of_each(samples));
     }
 
-    // Walks n more particles of a batch; all but those for which there is no time after Ctrl-C.
+    // Traces n more particles of a batch, or fewer after Ctrl-C.
     void add(size_t batch, uint64_t n) {
         Batch& b = batch_[batch];
         for (const uint64_t end = b.n + n; b.n < end && !interrupted; ++b.n) {
             const WalkNumbers u(pattern_, independent_, uint64_t(batch), b.n);
             Balance one;
-            rgb kept{1, 1, 1};  // by the surfaces that it meets
+            rgb kept{1, 1, 1};  // part that the surfaces reflect
             b.rays += walk(scene_, u, one, [&](const Vertex& x, rgb power) {
                 kept *= x.material->kd;
                 const auto [vertex, weight] = between(mesh_, x.hit);
@@ -141,7 +141,7 @@ public:
 
     // ---- Results --------------------------------------------------------------------------------
 
-    // Of each batch, that have all walked.
+    // Complete particles of each batch.
     uint64_t of_each() const {
         return std::min_element(batch_.begin(), batch_.end(),
                                 [](auto& a, auto& b) { return a.n < b.n; })
@@ -157,8 +157,8 @@ public:
         for (const Batch& b : batch_) n += b.rays;
         return n;
     }
-    // Whether all light of a channel has been kept: in a closed room that absorbs nothing there is
-    // no limit for it to reach.
+    // True if no light of some channel was lost: in a closed room that absorbs nothing, it has no
+    // limit.
     bool is_endless() const {
         for (size_t c = 0; c < 3; ++c) {
             bool emitted = false, lost = false;
@@ -167,7 +167,7 @@ public:
         }
         return false;
     }
-    // Of all particles together, over their number.
+    // Sums over all particles, divided by their number.
     Balance balance() const {
         Balance mean;
         for (size_t k = 0; k < 3; ++k) {
@@ -228,10 +228,10 @@ public:
 private:
     using Sum = std::array<double, 3>;
     struct Batch {
-        std::vector<Sum> sums;  // of power times hat, for the sides of all vertices
+        std::vector<Sum> sums;  // sums of power times hat, for the sides of all vertices
         std::array<Sum, 3> balance;
         uint64_t n, rays;
-        std::array<bool, 3> lost{};  // of a channel something has been absorbed, or has escaped
+        std::array<bool, 3> lost{};  // per channel: light was absorbed or has escaped
     };
 
     const Scene& scene_;

@@ -1,14 +1,13 @@
-// radiosity/projection.h  4  from integrals over hats to illumination maps
+// radiosity/projection.h  4  from integrals of linear basis functions to illumination maps
 //
-// Particles tell b_v = integral of E h_v over a face, h_v the hat function of vertex v: 1 there, 0
-// at all others, linear between.  Two maps follow from it, both linear in b, so that unbiased sums
-// make unbiased maps of these functionals of E:
-//   mean: b_v over the hat's own integral.  At a border the hat lies on one side of its vertex, so
-//   the error is of first order in the mesh;
+// Particles estimate b_v = integral of E h_v over a face, with the hat function h_v of vertex v: 1
+// there, 0 at all others, linear between.  Two maps are linear in b, so that unbiased sums make
+// unbiased maps of these functionals of E:
+//   mean: b_v divided by the integral of the hat.  At a border the hat lies on one side of its
+//   vertex, so the error is of first order in the mesh;
 //   projection: the piecewise linear function nearest to E in the L2 norm, M x = b with M_vw the
-//   integral of h_v h_w.  For a smooth E it is of second order everywhere.  Beside a sharp border
-//   of light it overshoots, and noise does so, too: it may be negative, and to clamp it would be
-//   biased.
+//   integral of h_v h_w.  For a smooth E it is of second order everywhere.  Near a sharp border of
+//   light, and by noise, it overshoots and may be negative; clamping it would be biased.
 #pragma once
 #include "radiosity/map.h"
 
@@ -37,7 +36,7 @@ public:
         return x;
     }
 
-    // Integral of the product of two maps (a channel at a time): x M y.
+    // Integral of the product of two maps, per channel: x M y.
     rgb product(const Sums& x, const Sums& y) const { return dot_of(x, apply(y)); }
     rgb square(const Sums& x) const { return product(x, x); }
 

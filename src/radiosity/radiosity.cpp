@@ -1,4 +1,4 @@
-// radiosity/radiosity.cpp  9  the program: a scene's illumination maps, and what its camera sees
+// radiosity/radiosity.cpp  9  the program: illumination maps of a scene, and images of them
 #include "radiosity/gather.h"
 #include "radiosity/solution.h"
 
@@ -29,7 +29,7 @@ Image picture_of(const RadiosityOptions& o, const Stage& stage, const Illuminati
     return image;
 }
 
-// The picture to its end even after Ctrl-C, which ends the search for light alone; a second one
+// Completes the picture even after Ctrl-C, which only stops the search for light.  A second one
 // kills.
 Image picture_to_the_end(const RadiosityOptions& o, const Stage& stage, Solution& s) {
     Image image = picture_of(o, stage, s.map);
@@ -40,7 +40,7 @@ Image picture_to_the_end(const RadiosityOptions& o, const Stage& stage, Solution
     return image;
 }
 
-// What the camera sees of the maps; returns the exit status.
+// Renders the maps; returns the exit status.
 int show_maps(const RadiosityOptions& o, const OptionTable& table, const Stage& stage,
               const std::vector<std::string>& outputs) {
     Solution s = solve(o, stage);
@@ -60,8 +60,8 @@ int show_maps(const RadiosityOptions& o, const OptionTable& table, const Stage& 
     return s.signal ? 128 + s.signal : 0;
 }
 
-// Paths that end on the maps; returns the exit status.  Particles and paths have keys of their own:
-// they are independent.
+// Renders by paths that end on the maps; returns the exit status.  Particles and paths have keys of
+// their own: they are independent.
 int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
            const std::vector<std::string>& outputs) {
     Scene& scene = stage.scene;
@@ -76,7 +76,7 @@ int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
     const KnownLight known = known_light(scene, std::move(stage.mesh), std::move(s.map));
     const double seconds = clock.elapsed();
     of_maps.push_back({"map_seconds", json::number(seconds)});
-    // If no time is left, the shortest: 0 would be no limit.
+    // If no time is left, a tiny limit: 0 would be no limit.
     if (o.seconds > 0) plan.target.seconds = std::max(1e-9, o.seconds - seconds);
     scene.depth = 1;
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples());

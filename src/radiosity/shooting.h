@@ -1,10 +1,10 @@
-// radiosity/shooting.h  5  progressive refinement: what has most light to send sends it first
+// radiosity/shooting.h  5  progressive refinement: the brightest unshot element shoots first
 //
-// Radiosity (Goral et al. 1984) by shooting (Cohen, Chen, Wallace, Greenberg 1988): whatever sends
-// most light that it has not yet sent sends it to all vertices at once.  No random number is drawn.
-// Biased: by what is not yet sent, which only makes it too dark; by the mesh, whose vertices on a
-// border receive a little inside of it; by the fixed pattern of shadow rays; and if whole faces
-// shoot, by parts that are taken for their mean.
+// Radiosity (Goral et al. 1984) by shooting (Cohen, Chen, Wallace, Greenberg 1988): the element or
+// face with the most unshot power shoots it to all vertices at once.  It draws no random numbers.
+// Biased: by unshot power, which only makes it too dark; by the mesh, because vertices on a border
+// receive light slightly inside of it; by the fixed pattern of shadow rays; and, if whole faces
+// shoot, by parts that are replaced by their mean.
 #pragma once
 #include <barrier>
 #include <numeric>
@@ -46,7 +46,7 @@ public:
     uint64_t shots() const { return shots_; }
     uint64_t rays() const { return rays_; }
     double seconds() const { return seconds_; }
-    // What has not yet been sent, over what is emitted.
+    // Unshot power divided by emitted power.
     double unshot() const { return emitted_ > 0 ? unsent() / emitted_ : 0; }
 
     // At most, see missing.h; a point that has not shot has no exitance.
@@ -108,8 +108,8 @@ public:
     }
 
 private:
-    // Of a side of a face, number 2 face + back: the power that is not yet sent, and which of its
-    // nodes should send next.
+    // For a side of a face, number 2 face + back: the unshot power, and the node that should shoot
+    // next.
     struct Candidate {
         double all = 0, power = 0;  // means of the channels: of the side, of the node
         uint32_t node = 0;
@@ -125,11 +125,11 @@ private:
     const Trees tree_;
     IlluminationMap map_;
     std::vector<Corners> shot_;      // exitance that element e has sent: number 2 e + back
-    std::vector<double> sent_;       // the same in the mean of its corners and channels
-    std::vector<Corners> radiance_;  // of the nodes of the side that shoots
+    std::vector<double> sent_;       // the same, averaged over its corners and channels
+    std::vector<Corners> radiance_;  // radiance of the nodes of the side that shoots
     std::vector<Candidate> best_;
     std::vector<uint32_t> order_;  // faces, the largest first, so that threads end together
-    const rgb most_reflected_;     // of all faces
+    const rgb most_reflected_;     // greatest albedo of all faces
     std::vector<const Light*> points_;
     size_t next_point_ = 0;
     double emitted_ = 0, area_ = 0, seconds_ = 0;  // power; of both sides of all faces
@@ -192,7 +192,7 @@ private:
                unshot() <= t.unshot || (t.error > 0 && error() <= t.error);
     }
 
-    // Lights first, then whoever has most.  Returns whether there is one.
+    // Lights first, then the side with the most unshot power.  False: there is none.
     bool choose() {
         point_ = next_point_ < points_.size() ? points_[next_point_++] : nullptr;
         if (point_) flying_.unsent.fill(double(INFINITY));
@@ -282,7 +282,7 @@ private:
 
     // Irradiance that a vertex does not care about: of one that is dark, beside the scene's mean.
     real faint_to(const Receiver& to) const {
-        constexpr real part = real(0.005);  // by measurement: .1 % of an image of a furnished room
+        constexpr real part = real(0.005);  // by measurement: 0.1 % of an image of a furnished room
         return part * (to.E > 0 ? to.E : real(emitted_ / area_));
     }
 

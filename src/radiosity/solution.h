@@ -1,4 +1,4 @@
-// radiosity/solution.h  8  from options to illumination maps, and what is told of them
+// radiosity/solution.h  8  from options to illumination maps, their summary and statistics
 #pragma once
 #include "app/render.h"
 #include "radiosity/mesh_view.h"
@@ -9,14 +9,14 @@
 // ---- The scene ----------------------------------------------------------------------------------
 
 struct Stage {
-    Scene scene;  // of triangles
+    Scene scene;  // triangles only
     Mesh mesh;
     double H = 0;      // longest edge
-    double bytes = 0;  // of mesh and solution
+    double bytes = 0;  // memory of mesh and solution
 };
 
-// Longest edges, a part of the scene's diagonal unless --mesh says it; throws UserError if the
-// scene is none for illumination maps and their error, or its mesh none for this machine.
+// The longest edge: a part of the scene's diagonal unless --mesh is given.  Throws UserError if the
+// scene is not diffuse, its error is not bounded, or the mesh does not fit into memory.
 inline double edge_length(const RadiosityOptions& o, const Scene& scene, const Bytes& bytes) {
     if (const uint32_t line = line_of_white(scene); line && o.error > 0 && !is_random(o))
         throw UserError("--error: " + o.scene + ":" + std::to_string(line) +
@@ -46,13 +46,13 @@ inline Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
 
 // ---- Methods ------------------------------------------------------------------------------------
 
-// What a method has found; NaN: it does not say.
+// The result of a method; NaN: not known.
 struct Solution {
     IlluminationMap map;
     uint64_t shots = 0, particles = 0, rays = 0;
     double unshot = NAN, seconds = 0, cpu_seconds = 0;
-    MapError stated = {};  // of shooting, at most that
-    int signal = 0;        // that cut it short
+    MapError stated = {};  // by shooting, an upper bound
+    int signal = 0;        // the signal that interrupted it
     bool empty() const { return shots == 0 && particles == 0; }
 };
 
@@ -98,10 +98,9 @@ inline Solution solve(const RadiosityOptions& o, const Stage& stage) {
     return s;
 }
 
-// Maps for final gathering: unless the user says how many particles, one for 16 paths, or a
-// sixteenth of the time, so that their noise, which all pixels share, is little beside that of the
-// paths (by `make indirect`).  Of an image that its error ends nobody knows the samples: as many as
-// the scene's at most.
+// Maps for final gathering: unless --particles is given, one particle for 16 paths, or a sixteenth
+// of the time.  All pixels share the noise of the maps; it is then small against that of the paths
+// (by `make indirect`).  With --error the number of samples is not known: at most the scene's.
 inline WalksTarget walks_of(const RadiosityOptions& o, const Scene& scene) {
     if (o.particles > 0) return {o.particles, o.seconds};
     uint64_t N = o.spp > 0 || o.seconds > 0 ? o.spp : scene.samples;
@@ -110,9 +109,9 @@ inline WalksTarget walks_of(const RadiosityOptions& o, const Scene& scene) {
     return {uint64_t(std::ceil(pixels * double(N) / 16)), o.seconds / 16};
 }
 
-// ---- What is told -------------------------------------------------------------------------------
+// ---- Summary and statistics ---------------------------------------------------------------------
 
-// What ended the run; "": there was no light left, or none at all.
+// The option that ended the run; "": there was no light left, or none at all.
 inline std::string stopped_by(const RadiosityOptions& o, const Solution& s) {
     if (s.signal) return "signal";
     if (o.error > 0 &&
@@ -162,7 +161,7 @@ inline std::string encode_stats(const RadiosityOptions& o, const OptionTable& ta
                {"error", json::number(s.stated.error)},
                {"error_uncertainty", json::number(s.stated.uncertainty)},
                {"error_asked", o.error > 0 ? json::number(o.error) : "null"},
-               {"bias", "\"biased\""},  // by the triangles: a map is linear on each
+               {"bias", "\"biased\""},  // a map is linear on each triangle
                {"stopped_by", by.empty() ? "null" : json::string(by)},
                {"seconds", json::number(s.seconds)},
                {"cpu_seconds", json::number(cpu_seconds())},

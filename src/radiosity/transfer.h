@@ -22,7 +22,7 @@ struct Corners : std::array<rgb, 3> {
     rgb mean() const { return ((*this)[0] + (*this)[1] + (*this)[2]) / 3; }
 };
 
-// Whether the receiver is within so many radii of a node.
+// True if the receiver is within so many radii of a node.
 inline bool near(const Receiver& to, const Node& node, real radii) {
     const vec3 d = node.centre - to.x.p;
     return dot(d, d) < sqr(radii * node.radius);
@@ -34,7 +34,7 @@ inline real most_from(const Receiver& to, const Node& node, real L) {
     return pi * L * std::min(real(1), sqr(node.radius) / dot(d, d));
 }
 
-// Whether all of a node is below the receiver's horizon.
+// True if all of a node is below the receiver's horizon.
 inline bool behind(const Receiver& to, const Node& node) {
     return dot(node.centre - to.x.p, to.x.n) < -node.radius;
 }
@@ -86,8 +86,8 @@ public:
         return visible > 0 ? L * (visible * irradiance_polygon(seen_from(to, node))) : rgb{};
     }
 
-    // By shadow rays to the centre, or to the middles of four quarters.  None ends below the
-    // horizon, unless all would: then one goes to the middle of what is above.
+    // Shadow rays go to the centre, or to the centres of four quarters, if these are above the
+    // horizon.  If none is, one ray goes to the centre of the part above it.
     real visible_part(const Receiver& to, const Source& from, const Node& node, int shadow_rays) {
         int above = 0, visible = 0;
         auto look_at = [&](vec3 p) {

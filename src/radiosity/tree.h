@@ -8,7 +8,7 @@ struct Node {
     uint32_t corners = 3;
     uint32_t children = 0, first = 0;  // consecutive nodes; none: the element `first`
     vec3 centre;
-    real area = 0, radius = 0;  // of the corners about the centre
+    real area = 0, radius = 0;  // radius: distance of the corners from the centre
 };
 
 inline Node node_of(const std::array<vec3, 4>& corner, uint32_t corners) {

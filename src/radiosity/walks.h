@@ -14,32 +14,31 @@ inline std::string walked(uint64_t particles, const MapError& e) {
     return counted(particles, "particle") + (std::isfinite(e.error) ? ", " + error_words(e) : "");
 }
 
-// What walks stop after, whichever comes first; 0: no limit.
+// Limits of walks, whichever comes first; 0: no limit.
 struct WalksTarget {
     uint64_t particles = 0;
     double seconds = 0;
-    double error = 0;  // of the map, see Particles::stated
+    double error = 0;  // error of the map, see Particles::stated
 };
 
-// When to look at the error: one that is asked for is met once it is reached with more than its own
-// uncertainty on top, for a run ends where its error looks small.
+// The error checks.  An error is met once the estimate plus 1.5 times its uncertainty is at most
+// the error wanted: a run ends where its estimate happens to be small.
 class ErrorTarget {
 public:
     explicit ErrorTarget(double error) : asked_(error) {}
 
-    // Particles of each batch before which nobody looks.  An error does not tell of light that no
+    // Particles of each batch before the first check.  The estimate does not contain light that no
     // particle has carried: a part p of all power, on a part a of the surfaces, is p^2 / a of
-    // |E|^2, and goes unseen with the probability exp(-16 least p).
+    // |E|^2, and is missed with probability exp(-16 least p).
     static constexpr uint64_t least = 4096;
 
     bool met(const MapError& e) const { return at_most(e) <= asked_; }
 
-    // The part of all work that n particles are, by 1 / sqrt(n) (Halton's are faster).
+    // Fraction of all work done, by 1 / sqrt(n); Halton points converge faster.
     double done(const MapError& e) const { return std::pow(asked_ / at_most(e), 2); }
 
-    // After a look at n, which was not enough: a little early by 1 / sqrt(n), so that a look that
-    // errs is followed by another one; by no less than 4 %, 2 % of the error, so that looks are few
-    // beside the walks.
+    // The next check after n particles, a little early by 1 / sqrt(n), because a check may err.  At
+    // least 4 % more particles, 2 % of the error, so that checks take little time.
     uint64_t next(uint64_t n, const MapError& e) const {
         const double more = std::clamp(0.9 / done(e), 1.04, 4.0);
         return uint64_t(std::ceil(double(n) * more));
@@ -47,8 +46,8 @@ public:
 
 private:
     const double asked_;
-    // By measurement (reference/radiosity-error.md): a run's error is itself a draw, which spreads
-    // as the error of one of 16 batches would, so that 95 % of runs are to come to at most 1.05 E.
+    // By measurement (reference/radiosity-error.md): 95 % of runs end at an error of at most 1.05
+    // E. A run's error is itself random, with the spread of the error of one of 16 batches.
     static constexpr double margin = 1.5;
     static double at_most(const MapError& e) {
         const double sum = e.error + margin * e.uncertainty;
@@ -66,7 +65,7 @@ struct Walked {
 
 class Walks {
 public:
-    // All must outlive it, but for the target.
+    // All arguments except the target must outlive it.
     Walks(const Scene& scene, const Mesh& mesh, const Pattern& pattern, const WalksTarget& target,
           const CommonOptions& o)
         : target_(target),
@@ -75,7 +74,7 @@ public:
           particles_(scene, mesh, pattern),
           bar_(target.seconds, o.quiet) {}
 
-    // Until the target is met, or `interrupted`.  Whole grids, but for the limit.
+    // Until the target is met, or `interrupted`.  Whole grids, except at the limit.
     void run(uint64_t grid) {
         const ErrorTarget enough(target_.error);
         const uint64_t limit = Particles::of_each(target_.particles);
@@ -105,10 +104,10 @@ public:
 private:
     const WalksTarget target_;
     const CommonOptions& o_;
-    const uint64_t least_;  // of a pass: maps of fewer in a batch are nothing but noise
+    const uint64_t least_;  // particles of a pass: maps of fewer per batch are only noise
     Particles particles_;
     Progress bar_;
-    uint64_t of_ = 0;  // particles of each batch at which the error was that
+    uint64_t of_ = 0;  // particles of each batch when error_ was estimated
     MapError error_;
 
     // The error as it is now.
@@ -117,7 +116,7 @@ private:
         return error_;
     }
 
-    // Brings every batch to so many; 0: as many as there is time for.  False: not all walked.
+    // Traces until every batch has so many; 0: as many as there is time for.  False: fewer.
     bool walk_to(uint64_t to) {
         for (;;) {
             const uint64_t n = particles_.of_each();
@@ -130,12 +129,12 @@ private:
                 [&](size_t batch) { particles_.add(batch, next - n); },
                 [&](double part) { show(double(n) + part * double(next - n)); });
             if (!complete) return false;
-            // The error takes time of its own: it is asked for when the particles have doubled.
+            // The estimate takes time: it is made when the particles have doubled.
             if (!o_.quiet && next >= 2 * of_ && bar_.elapsed() >= 1) look();
         }
     }
 
-    // In the meantime the error falls like 1 / sqrt(n).
+    // Between checks the error is taken to fall like 1 / sqrt(n).
     void show(double each) {
         const double n = each * Particles::batches, since = double(of_) / each;
         double done = target_.particles ? n / double(target_.particles) : 0;
@@ -146,7 +145,7 @@ private:
     }
 };
 
-// Where there is no light, nothing walks.
+// Without light there are no particles.
 inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& pattern,
                        const WalksTarget& target, const CommonOptions& o) {
     Walks walks(scene, mesh, pattern, target, o);

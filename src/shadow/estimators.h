@@ -1,8 +1,8 @@
-// shadow/estimators.h  1  light in shadow: three estimators, and the one that beats them
+// shadow/estimators.h  1  light in shadow: plain Monte Carlo, control variate, ratio, regression
 //
-// Wanted: S = E[w V].  Samples bring w, the light that a sample stands for, and w V, what remains
-// of it where something is in the way; U = E[w] is known, as a number or at every sample.  With
-// R = S / E[w], for many samples (Heitz, Hill, McGuire 2018; supplement):
+// The integral is S = E[w V].  A sample has w, its unshadowed light, and w V, its light with
+// visibility V.  U = E[w] is known, as a number or at every sample.  With R = S / E[w], for many
+// samples (Heitz, Hill, McGuire 2018; supplement):
 //
 // clang-format off
 //   estimator   class       N variance             N bias
@@ -16,7 +16,7 @@
 
 enum class Estimator { stochastic, control, ratio, regression };
 
-// Whether it takes all samples of a pixel together, and is no mean of samples.
+// True if it needs all samples of a pixel together and is not a mean of samples.
 inline bool estimates_pixels(Estimator e) {
     return e == Estimator::ratio || e == Estimator::regression;
 }
@@ -26,7 +26,7 @@ struct ShadowMoments {
     uint64_t n = 0;
     double U = 0, w = 0, wV = 0;  // means
     double bb = 0;                // sum of (b - mean)^2
-    double b_wV = 0, b_U = 0;     // of (b - mean) (w V - mean), of (b - mean) (U - mean)
+    double b_wV = 0, b_U = 0;     // sums of (b - mean) (w V - mean) and (b - mean) (U - mean)
 
     // In one pass (Welford 1962), and of two parts (Chan, Golub, LeVeque 1983).  Equal numbers have
     // equal means: w and w V agree to the last bit where V is 1.
@@ -81,8 +81,8 @@ struct SumsAbout {
 // Unbiased.
 inline double stochastic(const ShadowMoments& m) { return m.wV; }
 
-// Of one sample, or of the means of many; of numbers or of colours.  Unbiased.  Exactly U where
-// nothing is in the way.
+// The control variate for one sample or for means of many, as numbers or colours.  Unbiased.  It is
+// exactly U where nothing occludes the light.
 template <class T>
 T control(const T& U, const T& w, const T& wV) {
     // exercise 5.1

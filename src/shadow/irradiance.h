@@ -1,8 +1,8 @@
-// shadow/irradiance.h  1  what unoccluded spheres and polygons send to a diffuse receiver
+// shadow/irradiance.h  1  irradiance by unoccluded spheres and polygons
 //
-// Irradiance over radiance (sr): the integral of max(0, cos theta) over the directions in which the
-// emitter is seen, theta from the receiver's normal.  A diffuse surface sends rho / pi of it to the
-// eye.  What is below the receiver's horizon counts as clipped away.
+// Irradiance over radiance (sr): the integral of max(0, cos theta) over the directions to the
+// emitter, with theta from the receiver's normal.  A diffuse surface reflects rho / pi of it to the
+// eye.  The part below the receiver's horizon is clipped.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,8 +20,8 @@ inline real t_minus_atan(real t) {
     return sum;
 }
 
-// A sphere whose centre has cosine `cosine` with the normal and which subtends sin^2(sigma) =
-// (r / d)^2 <= 1 (Martinez, Radiative view factors; Lagarde, de Rousiers 2014).  Where the horizon
+// A sphere with its centre at `cosine` to the normal, and with half-angle sigma, sin^2(sigma) =
+// (r / d)^2 <= 1 (Martinez, Radiative view factors; Lagarde, de Rousiers 2014).  If the horizon
 // cuts it, with y = -cot(sigma) cot(beta), q = sin(beta) sqrt(1 - y^2), t = q tan(sigma):
 //   E / L = sin^2 cos(beta) acos(y) + atan(t) - q sin(sigma) cos(sigma).
 // The last two cancel to their third order for small sigma: q sin cos = t - t sin^2.
@@ -75,8 +75,8 @@ inline real irradiance_by_area(const Polygon& p) {
     return sum / 6;
 }
 
-// By a sum over the edges, exact for polygons of any size (Lambert 1760; Arvo 1995, thesis, sec.
-// 3). The sum cancels: its error is some ulp over the angle.
+// A sum over the edges, exact for polygons of any size (Lambert 1760; Arvo 1995, thesis, sec. 3).
+// The sum cancels: its error is some ulp divided by the angle.
 inline real irradiance_lambert(const Polygon& p) {
     // exercise 5.5
     // E / L = 1/2 |sum of Theta (Gamma)_z|, Theta the angle under which an edge is seen and Gamma
@@ -121,14 +121,14 @@ inline real x_minus_sin(real x) {
     return sum;
 }
 
-// A triangle that widens from a to a side with the middle m = a + d, short beside its distance: the
-// irradiance over twice its area times the distance of its plane is the integral of s z / r^4 for s
-// from 0 to 1 along a + s d, where that is above the horizon.  By angles psi from a towards m,
-// whose directions have z = a_z / |a| cos(psi) + t_z sin(psi), it is that of
+// A triangle from the corner a to a side with midpoint m = a + d that is short compared with its
+// distance.  Its irradiance, divided by twice its area times the distance of its plane, is the
+// integral of s z / r^4 for s from 0 to 1 along a + s d above the horizon.  With the angle psi from
+// a towards m and z = a_z / |a| cos(psi) + t_z sin(psi), it is the integral of
 // sin(psi) z |a| / |a x d|^2.
 inline real along_needle(vec3 a, vec3 d) {
     const real a2 = dot(a, a), ad = dot(a, d), r = std::sqrt(a2), crossed = length(cross(a, d));
-    if (!(crossed > 0)) return 0;  // seen from its end
+    if (!(crossed > 0)) return 0;  // edge-on
     const real m_z = a.z + d.z, a_z = a.z / r, t_z = (d.z * a2 - a.z * ad) / (r * crossed);
     if (a.z <= 0 && m_z <= 0) return 0;
     const real horizon = a.z < 0 ? std::atan2(-a_z, t_z) : std::atan2(a_z, -t_z);
@@ -140,9 +140,9 @@ inline real along_needle(vec3 a, vec3 d) {
     return (upper - lower) * r / (2 * sqr(crossed));
 }
 
-// The triangle a, a + u, a + v if it is thin beside its distance, by the lines in its middle: its
-// error is the square of the angle of its height.  A sum over edges would lose what the edges have
-// in common, and corners, rounded to ulp of their distance, the height itself.
+// The triangle a, a + u, a + v if it is thin compared with its distance, by its median lines.  The
+// error is the square of the angle of its height.  A sum over edges would cancel, and corners that
+// are rounded to ulp of their distance would lose the height itself.
 inline std::optional<real> irradiance_needle(vec3 a, vec3 u, vec3 v) {
     constexpr real thin = sizeof(real) == 4 ? real(4e-3) : real(6e-6);  // ulp^(1/3)
     const vec3 w = v - u, twice_area = cross(u, v);
@@ -154,16 +154,16 @@ inline std::optional<real> irradiance_needle(vec3 a, vec3 u, vec3 v) {
     const real ee = dot(e, e), nearest = std::clamp(-dot(p, e) / ee, real(0), real(1));
     const real distance = length(p + e * nearest), height = length(twice_area / std::sqrt(ee));
     if (!(height < thin * distance)) return {};
-    const real foot = dot(e, f) / ee, unit_ = 1 / distance;  // of the height on that side
+    const real foot = dot(e, f) / ee, unit_ = 1 / distance;  // foot of the height on that side
     p = p * unit_, e = e * unit_, f = f * unit_;
-    const vec3 to_middle = (f + e * foot) / 2;  // of the height
+    const vec3 to_middle = (f + e * foot) / 2;  // to the middle of the height
     return std::abs(dot(twice_area * unit_ * unit_, p)) *
            (foot * along_needle(p, to_middle) + (1 - foot) * along_needle(p + e, to_middle - e));
 }
 
 // ---- Triangles and parallelograms -------------------------------------------------------------
 
-// By a corner and two edges.
+// A quad with this corner and two edges.
 inline real irradiance_triangle(vec3 a, vec3 u, vec3 v) {
     if (const auto thin = irradiance_needle(a, u, v)) return *thin;
     Polygon p;

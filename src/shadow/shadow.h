@@ -1,9 +1,9 @@
-// shadow/shadow.h  2  light that comes directly from lights: known but for its shadows
+// shadow/shadow.h  2  direct light: analytic without shadows, sampled shadows
 //
-// On diffuse surfaces the light of spheres and polygons has a closed form U, were nothing in the
-// way.  Control, ratio and regression use it where the camera sees the surface itself, not in a
-// mirror.  All else stays as sampled and is added: Phong lobes, later vertices of a path, point
-// lights, the inside of spheres, and lights nearer to their receiver than rounding.
+// On diffuse surfaces the unshadowed light of spheres and polygons has a closed form U.  Control,
+// ratio and regression use it where the camera sees the surface itself, not in a mirror.  They add
+// all else as sampled: Phong lobes, later vertices of a path, point lights, the inside of spheres,
+// and lights nearer to their receiver than rounding.
 #pragma once
 #include "film/passes.h"
 #include "path/pathtracer.h"
@@ -11,8 +11,8 @@
 #include "shadow/estimators.h"
 #include "shadow/irradiance.h"
 
-// Of one sample, radiance to the eye: exact without shadows; as one light sample estimates that,
-// E[w] = U; and what shadows leave of the estimate.
+// Radiance to the eye, for one sample: U is exact and unshadowed; w is its estimate by one light
+// sample, E[w] = U; wV is the estimate with its shadow.
 struct Shadowed {
     rgb U, w, wV;
 };
@@ -20,7 +20,7 @@ inline bool is_finite(const Shadowed& s) { return is_finite(s.U) && is_finite(s.
 
 // ---- The closed form --------------------------------------------------------------------------
 
-// Whether U counts this light at x.
+// True if U contains this light at x.
 inline bool has_closed_form(const Light& l, const Surface& x) {
     const real error = 2 * (x.error + l.error);
     if (l.kind == Light::Kind::point) return false;
@@ -53,7 +53,7 @@ inline rgb unshadowed(const Scene& scene, const Material& m, const Surface& x, c
 
 // ---- One sample ---------------------------------------------------------------------------------
 
-// Of a path's first vertex.  Light samples must be all that brings direct light: LightMode::nee.
+// For the first vertex of a path, without BSDF sampling of direct light: LightMode::nee.
 inline Shadowed shadowed(const Scene& scene, const Step& e) {
     if (!e.met || scene.depth == 0 || e.x.cos_o == 0 || e.x.material->is_delta()) return {};
     const Vertex& x = e.x;
@@ -66,14 +66,13 @@ inline Shadowed shadowed(const Scene& scene, const Step& e) {
     return s;
 }
 
-// A path's radiance: all that is sampled once and for all, and what a pixel's samples are yet to
-// make of the light in `first`.
+// A path's radiance: `rest` is final; an estimator combines `first` of all samples of a pixel.
 struct ShadowSample {
     rgb rest;
     Shadowed first;
 };
 
-// By steps as Li adds them up.
+// Adds up the steps of a path as Li does.
 template <class Visitor>
 ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, Visitor visit) {
     ShadowSample sample;
@@ -89,11 +88,11 @@ ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, 
 
 // ---- Pixels -------------------------------------------------------------------------------------
 
-// Of n samples: ratio and regression need the moments of all, for the mean of the ratios of single
+// Moments of n samples: ratio and regression need them, because the mean of ratios of single
 // samples would never converge.
 struct ShadowPixel {
     Sum rest;
-    ShadowMoments shadowed[3] = {};  // a channel at a time
+    ShadowMoments shadowed[3] = {};  // per channel
 
     void add(const ShadowSample& s) {
         rest.add(s.rest);
@@ -111,7 +110,7 @@ struct ShadowPixel {
     }
 };
 
-// A film's function of a sample.  Such a sample is the estimate by all n of a replication.
+// The function that renders a sample of the film: the estimate by all n paths of a replication.
 inline Radiance shadow_estimate(const Scene& scene, const Technique& t, const Pattern& pattern,
                                 Estimator e, uint64_t n) {
     return [=, &scene, &pattern](PixelSample s, Tally& tally) {

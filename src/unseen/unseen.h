@@ -1,9 +1,8 @@
-// unseen/unseen.h  1  how much light may have been missed: small lights, and rays that nearly met
-// one
+// unseen/unseen.h  1  estimates of light that no sample has met, from near misses of small lights
 //
-// The spread of samples cannot tell of light that no sample met.  A light grown s times about its
-// middle and 1/s^2 as bright sends about the same light, and chance meets it s^2 times as often:
-// near misses tell what is rare before it is met.
+// The variance of samples does not contain light that no sample has met.  A light scaled s times
+// about its centre and 1/s^2 as bright sends about the same light, but BSDF samples meet it s^2
+// times as often: near misses reveal rare light before a sample meets it.
 #pragma once
 #include <bit>
 #include <map>
@@ -14,21 +13,21 @@
 #include "path/pathtracer.h"
 
 inline constexpr size_t growths = 11;            // s = 1, 2, 4 ... 1024
-inline constexpr size_t most_light_groups = 64;  // of more lights neighbours in the file share one
+inline constexpr size_t most_light_groups = 64;  // more lights share groups with neighbours
 
 // ---- Evidence -----------------------------------------------------------------------------------
 
-// Lights of a group, as the eye sees them.
+// A group of lights, as the camera sees them.
 struct LightGroup {
-    double line = 0;  // of its first light; 0: not known
+    double line = 0;  // line of its first light; 0: not known
     double L2 = 0;    // greatest square of radiance, mean of the channels
-    double area = 0;  // in view, in pixels
-    double a = 0;     // sum over pixels of a (1 - a), a: the part of a pixel in view
+    double area = 0;  // visible area in pixels
+    double a = 0;     // sum over pixels of a (1 - a), for the covered part a of a pixel
     double K = 1;     // replications of these pixels
 };
 
-// The evidence of a film: for each group what it is, then c and c^2 of near misses (see below), for
-// each growth; first of paths of mirrors and glass alone, then of others.
+// The evidence of a film: for each group its LightGroup, then c and c^2 of near misses (see below)
+// for each growth, first of paths by mirrors and glass only, then of other paths.
 inline constexpr size_t light_kinds = 2, of_group = 5 + light_kinds * growths * 2;
 inline size_t place(size_t group, size_t kind) { return group * of_group + 5 + kind * growths * 2; }
 
@@ -58,9 +57,9 @@ inline size_t group_of(const Scene& s, size_t light) {
     return light * std::min(s.lights.size(), most_light_groups) / s.lights.size();
 }
 
-// ---- In view of the eye -------------------------------------------------------------------------
+// ---- Lights in view of the camera ---------------------------------------------------------------
 
-// The parts of pixels that a light covers, of some rows, by aiming at so many of its points.
+// Adds the parts of pixels that a light covers in some rows, by sampling so many of its points.
 inline void add_view(std::map<size_t, double>& parts, const Scene& s, const Light& light,
                      size_t points, int first_row, int rows) {
     const Camera& c = s.camera;
@@ -76,7 +75,7 @@ inline void add_view(std::map<size_t, double>& parts, const Scene& s, const Ligh
         const double y = s.size.height / 2.0 - up / (cosine * pixel) - first_row;
         if (!(x >= 0 && x < width && y >= 0 && y < rows)) continue;
         if (s.bvh.occluded(spawn_to({c.eye, {}, 0}, at->at))) continue;
-        // Of the solid angle that the pixel has there.
+        // Relative to the solid angle of the pixel there.
         parts[size_t(y) * size_t(width) + size_t(x)] +=
             1 / (double(at->pdf) * double(points) * sqr(pixel) * cosine * cosine * cosine);
     }
@@ -87,7 +86,7 @@ struct LightsInView {
     std::vector<size_t> noisy;  // pixels of groups that cover less than 16
 };
 
-// Aims at 1024 points of each group.
+// Samples 1024 points of each group.
 inline LightsInView lights_in_view(const Scene& s, int first_row, int rows) {
     LightsInView view;
     view.groups.resize(std::min(s.lights.size(), most_light_groups));
@@ -112,10 +111,10 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows) {
     return view;
 }
 
-// ---- Met, or nearly -----------------------------------------------------------------------------
+// ---- Hits and near misses -----------------------------------------------------------------------
 
-// Bit k: the ray would meet, before its end, the light grown 2^k times, from its bright side.  A
-// sphere counts as a disc about its centre that faces the ray.
+// Bit k is set if the ray would meet the light scaled 2^k times, before its end and from the bright
+// side.  A sphere counts as a disc about its centre that faces the ray.
 inline uint32_t growths_met(const Light& l, const Ray& ray) {
     const vec3 f = l.centre - ray.o;
     const bool is_ball = l.kind == Light::Kind::sphere;
@@ -124,22 +123,22 @@ inline uint32_t growths_met(const Light& l, const Ray& ray) {
     if (l.kind == Light::Kind::point || !(t > 0 && t < ray.tmax)) return 0;
     if (!(cosine < 0 || (l.twosided && cosine > 0))) return 0;
     const vec3 y = t * ray.d - f, N = cross(l.u, l.v);
-    // The growth that is needed: of a polygon by its own edges, from its middle.
+    // The growth that is needed.  A polygon is scaled about its centre.
     const real a = dot(cross(y, l.v), N) / dot(N, N), b = dot(cross(l.u, y), N) / dot(N, N);
     const real least = is_ball                       ? length(y) / l.r
                        : l.kind == Light::Kind::quad ? 2 * std::max(std::abs(a), std::abs(b))
                                                      : 3 * std::max({-a, -b, a + b});
-    const real most = length(f) / l.reach;  // the light as large as it is far away
+    const real most = length(f) / l.reach;  // the light is then as large as its distance
     uint32_t met = 0;
     for (size_t k = 0; k < growths; ++k)
         met |= uint32_t(real(1 << k) >= least && real(1 << k) < most) << k;
     return met;
 }
 
-// Counts, along a path, light that its rays met by chance, or nearly:
+// Sums, along a path, light that its rays met or nearly met:
 //     c = |beta L w|^2 / (3 L2 K^2)
-// for every growth with which they meet it, after mirrors and glass, where nobody aims, and narrow
-// lobes, where aiming is of little use.
+// for every growth that makes a ray meet the light.  It counts rays after mirrors and glass, where
+// there is no light sampling, and after narrow lobes, where it has a low weight.
 struct NearMisses {
     const Scene& scene;
     const Technique& technique;
@@ -154,7 +153,7 @@ struct NearMisses {
     }
 
 private:
-    // Rare: no part of the path's loop.
+    // Rarely called, so not inlined into the path's loop.
     [[gnu::noinline]] void look(const Segment& s, const Step& e) {
         const size_t n = scene.lights.size();
         const bool met_one = e.met && max_of(e.Le) > 0;
@@ -162,14 +161,14 @@ private:
         if (met_one) add(s, met, ~0u, double(e.weight));
         Ray ray = s.ray;
         ray.tmax = e.met ? e.x.hit.t : infinity;
-        // Of many one stands for all, drawn by bits of the ray.
+        // Of many lights one represents all, drawn by bits of the ray.
         const size_t drawn =
             n > most_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
         for (size_t l = drawn % n; l < (drawn < n ? drawn + 1 : n); ++l)
             if (const uint32_t near = growths_met(scene.lights[l], ray) & ~1u; near && l != met)
                 add(s, l, near, weight_of(s, l) * (drawn < n ? std::sqrt(double(n)) : 1));
     }
-    // Of a light if it were met in its middle.
+    // MIS weight of a light that is met in its centre.
     double weight_of(const Segment& s, size_t i) const {
         const Light& l = scene.lights[i];
         if (technique.light == LightMode::none || std::isinf(s.pdf)) return 1;
@@ -189,12 +188,12 @@ private:
     }
 };
 
-// ---- What may have been missed ------------------------------------------------------------------
+// ---- Light that may be missing ------------------------------------------------------------------
 
 // The evidence of films of one picture.
 class Unseen {
 public:
-    // A film of t samples in each replication.  Its picture has a weight in the mean of several.
+    // A film with t samples in each replication; its picture has a weight in the mean of several.
     void add(const std::vector<FixedPoint>& evidence, double t, double weight = 1) {
         lights_.resize(evidence.size() / of_group);
         for (size_t g = 0; g < lights_.size(); ++g) {
@@ -212,8 +211,8 @@ public:
         }
     }
 
-    // Why an image's error, whose square is `d2` by the spread, may be more than twice that; "": no
-    // reason is known.  `norm`: |f|.
+    // Why the error of an image may be more than twice its estimate; "": no reason is known.  `d2`:
+    // square of the estimate; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
         double unseen = 0, most = 0;  // variances, summed over pixels
         std::string why;
@@ -249,13 +248,13 @@ private:
         double count() const { return c > 0 ? c * c / c2 : 0; }  // (Kish 1965)
     };
     struct OneLight {
-        double line = 0, met = 0, variance = 0;  // met: by rays of the eye, expected
+        double line = 0, met = 0, variance = 0;  // met: expected number of camera rays
         std::array<NearSum, light_kinds * growths> near;
     };
     std::vector<OneLight> lights_;
 };
 
-// Watches the paths of a render, and judges the error that it states.
+// Observes the paths of a render, and judges its estimated error.
 class Witness {
 public:
     Witness(const Scene& scene, const Technique& t) : scene_(scene), technique_(t) {}

@@ -124,7 +124,7 @@ public:
     // As if it were not there.
     void remove(int k) { set(k, {{0, 0}, INFINITY}); }
 
-    // Of those numbered `from` and higher, keeps the ones that cut a corner off.
+    // Removes lines numbered `from` and higher that cut no corner off.
     void keep_cutters(int from, Outline outline) {
         using namespace cell;
         int kept = from;
@@ -145,7 +145,7 @@ public:
         using namespace cell;
         store(dx_ + size_, Lanes{});
         store(dy_ + size_, Lanes{});
-        store(h_ + size_, Lanes{} + INFINITY);  // what fills the last lanes is not there
+        store(h_ + size_, Lanes{} + INFINITY);  // no lines in the last lanes
         Least least;
         Ints id = iota(Indices());
         for (int at = 0; at < size_; at += lanes, id += lanes)
@@ -218,7 +218,7 @@ private:
         return {{foot.x - turn * t * y, foot.y + turn * t * x}, k};
     }
 
-    // Line b is less than half a turn after line a.
+    // True if line b is less than half a turn after line a.
     bool turns(int a, int b) const { return dx_[a] * dy_[b] > dy_[a] * dx_[b]; }
 };
 

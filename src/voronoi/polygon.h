@@ -30,7 +30,7 @@ inline HalfPlane bisector(Site d, uint32_t neighbour) {
 
 // ---- Cut ----------------------------------------------------------------------------------------
 
-// By one after the other (Sutherland, Hodgman 1974).  Keeps its memory for the next cell.
+// Clips by one half-plane after another (Sutherland, Hodgman 1974).  Keeps its memory.
 class ConvexPolygon {
 public:
     void start(const Rectangle& box) {
@@ -62,7 +62,7 @@ public:
             next_.push_back({{c.p.x + t * (d.p.x - c.p.x), c.p.y + t * (d.p.y - c.p.y)},
                              leaves ? by.neighbour : c.neighbour});
         }
-        if (next_.size() < 3) return;  // rounding alone: the site itself stays
+        if (next_.size() < 3) return;  // only by rounding: the site itself stays inside
         corners_.swap(next_);
         next_.reserve(corners_.capacity());  // alike, so that their memory is enough next time
         // end
@@ -89,9 +89,9 @@ private:
 struct VoronoiCell {
     double area = 0;
     Site rim;     // sum over its edges on the window's border: length x outward normal
-    Site offset;  // of the centroid, from the site
-    // In a stretched window and on a torus; where many sites are within rounding of each other,
-    // they may be false for want of digits.
+    Site offset;  // from the site to the centroid
+    // In a stretched window and on a torus.  They may be wrong where many sites are within rounding
+    // of each other.
     bool bounded = true;  // reaches not beyond twice the domain's size around it
     bool inside = true;   // is all in the domain
     bool settled = true;  // no site outside the domain could change it
@@ -109,7 +109,7 @@ inline VoronoiCell measured(Outline corners) {
         from = to;
     }
     // exercise V.2
-    // By triangles (site, corner, next corner).
+    // A sum over triangles (site, corner, next corner).
     double twice = 0, six_x = 0, six_y = 0;
     Corner c = corners.back();
     for (const Corner& next : corners) {

@@ -18,7 +18,7 @@ struct Buckets {
     static constexpr size_t spare = 8;       // places after the last site that may be read
 
     int columns = 1, rows = 1;
-    std::vector<double> x, y;  // of the sites in their new order, in which site k
+    std::vector<double> x, y;  // coordinates of the sites in their new order; there site k
     std::vector<uint32_t> id;  // was number id[k]
 
     // The sites i of the domain that have first_of[i] = i; all, if that is empty.
@@ -93,10 +93,9 @@ public:
         return std::span(order_).subspan(from, to - from);
     }
 
-    // Of the sites that are not `left_out`, seen from `site` at d, the one nearest to the point c,
-    // seen from there, too: the one of the greatest d c - d d / 2, if this is greater than `least`.
-    // It is 0 where both sites are equally near, and d is exact: clusters keep their digits far
-    // away.
+    // The nearest site to the point c that is not `left_out`; c and its position d are relative to
+    // `site`.  It maximises d c - d d / 2, which must be greater than `least`.  That is 0 where
+    // both sites are equally near, and d is exact: clusters keep their digits far from the origin.
     template <class LeftOut>
     std::optional<uint32_t> nearest(const Buckets& sites, Site site, Site c, double least,
                                     LeftOut left_out) const {
@@ -109,7 +108,7 @@ private:
     static constexpr uint32_t leaf_size = 8;
     struct Node {
         Rectangle box;
-        uint32_t begin, end;  // of its sites in order_
+        uint32_t begin, end;  // its sites in order_
         uint32_t second = 0;  // child; the first follows its parent.  0: a leaf
     };
     std::vector<Node> nodes_;
@@ -135,7 +134,7 @@ private:
         grow(sites, middle, end);
     }
 
-    // What is looked for, and the best so far.
+    // A query, and the best site so far.
     struct Search {
         Site site, c;
         double least;

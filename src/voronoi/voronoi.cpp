@@ -47,7 +47,7 @@ OptionTable voronoi_table(VoronoiOptions& o) {
     return table;
 }
 
-// One of the samples, none of which the film sees.
+// The radiance of one path; the film gets only weighted means of paths.
 Radiance path_of(const Options& o, const Scene& scene, const Pattern& pattern) {
     return [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);

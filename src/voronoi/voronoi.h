@@ -12,26 +12,25 @@
 #include "voronoi/sites.h"
 #include "voronoi/window.h"
 
-// Cells of sites in a window, each by itself: its border is wrapped from the bisectors with the
-// sites around, which come ring by ring of a grid of buckets, until no other site could reach it; a
-// cell of crowded sites is cut from the window instead, by sites that a tree finds.  Sites are
-// rounded to 2^-50 of the window's greater side, and areas are exact but for rounding, in ties and
-// near-ties, too; only who is a neighbour may then depend on the side one looks from.  Linear
-// expected time for scattered sites, O(n log n) for clusters, about O(n^3/2) for sites along lines
-// and curves, but O(n^2) for n sites on one circle, whose cells all end at its centre.  Keeps its
-// memory for the next call.
+// Cells of sites in a window, one by one.  The border of a cell is wrapped from the bisectors with
+// the sites around it, ring by ring of a grid of buckets, until no other site can reach it.  A cell
+// of crowded sites is cut from the window instead, by sites that a tree finds.  Sites are rounded
+// to 2^-50 of the window's greater side.  Areas are exact except for rounding, also in ties and
+// near-ties; there, neighbourhood may not be symmetric.  Expected time is linear for scattered
+// sites, O(n log n) for clusters, about O(n^3/2) for sites along lines and curves, but O(n^2) for n
+// sites on one circle.  Keeps its memory for the next call.
 class Voronoi {
 public:
-    bool with_neighbours = false;  // whether neighbours(i) is to be had
+    bool with_neighbours = false;  // true: neighbours(i) works
 
-    // Clipped to the window, in which all sites are.  All three throw what WindowSites throws.
+    // Clipped to the window, which has all sites.  All three functions throw as WindowSites does.
     const std::vector<VoronoiCell>& clipped(std::span<const Site> sites, const Rectangle& window) {
         window_.begin(window, 0);
         window_.add(sites);
         return tessellate(sites.size(), {window_.domain()});
     }
 
-    // The cells of the first `inner` sites; the others only bound them.  All are in the domain.
+    // The cells of the first `inner` sites; the others only bound them.  The domain has all sites.
     const std::vector<VoronoiCell>& stretched(std::span<const Site> sites, size_t inner,
                                               const Rectangle& domain) {
         if (inner > sites.size()) throw std::domain_error("voronoi: more cells than sites");
@@ -65,7 +64,7 @@ public:
     }
 
 private:
-    static constexpr int most_rings = 12;  // of buckets, before the tree takes over
+    static constexpr int most_rings = 12;  // rings of buckets, before the tree takes over
     static_assert(cell::lanes <= int(Buckets::spare), "HalfPlanes::add reads as many places more");
 
     std::vector<VoronoiCell> cells_;
@@ -74,13 +73,13 @@ private:
     struct Start {
         Rectangle bounds;          // every cell is cut from this,
         bool relative = false;     // or from this moved to its site
-        bool check_reach = false;  // whether cells may depend on what is outside the domain
+        bool check_reach = false;  // true: cells may depend on sites outside the domain
     };
     Start start_;
     WindowSites window_;
-    Buckets sites_;                  // all that are alone or the first at their place
-    SiteTree tree_;                  // of these; empty until it is needed
-    std::vector<uint32_t> used_by_;  // the last cell that a site has cut by the tree
+    Buckets sites_;                  // sites, without copies at the same place
+    SiteTree tree_;                  // the same sites; empty until it is needed
+    std::vector<uint32_t> used_by_;  // the last cell that a site of the tree has cut
     HalfPlanes lines_;
     ConvexPolygon polygon_;
 
@@ -117,7 +116,7 @@ private:
     };
 
     bool cell(uint32_t i, Bucket at) {
-        // Neighbours in the plane are far apart in memory: fetched while the cell is being made.
+        // Cells of neighbours are far apart in memory: fetched while this cell is computed.
         const VoronoiCell* const place = &cells_[sites_.id[i]];
         __builtin_prefetch(place, 1);
         __builtin_prefetch(place + 1, 1);
@@ -129,7 +128,7 @@ private:
         return start_.relative ? start_.bounds : seen_from(site, start_.bounds);
     }
 
-    // By the sites of its bucket and of those around, ring by ring as far as the flower reaches.
+    // Uses the sites of its bucket and around it, ring by ring as far as the flower reaches.
     Outcome wrap(uint32_t i, Bucket at) {
         using enum Outcome;
         const Site site = sites_.site(i);
@@ -163,7 +162,7 @@ private:
                           sites_.start(x1 + 1, row), site);
     }
 
-    // Of a ring of buckets.
+    // Sides of a ring of buckets.
     struct Sides {
         bool left, right, below, above;
         bool any() const { return left || right || below || above; }
@@ -193,8 +192,8 @@ private:
         return true;
     }
 
-    // As long as some site is nearer to a corner than site i is, the nearest one cuts the corner
-    // off; but each only once, since rounding could put the new corners nearer to it again.
+    // While a site is nearer to a corner than site i is, the nearest one cuts the corner off.  Each
+    // cuts only once, because rounding could put the new corners nearer to it again.
     Outcome cut(uint32_t i) {
         if (tree_.empty()) {
             tree_.grow(sites_);

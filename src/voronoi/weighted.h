@@ -1,10 +1,10 @@
-// voronoi/weighted.h  6  pixels whose samples weigh as much as their Voronoi cells
+// voronoi/weighted.h  6  pixels from samples that are weighted by their Voronoi cells
 #pragma once
 #include "film/passes.h"
 #include "path/start.h"
 #include "voronoi/weights.h"
 
-// How often weights were not to be had at once, see Weigher.
+// Number of redraws and fallbacks of weights, see Weigher.
 struct WeightTroubles {
     std::atomic<uint64_t> redraws = 0, fallbacks = 0;
 };

@@ -10,7 +10,7 @@
 #include "base/rng.h"
 #include "voronoi/voronoi.h"
 
-// How samples x_1 ... x_n, independent and uniform in the unit square, make up a mean: by sum of
+// The mean of samples x_1 ... x_n, independent and uniform in the unit square: the sum of
 // w_i f(x_i), with weights that add up to 1.  A_i is the area of the cell of x_i.
 enum class Weighting {
     mc,    // 1/n.  Unbiased.
@@ -42,10 +42,10 @@ inline uint64_t poisson(double mean, Rng& random) {
     return n;
 }
 
-// Gradient at site i of values given at all sites: the plane through its own value that fits those
-// of its Voronoi neighbours best (least squares).  0 if they are about in line, the smaller of the
-// principal moments of their differences less than a thousandth of the larger: errors grow as one
-// over the angle between two neighbours, and without a limit their variance would be infinite.
+// Gradient at site i of values given at all sites: the least-squares plane through its own value to
+// those of its Voronoi neighbours.  It is 0 if they are nearly collinear: the smaller principal
+// moment of their differences is less than a thousandth of the larger.  Errors grow as one over the
+// angle between two neighbours; without this limit their variance would be infinite.
 inline Site gradient(const Voronoi& cells, std::span<const Site> sites, std::span<const double> f,
                      size_t i) {
     double xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
@@ -61,11 +61,11 @@ inline Site gradient(const Voronoi& cells, std::span<const Site> sites, std::spa
 
 // The bias of clipped cells.  Inside, the nearest site is at a mean square distance of 1/(pi n) and
 // in no preferred direction: Laplacian/(4 pi n).  Near a border it is on the inner side: with
-// intensity 1 in a half-plane, its displacement integrates to 1/(2 pi) a unit of the border, hence
+// intensity 1 in a half-plane, its displacement integrates to 1/(2 pi) per unit of border, hence
 // -1/(2 pi n) times the integral of the outward derivative, which is that of the Laplacian (Gauss).
 //   E cvor - integral of f = -1/(4 pi n) (integral over the border of the outward derivative)
-// to first order in 1/n, and this sum over the cells there estimates what to add: gradients need no
-// more than the neighbours.  What is left is O(n^-3/2) for smooth f.
+// to first order in 1/n.  This sum over the cells at the border estimates the correction; gradients
+// need only the neighbours.  The remaining bias is O(n^-3/2) for smooth f.
 inline double border_correction(const Voronoi& clipped, const std::vector<VoronoiCell>& cells,
                                 std::span<const Site> sites, std::span<const double> f) {
     double sum = 0;
@@ -96,8 +96,8 @@ public:
         0;  // the strip has a Poisson number of sites; 0: as many as the samples demand
     double unbounded = 1e-3;  // probability that the strip does not bound every cell
     bool divide = true;       // false: vor and fvor stay areas, whatever their sum
-    // How often a strip was drawn anew since it left a cell unbounded: the strip only, not the
-    // samples, which stay as they are.
+    // Number of strips that were redrawn because they left a cell unbounded.  The samples are never
+    // redrawn.
     uint64_t redraws = 0;
     uint64_t fallbacks = 0;  // to 1/n: fvor left no cell, vor had 100 redraws
     uint64_t unsettled = 0;  // cells that sites beyond the strip could have changed

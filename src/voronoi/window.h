@@ -16,7 +16,7 @@
 // rounded.  Keeps its memory for the next sites.
 class WindowSites {
 public:
-    // Forgets all sites; the next ones are to lie in the window grown by that margin, the domain.
+    // Forgets all sites.  The next ones must be in the domain, the window plus that margin.  Throws
     // std::domain_error if the window is empty, or more than 1000 times as long as wide.
     void begin(const Rectangle& window, double margin) {
         const Rectangle domain = grown(window, margin);
@@ -80,7 +80,7 @@ public:
 
     // The first site at the place of each; empty: copies have not been looked for.
     std::span<const uint32_t> first_of() const { return first_of_; }
-    // How many sites are at the place of a first one.
+    // Number of sites at the place of a first one.
     uint32_t copies(uint32_t first) const { return copies_[first]; }
 
 private:

@@ -15,7 +15,7 @@ namespace wide {
 using Bounds = Floats;
 inline Bounds no_bounds() { return all(-HUGE_VALF); }
 
-// To the nearest float and outwards: by two ulp at least, one of which the origins of rays take.
+// To a float, outwards by at least two ulp; origins of rays use up one of them.
 inline Bounds outwards(const Box& b) {
     const Floats x{float(-b.lo.x), float(-b.lo.y), float(-b.lo.z), 0,
                    float(b.hi.x),  float(b.hi.y),  float(b.hi.z),  0};
@@ -32,7 +32,7 @@ inline double half_area(const Planes& p) {
     return x * y + y * z + z * x;
 }
 
-// What the tree divides: a shape's bounds and, in the two lanes left, both halves of its index.
+// An item of the BVH: a shape's bounds and, in the two other lanes, both halves of its index.
 struct Item {
     std::array<float, lane_count> lanes;
 
@@ -140,8 +140,8 @@ inline Plane best_plane(std::span<const Item> items, const Grid& grid) {
 
 // ---- The tree -----------------------------------------------------------------------------------
 
-// A branch spans count shapes from first on; a leaf has no children (the root, at 0, is nobody's
-// child), an inner branch two, one after the other.
+// A branch spans count shapes from first on.  An inner branch has two consecutive children, a leaf
+// none (0: the root, at 0, is not a child).
 struct Branch {
     Planes box;
     uint32_t first, count, left = 0;
@@ -150,7 +150,7 @@ struct Branch {
 
 struct BinaryTree {
     std::vector<Branch> branches;
-    std::vector<uint32_t> ids;  // of the shapes, in the order of the leaves
+    std::vector<uint32_t> ids;  // ids of the shapes, in the order of the leaves
     bool mixed;                 // the root has both triangles and spheres
 
     static constexpr uint32_t leaf_size = 4;      // shapes a leaf holds at most
@@ -202,7 +202,7 @@ private:
         add(halves[1].box, first + left, right);
     }
 
-    // Adds all below a branch, whose items are at the other place if they moved oddly often.
+    // Adds all below a branch.  After an odd number of moves its items are in the other array.
     void grow(uint32_t index, const Bounds& places, int depth, bool moved) {
         const Branch& branch = tree_.branches[index];
         const uint32_t first = branch.first, count = branch.count;
@@ -257,7 +257,7 @@ private:
     }
 };
 
-// Of at least one shape.  Time O(n log n).
+// For at least one shape.  Time O(n log n).
 inline BinaryTree build(const std::vector<Shape>& shapes) { return Builder(shapes).tree(); }
 
 }  // namespace wide

@@ -11,10 +11,10 @@ struct Children {
     void add(uint32_t b) { branch[count++] = b; }
 };
 
-// The cheapest wide tree by surface area that a binary one contains (Ylitie, Karras, Laine 2017,
+// The wide BVH of least surface-area cost that a binary one contains (Ylitie, Karras, Laine 2017,
 // "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", section 4.1): the cost
-// of a branch shared out among up to j children of a node is the least over how many of them go to
-// the left.  Time and memory O(n).
+// of a branch with up to j children of a node is the minimum over the number of them on the left.
+// Time and memory O(n).
 class Collapse {
 public:
     Collapse(const BinaryTree& tree, size_t largest_leaf)
@@ -64,7 +64,7 @@ private:
 
     float as(uint32_t i, size_t j) const { return cost_[i].as[j - 1]; }
 
-    // How many of j children go to the left one of two branches.
+    // Number of the j children that belong to the left of two branches.
     size_t share(uint32_t left, size_t j) const {
         size_t best = 1;
         for (size_t k = 2; k < j; ++k)

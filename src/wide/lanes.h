@@ -39,7 +39,7 @@ Vector larger(const Vector& a, const Vector& b) {
     return a > b ? a : b;
 }
 
-// The lanes for which a comparison holds: a byte for each, 1 or 0.
+// The lanes where a comparison holds: a byte for each, 1 or 0.
 class Lanes {
 public:
     Lanes() = default;

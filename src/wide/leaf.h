@@ -1,4 +1,4 @@
-// wide/leaf.h  3  shapes in the order of the leaves, met by a ray a leaf at a time
+// wide/leaf.h  3  shapes in the order of the leaves; a ray is intersected with a leaf at a time
 #pragma once
 #include <array>
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace wide {
 
-// What a ray meets of some triangles: t and, times det, v and w, in the lanes of hit.
+// Hits of a ray with some triangles: t and, times det, v and w, in the lanes of hit.
 struct Meeting {
     Lanes hit;
     Reals t, v, w, det;
@@ -21,8 +21,8 @@ struct Rows {
     size_t count, at;
 };
 
-// intersect_triangle, line by line, of several triangles.  Lanes beyond the last triangle hold what
-// follows the row, and nobody looks at them.
+// intersect_triangle, line by line, for several triangles.  Lanes beyond the last triangle hold
+// whatever follows the row, and are ignored.
 inline Meeting intersect_triangles(const Rows& rows, const Ray& ray, const Shear& k, real tmax) {
     const real ox = ray.o.*axis[k.x], oy = ray.o.*axis[k.y], oz = ray.o.*axis[k.z];
     const size_t count = rows.count;
@@ -112,7 +112,7 @@ public:
     }
 
 private:
-    static constexpr size_t numbers = 9;  // of a shape; a sphere needs four
+    static constexpr size_t numbers = 9;  // numbers per shape; a sphere needs four
     std::vector<real> numbers_;
     std::vector<uint32_t> ids_;  // their indices
 

@@ -1,4 +1,4 @@
-// wide/node.h  2  eight boxes, met by a ray at once
+// wide/node.h  2  eight boxes, intersected with a ray at once
 #pragma once
 #include <array>
 
@@ -40,9 +40,9 @@ struct Probe {
     }
 };
 
-// What a child is, in 32 bits.  The last five tell how many triangles a leaf has or, plus 16, how
-// many spheres; those above them, where its first is.  A node has 0 there: the number is its offset
-// in bytes.
+// A child in 32 bits.  The last five hold the number of a leaf's triangles, or 16 plus that of its
+// spheres; the bits above them hold the index of its first shape.  The last five bits of a node are
+// 0: the number is its offset in bytes.
 struct Child {
     uint32_t bits = 16;  // a leaf of no spheres
 
@@ -62,8 +62,8 @@ struct Crossing {
 
     Lanes met() const { return Lanes(enter <= leave); }
 
-    // The bits of floats that are not negative order them as integers do.  In place of the last
-    // three stands the child: one number tells how near and which.
+    // Nonnegative floats have the order of their bits as integers.  The child replaces the last
+    // three bits: one number holds the distance and the child.
     static constexpr int32_t none = INT32_MAX;
     Keys keys() const {
         const Keys k = (std::bit_cast<Keys>(enter) & ~7) | Keys{0, 1, 2, 3, 4, 5, 6, 7};

@@ -31,7 +31,7 @@ public:
         return best.id == UINT32_MAX ? std::nullopt : std::optional(best);
     }
 
-    // Whether anything is hit.  The order of nodes does not matter: the first hit ends it all.
+    // True if anything is hit.  The order of nodes does not matter: the first hit ends the search.
     bool occluded(const Ray& ray) const {
         if (nodes_.empty()) return false;
         const wide::Probe probe(ray);
@@ -62,7 +62,7 @@ public:
         }
     }
 
-    // What closest(ray) costs.
+    // Work of closest(ray).
     struct Work {
         int nodes = 0, shapes = 0;
     };
@@ -83,8 +83,8 @@ private:
 
     // ---- Traversal ------------------------------------------------------------------------------
 
-    // A node with children yet to be looked at: those left, or all and the key of the next.  There
-    // is never more than one of a level.
+    // A node with children that are not yet visited: those left, or all and the key of the next.
+    // There is at most one per level.
     struct AnyOrder {
         const wide::Node* node;
         wide::Lanes rest;

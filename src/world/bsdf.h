@@ -7,7 +7,7 @@
 
 #include "world/warp.h"
 
-// What a surface does to light, on both of its sides, and what it emits.
+// Scattering by a surface, on both of its sides, and its emission.
 struct Material {
     enum class Kind { rough, mirror, glass } kind = Kind::rough;
     rgb kd;             // rough: diffuse albedo
@@ -19,25 +19,25 @@ struct Material {
 
     bool is_delta() const { return kind != Kind::rough; }  // scatters into single directions
     bool emits() const { return max_of(Le) > 0; }
-    // Whether a direction takes a third number: reflected or refracted, by the lobe or the cosine.
+    // True if a direction takes a third number: for reflection or refraction, for lobe or cosine.
     bool has_choice() const {
         return kind == Kind::glass || (kind == Kind::rough && !(ks == rgb{}));
     }
 };
 
-// Radiance that a surface sends to a viewer whose direction has cosine `cosine` with its normal.
+// Radiance that a surface emits at an angle to its normal with this cosine.
 inline rgb emitted(const Material& m, real cosine) {
     return cosine > 0 || m.twosided ? m.Le : rgb{};
 }
 
-// How to choose directions at rough surfaces.
+// Sampling of directions at diffuse and glossy surfaces.
 enum class Direction {
     uniform,  // over the hemisphere
     bsdf      // proportional to cosine and Phong lobe, a mixture of the two
 };
 
-// One direction, f there and its density.  Those of a delta direction share a delta, which cancels
-// in f / pdf: pdf is then the probability of the direction, f what is left beside the delta.
+// A direction, f there and its density.  For a delta direction both contain the same delta, which
+// cancels in f / pdf and is left out: pdf is then a probability.
 struct BsdfSample {
     vec3 wi;
     rgb f;
@@ -58,15 +58,15 @@ inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
     return m.kd * (1 / pi) + m.ks * lobe;
 }
 
-// Part of the samples that follow the Phong lobe rather than the cosine.
+// Fraction of the samples that follow the Phong lobe rather than the cosine.
 inline real lobe_probability(const Material& m) {
     if (m.ks == rgb{}) return 0;
     real d = mean_of(m.kd), s = mean_of(m.ks);
     return s > 0 ? s / (d + s) : 0;
 }
 
-// Of wi, per solid angle over the whole sphere: the Phong lobe may reach below the horizon, where
-// eval is 0.  Mirrors and glass: 0.
+// Density of wi per solid angle over the whole sphere.  The Phong lobe may reach below the horizon,
+// where eval is 0.  Mirrors and glass: 0.
 inline real pdf(const Material& m, vec3 wo, vec3 wi, Direction direction) {
     if (m.is_delta()) return 0;
     if (direction == Direction::uniform) return pdf_uniform_hemisphere(wi.z);

@@ -1,4 +1,4 @@
-// world/bvh.h  4  where rays stop: a plain binary tree of boxes
+// world/bvh.h  4  intersection of rays with the scene: a plain binary BVH
 #pragma once
 #include <array>
 #include <span>
@@ -13,9 +13,9 @@ struct Probe {
     explicit Probe(const Ray& r) : ray(r), inverse{1 / r.d.x, 1 / r.d.y, 1 / r.d.z} {}
 };
 
-// How far along the ray it enters a box: 0 if it starts inside.  Nothing if it meets none of the
-// box up to tmax.  The tree's boxes are wider than what they hold, by more than rounding, so that
-// nothing depends on rays that run within a face.
+// Distance at which the ray enters a box, 0 if it starts inside; nothing if it misses the box up to
+// tmax.  The boxes of the BVH are wider than their contents by more than rounding, so that rays
+// within a face do not matter.
 inline std::optional<real> enter_box(const Box& b, const Probe& p) {
     // exercise 1.4
     real enter = 0, leave = p.ray.tmax;
@@ -39,8 +39,8 @@ struct TreeNode {
 
 inline constexpr int tree_depth = 64;  // at most; so many nodes never wait at once
 
-// The nearest of `best` and all hits in the leaves.  enter(box): where the ray enters it, or
-// nothing.  look(leaf, best): the nearest of best and the leaf's own hits.
+// The nearest of `best` and all hits in the leaves.  enter(box) is the distance at which the ray
+// enters it, or nothing.  look(leaf, best) is the nearest of best and the leaf's own hits.
 template <class Enter, class Look>
 inline Hit nearest_hit(std::span<const TreeNode> nodes, Hit best, Enter enter, Look look) {
     // exercise 1.5
@@ -70,8 +70,8 @@ inline Hit nearest_hit(std::span<const TreeNode> nodes, Hit best, Enter enter, L
     // end
 }
 
-// Boxes in a row are divided before number `left`.  The cost is what a ray that meets them all is
-// expected to look at, times half the area of the box about them.
+// A row of boxes is split before number `left`.  The cost is the expected number of shapes that a
+// ray through all of them tests, times half the area of their bounding box.
 struct Division {
     real cost = infinity;
     size_t left = 0;
@@ -114,7 +114,7 @@ public:
         for (uint32_t id : ids_) shapes_.push_back(shapes[id]);
     }
 
-    // What closest(ray) costs: nodes whose boxes it asks, and shapes.
+    // Work of closest(ray): nodes with boxes tested, and shapes tested.
     struct Work {
         int nodes = 0, shapes = 0;
     };
@@ -148,7 +148,7 @@ public:
         return hit.id == UINT32_MAX ? std::nullopt : std::optional(hit);
     }
 
-    // Whether anything is hit.  The order does not matter: the first hit ends it all.
+    // True if anything is hit.  The order does not matter: the first hit ends the search.
     bool occluded(const Ray& ray) const {
         if (nodes_.empty()) return false;
         const Probe probe(ray);
@@ -172,7 +172,7 @@ private:
     std::vector<Shape> shapes_;  // in the order of the leaves
     std::vector<uint32_t> ids_;  // their indices
 
-    // What a hit and a plane of a box are off by if the ray comes from afar.
+    // Error of a hit and of a box's plane for a ray from far away.
     static real rounding(const Ray& ray) { return 32 * ulp * max_abs(ray.o); }
     static Box wider(const Box& b, real e) { return {b.lo - vec3{e, e, e}, b.hi + vec3{e, e, e}}; }
 
@@ -184,7 +184,7 @@ private:
         real centre(real vec3::*k) const { return box.lo.*k + box.hi.*k; }  // twice
     };
     static constexpr size_t leaf_size = 4;  // shapes at most
-    static constexpr int halved_from = 32;  // a level from which on the tree is balanced
+    static constexpr int halved_from = 32;  // from this level on the tree is balanced
 
     // Makes a node of these items, and all below it.
     void grow(size_t index, std::span<Item> items, int depth) {

@@ -1,11 +1,11 @@
-// world/light_choice.h  3  which of a few lights is worth a sample
+// world/light_choice.h  3  light selection by estimated contribution
 #pragma once
 #include <array>
 #include <vector>
 
 #include "world/lights.h"
 
-// With 5 lights (atelier) weights pay; with 7 (furnace) they take more time than they give.
+// With 5 lights (atelier) weights pay off; with 7 (furnace) they take more time than they save.
 inline constexpr size_t most_weighed = 6;
 
 // Seen from afar, a light of radiance L sends it L A cos_l cos_s / d^2: A is its area, or the disc
@@ -17,7 +17,7 @@ inline double strength(const Light& l) {
     return L * double(length(l.area_vector()));
 }
 
-// Computes what lights are weighed by.
+// Computes what the weights of lights need.
 inline void prepare_weights(std::vector<Light>& lights) {
     double strongest = 0;
     for (const Light& l : lights) strongest = std::max(strongest, strength(l));
@@ -33,13 +33,13 @@ inline void prepare_weights(std::vector<Light>& lights) {
     }
 }
 
-// What a light can send to a surface at p whose normal, on the side of the eye, is m.  Here d^2 +
-// r^2 stands for d^2: what is near keeps a finite weight.  The height of the sphere's top above the
-// surface's plane stands for that of its centre: a light weighs 0 only if all of it is below the
-// horizon or turned away.  Whatever the weights, the light found is unbiased as long as what weighs
-// 0 sends nothing.
+// Estimated contribution of a light to a surface at p with normal m on the side of the eye.  It has
+// d^2 + r^2 for d^2, so that a near light keeps a finite weight, and the height of the sphere's top
+// above the surface's plane for that of its centre: a light has weight 0 only if all of it is below
+// the horizon or turned away.  Any weights are unbiased as long as lights of weight 0 contribute
+// nothing.
 inline real light_weight(const Light& l, vec3 p, vec3 m) {
-    // Over the square of the least distance nothing overflows, and nothing is 0/0.
+    // Divided by at least the square of the least distance nothing overflows, and nothing is 0/0.
     constexpr real least = std::numeric_limits<real>::min() / ulp;
     const vec3 f = l.centre - p;
     const real d2 = dot(f, f) + std::max(sqr(l.reach), least), per_d2 = 1 / d2;
@@ -48,7 +48,7 @@ inline real light_weight(const Light& l, vec3 p, vec3 m) {
     return l.strength * (std::max(top, real(0)) * per_d2) * (std::max(facing, real(0)) * per_d2);
 }
 
-// Nothing if there is no choice, if lights are too many, if none is of use, or numbers cannot tell.
+// Nothing if there is one light or too many, if none contributes, or if the sum is out of range.
 struct LightWeights {
     std::array<real, most_weighed> of;
     real sum = 0;
@@ -57,7 +57,7 @@ inline std::optional<LightWeights> light_weights(const std::vector<Light>& light
     if (lights.size() < 2 || lights.size() > most_weighed) return {};
     LightWeights w;
     for (size_t i = 0; i < lights.size(); ++i) w.sum += w.of[i] = light_weight(lights[i], p, m);
-    // Denormal, a part of it could be rounded to all of it.
+    // Part of a denormal sum could be rounded to all of it.
     if (!(w.sum >= std::numeric_limits<real>::min() && w.sum < infinity)) return {};
     return w;
 }

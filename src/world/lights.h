@@ -1,4 +1,4 @@
-// world/lights.h  2  lights that can be aimed at: spheres, polygons, points
+// world/lights.h  2  light sampling: spheres, polygons, points
 #pragma once
 #include <optional>
 
@@ -38,7 +38,7 @@ inline Light quad_light(vec3 p, vec3 u, vec3 v) {
     return {Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
 }
 
-// Emitted power of all directions, mean of the channels (watts); double, lest it overflow.
+// Emitted power in all directions, mean of the channels (watts).  A float might overflow.
 inline double power(const Light& l) {
     double L = double(mean_of(l.L)), r = double(l.r);
     constexpr double pi_ = std::numbers::pi;
@@ -102,11 +102,11 @@ inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, v
     real cos_y = -dot(y.n, wi);
     if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
     const real pdf = pdf_polygon_by_area(l, p, y);
-    if (!(pdf > 0)) return {};  // edge-on, but for the rounding of wi
+    if (!(pdf > 0)) return {};  // edge-on, except for the rounding of wi
     return LightSample{wi, y, l.L, pdf};
 }
 
-// Nothing if the light sends nothing from the sampled point to p.
+// Nothing if the light emits nothing from the sampled point to p.
 inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
     if (l.kind == Light::Kind::sphere) return sample_sphere_light(l, p, u);
     if (l.kind != Light::Kind::point) return sample_polygon_light(l, p, u);

@@ -1,4 +1,4 @@
-// world/scene.h  6  what the world contains
+// world/scene.h  6  the scene: camera, shapes, materials, lights
 #pragma once
 #include <string>
 #include <vector>
@@ -38,7 +38,7 @@ inline constexpr int32_t no_light = -1;
 struct Scene {
     Size size{256, 128};
     Camera camera;
-    int depth = 8;          // scatterings
+    int depth = 8;          // maximum number of bounces
     uint64_t samples = 64;  // per pixel, unless the user asks for others
     real exposure = 1;      // factor from radiance to PNG
 
@@ -64,7 +64,7 @@ struct Scene {
     }
 };
 
-// Of the box about all shapes.
+// Diagonal of the box about all shapes.
 inline real diagonal(const Scene& s) {
     Box box;
     for (const Shape& shape : s.shapes) box.add(bounds(shape));
@@ -99,8 +99,8 @@ inline void add_sphere(Scene& s, vec3 centre, real r, uint32_t material) {
     add_shape(s, sphere, material, light);
 }
 
-// Whether a triangle has an area to be hit or sampled, and a normal: their square must neither
-// overflow nor be denormal, or both lose digits.
+// True if a triangle has an area and a normal: their square must neither overflow nor be denormal,
+// or both lose digits.
 inline bool has_area(const Shape& s) {
     vec3 n = area_vector(s);
     return std::isnormal(dot(n, n));
@@ -153,8 +153,8 @@ inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
     if (max_of(intensity) > 0) s.lights.push_back(point_light(p, intensity));
 }
 
-// Builds the tree, and lets lights be chosen in proportion to their power.  Random numbers are
-// multiples of ulp: so are the probabilities, exactly, and by a share dealt evenly none is 0.
+// Builds the BVH and the probabilities of lights, in proportion to their power.  Random numbers are
+// multiples of ulp, and so are the probabilities, exactly; an even share keeps each above 0.
 inline void prepare(Scene& s) {
     s.bvh = Tree(s.shapes);
     s.facing.clear();
@@ -184,8 +184,8 @@ struct LightPick {
     real pick = 1;
 };
 
-// The light to aim at from a surface at p whose normal, on the side of the eye, is m: one of a few
-// by about what it sends there, one of many by its power.
+// The light to sample from a surface at p with normal m on the side of the eye: one of a few by its
+// estimated contribution, one of many by its power.
 inline LightPick choose_light(const Scene& s, vec3 p, vec3 m, real u) {
     const auto w = light_weights(s.lights, p, m);
     if (!w) {

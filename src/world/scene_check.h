@@ -1,4 +1,4 @@
-// world/scene_check.h  8  what an author may not see: lights in surfaces, points on them, rounding
+// world/scene_check.h  8  hidden problems of a scene: lights in surfaces, points on them, rounding
 #pragma once
 #include <map>
 #include <numeric>
@@ -8,7 +8,7 @@
 
 // ---- Lights that lie in other surfaces ----------------------------------------------------------
 
-// Whether two shapes have more than an edge of one surface in common, by the bound of spawn.
+// True if two shapes share more than an edge of one surface, within the bound of spawn.
 inline bool share_surface(const Shape& s, const Shape& t) {
     const real e = 2 * (rounding_error(s) + rounding_error(t));
     if (s.is_sphere() || t.is_sphere())
@@ -35,8 +35,8 @@ inline bool overlap(const Box& a, const Box& b) {
     return meets;
 }
 
-// For each light the shapes, of others or of none, in whose surface it lies; by a sweep along the
-// axis on which lights spread most.  Throws UserError by the scene's name if it would take seconds.
+// For each light, the shapes of other lights or of none that share a surface with it.  Sweeps along
+// the axis of the lights' greatest extent.  Throws UserError "NAME: ..." if it would take seconds.
 inline std::vector<std::vector<uint32_t>> surfaces_of_lights(const Scene& s,
                                                              const std::string& name) {
     std::vector<Box> box;
@@ -52,7 +52,7 @@ inline std::vector<std::vector<uint32_t>> surfaces_of_lights(const Scene& s,
     std::ranges::sort(in_order, {}, [&](uint32_t i) { return std::pair(box[i].lo.*along, i); });
     std::vector<std::vector<uint32_t>> found(s.lights.size());
     std::vector<uint32_t> open[2];  // shapes of no light, and of lights, that have not ended yet
-    int64_t left = 1 << 28;         // looks at boxes; one at shapes counts as 32
+    int64_t left = 1 << 28;         // tests of boxes; a test of shapes counts as 32
     for (uint32_t i : in_order) {
         const bool lit = s.light_of[i] != no_light;
         for (size_t kind = lit ? 0 : 1; kind < 2; ++kind) {
@@ -85,10 +85,10 @@ inline Shape lifted(Shape s, vec3 n, real by) {
     return s;
 }
 
-// A light that lies in another surface shines as if it were in front of it, on its emitting side or
-// on both; of two lights in one place the first one does.  So each is lifted, by more than spawn_to
-// may miss; one of two sides stands on either side.  Returns the lines of these lights, each once,
-// and of a surface that each lies in.
+// Moves each light that lies in another surface in front of it, by more than the error of spawn_to.
+// Of two lights in one place the first is in front.  A two-sided light is doubled, with a copy on
+// either side.  Returns the lines of these lights, each once, and the line of a surface that each
+// lies in.
 inline std::vector<std::array<uint32_t, 2>> lift_lights(Scene& s, const std::string& name) {
     const auto in = surfaces_of_lights(s, name);
     real size = max_abs(s.camera.eye);
@@ -127,8 +127,8 @@ inline std::vector<std::array<uint32_t, 2>> lift_lights(Scene& s, const std::str
 
 // ---- Points on surfaces, rounding ---------------------------------------------------------------
 
-// Whether p lies on the shape but for rounding, so that chance would decide on which side it is: by
-// a quarter of what rounding_error allows, which is what the intersectors do lose.
+// True if p lies on the shape within rounding, so that its side would be arbitrary.  The bound is a
+// quarter of rounding_error, the error that the intersectors actually make.
 inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
     const real error = f.error / 4 + 4 * ulp * max_abs(p);
     const vec3 n = s.is_sphere() ? unit(p - s.a) : f.n;
@@ -136,15 +136,15 @@ inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
     return intersect(s, through, shear(n), through.tmax).has_value();
 }
 
-// Rays start two errors off a surface (see spawn).  Where that is more than a hundredth of a shape,
-// or of its distance to the eye, a light or another shape, images are wrong by per cents.
+// Rays start two errors off a surface (see spawn).  If that is more than a hundredth of a shape, or
+// of its distance to the eye, a light or another shape, images are wrong by several percent.
 inline bool is_coarse(const Shape& s) {
     const Box box = bounds(s);
     return 200 * rounding_error(s) > max_abs(box.hi - box.lo);
 }
 
-// What is so near to the middle of x, which is shape `own` or a point: both ways along the normal
-// of a triangle, else along the axes.  What is within four errors of a triangle touches it.
+// The first shape too near to the middle of x, which is shape `own` or a point: both ways along the
+// normal of a triangle, else along the axes.  A shape within four errors of a triangle touches it.
 inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t own, real reach) {
     const vec3 middle = x.is_sphere() ? x.a : (x.a + x.b + x.c) / 3;
     for (size_t k = 0; k < (f.n == vec3{} ? 12 : 2); ++k) {
@@ -158,8 +158,8 @@ inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t o
     return {};
 }
 
-// Lengths that are too short, and a shape's line; one of each kind.  Looks for pairs at 2048 places
-// at most, the first of each line and others; if lights were lifted, not for pairs with a light.
+// Lengths that are too short, one of each kind, with the line of a shape.  Pairs are searched at no
+// more than 2048 shapes: the first of each line, and others; without lights if some were lifted.
 inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool lifted) {
     std::map<std::string, uint32_t> found;
     const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;

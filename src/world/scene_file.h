@@ -7,7 +7,7 @@
 #include "world/obj.h"
 #include "world/scene_check.h"
 
-// A scene, what its author should know about it, and the files that it was read from.
+// A scene, warnings to its author, and the files that it was read from.
 struct ParsedScene {
     Scene scene;
     std::vector<std::string> warnings, files;
@@ -30,7 +30,7 @@ public:
         scene_.line_of_light.resize(scene_.lights.size(), line);
     }
 
-    // What only the whole scene can tell.  The scene's file is called `name`.
+    // Checks the whole scene.  `name` is the name of the scene's file.
     ParsedScene finish(const std::string& name) {
         Scene& s = scene_;
         if (!seen_.contains("camera")) throw UserError(name + ": no camera");

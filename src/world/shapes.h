@@ -54,9 +54,9 @@ struct Box {
     }
 };
 
-// What rounding may do to a shape's own geometry, as a length: the intersectors lose a few ulp of
-// the largest coordinate, wherever on the shape the hit lies.  Proportional to the scene, so that
-// a scene scaled by a power of two gives the same image bit for bit.
+// Bound of the rounding error of a shape's geometry, as a length: intersectors lose a few ulp of
+// the largest coordinate, for a hit anywhere on the shape.  It is proportional to the scene: a
+// scene scaled by a power of two gives the same image, bit for bit.
 inline real rounding_error(const Shape& s) {
     real size =
         s.is_sphere() ? max_abs(s.a) + s.r : std::max({max_abs(s.a), max_abs(s.b), max_abs(s.c)});
@@ -98,8 +98,7 @@ inline Shear shear(vec3 d) {
     return {x, y, z, d.*axis[x] * sz, d.*axis[y] * sz, sz};
 }
 
-// Where a ray meets a triangle, from either side, at 0 < t <= tmax.  k is shear(ray.d), for those
-// who want it.
+// Where a ray meets a triangle, from either side, at 0 < t <= tmax.  k is shear(ray.d).
 inline std::optional<Hit> intersect_triangle(const Shape& s, const Ray& ray, const Shear& k,
                                              real tmax) {
     // exercise 1.3
@@ -177,7 +176,7 @@ inline std::optional<Hit> intersect(const Shape& s, const Ray& ray, const Shear&
 // Twice the area of a triangle, along its normal.
 inline vec3 area_vector(const Shape& s) { return cross(s.b - s.a, s.c - s.a); }
 
-// What is alike at all points of a shape: the unit normal, if it is a triangle, and Surface::error.
+// Properties of all points of a shape: the unit normal, if it is a triangle, and Surface::error.
 struct Facing {
     vec3 n;
     real error = 0;

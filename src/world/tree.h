@@ -1,7 +1,7 @@
-// world/tree.h  5  the tree of a scene: plain, or by -DTREE_WIDE with eight children a node
+// world/tree.h  5  the BVH of a scene: plain, or by -DTREE_WIDE with eight children per node
 #pragma once
 
-// Both answer alike, bit for bit; the wide one, in a folder of its own, is faster.
+// Both give the same answers, bit for bit.  The wide one, in a folder of its own, is faster.
 #ifdef TREE_WIDE
 #include "wide/wide_bvh.h"
 using Tree = WideBvh;

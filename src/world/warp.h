@@ -6,8 +6,8 @@
 #include "base/portable.h"
 #include "base/vec.h"
 
-// The point at u turns of the unit circle, 0 <= u <= 1.  The nearest quarter of a turn is taken
-// off exactly; of what is left, |x| <= pi / 4, Taylor's polynomials are exact to rounding.
+// The point at u turns of the unit circle, 0 <= u <= 1.  The nearest quarter of a turn is split off
+// exactly.  For the remainder, |x| <= pi / 4, Taylor polynomials are exact to rounding.
 inline vec2 turned(real u) {
     const int quarter = int(4 * u + real(0.5));
     const real x = 2 * pi * (u - real(quarter) / 4), y = x * x;
@@ -62,7 +62,7 @@ inline real pdf_cosine_hemisphere(real cos_theta) {
 }
 // end
 
-// Directions about z whose density is in proportion to cos^n(alpha), 0 for alpha >= 90 degrees
+// Directions about z with a density proportional to cos^n(alpha), 0 for alpha >= 90 degrees
 // (Phong 1975; Lafortune, Willems 1994).
 // exercise 2.4
 // The density is (n+1)/(2 pi) cos^n(alpha), and cos(alpha) = (1-u)^(1/(n+1)); 1 - cos^2 by expm1
