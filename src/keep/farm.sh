@@ -66,16 +66,18 @@ read_words() {
             --seeds) count "$1" "$2"; seeds=$2 ;;
             --build) program=$2 ;;
             -o | --stats) outputs+=("$1" "$(absolute "$2")") ;;
-            *) engine_option "$1" "$2" || fail "$1: no option of a farm; those of penumbra stand behind --" ;;
+            *) engine_option "$1" "$2" || fail "$1: no option of a farm; those of penumbra follow --" ;;
         esac
         shift 2
     done
-    [ $# -gt 1 ] || fail "say: -- OPTIONS OF PENUMBRA SCENE"
+    [ $# -gt 1 ] || fail "missing: -- OPTIONS OF PENUMBRA SCENE"
     shift
     while [ $# -gt 1 ]; do
+        case $1 in --*=*) set -- "${1%%=*}" "${1#*=}" "${@:2}" ;; esac
+        [ "$1" != --samples ] || set -- --spp "${@:2}"
         case $1 in
-            --rows | --keep | --threads | -o | --stats) fail "$1: the farm says it to every part" ;;
-            --seed) [ "$seeds" = 1 ] || fail "$1: --seeds $seeds says it to every part" ;;
+            --rows | --keep | --threads | -o | --output | --stats) fail "$1: the farm sets it for every part" ;;
+            --seed) [ "$seeds" = 1 ] || fail "$1: --seeds $seeds sets it for every part" ;;
             --size) size=$2 ;;
             --spp) spp=$2 ;;
         esac
@@ -90,7 +92,7 @@ read_words() {
 check_words() {
     local at='^[1-9][0-9]*x[1-9][0-9]*$' which
     [ -n "$folder" ] || fail "--folder: where all machines find the parts?"
-    [[ $size =~ $at ]] || fail "--size WxH: bands are cut from it, behind --"
+    [[ $size =~ $at ]] || fail "--size WxH: give it after --"
     count --spp "$spp"
     [ "$bands" -le "${size#*x}" ] || fail "--bands $bands: the picture has ${size#*x} rows"
     [ ${#outputs[@]} -gt 0 ] || fail "-o FILE: where to write the picture?"
@@ -149,11 +151,11 @@ render() {  # FOLDER NUMBER THREADS
     mapfile -t words < <(planned "$1" option)
     pass() {
         stopped=$1 caught=1
-        echo "farm: stops, for $1" >&2
+        echo "farm: stops after signal $1" >&2
         [ -z "$child" ] || kill -TERM "$child" 2>/dev/null
     }
     for signal in TERM INT HUP USR1; do trap "pass $signal" "$signal"; done
-    [ ! -e "$(film "$1" "$2")" ] || echo "farm: goes on from its film" >&2
+    [ ! -e "$(film "$1" "$2")" ] || echo "farm: resumes from its film" >&2
     # shellcheck disable=SC2046  # a part is options without blanks in them
     "$(planned "$1" build)/penumbra" "${words[@]}" $(planned "$1" part | sed -n "$2p") --threads "$3" \
         --keep "$(film "$1" "$2")" "$(planned "$1" scene)" &
@@ -161,7 +163,7 @@ render() {  # FOLDER NUMBER THREADS
     [ -z "$stopped" ] || kill -TERM "$child"
     # What was caught ends the wait, and not penumbra.
     while caught='' status=0; wait "$child" 2>/dev/null || status=$?; [ -n "$caught" ]; do :; done
-    [ "$status" -le 128 ] || [ -n "$stopped" ] || echo "farm: penumbra was ended by signal $((status - 128))" >&2
+    [ "$status" -le 128 ] || [ -n "$stopped" ] || echo "farm: signal $((status - 128)) ended penumbra" >&2
     return "$status"
 }
 
@@ -176,7 +178,7 @@ merge() {  # FOLDER
     done
     if [ -n "$missing" ]; then
         echo "farm: $(echo "$missing" | wc -l) of $(count_of_parts "$1") parts are missing, and no picture was" \
-            "written; the same command again renders those alone" >&2
+            "written; the same command again renders only those" >&2
         return 1
     fi
     for number in $(seq "$(count_of_parts "$1")"); do films+=("$(film "$1" "$number")"); done

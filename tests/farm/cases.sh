@@ -1,7 +1,7 @@
 # farm/cases.sh  what may happen to a farm; the first line of each case says it
 
 size=${SIZE:-128x96} spp=${SPP:-512} scene=${SCENE:-$here/scenes/cornell36.scene}
-resumed='^farm: goes on from its film'
+resumed='^farm: resumes from its film'
 . src/keep/farm.sh  # what it knows of a folder's parts
 
 # What a farm renders, and $whole, the picture of one render.  Sets are fixed: adaptive ones of a band
@@ -196,7 +196,7 @@ case_slurm_time_limit() {
     local process
     process=$(process_of 1)
     kill -STOP "$process"
-    await 90 'Slurm warns of the limit' grep -q '^farm: stops, for USR1' "$(log "$folder" 1)"
+    await 90 'Slurm warns of the limit' grep -q '^farm: stops after signal USR1' "$(log "$folder" 1)"
     kill -CONT "$process"
     merged && is_right "$folder.pfm"
     says "$(log "$folder" 1)" '^farm: queues again'

@@ -85,15 +85,17 @@ TEST_CASE("what cannot be rendered is refused before it is planned") {
         CHECK_FALSE(yard.folder.has("farm/farm.plan"));
     };
     refused(farm_words + "--bands 7 -- " + picture, "farm: --bands 7: the picture has 6 rows");
-    refused(farm_words + "--seeds 2 -- --seed 1 " + picture, "farm: --seed: --seeds 2 says it");
+    refused(farm_words + "--seeds 2 -- --seed 1 " + picture, "farm: --seed: --seeds 2 sets it");
     refused(farm_words + "--bands 0 -- " + picture, "farm: --bands '0': a number, 1 or more");
     refused(farm_words + "--bands -- " + picture, "farm: --bands '--': a number");
     refused(farm_words + "--hosts h -- " + picture, "farm: --hosts: no option of a farm");
     refused(farm_words + "-- --spp 5 a.scene", "farm: --size WxH");
     refused(farm_words + "-- --size 8x6 a.scene", "farm: --spp ''");
-    refused(farm_words + "-- --rows 0-1 " + picture, "farm: --rows: the farm says it");
+    refused(farm_words + "-- --rows 0-1 " + picture, "farm: --rows: the farm sets it");
+    refused(farm_words + "-- --rows=0-1 " + picture, "farm: --rows: the farm sets it");
+    refused(farm_words + "-- --output b.pfm " + picture, "farm: --output: the farm sets it");
     refused(farm_words + picture, "farm: --size: no option of a farm");
-    refused(farm_words, "farm: say: -- OPTIONS OF PENUMBRA SCENE");
+    refused(farm_words, "farm: missing: -- OPTIONS OF PENUMBRA SCENE");
     refused("--build build --folder farm -- " + picture, "farm: -o FILE");
     refused("--build build -o a.pfm -- " + picture, "farm: --folder");
     refused("--build bin --folder farm -o a.pfm -- " + picture, "bin/penumbra: build it first");
@@ -106,6 +108,8 @@ TEST_CASE("before anything is planned, penumbra is asked for a sample of a row")
     CHECK(yard.plan("--bands 3").status == 0);
     CHECK(yard.folder.read("told").starts_with("--size 8x6 --spp 1 --rows 0-0 --keep "));
     CHECK_FALSE(yard.folder.has("farm/check.film"));
+    const std::string words = farm_words + "--bands 3 -- --size=8x6 --samples=5 a.scene";
+    CHECK(yard.run("farm.sh plan " + words).status == 0);  // the same plan
 }
 
 TEST_CASE("the same plan is gone on with, another one is refused") {
@@ -130,7 +134,7 @@ TEST_CASE("a part is told its film, from which it goes on") {
     CHECK(yard.folder.has("told"));
     CHECK(yard.log("7") == "");
     CHECK(yard.run("farm.sh part farm 7 3").status == 0);
-    CHECK(yard.log("7") == "farm: goes on from its film\n");
+    CHECK(yard.log("7") == "farm: resumes from its film\n");
     // The folder stands in the plan by its whole name, the script is called by a short one.
     std::string told = yard.folder.read("told");
     for (size_t at; (at = told.find(" farm/")) != told.npos;)
@@ -170,7 +174,7 @@ TEST_CASE("whoever stops a part stops penumbra, and waits until it has written i
         "wait $part");
     CHECK(said.status == 143);
     CHECK(yard.folder.has("film"));
-    CHECK(yard.log("1").find("farm: stops, for TERM") != std::string::npos);
+    CHECK(yard.log("1").find("farm: stops after signal TERM") != std::string::npos);
 }
 
 // ---- What farm_slurm.sh makes of it -------------------------------------------------------------
