@@ -181,7 +181,7 @@ inline bool fits_float(rgb L) {
     return std::isfinite(float(L.x)) && std::isfinite(float(L.y)) && std::isfinite(float(L.z));
 }
 
-// Adds samples, in order, until each replication of a block has n.  The sums begin at `offset`. The
+// Adds samples, in order, until each replication of a block has n.  Sums begin at `offset`.  The
 // image does not depend on passes and threads.  If L throws, the block stays as it was.
 inline NonFinite add_samples(Film& f, size_t block, size_t offset, uint64_t n, const Radiance& L,
                              Tally& tally) {

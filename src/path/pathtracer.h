@@ -192,7 +192,7 @@ struct NoVisitor {
 };
 
 // Radiance that arrives along a ray, against its direction.  Unbiased, except for the scene's
-// depth. Calls visit(segment, step) at every vertex.
+// depth.  Calls visit(segment, step) at every vertex.
 template <class Visitor = NoVisitor>
 rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
        Visitor visit = {}) {

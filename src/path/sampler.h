@@ -74,7 +74,8 @@ inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
 }
 
 // Strata: a number in part `part` of [0,1), one of `parts` equal ones; and a point in cell `cell`
-// of a grid of the unit square, cell 0 ... columns * rows - 1.  The bits are random. exercise 4.4
+// of a grid of the unit square, cell 0 ... columns * rows - 1.  The bits are random.
+// exercise 4.4
 inline real in_part(uint32_t part, uint32_t parts, uint64_t bits) {
     return std::min(below_one, (real(part) + to_unit(bits)) / real(parts));
 }
