@@ -27,7 +27,10 @@ COURSE = ['draw.h', 'draw.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or src/ alone: only what stands between `// BEGIN` and `// END` is read.
 Leave these lines as they are, and write between them plain C++: no `#include`, `#define`, `asm` or names with two
-underscores, which graders refuse.'''
+underscores, which graders refuse.
+
+A mistake costs half of an exercise's points, or a quarter where `make check` says `wrong` and not `WRONG`: at the limits of a
+law. Several, of which none is known by name, may cost more.'''
 
 
 class Plan:
@@ -174,8 +177,8 @@ def write_rest(plan, to):
 def draw_expected(plan, to, draw):
     """expected/: what the solution draws, by the same random numbers."""
     for line in (ROOT / 'tests/course/pictures.txt').read_text().splitlines():
-        key, _, order = (part.strip() for part in line.partition('|'))
-        if key.split('.')[0] not in plan.weeks or not order:
+        key, *_, order = (part.strip() for part in line.split('|'))
+        if key.split('.')[0] not in plan.weeks or line.startswith('#'):
             continue
         (to / 'expected').mkdir(exist_ok=True)
         subprocess.run([draw, *order.split(), '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT,
