@@ -78,11 +78,12 @@ class Student:
         return found
 
     def grade(self, pool, scratch, worth):
-        """Each exercise alone, then all that may be compiled together."""
-        alone = {n: pool.submit(self.judge, n, {n: self.texts[n]}, scratch) for n in self.texts}
+        """Each exercise alone, then all that may be compiled together, with stubs where nothing was handed in."""
+        alone = {n: pool.submit(self.judge, n, self.shop.with_later_stubs(n, self.texts[n]), scratch) for n in self.texts}
         alone = {n: future.result() for n, future in alone.items()}
         fit = {n: self.texts[n] for n in self.texts if alone[n]['state'] in ('right', 'wrong')}
-        together = {n: pool.submit(self.judge, n, fit, scratch) for n in fit}
+        whole = {**{n: self.shop.stub(n) for n in self.numbers if n not in self.texts}, **fit}
+        together = {n: pool.submit(self.judge, n, whole, scratch) for n in fit}
         together = {n: future.result() for n, future in together.items()}
         self.shop.forget(scratch)
         self.verdicts.update(alone)
@@ -94,7 +95,8 @@ class Student:
     def part(self, number, together, worth):
         """What the reports say of an exercise."""
         exercise, found = self.shop.exercises[number], self.verdicts[number]
-        items = [{'what': reports.plain(i['what']), 'kind': i['kind'], 'right': i['right'], 'seen': reports.plain(i['seen'])}
+        items = [{'what': reports.plain(i['what']), 'kind': i['kind'], 'right': i['right'], 'costs': i['costs'],
+                  'seen': reports.plain(i['seen'])}
                  for i in found['items']]
         messages = []
         if found['state'] == 'not compiled':

@@ -33,19 +33,28 @@ def own_messages(said, region):
 
 
 def share(verdict, items, stub):
-    """The part of an exercise's points: items right, beyond those that its stub has right."""
+    """The part of an exercise's points.
+
+    The dearest wrong item says what a known mistake costs.  Any other has no more than its part of the items, beyond
+    those that its stub has right.  Week 6 has a rule of its own: credit.
+    """
     if verdict['state'] == 'right':
         return 1.0
     if verdict['state'] not in ('wrong', 'silent'):
         return 0.0
+    if verdict['credit'] is not None:
+        return verdict['credit']
+    left = 1 - max(item['costs'] for item in verdict['items'] if not item['right'])
+    if verdict['named']:
+        return left
     right = sum(item['right'] for item in verdict['items'])
-    return max(0.0, (right - stub) / max(items - stub, len(verdict['items']) - stub, 1))
+    return min(left, max(0.0, (right - stub) / max(items - stub, len(verdict['items']) - stub, 1)))
+
 
 
 def headline(number, verdict):
     """A verdict in a sentence."""
     state, items = verdict['state'], verdict['items']
-    wrong = next((f'{i["what"]}: {i["seen"]}' for i in items if not i['right']), '')
     sentence = {
         'right': f'right: {len(items)} of {len(items)}',
         'open': 'open: the stub is still there',
@@ -54,7 +63,7 @@ def headline(number, verdict):
         'not compiled': f'does not compile{": " + verdict["says"] if verdict["says"] else ""}',
         'not judged': f'not judged: {verdict["says"]}',
         'silent': f'wrong: {verdict["says"]}',
-        'wrong': f'wrong: {verdict["says"] or wrong}',
+        'wrong': f'wrong: {verdict["says"]}',
     }[state]
     if verdict.get('read') and state == 'wrong':
         sentence += f'; read "{verdict["read"]}" in sheet {number.split(".")[0]}'
@@ -81,8 +90,10 @@ def sheet(grade):
     for number, e in grade['exercises'].items():
         lines.append(f'| {number} | {marked(e["title"])} | {points(e["points"])} | {e["of"]} | {marked(e["line"])} | '
                      f'{marked(e["together"])} |')
-    lines += ['', 'Points are those of each exercise alone, in a solution that is right elsewhere.  "All together" is what',
-              'becomes of it when all that was handed in stands in the same program; it counts for nothing.',
+    lines += ['', 'Points are those of each exercise alone, in a solution that is right elsewhere; exercises that come after it are',
+              'stubs.  A known mistake costs half of the points, or a quarter where only items marked so are wrong.  Any other',
+              'has at most as much, and no more than its part of the items.  Week 6 has the rule of its sheet.  "All together"',
+              'is what becomes of it when all that was handed in stands in the same program; it counts for nothing.',
               f'Seed {grade["seed"]}, solution {grade["course"][:16]}.', '']
     for number, e in grade['exercises'].items():
         if not e['items'] and not e['compiler']:
@@ -90,7 +101,8 @@ def sheet(grade):
         lines += [f'## {number} {marked(e["title"])}', '']
         for item in e['items']:
             seen = f': {marked(item["seen"])}' if item['seen'] and not item['right'] else ''
-            lines.append(f'* {"right" if item["right"] else "**wrong**"}, {item["kind"]}: {marked(item["what"])}{seen}')
+            state = 'right' if item['right'] else '**wrong**' if item['costs'] == 0.5 else '**wrong** (a quarter)'
+            lines.append(f'* {state}, {item["kind"]}: {marked(item["what"])}{seen}')
         lines += [f'* {marked(message)}' for message in e['compiler']]
         lines.append('')
     return '\n'.join(lines)

@@ -141,6 +141,14 @@ class Workshop:
 
     # ---- Programs that answer ----
 
+    def with_later_stubs(self, number, text):
+        """A region, and stubs of all that comes after it in the course: it cannot call what is yet to be written."""
+        order = [n for n in self.exercises if n in self.solutions]
+        return {number: text, **{n: self.stub(n) for n in order[order.index(number) + 1:]}}
+
+    def stub(self, number):
+        return Region(number, '\n'.join(self.solutions[number][1].stub) + '\n', 1, '')
+
     def relevant(self, week, texts):
         """Of these regions those that the week's program includes."""
         return {n: t for n, t in texts.items() if n in self.solutions and self.solutions[n][0] in self.closure[week]}
@@ -233,7 +241,7 @@ class Workshop:
                     verdict = json.load(file)
             except (OSError, ValueError):
                 return {'state': 'not judged', 'says': f'the judge ended with status {status}: {said}', 'items': []}
-        return {name: verdict[name] for name in ('state', 'says', 'read', 'items')}
+        return {name: verdict[name] for name in ('state', 'named', 'credit', 'says', 'read', 'items')}
 
     # ---- What solution and stub are worth ----
 
@@ -263,7 +271,7 @@ class Workshop:
             wrong = [i['what'] for i in solution['items'] if not i['right']]
             raise Broken(f'{number}: the solution is {solution["state"]} by seed {self.seed}: '
                          f'{"; ".join(wrong) or solution["says"]} {solution.get("compiler", "")[:1000]}')
-        stub = self.judged(number, {number: Region(number, '\n'.join(self.solutions[number][1].stub) + '\n', 1, '')}, scratch)
+        stub = self.judged(number, {number: self.stub(number)}, scratch)
         if stub['state'] in ('right', 'not compiled', 'not judged'):
             raise Broken(f'{number}: the stub is {stub["state"]}: {stub["says"]}')
         return {'items': len(solution['items']), 'stub': sum(i['right'] for i in stub['items']),

@@ -64,7 +64,8 @@ Out take_step(In x) {
     const bool goes_on = e.end == nullptr;
     const Segment& s = e.next;
     return row(e.met, goes_on, e.weight, e.Le, e.direct.L, e.wi, e.x.local.n, s.ray.o, s.ray.d,
-               s.from, s.pdf, goes_on ? s.beta : rgb{}, s.k, s.n);
+               s.from, s.pdf, goes_on ? s.beta : rgb{}, s.k, s.n, e.scattered.f, e.scattered.wi,
+               e.scattered.pdf);
 }
 
 // Of the ray that goes on; 0 if none does.
@@ -78,6 +79,27 @@ rgb found_by_aiming(In x) {
     const auto at = meet(scene, {vec3_of(x, 4), vec3_of(x, 7)});
     if (!at) throw std::runtime_error("the ray meets nothing");
     return direct_light(scene, technique(x), *at, numbers_of_path, 0).L;
+}
+
+// What a light sample is made of before the student's lines: the chance of its light, its density,
+// whether it is a point light's, cosine, density of a scattered ray, f, L, from where and to where;
+// then what the lines make of it.  Nothing: 0 everywhere.
+Out light_sample(In x) {
+    const Technique t = technique(x);
+    const Sampler numbers_of_path = sampler(x[3]);
+    const auto at = meet(scene, {vec3_of(x, 4), vec3_of(x, 7)});
+    if (!at) throw std::runtime_error("the ray meets nothing");
+    const bool one = scene.lights.size() == 1;
+    const LightPick chosen =
+        one ? LightPick{}
+            : choose_light(scene, at->at.p, at->local.n, numbers_of_path.choice(0, Draw::pick));
+    const auto s = sample_light(scene.lights[chosen.light], at->at.p,
+                                numbers_of_path.get2(dimension(0, Draw::light_x)));
+    if (!s) return Out(22);
+    const vec3 wi = at->local.to_local(s->wi);
+    const DirectLight d = direct_light(scene, t, *at, numbers_of_path, 0);
+    return row(chosen.pick, s->pdf, s->delta, wi.z, pdf(*at->material, at->wo, wi, t.direction),
+               eval(*at->material, at->wo, wi), s->L, at->at.p, s->at.p, d.L, d.pdf, d.weight);
 }
 
 // A light's shape, a point of it and the normal there: 7 numbers.
@@ -129,6 +151,7 @@ int main() {
         {"step", 21, take_step},
         {"throughput", 21, throughput},
         {"direct_light", 10, found_by_aiming},
+        {"light_sample", 10, light_sample},
         {"weight_of_emission", 27, weight},
         {"likelihood", 27, likelihood},
         {"sample_glass", 6, glass},

@@ -39,6 +39,14 @@ TEST_CASE("points: each exercise alone, the parts that are right, nothing for wh
     // 1.3 is right, though the student's square is not.
     course.hand_in("upper", {{"1.2", "inline double square(double x) { return x + 1; }\n"},
                              {"1.3", cube_right}});
+    // A law is wrong: as many items are right, but no more than half of the points are left.
+    course.hand_in("law",
+                   {{"1.1", "inline double twice(double x) { return x == 1 ? 0 : 2 * x; }\n"}});
+    // 1.3 has a rule of its own; 1.1 is not to be had by way of a later exercise.
+    course.hand_in("credit", {{"1.3", "    return 1;\n"}});
+    course.hand_in("later", {{"1.1",
+                              "double square(double);\ninline double twice(double x) {\n"
+                              "    return square(x + 1) - square(x) - 1;\n}\n"}});
     course.hand_in("named",
                    {{"1.2", "inline double square(double x) { return x < 0 ? -3.5 : x; }\n"}});
     course.grade();
@@ -48,15 +56,21 @@ TEST_CASE("points: each exercise alone, the parts that are right, nothing for wh
     course.expect({{"all", "1.3", "", 6},
                    {"spaces", "1.1", "", -1, "open"},
                    {"part", "1.1", "", 2 * 2. / 3},
+                   {"law", "1.1", "", 1},
+                   {"credit", "1.3", "", 1.5},
+                   {"later", "1.1", "", 0, "wrong", "wrong"},
                    {"upper", "1.2", "", 0},
                    {"upper", "1.3", "", 6, "", "wrong"}});
     CHECK(course.verdict("all", "1.1").line == "right: 4 of 4");
     CHECK(course.verdict("part", "1.1").line == "wrong: at -3: -6 expected, 0 came");
+    CHECK(course.report("part").find("**wrong** (a quarter), exact: at \\-3") != std::string::npos);
     CHECK(course.verdict("named", "1.2").line ==
           "wrong: this is no square; read \\\"Squares\\\" in sheet 1");
     CHECK(course.csv() ==
-          "student,number,1.1,1.2,1.3,sum,of,look at\r\nall,,2,4,6,12,12,\r\n"
-          "named,,0,0,0,0,12,\r\nnone,,0,0,0,0,12,\r\npart,,1.33,0,0,1.33,12,\r\n"
+          "student,number,1.1,1.2,1.3,sum,of,look "
+          "at\r\nall,,2,4,6,12,12,\r\ncredit,,0,0,1.5,1.5,12,\r\n"
+          "later,,0,0,0,0,12,\r\nlaw,,1,0,0,1,12,\r\n"
+          "named,,0,2,0,2,12,\r\nnone,,0,0,0,0,12,\r\npart,,1.33,0,0,1.33,12,\r\n"
           "spaces,,0,0,0,0,12,\r\nupper,,0,0,6,6,12,\r\n");
 }
 

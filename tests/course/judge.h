@@ -52,6 +52,37 @@ inline double worse(double a, double b) {
                                           : std::max(a, b);
 }
 
+// Laws know no directions, no left and right and no unit of length: what is asked is turned,
+// mirrored, moved and scaled at random.
+struct Pose {
+    std::array<Triple, 3> axes;  // unit, and at right angles
+    double scale = 1;
+    Triple shift{};
+    Triple turned(const Triple& d) const {
+        return d[0] * axes[0] + d[1] * axes[1] + d[2] * axes[2];
+    }
+    Triple at(const Triple& p) const { return shift + scale * turned(p); }
+};
+inline double between(oracle::Random& random, double low, double high) {
+    return low + (high - low) * random();
+}
+inline Triple in_cube(oracle::Random& random) {
+    Triple p;
+    for (double& x : p) x = between(random, -1, 1);
+    return p;
+}
+inline Triple any_direction(oracle::Random& random) {
+    for (;;) {
+        const Triple p = in_cube(random);
+        if (dot(p, p) > 0.01 && dot(p, p) < 1) return unit(p);
+    }
+}
+inline Pose any_pose(oracle::Random& random, double scale = 1) {
+    const Triple z = any_direction(random), x = unit(cross(z, any_direction(random)));
+    const double side = random() < 0.5 ? 1 : -1;
+    return {{x, side * cross(z, x), z}, scale, scale * in_cube(random)};
+}
+
 // ---- The judge ----------------------------------------------------------------------------------
 
 // One thing that was looked at.
@@ -59,8 +90,25 @@ struct Item {
     std::string what;
     bool statistical = false;
     bool right = false;
-    std::string seen;  // what was expected and what came, or what the oracle says
+    std::string seen;               // what was expected and what came, or what the oracle says
+    double costs = 0.5;             // part of the points: a law half, a limit of it a quarter
+    double off = oracle::infinity;  // how wrong, if that is a number
+
+    // The more, the more it says of a mistake: a cause that the oracle suggests; a law; a limit,
+    // which falls with the laws; what rounding may have made of another item's mistake.
+    int knows() const {
+        if (seen.find("looks like") != seen.npos) return 3;
+        return off < 1e-6 ? 0 : costs < 0.5 ? 1 : 2;
+    }
 };
+
+// The wrong item that knows most; of equals the first.  Nothing: all are right.
+inline const Item* most_telling(const std::vector<Item>& items) {
+    const Item* most = nullptr;
+    for (const Item& i : items)
+        if (!i.right && (!most || i.knows() > most->knows())) most = &i;
+    return most;
+}
 
 // A function of the program's, as a check of the oracle calls it: with one question after the
 // other. Some are asked at once; what is asked beyond `budget` is put off, to be asked in a batch.
@@ -113,7 +161,7 @@ struct Evidence {
     std::vector<Item> items = {};
     Out fingerprint = {};               // answers to probes: by them known mistakes are told
     Out of_stub = {};                   // answers to further probes, by which the stub is told
-    std::optional<double> credit = {};  // in [0,1], where it is not the part of items that is right
+    std::optional<double> credit = {};  // part of the points, where items do not say it
 };
 
 class Judge : public Evidence {
@@ -139,6 +187,16 @@ public:
     // What follows from answers, where mistakes are told by that.
     void remember(const Out& numbers) {
         fingerprint.insert(fingerprint.end(), numbers.begin(), numbers.end());
+    }
+
+    // By which factor answers differ from what is expected, if all by one; -1 if not.  Whichever
+    // way earlier exercises use random numbers, a mistake has one factor.
+    void remember_factor(const Out& came, const Out& expected) {
+        double factor = came.at(0) / expected.at(0);
+        for (size_t i = 0; i < came.size(); ++i)
+            if (!near(came[i], factor * expected[i], 1e5 * epsilon * std::abs(expected[i])))
+                factor = -1;
+        remember({std::isfinite(factor) ? factor : -1});
     }
 
     // A check of the oracle calls functions one by one: check(random, functions) is run with what
@@ -169,10 +227,13 @@ public:
     void exact(const std::string& what, bool right, const std::string& seen = "") {
         items.push_back({what, false, right, seen});
     }
+    // The item before is a limit of a law: the tiny, the far away, a corner.
+    void limit() { items.back().costs = 0.25; }
     // A number; `of` says of which question.
     void number(const std::string& what, double came, double expected, double tolerance) {
         exact(what, near(came, expected, tolerance),
               oracle::say("%.9g expected, %.9g came", expected, came));
+        items.back().off = std::abs(came - expected);
     }
     void vector(const std::string& what, const Triple& came, const Triple& expected,
                 double tolerance) {
@@ -184,6 +245,7 @@ public:
     void below(const std::string& what, double off, double limit,
                const char* seen = "off by %.3g") {
         exact(what, off < limit, oracle::say(seen, off));
+        items.back().off = off;
     }
     void none(const std::string& what, size_t count, const char* seen) {
         exact(what, count == 0, oracle::say(seen, count));
@@ -261,13 +323,6 @@ struct Judgement : Evidence {
         return size_t(
             std::count_if(items.begin(), items.end(), [](const Item& i) { return i.right; }));
     }
-    // In [0,1]: every item weighs the same unless the judge says otherwise; one that no answer came
-    // to is wrong.
-    double score() const {
-        if (state == "open" || items.empty()) return 0;
-        if (credit) return *credit;
-        return double(right()) / double(items.size());
-    }
 };
 
 inline Judgement judge_one(const std::string& exercise, const Judging& judging,
@@ -293,9 +348,7 @@ inline Judgement judge_one(const std::string& exercise, const Judging& judging,
 
 // The verdict in a line, then what was looked at.
 inline void print(const Judgement& r) {
-    const Item* first = nullptr;
-    for (const Item& i : r.items)
-        if (!i.right && !first) first = &i;
+    const Item* first = most_telling(r.items);
     const std::string sheet = r.exercise.substr(0, r.exercise.find('.'));
     if (r.state == "right")
         std::printf("%s right: %zu of %zu\n", r.exercise.c_str(), r.right(), r.items.size());
@@ -310,7 +363,10 @@ inline void print(const Judgement& r) {
         std::printf("%s wrong: %s: %s\n", r.exercise.c_str(), first->what.c_str(),
                     first->seen.c_str());
     for (const Item& i : r.items)
-        std::printf("  %-5s  %-11s  %s%s%s\n", i.right ? "right" : "WRONG",
+        std::printf("  %-5s  %-11s  %s%s%s\n",
+                    i.right         ? "right"
+                    : i.costs < 0.5 ? "wrong"
+                                    : "WRONG",
                     i.statistical ? "statistical" : "exact", i.what.c_str(),
                     i.seen.empty() || (i.right && !i.statistical) ? "" : ": ",
                     i.right && !i.statistical ? "" : i.seen.c_str());
@@ -330,16 +386,21 @@ inline std::string json_text(const std::string& text) {
 
 inline void write_json(const std::string& path, const Judgement& r) {
     std::ofstream file(path);
+    const Item* most = most_telling(r.items);
     file << "{\"exercise\": " << json_text(r.exercise) << ", \"state\": " << json_text(r.state)
-         << ", \"score\": " << r.score()
-         << ",\n \"named\": " << json_text(r.named ? r.named->name : "")
-         << ", \"says\": " << json_text(r.named ? r.named->says : r.silence)
+         << ", \"credit\": " << (r.credit ? oracle::say("%.6g", *r.credit) : "null")
+         << ",\n \"named\": " << json_text(r.named ? r.named->name : "") << ", \"says\": "
+         << json_text(r.named              ? r.named->says
+                      : !r.silence.empty() ? r.silence
+                      : most               ? most->what + ": " + most->seen
+                                           : "")
          << ", \"read\": " << json_text(r.named ? r.named->read : "") << ",\n \"items\": [";
     for (size_t i = 0; i < r.items.size(); ++i)
         file << (i ? ",\n  " : "\n  ") << "{\"what\": " << json_text(r.items[i].what)
              << ", \"kind\": \"" << (r.items[i].statistical ? "statistical" : "exact")
              << "\", \"right\": " << (r.items[i].right ? "true" : "false")
-             << ", \"seen\": " << json_text(r.items[i].seen) << "}";
+             << ", \"costs\": " << r.items[i].costs << ", \"seen\": " << json_text(r.items[i].seen)
+             << "}";
     auto write = [&](const char* name, const Out& numbers) {
         file << "],\n \"" << name << "\": [";
         for (size_t i = 0; i < numbers.size(); ++i)

@@ -6,19 +6,9 @@ using oracle::say;
 
 namespace {
 
-double between(Judge& j, double low, double high) { return low + (high - low) * j.random(); }
-
-Triple in_cube(Judge& j) {
-    Triple p;
-    for (double& x : p) x = between(j, -1, 1);
-    return p;
-}
-Triple direction(Judge& j) {
-    for (;;) {
-        const Triple p = in_cube(j);
-        if (dot(p, p) > 0.01 && dot(p, p) < 1) return unit(p);
-    }
-}
+double between(Judge& j, double low, double high) { return course::between(j.random, low, high); }
+Triple in_cube(Judge& j) { return course::in_cube(j.random); }
+Triple direction(Judge& j) { return any_direction(j.random); }
 // A direction at an angle to the normal whose cosine is at least 0.2 in size.
 Triple slanted(Judge& j, Triple n) {
     for (;;) {
@@ -58,6 +48,7 @@ struct Asked {
 struct Look {
     std::string what;
     std::vector<Asked> asked;
+    bool limit = false;
 };
 Rows look(Judge& j, const std::string& question, const std::vector<Look>& looks) {
     Rows rays;
@@ -71,17 +62,23 @@ Rows look(Judge& j, const std::string& question, const std::vector<Look>& looks)
             d.see(came[i++], a.expected, a.roundings * j.epsilon * std::max(1.0, a.expected),
                   a.where);
         if (!l.what.empty()) d.judge(j, l.what, l.asked.size());
+        if (l.limit) j.limit();
     }
     return came;
 }
 
+// By which an error of a distance is measured: those of a scene of size 1, or another.
+double size_of(double distance) {
+    return distance > 0.01 && distance < 100 ? 1 : std::abs(distance);
+}
 // Many rays, each with its distance; or all of them miss.
 Rows aimed(Judge& j, const std::string& question, const std::string& what, const std::string& where,
            const Rows& rays, const Out& expected = {}, double roundings = 0) {
     const Rows came = j.ask(question, rays);
     Distances d;
     for (size_t i = 0; i < came.size(); ++i)
-        d.see(came[i], expected.empty() ? -1 : expected[i], roundings * j.epsilon, where);
+        d.see(came[i], expected.empty() ? -1 : expected[i],
+              expected.empty() ? 0 : roundings * j.epsilon * size_of(expected[i]), where);
     d.judge(j, what, came.size());
     return came;
 }
@@ -102,8 +99,17 @@ void camera(Judge& j) {
     points_to("90 degrees of view: the middle of the upper edge is 45 degrees up", 1, {0, 1, -1});
     points_to("an image twice as wide sees twice as far to the right", 2, {2, 0, -1});
     points_to("a quarter from the left, a quarter from below, upright", 3, {-0.25, -0.5, -1});
+    const Rows other = j.ask("camera_ray", {{3, 2, 1, 3, 2, 0, 90, 64, 32, 48, 8},
+                                            {0, 0, 0, 0, -3, -4, 90, 64, 32, 32, 0},
+                                            {0, 0, 0, 0, 0, -1, 90, 3, 3, 1.5, 1.5}});
+    const auto also = [&](const std::string& what, size_t i, Triple to) {
+        j.vector(what, triple(other[i], 3), unit(to), 16 * j.epsilon);
+    };
+    also("the eye elsewhere: rays go where they went from the origin", 0, {1, 0.5, -1});
+    also("the camera tilted: up is at right angles to where it looks", 1, {0, 0.2, -1.4});
+    also("an image of 3 x 3 has a middle, too", 2, {0, 0, -1});
     // Any camera: unit directions from the eye, and places of the image plane are evenly spaced.
-    double off_unit = 0, off_eye = 0, off_even = 0, off_view = 0;
+    double off_unit = 0, off_eye = 0, off_even = 0, off_view = 0, off_all = 0;
     for (int i = 0; i < 100; ++i) {
         const Triple eye = 3 * in_cube(j), ahead = slanted(j, 1 / std::sqrt(3.0) * Triple{1, 0, 1});
         const Triple target = eye + between(j, 1, 5) * ahead;
@@ -113,6 +119,11 @@ void camera(Judge& j) {
         auto at = [&](double px, double py) { return row(eye, target, fov, w, h, px, py); };
         const Rows rays = j.ask("camera_ray", {at(0, 0), at(x, y), at(x / 2, y / 2), at(w / 2, 0)});
         Triple plane[4];
+        const Triple right = unit(cross(ahead, {0, 1, 0})), up = cross(right, ahead);
+        const double tan_half = std::tan(fov * oracle::pi / 360);
+        const Triple to =
+            ahead + (2 * x - w) / h * tan_half * right + (1 - 2 * y / h) * tan_half * up;
+        off_all = worse(off_all, length(triple(rays[1], 3) - unit(to)));
         for (size_t k = 0; k < 4; ++k) {
             const Triple o = triple(rays[k]), dir = triple(rays[k], 3);
             off_unit = worse(off_unit, std::abs(dot(dir, dir) - 1));
@@ -126,18 +137,20 @@ void camera(Judge& j) {
     }
     j.below("directions have length 1", off_unit, 32 * j.epsilon);
     j.below("rays start at the eye", off_eye, 16 * j.epsilon);
-    j.below("steps on the image plane are even, so that straight lines stay straight", off_even,
-            4096 * j.epsilon);
     j.below("the field of view is the one that was asked for", off_view, 4096 * j.epsilon,
             "off by %.3g of it");
+    j.below("steps on the image plane are even, so that straight lines stay straight", off_even,
+            4096 * j.epsilon);
+    j.below("any camera, wherever it stands and looks: any place of the image", off_all,
+            4096 * j.epsilon);
 }
 
 // ---- 1.2  Spheres -------------------------------------------------------------------------------
 
-// Rays to points that face them, at known distances; and rays past the sphere.
+// Rays to points that face them, at known distances; rays past the sphere; and rays from inside.
 void random_spheres(Judge& j) {
-    Rows hits, misses;
-    Out distance;
+    Rows hits, misses, inside, ending;
+    Out distance, to_far;
     for (int i = 0; i < 1000; ++i) {
         const Triple centre = 2 * in_cube(j);
         const double r = between(j, 0.5, 2), t = between(j, 0.1, 5);
@@ -149,11 +162,21 @@ void random_spheres(Judge& j) {
         const Triple aside = unit(cross(normal, d));
         misses.add(row(centre + between(j, 1.01, 2) * r * aside - between(j, -5, 5) * d, d, endless,
                        centre, r));
+        const double scale = std::ldexp(1, i % 3 * 20 - 20);
+        const Triple in = scale * between(j, 0.1, 0.95) * r * direction(j),
+                     to = scale * r * normal - in;
+        inside.add(row(in, unit(to), endless, Triple{}, scale * r));
+        to_far.push_back(length(to));
+        ending.add(row(in, unit(to), 0.99 * length(to), Triple{}, scale * r));
     }
     // b^2 - c loses some 3 b^2 <= 150 ulp, which the root divides by 2 x 0.2 x 0.5.
     aimed(j, "intersect_sphere", "1000 spheres are hit where their near side was aimed at",
           "a sphere whose near side was aimed at", hits, distance, 1024);
     aimed(j, "intersect_sphere", "rays past 1000 spheres miss them", "a ray past a sphere", misses);
+    aimed(j, "intersect_sphere", "from anywhere inside, the far side is met, whatever the scale",
+          "from inside", inside, to_far, 1024);
+    aimed(j, "intersect_sphere", "unless the ray ends before it", "from inside, tmax before it",
+          ending);
 }
 
 void far_spheres(Judge& j) {
@@ -171,6 +194,7 @@ void far_spheres(Judge& j) {
     for (size_t i = 0; i < came.size(); ++i)
         d.see(came[i], distance[i], 16 * j.epsilon * rays[i][2], say("from %.6g away", rays[i][2]));
     d.judge(j, "from far away a sphere is as large as from nearby", came.size());
+    j.limit();
 }
 
 void sphere(Judge& j) {
@@ -192,8 +216,12 @@ void sphere(Judge& j) {
            {row(above, back, 7, c, 2), 5, "far side beyond tmax", 16.0 / 5},
            {row(in, back, 2.5, c, 2), -1, "from inside, far side beyond tmax"}}},
          {"tiny spheres are seen from nearby",
-          {{row(3 * tiny * z, back, endless, o, tiny), 2 * tiny, "scaled by 2^-24"}}},
+          {{row(3 * tiny * z, back, endless, o, tiny), 2 * tiny, "scaled by 2^-24"}},
+          true},
          {"", {{row(Triple{2, 0, 0x1p30}, back, endless, o, 1), -1, "beside, from afar"}}}});
+    aimed(j, "intersect_sphere", "a ray that starts on a sphere and leaves does not meet it",
+          "from its top, away", Rows(row(Triple{1, 2, 5}, z, endless, c, 2)));
+    j.limit();
     random_spheres(j);
     far_spheres(j);
 }
@@ -213,6 +241,7 @@ void random_triangles(Judge& j) {
     Rows hits, misses;
     Out distance;
     std::vector<std::array<double, 2>> place;  // v, w
+    Rows small;
     for (size_t i = 0; i < n; ++i) {
         const auto [a, b, c] = any_triangle(j);
         const Triple d = slanted(j, unit(cross(b - a, c - a)));
@@ -227,6 +256,8 @@ void random_triangles(Judge& j) {
                          : i % 3 == 1 ? a + along * (c - a) - out * (b - a)
                                       : b + along * (c - b) + out * (b - a);
         misses.add(row(p - t * d, d, endless, a, b, c));
+        const double s = 0x1p-20;
+        small.add(row(s * (p - t * d), d, endless, s * a, s * b, s * c));
     }
     const Rows hit =
         aimed(j, "intersect_triangle", "1000 triangles are hit where they were aimed at",
@@ -238,6 +269,9 @@ void random_triangles(Judge& j) {
     j.below("v and w say where: (1-v-w) a + v b + w c", off, 4096 * j.epsilon);
     aimed(j, "intersect_triangle", "rays past an edge of 1000 triangles miss them",
           "a ray past an edge of a triangle", misses);
+    aimed(j, "intersect_triangle", "nor are they hit where all is a million times as small",
+          "scaled by 2^-20, past an edge", small);
+    j.limit();
 }
 
 // Rays through the edge that two triangles share, seen from either side and at any angle.
@@ -253,8 +287,11 @@ void shared_edges(Judge& j) {
         const Triple o = a + between(j, 0.05, 0.95) * (b - a) - between(j, 0.5, 5) * aim;
         // Both must be seen from the same side: then they lie on both sides of the edge.
         if (dot(aim, n_first) * dot(aim, n_second) >= 0) continue;
-        left.add(row(o, aim, endless, a, b, c));
-        right.add(row(o, aim, endless, b, a, opposite));
+        // Corners in any order.
+        const Triple one[] = {a, b, c}, next[] = {b, a, opposite};
+        const size_t k = i % 3, l = i / 3 % 3;
+        left.add(row(o, aim, endless, one[k], one[(k + 1) % 3], one[(k + 2) % 3]));
+        right.add(row(o, aim, endless, next[l], next[(l + 1) % 3], next[(l + 2) % 3]));
     }
     // Where nothing is rounded, the ray is on the edge itself.
     for (double x : {0.0, 0.25, 0.5, 0.75, 1.0}) {
@@ -292,8 +329,11 @@ void triangle(Judge& j) {
           {"no triangle is too small, and none too near",
            {{row(Triple{tiny, tiny / 2, 1}, back, endless, a, tiny * b, tiny * c), 1,
              "scaled by 2^-24, from 1 away"},
-            {row(Triple{1, 1, tiny}, back, endless, a, b, c), tiny, "from 2^-24 away",
-             16 * tiny}}}});
+            {row(Triple{1, 1, tiny}, back, endless, a, b, c), tiny, "from 2^-24 away", 16 * tiny}},
+           true}});
+    aimed(j, question, "a ray that starts on a triangle does not meet it", "from (1, 1, 0)",
+          Rows(row(Triple{1, 1, 0}, back, endless, a, b, c)));
+    j.limit();
     random_triangles(j);
     shared_edges(j);
 }
@@ -313,6 +353,7 @@ void random_boxes(Judge& j) {
             p[k] += between(j, -0.99, 0.99) * half[k];
         }
         const size_t face = i % 3, other = (face + 1) % 3;
+        if (i % 4 == 0) half[face] = 0;  // flat
         Triple normal{};
         const double side = i % 2 ? 1 : -1, t = between(j, 0.1, 5);
         normal[face] = side;
@@ -410,15 +451,16 @@ void random_trees(Judge& j) {
     Rows trees;
     Out nearest, needed;  // the nearest hit; leaves that begin before it, which none can leave out
     for (size_t i = 0; i < n; ++i) {
-        Table t;
+        // Every fourth ray ends somewhere.
+        Table t(i % 4 ? endless : between(j, 0, 3));
         grow(j, t, 0, 8);
-        double best = endless, before = 0;
+        double best = t.numbers[0], before = 0;
         for (size_t k = 0; k < t.nodes; ++k)
             if (t.is_leaf(k) && t.hit(k) >= 0) best = std::min(best, t.hit(k));
         for (size_t k = 0; k < t.nodes; ++k)
             before += t.is_leaf(k) && t.enter(k) >= 0 && t.enter(k) <= best;
         trees.add(t.numbers);
-        nearest.push_back(best < endless ? best : -1), needed.push_back(before);
+        nearest.push_back(best < t.numbers[0] ? best : -1), needed.push_back(before);
     }
     const Rows came = j.ask("nearest_hit", trees);
     double boxes = 0, leaves = 0, least = 0;
@@ -460,6 +502,10 @@ void tree(Judge& j) {
     finds("no hit in the nearer leaf: the other one is looked at", 3, 2.5, {1, 2});
     finds("what begins beyond the end of the ray is not looked at", 4, -1, {});
     finds("a box that is missed is not looked at", 5, 2, {2});
+    Table single;
+    single.make_leaf(0, 3);
+    j.number("a tree that is one leaf", j.ask("nearest_hit", single.numbers)[0], 3, 8 * j.epsilon);
+    j.limit();
     // At every level a leaf has to wait.
     Table spine;
     size_t at = 0;
@@ -505,31 +551,48 @@ void clusters(Judge& j) {
             first);
 }
 
-// What changes nothing: the row from its other end, and all boxes moved.
-void alike(Judge& j) {
-    size_t ends = 0, moved = 0;
-    for (int i = 0; i < 200; ++i) {
+// Any boxes, flat and alike ones among them: the cheapest of all divisions, tried one by one.
+void any_boxes(Judge& j) {
+    int wrong = 0, none = 0;
+    std::string first;
+    for (int i = 0; i < 300; ++i) {
         const size_t n = 2 + size_t(14 * j.random());
-        std::vector<Triple> lo, size;
+        std::vector<std::array<Triple, 2>> row;
+        Out boxes;
         for (size_t k = 0; k < n; ++k) {
-            lo.push_back(4 * in_cube(j));
-            size.push_back({between(j, 0, 2), between(j, 0, 2), between(j, 0, 2)});
+            Triple lo = 4 * in_cube(j), size;
+            for (double& x : size) x = j.random() < 0.1 ? 0 : between(j, 0, 2);
+            if (i % 5 == 0 && k > 0) lo = row[0][0], size = row[0][1] - lo;
+            row.push_back({lo, lo + size});
+            add_box(boxes, lo, size);
         }
-        Out row, reversed, elsewhere;
-        for (size_t k = 0; k < n; ++k) {
-            add_box(row, lo[k], size[k]);
-            add_box(reversed, lo[n - 1 - k], size[n - 1 - k]);
-            add_box(elsewhere, lo[k] + Triple{8, -8, 4}, size[k]);
-        }
-        const Out d = j.ask("best_division", row), r = j.ask("best_division", reversed);
-        const Out e = j.ask("best_division", elsewhere);
-        const double off = 4096 * j.epsilon * d[0];
+        const auto area = [&](size_t from, size_t to) {
+            std::array<Triple, 2> about = row[from];
+            for (size_t k = from; k < to; ++k)
+                for (size_t a = 0; a < 3; ++a)
+                    about[0][a] = std::min(about[0][a], row[k][0][a]),
+                    about[1][a] = std::max(about[1][a], row[k][1][a]);
+            const Triple s = about[1] - about[0];
+            return s[0] * s[1] + s[1] * s[2] + s[2] * s[0];
+        };
+        const auto cost = [&](size_t left) {
+            return double(left) * area(0, left) + double(n - left) * area(left, n);
+        };
+        double best = endless;
+        for (size_t left = 1; left < n; ++left) best = std::min(best, cost(left));
+        const Out d = j.ask("best_division", boxes);
+        const double off = 4096 * j.epsilon * best;
+        const bool parts = d[1] >= 1 && d[1] < double(n);
+        none += !parts;
         // Where two are equally cheap, rounding decides.
-        ends += !(std::abs(d[0] - r[0]) <= off && d[1] >= 1 && d[1] < double(n));
-        moved += !(std::abs(d[0] - e[0]) <= off);
+        if (parts && std::abs(d[0] - best) <= off && cost(size_t(d[1])) <= best + off) continue;
+        if (wrong++ == 0)
+            first = say("of %zu boxes the cheapest division costs %.6g, %.6g after %.0f came", n,
+                        best, d[0], d[1]);
     }
-    j.none("a row of boxes costs the same from its other end", ends, "%zu of 200 do not");
-    j.none("a row of boxes costs the same elsewhere", moved, "%zu of 200 do not");
+    j.exact("300 rows of any boxes: the cheapest of all divisions", wrong == 0,
+            first + say(" (%d are wrong)", wrong));
+    j.none("both sides have boxes", size_t(none), "one side of %zu of 300 divisions has none");
 }
 
 void division(Judge& j) {
@@ -560,7 +623,7 @@ void division(Judge& j) {
                     d[0][0], d[0][1]));
     }
     clusters(j);
-    alike(j);
+    any_boxes(j);
 }
 
 }  // namespace

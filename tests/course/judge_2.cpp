@@ -16,24 +16,44 @@ Rows pairs(const Out& numbers, const Out& more) {
     return u;
 }
 // Middles of the cells of a grid in the square of random numbers.
-Rows grid(const Out& more = {}) {
+Rows grid(const Out& more = {}, int n = 16) {
     Out middles;
-    for (int i = 0; i < 16; ++i) middles.push_back((i + 0.5) / 16);
+    for (int i = 0; i < n; ++i) middles.push_back((i + 0.5) / n);
     return pairs(middles, more);
 }
-// The square's corners: 0 is a random number, and 1 is not.
-Rows corners(const Judge& j, const Out& more = {}) { return pairs({0, 1 - j.epsilon}, more); }
+// The square's corners, and places of two of its sides: 0 is a random number, and 1 is not.
+Rows corners(const Judge& j, const Out& more = {}) {
+    const double last = 1 - j.epsilon;
+    Rows u = pairs({0, last}, more);
+    for (int i = 0; i < 256; ++i)
+        for (double side : {0.0, last})
+            u.add(row(side, (i + 0.5) / 256, more)), u.add(row((i + 0.5) / 256, side, more));
+    return u;
+}
 
-// What the directions over a grid are on average: known mistakes are told by it, whichever way
-// round a square is mapped.
-void remember_means(Judge& j, const Rows& directions) {
-    Out sums(6);
+// What directions are on average over a fine grid, by any right map of the square the same to 1e-4;
+// z and z^2 are expected.  Mistakes are told by the averages to two digits.
+void on_average(Judge& j, const std::string& which, const std::string& sample, const Out& more,
+                double z, double z2) {
+    const Rows directions = j.ask(sample, grid(more, 256));
+    const char* names[] = {"z", "z^2", "x", "y", "x y", "x^2 - y^2", "x^2 + y^2 + z^2"};
+    const double expected[] = {z, z2, 0, 0, 0, 0, 1};
+    Out means(8);
     for (size_t i = 0; i < directions.size(); ++i) {
-        const Triple w = triple(directions[i]);
-        const double terms[6] = {w[2], w[2] * w[2], dot(w, w), w[0], w[1], std::abs(w[0])};
-        for (size_t k = 0; k < 6; ++k) sums[k] += terms[k] / double(directions.size());
+        const auto [x, y, z_] = triple(directions[i]);
+        const double terms[] = {
+            z_, z_ * z_, x, y, x * y, x * x - y * y, x * x + y * y + z_ * z_, std::abs(x)};
+        for (size_t k = 0; k < 8; ++k) means[k] += terms[k] / double(directions.size());
     }
-    j.remember(sums);
+    size_t first = 0;
+    while (first < 7 && std::abs(means[first] - expected[first]) < 5e-4) ++first;
+    const bool right = first == 7;
+    const std::string seen = right ? ""
+                                   : oracle::say("the mean of %s is %.4g, %.4g expected",
+                                                 names[first], means[first], expected[first]);
+    for (double& m : means) m = std::round(50 * m) / 50;
+    j.remember(row(right, means));
+    j.exact(which + " are as they should be, on average over the square", right, seen);
 }
 
 void expect_unit(Judge& j, const std::string& which, const std::vector<Rows>& directions,
@@ -98,8 +118,6 @@ oracle::Verdict follows(Judge& j, const std::string& sample, Shape shape, const 
 void uniform(Judge& j) {
     const std::string half = "sample_uniform_hemisphere", whole = "sample_uniform_sphere";
     const Rows upper = j.ask(half, grid()), all = j.ask(whole, grid());
-    remember_means(j, upper);
-    remember_means(j, all);
     const Out p = j.probe("pdf_uniform_hemisphere", {{1}, {0.7}, {0.1}, {-0.5}}).numbers;
     const Out q = j.probe("pdf_uniform_sphere", {}).numbers;
     expect_unit(j, "all directions",
@@ -115,6 +133,8 @@ void uniform(Judge& j) {
         p[0] == p[1] && p[1] == p[2] && p[3] == 0,
         oracle::say("%.6g straight up, %.6g near the horizon, %.6g below it", p[0], p[2], p[3]));
     j.number("the sphere's density integrates to 1", q[0] * 4 * pi, 1, 64 * j.epsilon);
+    on_average(j, "directions of the hemisphere", half, {}, 0.5, 1 / 3.0);
+    on_average(j, "directions of the sphere", whole, {}, 0, 1 / 3.0);
     j.statistical("directions of the hemisphere are uniform",
                   follows(j, half, [](double) { return 1.0; }));
     j.statistical("directions of the sphere are uniform",
@@ -125,7 +145,6 @@ void uniform(Judge& j) {
 void cosine_hemisphere(Judge& j) {
     const std::string sample = "sample_cosine_hemisphere", pdf = "pdf_cosine_hemisphere";
     const Rows w = j.ask(sample, grid());
-    remember_means(j, w);
     const Out p = j.probe(pdf, {{1}, {0.5}, {0}, {-0.5}}).numbers;
     expect_unit(j, "directions", {w, j.ask(sample, corners(j))}, true);
     j.number("the density at 60 degrees is half of that straight up", p[1] / p[0], 0.5,
@@ -133,6 +152,7 @@ void cosine_hemisphere(Judge& j) {
     j.number("the density integrates to 1", over_hemisphere(j, pdf), 1, 1e-4);
     j.exact("the density below the horizon is 0", p[3] == 0,
             oracle::say("it is %.6g at a cosine of -0.5", p[3]));
+    on_average(j, "directions", sample, {}, 2 / 3.0, 0.5);
     j.statistical("directions follow the cosine", follows(j, sample, [](double c) { return c; }));
 }
 
@@ -146,7 +166,7 @@ double area(const Triple& e, const Triple& f) {
 
 void triangle(Judge& j) {
     const Triple e{2, 0, 0.5}, f{0.3, 1.5, -0.25}, right{3, 0, 0}, angle{0, 4, 0};
-    const Rows points = j.ask("sample_triangle", grid(row(e, f)));
+    const Rows points = j.ask("sample_triangle", grid(row(e, f), 128));
     const Rows p = j.probe("pdf_triangle_area", {row(right, angle), row(e, f)});
 
     const oracle::Triangle<3> t{{0, 0, 0}, e, f};
@@ -164,11 +184,17 @@ void triangle(Judge& j) {
             means[3 + k] += of[k] * of[k] / double(points.size());
         }
     }
+    double unlike = 0;
+    for (size_t k = 0; k < 6; ++k)
+        unlike = worse(unlike, std::abs(means[k] - (k < 3 ? 1 / 3.0 : 1 / 6.0)));
     std::sort(means.begin(), means.begin() + 3), std::sort(means.begin() + 3, means.end());
-    j.remember(means);
+    for (double& m : means) m = std::round(100 * m) / 100;
+    j.remember(row(unlike < 1e-3, means));
     j.exact("points are points of the triangle", outside > -64 * j.epsilon && off < 64 * j.epsilon,
             oracle::say("a barycentric coordinate is %.6g, a distance from the plane %.3g", outside,
                         off));
+    j.below("all corners have the same share, on average over the square", unlike, 1e-3,
+            "the mean of a coordinate, or of its square, is off by %.3g");
     const double least = std::min({nearest[0], nearest[1], nearest[2]});
     j.exact("no corner is left out", least > 0.8,
             oracle::say("one corner's coordinate is never above %.3g", least));
@@ -188,8 +214,6 @@ void triangle(Judge& j) {
 void phong_lobe(Judge& j) {
     const std::string sample = "sample_phong_lobe", pdf = "pdf_phong_lobe";
     const Rows wide = j.ask(sample, grid({3})), narrow = j.ask(sample, grid({50}));
-    remember_means(j, wide);
-    remember_means(j, narrow);
     const Out p = j.probe(pdf, {{1, 3}, {0.5, 3}, {0.9, 50}, {-0.5, 2}, {0.5, 0}}).numbers;
     expect_unit(j, "directions",
                 {wide, narrow, j.ask(sample, corners(j, {0})), j.ask(sample, corners(j, {1000}))},
@@ -204,6 +228,9 @@ void phong_lobe(Judge& j) {
         if (!(std::abs(sum - 1) <= std::abs(worst - 1))) worst = sum;
     }
     j.number("the density integrates to 1, whatever n is", worst, 1, 1e-4);
+    for (double n : {3.0, 50.0})
+        on_average(j, oracle::say("directions with n = %.0f", n), sample, {n}, (n + 1) / (n + 2),
+                   (n + 1) / (n + 3));
     for (double n : {2.0, 60.0})
         j.statistical(
             oracle::say("with n = %.0f directions follow the n-th power of the cosine", n),
@@ -238,7 +265,6 @@ void cone(Judge& j) {
     const double wide = 0.36, star = 1e-20;
     const std::string sample = "sample_cone";
     const Rows inner = j.ask(sample, grid({wide})), close = j.ask(sample, grid({star}));
-    remember_means(j, inner);
     const Out angle = j.probe("solid_angle_cone", {{1}, {0.75}, {wide}, {star}}).numbers;
     const Out p = j.probe("pdf_cone", {{1}, {wide}, {star}}).numbers;
     const std::vector<Rows> w{inner, j.ask(sample, corners(j, {wide}))};
@@ -265,7 +291,9 @@ void cone(Judge& j) {
             oracle::say("for sin^2 = 1e-20 the solid angle is %.7g times that of a flat disc, and "
                         "sin^2 of directions %.5g of it on average",
                         flat, mean));
-    j.remember({flat, mean});
+    j.limit();
+    j.remember({flat, std::round(50 * mean) / 50});
+    on_average(j, "directions", sample, {wide}, 0.9, 2.44 / 3);
     for (double sin2 : {wide, 0.99})
         j.statistical(oracle::say("with sin^2 = %.2g directions are uniform in the cone", sin2),
                       uniform_in_cone(j, sin2));
@@ -329,6 +357,12 @@ void area_to_solid_angle(Judge& j) {
     j.number("from behind it is as large as from the front", p[4] / p[1], 1, digits);
     j.exact("where the light is seen edge-on it is 0, for no direction leads there", p[5] == 0,
             oracle::say("it is %.6g", p[5]));
+    Seen grazing = table;
+    grazing.from = {7, 0, 0x1p-20};
+    j.number("seen at a slant of one in 7 million it is huge, and not 0",
+             j.ask(question, grazing.at(0.5, 0.5))[0] * 0x1p-20 / std::pow(49 + 0x1p-40, 1.5),
+             1 / 6.0, 256 * j.epsilon);
+    j.limit();
     for (const auto& [where, s] : {std::pair("from above", &table),
                                    {"from one side", &slanted},
                                    {"from far beside", &beside}})

@@ -77,12 +77,16 @@ void colour(Judge& j, const std::string& what, const Triple& came, const Triple&
 struct Step {
     bool goes_on;
     double weight;
-    Triple Le, direct, wi, n, beta;
+    Triple Le, direct, beta;
     Out next;
+    Triple f, wi;  // wi is local
+    double pdf;
+    Triple factor() const { return std::abs(wi[2]) / pdf * f; }
 };
 Step step(In x) {
-    return {x[1] != 0,    x[2],          triple(x, 3),  triple(x, 6),
-            triple(x, 9), triple(x, 12), triple(x, 25), Out(x.begin() + 15, x.begin() + 32)};
+    return {x[1] != 0,     x[2],          triple(x, 3),
+            triple(x, 6),  triple(x, 25), Out(x.begin() + 15, x.begin() + 32),
+            triple(x, 32), triple(x, 35), x[38]};
 }
 Step take_step(Judge& j, const Technique& t, uint64_t seed, const Out& from) {
     return step(j.ask("step", question(t, seed, from)));
@@ -91,18 +95,19 @@ Step take_step(Judge& j, const Technique& t, uint64_t seed, const Out& from) {
 // ---- 3.1 The sum over a path --------------------------------------------------------------------
 
 // Within a ball that emits Le and mirrors half of what meets it, radiance is Le (2 - 2^-depth).
-void within_a_hall_of_mirrors(Judge& j) {
-    const Triple Le{0.4, 0.3, 0.2};
+void within_a_hall_of_mirrors(Judge& j, const Triple& Le, const std::vector<int>& depths) {
     Stuff mirror = glowing(Le, {Stuff::mirror, {}, {0.5, 0.5, 0.5}});
     mirror.twosided = true;
-    for (int depth : {0, 1, 7}) {
+    for (int depth : depths) {
         build(j, depth, {ball({0, 0, 0}, 2, mirror)});
         const Rows L =
             j.probe("Li", Rows(question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64}))));
-        colour(j, oracle::say("within mirrors that glow, %d reflections", depth), triple(L[0]),
-               (2 - std::ldexp(1, -depth)) * Le);
+        colour(j, oracle::say("within mirrors of half that emit %g, %d reflections", Le[0], depth),
+               triple(L[0]), (2 - std::ldexp(1, -depth)) * Le);
     }
-    j.number("vertices of which account is told, of 8",
+}
+void account_of_all(Judge& j) {
+    j.number("account is told of each of 8 vertices",
              j.ask("accounts", question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64})))[0], 8, 0);
 }
 
@@ -129,24 +134,39 @@ void a_lamp_is_met(Judge& j) {
     build(j, 1, {ball({0, 0, -10}, 10, {Stuff::rough, {0.5, 0.5, 0.5}}), ball({0, 0, 3}, 2, lamp)});
     const Technique t{by_both};
     const Triple eye{8, 0, 4}, d{-2 / std::sqrt(5), 0, -1 / std::sqrt(5)};
-    j.probe("Li", {question(t, 1, ray(eye, d)), question(t, 4, ray(eye, d))});
     int met = 0;
+    Out came, by_aim, emitted, by_weight;
     for (uint64_t seed = 0; seed < 64 && met < 8; ++seed) {
         const Step floor = take_step(j, t, seed, segment(eye, d));
         if (!floor.goes_on) continue;
         const Step then = take_step(j, t, seed, floor.next);
         if (then.Le[0] == 0) continue;
         const Triple L = triple(j.ask("Li", question(t, seed, ray(eye, d))));
-        const Triple both = floor.direct + then.weight * floor.beta * then.Le;
-        if (++met == 8 || !near(L, both, tolerance(j)))
-            return colour(j, "light found by chance counts by its weight, beside that by aiming", L,
-                          both);
+        came.push_back(L[0]), by_aim.push_back(floor.direct[0]);
+        emitted.push_back(floor.beta[0] * then.Le[0]);
+        by_weight.push_back(then.weight * emitted.back());
+        ++met;
     }
-    j.exact("a lamp that fills half of the sky is met", false, "no ray meets it");
+    // Mistakes are told by which of them it is.
+    const auto remember = [&](const Out& a, const Out& b) {
+        Out sum = a;
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] += b[i];
+        j.remember_factor(came, sum);
+        return sum;
+    };
+    if (met == 0) return j.exact("a lamp that fills half of the sky is met", false, "no ray does");
+    const Out none(came.size()), both = remember(by_aim, by_weight);
+    remember(by_aim, emitted), remember(by_aim, none), remember(none, by_weight);
+    size_t at = 0;
+    while (at + 1 < both.size() && near(came[at], both[at], tolerance(j))) ++at;
+    j.number("light found by chance counts by its weight, beside that by aiming", came[at],
+             both[at], tolerance(j));
 }
 
 void sum_over_a_path(Judge& j) {
-    within_a_hall_of_mirrors(j);
+    within_a_hall_of_mirrors(j, {0.4, 0.3, 0.2}, {0, 1, 7});
+    account_of_all(j);
+    within_a_hall_of_mirrors(j, {40000, 30000, 20000}, {60});
     a_lit_ball_and_its_image(j);
     a_lamp_is_met(j);
 }
@@ -173,21 +193,61 @@ void of_a_mirror(Judge& j) {
            ks * before);
 }
 
+// Whatever the direction and its density are: f |cos| / pdf of them, times what was before.
+struct Scatterings {
+    std::vector<Step> steps;
+    Out came, expected;
+    double off = 0;
+    std::string seen;
+    void look(Judge& j, const Technique& t, uint64_t seed, const Out& from, const Triple& before) {
+        const Step& s = steps.emplace_back(take_step(j, t, seed, from));
+        if (!s.goes_on || !(s.pdf > 0)) return;
+        const Triple truth = s.factor() * before;
+        came.push_back(s.beta[0]), expected.push_back(truth[0]);
+        const double d = length(s.beta - truth) / std::max(1e-9, length(truth));
+        if (d <= off) return;
+        off = std::isnan(d) ? oracle::infinity : d;
+        seen = oracle::say("by f = %.4g, a cosine of %.4g and pdf = %.4g, %.6g expected, %.6g came",
+                           s.f[0], s.wi[2], s.pdf, truth[0], s.beta[0]);
+    }
+    void judge(Judge& j, const std::string& what) const {
+        j.exact(what, !came.empty() && off <= tolerance(j), seen);
+    }
+};
+
 void of_a_rough_ball(Judge& j) {
     const Triple kd{0.2, 0.5, 0.8};
     build(j, 8, {ball({0, 0, 0}, 1, {Stuff::rough, kd})});
-    const Technique by_cosine{}, evenly{by_chance, uniform};
-    const Rows b = j.probe("throughput", {question(by_cosine, 1, towards_a_ball(2)),
-                                          question(evenly, 1, towards_a_ball(2))});
-    colour(j, "a rough surface's albedo, if directions follow the cosine", triple(b[0]), kd);
-    bool right = true;
-    Triple came{}, expected{};
-    for (uint64_t seed = 1; seed <= 16 && right; ++seed) {
-        const Step s = take_step(j, evenly, seed, towards_a_ball(2));
-        came = s.beta, expected = 2 * dot(s.n, s.wi) * kd;
-        right = near(came, expected, tolerance(j));
+    for (Directions d : {by_bsdf, uniform}) {
+        Scatterings s;
+        for (uint64_t seed = 1; seed <= 200; ++seed)
+            s.look(j, {by_chance, d}, seed, towards_a_ball(2), {1, 1, 1});
+        j.remember_factor(s.came, s.expected);
+        s.judge(j, d == uniform ? "f |cos| / pdf of a rough ball, if directions are uniform"
+                                : "f |cos| / pdf of a rough ball, if they follow the cosine");
     }
-    colour(j, "twice albedo and cosine, if directions are uniform", came, expected);
+}
+
+// A ball of any stuff in any pose, met from outside or inside.
+void of_any_ball(Judge& j, bool outside) {
+    Scatterings s;
+    for (int i = 0; i < 60; ++i) {
+        const Pose pose = any_pose(j.random, std::ldexp(1, i % 3 * 10 - 10));
+        const auto colour = [&] { return Triple{j.random(), j.random(), j.random()}; };
+        const Stuff stuffs[] = {{Stuff::rough, colour()},
+                                {Stuff::rough, colour(), colour(), 8},
+                                {Stuff::mirror, {}, colour()},
+                                {Stuff::glass, {}, {}, 0, 1.5}};
+        build(j, 20, {ball(pose.at({}), pose.scale, stuffs[i % 4])});
+        const Triple n = any_direction(j.random), before = colour();
+        const Triple o = outside ? 2 * n + 0.5 * in_cube(j.random) : 0.5 * in_cube(j.random);
+        const Triple to = 0.5 * any_direction(j.random);
+        const int k = int(10 * j.random());
+        s.look(j, {by_chance, i % 8 < 4 ? uniform : by_bsdf}, j.random.bits() >> 32,
+               segment(pose.at(o), pose.turned(unit(to - o)), before, k), before);
+    }
+    s.judge(j, outside ? "f |cos| / pdf of any ball, in any place and pose"
+                       : "and from the inside of one");
 }
 
 // A lamp that reflects, too, is hit by a path that was drawn in order to do so.
@@ -205,21 +265,13 @@ void of_clear_glass(Judge& j) {
     colour(j, "glass of index 1 lets all light through", triple(b[0]), {1, 1, 1});
 }
 
-void of_a_glossy_ball(Judge& j) {
-    build(j, 8, {ball({0, 0, 0}, 1, {Stuff::rough, {0.2, 0.2, 0.2}, {0.5, 0.5, 0.5}, 12})});
-    Rows ask;
-    for (int i = 0; i < 200000; ++i)
-        ask.add(question({by_chance, uniform}, j.random.bits() >> 32, towards_a_ball()));
-    j.mean("mean of a glossy surface: all that it reflects", 0.7, j.ask("throughput", ask),
-           [](In b) { return b[0]; });
-}
-
 void throughput(Judge& j) {
     of_a_mirror(j);
     of_a_rough_ball(j);
     of_a_lamp(j);
     of_clear_glass(j);
-    of_a_glossy_ball(j);
+    of_any_ball(j, true);
+    of_any_ball(j, false);
 }
 
 // ---- 3.3 Light by aiming at it ------------------------------------------------------------------
@@ -290,23 +342,140 @@ void from_two_points(Judge& j) {
     j.mean("mean of one of two lights: their sum", a[1] + b[1], L, [](In x) { return x[1]; });
 }
 
-// It shows 0.64 of what the whole sky would be; seen in the cone of cosine 0.6.
-void from_a_lamp(Judge& j) {
-    const Stuff lamp = glowing({1, 2, 3});
-    build(j, 4, {ground, ball({0, 0, 4}, 3.2, lamp)});
-    const Technique alone{by_aiming, uniform}, shared{by_both, uniform};
-    j.probe("direct_light", {aimed(alone, 1), aimed(shared, 1)});
-    Rows ask, ask_shared;
-    for (int i = 0; i < 4000; ++i) {
-        const uint64_t seed = j.random.bits() >> 32;
-        ask.add(aimed(alone, seed)), ask_shared.add(aimed(shared, seed));
+// ---- Any scene ----
+
+// What a light sample is made of (answers_3.cpp), and what came of it.
+struct LightSample {
+    double chance, pdf, cosine, of_rays;
+    bool delta;
+    Triple f, L, x, y, came;
+    double told_pdf, told_weight;
+    double weight(const Technique& t) const {
+        const double p = chance * pdf, q = of_rays;
+        return t.light == by_both && !delta ? p * p / (p * p + q * q) : 1;
     }
-    const Rows L = j.ask("direct_light", ask), part = j.ask("direct_light", ask_shared);
-    size_t lit = 0;
-    while (lit + 1 < L.size() && L[lit][1] <= 0) ++lit;
-    j.number("a lamp's share beside rays that may meet it", part[lit][1] / L[lit][1], 1 / 1.16,
-             tolerance(j));
-    j.mean("mean of a lamp that fills 0.64 of the sky", 0.64, L, [](In x) { return x[1]; });
+    Triple expected(const Technique& t) const {
+        return cosine / (chance * pdf) * weight(t) * (f * L);
+    }
+};
+LightSample light_sample(In r) {
+    return {r[0],         r[1],          r[3],          r[4],          r[2] != 0, triple(r, 5),
+            triple(r, 8), triple(r, 11), triple(r, 14), triple(r, 17), r[20],     r[21]};
+}
+
+// A lamp that fills much of the sky: its sample in full, and beside rays that may meet it.
+void from_a_lamp(Judge& j) {
+    build(j, 4, {ground, ball({0, 0, 4}, 3.2, glowing({1, 2, 3}))});
+    for (Light light : {by_aiming, by_both}) {
+        const Technique t{light, uniform};
+        Out came, expected;
+        for (uint64_t seed = 1; seed <= 32; ++seed) {
+            const LightSample s = light_sample(j.ask("light_sample", aimed(t, seed)));
+            if (!(s.pdf > 0) || s.cosine < 0.01) continue;
+            came.push_back(s.came[1]), expected.push_back(s.expected(t)[1]);
+        }
+        j.remember_factor(came, expected);
+        size_t at = 0;
+        while (at + 1 < came.size() && near(came[at], expected[at], tolerance(j))) ++at;
+        j.number(light == by_aiming ? "a lamp's L f cos / pdf"
+                                    : "its share of that beside rays that may meet it",
+                 came.at(at), expected.at(at), tolerance(j));
+    }
+}
+
+struct Ball {
+    Triple centre;
+    double r;
+    // How far from its surface the segment from x to y stays; negative: it goes through.
+    double clear_of(const Triple& x, const Triple& y) const {
+        const Triple d = y - x, to = centre - x;
+        const double along = std::clamp(dot(to, d) / dot(d, d), 0.0, 1.0);
+        return length(to - along * d) - r;
+    }
+};
+
+// What was asked of light samples in scenes of one kind.
+struct Asked {
+    std::string what;
+    size_t n = 0, wrong = 0;
+    std::string first = {};
+    void see(bool right, const std::string& seen) {
+        ++n;
+        if (!right && wrong++ == 0) first = seen;
+    }
+    void judge(Judge& j) const {
+        j.exact(what, n > 0 && wrong == 0,
+                first + oracle::say(" (%zu of %zu are wrong)", wrong, n));
+    }
+};
+
+// A ball seen from outside, or a room within one, among lamps and point lights of unequal powers,
+// with balls in the way.
+void of_any_scene(Judge& j, bool inside, double scale, Asked& lit, Asked& share, Asked& dark,
+                  Asked& told) {
+    const Pose pose = any_pose(j.random, scale);
+    const auto colour = [&] { return Triple{j.random(), j.random(), j.random()}; };
+    Stuff stuff{Stuff::rough, 0.5 * colour()};
+    if (j.random() < 0.5) stuff.ks = 0.5 * colour(), stuff.exponent = 6;
+    const double size = inside ? 12 : 1;
+    std::vector<Ball> lamps, others;
+    std::vector<Out> things;
+    const auto place = [&](const Triple& at, double r, const Stuff& m, std::vector<Ball>& list) {
+        things.push_back(ball(pose.at(at), scale * r, m));
+        list.push_back({pose.at(at), scale * r});
+    };
+    for (int i = 0; i < 8; ++i) place(3.2 * any_direction(j.random), 0.7, {}, others);
+    things.push_back(ball(pose.at({}), scale * size, stuff));
+    for (int i = 0; i < 2; ++i)
+        place(7 * any_direction(j.random), 1, glowing(std::pow(30, j.random()) * colour()), lamps);
+    for (int i = 0; i < 2; ++i)
+        things.push_back(point_light(pose.at(5 * any_direction(j.random)),
+                                     40 * scale * scale * std::pow(30, j.random()) * colour()));
+    build(j, 4, things);
+    for (int i = 0; i < 48; ++i) {
+        Triple n = any_direction(j.random), w = any_direction(j.random);
+        if ((dot(n, w) < 0) != inside) w = -1.0 * w;
+        if (std::abs(dot(n, w)) < 0.2) continue;
+        const Technique t{i % 2 ? by_both : by_aiming, i % 4 < 2 ? uniform : by_bsdf};
+        const LightSample s = light_sample(j.ask(
+            "light_sample", question(t, j.random.bits() >> 32,
+                                     ray(pose.at(size * n + 0.5 * w), -1.0 * pose.turned(w)))));
+        if (!(s.pdf > 0) || s.cosine < 1e-3 || length(s.f) < 1e-6) continue;
+        double clear = oracle::infinity;
+        for (const Ball& b : others) clear = std::min(clear, b.clear_of(s.x, s.y) / scale);
+        for (const Ball& b : lamps)
+            if (std::abs(length(s.y - b.centre) / b.r - 1) > 1e-3)
+                clear = std::min(clear, b.clear_of(s.x, s.y) / scale);
+        if (std::abs(clear) < 0.01) continue;
+        const Triple expected = s.expected(t);
+        const double error = tolerance(j) * length(expected);
+        const std::string seen = oracle::say("%.6g expected, %.6g came, %.4g times as much",
+                                             expected[1], s.came[1], s.came[1] / expected[1]);
+        if (clear < 0)
+            dark.see(length(s.came) == 0, oracle::say("%.6g came", s.came[1]));
+        else
+            (t.light == by_both && !s.delta ? share : lit)
+                .see(length(s.came - expected) <= error, seen);
+        if (clear > 0)
+            told.see(near(s.told_pdf / (s.chance * s.pdf), 1, tolerance(j)) &&
+                         near(s.told_weight, s.weight(t), tolerance(j)),
+                     oracle::say("pdf = %.6g and weight = %.6g expected, %.6g and %.6g came",
+                                 s.chance * s.pdf, s.weight(t), s.told_pdf, s.told_weight));
+    }
+}
+
+void from_any_light(Judge& j) {
+    Asked lit{"of lights of unequal powers, each counts by f L cos over its chance and density"},
+        share{"and under MIS by its weight"}, dark{"what a ball hides is dark"},
+        inside{"the same from within a ball, where normals point away"},
+        sizes{"a scene a billion times as small or large is lit alike"},
+        told{"account is told the density, and the weight"};
+    for (int i = 0; i < 12; ++i) of_any_scene(j, false, 1, lit, share, dark, told);
+    for (int i = 0; i < 12; ++i) of_any_scene(j, true, 1, inside, inside, inside, told);
+    for (int i = 0; i < 12; ++i)
+        of_any_scene(j, i % 4 < 2, i % 2 ? 0x1p30 : 0x1p-30, sizes, sizes, sizes, told);
+    for (const Asked* a : {&lit, &share, &dark, &inside}) a->judge(j);
+    for (const Asked* a : {&sizes, &told}) a->judge(j), j.limit();
 }
 
 void light_by_aiming(Judge& j) {
@@ -314,6 +483,7 @@ void light_by_aiming(Judge& j) {
     no_surface_shades_itself(j);
     from_two_points(j);
     from_a_lamp(j);
+    from_any_light(j);
 }
 
 // ---- 3.4 Both, weighted -------------------------------------------------------------------------
@@ -388,9 +558,60 @@ void of_two_lamps(Judge& j) {
             oracle::say("off by %.6g", off));
 }
 
+// Lamps of both kinds among balls that are none, in any order and pose.
+void of_any_lamp(Judge& j) {
+    double off = 0;
+    std::string seen;
+    for (int i = 0; i < 40; ++i) {
+        const Pose pose = any_pose(j.random, std::ldexp(1, i % 3 * 8 - 8));
+        const Stuff lamp = glowing(std::pow(30, j.random()) * Triple{1, 2, 3});
+        std::vector<Out> things;
+        std::vector<Place> places;
+        double shapes = 0;
+        for (int k = 0; k < 6; ++k) {
+            const Triple at = 6 * any_direction(j.random), u = any_direction(j.random);
+            const Triple v = unit(cross(u, at)), n = unit(cross(u, v));
+            if (k == 2 || k == 5) {
+                things.push_back(quad(pose.at(at), pose.scale * pose.turned(u),
+                                      pose.scale * pose.turned(v), lamp));
+                const Triple y = at + j.random() * u + j.random() * v;
+                places.push_back({shapes, pose.at(y), unit(cross(pose.turned(u), pose.turned(v)))});
+                shapes += 2;
+            } else {
+                things.push_back(ball(pose.at(at), pose.scale, k % 2 ? lamp : Stuff{}));
+                const Triple m = dot(n, at) < 0 ? n : -1.0 * n;
+                if (k % 2) places.push_back({shapes, pose.at(at + m), pose.turned(m)});
+                ++shapes;
+            }
+        }
+        build(j, 4, things);
+        for (Place y : places) {
+            // From a point near the middle, with a normal towards the lamp.
+            const Triple from = pose.at(0.5 * in_cube(j.random));
+            const Technique t{i % 4 ? by_both : by_aiming};
+            const double p = std::pow(100, 2 * j.random() - 1);
+            const Out s = segment(from, unit(y.p - from), {1, 1, 1}, 1 + i % 5, p,
+                                  unit(unit(y.p - from) + 0.5 * any_direction(j.random)));
+            const Out asked = row(t.numbers(), s, y.shape, y.p, y.n);
+            const Out both = j.ask("likelihood", asked);
+            const double q = both[0] * both[1], came = j.ask("weight_of_emission", asked)[0];
+            const double truth = t.light == by_aiming ? q <= 0 : p * p / (p * p + q * q);
+            if (std::abs(came - truth) <= off) continue;
+            off = std::isnan(came) ? oracle::infinity : std::abs(came - truth);
+            seen = oracle::say(
+                "densities of %.4g by chance and %.4g by aiming: %.6g expected, "
+                "%.6g came",
+                p, q, truth, came);
+        }
+    }
+    j.exact("of many lamps, beside balls that are none: any densities", off <= tolerance(j, 1e4),
+            seen);
+}
+
 void both_weighted(Judge& j) {
     of_one_lamp(j);
     of_two_lamps(j);
+    of_any_lamp(j);
     within_a_lamp(j);
 }
 
@@ -534,15 +755,17 @@ void glass(Judge& j) {
             oracle::say("straight on, %.6g expected, %.6g came; and %.6g expected, %.6g came",
                         0.96 / 2.25, in.refracted, 0.96 * 2.25, out.refracted));
     const Ways slanted = ways(j, 1.5, true, 0.3);
+    const double R = 0.20775634307089783;  // of Fresnel's law
     j.number("at a cosine of 0.3, what is refracted is (1 - R) over the index squared",
-             slanted.refracted, (1 - slanted.pdf_reflected) / 2.25, tolerance(j, 1e3));
+             slanted.refracted, (1 - R) / 2.25, tolerance(j, 1e3));
+    j.number("and R is the probability to be reflected", slanted.pdf_reflected, R,
+             tolerance(j, 1e3));
     j.number("probabilities of both ways add up to", slanted.pdf_reflected + slanted.pdf_refracted,
              1, tolerance(j, 64));
     Rows ask;
     for (int i = 0; i < 100000; ++i) ask.add(at_glass(1.5, true, j.random(), 0.3));
     const Rows b = j.ask("sample_glass", ask);
-    j.mean("it reflects as often as it says", slanted.pdf_reflected, b,
-           [](In x) { return x[2] > 0; });
+    j.mean("of light at a cosine of 0.3, R is reflected", R, b, [](In x) { return x[2] > 0; });
 }
 
 }  // namespace
