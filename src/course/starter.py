@@ -28,7 +28,10 @@ COURSE = ['draw.h', 'draw.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'update', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
 Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
-names with two underscores.'''
+names with two underscores.
+
+A mistake costs half of an exercise's points, or a quarter where `make check` says `wrong` and not `WRONG`: at the limits of a
+law. Several mistakes may cost more if none is known by name.'''
 
 
 class Plan:
@@ -184,8 +187,8 @@ def write_rest(plan, to):
 def draw_expected(plan, to, draw):
     """expected/: what the solution draws, by the same random numbers."""
     for line in (ROOT / 'tests/course/pictures.txt').read_text().splitlines():
-        key, _, order = (part.strip() for part in line.partition('|'))
-        if key.split('.')[0] not in plan.weeks or not order:
+        key, *_, order = (part.strip() for part in line.split('|'))
+        if key.split('.')[0] not in plan.weeks or line.startswith('#'):
             continue
         (to / 'expected').mkdir(exist_ok=True)
         subprocess.run([draw, *order.split(), '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT,

@@ -3,7 +3,8 @@
 
 1. The solution: every exercise is judged right.
 2. The stub of each exercise alone: its judge says that the stub is still there, and no other exercise is
-   wrong but those that need it.  --draw: of other weeks that could be, one is drawn for each stub.
+   wrong but those that need it.  --draw: of other weeks that could be, one is drawn for each stub.  And each
+   exercise is right beside stubs of all that comes later, as a grader builds it.
 3. Regions compile in any combination, without a warning, by this compiler: each alone, all, and 50 random
    subsets in which every pair is met as stub and stub, stub and solution, solution and solution.  --full:
    each pair alone as well.
@@ -100,6 +101,12 @@ def check_verdicts(exercises, found, draw):
         for m in others:
             fail(f'the stub of {n} turns {m} red: {states[m][1]}')
         print(f'{n}: open, others right', flush=True) if not others else None
+
+    def before_the_rest(n):
+        return n, judged(set(numbers[numbers.index(n) + 1:]), [n.split('.')[0]], [n], solved)
+    for n, states in trial.in_parallel(before_the_rest, numbers):
+        if isinstance(states, str) or states[0][n][0] != 'right':
+            fail(f'{n}, and stubs of all that comes later: {states if isinstance(states, str) else states[0][n][1]}')
 
 
 # ---- 3: combinations -----------------------------------------------------------------------------

@@ -77,14 +77,21 @@ class Trial:
         return result
 
 
+def with_regions(lines):
+    """Files of src in which exercises have these lines, {number: lines}, and the others are solved: {path: text}."""
+    names = {regions.solution_files()[n][0] for n in lines}
+    return {name: regions.rewrite((ROOT / name).read_text(), name, lambda r: lines.get(r.number)) for name in sorted(names)}
+
+
 def with_stubs(numbers):
-    """Files of src in which these exercises are stubs, the others solved: {path: text}."""
-    found = regions.solution_files()
-    files = {}
-    for name in sorted({found[n][0] for n in numbers}):
-        files[name] = regions.rewrite((ROOT / name).read_text(), name,
-                                      lambda r: r.stub if r.number in numbers else None)
-    return files
+    """The same with stubs."""
+    return with_regions({n: regions.solution_files()[n][1].stub for n in numbers})
+
+
+def in_another_style(but):
+    """Weeks other than this one as someone else has solved them, and as right."""
+    styles = sorted((ROOT / 'tests/course/styles').iterdir())
+    return with_regions({p.name: p.read_text().splitlines() for p in styles if p.name.split('.')[0] != but})
 
 
 def in_parallel(work, items):

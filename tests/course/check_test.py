@@ -26,7 +26,7 @@ class Room:
         self.temporary = tempfile.TemporaryDirectory()
         self.top = pathlib.Path(self.temporary.name)
         for name, text in (('tests/course/exercises.txt', '2.1 | One | world/a.h | | 1 | 1\n2.2 | Two | world/a.h | | 1 | 1\n'),
-                           ('tests/course/pictures.txt', '2.2 | --spp 1 scene\n'), ('tests/course/mistakes.txt', ''),
+                           ('tests/course/pictures.txt', '2.2 | 2.2 | 30 | --spp 1 scene\n'), ('tests/course/mistakes.txt', ''),
                            ('src/world/a.h', '// BEGIN 2.1\n// END 2.1\n// BEGIN 2.2\n// END 2.2\n'), ('said', SAID),
                            ('expected/2.2.pfm', ''), ('build/course/answers_2', ''),
                            ('build/course/judge_2', '#!/bin/sh\necho >>judged\ncat said\nexit 1\n'),

@@ -99,6 +99,15 @@ void camera(Judge& j) {
     points_to("90 degrees of view: the middle of the upper edge is 45 degrees up", 1, {0, 1, -1});
     points_to("an image twice as wide sees twice as far to the right", 2, {2, 0, -1});
     points_to("a quarter from the left, a quarter from below, upright", 3, {-0.25, -0.5, -1});
+    const Rows other = j.ask("camera_ray", {{3, 2, 1, 3, 2, 0, 90, 64, 32, 48, 8},
+                                            {0, 0, 0, 0, -3, -4, 90, 64, 32, 32, 0},
+                                            {0, 0, 0, 0, 0, -1, 90, 3, 3, 1.5, 1.5}});
+    const auto also = [&](const std::string& what, size_t i, Triple to) {
+        j.vector(what, triple(other[i], 3), unit(to), 16 * j.epsilon);
+    };
+    also("the eye elsewhere: rays go where they went from the origin", 0, {1, 0.5, -1});
+    also("the camera tilted: up is at right angles to where it looks", 1, {0, 0.2, -1.4});
+    also("an image of 3 x 3 has a middle, too", 2, {0, 0, -1});
     // Any camera: unit directions from the eye, and places of the image plane are evenly spaced.
     double off_unit = 0, off_eye = 0, off_even = 0, off_view = 0, off_all = 0;
     for (int i = 0; i < 100; ++i) {
@@ -210,6 +219,9 @@ void sphere(Judge& j) {
           {{row(3 * tiny * z, back, endless, o, tiny), 2 * tiny, "scaled by 2^-24"}},
           true},
          {"", {{row(Triple{2, 0, 0x1p30}, back, endless, o, 1), -1, "beside, from afar"}}}});
+    aimed(j, "intersect_sphere", "a ray that starts on a sphere and leaves does not meet it",
+          "from its top, away", Rows(row(Triple{1, 2, 5}, z, endless, c, 2)));
+    j.limit();
     random_spheres(j);
     far_spheres(j);
 }
@@ -275,8 +287,11 @@ void shared_edges(Judge& j) {
         const Triple o = a + between(j, 0.05, 0.95) * (b - a) - between(j, 0.5, 5) * aim;
         // Both must be seen from the same side: then they lie on both sides of the edge.
         if (dot(aim, n_first) * dot(aim, n_second) >= 0) continue;
-        left.add(row(o, aim, endless, a, b, c));
-        right.add(row(o, aim, endless, b, a, opposite));
+        // Corners in any order.
+        const Triple one[] = {a, b, c}, next[] = {b, a, opposite};
+        const size_t k = i % 3, l = i / 3 % 3;
+        left.add(row(o, aim, endless, one[k], one[(k + 1) % 3], one[(k + 2) % 3]));
+        right.add(row(o, aim, endless, next[l], next[(l + 1) % 3], next[(l + 2) % 3]));
     }
     // Where nothing is rounded, the ray is on the edge itself.
     for (double x : {0.0, 0.25, 0.5, 0.75, 1.0}) {
@@ -316,6 +331,9 @@ void triangle(Judge& j) {
              "scaled by 2^-24, from 1 away"},
             {row(Triple{1, 1, tiny}, back, endless, a, b, c), tiny, "from 2^-24 away", 16 * tiny}},
            true}});
+    aimed(j, question, "a ray that starts on a triangle does not meet it", "from (1, 1, 0)",
+          Rows(row(Triple{1, 1, 0}, back, endless, a, b, c)));
+    j.limit();
     random_triangles(j);
     shared_edges(j);
 }
@@ -335,6 +353,7 @@ void random_boxes(Judge& j) {
             p[k] += between(j, -0.99, 0.99) * half[k];
         }
         const size_t face = i % 3, other = (face + 1) % 3;
+        if (i % 4 == 0) half[face] = 0;  // flat
         Triple normal{};
         const double side = i % 2 ? 1 : -1, t = between(j, 0.1, 5);
         normal[face] = side;

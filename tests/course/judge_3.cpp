@@ -107,7 +107,7 @@ void within_a_hall_of_mirrors(Judge& j, const Triple& Le, const std::vector<int>
     }
 }
 void account_of_all(Judge& j) {
-    j.number("vertices of which account is told, of 8",
+    j.number("account is told of each of 8 vertices",
              j.ask("accounts", question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64})))[0], 8, 0);
 }
 

@@ -1,5 +1,6 @@
 # course/starter_test.py  tests of the generator: python3 tests/course/starter_test.py [NAME...]
 """Each function test_... is a test; starter_test.cpp runs them one by one."""
+import os
 import pathlib
 import re
 import shutil
@@ -331,6 +332,59 @@ def test_every_exercise_has_four_known_mistakes_whose_rows_are_there():
     expect(len(set(prints)) == len(prints), 'two mistakes have the same answers')
     for k in known:
         mistakes.check_heading(k)
+
+
+class Checked:
+    """A folder of two exercises in which `make check` finds judges and a renderer that say what they are told to."""
+
+    def __init__(self, verdicts, off, svg=''):
+        self.top = pathlib.Path(tempfile.mkdtemp())
+        (self.top / 'expected').mkdir()
+        (self.top / 'expected/1.pfm').touch()
+        said = ''.join(f'{n}) echo "{n} {v}"; [ "{v}" = right ] && exit 0;; ' for n, v in verdicts.items())
+        drawn = f'[ -z "$ORACLE_PICTURES" ] || {{ mkdir -p "$ORACLE_PICTURES"; echo "{svg}" >"$ORACLE_PICTURES/oracle-check-1.svg"; }}; '
+        for name, text in {'build/course/judge_1': f'{drawn if svg else ""}case $3 in {said} esac; exit 1',
+                           'build/draw': f'echo "picture: 1.0 s, d_rel {off} %"'}.items():
+            starter.write(self.top / name, f'#!/bin/sh\n{text}\n', True)
+        for name, text in {'exercises.txt': ''.join(f'{n} | {n} | a.h | | 1 | 1\n' for n in verdicts),
+                           'pictures.txt': '1 | 1.1 1.2 | 30 | --spp 1 x.scene\n', 'mistakes.txt': ''}.items():
+            starter.write(self.top / 'tests/course' / name, text)
+        starter.write(self.top / 'src/a.h', ''.join(f'// BEGIN {n}\n// END {n}\n' for n in verdicts))
+        shutil.copy(regions.ROOT / 'tests/course/check', self.top / 'tests/course/check')
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.top)
+
+    def check(self, *exercises):
+        done = subprocess.run([str(self.top / 'tests/course/check'), *exercises], env={**os.environ, 'MAKE': 'true', 'SUFFIX': ''},
+                              capture_output=True, text=True)
+        return done.stdout, done.returncode
+
+
+def test_a_picture_waits_or_is_far_off():
+    for second, off, part, status in (('right', '29', None, 0), ('right', '31', 'right, but the picture is far off', 1),
+                                      ('right', '-nan', 'right, but the picture is far off', 1), ('wrong', '164', 'it waits for 1.2', 0),
+                                      ('wrong', '29', None, 0)):
+        with Checked({'1.1': 'right', '1.2': second}, off) as folder:
+            said, came = folder.check('1.1')
+            expect(came == status, second, off, said)
+            expect(part in said if part else not re.search('far off|waits', said), second, off, said)
+    with Checked({'1.1': 'wrong', '1.2': 'right'}, '164') as folder:
+        expect('far off' not in folder.check('1.1')[0], 'what is wrong is not right')
+
+
+def test_a_drawing_is_that_of_the_exercise_and_says_what_it_shows():
+    for svg, part in (('running mean', 'the mean of the samples so far'), ('density', 'samples, density and their difference')):
+        with Checked({'1.1': 'wrong', '1.2': 'right'}, '3', svg) as folder:
+            folder.check()
+            expect(not (folder.top / 'build/oracle').exists(), 'a check of all draws nothing')
+            said = folder.check('1.1')[0]
+            expect(part in said and (folder.top / 'out/check/1.1.svg').exists(), said)
+            (folder.top / 'build/course/judge_1').write_text('#!/bin/sh\necho "$3 right"\n')
+            expect('drawn' not in folder.check('1.1')[0] and not (folder.top / 'out/check/1.1.svg').exists(), 'an old drawing')
 
 
 if __name__ == '__main__':
