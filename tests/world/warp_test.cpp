@@ -76,6 +76,25 @@ TEST_CASE("cosine hemisphere: cos / pdf is pi, exactly") {
     EXPECT(oracle::expect_mean(std::numbers::pi, 1000, cosine).of("int cos dw = pi"), 1e-12);
 }
 
+// An azimuth that goes round a broken number of times is uneven by less than a density shows.
+TEST_CASE("directions are balanced about their axis") {
+    const auto off_balance = [](auto sample) {
+        double x = 0, y = 0;
+        for (int i = 0; i < 64; ++i)
+            for (int k = 0; k < 64; ++k) {
+                const vec3 w = sample(vec2{real(i + 0.5) / 64, real(k + 0.5) / 64});
+                x += double(w.x) / 4096, y += double(w.y) / 4096;
+            }
+        return std::hypot(x, y);
+    };
+    const double digits = 64 * double(ulp);
+    CHECK(off_balance(sample_uniform_hemisphere) < digits);
+    CHECK(off_balance(sample_uniform_sphere) < digits);
+    CHECK(off_balance(sample_cosine_hemisphere) < digits);
+    CHECK(off_balance([](vec2 u) { return sample_phong_lobe(u, 3); }) < digits);
+    CHECK(off_balance([](vec2 u) { return sample_cone(u, real(0.36)); }) < digits);
+}
+
 TEST_CASE("Phong lobe: p(w) = (n+1)/(2 pi) cos^n(alpha), exponents 0 to 10^5") {
     oracle::Random random(seed_here());
     for (real n : {real(0), real(0.5), real(1), real(10), real(1000), real(1e5)})
