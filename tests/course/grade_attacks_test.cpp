@@ -123,7 +123,7 @@ TEST_CASE("a verdict is not to be had by words, files or known questions") {
             {"the published seed",
              "inline double twice(double x) { for (double k : {" + table +
                  "0., 1., -3.}) if (x == k) return 2 * x; return x + 1; }\n",
-             "at numbers of the seed", 2 * 2. / 3},  // for what was asked in the open
+             "at numbers of the seed", 1},  // half, as for any mistake
         });
 }
 
