@@ -78,16 +78,14 @@ inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
 
 // Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  In radii, the
 // ray passes the centre at a distance of sin(beta) = sin(theta) / sin(sigma) and meets the sphere
-// cos(beta) before; with the u of that direction its square is as exact far away and at the limb as
-// it is close by.
+// cos(beta) before.
 inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, vec2 u) {
     auto sin2_max = sin2_subtended(l, p);
     if (!sin2_max) return {};
     vec3 local = sample_cone(u, *sin2_max);
-    real sin_max = std::sqrt(*sin2_max), cos_max = std::sqrt(1 - *sin2_max);
-    real sin2 = sqr(local.x) + sqr(local.y);
+    real sin_max = std::sqrt(*sin2_max), sin2 = sqr(local.x) + sqr(local.y);
     vec3 foot = vec3{local.z * local.x, local.z * local.y, -sin2} / sin_max;
-    real before = std::sqrt((1 - u.x) * (local.z + cos_max) / (1 + cos_max));
+    real before = std::sqrt(std::max(real(0), 1 - sin2 / *sin2_max));
     const Frame f = frame(unit(l.p - p));
     vec3 wi = f.to_world(local);
     vec3 n = unit(f.to_world(foot - before * local));

@@ -51,7 +51,7 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
         oracle::Options o;
         o.axis = oracle::point(-away);
         o.tolerance = std::max(single ? 2e-3 : 1e-6, 100 * rounding);
-        o.n = 32000;
+        o.n = single ? 40000 : 32000;  // rounding hides some of what is seen
         auto density = [&](vec3 w) {
             const vec3 off = cross(w, centre - p);
             const bool inside = dot(w, away) < 0 && dot(off, off) <= sqr(r * (1 + real(rounding)));
