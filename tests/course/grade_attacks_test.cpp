@@ -251,8 +251,9 @@ TEST_CASE(
     std::vector<std::string> work = {
         "exit 0", "echo x >/out/x",
         "[ \"$(env | cut -d = -f 1 | sort | tr \"\\n\" \" \")\" = \"LC_ALL PATH PWD SHLVL _ \" ]"};
-    for (const std::string path : {"/etc/passwd", "/proc/self", "/home", "/root", "/sys",
-                                   "/usr/local", "/usr/src", (mine + "/src").c_str()})
+    for (const std::string& path :
+         std::vector<std::string>{"/etc/passwd", "/proc/self", "/home", "/root", "/sys",
+                                  "/usr/local", "/usr/src", mine + "/src"})
         work.push_back("[ ! -e \"" + path + "\" ]");
     for (const auto* scripts : {&work, &fail})
         for (const std::string& script : *scripts) {
