@@ -78,14 +78,15 @@ struct Step {
     bool goes_on;
     double weight;
     Triple Le, direct, beta;
+    Triple along, normal;  // where the path goes on, in the world
     Out next;
     Triple f, wi;  // wi is local
     double pdf;
     Triple factor() const { return std::abs(wi[2]) / pdf * f; }
 };
 Step step(In x) {
-    return {x[1] != 0,     x[2],          triple(x, 3),
-            triple(x, 6),  triple(x, 25), Out(x.begin() + 15, x.begin() + 32),
+    return {x[1] != 0,     x[2],          triple(x, 3),  triple(x, 6),
+            triple(x, 25), triple(x, 9),  triple(x, 12), Out(x.begin() + 15, x.begin() + 32),
             triple(x, 32), triple(x, 35), x[38]};
 }
 Step take_step(Judge& j, const Technique& t, uint64_t seed, const Out& from) {
@@ -218,14 +219,31 @@ struct Scatterings {
 void of_a_rough_ball(Judge& j) {
     const Triple kd{0.2, 0.5, 0.8};
     build(j, 8, {ball({0, 0, 0}, 1, {Stuff::rough, kd})});
+    const Out from = towards_a_ball(2);
+    Out came, usual, likely, without_f, to_the_eye, of_the_world;
+    Out twice, without_cosine, not_over_pdf;
     for (Directions d : {by_bsdf, uniform}) {
         Scatterings s;
         for (uint64_t seed = 1; seed <= 200; ++seed)
-            s.look(j, {by_chance, d}, seed, towards_a_ball(2), {1, 1, 1});
-        j.remember_factor(s.came, s.expected);
+            s.look(j, {by_chance, d}, seed, from, {1, 1, 1});
         s.judge(j, d == uniform ? "f |cos| / pdf of a rough ball, if directions are uniform"
                                 : "f |cos| / pdf of a rough ball, if they follow the cosine");
+        for (const Step& e : s.steps) {
+            if (!e.goes_on || !(e.pdf > 0)) continue;
+            const double f = e.f[0], cos = std::abs(e.wi[2]);
+            came.push_back(e.beta[0]), usual.push_back(f * cos / e.pdf);
+            likely.push_back(f * cos * e.pdf), not_over_pdf.push_back(f * cos);
+            twice.push_back(f * cos * cos / e.pdf), without_cosine.push_back(f / e.pdf);
+            without_f.push_back(cos / e.pdf),
+                of_the_world.push_back(f * std::abs(e.along[2]) / e.pdf);
+            to_the_eye.push_back(f * -dot(triple(from, 3), e.normal) / e.pdf);
+        }
     }
+    // Directions are those of other exercises; a formula is told whatever they are.
+    if (!came.empty())
+        for (const Out& formula : {usual, likely, without_f, to_the_eye, of_the_world, twice,
+                                   without_cosine, not_over_pdf})
+            j.remember_factor(came, formula);
 }
 
 // A ball of any stuff in any pose, met from outside or inside.
@@ -255,8 +273,10 @@ void of_a_lamp(Judge& j) {
     build(j, 8, {ball({0, 0, 0}, 1, glowing({3, 2, 1}, {Stuff::rough, {0.5, 0.5, 0.5}}))});
     Out from = towards_a_ball(2, {1, 1, 1}, 1);
     from[9] = 0.3;
-    const Rows b = j.probe("throughput", Rows(question({by_aiming}, 1, from)));
-    colour(j, "a lamp's albedo, whatever its light weighs", triple(b[0]), {0.5, 0.5, 0.5});
+    Scatterings s;
+    for (uint64_t seed = 1; seed <= 8; ++seed) s.look(j, {by_aiming}, seed, from, {1, 1, 1});
+    if (!s.came.empty()) j.remember_factor(s.came, s.expected);
+    s.judge(j, "a lamp's albedo, whatever its light weighs");
 }
 
 void of_clear_glass(Judge& j) {
