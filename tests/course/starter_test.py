@@ -231,6 +231,17 @@ def test_another_compiler_builds_anew():
             expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
 
 
+def test_what_the_solution_draws_is_that_of_the_open_weeks():
+    with tempfile.TemporaryDirectory() as temporary:
+        folder, draw = pathlib.Path(temporary), pathlib.Path(temporary) / 'draw'
+        starter.write(draw, '#!/bin/sh\nfor last; do :; done; echo "$@" >"$last"\n', True)
+        starter.draw_expected(starter.Plan('1-2'), folder, str(draw))
+        names = sorted(p.stem for p in (folder / 'expected').iterdir())
+        expect(names == ['1', '1.4', '1.5', '1.6', '2.2'], names)
+        order = (folder / 'expected/2.2.pfm').read_text()
+        expect(order.startswith('--view occlusion') and 'scenes/cornell36.scene -o' in order, order)
+
+
 def test_a_solved_copy_has_all_solutions():
     with tempfile.TemporaryDirectory() as temporary:
         starter.make_starter(starter.Plan('1-6,V,R', solved=True), pathlib.Path(temporary) / 's')
