@@ -231,6 +231,15 @@ def test_another_compiler_builds_anew():
             expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
 
 
+def test_a_header_within_src_will_do():
+    with Made() as made:
+        for header, works in ((None, False), ('src/stb/stb_image_write.h', True)):
+            if header:
+                starter.write(made.folder / header, '#pragma once\n')
+            done = subprocess.run(['make', 'packages', 'CXX=g++ -nostdinc'], cwd=made.folder, capture_output=True, text=True)
+            expect((done.returncode == 0) == works, header, done.stdout, done.stderr)
+
+
 def test_what_the_solution_draws_is_that_of_the_open_weeks():
     with tempfile.TemporaryDirectory() as temporary:
         folder, draw = pathlib.Path(temporary), pathlib.Path(temporary) / 'draw'
