@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import re
+import time
 
 MOST_MESSAGES = 5
 
@@ -140,8 +141,11 @@ def tables(folder, numbers, grades):
     table(os.path.join(folder, 'grades.csv'), [['student', 'number', *numbers, 'sum', 'of', 'look at']] + [
         [g['student'], g['number'], *(points(g['exercises'][n]['points']) for n in numbers), points(g['sum']), points(g['of']), flags(g)]
         for g in grades])
-    table(os.path.join(folder, 'moodle.csv'), [['Identifier', 'Full name', 'Grade', 'Maximum Grade', 'Feedback comments']] + [
-        [f'Participant {g["number"]}', g['student'], points(g['sum']), of, feedback(g)] for g in known])
+    # Moodle takes no table without dates, and keeps grades that are newer than these.
+    date = time.strftime('%Y-%m-%d %H:%M:%S +0000', time.gmtime())
+    table(os.path.join(folder, 'moodle.csv'),
+          [['Identifier', 'Full name', 'Grade', 'Maximum Grade', 'Last modified (grade)', 'Feedback comments']] +
+          [[f'Participant {g["number"]}', g['student'], points(g['sum']), of, date, feedback(g)] for g in known])
     table(os.path.join(folder, 'canvas.csv'), [['Student', 'ID', 'SIS User ID', 'SIS Login ID', 'Section', 'Penumbra'],
                                                ['    Points Possible', '', '', '', '', of]] + [
         [g['student'], g['number'], '', '', '', points(g['sum'])] for g in known])
