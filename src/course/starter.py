@@ -31,7 +31,7 @@ Leave these marks as they are, and write plain C++ between them. The grader refu
 names with two underscores.
 
 A mistake costs half of an exercise's points, or a quarter where `make check` says `wrong` and not `WRONG`: at the limits of a
-law. Several mistakes may cost more if none is known by name.'''
+law. A mistake that it does not know by name may cost more.'''
 
 
 class Plan:
