@@ -172,6 +172,12 @@ def test_earlier_weeks_are_solved_these_open_later_ones_stubs():
         expect(not regions.BEGIN.search(text) and not regions.END.search(text), 'marks of the solution are left')
 
 
+def test_no_sampler_beside_it_shows_how_4_3_goes():
+    with Made() as made:
+        text = (made.folder / 'src/path/sampler.h').read_text()
+        expect('case SamplerKind::halton' in text and 'bits, mix(bits))' not in text.split('class Sampler {')[1], 'two words of one')
+
+
 def test_a_starter_has_what_its_weeks_need_and_no_more():
     with Made() as made:
         folders = sorted(p.name for p in (made.folder / 'src').iterdir())
