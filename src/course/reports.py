@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import re
+import time
 
 MOST_MESSAGES = 5
 
@@ -51,7 +52,6 @@ def share(verdict, items, stub):
     return min(left, max(0.0, (right - stub) / max(items - stub, len(verdict['items']) - stub, 1)))
 
 
-
 def headline(number, verdict):
     """A verdict in a sentence."""
     state, items = verdict['state'], verdict['items']
@@ -90,10 +90,10 @@ def sheet(grade):
     for number, e in grade['exercises'].items():
         lines.append(f'| {number} | {marked(e["title"])} | {points(e["points"])} | {e["of"]} | {marked(e["line"])} | '
                      f'{marked(e["together"])} |')
-    lines += ['', 'Points are those of each exercise alone, in a solution that is right elsewhere; exercises that come after it are',
-              'stubs.  A known mistake costs half of the points, or a quarter where only items marked so are wrong.  Any other',
-              'has at most as much, and no more than its part of the items.  Week 6 has the rule of its sheet.  "All together"',
-              'is what becomes of it when all that was handed in stands in the same program; it counts for nothing.',
+    lines += ['', 'Each exercise is graded by itself, in a solution that is right elsewhere; later exercises are stubs.  A known mistake',
+              'costs half of the points, or a quarter if only items marked so are wrong.  Any other mistake costs at least as much,',
+              'and leaves no more than the share of items that are right.  Week 6 follows the rule of its sheet.  The column "all',
+              'together" has the verdict when all that was handed in is in one program; points do not depend on it.',
               f'Seed {grade["seed"]}, solution {grade["course"][:16]}.', '']
     for number, e in grade['exercises'].items():
         if not e['items'] and not e['compiler']:
@@ -140,8 +140,11 @@ def tables(folder, numbers, grades):
     table(os.path.join(folder, 'grades.csv'), [['student', 'number', *numbers, 'sum', 'of', 'look at']] + [
         [g['student'], g['number'], *(points(g['exercises'][n]['points']) for n in numbers), points(g['sum']), points(g['of']), flags(g)]
         for g in grades])
-    table(os.path.join(folder, 'moodle.csv'), [['Identifier', 'Full name', 'Grade', 'Maximum Grade', 'Feedback comments']] + [
-        [f'Participant {g["number"]}', g['student'], points(g['sum']), of, feedback(g)] for g in known])
+    # Moodle takes no table without dates, and keeps grades that are newer than these.
+    date = time.strftime('%Y-%m-%d %H:%M:%S +0000', time.gmtime())
+    table(os.path.join(folder, 'moodle.csv'),
+          [['Identifier', 'Full name', 'Grade', 'Maximum Grade', 'Last modified (grade)', 'Feedback comments']] +
+          [[f'Participant {g["number"]}', g['student'], points(g['sum']), of, date, feedback(g)] for g in known])
     table(os.path.join(folder, 'canvas.csv'), [['Student', 'ID', 'SIS User ID', 'SIS Login ID', 'Section', 'Penumbra'],
                                                ['    Points Possible', '', '', '', '', of]] + [
         [g['student'], g['number'], '', '', '', points(g['sum'])] for g in known])

@@ -28,7 +28,7 @@ help:  ## print this
 
 # stb_image_write writes PNG files.
 packages:
-	@printf '\043include <stb/stb_image_write.h>\n' | $(CXX) -x c++ -fsyntax-only - 2>/dev/null || \
+	@printf '\043include <stb/stb_image_write.h>\n' | $(CXX) -x c++ -Isrc -fsyntax-only - 2>/dev/null || \
 	    { echo "install stb (stb/stb_image_write.h); on Debian or Ubuntu: sudo apt-get install libstb-dev" >&2; exit 1; }
 
 include src/course/course.mk

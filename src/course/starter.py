@@ -31,7 +31,7 @@ Leave these marks as they are, and write plain C++ between them. The grader refu
 names with two underscores.
 
 A mistake costs half of an exercise's points, or a quarter where `make check` says `wrong` and not `WRONG`: at the limits of a
-law. Several mistakes may cost more if none is known by name.'''
+law. A mistake that it does not know by name may cost more.'''
 
 
 class Plan:
@@ -187,8 +187,10 @@ def write_rest(plan, to):
 def draw_expected(plan, to, draw):
     """expected/: what the solution draws, by the same random numbers."""
     for line in (ROOT / 'tests/course/pictures.txt').read_text().splitlines():
+        if line.startswith('#'):
+            continue
         key, *_, order = (part.strip() for part in line.split('|'))
-        if key.split('.')[0] not in plan.weeks or line.startswith('#'):
+        if key.split('.')[0] not in plan.weeks:
             continue
         (to / 'expected').mkdir(exist_ok=True)
         subprocess.run([draw, *order.split(), '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT,

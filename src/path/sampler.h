@@ -116,10 +116,8 @@ public:
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
                 // end
             }
-            default: {
-                const uint64_t bits = random(dim);
-                return sobol_single(index_, bits, mix(bits));
-            }
+            default:
+                return sobol_single(index_, random(dim));
         }
     }
 

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "base/rng.h"
 #include "base/vec.h"
 
 // Words are binary fractions of [0,1): digit 0 is the highest bit.
@@ -72,5 +73,7 @@ inline real sobol_third(uint64_t t, uint64_t a, uint64_t b) {
     return to_unit(sobol_z(shuffled(t, a, b)));
 }
 
-// A single number: the points of 2^k indices form a shifted grid.
-inline real sobol_single(uint64_t t, uint64_t a, uint64_t b) { return to_unit(shuffled(t, a, b)); }
+// A single number, from one random word: the points of 2^k indices form a shifted grid.
+inline real sobol_single(uint64_t t, uint64_t bits) {
+    return to_unit(shuffled(t, bits, mix(bits)));
+}

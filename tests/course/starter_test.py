@@ -172,6 +172,12 @@ def test_earlier_weeks_are_solved_these_open_later_ones_stubs():
         expect(not regions.BEGIN.search(text) and not regions.END.search(text), 'marks of the solution are left')
 
 
+def test_no_sampler_beside_it_shows_how_4_3_goes():
+    with Made() as made:
+        text = (made.folder / 'src/path/sampler.h').read_text()
+        expect('case SamplerKind::halton' in text and 'bits, mix(bits))' not in text.split('class Sampler {')[1], 'two words of one')
+
+
 def test_a_starter_has_what_its_weeks_need_and_no_more():
     with Made() as made:
         folders = sorted(p.name for p in (made.folder / 'src').iterdir())
@@ -229,6 +235,26 @@ def test_another_compiler_builds_anew():
             done = subprocess.run(['make', 'build/draw', f'CXX=./{name}'], cwd=made.folder, capture_output=True, text=True)
             expect(done.returncode == 0, done.stderr)
             expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
+
+
+def test_a_header_within_src_will_do():
+    with Made() as made:
+        for header, works in ((None, False), ('src/stb/stb_image_write.h', True)):
+            if header:
+                starter.write(made.folder / header, '#pragma once\n')
+            done = subprocess.run(['make', 'packages', 'CXX=g++ -nostdinc'], cwd=made.folder, capture_output=True, text=True)
+            expect((done.returncode == 0) == works, header, done.stdout, done.stderr)
+
+
+def test_what_the_solution_draws_is_that_of_the_open_weeks():
+    with tempfile.TemporaryDirectory() as temporary:
+        folder, draw = pathlib.Path(temporary), pathlib.Path(temporary) / 'draw'
+        starter.write(draw, '#!/bin/sh\nfor last; do :; done; echo "$@" >"$last"\n', True)
+        starter.draw_expected(starter.Plan('1-2'), folder, str(draw))
+        names = sorted(p.stem for p in (folder / 'expected').iterdir())
+        expect(names == ['1', '1.4', '1.5', '1.6', '2.2'], names)
+        order = (folder / 'expected/2.2.pfm').read_text()
+        expect(order.startswith('--view occlusion') and 'scenes/cornell36.scene -o' in order, order)
 
 
 def test_a_solved_copy_has_all_solutions():

@@ -150,10 +150,10 @@ TEST_CASE("single numbers: one in each of 2^k parts, for 2^k indices in a row") 
     Rng rng{seed_here()};
     for (int n = 0; n < 20; ++n)
         for (uint64_t block : {uint64_t(0), uint64_t(3), uint64_t(1) << 35}) {
-            const uint64_t a = rng.bits(), b = rng.bits();
+            const uint64_t bits = rng.bits();
             std::vector<int> held(64);
             for (uint64_t i = 64 * block; i < 64 * (block + 1); ++i)
-                ++held[part(64, sobol_single(mirrored(i), a, b))];
+                ++held[part(64, sobol_single(mirrored(i), bits))];
             for (int h : held) REQUIRE(h == 1);
         }
 }
@@ -171,8 +171,7 @@ TEST_CASE("points are uniform over the square, in their first digits and in thei
             ++cubes[part(8, u.x) * 64 + part(8, u.y) * 8 + part(8, points.third(i))];
             ++first_digits[part(16, u.x) * 16 + part(16, u.y)];
             ++last_digits[part(16, fraction(u.x)) * 16 + part(16, fraction(u.y))];
-            const uint64_t a = rng.bits(), b = rng.bits();
-            const real v = sobol_single(mirrored(i), a, b);
+            const real v = sobol_single(mirrored(i), rng.bits());
             ++single[part(16, v) * 16 + part(16, fraction(v))];
         }
         EXPECT(expect_alike(single).of("single"), 0.2);
