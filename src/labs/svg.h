@@ -37,16 +37,8 @@ inline constexpr double letter = 13;  // font size
 
 inline std::string escaped(std::string_view words) {
     std::string out;
-    for (char c : words) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
+    for (char c : words)
+        out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
     return out;
 }
 
