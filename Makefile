@@ -40,8 +40,8 @@ PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all gallery programs test test-all test-everywhere test-farm mutants soak oracle-campaign penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
-        cells peers efficiency trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
-        survival starter starter-check mistakes handout key grade plant hunted
+        peers trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
+        starter starter-check mistakes handout key grade plant hunted
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -131,20 +131,17 @@ shadows: build/shadow$(SUFFIX)  ## four estimators of direct light on images (5 
 voronoi2d:                 ## integrate functions by Voronoi cells; FULL=1: 10 000 trials
 radiosity:                 ## illumination maps by shooting and by particle tracing (20 minutes)
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
-indirect: $(PENUMBRA) build/radiosity$(SUFFIX) build/indirect_draw$(SUFFIX)  ## final gathering, compared with whole paths (20 minutes)
+indirect: $(PENUMBRA) build/radiosity$(SUFFIX)  ## final gathering, compared with whole paths (20 minutes)
 voronoi:                   ## weight samples of pixels by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
-bench: build/knot.obj       ## rays per second, compared with Embree (libembree-dev), and the time of a path
+bench: build/knot.obj       ## rays per second, compared with Embree (libembree-dev)
 peers: $(PENUMBRA)         ## efficiency, compared with Cycles (blender; 5 minutes); SEEDS=5: more renders
-efficiency: build/knot.obj  ## ablation study: one option at a time on every scene (6 minutes)
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time for every setting, and a page to choose (30 minutes; FULL=1: 4 hours)
 calibration: $(PENUMBRA) build/knot.obj  ## calibration of the error estimate (3 hours)
 oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracle: 600 correct codes, 100 seeds (70 minutes); SEEDS=5, ONLY=GGX: into out/
 	@mkdir -p out
 	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
 	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
-cells:                     ## Voronoi cells per second, compared with CGAL (libcgal-dev)
-EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers efficiency trade \
-               calibration cells
+EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers trade calibration
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 trade: LAB_FLAGS := $(if $(FULL),--full)
@@ -175,9 +172,6 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 	@rm -f $@; for part in $(EXTREMES); do \
 	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
 	        { cat $@.log; exit 1; }; done
-
-survival: $(PENUMBRA)  ## memory per pixel, checkpoint time, 200 kills, Ctrl-C: reference/survival.md (5 minutes)
-	@python3 src/labs/survival.py $(if $(QUICK),--quick)
 
 readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write the tables of options and statements into reference/
 	build/readme$(SUFFIX)
@@ -217,10 +211,6 @@ $(OBJECTS)/oracle-campaign.exe: tests/oracle/campaign.cpp Makefile
 # bench.cpp asks for the same header in the same way.
 $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>\n' | \
                                           $(CXX) -x c++ -fsyntax-only - 2>/dev/null && echo -lembree3)
-
-# cells.cpp likewise.
-$(OBJECTS)/cells.exe: LIBRARIES = $(shell printf '\043include <CGAL/Delaunay_triangulation_2.h>\n' | \
-                                          $(CXX) -std=c++20 -x c++ -fsyntax-only - 2>/dev/null && echo -lmpfr -lgmp)
 
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
 # vector is told so.

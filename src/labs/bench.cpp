@@ -1,13 +1,14 @@
-// labs/bench.cpp  5  rays per second of both BVHs and of Embree, and CPU time per path
+// labs/bench.cpp  5  rays per second of both BVHs and of Embree
 //
 //   build/bench [--quick]
 //
 // Uses one thread.  All three trace the same rays through the same triangles.  Numbers are rounded
 // to float because Embree has no doubles.  The tracers take turns, so load slows them alike.
 #include "base/rng.h"
-#include "labs/bench_paths.h"
+#include "labs/rows.h"
 #include "wide/wide_bvh.h"
 #include "world/bvh.h"
+#include "world/scene_file.h"
 
 #if __has_include(<embree3/rtcore.h>)
 #include <embree3/rtcore.h>
@@ -36,13 +37,9 @@ struct Case {
 };
 
 // Draws into named variables, because C++ does not specify the evaluation order of arguments.
-vec2 random2(Rng& rng) {
-    const real x = to_unit(rng.bits()), y = to_unit(rng.bits());
-    return {x, y};
-}
 vec3 random3(Rng& rng) {
-    const vec2 xy = random2(rng);
-    return {xy.x, xy.y, to_unit(rng.bits())};
+    const real x = to_unit(rng.bits()), y = to_unit(rng.bits()), z = to_unit(rng.bits());
+    return {x, y, z};
 }
 
 // `volatile` is needed: the vectoriser of g++ 12 drops a conversion to float and back.
@@ -53,32 +50,30 @@ real to_float(real x) {
 vec3 to_float(vec3 a) { return {to_float(a.x), to_float(a.y), to_float(a.z)}; }
 Ray to_float(const Ray& r) { return {to_float(r.o), to_float(r.d), to_float(r.tmax)}; }
 
-// Sets the error bound to that of float, so that rays do not hit the surface that they leave.
-Surface float_surface(Surface x) {
-    x.error *= real(std::numeric_limits<float>::epsilon() / 2) / ulp;
-    return x;
-}
-
 Case with_rays(Case c, int width) {
     for (Shape& s : c.shapes) s = {to_float(s.a), to_float(s.b), to_float(s.c)};
     const Tree tree(c.shapes);
     const vec3 light_normal = unit(cross(c.u, c.v));
+    // Error bounds of float, so that no ray hits the surface that it leaves.
+    const real float_error = real(std::numeric_limits<float>::epsilon() / 2) / ulp;
     Rng rng{mix(c.shapes.size())};
     for (int y = 0; y < width; ++y)
         for (int x = 0; x < width; ++x) {
-            const vec2 jitter = random2(rng), direction = random2(rng), place = random2(rng);
+            const vec3 jitter = random3(rng), direction = random3(rng), place = random3(rng);
             const Ray ray = to_float(
                 camera_ray(c.camera, {width, width}, real(x) + jitter.x, real(y) + jitter.y));
             c.rays[primary].push_back(ray);
             const auto hit = tree.closest(ray);
             if (!hit) continue;
-            Surface from = float_surface(surface(c.shapes[hit->id], ray, *hit));
+            Surface from = surface(c.shapes[hit->id], ray, *hit);
+            from.error *= float_error;
             if (dot(from.n, ray.d) > 0) from.n = -from.n;
-            const vec3 wi = frame(from.n).to_world(sample_cosine_hemisphere(direction));
+            const vec3 wi =
+                frame(from.n).to_world(sample_cosine_hemisphere({direction.x, direction.y}));
             c.rays[bounce].push_back(to_float(spawn(from, wi)));
-            const vec3 p = c.p + sample_quad(place, c.u, c.v);
-            const Surface to{p, light_normal, rounding_error({p, p, p})};
-            c.rays[shadow].push_back(to_float(spawn_to(from, float_surface(to))));
+            const vec3 p = c.p + place.x * c.u + place.y * c.v;
+            const Surface to{p, light_normal, rounding_error({p, p, p}) * float_error};
+            c.rays[shadow].push_back(to_float(spawn_to(from, to)));
         }
     return c;
 }
@@ -97,11 +92,12 @@ Case soup(int n, int width) {
     const vec3 middle = {real(0.5), real(0.5), real(0.5)};
     Case c{text("%d, random", n), {},        look_at({real(0.5), real(0.5), 2}, middle, 45),
            {0, real(1.5), 0},     {1, 0, 0}, {0, 0, 1}};
-    const real size = 1 / std::cbrt(real(n));
     Rng rng{uint64_t(n)};
     for (int i = 0; i < n; ++i) {
         const vec3 centre = random3(rng);
-        auto corner = [&] { return centre + size * (2 * random3(rng) - vec3{1, 1, 1}); };
+        auto corner = [&] {
+            return centre + (2 * random3(rng) - vec3{1, 1, 1}) / std::cbrt(real(n));
+        };
         const vec3 p = corner(), q = corner(), r = corner();
         c.shapes.push_back({p, q, r});
     }
@@ -193,85 +189,88 @@ struct Effort {
 struct Tracer {
     std::string name;
     Trace trace;
-    Column answers = {}, speed = {};  // distances; Mrays/s of each round
+    Column answers = {};  // distances
+
+    // Mrays/s for one kind of rays.  Throws if a repetition finds other hits.
+    double run(Kind kind, double least_seconds) {
+        const double start = processor_seconds();
+        double elapsed = 0, rays = 0;
+        while (elapsed < least_seconds) {
+            Column again(answers.size());
+            trace(kind, again);
+            if (rays > 0 && again != answers) throw SystemError(name + ": other hits every time");
+            answers = std::move(again), rays += double(answers.size());
+            elapsed = processor_seconds() - start;
+        }
+        return rays / elapsed / 1e6;
+    }
 };
 
-// Measures the speed for one kind of rays.  Throws if a repetition finds other hits.
-void run(Tracer& t, Kind kind, double least_seconds) {
-    const double start = processor_seconds();
-    double elapsed = 0, rays = 0;
-    while (elapsed < least_seconds) {
-        Column again(t.answers.size());
-        t.trace(kind, again);
-        if (rays > 0 && again != t.answers) throw SystemError(t.name + ": other hits every time");
-        t.answers = std::move(again), rays += double(t.answers.size());
-        elapsed = processor_seconds() - start;
-    }
-    t.speed.push_back(rays / elapsed / 1e6);
+// The share of rays with another hit, or a distance that differs by over 1e-4.
+double differ(const Column& a, const Column& b) {
+    double count = 0;
+    for (size_t i = 0; i < a.size(); ++i)
+        count += a[i] != b[i] && !(std::abs(a[i] - b[i]) <= 1e-4 * std::min(a[i], b[i]));
+    return count / double(a.size());
 }
 
-// Compares a tracer with the wide BVH.  `ratio`: speed of the wide BVH over that of the tracer.
-// `differ`: largest percentage of rays with another hit, or a distance that differs by over 1e-4.
-struct Outcome {
-    std::map<std::string, double> ratio = {};  // by kind; logarithms, summed over scenes
-    double differ = 0;
-};
-
-void race(Lines& lines, std::map<std::string, Outcome>& outcomes, const Case& c,
-          const Effort& effort) {
+// Adds a row for each kind of rays, round and tracer.
+void race(Rows& rows, const Case& c, const Effort& effort) {
     std::vector<Tracer> all = {{"wide", ours<WideBvh>(c)}, {"plain", ours<Bvh>(c)}};
 #if HAVE_EMBREE
     all.push_back({"Embree", embree(c)});
 #endif
     for (const auto& [kind, name] : kinds) {
-        for (Tracer& t : all) t.answers.assign(c.rays[kind].size(), 0), t.speed.clear();
+        for (Tracer& t : all) t.answers.assign(c.rays[kind].size(), 0);
         for (int round = 0; round < effort.rounds; ++round)
-            for (Tracer& t : all) run(t, kind, effort.seconds);
-        lines.push_back({c.name, name, text("%.2f", median(all[0].speed))});
-        for (size_t k = 1; k < all.size(); ++k) {
-            Column ratios;
-            for (size_t i = 0; i < all[k].speed.size(); ++i)
-                ratios.push_back(all[0].speed[i] / all[k].speed[i]);
-            lines.back().push_back(with_range(ratios, "%.2f"));
-            size_t count = 0;
-            for (size_t i = 0; i < all[k].answers.size(); ++i) {
-                const double s = all[0].answers[i], t = all[k].answers[i];
-                count += s != t && !(std::abs(s - t) <= 1e-4 * std::min(s, t));
-            }
-            if (count > 0 && all[k].name == "plain") throw SystemError("the trees' answers differ");
-            Outcome& o = outcomes[all[k].name];
-            o.ratio[name] += std::log(median(ratios));
-            o.differ = std::max(o.differ, 100 * double(count) / double(c.rays[kind].size()));
-        }
+            for (Tracer& t : all)
+                rows.push_back({c.name + " | " + name,
+                                t.name,
+                                0,
+                                uint64_t(round),
+                                {{"speed", t.run(kind, effort.seconds)}}});
+        if (differ(all[0].answers, all[1].answers) > 0)
+            throw SystemError("the trees' answers differ");
+        rows.back().of["differ"] = differ(all[0].answers, all.back().answers);
     }
 }
 
-// "1.1 primary, 0.9 bounce and 1.2 shadow rays": geometric means over scenes.
-std::string mean_ratio(const Outcome& o, size_t scenes) {
-    auto mean = [&](const char* kind) { return std::exp(o.ratio.at(kind) / double(scenes)); };
-    return text("%.2f primary, %.2f bounce and %.2f shadow rays", mean("primary"), mean("bounce"),
-                mean("shadow"));
+double speed(const Rows& rows) { return mean(rows, "speed"); }
+
+// "1.10 primary, 0.90 bounce and 1.20 shadow": the wide BVH's speed over another tracer's,
+// geometric means over scenes.
+std::string mean_ratio(const Rows& rows, const char* other) {
+    std::string words;
+    for (const auto& [kind, name] : kinds)
+        words += text(kind == primary  ? "%.2f %s"
+                      : kind == bounce ? ", %.2f %s"
+                                       : " and %.2f %s",
+                      over(where(rows, [n = name](auto& r) { return r.scene.ends_with(n); }),
+                           "wide", other, speed),
+                      name);
+    return words;
 }
 
 int study(const Scope& scope) {
     const Effort effort = scope.quick ? Effort{256, 3, 0.01} : Effort{};
     Page page(scope, "bench");
-    std::map<std::string, Outcome> outcomes;
+    Rows rows;
+    for (const char* name : {"cornell36", "mesh"}) race(rows, scene_of(name, effort.width), effort);
+    for (int n : {1000, 100000}) race(rows, soup(n, effort.width), effort);
     Lines lines;
-    const Case cases[] = {scene_of("cornell36", effort.width), scene_of("mesh", effort.width),
-                          soup(1000, effort.width), soup(100000, effort.width)};
-    for (const Case& c : cases) race(lines, outcomes, c, effort);
-    std::vector<std::string> head = {"triangles", "rays", "Mrays/s", "× plain"};
-    if (HAVE_EMBREE) head.push_back("× Embree");
-    page.set("rays", table(head, lines));
-    page.set("paths", table({"scene", "tracer", "µs per path", "time, × textbook"},
-                            all_paths(effort.rounds)));
-    page.set("verdict",
-             HAVE_EMBREE
-                 ? text("It traces %s per ray of Embree.  At most %.4f %% of the answers differ.",
-                        mean_ratio(outcomes["Embree"], std::size(cases)), outcomes["Embree"].differ)
-                 : "Embree was not measured: its header is missing (Debian: libembree-dev).");
-    page.set("over plain", mean_ratio(outcomes["plain"], std::size(cases)));
+    for (const auto& [place, all] : grouped(rows, of_scene))
+        lines.push_back({place, text("%.2f", speed(by_setting(all, "wide"))),
+                         gain(all, "wide", "plain", speed), gain(all, "wide", "Embree", speed)});
+    page.set("rays", table({"triangles | rays", "Mrays/s", "× plain", "× Embree"}, lines));
+    double differ = 0;
+    for (const Row& r : rows) differ = std::fmax(differ, r["differ"]);
+    page.set(
+        "verdict",
+        HAVE_EMBREE
+            ? text("It traces %s rays per ray of Embree.  At most %.4f %% of the answers differ.",
+                   mean_ratio(rows, "Embree"), 100 * differ)
+            : "Embree was not measured: its header is missing (Debian: libembree-dev).");
+    page.set("over plain", mean_ratio(rows, "plain"));
     page.set("width", text("%d", effort.width));
     page.set("rounds", text("%d", effort.rounds));
     page.set("bytes", text("%zu", sizeof(real)));

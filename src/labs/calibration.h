@@ -6,10 +6,7 @@ namespace calibration {
 
 inline double true_d(const Row& r) { return std::sqrt(std::max(0.0, r["d2"])); }
 
-// The estimate by the spread of replications.  Programs that never withhold it call it d_rel.
-inline double by_spread(const Row& r) {
-    return r[r.of.count("d_rel_by_spread") ? "d_rel_by_spread" : "d_rel"];
-}
+inline double by_spread(const Row& r) { return r["d_rel_by_spread"]; }
 
 // Judges an estimate, to a factor of two.  The true error is unknown if the reference's own error
 // is most of the distance between image and reference.

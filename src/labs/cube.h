@@ -131,15 +131,6 @@ public:
         return sum;
     }
 
-    // The mean of E over the face.
-    double mean() const {
-        double sum = 0;
-        for (size_t k = 0; k < n_ * n_; ++k)
-            sum += weight_[k / n_] * weight_[k % n_] *
-                   (direct(1 - s_[k / n_], 1 - s_[k % n_]) + indirect_[k]);
-        return sum;
-    }
-
 private:
     size_t n_;
     std::vector<Node> across_;

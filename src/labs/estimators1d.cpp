@@ -9,6 +9,7 @@
 
 #include "base/json.h"
 #include "base/rng.h"
+#include "labs/cube.h"
 #include "labs/rows.h"
 #include "shadow/population.h"
 
@@ -25,13 +26,10 @@ struct Weight {
     double operator()(double x) const { return c0 + x * (c1 + x * c2); }
     // The integral of w^k over [a, b], k <= 3.  Gauss's rule of four points is exact to degree 7.
     double integral(int k, double a, double b) const {
-        constexpr std::array places = {0.33998104358485626, 0.86113631159405258};
-        constexpr std::array weights = {0.65214515486254614, 0.34785484513745386};
         double sum = 0;
-        for (size_t i = 0; i < 2; ++i)
-            for (double sign : {-1, 1})
-                sum += weights[i] * std::pow((*this)((a + b + sign * places[i] * (b - a)) / 2), k);
-        return sum * (b - a) / 2;
+        for (const cube::Node& node : cube::gauss(4))
+            sum += node.weight * std::pow((*this)(std::lerp(a, b, node.at)), k);
+        return sum * (b - a);
     }
 };
 constexpr Weight steep = {"3x²", 0, 0, 3};
@@ -69,19 +67,19 @@ const Case cases[] = {
 
 // Results of the trials of one case, by log2 N.
 struct Tally {
-    std::array<std::array<Moments, 4>, steps> error;  // estimate - S
+    std::array<std::array<Moments, 4>, steps> error = {};  // estimate - S
     // Ratio estimate minus its linearisation mean(wV) + R (W - mean(w)) with the true R.  The
     // linearisation is unbiased, so the mean is the bias of the ratio, without most of the noise.
-    std::array<Moments, steps> excess;
+    std::array<Moments, steps> excess = {};
 };
 
-// Runs trials first ... last-1.  The first N numbers of each trial's own stream are its sample.
-Tally run_trials(const Case& c, uint64_t key, uint64_t first, uint64_t last) {
+// The first N numbers of each trial's own stream are its sample.
+Tally run_trials(const Case& c, uint64_t trials) {
     Tally tally;
     const Weight w = c.w;
     const ShadowPopulation truth = c.population();
-    for (uint64_t trial = first; trial < last; ++trial) {
-        Rng rng{hash(key, trial)};
+    for (uint64_t trial = 0; trial < trials; ++trial) {
+        Rng rng{hash(hash(0, uint64_t(c.letter[0])), trial)};
         SumsAbout sums{truth.W};
         for (size_t k = 0; k < steps; ++k) {
             while (sums.n < uint64_t(1) << k) {
@@ -97,29 +95,11 @@ Tally run_trials(const Case& c, uint64_t key, uint64_t first, uint64_t last) {
     return tally;
 }
 
-// Runs all trials in 64 blocks and merges these in order: the number of threads changes no result.
-Tally all_trials(const Case& c, uint64_t trials) {
-    constexpr uint64_t blocks = 64;
-    const uint64_t key = hash(0, uint64_t(c.letter[0]));
-    std::vector<Tally> parts(blocks);
-    auto run = [&](uint64_t b) {
-        parts[b] = run_trials(c, key, trials * b / blocks, trials * (b + 1) / blocks);
-    };
-    in_parallel(blocks, all_cores(), run, [](double) {});
-    Tally all;
-    for (const Tally& part : parts)
-        for (size_t k = 0; k < steps; ++k) {
-            for (size_t e = 0; e < 4; ++e) all.error[k][e].merge(part.error[k][e]);
-            all.excess[k].merge(part.excess[k]);
-        }
-    return all;
-}
-
 // A row for each N and estimator.  RMSE and deviation are those of one sample, in units of W.
 // "variance off" and "bias off" are relative differences from the predictions for large N.
 Rows rows_of(const Case& c, uint64_t trials) {
     constexpr double zero = 1e-15;  // bound of the rounding errors of a formula
-    const Tally tally = all_trials(c, trials);
+    const Tally tally = run_trials(c, trials);
     const ShadowPopulation p = c.population();
     Rows rows;
     for (size_t k = 0; k < steps; ++k)
@@ -186,10 +166,12 @@ double regression_over_best(const Rows& rows) {
 int study(const Scope& scope) {
     const uint64_t trials = scope.quick ? 512 : 32768;
     Page page(scope, "estimators1d");
+    std::array<Rows, std::size(cases)> parts;
+    in_parallel(
+        parts.size(), all_cores(), [&](size_t k) { parts[k] = rows_of(cases[k], trials); },
+        [](double) {});
     Rows rows;
-    for (const Case& c : cases) {
-        append(rows, rows_of(c, trials));
-    }
+    for (const Rows& part : parts) append(rows, part);
     page.plot("estimators1d", plot(in_scene(rows, "e"), "samples N", "rmse × √N / W", of_setting,
                                    count_of, mean_of("rmse"), "case e"));
     page.data("estimators1d", csv_of(rows, {"rmse", "deviation", "variance off", "bias off"}));

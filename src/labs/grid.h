@@ -15,13 +15,11 @@
 
 // ---- Scenes, settings and references ------------------------------------------------------------
 
-// Options that name a scene and its size, and the samples per pixel of its reference.  With 0 there
-// is no reference, and rows have only what the program reports.
+// Options that name a scene and its size, and the samples per pixel of its reference.
 struct Subject {
     std::string name, words;
     uint64_t truth = 16384;
     std::string truth_words = {};  // if not empty, they replace the options of the reference
-    bool has_truth() const { return truth > 0 || !truth_words.empty(); }
 };
 
 struct Setting {
@@ -43,34 +41,17 @@ inline std::string fingerprint(const std::string& bytes) {
     return text("%012.0f", double(h >> 25));
 }
 
-// Relative RMSE over all channels of all pixels (Khodulev 1996, ch. 5).
-inline double d_rel(const Image& truth, const Image& image) {
-    double square = 0;
-    for (const auto& pixel : truth.pixels)
-        for (float x : pixel) square += double(x) * double(x);
-    return std::sqrt(mse(truth, image) * 3 * double(truth.pixels.size()) / square);
-}
-
-inline double image_mean(const Image& image) {
-    double sum = 0;
-    for (const auto& pixel : image.pixels)
-        for (float x : pixel) sum += double(x);
-    return sum / (3 * double(image.pixels.size()));
-}
-
 // ---- The grid -----------------------------------------------------------------------------------
 
 class RenderGrid {
 public:
     // Renders with `program`, unless a setting has its own: a single-threaded render on each core.
-    // If `kept`, renders nothing and returns saved rows of any program.
-    RenderGrid(std::string name, std::string program, bool kept = false)
-        : name_(std::move(name)), program_(std::move(program)), is_kept_(kept) {
+    RenderGrid(std::string name, std::string program)
+        : name_(std::move(name)), program_(std::move(program)) {
         std::filesystem::create_directories("out/truth");
         std::ifstream in(file());
         for (std::string line; std::getline(in, line);)
-            if (const auto row = row_of(line))
-                done_[{key(row->first), is_kept_ ? "" : row->second}] = row->first;
+            if (const auto row = row_of(line)) done_[key(row->first, row->second)] = row->first;
     }
 
     unsigned jobs = all_cores();  // simultaneous renders
@@ -96,10 +77,9 @@ public:
                         const Job& j = all[(setting * counts.size() + c) * each + seed];
                         if (!done_.count(j.key)) missing.push_back(j);
                     }
-        if (!is_kept_) render_all(missing);
+        render_all(missing);
         Rows rows;
-        for (const Job& j : all)
-            if (const auto at = done_.find(j.key); at != done_.end()) rows.push_back(at->second);
+        for (const Job& j : all) rows.push_back(done_.at(j.key));
         return rows;
     }
 
@@ -123,18 +103,16 @@ private:
     struct Job {
         Row row;
         const Subject* subject;
-        std::string command;  // without its output files
-        std::pair<std::string, std::string> key;
+        std::string command, print, key;  // without its output files; fingerprint; position
     };
     std::string name_, program_;
-    bool is_kept_;
-    std::map<std::pair<std::string, std::string>, Row> done_;  // by position and fingerprint
+    std::map<std::string, Row> done_;  // by position and fingerprint
     std::map<std::string, Truth> truths_;
     std::map<std::string, std::string> prints_;  // fingerprints of programs
 
     std::string file() const { return "out/" + name_ + ".rows"; }
-    static std::string key(const Row& r) {
-        return text("%s\t%s\t%.0f\t%.0f", r.scene, r.setting, double(r.count), double(r.seed));
+    static std::string key(const Row& r, const std::string& print) {
+        return line_of({r.scene, r.setting, r.count, r.seed}, print);
     }
     static std::string truth_words(const Subject& s) {
         if (!s.truth_words.empty()) return s.words + " " + s.truth_words;
@@ -146,23 +124,21 @@ private:
 
     Job job(const Subject& s, const Setting& setting, uint64_t count, uint64_t seed) {
         const Row row{s.name, setting.name, count, seed};
-        if (is_kept_) return {row, &s, "", {key(row), ""}};
         const std::string program = setting.program.empty() ? program_ : setting.program,
                           file = words_in(program)[0];
         if (prints_[file].empty()) prints_[file] = fingerprint(read_file(file));
         const std::string command = text("%s %s %s%s%s", program, s.words, setting.words,
                                          count > 0 ? text(" --spp %.0f", double(count)) : "",
                                          seed > 0 ? text(" --seed %.0f", double(seed)) : "");
-        return {
-            row, &s, command, {key(row), fingerprint(prints_[file] + command + print_of_truth(s))}};
+        const std::string print = fingerprint(prints_[file] + command + print_of_truth(s));
+        return {row, &s, command, print, key(row, print)};
     }
 
     void render_all(const std::vector<Job>& missing) {
         std::ofstream out(file(), std::ios::app);
         out << '\n';  // the last line may have been cut short
-        for (const Job& j : missing)
-            if (j.subject->has_truth()) truth(*j.subject);
-        Steps steps(missing.size());
+        for (const Job& j : missing) truth(*j.subject);
+        size_t count = 0;
         std::mutex lock;
         in_parallel(
             missing.size(), jobs,
@@ -170,9 +146,10 @@ private:
                 const Row row =
                     rendered(missing[k], text("out/%s-%d-%zu", name_, int(::getpid()), k));
                 const std::lock_guard guard(lock);
-                steps.next(row.scene + ", " + row.setting);
+                std::fprintf(stderr, "%zu of %zu: %s, %s\n", ++count, missing.size(),
+                             row.scene.c_str(), row.setting.c_str());
                 done_[missing[k].key] = row;
-                out << line_of(row, missing[k].key.second) << std::flush;
+                out << line_of(row, missing[k].print) << std::flush;
             },
             [](double) {});
     }
@@ -187,7 +164,6 @@ private:
         row.of["mean"] = image_mean(image);
         row.of["stated"] = row["error"];
         row.of["error"] = json.find("\"stopped_by\": \"error\"") != json.npos;
-        if (!job.subject->has_truth()) return row;
         const Truth& f = truths_.at(print_of_truth(*job.subject));
         const double off = row.of["off"] = d_rel(f.image, image);
         row.of["own"] = f.own;

@@ -1,13 +1,11 @@
 // labs/illumination.cpp  6  two methods of global illumination on the same triangles
 //
-//   build/illumination [--quick] [--kept]
+//   build/illumination [--quick]
 //
 // Khodulev (1996) compared accuracy over time of deterministic and Monte Carlo illumination maps.
-// This program repeats the comparison with build/radiosity, which has both methods.  Then it
-// compares them with a path tracer, which needs no mesh.
+// This program repeats the comparison with build/radiosity, which has both methods.
 #include "labs/illumination.h"
 
-#include "base/json.h"
 #include "labs/grid.h"
 
 namespace {
@@ -20,27 +18,19 @@ struct Course {
     uint64_t particles;
     double flat, faces;
     Subject seen_by(const std::string& truth) const {
-        const char* size = scene == "cornell36" ? " --size 128x64" : "";
-        return {text("%s %g", scene, H),
-                text("scenes/%s.scene%s --rays 4 --mesh %g", scene, size, H), 0, truth};
-    }
-    Subject subject() const {
-        return seen_by(text("--method particles --sampler independent --particles %.0f --seed 1",
-                            double(particles)));
+        return {text("%s %g", scene, H), text("scenes/%s.scene --rays 4 --mesh %g", scene, H), 0,
+                truth};
     }
 };
 
 std::vector<Course> courses(bool quick) {
-    if (quick)
-        return {{"cube", 3.6, 1 << 18, 1e-3, 1e-3},
-                {"cornell36", 320, 1 << 18, 1e-2, 1e-2},
-                {"cornell36", 160, 1 << 18, 1e-2, 1e-2}};
+    if (quick) return {{"cube", 3.6, 1 << 18, 1e-3, 1e-3}, {"cornell36", 160, 1 << 18, 1e-2, 1e-2}};
     constexpr uint64_t n = 1 << 22;
-    std::vector<Course> all = {{"cube", 0.884, 4 * n, 1e-4, 1e-4},
-                               {"atelier", 0.295, 8 * n, 1e-1, 1e-3}};
-    for (double H : {226.0, 160.0, 113.0, 80.0, 56.5, 40.0})
-        all.push_back({"cornell36", H, H < 60 ? 4 * n : n, 1e-4, 1e-4});
-    return all;
+    return {{"cube", 0.884, 4 * n, 1e-4, 1e-4},
+            {"atelier", 0.295, 8 * n, 1e-1, 1e-3},
+            {"cornell36", 160, n, 1e-4, 1e-4},
+            {"cornell36", 80, n, 1e-4, 1e-4},
+            {"cornell36", 40, 4 * n, 1e-4, 1e-4}};
 }
 
 // Rows of the settings that begin with this word, shortest run first.
@@ -64,17 +54,19 @@ struct Race {
     Curve particles;
 };
 
-Race run_race(RenderGrid& grid, const Course& c, const Truth* traced, bool kept) {
+Race run_race(RenderGrid& grid, const Course& c) {
     Race race;
+    const Subject subject =
+        c.seen_by(text("--method particles --sampler independent "
+                       "--particles %.0f --seed 1",
+                       double(c.particles)));
     auto add = [&](const std::vector<Setting>& settings, const Truth* last, uint64_t seeds) {
         grid.measure = [=](Row& r, const Image& image, const Truth& f) {
             r.of["reference"] = f.of.at("error");
             r.of["reference_seconds"] = f.of.at("map_cpu_seconds");
             if (last) r.of["optimistic2"] = sqr(d_rel(last->image, image));
-            if (traced) r.of["total2"] = sqr(d_rel(traced->image, image)) - sqr(traced->own);
-            if (traced) r.of["limit2"] = sqr(d_rel(traced->image, f.image)) - sqr(traced->own);
         };
-        Rows rows = grid.run({c.subject()}, settings, {0}, seeds);
+        Rows rows = grid.run({subject}, settings, {0}, seeds);
         for (Row& r : rows)  // the distance to the last solution is no error near it
             if (!(r["unshot"] > 4 * rows.back()["unshot"])) r.of["optimistic2"] = NAN;
         append(race.rows, rows);
@@ -92,7 +84,7 @@ Race run_race(RenderGrid& grid, const Course& c, const Truth* traced, bool kept)
             const std::string words = text("--method %s --unshot %g", method, unshot);
             stops.push_back({text("%s %g", method, unshot), words});
         }
-        add(stops, kept ? nullptr : &grid.truth(c.seen_by(stops.back().words)), 0);
+        add(stops, &grid.truth(c.seen_by(stops.back().words)), 0);
     }
     const Rows longer = by_setting(race.rows, "independent 1/4");
     race.k = proportion(where(by_method(race.rows, "independent"),
@@ -101,7 +93,6 @@ Race run_race(RenderGrid& grid, const Course& c, const Truth* traced, bool kept)
     for (Row& r : race.rows) {
         r.of["own"] = race.k.mean * r["reference"];
         r.of["d2"] = sqr(r["off"]) - sqr(r["own"]);
-        r.of["limit2"] = r["limit2"] - sqr(r["own"]);
     }
     race.name = text("%s, %.0f triangles", c.scene, longer[0]["elements"]);
     race.particles = curve_of(race.rows, "independent", "d2");
@@ -167,45 +158,20 @@ void plot_race(Page& page, const Race& r) {
     page.plot("radiosity-time", plot(all, "CPU seconds", "error (d_rel)", r.name));
 }
 
-// Errors against a long run of the path tracer, which is a reference without discretisation.
-void tell_total(Page& page, const std::vector<Race>& races) {
-    Lines lines;
-    for (const Race& r : races) {
-        if (std::isnan(r.rows[0]["limit2"])) continue;
-        auto error = [&](const char* setting, const char* squares) {
-            return percent(std::sqrt(mean(by_setting(r.rows, setting), squares)));
-        };
-        lines.push_back({text("%.0f", r.rows[0]["elements"]), error("independent 1/4", "limit2"),
-                         error("hierarchy 0.01", "total2"), error("hierarchy 0.01", "d2"),
-                         error("hierarchy 0.01", "optimistic2")});
-    }
-    page.set("total", table({"triangles", "particles' limit", "hierarchy, 1 %: total", "realistic",
-                             "optimistic"},
-                            lines));
-}
-
-// Reference paths have up to 64 bounces.  The light beyond is negligible, because .73^64 is 10^-9.
 int study(const Scope& scope) {
     Page page(scope, "radiosity");
-    RenderGrid grid("illumination", scope.beside("radiosity"), scope.kept);
-    RenderGrid paths("illumination-paths", scope.beside() + " --depth 64", scope.kept);
-    const Subject room{"cornell36", "scenes/cornell36.scene --size 128x64",
-                       scope.quick ? 256u : 4096u};
-    const Truth* truth = scope.kept ? nullptr : &paths.truth(room);
+    RenderGrid grid("illumination", scope.beside("radiosity"));
     std::vector<Race> races;
-    for (const Course& c : courses(scope.quick))
-        races.push_back(run_race(grid, c, c.scene == "cornell36" ? truth : nullptr, scope.kept));
+    for (const Course& c : courses(scope.quick)) races.push_back(run_race(grid, c));
     tell_races(page, races);
     plot_race(page, races.back());
-    tell_total(page, races);
     return page.finish();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return experiment(
-        argc, argv,
-        {"illumination", "Compares deterministic and Monte Carlo illumination maps.", {}, true},
-        study);
+    return experiment(argc, argv,
+                      {"illumination", "Compares deterministic and Monte Carlo illumination maps."},
+                      study);
 }

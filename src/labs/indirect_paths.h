@@ -1,24 +1,21 @@
-// labs/indirect_paths.h  3  paths that end on illumination maps, or continue there
+// labs/indirect_paths.h  4  paths that end on illumination maps or continue there, without bias
 //
 // At a diffuse surface point y, maps approximate the reflected radiance R(y) by R_map(y) =
-// rho E(y) / pi, with noise and discretisation error.  After a bounce there are three methods.
+// rho E(y) / pi, with noise and discretisation error.  After a bounce these paths estimate R(y) by
 //
-// map:        R_map(y) ends the path (final gathering; Reichert 1992).  Biased by the maps' error,
-//             averaged over the surfaces that one bounce reaches.
-// control:    R_map(y) + [xi < q] / q (R^(y) - R_map(y)).  R^ is the path's own estimate, by a
-//             light sample and one more bounce, recursively.  This is Russian roulette that returns
-//             the maps' value instead of 0 when it ends a path (Szecsi, Szirmay-Kalos, Kelemen
-//             2003, Variance reduction for Russian roulette).  Unbiased for any maps.
-// regression: A slope times R_map in both places.  Unbiased, because other paths give the slope.
+//     R_map(y) + [xi < q] / q (R^(y) - R_map(y)).
 //
-// All this holds for the triangles of the maps.  Where they approximate spheres (facets.h), their
-// light differs from that of the spheres.
+// R^ is the path's own estimate, by a light sample and one more bounce, recursively.  This is
+// Russian roulette that returns the maps' value instead of 0 when it ends a path (Szecsi,
+// Szirmay-Kalos, Kelemen 2003, Variance reduction for Russian roulette).  Unbiased for any maps.
+//
+// It holds for the triangles of the maps.  Where they approximate spheres (facets.h), their light
+// differs from that of the spheres.
 //
 // The number of bounces is unlimited, as in the maps: the scene's depth must be out of reach.
 #pragma once
+#include "labs/room.h"
 #include "radiosity/gather.h"
-
-// ---- Sample values ------------------------------------------------------------------------------
 
 // Sample values of a path of any length.  From vertex `structured` on they are independent, like
 // those of particles.
@@ -42,36 +39,27 @@ private:
     const Sampler first_, rest_;
 };
 
-// ---- Russian roulette ---------------------------------------------------------------------------
-
-// Paths continue with probability throughput / threshold, as in step().  The threshold 2/3 was the
-// best in measurements (`make indirect`).
-inline constexpr real by_throughput = real(2) / 3, never = infinity;
-
-// The probability to continue.  It is below 1 in long paths, so that they end between white walls.
-inline real probability(real threshold, const Segment& s) {
-    const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
-    return std::min(most, max_of(s.beta) / threshold);
-}
-
-// ---- Paths --------------------------------------------------------------------------------------
-
 struct Gather {
     const Scene& scene;
     Technique technique;  // its roulette is 0: probability() replaces it
     const KnownLight& known;
-    real threshold = by_throughput;
-    rgb slope{1, 1, 1};
 };
 
-// Radiance along a segment.  The path always continues at the end of the first segment.
-inline rgb radiance_along(const Gather& g, const Segment& first, const EndlessNumbers& u) {
+// The probability to continue, 3/2 of the throughput.  It is below 1 in long paths, so that they
+// end between white walls.
+inline real probability(const Segment& s) {
+    const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
+    return std::min(most, max_of(s.beta) * real(1.5));
+}
+
+// Radiance along a camera ray.  The path always continues at its first vertex.
+inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
     rgb L;
-    for (Segment s = first;;) {
-        const real q = s.k > first.k ? probability(g.threshold, s) : 1;
-        const bool goes = s.k == first.k || (q > 0 && u.xi(s.k) < q);
+    for (Segment s{ray, ray.o};;) {
+        const real q = s.k > 0 ? probability(s) : 1;
+        const bool goes = s.k == 0 || (q > 0 && u.xi(s.k) < q);
         // The weight of the maps' value: 1 - [xi < q] / q.
-        const real weight = s.k == first.k ? 0 : goes ? 1 - 1 / q : 1;
+        const real weight = s.k == 0 ? 0 : goes ? 1 - 1 / q : 1;
         // At the scene's depth step() finds emission only.
         Segment now = s;
         if (goes)
@@ -80,44 +68,39 @@ inline rgb radiance_along(const Gather& g, const Segment& first, const EndlessNu
             now.k = g.scene.depth;
         const Step e = step(g.scene, g.technique, now, u[s.k]);
         L += s.beta * e.Le * e.weight + now.beta * e.direct.L;
-        if (e.met && weight != 0) L += s.beta * g.slope * g.known.at(e.x) * weight;
+        if (e.met && weight != 0) L += s.beta * g.known.at(e.x) * weight;
         if (e.end) return L;
         s = e.next;
     }
 }
 
-// Radiance along a camera ray.
-inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
-    return radiance_along(g, Segment{ray, ray.o}, u);
-}
-
-// ---- Slope --------------------------------------------------------------------------------------
-
-// The slope of regression from n paths, per channel.  At the first vertex after a bounce it is the
-// b that minimises the mean of (throughput (R^ - b R_map))^2, since the variance of Russian
-// roulette grows with that mean.  It is 1 where the maps are black.  The paths begin anywhere on
-// the film.  The pattern must be of independent samples, and differ from that of any image.
-inline rgb slope_of(const Gather& g, const Pattern& pattern, uint64_t n) {
-    const auto [width, height] = g.scene.size;
-    std::array<double, 3> both{}, known{};
-    for (uint64_t i = 0; i < n; ++i) {
-        const Sampler sampler(pattern, 0, i);
-        const EndlessNumbers u(sampler, sampler);
-        const vec2 film = sampler.get2(film_x);
-        const Ray ray =
-            camera_ray(g.scene.camera, g.scene.size, film.x * real(width), film.y * real(height));
-        const Step seen = step(g.scene, g.technique, {ray, ray.o}, u[0]);
-        if (seen.end) continue;
-        const Step y = step(g.scene, g.technique, seen.next, u[1]);
-        if (!y.met) continue;
-        const rgb R_map = seen.next.beta * g.known.at(y.x),
-                  emitted = seen.next.beta * y.Le * y.weight, L = radiance_along(g, seen.next, u);
-        for (size_t c = 0; c < 3; ++c) {
-            const double m = double(R_map.*axis[c]);
-            both[c] += double((L - emitted).*axis[c]) * m;
-            known[c] += m * m;
+// Renders a scene's triangles.  Its maps have one particle per 64 paths, and edges of at most 1/16
+// of the scene's diagonal.  Particles and paths have different seeds.
+inline Rendered by_control(const Scene& read, uint64_t spp, uint64_t seed) {
+    const double start_of_all = processor_seconds();
+    const Room room = make_room("", read, double(diagonal(read)) / 16);
+    Scene scene = room.scene;
+    scene.depth = std::numeric_limits<int>::max();
+    const auto [width, height] = scene.size;
+    const uint64_t n = spp * uint64_t(width) * uint64_t(height) / 64 + 1;
+    Particles p(scene, room.mesh, Particles::pattern(SamplerKind::halton, hash(seed, 1), n));
+    walk(p, n);
+    const KnownLight known = known_light(scene, room.mesh, p.map());
+    const Gather g{scene, {Direction::bsdf, LightMode::mis, 0}, known};
+    const Pattern pattern = EndlessNumbers::pattern(SamplerKind::sobol, seed, spp),
+                  rest = EndlessNumbers::independent(seed);
+    Image image(width, height);
+    auto row = [&](size_t y) {
+        for (int x = 0; x < image.width; ++x) {
+            rgb sum;
+            for (uint64_t i = 0; i < spp; ++i) {
+                const PixelSample s{x, int(y), i};
+                const Start at = start(scene, pattern, s);
+                sum += Li(g, at.ray, {at.sampler, Sampler(rest, pixel_number(scene, s), i)});
+            }
+            for (size_t c = 0; c < 3; ++c) image.at(x, int(y))[c] = float(sum.*axis[c] / real(spp));
         }
-    }
-    auto slope = [&](size_t c) { return known[c] > 0 ? real(both[c] / known[c]) : 1; };
-    return {slope(0), slope(1), slope(2)};
+    };
+    in_parallel(size_t(height), all_cores(), row, [](double) {});
+    return {std::move(image), {{"cpu_seconds", processor_seconds() - start_of_all}}};
 }

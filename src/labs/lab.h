@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -16,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "base/program.h"
+#include "base/option.h"
 #include "base/stats.h"
 #include "film/passes.h"
 #include "keep/read_pfm.h"
@@ -47,27 +46,29 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y) 
     return xy / xx;
 }
 
-// "1.21 (1.19–1.30)": the median with the least and the greatest, in a given format.
-inline std::string with_range(const std::vector<double>& x, const char* format) {
-    const auto [least, most] = std::minmax_element(x.begin(), x.end());
-    return text(format, median(x)) + " (" + text(format, *least) + "–" + text(format, *most) + ")";
-}
-
 // "1.21 ± 0.03": mean and standard deviation, in a given format.  One run has no deviation.
 inline std::string plus_minus(const Moments& m, const char* format) {
     const std::string mean = text(format, m.mean);
     return m.n > 1 ? text("%s ± %s", mean, text(format, std::sqrt(m.variance()))) : mean;
 }
 
-// Mean squared difference of two images of equal size, over pixels and channels.
-inline double mse(const Image& f, const Image& g) {
-    double sum = 0;
-    for (size_t i = 0; i < f.pixels.size(); ++i)
+// Relative RMSE over all channels of all pixels (Khodulev 1996, ch. 5).
+inline double d_rel(const Image& truth, const Image& image) {
+    double off = 0, all = 0;
+    for (size_t i = 0; i < truth.pixels.size(); ++i)
         for (size_t c = 0; c < 3; ++c) {
-            const double error = double(f.pixels[i][c]) - double(g.pixels[i][c]);
-            sum += error * error;
+            const double f = double(truth.pixels[i][c]);
+            off += sqr(double(image.pixels[i][c]) - f), all += sqr(f);
         }
-    return sum / (3 * double(f.pixels.size()));
+    return std::sqrt(off / all);
+}
+
+// Mean of a power of all channels of all pixels.
+inline double image_mean(const Image& image, int power = 1) {
+    double sum = 0;
+    for (const auto& pixel : image.pixels)
+        for (float x : pixel) sum += std::pow(double(x), power);
+    return sum / (3 * double(image.pixels.size()));
 }
 
 // The part of an image with this size, from the pixel (left, top) on.
@@ -113,62 +114,30 @@ inline std::string report_folder(bool quick) {
     return quick || sizeof(real) < sizeof(double) ? "out" : "reference";
 }
 
-// The first line that a shell command prints, or "" if it prints none.
-inline std::string said_by(const char* command) {
-    std::string line;
-    if (std::FILE* out = ::popen(command, "r")) {
-        for (int c; (c = std::fgetc(out)) != EOF && c != '\n';) line += char(c);
+// What a shell command prints, without its last newline.
+inline std::string said_by(const std::string& command) {
+    std::string words;
+    if (std::FILE* out = ::popen(command.c_str(), "r")) {
+        for (int c; (c = std::fgetc(out)) != EOF;) words += char(c);
         ::pclose(out);
     }
-    return line;
+    return words.substr(0, words.find_last_not_of('\n') + 1);
 }
 
 // The last sentence of a report.  `pictures` is a checksum of the renderer's pictures.  By it
 // tests/reports finds reports of a renderer that drew other pictures.
 inline std::string made_by(const std::string& command) {
-    const std::string day = said_by("date +%F"),
+    const std::string day = said_by("date +%F"), pictures = said_by("tests/reports --pictures"),
                       commit = said_by("git rev-parse --short HEAD 2>/dev/null || echo unknown"),
-                      pictures = said_by("tests/reports --pictures"),
                       processor = said_by(
                           "{ sed -n 's/^model name.*: //p' /proc/cpuinfo || "
-                          "sysctl -n machdep.cpu.brand_string; } 2>/dev/null");
+                          "sysctl -n machdep.cpu.brand_string; } 2>/dev/null | head -1");
     return text(
         "Written on %s by `%s`: commit %s, pictures %s, %u threads of %s, numbers in %s, "
         "compiled by %s.",
         day.c_str(), command.c_str(), commit.c_str(), pictures.c_str(), all_cores(),
         processor.c_str(), sizeof(real) == sizeof(double) ? "double" : "float", compiler().c_str());
 }
-
-inline std::string command_of(int argc, char** argv) {
-    std::string command = argv[0];
-    for (int k = 1; k < argc; ++k) command += std::string(" ") + argv[k];
-    return command;
-}
-
-// Progress on stderr, such as "17 of 96, 40 s left: cosine + NEE".  A terminal overwrites the line;
-// a file gets a line per step.
-class Steps {
-public:
-    explicit Steps(size_t total) : total_(total), terminal_(::isatty(STDERR_FILENO) == 1) {}
-    ~Steps() {
-        if (terminal_) std::fputs("\r\033[K", stderr);
-    }
-    void next(const std::string& what) {
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        const double left = done_ ? seconds / double(done_) * double(total_ - done_) : 0;
-        const std::string when = done_ ? text(", %.0f s left", left) : "";
-        std::fprintf(stderr, terminal_ ? "\r%zu of %zu%s: %s\033[K" : "%zu of %zu%s: %s\n",
-                     done_ + 1, total_, when.c_str(), what.c_str());
-        ++done_;
-    }
-
-private:
-    const size_t total_;
-    const bool terminal_;
-    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    size_t done_ = 0;
-};
 
 // ---- Renders ------------------------------------------------------------------------------------
 
@@ -200,80 +169,63 @@ inline Image rendering(const std::string& command) {
     return image;
 }
 
+// An image that an experiment renders itself, and its statistics.
+struct Rendered {
+    Image image;
+    std::map<std::string, double> of = {};
+};
+
 // ---- Command lines ------------------------------------------------------------------------------
 
-struct Flag {
-    std::string_view name, value, help;           // value: its placeholder; "": none
-    std::function<void(const std::string&)> set;  // may throw UserError
-};
-
 struct Lab {
-    std::string_view name, purpose;
-    std::vector<Flag> flags = {};
-    bool has_rows = false;  // has rows of a grid, and the option --kept
+    std::string name, purpose;
+    OptionTable options = {};
+    // Renders with penumbra's options: build/LAB --render WORDS -o FILE.pfm --stats FILE.json
+    std::function<Rendered(const std::vector<std::string>&)> render = {};
 };
 
-inline void print_help(const Lab& lab) {
-    std::printf("usage: %s [options]\n\n%s\n\n", std::string(lab.name).c_str(),
-                std::string(lab.purpose).c_str());
-    for (const Flag& flag : lab.flags)
-        std::printf("  %-20s %s\n", text("%s %s", flag.name.data(), flag.value.data()).c_str(),
-                    std::string(flag.help).c_str());
-    std::printf("  %-20s %s\n", "--help", "print this");
-}
-
-// The renderer in this experiment's folder: build/techniques-float runs build/penumbra-float.
-inline std::string renderer_beside(const Lab& lab, const std::string& self,
-                                   const std::string& name = "penumbra") {
-    std::filesystem::path program = self;
-    program.replace_filename(program.filename().string().replace(0, lab.name.size(), name));
-    if (::access(program.c_str(), X_OK) != 0)
-        throw UserError(program.string() + ": cannot run; say  make build/" + name);
-    return program.string();
-}
-
-// The main function of a program: parses the flags.  work() returns the exit status.
-template <class Work>
-int lab_main(int argc, char** argv, const Lab& lab, Work work) try {
-    const std::vector<std::string> words(argv + 1, argv + argc);
-    std::vector<std::string_view> known = {"--help"};
-    for (const Flag& flag : lab.flags) known.push_back(flag.name);
-    for (size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == "--help") return print_help(lab), 0;
-        const auto flag = std::find_if(lab.flags.begin(), lab.flags.end(),
-                                       [&](const Flag& f) { return f.name == words[i]; });
-        if (flag == lab.flags.end()) throw UserError(unknown("option", words[i], known));
-        if (flag->value.empty()) {
-            flag->set("");
-            continue;
-        }
-        if (++i == words.size()) throw UserError(std::string(flag->name) + ": needs a value");
-        flag->set(words[i]);
-    }
-    return finished(work());
-} catch (...) {
-    return failed();
-}
-
-// The common options of an experiment, its program and its command line.
+// An experiment's program, its command line, and if it makes fewer runs.
 struct Scope {
     std::string name, self, command;
     bool quick = false;
-    bool kept = false;  // makes tables from rows of former runs, without rendering
 
+    // A program in this experiment's folder: build/techniques-float runs build/penumbra-float.
     std::string beside(const std::string& program = "penumbra") const {
-        return renderer_beside({name, "", {}}, self, program);
+        std::filesystem::path path = self;
+        path.replace_filename(path.filename().string().replace(0, name.size(), program));
+        if (::access(path.c_str(), X_OK) != 0)
+            throw UserError(path.string() + ": cannot run; say  make build/" + program);
+        return path.string();
     }
 };
 
-// The main function of an experiment with a report.  study(scope) returns the exit status.
+inline int render_by(const Lab& lab, const std::vector<std::string>& words) {
+    const Rendered r = lab.render(words);
+    json::Object stats;
+    for (const auto& [name, x] : r.of) stats.add(name, json::number(x));
+    write_image(value_of(words, "-o"), r.image, 1);
+    write_file(value_of(words, "--stats"), stats.text() + "\n");
+    return 0;
+}
+
+// The main function of an experiment.  study(scope) returns the exit status.
 template <class Study>
-int experiment(int argc, char** argv, Lab lab, Study study) {
-    Scope scope{std::string(lab.name), argv[0], command_of(argc, argv)};
-    lab.flags.push_back(
-        {"--quick", "", "fewer runs; writes to out/", [&](auto&) { scope.quick = true; }});
-    if (lab.has_rows)
-        lab.flags.push_back({"--kept", "", "tables from rows of former runs, without rendering",
-                             [&](auto&) { scope.kept = true; }});
-    return lab_main(argc, argv, lab, [&] { return study(scope); });
+int experiment(int argc, char** argv, const Lab& lab, Study study) try {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (lab.render && !words.empty() && words[0] == "--render")
+        return finished(render_by(lab, {words.begin() + 1, words.end()}));
+    Scope scope{lab.name, argv[0], argv[0]};
+    for (const std::string& word : words) scope.command += " " + word;
+    bool help = false;
+    OptionTable table =
+        lab.options + OptionTable{{"--quick", "", "fewer runs; writes to out/", "",
+                                   [&](Text) { scope.quick = true; }},
+                                  {"--help", "", "print this", "", [&](Text) { help = true; }}};
+    parse_words(table, words, [](auto& word) { throw UserError(unknown("option", word, {})); });
+    if (help)
+        std::printf("usage: %s [options]\n\n%s\n\n%s", lab.name.c_str(), lab.purpose.c_str(),
+                    option_lines(table).c_str());
+    return finished(help ? 0 : study(scope));
+} catch (...) {
+    return failed();
 }

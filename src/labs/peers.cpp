@@ -1,20 +1,11 @@
-// labs/peers.cpp  6  efficiency compared with Cycles and a textbook path tracer
+// labs/peers.cpp  6  efficiency compared with Cycles
 //
-//   build/peers [--seeds N] [--quick] [--kept]
-//   build/peers --render cycles|textbook SCENE --spp N --seed N -o FILE.pfm --stats FILE.json ...
+//   build/peers [--seeds N] [--quick]
 #include "base/json.h"
 #include "labs/grid.h"
-#include "labs/textbook.h"
 #include "world/scene_file.h"
 
 namespace {
-
-// ---- Other renderers, as programs with penumbra's options ---------------------------------------
-
-struct Taken {
-    Image image;
-    double seconds = 0;
-};
 
 std::string json_of(vec3 v) { return json::numbers({double(v.x), double(v.y), double(v.z)}); }
 
@@ -44,7 +35,7 @@ std::string room_of(const Scene& s, uint64_t spp) {
     return room.text();
 }
 
-Taken by_cycles(const Scene& scene, uint64_t spp, uint64_t seed, const std::string& stem) {
+Rendered by_cycles(const Scene& scene, uint64_t spp, uint64_t seed, const std::string& stem) {
     write_file(stem + ".room.json", room_of(scene, spp));
     try {
         execute({"/bin/sh", "-c", "exec blender \"$@\" >\"$0\" 2>&1", stem + ".log", "-b",
@@ -55,52 +46,29 @@ Taken by_cycles(const Scene& scene, uint64_t spp, uint64_t seed, const std::stri
     }
     std::string seconds = read_file(stem + ".seconds");
     seconds.erase(seconds.find('\n'));
-    Taken taken{read_pfm(stem + ".pfm"), parse_number(seconds)};
+    Rendered taken{read_pfm(stem + ".pfm"), {{"cpu_seconds", parse_number(seconds)}}};
     for (const char* suffix : {".room.json", ".log", ".seconds", ".pfm", ".exr"})
         std::filesystem::remove(stem + suffix);
     return taken;
 }
 
-Taken by_textbook(const Scene& scene, uint64_t spp, uint64_t seed) {
-    textbook::Room room = textbook::room_of(scene);
-    Taken taken{Image(scene.size.width, scene.size.height)};
-    const double start = processor_seconds();
-    for (int y = 0; y < scene.size.height; ++y)
-        textbook::render_row(room, scene, seed, spp, y, taken.image);
-    taken.seconds = processor_seconds() - start;
-    return taken;
-}
-
-// Renders an image.  Unless --sets is 1, renders halves and reports the error of their mean.
-int render(const std::vector<std::string>& words) {
-    const std::string &who = words.at(0), out = value_of(words, "-o");
-    const Scene scene = read_scene(words.at(1)).scene;
+// Renders an image by Cycles.  Unless --sets is 1, renders halves and reports the error of their
+// mean.
+Rendered render(const std::vector<std::string>& words) {
+    const std::string stem = value_of(words, "-o") + "-cycles";
+    const Scene scene = read_scene(words.at(0)).scene;
     const uint64_t spp = parse_count(value_of(words, "--spp"), 1, 1 << 20),
                    seed = parse_count(value_of(words, "--seed"), 0, 1 << 30);
-    auto take = [&](uint64_t n, uint64_t s) {
-        return who == "cycles" ? by_cycles(scene, n, s, out + "-cycles") : by_textbook(scene, n, s);
-    };
-    const bool halves = value_of(words, "--sets") != "1";
-    Taken a = take(halves ? spp / 2 : spp, seed);
-    double own = NAN;
-    if (halves) {
-        const Taken b = take(spp / 2, seed + 1);
-        own = d_rel(a.image, b.image) / 2;
-        for (size_t i = 0; i < a.image.pixels.size(); ++i)
-            for (size_t c = 0; c < 3; ++c)
-                a.image.pixels[i][c] = (a.image.pixels[i][c] + b.image.pixels[i][c]) / 2;
-        a.seconds += b.seconds;
-    }
-    write_image(out, a.image, 1);
-    json::Object stats;
-    stats.add("samples_per_pixel", std::to_string(spp));
-    stats.add("cpu_seconds", json::number(a.seconds));
-    stats.add("d_rel", std::isnan(own) ? "null" : json::number(own));
-    write_file(value_of(words, "--stats"), stats.text() + "\n");
-    return 0;
+    if (value_of(words, "--sets") == "1") return by_cycles(scene, spp, seed, stem);
+    Rendered a = by_cycles(scene, spp / 2, seed, stem);
+    const Rendered b = by_cycles(scene, spp / 2, seed + 1, stem);
+    a.of["d_rel"] = d_rel(a.image, b.image) / 2;
+    a.of["cpu_seconds"] += b.of.at("cpu_seconds");
+    for (size_t i = 0; i < a.image.pixels.size(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            a.image.pixels[i][c] = (a.image.pixels[i][c] + b.image.pixels[i][c]) / 2;
+    return a;
 }
-
-// ---- Study --------------------------------------------------------------------------------------
 
 const std::string cycles = "Cycles";
 
@@ -132,14 +100,9 @@ int study(const Scope& scope, uint64_t seeds) {
                               "--sampler stratified", "--sampler halton"})
         ours.push_back(
             {std::string("penumbra, --sets 1 ") + words, std::string("--sets 1 ") + words});
-    Rows rows;
-    auto add = [&](const std::string& name, const std::string& program,
-                   const std::vector<Setting>& settings) {
-        append(rows, RenderGrid(name, program, scope.kept).run(both, settings, {spp}, seeds));
-    };
-    add("peers-cycles", scope.self + " --render cycles", {{cycles, "--sets 1"}});
-    add("peers-textbook", scope.self + " --render textbook", {{"a textbook's tracer", "--sets 1"}});
-    add("peers", scope.beside(), ours);
+    Rows rows = RenderGrid("peers-cycles", scope.self + " --render")
+                    .run(both, {{cycles, "--sets 1"}}, {spp}, seeds);
+    append(rows, RenderGrid("peers", scope.beside()).run(both, ours, {spp}, seeds));
     page.set("table", views(rows));
     for (const auto& [word, camera] : {std::pair{"time", "A"}, std::pair{"time B", "B"}})
         page.set(word,
@@ -153,15 +116,9 @@ int study(const Scope& scope, uint64_t seeds) {
 
 int main(int argc, char** argv) {
     uint64_t seeds = 3;
-    if (argc > 2 && argv[1] == std::string("--render")) try {
-            return render({argv + 2, argv + argc});
-        } catch (...) {
-            return failed();
-        }
-    const Lab lab{
-        "peers",
-        "Measures efficiency compared with Cycles, if blender is installed.",
-        {{"--seeds", "N", "renders of each (3)", [&](auto& n) { seeds = parse_count(n, 3, 100); }}},
-        true};
+    const Lab lab{"peers",
+                  "Measures efficiency compared with Cycles, if blender is installed.",
+                  {whole_number("--seeds", "renders of each", "3", seeds, 3, 100)},
+                  render};
     return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, seeds); });
 }

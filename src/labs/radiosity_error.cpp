@@ -39,8 +39,6 @@ Rows rows_of(const Runs& runs) {
 }
 std::string of_asked(const Row& r) { return percent(r["asked"]); }
 
-// ---- Particles ----------------------------------------------------------------------------------
-
 Runs walks(const Room& room, double asked, uint64_t n) {
     Runs runs;
     CommonOptions o;
@@ -91,8 +89,6 @@ std::string walked_cell(Page& page, const Rows& rows) {
     const bool kept = over(0.5) <= 1 && (!is_long || (over(0.5) >= 0.95 && over(0.95) < 1.05));
     return text("%.3f, %.3f, %.3f: ", over(0.5), over(0.95), over(1)) + page.verdict(kept);
 }
-
-// ---- Shooting -----------------------------------------------------------------------------------
 
 // Adds checks of one run.  The last map is the reference, and its bound is added to the distance.
 void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {

@@ -1,96 +1,83 @@
-// labs/readme.cpp  3  writes tables of options and scene statements into documents
+// labs/readme.cpp  4  writes tables of options and scene statements into documents
 //
 //   build/readme
 //
 // It replaces the text between <!-- options --> and <!-- /options --> of reference/options.md by
 // the options of penumbra, and of reference/radiosity-options.md by those of radiosity.  The
 // statements of a scene's file go to reference/scenes.md.
-#include "labs/lab.h"
+#include "labs/page.h"
 #include "world/grammar.h"
 
 namespace {
 
 // Replaces the text between the two marks of a table.
-std::string with_table(const std::string& text, const std::string& name, const std::string& table) {
-    const std::string before = "<!-- " + name + " -->\n", after = "<!-- /" + name + " -->";
-    const size_t start = text.find(before), end = text.find(after, start);
-    if (end == text.npos) throw UserError("no lines " + before + "and " + after + " to write to");
-    return text.substr(0, start).append(before).append(table).append(text, end);
+void write_table(const std::string& file, const std::string& name, const std::string& table) {
+    const std::string text = read_file(file), before = "<!-- " + name + " -->\n";
+    const size_t start = text.find(before), end = text.find("<!-- /" + name + " -->", start);
+    if (end == text.npos) throw UserError(file + ": no place for the table of " + name);
+    write_file(file, text.substr(0, start).append(before).append(table).append(text, end));
 }
 
-// One row of a table: `word arguments`, their meaning and the default.
-std::string row_markdown(const std::string& words, const std::string& meaning,
-                         const std::string& otherwise) {
-    std::string code;
-    for (const std::string& part : words_in(words)) code += (code.empty() ? "" : " ") + part;
-    for (size_t i = 0; (i = code.find('|', i)) != code.npos; i += 2) code.insert(i, 1, '\\');
-    return "| `" + code + "` | " + meaning + " | " + otherwise +
-           (otherwise.empty() ? "|\n" : " |\n");
+std::string one_line(const std::string& text) {
+    std::string line;
+    for (const std::string& word : words_in(text)) line += (line.empty() ? "" : " ") + word;
+    return line;
+}
+std::string code(const std::string& text) {
+    std::string line = one_line(text);
+    for (size_t i = 0; (i = line.find('|', i)) != line.npos; i += 2) line.insert(i, 1, '\\');
+    return "`" + line + "`";
 }
 
 // The tables of a program's --help, one for each group: a heading ends with a colon, an option is
 // indented by 2 columns, and its meaning by 24.
-std::string option_markdown(const std::string& help) {
-    std::string table, heading, option, meaning;
+std::string option_tables(const std::string& help) {
+    std::string page, heading;
+    Lines rows;
     auto end = [&] {
-        if (option.empty()) return;
-        if (!heading.empty()) {
-            table.append(table.empty() ? "### " : "\n### ").append(heading);
-            table += "\n\n| option | meaning | default |\n|---|---|---|\n";
-            heading.clear();
+        for (auto& row : rows) {
+            row[1] = one_line(row[1]);
+            const size_t at = row[1].rfind(" (default: ");
+            if (at == std::string::npos || row[1].back() != ')') continue;
+            row[2] = row[1].substr(at + 11, row[1].size() - at - 12), row[1].resize(at);
         }
-        const size_t at = meaning.rfind(" (default: ");
-        const bool has = at != meaning.npos && meaning.back() == ')';
-        table += row_markdown(option, meaning.substr(0, has ? at : meaning.npos),
-                              has ? meaning.substr(at + 11, meaning.size() - at - 12) : "");
-        option.clear();
+        if (!rows.empty())
+            page += (page.empty() ? "### " : "\n### ") + heading + "\n\n" +
+                    table({"option", "meaning", "default"}, rows) + "\n";
+        rows.clear();
     };
     std::istringstream lines(help);
     for (std::string line; std::getline(lines, line);) {
-        const bool begins = line.starts_with("  -"),
-                   goes_on = line.starts_with(std::string(24, ' ')) && !option.empty();
-        if (!goes_on) end();
-        if (line.ends_with(':') && line[0] != ' ') heading = line.substr(0, line.size() - 1);
-        if (!begins && !goes_on) continue;
-        const size_t gap = begins ? line.find("  ", 2) : 0;
-        if (begins) option = line.substr(2, gap - 2), meaning = "";
-        for (const std::string& word : words_in(gap == line.npos ? "" : line.substr(gap)))
-            meaning += (meaning.empty() ? "" : " ") + word;
+        if (line.starts_with("  -")) {
+            const size_t gap = std::min(line.find("  ", 2), line.size());
+            rows.push_back({code(line.substr(0, gap)), line.substr(gap), ""});
+        } else if (line.starts_with(std::string(24, ' ')) && !rows.empty()) {
+            rows.back()[1] += line;
+        } else if (end(); line.ends_with(':') && line[0] != ' ') {
+            heading = line.substr(0, line.size() - 1);
+        }
     }
     end();
-    return table;
+    return page;
 }
 
-std::string help_of(const std::string& program) {
-    const std::string file = "out/help" + std::to_string(::getpid());
-    std::filesystem::create_directories("out");
-    execute({"/bin/sh", "-c", "exec \"$0\" --help >\"$1\"", program, file});
-    const std::string help = read_file(file);
-    std::filesystem::remove(file);
-    return help;
-}
-
-std::string grammar_markdown() {
-    std::string table = "| statement | meaning | default |\n|---|---|---|\n";
-    for (const Statement& row : grammar)
-        table += row_markdown(std::string(row.keyword) + " " + std::string(row.words),
-                              std::string(row.meaning), std::string(row.otherwise));
-    return table;
+int write_all(const Scope& scope) {
+    for (const std::string program : {"penumbra", "radiosity"})
+        write_table("reference/" + (program == "penumbra" ? "" : program + "-") + "options.md",
+                    "options", option_tables(said_by(scope.beside(program) + " --help")));
+    Lines rows;
+    for (const Statement& s : grammar)
+        rows.push_back({code(std::string(s.keyword) + " " + std::string(s.words)),
+                        std::string(s.meaning), std::string(s.otherwise)});
+    write_table("reference/scenes.md", "statements",
+                table({"statement", "meaning", "default"}, rows) + "\n");
+    return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const Lab lab{"readme", "Writes tables of options and statements into reference/.", {}};
-    return lab_main(argc, argv, lab, [&] {
-        auto write = [](const std::string& page, const char* name, const std::string& table) {
-            write_file(page, with_table(read_file(page), name, table));
-        };
-        const std::string penumbra = help_of(renderer_beside(lab, argv[0])),
-                          radiosity = help_of(renderer_beside(lab, argv[0], "radiosity"));
-        write("reference/options.md", "options", option_markdown(penumbra));
-        write("reference/radiosity-options.md", "options", option_markdown(radiosity));
-        write("reference/scenes.md", "statements", grammar_markdown());
-        return 0;
-    });
+    return experiment(argc, argv,
+                      {"readme", "Writes tables of options and statements into reference/."},
+                      write_all);
 }

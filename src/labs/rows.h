@@ -82,8 +82,6 @@ inline double mean(const Rows& rows, const std::string& name) {
 // Averages squared errors, because d2 is unbiased.  NaN: the error is too small for the reference.
 inline double relative_error(const Rows& rows) { return std::sqrt(mean(rows, "d2")); }
 
-inline double accuracy(const Rows& rows) { return 1 / relative_error(rows); }
-
 // 1 / (squared error x CPU seconds).  It does not depend on the samples of an unbiased estimator.
 inline double efficiency(const Rows& rows) {
     return 1 / (mean(rows, "d2") * mean(rows, "cpu_seconds"));

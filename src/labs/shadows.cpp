@@ -1,6 +1,6 @@
 // labs/shadows.cpp  6  four estimators of direct light, on images
 //
-//   build/shadows [--quick] [--kept]
+//   build/shadows [--quick]
 //
 // Measures noise in light, penumbra and umbra, and efficiency (Heitz, Hill, McGuire 2018).
 #include "labs/grid.h"
@@ -10,8 +10,6 @@
 namespace {
 
 constexpr const char* names[] = {"stochastic", "control", "ratio", "regression"};
-
-// ---- Noise --------------------------------------------------------------------------------------
 
 enum Region { lit, penumbra, umbra, other };
 constexpr const char* region_names[] = {"lit", "penumbra", "umbra"};
@@ -100,8 +98,6 @@ void tell_noise(Page& page, bool quick) {
     page.claim("exact", exact);
 }
 
-// ---- Efficiency ---------------------------------------------------------------------------------
-
 // Reports 1 / (squared error x CPU seconds) of whole renders, relative to `stochastic`.
 void tell_efficiency(Page& page, RenderGrid& grid, bool quick) {
     const std::string size = quick ? " --size 32x16" : " --size 128x64";
@@ -130,7 +126,7 @@ int study(const Scope& scope) {
     const std::string program = scope.beside("shadow");
     Page page(scope, "shadows");
     tell_noise(page, scope.quick);
-    RenderGrid grid("shadows", program, scope.kept);
+    RenderGrid grid("shadows", program);
     tell_efficiency(page, grid, scope.quick);
     std::vector<Picture> pictures;
     for (const char* e : names)
@@ -148,6 +144,5 @@ int study(const Scope& scope) {
 
 int main(int argc, char** argv) {
     return experiment(argc, argv,
-                      {"shadows", "Measures four estimators of direct light on images.", {}, true},
-                      study);
+                      {"shadows", "Measures four estimators of direct light on images."}, study);
 }

@@ -35,18 +35,17 @@ inline constexpr const char* colours[] = {"#000000", "#0072b2", "#d55e00", "#009
                                           "#cc79a7", "#e69f00", "#56b4e9", "#888888"};
 inline constexpr double letter = 13;  // font size
 
+struct Type {
+    const char* anchor = "start";  // or "middle", "end"
+    const char* colour = ink;
+    bool bold = false;
+    double turn = 0;  // degrees, clockwise
+};
+
 inline std::string escaped(std::string_view words) {
     std::string out;
-    for (char c : words) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
+    for (char c : words)
+        out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
     return out;
 }
 
@@ -82,14 +81,7 @@ class Svg {
 public:
     Svg(double width, double height) : width_(width), height_(height) {}
 
-    struct Type {
-        const char* anchor = "start";  // or "middle", "end"
-        const char* colour = svg::ink;
-        bool bold = false;
-        double turn = 0;  // degrees, clockwise
-    };
-    void words(Place at, std::string_view words) { this->words(at, words, Type()); }
-    void words(Place at, std::string_view words, const Type& type) {
+    void words(Place at, std::string_view words, const svg::Type& type = {}) {
         body_ += text(R"(<text x="%.1f" y="%.1f" text-anchor="%s" fill="%s" font-size="%.1f")",
                       at.x, at.y, type.anchor, type.colour, svg::letter);
         if (type.bold) body_ += R"( font-weight="bold")";

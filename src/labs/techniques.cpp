@@ -1,9 +1,6 @@
 // labs/techniques.cpp  6  the gain of cosine sampling, Halton points and next-event estimation
 //
-//   build/techniques [--quick] [--kept]
-//   build/techniques --render SCENE --direction D --light L --spp N -o FILE.pfm --stats FILE.json
-//   ...
-#include "base/json.h"
+//   build/techniques [--quick]
 #include "keep/p_of_z.h"
 #include "labs/grid.h"
 #include "labs/naive_halton.h"
@@ -36,19 +33,15 @@ std::vector<Setting> settings(const std::string& self) {
             {naive_both, words("halton", "bsdf", "nee"), own}};
 }
 
-// Renders with naive Halton points, by the options of penumbra.
-int render(const std::vector<std::string>& words) {
+// Renders with naive Halton points.
+Rendered render(const std::vector<std::string>& words) {
     Technique t;
     t.direction = value_of(words, "--direction") == "bsdf" ? Direction::bsdf : Direction::uniform;
     t.light = value_of(words, "--light") == "nee" ? LightMode::nee : LightMode::none;
     const uint64_t spp = parse_count(value_of(words, "--spp"), 1, UINT32_MAX);
     const double start = processor_seconds();
-    const Image image = naive_halton::render(read_scene(words.at(0)).scene, t, spp);
-    json::Object stats;
-    stats.add("cpu_seconds", json::number(processor_seconds() - start));
-    write_image(value_of(words, "-o"), image, 1);
-    write_file(value_of(words, "--stats"), stats.text() + "\n");
-    return 0;
+    Image image = naive_halton::render(read_scene(words.at(0)).scene, t, spp);
+    return {std::move(image), {{"cpu_seconds", processor_seconds() - start}}};
 }
 
 // Correlation about zero of the errors g - f of horizontally adjacent pixels.
@@ -68,12 +61,9 @@ double neighbours(const Image& f, const Image& g) {
 // Adds the image's mean over the reference's, and the variance of this ratio.  Pixels are
 // independent, because each has its own randomisation.  Channels are not, and count as one.
 void measure(Row& r, const Image& image, const Truth& f) {
-    Image black = f.image;
-    for (auto& pixel : black.pixels) pixel = {0, 0, 0};
-    const double rms = std::sqrt(mse(f.image, black) / double(image.pixels.size()));
-    r.of["ratio"] = r["mean"] / image_mean(f.image);
-    r.of["ratio variance"] =
-        (r["d2"] + r["own"] * r["own"]) * std::pow(rms / image_mean(f.image), 2);
+    const double mean = image_mean(f.image), n = double(image.pixels.size());
+    r.of["ratio"] = r["mean"] / mean;
+    r.of["ratio variance"] = sqr(r["off"] / mean) * image_mean(f.image, 2) / n;
     r.of["neighbours"] = neighbours(f.image, image);
 }
 
@@ -118,7 +108,7 @@ int study(const Scope& scope) {
     const uint64_t spp = scope.quick ? 16 : 64, seeds = scope.quick ? 2 : 8;
     const Subject subject{"coursework", scene, 64 * spp};
     const std::vector<Setting> all = settings(scope.self), naives(all.end() - 2, all.end());
-    RenderGrid grid("techniques", program, scope.kept);
+    RenderGrid grid("techniques", program);
     grid.measure = measure;
     const Rows equal = grid.run({subject}, all, {spp}, seeds),
                limits = grid.run({subject}, naives, {spp, 8 * spp, 64 * spp}, 1);
@@ -153,13 +143,7 @@ int study(const Scope& scope) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 2 && argv[1] == std::string("--render")) try {
-            return render({argv + 2, argv + argc});
-        } catch (...) {
-            return failed();
-        }
-    return experiment(
-        argc, argv,
-        {"techniques", "Measures the gain of cosine sampling, Halton points and NEE.", {}, true},
-        study);
+    const Lab lab{
+        "techniques", "Measures the gain of cosine sampling, Halton points and NEE.", {}, render};
+    return experiment(argc, argv, lab, study);
 }

@@ -1,9 +1,9 @@
 // labs/trade.cpp  7  error over time of every setting, to choose the best
 //
-//   build/trade [--scene NAME] [--full] [--quick] [--kept]
+//   build/trade [--full] [--quick]
 //
-// Renders every scene with all samplers, values of --light and both precisions, at five sample
-// counts.  Writes a report and an interactive page, out/trade/trade.html.
+// Renders every scene with all samplers and values of --light, and by default in float, at five
+// sample counts.  Writes a report and an interactive page, out/trade/trade.html.
 #include "labs/trade.h"
 #include "world/scene_file.h"
 
@@ -12,7 +12,6 @@ namespace {
 using namespace trade;
 
 struct Effort {
-    std::vector<std::string> scenes = {};  // empty: all
     std::vector<uint64_t> counts = {1, 4, 16, 64, 256};
     uint64_t seeds = 1, truth = 4096;
     int part = 2;  // divides the scenes' widths and heights
@@ -25,17 +24,13 @@ Choices all_choices(const Scene& scene, const std::string& float_program) {
     Choices all;
     const bool points = std::any_of(scene.lights.begin(), scene.lights.end(),
                                     [](auto& l) { return l.kind == Light::Kind::point; });
-    for (const std::string& name : {own, in_float})
-        for (const std::string light : {"", " --light nee", " --light none", " --sets 1"})
-            for (const std::string sampler :
-                 {"", " --sampler halton", " --sampler stratified", " --sampler independent"}) {
-                const std::string words = sampler + light;
-                const bool sets = light == " --sets 1", none = light == " --light none";
-                if ((sets && !sampler.empty()) || (none && points)) continue;
-                all.push_back({{name + words, words, name == own ? "" : float_program},
-                               name == own && !none,
-                               words.empty() || sets});
-            }
+    for (const std::string light : {"", " --light nee", " --light none"})
+        for (const std::string sampler :
+             {"", " --sampler halton", " --sampler stratified", " --sampler independent"})
+            if (const bool none = light == " --light none"; !none || !points)
+                all.push_back({{own + sampler + light, sampler + light}, !none});
+    all.push_back({{own + " --sets 1", " --sets 1"}});
+    all.push_back({{in_float, "", float_program}, false});
     return all;
 }
 
@@ -45,22 +40,6 @@ Point point_of(const Rows& rows) {
     if (rows.empty()) return {};
     const double truth = mean(rows, "own"), off = std::sqrt(mean(rows, "d2") + truth * truth);
     return {double(rows[0].count), mean(rows, "cpu_seconds"), known_error(off, truth)};
-}
-
-// Renders with one sample count after the other, and drops inefficient settings between them.
-Rows tournament(RenderGrid& grid, const Effort& plan, const Subject& subject, Choices& choices) {
-    Rows all;
-    for (uint64_t count : plan.counts) {
-        std::vector<Setting> alive;
-        for (const Choice& c : choices)
-            if (c.dropped.empty()) alive.push_back(c.setting);
-        const Rows rows = grid.run({subject}, alive, {count}, plan.seeds);
-        for (Choice& c : choices)
-            if (c.dropped.empty()) c.points.push_back(point_of(by_setting(rows, c.setting.name)));
-        if (count != plan.counts.back()) drop_hopeless(choices);
-        append(all, rows);
-    }
-    return all;
 }
 
 std::string image_of(const Row& r) {
@@ -107,11 +86,15 @@ Study study(RenderGrid& grid, const Effort& plan, const std::string& name,
     const Scene scene = read_scene(file).scene;
     const int width = scene.size.width / plan.part, height = scene.size.height / plan.part;
     const Subject subject{name, text("%s --size %dx%d", file, width, height), plan.truth};
-    Study s{name, double(scene.exposure), NAN, all_choices(scene, float_program)};
-    const Rows rows = tournament(grid, plan, subject, s.choices);
-    append(all, rows);
     const Truth& f = grid.truth(subject);
-    s.own = f.own;
+    Study s{name, double(scene.exposure), f.own, all_choices(scene, float_program)};
+    std::vector<Setting> settings;
+    for (const Choice& c : s.choices) settings.push_back(c.setting);
+    for (uint64_t count : plan.counts) {
+        const Rows rows = grid.run({subject}, settings, {count}, plan.seeds);
+        for (Choice& c : s.choices) c.points.push_back(point_of(by_setting(rows, c.setting.name)));
+        append(all, rows);
+    }
     s.shots.push_back({"the reference", {}, f.image});
     add_shots(grid, subject, s);
     return s;
@@ -150,11 +133,9 @@ void tell_default(Page& page, const std::vector<Candidate>& all) {
     page.claim("is best", at->ratio <= 1.05 * all[0].ratio);
 }
 
-int study(Scope scope, Effort plan) {
+int study(const Scope& scope, Effort plan) {
     if (scope.quick) plan.part = 4, plan.truth = 256, plan.counts = {1, 4, 16};
-    RenderGrid grid(scope.quick ? "trade-quick" : "trade", scope.beside(), scope.kept);
-    scope.quick = scope.quick || !plan.scenes.empty();
-    if (plan.scenes.empty()) plan.scenes = scenes_in("scenes");
+    RenderGrid grid(scope.quick ? "trade-quick" : "trade", scope.beside());
     const std::string float_program = scope.beside("penumbra-float");
     std::filesystem::create_directories(folder);
     Page page(scope, "trade");
@@ -164,13 +145,14 @@ int study(Scope scope, Effort plan) {
     std::vector<Study> studies;
     Rows rows;
     Lines lines;
-    for (const std::string& name : plan.scenes) {
+    for (const std::string& name : scenes_in("scenes")) {
         const Study& s = studies.emplace_back(study(grid, plan, name, float_program, rows));
-        write_page(studies, scope.command, scope.quick,
-                   folder);  // saves finished scenes if a later one fails
         lines.push_back({name});
         for (double error : asked) lines.back().push_back(told_answer(s.choices, error));
     }
+    write_page(studies, scope.command, scope.quick, folder);
+    for (const Study& s : studies)
+        write_file(folder + "/" + s.scene + ".svg", curves(rows, s).file());
     page.set("table", table({"scene", "10 %", "3 %", "1 %", "0.3 %"}, lines));
     page.plot("trade", curves(rows, studies[0]));
     tell_default(page, candidates(studies));
@@ -187,10 +169,7 @@ int main(int argc, char** argv) {
     Effort plan;
     const Lab lab{"trade",
                   "Measures error over time of every setting on every scene.",
-                  {{"--scene", "NAME", "this scene only; may be repeated, writes to out/",
-                    [&](auto& name) { plan.scenes.push_back(name); }},
-                   {"--full", "", "more samples and seeds",
-                    [&](auto&) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }}},
-                  true};
+                  {{"--full", "", "more samples and seeds", "",
+                    [&](Text) { plan.counts.push_back(1024), plan.seeds = 2, plan.truth *= 4; }}}};
     return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, plan); });
 }

@@ -26,18 +26,10 @@ inline std::vector<Point> known(std::vector<Point> points) {
 // A setting, named by its command, and its measurements.
 struct Choice {
     Setting setting;
-    bool may_be_default = true, is_kept = false;  // unbiased on every scene; is never dropped
+    bool may_be_default = true;  // unbiased on every scene
     std::vector<Point> points = {};
-    std::string dropped = "";  // when and why; "": never
 };
 using Choices = std::vector<Choice>;  // the first is the default
-
-// The gamma of error ~ seconds^-gamma, by least squares of logarithms; NaN below two known errors.
-inline double gamma_of(const Choice& c) {
-    std::vector<double> t, e;
-    for (const Point& p : known(c.points)) t.push_back(p.seconds), e.push_back(p.error);
-    return t.size() < 2 ? NAN : -slope(t, e);
-}
 
 // ---- Answers ------------------------------------------------------------------------------------
 
@@ -71,7 +63,7 @@ inline Answer cheapest(const Choices& all, double error, bool among_defaults = f
 inline constexpr double asked[] = {0.10, 0.03, 0.01, 0.003};
 
 // A setting's seconds over those of the best default: geometric mean over the requested errors.  If
-// it was dropped before it reached one, its smallest error counts instead.
+// it does not reach one, its smallest error counts instead.
 inline double ratio_to_best(const Choices& all, const Choice& c) {
     double last = INFINITY;
     for (const Point& p : known(c.points)) last = std::min(last, p.error);
@@ -82,26 +74,6 @@ inline double ratio_to_best(const Choices& all, const Choice& c) {
             logs.add(std::log(reach(c, had).seconds / cheapest(all, had, true).at.seconds));
     }
     return logs.n ? std::exp(logs.mean) : NAN;
-}
-
-// Drops settings below 1/8 of the best efficiency, 1 / (error^2 seconds), at two successive counts.
-// Keeps settings with unknown errors.
-inline void drop_hopeless(Choices& all) {
-    auto efficiency = [](const Choice& c, size_t k) {
-        return 1 / (c.points[k].error * c.points[k].error * c.points[k].seconds);
-    };
-    size_t now = 0;
-    for (const Choice& c : all) now = std::max(now, c.points.size());
-    std::vector<double> best(now);
-    for (const Choice& c : all)
-        for (size_t k = 0; k < c.points.size(); ++k) best[k] = std::fmax(best[k], efficiency(c, k));
-    for (Choice& c : all) {
-        if (now < 2 || c.points.size() < now || c.is_kept) continue;
-        const double after = best[now - 1] / efficiency(c, now - 1);
-        if (after > 8 && best[now - 2] / efficiency(c, now - 2) > 8)
-            c.dropped = text("after %.0f samples: 1/%.0f of the best's efficiency",
-                             c.points.back().spp, after);
-    }
 }
 
 // ---- Studies ------------------------------------------------------------------------------------
@@ -170,9 +142,8 @@ inline std::string json_of(const Choice& c) {
     std::string seconds;  // for each requested error
     for (double error : asked)
         seconds += (seconds.empty() ? "" : ", ") + json::number(reach(c, error).seconds);
-    return object({"command", json::string(c.setting.name), "dropped", json::string(c.dropped),
-                   "gamma", json::number(gamma_of(c)), "seconds", "[" + seconds + "]", "points",
-                   array(c.points)});
+    return object({"command", json::string(c.setting.name), "seconds", "[" + seconds + "]",
+                   "points", array(c.points)});
 }
 inline std::string json_of(const Shot& s) {
     return object({"command", json::string(s.command), "at", json_of(s.at)});

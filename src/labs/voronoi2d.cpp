@@ -16,28 +16,28 @@ const std::vector<Function> list = functions::all();
 using Values = std::vector<double>;  // of a function at points
 
 enum class Points { independent, jittered, halton, poisson };  // poisson: N on average
-enum class Kind { plain, weighted, corrected, linear };
+enum class Sum { weighted, corrected, linear };
 
 struct Estimator {
     std::string name;
     Points points;
-    Kind sum = Kind::plain;
     Weighting weighting = Weighting::mc;
     bool divide = true;
+    Sum sum = Sum::weighted;
 };
 const std::vector<Estimator> estimators = {
     {"mc", Points::independent},
-    {"vor", Points::independent, Kind::weighted, Weighting::vor},
-    {"vor, undivided", Points::independent, Kind::weighted, Weighting::vor, false},
-    {"fvor", Points::independent, Kind::weighted, Weighting::fvor},
-    {"cvor", Points::independent, Kind::weighted, Weighting::cvor},
-    {"cvor, corrected", Points::independent, Kind::corrected, Weighting::cvor},
-    {"cvor, linear", Points::independent, Kind::linear, Weighting::cvor},
-    {"torus", Points::independent, Kind::weighted, Weighting::torus},
+    {"vor", Points::independent, Weighting::vor},
+    {"vor, undivided", Points::independent, Weighting::vor, false},
+    {"fvor", Points::independent, Weighting::fvor},
+    {"cvor", Points::independent, Weighting::cvor},
+    {"cvor, corrected", Points::independent, Weighting::cvor, true, Sum::corrected},
+    {"cvor, linear", Points::independent, Weighting::cvor, true, Sum::linear},
+    {"torus", Points::independent, Weighting::torus},
     {"stratified", Points::jittered},
     {"Halton", Points::halton},
-    {"vor, Poisson", Points::poisson, Kind::weighted, Weighting::vor},
-    {"vor, Poisson, undivided", Points::poisson, Kind::weighted, Weighting::vor, false},
+    {"vor, Poisson", Points::poisson, Weighting::vor},
+    {"vor, Poisson, undivided", Points::poisson, Weighting::vor, false},
 };
 
 // ---- Samples ------------------------------------------------------------------------------------
@@ -62,103 +62,83 @@ std::vector<Site> draw(Points kind, uint64_t n, Rng& random) {
     return p;
 }
 
-struct Samples {
-    std::vector<Site> places;
-    std::vector<Values> values{list.size()};  // of every function at `places`
-    Values seconds = Values(list.size());     // CPU time of places and values
-};
-
-Samples sample(Points kind, uint64_t n, Rng& random) {
-    Samples s;
-    double start = processor_seconds();
-    s.places = draw(kind, n, random);
-    const double drawn = processor_seconds() - start;
-    for (size_t k = 0; k < list.size(); ++k) {
-        s.values[k].reserve(s.places.size());
-        start = processor_seconds();
-        for (Site p : s.places) s.values[k].push_back(list[k].at({p.x - 0.5, p.y - 0.5}));
-        s.seconds[k] = processor_seconds() - start + drawn;
-    }
-    return s;
-}
-
 // ---- Estimates ----------------------------------------------------------------------------------
 
-// Returns a function that estimates an integral from the values at these places.
-std::function<double(const Values&)> prepared(const Estimator& e, std::span<const Site> places,
-                                              Weigher& weigher, uint64_t key) {
+// Estimates of all integrals, and the CPU time of the first.
+struct Estimates {
+    Values values = {};
+    double seconds = 0;
+};
+Estimates estimated(const Estimator& e, std::span<const Site> places, const std::vector<Values>& f,
+                    Weigher& weigher, uint64_t key) {
+    const double start = processor_seconds();
+    Estimates all;
+    std::vector<VoronoiCell> cells;
+    Values w;
     weigher.divide = e.divide;
-    weigher.cells.with_neighbours = e.sum == Kind::corrected || e.sum == Kind::linear;
-    if (places.empty()) return [](const Values&) { return 0.0; };
-    if (e.sum == Kind::plain || e.sum == Kind::weighted)
-        return [&w = weigher(e.weighting, places, key)](const Values& f) {
-            return std::inner_product(w.begin(), w.end(), f.begin(), 0.0);
-        };
-    const auto& cells = weigher.cells.clipped(places, {{0, 0}, {1, 1}});
-    if (e.sum == Kind::linear)
-        return [&weigher, &cells, places](const Values& f) {
-            return linear_reconstruction(weigher.cells, cells, places, f);
-        };
-    return [&weigher, &cells, places](const Values& f) {
-        double sum = 0;
-        for (size_t i = 0; i < f.size(); ++i) sum += cells[i].area * f[i];
-        return sum + border_correction(weigher.cells, cells, places, f);
-    };
+    weigher.cells.with_neighbours = e.sum != Sum::weighted;
+    if (places.empty()) return {Values(f.size())};
+    if (e.sum == Sum::weighted)
+        w = weigher(e.weighting, places, key);
+    else
+        for (cells = weigher.cells.clipped(places, {{0, 0}, {1, 1}}); const VoronoiCell& c : cells)
+            w.push_back(c.area);
+    for (const Values& g : f) {
+        double x = e.sum == Sum::linear ? linear_reconstruction(weigher.cells, cells, places, g)
+                                        : std::inner_product(w.begin(), w.end(), g.begin(), 0.0);
+        if (e.sum == Sum::corrected) x += border_correction(weigher.cells, cells, places, g);
+        all.values.push_back(x);
+        if (all.values.size() == 1) all.seconds = processor_seconds() - start;
+    }
+    return all;
 }
 
-// Statistics of all estimates of one integral by one estimator.
+// Statistics of all estimates by one estimator.
 struct Tally {
-    Moments error;
-    Values sizes;  // absolute errors
-    double seconds = 0;
-
-    // `error` is the RMSE, or the median error if the function has no variance.
-    Row row(const Function& f, const Estimator& e, uint64_t n) const {
-        const double count = double(error.n),
-                     rmse = std::sqrt(error.mean * error.mean + error.m2 / count);
-        return {f.name,
-                e.name,
-                n,
-                0,
-                {{"error", f.has_variance ? rmse : median(sizes)},
-                 {"deviation", std::sqrt(error.variance())},
-                 {"bias", error.mean},
-                 {"standard error", error.standard_error()},
-                 {"seconds", seconds / count}}};
-    }
+    std::vector<Moments> error{list.size()};
+    double seconds = 0;  // CPU time of holder_1
 };
 
 Rows run_all(uint64_t trials) {
     Rows rows;
-    Steps steps(4);
     for (uint64_t n : {64, 256, 1024, 4096}) {
-        steps.next(text("%d points", int(n)));
-        std::vector<std::vector<Tally>> all(estimators.size(), std::vector<Tally>(list.size()));
+        std::vector<Tally> all(estimators.size());
         Weigher weigher;
         for (uint64_t t = 0; t < trials; ++t) {
             Rng random{mix(hash(n, t))};
             for (Points kind :
                  {Points::independent, Points::jittered, Points::halton, Points::poisson}) {
-                const Samples s = sample(kind, n, random);
+                const double start = processor_seconds();
+                const std::vector<Site> places = draw(kind, n, random);
+                std::vector<Values> f(list.size());
+                double seconds = 0;
+                for (size_t k = 0; k < list.size(); ++k) {
+                    for (Site p : places) f[k].push_back(list[k].at({p.x - 0.5, p.y - 0.5}));
+                    if (k == 0) seconds = processor_seconds() - start;
+                }
                 weigher.intensity = kind == Points::poisson ? double(n) : 0;
                 for (size_t e = 0; e < estimators.size(); ++e) {
                     if (estimators[e].points != kind) continue;
-                    double start = processor_seconds();
-                    const auto estimate = prepared(estimators[e], s.places, weigher, random.bits());
-                    const double took = processor_seconds() - start;
-                    for (size_t k = 0; k < list.size(); ++k) {
-                        Tally& tally = all[e][k];
-                        start = processor_seconds();
-                        const double error = estimate(s.values[k]) - list[k].integral;
-                        tally.seconds += processor_seconds() - start + took + s.seconds[k];
-                        tally.error.add(error), tally.sizes.push_back(std::abs(error));
-                    }
+                    const Estimates x = estimated(estimators[e], places, f, weigher, random.bits());
+                    all[e].seconds += seconds + x.seconds;
+                    for (size_t k = 0; k < list.size(); ++k)
+                        all[e].error[k].add(x.values[k] - list[k].integral);
                 }
             }
         }
         for (size_t e = 0; e < estimators.size(); ++e)
-            for (size_t k = 0; k < list.size(); ++k)
-                rows.push_back(all[e][k].row(list[k], estimators[e], n));
+            for (size_t k = 0; k < list.size(); ++k) {
+                const Moments& m = all[e].error[k];
+                rows.push_back({list[k].name,
+                                estimators[e].name,
+                                n,
+                                0,
+                                {{"error", std::sqrt(m.mean * m.mean + m.m2 / double(m.n))},
+                                 {"deviation", std::sqrt(m.variance())},
+                                 {"bias", m.mean},
+                                 {"standard error", m.standard_error()},
+                                 {"seconds", all[e].seconds / double(trials)}}});
+            }
     }
     return rows;
 }
@@ -194,9 +174,7 @@ void tell_findings(Page& page, const Rows& rows, const Rows& last) {
     set("steep", "%.2f", steep), set("flat", "%.2f", flat);
     Values gains;
     for (const Function& f : list)
-        if (f.has_variance)
-            gains.push_back(of(f.name.c_str(), "vor", "error") /
-                            of(f.name.c_str(), "cvor", "error"));
+        gains.push_back(of(f.name.c_str(), "vor", "error") / of(f.name.c_str(), "cvor", "error"));
     page.claim("clipping", quantile(gains, 0) > 1);
     page.set("clipping gains", text("%.1f to %.0f", quantile(gains, 0), quantile(gains, 1)));
     auto cost = [&](const char* e) {
@@ -224,8 +202,12 @@ int study(const Scope& scope, uint64_t trials) {
                              [&](const Rows& r) { return text("%.1e", error(r)); }));
     page.data("voronoi2d",
               csv_of(rows, {"error", "deviation", "bias", "standard error", "seconds"}));
-    page.plot("voronoi2d", plot(in_scene(rows, "holder_1"), "points, N", "rmse", of_setting,
-                                count_of, mean_of("error"), "holder_1"));
+    const Rows drawn = where(in_scene(rows, "holder_1"), [](const Row& r) {  // of eight colours
+        return r.setting != "fvor" && r.setting != "torus" &&
+               !r.setting.starts_with("vor, Poisson");
+    });
+    page.plot("voronoi2d",
+              plot(drawn, "points, N", "rmse", of_setting, count_of, mean_of("error"), "holder_1"));
     tell_findings(page, rows, last);
     return page.finish();
 }
@@ -236,8 +218,7 @@ int main(int argc, char** argv) {
     uint64_t trials = 2000;
     const Lab lab{"voronoi2d",
                   "Integrates functions over a square by Voronoi cells, strata and Halton points.",
-                  {{"--trials", "N", "estimates of each kind (2000)",
-                    [&](auto& word) { trials = parse_count(word, 2, 1000000); }}}};
+                  {whole_number("--trials", "estimates of each kind", "2000", trials, 2, 1000000)}};
     return experiment(argc, argv, lab,
                       [&](const Scope& scope) { return study(scope, scope.quick ? 50 : trials); });
 }

@@ -1,7 +1,7 @@
 // labs/voronoi_functions.h  1  functions on a square with their integrals, for voronoi2d
 //
-// The functions of Table 2 in Vandewiele et al. 2025, "Voronoi integration of the rendering
-// equation", and three more: one vanishes on the border, one is not even, one jumps.
+// Functions of Table 2 in Vandewiele et al. 2025, "Voronoi integration of the rendering equation",
+// and one that vanishes on the border.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,6 @@ struct Function {
     double (*at)(Site);
     double integral;
     double rim = NAN;  // integral of the outward derivative over the border; NaN: not given
-    bool has_variance = true;
 };
 
 namespace functions {
@@ -52,25 +51,18 @@ inline double integral_of_not_c1() {
 inline double tent(double x) { return std::max(0.0, 1 - 2 * std::abs(x)); }
 
 inline std::vector<Function> all() {
-    const double of_exp = (2 * std::sinh(0.5)) * (4 * std::sinh(0.25));
     return {
         holder("1", 1, [](Site p) { return power_of_xy(1, p); }),
         holder("0.5", 0.5, [](Site p) { return power_of_xy(0.5, p); }),
         holder("0.1", 0.1, [](Site p) { return power_of_xy(0.1, p); }),
         holder("0.01", 0.01, [](Site p) { return power_of_xy(0.01, p); }),
-        // The next three are -1 / ln r, 1 / r, and x y sin(1/x) sin(1/y).
+        // The next two are -1 / ln r and x y sin(1/x) sin(1/y).
         {"not_holder", [](Site p) { return -1 / std::log(std::hypot(p.x, p.y)); },
          integral_of_not_holder()},
-        {"discontinuity", [](Site p) { return 1 / std::hypot(p.x, p.y); },
-         4 * std::log(1 + std::numbers::sqrt2), NAN, false},
         {"not_c1", [](Site p) { return p.x * p.y * std::sin(1 / p.x) * std::sin(1 / p.y); },
          integral_of_not_c1()},
         // The outward derivative of hat on x = 1/2 is -2 (1 - 2 |y|).
         {"hat", [](Site p) { return tent(p.x) * tent(p.y); }, 0.25, -4},
-        // The Laplacian of exp is 5/4 exp, so by Gauss's theorem `rim` is 5/4 of the integral.
-        {"exp", [](Site p) { return std::exp(p.x + p.y / 2); }, of_exp, 1.25 * of_exp},
-        {"disc", [](Site p) { return p.x * p.x + p.y * p.y < 0.09 ? 1.0 : 0.0; },
-         0.09 * std::numbers::pi},
     };
 }
 

@@ -1,6 +1,6 @@
 // labs/voronoi_weights.cpp  6  pixels with samples weighted by their Voronoi cells
 //
-//   build/voronoi_weights [--most N] [--quick] [--kept]
+//   build/voronoi_weights [--most N] [--quick]
 //
 // Repeats results of Vandewiele et al. 2025, "Voronoi integration of the rendering equation".
 #include "labs/grid.h"
@@ -10,8 +10,6 @@
 namespace {
 
 const std::string mc = "mc", cvor = "cvor", stratified = "stratified";
-
-// ---- Regions ------------------------------------------------------------------------------------
 
 enum Region { light_border, plain, other };
 constexpr const char* region_names[] = {"border of the light", "one diffuse surface", "other"};
@@ -44,8 +42,6 @@ void add_regions(Row& r, const Image& image, const Truth& f, const Scene& scene)
         }
 }
 
-// ---- Report -------------------------------------------------------------------------------------
-
 double square(const Rows& rows) { return mean(rows, "d2"); }
 
 // The squared error of mc over that of another setting, for all pixels or for a region.
@@ -73,7 +69,7 @@ int study(const Scope& scope, uint64_t most) {
         scene.size = {side, side};
         const Subject subject{name, text("%s --size %dx%d", file, side, side),
                               uint64_t(quick ? 1024 : 8192)};
-        RenderGrid grid("voronoi", scope.beside(), scope.kept);
+        RenderGrid grid("voronoi", scope.beside());
         grid.measure = [&](Row& r, const Image& image, const Truth& f) {
             add_regions(r, image, f, scene);
         };
@@ -119,10 +115,9 @@ int study(const Scope& scope, uint64_t most) {
 
 int main(int argc, char** argv) {
     uint64_t most = 256;
-    const Lab lab{"voronoi_weights",
-                  "Weights samples by Voronoi cells, as published, and compares with strata.",
-                  {{"--most", "N", "samples per pixel (256; published: 4096)",
-                    [&](auto& s) { most = parse_count(s, 64, 1 << 16); }}},
-                  true};
+    const Lab lab{
+        "voronoi_weights",
+        "Weights samples by Voronoi cells, as published, and compares with strata.",
+        {whole_number("--most", "samples per pixel; published: 4096", "256", most, 64, 1 << 16)}};
     return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, most); });
 }

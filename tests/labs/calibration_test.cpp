@@ -46,13 +46,6 @@ TEST_CASE("a run is right within two, understated, or hinted; or its truth is no
     CHECK(true_d(far) == 0);
 }
 
-TEST_CASE("a program before the rule states the spread's error as d_rel") {
-    Row before = row(.25, 9);
-    before.of.erase("d_rel_by_spread");
-    CHECK(by_spread(before) == .25);
-    CHECK(by_spread(row(NAN, .125)) == .125);
-}
-
 TEST_CASE("shares are of the runs whose truth is known") {
     Rows rows = {row(.1, .1), row(.5, .5), row(NAN, .1), row(.5, .5), row(.1, .1)};
     rows[4].of["own"] = .9 * rows[4]["off"];

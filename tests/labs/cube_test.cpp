@@ -67,7 +67,6 @@ TEST_CASE("the cube at A to F and in the mean: the numbers of radiosity/exact.h,
     }
     CHECK(relative(cube::mean_illuminance * cube::albedo / cube::pi, exact::cube_mean_luminance) <
           1e-15);
-    CHECK(relative(room().mean(), cube::mean_illuminance) < 1e-10);
     for (double x : places)
         CHECK(cube::direct(x, 0.3) == doctest::Approx(exact::cube_direct(x, 0.3)));
     // The published value, to 0.1 nit; only C was printed 0.1 too low.

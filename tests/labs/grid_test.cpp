@@ -52,8 +52,8 @@ done
 const std::vector<Subject> subjects = {{"a", "a.scene --size 1x1", 64}};
 const std::vector<Setting> settings = {{"the default", ""}, {"NEE", "--light nee"}};
 
-Rows run(bool kept = false) {
-    RenderGrid grid("study", "./program", kept);
+Rows run() {
+    RenderGrid grid("study", "./program");
     grid.jobs = 1;  // gives calls an order
     return grid.run(subjects, settings, {4, 16}, 2);
 }
@@ -111,17 +111,6 @@ TEST_CASE("a study that was cut short goes on; a line that was cut short counts 
     CHECK(studio.calls().size() == 10);
     CHECK(run().size() == 8);
     CHECK(studio.calls().size() == 10);
-}
-
-TEST_CASE("kept rows are tables without a render, by whatever program they are") {
-    const Studio studio;
-    CHECK(run(true).empty());
-    run();
-    studio.program("\\0\\0\\200\\100");
-    const Rows rows = run(true);
-    REQUIRE(rows.size() == 8);
-    CHECK(rows[0]["off"] == doctest::Approx(.5));
-    CHECK(studio.calls().size() == 9);
 }
 
 TEST_CASE("more numbers of an image are measured beside its reference, and kept") {

@@ -1,5 +1,4 @@
-// labs/indirect_paths_test.cpp  paths that end on maps: unbiased for any maps, or biased by their
-// error
+// labs/indirect_paths_test.cpp  paths that end on maps are unbiased for any maps
 #include "labs/indirect_paths.h"
 
 #include "base/moments.h"
@@ -7,7 +6,6 @@
 #include "radiosity/exact.h"
 #include "radiosity/particles.h"
 #include "radiosity/rooms.h"
-#include "radiosity/shooting.h"
 
 using namespace rooms;
 
@@ -140,27 +138,20 @@ const Technique techniques[] = {{Direction::bsdf, LightMode::mis, 0},
 
 }  // namespace
 
-TEST_CASE("control and regression are unbiased with good maps, with none, with wrong ones") {
+TEST_CASE("paths are unbiased with good maps, with none, with wrong ones") {
     const Scene s = coloured();
     const Mesh mesh = make_mesh(s, 0.5);
     const IlluminationMap good = by_particles(s, mesh, 100000);
-    const struct {
-        rgb factor, slope;
-        double seen;
-    } maps[] = {{grey(1), grey(1), 0.1},
-                {grey(0), grey(1), 0.1},
-                {{3, 2, -1}, grey(1), 0.2},
-                {{3, 2, -1}, {real(0.4), real(0.6), -1}, 0.1}};
-    for (const auto& map : maps) {
-        const rgb factor = map.factor, slope = map.slope;
+    for (const auto& [factor, seen] :
+         {std::pair{grey(1), 0.1}, {grey(0), 0.1}, {rgb{3, 2, -1}, 0.2}}) {
         const KnownLight known = known_light(s, mesh, times(good, factor));
         for (const Technique& t : techniques)
             for (SamplerKind kind : kinds) {
                 CAPTURE(mean_of(factor));
                 CAPTURE(int(kind));
                 CAPTURE(int(t.light));
-                expect_radiance({mean_radiance(0), mean_radiance(1), mean_radiance(2)}, map.seen,
-                                {s, t, known, by_throughput, slope}, kind, onto_wall);
+                expect_radiance({mean_radiance(0), mean_radiance(1), mean_radiance(2)}, seen,
+                                {s, t, known}, kind, onto_wall);
             }
     }
 }
@@ -216,92 +207,45 @@ TEST_CASE("control meets the exact luminance of the cube, its maps three times t
     }
 }
 
-// In a closed room one bounce from all walls reaches all walls equally often: mean L = rho (mean E0
-// / pi + mean R_map), with E0 direct.
-TEST_CASE("map: paths end on what the maps hold, whatever that is; a coloured room") {
-    const Scene s = coloured();
-    const Mesh mesh = make_mesh(s, 0.5);
-    const IlluminationMap good = by_particles(s, mesh, 20000);
-    for (const rgb factor : {grey(1), grey(0), rgb{3, 2, -1}}) {
-        const IlluminationMap map = times(good, factor);
-        rgb flux;
-        for (const Face& f : mesh.faces) flux += integral(mesh, map, f, false);
-        std::array<double, 3> truth{};
-        for (size_t c = 0; c < 3; ++c) {
-            const double E0 = 4 * Pi * intensity[c] / area, E = double(flux.*axis[c]) / area;
-            truth[c] = rho[c] / Pi * (E0 + rho[c] * E);
-        }
-        const KnownLight known = known_light(s, mesh, map);
-        CAPTURE(mean_of(factor));
-        for (const Technique& t : techniques)
-            for (SamplerKind kind : kinds)
-                expect_radiance(truth, 0.15, {s, t, known, never}, kind, onto_wall);
-    }
-}
-
-TEST_CASE("map: its bias is that of the maps and falls with the mesh") {
-    const Scene s = endless(cubic_room());
-    double before = 1;
-    for (int cells : {2, 4, 8}) {
-        const Mesh mesh = make_mesh(s, 10 * std::sqrt(2.0) / cells);
-        Shooting shooting(s, mesh, Shooter::face, 1);
-        shooting.run({0.001, 0, 0}, [](const Shooting&) {});
-        const KnownLight known = known_light(s, mesh, shooting.map());
-        const exact::CubePoint& a = exact::cube_points[0];
-        double mean = 0;
-        constexpr int replicates = 16;
-        for (int r = 0; r < replicates; ++r)
-            mean += double(mean_of_paths({s, techniques[0], known, never}, SamplerKind::halton, r,
-                                         1024, always({{0, 0, real(4.9)}, {0, 0, 1}}))
-                               .x) /
-                    replicates;
-        const double bias = 1 - mean / a.luminance;
-        INFO(cells, " cells: too dark by ", 100 * bias, " %");
-        CHECK(bias > 0);
-        CHECK(bias < 0.7 * before);
-        before = bias;
-    }
-    CHECK(before < 0.02);
-}
-
 TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light found by hitting") {
     const Scene s = glowing();
     const Mesh mesh = make_mesh(s, 1);
     const KnownLight known = known_light(s, mesh, of_glow(mesh));
-    for (real threshold : {never, by_throughput}) {
-        const Gather g{s, {Direction::bsdf, LightMode::none, 0}, known, threshold};
-        for (int r = 0; r < 100; ++r)
-            CHECK(double(mean_of_paths(g, SamplerKind::independent, r, 1, [](vec2 u) {
-                             return Ray{{1, 1, 1}, sample_uniform_sphere(u)};
-                         }).x) == approx(glow));
-    }
+    const Gather g{s, {Direction::bsdf, LightMode::none, 0}, known};
+    for (int r = 0; r < 100; ++r)
+        CHECK(double(mean_of_paths(g, SamplerKind::independent, r, 1, [](vec2 u) {
+                         return Ray{{1, 1, 1}, sample_uniform_sphere(u)};
+                     }).x) == approx(glow));
     // Light samples agree, too, except where walls meet: their variance is infinite there.
     expect_radiance({glow, glow, glow}, 0.05, {s, techniques[0], known}, SamplerKind::halton,
                     always({{1, 1, 1}, {0, 0, 1}}));
 }
 
-TEST_CASE("the slope is what paths find over what maps know") {
-    Scene s = glowing();
-    s.camera = look_at({1, 1, real(1.9)}, {1, 1, 0}, 60);
-    const Mesh mesh = make_mesh(s, 1);
-    const Technique none{Direction::bsdf, LightMode::none, 0};
-    const Pattern pattern = EndlessNumbers::independent(seed_here());
-    // Exact case: paths that start from exact maps return exact values.
-    const KnownLight known = known_light(s, mesh, of_glow(mesh));
-    CHECK(double(max_abs(slope_of({s, none, known}, pattern, 100) - grey(1))) < 1e-5);
-    // Without maps there is nothing to scale.
-    const KnownLight dark = known_light(s, mesh, IlluminationMap(number_of_sides(mesh)));
-    CHECK(slope_of({s, none, dark}, pattern, 100) == grey(1));
-    // The map is 3, 2 and 1/2 times too bright in its channels.
-    const KnownLight wrong = known_light(s, mesh, times(of_glow(mesh), {3, 2, real(0.5)}));
-    const double truth[] = {1 / 3.0, 1 / 2.0, 2};
-    for (size_t c = 0; c < 3; ++c)
-        EXPECT(oracle::expect_replicates(
-                   truth[c], 32,
-                   [&](int r) {
-                       const Pattern p =
-                           EndlessNumbers::independent(hash(seed_here(), uint64_t(r)));
-                       return double(slope_of({s, none, wrong}, p, 2000).*axis[c]);
-                   }),
-               0.1);
+TEST_CASE("an image by control has the path tracer's mean; facets of balls change it by little") {
+    constexpr uint64_t spp = 64;
+    for (const std::string name : {"cube", "cornell36", "penumbra", "lanterns"}) {
+        Scene scene = read_scene("scenes/" + name + ".scene").scene;
+        scene.size = {32, 16};
+        Moments found, truth;
+        for (uint64_t seed = 1; seed <= 8; ++seed) {
+            found.add(image_mean(by_control(scene, spp, hash(seed_here(), seed)).image));
+            Scene deep = scene;
+            deep.depth = 64;
+            const Pattern pattern =
+                make_pattern(SamplerKind::sobol, hash(seed_here(), 100 + seed), 64, spp);
+            rgb sum;
+            for (int pixel = 0; pixel < 32 * 16; ++pixel)
+                for (uint64_t i = 0; i < spp; ++i) {
+                    const Start at = start(deep, pattern, {pixel % 32, pixel / 32, i});
+                    sum += Li(deep, techniques[0], at.ray, at.sampler);
+                }
+            truth.add(double(mean_of(sum)) / double(32 * 16 * spp));
+        }
+        INFO(name, ": ", found.mean, ", whole paths ", truth.mean);
+        // When facets had the radiance of their balls, images were 1.5 to 1.9 % too dark.
+        if (name == "penumbra" || name == "lanterns")
+            CHECK(found.mean == doctest::Approx(truth.mean).epsilon(0.005));
+        else
+            EXPECT(oracle::expect_equal(estimate(found), estimate(truth)), 0.05);
+    }
 }

@@ -11,19 +11,16 @@ namespace {
 struct Called {
     int status = 0;
     bool worked = false, quick = false;
-    std::string time;
+    std::string time, command;
 };
 Called call(std::vector<std::string> words) {
     Called c;
     words.insert(words.begin(), "build/lab");
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
-    const Lab lab{"lab",
-                  "Nothing.",
-                  {{"--quick", "", "less", [&](const std::string&) { c.quick = true; }},
-                   {"--time", "S", "seconds", [&](const std::string& s) { c.time = s; }}}};
-    c.status = lab_main(int(argv.size()), argv.data(), lab, [&] {
-        c.worked = true;
+    const Lab lab{"lab", "Nothing.", {{"--time", "S", "seconds", "", [&](Text s) { c.time = s; }}}};
+    c.status = experiment(int(argv.size()), argv.data(), lab, [&](const Scope& scope) {
+        c.worked = true, c.quick = scope.quick, c.command = scope.command;
         return 7;
     });
     return c;
@@ -50,8 +47,6 @@ TEST_CASE("the slope is the exponent") {
 }
 
 TEST_CASE("numbers of many runs as words") {
-    CHECK(with_range({1.3, 1.19, 1.21}, "%.2f") == "1.21 (1.19–1.30)");
-    CHECK(with_range({2}, "%.0f") == "2 (2–2)");
     Moments m;
     m.add(1);
     CHECK(plus_minus(m, "%.2f") == "1.00");
@@ -62,12 +57,14 @@ TEST_CASE("numbers of many runs as words") {
     CHECK(text("%s%.1f", std::string("x"), 0.25) == "x0.2");
 }
 
-TEST_CASE("mean squared difference is over all channels") {
+TEST_CASE("the relative RMSE and means of powers are over all channels") {
     Image f(2, 1), g(2, 1);
     f.at(0, 0) = f.at(1, 0) = g.at(0, 0) = {1, 2, 3};
     g.at(1, 0) = {1, 2, 6};
-    CHECK(mse(f, g) == doctest::Approx(9.0 / 6));
-    CHECK(mse(f, f) == 0);
+    CHECK(d_rel(f, g) == doctest::Approx(std::sqrt(9.0 / 28)));
+    CHECK(d_rel(f, f) == 0);
+    CHECK(image_mean(f) == doctest::Approx(2));
+    CHECK(image_mean(g, 2) == doctest::Approx(55.0 / 6));
 }
 
 TEST_CASE("a part of an image begins at its left and its top") {
@@ -99,6 +96,7 @@ TEST_CASE("flags set what they say; without flags the work is done all the same"
     CHECK(both.status == 7);
     CHECK(both.quick);
     CHECK(both.time == "3");
+    CHECK(both.command == "build/lab --time 3 --quick");
 }
 
 TEST_CASE("flags that are not known or lack their value: exit status 2, and no work") {

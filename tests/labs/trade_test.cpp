@@ -15,20 +15,6 @@ Choice by_law(const std::string& name, double c, double gamma) {
     return choice;
 }
 
-// A setting of these efficiencies at 1, 4, 16 ... samples, a second each.
-Choice efficient(const std::vector<double>& efficiencies) {
-    Choice c;
-    double spp = 1;
-    for (double e : efficiencies) c.points.push_back({spp, 1, 1 / std::sqrt(e)}), spp *= 4;
-    return c;
-}
-
-std::string alive(const Choices& all) {
-    std::string who;
-    for (const Choice& c : all) who += c.dropped.empty() ? '1' : '0';
-    return who;
-}
-
 bool contains(const std::string& words, const std::string& part) {
     return words.find(part) != words.npos;
 }
@@ -44,15 +30,6 @@ TEST_CASE("a reference's own error is taken off in squares, and hides what is be
     CHECK(std::isnan(known_error(1, 0.81)));
     CHECK(std::isnan(known_error(1, 2)));
     CHECK(std::isnan(known_error(1, NAN)));
-}
-
-TEST_CASE("an exponent is found again; errors that are not known have no part in it") {
-    Choice c = by_law("a", 0.02, 0.7);
-    CHECK(gamma_of(c) == doctest::Approx(0.7));
-    c.points[2].error = NAN;
-    CHECK(gamma_of(c) == doctest::Approx(0.7));
-    c.points.resize(1);
-    CHECK(std::isnan(gamma_of(c)));
 }
 
 // ---- Answers ------------------------------------------------------------------------------------
@@ -118,40 +95,12 @@ TEST_CASE("the one default: the least mean ratio to the best, and where it is wo
     CHECK(c[1].ratio == doctest::Approx(4));
 }
 
-TEST_CASE("a setting that was dropped early is compared at the last error that it had") {
+TEST_CASE("a setting without a requested error is compared at the least error that it has") {
     Choices all = {by_law("a", 0.02, 0.5), by_law("b", 0.06, 0.5)};
     all[1].points.resize(2);  // 15 % after 0.16 s; "a" has 10 % after 0.04 s
     CHECK(ratio_to_best(all, all[1]) == doctest::Approx(4));
     for (Point& p : all[1].points) p.error = NAN;
     CHECK(std::isnan(ratio_to_best(all, all[1])));
-}
-
-// ---- The tournament -----------------------------------------------------------------------------
-
-TEST_CASE("who is hopeless at two counts in sequence goes, by more than a factor of 8") {
-    Choices all = {efficient({80, 800}), efficient({10.1, 99}), efficient({9.9, 99}),
-                   efficient({9.9, 101}), efficient({1, 1})};
-    all[4].is_kept = true;
-    drop_hopeless(all);
-    CHECK(alive(all) == "11011");
-    CHECK(all[2].dropped == "after 4 samples: 1/8 of the best's efficiency");
-}
-
-TEST_CASE("nobody goes after one count, or by an error that is not known") {
-    Choices all = {efficient({80}), efficient({1})};
-    drop_hopeless(all);
-    CHECK(alive(all) == "11");
-    all = {efficient({80, 80, 80}), efficient({1, 1, 1}), efficient({1, 1, 1})};
-    all[1].points[2].error = all[2].points[1].error = NAN;
-    drop_hopeless(all);
-    CHECK(alive(all) == "111");
-}
-
-TEST_CASE("who was dropped stays dropped, and no longer takes part") {
-    Choices all = {efficient({80, 80, 80}), efficient({1, 1})};
-    all[1].dropped = "before";
-    drop_hopeless(all);
-    CHECK(all[1].dropped == "before");
 }
 
 // ---- JSON ---------------------------------------------------------------------------------------
@@ -160,7 +109,7 @@ TEST_CASE("what is not known is null in the page's data, and words are escaped")
     Choice c = by_law("a \"b\"", 0.02, 0.5);
     c.points.resize(1);
     CHECK(json_of(c) ==
-          "{\"command\": \"a \\\"b\\\"\", \"dropped\": \"\", \"gamma\": null, \"seconds\": "
+          "{\"command\": \"a \\\"b\\\"\", \"seconds\": "
           "[0.040000000000000001, null, null, null], \"points\": [{\"spp\": 4, \"seconds\": "
           "0.040000000000000001, \"error\": 0.10000000000000001}]}");
     Study s{"room", 1, 0.01, {c}, {{"the reference", {}, Image(2, 1)}}};
