@@ -110,7 +110,7 @@ def sheet(grade):
 
 def cell(text):
     """A cell that no spreadsheet takes for a formula."""
-    text = plain(str(text))
+    text = plain(str(text), 10000)
     return "'" + text if text[:1] in ('=', '+', '-', '@') and not re.fullmatch(r'-?[0-9.]+', text) else text
 
 

@@ -9,6 +9,7 @@ import tempfile
 import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
+import reports
 import submission
 import testing
 from submission import Problem
@@ -119,6 +120,17 @@ def test_a_bomb_is_not_unpacked():
     for data in (tar_of({'zeros': bytes(300 << 20)}, 'w:xz'), tar_of({'zeros': bytes(300 << 20)}, 'w:bz2')):
         [(_, found)] = read({'x.tar': data}).values()
         expect('more than 268435456 bytes' in found[A], found[A])
+
+
+def test_tables_hold_all_of_a_long_course():
+    exercises = {f'{w}.{n}': {'points': 2, 'of': 2, 'state': 'missing', 'says': f'src/world/file{w}{n}.h is missing'}
+                 for w in range(1, 8) for n in range(1, 8)}
+    grade = {'student': 'Ada', 'number': '4711', 'sum': 98, 'of': 98, 'exercises': exercises}
+    with tempfile.TemporaryDirectory() as folder:
+        reports.tables(folder, list(exercises), [grade])
+        for name, last in (('moodle.csv', '7.7: 2 of 2'), ('grades.csv', '7.7: src/world/file77.h is missing')):
+            text = (pathlib.Path(folder) / name).read_text()
+            expect(text.endswith(last + '\n') and '...' not in text, name, text)
 
 
 if __name__ == '__main__':
