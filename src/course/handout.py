@@ -29,11 +29,12 @@ table { border-collapse: collapse } td, th { border-bottom: 1px solid #ddd; padd
 img { max-width: 100% } math { font-family: "Latin Modern Math", "STIX Two Math", "Cambria Math", "DejaVu Serif", serif }
 math[display=block] { margin: .7em 0 } mfrac > * { padding: .15em .1em } math mn, math mtext { font-family: inherit }
 .blank { display: inline-block; width: 8em; border-bottom: 1px solid #222 } mtext.blank { padding: 0 2.2em; border-bottom: 1px solid #222; width: auto }
-.wide { width: 18em }
+.wide { width: 18em } .whole { white-space: nowrap }
+mfrac > mtext.blank { padding: .9em 2.2em .2em; border-bottom: 0 }
 .answer { color: #a00; font-weight: bold } mrow.answer { border-bottom: 1px solid #a00 }
 @media print {
   body { font-size: 11pt; margin: 0; max-width: none; padding: 0 } details { display: none } pre { white-space: pre-wrap }
-  h1, h2, h3, h2 + p { break-after: avoid } p, li, table, img, pre, math { break-inside: avoid }
+  h1, h2, h3, h2 + p { break-after: avoid } p, li, tr, img, pre, math { break-inside: avoid }
   p:has(.blank), li:has(.blank) { line-height: 2.1 }
 }
 </style>
@@ -52,8 +53,9 @@ def filled(sheet, key):
         return sheets.with_answers(sheet.name, text, lambda a: f'<span class="answer">{a}</span>',
                                    lambda a: '{\\text{ANSWER}' + a + '\\text{REWSNA}}')
     # Behind a question there is room for a sentence.
-    return sheets.with_blanks(re.sub(r'(?<=\?)([ \n]+)____', r'\1<span class="wide blank"></span>', sheets.for_students(text)),
+    text = sheets.with_blanks(re.sub(r'(?<=\?)([ \n]+)____', r'\1<span class="wide blank"></span>', sheets.for_students(text)),
                               '<span class="blank"></span>', '\\text{BLANK}')
+    return re.sub(r'(<span class="(?:wide )?blank"></span>)([,.;:)]+)', r'<span class="whole">\1\2</span>', text)
 
 
 def in_formulas(page):

@@ -2,6 +2,7 @@
 """Each function test_... is a test; check_test.cpp runs them one by one.  Judge and renderer are stand-ins."""
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -80,6 +81,17 @@ def test_the_page_has_verdict_items_picture_and_scale():
         (room.top / 'said').write_text('2.1 right: 1 of 1\n')
         room.check('2.1')
         expect('h1 class="right"' in room.page() and '.png' not in room.page(), room.page())
+
+
+def test_the_page_shows_drawings_and_names_pictures_right_above_them():
+    with Room() as room:
+        (room.top / 'build/course/judge_2').write_text('#!/bin/sh\ncat said\nmkdir -p "$ORACLE_PICTURES"\n'
+                                                       'echo >"$ORACLE_PICTURES/oracle-check-1.svg"\n[ $3 = 2.2 ]\n')
+        room.check('2.2')
+        expect('<img class="drawn" src="2.2.svg?' in room.page(), room.page())
+        (room.top / 'build/draw').write_text('#!/bin/sh\nfor last; do :; done; echo "$last: 9x9, d_rel 90 %"\n')
+        said = room.check('2.2').stdout
+        expect('far off' in said and re.search('far off[^<]*\n<div class=three>.*</div>\n<img', room.page()), said, room.page())
 
 
 def test_the_page_reloads_when_there_is_another():

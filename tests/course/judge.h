@@ -203,17 +203,23 @@ public:
     }
 
     // A check of the oracle calls functions one by one: check(random, functions) is run with what
-    // is known so far, and again with the same random numbers, until nothing was put off.
+    // is known so far, and again with the same random numbers, until nothing was put off.  Its
+    // picture, if it fails, is that of a run of which all was known.
     template <class Check>
     oracle::Verdict batched(const std::vector<std::string>& questions, Check check) {
         std::vector<Known> known;
         for (const std::string& q : questions) known.push_back({&program_, q});
+        const std::string folder = oracle::pictures;
+        if (!folder.empty()) oracle::pictures = folder + "/unfinished";
         for (;;) {
             oracle::Random same = random;
             const oracle::Verdict verdict = check(same, known);
             bool complete = true;
             for (Known& k : known) complete &= k.catch_up();
             if (!complete) continue;
+            const bool last = verdict.pass || oracle::pictures == folder;
+            oracle::pictures = folder;
+            if (!last) continue;
             random = same;
             return verdict;
         }

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
+#include <utility>
 
 using namespace course;
 
@@ -152,11 +153,25 @@ while True:
     char* argv[] = {words[0].data(), words[1].data(), nullptr};
     Program program(argv, 20);
     Judge j(program, 1);
-    auto mean = [](oracle::Random& random, auto& f) {
-        return oracle::expect_mean(1, 20000, [&] { return f[0]({random()}, {0})[0]; });
+    auto mean_is = [](double truth) {
+        return [truth](oracle::Random& random, auto& f) {
+            return oracle::expect_mean(truth, 20000, [&] { return f[0]({random()}, {0})[0]; });
+        };
     };
-    const oracle::Verdict right = j.batched({"double"}, mean);
+    // Drawn is what fails, once: not a run in which answers were yet to come.
+    const std::string folder = std::exchange(oracle::pictures, path + "-pictures");
+    auto drawn = [&] {
+        const auto is_svg = [](const auto& entry) { return entry.path().extension() == ".svg"; };
+        namespace fs = std::filesystem;
+        if (!fs::exists(oracle::pictures)) return std::ptrdiff_t(0);
+        return std::count_if(fs::directory_iterator(oracle::pictures), {}, is_svg);
+    };
+    const oracle::Verdict right = j.batched({"double"}, mean_is(1));
     CHECK(right.pass);
+    CHECK(drawn() == 0);
+    CHECK(!j.batched({"double"}, mean_is(1.1)).pass);
+    CHECK(drawn() == 1);
+    std::filesystem::remove_all(std::exchange(oracle::pictures, folder));
     oracle::Random alone(1);
     const oracle::Verdict same = oracle::expect_mean(1, 20000, [&] { return 2 * alone(); });
     CHECK(right.p == same.p);

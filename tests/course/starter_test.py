@@ -9,6 +9,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
+import handout
 import mistakes
 import mutants
 import region
@@ -282,6 +283,15 @@ def test_answers_stand_behind_blanks_and_stay_there():
     with Made() as made:
         texts = [p.read_text() for p in (made.folder / 'sheets').glob('?-*.md')]
         expect(texts and all('____' in t and '<!--' not in t for t in texts), 'a starter has answers')
+
+
+def test_a_blank_and_what_ends_a_sentence_stay_on_a_line():
+    with tempfile.TemporaryDirectory() as folder:
+        sheet = pathlib.Path(folder) / 'x.md'
+        sheet.write_text('is ____<!-- $a$ -->, is it? ____<!-- yes -->. is ____<!-- b --> long\n')
+        blank, wide = ('<span class="%sblank"></span>' % kind for kind in ('', 'wide '))
+        text = handout.filled(sheet, False)
+        expect(text == f'is <span class="whole">{blank},</span> is it? <span class="whole">{wide}.</span> is {blank} long\n', text)
 
 
 def test_the_archive_is_the_same_for_the_same_content():
