@@ -72,22 +72,18 @@ double z_of(const Rows& rows) {
            std::sqrt(mean(rows, "ratio variance") / double(rows.size()));
 }
 
-double error_after_a_second(const Rows& rows) { return std::sqrt(1 / efficiency(rows)); }
-
 std::string all_settings(Page& page, const Rows& rows) {
     Lines lines;
     for (const auto& [name, some] : grouped(rows, of_setting)) {
         const bool is_naive = name.starts_with("naive");
         const double z = z_of(some);
         lines.push_back({name, told(jackknife(some, relative_error), "%.4f"),
-                         gain(rows, name, uniform, efficiency),
-                         told(jackknife(some, error_after_a_second), "%.4f"),
-                         text("%.4f", mean(some, "ratio")), is_naive ? "" : text("%+.1f", z),
-                         is_naive ? "" : text("%.2g", p_of_z(z)),
+                         gain(rows, name, uniform, efficiency), text("%.4f", mean(some, "ratio")),
+                         is_naive ? "" : text("%+.1f", z), is_naive ? "" : text("%.2g", p_of_z(z)),
                          is_naive ? "" : page.verdict(p_of_z(z) > 1e-6)});
     }
     return table({"technique", "relative RMSE, 64 samples", "efficiency, × uniform",
-                  "relative RMSE after 1 CPU s", "mean / reference", "z", "p", ""},
+                  "mean / reference", "z", "p", ""},
                  lines);
 }
 
