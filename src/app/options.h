@@ -4,7 +4,7 @@
 #include "film/film.h"
 #include "path/pathtracer.h"
 
-// What the image shows.
+// The quantity that the image shows.
 enum class View { radiance, normal, depth, albedo, bvh };
 inline constexpr Text view_names = "radiance|normal|depth|albedo|bvh";
 
@@ -55,7 +55,7 @@ inline void set_sample(std::optional<PixelSample>& replay, Text v) {
 }
 
 inline std::string parse_film(Text v) {
-    if (!v.ends_with(".film")) throw UserError(in_quotes(v) + " does not end in .film");
+    if (!v.ends_with(".film")) throw UserError(in_quotes(v) + " must end in .film");
     return std::string(v);
 }
 
@@ -85,7 +85,8 @@ inline OptionTable sampling_rows(Options& o) {
           "adaptive",
           [&o](Text v) { o.sets = v == "adaptive" ? 0 : uint32_t(parse_count(v, 1, most_sets)); },
           [&o] { return o.sets ? std::to_string(o.sets) : json::string("adaptive"); }},
-         one_of("--sampler", "independent|stratified|halton|sobol", "source of the random numbers",
+         one_of("--sampler", "independent|stratified|halton|sobol",
+                "sample points: pseudo-random, jittered grids, or low-discrepancy points",
                 o.sampler)});
 }
 
@@ -144,8 +145,8 @@ inline OptionTable option_table(Options& o) {
 inline void parse_options(OptionTable& table, Options& o, const std::vector<std::string>& words) {
     parse_words(table, words, o);
     if (is_given(table, "--sample") && !is_given(table, "--pixel"))
-        throw UserError("--sample: goes with --pixel X,Y (for samples per pixel use --spp N)");
-    if (o.replay && !o.keep.empty()) throw UserError("--keep: goes without --pixel");
+        throw UserError("--sample: needs --pixel X,Y (for samples per pixel use --spp N)");
+    if (o.replay && !o.keep.empty()) throw UserError("--keep: cannot be combined with --pixel");
     if (o.error > 0 && o.view != View::radiance) throw UserError("--error: needs --view radiance");
     if (o.error > 0 && o.sets == 1) throw UserError("--error: needs --sets 2 or more, or adaptive");
     if (o.rows && o.keep.empty() && o.outputs.empty())

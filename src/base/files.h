@@ -26,7 +26,7 @@ inline std::ifstream open_file(const std::string& path, bool of_any_kind = false
     const auto status = std::filesystem::status(path, unreachable);
     if (std::filesystem::is_directory(status)) throw UserError(path + ": is a directory");
     if (std::filesystem::is_other(status) && !of_any_kind)
-        throw UserError(path + ": is no regular file");
+        throw UserError(path + ": is not a regular file");
     std::ifstream in(path, std::ios::binary);
     if (!in) throw UserError(path + ": cannot open: " + std::strerror(errno));
     return in;

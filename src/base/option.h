@@ -127,7 +127,7 @@ struct CommonOptions {
 inline OptionTable output_rows(CommonOptions& o, std::string otherwise) {
     auto set = [&o](Text v) {
         if (!v.ends_with(".png") && !v.ends_with(".pfm") && !v.ends_with(".hdr"))
-            throw UserError(in_quotes(v) + " ends in none of .png, .pfm and .hdr");
+            throw UserError(in_quotes(v) + " must end in .png, .pfm or .hdr");
         o.outputs.emplace_back(v);
     };
     auto set_size = [&o](Text v) {

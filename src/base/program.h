@@ -1,4 +1,4 @@
-// base/program.h  2  how programs end, how they were built, and the machine that they run on
+// base/program.h  2  exit status, version, and the memory of the machine
 #pragma once
 #include <cerrno>
 #include <cstdio>

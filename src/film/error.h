@@ -116,10 +116,10 @@ using Judge = std::function<std::string(const Film&, const ImageError&)>;
 
 // The same for any film.  A relative standard error of a quarter is that of 8 degrees of freedom.
 inline std::string doubt_of(const Film& film, const ImageError& e, const Judge& judge) {
-    if (e.norm == 0) return "no light was met";
+    if (e.norm == 0) return "no sample found light";
     const std::string why = judge && e.d2() >= 0 ? judge(film, e) : "";
     if (!why.empty()) return why;
-    if (e.spread_of_d() > 0.25) return "it hangs on few pixels";
+    if (e.spread_of_d() > 0.25) return "a few pixels dominate it";
     return e.spread_of_d_rel() > 0.25 ? "the picture is mostly noise" : "";
 }
 

@@ -60,7 +60,7 @@ inline bool in_parallel(size_t count, unsigned threads, const std::function<void
     return done == count;
 }
 
-// ---- When to stop -------------------------------------------------------------------------------
+// ---- Stopping criteria --------------------------------------------------------------------------
 
 // Whichever comes first; 0: no limit.
 struct Target {

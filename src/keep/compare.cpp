@@ -137,11 +137,11 @@ struct Request : CommonOptions {
 };
 
 OptionTable table_of(Request& r) {
-    return OptionTable{{"--limit", "D", "they differ if d_rel is greater than D, e.g. 2%", "",
+    return OptionTable{{"--limit", "D", "exit with 1 if d_rel exceeds D, e.g. 2%", "",
                         [&r](Text v) { r.limit = parse_fraction(v); }},
                        {"--alpha", "P",
-                        "films differ if chance alone makes so large a difference of their means "
-                        "with a probability p below P",
+                        "exit with 1 if the p-value of the difference between the means of two "
+                        "films is below P",
                         "1e-6",
                         [&r](Text v) {
                             r.alpha = parse_fraction(v);
@@ -149,11 +149,11 @@ OptionTable table_of(Request& r) {
                                 throw UserError("must be between 0 and 1");
                         }},
                        {"--heatmap", "FILE.png",
-                        "draw the errors: black where the images agree, white from 4 d on", "",
+                        "write an image of the errors: black (none) to white (4 d or more)", "",
                         [&r](Text v) {
                             r.map = v;
                             if (!v.ends_with(".png"))
-                                throw UserError(in_quotes(v) + " does not end in .png");
+                                throw UserError(in_quotes(v) + " must end in .png");
                         }}} +
            in_group("", without(general_rows(r), {"--threads", "--quiet"}));
 }
@@ -185,9 +185,8 @@ int judge(const Request& r, const Difference& d, const std::optional<Equality>& 
 const char* const before_options =
     "usage: compare [options] REFERENCE IMAGE\n\nPrints the error of IMAGE against REFERENCE: d is "
     "the root mean square error,\nd_rel the relative RMSE: d divided by the RMS of REFERENCE.  "
-    "Both "
-    "are .pfm or\n.film.  Of two films (penumbra --keep) it also compares the means.  The last "
-    "line\nand the exit status tell whether they show the same (0) or differ (1).\n\n";
+    "Both are .pfm or .film.\nFor two films (penumbra --keep) it also compares the means.  The "
+    "last line says\nwhether the images are the same (exit status 0) or differ (1).\n\n";
 
 int compare(const std::vector<std::string>& words) {
     Request r;

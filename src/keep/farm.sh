@@ -1,12 +1,12 @@
-# keep/farm.sh  1  a picture in parts, rendered by many machines: the plan, one part, the merge
+# keep/farm.sh  1  a picture in parts on many machines: plans it, renders one part, merges all
 #
 #   bash src/keep/farm.sh plan --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
-#   bash src/keep/farm.sh part FOLDER NUMBER [THREADS]   renders a part, from its film if there is one
-#   bash src/keep/farm.sh merge FOLDER                   joins the parts, or says which are missing
+#   bash src/keep/farm.sh part FOLDER NUMBER [THREADS]   renders a part; resumes its film if there is one
+#   bash src/keep/farm.sh merge FOLDER                   merges the parts, or lists those that are missing
 #
-# farm_slurm.sh and farm_parallel.sh do these three, and say what the options are; another engine needs no
-# more.  FOLDER holds all of a farm's files: farm.plan (what is rendered, and into which parts it is cut),
-# part-N.film and part-N.log, from 1.
+# farm_slurm.sh and farm_parallel.sh call these three; their --help lists the options.  Any other engine can
+# call them, too.  FOLDER holds all files of a farm: farm.plan (the picture and its parts), part-N.film and
+# part-N.log, N from 1.
 set -u
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
@@ -15,7 +15,7 @@ fail() { echo "farm: $*" >&2; exit 2; }
 # A path that means the same in every folder.
 absolute() { case $1 in /*) printf '%s' "$1" ;; *) printf '%s/%s' "$PWD" "$1" ;; esac; }
 
-# Values of a key of the plan, a line each.
+# Values of a key of the plan, one per line.
 planned() { sed -n "s/^$2 //p" "$1/farm.plan"; }  # FOLDER KEY
 
 film() { printf '%s/part-%04d.film' "$1" "$2"; }  # FOLDER NUMBER
@@ -26,7 +26,7 @@ finished() {  # FOLDER NUMBER
     [ -e "$(film "$1" "$2")" ] && [ "$(LC_ALL=C sed -n '/^$/q; s/^complete //p' "$(film "$1" "$2")")" = yes ]
 }
 
-# Numbers of the parts that are still to be rendered, a line each.
+# Numbers of unfinished parts, one per line.
 unfinished() {  # FOLDER
     for number in $(seq "$(count_of_parts "$1")"); do finished "$1" "$number" || echo "$number"; done
 }
@@ -37,7 +37,7 @@ count_of_parts() { planned "$1" part | wc -l; }  # FOLDER
 # Part I of N of 0 .. COUNT - 1, as FIRST-LAST.
 range() { echo "$(($3 * $1 / $2))-$(($3 * ($1 + 1) / $2 - 1))"; }  # I N COUNT
 
-# Lines of the plan: bands from the top, each by all seeds.
+# Lines of the plan: bands from the top, each with all seeds.
 parts() {  # HEIGHT BANDS SEEDS
     local band seed
     for ((band = 0; band < $2; ++band)); do
@@ -48,29 +48,30 @@ parts() {  # HEIGHT BANDS SEEDS
 }
 
 count() {  # OPTION VALUE
-    case $2 in '' | 0* | *[!0-9]*) fail "$1 '$2': a number, 1 or more" ;; esac
+    case $2 in '' | 0* | *[!0-9]*) fail "$1 '$2' is not a number of 1 or more" ;; esac
 }
 
-# An engine that has options of its own reads them, and returns 0.
+# An engine with its own options reads one, and returns 0.
 engine_option() { return 1; }
 
-# Reads the words of a farm into global variables.
+# Reads a farm's words into global variables.
 read_words() {
     folder='' bands=1 seeds=1 program=$here/../../build size='' spp=''
     outputs=() options=()
     while [ $# -gt 0 ] && [ "$1" != -- ]; do
-        [ $# -gt 1 ] || fail "$1: its value is missing"
+        [ $# -gt 1 ] || fail "$1: needs a value"
         case $1 in
             --folder) folder=$(absolute "$2") ;;
             --bands) count "$1" "$2"; bands=$2 ;;
             --seeds) count "$1" "$2"; seeds=$2 ;;
             --build) program=$2 ;;
-            -o | --stats) outputs+=("$1" "$(absolute "$2")") ;;
-            *) engine_option "$1" "$2" || fail "$1: no option of a farm; those of penumbra follow --" ;;
+            -o | --output) outputs+=(-o "$(absolute "$2")") ;;
+            --stats) outputs+=("$1" "$(absolute "$2")") ;;
+            *) engine_option "$1" "$2" || fail "$1: not a farm option; options of penumbra follow --" ;;
         esac
         shift 2
     done
-    [ $# -gt 1 ] || fail "missing: -- OPTIONS OF PENUMBRA SCENE"
+    [ $# -gt 1 ] || fail "missing -- OPTIONS OF PENUMBRA SCENE"
     shift
     while [ $# -gt 1 ]; do
         case $1 in --*=*) set -- "${1%%=*}" "${1#*=}" "${@:2}" ;; esac
@@ -91,36 +92,36 @@ read_words() {
 
 check_words() {
     local at='^[1-9][0-9]*x[1-9][0-9]*$' which
-    [ -n "$folder" ] || fail "--folder: where all machines find the parts?"
-    [[ $size =~ $at ]] || fail "--size WxH: give it after --"
+    [ -n "$folder" ] || fail "--folder FOLDER is missing: one that all machines share"
+    [[ $size =~ $at ]] || fail "--size WxH is missing after --"
     count --spp "$spp"
     [ "$bands" -le "${size#*x}" ] || fail "--bands $bands: the picture has ${size#*x} rows"
-    [ ${#outputs[@]} -gt 0 ] || fail "-o FILE: where to write the picture?"
+    [ ${#outputs[@]} -gt 0 ] || fail "-o FILE is missing"
     for ((which = 0; which < ${#outputs[@]}; which += 2)); do
         case ${outputs[which]}${outputs[which + 1]} in
-            -o*.pfm | -o*.png | --stats*) ;;
-            *) fail "-o ${outputs[which + 1]}: ends in none of .png, .pfm and .hdr" ;;
+            -o*.pfm | -o*.png | -o*.hdr | --stats*) ;;
+            *) fail "-o ${outputs[which + 1]}: must end in .png, .pfm or .hdr" ;;
         esac
         [ -d "$(dirname "${outputs[which + 1]}")" ] || fail "${outputs[which + 1]}: there is no such folder"
     done
     for which in penumbra merge; do
         [ -x "$program/$which" ] || fail "$program/$which: build it first: make programs"
     done
-    case "$folder ${outputs[*]} ${options[*]} $scene" in *$'\n'*) fail "no word may have a line break in it" ;; esac
+    case "$folder ${outputs[*]} ${options[*]} $scene" in *$'\n'*) fail "a word contains a line break" ;; esac
 }
 
-# Renders a sample of a row: what penumbra refuses, it refuses before a hundred machines do.
+# Renders one sample of one row, so that wrong options fail here and not on a hundred machines.
 check_render() {
     local words=("${options[@]}") i
     for ((i = 0; i < ${#words[@]}; ++i)); do [ "${words[i]}" != --spp ] || words[i + 1]=1; done
     mkdir -p "$folder" && rm -f "$folder/check.film" || exit 1
     "$program/penumbra" "${words[@]}" --rows 0-0 --keep "$folder/check.film" --quiet "$scene" || exit
-    # A plan is of the scene as it is now, and not of its name.
+    # The plan holds a checksum of the scene, not only its name.
     sum=$(LC_ALL=C sed -n '/^$/q; s/^scene //p' "$folder/check.film" 2>/dev/null)
     rm -f "$folder/check.film"
 }
 
-# Writes the plan into the folder, or resumes the one that is there if it is the same.
+# Writes the plan into the folder, unless the same plan is there.
 write_plan() {
     local plan
     plan=$(echo "penumbra farm 2"
@@ -143,25 +144,25 @@ usage() { sed -n '3,/^[^#]/ { s/^# \{0,1\}//p; }' "$1"; }
 
 # ---- One part -----------------------------------------------------------------------------------
 
-# Runs penumbra until it has ended, and returns its exit status; signals to stop are handed on, and it
-# writes its film.  `stopped` names the last one.
+# Runs penumbra to its end, and returns its exit status.  Passes on signals to stop, so that it writes its
+# film.  `stopped` names the last signal.
 stopped=''
 render() {  # FOLDER NUMBER THREADS
     local words child='' status=0 caught
     mapfile -t words < <(planned "$1" option)
     pass() {
         stopped=$1 caught=1
-        echo "farm: stops after signal $1" >&2
+        echo "farm: stopping after signal $1" >&2
         [ -z "$child" ] || kill -TERM "$child" 2>/dev/null
     }
     for signal in TERM INT HUP USR1; do trap "pass $signal" "$signal"; done
-    [ ! -e "$(film "$1" "$2")" ] || echo "farm: resumes from its film" >&2
-    # shellcheck disable=SC2046  # a part is options without blanks in them
+    [ ! -e "$(film "$1" "$2")" ] || echo "farm: resuming from its film" >&2
+    # shellcheck disable=SC2046  # a part consists of options without blanks
     "$(planned "$1" build)/penumbra" "${words[@]}" $(planned "$1" part | sed -n "$2p") --threads "$3" \
         --keep "$(film "$1" "$2")" "$(planned "$1" scene)" &
     child=$!
     [ -z "$stopped" ] || kill -TERM "$child"
-    # What was caught ends the wait, and not penumbra.
+    # A signal ends the wait, not penumbra.
     while caught='' status=0; wait "$child" 2>/dev/null || status=$?; [ -n "$caught" ]; do :; done
     [ "$status" -le 128 ] || [ -n "$stopped" ] || echo "farm: signal $((status - 128)) ended penumbra" >&2
     return "$status"
@@ -177,8 +178,8 @@ merge() {  # FOLDER
             "$(tail -n 1 "$(log "$1" "$number")" 2>/dev/null)" >&2
     done
     if [ -n "$missing" ]; then
-        echo "farm: $(echo "$missing" | wc -l) of $(count_of_parts "$1") parts are missing, and no picture was" \
-            "written; the same command again renders only those" >&2
+        echo "farm: $(echo "$missing" | wc -l) of $(count_of_parts "$1") parts are missing; no picture was written." \
+            "Run the same command again to render only these" >&2
         return 1
     fi
     for number in $(seq "$(count_of_parts "$1")"); do films+=("$(film "$1" "$number")"); done

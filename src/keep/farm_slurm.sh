@@ -1,19 +1,19 @@
-# keep/farm_slurm.sh  2  renders a picture as a Slurm job array, and joins its parts by a job behind it
+# keep/farm_slurm.sh  2  renders a picture as a Slurm job array; a second job merges its parts
 #
 #   bash src/keep/farm_slurm.sh --folder FOLDER -o FILE [options] -- OPTIONS OF PENUMBRA SCENE
 #
-#     --folder FOLDER   for the parts and their logs; all machines see it under this name
-#     -o FILE           the picture, .pfm or .png; may be repeated
-#     --stats FILE      what was measured, as JSON
+#     --folder FOLDER   holds the parts and their logs; all machines see it under this path
+#     -o FILE           the picture (.png, .pfm or .hdr); may be repeated
+#     --stats FILE      measurements, as JSON
 #     --bands N         cut the picture into N bands of rows                                       1
-#     --seeds N         render each band by N seeds, each with --spp samples                         1
-#     --cpus N          processors, and threads, of a part                                         1
+#     --seeds N         render each band with N seeds, each with --spp samples                     1
+#     --cpus N          processors and threads per part                                            1
 #     --sbatch WORD     for sbatch, e.g. --sbatch --partition=long; may be repeated
-#     --grace S         seconds before a limit of time at which a part stops and queues again    120
-#     --retries N       how often a part queues again that was killed                              5
-#     --build FOLDER    where penumbra and merge are                                 build/, beside src/
+#     --grace S         seconds before a time limit when a part stops and requeues itself        120
+#     --retries N       how often a killed part requeues itself                                    5
+#     --build FOLDER    has penumbra and merge                                   build/, beside src/
 #
-# OPTIONS OF PENUMBRA include --size and --spp.  The same command again resumes unfinished parts.
+# OPTIONS OF PENUMBRA must include --size and --spp.  Rerun the command to resume unfinished parts.
 # Exit status: 0 the jobs were submitted, 1 they could not be, 2 an option cannot be used.
 . "$(dirname "${BASH_SOURCE[0]}")/farm.sh"
 
@@ -22,27 +22,27 @@ engine_option() {
     case $1 in
         --sbatch) words+=("$2") ;;
         --cpus | --grace) count "$1" "$2"; printf -v "${1#--}" %s "$2" ;;
-        --retries) case $2 in '' | *[!0-9]*) fail "--retries '$2': a number" ;; esac; retries=$2 ;;
+        --retries) case $2 in '' | *[!0-9]*) fail "--retries '$2' is not a number" ;; esac; retries=$2 ;;
         *) return 1 ;;
     esac
 }
 
-# The command of a job, quoted once for its shell.  Signals for the job reach only that shell: exec.
+# The command of a job, quoted once for its shell.  Signals reach only that shell, hence exec.
 job() { printf 'exec bash'; printf ' %q' "$@"; }
 
 submit() {
     local numbers array merger
     [ ! -e "$folder/farm.job" ] || [ -z "$(squeue --noheader --job "$(cat "$folder/farm.job")" 2>/dev/null)" ] ||
-        fail "$folder: job $(cat "$folder/farm.job") is at work on it: wait, or scancel it"
+        fail "$folder: job $(cat "$folder/farm.job") is still running: wait, or cancel it with scancel"
     numbers=$(unfinished "$folder" | paste -sd,)
     words=(--parsable --requeue --open-mode=append "${words[@]}")
     if [ -n "$numbers" ]; then
-        # USR1 and no TERM: TERM is also what comes when a job is cancelled, which must not queue again.
+        # USR1, not TERM: Slurm also sends TERM to a cancelled job, which must not requeue.
         array=$(sbatch "${words[@]}" --job-name=penumbra --array="$numbers" --cpus-per-task="$cpus" \
             --signal="B:USR1@$grace" --output="$folder/part-%4a.log" \
             --wrap "$(job "$here/farm_slurm.sh" part "$folder" "$retries")") || exit 1
         echo "$array" >"$folder/farm.job"
-        # Not afterok: the merge would never run, and would not report which part is missing.
+        # Not afterok: after a failed part the merge would never run, and never report that part.
         words+=(--dependency="afterany:${array%%;*}")
     fi
     merger=$(sbatch "${words[@]}" --job-name=penumbra-merge --output="$folder/merge.log" \
@@ -50,7 +50,7 @@ submit() {
     echo "farm: ${array:+job $array renders parts $numbers, }job $merger merges: $folder/merge.log"
 }
 
-# A part on its node.  It queues again after a time limit, or if a process other than Slurm killed it.
+# A part on its node.  It requeues itself after a time limit, or if a process other than Slurm killed it.
 # Slurm itself requeues parts after preemption or the failure of a node.
 part() {  # FOLDER RETRIES
     local status=0 again=''
@@ -62,7 +62,7 @@ part() {  # FOLDER RETRIES
         '') [ "${SLURM_RESTART_COUNT:-0}" -ge "$2" ] || again=yes ;;
     esac
     if [ -n "$again" ]; then
-        echo "farm: queues again" >&2
+        echo "farm: requeues this part" >&2
         scontrol requeue "$SLURM_JOB_ID" && sleep 60  # and is ended by Slurm
     fi
     return "$status"
@@ -74,7 +74,7 @@ case ${1-} in
     *)
         command -v sbatch >/dev/null || fail "no sbatch: this machine has no Slurm"
         read_words "$@"
-        case $folder in *[%\\]*) fail "--folder: Slurm takes % and \\ in names of files for something else" ;; esac
+        case $folder in *[%\\]*) fail "--folder: % and \\ have a special meaning in file names of Slurm" ;; esac
         write_plan
         submit
         ;;

@@ -92,12 +92,12 @@ public:
         char* end = nullptr;
         const double x = std::strtod(from, &end);
         if (end == from || !(x >= 0 && x <= most))
-            refuse("its " + std::string(key) + " is " + in_quotes(value));
+            refuse("invalid " + std::string(key) + " " + in_quotes(value));
         return x;
     }
     uint64_t left() const { return left_; }  // bytes of numbers to be read
     void read(std::span<std::byte> numbers) {
-        if (numbers.size() > left_) refuse("holds less than it should");
+        if (numbers.size() > left_) refuse("is too short for its size");
         if (read_some(numbers) != numbers.size()) refuse(cut_short);
         left_ -= numbers.size();
     }
@@ -120,9 +120,11 @@ private:
         const size_t line = first.find('\n') + 1, magic = line - 2, end = head.find('\n');
         if (!head.empty() && head.size() < first.size() && first.starts_with(head.substr(0, line)))
             refuse(cut_short);
-        if (head.compare(0, magic, first, 0, magic) != 0 || end > magic + 20) refuse("no film");
+        if (head.compare(0, magic, first, 0, magic) != 0 || end > magic + 20)
+            refuse("is not a film");
         if (end != line - 1 || head[magic] != first[magic])
-            refuse("of another version (" + head.substr(magic, end - magic) + ")");
+            refuse("has format version " + head.substr(magic, end - magic) + ", not " +
+                   first[magic]);
         return first.size();
     }
     Checksum checksum_from(uint64_t byte) {

@@ -15,7 +15,7 @@ inline Spent spent_in(const FilmReader& file) {
 inline size_t read_but_sums(FilmReader& file, Film& f) {
     const bool is_chosen = file.said("sets-chosen") == "yes";
     const size_t n = f.pixels();
-    if (n == 0 || file.left() / sizeof(Sum) < n) file.refuse("holds less than it should");
+    if (n == 0 || file.left() / sizeof(Sum) < n) file.refuse("is too short for its size");
     f.pilot = uint64_t(file.number("pilot"));
     f.taken.resize((n + f.block_size() - 1) / f.block_size());
     f.sets.resize(is_chosen ? n : 0);
@@ -27,10 +27,11 @@ inline size_t read_but_sums(FilmReader& file, Film& f) {
     file.read(std::as_writable_bytes(std::span(f.evidence)));
     size_t sums = is_chosen ? 0 : n;
     for (const uint16_t K : f.sets) {
-        if (K < 1 || K > most_sets) file.refuse("has a pixel of impossible replications");
+        if (K < 1 || K > most_sets)
+            file.refuse("has a pixel with an impossible number of replications");
         sums += K;
     }
-    if (file.left() != sums * sizeof(Sum)) file.refuse("has other replications than it says");
+    if (file.left() != sums * sizeof(Sum)) file.refuse("its replications do not match its length");
     return sums;
 }
 
@@ -86,7 +87,7 @@ inline void check_agrees(const FilmReader& file, const Facts& expected, const st
         if (key == "scene")
             file.refuse(name == scene ? "was rendered from another version of " + name
                                       : "was rendered from " + name + ", not from " + scene + as);
-        file.refuse("its " + key + " is " + its + ", not " + value + as);
+        file.refuse("was rendered with " + key + " " + its + ", not " + value + as);
     }
 }
 

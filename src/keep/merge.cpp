@@ -13,7 +13,7 @@ constexpr const char* before_options =
     "one\npicture: bands (--rows A-B), and independent renders of them (--seed N).\n\n"
     "Bands with a fixed number of --sets make the picture of one render, bit for bit.\n"
     "Bands with --sets adaptive choose replications by their own rows: the picture is\nunbiased, "
-    "but another one.  Seeds are averaged per pixel, weighted by samples.\n\n";
+    "but not identical.  Seeds are averaged per pixel, weighted by samples.\n\n";
 
 struct Part {
     std::string path, seed, rows;

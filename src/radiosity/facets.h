@@ -4,7 +4,7 @@
 
 #include "world/scene_file.h"
 
-// ---- What cannot be held ------------------------------------------------------------------------
+// ---- Diffuse surfaces only ----------------------------------------------------------------------
 
 inline const char* other_than_diffuse(const Material& m) {
     if (m.kind == Material::Kind::mirror) return "a mirror";
@@ -12,7 +12,7 @@ inline const char* other_than_diffuse(const Material& m) {
     return max_of(m.ks) > 0 ? "glossy" : nullptr;
 }
 
-// Throws UserError "NAME:LINE: ..." about the first shape that scatters otherwise than diffusely.
+// Throws UserError "NAME:LINE: ..." about the first shape that is not diffuse.
 inline void check_diffuse(const Scene& s, const std::string& name) {
     for (size_t i = 0; i < s.shapes.size(); ++i)
         if (const char* what = other_than_diffuse(s.materials[s.material_of[i]]))
@@ -166,7 +166,7 @@ inline Faceted faceted(const Scene& from, double H) {
     }
     if (const uint32_t line = line_of_white(to))
         result.warnings.push_back(std::to_string(line) +
-                                  ": reflects all light: in a closed room it never ends");
+                                  ": reflects all light: in a closed room, paths never end");
     prepare(to);
     return result;
 }

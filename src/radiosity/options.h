@@ -36,39 +36,41 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
     };
     OptionTable table =
         output_rows(o, "out/NAME-radiosity.png, .pfm") +
-        in_group("Radiosity",
-                 {one_of("--method", "shooting|hierarchy|particles",
-                         "the element with the most unshot power shoots first; whole faces shoot, "
-                         "in parts as small as a receiver needs; or random walks of particles from "
-                         "the lights",
-                         o.method),
-                  {"--mesh", "H", "longest edge of the triangles that faces are cut into",
-                   "a 32nd of the scene's diagonal; a 16th with --final-gather",
-                   [&o](Text v) { o.mesh = parse_positive(v); }},
-                  {"--final-gather", "",
-                   "paths end on the maps after one bounce; particles fill the maps", "",
-                   [&o](Text) { o.final_gather = true; },
-                   [&o] { return json::truth(o.final_gather); }}}) +
+        in_group(
+            "Radiosity",
+            {one_of("--method", "shooting|hierarchy|particles",
+                    "shooting: the element with the most unshot power shoots first; hierarchy: "
+                    "whole faces shoot, in parts as small as a receiver needs; particles: "
+                    "random walks from the lights",
+                    o.method),
+             {"--mesh", "H", "longest edge of the triangles of the mesh",
+              "a 32nd of the scene's diagonal; a 16th with --final-gather",
+              [&o](Text v) { o.mesh = parse_positive(v); }},
+             {"--final-gather", "",
+              "paths end on the maps after one bounce; particles fill the maps", "",
+              [&o](Text) { o.final_gather = true; },
+              [&o] { return json::truth(o.final_gather); }}}) +
         in_group(
             "Stop when",
             {{"--unshot", "F",
-              "stop once this fraction of the emitted power is unshot: 0.01, or 1%; it is not the "
-              "error of the picture; not with particles",
+              "stop once this fraction of the emitted power is unshot, e.g. 1%; this is not the "
+              "error of the picture; needs --method shooting or hierarchy",
               "1%, unless --error, --shots or --time is given",
               [&o](Text v) { o.unshot = parse_error(v); }},
-             whole_number("--shots", "stop after N shots; not with particles", "", o.shots, 1,
-                          most_samples),
+             whole_number("--shots", "stop after N shots; needs --method shooting or hierarchy", "",
+                          o.shots, 1, most_samples),
              whole_number("--particles",
-                          "stop after N particles, a multiple of 16 batches; one thread traces a "
-                          "batch; needs --method particles",
+                          "stop after N particles, rounded up to 16 equal batches; needs --method "
+                          "particles",
                           "1000000, unless --error or --time is given; with --final-gather one "
-                          "for 16 paths, or a 16th of the time",
+                          "per 16 paths, or a 16th of the time",
                           o.particles, 1, most_samples),
              {"--error", "E",
-              "stop once the error of the illumination maps is at most E: 0.05, or 5%.  It is the "
-              "relative RMSE over all surfaces, without that of the triangles: estimated from the "
-              "spread of particles, or bounded by the unshot power of the other methods.  With "
-              "--final-gather: the error of the image, without that of the maps",
+              "stop once the error of the illumination maps is at most E, e.g. 5%.  It is the "
+              "relative RMSE over all surfaces, without the error of the mesh: an estimate from "
+              "the "
+              "spread of particles, or a bound from unshot power.  With --final-gather: the error "
+              "of the image, without the error of the maps",
               "", [&o](Text v) { o.error = parse_error(v); }},
              {"--time", "S", "stop after S seconds; with other limits, whichever comes first", "",
               [&o](Text v) { o.seconds = parse_positive(v); }},
@@ -77,7 +79,7 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
                  {{"--rays", "K", "K x K rays per pixel, on a grid, without --final-gather", "2",
                    [&o](Text v) { o.rays = int(parse_count(v, 1, 64)); }},
                   taken("--sets", ""),
-                  taken("--sampler", "source of the random numbers of particles, or of paths"),
+                  taken("--sampler", "sample points of particles, or of paths"),
                   seed_row(o)}) +
         in_group("Light transport", {taken("--direction", ""), taken("--light", "")}) +
         in_group(
@@ -105,7 +107,7 @@ inline void parse_radiosity(OptionTable& table, RadiosityOptions& o,
     need({"--unshot", "--shots"}, !is_random(o), "needs --method shooting or hierarchy");
     need({"--particles", "--sampler", "--seed"}, is_random(o), "needs --method particles");
     need({"--spp", "--sets", "--direction", "--light"}, o.final_gather, "needs --final-gather");
-    need({"--rays", "--view"}, !o.final_gather, "goes without --final-gather");
+    need({"--rays", "--view"}, !o.final_gather, "cannot be combined with --final-gather");
     if (o.final_gather) {
         need({"--error"}, o.sets != 1, "needs --sets 2 or more, or adaptive");
         if (!is_given(table, "--sampler")) o.sampler = SamplerKind::sobol;

@@ -49,7 +49,7 @@ public:
     // Unshot power divided by emitted power.
     double unshot() const { return emitted_ > 0 ? unsent() / emitted_ : 0; }
 
-    // At most, see missing.h; a point that has not shot has no exitance.
+    // An upper bound, see missing.h.  It is 1 while a point light has not shot.
     double error() const {
         if (next_point_ < points_.size()) return 1;
         Missing all;
@@ -59,9 +59,9 @@ public:
     }
 
     // Shoots until the target is met, nothing is left or `interrupted`; may be called again for a
-    // farther target.  The map is the same, bit for bit, for any number of threads: every vertex
-    // receives one shot after the other.  But time, or a signal, may cut the last shot short: what
-    // vertices had not received by then is lost.  Calls show(*this) between shots.
+    // stricter target.  The map is the same, bit for bit, for any number of threads: every vertex
+    // receives one shot after the other.  But time, or a signal, may cut the last shot short:
+    // vertices then lack part of its light.  Calls show(*this) between shots.
     template <class Show>
     void run(const ShootingTarget& target, Show show) {
         const auto start = std::chrono::steady_clock::now();
@@ -90,7 +90,7 @@ public:
         for (unsigned k = 1; k < threads_; ++k) {
             try {
                 others.emplace_back(work);
-            } catch (const std::system_error&) {  // one that cannot start is not waited for
+            } catch (const std::system_error&) {  // do not wait for this thread
                 sync.arrive_and_drop();
             }
         }
@@ -133,19 +133,19 @@ private:
     std::vector<const Light*> points_;
     size_t next_point_ = 0;
     double emitted_ = 0, area_ = 0, seconds_ = 0;  // power; of both sides of all faces
-    Missing flying_, lost_;  // at most: what the shot under way sends; what was cut short
+    Missing flying_, lost_;  // upper bounds: of the current shot; of shots cut short
     std::chrono::steady_clock::time_point deadline_;
     static constexpr double lifetime = 1e9;  // seconds: no limit
     uint64_t shots_ = 0, rays_ = 0;
 
-    // Who shoots now: a point light, or a node of a side.
+    // The shooter: a point light, or a node of a side.
     const Light* point_ = nullptr;
     uint32_t side_ = 0, node_ = 0;
 
-    // ---- Who shoots -----------------------------------------------------------------------------
+    // ---- Shooters -------------------------------------------------------------------------------
 
-    // The exitance (W / m^2) of an element by all that it has received so far.  It never falls, by
-    // rounding neither, so what is not yet sent is never negative.
+    // The exitance (W / m^2) of an element, from all light received so far.  It never falls, not
+    // even by rounding, so the unshot exitance is never negative.
     Corners exitance(const Face& f, uint32_t element, bool back) const {
         const auto& v = mesh_.corners[element];
         const rgb own = emission(scene_, f, back) * pi, rho = albedo(scene_, f);
@@ -230,7 +230,7 @@ private:
         // end
     }
 
-    // ---- Who receives ---------------------------------------------------------------------------
+    // ---- Receivers ------------------------------------------------------------------------------
 
     // All vertices of a face.  Returns the number of shadow rays.
     uint64_t receive(uint32_t face) {
@@ -253,7 +253,7 @@ private:
         return transfer.rays;
     }
 
-    // A face does not see itself, nor what lies in its plane.
+    // A face does not see itself, nor anything in its plane.
     rgb from_side(const Receiver& to, Transfer& transfer) const {
         const Face& f = mesh_.faces[side_ / 2];
         const Source from{side_ % 2 ? -f.n : f.n, f.error};
@@ -263,7 +263,7 @@ private:
 
     // A node with children is taken as a whole if the vertex sees it under a small angle, or if it
     // is faint beside what the vertex has (brightness-weighted refinement, Hanrahan et al. 1991).
-    // A vertex that is still dark may lie within a solid, so there a glance comes first.
+    // A vertex that is still dark may lie within a solid, so it is tested for visibility first.
     rgb from_node(const Receiver& to, const Source& from, uint32_t i, Transfer& transfer) const {
         const Node& node = tree_[i];
         const Corners& L = radiance_[i];
@@ -280,7 +280,7 @@ private:
         return E;
     }
 
-    // Irradiance that a vertex does not care about: of one that is dark, beside the scene's mean.
+    // Irradiance that is negligible at a vertex; at a dark one, relative to the mean of the scene.
     real faint_to(const Receiver& to) const {
         constexpr real part = real(0.005);  // by measurement: 0.1 % of an image of a furnished room
         return part * (to.E > 0 ? to.E : real(emitted_ / area_));

@@ -127,7 +127,7 @@ inline std::string error_of(const RadiosityOptions& o, const Solution& s) {
     if (!std::isfinite(s.stated.error)) return "error not known";
     const std::string words = is_random(o) ? "estimated " + error_words(s.stated)
                                            : "error at most " + percent(s.stated.error);
-    return words + ", without that of the triangles";
+    return words + ", without the error of the mesh";
 }
 
 inline std::string summary(const RadiosityOptions& o, const Mesh& mesh, const Solution& s) {

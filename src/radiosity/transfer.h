@@ -1,17 +1,17 @@
-// radiosity/transfer.h  4  what a part of a face sends to a vertex: form factor and visible part
+// radiosity/transfer.h  4  light from a part of a face to a vertex: form factor and visible part
 #pragma once
 #include "radiosity/map.h"
 #include "radiosity/tree.h"
 #include "shadow/irradiance.h"
 
-// Where light is received: a point of a face, the frame of one of its sides.
+// A receiving point of a face, and the frame of one of its sides.
 struct Receiver {
     Surface x;
     Frame local;
     real E = 0;  // irradiance so far
 };
 
-// The side of a face that sends it: its normal, and the error of points of it.
+// The sending side of a face: its normal, and the rounding error of its points.
 struct Source {
     vec3 n;
     real error = 0;
@@ -52,7 +52,7 @@ public:
     explicit Transfer(const Scene& scene) : scene_(scene) {}
     uint64_t rays = 0;
 
-    // I cos / d^2, if nothing is in the way.
+    // I cos / d^2, unless occluded.
     rgb from_point(const Receiver& to, const Light& light) {
         const vec3 d = light.p - to.x.p;
         const real cosine = dot(d, to.x.n), d2 = dot(d, d);
@@ -77,8 +77,8 @@ public:
                part({ca, bc, c}, {{Lca, Lbc, L[2]}}) + part({bc, ca, ab}, {{Lbc, Lca, Lab}});
     }
 
-    // A node of one radiance: the closed form of what it would send if nothing were in the way
-    // (Lambert's theorem) times the part of it that is visible, by one shadow ray or four.
+    // A node of constant radiance: its unoccluded irradiance in closed form (Lambert's theorem),
+    // times its visible part by one shadow ray or four.
     rgb from_whole(const Receiver& to, const Source& from, const Node& node, rgb L,
                    int shadow_rays) {
         if (max_of(L) <= 0 || behind(to, node)) return {};

@@ -83,14 +83,13 @@ public:
             return limit ? std::min(whole, limit) : whole;
         };
         uint64_t to = target_.error > 0 ? reachable(ErrorTarget::least) : limit;
-        while (walk_to(to) && to != limit && !enough.met(look())) {
+        while (walk_to(to) && to != limit && !enough.met(error_now())) {
             if (limit == 0 && target_.seconds == 0 && particles_.is_endless())
                 throw UserError(
                     "--error: none of " + std::to_string(particles_.particles()) +
-                    " particles lost light of some channel, so that it never ends, and its error "
-                    "is not known: give --particles or --time as well, or let a surface absorb "
-                    "some");
-            to = reachable(enough.next(to, look()));
+                    " particles lost light in some channel: its light never ends, and its error "
+                    "stays unknown; add --particles or --time, or let a surface absorb some");
+            to = reachable(enough.next(to, error_now()));
         }
     }
 
@@ -111,7 +110,7 @@ private:
     MapError error_;
 
     // The error as it is now.
-    const MapError& look() {
+    const MapError& error_now() {
         if (of_ != particles_.of_each()) error_ = particles_.stated(), of_ = particles_.of_each();
         return error_;
     }
@@ -130,7 +129,7 @@ private:
                 [&](double part) { show(double(n) + part * double(next - n)); });
             if (!complete) return false;
             // The estimate takes time: it is made when the particles have doubled.
-            if (!o_.quiet && next >= 2 * of_ && bar_.elapsed() >= 1) look();
+            if (!o_.quiet && next >= 2 * of_ && bar_.elapsed() >= 1) error_now();
         }
     }
 

@@ -57,7 +57,7 @@ struct ShadowMoments {
     // end
 };
 
-// The same where U is one number W: sums about it, which is all that keeps them from cancelling.
+// The same for a constant U = W: sums of deviations from it, so that they do not cancel.
 struct SumsAbout {
     double W = 0;
     uint64_t n = 0;
@@ -93,19 +93,19 @@ T control(const T& U, const T& w, const T& wV) {
 inline double control(const ShadowMoments& m) { return control(m.U, m.w, m.wV); }
 
 // visible_part: R from these samples; 0 if none of them found any light.  ratio: consistent;
-// exactly U where nothing is in the way, and 0 where everything is.
+// exactly U in full light, and 0 in full shadow.
 // exercise 5.2
 inline double visible_part(const ShadowMoments& m) { return m.w > 0 ? m.wV / m.w : 0; }
 inline double ratio(const ShadowMoments& m) { return m.U * visible_part(m); }
 // end
 
-// Consistent.  Exact, as ratio is, where all is lit and where nothing is.
+// Consistent.  Like ratio, exact in full light and in full shadow.
 inline double regression(const ShadowMoments& m) {
     // exercise 5.3
-    // Where U differs from sample to sample it is no news that w V follows it: beta is the slope of
-    // w V - R U on b, which leaves fully lit and fully dark pixels as free of noise as ratio does.
-    // Written as a correction of ratio: mean(w V) = R mean(w).  Of a few samples beta has no
-    // variance; then it is R.
+    // If U varies between samples, w V follows it anyway.  So beta is the slope of w V - R U on b;
+    // then fully lit and fully dark pixels are as free of noise as with ratio.  Written as a
+    // correction of ratio, since mean(w V) = R mean(w).  The slope through a few samples has
+    // infinite variance; then beta is R.
     if (m.n < 8 || !(m.bb > 0)) return ratio(m);
     const double R = visible_part(m), beta = (m.b_wV - R * m.b_U) / m.bb;
     return m.U * R + (R - beta) * (m.w - m.U);

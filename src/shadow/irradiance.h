@@ -61,8 +61,8 @@ inline Polygon above_horizon(const Polygon& p) {
     return above;
 }
 
-// Small ones: the integral of cos cos' / r^2 over the area, on each triangle of a fan by the
-// middles of its sides, which is exact to second order: its error is the angle cubed.
+// Small polygons: the integral of cos cos' / r^2 over the area, on each triangle of a fan by the
+// midpoints of its sides.  This rule is exact to second order: its error is the angle cubed.
 inline real irradiance_by_area(const Polygon& p) {
     real sum = 0;
     for (int i = 1; i + 1 < p.n; ++i) {
@@ -94,7 +94,7 @@ inline real irradiance_lambert(const Polygon& p) {
     // end
 }
 
-// A polygon of three or four corners, whichever side it shows; each formula where it is the better.
+// A polygon of three or four corners, from either side, by the more accurate formula.
 inline real irradiance_polygon(const Polygon& whole) {
     constexpr real small = sizeof(real) == 4 ? real(1.6e-2) : real(1e-4);  // ulp^(1/4)
     const Polygon p = above_horizon(whole);

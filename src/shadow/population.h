@@ -1,4 +1,4 @@
-// shadow/population.h  2  what is to be expected of the four estimators
+// shadow/population.h  2  expected values and variances of the four estimators
 //
 // All are mean(w V) - beta mean(w - U):
 //   estimator   beta
@@ -28,7 +28,7 @@ struct ShadowPopulation {
                 return (wwV - S * W) / (ww - W * W);
         }
     }
-    // N times the variance, that of w V - beta w: exactly 0 where it is.
+    // N times the variance, which is that of w V - beta w; exactly 0 without noise.
     double variance(Estimator e) const {
         const double b = beta(e), lit = 1 - b, mean = S - b * W;
         return lit * lit * wwV + b * b * (ww - wwV) - mean * mean;

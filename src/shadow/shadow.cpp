@@ -7,9 +7,9 @@
 namespace {
 
 constexpr const char* before_options =
-    "usage: shadow [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) by "
-    "light\nsampling.  The unshadowed light of each lamp on visible diffuse surfaces is\n"
-    "computed; samples estimate only the shadows.\n\n";
+    "usage: shadow [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) with "
+    "light sampling.\nComputes the unshadowed light of each lamp on visible diffuse surfaces in "
+    "closed\nform; samples estimate only the shadows.\n\n";
 
 constexpr const char* after_options = R"(
 An estimate needs all N / K samples of a replication.  A run is one pass: only

@@ -149,12 +149,12 @@ struct NearMisses {
     void operator()(const Segment& s, const Step& e) {
         constexpr real narrow = 10;  // 1/sr
         is_specular = is_specular && std::isinf(s.pdf);
-        if (s.k > 0 && s.pdf > narrow && !groups.empty()) look(s, e);
+        if (s.k > 0 && s.pdf > narrow && !groups.empty()) add_near_misses(s, e);
     }
 
 private:
     // Rarely called, so not inlined into the path's loop.
-    [[gnu::noinline]] void look(const Segment& s, const Step& e) {
+    [[gnu::noinline]] void add_near_misses(const Segment& s, const Step& e) {
         const size_t n = scene.lights.size();
         const bool met_one = e.met && max_of(e.Le) > 0;
         const size_t met = met_one ? size_t(scene.light_of[e.x.hit.id]) : n;
@@ -221,7 +221,7 @@ public:
             if (!(variance > most)) return;
             most = variance;
             why = (line > 0 ? "the light of line " + fixed(line, 0) : "a light") + where +
-                  " was met " + fixed(met, 0) + " times";
+                  " was hit " + counted(fixed(met, 0), "time");
         };
         for (const OneLight& l : lights_) {
             if (l.met < 10) consider(l.variance, l.line, ", smaller than a pixel,", l.met);
@@ -238,7 +238,7 @@ public:
             }
         }
         if (!(unseen > 3 * d2 * pixels)) return "";
-        return why + "; light not yet seen may amount to " +
+        return why + "; light not yet found may amount to " +
                significant(100 * std::sqrt(unseen / pixels) / norm, 1) + " %";
     }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* before_options =
     "usage: voronoi [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) by "
-    "independent paths.\nThe area of its Voronoi cell weights each sample of a pixel.\n\n";
+    "independent paths.\nWeights each sample of a pixel by the area of its Voronoi cell.\n\n";
 
 constexpr const char* after_options = R"(
 Weights need all N / K samples of a replication.  A run is one pass: only --spp
@@ -71,7 +71,7 @@ int voronoi_main(const std::vector<std::string>& words) {
     const Scene& scene = parsed.scene;
     Plan plan = plan_of(o, scene);
     plan.at_once = std::exchange(plan.target.samples, 1);
-    if (plan.at_once > 1 << 20) throw UserError("--spp: at most 1048576 samples a replication");
+    if (plan.at_once > 1 << 20) throw UserError("--spp: at most 1048576 samples per replication");
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.at_once);
     const auto outputs = outputs_of(o, parsed, "-voronoi", plan.size);
     catch_interrupt();

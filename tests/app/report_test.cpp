@@ -118,10 +118,10 @@ TEST_CASE("where no error is reported, the reason is") {
     CHECK(why(64, 2.5, true) == "error not known: interrupted early");
     CHECK(why(64, 2.5, false) == "error not known: too little time");
     Run run = run_of(0.02, 0.001);
-    run.doubt = "it hangs on few pixels";
-    CHECK(error_words(run) == "error not known: it hangs on few pixels");
-    run.error.norm = 0, run.doubt = "no light was met";
-    CHECK(error_words(run) == "error not known: no light was met");
+    run.doubt = "a few pixels dominate it";
+    CHECK(error_words(run) == "error not known: a few pixels dominate it");
+    run.error.norm = 0, run.doubt = "no sample found light";
+    CHECK(error_words(run) == "error not known: no sample found light");
     run.spp = 1;
     CHECK(error_words(run) == "error not known: one sample");
     run = run_of(0.02, 0.001), run.spp = 2;
@@ -149,9 +149,9 @@ TEST_CASE("the line that stays: the error, whether it was reached, interrupts") 
     run.interrupted = false, run.spp = 1;
     CHECK(summary("a.scene", run) == "a.scene: 1 sample per pixel, 8.00 s, 2.00 Mrays/s");
     run = run_of(0.02, 0.001);
-    run.doubt = "no light was met", run.stopped_by = "error not known";
+    run.doubt = "no sample found light", run.stopped_by = "error not known";
     CHECK(summary("a.scene", run, 0.01)
-              .ends_with(", did not reach 1 % (error not known: no light was met)"));
+              .ends_with(", did not reach 1 % (error not known: no sample found light)"));
     run = Run();
     run.seconds = 8, run.interrupted = true;
     CHECK(summary("a.scene", run) ==

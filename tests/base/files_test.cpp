@@ -64,8 +64,8 @@ TEST_CASE("bytes are read in pieces, fewer at the end") {
 TEST_CASE("only regular files are read: a pipe would keep us waiting, a device never end") {
     const Folder folder;
     REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
-    CHECK(unread(folder / "pipe").ends_with("/pipe: is no regular file"));
-    CHECK(unread("/dev/zero") == "/dev/zero: is no regular file");
+    CHECK(unread(folder / "pipe").ends_with("/pipe: is not a regular file"));
+    CHECK(unread("/dev/zero") == "/dev/zero: is not a regular file");
     CHECK(unread(folder.path.string(), true).ends_with(": is a directory"));
     CHECK(read_file("/dev/null", true) == "");
 }

@@ -1,7 +1,7 @@
 # farm/cases.sh  the cases of farms; the first line of each is its description
 
 size=${SIZE:-128x96} spp=${SPP:-512} scene=${SCENE:-$here/scenes/cornell36.scene}
-resumed='^farm: resumes from its film'
+resumed='^farm: resuming from its film'
 . src/keep/farm.sh  # functions for a folder's parts
 
 # The picture that a farm renders; $whole is that of one render.  Replications are fixed: adaptive ones
@@ -91,7 +91,7 @@ case_slurm_killed() {
     merged && is_right "$folder.pfm"
     for part in "${killed[@]}"; do says "$(log "$folder" "$part")" "$resumed"; done
 }
-queued_again() { [ "$(cat "$folder"/part-*.log | grep -c '^farm: queues again')" = "$1" ]; }  # TIMES
+queued_again() { [ "$(cat "$folder"/part-*.log | grep -c '^farm: requeues this part')" = "$1" ]; }  # TIMES
 
 case_slurm_killed_for_good() {
     : "one part is killed as often as it runs: the merge names it; the same command again renders it alone"
@@ -138,7 +138,7 @@ case_slurm_node_lost() {
     start_node
     merged && is_right "$folder.pfm"
     says "$(log "$folder" "$lost")" "$resumed"
-    says_not "$(log "$folder" "$lost")" 'queues again'  # by itself
+    says_not "$(log "$folder" "$lost")" 'requeues this part'  # by itself
 }
 id_of() { scontrol show job "${job}_$1" | sed -n 's/^JobId=\([0-9]*\).*/\1/p'; }  # NUMBER
 
@@ -168,7 +168,7 @@ case_slurm_preempted() {
     await 60 "part $part waits" eval '! [ "$(process_of $part)" ]' || return
     merged && is_right "$folder.pfm"
     says "$(log "$folder" "$part")" "$resumed"
-    says_not "$(log "$folder" "$part")" 'queues again'  # by itself
+    says_not "$(log "$folder" "$part")" 'requeues this part'  # by itself
 }
 
 case_slurm_cancelled() {
@@ -177,7 +177,7 @@ case_slurm_cancelled() {
     by_slurm --bands 4 || return
     await_mid_run || return
     (by_slurm --bands 4) 2>/dev/null && bad 'a second farm began in the folder'
-    says "$folder.err" 'is at work on it'
+    says "$folder.err" 'is still running'
     scancel "$job"
     merged && merge_failed
     is_absent "$folder.pfm"
@@ -196,10 +196,10 @@ case_slurm_time_limit() {
     local process
     process=$(process_of 1)
     kill -STOP "$process"
-    await 90 'Slurm warns of the limit' grep -q '^farm: stops after signal USR1' "$(log "$folder" 1)"
+    await 90 'Slurm warns of the limit' grep -q '^farm: stopping after signal USR1' "$(log "$folder" 1)"
     kill -CONT "$process"
     merged && is_right "$folder.pfm"
-    says "$(log "$folder" 1)" '^farm: queues again'
+    says "$(log "$folder" 1)" '^farm: requeues this part'
     says "$(log "$folder" 1)" "$resumed"
 }
 

@@ -373,12 +373,12 @@ TEST_CASE("an error is in doubt: black, by few pixels, lost in noise, or as a ju
     const Film film;
     CHECK(doubt_of(film, error(4, 0, 30), {}).empty());
     CHECK(doubt_of(film, error(0, 0, 30), silent).empty());
-    CHECK(doubt_of(film, error(0, 0, 0), doubtful) == "no light was met");
+    CHECK(doubt_of(film, error(0, 0, 0), doubtful) == "no sample found light");
     CHECK(doubt_of(film, error(4, 0, 30), doubtful) == "rare light");
     // d +- d / 4 corresponds to d^2 +- d^2 / 2.
     CHECK(doubt_of(film, error(4, 1.97, 30), silent).empty());
-    CHECK(doubt_of(film, error(4, 2.01, 30), silent) == "it hangs on few pixels");
-    CHECK(doubt_of(film, error(4, 2.01, 3), silent) == "it hangs on few pixels");
+    CHECK(doubt_of(film, error(4, 2.01, 30), silent) == "a few pixels dominate it");
+    CHECK(doubt_of(film, error(4, 2.01, 3), silent) == "a few pixels dominate it");
     CHECK(doubt_of(film, error(4, 2.01, 30), doubtful) == "rare light");
     // |F|^2 = 9 - 4, so that d_rel has 9 / 5 of the relative spread; or |F|^2 would be negative.
     CHECK(doubt_of(film, error(4, 1.1, 3), silent).empty());

@@ -75,6 +75,14 @@ TEST_CASE("one part has all rows, and says nothing of seeds") {
     CHECK(parts_of(yard.folder.read("farm/farm.plan")) == "part --rows 0-5\n");
 }
 
+TEST_CASE("a picture has as many files, of every format, as outputs are given") {
+    const Yard yard;
+    CHECK(yard.plan("-o b.hdr --output c.png").status == 0);
+    const std::string plan = yard.folder.read("farm/farm.plan");
+    for (const char* file : {"a.pfm", "b.hdr", "c.png"})
+        CHECK(plan.find("output -o\noutput " + (yard.folder / file) + "\n") != plan.npos);
+}
+
 TEST_CASE("what cannot be rendered is refused before it is planned") {
     const Yard yard;
     auto refused = [&](const std::string& words, const std::string& why) {
@@ -86,18 +94,20 @@ TEST_CASE("what cannot be rendered is refused before it is planned") {
     };
     refused(farm_words + "--bands 7 -- " + picture, "farm: --bands 7: the picture has 6 rows");
     refused(farm_words + "--seeds 2 -- --seed 1 " + picture, "farm: --seed: --seeds 2 sets it");
-    refused(farm_words + "--bands 0 -- " + picture, "farm: --bands '0': a number, 1 or more");
-    refused(farm_words + "--bands -- " + picture, "farm: --bands '--': a number");
-    refused(farm_words + "--hosts h -- " + picture, "farm: --hosts: no option of a farm");
+    refused(farm_words + "--bands 0 -- " + picture,
+            "farm: --bands '0' is not a number of 1 or more");
+    refused(farm_words + "--bands -- " + picture, "farm: --bands '--' is not a number");
+    refused(farm_words + "--hosts h -- " + picture, "farm: --hosts: not a farm option");
     refused(farm_words + "-- --spp 5 a.scene", "farm: --size WxH");
     refused(farm_words + "-- --size 8x6 a.scene", "farm: --spp ''");
     refused(farm_words + "-- --rows 0-1 " + picture, "farm: --rows: the farm sets it");
     refused(farm_words + "-- --rows=0-1 " + picture, "farm: --rows: the farm sets it");
     refused(farm_words + "-- --output b.pfm " + picture, "farm: --output: the farm sets it");
-    refused(farm_words + picture, "farm: --size: no option of a farm");
-    refused(farm_words, "farm: missing: -- OPTIONS OF PENUMBRA SCENE");
+    refused(farm_words + picture, "farm: --size: not a farm option");
+    refused(farm_words, "farm: missing -- OPTIONS OF PENUMBRA SCENE");
     refused("--build build --folder farm -- " + picture, "farm: -o FILE");
     refused("--build build -o a.pfm -- " + picture, "farm: --folder");
+    refused(farm_words + "-o a.jpg -- " + picture, "a.jpg: must end in .png, .pfm or .hdr");
     refused("--build bin --folder farm -o a.pfm -- " + picture, "bin/penumbra: build it first");
     yard.script("build/penumbra", "echo 'a.scene:7: no such statement' >&2; exit 2\n");
     refused(farm_words + "-- " + picture, "a.scene:7: no such statement");
@@ -134,7 +144,7 @@ TEST_CASE("a part is told its film, from which it goes on") {
     CHECK(yard.folder.has("told"));
     CHECK(yard.log("7") == "");
     CHECK(yard.run("farm.sh part farm 7 3").status == 0);
-    CHECK(yard.log("7") == "farm: resumes from its film\n");
+    CHECK(yard.log("7") == "farm: resuming from its film\n");
     // The plan has the folder's absolute path, while the script is called with a relative one.
     std::string told = yard.folder.read("told");
     for (size_t at; (at = told.find(" farm/")) != told.npos;)
@@ -174,7 +184,7 @@ TEST_CASE("whoever stops a part stops penumbra, and waits until it has written i
         "wait $part");
     CHECK(said.status == 143);
     CHECK(yard.folder.has("film"));
-    CHECK(yard.log("1").find("farm: stops after signal TERM") != std::string::npos);
+    CHECK(yard.log("1").find("farm: stopping after signal TERM") != std::string::npos);
 }
 
 // ---- Signals and Slurm --------------------------------------------------------------------------
@@ -256,7 +266,7 @@ TEST_CASE(
     slurm.folder.write("queue", "1_3\n");
     const Said again = slurm.run(submit);
     CHECK(again.status == 2);
-    CHECK(again.has("farm: job 1 is at work on it"));
+    CHECK(again.has("farm: job 1 is still running"));
     CHECK(slurm.folder.read("submitted") == submitted);
 }
 

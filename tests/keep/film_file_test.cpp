@@ -93,7 +93,7 @@ TEST_CASE("numbers of a head: at the start of a value, or after a character of i
     CHECK(film.number("rows", 15, '-') == 15);
     CHECK(film.number("time") == 0.25);
     CHECK_THROWS_WITH_AS(film.number("rows", 14, '-'),
-                         (folder / "a.film" + ": its rows is '3-15'").c_str(), UserError);
+                         (folder / "a.film" + ": invalid rows '3-15'").c_str(), UserError);
     for (const char* key : {"no", "less", "much", "nan", "missing"})
         CHECK_THROWS_AS(film.number(key), UserError);
 }
@@ -128,7 +128,7 @@ TEST_CASE("no part of a film passes for a whole one") {
     for (size_t length = 0; length < film.bytes.size(); ++length) {
         film.folder.write("a.film", film.bytes.substr(0, length));
         INFO(length, " bytes");
-        CHECK(refusal(film.folder, "a.film") == (length > 0 ? "is cut short" : "no film"));
+        CHECK(refusal(film.folder, "a.film") == (length > 0 ? "is cut short" : "is not a film"));
     }
     film.folder.write("a.film", film.bytes);
     CHECK(refusal(film.folder, "a.film") == "");
@@ -154,7 +154,7 @@ TEST_CASE("a film with any bit flipped is refused, and says why") {
         CHECK(why != "");
         if (bit / 8 >= numbers) CHECK(why == "is damaged (its checksum differs)");
         if (bit / 8 >= 43 && bit / 8 < lines) CHECK(why == "is damaged (its checksum differs)");
-        if (bit / 8 < 14) CHECK(why == "no film");
+        if (bit / 8 < 14) CHECK(why == "is not a film");
     }
 }
 
@@ -166,17 +166,18 @@ TEST_CASE("what is no film, or of another version, is refused by name") {
          {std::string("PF\n1 1\n-1.0\n"), std::string(100000, 'x'), std::string(100000, '\n'),
           "penumbra film 2" + std::string(100000, '1'), "penumbra film\n" + rest}) {
         folder.write("a.film", bytes);
-        CHECK(refusal(folder, "a.film") == "no film");
+        CHECK(refusal(folder, "a.film") == "is not a film");
     }
     for (const char* version : {"1", "3", "22"}) {
         folder.write("a.film", "penumbra film " + (version + ("\n" + rest)));
-        CHECK(refusal(folder, "a.film") == "of another version (" + std::string(version) + ")");
+        CHECK(refusal(folder, "a.film") ==
+              "has format version " + std::string(version) + ", not 2");
     }
     folder.write("a.film", first_lines(100000, {}) + std::string(100000, 'x'));
     CHECK(refusal(folder, "a.film") == "is cut short");
     CHECK(refusal(folder, "missing.film").starts_with("cannot open: "));
     REQUIRE(::mkfifo((folder / "pipe.film").c_str(), 0600) == 0);
-    CHECK(refusal(folder, "pipe.film") == "is no regular file");
+    CHECK(refusal(folder, "pipe.film") == "is not a regular file");
     CHECK(refusal(folder, "") == "is a directory");
 }
 

@@ -150,16 +150,17 @@ TEST_CASE("a film of other samples is refused by the first thing that differs") 
     CHECK(why(what) == "");
     FilmOf other = what;
     other.samples[1] = {"seed", "8"};
-    CHECK(why(other) == "its seed is 7, not 8");
+    CHECK(why(other) == "was rendered with seed 7, not 8");
     other.samples[0] = {"sampler", "\"halton\""};
-    CHECK(why(other) == "its sampler is sobol, not halton");
+    CHECK(why(other) == "was rendered with sampler sobol, not halton");
     other = what, other.notes = {{"name", "sphere"}};
     CHECK(why(other) == "");
     other = what, other.samples.push_back({"grid", "7x5"});
-    CHECK(why(other) == "its grid is not known, not 7x5");
+    CHECK(why(other) == "was rendered with grid not known, not 7x5");
     Film lit = film;
     lit.evidence.resize(2);
-    CHECK(complaint([&] { restored(path, lit, what); }) == path + ": its evidence is 0, not 2");
+    CHECK(complaint([&] { restored(path, lit, what); }) ==
+          path + ": was rendered with evidence 0, not 2");
     folder.write("scene", "boxk"), folder.write("mesh", "not");
     CHECK(why(what) == "was rendered from another version of cube");
     what.notes = {{"name", "other"}};
@@ -175,11 +176,11 @@ TEST_CASE("a film that could be none is refused, by what is wrong") {
         change_head(path, path, changed);
         return complaint([&] { restored(path, into, {}); }).substr(path.size());
     };
-    CHECK(why({{"pilot", "-1"}}, film, empty) == ": its pilot is '-1'");
-    CHECK(why({{"seconds", "soon"}}, film, empty) == ": its seconds is 'soon'");
-    CHECK(why({{"rays", "1e300"}}, film, empty) == ": its rays is '1e300'");
-    const std::string other = ": has other replications than it says",
-                      impossible = ": has a pixel of impossible replications";
+    CHECK(why({{"pilot", "-1"}}, film, empty) == ": invalid pilot '-1'");
+    CHECK(why({{"seconds", "soon"}}, film, empty) == ": invalid seconds 'soon'");
+    CHECK(why({{"rays", "1e300"}}, film, empty) == ": invalid rays '1e300'");
+    const std::string other = ": its replications do not match its length",
+                      impossible = ": has a pixel with an impossible number of replications";
     Film wrong = film;
     wrong.sets[2] = 0;
     CHECK(why({}, wrong, empty) == impossible);
@@ -188,13 +189,13 @@ TEST_CASE("a film that could be none is refused, by what is wrong") {
     wrong.sets[2] = uint16_t(film.sets[2] + 1);
     CHECK(why({}, wrong, empty) == other);
     CHECK(why({}, film, make_film({37, 24}, 0)) != "");
-    CHECK(why({}, film, make_film({1000, 1000}, 0)) == ": holds less than it should");
+    CHECK(why({}, film, make_film({1000, 1000}, 0)) == ": is too short for its size");
     CHECK(why({}, fill(empty, 20, 1, 500), make_film({37, 24}, 0)) == other);
     auto why_not_read = [&](const std::string& name, Size of_it) {
         return complaint([&] { FilmPixels(folder / name, of_it); }).substr((folder / name).size());
     };
     // The size exceeds any memory.
-    CHECK(why_not_read("a.film", {1 << 30, 1 << 30}) == ": holds less than it should");
+    CHECK(why_not_read("a.film", {1 << 30, 1 << 30}) == ": is too short for its size");
     Keeper(folder / "b.film", {}).write(empty, {}, true);
     CHECK(why_not_read("b.film", size) == ": has no samples");
 }

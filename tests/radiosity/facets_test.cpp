@@ -222,5 +222,5 @@ TEST_CASE("a room whose walls absorb nothing is warned of, by its first line") {
         "quad 0 0 0  1 0 0  0 1 0  grey\nquad 0 0 2  1 0 0  0 1 0  white\n";
     const Faceted f = faceted(parsed(text), 1);
     REQUIRE(f.warnings.size() == 1);
-    CHECK(f.warnings[0] == "6: reflects all light: in a closed room it never ends");
+    CHECK(f.warnings[0] == "6: reflects all light: in a closed room, paths never end");
 }

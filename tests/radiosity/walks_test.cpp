@@ -86,7 +86,7 @@ TEST_CASE("--error alone: where no particle loses light the run ends with a mess
     add_quad(open, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 0);
     prepare(open);
     const std::string message = "--error: none of " + std::to_string(first_look) +
-                                " particles lost light of some channel, so that it never ends";
+                                " particles lost light in some channel: its light never ends";
     const struct {
         Scene scene;
         WalksTarget target;

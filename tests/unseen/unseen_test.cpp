@@ -188,12 +188,13 @@ TEST_CASE(
         return u.doubt(d2, 2, 25);
     };
     // Six near misses at s = 2, each with c = 1, give 4 * 6 / 4 over 25 pixels.
-    CHECK(doubt(0, 6, 0, 0.01) ==
-          "the light of line 12 in mirrors or glass was met 0 times; light not yet seen may amount "
-          "to 24 %");
+    CHECK(
+        doubt(0, 6, 0, 0.01) ==
+        "the light of line 12 in mirrors or glass was hit 0 times; light not yet found may amount "
+        "to 24 %");
     CHECK(doubt(9, 9, 1, 0.01)
               .starts_with("the light of line 12 by way of mirrors or glass was "
-                           "met 9 times"));
+                           "hit 9 times"));
     CHECK(doubt(10, 10, 0, 0.01).empty());  // enough hits
     CHECK(doubt(0, 4, 0, 0).empty());       // too few to judge
     CHECK(!doubt(0, 5, 0, 0).empty());
@@ -206,7 +207,7 @@ TEST_CASE(
     groups = {{0, 4, 0.1, 0.09, 8}};
     CHECK(
         doubt(0, 0, 0, 0, 12) ==
-        "a light, smaller than a pixel, was met 10 times; light not yet seen may amount to 0.6 %");
+        "a light, smaller than a pixel, was hit 10 times; light not yet found may amount to 0.6 %");
     CHECK(doubt(0, 0, 0, 0, 12.6).empty());
 }
 
@@ -217,8 +218,8 @@ TEST_CASE("films of one picture add up") {
         for (size_t power : {0, 1})
             evidence[place(0, 0) + 2 * k + power] = fixed_point(k == 0 ? 3 : 40);
     for (const auto& [films, why] :
-         {std::pair{1, "was met 3 times; light not yet seen may amount to 158 %"},
-          {3, "was met 9 times; light not yet seen may amount to 91 %"},
+         {std::pair{1, "was hit 3 times; light not yet found may amount to 158 %"},
+          {3, "was hit 9 times; light not yet found may amount to 91 %"},
           {4, "smaller than a pixel"}}) {
         Unseen u;
         for (int i = 0; i < films; ++i) u.add(evidence, 2, 1.0 / films);

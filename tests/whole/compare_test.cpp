@@ -241,7 +241,7 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
              {"one.pfm huge.pfm", "", "huge.pfm: '1000000' is not a whole number from 1 to 65536"},
              {"text.film one.pfm", "", "text.film: "},
              {"one.pfm cut.film", "", "cut.film: is cut short"},
-             {"one.pfm one.pfm --heatmap a.pfm", "", "--heatmap: 'a.pfm' does not end in .png"},
+             {"one.pfm one.pfm --heatmap a.pfm", "", "--heatmap: 'a.pfm' must end in .png"},
              {"one.pfm one.pfm --heatmap missing/a.png", "",
               "missing/a.png: cannot write: No such file"},
              {"two.film two.film @", "--heatmap;--limit;--alpha", "@: needs a value"},

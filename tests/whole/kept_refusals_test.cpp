@@ -28,17 +28,18 @@ TEST_CASE("a film of other samples is refused by what differs, and nothing is to
     const Kept folder;
     folder.keep("a.film", "--spp 17");
     for (const auto& [options, why] :
-         {std::pair<std::string, std::string>{"--size 9x4", "size is 8x4, not 9x4"},
-          {"--sampler halton", "sampler is sobol, not halton"},
-          {"--sets 2", "sets is adaptive, not 2"},
-          {"--direction uniform", "direction is bsdf, not uniform"},
-          {"--light nee", "light is mis, not nee"},
-          {"--depth 3", "depth is 8, not 3"},
-          {"--roulette 0.5", "roulette is 0.25, not 0.5"},
-          {"--seed 1", "seed is 0, not 1"},
-          {"--view normal", "view is radiance, not normal"},
-          {"--rows 0-1", "rows is 0-3, not 0-1"}})
-        folder.refuse("--spp 20 --keep a.film " + options, "a.film: its " + why + "\n");
+         {std::pair<std::string, std::string>{"--size 9x4", "size 8x4, not 9x4"},
+          {"--sampler halton", "sampler sobol, not halton"},
+          {"--sets 2", "sets adaptive, not 2"},
+          {"--direction uniform", "direction bsdf, not uniform"},
+          {"--light nee", "light mis, not nee"},
+          {"--depth 3", "depth 8, not 3"},
+          {"--roulette 0.5", "roulette 0.25, not 0.5"},
+          {"--seed 1", "seed 0, not 1"},
+          {"--view normal", "view radiance, not normal"},
+          {"--rows 0-1", "rows 0-3, not 0-1"}})
+        folder.refuse("--spp 20 --keep a.film " + options,
+                      "a.film: was rendered with " + why + "\n");
     // Options that samples do not depend on may change.
     folder.render(
         "--spp 18 --keep a.film --threads 3 --exposure 2 -o z.pfm --stats z.json "
@@ -49,7 +50,7 @@ TEST_CASE("where samples depend on how many there are, another grid is refused")
     const Kept folder;
     folder.keep("a.film", "--sets 1 --spp 12 --sampler stratified");
     folder.refuse("--sets 1 --spp 20 --sampler stratified --keep a.film",
-                  "a.film: its grid is 4x3, not 5x4\n");
+                  "a.film: was rendered with grid 4x3, not 5x4\n");
     folder.keep("b.film", "--sets 1 --spp 256 --sampler stratified");
     folder.keep("b.film", "--sets 1 --spp 512 --sampler stratified");
 }
@@ -72,7 +73,7 @@ TEST_CASE("another scene, by one byte of any of its files; the same one elsewher
 TEST_CASE("a film of one sample a pixel has one replication, and gets no other") {
     const Kept folder;
     folder.keep("a.film", "--spp 1");
-    folder.refuse("--spp 2 --keep a.film", "a.film: its sets is 1, not adaptive\n");
+    folder.refuse("--spp 2 --keep a.film", "a.film: was rendered with sets 1, not adaptive\n");
     folder.render("--spp 8 --sets 1 --keep a.film -o z.pfm");
 }
 
@@ -85,7 +86,7 @@ TEST_CASE("a film that is torn, damaged, longer, empty, a folder or in none") {
          {size_t(0), size_t(5), size_t(40), size_t(200), film.size() / 2, film.size() - 1}) {
         folder.write("b.film", film.substr(0, cut));
         folder.refuse("--spp 17 --keep b.film",
-                      cut == 0 ? "b.film: no film\n" : "b.film: is cut short\n");
+                      cut == 0 ? "b.film: is not a film\n" : "b.film: is cut short\n");
     }
     for (size_t at = 7; at < film.size(); at += film.size() / 23) {
         std::string flipped = film;
@@ -96,13 +97,13 @@ TEST_CASE("a film that is torn, damaged, longer, empty, a folder or in none") {
     folder.write("b.film", film + "x");
     folder.refuse("--spp 17 --keep b.film", "b.film: is longer than it says\n");
     folder.write("b.film", "penumbra film 1" + film.substr(15));
-    folder.refuse("--spp 17 --keep b.film", "b.film: of another version (1)\n");
+    folder.refuse("--spp 17 --keep b.film", "b.film: has format version 1, not 2\n");
     folder.refuse("--spp 17 --keep deep.film", "deep.film: is a directory\n");
     folder.refuse("--spp 17 --keep no/a.film", "no/a.film: cannot write: No such file");
-    folder.refuse("--spp 17 --keep a", "--keep: 'a' does not end in .film\n");
+    folder.refuse("--spp 17 --keep a", "--keep: 'a' must end in .film\n");
     REQUIRE(::mkfifo((folder / "pipe.film").c_str(), 0600) == 0);
-    folder.refuse("--spp 17 --keep pipe.film", "pipe.film: is no regular file\n");
-    folder.refuse("--pixel 1,1 --keep a.film", "--keep: goes without --pixel\n");
+    folder.refuse("--spp 17 --keep pipe.film", "pipe.film: is not a regular file\n");
+    folder.refuse("--pixel 1,1 --keep a.film", "--keep: cannot be combined with --pixel\n");
 }
 
 TEST_CASE("a film shares its name with nothing else") {

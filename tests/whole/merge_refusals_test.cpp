@@ -61,13 +61,13 @@ TEST_CASE("a part of another picture is told by what differs") {
     auto refuse = [&](const std::string& options, const std::string& why) {
         fs::remove(folder / "c.film");
         folder.part("c.film", "--spp 20 --rows 3-6 " + options);
-        folder.refuse("a.film c.film", "c.film: its " + why + "\n");
+        folder.refuse("a.film c.film", "c.film: was rendered with " + why + "\n");
     };
-    refuse("--sampler halton", "sampler is halton, not sobol as in a.film");
-    refuse("--sets 2", "sets is 2, not adaptive as in a.film");
-    refuse("--depth 2", "depth is 2, not 8 as in a.film");
-    refuse("--size 8x8", "size is 8x8, not 8x7 as in a.film");
-    refuse("--sampler stratified", "sampler is stratified, not sobol as in a.film");
+    refuse("--sampler halton", "sampler halton, not sobol as in a.film");
+    refuse("--sets 2", "sets 2, not adaptive as in a.film");
+    refuse("--depth 2", "depth 2, not 8 as in a.film");
+    refuse("--size 8x8", "size 8x8, not 8x7 as in a.film");
+    refuse("--sampler stratified", "sampler stratified, not sobol as in a.film");
     folder.write("file.scene", good + "\n");
     fs::remove(folder / "c.film");
     folder.part("c.film", "--spp 20 --rows 3-6");
@@ -90,12 +90,12 @@ TEST_CASE("a part that is damaged, cut short, of another precision, or no film")
     folder.refuse("a.film c.film", "c.film: is cut short\n");
     folder.write("c.film", "");
     folder.refuse("c.film a.film", "c.film: ");
-    folder.refuse("file.scene a.film", "file.scene: no film\n");
+    folder.refuse("file.scene a.film", "file.scene: is not a film\n");
     const bool is_float = in_head(folder, "b.film", "precision") == "float";
     change_head(folder / "b.film", folder / "c.film",
                 {{"precision", is_float ? "double" : "float"}});
-    folder.refuse("c.film", is_float ? "c.film: its precision is double, not float\n"
-                                     : "c.film: its precision is float, not double\n");
+    folder.refuse("c.film", is_float ? "c.film: was rendered with precision double, not float\n"
+                                     : "c.film: was rendered with precision float, not double\n");
 }
 
 TEST_CASE("a head that no run writes is no part") {
@@ -113,9 +113,9 @@ TEST_CASE("a head that no run writes is no part") {
                                      {"pilot", "soon"},
                                      {"seconds", "long"},
                                      {"rays", "-1"}})
-        refuse(key, value, "its " + std::string(key) + " is '" + value + "'");
+        refuse(key, value, "invalid " + std::string(key) + " '" + value + "'");
     refuse("complete", "no", "is not complete: resume it with penumbra --keep c.film");
-    refuse("size", "800x7", "holds less than it should");
+    refuse("size", "800x7", "is too short for its size");
 }
 
 TEST_CASE("a merge writes over none of its parts, and no file twice") {

@@ -151,7 +151,7 @@ TEST_CASE("radiosity --error: what came first ends the run, and is said") {
         const bool reached = stopped_by == "--error";
         CHECK(contains(o.err, reached ? " Mrays/s, reached 20 % ("
                                       : "did not reach 1e-07 % (stopped by " + stopped_by + "; "));
-        CHECK(contains(o.err, ", without that of the triangles)\n"));
+        CHECK(contains(o.err, ", without the error of the mesh)\n"));
         CHECK(contains(o.err, "error at most ") == !contains(options, "particles"));
         const double asked = number_of(stats, "error_asked"), error = number_of(stats, "error");
         CHECK(asked == (contains(options, "--error 20%") ? 0.2 : 1e-9));
@@ -175,7 +175,7 @@ TEST_CASE("radiosity --error alone: particles in a closed white room end with a 
         run(place, "radiosity --method particles --mesh 5 --error 5% -o a.pfm file.scene");
     INFO(o.err);
     CHECK(o.status == 2);
-    CHECK(contains(o.err, "--error: none of 65536 particles lost light of some channel"));
+    CHECK(contains(o.err, "--error: none of 65536 particles lost light in some channel"));
 }
 
 TEST_CASE("statistics are UTF-8 even if the scene's name is not") {
@@ -381,13 +381,14 @@ TEST_CASE("radiosity refuses, in one line, what it cannot do, and touches no fil
             {"--rays 65 file.scene", "--rays: '65' is not a whole number from 1 to 64"},
             {"--view radiance file.scene", "--view: unknown value 'radiance'"},
             {"--spp 4 file.scene", "--spp: needs --final-gather"},
-            {"--final-gather --rays 3 file.scene", "--rays: goes without --final-gather"},
+            {"--final-gather --rays 3 file.scene",
+             "--rays: cannot be combined with --final-gather"},
             {"--final-gather --method shooting file.scene", "--final-gather: needs --method part"},
             {"--stats file.scene file.scene", "file.scene: would replace another file"},
             {"--stats a.png -o a.png file.scene", "a.png: would replace another file"},
             {"-o missing/a.png file.scene",
              "missing/a.png: cannot write: No such file or directory"},
-            {"-o a.jpg file.scene", "-o: 'a.jpg' ends in none of .png, .pfm and .hdr"},
+            {"-o a.jpg file.scene", "-o: 'a.jpg' must end in .png, .pfm or .hdr"},
         });
     CHECK(contains(run(place, "radiosity --mesh 1e-6 file.scene").err, " would fit\n"));
     expect_success(place, "radiosity --mesh 3 --shots 1 -o a.pfm fine.scene");

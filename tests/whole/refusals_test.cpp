@@ -239,17 +239,17 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
     expect_refusal(blocked, "penumbra file.scene", "out/file.png: is a directory");
 }
 
-TEST_CASE("what is no regular file is not read, and what cannot be read is told") {
+TEST_CASE("what is not a regular file is not read, and what cannot be read is told") {
     const Folder folder;
     REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
     folder.write("a.scene", good + "mesh pipe 1 0 0 0 m\n");
     folder.write("b.scene", good + "mesh /dev/zero 1 0 0 0 m\n");
     expect_refusals(folder, "penumbra",
-                    {{"pipe", "pipe: is no regular file"},
-                     {"/dev/zero", "/dev/zero: is no regular file"},
-                     {"a.scene", "a.scene:7: pipe: is no regular file"},
-                     {"b.scene", "b.scene:7: /dev/zero: is no regular file"}});
-    expect_refusal(folder, "compare pipe pipe", "pipe: is no regular file");
+                    {{"pipe", "pipe: is not a regular file"},
+                     {"/dev/zero", "/dev/zero: is not a regular file"},
+                     {"a.scene", "a.scene:7: pipe: is not a regular file"},
+                     {"b.scene", "b.scene:7: /dev/zero: is not a regular file"}});
+    expect_refusal(folder, "compare pipe pipe", "pipe: is not a regular file");
     const Outcome o = run(folder, "penumbra /proc/self/mem");
     CHECK(o.status == 1);
     CHECK(o.err == "/proc/self/mem: cannot read: Input/output error\n");

@@ -111,7 +111,7 @@ TEST_CASE("--error goes on while light may be missing, and says so after 4096 sa
     const Outcome o = spark.render(options);
     INFO(o.err);
     CHECK(contains(o.err, "did not reach 5 % (error not known: the light of line 9 "));
-    CHECK(contains(o.err, "light not yet seen may amount to "));
+    CHECK(contains(o.err, "light not yet found may amount to "));
     std::string stats = spark.read("a.json");
     CHECK(stated(stats, "d_rel") == "null");
     CHECK(number_of(stats, "error") == 0.05);

@@ -103,8 +103,8 @@ TEST_CASE("shadow and voronoi refuse, in one line, what they cannot do") {
                     {{"--weights area a.scene", "--weights: unknown value 'area'"},
                      {"--sampler sobol a.scene", "unknown option '--sampler'"},
                      {"--error 1% a.scene", "unknown option '--error'"},
-                     {"--spp 2097153 a.scene", "--spp: at most 1048576 samples a replication"},
-                     {"-o a.scene a.scene", "-o: 'a.scene' ends in none of .png, .pfm and .hdr"}});
+                     {"--spp 2097153 a.scene", "--spp: at most 1048576 samples per replication"},
+                     {"-o a.scene a.scene", "-o: 'a.scene' must end in .png, .pfm or .hdr"}});
 }
 
 TEST_CASE("shadow and voronoi: Ctrl-C leaves no image") {
