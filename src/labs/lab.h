@@ -222,9 +222,11 @@ int experiment(int argc, char** argv, const Lab& lab, Study study) try {
                                    [&](Text) { scope.quick = true; }},
                                   {"--help", "", "print this", "", [&](Text) { help = true; }}};
     parse_words(table, words, [](auto& word) { throw UserError(unknown("option", word, {})); });
-    if (help)
-        std::printf("usage: %s [options]\n\n%s\n\n%s", lab.name.c_str(), lab.purpose.c_str(),
-                    option_lines(table).c_str());
+    if (help) std::printf("usage: %s [options]\n\n%s\n\n", lab.name.c_str(), lab.purpose.c_str());
+    for (const Option& r : table)
+        if (help)
+            std::printf("  %-20s%s%s\n", usage_of(r).c_str(), std::string(r.help).c_str(),
+                        r.otherwise.empty() ? "" : text(" (default: %s)", r.otherwise).c_str());
     return finished(help ? 0 : study(scope));
 } catch (...) {
     return failed();

@@ -66,7 +66,7 @@ const key = (key, shiftKey) => stage.dispatchEvent(
 const choose = async (id, value) => {
     $(id).value = value;
     $(id).dispatchEvent(new Event("input", { bubbles: true }));
-    await soon();
+    do await soon(); while (!$("image-b").dataset.drawn.startsWith(scene().name + ","));
 };
 const drawn = (who, x, y) => $("image-" + who).getContext("2d").getImageData(x, y, 1, 1).data;
 const cells = k => [...$("values").querySelectorAll("tbody tr")[k].children].map(c => c.textContent);
