@@ -43,8 +43,7 @@ TEST_CASE("a mistake") {
     oracle::Random random(oracle::seed_of("forgotten"));
     // [mistake
     auto forgotten = [](Vec w) { return w.z > 0 ? w.z : 0; };  // 1/pi
-    oracle::Verdict v =
-        oracle::expect_density(random, sample_cosine, forgotten, {.name = "cosine"});
+    oracle::Verdict v = oracle::expect_density(random, sample_cosine, forgotten, {.name = "cosine"});
     // ]
     CHECK(!v.pass);
     CHECK(
@@ -65,12 +64,9 @@ TEST_CASE("another framework") {
     int failures = 0;
     auto my_check = [&](bool passed, const std::string&) { failures += !passed; };
     oracle::Random random(1);
-// [framework
-#define MY_EXPECT(verdict)                    \
-    do {                                      \
-        const oracle::Verdict v_ = (verdict); \
-        my_check(v_.pass, v_.text);           \
-    } while (false)
+    // [framework
+    #define MY_EXPECT(verdict) \
+        do { const oracle::Verdict v_ = (verdict); my_check(v_.pass, v_.text); } while (false)
     MY_EXPECT(oracle::expect_density(random, sample_cosine, pdf_cosine));
     // ]
     CHECK(failures == 0);
@@ -82,8 +78,7 @@ TEST_CASE("failing samples and lobes") {
     auto upper = [](double u, double v) -> std::optional<oracle::Triple> {
         const double z = 1 - 2 * u, r = std::sqrt(1 - z * z);
         if (z < 0) return {};
-        return oracle::Triple{r * std::cos(2 * oracle::pi * v), r * std::sin(2 * oracle::pi * v),
-                              z};
+        return oracle::Triple{r * std::cos(2 * oracle::pi * v), r * std::sin(2 * oracle::pi * v), z};
     };
     auto half = [](const oracle::Triple& w) { return w[2] > 0 ? 1 / (4 * oracle::pi) : 0; };
     oracle::Verdict v = oracle::expect_density(random, upper, half);  // 50 % of the samples fail
@@ -95,25 +90,15 @@ TEST_CASE("domains") {
     oracle::Random random(oracle::seed_of("domains"));
     // [domains
     using Pair = std::pair<double, double>;
-    oracle::Verdict a = oracle::expect_density(
-        random, [](double u) { return -std::log1p(-u); },
-        [](double t) { return t < 0 ? 0 : std::exp(-t); });  // the line
+    oracle::Verdict a = oracle::expect_density(random, [](double u) { return -std::log1p(-u); },
+                                               [](double t) { return t < 0 ? 0 : std::exp(-t); });  // the line
     oracle::Verdict b = oracle::expect_density(
-        random,
-        [](double u, double v) {
-            return Pair{u, std::sqrt(v)};
-        },
-        [](Pair x) { return 2 * x.second; }, oracle::Square{});
+        random, [](double u, double v) { return Pair{u, std::sqrt(v)}; }, [](Pair x) { return 2 * x.second; }, oracle::Square{});
     const oracle::Triangle<3> t{{0, 0, 1}, {2, 0, 0}, {0, 1, 0}};  // in space: area 3/2
     oracle::Verdict c = oracle::expect_density(
-        random,
-        [&](double u, double v) {
-            return t.at({std::sqrt(u), v});
-        },
-        [](oracle::Triple) { return 2 / 3.0; }, t);
-    oracle::Verdict d = oracle::expect_choice(
-        random, [](double u) { return u < 0.3 ? 0 : 1; }, [](int i) { return i == 0 ? 0.3 : 0.7; },
-        2);
+        random, [&](double u, double v) { return t.at({std::sqrt(u), v}); }, [](oracle::Triple) { return 2 / 3.0; }, t);
+    oracle::Verdict d = oracle::expect_choice(random, [](double u) { return u < 0.3 ? 0 : 1; },
+                                              [](int i) { return i == 0 ? 0.3 : 0.7; }, 2);
     // ]
     CHECK(a.pass);
     CHECK(b.pass);
@@ -153,8 +138,8 @@ TEST_CASE("means") {
     // [means
     // int cos dw over the hemisphere by uniform directions; the pdf 1 / (2 pi) forgotten.
     auto estimate = [&] { return random(); };
-    oracle::Verdict v =
-        oracle::expect_mean(oracle::pi, 100000, estimate, {.factors = {{"1/pdf", 2 * oracle::pi}}});
+    oracle::Verdict v = oracle::expect_mean(oracle::pi, 100000, estimate,
+                                            {.factors = {{"1/pdf", 2 * oracle::pi}}});
     // ]
     CHECK(!v.pass);
     INFO(v.text);
@@ -198,19 +183,14 @@ TEST_CASE("BSDFs") {
 TEST_CASE("a density that comes with the sample") {
     oracle::Random random(oracle::seed_of("beside"));
     // [beside
-    struct Lobe {
-        Vec wi;
-        float pdf;
-    };
+    struct Lobe { Vec wi; float pdf; };
     auto sample = [](float u, float v) {
         const Vec w = sample_cosine(u, v);
-        return Lobe{w, pdf_cosine(w) / 2};  // "the pdf that sample returns is 0.5 (1/2, half) times
-                                            // what pdf says, in every sample"
+        return Lobe{w, pdf_cosine(w) / 2};  // "the pdf that sample returns is 0.5 (1/2, half) times what pdf says, in every sample"
     };
     oracle::Verdict v = oracle::expect_density(random, sample, pdf_cosine);
     // ]
-    CHECK(v.text ==
-          "the pdf that sample returns is 0.5 (1/2, half) times what pdf says, in every sample");
+    CHECK(v.text == "the pdf that sample returns is 0.5 (1/2, half) times what pdf says, in every sample");
 }
 
 TEST_CASE("arrays") {
@@ -218,12 +198,10 @@ TEST_CASE("arrays") {
     // [arrays
     // Arrays: your code evaluates its density at points that the oracle chooses.
     const auto points = oracle::points_in(random, oracle::Sphere{}, 100000);
-    std::vector<Vec> samples;  // from elsewhere
+    std::vector<Vec> samples;   // from elsewhere
     std::vector<float> pdfs;
-    for (int i = 0; i < 40000; ++i)
-        samples.push_back(sample_cosine(float(random.single()), float(random.single())));
-    for (const auto& w : points)
-        pdfs.push_back(pdf_cosine({float(w[0]), float(w[1]), float(w[2])}));
+    for (int i = 0; i < 40000; ++i) samples.push_back(sample_cosine(float(random.single()), float(random.single())));
+    for (const auto& w : points) pdfs.push_back(pdf_cosine({float(w[0]), float(w[1]), float(w[2])}));
     oracle::Verdict v = oracle::expect_samples(samples, points, pdfs, oracle::Sphere{});
     // ]
     CHECK(v.pass);
