@@ -144,6 +144,14 @@ TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
         }
         for (int b : boxes) REQUIRE(b == 1);
     }
+    // The first b samples of a dimension of base b lie in different parts.
+    for (uint32_t dim = 0; dim < dimensions; ++dim) {
+        const uint32_t b = first_primes(dimensions)[dim];
+        std::vector<int> parts(b);
+        for (uint64_t i = 0; i < b; ++i) ++parts[part(b, Sampler(pattern, 3, i).get(dim))];
+        CAPTURE(dim);
+        CHECK(parts == std::vector<int>(b, 1));
+    }
 }
 
 TEST_CASE("Sobol' points of one pixel fill every elementary interval, every set's its own") {

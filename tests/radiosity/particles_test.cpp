@@ -328,6 +328,46 @@ TEST_CASE("the stated error's own uncertainty is its spread, of batches that are
     expect_uncertainty(stated, 0.22);
 }
 
+TEST_CASE(
+    "the stated error's own uncertainty is the jackknife's, for normal numbers without bias") {
+    constexpr int n = 16, dimensions = 30;
+    std::mt19937_64 random(seed_here());
+    std::normal_distribution<double> normal;
+    double x[n][dimensions];
+    for (auto& batch : x)
+        for (double& each : batch) each = 1 + normal(random);
+    // The error of the mean of all, from all batches but one.
+    auto error_without = [&](int left_out) {
+        const int count = left_out < 0 ? n : n - 1;
+        double square = 0, spread = 0;
+        for (int d = 0; d < dimensions; ++d) {
+            double mean = 0;
+            for (int b = 0; b < n; ++b) mean += b == left_out ? 0 : x[b][d] / count;
+            for (int b = 0; b < n; ++b)
+                spread += b == left_out ? 0 : (x[b][d] - mean) * (x[b][d] - mean);
+            square += mean * mean;
+        }
+        const double variance = spread / (count - 1);
+        return std::sqrt(variance / n / (square - variance / count));
+    };
+    BatchSquares<n> squares;
+    for (int d = 0; d < dimensions; ++d) {
+        double mean = 0;
+        for (const auto& batch : x) mean += batch[d] / n;
+        squares.whole += mean * mean;
+        for (size_t b = 0; b < n; ++b) {
+            squares.off[b] += (x[b][d] - mean) * (x[b][d] - mean);
+            squares.along[b] += (x[b][d] - mean) * mean;
+        }
+    }
+    Moments errors;
+    for (int b = 0; b < n; ++b) errors.add(error_without(b));
+    const MapError stated = squares.stated();
+    CHECK(stated.error == approx(error_without(-1), 1e-12, 1e-12));
+    // The jackknife's variance is (n-1)/n m2, and (n-1)/(n-2) times too large.
+    CHECK(stated.uncertainty == approx(std::sqrt(errors.m2 * (n - 2) / n), 1e-9, 1e-9));
+}
+
 TEST_CASE("the stated error's own uncertainty is its spread from run to run") {
     const Scene s = furnace();
     const Mesh mesh = make_mesh(s, 1);

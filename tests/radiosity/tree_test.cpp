@@ -52,8 +52,8 @@ TEST_CASE("every element is one leaf; every node but a root has one parent, whic
         CHECK(parents[0] == 0);
         for (uint32_t k = 1; k < to - from; ++k) CHECK(parents[k] == 1);
         for (uint32_t e = 0; e < mesh.elements(); ++e) CHECK(leaves[e] == (face[e] == f));
-        // The estimate of memory assumes this: a face of n elements has fewer than 2 n nodes.
-        CHECK(to - from <= 2 * mesh.faces[f].elements());
+        const double n = mesh.faces[f].elements();
+        CHECK((to - from) * sizeof(Node) + n * sizeof(uint32_t) <= n * Trees::bytes_per_element);
     }
 }
 

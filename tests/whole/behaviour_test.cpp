@@ -1,7 +1,8 @@
 // whole/behaviour_test.cpp  accepted scenes and options, output, images that depend on the seed
 #include <set>
+#include <valarray>
 
-#include "base/vec.h"
+#include "base/approx.h"
 #include "film/png.h"
 #include "whole/process.h"
 
@@ -222,6 +223,39 @@ TEST_CASE("--pixel names each kind of light") {
         const Outcome o = run(place, "penumbra --pixel 1,2 file.scene");
         INFO(o.out);
         CHECK(contains(o.out, "  no light sample: " + why + "\n"));
+    }
+}
+
+TEST_CASE("--pixel prints all that the radiance consists of, in every light mode") {
+    // The lamp hangs so low that most paths from the ground meet it.
+    const Place place("size 3 3\n" + camera + "diffuse m .5 .4 .3\nlight l 3 2 1\n" +
+                      "quad -9 -1 -9  0 0 18  18 0 0  m\nquad -9 1 -9  18 0 0  0 0 18  l\n");
+    for (const auto& [mode, weight] : std::map<std::string, std::string>{
+             {"none", "MIS weight: 1\n"}, {"nee", "MIS weight: 0\n"}, {"mis", "MIS weight: 0."}}) {
+        std::string printed;
+        for (int sample = 0; sample < 8; ++sample) {
+            const Outcome o = run(place, "penumbra --pixel 1,2 file.scene --light " + mode +
+                                             " --sample " + std::to_string(sample));
+            INFO(o.out);
+            std::map<std::string, std::valarray<double>> said;
+            std::valarray<double> L(0.0, 3);
+            std::istringstream lines(o.out);
+            for (std::string line; std::getline(lines, line);) {
+                const size_t colon = line.find(':');
+                std::valarray<double> numbers(0.0, 3);
+                std::istringstream in(line.substr(std::min(line.size(), colon + 1)));
+                for (double& x : numbers) in >> x;
+                const std::string key = line.substr(0, colon);
+                said[key] = numbers;
+                if (key == "  MIS weight")
+                    L += said["  throughput"] * said["  emission"] * numbers[0];
+                if (key == "    reflected") L += said["  throughput"] * numbers;
+            }
+            REQUIRE(said.contains("L"));
+            for (size_t c = 0; c < 3; ++c) CHECK(L[c] == approx(said["L"][c], 1e-15));
+            printed += o.out;
+        }
+        CHECK(contains(printed, "  emission: 3 2 1\n  " + weight));
     }
 }
 

@@ -173,6 +173,9 @@ TEST_CASE("a point light on a surface is refused, off it accepted") {
     for (const char* place :
          {"0.5 1e-4 0.5", "0.5 -1e-4 0.5", "5 0 0", "1 2 1", "2 2.501 2", "2 2 2"})
         CHECK(at(place) == "");
+    // 4 ulp of the quad's size, which is 4, and 4 ulp of this place are the limit.
+    CHECK(at(("0.5 " + number(17 * double(ulp)) + " 0.5").c_str()) != "");
+    CHECK(at(("0.5 " + number(19 * double(ulp)) + " 0.5").c_str()) == "");
 }
 
 TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {

@@ -21,6 +21,7 @@ mirror  m  .7 .8 .9
 glass   g  1.5
 light   l  2 3 4
 light   t  5 6 7  twosided p
+light   o  8 9 1  t       # reflects like t, and has one side
 sphere 0 0 0  1  d
 )");
     const rgb low{.1, .2, .3}, high{.4, .5, .6}, none{};
@@ -30,7 +31,8 @@ sphere 0 0 0  1  d
                                  {Material::Kind::mirror, none, {.7, .8, .9}, 0, 1, {}, false},
                                  {Material::Kind::glass, none, none, 0, 1.5, {}, false},
                                  {rough, none, none, 0, 1, {2, 3, 4}, false},
-                                 {rough, low, high, 7, 1, {5, 6, 7}, true}};
+                                 {rough, low, high, 7, 1, {5, 6, 7}, true},
+                                 {rough, low, high, 7, 1, {8, 9, 1}, false}};
     REQUIRE(s.materials.size() == std::size(expected));
     for (size_t i = 0; i < std::size(expected); ++i) {
         const Material &m = s.materials[i], &e = expected[i];

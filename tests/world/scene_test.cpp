@@ -171,6 +171,7 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     for (size_t i = 0; i < 3; ++i)
         CHECK(std::abs(s.lights[i].pick - real(count[i]) / 8000) < 2 * ulp);
     CHECK(&choose_light(s, 0) == &s.lights[0]);
+    CHECK(&choose_light(s, real(s.pick_cdf[0])) == &s.lights[1]);  // the first has what is below
     CHECK(&choose_light(s, below_one) == &s.lights[2]);
     s.pick_cdf.clear();
     add_point_light(s, {}, {1e-30, 0, 0});  // weak: its share rounds to 0
