@@ -68,9 +68,23 @@ Out ray(const Triple& o, const Triple& d) { return row(o, d); }
 double tolerance(const Judge& j, double roundings = 1e4) {
     return std::max(1e-6, roundings * j.epsilon);
 }
+// Which factor they are off by, if it is one for all, and what may have been forgotten.
+std::string off_by(In came, In expected, const std::vector<oracle::Factor>& factors = {}) {
+    double factor = 0;
+    for (size_t i = 0; i < came.size(); ++i)
+        if (std::abs(expected[i]) > 1e-9) factor = came[i] / expected[i];
+    for (size_t i = 0; i < came.size(); ++i)
+        if (!(std::abs(came[i] - factor * expected[i]) <= 1e-6 * std::abs(came[i]) + 1e-12))
+            return "";
+    if (factor == 0 || !std::isfinite(factor)) return "";
+    return ", " + oracle::times(factor, 1e-5) + " times as much" +
+           oracle::cause_of(factor, 1e-5, factors);
+}
 // A colour.
-void colour(Judge& j, const std::string& what, const Triple& came, const Triple& expected) {
+void colour(Judge& j, const std::string& what, const Triple& came, const Triple& expected,
+            const std::vector<oracle::Factor>& factors = {}) {
     j.vector(what, came, expected, tolerance(j));
+    if (!j.items.back().right) j.items.back().seen += off_by(came, expected, factors);
 }
 
 // What happened at a vertex.
@@ -103,13 +117,25 @@ void within_a_hall_of_mirrors(Judge& j, const Triple& Le, const std::vector<int>
         build(j, depth, {ball({0, 0, 0}, 2, mirror)});
         const Rows L =
             j.probe("Li", Rows(question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64}))));
-        colour(j, oracle::say("within mirrors of half that emit %g, %d reflections", Le[0], depth),
-               triple(L[0]), (2 - std::ldexp(1, -depth)) * Le);
+        j.vector(oracle::say("within mirrors of half that emit %g, %d reflections", Le[0], depth),
+                 triple(L[0]), (2 - std::ldexp(1, -depth)) * Le, tolerance(j));
     }
 }
+// Other code counts rays by it: each vertex once, with the segment that arrived there.
 void account_of_all(Judge& j) {
-    j.number("account is told of each of 8 vertices",
-             j.ask("accounts", question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64})))[0], 8, 0);
+    const Stuff mirror{Stuff::mirror, {}, {0.5, 0.5, 0.5}};
+    build(j, 7, {ball({0, 0, 0}, 2, mirror)});
+    const Out within = question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64}));
+    const Out eight = j.probe("accounts", Rows(within)).numbers;
+    build(j, 7, {ball({0, 0, 0}, 1, mirror)});
+    const Out away = question({}, 1, ray({0, 0, 4}, {0, 0, -1}));
+    const Out two = j.probe("accounts", Rows(away)).numbers;
+    j.number("the path is followed to its end: account is told of each of 8 vertices", eight[0], 8,
+             0);
+    j.number("and of a ray that meets nothing: of a mirror and of the ray that it sends away",
+             two[0], 2, 0);
+    j.number("account is told of a vertex with the segment that arrived there: how often of 8",
+             eight[1], 8, 0);
 }
 
 // A rough ball below a point light, seen straight on and by a mirror that takes half.
@@ -127,6 +153,17 @@ void a_lit_ball_and_its_image(Judge& j) {
     const Step mirrored = take_step(j, t, 1, segment({0, 0.02, 4}, {0, 0, 1}));
     const Step seen = take_step(j, t, 1, mirrored.next);
     colour(j, "and half of it in a mirror that takes half", triple(L[1]), 0.5 * seen.direct);
+}
+
+// A lamp on which another one shines.
+void a_lamp_is_lit(Judge& j) {
+    const Stuff lamp = glowing({3, 2, 1}, {Stuff::rough, {0.2, 0.5, 0.8}});
+    build(j, 2, {ball({0, 0, 0}, 1, lamp), point_light({4, 1, 3}, {300, 200, 100})});
+    const Technique t{by_aiming, uniform};
+    const Rows L = j.probe("Li", Rows(question(t, 1, ray({0, 0, 4.5}, {0, 0, -1}))));
+    const Step s = take_step(j, t, 1, segment({0, 0, 4.5}, {0, 0, -1}));
+    colour(j, "a lamp on which another one shines: what it emits, and what it reflects",
+           triple(L[0]), s.weight * s.Le + s.direct);
 }
 
 // From a floor many rays meet the large lamp above it.
@@ -165,10 +202,11 @@ void a_lamp_is_met(Judge& j) {
 }
 
 void sum_over_a_path(Judge& j) {
-    within_a_hall_of_mirrors(j, {0.4, 0.3, 0.2}, {0, 1, 7});
     account_of_all(j);
+    within_a_hall_of_mirrors(j, {0.4, 0.3, 0.2}, {0, 1, 7});
     within_a_hall_of_mirrors(j, {40000, 30000, 20000}, {60});
     a_lit_ball_and_its_image(j);
+    a_lamp_is_lit(j);
     a_lamp_is_met(j);
 }
 
@@ -189,9 +227,11 @@ void of_a_mirror(Judge& j) {
     build(j, 8, {ball({0, 0, 0}, 1, {Stuff::mirror, {}, ks})});
     const Rows b = j.probe("throughput", {question({}, 1, towards_a_ball(2)),
                                           question({}, 1, towards_a_ball(2, before, 3))});
-    colour(j, "a mirror of reflectance (0.3, 0.6, 0.9)", triple(b[0]), ks);
+    const Step s = take_step(j, {}, 1, towards_a_ball(2));
+    const std::vector<oracle::Factor> factors{{"the cosine", std::abs(s.wi[2])}};
+    colour(j, "a mirror of reflectance (0.3, 0.6, 0.9)", triple(b[0]), ks, factors);
     colour(j, "the same at the end of a path of throughput (0.5, 0.25, 2)", triple(b[1]),
-           ks * before);
+           ks * before, factors);
 }
 
 // Whatever the direction and its density are: f |cos| / pdf of them, times what was before.
@@ -246,26 +286,29 @@ void of_a_rough_ball(Judge& j) {
             j.remember_factor(came, formula);
 }
 
-// A ball of any stuff in any pose, met from outside or inside.
+// Balls of one stuff after the other in any pose, met from outside or inside.
 void of_any_ball(Judge& j, bool outside) {
-    Scatterings s;
-    for (int i = 0; i < 60; ++i) {
-        const Pose pose = any_pose(j.random, std::ldexp(1, i % 3 * 10 - 10));
-        const auto colour = [&] { return Triple{j.random(), j.random(), j.random()}; };
-        const Stuff stuffs[] = {{Stuff::rough, colour()},
-                                {Stuff::rough, colour(), colour(), 8},
-                                {Stuff::mirror, {}, colour()},
-                                {Stuff::glass, {}, {}, 0, 1.5}};
-        build(j, 20, {ball(pose.at({}), pose.scale, stuffs[i % 4])});
-        const Triple n = any_direction(j.random), before = colour();
-        const Triple o = outside ? 2 * n + 0.5 * in_cube(j.random) : 0.5 * in_cube(j.random);
-        const Triple to = 0.5 * any_direction(j.random);
-        const int k = int(10 * j.random());
-        s.look(j, {by_chance, i % 8 < 4 ? uniform : by_bsdf}, j.random.bits() >> 32,
-               segment(pose.at(o), pose.turned(unit(to - o)), before, k), before);
+    const char* names[] = {"a rough", "a glossy", "a mirroring", "a glass"};
+    for (int kind = 0; kind < 4; ++kind) {
+        Scatterings s;
+        for (int i = 0; i < 16; ++i) {
+            const Pose pose = any_pose(j.random, std::ldexp(1, i % 3 * 10 - 10));
+            const auto colour = [&] { return Triple{j.random(), j.random(), j.random()}; };
+            const Stuff stuffs[] = {{Stuff::rough, colour()},
+                                    {Stuff::rough, colour(), colour(), 8},
+                                    {Stuff::mirror, {}, colour()},
+                                    {Stuff::glass, {}, {}, 0, 1.5}};
+            build(j, 20, {ball(pose.at({}), pose.scale, stuffs[kind])});
+            const Triple n = any_direction(j.random), before = colour();
+            const Triple o = outside ? 2 * n + 0.5 * in_cube(j.random) : 0.5 * in_cube(j.random);
+            const Triple to = 0.5 * any_direction(j.random);
+            const int k = int(10 * j.random());
+            s.look(j, {by_chance, i % 2 ? uniform : by_bsdf}, j.random.bits() >> 32,
+                   segment(pose.at(o), pose.turned(unit(to - o)), before, k), before);
+        }
+        s.judge(j, oracle::say("f |cos| / pdf of %s ball, %s, in any place and pose", names[kind],
+                               outside ? "from outside" : "from within"));
     }
-    s.judge(j, outside ? "f |cos| / pdf of any ball, in any place and pose"
-                       : "and from the inside of one");
 }
 
 // A lamp that reflects, too, is hit by a path that was drawn in order to do so.
@@ -310,7 +353,8 @@ void from_a_point(Judge& j) {
     const Triple truth = (2 / 27.0 / oracle::pi) * albedo * I;
     build(j, 4, {ground, point_light(at, I)});
     const Rows L = j.probe("direct_light", {aimed({by_aiming}, 1), aimed({by_both}, 1)});
-    colour(j, "a point light's intensity, distance and cosine", triple(L[0]), truth);
+    const std::vector<oracle::Factor> factors{{"the distance squared", 9}, {"the cosine", 2 / 3.0}};
+    colour(j, "a point light's intensity, distance and cosine", triple(L[0]), truth, factors);
     build(j, 4, {ground, point_light(at, I), ball({0.5, 1, 1}, 0.2, rough)});
     const Rows hidden = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
     build(j, 4, {ground, point_light(at, I), ball({1.5, 3, 3}, 0.2, rough)});
@@ -318,6 +362,10 @@ void from_a_point(Judge& j) {
     colour(j, "nothing of it behind an obstacle", triple(hidden[0]), {0, 0, 0});
     colour(j, "all of it before an obstacle", triple(beyond[0]), triple(L[0]));
     colour(j, "no share of it is left to rays that cannot meet it", triple(L[1]), truth);
+    build(j, 4, {ground, point_light(at, 1e6 * I)});
+    const Out strong = j.ask("direct_light", aimed({by_aiming}, 1));
+    colour(j, "a light a million times as strong", triple(strong), 1e6 * truth);
+    j.limit();
 }
 
 // A lamp far above a ball: seen from a point of its upper side.
@@ -331,14 +379,19 @@ void no_surface_shades_itself(Judge& j) {
         const double r = std::sqrt(1 - z * z), phi = 2 * oracle::pi * turns;
         return Triple{r * std::cos(phi), r * std::sin(phi), z};
     };
-    Rows some, ask;
+    Rows some;
     for (int i = 0; i < 3; ++i) some.add(from(on_the_ball(0.3 + 0.2 * i, 0.1 + 0.37 * i)));
     j.probe("direct_light", some);
-    for (int i = 0; i < 400; ++i) ask.add(from(on_the_ball(0.1 + 0.9 * j.random(), j.random())));
-    const Rows L = j.ask("direct_light", ask);
-    size_t dark = 0;
-    for (size_t i = 0; i < L.size(); ++i) dark += L[i][0] <= 0;
-    j.none("no surface is in its own way", dark, "%zu of 400 points are dark in broad light");
+    const auto dark = [&](oracle::Random& random) {
+        Rows ask;
+        for (int i = 0; i < 400; ++i) ask.add(from(on_the_ball(0.1 + 0.9 * random(), random())));
+        const Rows L = j.ask("direct_light", ask);
+        size_t n = 0;
+        for (size_t i = 0; i < L.size(); ++i) n += L[i][0] <= 0;
+        return n;
+    };
+    j.none("no surface is in its own way", dark(j.random),
+           "%zu of 400 points are dark in broad light");
 }
 
 // The eye aims at one of two; each is worth 1 over the chance to be aimed at.
@@ -637,6 +690,29 @@ void both_weighted(Judge& j) {
 
 // ---- 3.5 Russian roulette -----------------------------------------------------------------------
 
+// Whoever is dim dies often: the number that roulette draws says when.
+void fate_of_the_dim(Judge& j, double threshold, const Triple& before, double chance) {
+    const int n = 20000;
+    const Out from = towards_a_ball(2, before, 2);
+    const uint64_t first = j.random.bits() >> 32;
+    Rows paths, which;
+    for (int i = 0; i < n; ++i) {
+        paths.add(question({by_chance, by_bsdf, threshold}, first + uint64_t(i), from));
+        which.add({double(first + uint64_t(i)), 2, 6});
+    }
+    const Rows beta = j.ask("throughput", paths), u = j.ask("number", which);
+    size_t low = 0, high = 0, alive = 0;  // those of other fates, if low or high numbers save
+    for (size_t i = 0; i < beta.size(); ++i) {
+        const bool lives = beta[i][2] > 0;
+        alive += lives;
+        low += lives != (u[i][0] < chance), high += lives != (u[i][0] >= 1 - chance);
+    }
+    j.exact("of the dim as few survive as the law says", std::min(low, high) == 0,
+            oracle::say("of 20000 paths with a chance of %.3g about "
+                        "%.0f should, and %zu do",
+                        chance, n * chance, alive));
+}
+
 // A mirror, which takes part of the path's throughput and no random number.
 void roulette(Judge& j) {
     const double T = 2;
@@ -651,14 +727,16 @@ void roulette(Judge& j) {
     };
     j.probe("throughput", asked(0.7 * T, 6, 1));
     j.probe("throughput", asked(0.05, 1, 1));
-    const Triple whole = triple(j.ask("throughput", question({}, 1, from)));
+    const Triple without = triple(j.ask("throughput", question({}, 1, from)));
+    const Triple whole = without[2] > 0 ? without : 0.5 * before;
+    j.exact("where the threshold is 0 nobody dies", without[2] > 0, "a path was ended");
     const double chance = whole[2] / T;
 
     const Rows bright = j.ask("throughput", asked(0.9 * whole[2], 64, 1));
     bool untouched = true;
     for (size_t i = 0; i < bright.size(); ++i) untouched &= triple(bright[i]) == whole;
-    j.exact("what is brighter than the threshold goes on as it is", untouched,
-            "a path of 1.1 times the threshold was ended, or changed");
+    j.exact("a path whose largest channel is above the threshold goes on as it is", untouched,
+            "one of 1.1 times the threshold was ended, or changed");
 
     const uint64_t first = j.random.bits() >> 32;
     const int n = 100000;
@@ -683,6 +761,7 @@ void roulette(Judge& j) {
         alive > 0 && alive < n && (highest_alive <= lowest_dead || highest_dead <= lowest_alive),
         oracle::say("of %d paths %.0f survive, with numbers of %.3g to %.3g", n, alive,
                     lowest_alive, highest_alive));
+    fate_of_the_dim(j, T, 0.01 * before, 0.01 * chance);
     j.mean("share of paths that survive", chance, beta, [](In b) { return b[2] > 0 ? 1.0 : 0.0; });
     j.mean("mean throughput, the dead counted as 0", whole[0], beta, [](In b) { return b[0]; });
 }
@@ -757,6 +836,39 @@ void reflectance_of_glass(Judge& j) {
                         at.reflectance, at.cosine, at.outside ? "from outside" : "from inside"));
 }
 
+// The same laws for other indices, angles and both sides.
+void of_any_glass(Judge& j) {
+    std::string seen;
+    for (int i = 0; i < 40 && seen.empty(); ++i) {
+        const double n = between(j.random, 1.1, 2.5), cos = between(j.random, 0.05, 0.999);
+        const bool outside = i % 2;
+        const double eta = outside ? 1 / n : n, cos2_t = 1 - eta * eta * (1 - cos * cos);
+        if (std::abs(cos2_t) < 0.05) continue;
+        const double cos_t = std::sqrt(std::max(0.0, cos2_t));
+        const double parallel = (cos - eta * cos_t) / (cos + eta * cos_t);
+        const double perpendicular = (eta * cos - cos_t) / (eta * cos + cos_t);
+        const double R = (parallel * parallel + perpendicular * perpendicular) / 2;
+        const double T = (1 - R) * eta * eta;
+        const Ways w = ways(j, n, outside, cos);
+        const double error = 10 * tolerance(j);
+        if (w.n_reflected > 0 && !(near(w.reflected, R, error) && near(w.pdf_reflected, R, error)))
+            seen = oracle::say("R = %.6g expected, f cos = %.6g and pdf = %.6g came", R,
+                               w.reflected, w.pdf_reflected);
+        if (w.n_reflected < w.n &&
+            !(near(w.refracted, T, error) && near(w.pdf_refracted, 1 - R, error) &&
+              near(w.through[2], -cos_t, error)))
+            seen = oracle::say(
+                "f cos = %.6g, pdf = %.6g and a cosine of %.6g expected, %.6g, "
+                "%.6g and %.6g came",
+                T, 1 - R, cos_t, w.refracted, w.pdf_refracted, -w.through[2]);
+        if (!seen.empty())
+            seen = oracle::say("index %.4g, a cosine of %.4g %s: ", n, cos,
+                               outside ? "from outside" : "from inside") +
+                   seen;
+    }
+    j.exact("all this of glass of any index", seen.empty(), seen);
+}
+
 void glass(Judge& j) {
     j.probe("sample_glass", {at_glass(1.5, true, 0.01, 0.5), at_glass(1.5, true, 0.9, 0.5),
                              at_glass(1.5, false, 0.9, 0.8), at_glass(1.5, false, 0.7, 0.5)});
@@ -782,6 +894,7 @@ void glass(Judge& j) {
              tolerance(j, 1e3));
     j.number("probabilities of both ways add up to", slanted.pdf_reflected + slanted.pdf_refracted,
              1, tolerance(j, 64));
+    of_any_glass(j);
     Rows ask;
     for (int i = 0; i < 100000; ++i) ask.add(at_glass(1.5, true, j.random(), 0.3));
     const Rows b = j.ask("sample_glass", ask);
