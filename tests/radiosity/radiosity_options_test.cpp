@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "base/complaint.h"
+#include "radiosity/solution.h"
 
 namespace {
 
@@ -86,6 +87,16 @@ TEST_CASE("radiosity: a run ends by what was asked for, and by what is usual if 
         CHECK(o.error == row.error);
         CHECK(o.particles == row.particles);
     }
+}
+
+TEST_CASE("radiosity: an estimated error ends a run only if its uncertainty leaves no doubt") {
+    RadiosityOptions o = parse({"--method", "particles", "--error", "10%", "--particles", "50"});
+    Solution s;
+    s.particles = 50;
+    s.stated = {0.09, 0.01};
+    CHECK(stopped_by(o, s) == "--particles");
+    s.stated = {0.08, 0.01};
+    CHECK(stopped_by(o, s) == "--error");
 }
 
 TEST_CASE("radiosity: what says nothing to the method is refused, wherever it stands") {

@@ -1,5 +1,6 @@
 // whole/radiosity_program_test.cpp  build/radiosity as a user runs it
 #include "base/about.h"
+#include "base/vec.h"
 #include "film/png.h"
 #include "whole/process.h"
 
@@ -115,7 +116,9 @@ TEST_CASE(
         CHECK(number("faces") == 13);
         CHECK(number("elements") == double(s.triangles));
         CHECK(number("vertices") > 0.5 * double(s.triangles));
-        CHECK(number("bytes") > 0);
+        // Each vertex has the sums of 16 batches, each element what it sends, on both sides.
+        CHECK(number("bytes") > (walks ? 2 * 16 * 3 * sizeof(double) * number("vertices")
+                                       : 2 * 2 * 3 * sizeof(rgb) * number("elements")));
         CHECK(number("rays") > 0);
         CHECK(number("mean_of_image") > -1);
         CHECK(number(walks ? "particles" : "shots") == double(s.found));
@@ -423,6 +426,17 @@ TEST_CASE(
                 CHECK(seen[i][c] <= most[i][c]);
             }
     }
+}
+
+TEST_CASE(
+    "radiosity: Ctrl-C while the image is drawn is not forgotten, and the image is complete") {
+    const Room place(room);
+    const Outcome o =
+        interrupted_run(place, "--mesh 5 --shots 1 --rays 64 --size 64x32 --threads 1", SIGINT);
+    INFO(o.err);
+    CHECK(o.status == 130);
+    CHECK(line_of(o.err, "file.scene").interrupted);
+    CHECK(all_finite(read_pfm(place / "a.pfm")));
 }
 
 TEST_CASE("radiosity: SIGTERM writes the image of the particles so far, and its statistics") {

@@ -46,6 +46,17 @@ TEST_CASE("with more samples than before: the same image as at once, by any numb
     }
 }
 
+TEST_CASE("time and rays of a film are those of all its runs") {
+    const Unequal folder("6x3");
+    expect_success(folder, folder.of("--keep a.film --spp 16") + outputs("a"));
+    change_head(folder / "a.film", folder / "a.film",
+                {{"seconds", "1000"}, {"cpu-seconds", "2000"}, {"rays", "3000000"}});
+    expect_success(folder, folder.of("--keep a.film --spp 17") + outputs("b"));
+    CHECK(folder.number("b", "seconds") > 1000);
+    CHECK(folder.number("b", "cpu_seconds") > 2000);
+    CHECK(folder.number("b", "rays") > 3000000);
+}
+
 TEST_CASE("interrupted at random moments, mostly in a pass: the same image in the end") {
     const Unequal folder("40x30");
     int interruptions = 0, amid = 0;
