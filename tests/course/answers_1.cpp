@@ -13,11 +13,11 @@ Out hit_of(const std::optional<Hit>& hit) {
     return row(1, hit->t, hit->v, hit->w);
 }
 
-// Eye, target, field of view, width, height, x, y: the ray's origin and direction.
+// Eye, target, field of view, width, height, x, y: the ray's origin, direction and end.
 Out ask_camera(In x) {
     const Camera camera = look_at(vec3_of(x, 0), vec3_of(x, 3), real(x[6]));
     const Ray ray = camera_ray(camera, {int(x[7]), int(x[8])}, real(x[9]), real(x[10]));
-    return row(ray.o, ray.d);
+    return row(ray.o, ray.d, ray.tmax);
 }
 
 // Each begins with origin, direction, tmax of a ray.

@@ -40,8 +40,10 @@ inline double length(const Triple& a) { return std::sqrt(dot(a, a)); }
 inline Triple unit(const Triple& a) { return 1 / length(a) * a; }
 inline Triple triple(In x, size_t at = 0) { return {x[at], x[at + 1], x[at + 2]}; }
 
-// a equals b up to a relative error, or an absolute one below 1; NaN equals nothing.
+// a equals b up to a relative error, or an absolute one below 1; NaN equals nothing, and what is
+// infinite only itself.
 inline bool near(double a, double b, double tolerance) {
+    if (std::isinf(b)) return a == b;
     return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b));
 }
 inline bool near(const Triple& a, const Triple& b, double tolerance) {

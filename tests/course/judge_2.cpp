@@ -21,15 +21,21 @@ Rows grid(const Out& more = {}, int n = 16) {
     for (int i = 0; i < n; ++i) middles.push_back((i + 0.5) / n);
     return pairs(middles, more);
 }
-// The square's corners, and places of two of its sides: 0 is a random number, and 1 is not.
+// The square's corners, places of two of its sides and of its diagonals, where maps change from one
+// formula to another: 0 is a random number, and 1 is not.
 Rows corners(const Judge& j, const Out& more = {}) {
     const double last = 1 - j.epsilon;
     Rows u = pairs({0, last}, more);
     for (int i = 0; i < 256; ++i)
         for (double side : {0.0, last})
             u.add(row(side, (i + 0.5) / 256, more)), u.add(row((i + 0.5) / 256, side, more));
+    for (int i = 1; i < 256; ++i)
+        u.add(row(i / 256.0, i / 256.0, more)), u.add(row(i / 256.0, 1 - i / 256.0, more));
     return u;
 }
+
+// So many digits are enough: a right solution may compute in float.
+double digits(const Judge& j) { return std::max(64 * j.epsilon, 0x1p-20); }
 
 // What directions are on average over a fine grid, by any right map of the square the same to 1e-4;
 // z and z^2 are expected.  Mistakes are told by the averages to two digits.
@@ -48,27 +54,43 @@ void on_average(Judge& j, const std::string& which, const std::string& sample, c
     size_t first = 0;
     while (first < 7 && std::abs(means[first] - expected[first]) < 5e-4) ++first;
     const bool right = first == 7;
-    const std::string seen = right ? ""
-                                   : oracle::say("the mean of %s is %.4g, %.4g expected",
-                                                 names[first], means[first], expected[first]);
+    std::string seen = right ? ""
+                             : oracle::say("the mean of %s is %.4g, %.4g expected", names[first],
+                                           means[first], expected[first]);
+    // Directions of density cos^k have these two means: (k+1)/(k+2) of z and (k+1)/(k+3) of z^2.
+    const auto power = [](double mean) { return (2 * mean - 1) / (1 - mean); };
+    const double k = power(means[0]);
+    if (first < 2 && z > 0 && k > -0.5 && std::abs(means[1] - (k + 1) / (k + 3)) < 1e-3 &&
+        std::abs(means[6] - 1) < 5e-4)
+        seen += oracle::say(": looks like a density that is the power %.3g of the cosine, not %.3g",
+                            k, power(z));
+    else if (first >= 2 && first < 6)
+        seen += "; z is as it should be, and the turn round the axis is not";
     for (double& m : means) m = std::round(50 * m) / 50;
     j.remember(row(right, means));
     j.exact(which + " are as they should be, on average over the square", right, seen);
 }
 
-void expect_unit(Judge& j, const std::string& which, const std::vector<Rows>& directions,
-                 bool upper = false) {
+// Directions that samplers make of these numbers.
+void expect_unit(Judge& j, const std::string& which,
+                 const std::vector<std::pair<std::string, Rows>>& asked, bool upper = false) {
     double off = 0, lowest = 1;
-    for (const Rows& rows : directions)
-        for (size_t i = 0; i < rows.size(); ++i) {
-            const Triple w = triple(rows[i]);
-            off = worse(off, std::abs(dot(w, w) - 1));
+    Out where{0, 0};
+    for (const auto& [sample, at] : asked) {
+        const Rows directions = j.ask(sample, at);
+        for (size_t i = 0; i < directions.size(); ++i) {
+            const Triple w = triple(directions[i]);
+            const double by = std::abs(dot(w, w) - 1);
+            if (!(by <= off) && !std::isnan(off)) off = by, where = {at[i][0], at[i][1]};
             lowest = -worse(-lowest, -w[2]);
         }
+    }
+    const bool right = off < digits(j);
     j.exact(which + " have length 1" + (upper ? " and are above the horizon" : ""),
-            off < 64 * j.epsilon && (!upper || lowest >= 0),
-            oracle::say("the square of a length is off by %.3g", off) +
-                (upper ? oracle::say(", the lowest z is %.6g", lowest) : ""));
+            right && (!upper || lowest >= 0),
+            right ? oracle::say("the lowest z is %.6g", lowest)
+                  : oracle::say("at u = (%.4g, %.4g) the square of the length is off by %.3g",
+                                where[0], where[1], off));
 }
 
 // The integral over the upper hemisphere of what depends on the cosine c alone, by Simpson's rule
@@ -117,22 +139,22 @@ oracle::Verdict follows(Judge& j, const std::string& sample, Shape shape, const 
 
 void uniform(Judge& j) {
     const std::string half = "sample_uniform_hemisphere", whole = "sample_uniform_sphere";
-    const Rows upper = j.ask(half, grid()), all = j.ask(whole, grid());
+    const Rows upper = j.ask(half, grid());
     const Out p = j.probe("pdf_uniform_hemisphere", {{1}, {0.7}, {0.1}, {-0.5}}).numbers;
     const Out q = j.probe("pdf_uniform_sphere", {}).numbers;
     expect_unit(j, "all directions",
-                {upper, all, j.ask(half, corners(j)), j.ask(whole, corners(j))});
+                {{half, grid()}, {whole, grid()}, {half, corners(j)}, {whole, corners(j)}});
     double lowest = 1;
     for (size_t i = 0; i < upper.size(); ++i) lowest = -worse(-lowest, -upper[i][2]);
     j.exact("directions of the hemisphere are above the horizon", lowest >= 0,
             oracle::say("one has z = %.6g", lowest));
-    j.number("the hemisphere's density integrates to 1",
-             over_hemisphere(j, "pdf_uniform_hemisphere"), 1, 1e-4);
     j.exact(
         "it is the same at every height, and 0 below the horizon",
         p[0] == p[1] && p[1] == p[2] && p[3] == 0,
         oracle::say("%.6g straight up, %.6g near the horizon, %.6g below it", p[0], p[2], p[3]));
-    j.number("the sphere's density integrates to 1", q[0] * 4 * pi, 1, 64 * j.epsilon);
+    j.number("the hemisphere's density integrates to 1",
+             over_hemisphere(j, "pdf_uniform_hemisphere"), 1, 1e-4);
+    j.number("the sphere's density integrates to 1", q[0] * 4 * pi, 1, digits(j));
     on_average(j, "directions of the hemisphere", half, {}, 0.5, 1 / 3.0);
     on_average(j, "directions of the sphere", whole, {}, 0, 1 / 3.0);
     j.statistical("directions of the hemisphere are uniform",
@@ -144,11 +166,11 @@ void uniform(Judge& j) {
 
 void cosine_hemisphere(Judge& j) {
     const std::string sample = "sample_cosine_hemisphere", pdf = "pdf_cosine_hemisphere";
-    const Rows w = j.ask(sample, grid());
     const Out p = j.probe(pdf, {{1}, {0.5}, {0}, {-0.5}}).numbers;
-    expect_unit(j, "directions", {w, j.ask(sample, corners(j))}, true);
-    j.number("the density at 60 degrees is half of that straight up", p[1] / p[0], 0.5,
-             8 * j.epsilon);
+    expect_unit(j, "directions", {{sample, grid()}, {sample, corners(j)}}, true);
+    j.exact("the density at 60 degrees is half of that straight up",
+            near(2 * p[1], p[0], digits(j)),
+            oracle::say("it is %.6g at 60 degrees and %.6g straight up", p[1], p[0]));
     j.number("the density integrates to 1", over_hemisphere(j, pdf), 1, 1e-4);
     j.exact("the density below the horizon is 0", p[3] == 0,
             oracle::say("it is %.6g at a cosine of -0.5", p[3]));
@@ -187,21 +209,33 @@ void triangle(Judge& j) {
     double unlike = 0;
     for (size_t k = 0; k < 6; ++k)
         unlike = worse(unlike, std::abs(means[k] - (k < 3 ? 1 / 3.0 : 1 / 6.0)));
+    const auto shares = [&](const char* of, double each, size_t k) {
+        return oracle::say(
+            "the means of %s of the corners 0, e and f are %.3g, %.3g and %.3g, each "
+            "%.3g expected",
+            of, means[k], means[k + 1], means[k + 2], each);
+    };
+    double first = 0;  // of the coordinates themselves
+    for (size_t k = 0; k < 3; ++k) first = worse(first, std::abs(means[k] - 1 / 3.0));
+    const std::string seen = first < 1e-3 ? shares("squares of the coordinates", 1 / 6.0, 3)
+                                          : shares("the coordinates", 1 / 3.0, 0);
     std::sort(means.begin(), means.begin() + 3), std::sort(means.begin() + 3, means.end());
     for (double& m : means) m = std::round(100 * m) / 100;
     j.remember(row(unlike < 1e-3, means));
-    j.exact("points are points of the triangle", outside > -64 * j.epsilon && off < 64 * j.epsilon,
+    j.exact("points are points of the triangle", outside > -digits(j) && off < digits(j),
             oracle::say("a barycentric coordinate is %.6g, a distance from the plane %.3g", outside,
                         off));
-    j.below("all corners have the same share, on average over the square", unlike, 1e-3,
-            "the mean of a coordinate, or of its square, is off by %.3g");
+    j.exact("all corners have the same share, on average over the square", unlike < 1e-3, seen);
     const double least = std::min({nearest[0], nearest[1], nearest[2]});
     j.exact("no corner is left out", least > 0.8,
             oracle::say("one corner's coordinate is never above %.3g", least));
     j.number("1 / density of the right triangle with legs of 3 and 4 is its area", 1 / p.numbers[0],
-             6, 64 * j.epsilon);
-    j.number("density times area is 1 whatever the angle", p.numbers[1] * area(e, f), 1,
-             64 * j.epsilon);
+             6, digits(j));
+    const Pose pose = any_pose(j.random);
+    j.number("turned in space, it keeps its density",
+             6 * j.ask("pdf_triangle_area", row(pose.turned(right), pose.turned(angle)))[0], 1,
+             digits(j));
+    j.number("density times area is 1 whatever the angle", p.numbers[1] * area(e, f), 1, digits(j));
     j.statistical("points follow one over the area",
                   dense(
                       j, "sample_triangle", row(e, f), 1 / 3.0 * e,
@@ -213,13 +247,16 @@ void triangle(Judge& j) {
 
 void phong_lobe(Judge& j) {
     const std::string sample = "sample_phong_lobe", pdf = "pdf_phong_lobe";
-    const Rows wide = j.ask(sample, grid({3})), narrow = j.ask(sample, grid({50}));
     const Out p = j.probe(pdf, {{1, 3}, {0.5, 3}, {0.9, 50}, {-0.5, 2}, {0.5, 0}}).numbers;
     expect_unit(j, "directions",
-                {wide, narrow, j.ask(sample, corners(j, {0})), j.ask(sample, corners(j, {1000}))},
+                {{sample, grid({3})},
+                 {sample, grid({50})},
+                 {sample, corners(j, {0})},
+                 {sample, corners(j, {1000})}},
                 true);
-    j.number("with n = 3 the density at 60 degrees is an eighth of that on the axis", p[1] / p[0],
-             0.125, 64 * j.epsilon);
+    j.exact("with n = 3 the density at 60 degrees is an eighth of that on the axis",
+            near(8 * p[1], p[0], digits(j)),
+            oracle::say("it is %.6g at 60 degrees and %.6g on the axis", p[1], p[0]));
     j.exact("the density behind the lobe is 0, for even n, too", p[3] == 0,
             oracle::say("it is %.6g at a cosine of -0.5 with n = 2", p[3]));
     double worst = 1;
@@ -231,6 +268,26 @@ void phong_lobe(Judge& j) {
     for (double n : {3.0, 50.0})
         on_average(j, oracle::say("directions with n = %.0f", n), sample, {n}, (n + 1) / (n + 2),
                    (n + 1) / (n + 3));
+    std::string unlike;
+    for (const auto& [n, c] : {std::pair(2.5, 0.25), {1000.0, 255 / 256.0}}) {
+        const Out at = j.ask(pdf, Rows{{1, n}, {c, n}}).numbers;
+        const Rows directions = j.ask(sample, grid({n}, 64));
+        double z = 0;
+        for (size_t i = 0; i < directions.size(); ++i)
+            z += directions[i][2] / double(directions.size());
+        j.remember({at[1] / at[0]});
+        if (!unlike.empty()) continue;
+        if (!near(at[1] / at[0] / std::pow(c, n), 1, 1e-3))
+            unlike = oracle::say(
+                "with n = %g the density at a cosine of %.4g is %.4g of that on the "
+                "axis, %.4g expected",
+                n, c, at[1] / at[0], std::pow(c, n));
+        else if (!near((1 - z) * (n + 2), 1, 0.02))
+            unlike = oracle::say("with n = %g the mean of z is %.6g, %.6g expected", n, z,
+                                 (n + 1) / (n + 2));
+    }
+    j.exact("n may be a fraction, and as large as 1000", unlike.empty(), unlike);
+    j.limit();
     for (double n : {2.0, 60.0})
         j.statistical(
             oracle::say("with n = %.0f directions follow the n-th power of the cosine", n),
@@ -252,13 +309,15 @@ double solid_angle_of_rings(double sin2) {
     return 2 * pi * sigma * sum / (2 * n);
 }
 
+// The rim is as wide as digits are lost: where sin^2 is 0.99, that adds 6 times as much to the
+// cone.
 oracle::Verdict uniform_in_cone(Judge& j, double sin2) {
-    const double density = 1 / solid_angle_of_rings(sin2), rim = 1 + 64 * j.epsilon;
+    const double density = 1 / solid_angle_of_rings(sin2), rim = 1 + digits(j);
     return dense(j, "sample_cone", {sin2}, {0, 0, 1},
                  [&](const Triple& w) {
                      return w[2] > 0 && part_of_cone(In(w), sin2) <= rim ? density : 0.0;
                  },
-                 {.sees = 0.05, .tolerance = 1e-6 + 1e4 * j.epsilon, .axis = {0, 0, 1}});
+                 {.sees = 0.05, .tolerance = 10 * digits(j) + 1e4 * j.epsilon, .axis = {0, 0, 1}});
 }
 
 void cone(Judge& j) {
@@ -276,14 +335,33 @@ void cone(Judge& j) {
         }
     for (size_t i = 0; i < close.size(); ++i)
         mean += part_of_cone(close[i], star) / double(close.size());
-    expect_unit(j, "directions", w, true);
-    j.exact("directions fill the cone, from its axis to its rim, and no more",
-            most <= 1 + 64 * j.epsilon && most > 0.9 && least < 0.1,
-            oracle::say("in parts of the cone's, sin^2 is %.3g to %.3g", least, most));
+    expect_unit(j, "directions", {{sample, grid({wide})}, {sample, corners(j, {wide})}}, true);
+    // What sin^2 is at the rim says what the parameter was taken for.
+    const double rim = most * wide, cosine = std::sqrt(1 - wide);
+    std::string cause;
+    for (const auto& [sin2, taken] :
+         {std::pair(wide * wide, "sin^2 being taken for the sine"),
+          {1 - wide * wide, "sin^2 being taken for the cosine"},
+          {1 - std::pow(1 - wide, 2), "a cosine of 1 - sin^2, whose root is forgotten"},
+          {1 - wide, "the sine being taken for the cosine"},
+          {1.0, "a cosine that may be anything from 0 to 1"}})
+        if (near(rim, sin2, 1e-3)) cause = std::string(": looks like ") + taken;
+    j.exact(
+        "directions fill the cone, from its axis to its rim, and no more",
+        most <= 1 + digits(j) && most > 0.9 && least < 0.1,
+        oracle::say("at the rim the cosine is %.3g and sin^2 %.3g, %.3g and %.3g expected; next "
+                    "to the axis sin^2 is %.3g",
+                    std::sqrt(std::max(0.0, 1 - rim)), rim, cosine, wide, least * wide) +
+            cause);
     j.number("a cone of 90 degrees has the solid angle of a hemisphere", angle[0] / pi, 2,
-             64 * j.epsilon);
-    j.number("a cone of 60 degrees has half of that", angle[1] / pi, 1, 64 * j.epsilon);
-    j.number("density times solid angle is 1", p[1] * angle[2], 1, 64 * j.epsilon);
+             digits(j));
+    j.number("a cone of 60 degrees has half of that", angle[1] / pi, 1, digits(j));
+    j.number("density times solid angle is 1", p[1] * angle[2], 1, digits(j));
+    const double narrow = 0x1p-11;
+    j.number("a cone of 1.3 degrees has the solid angle of all its rings",
+             j.ask("solid_angle_cone", Out{narrow})[0] / solid_angle_of_rings(narrow), 1,
+             digits(j));
+    j.limit();
     // So small a cone is a disc, whose radius is the sine.
     const double flat = angle[3] / (pi * star), both = p[2] * angle[3];
     j.exact("the cone of a star keeps its digits",
@@ -346,22 +424,26 @@ void area_to_solid_angle(Judge& j) {
     const Out p = j.probe(question, {table.at(0.5, 0.5), table.at(0.1, 0.8), slanted.at(0.2, 0.7),
                                      beside.at(0.9, 0.1), behind.at(0.1, 0.8), edge.at(0.3, 0.3)})
                       .numbers;
-    const double digits = 256 * j.epsilon;
+    const double close = std::max(256 * j.epsilon, digits(j));
     j.number("straight above the middle of a light of 2 x 3, at a height of 2, it is 2/3", p[0],
-             2 / 3.0, digits);
-    const Out larger = j.ask(question, {table.at(0.1, 0.8, 8), slanted.at(0.2, 0.7, 8)}).numbers;
-    const double change[2] = {larger[0] / p[1], larger[1] / p[2]};
+             2 / 3.0, close);
+    const Out scaled = j.ask(question, {table.at(0.1, 0.8, 8), slanted.at(0.2, 0.7, 8),
+                                        table.at(0.1, 0.8, 0x1p-20)})
+                           .numbers;
+    const double change[] = {scaled[0] / p[1], scaled[1] / p[2], scaled[2] / p[1]};
     j.exact("where all is eight times as large, it is the same",
-            std::abs(change[0] - 1) < digits && std::abs(change[1] - 1) < digits,
+            std::abs(change[0] - 1) < close && std::abs(change[1] - 1) < close,
             oracle::say("it is %.6g and %.6g times as large", change[0], change[1]));
-    j.number("from behind it is as large as from the front", p[4] / p[1], 1, digits);
+    j.number("and a millionth as large, it is the same", change[2], 1, close);
+    j.limit();
+    j.number("from behind it is as large as from the front", p[4] / p[1], 1, close);
     j.exact("where the light is seen edge-on it is 0, for no direction leads there", p[5] == 0,
             oracle::say("it is %.6g", p[5]));
     Seen grazing = table;
     grazing.from = {7, 0, 0x1p-20};
     j.number("seen at a slant of one in 7 million it is huge, and not 0",
              j.ask(question, grazing.at(0.5, 0.5))[0] * 0x1p-20 / std::pow(49 + 0x1p-40, 1.5),
-             1 / 6.0, 256 * j.epsilon);
+             1 / 6.0, close);
     j.limit();
     for (const auto& [where, s] : {std::pair("from above", &table),
                                    {"from one side", &slanted},

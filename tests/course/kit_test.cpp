@@ -71,7 +71,8 @@ TEST_CASE("a mistake is named by its answers alone, and never what is right") {
         twice{"9.1", "twice", "twice", "There", {2}}, other{"9.2", "other", "other", "There", {2}},
         longer{"9.1", "longer", "", "", {2, 2}}, right{"9.1", "right", "", "", {1}},
         empty{"9.1", "empty", "", "", {}}, near_by{"9.1", "near", "", "", {2 + 1e-6}},
-        rounded{"9.1", "rounded", "", "", {2 + 1e-9}};  // as a compiler may
+        rounded{"9.1", "rounded", "", "", {2 + 1e-9}},  // as a compiler may
+        infinite{"9.1", "infinite", "", "", {oracle::infinity}};
     const struct {
         const char* answer;
         std::vector<KnownMistake> known;
@@ -80,6 +81,7 @@ TEST_CASE("a mistake is named by its answers alone, and never what is right") {
                 {one, {stub, right}, "", "right"},
                 {two, {stub, right, empty}, "", "wrong"},
                 {two, {near_by}, "", "wrong"},
+                {two, {infinite}, "", "wrong"},
                 {two, {rounded}, "rounded", "wrong"},
                 {two, {twice, the_stub, other}, "twice", "wrong"},  // whichever comes first
                 {two, {the_stub}, "stub", "open"}};

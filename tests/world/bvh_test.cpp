@@ -55,6 +55,11 @@ TEST_CASE("boxes are entered where a point within comes first, or missed if none
     CHECK(wrong == 0);
     CHECK(met > 300);
     CHECK(met < 2700);
+    // A ray that rises by 1 along 2^24.
+    const real far = 0x1p24;
+    const Probe rising(Ray{{}, {1, 1 / far, 0}});
+    CHECK(enter_box({{far, real(0.5), -1}, {2 * far, 9, 1}}, rising) == far);
+    CHECK(!enter_box({{far, -9, -1}, {2 * far, real(0.5), 1}}, rising));
 }
 
 TEST_CASE("nearest_hit looks for what is nearer than the best that it is given, and at that only") {

@@ -35,6 +35,7 @@ TEST_CASE("camera: the top of a 90 degree view is at 45 degrees, +x is right, pi
         for (const auto& row : rows) {
             const Ray ray = camera_ray(c, size, row.x, row.y);
             CHECK(ray.o == vec3{1, 2, 3});
+            CHECK(ray.tmax == infinity);
             CHECK(length(ray.d - row.d) < 16 * ulp);
         }
     }

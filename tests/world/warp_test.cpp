@@ -97,10 +97,12 @@ TEST_CASE("directions are balanced about their axis") {
 
 TEST_CASE("Phong lobe: p(w) = (n+1)/(2 pi) cos^n(alpha), exponents 0 to 10^5") {
     oracle::Random random(seed_here());
-    for (real n : {real(0), real(0.5), real(1), real(10), real(1000), real(1e5)})
+    for (real n : {real(0), real(0.5), real(1), real(10), real(1000), real(1e5)}) {
         expect_density(
             random, skew, [&](vec2 u) { return sample_phong_lobe(u, n); },
             [&](vec3 w) { return pdf_phong_lobe(dot(skew, w), n); });
+        CHECK(std::abs(2 * pi * pdf_phong_lobe(1, n) / (n + 1) - 1) < 8 * ulp);
+    }
 }
 
 TEST_CASE("Phong lobe: the sine keeps its digits, however narrow the lobe") {
