@@ -159,15 +159,23 @@ inline double gamma_q(double a, double x) {
 // P(X >= chi2) for chi-squared with k degrees of freedom.
 inline double p_of_chi2(double chi2, double k) { return gamma_q(k / 2, chi2 / 2); }
 
-// The same of the noncentral distribution: chi-squared with k + 2 j degrees, j Poisson variables.
+// The same of the noncentral distribution: chi-squared with k + 2 j degrees, j Poisson variables,
+// by Q(a + 1, x) = Q(a, x) + x^a e^-x / Gamma(a + 1).
 inline double p_of_chi2(double chi2, double k, double noncentrality) {
     if (!(noncentrality > 0)) return p_of_chi2(chi2, k);
     if (!(noncentrality - chi2 < 20 * std::sqrt(k + noncentrality))) return 1;  // within 1e-20
-    const double mean = noncentrality / 2, width = 10 * std::sqrt(mean) + 20;
-    double sum = 0;
-    for (double j = std::max(0.0, std::floor(mean - width)); j < mean + width; ++j)
-        sum +=
-            std::exp(-mean + j * std::log(mean) - std::lgamma(j + 1)) * p_of_chi2(chi2, k + 2 * j);
+    auto poisson = [](double j, double mean) {
+        return std::exp(-mean + j * std::log(mean) - std::lgamma(j + 1));
+    };
+    const double mean = noncentrality / 2, width = 10 * std::sqrt(mean) + 20, x = chi2 / 2;
+    double j = std::max(0.0, std::floor(mean - width)), a = k / 2 + j;
+    double q = gamma_q(a, x), step = poisson(a, x), weight = poisson(j, mean), sum = 0;
+    for (; j < mean + width; ++j) {
+        sum += weight * q;
+        q += step;
+        step *= x / ++a;
+        weight *= mean / (j + 1);
+    }
     return std::min(1.0, sum);
 }
 
@@ -208,7 +216,7 @@ inline double p_at_least(double k, double n, double p) {
 }
 
 // x >= 0 where p(x), which falls from 1 to 0, has fallen to `target`.
-inline double where_equal(const std::function<double(double)>& p, double target) {
+double where_equal(const auto& p, double target) {
     double low = 0, high = 1;
     while (p(high) > target) high *= 2;
     for (int i = 0; i < 60; ++i) {
@@ -218,28 +226,12 @@ inline double where_equal(const std::function<double(double)>& p, double target)
     return high;
 }
 
-// A number that takes long to find, by two others.
-struct Known {
-    double a, b, value;
-};
-inline double remembered(std::vector<Known>& known, double a, double b,
-                         const std::function<double()>& find) {
-    for (const Known& k : known)
-        if (k.a == a && k.b == b) return k.value;
-    known.push_back({a, b, find()});
-    return known.back().value;
-}
-
 // Standard errors by which the mean must be off for the t-test to see it with 99.9 % power: by the
 // normal approximation of noncentral t (Johnson, Welch 1940) t_alpha + 3.09 sqrt(1 + t_alpha^2 / 2
-// df), which is 8.0 for many degrees and alpha = 1e-6.  Remembers what it has found, and that is
-// for one thread alone; so does smallest_distortion.
+// df), which is 8.0 for many degrees and alpha = 1e-6.
 inline double smallest_shift(double df, double significance = 1e-6) {
-    static std::vector<Known> known;
-    return remembered(known, df, significance, [&] {
-        const double t = where_equal([&](double x) { return p_of_t(x, df); }, significance);
-        return t + 3.09 * std::sqrt(1 + t * t / (2 * df));
-    });
+    const double t = where_equal([=](double x) { return p_of_t(x, df); }, significance);
+    return t + 3.09 * std::sqrt(1 + t * t / (2 * df));
 }
 
 // Noncentrality of n counts whose probabilities are within this relative error, once they sum to 1.
@@ -250,13 +242,9 @@ inline double forgiven(double n, double tolerance) {
 // Distortion sqrt(sum (p - q)^2 / q) of the cells' probabilities that chi-squared over n samples
 // sees with 99.9 % power: from the exact noncentral distribution, a Poisson mixture.
 inline double smallest_distortion(int df, double n, double significance = 1e-6) {
-    static std::vector<Known> known;
-    const double noncentrality = remembered(known, df, significance, [&] {
-        const double critical =
-            where_equal([&](double x) { return p_of_chi2(x, df); }, significance);
-        return where_equal([&](double x) { return 1 - p_of_chi2(critical, df, x); }, 1e-3);
-    });
-    return std::sqrt(noncentrality / n);
+    const double critical = where_equal([=](double x) { return p_of_chi2(x, df); }, significance);
+    auto missed = [=](double noncentrality) { return 1 - p_of_chi2(critical, df, noncentrality); };
+    return std::sqrt(where_equal(missed, 1e-3) / n);
 }
 
 // ---- Words --------------------------------------------------------------------------------------
@@ -272,8 +260,6 @@ inline double smallest_distortion(int df, double n, double significance = 1e-6) 
 
 inline std::string say_p(double p) { return p > 0 ? say("p = %.2g", p) : "p < 1e-300"; }
 inline std::string percent(double x) { return say("%.3g %%", 100 * x); }
-
-inline Verdict failure(const std::string& why) { return {false, 0, infinity, why}; }
 
 // The number, and its name if it has one within `tolerance`: "3.142 (pi)".
 std::string times(double x, double tolerance);
@@ -293,6 +279,15 @@ struct Estimate {
 
 inline Verdict named(const Verdict& v, const Options& o) {
     return o.name.empty() ? v : v.of(o.name);
+}
+inline Verdict failure(const std::string& why, const Options& o = {}) {
+    return named({false, 0, infinity, why}, o);
+}
+// By a p-value, which uses up alpha.
+inline Verdict verdict_of(double p, double delta_min, const Options& o) {
+    ++statistical_checks;
+    alpha_spent += o.alpha;
+    return {p > o.alpha, p, delta_min, ""};
 }
 
 // Floats cannot tell their rounding from a small mistake.
@@ -333,13 +328,9 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
     if (e.standard_error <= 8 * e.unit * std::abs(e.mean))
         return judge_exact(what, e.mean, truth, e.unit, o);
     const double t = (e.mean - truth) / e.standard_error, ratio = e.mean / truth;
-    Verdict v;
-    v.p = p_of_t(t, e.df);
-    ++statistical_checks;
-    alpha_spent += o.alpha;
-    v.pass = v.p > o.alpha || same_but_rounding(e.mean, truth, e.unit);
-    v.delta_min =
-        smallest_shift(e.df, o.alpha) * e.standard_error / (truth != 0 ? std::abs(truth) : 1);
+    const double seen = smallest_shift(e.df, o.alpha) * e.standard_error;
+    Verdict v = verdict_of(p_of_t(t, e.df), seen / (truth != 0 ? std::abs(truth) : 1), o);
+    v.pass = v.pass || same_but_rounding(e.mean, truth, e.unit);
     const std::string sigma =
         std::abs(t) < 1e4 ? say("%+.2f sigma", t)
                           : say("%.1e of itself away", std::abs(e.mean - truth) / std::abs(e.mean));
@@ -356,8 +347,9 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
             v.text += "; ratio " + times(ratio, within) + (ratio < 0 ? ", of the wrong sign" : "") +
                       cause_of(ratio, within, o.factors);
     }
-    const std::string seen = truth != 0 ? percent(v.delta_min) : say("%.2g", v.delta_min);
-    v.text += (v.pass ? "; " : "\n") + ("smallest bias seen with 99.9 % power: " + seen);
+    v.text += (v.pass ? "; smallest bias seen with 99.9 % power: "
+                      : "\nsmallest bias seen with 99.9 % power: ") +
+              (truth != 0 ? percent(v.delta_min) : say("%.2g", v.delta_min));
     return v;
 }
 
@@ -370,6 +362,18 @@ double unit_of(Number) {
         return double(std::numeric_limits<Number>::epsilon()) / 2;
     else
         return 0x1p-53;
+}
+
+size_t worst_of(size_t n, const auto& off) {
+    size_t worst = 0;
+    for (size_t i = 1; i < n; ++i)
+        if (off(i) > off(worst)) worst = i;
+    return worst;
+}
+inline double sum_of(const std::vector<double>& values) {
+    double sum = 0;
+    for (double x : values) sum += x;
+    return sum;
 }
 
 // Numbers drawn, and what makes their mean untrustworthy.
@@ -386,10 +390,8 @@ struct Draws {
 
     // Mean and centred moments, by two passes.
     double mean() const {
+        const double first = sum_of(values) / n();
         double sum = 0;
-        for (double x : values) sum += x;
-        const double first = sum / n();
-        sum = 0;
         for (double x : values) sum += x - first;
         return first + sum / n();
     }
@@ -437,37 +439,28 @@ struct Draws {
         return true;
     }
 
-    // Why the mean cannot be judged; empty if it can.  The t-test keeps its alpha within a factor
-    // of 2 from n = 1000 skewness^2 on (measured with Bernoulli trials of 1 %).  A sample of n
-    // normal numbers has a skewness of 0 +- sqrt(6 / n): five of those are no evidence.
-    std::string problem() const {
+    // Why the mean cannot be judged; empty if it can.  Fewer than `fewest` do not show a skewness
+    // that would mislead the t-test.  It keeps its alpha within a factor of 2 from n = 1000
+    // skewness^2 on (measured with Bernoulli trials of 1 %).  A sample of n normal numbers has a
+    // skewness of 0 +- sqrt(6 / n): five of those are no evidence.
+    std::string problem(double fewest = 0) const {
         if (values.empty()) return "no sample at all";
         for (size_t i = 0; i < values.size(); ++i)
             if (!std::isfinite(values[i])) return say("sample %zu is %g, not finite", i, values[i]);
         if (constant()) return "";
-        if (values.size() < 2) return "one sample has no spread";
+        if (n() < fewest)
+            return say("n = %.0f is too small to know how skewed the numbers are: take 1000", n());
         if (heavy())
             return say(
                 "the variance may be infinite: the tail falls as t^-%.1f (largest value %g, mean "
                 "%g)",
                 1 / tail_index(tail), *std::max_element(values.begin(), values.end()), mean());
-        const double s = skewness(),
-                     needed =
-                         1000 * std::pow(std::max(0.0, std::abs(s) - 5 * std::sqrt(6 / n())), 2);
-        if (n() < needed)
-            return say(
-                "n = %.0f is too small for a skewness of %.2g: take %.0f or more; if it "
-                "grows with n, the variance is infinite",
-                n(), s, needed);
-        return "";
-    }
-
-    // Too few to know the skewness that would mislead the t-test.
-    bool few() const {
-        return !values.empty() && values.size() < 200 && std::isfinite(mean()) && !constant();
-    }
-    std::string few_text() const {
-        return say("n = %.0f is too small to know how skewed the numbers are: take 1000", n());
+        const double s = skewness(), known = std::max(0.0, std::abs(s) - 5 * std::sqrt(6 / n()));
+        if (n() >= 1000 * known * known) return "";
+        return say(
+            "n = %.0f is too small for a skewness of %.2g: take %.0f or more; if it grows with n, "
+            "the variance is infinite",
+            n(), s, 1000 * known * known);
     }
 };
 
@@ -481,9 +474,10 @@ Draws draw(uint64_t n, F f) {
     return draws;
 }
 
-inline Verdict judge(const char* what, const Draws& d, double truth, const Options& o = {}) {
+inline Verdict judge(const char* what, const Draws& d, double truth, const Options& o = {},
+                     double fewest = 0) {
     Verdict v;
-    if (const std::string why = d.problem(); !why.empty())
+    if (const std::string why = d.problem(fewest); !why.empty())
         v = failure(why);
     else if (d.constant())
         v = judge_exact(what, d.mean(), truth, d.unit, o);
@@ -496,9 +490,7 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
 // The mean of n independent draws f() is `truth`.
 template <class F>
 Verdict expect_mean(double truth, uint64_t n, F f, const Options& o = {}) {
-    const Draws d = draw(n, f);
-    if (d.few()) return named(failure(d.few_text()), o);
-    return judge("mean", d, truth, o);
+    return judge("mean", draw(n, f), truth, o, 200);
 }
 inline Verdict expect_mean(double truth, const Estimate& e, const Options& o = {}) {
     return named(judge("mean", e, truth, o), o);
@@ -516,11 +508,8 @@ inline Verdict expect_equal(const Estimate& a, const Estimate& b, const Options&
 template <class F, class G>
 Verdict expect_equal(F f, G g, uint64_t n, const Options& o = {}) {
     const Draws a = draw(n, f), b = draw(n, g);
-    if (a.few() || b.few()) return named(failure(a.few_text()), o);
-    if (const std::string why = a.problem(); !why.empty())
-        return named(failure(why).of("first"), o);
-    if (const std::string why = b.problem(); !why.empty())
-        return named(failure(why).of("second"), o);
+    if (const std::string why = a.problem(200); !why.empty()) return failure("first: " + why, o);
+    if (const std::string why = b.problem(200); !why.empty()) return failure("second: " + why, o);
     return expect_equal(a.estimate(), b.estimate(), o);
 }
 
@@ -531,8 +520,7 @@ Verdict expect_replicates(double truth, int replicates, F f, const Options& o = 
     Draws d;
     for (int r = 0; r < replicates; ++r) d.add(f(r));
     if (0 < replicates && replicates < 16 && !d.constant())
-        return named(
-            failure(say("%d replicates show no significance of 1e-6: take 16", replicates)), o);
+        return failure(say("%d replicates show no significance of 1e-6: take 16", replicates), o);
     return judge("mean of replicates", d, truth, o);
 }
 
@@ -544,8 +532,8 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
                           const Options& o = {}) {
     const Draws a = draw(trials, [&] { return double(n) * f(n); });
     const Draws b = draw(trials, [&] { return double(2 * n) * f(2 * n); });
-    if (const std::string why = a.problem(); !why.empty()) return named(failure(why), o);
-    if (const std::string why = b.problem(); !why.empty()) return named(failure(why), o);
+    for (const Draws* d : {&a, &b})
+        if (const std::string why = d->problem(); !why.empty()) return failure(why, o);
     const double error = std::hypot(2 * b.estimate().standard_error, a.estimate().standard_error);
     const Estimate limit{2 * b.mean() - a.mean(), error, double(trials) - 1};
     return named(judge("limit of n * bias", limit, constant, o), o);
@@ -559,17 +547,16 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
 inline Verdict judge_counts(const std::vector<double>& counts,
                             const std::vector<double>& probabilities, const Options& o,
                             const std::vector<double>& variances) {
-    double n = 0, chi2 = 0, fewest = infinity;
+    const double n = sum_of(counts);
+    double chi2 = 0, fewest = infinity;
     int cells = 0;
-    for (double count : counts) n += count;
-    if (n == 0) return named(failure("no sample at all"), o);
+    if (n == 0) return failure("no sample at all", o);
     for (size_t i = 0; i < counts.size(); ++i) {
         const double expected = n * probabilities[i], seen = counts[i];
         if (expected <= 1e-6) {
             if (seen > 0)
-                return named(failure(say("%.0f samples of %.0f in cell %zu, where the density is 0",
-                                         seen, n, i)),
-                             o);
+                return failure(
+                    say("%.0f samples of %.0f in cell %zu, where the density is 0", seen, n, i), o);
             continue;
         }
         fewest = std::min(fewest, expected);
@@ -577,17 +564,13 @@ inline Verdict judge_counts(const std::vector<double>& counts,
         chi2 += (seen - expected) * (seen - expected) / (expected + known);
         ++cells;
     }
-    if (cells < 2) return named(failure("fewer than two cells"), o);
-    Verdict v;
-    v.p = p_of_chi2(chi2, cells - 1, forgiven(n, o.tolerance));
-    if (v.p > o.alpha && fewest < 100)
-        return named(failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n,
-                                 fewest, std::ceil(100 * n / fewest))),
-                     o);
-    ++statistical_checks;
-    alpha_spent += o.alpha;
-    v.pass = v.p > o.alpha;
-    v.delta_min = smallest_distortion(cells - 1, n, o.alpha) + o.tolerance;
+    if (cells < 2) return failure("fewer than two cells", o);
+    const double p = p_of_chi2(chi2, cells - 1, forgiven(n, o.tolerance));
+    if (p > o.alpha && fewest < 100)
+        return failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n, fewest,
+                           std::ceil(100 * n / fewest)),
+                       o);
+    Verdict v = verdict_of(p, smallest_distortion(cells - 1, n, o.alpha) + o.tolerance, o);
     v.text = say("chi2 = %.1f on %d cells (n = %.0f), %s; smallest distortion seen with "
                  "99.9 %% power: ",
                  chi2, cells, n, say_p(v.p).c_str()) +
@@ -675,84 +658,61 @@ double integral(const F& f, double a, double b, const Agreement& g, const Enough
     return integral(f, a, middle, g, enough, left, depth - 1) +
            integral(f, middle, b, g, enough, right, depth - 1);
 }
-template <class F, class Enough>
-double integral(const F& f, double a, double b, const Agreement& g, const Enough& enough) {
+template <class F, class Enough = bool (*)()>
+double integral(
+    const F& f, double a, double b, const Agreement& g,
+    const Enough& enough = [] { return false; }) {
     return oracle::integral(f, a, b, g, enough, rule(f, a, b), g.depth);
-}
-
-template <class F>
-double integral(const F& f, double a, double b, const Agreement& g) {
-    return oracle::integral(f, a, b, g, [] { return false; });
 }
 
 // ---- The host's types ---------------------------------------------------------------------------
 
-// Number of coordinates of a number, pair, array or vector.
-template <class V>
-constexpr size_t coordinates_of() {
-    if constexpr (std::is_arithmetic_v<V>)
-        return 1;
-    else if constexpr (requires { V::SizeAtCompileTime; })
-        return size_t(V::SizeAtCompileTime);
-    else if constexpr (
-        requires(const V& v) { v.z; } || requires(const V& v) { v.z(); })
-        return 3;
-    else if constexpr (
-        requires(const V& v) { v.y; } || requires(const V& v) { v.y(); })
-        return 2;
-    else if constexpr (requires { std::tuple_size<V>::value; })
-        return std::tuple_size<V>::value;
-    else
-        return 3;
-}
-
-template <size_t I, class V>
-auto coordinate(const V& v) {
-    if constexpr (std::is_arithmetic_v<V>)
-        return v;
-    else if constexpr (requires {
-                           v.x();
-                           v.y();
-                       }) {
-        if constexpr (I == 0)
-            return v.x();
-        else if constexpr (I == 1)
-            return v.y();
-        else
-            return v.z();
-    } else if constexpr (requires {
-                             v.x;
-                             v.y;
-                         }) {
-        if constexpr (I == 0)
-            return v.x;
-        else if constexpr (I == 1)
-            return v.y;
-        else
-            return v.z;
-    } else if constexpr (requires { std::tuple_size<V>::value; })
-        return std::get<I>(v);
-    else
-        return v[I];
-}
-
-template <class V>
-using Coordinate = std::decay_t<decltype(oracle::coordinate<0>(std::declval<const V&>()))>;
-
-// The host's point or direction in double, and back.
-template <class V, size_t N = coordinates_of<V>()>
-Point<N> point(const V& v) {
-    return [&]<size_t... I>(std::index_sequence<I...>) {
-        return Point<N>{double(oracle::coordinate<I>(v))...};
-    }
+// The coordinates of a number, pair, array or vector, in its own type.
+template <size_t N, class V>
+auto elements(const V& v) {
+    return [&]<size_t... I>(std::index_sequence<I...>) { return std::array{v[I]...}; }
     (std::make_index_sequence<N>());
 }
-template <class V, size_t N, size_t... I>
-V of_host(const Point<N>& c, std::index_sequence<I...>) {
-    using T = Coordinate<V>;
+template <class V>
+auto coordinates(const V& v) {
     if constexpr (std::is_arithmetic_v<V>)
-        return T(c[0]);
-    else if constexpr (requires { V{T(c[I])...}; })
+        return std::array{v};
+    else if constexpr (requires { V::SizeAtCompileTime; })
+        return elements<size_t(V::SizeAtCompileTime)>(v);
+    else if constexpr (requires { v.x() + v.y() + v.z(); })
+        return std::array{v.x(), v.y(), v.z()};
+    else if constexpr (requires { v.x + v.y + v.z; })
+        return std::array{v.x, v.y, v.z};
+    else if constexpr (requires { v.x() + v.y(); })
+        return std::array{v.x(), v.y()};
+    else if constexpr (requires { v.x + v.y; })
+        return std::array{v.x, v.y};
+    else if constexpr (requires { std::tuple_size<V>::value; })
+        return std::apply([](auto... c) { return std::array{c...}; }, v);
+    else
+        return elements<3>(v);
+}
+template <class V>
+using Coordinates = decltype(oracle::coordinates(std::declval<const V&>()));
+template <class V>
+using Coordinate = typename Coordinates<V>::value_type;
+template <class V>
+constexpr size_t coordinates_of() {
+    return std::tuple_size_v<Coordinates<V>>;
+}
+
+// The host's point or direction in double, and back.
+template <class V>
+auto point(const V& v) {
+    Point<coordinates_of<V>()> p;
+    const Coordinates<V> own = oracle::coordinates(v);
+    for (size_t k = 0; k < p.size(); ++k) p[k] = double(own[k]);
+    return p;
+}
+template <class V, size_t... I>
+V of_host(const auto& c, std::index_sequence<I...>) {
+    using T = Coordinate<V>;
+    if constexpr (requires { V{T(c[I])...}; })
         return V{T(c[I])...};
     else if constexpr (requires { V(T(c[I])...); })
         return V(T(c[I])...);
@@ -769,6 +729,10 @@ V of_host(const Point<N>& c) {
 inline double dot(const Triple& a, const Triple& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+inline Triple normalized(const Triple& a) {
+    const double length = std::sqrt(dot(a, a));
+    return {a[0] / length, a[1] / length, a[2] / length};
+}
 template <size_t N>
 std::string say_point(const Point<N>& c) {
     std::string text;
@@ -776,66 +740,51 @@ std::string say_point(const Point<N>& c) {
     return N == 1 ? text : "(" + text + ")";
 }
 
-// Whether f takes D numbers of type A, or one argument that is made from {D numbers}.  Braces
+// How f takes numbers of type A: as they are, or one argument that is made from {them}.  Braces
 // refuse to make a float of a double, and tell which of them f wants.
+enum class Taken { not_at_all, exactly, converted, in_braces };
 template <class F, class A, size_t... I>
-constexpr bool numbers_fit(std::index_sequence<I...>) {
-    return requires(F & f, A a) { f(((void)I, a)...); };
+constexpr Taken taken(std::index_sequence<I...>) {
+    if (requires(F & f, A a) { f({((void)I, a)}...); }) return Taken::exactly;
+    if (requires(F & f, A a) { f(((void)I, a)...); }) return Taken::converted;
+    if (requires(F & f, A a) { f({((void)I, a)...}); }) return Taken::in_braces;
+    return Taken::not_at_all;
 }
 template <class F, class A, size_t D>
-constexpr bool takes_numbers = numbers_fit<F, A>(std::make_index_sequence<D>());
-template <class F, class A, size_t... I>
-constexpr bool exactly_fit(std::index_sequence<I...>) {
-    return requires(F & f, A a) { f({((void)I, a)}...); };
-}
-template <class F, class A, size_t D>
-constexpr bool takes_exactly = exactly_fit<F, A>(std::make_index_sequence<D>());
-template <class F, class A, size_t... I>
-constexpr bool braces_fit(std::index_sequence<I...>) {
-    return requires(F & f, A a) { f({((void)I, a)...}); };
-}
-template <class F, class A, size_t D>
-constexpr bool takes_braces = braces_fit<F, A>(std::make_index_sequence<D>());
+constexpr Taken takes = oracle::taken<F, A>(std::make_index_sequence<D>());
 
+// Whether call() makes floats of them: 1 - 2^-54 would become 1.
+template <class F, size_t D>
+constexpr bool takes_floats = takes<F, double, D> != Taken::exactly &&
+                              (takes<F, float, D> == Taken::exactly ||
+                               takes<F, double, D> == Taken::not_at_all);
+
+template <class F, size_t D>
+auto call(F& f, const Point<D>& u) {
+    return [&]<size_t... I>(std::index_sequence<I...>) {
+        using A = std::conditional_t<takes_floats<F, D>, float, double>;
+        if constexpr (takes<F, A, D> == Taken::in_braces)
+            return f({A(u[I])...});
+        else
+            return f(A(u[I])...);
+    }
+    (std::make_index_sequence<D>());
+}
+
+// How many numbers f takes; 0 if it draws by itself.
 template <class F, size_t D = 8>
 constexpr size_t numbers_of() {
-    if constexpr (D == 0)
-        return 0;
-    else if constexpr (takes_numbers<F, double, D> ||
-                       (D > 1 && (takes_braces<F, double, D> || takes_braces<F, float, D>)))
+    if constexpr (D == 0 || takes<F, double, D> != Taken::not_at_all ||
+                  takes<F, float, D> == Taken::in_braces)
         return D;
     else
         return numbers_of<F, D - 1>();
 }
 
-// Whether call() makes floats of them: 1 - 2^-54 would become 1.
-template <class F, size_t D>
-constexpr bool takes_floats =
-    !takes_exactly<F, double, D> &&
-    (takes_exactly<F, float, D> || (!takes_numbers<F, double, D> && !takes_braces<F, double, D>));
-
-template <class F, size_t D>
-auto call(F& f, const Point<D>& u) {
-    return [&]<size_t... I>(std::index_sequence<I...>) {
-        if constexpr (takes_exactly<F, double, D>)
-            return f(u[I]...);
-        else if constexpr (takes_exactly<F, float, D>)
-            return f(float(u[I])...);
-        else if constexpr (takes_numbers<F, double, D>)
-            return f(u[I]...);
-        else if constexpr (takes_braces<F, double, D>)
-            return f({u[I]...});
-        else
-            return f({float(u[I])...});
-    }
-    (std::make_index_sequence<D>());
-}
-
 // What a sampler returns may be nothing: an optional or a pointer.
 template <class R>
 constexpr bool may_fail = requires(const R& r) {
-    bool(r);
-    *r;
+    r ? *r : *r;
 };
 template <class R>
 const auto& arrived(const R& r) {
@@ -849,35 +798,17 @@ const auto& arrived(const R& r) {
 // or point, or the first of a pair.
 template <class R>
 const auto& point_in(const R& r) {
-    if constexpr (requires {
-                      r.pdf;
-                      r.w;
-                  })
+    constexpr bool beside = requires { r.pdf; };
+    if constexpr (beside && requires { r.w; })
         return r.w;
-    else if constexpr (requires {
-                           r.pdf;
-                           r.wi;
-                       })
+    else if constexpr (beside && requires { r.wi; })
         return r.wi;
-    else if constexpr (requires {
-                           r.pdf;
-                           r.direction;
-                       })
+    else if constexpr (beside && requires { r.direction; })
         return r.direction;
-    else if constexpr (requires {
-                           r.pdf;
-                           r.point;
-                       })
+    else if constexpr (beside && requires { r.point; })
         return r.point;
     else if constexpr (
-        requires {
-            r.first[0];
-            r.second + 1.0;
-        } ||
-        requires {
-            r.first.x;
-            r.second + 1.0;
-        })
+        requires { r.first[0] + r.second; } || requires { r.first.x + r.second; })
         return r.first;
     else
         return r;
@@ -946,102 +877,89 @@ auto model(Sample& sample, Pdf& pdf) {
         unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
 }
 
-// Part two says what is wrong with a choice: `explains` tells whether other probabilities fit.
+// Part two says what is wrong with a choice.
 std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
-                        double none, size_t worst,
-                        const std::function<bool(const std::vector<double>&)>& explains);
+                        double none, double tolerance);
+
+// Whether counts are those of these probabilities, less a part that fails; rare ones by Poisson.
+struct ChoiceFit {
+    double p = 1, chi2 = 0, cells = 0;
+};
+inline ChoiceFit fit_choices(const std::vector<double>& probabilities,
+                             const std::vector<double>& seen, double none, double tolerance) {
+    ChoiceFit fit;
+    const double n = none + sum_of(seen);
+    double rare = 0, rare_seen = 0;
+    auto cell = [&](double mean, double number) {
+        ++fit.cells;
+        fit.chi2 += (number - mean) * (number - mean) / mean;
+    };
+    double failing = n;
+    for (size_t i = 0; i < seen.size(); ++i) {
+        const double mean = probabilities[i] * n;
+        failing -= mean;
+        if (mean == 0 && seen[i] > 0) fit.p = 0;
+        if (mean >= 100)
+            cell(mean, seen[i]);
+        else
+            rare += mean, rare_seen += seen[i];
+    }
+    if (none > 0 || failing > 1e-6 * n) rare += std::max(0.0, failing), rare_seen += none;
+    double chance = 1;
+    if (rare >= 100)
+        cell(rare, rare_seen);
+    else if (rare_seen > 0)
+        chance = 2 * p_at_least(rare_seen, rare * (1 + tolerance));
+    if (fit.cells > 1)
+        fit.p *= (rare > 0 && rare < 100 ? 2 : 1) *
+                 p_of_chi2(fit.chi2, fit.cells - 1, forgiven(n, tolerance));
+    fit.p = std::min({1.0, fit.p, chance});
+    return fit;
+}
+
+inline Verdict judge_choices(const std::vector<double>& expected, const std::vector<double>& seen,
+                             double none, const Options& o) {
+    const double n = none + sum_of(seen);
+    const ChoiceFit fit = fit_choices(expected, seen, none, o.tolerance);
+    const double cells = std::max(1.0, fit.cells - 1);
+    Verdict v = verdict_of(fit.p, smallest_distortion(int(cells), n, o.alpha) + o.tolerance, o);
+    v.text = say("%.0f choices among %zu, chi2 = %.1f on %.0f cells, %s; smallest distortion seen "
+                 "with 99.9 %% power: ",
+                 n, seen.size(), fit.chi2, fit.cells, say_p(v.p).c_str()) +
+             percent(v.delta_min);
+    if (!v.pass) v.text = choice_hint(expected, seen, none, o.tolerance) + "\n" + v.text;
+    return named(v, o);
+}
 
 // choose(u), or choose(u, v), is an index below count, or a negative one for none, as often as
-// probability(index) says:
-// they sum to 1 less the part that fails; chi-squared over the indices, rare ones together.
+// probability(index) says: they sum to 1 less the part that fails.  Chi-squared over the indices,
+// rare ones together.
 template <class Choose, class Probability>
 Verdict expect_choice(Random& random, Choose choose, Probability probability, size_t count,
                       const Options& o = {}) {
     constexpr size_t M = numbers_of<Choose>();
-    const uint64_t n =
-        o.n ? o.n : uint64_t(std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2));
-    std::vector<double> expected(count);
-    double total = 0;
-    auto done = [&](const std::string& why) { return named(failure(why), o); };
+    const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
+    std::vector<double> expected(count), seen(count);
+    double total = 0, none = 0;
     for (size_t i = 0; i < count; ++i) {
-        expected[i] = double(probability(int(i)));
+        total += expected[i] = double(probability(int(i)));
         if (!(expected[i] >= 0 && std::isfinite(expected[i])))
-            return done(say("the probability of index %zu is %g", i, expected[i]));
-        total += expected[i];
+            return failure(say("the probability of index %zu is %g", i, expected[i]), o);
     }
-    std::vector<double> seen(count);
-    double none = 0;
-    for (uint64_t k = 0; k < n; ++k) {
+    for (uint64_t k = 0, n = o.n ? o.n : uint64_t(needed); k < n; ++k) {
         Point<M> u;
         for (double& x : u) x = takes_floats<Choose, M> ? random.single() : random();
         const auto index = static_cast<long long>(oracle::call(choose, u));
         if (index >= static_cast<long long>(count))
-            return done(say("index %lld of %zu chosen, beyond the last, at u = ", index, count) +
-                        say_point(u));
-        index < 0 ? ++none : ++seen[size_t(index)];
+            return failure(say("index %lld of %zu chosen, beyond the last, at u = ", index, count) +
+                               say_point(u),
+                           o);
+        ++(index < 0 ? none : seen[size_t(index)]);
     }
-    const double unit = unit_of(probability(0));
-    const double samples = double(n);
-    if (none == 0 && std::abs(total - 1) > std::max(64 * unit * double(count), 1e-9) + o.tolerance)
-        return done("the probabilities sum to " + times(total, 1e-4) + ", expected 1");
-    struct Fit {
-        double chi2, cells, p;
-    };
-    // Whether the counts are those of other probabilities, of the same sum; rare ones by Poisson.
-    auto fits = [&](const std::vector<double>& p) {
-        double chi2 = 0, cells = 0, rare = 0, rare_seen = 0, impossible = 0;
-        auto cell = [&](double mean, double number) {
-            ++cells;
-            chi2 += (number - mean) * (number - mean) / mean;
-        };
-        for (size_t i = 0; i < p.size(); ++i)
-            if (p[i] == 0)
-                impossible += seen[i];
-            else if (p[i] * samples >= 100)
-                cell(p[i] * samples, seen[i]);
-            else
-                rare += p[i] * samples, rare_seen += seen[i];
-        double failing = samples;
-        for (double q : p) failing -= q * samples;
-        if (none > 0 || failing > 1e-6 * samples) rare += std::max(0.0, failing), rare_seen += none;
-        double chance = 1;
-        if (rare >= 100)
-            cell(rare, rare_seen);
-        else if (rare_seen > 0)
-            chance = 2 * p_at_least(rare_seen, rare * (1 + o.tolerance));
-        const double p_cells =
-            cells > 1 ? p_of_chi2(chi2, cells - 1, forgiven(samples, o.tolerance)) : 1;
-        return Fit{chi2, cells,
-                   impossible > 0
-                       ? 0
-                       : std::min({1.0, (rare > 0 && rare < 100 ? 2 : 1) * p_cells, chance})};
-    };
-    const auto [chi2, cells, p_value] = fits(expected);
-    Verdict v;
-    v.p = p_value;
-    ++statistical_checks;
-    alpha_spent += o.alpha;
-    v.pass = v.p > o.alpha;
-    v.delta_min =
-        smallest_distortion(int(std::max(1.0, cells - 1)), samples, o.alpha) + o.tolerance;
-    v.text = say("%.0f choices among %zu, chi2 = %.1f on %.0f cells, %s; smallest distortion seen "
-                 "with 99.9 %% power: ",
-                 samples, count, chi2, cells, say_p(v.p).c_str()) +
-             percent(v.delta_min);
-    if (!v.pass) {
-        size_t worst = 0;
-        double most = -1;
-        for (size_t i = 0; i < count; ++i) {
-            const double mean = expected[i] * samples;
-            const double off = mean > 0      ? std::abs(seen[i] - mean) / std::sqrt(mean)
-                               : seen[i] > 0 ? infinity
-                                             : 0;
-            if (off > most) most = off, worst = i;
-        }
-        auto explains = [&](const std::vector<double>& p) { return fits(p).p > 1e-4; };
-        v.text = choice_hint(expected, seen, none, worst, explains) + "\n" + v.text;
-    }
-    return named(v, o);
+    const double rounding = std::max(64 * unit_of(probability(0)) * double(count), 1e-9);
+    if (none == 0 && std::abs(total - 1) > rounding + o.tolerance)
+        return failure("the probabilities sum to " + times(total, 1e-4) + ", expected 1", o);
+    return judge_choices(expected, seen, none, o);
 }
 
 // ---- Domains ------------------------------------------------------------------------------------
@@ -1251,55 +1169,54 @@ inline double step_of(double u, bool single) {
 // differences of h / 32.  Nothing if a sample fails near u.
 template <size_t D, size_t N>
 std::optional<Local<N>> local_at(const Model<D, N>& model, const Point<D>& u) {
-    std::array<Point<N>, D> coarse{}, fine{};
+    bool arrives = true;
+    auto at = [&](const Point<D>& v) {
+        const auto x = model.sample(v);
+        arrives = arrives && x;
+        return x ? Point<N>(*x) : Point<N>{};
+    };
+    auto moved = [&](size_t k, double by) {
+        Point<D> v = u;
+        v[k] += by;
+        return v;
+    };
     Local<N> here;
+    here.x = at(u);
+    std::array<Point<N>, D> coarse{}, fine{};
     double lengths = 1;
     for (size_t k = 0; k < D; ++k) {
         const double h = step_of(u[k], model.single);
-        auto x = [&](double by) -> std::optional<Point<N>> {
-            Point<D> moved = u;
-            moved[k] += by;
-            return model.sample(moved);
-        };
-        const auto a1 = x(h / 2), a2 = x(h), a4 = x(2 * h), b1 = x(-h / 2), b2 = x(-h),
-                   b4 = x(-2 * h);
-        if (!a1 || !a2 || !a4 || !b1 || !b2 || !b4) return {};
-        double square = 0;
-        for (size_t i = 0; i < N; ++i) {
-            const double d1 = (*a1)[i] - (*b1)[i], d2 = (*a2)[i] - (*b2)[i],
-                         d4 = (*a4)[i] - (*b4)[i];
-            coarse[k][i] = (8 * d2 - d4) / (12 * h);
-            fine[k][i] = (8 * d1 - d2) / (6 * h);
-            square += fine[k][i] * fine[k][i];
+        std::array<Point<N>, 3> difference;  // between -h/2 and h/2, -h and h, -2h and 2h
+        for (size_t s = 0; s < 3; ++s) {
+            const double step = h * (s == 0 ? 0.5 : double(s));
+            const Point<N> above = at(moved(k, step)), below = at(moved(k, -step));
+            for (size_t i = 0; i < N; ++i) difference[s][i] = above[i] - below[i];
         }
-        lengths *= std::sqrt(square);
-        if (square == 0) {
-            const auto near = x(0), far = x(u[k] < 0.5 ? 0.4375 : -0.4375);
-            if (near && far && *near == *far) here.still |= 1u << k;
-        }
-        // Fourth differences of equal steps, of which curvature is no part.
         std::array<Point<N>, 13> near;
-        for (int j = 0; j < 13; ++j) {
-            const auto at = x((j - 6) * h / 32);
-            if (!at) return {};
-            near[size_t(j)] = *at;
-        }
-        double rough = 0;
-        for (size_t j = 2; j < 11; ++j)
-            for (size_t i = 0; i < N; ++i)
+        for (size_t j = 0; j < 13; ++j) near[j] = at(moved(k, (double(j) - 6) * h / 32));
+        if (!arrives) return {};
+        const auto& [d1, d2, d4] = difference;
+        double square = 0, rough = 0;
+        for (size_t i = 0; i < N; ++i) {
+            coarse[k][i] = (8 * d2[i] - d4[i]) / (12 * h);
+            fine[k][i] = (8 * d1[i] - d2[i]) / (6 * h);
+            square += fine[k][i] * fine[k][i];
+            // Of equal steps, of which curvature is no part.
+            for (size_t j = 2; j < 11; ++j)
                 rough += std::pow(near[j - 2][i] - 4 * near[j - 1][i] + 6 * near[j][i] -
                                       4 * near[j + 1][i] + near[j + 2][i],
-                                  2) /
-                         (70 * 9);
-        if (square > 0) here.noise += 2 * rough / (h * h * square);
+                                  2);
+        }
+        lengths *= std::sqrt(square);
+        if (square > 0)
+            here.noise += 2 * rough / (70 * 9 * h * h * square);
+        else if (const auto far = model.sample(moved(k, u[k] < 0.5 ? 0.4375 : -0.4375)))
+            here.still |= unsigned(*far == here.x) << k;
     }
-    const auto centre = model.sample(u);
-    if (!centre) return {};
-    const double j = oracle::volume(fine), rough = oracle::volume(coarse);
-    here.x = *centre;
-    here.p = model.pdf(*centre);
+    const double j = oracle::volume(fine);
+    here.p = model.pdf(here.x);
     here.q = j > 0 ? 1 / j : infinity;
-    here.error = j > 0 ? std::abs(rough / j - 1) : infinity;
+    here.error = j > 0 ? std::abs(oracle::volume(coarse) / j - 1) : infinity;
     here.collapse = lengths > 0 ? j / lengths : 0;
     here.noise = here.collapse > 0 ? std::sqrt(here.noise) / here.collapse : 0;
     return here;
@@ -1379,16 +1296,13 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
     return s;
 }
 
-// What the sheets say of the mistake behind a density; "" if nothing.  total: integral of the pdf;
-// share: of the samples that failed.
+// Where samples lie, for hints.
 template <size_t N>
-struct Scene;
-template <size_t N, class PdfOf>
-std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model,
-                           const Scene<N>& scene, double total, double share, const Options& o);
-template <size_t N, class PdfOf>
-std::string mistake_of_map(const std::vector<Local<N>>& all, const PdfOf& model, double total,
-                           const Options& o);
+struct Scene {
+    bool directions = false;
+    Triple lobe{0, 0, 1}, normal{0, 0, 1};
+    Point<N> centre{};  // of a box or of the samples
+};
 
 template <size_t D, size_t N>
 Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
@@ -1405,7 +1319,7 @@ Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& 
     if (s.off) {
         const double product = s.off->product();
         v.text = say("pdf sqrt(det J^T J) = %.8g, expected 1 +- %.0e: ", product, tolerance);
-        const std::string why = mistake_of_map(s.all, model, product, o);
+        const std::string why = mistake_behind(s.all, model, Scene<N>{}, product, 0, o);
         v.text += !why.empty()
                       ? why
                       : say("samples are %.4g times as dense as the pdf says", 1 / product);
@@ -1440,6 +1354,7 @@ struct Cells {
     static constexpr size_t levels = 5, count = 32;
     std::array<double, count> split{};  // of node k into 2k and 2k + 1
 
+    Cells() = default;
     explicit Cells(std::vector<Point<D>> points) { halve(1, 0, points, 0, points.size()); }
     void halve(size_t node, size_t level, std::vector<Point<D>>& points, size_t begin, size_t end) {
         if (level == levels) return;
@@ -1493,30 +1408,6 @@ struct Parts {
     double total = 0, error = 0;  // standard error of the total
 };
 
-// What a check of a density found.
-template <size_t N, size_t M, size_t D>
-struct Found {
-    const Cells<D>& cells;
-    const Parts& parts;
-    const Sheets<N, M>& sheets;
-    double close;  // how well the integral is known
-    std::array<uint64_t, 32> counts{};
-    std::vector<double> expected = {};
-    bool counted = false, balanced = false;
-
-    size_t worst_cell() const {
-        double n = 0, most = -1;
-        for (uint64_t c : counts) n += double(c);
-        size_t worst = 0;
-        for (size_t i = 0; i < 32; ++i)
-            if (const double off =
-                    std::abs(double(counts[i]) - n * expected[i]) / std::sqrt(n * expected[i] + 1);
-                off > most)
-                most = off, worst = i;
-        return worst;
-    }
-};
-
 // One check of a sampler against a density; its steps in the order of their costs.
 template <size_t M, size_t N, class Domain>
 struct DensityCheck {
@@ -1545,6 +1436,14 @@ struct DensityCheck {
     std::function<double(const Point<N>&)> claim = {};  // in place of the pdf, for a guess
     double most_negative = 0;
     std::string where_negative = {};
+
+    // Found in the end.
+    Cells<D> cells = {};
+    Parts parts = {};
+    Sheets<N, M> sheets = {};
+    double close = 0;  // how well the integral is known
+    std::vector<double> counts = std::vector<double>(32), expected = counts;
+    bool counted = false, balanced = false;
 
     double density_at(const Point<D>& c) {
         const Point<N> x = domain.at(c);
@@ -1676,7 +1575,7 @@ struct DensityCheck {
         if (off <= 8 + 16 * jumps * compared) return "";
         const std::string often =
             off == compared ? ", in every sample" : ", in " + percent(off / compared) + " of them";
-        if (const std::string law = law_of_pdfs(ratios, where); !law.empty())
+        if (const std::string law = law_of_pdfs(*this, ratios, where); !law.empty())
             return "the pdf that sample returns is " + law + " times what pdf says" + often;
         return "the pdf that sample returns is " + first + often;
     }
@@ -1745,7 +1644,7 @@ struct DensityCheck {
     // Part of a cell's samples that four units of rounding may take to another cell: of each
     // coordinate, and in float of the cosine to the lobe's axis, from which samplers have the sine.
     // The root of its mean square over the samples.
-    double moved(const Cells<D>& cells) {
+    double moved() {
         std::array<double, 32> all{}, others{};
         for (int i = 0; i < 4096; ++i) {  // others than the pilot's, at which cells end
             const auto x = model.sample(model.draw(random));
@@ -1816,7 +1715,7 @@ struct DensityCheck {
         parts.push_back(range);
     }
 
-    Parts integrate(const Cells<D>& cells) {
+    Parts integrate() {
         std::array<std::vector<size_t>, 32> inside;
         for (size_t i = 0; i < places.size(); ++i) inside[cells.of(places[i])].push_back(i);
         std::vector<Range<D>> ranges;
@@ -1911,28 +1810,23 @@ struct DensityCheck {
     Verdict run() {
         find_mirrors();
         fly_pilot();
-        if (pilot.empty()) {
-            for (int i = 0; i < 100; ++i) (void)one();
-            if (!wrong.empty()) return failure(wrong);
+        for (size_t i = 0; i < (pilot.empty() ? 100 : 4096) && wrong.empty(); ++i) (void)one();
+        if (wrong.empty() && pilot.empty())
             return failure("of " + say("%.0f", samples) +
                            " samples hardly any comes where the pdf is positive: " + first_none +
-                           symmetry());
-        }
-        for (size_t i = 0; i < 4096 && wrong.empty(); ++i) (void)one();
+                           symmetry_of(*this));
+        if (wrong.empty()) try_rims();
+        if (wrong.empty()) wrong = other_pdf();
         if (!wrong.empty()) return failure(wrong);
-        try_rims();
-        if (!wrong.empty()) return failure(wrong);
-        if (const std::string why = other_pdf(); !why.empty()) return failure(why);
         samples = none = mirrored = 0;
-        const Cells<D> cells(pilot);
-        const Parts parts = integrate(cells);
-        if (!wrong.empty()) return failure(wrong);
+        cells = Cells<D>(pilot);
+        parts = integrate();
         // Rounding may make a 0 negative.
-        if (most_negative < -1e-12 * median(heights))
-            return failure(say("the pdf is negative, %.4g, at ", most_negative) + where_negative);
+        if (wrong.empty() && most_negative < -1e-12 * median(heights))
+            wrong = say("the pdf is negative, %.4g, at ", most_negative) + where_negative;
+        if (!wrong.empty()) return failure(wrong);
 
-        const double close = allowed() + 6 * parts.error;
-        Sheets<N, M> sheets;
+        close = allowed() + 6 * parts.error;
         if constexpr (M == D)
             sheets = sheets_of(model, random,
                                std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)),
@@ -1940,65 +1834,80 @@ struct DensityCheck {
         const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
         const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
         const bool off_already = sheets.off || parts.total > 1 - o.discrete + close;
-        Found<N, M, D> found{cells, parts, sheets, close};
         for (uint64_t i = 0; i < (off_already ? std::min<uint64_t>(n, 100000) : n); ++i)
-            if (const auto c = one()) ++found.counts[cells.of(*c)];
+            if (const auto c = one()) ++counts[cells.of(*c)];
         if (!wrong.empty()) return failure(wrong);
 
-        const std::string integral_is =
-            "the pdf integrates to " + say("%.8g over the %s", parts.total, Domain::measure);
         // What fails is missing from the integral, as closely as it is known.
         const double others = samples * (1 - o.discrete),
                      fewest = others - samples * (parts.total + close),
                      most = others - samples * (parts.total - close);
         double p_share = 0;
         if (none == 0)
-            found.balanced = std::abs(parts.total - (1 - o.discrete)) <= close ||
-                             (parts.total < 1 - o.discrete && fewest < -std::log(o.alpha / 4));
+            balanced = std::abs(parts.total - (1 - o.discrete)) <= close ||
+                       (parts.total < 1 - o.discrete && fewest < -std::log(o.alpha / 4));
         else {
             p_share = 2 * std::min(p_at_least(none, samples, most / samples),
                                    1 - p_at_least(none + 1, samples, fewest / samples));
-            found.balanced = p_share > o.alpha / 2;
+            balanced = p_share > o.alpha / 2;
         }
         std::vector<double> variances;
         for (size_t i = 0; i < 32; ++i) {
-            found.expected.push_back(parts.value[i] / parts.total);
+            expected[i] = parts.value[i] / parts.total;
             variances.push_back(parts.variance[i] / (parts.total * parts.total));
         }
-        Options plain = o;
-        plain.name = "";
-        plain.tolerance += moved(cells);
-        plain.alpha = o.alpha / (o.discrete > 0 ? 4 : none > 0 ? 2 : 1);
-        Verdict v = expect_counts(found.counts, found.expected, plain, variances);
-        alpha_spent += o.alpha - plain.alpha;
+        const double part = o.discrete > 0 ? 4 : none > 0 ? 2 : 1;
+        Verdict v =
+            judge_counts(counts, expected,
+                         {.alpha = o.alpha / part, .tolerance = o.tolerance + moved()}, variances);
+        alpha_spent += o.alpha - o.alpha / part;
         if (o.discrete > 0 && (p_at_least(mirrored, samples, o.discrete) < o.alpha / 8 ||
                                1 - p_at_least(mirrored + 1, samples, o.discrete) < o.alpha / 8))
             return failure(percent(mirrored / samples) + " of the samples are mirrors', " +
                            percent(o.discrete) + " were announced (.discrete)");
-        found.counted = v.pass;
-        v.text += "; " + integral_is;
+        counted = v.pass;
+        v.text +=
+            "; the pdf integrates to " + say("%.8g over the %s", parts.total, Domain::measure);
         if (parts.error > 0) v.text += say(" +- %.1e", parts.error);
         if (none > 0) v.text += "; " + percent(none / samples) + " of the samples fail";
         if (sheets.blind > 0) v.text += say("; Jacobian within %.1e", sheets.blind);
         v.delta_min = std::max(v.delta_min, close);  // where rounding rules
-        v.pass = found.counted && found.balanced && !sheets.off;
+        v.pass = counted && balanced && !sheets.off;
         if (v.pass) return v;
-        if (!found.balanced || sheets.off) v.p = sheets.off ? 0 : p_share;
-        v.text = first_line(found) + "\n" + v.text + picture(found);
+        if (!balanced || sheets.off) v.p = sheets.off ? 0 : p_share;
+        v.text = first_line_of(*this) + "\n" + v.text + picture_of(*this);
         return v;
     }
 
-    // Hints, which part two defines: the first line of a refusal, its picture, and what symmetry
-    // says of samples that all come where the pdf is 0.
-    std::string first_line(const Found<N, M, D>& found);
-    std::string picture(const Found<N, M, D>& found);
-    std::string symmetry();
-    Scene<N> scene() const;
-    double distance(const Point<N>& x) const;
-    std::string compared(const std::vector<Local<N>>& all) const;
-    std::string explained(const std::vector<Local<N>>& all, double total);
-    std::string law_of_cells(const Found<N, M, D>& found);
-    std::string law_of_pdfs(const std::vector<double>& ratios, const std::vector<Point<N>>& where);
+    Range<D> range(size_t cell) const { return cells.range(cell, {domain.lower, domain.upper}); }
+    size_t worst_cell() const {
+        const double n = sum_of(counts);
+        return worst_of(32, [&](size_t i) {
+            return std::abs(counts[i] - n * expected[i]) / std::sqrt(n * expected[i] + 1);
+        });
+    }
+
+    Scene<N> scene() const {
+        Scene<N> scene{directions};
+        if constexpr (directions) {
+            scene.lobe = domain.z;
+            if (dot(o.axis, o.axis) > 0) scene.normal = normalized(o.axis);
+        } else if constexpr (std::is_base_of_v<Box<N>, Domain>) {
+            scene.centre = Range<N>{domain.lower, domain.upper}.middle();
+        }
+        return scene;
+    }
+
+    // From the middle of the samples, squared.
+    double distance(const Point<N>& x) const {
+        double square = 0;
+        for (size_t k = 0; k < N; ++k)
+            if constexpr (directions)
+                square += std::pow(x[k] - domain.z[k], 2);
+            else
+                square += std::pow(x[k] - middle[k], 2);
+        return square;
+    }
 };
 
 // Samples of sample(u, v, ...) have the density pdf(sample), which integrates to 1 over the domain
@@ -2050,65 +1959,56 @@ template <class Samples, class Points, class Pdfs, class Domain>
 Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs& pdfs,
                        const Domain& domain, const Options& o = {}) {
     constexpr size_t D = Domain::dimensions;
-    auto refuse = [&](const std::string& why) { return named(failure(why), o); };
     const size_t n = std::size(samples), first = n / 4;
     const double m = double(std::size(points)), arriving = o.n ? double(n) / double(o.n) : 1;
     if (n < 20000 || m < 20000 || std::size(points) != std::size(pdfs))
-        return refuse(
-            say("%zu samples, %zu points, %zu values of the pdf: take 20000 or more of "
-                "each, and as many values as points",
-                n, std::size(points), std::size(pdfs)));
+        return failure(
+            say("%zu samples, %zu points, %zu values of the pdf: take 20000 or more of each, and "
+                "as many values as points",
+                n, std::size(points), std::size(pdfs)),
+            o);
     std::vector<Point<D>> places;
     for (size_t i = 0; i < n; ++i) places.push_back(domain.coordinates(oracle::point(samples[i])));
     const Cells<D> cells({places.begin(), places.begin() + long(first)});
-    std::array<uint64_t, 32> counts{};
+    std::vector<double> counts(32), sum(32), squares(32), expected, variances;
     for (size_t i = first; i < n; ++i) ++counts[cells.of(places[i])];
-    double box = 1;
-    for (size_t k = 0; k < D; ++k) box *= domain.upper[k] - domain.lower[k];
-    std::array<double, 32> sum{}, squares{};
-    double total = 0, total_squares = 0;
     for (size_t i = 0; i < std::size(points); ++i) {
         const double p = double(pdfs[i]);
         const auto x = oracle::point(points[i]);
         if (!(p >= 0 && std::isfinite(p)))
-            return refuse(say("the pdf is %g at ", p) + say_point(x));
+            return failure(say("the pdf is %g at ", p) + say_point(x), o);
         const auto c = domain.coordinates(x);
-        const double value = p * domain.weight(c) * box;
+        double value = p * domain.weight(c);
+        for (size_t k = 0; k < D; ++k) value *= domain.upper[k] - domain.lower[k];
         sum[cells.of(c)] += value, squares[cells.of(c)] += value * value;
-        total += value, total_squares += value * value;
     }
-    const double integral = total / m,
-                 error = std::sqrt(total_squares / m - integral * integral) / std::sqrt(m);
+    const double integral = sum_of(sum) / m,
+                 error = std::sqrt((sum_of(squares) / m - integral * integral) / m);
     if (std::abs(integral - arriving) > smallest_shift(infinity, o.alpha / 2) * error + 1e-6)
-        return refuse(say("the pdf integrates to %.5g +- %.1g", integral, error) + ", expected " +
-                      say("%.5g", arriving));
-    std::vector<double> expected, variances;
+        return failure(
+            say("the pdf integrates to %.5g +- %.1g, expected %.5g", integral, error, arriving), o);
+    double blind = 0;  // by so few points
     for (size_t i = 0; i < 32; ++i) {
         const double mean = sum[i] / m;
         expected.push_back(mean / integral);
         variances.push_back((squares[i] / m - mean * mean) / m / (integral * integral));
+        blind += variances[i] / std::max(1e-300, expected[i]) / 32;
     }
-    Options half = o;
-    half.alpha = o.alpha / 2;
-    Verdict v = expect_counts(counts, expected, half, variances);
-    double blind = 0;  // by so few points
-    for (size_t i = 0; i < 32; ++i) blind += variances[i] / std::max(1e-300, expected[i]);
+    const Options half{.alpha = o.alpha / 2, .tolerance = o.tolerance};
+    Verdict v = judge_counts(counts, expected, half, variances);
     v.delta_min =
-        std::hypot(v.delta_min, smallest_distortion(31, 1, half.alpha) * std::sqrt(blind / 32));
-    if (v.pass) return v;
-    size_t worst = 0;
-    auto off = [&](size_t i) {
-        return std::abs(double(counts[i]) / double(n - first) - expected[i]) /
-               std::sqrt(expected[i] / double(n - first) + variances[i]);
-    };
-    for (size_t i = 1; i < 32; ++i)
-        if (off(i) > off(worst)) worst = i;
-    v.text = say("samples are %.4g times as dense as the pdf says, around ",
-                 double(counts[worst]) / double(n - first) / expected[worst]) +
-             Domain::place + " " +
+        std::hypot(v.delta_min, smallest_distortion(31, 1, half.alpha) * std::sqrt(blind));
+    if (v.pass) return named(v, o);
+    const double counted = double(n - first);
+    const size_t worst = worst_of(32, [&](size_t i) {
+        return std::abs(counts[i] / counted - expected[i]) /
+               std::sqrt(expected[i] / counted + variances[i]);
+    });
+    v.text = say("samples are %.4g times as dense as the pdf says, around %s ",
+                 counts[worst] / counted / expected[worst], Domain::place) +
              say_point(domain.at(cells.range(worst, {domain.lower, domain.upper}).middle())) +
              "\n" + v.text;
-    return v;
+    return named(v, o);
 }
 
 // ---- BSDFs --------------------------------------------------------------------------------------
@@ -2146,101 +2046,102 @@ auto first_argument_of() {
         return decltype(first_argument(std::declval<F>())){};
 }
 
+// A direction by the cosine of its angle from z and by phi.
+inline Triple about_z_axis(double z, double phi) {
+    const double s = std::sqrt(1 - z * z);
+    return {s * std::cos(phi), s * std::sin(phi), z};
+}
+inline std::string between(const Triple& wo, const Triple& wi) {
+    return "wo = " + say_point(wo) + ", wi = " + say_point(wi);
+}
+
+// eval(wo, wi) without the host's types, and pairs of directions.
+using Eval = std::function<double(const Triple&, const Triple&)>;
+using Pairs = std::vector<std::pair<Triple, Triple>>;
+std::string exchange_hint(const Eval& f, const Pairs& pairs, double close);
+
+// What a BSDF does if wo and wi are exchanged, above the surface and through it, where it may be
+// scaled by a constant.
+struct Exchange {
+    std::string wrong = {};
+    bool reflects = false, transmits = false;
+    double scale = 1;
+};
+inline Exchange exchange(Random& random, const Eval& f, double close) {
+    Exchange e;
+    for (const bool through : {false, true}) {
+        Pairs pairs;
+        std::vector<double> ratios;  // f(wo, wi) / f(wi, wo)
+        for (int i = 0; i < 2000; ++i) {
+            Triple directions[2];
+            for (Triple& w : directions) {
+                const double phi = 2 * pi * random(), z = 0.05 + 0.95 * random();
+                w = about_z_axis(z, phi);
+            }
+            auto& [a, b] = directions;
+            if (through) b[2] = -b[2];
+            const double there = f(a, b), back = f(b, a);
+            for (double x : {there, back})
+                if (!(x >= 0 && std::isfinite(x))) {
+                    e.wrong = say("eval is %s, %.4g, for ", x < 0 ? "negative" : "not finite", x) +
+                              between(a, b);
+                    return e;
+                }
+            if (there == 0 && back == 0) continue;
+            ratios.push_back(there / back);
+            pairs.emplace_back(a, b);
+        }
+        if (pairs.empty()) continue;
+        (through ? e.transmits : e.reflects) = true;
+        if (through) e.scale = std::sqrt(median(ratios));
+        auto off = [&](size_t i) {
+            const double r = ratios[i] / (e.scale * e.scale);
+            return std::isfinite(r) ? 1 - std::min(r, 1 / r) : 1;
+        };
+        const size_t worst = worst_of(pairs.size(), off);
+        if (off(worst) <= close) continue;
+        e.wrong = std::string("eval is not reciprocal") + (through ? " through the surface" : "") +
+                  ": f(wo, wi) and f(wi, wo) differ by " + percent(off(worst)) + ", for " +
+                  between(pairs[worst].first, pairs[worst].second) + exchange_hint(f, pairs, close);
+        return e;
+    }
+    if (!e.reflects && !e.transmits) e.wrong = "eval is 0 for all directions";
+    return e;
+}
+
 struct Albedo {
     Triple wo;
     double mean, error;  // relative
 };
 std::string albedo_hint(const std::vector<Albedo>& all);
 
-// Whether f(a, b) / f(b, a) depends on the cosines of a and b alone: the same if b turns.
-using Pairs = std::vector<std::pair<Triple, Triple>>;
-bool by_cosines(const std::function<double(const Triple&, const Triple&)>& f, const Pairs& pairs);
-
 // A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
 // if it transmits for these from below, too: samples sample(wo, u, v, ...) have the density
 // pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not negative and reciprocal; no more
 // leaves than comes.  What is transmitted may be scaled by a constant, eta^2, in one direction.
-template <class Sample, class Pdf, class Eval>
-Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Options& o = {}) {
+template <class Sample, class Pdf, class EvalOf>
+Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const Options& o = {}) {
     using V = decltype(first_argument_of<Pdf>());  // the host's direction
     using T = Coordinate<V>;
-    constexpr bool single = std::is_same_v<T, float>;
-    auto refuse = [&](const std::string& why) { return named(failure(why), o); };
-    auto between = [](const Triple& a, const Triple& b) {
-        return "wo = " + say_point(a) + ", wi = " + say_point(b);
-    };
-    auto unit_at = [](double z, double phi) {
-        const double s = std::sqrt(1 - z * z);
-        return Triple{s * std::cos(phi), s * std::sin(phi), z};
-    };
     auto f = [&](const Triple& a, const Triple& b) {
         return brightness(eval(of_host<V>(a), of_host<V>(b)));
     };
-
-    // Pairs above the surface, then through it.
-    std::array<std::vector<double>, 2> ratios;  // f(wo, wi) / f(wi, wo)
-    const double close = single ? 0.02 : 1e-6;  // half vectors of exchanged directions are rounded
-    double with_cosine = 0, with_inverse = 0;
-    for (size_t through = 0; through < 2; ++through) {
-        Pairs pairs;
-        for (int i = 0; i < 2000; ++i) {
-            const Triple a = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
-            Triple b = unit_at(0.05 + 0.95 * random(), 2 * pi * random());
-            if (through) b[2] = -b[2];
-            const double there = f(a, b), back = f(b, a);
-            for (double x : {there, back})
-                if (!(x >= 0 && std::isfinite(x)))
-                    return refuse(
-                        say("eval is %s, %.4g, for ", x < 0 ? "negative" : "not finite", x) +
-                        between(a, b));
-            if (there == 0 && back == 0) continue;
-            ratios[through].push_back(there / back);
-            pairs.emplace_back(a, b);
-            with_cosine += std::abs(there * a[2] / (back * std::abs(b[2])) - 1) < close;
-            with_inverse += std::abs(there * std::abs(b[2]) / (back * a[2]) - 1) < close;
-        }
-        if (pairs.empty()) continue;
-        const double c = through ? median(ratios[1]) : 1;
-        size_t worst = 0;
-        auto off = [&](size_t i) {
-            const double r = ratios[through][i] / c;
-            return std::isfinite(r) ? 1 - std::min(r, 1 / r) : 1;
-        };
-        for (size_t i = 1; i < pairs.size(); ++i)
-            if (off(i) > off(worst)) worst = i;
-        if (off(worst) <= close) continue;
-        const double all = 0.95 * double(ratios[0].size() + ratios[1].size());
-        return refuse(
-            std::string("eval is not reciprocal") + (through ? " through the surface" : "") +
-            ": f(wo, wi) and f(wi, wo) differ by " + percent(off(worst)) + ", for " +
-            between(pairs[worst].first, pairs[worst].second) +
-            (with_cosine > all    ? "; looks like the cosine of wi included in eval, or "
-                                    "eval divided by that of wo"
-             : with_inverse > all ? "; looks like eval divided by the cosine of wi"
-             : by_cosines(f, pairs)
-                 ? ", by a factor of their cosines alone (Fresnel or masking by one of them?)"
-                 : ""));
-    }
-    const bool transmits = !ratios[1].empty();
-    if (ratios[0].empty() && !transmits) return refuse("eval is 0 for all directions");
-    const double scale = transmits ? std::sqrt(median(ratios[1])) : 1;
+    // Half vectors of exchanged directions are rounded.
+    const Exchange e = exchange(random, f, std::is_same_v<T, float> ? 0.02 : 1e-6);
+    if (!e.wrong.empty()) return failure(e.wrong, o);
 
     Verdict all{true, 1, 0, ""};
     std::vector<Albedo> albedos;
     for (double side : {1.0, -1.0})
         for (const auto& [z, phi] : {std::pair{0.95, 1.0}, {0.6, 3.0}, {0.2, 5.0}, {0.02, 2.0}}) {
-            if (side < 0 && !transmits) break;
-            const Triple out = unit_at(side * z, phi);
+            if (side < 0 && !e.transmits) break;
+            const Triple out = about_z_axis(side * z, phi);
             const V wo = of_host<V>(out);
             auto half = [out](const Triple& w) {
-                Triple h;
-                for (size_t k = 0; k < 3; ++k) h[k] = w[k] + out[k];
-                const double length = std::sqrt(dot(h, h));
-                for (double& x : h) x /= length;
-                return h;
+                return normalized({w[0] + out[0], w[1] + out[1], w[2] + out[2]});
             };
             Options here = o;
-            here.alpha = o.alpha / (transmits ? 8 : 4);
+            here.alpha = o.alpha / (e.transmits ? 8 : 4);
             here.name += (o.name.empty() ? "" : " ") + ("wo = " + say_point(out));
             here.factors.emplace_back("4 wo.h",
                                       [=](const Triple& w) { return 4 * dot(out, half(w)); });
@@ -2259,17 +2160,18 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, Eval eval, const Opt
                 double weight = 0;
                 if (const double p = wi ? erased.pdf(*wi) : 0; p > 0)
                     weight = f(out, *wi) * std::abs((*wi)[2]) / p *
-                             ((*wi)[2] * side < 0 ? std::pow(scale, -side) : 1);
+                             ((*wi)[2] * side < 0 ? std::pow(e.scale, -side) : 1);
                 if (!std::isfinite(weight))
-                    return refuse("eval cos / pdf is not finite for " + between(out, *wi));
+                    return failure("eval cos / pdf is not finite for " + between(out, *wi), o);
                 albedo.add(weight);
             }
-            const Estimate e = albedo.estimate();
-            albedos.push_back({out, e.mean, e.standard_error / std::max(1e-300, e.mean)});
+            const Estimate mean = albedo.estimate();
+            albedos.push_back({out, mean.mean, mean.standard_error / std::max(1e-300, mean.mean)});
         }
-    if (const std::string why = albedo_hint(albedos); !why.empty()) return refuse(why);
-    all.text = std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
-               (transmits ? say(", below and through it (scaled by %.4g)", scale * scale) : "");
+    if (const std::string why = albedo_hint(albedos); !why.empty()) return failure(why, o);
+    all.text =
+        std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
+        (e.transmits ? say(", below and through it (scaled by %.4g)", e.scale * e.scale) : "");
     return named(all, o);
 }
 
@@ -2334,15 +2236,11 @@ struct Image {
                 return failure(pixel(i) + say(" has the standard error %g", s[i]));
         }
         const ImageResult r = against(truth);
-        Verdict v;
-        v.p = r.p;
-        v.pass = r.p > o.alpha;
-        ++statistical_checks;
-        alpha_spent += o.alpha;
-        double sum = 0, variance = 0;
-        for (size_t i = 0; i < n(); ++i) sum += truth[i], variance += s[i] * s[i];
-        v.delta_min = smallest_shift(infinity, o.alpha / 3) * std::sqrt(variance) /
-                      (sum != 0 ? std::abs(sum) : 1);
+        double variance = 0;
+        for (double error : s) variance += error * error;
+        const double sum = std::abs(sum_of(truth)),
+                     seen = smallest_shift(infinity, o.alpha / 3) * std::sqrt(variance);
+        Verdict v = verdict_of(r.p, seen / (sum > 0 ? sum : 1), o);
         v.text = say("%zux%zu pixels, mean off by %.3g (%s), largest %.2f sigma at ", width, height,
                      r.mean, say_p(r.mean_p).c_str(), r.z) +
                  pixel(r.worst) + ", " + say_p(r.p) +
@@ -2360,7 +2258,7 @@ template <class Values, class Errors, class Reference>
 Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
                      const Reference& reference, const Options& o = {}) {
     Image image{width, height, {}, {}, {}, o};
-    if (image.n() == 0) return named(failure("no pixel"), o);
+    if (image.n() == 0) return failure("no pixel", o);
     for (size_t i = 0; i < image.n(); ++i) {
         image.f.push_back(double(values[i]));
         image.s.push_back(double(errors[i]));
@@ -2454,68 +2352,66 @@ inline std::string cause_of(double ratio, double tolerance, const std::vector<Fa
 
 // ---- The mistake behind a density ---------------------------------------------------------------
 
+// The cosine to an axis.
+template <size_t N>
+double along(const Point<N>& x, const Triple& axis) {
+    double sum = 0;
+    for (size_t k = 0; k < std::min<size_t>(3, N); ++k) sum += x[k] * axis[k];
+    return std::abs(sum);
+}
+
 // A function of the place that pdfs or samplers are known to forget.
+enum class Kind { cosine, sine, coordinate, cube, named };
 template <size_t N>
 struct Base {
     std::string name;
+    Kind kind;
     std::function<double(const Point<N>&)> at;
-    enum Kind { cosine, sine, coordinate, cube, named } kind = named;
 };
 
 template <size_t N>
-std::vector<Base<N>> bases_of(const Options& o, bool directions, const Triple& lobe) {
+std::vector<Base<N>> bases_of(const Options& o, const Scene<N>& scene) {
+    using X = const Point<N>&;
     std::vector<Base<N>> bases;
+    auto add = [&](const std::string& name, Kind kind, std::function<double(X)> at) {
+        bases.push_back({name, kind, std::move(at)});
+    };
     for (const Factor& f : o.factors)
-        bases.push_back({f.name,
-                         [&f](const Point<N>& x) {
-                             Triple three{};
-                             for (size_t k = 0; k < std::min<size_t>(3, N); ++k) three[k] = x[k];
-                             return f.at(three);
-                         },
-                         Base<N>::named});
-    if constexpr (N == 3)
-        if (directions) {
-            const double length = std::sqrt(dot(o.axis, o.axis));
-            Triple n{0, 0, 1};
-            if (length > 0)
-                for (size_t k = 0; k < 3; ++k) n[k] = o.axis[k] / length;
-            bases.push_back({"cos(theta)", [n](const Triple& w) { return std::abs(dot(w, n)); },
-                             Base<N>::cosine});
-            bases.push_back({"sin(theta)",
-                             [n](const Triple& w) {
-                                 return std::sqrt(std::max(0.0, 1 - dot(w, n) * dot(w, n)));
-                             },
-                             Base<N>::sine});
-            if (dot(n, lobe) < 0.999)
-                bases.push_back({"the cosine to the lobe's axis",
-                                 [lobe](const Triple& w) { return std::abs(dot(w, lobe)); },
-                                 Base<N>::cosine});
-            bases.push_back({"max(|x|, |y|, |z|)",
-                             [](const Triple& w) {
-                                 return std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
-                             },
-                             Base<N>::cube});
-            return bases;
-        }
-    const char* names[] = {"x", "y", "z"};
+        add(f.name, Kind::named, [&f](X x) {
+            Triple three{};
+            std::copy_n(x.begin(), std::min<size_t>(3, N), three.begin());
+            return f.at(three);
+        });
+    if (scene.directions) {
+        const Triple n = scene.normal, lobe = scene.lobe;
+        add("cos(theta)", Kind::cosine, [=](X w) { return along(w, n); });
+        add("sin(theta)", Kind::sine,
+            [=](X w) { return std::sqrt(std::max(0.0, 1 - along(w, n) * along(w, n))); });
+        if (dot(n, lobe) < 0.999)
+            add("the cosine to the lobe's axis", Kind::cosine, [=](X w) { return along(w, lobe); });
+        add("max(|x|, |y|, |z|)", Kind::cube, [](X w) {
+            double most = 0;
+            for (double x : w) most = std::max(most, std::abs(x));
+            return most;
+        });
+        return bases;
+    }
     for (size_t k = 0; k < std::min<size_t>(3, N); ++k)
-        bases.push_back(
-            {names[k], [k](const Point<N>& x) { return std::abs(x[k]); }, Base<N>::coordinate});
+        add(std::string(1, "xyz"[k]), Kind::coordinate, [k](X x) { return std::abs(x[k]); });
     if (N > 1)
-        bases.push_back({"r",
-                         [](const Point<N>& x) {
-                             double square = 0;
-                             for (double c : x) square += c * c;
-                             return std::sqrt(square);
-                         },
-                         Base<N>::coordinate});
+        add("r", Kind::coordinate, [](X x) {
+            double square = 0;
+            for (double c : x) square += c * c;
+            return std::sqrt(square);
+        });
     return bases;
 }
 
-// pdf / density = factor b1^k1 b2^k2, where it holds at 95 % of the points within `tolerance`.
+// A constant that 95 % of these ratios have, within `tolerance`.
 struct Law {
     double factor = 0;
     bool holds = false;
+    bool plain(double tolerance) const { return holds && std::abs(factor - 1) <= tolerance; }
 };
 inline Law law_of(const std::vector<double>& ratios, double tolerance) {
     Law law{median(ratios)};
@@ -2528,45 +2424,29 @@ inline Law law_of(const std::vector<double>& ratios, double tolerance) {
 inline std::string power(const std::string& name, double k) {
     return k == 1 ? name : name + (k == 0.5 ? "^(1/2)" : k == -0.5 ? "^(-1/2)" : say("^%.3g", k));
 }
+// A factor times something; no factor if it is 1.
+inline std::string factor_and(double factor, double tolerance, const std::string& what) {
+    return (std::abs(factor - 1) <= tolerance ? "" : times(factor, 0.003) + " ") + what;
+}
 
 // In words, why p / q is a power of a base: normalised is whether the pdf integrates to 1.
-template <size_t N>
-std::string cause_of_base(const Base<N>& b, double k, bool normalised) {
-    if (b.kind == Base<N>::named) {
-        if (k == 1)
-            return "a factor " + b.name + " too many in the pdf, or 1/(" + b.name + ") forgotten";
-        if (k == -1) return b.name + " forgotten in the pdf, or divided by twice";
-        if (k == 2) return "multiplied by " + b.name + " in place of divided, in the pdf";
-        if (k == -2) return "divided by " + b.name + " in place of multiplied, in the pdf";
-        return "a root of " + b.name;
-    }
-    if (b.kind == Base<N>::sine && k == 1)
+inline std::string cause_of_base(const std::string& name, Kind kind, double k, bool normalised) {
+    if (kind == Kind::named)
+        return k == 1 ? "a factor " + name + " too many in the pdf, or 1/(" + name + ") forgotten"
+               : k == -1 ? name + " forgotten in the pdf, or divided by twice"
+               : k == 2  ? "multiplied by " + name + " in place of divided, in the pdf"
+               : k == -2 ? "divided by " + name + " in place of multiplied, in the pdf"
+                         : "a root of " + name;
+    if (kind == Kind::sine && k == 1)
         return normalised ? "theta drawn uniformly, or r = u without its square root: samples lack "
                             "a factor sin(theta)"
                           : "a density per (theta, phi), not per solid angle";
-    if (b.kind == Base<N>::cube)
+    if (kind == Kind::cube)
         return std::abs(k) == 3 ? "points of a cube, normalised without rejection" : "";
-    if (normalised && b.kind == Base<N>::coordinate && k == 1)
-        return b.name + " drawn uniformly, without its root";
-    if (normalised) return "";
-    return k > 0 ? "a factor " + b.name + " too many in the pdf"
-                 : "a factor " + b.name + " missing in the pdf";
-}
-
-// Where samples lie.
-template <size_t N>
-struct Scene {
-    bool directions;
-    Triple lobe{0, 0, 1}, normal{0, 0, 1};
-    Point<N> centre{};  // of a box or of the samples
-};
-
-// The cosine to an axis.
-template <size_t N>
-double along(const Point<N>& x, const Triple& axis) {
-    double sum = 0;
-    for (size_t k = 0; k < std::min<size_t>(3, N); ++k) sum += x[k] * axis[k];
-    return std::abs(sum);
+    if (normalised)
+        return kind == Kind::coordinate && k == 1 ? name + " drawn uniformly, without its root"
+                                                  : "";
+    return "a factor " + name + (k > 0 ? " too many" : " missing") + " in the pdf";
 }
 
 // Linear equations by Gauss and Jordan; NaN if they have no solution.
@@ -2589,7 +2469,7 @@ std::array<double, R> solved(std::array<std::array<double, R + 1>, R> rows) {
 template <size_t N>
 using Map = std::function<Point<N>(const Point<N>&)>;
 template <size_t N>
-std::vector<std::pair<std::string, Map<N>>> images_in(const Scene<N>& scene) {
+std::vector<std::pair<const char*, Map<N>>> images_in(const Scene<N>& scene) {
     const struct {
         const char* name;
         std::array<size_t, 3> from;
@@ -2605,7 +2485,7 @@ std::vector<std::pair<std::string, Map<N>>> images_in(const Scene<N>& scene) {
         {"x, y, z in another order", {1, 2, 0}, {1, 1, 1}},
         {"x, y, z in another order", {2, 0, 1}, {1, 1, 1}},
     };
-    std::vector<std::pair<std::string, Map<N>>> maps;
+    std::vector<std::pair<const char*, Map<N>>> maps;
     for (const auto& image : images) {
         bool here = N <= 3;
         for (size_t k = N; k < 3; ++k) here = here && image.from[k] == k && image.sign[k] == 1;
@@ -2619,14 +2499,19 @@ std::vector<std::pair<std::string, Map<N>>> images_in(const Scene<N>& scene) {
     }
     return maps;
 }
+inline std::string words_of_image(const std::string& name) {
+    return "samples have the density of the pdf with " + name + ": looks like " + name +
+           " in one of the two";
+}
 
 // What the sheets of a map, the integral of the pdf and its symmetries say of the mistake: a fact,
 // then "looks like" and a cause where one explains all of it.
 template <size_t N>
 struct Mistake {
-    const std::function<double(const Point<N>&)>& pdf;
+    using X = const Point<N>&;
+    const std::function<double(X)>& pdf;
     const Scene<N>& scene;
-    bool directions, single;
+    bool single;
     double unit;   // of rounding
     double total;  // integral of the pdf
     double share;  // of the samples that failed
@@ -2640,26 +2525,27 @@ struct Mistake {
     // The first that explains it; or nothing.
     std::string name(const std::vector<Local<N>>& all) {
         if (const std::string why = degenerate(all); !why.empty()) return why;
-        for (const Local<N>& l : all)
-            if (l.q < infinity && l.p >= 0 && l.collapse > 1e-7) sheets.push_back(l);
-        if (sheets.size() < 100) return "";
         std::vector<double> errors;
-        for (const Local<N>& l : sheets) {
-            errors.push_back(l.error);
-        }
+        for (const Local<N>& l : all)
+            if (l.q < infinity && l.p >= 0 && l.collapse > 1e-7)
+                sheets.push_back(l), errors.push_back(l.error);
+        if (sheets.size() < 100) return "";
         tolerance = std::min(0.05, std::max(single ? 0.01 : 1e-4, 4 * median(errors)));
         // At a kink of the map differences are less exact.
         for (const Local<N>& l : sheets)
             if (l.p > 0 && l.error <= tolerance) good.push_back(l), ratios.push_back(l.product());
         normalised = std::abs(total + share - 1) < close();
+        std::string why;
         if (good.size() >= 50) {
-            if (law_of(ratios, tolerance).holds) return constant(law_of(ratios, tolerance).factor);
-            for (const std::string& why : {power_law(), two_powers(), exponent()})
-                if (!why.empty()) return why;
+            if (const Law law = law_of(ratios, tolerance); law.holds) return constant(law.factor);
+            why = power_law();
+            if (why.empty()) why = two_powers();
+            if (why.empty()) why = exponent();
         }
-        for (const std::string& why : {symmetry(), linear(), moved(), sides()})
-            if (!why.empty()) return why;
-        return "";
+        if (why.empty()) why = symmetry();
+        if (why.empty()) why = linear();
+        if (why.empty()) why = moved();
+        return why.empty() ? sides() : why;
     }
 
     // How well the integral and the failed part are known, together.
@@ -2667,14 +2553,14 @@ struct Mistake {
 
     std::string degenerate(const std::vector<Local<N>>& all) const {
         unsigned still = ~0u;
-        size_t collapsed = 0;
+        size_t collapsed = 0, same = 0;
         for (const Local<N>& l : all) {
             still &= l.still;
             collapsed += l.collapse < (single ? 1e-3 : 1e-7);
+            same += l.x == all[0].x;
         }
         if (all.size() < 100) return "";
-        if (std::all_of(all.begin(), all.end(), [&](const Local<N>& l) { return l.x == all[0].x; }))
-            return "samples are all the same, " + say_point(all[0].x);
+        if (same == all.size()) return "samples are all the same, " + say_point(all[0].x);
         if (still != 0)
             return say(
                 "samples do not depend on number %d of those they are made from: looks like "
@@ -2700,126 +2586,111 @@ struct Mistake {
                    times(1 / c, 0.003) +
                    " times as dense as it says: looks like samples of a larger domain than the "
                    "pdf's";
-        const bool gap = c < 1 && std::abs(total + share - 1) < (1 - c) / 3;
-        if (!gap && std::abs((total / c + share) - 1) <= close()) {
-            std::string cause;
-            for (const Base<N>& b : bases) {
-                if (b.kind != Base<N>::named) continue;
-                std::vector<double> f;
-                for (const Local<N>& l : good) f.push_back(b.at(l.x));
-                const Law law = law_of(f, 1e-6);
-                if (!law.holds || std::abs(law.factor - 1) <= tolerance) continue;
-                if (std::abs(c * law.factor - 1) <= tolerance)
-                    cause += (cause.empty() ? "" : " or ") + b.name + " forgotten in the pdf";
-                if (std::abs(c / law.factor - 1) <= tolerance)
-                    cause += (cause.empty() ? "" : " or ") +
-                             ("a factor " + b.name + " too many in the pdf");
-            }
-            const std::string constant_name = constant_named(c, 0.003);
-            if (cause.empty() &&
-                (constant_name == "pi" || constant_name == "2 pi" || constant_name == "4 pi"))
-                cause = constant_name == "pi" ? "1/pi forgotten"
-                                              : "1/(" + constant_name + ") forgotten";
-            cause = cause.empty() ? ": a constant factor" : "; looks like " + cause;
-            // The cosine of a cone so narrow has no more digits.
-            std::vector<double> heights;
-            for (const Local<N>& l : good) heights.push_back(l.p);
-            if (single && std::abs(c - 1) < 2 * pi * unit * median(heights)) cause += if_double;
-            return "the pdf is " + times(c, 0.003) +
-                   " times the density of the samples, everywhere" + cause;
-        }
-        if (gap)
+        if (c < 1 && std::abs(total + share - 1) < (1 - c) / 3)
             return "samples are " + times(1 / c, 0.003) +
                    " times as dense as the pdf says wherever they come" + where_none() +
                    "; looks like a gap: part of the domain (half of it? of phi?) never sampled";
-        return "";
+        if (std::abs(total / c + share - 1) > close()) return "";
+        std::string cause;
+        for (const Base<N>& b : bases) {
+            if (b.kind != Kind::named) continue;
+            std::vector<double> f;
+            for (const Local<N>& l : good) f.push_back(b.at(l.x));
+            const Law law = law_of(f, 1e-6);
+            if (!law.holds || law.plain(tolerance)) continue;
+            const std::string or_ = cause.empty() ? "" : " or ";
+            if (std::abs(c * law.factor - 1) <= tolerance)
+                cause += or_ + b.name + " forgotten in the pdf";
+            if (std::abs(c / law.factor - 1) <= tolerance)
+                cause += or_ + "a factor " + b.name + " too many in the pdf";
+        }
+        const std::string name = constant_named(c, 0.003);
+        if (cause.empty() && (name == "pi" || name == "2 pi" || name == "4 pi"))
+            cause = (name == "pi" ? "1/pi" : "1/(" + name + ")") + " forgotten";
+        cause = cause.empty() ? ": a constant factor" : "; looks like " + cause;
+        // The cosine of a cone so narrow has no more digits.
+        std::vector<double> heights;
+        for (const Local<N>& l : good) heights.push_back(l.p);
+        if (single && std::abs(c - 1) < 2 * pi * unit * median(heights)) cause += if_double;
+        return "the pdf is " + times(c, 0.003) + " times the density of the samples, everywhere" +
+               cause;
     }
 
     // On which side of a plane through the origin no sample comes, where the pdf is positive.
     std::string where_none() const {
-        if constexpr (N == 3) {
-            const char* names[] = {"x", "y", "z"};
-            for (size_t k = 0; k < 3 && directions; ++k)
-                for (double sign : {1.0, -1.0}) {
-                    size_t beyond = 0, positive = 0;
-                    for (const Local<N>& l : sheets) {
-                        auto mirrored = l.x;
-                        mirrored[k] = -mirrored[k];
-                        beyond += sign * l.x[k] < 0;
-                        positive += pdf(mirrored) > 0;
-                    }
-                    if (beyond == 0 && positive > sheets.size() / 2)
-                        return std::string(": no sample has ") + names[k] +
-                               (sign > 0 ? " < 0" : " > 0") +
-                               (std::abs(scene.normal[k]) > 0.99 ? ", below the horizon" : "");
+        for (size_t k = 0; k < N && scene.directions; ++k)
+            for (double sign : {1.0, -1.0}) {
+                size_t beyond = 0, positive = 0;
+                for (const Local<N>& l : sheets) {
+                    auto mirrored = l.x;
+                    mirrored[k] = -mirrored[k];
+                    beyond += sign * l.x[k] < 0;
+                    positive += pdf(mirrored) > 0;
                 }
-        }
+                if (beyond == 0 && positive > sheets.size() / 2)
+                    return say(": no sample has %c %c 0", "xyz"[k % 3], sign > 0 ? '<' : '>') +
+                           (std::abs(scene.normal[k % 3]) > 0.99 ? ", below the horizon" : "");
+            }
         return "";
     }
 
-    struct Fit {
-        const Base<N>* base;
-        double power, factor;
-    };
-    std::string over(double factor) const {
-        return "pdf / density of the samples = " +
-               (std::abs(factor - 1) <= tolerance ? "" : times(factor, 0.003) + " ");
+    std::string over(double factor, const std::string& what) const {
+        return "pdf / density of the samples = " + factor_and(factor, tolerance, what);
     }
-    Law law_without(const Base<N>& a, double j, const Base<N>* b = nullptr, double k = 0) const {
+    // p / q over f(x).
+    Law law_over(const auto& f) const {
         std::vector<double> rest;
-        for (size_t i = 0; i < good.size(); ++i)
-            rest.push_back(ratios[i] / (std::pow(a.at(good[i].x), j) *
-                                        (b ? std::pow(b->at(good[i].x), k) : 1)));
+        for (size_t i = 0; i < good.size(); ++i) rest.push_back(ratios[i] / f(good[i].x));
         return law_of(rest, tolerance);
+    }
+    Law law_over(const Base<N>& a, double j, const Base<N>& b, double k) const {
+        return law_over([&](X x) { return std::pow(a.at(x), j) * std::pow(b.at(x), k); });
     }
 
     // p / q = c b^k.  One without a constant goes before those with one, one that the host named
     // before others.
     std::string power_law() const {
-        std::vector<Fit> fits;
+        struct {
+            const Base<N>* base;
+            double power, factor;
+            int rank;
+        } best{nullptr, 0, 0, 4};
+        size_t fits = 0;
         for (const double k : {1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 0.5, -0.5})
-            for (const Base<N>& b : bases)
-                if (const Law law = law_without(b, k); law.holds)
-                    fits.push_back({&b, k, law.factor});
-        auto rank = [&](const Fit& f) {
-            return 2 * (std::abs(f.factor - 1) > tolerance) + (f.base->kind != Base<N>::named);
-        };
-        if (fits.empty()) return "";
-        const Fit f = *std::min_element(fits.begin(), fits.end(), [&](const Fit& a, const Fit& b) {
-            return rank(a) < rank(b);
-        });
-        std::string cause = cause_of_base(*f.base, f.power, normalised);
-        // With a constant left over, a named factor is one of several that vary alike.
-        if (f.base->kind == Base<N>::named && fits.size() > 1 && std::abs(f.factor - 1) > tolerance)
-            cause = "";
-        // Nor is it all with a cosine: a distance may be 1 / cos(theta).
-        if (f.base->kind == Base<N>::cosine && std::abs(f.factor - 1) > tolerance) cause = "";
-        return over(f.factor) + power(f.base->name, f.power) +
-               (cause.empty() ? "" : ": looks like " + cause) + uniform();
-    }
-    // Either may be the wrong one of two.
-    std::string uniform() const {
+            for (const Base<N>& b : bases) {
+                const Law law = law_over(b, k, b, 0);
+                const int rank = 2 * !law.plain(tolerance) + (b.kind != Kind::named);
+                fits += law.holds;
+                if (law.holds && rank < best.rank) best = {&b, k, law.factor, rank};
+            }
+        if (fits == 0) return "";
+        const auto& [b, k, factor, rank] = best;
+        // With a constant left over, a named factor is one of several that vary alike; nor is it
+        // all with a cosine: a distance may be 1 / cos(theta).
+        const bool unsure =
+            rank >= 2 && (b->kind == Kind::named ? fits > 1 : b->kind == Kind::cosine);
+        const std::string cause = unsure ? "" : cause_of_base(b->name, b->kind, k, normalised);
+        // Either may be the wrong one of two.
         std::vector<double> p, q;
         for (const Local<N>& l : good) p.push_back(l.p), q.push_back(l.q);
-        return law_of(p, tolerance).holds   ? "; the pdf is uniform, samples are not"
-               : law_of(q, tolerance).holds ? "; samples are uniform, the pdf is not"
-                                            : "";
+        return over(factor, power(b->name, k)) + (cause.empty() ? "" : ": looks like " + cause) +
+               (law_of(p, tolerance).holds   ? "; the pdf is uniform, samples are not"
+                : law_of(q, tolerance).holds ? "; samples are uniform, the pdf is not"
+                                             : "");
     }
     std::string two_powers() const {
         for (const double j : {1.0, -1.0, 2.0, -2.0})
             for (const double k : {1.0, -1.0, 2.0, -2.0})
                 for (const Base<N>& a : bases)
                     for (const Base<N>& b : bases) {
-                        if (&a >= &b || a.kind != Base<N>::named) continue;
-                        const Law law = law_without(a, j, &b, k);
-                        const bool plain = std::abs(law.factor - 1) <= tolerance;
-                        if (!law.holds || (!plain && constant_named(law.factor, 0.003).empty()))
+                        if (&a >= &b || a.kind != Kind::named) continue;
+                        const Law law = law_over(a, j, b, k);
+                        if (!law.holds ||
+                            (!law.plain(tolerance) && constant_named(law.factor, 0.003).empty()))
                             continue;
-                        auto fate = [](const Base<N>& base, double exponent) {
-                            return base.name + (exponent > 0 ? " too many" : " forgotten");
-                        };
-                        return over(law.factor) + power(a.name, j) + " " + power(b.name, k) +
-                               ": looks like " + fate(a, j) + ", and " + fate(b, k) +
+                        return over(law.factor, power(a.name, j) + " " + power(b.name, k)) +
+                               ": looks like " + a.name + (j > 0 ? " too many" : " forgotten") +
+                               ", and " + b.name + (k > 0 ? " too many" : " forgotten") +
                                ", in the pdf";
                     }
         return "";
@@ -2828,43 +2699,41 @@ struct Mistake {
     // Any power of the cosine to an axis: the exponent of a lobe.
     std::string exponent() const {
         for (const Base<N>& b : bases) {
-            if (b.kind != Base<N>::cosine) continue;
+            if (b.kind != Kind::cosine) continue;
             std::vector<double> slopes;
             for (size_t i = 0; i + 1 < good.size(); ++i) {
                 const double x = std::log(b.at(good[i + 1].x) / b.at(good[i].x));
                 if (std::abs(x) > 1e-6) slopes.push_back(std::log(ratios[i + 1] / ratios[i]) / x);
             }
-            if (slopes.size() < 40) continue;
-            const double k = median(slopes);
-            if (const Law law = law_without(b, k); law.holds && std::abs(k) > 0.05)
-                return over(law.factor) + power(b.name, k) + ": looks like the exponent of a lobe";
+            const double k = slopes.size() < 40 ? 0 : median(slopes);
+            if (const Law law = law_over(b, k, b, 0); law.holds && std::abs(k) > 0.05)
+                return over(law.factor, power(b.name, k)) + ": looks like the exponent of a lobe";
         }
         return "";
     }
 
     // p / q or q / p, with a cosine in its place or without, is a linear function a x + b: the
-    // cosine to a direction that nobody named, a factor that a warp lacks.  By least squares.
+    // cosine to a direction that nobody named, a factor that a warp lacks.  By least squares;
+    // without b for directions.
     std::string linear() const {
         if (good.size() < 50) return "";
+        const double one = scene.directions ? 0 : 1;
         for (const double k : {1.0, -1.0})
             for (const double j : {0.0, 1.0, -1.0}) {
-                if (j != 0 && !directions) break;
+                if (j != 0 && !scene.directions) break;
                 std::array<std::array<double, N + 2>, N + 1> rows{};
                 std::vector<double> left;
-                const double one = directions ? 0 : 1;  // and no constant b
                 for (size_t i = 0; i < good.size(); ++i) {
-                    const Point<N>& x = good[i].x;
+                    X x = good[i].x;
                     left.push_back(std::pow(ratios[i] * std::pow(along(x, scene.normal), j), k));
+                    std::array<double, N + 2> row;
+                    std::copy(x.begin(), x.end(), row.begin());
+                    row[N] = one, row[N + 1] = left[i];
                     for (size_t r = 0; r <= N; ++r)
                         for (size_t c = 0; c <= N + 1; ++c)
-                            rows[r][c] += (r < N ? x[r] : one) *
-                                          (c < N    ? x[c]
-                                           : c == N ? one
-                                                    : left[i]) /
-                                          (left[i] * left[i]);
+                            rows[r][c] += row[r] * row[c] / (left[i] * left[i]);
                 }
                 rows[N][N] += 1 - one;
-                const double spread = median(left, 0.95) / median(left, 0.05);
                 const auto a = solved(rows);
                 std::vector<double> rest;
                 for (size_t i = 0; i < good.size(); ++i) {
@@ -2872,11 +2741,9 @@ struct Mistake {
                     for (size_t c = 0; c < N; ++c) sum += a[c] * good[i].x[c];
                     rest.push_back(left[i] / sum);
                 }
-                const Law law = law_of(rest, tolerance);
-                if (!(spread > 1 + 30 * tolerance) || !law.holds ||
-                    std::abs(law.factor - 1) > tolerance)
-                    continue;
-                return words_of(a, j, k);
+                if (median(left, 0.95) / median(left, 0.05) > 1 + 30 * tolerance &&
+                    law_of(rest, tolerance).plain(tolerance))
+                    return words_of(a, j, k);
             }
         return "";
     }
@@ -2884,23 +2751,22 @@ struct Mistake {
         double length = 0;
         for (size_t c = 0; c < N; ++c) length += a[c] * a[c];
         length = std::sqrt(length);
-        const std::string with = j == 0 ? "" : " " + power("cos(theta)", -j);
-        if (directions) {
+        if (scene.directions) {
             Point<N> n;
             for (size_t c = 0; c < N; ++c) n[c] = a[c] / length;
             const std::string cosine = "the cosine to " + say_point(n);
-            return over(std::pow(length, k)) + power("(" + cosine + ")", k) + with +
-                   ": looks like " + cosine + (k > 0 ? " too many" : " forgotten") + " in the pdf" +
+            return over(std::pow(length, k), power("(" + cosine + ")", k)) +
+                   (j == 0 ? "" : " " + power("cos(theta)", -j)) + ": looks like " + cosine +
+                   (k > 0 ? " too many" : " forgotten") + " in the pdf" +
                    (j == 0 ? "" : ", or taken to another normal");
         }
-        const char* names[] = {"x", "y", "z"};
         std::string sum;
         for (size_t c = 0; c <= N; ++c) {
             if (std::abs(a[c]) < 0.01 * std::hypot(length, a[N])) continue;
             sum += sum.empty() ? (a[c] < 0 ? "-" : "") : a[c] < 0 ? " - " : " + ";
-            sum += say("%.3g", std::abs(a[c])) + (c < N ? std::string(" ") + names[c % 3] : "");
+            sum += say("%.3g", std::abs(a[c])) + (c < N ? say(" %c", "xyz"[c % 3]) : "");
         }
-        return over(1) + power("(" + sum + ")", k) + with +
+        return over(1, power("(" + sum + ")", k)) +
                (normalised && k > 0
                     ? ": looks like a number that is not warped, or without its root"
                     : "");
@@ -2908,14 +2774,12 @@ struct Mistake {
 
     // Samples have the density of the pdf of a mirror image.
     std::string symmetry() const {
-        for (const auto& [name, image] : images_in(scene)) {
-            const Law law = law_of_image(image, 1);
-            if (law.holds && std::abs(law.factor - 1) <= tolerance)
-                return "samples have the density of the pdf with " + name + ": looks like " + name +
-                       " in one of the two" +
-                       (directions && name[0] == 'z' && scene.normal[2] == 1 ? ", below the horizon"
-                                                                             : "");
-        }
+        for (const auto& [name, image] : images_in(scene))
+            if (law_of_image(image, 1).plain(tolerance))
+                return words_of_image(name) +
+                       (scene.directions && name[0] == 'z' && scene.normal[2] == 1
+                            ? ", below the horizon"
+                            : "");
         return "";
     }
     Law law_of_image(const Map<N>& image, double stretch) const {
@@ -2929,195 +2793,153 @@ struct Mistake {
 
     // Samples have the density of the pdf stretched about 0, or moved along a coordinate.
     std::string moved() const {
-        if (directions || sheets.empty()) return "";
+        if (scene.directions || sheets.empty()) return "";
         auto stretched = [](double by) {
             return [by](Point<N> x) {
                 for (double& c : x) c /= std::exp(by);
                 return x;
             };
         };
-        const double by =
-            best(-3, 3, [&](double b) { return mismatch(stretched(b), std::exp(double(N) * b)); });
-        const Law law = law_of_image(stretched(by), std::exp(double(N) * by));
-        if (law.holds && std::abs(law.factor - 1) <= tolerance && std::abs(by) > 1e-3)
+        if (const double by = fitted(3, 1e-3, double(N), stretched); by != 0)
             return "samples have the density of the pdf, " + times(std::exp(by), 0.004) +
                    " times as wide: looks like their scale";
         for (size_t k = 0; k < N; ++k) {
             std::vector<double> x;
             for (const Local<N>& l : sheets) x.push_back(l.x[k]);
             const double width = median(x, 0.95) - median(x, 0.05);
-            auto shifted = [&](double d) {
+            auto shifted = [k](double d) {
                 return [k, d](Point<N> p) {
                     p[k] -= d;
                     return p;
                 };
             };
-            const double d =
-                best(-width, width, [&](double shift) { return mismatch(shifted(shift), 1); });
-            const Law there = law_of_image(shifted(d), 1);
-            if (there.holds && std::abs(there.factor - 1) <= tolerance &&
-                std::abs(d) > 0.01 * width)
+            if (const double d = fitted(width, 0.01 * width, 0, shifted); d != 0)
                 return "samples have the density of the pdf moved by " + say("%.4g", d) +
-                       (N == 1 ? "" : std::string(" along ") + "xyz"[k % 3]) +
+                       (N == 1 ? "" : say(" along %c", "xyz"[k % 3])) +
                        ": looks like an offset, or an index that is off by one";
         }
         return "";
     }
-    // How far the pdf at image(x) is from the density of the samples, where it is not 0.
-    double mismatch(const Map<N>& image, double stretch) const {
-        double sum = 0, n = 0;
-        for (const Local<N>& l : sheets)
-            if (const double p = pdf(image(l.x)) / stretch; p > 0)
-                sum += std::min(0.3, std::abs(std::log(p / l.q))), ++n;
-        return n < 0.4 * double(sheets.size()) ? 1 : sum / n;
+    // The b between -most and most for which samples have the density of the pdf at image(b),
+    // stretched exp(power b) times; 0 if there is none beyond `least`.
+    double fitted(double most, double least, double power,
+                  const std::function<Map<N>(double)>& image) const {
+        const double b = best(most, [&](double at) {
+            // How far the two are apart, where the pdf is not 0.
+            const Map<N> map = image(at);
+            double sum = 0, n = 0;
+            for (const Local<N>& l : sheets)
+                if (const double p = pdf(map(l.x)) / std::exp(power * at); p > 0)
+                    sum += std::min(0.3, std::abs(std::log(p / l.q))), ++n;
+            return n < 0.4 * double(sheets.size()) ? 1 : sum / n;
+        });
+        const bool plain = law_of_image(image(b), std::exp(power * b)).plain(tolerance);
+        return plain && std::abs(b) > least ? b : 0;
     }
-    // Where f is least: on a grid, then by ever smaller steps.
-    static double best(double low, double high, const std::function<double(double)>& f) {
-        double at = 0, least = infinity, step = (high - low) / 200;
-        for (int i = 0; i <= 200; ++i)
-            if (const double x = low + i * step, y = f(x); y < least) least = y, at = x;
-        for (; step > 1e-7 * (high - low); step /= 2)
-            for (const double x : {at - step, at + step})
-                if (const double y = f(x); y < least) least = y, at = x;
+    // Where f is least between -most and most: on a grid, then by ever smaller steps.
+    static double best(double most, const auto& f) {
+        double at = 0, least = infinity;
+        for (double step = most / 100; step > 2e-7 * most; step /= 2) {
+            const int reach = least == infinity ? 100 : 1;
+            const double middle = at;
+            for (int i = -reach; i <= reach; ++i)
+                if (const double x = middle + i * step, y = f(x); y < least) least = y, at = x;
+        }
         return at;
     }
 
     // A constant factor on either side of a plane of coordinates.
     std::string sides() const {
-        if (!directions) return "";
-        for (size_t k = 0; k < N; ++k) {
+        for (size_t k = 0; k < N && scene.directions; ++k) {
             std::vector<double> of[2];
             for (size_t i = 0; i < good.size(); ++i) of[good[i].x[k] < 0].push_back(ratios[i]);
             if (std::min(of[0].size(), of[1].size()) < 20) continue;
             const Law above = law_of(of[0], tolerance), below = law_of(of[1], tolerance);
             if (above.holds && below.holds)
                 return "the pdf is " + times(above.factor, 0.003) +
-                       " times the density of the samples where " + "xyz"[k % 3] + " > 0, " +
+                       say(" times the density of the samples where %c > 0, ", "xyz"[k % 3]) +
                        times(below.factor, 0.003) + " times where it is < 0";
         }
         return "";
     }
 };
 
-template <size_t N, class PdfOf>
-std::string mistake_behind(const std::vector<Local<N>>& all, const PdfOf& model,
+// total: integral of the pdf; share: of the samples that failed.
+template <size_t N>
+std::string mistake_behind(const std::vector<Local<N>>& all, const auto& model,
                            const Scene<N>& scene, double total, double share, const Options& o) {
-    Mistake<N> mistake{model.pdf,
-                       scene,
-                       scene.directions,
-                       model.single,
-                       model.unit,
-                       total,
-                       share,
-                       bases_of<N>(o, scene.directions, scene.lobe)};
-    return mistake.name(all);
+    return Mistake<N>{model.pdf, scene, model.single, model.unit, total, share, bases_of(o, scene)}
+        .name(all);
 }
-
-template <size_t N, class PdfOf>
-std::string mistake_of_map(const std::vector<Local<N>>& all, const PdfOf& model, double total,
-                           const Options& o) {
-    return mistake_behind(all, model, Scene<N>{false}, total, 0, o);
+// The same of a check's sheets.
+std::string explained(const auto& check, const auto& all, double total) {
+    const double share = check.none / std::max(1.0, check.samples) + check.o.discrete;
+    return mistake_behind(all, check.model, check.scene(), total, share, check.o);
 }
 
 // Of samples that all come where the pdf is 0.
 template <size_t M, size_t N, class Domain>
-std::string DensityCheck<M, N, Domain>::symmetry() {
-    if constexpr (M != D)
-        return "";
-    else {
-        const auto sheets = sheets_of(model, random, 1, 0, false);
-        const std::string why = explained(sheets.all, 1);
+std::string symmetry_of(DensityCheck<M, N, Domain>& check) {
+    if constexpr (M == Domain::dimensions) {
+        const auto sheets = sheets_of(check.model, check.random, 1, 0, false);
+        const std::string why = explained(check, sheets.all, 1);
         return why.empty() ? "" : "; " + why;
     }
-}
-template <size_t M, size_t N, class Domain>
-Scene<N> DensityCheck<M, N, Domain>::scene() const {
-    Scene<N> scene{directions};
-    if constexpr (directions) {
-        scene.lobe = domain.z;
-        if (const double length = std::sqrt(dot(o.axis, o.axis)); length > 0)
-            for (size_t k = 0; k < 3; ++k) scene.normal[k] = o.axis[k] / length;
-    } else if constexpr (std::is_base_of_v<Box<N>, Domain>) {
-        scene.centre = Range<N>{domain.lower, domain.upper}.middle();
-    }
-    return scene;
-}
-template <size_t M, size_t N, class Domain>
-std::string DensityCheck<M, N, Domain>::explained(const std::vector<Local<N>>& all, double total) {
-    return mistake_behind(all, model, scene(), total, none / std::max(1.0, samples) + o.discrete,
-                          o);
+    return "";
 }
 
-// Whether numbers rise (1) or fall (-1) with the distance, in five groups, by a tenth or more.
-inline int trend_of(std::vector<std::pair<double, double>> distance_and_number) {
-    auto& all = distance_and_number;
+// In words, whether a ratio of the pdf rises or falls by a tenth or more with the distance from
+// the samples' middle, in five groups.
+inline std::string width_of(std::vector<std::pair<double, double>> distance_and_ratio) {
+    auto& all = distance_and_ratio;
     std::sort(all.begin(), all.end());
     std::vector<double> medians;
     for (size_t group = 0; group < 5; ++group) {
-        std::vector<double> numbers;
+        std::vector<double> ratios;
         for (size_t i = group * all.size() / 5; i < (group + 1) * all.size() / 5; ++i)
-            numbers.push_back(all[i].second);
-        if (numbers.empty()) return 0;
-        medians.push_back(median(numbers));
+            ratios.push_back(all[i].second);
+        medians.push_back(median(ratios));
     }
-    if (std::abs(medians[4] / medians[0] - 1) < 0.1) return 0;
-    return std::is_sorted(medians.begin(), medians.end())     ? 1
-           : std::is_sorted(medians.rbegin(), medians.rend()) ? -1
-                                                              : 0;
-}
-// In words, with the pdf over the density of the samples, by the distance from their middle.
-inline std::string width_of(int trend) {
-    return trend == 0
-               ? ""
-               : std::string(trend > 0 ? "wider" : "narrower") +
-                     " than the samples (a roughness, an exponent, the weights of a mixture?)";
-}
-template <size_t M, size_t N, class Domain>
-double DensityCheck<M, N, Domain>::distance(const Point<N>& x) const {
-    double square = 0;
-    if constexpr (directions)
-        for (size_t k = 0; k < 3; ++k) square += std::pow(x[k] - domain.z[k], 2);
-    else
-        for (size_t k = 0; k < N; ++k) square += std::pow(x[k] - middle[k], 2);
-    return square;
+    const bool rises = std::is_sorted(medians.begin(), medians.end());
+    if (!(std::abs(medians[4] / medians[0] - 1) >= 0.1) ||
+        !(rises || std::is_sorted(medians.rbegin(), medians.rend())))
+        return "";
+    return std::string(rises ? "wider" : "narrower") +
+           " than the samples (a roughness, an exponent, the weights of a mixture?)";
 }
 
 // The pdf beside the density of the samples, where their map tells it.
-template <size_t M, size_t N, class Domain>
-std::string DensityCheck<M, N, Domain>::compared(const std::vector<Local<N>>& all) const {
+std::string compared(const auto& check) {
     std::vector<double> ratios;
     std::vector<std::pair<double, double>> by_distance;
-    for (const Local<N>& l : all)
+    for (const auto& l : check.sheets.all)
         if (l.p > 0 && l.q < infinity && l.error < 0.05) {
             ratios.push_back(l.product());
-            by_distance.emplace_back(distance(l.x), l.product());
+            by_distance.emplace_back(check.distance(l.x), l.product());
         }
-    if (M != D || ratios.size() < 50) return "";
+    if (ratios.size() < 50) return "";
     const double low = median(ratios, 0.05), high = median(ratios, 0.95);
     if (high - low < 0.02)
         return "the pdf is " + times(median(ratios), 0.01) +
                " times the density of nearly all samples, but ";
-    const std::string width = width_of(trend_of(by_distance));
+    const std::string width = width_of(by_distance);
     return say("the pdf is %.3g to %.3g times the density of the samples (median %.3g)", low, high,
                median(ratios)) +
            (width.empty() ? "" : ", " + width) + "; ";
 }
 
 // The ratio of two pdfs at these points: a constant, or one and a power of a base.
-template <size_t M, size_t N, class Domain>
-std::string DensityCheck<M, N, Domain>::law_of_pdfs(const std::vector<double>& ratios,
-                                                    const std::vector<Point<N>>& where) {
+template <size_t N>
+std::string law_of_pdfs(const auto& check, const std::vector<double>& ratios,
+                        const std::vector<Point<N>>& where) {
     if (const Law law = law_of(ratios, 0.01); law.holds) return times(law.factor, 0.003);
-    Triple lobe{0, 0, 1};
-    if constexpr (directions) lobe = domain.z;
     for (const double k : {1.0, -1.0})
-        for (const Base<N>& b : bases_of<N>(o, directions, lobe)) {
+        for (const Base<N>& b : bases_of(check.o, check.scene())) {
             std::vector<double> rest;
             for (size_t i = 0; i < where.size(); ++i)
                 rest.push_back(ratios[i] / std::pow(b.at(where[i]), k));
             if (const Law law = law_of(rest, 0.01); law.holds)
-                return (std::abs(law.factor - 1) < 0.01 ? "" : times(law.factor, 0.003) + " ") +
-                       power(b.name, k);
+                return factor_and(law.factor, 0.01, power(b.name, k));
         }
     return "";
 }
@@ -3125,67 +2947,62 @@ std::string DensityCheck<M, N, Domain>::law_of_pdfs(const std::vector<double>& r
 // Whether counts follow the pdf times a power of a base, or one of its mirror images, or constants
 // on either side of a plane: for samplers whose map tells nothing.
 template <size_t M, size_t N, class Domain>
-std::string DensityCheck<M, N, Domain>::law_of_cells(const Found<N, M, D>& found) {
-    const Options plain{.alpha = 1e-3};
+std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
+    using X = const Point<N>&;
     const int checks = statistical_checks;  // guesses are none
     const double spent = alpha_spent;
-    auto parts_of = [&](const std::function<double(const Point<N>&)>& guess) {
-        claim = guess;
-        const Parts parts = integrate(found.cells);
-        claim = {};
+    auto parts_of = [&](const std::function<double(X)>& guess) {
+        check.claim = guess;
+        const Parts parts = check.integrate();
+        check.claim = {};
         return parts;
     };
-    auto follow = [&](const std::array<double, 32>& p, const std::vector<double>& variances) {
-        const bool pass = expect_counts(found.counts, p, plain, variances).pass;
+    auto follow = [&](const std::vector<double>& p, const std::vector<double>& variances) {
+        const bool pass = judge_counts(check.counts, p, {.alpha = 1e-3}, variances).pass;
         statistical_checks = checks, alpha_spent = spent;
         return pass;
     };
-    auto fits = [&](const std::function<double(const Point<N>&)>& guess) {
-        Parts parts = parts_of(guess);
-        if (!(parts.total > 0 && std::isfinite(parts.total))) return false;
-        std::vector<double> variances;
+    auto fits = [&](const std::function<double(X)>& guess) {
+        const Parts parts = parts_of(guess);
+        std::vector<double> p, variances;
         for (size_t i = 0; i < 32; ++i) {
-            parts.value[i] /= parts.total;
+            p.push_back(parts.value[i] / parts.total);
             variances.push_back(parts.variance[i] / (parts.total * parts.total));
         }
-        return follow(parts.value, variances);
+        return parts.total > 0 && std::isfinite(parts.total) && follow(p, variances);
     };
-    const Scene<N> here = scene();
+    const auto& pdf = check.model.pdf;
     for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
-        for (const Base<N>& b : bases_of<N>(o, directions, here.lobe)) {
-            if (!fits([&](const Point<N>& x) { return model.pdf(x) * std::pow(b.at(x), k); }))
-                continue;
-            const std::string cause = cause_of_base(b, -k, true);
-            return "samples have the density of the pdf times " + power(b.name, k) +
-                   (cause.empty() ? "" : ": looks like " + cause);
-        }
-    for (const auto& [name, image] : images_in(here))
-        if (fits([&, &turned = image](const Point<N>& x) { return model.pdf(turned(x)); }))
-            return "samples have the density of the pdf with " + name + ": looks like " + name +
-                   " in one of the two";
-    double n = 0;
-    for (uint64_t c : found.counts) n += double(c);
-    for (size_t k = 0; k < N && directions; ++k) {
-        const Parts above =
-            parts_of([&](const Point<N>& x) { return x[k] > 0 ? model.pdf(x) : 0; });
-        const double half = above.total / found.parts.total;
+        for (const Base<N>& b : bases_of(check.o, check.scene()))
+            if (fits([&](X x) { return pdf(x) * std::pow(b.at(x), k); })) {
+                const std::string cause = cause_of_base(b.name, b.kind, -k, true);
+                return "samples have the density of the pdf times " + power(b.name, k) +
+                       (cause.empty() ? "" : ": looks like " + cause);
+            }
+    for (const auto& [name, image] : images_in(check.scene()))
+        if (fits([&, &turned = image](X x) { return pdf(turned(x)); })) return words_of_image(name);
+    const double n = sum_of(check.counts);
+    for (size_t k = 0; k < N && check.directions; ++k) {
+        const Parts above = parts_of([&](X x) { return x[k] > 0 ? pdf(x) : 0; });
+        const double half = above.total / check.parts.total;
         if (!(std::min(half, 1 - half) > 0.01)) continue;
         // p = a above + b below sums to 1: the a that fits best.
-        std::array<double, 32> p{}, slope{};
+        std::vector<double> p, slope;
         double products = 0, squares = 0;
         for (size_t i = 0; i < 32; ++i) {
-            const double up = above.value[i] / found.parts.total, down = found.expected[i] - up;
-            const double seen = double(found.counts[i]) / n, weight = 1 / (seen + 1 / n);
-            p[i] = down / (1 - half);
-            slope[i] = up - p[i] * half;
+            const double up = above.value[i] / check.parts.total, down = check.expected[i] - up;
+            const double seen = check.counts[i] / n, weight = 1 / (seen + 1 / n);
+            p.push_back(down / (1 - half));
+            slope.push_back(up - p[i] * half);
             products += slope[i] * (seen - p[i]) * weight;
             squares += slope[i] * slope[i] * weight;
         }
         const double a = products / squares, b = (1 - a * half) / (1 - half);
         for (size_t i = 0; i < 32; ++i) p[i] += a * slope[i];
         if (a > 0 && b > 0 && follow(p, {}))
-            return "samples are " + times(a, 0.01) + " times as dense as the pdf says where " +
-                   "xyz"[k % 3] + " > 0, " + times(b, 0.01) +
+            return "samples are " + times(a, 0.01) +
+                   say(" times as dense as the pdf says where %c > 0, ", "xyz"[k % 3]) +
+                   times(b, 0.01) +
                    " times where it is < 0: looks like the probability of one side";
     }
     return "";
@@ -3193,74 +3010,67 @@ std::string DensityCheck<M, N, Domain>::law_of_cells(const Found<N, M, D>& found
 
 // The first line of a refusal.
 template <size_t M, size_t N, class Domain>
-std::string DensityCheck<M, N, Domain>::first_line(const Found<N, M, D>& found) {
-    const auto& cells = found.cells;
-    const auto& sheets = found.sheets;
-    const auto& counts = found.counts;
-    const auto& expected = found.expected;
-    const bool counted = found.counted, balanced = found.balanced;
-    const double close = found.close;
-    const double total = found.parts.total, share = none / samples + o.discrete;
-    std::string rounded;
-    if (model.single && counted && std::abs(total - 1 + share) < 10 * close &&
-        (!sheets.off ||
-         std::abs(sheets.off->product() - 1) < 3 * (sheets.off->error + 4 * sheets.off->noise)))
-        rounded = if_double;
-    if (!repeated.empty()) return repeated;
-    if (M == D)
-        if (const std::string why = explained(sheets.all, total); !why.empty())
-            return why + rounded;
+std::string first_line_of(DensityCheck<M, N, Domain>& check) {
+    constexpr size_t D = Domain::dimensions;
+    const auto& sheets = check.sheets;
+    const double total = check.parts.total, share = check.none / check.samples + check.o.discrete;
+    const bool blurred = !sheets.off || std::abs(sheets.off->product() - 1) <
+                                            3 * (sheets.off->error + 4 * sheets.off->noise);
+    const std::string rounded = check.model.single && check.counted && blurred &&
+                                        std::abs(total - 1 + share) < 10 * check.close
+                                    ? if_double
+                                    : "";
+    if (!check.repeated.empty()) return check.repeated;
+    if (const std::string why = explained(check, sheets.all, total); !why.empty())
+        return why + rounded;
     const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
-    if (!balanced && none > 0) {
-        const std::string fails = compared(sheets.all) + percent(none / samples) +
-                                  " of the samples fail (" + first_none + ")";
-        if (std::abs(total - 1) <= close)
+    if (!check.balanced && check.none > 0) {
+        const std::string fails = compared(check) + percent(check.none / check.samples) +
+                                  " of the samples fail (" + check.first_none + ")";
+        if (std::abs(total - 1) <= check.close)
             return fails + ", though the pdf integrates to 1, as if none did";
         return fails + ", but " + integral_is + say(": together %.6g, expected 1", total + share) +
                rounded;
     }
-    if (!balanced)
-        return compared(sheets.all) + integral_is +
-               say(", expected %.6g +- %.0e", 1 - o.discrete, close) + rounded;
-    if (sheets.off && M == D)
-        return compared(sheets.all) + "samples are " + say("%.4g", 1 / sheets.off->product()) +
-               " times as dense as the pdf says, at " + at(sheets.off->x) +
+    if (!check.balanced)
+        return compared(check) + integral_is +
+               say(", expected %.6g +- %.0e", 1 - check.o.discrete, check.close) + rounded;
+    if (sheets.off)
+        return compared(check) + "samples are " + say("%.4g", 1 / sheets.off->product()) +
+               " times as dense as the pdf says, at " + check.at(sheets.off->x) +
                ", u = " + say_point(sheets.u) + rounded;
-    if (const std::string why = counted || samples < 50000 ? "" : law_of_cells(found); !why.empty())
-        return why + rounded;
+    if (!check.counted && check.samples >= 50000)
+        if (const std::string why = law_of_cells(check); !why.empty()) return why + rounded;
     // In the middle of those that the pilot found there: the range's may be where nothing is.
     std::array<std::vector<Point<D>>, 32> inside;
-    for (const Point<D>& c : pilot) inside[cells.of(c)].push_back(c);
+    for (const Point<D>& c : check.pilot) inside[check.cells.of(c)].push_back(c);
     auto middle_of = [&](size_t cell) {
-        return domain.at(inside[cell].empty()
-                             ? cells.range(cell, {domain.lower, domain.upper}).middle()
-                             : inside[cell][inside[cell].size() / 2]);
+        const auto& here = inside[cell];
+        return check.at(
+            check.domain.at(here.empty() ? check.range(cell).middle() : here[here.size() / 2]));
     };
-    std::vector<double> products{infinity};
-    for (const Local<N>& l : sheets.all) products.push_back(l.product());
-    double n = 0;
-    for (uint64_t c : counts) n += double(c);
-    const size_t worst = found.worst_cell();
-    if (!(expected[worst] > 0))
-        return "samples come where the pdf is 0, near " + at(middle_of(worst));
+    const double n = sum_of(check.counts);
+    const size_t worst = check.worst_cell();
+    if (!(check.expected[worst] > 0))
+        return "samples come where the pdf is 0, near " + middle_of(worst);
     std::vector<double> dense;
     std::vector<std::pair<double, double>> by_distance;
     for (size_t i = 0; i < 32; ++i) {
-        dense.push_back(expected[i] > 0 ? double(counts[i]) / (n * expected[i]) : 1);
+        const double expected = n * check.expected[i];
+        dense.push_back(expected > 0 ? check.counts[i] / expected : 1);
         for (const Point<D>& c : inside[i])
-            by_distance.emplace_back(distance(domain.at(c)), dense[i]);
+            by_distance.emplace_back(check.distance(check.domain.at(c)), 1 / dense[i]);
     }
-    const size_t other = size_t((dense[worst] > 1 ? std::min_element(dense.begin(), dense.end())
-                                                  : std::max_element(dense.begin(), dense.end())) -
-                                dense.begin());
-    const std::string width = width_of(-trend_of(by_distance));
-    const bool pieces =
-        M == D && oracle::median(products, 0.1) > 0.98 && oracle::median(products, 0.9) < 1.02;
+    const auto [least, most] = std::minmax_element(dense.begin(), dense.end());
+    const size_t other = size_t((dense[worst] > 1 ? least : most) - dense.begin());
+    const std::string width = width_of(by_distance);
+    std::vector<double> products{infinity};
+    for (const Local<N>& l : sheets.all) products.push_back(l.product());
+    const bool pieces = median(products, 0.1) > 0.98 && median(products, 0.9) < 1.02;
     return (pieces ? "every piece of the map has the density of the pdf, but " : "") +
            ("samples are " + say("%.4g", dense[worst]) +
             " times as dense as the pdf says, around ") +
-           at(middle_of(worst)) + say(", and %.4g times around ", dense[other]) +
-           at(middle_of(other)) +
+           middle_of(worst) + say(", and %.4g times around ", dense[other]) + middle_of(other) +
            (pieces          ? ": looks like branches that overlap and leave a gap"
             : width.empty() ? ""
                             : ": the pdf is " + width);
@@ -3268,17 +3078,27 @@ std::string DensityCheck<M, N, Domain>::first_line(const Found<N, M, D>& found) 
 
 // ---- What is wrong with a BSDF ------------------------------------------------------------------
 
-inline bool by_cosines(const std::function<double(const Triple&, const Triple&)>& f,
-                       const Pairs& pairs) {
-    size_t same = 0, compared = 0;
+// Whether f(a, b) / f(b, a) is a ratio of the cosines of a and b; or depends on them alone: it is
+// the same if b turns.
+inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close) {
+    double cosine = 0, inverse = 0, alone = 0, turns = 0;
     for (const auto& [a, b] : pairs) {
         const Triple turned{-b[1], b[0], b[2]};
-        const double here = f(a, b) / f(b, a), there = f(a, turned) / f(turned, a);
-        if (!(here > 0 && there > 0 && std::isfinite(here * there))) continue;
-        ++compared;
-        same += std::abs(here / there - 1) < 1e-3;
+        const double ratio = f(a, b) / f(b, a), there = f(a, turned) / f(turned, a),
+                     cosines = std::abs(a[2] / b[2]);
+        cosine += std::abs(ratio * cosines - 1) < close;
+        inverse += std::abs(ratio / cosines - 1) < close;
+        alone += std::abs(ratio / there - 1) < 1e-3;
+        turns += ratio > 0 && there > 0 && std::isfinite(ratio * there);
     }
-    return compared > pairs.size() / 4 && double(same) > 0.95 * double(compared);
+    const double n = double(pairs.size()), most = 0.95 * n;
+    return cosine > most
+               ? "; looks like the cosine of wi included in eval, or eval divided by that of wo"
+           : inverse > most ? "; looks like eval divided by the cosine of wi"
+           : turns > 0.25 * n && alone > 0.95 * turns
+               ? ", by a factor of their cosines alone (Fresnel or masking by one of "
+                 "them?)"
+               : "";
 }
 
 // Of directions wo, from steep to grazing, the albedo and its relative error.
@@ -3304,19 +3124,22 @@ inline std::string albedo_hint(const std::vector<Albedo>& all) {
 // ---- What is wrong with a choice ----------------------------------------------------------------
 
 inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
-                               double none, size_t worst,
-                               const std::function<bool(const std::vector<double>&)>& explains) {
+                               double none, double tolerance) {
     const size_t count = expected.size();
-    double samples = none, total = 0;
-    for (size_t i = 0; i < count; ++i) samples += seen[i], total += expected[i];
-    auto list = [&](const std::vector<double>& p, double scale) {
+    const double total = sum_of(expected), samples = none + sum_of(seen);
+    std::vector<double> frequencies;
+    for (double x : seen) frequencies.push_back(x / samples);
+    auto explains = [&](const std::vector<double>& p) {
+        return fit_choices(p, seen, none, tolerance).p > 1e-4;
+    };
+    auto list = [](const std::vector<double>& p) {
         std::string text;
-        for (double x : p) text += (text.empty() ? "" : ", ") + say("%.3g", x / scale);
+        for (double x : p) text += (text.empty() ? "" : ", ") + say("%.3g", x);
         return text;
     };
     // Few are all listed.
     const std::string all =
-        count > 8 ? "" : "; chosen are " + list(seen, samples) + ", expected " + list(expected, 1);
+        count > 8 ? "" : "; chosen are " + list(frequencies) + ", expected " + list(expected);
     if (none > 0 && std::abs(total - 1) < 1e-6)
         return percent(none / samples) +
                " of the choices are none, though the probabilities sum to 1";
@@ -3336,38 +3159,41 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
         }
         return first + all;
     }
-    std::string first = say("index %zu is chosen %.4g times as often as its probability %.4g says",
-                            worst, seen[worst] / (expected[worst] * samples), expected[worst]);
-    if (expected[worst] == 0)
-        first = say("index %zu is chosen, though its probability is 0", worst);
-    const auto even = [&](const std::vector<double>& p) {
-        const auto [low, high] = std::minmax_element(p.begin(), p.end());
-        return *high < *low * (1 + 1e-6);
+    const size_t worst = worst_of(count, [&](size_t i) {
+        const double mean = expected[i] * samples;
+        return seen[i] == mean ? 0 : std::abs(seen[i] - mean) / std::sqrt(mean);
+    });
+    const std::string first =
+        expected[worst] == 0
+            ? say("index %zu is chosen, though its probability is 0", worst)
+            : say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
+                  seen[worst] / (expected[worst] * samples), expected[worst]);
+    // The same probabilities elsewhere, if there are so many that it is not by chance.
+    std::vector<std::pair<std::string, std::vector<double>>> others;
+    auto other = [&](size_t fewest, const std::string& cause, const std::vector<double>& p) {
+        if (count >= fewest) others.emplace_back("; looks like " + cause, p);
     };
     auto turned = expected;
     std::reverse(turned.begin(), turned.end());
-    if (count == 2 && explains(turned))
-        return first + "; looks like the two exchanged (p for 1 - p)" + all;
-    for (long by : {1L, long(count) - 1}) {
+    if (count == 2) other(2, "the two exchanged (p for 1 - p)", turned);
+    for (size_t by : {size_t(1), count - 1}) {
         turned = expected;
-        std::rotate(turned.begin(), turned.begin() + by, turned.end());
-        if (count > 3 && explains(turned))
-            return first + "; looks like index and probability shifted by one" + all;
+        std::rotate(turned.begin(), turned.begin() + long(by), turned.end());
+        other(4, "index and probability shifted by one", turned);
     }
-    if (explains(std::vector<double>(count, total / double(count))))
-        return first + "; looks like a uniform choice" + all;
-    if (even(expected))
-        return first + "; looks like probabilities of a uniform choice, which this is not" + all;
-    // As often as the probabilities of others say: of few numbers by chance.
-    std::vector<size_t> by_seen(count), by_expected(count);
-    for (size_t i = 0; i < count; ++i) by_seen[i] = by_expected[i] = i;
-    std::sort(by_seen.begin(), by_seen.end(),
-              [&](size_t a, size_t b) { return seen[a] < seen[b]; });
-    std::sort(by_expected.begin(), by_expected.end(),
-              [&](size_t a, size_t b) { return expected[a] < expected[b]; });
-    for (size_t i = 0; i < count; ++i) turned[by_seen[i]] = expected[by_expected[i]];
-    if (count > 3 && explains(turned))
-        return first + "; looks like the probabilities in another order" + all;
+    other(1, "a uniform choice", std::vector<double>(count, total / double(count)));
+    if (const auto [low, high] = std::minmax_element(expected.begin(), expected.end());
+        *high < *low * (1 + 1e-6))
+        other(1, "probabilities of a uniform choice, which this is not", frequencies);
+    std::vector<std::pair<double, size_t>> by_seen;
+    for (size_t i = 0; i < count; ++i) by_seen.emplace_back(seen[i], i);
+    std::sort(by_seen.begin(), by_seen.end());
+    auto sorted = expected;
+    std::sort(sorted.begin(), sorted.end());
+    for (size_t i = 0; i < count; ++i) turned[by_seen[i].second] = sorted[i];
+    other(4, "the probabilities in another order", turned);
+    for (const auto& [cause, p] : others)
+        if (explains(p)) return first + cause + all;
     return first + all;
 }
 
@@ -3410,13 +3236,20 @@ inline std::string Image::hint(const ImageResult& r) const {
     auto explains = [&](const std::vector<double>& g, const std::string& cause, double c = 1) {
         if (first.empty() && against(g, c).p > std::max(1e-5, 10 * o.alpha)) first = cause;
     };
-    std::vector<double> turned(n());
-    for (size_t i = 0; i < n(); ++i)
-        turned[i] = truth[(height - 1 - i / width) * width + i % width];
-    explains(turned,
+    // The reference's pixels at other places; without the border, which may have no neighbour.
+    auto moved = [&](bool inside, const std::function<size_t(size_t, size_t)>& from) {
+        std::vector<double> g = f;
+        for (size_t i = 0; i < n(); ++i) {
+            const size_t x = i % width, y = i / width;
+            if (!inside || (x > 0 && x + 1 < width && y > 0 && y + 1 < height))
+                g[i] = truth[from(x, y)];
+        }
+        return g;
+    };
+    explains(moved(false, [&](size_t x, size_t y) { return (height - 1 - y) * width + x; }),
              "the image is the reference upside down: looks like rows written in the other order");
-    for (size_t i = 0; i < n(); ++i) turned[i] = truth[i / width * width + (width - 1 - i % width)];
-    explains(turned, "the image is the reference mirrored: looks like x reversed");
+    explains(moved(false, [&](size_t x, size_t y) { return y * width + width - 1 - x; }),
+             "the image is the reference mirrored: looks like x reversed");
     if (sum != 0 && sum_f / sum > 0) {
         const double within = 5 * std::sqrt(variance) / std::abs(sum_f);
         explains(truth,
@@ -3425,30 +3258,24 @@ inline std::string Image::hint(const ImageResult& r) const {
                  sum_f / sum);
     }
     for (double gamma : {1 / 2.2, 2.2, 0.5, 2.0}) {
-        for (size_t i = 0; i < n(); ++i) turned[i] = std::pow(std::max(0.0, truth[i]), gamma);
-        explains(turned, say("the image is the reference to the power of %.4g: looks like gamma %s",
-                             gamma, gamma < 1 ? "applied" : "removed twice"));
+        std::vector<double> g = truth;
+        for (double& x : g) x = std::pow(std::max(0.0, x), gamma);
+        explains(g, say("the image is the reference to the power of %.4g: looks like gamma %s",
+                        gamma, gamma < 1 ? "applied" : "removed twice"));
     }
-    const auto shifted = [&](int dx, int dy, const char* where) {
-        for (size_t i = 0; i < n(); ++i) {
-            const long x = std::clamp(long(i % width) + dx, 0L, long(width) - 1),
-                       y = std::clamp(long(i / width) + dy, 0L, long(height) - 1);
-            turned[i] = truth[size_t(y) * width + size_t(x)];
-        }
-        // The border has no neighbour to compare with.
-        for (size_t i = 0; i < n(); ++i)
-            if (i % width == 0 || i % width == width - 1 || i < width || i >= n() - width)
-                turned[i] = f[i];
-        explains(turned, std::string("the image is the reference one pixel further ") + where);
-    };
+    const struct {
+        size_t dx, dy;  // + 1
+        const char* where;
+    } shifts[] = {{2, 1, "left"}, {0, 1, "right"}, {1, 2, "up"}, {1, 0, "down"}};
     // Only where it is the inside that differs.
-    for (size_t i = 0; i < n(); ++i) {
-        const bool border =
-            i % width == 0 || i % width == width - 1 || i < width || i >= n() - width;
-        turned[i] = border ? f[i] : truth[i];
-    }
-    if (width > 4 && height > 4 && against(turned).p <= o.alpha)
-        shifted(1, 0, "left"), shifted(-1, 0, "right"), shifted(0, 1, "up"), shifted(0, -1, "down");
+    auto shifted = [&](size_t dx, size_t dy) {
+        return moved(true,
+                     [=, this](size_t x, size_t y) { return (y + dy - 1) * width + x + dx - 1; });
+    };
+    if (width > 4 && height > 4 && against(shifted(1, 1)).p <= o.alpha)
+        for (const auto& [dx, dy, where] : shifts)
+            explains(shifted(dx, dy),
+                     std::string("the image is the reference one pixel further ") + where);
     if (first.empty()) first = all_others_right();
     if (first.empty() && r.by_block) {
         const size_t x0 = (r.block % 4 * width + 3) / 4, x1 = ((r.block % 4 + 1) * width + 3) / 4,
@@ -3470,6 +3297,9 @@ inline std::string Image::hint(const ImageResult& r) const {
 
 // ---- Pictures -----------------------------------------------------------------------------------
 
+// The colours of the cells of three maps.
+using Maps = std::array<std::vector<std::string>, 3>;
+
 // A picture in SVG of a width and height in pixels; y points down.
 struct Drawing {
     double width, height;
@@ -3488,6 +3318,16 @@ struct Drawing {
         body += "<polyline points='";
         for (const auto& [x, y] : points) body += say("%.1f,%.1f ", x, y);
         body += "' style='fill:none;" + style + "'/>\n";
+    }
+    void draw(const Maps& maps, size_t across, double h, const std::array<const char*, 3>& titles) {
+        const double w = 350.0 / double(across);
+        for (size_t k = 0; k < 3; ++k) {
+            const double left = 10 + 362 * double(k);
+            text(left, 20, titles[k]);
+            for (size_t i = 0; i < maps[k].size(); ++i)
+                rectangle(left + w * double(i % across), 30 + h * double(i / across), w + 0.1,
+                          h + 0.1, maps[k][i]);
+        }
     }
 
     // Into the folder of pictures; "" or "\nsee PATH".
@@ -3563,114 +3403,97 @@ inline std::string picture_of(const Draws& draws, double truth, const Options& o
     return d.written(o.name);
 }
 
-// Maps of the samples, of the pdf, and of their difference.
-template <size_t Dims>
-struct Histogram {
-    static constexpr size_t across = 48, down = Dims == 1 ? 1 : 32;
-    Range<Dims> shown;
-    std::vector<double> bins = std::vector<double>(across * down);
-    double total = 0;
-
-    Histogram(const std::vector<Point<Dims>>& points, Range<Dims> all) : shown(all) {
-        for (size_t k = 0; k < Dims; ++k) {
-            shown.lower[k] = infinity, shown.upper[k] = -infinity;
-            for (const auto& c : points)
-                shown.lower[k] = std::min(shown.lower[k], c[k]),
-                shown.upper[k] = std::max(shown.upper[k], c[k]);
-            const double margin = 0.05 * (shown.upper[k] - shown.lower[k]) + 1e-12;
-            shown.lower[k] = std::max(all.lower[k], shown.lower[k] - margin);
-            shown.upper[k] = std::min(all.upper[k], shown.upper[k] + margin);
-        }
-    }
+// Maps of 100 000 samples more, of the pdf, and of their difference; on a line bars and a curve.
+template <size_t M, size_t N, class Domain>
+std::string picture_of(DensityCheck<M, N, Domain>& check) {
+    constexpr size_t D = Domain::dimensions, across = 48, down = D == 1 ? 1 : 32;
+    if (D > 2 || pictures.empty()) return "";
     // phi (or the first coordinate) runs to the right, theta downwards.
-    static constexpr size_t right = Dims == 1 ? 0 : 1;
-    void add(const Point<Dims>& c) {
-        ++total;
-        const double x =
-            (c[right] - shown.lower[right]) / (shown.upper[right] - shown.lower[right]);
-        const double y =
-            Dims == 1 ? 0 : (c[0] - shown.lower[0]) / (shown.upper[0] - shown.lower[0]);
-        if (x >= 0 && x < 1 && y >= 0 && y < 1)
-            ++bins[size_t(y * double(down)) * across + size_t(x * double(across))];
+    constexpr size_t right = D == 1 ? 0 : 1;
+    Range<D> shown{check.domain.lower, check.domain.upper};
+    for (size_t k = 0; k < D; ++k) {
+        const auto [low, high] =
+            std::minmax_element(check.pilot.begin(), check.pilot.end(),
+                                [k](const auto& a, const auto& b) { return a[k] < b[k]; });
+        const double margin = 0.05 * ((*high)[k] - (*low)[k]) + 1e-12;
+        shown.lower[k] = std::max(shown.lower[k], (*low)[k] - margin);
+        shown.upper[k] = std::min(shown.upper[k], (*high)[k] + margin);
     }
-    template <class Check>
-    Drawing drawing(Check& check, double integral_of_pdf, size_t worst,
-                    const Cells<Dims>& cells) const {
-        Drawing d{Dims == 1 ? 620.0 : 1100.0, 330};
-        std::vector<double> claimed;
-        double area = 1, most = 1;
-        for (size_t k = 0; k < Dims; ++k)
-            area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
-        for (size_t i = 0; i < bins.size(); ++i) {
-            double sum = 0;
-            for (int s = 0; s < 9; ++s) {
-                Point<Dims> c;
-                for (size_t k = 0; k < Dims; ++k) {
-                    const size_t index = k == right ? i % across : i / across,
-                                 bins_here = k == right ? across : down;
-                    const double sub = ((k == right ? s % 3 : s / 3) + 0.5) / 3;
-                    c[k] = shown.lower[k] + (double(index) + sub) / double(bins_here) *
-                                                (shown.upper[k] - shown.lower[k]);
-                    c[k] = std::clamp(c[k], check.domain.lower[k], check.domain.upper[k]);
-                }
-                sum += check.density_at(c) / 9;
-            }
-            claimed.push_back(sum * area * total / integral_of_pdf);
-            most = std::max({most, bins[i], claimed[i]});
+    auto part = [&](const Point<D>& c, size_t k) {
+        return (c[k] - shown.lower[k]) / (shown.upper[k] - shown.lower[k]);
+    };
+    std::vector<double> seen(across * down), claimed(across * down);
+    double total = 0, area = 1, most = 1;
+    for (int i = 0; i < 100000; ++i)
+        if (const auto c = check.one()) {
+            ++total;
+            const double x = part(*c, right), y = D == 1 ? 0 : part(*c, 0);
+            if (x >= 0 && x < 1 && y >= 0 && y < 1)
+                ++seen[size_t(y * double(down)) * across + size_t(x * double(across))];
         }
-        const Range<Dims> cell = cells.range(worst, {check.domain.lower, check.domain.upper});
-        const double size = 350.0 / across;
-        auto place = [&](double c, size_t k, double length) {
-            return length *
-                   std::clamp((c - shown.lower[k]) / (shown.upper[k] - shown.lower[k]), 0.0, 1.0);
-        };
-        if (Dims == 1) {
-            std::vector<std::pair<double, double>> line;
-            for (size_t i = 0; i < across; ++i) {
-                d.rectangle(40 + 11.5 * double(i), 290 - 240 * bins[i] / most, 10,
-                            240 * bins[i] / most, "fill:rgb(170,170,170)");
-                line.emplace_back(45 + 11.5 * double(i), 290 - 240 * claimed[i] / most);
+    for (size_t k = 0; k < D; ++k)
+        area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
+    for (size_t i = 0; i < seen.size(); ++i) {
+        for (int s = 0; s < 9; ++s) {
+            Point<D> c;
+            for (size_t k = 0; k < D; ++k) {
+                const bool here = k == right;
+                const double bin =
+                    double(here ? i % across : i / across) + ((here ? s % 3 : s / 3) + 0.5) / 3;
+                c[k] = std::clamp(shown.lower[k] + bin / double(here ? across : down) *
+                                                       (shown.upper[k] - shown.lower[k]),
+                                  check.domain.lower[k], check.domain.upper[k]);
             }
-            d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
-            d.text(40, 20, "samples (grey) and pdf (red); worst cell below");
-            d.rectangle(40 + place(cell.lower[0], 0, 552), 300,
-                        place(cell.upper[0], 0, 552) - place(cell.lower[0], 0, 552), 6,
-                        "fill:black");
-            d.text(40, 322, say_point(check.domain.at(shown.lower)));
-            d.text(560, 322, say_point(check.domain.at(shown.upper)));
-            return d;
+            claimed[i] += check.density_at(c) / 9 * area * total / check.parts.total;
         }
-        const char* titles[] = {"samples", "pdf", "samples - pdf: red too many, blue too few"};
-        for (size_t map_of = 0; map_of < 3; ++map_of) {
-            const double left = 10 + 362 * double(map_of);
-            d.text(left, 20, titles[map_of]);
-            for (size_t i = 0; i < bins.size(); ++i) {
-                const double off =
-                    (bins[i] - claimed[i]) / (std::sqrt(claimed[i] + bins[i] + 1) * 6);
-                d.rectangle(
-                    left + size * double(i % across), 30 + 8 * double(i / across), size + 0.1, 8.1,
-                    map_of == 2 ? blue_white_red(off)
-                                : grey(std::sqrt((map_of == 0 ? bins : claimed)[i] / most)));
-            }
-            d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
-            const double x0 = place(cell.lower[right], right, 350),
-                         y0 = place(cell.lower[0], 0, 256);
-            d.rectangle(left + x0, 30 + y0, place(cell.upper[right], right, 350) - x0,
-                        place(cell.upper[0], 0, 256) - y0,
-                        "fill:none;stroke:rgb(0,140,0);stroke-width:3");
-        }
-        const std::string from = say_point(check.domain.at(shown.lower)),
-                          to = say_point(check.domain.at(shown.upper));
-        d.text(10, 304,
-               (check.directions
-                    ? say("to the right phi from %.4g to %.4g, down theta from %.4g to %.4g",
-                          shown.lower[1], shown.upper[1], shown.lower[0], shown.upper[0])
-                    : "the second coordinate to the right, the first down, from " + from + " to " +
-                          to) +
-                   "; worst cell in green");
-        return d;
+        most = std::max({most, seen[i], claimed[i]});
     }
-};
+    const Range<D> cell = check.range(check.worst_cell());
+    auto lower = [&](size_t k, double length) {
+        return length * std::clamp(part(cell.lower, k), 0.0, 1.0);
+    };
+    auto extent = [&](size_t k, double length) {
+        return length * std::clamp(part(cell.upper, k), 0.0, 1.0) - lower(k, length);
+    };
+    const std::string from = say_point(check.domain.at(shown.lower)),
+                      to = say_point(check.domain.at(shown.upper));
+    Drawing d{D == 1 ? 620.0 : 1100.0, 330};
+    if (D == 1) {
+        std::vector<std::pair<double, double>> line;
+        for (size_t i = 0; i < across; ++i) {
+            const double x = 40 + 11.5 * double(i), height = 240 * seen[i] / most;
+            d.rectangle(x, 290 - height, 10, height, "fill:rgb(170,170,170)");
+            line.emplace_back(x + 5, 290 - 240 * claimed[i] / most);
+        }
+        d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
+        d.text(40, 20, "samples (grey) and pdf (red); worst cell below");
+        d.rectangle(40 + lower(0, 552), 300, extent(0, 552), 6, "fill:black");
+        d.text(40, 322, from);
+        d.text(560, 322, to);
+        return d.written(check.o.name);
+    }
+    Maps maps;
+    for (size_t i = 0; i < seen.size(); ++i) {
+        maps[0].push_back(grey(std::sqrt(seen[i] / most)));
+        maps[1].push_back(grey(std::sqrt(claimed[i] / most)));
+        maps[2].push_back(
+            blue_white_red((seen[i] - claimed[i]) / (std::sqrt(claimed[i] + seen[i] + 1) * 6)));
+    }
+    d.draw(maps, across, 8, {"samples", "pdf", "samples - pdf: red too many, blue too few"});
+    for (double left : {10, 372, 734}) {
+        d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
+        d.rectangle(left + lower(right, 350), 30 + lower(0, 256), extent(right, 350),
+                    extent(0, 256), "fill:none;stroke:rgb(0,140,0);stroke-width:3");
+    }
+    d.text(
+        10, 304,
+        (check.directions
+             ? say("to the right phi from %.4g to %.4g, down theta from %.4g to %.4g",
+                   shown.lower[right], shown.upper[right], shown.lower[0], shown.upper[0])
+             : "the second coordinate to the right, the first down, from " + from + " to " + to) +
+            "; worst cell in green");
+    return d.written(check.o.name);
+}
 
 inline std::string Image::picture() const {
     // The three, by blocks of pixels.
@@ -3686,38 +3509,19 @@ inline std::string Image::picture() const {
         most = std::max({most, image[b], wanted[b]});
         most_off = std::max(most_off, std::abs(image[b] - wanted[b]));
     }
-    const double w = 350.0 / double(across),
-                 h = 350.0 * double(height) / double(width) / double(down);
-    Drawing d{1100, 60 + h * double(down)};
-    const char* titles[] = {"image", "reference",
-                            "image - reference: red too bright, blue too dark"};
-    for (size_t k = 0; k < 3; ++k) {
-        const double left = 10 + 362 * double(k);
-        d.text(left, 20, titles[k]);
-        for (size_t b = 0; b < image.size(); ++b)
-            d.rectangle(
-                left + w * double(b % across), 30 + h * double(b / across), w + 0.1, h + 0.1,
-                k == 2 ? blue_white_red((image[b] - wanted[b]) / most_off)
-                       : grey(1 - std::pow(std::max(0.0, (k == 0 ? image : wanted)[b] / most),
-                                           1 / 2.2)));
+    auto tone = [&](double x) { return grey(1 - std::pow(std::max(0.0, x / most), 1 / 2.2)); };
+    Maps maps;
+    for (size_t b = 0; b < image.size(); ++b) {
+        maps[0].push_back(tone(image[b]));
+        maps[1].push_back(tone(wanted[b]));
+        maps[2].push_back(blue_white_red((image[b] - wanted[b]) / most_off));
     }
+    const double h = 350.0 * double(height) / double(width) / double(down);
+    Drawing d{1100, 60 + h * double(down)};
+    d.draw(maps, across, h,
+           {"image", "reference", "image - reference: red too bright, blue too dark"});
     d.text(10, 50 + h * double(down), say("white is %.4g; full red and blue %.4g", most, most_off));
     return d.written(o.name);
-}
-
-// Of 100 000 samples more.
-template <size_t M, size_t N, class Domain>
-std::string DensityCheck<M, N, Domain>::picture(const Found<N, M, D>& found) {
-    if constexpr (D > 2)
-        return "";
-    else {
-        if (pictures.empty()) return "";
-        Histogram<D> histogram(pilot, {domain.lower, domain.upper});
-        for (int i = 0; i < 100000; ++i)
-            if (const auto c = one()) histogram.add(*c);
-        return histogram.drawing(*this, found.parts.total, found.worst_cell(), found.cells)
-            .written(o.name);
-    }
 }
 
 }  // namespace oracle
