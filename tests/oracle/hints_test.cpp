@@ -101,6 +101,18 @@ TEST_CASE("hints: directions") {
     };
     auto backward = [](Triple w) { return (1 - w[2]) / (4 * pi); };
     auto eighth_more = [](Triple w) { return 1.125 * cosine_pdf(w); };
+    auto forward_peak = [](double u, double v) {
+        const double g = 0.6, s = (1 - g * g) / (1 + g - 2 * g * u);
+        return about_z((1 + g * g - s * s) / (2 * g), 2 * pi * v);
+    };
+    auto rootless = [](Triple w) { return 0.64 / (4 * pi * (1.36 - 1.2 * w[2])); };
+    auto peak = [](Triple w) { return 0.64 / (4 * pi * std::pow(1.36 - 1.2 * w[2], 1.5)); };
+    auto lobe = [](double u, double v) { return about_z(std::pow(u, 1 / 8.0), 2 * pi * v); };
+    auto ninth = [](Triple w) { return w[2] > 0 ? 9 / (2 * pi) * std::pow(w[2], 8) : 0; };
+    auto sum = [=](Triple w) { return 2 * exchanged(w); };
+    auto weighted = [](double choice, double u, double v) {
+        return about_z(std::pow(u, choice < 0.7 ? 1 / 2.0 : 1 / 21.0), 2 * pi * v);
+    };
     all_say(
         {{expect_density(random, wedges, cosine_pdf), "branches that overlap and leave a gap"},
          {expect_density(random, cosine, even), "the pdf is uniform, samples are not"},
@@ -115,7 +127,12 @@ TEST_CASE("hints: directions") {
           "1.2 times the density of the samples where z > 0"},
          {expect_density(random, forward, backward), "z negated in one of the two"},
          {expect_density(random, cosine, eighth_more),
-          "times the density of the samples, everywhere: a constant factor"}});
+          "times the density of the samples, everywhere: a constant factor"},
+         {expect_density(random, forward_peak, rootless), "^(1/2): looks like an exponent"},
+         {expect_density(random, sphere, peak), "samples are uniform, the pdf is not"},
+         {expect_density(random, lobe, ninth), "cos(theta): looks like an exponent in one of"},
+         {expect_density(random, weighted, sum),
+          "the pdf is 2 (2, twice) times the density of the samples, as far as counts tell"}});
 }
 
 TEST_CASE("hints: points") {
@@ -139,6 +156,19 @@ TEST_CASE("hints: points") {
     const Triangle<2> triangle{{0, 0}, {1, 0}, {0, 1}};
     auto clamped = [](double u) { return std::min(1.0, 1.5 * u); };
     auto rootless = [](double u, double v) { return Point<2>{u, v * (1 - u)}; };
+    auto halves = [](double u) { return u < 0.25 ? 2 * u : (1 + (4 * u - 1) / 3) / 2; };
+    auto third = [](double x) { return x < 0.5 ? 2 / 3.0 : 4 / 3.0; };
+    // A table of five cells: the rest of u is not divided by the cell's probability.
+    auto cells = [](double u) {
+        const double sums[] = {0, 0.1, 0.4, 0.6, 0.9, 1};
+        size_t i = 0;
+        while (u >= sums[i + 1]) ++i;
+        return (double(i) + u - sums[i]) / 5;
+    };
+    auto table = [](double x) {
+        const double p[] = {0.1, 0.3, 0.2, 0.3, 0.1};
+        return x < 0 || x >= 1 ? 0 : 5 * p[size_t(5 * x)];
+    };
     all_say(
         {{expect_density(
               random, clamped, [](double) { return 1.0; }, Interval{0, 1}),
@@ -147,9 +177,12 @@ TEST_CASE("hints: points") {
          {expect_density(random, without_2, normal), "(1 over the root of 2) times as wide"},
          {expect_density(random, closest, start, Interval{0, 3}), "moved by 1"},
          {expect_density(random, slope, along_y, Square{}), "x and y exchanged in one of the two"},
+         {expect_density(random, halves, third, Interval{0, 1}),
+          "of the points; looks like the probability of a choice"},
          {expect_density(
               random, rootless, [](Point<2>) { return 2.0; }, triangle),
-          "(-2 x + 2): looks like a number that is not warped"}});
+          "(-2 x + 2): looks like a number that is not warped"},
+         {expect_density(random, cells, table, Interval{0, 1}), "0.1 at"}});
 }
 
 TEST_CASE("hints: BSDFs") {
@@ -163,6 +196,7 @@ TEST_CASE("hints: BSDFs") {
         };
         return expect_bsdf(random, sample, pdf, eval, {.alpha = 1e-3, .sees = 0.03});
     };
+    auto no_side = [](Triple, Triple) { return 0.8 / pi; };
     auto lobe = [](Triple wo, Triple wi) {
         const double c = wo[2] * wi[2] - wo[0] * wi[0] - wo[1] * wi[1];
         return std::pow(std::max(0.0, c), 4) / pi;
@@ -176,6 +210,10 @@ TEST_CASE("hints: BSDFs") {
               return facets(half_of(wo, wi)[2], 0.5) / (4 * wo[2] * wi[2]);
           }),
           "masking forgotten"},
+         {judged([&](Triple wo, Triple wi) { return lobe(wo, wi) + 0.8 / pi; }),
+          "lobes added without weights"},
+         {expect_bsdf(random, sample, pdf, no_side, {.alpha = 1e-3, .sees = 0.03}),
+          "eval without a test of the side of wi"},
          {judged([](Triple, Triple) { return 0.7; }),
           "is a constant factor (1/pi, 1/4) missing?"}});
 }
@@ -203,6 +241,8 @@ TEST_CASE("hints: choices and images") {
     };
     all_say(
         {{chosen({0.1, 0.2, 0.7}, {0.1, 0.2, 0.3, 0.4}), "2 takes its share: a search that ends"},
+         {chosen({0.25, 0.25, 0.5}, {0.2, 0.2, 0.4, 0.2}), "looks like a range too short"},
+         {chosen({0, 0.2, 0.1, 0.7}, {0.2, 0.1, 0.4, 0.3}), "looks like an index off by one"},
          {chosen({0.2}, {0.8}), "a comparison turned round"},
          {chosen({0.1, 0.5, 0.4}, {1 / 3.0, 1 / 3.0, 1 / 3.0}), "which this is not"},
          {chosen({0.1, 0.4, 0.3, 0.2}, {0.4, 0.2, 0.3, 0.1}), "in another order"},
@@ -212,5 +252,9 @@ TEST_CASE("hints: choices and images") {
          {image([](size_t x, size_t y) { return x < 4 && y > 7 ? 1.5 : 1.0; }),
           "pixels (0, 8) to (3, 11) are 1.5 times"},
          {image([](size_t x, size_t y) { return x == 7 && y == 9 ? 0.5 : 1.0; }),
-          "pixel (7, 9) is 0.5 (1/2, half) times the reference, all others are right"}});
+          "pixel (7, 9) is 0.5 (1/2, half) times the reference, all others are right"},
+         {image([](size_t x, size_t y) {
+              return std::min(1.0, 2 / (1 + double(x) * double(y) / 50));
+          }),
+          "nowhere above 2: looks like values clamped"}});
 }

@@ -478,7 +478,10 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
                      double fewest = 0) {
     Verdict v;
     if (const std::string why = d.problem(fewest); !why.empty())
-        v = failure(why);
+        v = failure(why +
+                    (truth != 0 && std::isfinite(d.mean())
+                         ? "; the mean is " + times(d.mean() / truth, 0.02) + " of what is expected"
+                         : ""));
     else if (d.constant())
         v = judge_exact(what, d.mean(), truth, d.unit, o);
     else
@@ -2165,6 +2168,23 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                     return failure("eval cos / pdf is not finite for " + between(out, *wi), o);
                 albedo.add(weight);
             }
+            // Light that eval sends where no sample comes.
+            double lost = 0, often = 0;
+            Triple where{};
+            for (int i = 0; i < 4000; ++i) {
+                const double phi = 2 * pi * random(), height = 2 * random() - 1;
+                const Triple wi = about_z_axis(height, phi);
+                const double light = f(out, wi) * std::abs(height) * pi / 1000;
+                if (!(light > 0) || erased.pdf(wi) > 0) continue;
+                lost += light, ++often, where = wi;
+            }
+            if (often > 40 && lost > 0.01 * albedo.mean())
+                return failure("eval is positive where the pdf is 0 and no sample comes, for " +
+                                   between(out, where) +
+                                   (where[2] * side < 0 ? ": looks like eval without a test of "
+                                                          "the side of wi"
+                                                        : ""),
+                               o);
             const Estimate mean = albedo.estimate();
             albedos.push_back({out, mean.mean, mean.standard_error / std::max(1e-300, mean.mean)});
         }
@@ -2465,40 +2485,37 @@ std::array<double, R> solved(std::array<std::array<double, R + 1>, R> rows) {
     return x;
 }
 
-// Mirror images about the centre, by name.
+// Mirror images about a centre.
 template <size_t N>
 using Map = std::function<Point<N>(const Point<N>&)>;
-template <size_t N>
-std::vector<std::pair<const char*, Map<N>>> images_in(const Scene<N>& scene) {
-    const struct {
-        const char* name;
-        std::array<size_t, 3> from;
-        Triple sign;
-    } images[] = {
-        {"z negated", {0, 1, 2}, {1, 1, -1}},
-        {"x negated", {0, 1, 2}, {-1, 1, 1}},
-        {"y negated", {0, 1, 2}, {1, -1, 1}},
-        {"the direction negated", {0, 1, 2}, {-1, -1, -1}},
-        {"x and z exchanged", {2, 1, 0}, {1, 1, 1}},
-        {"y and z exchanged", {0, 2, 1}, {1, 1, 1}},
-        {"x and y exchanged", {1, 0, 2}, {1, 1, 1}},
-        {"x, y, z in another order", {1, 2, 0}, {1, 1, 1}},
-        {"x, y, z in another order", {2, 0, 1}, {1, 1, 1}},
-    };
-    std::vector<std::pair<const char*, Map<N>>> maps;
-    for (const auto& image : images) {
-        bool here = N <= 3;
-        for (size_t k = N; k < 3; ++k) here = here && image.from[k] == k && image.sign[k] == 1;
-        if (here)
-            maps.emplace_back(image.name, [image, c = scene.centre](const Point<N>& x) {
-                auto y = x;
-                for (size_t k = 0; k < std::min<size_t>(3, N); ++k)
-                    y[k] = c[k] + image.sign[k] * (x[image.from[k]] - c[image.from[k]]);
-                return y;
-            });
+struct Mirror {
+    const char* name;
+    std::array<size_t, 3> from;
+    Triple sign;
+    bool within(size_t dimensions) const {
+        bool others = false;
+        for (size_t k = dimensions; k < 3; ++k) others = others || from[k] != k || sign[k] != 1;
+        return dimensions <= 3 && !others;
     }
-    return maps;
-}
+    template <size_t N>
+    Point<N> image(Point<N> x, const Point<N>& centre) const {
+        const Point<N> old = x;
+        for (size_t k = 0; k < std::min<size_t>(3, N); ++k)
+            x[k] = centre[k] + sign[k] * (old[from[k]] - centre[from[k]]);
+        return x;
+    }
+};
+inline constexpr Mirror mirrors[] = {
+    {"z negated", {0, 1, 2}, {1, 1, -1}},
+    {"x negated", {0, 1, 2}, {-1, 1, 1}},
+    {"y negated", {0, 1, 2}, {1, -1, 1}},
+    {"the direction negated", {0, 1, 2}, {-1, -1, -1}},
+    {"x and z exchanged", {2, 1, 0}, {1, 1, 1}},
+    {"y and z exchanged", {0, 2, 1}, {1, 1, 1}},
+    {"x and y exchanged", {1, 0, 2}, {1, 1, 1}},
+    {"x, y, z in another order", {1, 2, 0}, {1, 1, 1}},
+    {"x, y, z in another order", {2, 0, 1}, {1, 1, 1}},
+};
 inline std::string words_of_image(const std::string& name) {
     return "samples have the density of the pdf with " + name + ": looks like " + name +
            " in one of the two";
@@ -2545,7 +2562,9 @@ struct Mistake {
         if (why.empty()) why = symmetry();
         if (why.empty()) why = linear();
         if (why.empty()) why = moved();
-        return why.empty() ? sides() : why;
+        if (why.empty()) why = sides();
+        if (why.empty()) why = steps();
+        return why.empty() && good.size() >= 50 ? which_is_uniform() : why;
     }
 
     // How well the integral and the failed part are known, together.
@@ -2607,7 +2626,7 @@ struct Mistake {
         const std::string name = constant_named(c, 0.003);
         if (cause.empty() && (name == "pi" || name == "2 pi" || name == "4 pi"))
             cause = (name == "pi" ? "1/pi" : "1/(" + name + ")") + " forgotten";
-        cause = cause.empty() ? ": a constant factor" : "; looks like " + cause;
+        cause = cause.empty() ? ": a constant factor, its normalisation" : "; looks like " + cause;
         // The cosine of a cone so narrow has no more digits.
         std::vector<double> heights;
         for (const Local<N>& l : good) heights.push_back(l.p);
@@ -2669,14 +2688,22 @@ struct Mistake {
         // all with a cosine: a distance may be 1 / cos(theta).
         const bool unsure =
             rank >= 2 && (b->kind == Kind::named ? fits > 1 : b->kind == Kind::cosine);
-        const std::string cause = unsure ? "" : cause_of_base(b->name, b->kind, k, normalised);
-        // Either may be the wrong one of two.
+        const std::string uniform = which_is_uniform();
+        const bool exponents = normalised && rank >= 2 && uniform.empty() &&
+                               (b->kind == Kind::cosine || b->kind == Kind::coordinate);
+        const std::string cause = exponents ? "an exponent in one of the two"
+                                  : unsure  ? ""
+                                            : cause_of_base(b->name, b->kind, k, normalised);
+        return over(factor, power(b->name, k)) + (cause.empty() ? "" : ": looks like " + cause) +
+               (uniform.empty() ? "" : "; " + uniform);
+    }
+    // Either may be the wrong one of two.
+    std::string which_is_uniform() const {
         std::vector<double> p, q;
         for (const Local<N>& l : good) p.push_back(l.p), q.push_back(l.q);
-        return over(factor, power(b->name, k)) + (cause.empty() ? "" : ": looks like " + cause) +
-               (law_of(p, tolerance).holds   ? "; the pdf is uniform, samples are not"
-                : law_of(q, tolerance).holds ? "; samples are uniform, the pdf is not"
-                                             : "");
+        return law_of(p, tolerance).holds   ? "the pdf is uniform, samples are not"
+               : law_of(q, tolerance).holds ? "samples are uniform, the pdf is not"
+                                            : "";
     }
     std::string two_powers() const {
         for (const double j : {1.0, -1.0, 2.0, -2.0})
@@ -2712,15 +2739,16 @@ struct Mistake {
         return "";
     }
 
-    // p / q or q / p, with a cosine in its place or without, is a linear function a x + b: the
-    // cosine to a direction that nobody named, a factor that a warp lacks.  By least squares;
-    // without b for directions.
+    // A power k of p / q, with a cosine in its place or without, is a linear function a x + b: the
+    // cosine to a direction that nobody named, a half vector, a factor that a warp lacks.  By least
+    // squares; for directions b is there for squares alone.
     std::string linear() const {
         if (good.size() < 50) return "";
-        const double one = scene.directions ? 0 : 1;
-        for (const double k : {1.0, -1.0})
+        for (const double k : {1.0, -1.0, 2.0, -2.0})
             for (const double j : {0.0, 1.0, -1.0}) {
-                if (j != 0 && !scene.directions) break;
+                const bool square = std::abs(k) == 2;
+                if (j != 0 && (!scene.directions || square)) break;
+                const double one = scene.directions && !square ? 0 : 1;
                 std::array<std::array<double, N + 2>, N + 1> rows{};
                 std::vector<double> left;
                 for (size_t i = 0; i < good.size(); ++i) {
@@ -2741,7 +2769,9 @@ struct Mistake {
                     for (size_t c = 0; c < N; ++c) sum += a[c] * good[i].x[c];
                     rest.push_back(left[i] / sum);
                 }
-                if (median(left, 0.95) / median(left, 0.05) > 1 + 30 * tolerance &&
+                // In a small domain everything is linear.
+                const double spread = median(left, 0.95) / median(left, 0.05);
+                if (spread > (square ? 1.5 : 1) + 30 * tolerance &&
                     law_of(rest, tolerance).plain(tolerance))
                     return words_of(a, j, k);
             }
@@ -2751,22 +2781,31 @@ struct Mistake {
         double length = 0;
         for (size_t c = 0; c < N; ++c) length += a[c] * a[c];
         length = std::sqrt(length);
-        if (scene.directions) {
-            Point<N> n;
-            for (size_t c = 0; c < N; ++c) n[c] = a[c] / length;
-            const std::string cosine = "the cosine to " + say_point(n);
+        Point<N> n;
+        for (size_t c = 0; c < N; ++c) n[c] = a[c] / length;
+        const std::string cosine = "the cosine to " + say_point(n);
+        const char* fate = k > 0 ? " too many" : " forgotten";
+        // |w + wo|^2 = 2 (1 + w.wo) = 4 (wo.h)^2
+        if (scene.directions && std::abs(k) == 2 && std::abs(a[N] / length - 1) < 0.02)
+            return over(std::pow(2 * length, 1 / k) / std::pow(4, 2 / k),
+                        power("(4 wo.h)", k / 2)) +
+                   " with wo = " + say_point(n) + ": looks like 4 wo.h, the half vector's" + fate +
+                   " in the pdf";
+        if (scene.directions && std::abs(k) == 2)
+            return over(std::pow(a[N], 1 / k),
+                        power(say("(1 + %.3g ", length / a[N]) + cosine + ")", 1 / k)) +
+                   ": looks like an exponent";
+        if (scene.directions)
             return over(std::pow(length, k), power("(" + cosine + ")", k)) +
-                   (j == 0 ? "" : " " + power("cos(theta)", -j)) + ": looks like " + cosine +
-                   (k > 0 ? " too many" : " forgotten") + " in the pdf" +
-                   (j == 0 ? "" : ", or taken to another normal");
-        }
+                   (j == 0 ? "" : " " + power("cos(theta)", -j)) + ": looks like " + cosine + fate +
+                   " in the pdf" + (j == 0 ? "" : ", or taken to another normal");
         std::string sum;
         for (size_t c = 0; c <= N; ++c) {
             if (std::abs(a[c]) < 0.01 * std::hypot(length, a[N])) continue;
             sum += sum.empty() ? (a[c] < 0 ? "-" : "") : a[c] < 0 ? " - " : " + ";
             sum += say("%.3g", std::abs(a[c])) + (c < N ? say(" %c", "xyz"[c % 3]) : "");
         }
-        return over(1, power("(" + sum + ")", k)) +
+        return over(1, power("(" + sum + ")", 1 / k)) +
                (normalised && k > 0
                     ? ": looks like a number that is not warped, or without its root"
                     : "");
@@ -2774,20 +2813,24 @@ struct Mistake {
 
     // Samples have the density of the pdf of a mirror image.
     std::string symmetry() const {
-        for (const auto& [name, image] : images_in(scene))
-            if (law_of_image(image, 1).plain(tolerance))
-                return words_of_image(name) +
-                       (scene.directions && name[0] == 'z' && scene.normal[2] == 1
+        for (const Mirror& m : mirrors)
+            if (m.within(N) &&
+                law_of_image([&](X x) { return m.image(x, scene.centre); }, 1).plain(tolerance))
+                return words_of_image(m.name) +
+                       (scene.directions && m.name[0] == 'z' && scene.normal[2] == 1
                             ? ", below the horizon"
                             : "");
         return "";
     }
     Law law_of_image(const Map<N>& image, double stretch) const {
         std::vector<double> turned;
-        for (const Local<N>& l : sheets)
-            if (const double p = pdf(image(l.x)); p > 0 && l.error <= tolerance)
-                turned.push_back(p / l.q / stretch);
-        if (double(turned.size()) < 0.4 * double(good.size())) return {};
+        size_t exact = 0;
+        for (const Local<N>& l : sheets) {
+            if (l.error > tolerance) continue;
+            ++exact;
+            if (const double p = pdf(image(l.x)); p > 0) turned.push_back(p / l.q / stretch);
+        }
+        if (double(turned.size()) < 0.9 * std::min(1.0, total) * double(exact)) return {};
         return law_of(turned, tolerance);
     }
 
@@ -2846,6 +2889,28 @@ struct Mistake {
                 if (const double x = middle + i * step, y = f(x); y < least) least = y, at = x;
         }
         return at;
+    }
+
+    // Few constant factors, each at many points.
+    std::string steps() const {
+        std::vector<double> sorted = ratios;
+        std::sort(sorted.begin(), sorted.end());
+        std::string list;
+        size_t values = 0, with = 0;
+        for (size_t i = 0, j = 0; i < sorted.size(); i = j) {
+            const auto gap = 1 + 4 * tolerance;
+            while (j < sorted.size() && (j == i || sorted[j] <= sorted[j - 1] * gap)) ++j;
+            const double part = double(j - i) / double(sorted.size());
+            if (part < 0.04 || sorted[j - 1] > sorted[i] * gap) continue;
+            list += (values++ == 0 ? "" : ", ") + times(sorted[(i + j) / 2], 0.003) + " at " +
+                    percent(part);
+            with += j - i;
+        }
+        return values >= 2 && values <= 6 && double(with) > 0.9 * double(sorted.size())
+                   ? "the pdf is so many times the density of the samples: " + list +
+                         " of the points; looks like the probability of a choice (of a part, a "
+                         "row, a lobe) or its index"
+                   : "";
     }
 
     // A constant factor on either side of a plane of coordinates.
@@ -2979,8 +3044,9 @@ std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
                 return "samples have the density of the pdf times " + power(b.name, k) +
                        (cause.empty() ? "" : ": looks like " + cause);
             }
-    for (const auto& [name, image] : images_in(check.scene()))
-        if (fits([&, &turned = image](X x) { return pdf(turned(x)); })) return words_of_image(name);
+    for (const Mirror& m : mirrors)
+        if (m.within(N) && fits([&](X x) { return pdf(m.image(x, check.scene().centre)); }))
+            return words_of_image(m.name);
     const double n = sum_of(check.counts);
     for (size_t k = 0; k < N && check.directions; ++k) {
         const Parts above = parts_of([&](X x) { return x[k] > 0 ? pdf(x) : 0; });
@@ -3024,6 +3090,13 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
     if (const std::string why = explained(check, sheets.all, total); !why.empty())
         return why + rounded;
     const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
+    // By counts the shape is right.
+    if (!check.balanced && check.counted && sheets.all.size() < 100 &&
+        std::abs(total / (1 - share) - 1) > 0.1 && std::abs(total - 1) > check.close)
+        return "the pdf is " + times(total / (1 - share), 0.003) +
+               " times the density of the samples, as far as counts tell: a constant factor; " +
+               integral_is + (share > 0 ? ", " + percent(share) + " of the samples fail" : "") +
+               rounded;
     if (!check.balanced && check.none > 0) {
         const std::string fails = compared(check) + percent(check.none / check.samples) +
                                   " of the samples fail (" + check.first_none + ")";
@@ -3117,8 +3190,11 @@ inline std::string albedo_hint(const std::vector<Albedo>& all) {
            ": more leaves than comes, for wo = " + say_point(worst->wo) + " (" + list + ")" +
            (worst->mean > 2 * steep && worst->wo[2] * all[0].wo[2] < 0.3
                 ? "; looks like masking forgotten, or a division by the cosine of wo"
-            : worst->mean < 2 * steep ? "; is a constant factor (1/pi, 1/4) missing?"
-                                      : "");
+            : worst->mean > 2 * steep ? ""
+            : worst->mean > 2
+                ? "; is a constant factor (1/pi, 1/4) missing?"
+                : "; are lobes added without weights (1 - F), or is a constant factor "
+                  "(1/pi, 1/4) missing?");
 }
 
 // ---- What is wrong with a choice ----------------------------------------------------------------
@@ -3156,6 +3232,17 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
             if (j != i && explains(merged))
                 return first + say("; %zu takes its share", j) +
                        (i + 1 == count || i == 0 ? ": a search that ends too early" : "");
+        }
+        auto others = expected;
+        for (double& p : others) p *= total / (total - expected[i]);
+        others[i] = 0;
+        if (total > expected[i] && explains(others))
+            return first + "; the others share it: looks like a range too short" + all;
+        for (bool up : {true, false}) {
+            std::vector<double> moved(count);
+            for (size_t j = 0; j < count; ++j)
+                moved[up ? std::min(j + 1, count - 1) : j - std::min<size_t>(j, 1)] += expected[j];
+            if (explains(moved)) return first + "; looks like an index off by one" + all;
         }
         return first + all;
     }
@@ -3256,6 +3343,17 @@ inline std::string Image::hint(const ImageResult& r) const {
                  "the image is " + times(sum_f / sum, within) + " times the reference, everywhere" +
                      cause_of(sum_f / sum, within, o.factors),
                  sum_f / sum);
+    }
+    double most = 0, clamped = 0, n_clamped = 0;
+    for (double x : f) most = std::max(most, x);
+    for (size_t i = 0; i < n(); ++i)
+        if (truth[i] > most) clamped += f[i], ++n_clamped;
+    if (n_clamped > 0) {
+        std::vector<double> g = truth;
+        for (double& x : g) x = std::min(x, clamped / n_clamped);
+        explains(
+            g, say("the image is the reference, but nowhere above %.4g: looks like values clamped",
+                   clamped / n_clamped));
     }
     for (double gamma : {1 / 2.2, 2.2, 0.5, 2.0}) {
         std::vector<double> g = truth;
