@@ -94,6 +94,7 @@ TEST_CASE("hints: directions") {
         return w;
     };
     auto half_each = [](Triple w) { return std::abs(w[2]) / (2 * pi); };
+    auto below_halved = [](Triple w) { return std::abs(w[2]) / pi * (w[2] > 0 ? 4 : 1) / 6; };
     auto sphere = [](double u, double v) { return about_z(1 - 2 * u, 2 * pi * v); };
     auto more_above = [](Triple w) { return (w[2] > 0 ? 0.6 : 0.4) / (2 * pi); };
     auto forward = [](double, double u, double v) {
@@ -101,6 +102,16 @@ TEST_CASE("hints: directions") {
     };
     auto backward = [](Triple w) { return (1 - w[2]) / (4 * pi); };
     auto eighth_more = [](Triple w) { return 1.125 * cosine_pdf(w); };
+    const Triple wo = unit({0.6, 0.2, 0.8});
+    auto reflected = [=](double u, double v) {
+        const Triple h = facet(u, v, 0.4);
+        const double c = 2 * dot(wo, h);
+        return Triple{c * h[0] - wo[0], c * h[1] - wo[1], c * h[2] - wo[2]};
+    };
+    auto no_jacobian = [=](Triple w) {
+        const Triple h = half_of(w, wo);
+        return facets(h[2], 0.4) * std::max(0.0, h[2]);
+    };
     auto forward_peak = [](double u, double v) {
         const double g = 0.6, s = (1 - g * g) / (1 + g - 2 * g * u);
         return about_z((1 + g * g - s * s) / (2 * g), 2 * pi * v);
@@ -123,11 +134,13 @@ TEST_CASE("hints: directions") {
          {expect_density(random, mixture, exchanged), "the pdf is wider than the samples"},
          {expect_density(random, either_side, half_each),
           "times where it is < 0: looks like the probability of one side"},
+         {expect_density(random, either_side, below_halved), "twice) times where it is < 0"},
          {expect_density(random, sphere, more_above),
           "1.2 times the density of the samples where z > 0"},
          {expect_density(random, forward, backward), "z negated in one of the two"},
          {expect_density(random, cosine, eighth_more),
           "times the density of the samples, everywhere: a constant factor"},
+         {expect_density(random, reflected, no_jacobian), "4 wo.h of the half vector too many"},
          {expect_density(random, forward_peak, rootless), "^(1/2): looks like an exponent"},
          {expect_density(random, sphere, peak), "samples are uniform, the pdf is not"},
          {expect_density(random, lobe, ninth), "cos(theta): looks like an exponent in one of"},

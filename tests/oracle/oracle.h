@@ -670,12 +670,12 @@ double integral(
 
 // ---- The host's types ---------------------------------------------------------------------------
 
-// The coordinates of a number, pair, array or vector, in its own type.
 template <size_t N, class V>
 auto elements(const V& v) {
     return [&]<size_t... I>(std::index_sequence<I...>) { return std::array{v[I]...}; }
     (std::make_index_sequence<N>());
 }
+// The coordinates of a number, pair, array, vector or colour, in its own type.
 template <class V>
 auto coordinates(const V& v) {
     if constexpr (std::is_arithmetic_v<V>)
@@ -686,6 +686,8 @@ auto coordinates(const V& v) {
         return std::array{v.x(), v.y(), v.z()};
     else if constexpr (requires { v.x + v.y + v.z; })
         return std::array{v.x, v.y, v.z};
+    else if constexpr (requires { v.r + v.g + v.b; })
+        return std::array{v.r, v.g, v.b};
     else if constexpr (requires { v.x() + v.y(); })
         return std::array{v.x(), v.y()};
     else if constexpr (requires { v.x + v.y; })
@@ -2016,38 +2018,18 @@ Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs&
 
 // ---- BSDFs --------------------------------------------------------------------------------------
 
-template <class C>
-double brightness(const C& c) {
-    if constexpr (std::is_arithmetic_v<C>)
-        return double(c);
-    else if constexpr (requires {
-                           c.r;
-                           c.g;
-                           c.b;
-                       })
-        return (double(c.r) + double(c.g) + double(c.b)) / 3;
-    else {
-        const auto rgb = oracle::point(c);
-        double sum = 0;
-        for (double x : rgb) sum += x / double(rgb.size());
-        return sum;
-    }
+inline double brightness(const auto& colour) {
+    const auto rgb = oracle::point(colour);
+    double sum = 0;
+    for (double x : rgb) sum += x / double(rgb.size());
+    return sum;
 }
 
 // The type of a function's first argument.
-template <class R, class C, class A, class... More>
-std::decay_t<A> first_argument(R (C::*)(A, More...) const);
-template <class R, class C, class A, class... More>
-std::decay_t<A> first_argument(R (C::*)(A, More...));
 template <class R, class A, class... More>
-std::decay_t<A> first_argument(R (*)(A, More...));
+std::decay_t<A> first_argument(const std::function<R(A, More...)>&);
 template <class F>
-auto first_argument_of() {
-    if constexpr (requires { &F::operator(); })
-        return decltype(first_argument(&F::operator())){};
-    else
-        return decltype(first_argument(std::declval<F>())){};
-}
+using FirstArgument = decltype(oracle::first_argument(std::function{std::declval<F>()}));
 
 // A direction by the cosine of its angle from z and by phi.
 inline Triple about_z_axis(double z, double phi) {
@@ -2096,9 +2078,9 @@ inline Exchange exchange(Random& random, const Eval& f, double close) {
         }
         if (pairs.empty()) continue;
         (through ? e.transmits : e.reflects) = true;
-        if (through) e.scale = std::sqrt(median(ratios));
+        if (through) e.scale = median(ratios);
         auto off = [&](size_t i) {
-            const double r = ratios[i] / (e.scale * e.scale);
+            const double r = ratios[i] / e.scale;
             return std::isfinite(r) ? 1 - std::min(r, 1 / r) : 1;
         };
         const size_t worst = worst_of(pairs.size(), off);
@@ -2120,11 +2102,12 @@ std::string albedo_hint(const std::vector<Albedo>& all);
 
 // A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
 // if it transmits for these from below, too: samples sample(wo, u, v, ...) have the density
-// pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not negative and reciprocal; no more
-// leaves than comes.  What is transmitted may be scaled by a constant, eta^2, in one direction.
+// pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not negative, reciprocal, and 0 where
+// the pdf is; no more leaves than comes.  What is transmitted may be scaled by a constant, eta^2,
+// in one direction.
 template <class Sample, class Pdf, class EvalOf>
 Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const Options& o = {}) {
-    using V = decltype(first_argument_of<Pdf>());  // the host's direction
+    using V = FirstArgument<Pdf>;  // the host's direction
     using T = Coordinate<V>;
     auto f = [&](const Triple& a, const Triple& b) {
         return brightness(eval(of_host<V>(a), of_host<V>(b)));
@@ -2134,7 +2117,9 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     if (!e.wrong.empty()) return failure(e.wrong, o);
 
     Verdict all{true, 1, 0, ""};
-    std::vector<Albedo> albedos;
+    // Of eval for importance, and of eval for radiance, which what is transmitted has more of by
+    // eta^2: it is not known which of the two it is.
+    std::array<std::vector<Albedo>, 2> albedos;
     for (double side : {1.0, -1.0})
         for (const auto& [z, phi] : {std::pair{0.95, 1.0}, {0.6, 3.0}, {0.2, 5.0}, {0.02, 2.0}}) {
             if (side < 0 && !e.transmits) break;
@@ -2157,16 +2142,17 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             if (!v.pass) return v;
             all.p = std::min(all.p, v.p);
             all.delta_min = std::max(all.delta_min, v.delta_min);
-            Draws albedo;
+            Draws albedo, scaled;
             for (int i = 0; i < 100000; ++i) {
                 const auto wi = erased.sample(erased.draw(random));
                 double weight = 0;
                 if (const double p = wi ? erased.pdf(*wi) : 0; p > 0)
-                    weight = f(out, *wi) * std::abs((*wi)[2]) / p *
-                             ((*wi)[2] * side < 0 ? std::pow(e.scale, -side) : 1);
+                    weight = f(out, *wi) * std::abs((*wi)[2]) / p;
                 if (!std::isfinite(weight))
                     return failure("eval cos / pdf is not finite for " + between(out, *wi), o);
                 albedo.add(weight);
+                const bool through = weight > 0 && (*wi)[2] * side < 0;
+                scaled.add(weight * (through ? std::pow(e.scale, -side) : 1));
             }
             // Light that eval sends where no sample comes.
             double lost = 0, often = 0;
@@ -2185,13 +2171,16 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                                                           "the side of wi"
                                                         : ""),
                                o);
-            const Estimate mean = albedo.estimate();
-            albedos.push_back({out, mean.mean, mean.standard_error / std::max(1e-300, mean.mean)});
+            for (const bool radiance : {false, true}) {
+                const Estimate mean = (radiance ? scaled : albedo).estimate();
+                albedos[radiance].push_back(
+                    {out, mean.mean, mean.standard_error / std::max(1e-300, mean.mean)});
+            }
         }
-    if (const std::string why = albedo_hint(albedos); !why.empty()) return failure(why, o);
-    all.text =
-        std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
-        (e.transmits ? say(", below and through it (scaled by %.4g)", e.scale * e.scale) : "");
+    const std::string why = albedo_hint(albedos[1]);
+    if (!why.empty() && !albedo_hint(albedos[0]).empty()) return failure(why, o);
+    all.text = std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
+               (e.transmits ? say(", below and through it (scaled by %.4g)", e.scale) : "");
     return named(all, o);
 }
 
@@ -2789,7 +2778,7 @@ struct Mistake {
         if (scene.directions && std::abs(k) == 2 && std::abs(a[N] / length - 1) < 0.02)
             return over(std::pow(2 * length, 1 / k) / std::pow(4, 2 / k),
                         power("(4 wo.h)", k / 2)) +
-                   " with wo = " + say_point(n) + ": looks like 4 wo.h, the half vector's" + fate +
+                   " with wo = " + say_point(n) + ": looks like 4 wo.h of the half vector" + fate +
                    " in the pdf";
         if (scene.directions && std::abs(k) == 2)
             return over(std::pow(a[N], 1 / k),
@@ -2823,13 +2812,16 @@ struct Mistake {
         return "";
     }
     Law law_of_image(const Map<N>& image, double stretch) const {
-        std::vector<double> turned;
+        std::vector<double> turned, heights;
         size_t exact = 0;
         for (const Local<N>& l : sheets) {
             if (l.error > tolerance) continue;
             ++exact;
-            if (const double p = pdf(image(l.x)); p > 0) turned.push_back(p / l.q / stretch);
+            if (const double p = pdf(image(l.x)); p > 0)
+                turned.push_back(p / l.q / stretch), heights.push_back(p);
         }
+        // What is uniform has every scale.
+        if (law_of(heights, tolerance).holds) return {};
         if (double(turned.size()) < 0.9 * std::min(1.0, total) * double(exact)) return {};
         return law_of(turned, tolerance);
     }
@@ -3040,14 +3032,14 @@ std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
     for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
         for (const Base<N>& b : bases_of(check.o, check.scene()))
             if (fits([&](X x) { return pdf(x) * std::pow(b.at(x), k); })) {
-                const std::string cause = cause_of_base(b.name, b.kind, -k, true);
+                const std::string cause = cause_of_base(b.name, b.kind, -k, check.balanced);
                 return "samples have the density of the pdf times " + power(b.name, k) +
                        (cause.empty() ? "" : ": looks like " + cause);
             }
     for (const Mirror& m : mirrors)
         if (m.within(N) && fits([&](X x) { return pdf(m.image(x, check.scene().centre)); }))
             return words_of_image(m.name);
-    const double n = sum_of(check.counts);
+    const double n = sum_of(check.counts), arrives = n / check.samples;
     for (size_t k = 0; k < N && check.directions; ++k) {
         const Parts above = parts_of([&](X x) { return x[k] > 0 ? pdf(x) : 0; });
         const double half = above.total / check.parts.total;
@@ -3066,9 +3058,9 @@ std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
         const double a = products / squares, b = (1 - a * half) / (1 - half);
         for (size_t i = 0; i < 32; ++i) p[i] += a * slope[i];
         if (a > 0 && b > 0 && follow(p, {}))
-            return "samples are " + times(a, 0.01) +
+            return "samples are " + times(a * arrives / check.parts.total, 0.01) +
                    say(" times as dense as the pdf says where %c > 0, ", "xyz"[k % 3]) +
-                   times(b, 0.01) +
+                   times(b * arrives / check.parts.total, 0.01) +
                    " times where it is < 0: looks like the probability of one side";
     }
     return "";
@@ -3097,6 +3089,10 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
                " times the density of the samples, as far as counts tell: a constant factor; " +
                integral_is + (share > 0 ? ", " + percent(share) + " of the samples fail" : "") +
                rounded;
+    const bool by_cells = !check.counted && check.samples >= 50000;
+    if (!check.balanced && by_cells && sheets.all.size() < 100)
+        if (const std::string why = law_of_cells(check); !why.empty())
+            return why + "; " + integral_is + rounded;
     if (!check.balanced && check.none > 0) {
         const std::string fails = compared(check) + percent(check.none / check.samples) +
                                   " of the samples fail (" + check.first_none + ")";
@@ -3112,7 +3108,7 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
         return compared(check) + "samples are " + say("%.4g", 1 / sheets.off->product()) +
                " times as dense as the pdf says, at " + check.at(sheets.off->x) +
                ", u = " + say_point(sheets.u) + rounded;
-    if (!check.counted && check.samples >= 50000)
+    if (by_cells)
         if (const std::string why = law_of_cells(check); !why.empty()) return why + rounded;
     // In the middle of those that the pilot found there: the range's may be where nothing is.
     std::array<std::vector<Point<D>>, 32> inside;
@@ -3154,23 +3150,21 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
 // Whether f(a, b) / f(b, a) is a ratio of the cosines of a and b; or depends on them alone: it is
 // the same if b turns.
 inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close) {
-    double cosine = 0, inverse = 0, alone = 0, turns = 0;
+    std::vector<double> cosine, inverse, turning;
     for (const auto& [a, b] : pairs) {
         const Triple turned{-b[1], b[0], b[2]};
         const double ratio = f(a, b) / f(b, a), there = f(a, turned) / f(turned, a),
                      cosines = std::abs(a[2] / b[2]);
-        cosine += std::abs(ratio * cosines - 1) < close;
-        inverse += std::abs(ratio / cosines - 1) < close;
-        alone += std::abs(ratio / there - 1) < 1e-3;
-        turns += ratio > 0 && there > 0 && std::isfinite(ratio * there);
+        cosine.push_back(ratio * cosines);
+        inverse.push_back(ratio / cosines);
+        if (ratio > 0 && there > 0 && std::isfinite(ratio * there))
+            turning.push_back(ratio / there);
     }
-    const double n = double(pairs.size()), most = 0.95 * n;
-    return cosine > most
-               ? "; looks like the cosine of wi included in eval, or eval divided by that of wo"
-           : inverse > most ? "; looks like eval divided by the cosine of wi"
-           : turns > 0.25 * n && alone > 0.95 * turns
-               ? ", by a factor of their cosines alone (Fresnel or masking by one of "
-                 "them?)"
+    if (law_of(cosine, close).holds)
+        return "; looks like the cosine of wi included in eval, or eval divided by that of wo";
+    if (law_of(inverse, close).holds) return "; looks like eval divided by the cosine of wi";
+    return 4 * turning.size() > pairs.size() && law_of(turning, 1e-3).holds
+               ? ", by a factor of their cosines alone (Fresnel or masking by one of them?)"
                : "";
 }
 
