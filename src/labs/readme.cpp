@@ -62,9 +62,11 @@ std::string option_tables(const std::string& help) {
 }
 
 int write_all(const Scope& scope) {
-    for (const std::string program : {"penumbra", "radiosity"})
-        write_table("reference/" + (program == "penumbra" ? "" : program + "-") + "options.md",
-                    "options", option_tables(said_by(scope.beside(program) + " --help")));
+    for (const std::string& prefix : {std::string(), std::string("radiosity-")}) {
+        const std::string program = scope.beside(prefix.empty() ? "penumbra" : "radiosity");
+        write_table("reference/" + prefix + "options.md", "options",
+                    option_tables(said_by(program + " --help")));
+    }
     Lines rows;
     for (const Statement& s : grammar)
         rows.push_back({code(std::string(s.keyword) + " " + std::string(s.words)),
