@@ -31,6 +31,12 @@ Polygon polygon_of(In x) {
 int main() {
     return course::answer_all({
         {"control", 3, [](In x) { return control(x[0], x[1], x[2]); }},
+        // U, w and w V of three channels.
+        {"control_of_colours", 9,
+         [](In x) {
+             using course::vec3_of;
+             return control(vec3_of(x, 0), vec3_of(x, 3), vec3_of(x, 6));
+         }},
         {"visible", 7, [](In x) { return visible_part(moments_of(x)); }},
         {"ratio", 7, [](In x) { return ratio(moments_of(x)); }},
         {"regression", 7, [](In x) { return regression(moments_of(x)); }},

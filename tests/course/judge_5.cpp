@@ -125,10 +125,11 @@ void same(Judge& j, const std::string& what, const Out& came, const Out& expecte
 // ---- 5.1 ----------------------------------------------------------------------------------------
 
 void control_variate(Judge& j) {
-    const Out p = j.probe("control", {{2, 5, 0}, {2, 5, 5}, {3, 1, 0.25}, {0.5, 8, 7}}).numbers;
-    same(j, "control(2, 5, 0) = -3, control(3, 1, 1/4) = 2.25", {p[0], p[2]}, {-3, 2.25},
-         8 * digit);
-    Rows lit, more;
+    const Out p =
+        j.probe("control", {{2, 5, 0}, {2, 5, 5}, {3, 1, 0.25}, {0.5, 8, 7}, {1.5, 0, 0}}).numbers;
+    same(j, "control(3, 1, 1/4) = 2.25", {p[2]}, {2.25}, 8 * digit);
+    same(j, "control(2, 5, 0) = -3: a sample may be negative", {p[0]}, {-3}, 8 * digit);
+    Rows lit, more, unlit;
     Out U, light;
     for (int i = 0; i < 32; ++i) {
         const double w = 4 * j.random();
@@ -136,12 +137,18 @@ void control_variate(Judge& j) {
         light.push_back(j.random());
         lit.add({U.back(), w, w});
         more.add({U.back(), w, w + light.back()});
+        unlit.add({U.back(), 0, 0});
     }
     const Out is_lit = j.ask("control", lit).numbers;
     same(j, "where nothing is in the way it is U", is_lit, U, 32 * digit);
     Out gained = j.ask("control", more).numbers;
     for (size_t i = 0; i < gained.size(); ++i) gained[i] -= is_lit[i];
     same(j, "light that comes through counts as it is", gained, light, 64 * digit);
+    same(j, "a sample of no light, w = 0, says nothing of shadows: it is U",
+         j.ask("control", unlit).numbers, U, 32 * digit);
+    same(j, "colours: every channel by itself",
+         j.ask("control_of_colours", Out{2, 3, 0.5, 5, 1, 0, 0, 0.25, 0}), {-3, 2.25, 0.5},
+         64 * j.epsilon);
     Rows rows;
     for (int i = 0; i < 100000; ++i) {
         const auto [U_, w, wV] = parabola(j.random);
@@ -168,8 +175,9 @@ void ratio(Judge& j) {
     same(j, "where everything is, it is 0", {visible[2], by[2]}, {0, 0}, 0);
     same(j, "it is 0 if no sample found any light", {visible[3], by[3]}, {0, 0}, 0);
     const Out faint =
-        j.ask("ratio", {{4, 2e-9, 4e-9, 1e-9, 0, 0, 0}, {4, 2e9, 4e9, 1e9, 0, 0, 0}}).numbers;
-    same(j, "in dim light and in glaring, too", {1e9 * faint[0], 1e-9 * faint[1]}, {0.5, 0.5},
+        j.ask("ratio", {{4, 2e-60, 4e-60, 1e-60, 0, 0, 0}, {4, 2e60, 4e60, 1e60, 0, 0, 0}}).numbers;
+    j.remember({1e60 * faint[0], 1e-60 * faint[1]});
+    same(j, "in dim light and in glaring, too", {1e60 * faint[0], 1e-60 * faint[1]}, {0.5, 0.5},
          8 * digit);
     const double scale = 1 + 9 * j.random(), U = 1 + j.random(), w = 1 + j.random(),
                  wV = j.random();
@@ -196,6 +204,12 @@ void regression(Judge& j) {
                            moments_of(changed(sixteen, light_up)),
                            moments_of(changed(sixteen, [](LightSample& s) { s.wV = 0.3 * s.w; })),
                            moments_of(Samples(20, {2, 3, 1.5}))});
+    // Where least is hidden w V falls as w rises; and below 0 at w = U.
+    const Samples falling = changed(sixteen, [](LightSample&s) { s.wV = 2 - s.w / 4; }),
+                  below = changed(sixteen, [](LightSample&s) {
+                      s.w = 2 + (s.w - s.U), s.U = 1, s.wV = 0.5 * (s.w - 1) - 0.25;
+                  });
+    const Out further = j.probe("regression", {moments_of(falling), moments_of(below)}).numbers;
     double lit = 0, dark = 0, grey = 0, line = 0;
     for (int k = 0; k < 16; ++k) {
         Samples random(8 + size_t(k));
@@ -220,6 +234,15 @@ void regression(Judge& j) {
     j.number("of seven samples it is what ratio says",
              j.ask("regression", Out{7, 2.5, 3, 2, 3.5, 3.5, 1.5}).at(0), 5 / 3.0, 16 * digit);
     j.number("where w does not vary, too", of(Samples(20, {2, 3, 1.5})), 1, 16 * digit);
+    j.number("if the line is below 0 at w = U, so is its value", further[1], -0.25, 1e-12);
+    for (const auto& [what, scale] :
+         {std::pair("in dim light, too", 0x1p-50), {"in glaring, too", 0x1p50}}) {
+        const double there = of(
+            changed(sixteen, [by = scale](LightSample& s) { s.U *= by, s.w *= by, s.wV *= by; }));
+        j.number(what, there / scale, of(sixteen), 1e-12);
+        j.limit();
+        j.remember({there / scale});
+    }
     const Out many = estimates(j, "regression", 1024, 19200);
     j.mean("of 1024 samples of w = 2x the bias is gone but for 1/8 n", 0.25 + 1 / 8.0 / 1024, many,
            itself);
@@ -260,7 +283,7 @@ void moments(Judge& j) {
     same(j, "merge: five and seven are all twelve", in_parts, expected, 1e-13, names);
     same(j, "a part without samples changes nothing, first or last",
          {apart(merged(j, twelve, 0), expected), apart(merged(j, twelve, 12), expected)}, {0, 0},
-         1e-13);
+         1e-13, {"first", "last"});
     j.limit();
     same(j, "two parts without samples are none", merged(j, {}, 0), Out(7), 0, names);
     j.limit();
@@ -408,6 +431,14 @@ void lambert(Judge& j) {
     }
     j.below("small ones keep their digits", lost, small == 1e-3 ? 1e-8 : 0.05,
             "one is off by %.3g of itself");
+    j.limit();
+    // Without its short edge the long ones do not cancel.
+    const double width = small == 1e-3 ? 1e-9 : 0.05;
+    const Vertices needle = {{0.5, 0, 1}, {0.5 + width, width / 2, 1}, {0.25, 1, 1.5}};
+    const double part = of(needle) / by_quadrature(needle);
+    j.number("a needle: its short edge counts, too, in parts of the truth", part, 1,
+             small == 1e-3 ? 1e-5 : 0.05);
+    j.remember({std::round(8 * part)});
     j.limit();
 }
 
