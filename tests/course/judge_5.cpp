@@ -312,7 +312,7 @@ void moments(Judge& j) {
         for (LightSample& s : any)
             s.U = j.random(), s.w = j.random(), s.wV = j.random() < 0.3 ? 0 : s.w;
         const Out two_passes = moments_of(any), added = j.ask("moments", flat(any)),
-                  both = merged(j, any, size_t(double(any.size() + 1) * j.random()));
+                  both = merged(j, any, 1 + size_t(double(any.size() - 1) * j.random()));
         for (size_t i = 0; i < 7; ++i) {
             if (!(apart({added[i]}, {two_passes[i]}) <= off))
                 off = apart({added[i]}, {two_passes[i]}), at = i;
