@@ -39,7 +39,72 @@ double furnace_off(const Shot& s, const Room& r) {
     return most;
 }
 
+// See answers_R.cpp: load, with the corners of M, of what was shot before and so on of an element.
+constexpr size_t head = 12, per_element = 38;
+struct Element {
+    In x;
+    double area() const { return x[0]; }
+    Triple M(size_t k) const { return triple(x, 1 + 3 * k); }
+    Triple before(size_t k) const { return triple(x, 10 + 3 * k); }
+    Triple L(size_t k) const { return triple(x, 19 + 3 * k); }
+    Triple shot(size_t k) const { return triple(x, 28 + 3 * k); }
+    double sent() const { return x[37]; }
+};
+template <class Of>
+Triple mean_of_corners(Of of) {
+    return 1 / 3.0 * (of(0) + of(1) + of(2));
+}
+double off_by(const Triple& a, const Triple& b) {
+    const double d = length(a - b);
+    return d == d ? d : oracle::infinity;
+}
+
+void loading(Judge& j) {
+    const double digits = 1e3 * j.epsilon;
+    double sent = 0, shot = 0, noted = 0, mean = 0, whole = 0, quarters = 0, filled = 0;
+    for (const bool back : {false, true})
+        for (const bool leaf : {true, false})
+            for (const bool triangle : {false, true}) {
+                const Out out = j.ask("load", Out{double(triangle), double(back), double(leaf), 7});
+                Triple sum{};
+                double area = 0;
+                for (size_t at = head; at + per_element <= out.size(); at += per_element) {
+                    const Element e{In(out).subspan(at, per_element)};
+                    if (leaf && at > head) break;
+                    for (size_t k = 0; k < 3; ++k) {
+                        const Triple L = 1 / oracle::pi * (e.M(k) - e.before(k));
+                        sent = std::max(sent, off_by(e.L(k), L));
+                        shot = std::max(shot, off_by(e.shot(k), e.M(k)));
+                    }
+                    const Triple M = mean_of_corners([&](size_t k) { return e.M(k); }),
+                                 L = mean_of_corners([&](size_t k) { return e.L(k); });
+                    noted = worse(noted, std::abs(e.sent() - (M[0] + M[1] + M[2]) / 3));
+                    sum = sum + e.area() * L, area += e.area();
+                }
+                double& of = leaf ? mean : triangle ? quarters : whole;
+                of = std::max(of, off_by(triple(out), 1 / area * sum));
+                for (size_t k = 0; !leaf && k < 3; ++k)
+                    filled = std::max(filled, off_by(triple(out, 3 + 3 * k), triple(out)));
+                // By an element, and by the face that is uneven, mistakes are told.
+                if (triangle && !leaf) j.remember({out[0], out[1]});
+                if (!triangle)
+                    j.remember({out[0], out[1], out[3], out[6], out[head + 19], out[head + 22],
+                                out[head + 28], out[head + 37]});
+            }
+    const char* by = "it is off by %.3g";
+    j.below("an element sends (M - shot) / pi at each corner, its front and its back", sent, digits,
+            by);
+    j.below("then all of M counts as shot, corner by corner", shot, digits, by);
+    j.below("and the mean of M over corners and channels is noted in sent_", noted, digits, by);
+    j.below("an element returns the mean of its three corners", mean, digits, by);
+    j.below("a wall of 2 x 3 cells returns the mean of its parts, weighted by their areas", whole,
+            digits, by);
+    j.below("a triangle returns the mean of its four parts", quarters, digits, by);
+    j.below("and writes it to all three corners", filled, digits, by);
+}
+
 void shooting(Judge& j) {
+    loading(j);
     const double rest = 1e-6;  // of the light may be unsent, and some 10 times as much of E
     const double digits = std::max(1e-9, 1e5 * j.epsilon);
     Room furnace, black, lamp, whole, first;
@@ -102,7 +167,8 @@ enum At {
     second = 14,
     greatest = 17,
     cosine = 20,
-    sideways = 21
+    then = 22,  // at the second stop
+    along = 23
 };
 
 Rows walks(Judge& j, const Out& albedo, size_t n) {
@@ -115,27 +181,56 @@ Rows walks(Judge& j, const Out& albedo, size_t n) {
 void walking(Judge& j) {
     Rows fixed;
     for (int i = 0; i < 4; ++i) fixed.add({0.8, 0.5, 0.2, double(i), 7});
-    j.probe("walk", fixed);
+    for (int i = 0; i < 4; ++i) fixed.add({0.2, 0.8, 0.5, double(i), 7});
+    // But for directions, which depend on how 2.2 uses its numbers.
+    const Rows known = j.ask("walk", fixed);
+    for (size_t i = 0; i < known.size(); ++i)
+        j.remember(Out(known[i].begin(), known[i].begin() + cosine));
     const Rows black = walks(j, {0, 0, 0}, 64);
-    bool once = true;
-    for (size_t i = 0; i < black.size(); ++i)
-        once = once && black[i][stops] == 1 && black[i][rays] == 1 &&
-               black[i][sum] == black[i][emitted] && black[i][absorbed] == black[i][emitted];
-    j.exact("black walls: one stop with all of the power, which is absorbed", once);
+    double least_stops = 1, most_stops = 1, other_rays = 1, brought = 1, kept = 1;
+    for (size_t i = 0; i < black.size(); ++i) {
+        const In w = black[i];
+        least_stops = std::min(least_stops, w[stops]), most_stops = std::max(most_stops, w[stops]);
+        if (w[rays] != 1) other_rays = w[rays];
+        if (w[sum] != w[emitted]) brought = w[sum] / w[emitted];
+        if (w[absorbed] != w[emitted]) kept = w[absorbed] / w[emitted];
+    }
+    j.exact("black walls: a walk has one stop", least_stops == 1 && most_stops == 1,
+            oracle::say("one has %g", least_stops < 1 ? least_stops : most_stops));
+    j.number("and returns one ray", other_rays, 1, 0);
+    j.number("hit is told of all of the power that arrives", brought, 1, 0);
+    j.number("and all of it is absorbed", kept, 1, 0);
     const Out albedo = {0.8, 0.5, 0.2};
     constexpr size_t n = 30000;
     const Rows coloured = walks(j, albedo, n);
     double lost = 0, growth = 0;
-    for (size_t i = 0; i < n; ++i)
+    size_t away = 0;
+    for (size_t i = 0; i < n; ++i) {
+        away += coloured[i][escaped] > 0;
         for (size_t c = 0; c < 3; ++c) {
             const double e = coloured[i][emitted + c];
             const double left = e - coloured[i][absorbed + c] - coloured[i][escaped + c];
             lost = left == left ? std::max(lost, std::abs(left / e)) : oracle::infinity;
             growth = worse(growth, coloured[i][greatest + c] / e);
         }
+    }
+    j.none("nothing escapes from a closed room", away, "%zu of 30000 particles do");
     j.below("of every particle, emitted = absorbed + escaped", lost, 1e4 * j.epsilon, off);
     j.below("no particle gains power on walls that reflect 4/5 at most", growth,
             1 + 1e4 * j.epsilon, "one has %.4g times its own");
+    const auto gained = [&](const Out& of) {
+        const Rows some = walks(j, of, 200);
+        double most = 0;
+        for (size_t i = 0; i < some.size(); ++i)
+            for (size_t c = 0; c < 3; ++c)
+                most = worse(most, some[i][greatest + c] / some[i][emitted + c]);
+        return most;
+    };
+    j.below("nor on green ones, nor on blue ones: the greatest channel decides",
+            worse(gained({0.2, 0.8, 0.5}), gained({0.5, 0.2, 0.8})), 1 + 1e4 * j.epsilon,
+            "one has %.4g times its own");
+    j.below("nor on walls that reflect 99 %: 0.98 is for white ones alone",
+            gained({0.99, 0.99, 0.99}), 1 + 1e4 * j.epsilon, "one has %.4g times its own");
     const char* names[] = {"red, albedo .8: all stops bring 5 times what is emitted",
                            "green, albedo .5: twice", "blue, albedo .2: 1.25 times"};
     for (size_t c = 0; c < 3; ++c)
@@ -151,6 +246,22 @@ void walking(Judge& j) {
         j.statistical(leave, oracle::failure("hardly any goes on"));
     else
         j.mean(leave, 2 / 3.0, went, [](In w) { return w[cosine]; });
+    Rows far;
+    for (size_t i = 0; i < n; ++i)
+        if (coloured[i][stops] > 2) far.add(Out(coloured[i].begin(), coloured[i].end()));
+    const std::string anew = "the new direction does not depend on the old one",
+                      again = "two stops have directions that do not depend on each other";
+    if (far.size() < 1000) {
+        j.statistical(anew, oracle::failure("hardly any goes on twice"));
+    } else {
+        j.mean(anew, 0, far, [](In w) { return w[along]; });
+        j.mean(again, 0, far, [](In w) { return (w[cosine] - 2 / 3.0) * (w[then] - 2 / 3.0); });
+    }
+    // Means in tenths, whatever the numbers.
+    double turn = 0, straight = 0;
+    for (size_t i = 0; i < went.size(); ++i) turn += went[i][cosine] / double(went.size());
+    for (size_t i = 0; i < far.size(); ++i) straight += far[i][along] / double(far.size());
+    j.remember({std::round(10 * turn), std::round(10 * straight)});
     const Rows white = walks(j, {1, 1, 1}, 200);
     double all = 0;
     for (size_t i = 0; i < white.size(); ++i) all += white[i][stops] / 200;
