@@ -12,8 +12,8 @@ those of the file, and so may
 
     equivalent: proof        no test can detect it, so all must pass
 
-Three more lines make it a known mistake of the course (course/mistakes.py).  Its edit is written as a diff: lines begin
-with - (right), + (wrong) or a blank (unchanged).  The right and the unchanged lines are adjacent, and occur exactly once
+Three more lines make it a known mistake of the course (course/mistakes.py).  With `test: judge` the course's judge must
+refuse it when `make mistakes` plants it, and `make mutants` leaves it out.  Its edit is written as a diff: lines begin with - (right), + (wrong) or a blank (unchanged).  The right and the unchanged lines are adjacent, and occur exactly once
 in the source.
 
     @@ box_one_axis: a ray inside one slab is said to be inside the box
@@ -104,7 +104,10 @@ def misfit(mutant):
     """The reason why a mutant cannot be planted; None if it can."""
     try:
         planted(mutant, (ROOT / mutant.file).read_text())
-        source('tests', mutant.test)
+        if mutant.test != 'judge':
+            source('tests', mutant.test)
+        elif not mutant.exercise:
+            raise Malformed('a judge refuses known mistakes only')
     except (Malformed, OSError) as error:
         return f'ERROR: {mutant.name}: {error}'
 
