@@ -13,7 +13,8 @@ those of the file, and so may
     equivalent: proof        no test can detect it, so all must pass
 
 Three more lines make it a known mistake of the course (course/mistakes.py).  With `test: judge` the course's judge must
-refuse it when `make mistakes` plants it, and `make mutants` leaves it out.  Its edit is written as a diff: lines begin with - (right), + (wrong) or a blank (unchanged).  The right and the unchanged lines are adjacent, and occur exactly once
+refuse it when `make mistakes` plants it, and `make mutants` leaves it out.  Its edit is written as a diff: lines begin
+with - (right), + (wrong) or a blank (unchanged).  The right and the unchanged lines are adjacent, and occur exactly once
 in the source.
 
     @@ box_one_axis: a ray inside one slab is said to be inside the box
