@@ -22,7 +22,7 @@ inline std::string text(const char* format, const auto&... values) {
     return line;
 }
 
-struct Place {
+struct PlotPoint {
     double x = 0, y = 0;
 };
 
@@ -81,7 +81,7 @@ class Svg {
 public:
     Svg(double width, double height) : width_(width), height_(height) {}
 
-    void words(Place at, std::string_view words, const svg::Type& type = {}) {
+    void words(PlotPoint at, std::string_view words, const svg::Type& type = {}) {
         body_ += text(R"(<text x="%.1f" y="%.1f" text-anchor="%s" fill="%s" font-size="%.1f")",
                       at.x, at.y, type.anchor, type.colour, svg::letter);
         if (type.bold) body_ += R"( font-weight="bold")";
@@ -90,18 +90,18 @@ public:
         body_ += text(">%s</text>\n", svg::escaped(words));
     }
 
-    void line(const std::vector<Place>& through, const char* colour, double width = 1) {
+    void line(const std::vector<PlotPoint>& through, const char* colour, double width = 1) {
         body_ += text("<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" points=\"",
                       colour, width);
-        for (const Place& p : through) body_ += text("%.1f,%.1f ", p.x, p.y);
+        for (const PlotPoint& p : through) body_ += text("%.1f,%.1f ", p.x, p.y);
         body_ += "\"/>\n";
     }
-    void dot(Place at, const char* colour) {
+    void dot(PlotPoint at, const char* colour) {
         body_ +=
             text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n", at.x, at.y, colour);
     }
     // Scales a picture to this width without smoothing.
-    void picture(Place at, double width, const Image& image, double exposure) {
+    void picture(PlotPoint at, double width, const Image& image, double exposure) {
         body_ += text(
             "<image x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" "
             "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,%s\"/>\n",
@@ -134,7 +134,8 @@ inline Svg contact_sheet(const std::vector<Picture>& pictures, size_t columns, d
     const size_t rows = (pictures.size() + columns - 1) / columns;
     Svg sheet(gap + width * double(columns), gap + height * double(rows));
     for (size_t i = 0; i < pictures.size(); ++i) {
-        const Place at = {gap + width * double(i % columns), gap + height * double(i / columns)};
+        const PlotPoint at = {gap + width * double(i % columns),
+                              gap + height * double(i / columns)};
         sheet.picture(at, width - gap, pictures[i].image, exposure);
         sheet.words({at.x, at.y + height - words + 16}, pictures[i].title, {.bold = true});
         sheet.words({at.x, at.y + height - words + 32}, pictures[i].caption);
@@ -176,13 +177,13 @@ inline Axis axis_of(const std::vector<Series>& all, std::vector<double> Series::
 // A plot on logarithmic axes.  Leaves out numbers without a logarithm.
 inline Svg plot(const std::vector<Series>& all, std::string_view x_label, std::string_view y_label,
                 std::string_view title) {
-    constexpr Place corner = {80, 40}, size = {560, 300};
+    constexpr PlotPoint corner = {80, 40}, size = {560, 300};
     constexpr double right = corner.x + size.x, bottom = corner.y + size.y,
                      line_height = svg::letter + 2;
     Svg sheet(860, 400);
     const Axis x = axis_of(all, &Series::x), y = axis_of(all, &Series::y);
     auto place = [&](double a, double b) {
-        return Place{corner.x + size.x * x.part(a), corner.y + size.y * (1 - y.part(b))};
+        return PlotPoint{corner.x + size.x * x.part(a), corner.y + size.y * (1 - y.part(b))};
     };
     for (double t : x.marks()) {
         const double at = place(t, y.lo).x;
@@ -201,14 +202,14 @@ inline Svg plot(const std::vector<Series>& all, std::string_view x_label, std::s
     sheet.words({corner.x - 46, corner.y + size.y / 2}, y_label, {.anchor = "middle", .turn = -90});
     std::vector<std::pair<double, size_t>> labels;  // heights, and indices of curves
     for (size_t i = 0; i < all.size(); ++i) {
-        std::vector<Place> through;
+        std::vector<PlotPoint> through;
         for (size_t k = 0; k < all[i].x.size(); ++k)
             if (is_shown(all[i].x[k]) && is_shown(all[i].y[k]))
                 through.push_back(place(all[i].x[k], all[i].y[k]));
         if (through.empty()) continue;
         const char* colour = svg::colours[i % std::size(svg::colours)];
         sheet.line(through, colour, 2);
-        for (const Place& p : through) sheet.dot(p, colour);
+        for (const PlotPoint& p : through) sheet.dot(p, colour);
         labels.push_back({through.back().y, i});
     }
     // Moves labels at least a line apart, and none below the frame.
