@@ -128,7 +128,7 @@ int study(const Scope& scope) {
     tell_noise(page, scope.quick);
     RenderGrid grid("shadows", program);
     tell_efficiency(page, grid, scope.quick);
-    std::vector<Picture> pictures;
+    std::vector<PlotPicture> pictures;
     for (const char* e : names)
         pictures.push_back({rendering(text("%s scenes/penumbra.scene --size 256x128 --depth 1 "
                                            "--sets 1 --spp 16 --sampler independent --estimator %s",

@@ -122,13 +122,14 @@ private:
     std::string body_;
 };
 
-struct Picture {
+struct PlotPicture {
     Image image;
     std::string title, caption;
 };
 
 // Pictures of equal size, unscaled, `columns` per row, with title and caption below.
-inline Svg contact_sheet(const std::vector<Picture>& pictures, size_t columns, double exposure) {
+inline Svg contact_sheet(const std::vector<PlotPicture>& pictures, size_t columns,
+                         double exposure) {
     constexpr double gap = 16, words = 48;
     const double width = pictures[0].image.width + gap, height = pictures[0].image.height + words;
     const size_t rows = (pictures.size() + columns - 1) / columns;

@@ -89,7 +89,7 @@ std::string all_settings(Page& page, const Rows& rows) {
 
 // A contact sheet of crops.  Whole images would be large, because noise does not compress.
 Svg pictures(const std::string& program, const std::vector<Setting>& all, const std::string& spp) {
-    std::vector<Picture> shown;
+    std::vector<PlotPicture> shown;
     for (const Setting& s : all) {
         const Image image = rendering(text(
             "%s %s %s --spp %s", s.program.empty() ? program : s.program, scene, s.words, spp));
