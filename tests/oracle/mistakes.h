@@ -290,7 +290,8 @@ inline Mistakes lobes() {
         density<float>("Phong's n for n + 1",
                        {"constant", "everywhere", "n + 1", "normalization", "normalisation"},
                        phong(5), phong_pdf(4, 4)),
-        density<float>("Phong's n-th root, not the n+1-st", cosine, phong(4), phong_pdf(4, 5)),
+        density<float>("Phong's n-th root, not the n+1-st", {"exponent"}, phong(4),
+                       phong_pdf(4, 5)),
     };
 }
 
