@@ -5,8 +5,8 @@
 #include "path/pathtracer.h"
 
 // The quantity that the image shows.
-enum class View { radiance, normal, depth, albedo, bvh };
-inline constexpr Text view_names = "radiance|normal|depth|albedo|bvh";
+enum class View { radiance, normal, depth, albedo, bvh, occlusion };
+inline constexpr Text view_names = "radiance|normal|depth|albedo|bvh|occlusion";
 
 struct Rows {
     int first = 0, last = 0;  // row 0 is at the top of the picture
@@ -115,8 +115,9 @@ inline OptionTable view_rows(Options& o) {
     return in_group(
         "Views and debugging",
         {one_of("--view", view_names,
-                "the image shows radiance; (normal + 1) / 2; distance; albedo; or the BVH nodes "
-                "(red) and shapes (green) that a ray visits",
+                "the image shows radiance; (normal + 1) / 2; distance; albedo; the BVH nodes (red) "
+                "and shapes (green) that a ray visits; or ambient occlusion within "
+                "a quarter of the scene's diagonal",
                 o.view),
          {"--pixel", "X,Y", "print every event of one path of pixel X,Y instead of rendering", "",
           [&o](Text v) { set_pixel(o.replay, v); }},

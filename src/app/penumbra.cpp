@@ -28,9 +28,9 @@ Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 // The function that renders a sample.  It abandons a path after an interrupt.
 Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
                      const Witness& witness) {
-    return [&](const PixelSample& s, Tally& tally) {
+    return [&, far = far_of(scene)](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
-        if (o.view != View::radiance) return ++tally.rays, view_along(scene, o.view, at.ray);
+        if (o.view != View::radiance) return ++tally.rays, view_along(scene, o.view, at, far);
         auto misses = witness.visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {

@@ -16,6 +16,7 @@ inline ParsedScene load(const Options& o) {
     Scene& scene = parsed.scene;
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
+    if (o.view == View::occlusion) scene.depth = 1;    // for the numbers of one direction
     if (o.view != View::radiance) scene.exposure = 1;  // a scene's own is meant for radiance
     if (o.exposure) scene.exposure = real(*o.exposure);
     for (size_t i = 0; i < scene.lights.size(); ++i)

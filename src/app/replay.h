@@ -83,7 +83,7 @@ inline void replay(const Options& o, const Scene& scene, const Pattern& pattern)
                 static_cast<unsigned long long>(i), set, static_cast<unsigned long long>(o.seed));
     log.film(at);
     if (o.view != View::radiance)
-        return log.end("a view, not radiance", view_along(scene, o.view, at.ray));
+        return log.end("a view, not radiance", view_along(scene, o.view, at, far_of(scene)));
     const char* why = nullptr;
     const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
         log(s, e);

@@ -2,9 +2,26 @@
 #pragma once
 #include "app/options.h"
 #include "film/image.h"
+#include "path/start.h"
+#include "world/warp.h"
 
-// The value of a view along a ray; black where it meets nothing.
-inline rgb view_along(const Scene& scene, View view, const Ray& ray) {
+// Ambient occlusion (Landis 2002): 1 where nothing is met, or where a ray from there, in a
+// direction of density cos / pi, meets nothing within `far`.
+inline rgb occlusion_along(const Scene& scene, const Start& at, real far) {
+    const auto x = meet(scene, at.ray);
+    if (!x) return {1, 1, 1};
+    const vec2 u = at.sampler.get2(dimension(0, Draw::wi_x));
+    Ray ray = spawn(x->at, x->local.to_world(sample_cosine_hemisphere(u)));
+    ray.tmax = far;
+    return scene.bvh.occluded(ray) ? rgb{} : rgb{1, 1, 1};
+}
+
+inline real far_of(const Scene& scene) { return diagonal(scene) / 4; }
+
+// The value of a view for a sample; black where its ray meets nothing, except for occlusion.
+inline rgb view_along(const Scene& scene, View view, const Start& at, real far) {
+    if (view == View::occlusion) return occlusion_along(scene, at, far);
+    const Ray& ray = at.ray;
     if (view == View::bvh) {
         const Tree::Work work = scene.bvh.work(ray);
         return {real(work.nodes), real(work.shapes), 0};

@@ -65,7 +65,8 @@ TEST_CASE("words of choices mean what they say") {
                                      {"normal", View::normal},
                                      {"depth", View::depth},
                                      {"albedo", View::albedo},
-                                     {"bvh", View::bvh}})
+                                     {"bvh", View::bvh},
+                                     {"occlusion", View::occlusion}})
         CHECK(parse("--view " + std::string(word)).view == view);
 }
 

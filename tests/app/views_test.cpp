@@ -1,14 +1,19 @@
 // app/views_test.cpp  views other than radiance, and their exposure
 #include "app/views.h"
 
-#include <doctest/doctest.h>
-
 #include "base/cases.h"
+#include "base/moments.h"
+#include "oracle/expect.h"
 #include "world/scene_file.h"
 
 namespace {
 
 Scene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
+
+rgb seen(const Scene& scene, View view, const Ray& ray) {
+    const Pattern pattern;
+    return view_along(scene, view, {Sampler(pattern, 0, 0), {}, ray}, far_of(scene));
+}
 
 }  // namespace
 
@@ -19,14 +24,15 @@ phong gloss 0.1 0.2 0.3  0.5 0.25 0.125  9
 sphere 0 0 0  1  gloss
 )");
     const Ray hit{{0, 0, 5}, {0, 0, -1}}, miss{{0, 0, 5}, {0, 0, 1}};
-    CHECK(view_along(scene, View::normal, hit) == rgb{0.5, 0.5, 1});
-    CHECK(view_along(scene, View::depth, hit) == rgb{4, 4, 4});
-    CHECK(max_abs(view_along(scene, View::albedo, hit) - rgb{real(0.6), real(0.45), real(0.425)}) <
+    CHECK(seen(scene, View::normal, hit) == rgb{0.5, 0.5, 1});
+    CHECK(seen(scene, View::depth, hit) == rgb{4, 4, 4});
+    CHECK(max_abs(seen(scene, View::albedo, hit) - rgb{real(0.6), real(0.45), real(0.425)}) <
           2 * ulp);
-    CHECK(view_along(scene, View::bvh, hit) == rgb{1, 1, 0});
-    CHECK(view_along(scene, View::bvh, miss) == rgb{1, 0, 0});
+    CHECK(seen(scene, View::bvh, hit) == rgb{1, 1, 0});
+    CHECK(seen(scene, View::bvh, miss) == rgb{1, 0, 0});
     for (View v : {View::normal, View::depth, View::albedo})
-        CHECK(view_along(scene, v, miss) == rgb{0, 0, 0});
+        CHECK(seen(scene, v, miss) == rgb{0, 0, 0});
+    CHECK(seen(scene, View::occlusion, miss) == rgb{1, 1, 1});
 }
 
 TEST_CASE("glass is as white as it is clear") {
@@ -35,7 +41,24 @@ camera 0 0 5  0 0 0  40
 glass clear 1.5
 sphere 0 0 0  1  clear
 )");
-    CHECK(view_along(scene, View::albedo, {{0, 0, 5}, {0, 0, -1}}) == rgb{1, 1, 1});
+    CHECK(seen(scene, View::albedo, {{0, 0, 5}, {0, 0, -1}}) == rgb{1, 1, 1});
+}
+
+// From inside a sphere of radius r, a direction of cosine c meets it after 2 r c.  The box of the
+// sphere has a diagonal of 2 sqrt(3) r.  So it is open where c > sqrt(3) / 4, with probability
+// 13/16.
+TEST_CASE("13/16 of the directions from inside a sphere are open") {
+    const Scene scene = scene_of(R"(
+camera 0 0 0  0 0 -1  40
+diffuse grey 0.5 0.5 0.5
+sphere 0 0 0  1  grey
+)");
+    const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1, 0);
+    Moments open;
+    for (uint64_t i = 0; i < 40000; ++i)
+        open.add(double(
+            view_along(scene, View::occlusion, start(scene, pattern, {0, 0, i}), far_of(scene)).x));
+    EXPECT(oracle::expect_mean(13.0 / 16, estimate(open)), 0.02);
 }
 
 TEST_CASE("a PNG shows depth from the nearest to the farthest, and work relative to the most") {
