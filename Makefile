@@ -290,9 +290,15 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | packages
 include src/course/course.mk
 JUDGES := $(patsubst tests/course/%.cpp,$(COURSE)/%,$(wildcard tests/course/judge_*.cpp))
 
+# What the solution draws, students compare with.  They have the plain BVH.
+DRAWN_BY := $(if $(filter float,$(REAL)),-float)-plain$(VARIANT)
+.PHONY: drawers
+drawers:
+	@$(MAKE) --no-print-directory TREE=plain build/penumbra$(DRAWN_BY) build/shadow$(DRAWN_BY)
+
 starter:  ## write the students' starter, build/starter/ and .tar.gz; WEEKS=1-3: these weeks, with earlier weeks solved
-	@python3 src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
-starter: build/draw$(SUFFIX)
+	@DRAW_SUFFIX=$(DRAWN_BY) python3 src/course/starter.py $(if $(WEEKS),--weeks '$(WEEKS)') build/starter
+starter: drawers
 
 # Students' code is compiled and run in bubblewrap alone.
 grade: packages  ## grade submissions: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WEEKS=1-3, SEED=N, JOBS=2
@@ -303,8 +309,8 @@ grade: packages  ## grade submissions: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WE
 
 plant:  ## write a bug hunt: a solved copy with one mutant, as build/plant/N/ and .tar.gz; M=NAME or M=random, WEEKS=1-3
 	@$(if $(M),,echo "make plant M=NAME: which of tests/mutants/?  M=random draws one" >&2; exit 2;) \
-	CXX='$(CXX)' SUFFIX=$(SUFFIX) python3 src/course/plant.py --mutant '$(M)' $(if $(WEEKS),--weeks '$(WEEKS)') build/plant
-plant: build/draw$(SUFFIX)
+	CXX='$(CXX)' SUFFIX=$(SUFFIX) DRAW_SUFFIX=$(DRAWN_BY) python3 src/course/plant.py --mutant '$(M)' $(if $(WEEKS),--weeks '$(WEEKS)') build/plant
+plant: drawers
 
 hunted: packages  ## grade a bug hunt; N=3: of the copy build/plant/3, HUNT=FILE: the submitted test
 	@$(if $(and $(N),$(HUNT)),,echo "make hunted N=NUMBER HUNT=FILE: which copy, and its test?" >&2; exit 2;) \
@@ -322,7 +328,7 @@ key:  ## for instructors: the sheets with their answers, plans of the sessions, 
 
 starter-check:  ## test the starter; FULL=1: each pair of stubs, too
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full) $(if $(DRAW),--draw '$(DRAW)')
-starter-check: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%) build/draw$(SUFFIX)
+starter-check: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%)
 
 # ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
 

@@ -10,10 +10,7 @@ $(COURSE)/%: tests/course/%.cpp build/compiler$(SUFFIX) | packages
 	@mkdir -p $(@D)
 	@$(CXX) $(FLAGS) -O1 -Itests -MF $@.d -MT $@ -o $@ $<
 
-build/draw$(SUFFIX): src/course/draw.cpp build/compiler$(SUFFIX) | packages
-	@mkdir -p $(@D)
-	@$(CXX) $(FLAGS) -O2 -MF $@.d -MT $@ -o $@ $<
--include $(wildcard $(COURSE)/*.d build/draw$(SUFFIX).d)
+-include $(wildcard $(COURSE)/*.d)
 
 .PHONY: check update always
 check:  ## EX=2.1: is that exercise right?  WATCH=1: again at every save.  Without EX: what is right, wrong, open

@@ -108,7 +108,8 @@ def write_copy(plan, folder):
     tests = ROOT / 'tests'
     for name in ('oracle/oracle.h', 'oracle/README.md', 'course/hunt.cpp'):
         starter.write(folder / 'tests' / name, (tests / name).read_text())
-    starter.write(folder / 'tests/course/check', (tests / 'course/hunt').read_text(), True)
+    for name, source in (('check', 'hunt'), ('picture', 'picture')):
+        starter.write(folder / 'tests/course' / name, (tests / 'course' / source).read_text(), True)
     keep = starter.rows((tests / 'course/pictures.txt').read_text(), lambda key: key.split('.')[0] in plan.weeks)
     starter.write(folder / 'tests/course/pictures.txt', keep)
 
@@ -135,15 +136,15 @@ def key_of(mutant, lines, shown):
     return ''.join(f'{name}: {value}\n' for name, value in rows if value)
 
 
-def make_copy(mutant, plan, folder, draw=None):
-    """The copy and its key; nothing is left of what is refused."""
+def make_copy(mutant, plan, folder, suffix=None):
+    """The copy and its key; nothing is left of what is refused.  Without a suffix, without pictures."""
     try:
         write_copy(plan, folder)
         lines = plant(mutant, folder)
         compile_all(folder)
         shown = []
-        if draw:
-            starter.draw_expected(plan, folder, draw)
+        if suffix is not None:
+            starter.draw_expected(plan, folder, suffix)
             shown = pictures(folder)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
@@ -166,7 +167,7 @@ def main():
     parser.add_argument('folder', type=pathlib.Path)
     words = parser.parse_args()
     plan = starter.Plan(words.weeks, solved=True)
-    draw = None if words.no_pictures else str(ROOT / f'build/draw{trial.SUFFIX}')
+    suffix = None if words.no_pictures else os.environ.get('DRAW_SUFFIX', '-plain')
     if words.mutant == 'random':
         chosen = candidates(plan)
         (random.Random(words.seed) if words.seed else random.SystemRandom()).shuffle(chosen)
@@ -177,7 +178,7 @@ def main():
     why = f'there is no mutant {words.mutant}' if words.mutant != 'random' else 'there is none to draw from'
     for mutant in chosen:
         try:
-            make_copy(mutant, plan, copy, draw)
+            make_copy(mutant, plan, copy, suffix)
             print(f'{words.folder}/{copy.name}, {copy.name}.tar.gz: for a student; {copy.name}.key says what it is')
             return 0
         except Refused as refused:

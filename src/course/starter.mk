@@ -13,11 +13,19 @@ endif
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: build/draw$(SUFFIX)  ## draw every scene into out/ (default)
-	@mkdir -p out; for s in $(SCENES); do build/draw$(SUFFIX) -o out/$$s.png scenes/$$s.scene || exit 1; done
+all: build/penumbra$(SUFFIX)  ## render every scene into out/ (default)
+	@mkdir -p out; for s in $(SCENES); do build/penumbra$(SUFFIX) --spp 16 -o out/$$s.png scenes/$$s.scene || exit 1; done
 
-out/%.png: scenes/%.scene build/draw$(SUFFIX)  ## out/NAME.png: draw scenes/NAME.scene; ARGS="--spp 64": build/draw --help has more
-	@mkdir -p out; build/draw$(SUFFIX) $(ARGS) -o $@ $<
+out/%.png: scenes/%.scene build/penumbra$(SUFFIX)  ## out/NAME.png: render scenes/NAME.scene; ARGS="--spp 64": build/penumbra --help has more
+	@mkdir -p out; build/penumbra$(SUFFIX) $(or $(ARGS),--spp 16) -o $@ $<
+
+# A program is a .cpp of its own name: penumbra, and those of the projects.
+define program
+build/$(basename $(notdir $(1)))$(SUFFIX): $(1) build/compiler$(SUFFIX) | packages
+	@$$(CXX) $$(FLAGS) -O2 -MF $$@.d -MT $$@ -o $$@ $$<
+endef
+$(foreach source,$(wildcard src/*/*.cpp),$(eval $(call program,$(source))))
+-include $(wildcard build/*.d)
 
 clean:  ## remove build/ and out/
 	rm -rf build out

@@ -21,11 +21,11 @@ import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
-FOLDERS = ['base', 'world', 'path', 'film']
-ALSO = ['src/keep/read_pfm.h']  # build/draw compares pictures
+FOLDERS = ['base', 'world', 'path', 'film', 'app']
+ALSO = ['src/keep/read_pfm.h']  # build/beside compares pictures
 UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
-COURSE = ['draw.h', 'draw.cpp', 'course.mk']  # of src/course
-KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'update', 'pictures.txt']  # of tests/course
+COURSE = ['beside.cpp', 'course.mk']  # of src/course
+KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'update', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
 Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
 names with two underscores.
@@ -88,18 +88,12 @@ def with_headers(folder, files):
     return found
 
 
-def needs_app(path):
-    """Whether a file includes a header of src/app, itself or by others: a starter draws by build/draw alone."""
-    names = re.findall(r'^#include "(\w+/\w+\.h)"', path.read_text(), re.M)
-    return any(name.startswith('app/') or needs_app(ROOT / 'src' / name) for name in names)
-
-
 def write_sources(plan, to):
-    """src: of the folders that the weeks need what needs no app, and the plain tree alone."""
+    """src: the core and the wings of these weeks, with the plain tree alone."""
     for folder in FOLDERS + plan.wings:
         for path in sorted((ROOT / 'src' / folder).iterdir()):
             name = f'src/{folder}/{path.name}'
-            if name in UNTOLD or needs_app(path):
+            if name in UNTOLD:
                 continue
             write(to / name, regions.rewrite(path.read_text(), name, plan.replacement))
     for name in ALSO:
@@ -124,7 +118,7 @@ def write_checks(plan, to):
     numbers = {e.number for e in plan.open}
     files = KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]
     for file in with_headers(course, files):
-        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'update'))
+        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'picture', 'update'))
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
@@ -184,8 +178,8 @@ def write_rest(plan, to):
     write(to / 'LICENSE', (ROOT / 'LICENSE').read_text())
 
 
-def draw_expected(plan, to, draw):
-    """expected/: what the solution draws, by the same random numbers."""
+def draw_expected(plan, to, suffix):
+    """expected/: what the solution's programs of this suffix draw, by the same random numbers."""
     for line in (ROOT / 'tests/course/pictures.txt').read_text().splitlines():
         if line.startswith('#'):
             continue
@@ -193,8 +187,8 @@ def draw_expected(plan, to, draw):
         if key.split('.')[0] not in plan.weeks:
             continue
         (to / 'expected').mkdir(exist_ok=True)
-        subprocess.run([draw, *order.split(), '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT,
-                       stdout=subprocess.DEVNULL)
+        program, *options = order.split()
+        subprocess.run([f'build/{program}{suffix}', *options, '--quiet', '-o', str(to / f'expected/{key}.pfm')], check=True, cwd=ROOT)
 
 
 def pack(folder):
@@ -212,13 +206,13 @@ def pack(folder):
         packed.write(buffer.getvalue())
 
 
-def make_starter(plan, to, draw=None):
-    """Writes the folder anew."""
+def make_starter(plan, to, suffix=None):
+    """Writes the folder anew; without a suffix, without expected pictures."""
     shutil.rmtree(to, ignore_errors=True)
     for step in (write_sources, write_checks, write_rest):
         step(plan, to)
-    if draw:
-        draw_expected(plan, to, draw)
+    if suffix is not None:
+        draw_expected(plan, to, suffix)
 
 
 def main():
@@ -229,9 +223,8 @@ def main():
     parser.add_argument('folder', type=pathlib.Path)
     words = parser.parse_args()
     plan = Plan(words.weeks, words.solved)
-    draw = None if words.no_pictures else str(ROOT / ('build/draw' + os.environ.get('SUFFIX', '')))
     folder = words.folder.resolve()
-    make_starter(plan, folder, draw)
+    make_starter(plan, folder, None if words.no_pictures else os.environ.get('DRAW_SUFFIX', '-plain'))
     pack(folder)
     count = f'{len(plan.open)} exercise' + ('s' if len(plan.open) > 1 else '')
     print(f'{words.folder}, {words.folder}.tar.gz: {count} of week{"s" if len(plan.weeks) > 1 else ""} {" ".join(plan.weeks)}')

@@ -27,16 +27,18 @@ class Room:
         self.temporary = tempfile.TemporaryDirectory()
         self.top = pathlib.Path(self.temporary.name)
         for name, text in (('tests/course/exercises.txt', '2.1 | One | world/a.h | | 1 | 1\n2.2 | Two | world/a.h | | 1 | 1\n'),
-                           ('tests/course/pictures.txt', '2.2 | 2.2 | 30 | --spp 1 scene\n'), ('tests/course/mistakes.txt', ''),
+                           ('tests/course/pictures.txt', '2.2 | 2.2 | 30 | penumbra --spp 1 scene\n'), ('tests/course/mistakes.txt', ''),
                            ('src/world/a.h', '// BEGIN 2.1\n// END 2.1\n// BEGIN 2.2\n// END 2.2\n'), ('said', SAID),
                            ('expected/2.2.pfm', ''), ('build/course/answers_2', ''),
                            ('build/course/judge_2', '#!/bin/sh\necho >>judged\ncat said\nexit 1\n'),
-                           ('build/draw', '#!/bin/sh\nfor last; do :; done; echo x >$last; echo "$last: 9x9, 1 sample a pixel"\n'),
+                           ('build/penumbra', '#!/bin/sh\nfor last; do :; done; echo x >$last; echo "scene: 9 samples per pixel"; echo wrote >&2\n'),
+                           ('build/beside', '#!/bin/sh\necho "d_rel 3 %; mean 1 1 1"\n'),
                            ('make', '#!/bin/sh\necho "$@" >>made\n')):
             (self.top / name).parent.mkdir(parents=True, exist_ok=True)
             (self.top / name).write_text(text)
             (self.top / name).chmod(0o755)
-        shutil.copy(ROOT / 'tests/course/check', self.top / 'tests/course/check')
+        for name in ('check', 'picture'):
+            shutil.copy(ROOT / 'tests/course' / name, self.top / 'tests/course' / name)
         self.environment = {**os.environ, 'MAKE': str(self.top / 'make'), 'SUFFIX': ''}
         return self
 
@@ -65,10 +67,10 @@ def shown(room, script=''):
 def test_the_renderer_is_built_for_exercises_with_a_picture_alone():
     with Room() as room:
         room.check('2.1')
-        expect('build/draw' not in (room.top / 'made').read_text(), (room.top / 'made').read_text())
+        expect('build/penumbra' not in (room.top / 'made').read_text(), (room.top / 'made').read_text())
         said = room.check('2.2')
-        expect(said.returncode == 1 and 'build/draw' in (room.top / 'made').read_text(), said)
-        expect(said.stdout.startswith(SAID) and 'out/check/2.2.png: 9x9' in said.stdout, said.stdout)
+        expect(said.returncode == 1 and 'build/penumbra' in (room.top / 'made').read_text(), said)
+        expect(said.stdout.startswith(SAID) and 'out/check/2.2.png: 9 samples per pixel; d_rel 3 %' in said.stdout, said.stdout)
 
 
 def test_the_page_has_verdict_items_picture_and_scale():
@@ -89,7 +91,7 @@ def test_the_page_shows_drawings_and_names_pictures_right_above_them():
                                                        'echo >"$ORACLE_PICTURES/oracle-check-1.svg"\n[ $3 = 2.2 ]\n')
         room.check('2.2')
         expect('<img class="drawn" src="2.2.svg?' in room.page(), room.page())
-        (room.top / 'build/draw').write_text('#!/bin/sh\nfor last; do :; done; echo "$last: 9x9, d_rel 90 %"\n')
+        (room.top / 'build/beside').write_text('#!/bin/sh\necho "d_rel 90 %; mean 1 1 1"\n')
         said = room.check('2.2').stdout
         expect('far off' in said and re.search('far off[^<]*\n<div class=three>.*</div>\n<img', room.page()), said, room.page())
 

@@ -107,7 +107,7 @@ struct House {
             if (entry.path().extension() == ".py")
                 folder.write("src/course/" + entry.path().filename().string(),
                              read_file(entry.path().string()));
-        for (const char* name : {"draw.h", "draw.cpp", "course.mk"})
+        for (const char* name : {"beside.cpp", "course.mk"})
             folder.write(std::string("src/course/") + name, "// nothing\n");
         folder.write("src/film/nothing.h", "// film/nothing.h  1  nothing\n");
         folder.write("src/keep/read_pfm.h", "// nothing\n");

@@ -182,7 +182,7 @@ def test_no_sampler_beside_it_shows_how_4_3_goes():
 def test_a_starter_has_what_its_weeks_need_and_no_more():
     with Made() as made:
         folders = sorted(p.name for p in (made.folder / 'src').iterdir())
-        expect(folders == ['base', 'course', 'film', 'keep', 'path', 'world'], folders)
+        expect(folders == ['app', 'base', 'course', 'film', 'keep', 'path', 'world'], folders)
         names = sorted(p.name for p in (made.folder / 'tests/course').iterdir())
         expect(not [n for n in names if n.endswith('_test.cpp') or n.endswith('.py') or 'hidden' in n], names)
         expect([n for n in names if n.startswith('judge_')] == ['judge_2.cpp', 'judge_3.cpp'], names)
@@ -190,7 +190,7 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         for table in ('exercises.txt', 'mistakes.txt'):
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
             expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
-        for name in ('Dockerfile', '.github/workflows/check.yml', '.clang-format', 'sheets/systems.md', 'tests/course/update'):
+        for name in ('Dockerfile', '.github/workflows/check.yml', '.clang-format', 'sheets/systems.md', 'tests/course/update', 'tests/course/picture'):
             expect((made.folder / name).exists(), f'no {name}')
         expect('wide' not in (made.folder / 'src/world/tree.h').read_text(), 'the wide tree')
         guide = (made.folder / 'tests/oracle/README.md').read_text()
@@ -201,11 +201,11 @@ def test_all_that_a_starter_includes_is_there():
     with tempfile.TemporaryDirectory() as temporary:
         starter.make_starter(starter.Plan('1-6,V,R'), pathlib.Path(temporary))
         files = [*pathlib.Path(temporary).rglob('*.h'), *pathlib.Path(temporary).rglob('*.cpp')]
-        expect(any(f.name == 'draw.cpp' for f in files), files)
+        expect(any(f.name == 'penumbra.cpp' for f in files), files)
         for file in files:
             for name in re.findall(r'^#include "(.*)"', file.read_text(), re.M):
                 found = [f for f in ('src', 'tests', 'tests/course') if (pathlib.Path(temporary) / f / name).exists()]
-                expect(found, f'{file.name} includes {name}')
+                expect(found or f'__has_include("{name}")' in file.read_text(), f'{file.name} includes {name}')
 
 
 def test_marks_survive_every_style_of_clang_format():
@@ -233,7 +233,7 @@ def test_another_compiler_builds_anew():
             starter.write(made.folder / name, '#!/bin/sh\necho x >>asked\n[ "$1" = -x ] && exit\necho x >>built\n'
                           'while [ "$1" != -o ]; do shift; done\necho >"$2"\n', True)
         for name, times in (('one', 1), ('one', 1), ('two', 2), ('two', 2)):
-            done = subprocess.run(['make', 'build/draw', f'CXX=./{name}'], cwd=made.folder, capture_output=True, text=True)
+            done = subprocess.run(['make', 'build/penumbra', f'CXX=./{name}'], cwd=made.folder, capture_output=True, text=True)
             expect(done.returncode == 0, done.stderr)
             expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
 
@@ -249,13 +249,17 @@ def test_a_header_within_src_will_do():
 
 def test_what_the_solution_draws_is_that_of_the_open_weeks():
     with tempfile.TemporaryDirectory() as temporary:
-        folder, draw = pathlib.Path(temporary), pathlib.Path(temporary) / 'draw'
-        starter.write(draw, '#!/bin/sh\nfor last; do :; done; echo "$@" >"$last"\n', True)
-        starter.draw_expected(starter.Plan('1-2'), folder, str(draw))
+        folder, suffix = pathlib.Path(temporary), f'-stand-in-{os.getpid()}'
+        stand_in = regions.ROOT / f'build/penumbra{suffix}'
+        try:
+            starter.write(stand_in, '#!/bin/sh\nfor last; do :; done; echo "$@" >"$last"\n', True)
+            starter.draw_expected(starter.Plan('1-2'), folder, suffix)
+        finally:
+            stand_in.unlink()
         names = sorted(p.stem for p in (folder / 'expected').iterdir())
         expect(names == ['1', '1.4', '1.5', '1.6', '2.2'], names)
         order = (folder / 'expected/2.2.pfm').read_text()
-        expect(order.startswith('--view occlusion') and 'scenes/cornell36.scene -o' in order, order)
+        expect(order.startswith('--view occlusion') and 'scenes/cornell36.scene --quiet -o' in order, order)
 
 
 def test_a_solved_copy_has_all_solutions():
@@ -380,13 +384,15 @@ class Checked:
         said = ''.join(f'{n}) echo "{n} {v}"; [ "{v}" = right ] && exit 0;; ' for n, v in verdicts.items())
         drawn = f'[ -z "$ORACLE_PICTURES" ] || {{ mkdir -p "$ORACLE_PICTURES"; echo "{svg}" >"$ORACLE_PICTURES/oracle-check-1.svg"; }}; '
         for name, text in {'build/course/judge_1': f'{drawn if svg else ""}case $3 in {said} esac; exit 1',
-                           'build/draw': f'echo "picture: 1.0 s, d_rel {off} %"'}.items():
+                           'build/penumbra': 'echo "x: 1.0 s"; echo wrote',
+                           'build/beside': f'echo "d_rel {off} %; mean 1 1 1"'}.items():
             starter.write(self.top / name, f'#!/bin/sh\n{text}\n', True)
         for name, text in {'exercises.txt': ''.join(f'{n} | {n} | a.h | | 1 | 1\n' for n in verdicts),
-                           'pictures.txt': '1 | 1.1 1.2 | 30 | --spp 1 x.scene\n', 'mistakes.txt': ''}.items():
+                           'pictures.txt': '1 | 1.1 1.2 | 30 | penumbra --spp 1 x.scene\n', 'mistakes.txt': ''}.items():
             starter.write(self.top / 'tests/course' / name, text)
         starter.write(self.top / 'src/a.h', ''.join(f'// BEGIN {n}\n// END {n}\n' for n in verdicts))
-        shutil.copy(regions.ROOT / 'tests/course/check', self.top / 'tests/course/check')
+        for name in ('check', 'picture'):
+            shutil.copy(regions.ROOT / 'tests/course' / name, self.top / 'tests/course' / name)
 
     def __enter__(self):
         return self

@@ -65,7 +65,7 @@ COPIES = {
     'own files': (lambda folder: (folder / 'src/notes.txt').write_text('mine'), []),
     'own scene': (edit('scenes/cornell36.scene', '\n', '\n# mine\n'), ['scenes/cornell36.scene']),
     'deleted': (lambda folder: shutil.rmtree(folder / 'sheets'), []),
-    'built': (lambda folder: starter.write(folder / 'build/draw', 'a program'), []),
+    'built': (lambda folder: starter.write(folder / 'build/penumbra', 'a program'), []),
     'mark lost': (edit(BVH, '// END 1.4', ''), [BVH]),
 }
 

@@ -1,0 +1,72 @@
+// course/beside.cpp  3  a student's picture, the expected one, and their difference, side by side
+//
+//   beside IMAGE.pfm EXPECTED.pfm SIDE-BY-SIDE.png
+//
+// Prints d_rel = sqrt(sum (f - F)^2 / sum F^2), F what is expected (Khodulev 1996), and the mean of
+// each channel.
+#include "base/program.h"
+#include "keep/read_pfm.h"
+
+namespace {
+
+using Channels = std::array<double, 3>;
+
+Channels mean_of(const Image& image) {
+    Channels mean{};
+    for (const auto& pixel : image.pixels)
+        for (size_t c = 0; c < 3; ++c) mean[c] += double(pixel[c]) / double(image.pixels.size());
+    return mean;
+}
+
+// What is shown as white: the value that 2 % of all pixels exceed, or six times the median, for a
+// window may fill more; 1 if all is black.
+double white_of(const Image& image) {
+    std::vector<float> brightest;
+    for (const auto& pixel : image.pixels)
+        brightest.push_back(std::max({pixel[0], pixel[1], pixel[2]}));
+    std::sort(brightest.begin(), brightest.end());
+    const size_t n = brightest.size();
+    const float white = std::min(brightest[n * 98 / 100], 6 * brightest[n / 2]);
+    return white > 0 ? double(white) : 1;
+}
+
+double relative_error(const Image& f, const Image& F) {
+    double difference = 0, sum = 0;
+    for (size_t i = 0; i < f.pixels.size(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            difference += sqr(double(f.pixels[i][c]) - double(F.pixels[i][c]));
+            sum += sqr(double(F.pixels[i][c]));
+        }
+    return std::sqrt(difference / sum);
+}
+
+// The image, what is expected, and grey plus twice the difference.
+Image side_by_side(const Image& f, const Image& F, double white) {
+    const int w = f.width;
+    Image all(3 * w, f.height);
+    for (int y = 0; y < f.height; ++y)
+        for (int x = 0; x < w; ++x) {
+            const auto &a = all.at(x, y) = f.at(x, y), &b = all.at(x + w, y) = F.at(x, y);
+            for (size_t c = 0; c < 3; ++c)
+                all.at(x + 2 * w, y)[c] = float(white / 5 + 2 * (double(a[c]) - double(b[c])));
+        }
+    return all;
+}
+
+int run(const std::vector<std::string>& words) {
+    if (words.size() != 3) throw UserError("usage: beside IMAGE.pfm EXPECTED.pfm SIDE-BY-SIDE.png");
+    const Image f = read_pfm(words[0]), F = read_pfm(words[1]);
+    if (f.width != F.width || f.height != F.height) throw UserError("the pictures have two sizes");
+    const double white = white_of(F);
+    write_image(words[2], side_by_side(f, F, white), 1 / white);
+    const Channels a = mean_of(f), b = mean_of(F);
+    std::printf("d_rel %.3g %%; mean %.4g %.4g %.4g, expected %.4g %.4g %.4g\n",
+                100 * relative_error(f, F), a[0], a[1], a[2], b[0], b[1], b[2]);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try { return finished(run({argv + 1, argv + argc})); } catch (...) {
+    return failed();
+}
