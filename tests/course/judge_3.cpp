@@ -726,6 +726,10 @@ void roulette(Judge& j) {
         return rows;
     };
     j.probe("throughput", asked(0.7 * T, 6, 1));
+    const Rows many = j.ask("throughput", asked(T, 64, 1));
+    double survivors = 0;
+    for (size_t i = 0; i < many.size(); ++i) survivors += many[i][2] > 0;
+    j.remember({survivors});
     j.probe("throughput", asked(0.05, 1, 1));
     const Triple without = triple(j.ask("throughput", question({}, 1, from)));
     const Triple whole = without[2] > 0 ? without : 0.5 * before;
