@@ -390,6 +390,8 @@ void no_surface_shades_itself(Judge& j) {
         for (size_t i = 0; i < L.size(); ++i) n += L[i][0] <= 0;
         return n;
     };
+    oracle::Random fixed(1);
+    j.remember({double(dark(fixed) > 0)});
     j.none("no surface is in its own way", dark(j.random),
            "%zu of 400 points are dark in broad light");
 }
@@ -454,6 +456,18 @@ void from_a_lamp(Judge& j) {
                                     : "its share of that beside rays that may meet it",
                  came.at(at), expected.at(at), tolerance(j));
     }
+    // Of two lamps the weight knows the chance, too.
+    build(
+        j, 4,
+        {ground, ball({0, 3, 4}, 2, glowing({1, 2, 3})), ball({0, -3, 4}, 2, glowing({6, 5, 4}))});
+    Out came, expected;
+    for (uint64_t seed = 1; seed <= 32; ++seed) {
+        const Technique t{by_both, uniform};
+        const LightSample s = light_sample(j.ask("light_sample", aimed(t, seed)));
+        if (!(s.pdf > 0) || s.cosine < 0.01) continue;
+        came.push_back(s.came[1]), expected.push_back(s.expected(t)[1]);
+    }
+    j.remember_factor(came, expected);
 }
 
 struct Ball {
@@ -631,6 +645,13 @@ void of_two_lamps(Judge& j) {
             oracle::say("off by %.6g", off));
 }
 
+// Lamps that shine on each other: seen from one of them the other is the likelier.
+void of_facing_lamps(Judge& j) {
+    const Stuff dim = glowing({1, 1, 1}), bright = glowing({5, 5, 5});
+    build(j, 4, {ball({3, 0, 4}, 1, dim), ball({-3, 0, 4}, 1, bright)});
+    weight(j, {by_both}, 0.3, {0, {2.4, 0, 3.2}, {-0.6, 0, -0.8}});
+}
+
 // Lamps of both kinds among balls that are none, in any order and pose.
 void of_any_lamp(Judge& j) {
     double off = 0;
@@ -684,6 +705,7 @@ void of_any_lamp(Judge& j) {
 void both_weighted(Judge& j) {
     of_one_lamp(j);
     of_two_lamps(j);
+    of_facing_lamps(j);
     of_any_lamp(j);
     within_a_lamp(j);
 }
@@ -875,7 +897,8 @@ void of_any_glass(Judge& j) {
 
 void glass(Judge& j) {
     j.probe("sample_glass", {at_glass(1.5, true, 0.01, 0.5), at_glass(1.5, true, 0.9, 0.5),
-                             at_glass(1.5, false, 0.9, 0.8), at_glass(1.5, false, 0.7, 0.5)});
+                             at_glass(1.5, false, 0.9, 0.8), at_glass(1.5, false, 0.7, 0.5),
+                             at_glass(2, true, 0.9, 0.5)});
     directions_of_glass(j);
     reflectance_of_glass(j);
     const Ways total = ways(j, 1.5, false, 0.5);

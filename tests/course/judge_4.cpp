@@ -344,6 +344,7 @@ void dimensions(Judge& j) {
     const size_t seed = equal_numbers(here[0], reseeded[0]);
     const size_t empty[] = {empty_boxes(j, 0, 1, 3), empty_boxes(j, 2, 3, 3),
                             empty_boxes(j, 2, 2 + of_vertex, 3)};
+    j.remember({double(empty_alone(j, 0, 3) > 0)});
     std::string alone;
     for (size_t dim : {0, 2, 3})
         if (const size_t parts = empty_alone(j, dim, 3); parts > 0 && alone.empty())
@@ -457,6 +458,21 @@ void strata(Judge& j) {
     const double lowest = *std::min_element(of_third.begin(), of_third.end());
     j.remember(row(all_missed(fixed) > 0, without_zeros(places), places.back() > 0,
                    without_zeros(along), along[0] > 0, along.back() > 0, lowest < 0.39, below));
+    size_t down = 0;  // of the four places down a cell, those that were met
+    for (size_t b = 0; b < 4; ++b)
+        down += places[b] + places[4 + b] + places[8 + b] + places[12 + b] > 0;
+    // Between which twentieths the third of five parts is, and in which cell of 4 x 3 points of
+    // cell 5 are; -1: not in one.
+    const double highest = *std::max_element(of_third.begin(), of_third.end());
+    Rows sixth;
+    for (int i = 0; i < 200; ++i) sixth.add(in_cell(5, 4, 3, fixed.bits()));
+    const Rows points = j.ask("in_cell", sixth);
+    Out cell{std::floor(4 * points[0][0]), std::floor(3 * points[0][1])};
+    for (size_t i = 0; i < points.size(); ++i) {
+        if (std::floor(4 * points[i][0]) != cell[0]) cell[0] = -1;
+        if (std::floor(3 * points[i][1]) != cell[1]) cell[1] = -1;
+    }
+    j.remember(row(std::floor(20 * lowest + 1e-6), std::floor(20 * highest + 1e-6), cell, down));
     for (const auto& [columns, rows] : grids) {
         bool any = false;
         for (int trial = 0; trial < 10; ++trial) any |= empty_cells(j, fixed, columns, rows) > 0;
