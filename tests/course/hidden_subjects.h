@@ -46,7 +46,7 @@ vec3 concentric_sample(double u, double v) {
 vec3 float_sample(double u, double v) {
     const float r = std::sqrt(float(u)), phi = 2 * std::numbers::pi_v<float> * float(v);
     const float x = r * std::cos(phi), y = r * std::sin(phi);
-    return {x, y, std::sqrt(std::max(0.0f, 1 - x * x - y * y))};
+    return {x, y, std::cos(std::asin(r))};  // -4e-8 where r rounds to 1
 }
 
 // About an axis of 45 degrees: what falls below the horizon is rejected.
@@ -82,57 +82,62 @@ Lineup<Sampler> hidden_samplers() {
     auto power = [](double n) { return [n](vec3 w) { return power_pdf(w, n); }; };
     const Pair lobe = [](double u, double v) { return power_sample(u, v, 20); };
     return {
-        {{"the radius is u", {turned([](double u) { return std::sqrt(1 - u * u); }), cosine_pdf}},
-         {"uniform under the cosine's density", {uniform_sample, cosine_pdf}},
-         {"the cosine under a uniform density", {cosine_sample, uniform_pdf}},
-         {"1 / pi forgotten", {cosine_sample, [](vec3 w) { return std::max(0.0, double(w.z)); }}},
-         {"the lobe's n + 2 for n + 1",
+        {{"the form of the density: the radius is u",
+          {turned([](double u) { return std::sqrt(1 - u * u); }), cosine_pdf}},
+         {"the form of the density: uniform under the cosine's density",
+          {uniform_sample, cosine_pdf}},
+         {"the form of the density: the cosine under a uniform density",
+          {cosine_sample, uniform_pdf}},
+         {"a factor of the density: 1 / pi forgotten",
+          {cosine_sample, [](vec3 w) { return std::max(0.0, double(w.z)); }}},
+         {"a factor of the density: the lobe's n + 2 for n + 1",
           {lobe, [](vec3 w) { return 22.0 / 21 * power_pdf(w, 20); }}},
-         {"the exponent of the density is one less", {lobe, power(19)}},
-         {"half a turn", {[](double u, double v) { return cosine_sample(u, v / 2); }, cosine_pdf}},
-         {"equal steps of the angle",
+         {"the form of the density: the exponent of the density is one less", {lobe, power(19)}},
+         {"pairs that cover a part alone: half a turn",
+          {[](double u, double v) { return cosine_sample(u, v / 2); }, cosine_pdf}},
+         {"the form of the density: equal steps of the angle",
           {turned([](double u) { return std::cos(u * std::numbers::pi / 2); }), uniform_pdf}},
-         {"positive below the horizon",
+         {"the horizon: positive below the horizon",
           {cosine_sample, [](vec3 w) { return std::abs(w.z) * one_over_pi; }}},
-         {"directions of other lengths",
+         {"lengths: directions of other lengths",
           {[](double u, double v) {
                const vec3 w = cosine_sample(u, v);
                return vec3{w.x, w.y, w.z * w.z};
            },
            cosine_pdf}},
-         {"a logarithm of 0 at the border",
+         {"the borders of the square: a logarithm of 0 at the border",
           {[](double u, double v) {
                return about_z(std::exp(std::log(u) / 2), whole_turn * v + 0 * std::log(u));
            },
            cosine_pdf}},
-         {"shares exchanged", {mixed(0.6), mixed_pdf(0.4)}},
-         {"rejects, and does not say so",
+         {"the form of the density: shares exchanged", {mixed(0.6), mixed_pdf(0.4)}},
+         {"a factor of the density: rejects, and does not say so",
           {tilted_sample, [](vec3 w) { return 1.2 * tilted_pdf(w); }}},
-         {"one number for both",
+         {"pairs that cover a part alone: one number for both",
           {[](double, double v) { return cosine_sample(v, v); }, cosine_pdf}},
-         {"stretched, without the Jacobian",
+         {"the form of the density: stretched, without the Jacobian",
           {stretched_sample,
            [](vec3 w) {
                return w.z > 0 ? cosine_pdf(unit({w.x / 2, 2 * w.y, w.z})) : 0;
            }}},
-         {"stretched the other way",
+         {"the form of the density: stretched the other way",
           {[](double u, double v) {
                const vec3 w = stretched_sample(u, v);
                return vec3{w.y, w.x, w.z};
            },
            stretched_pdf}}},
-        {{"concentric circles", {concentric_sample, cosine_pdf}},
-         {"float",
+        {{"another way: concentric circles", {concentric_sample, cosine_pdf}},
+         {"the rounding of float: float",
           {float_sample, [](vec3 w) { return w.z > 0 ? float(w.z) * 0.31830987f : 0.0f; }}},
-         {"a mixture", {mixed(0.3), mixed_pdf(0.3)}},
-         {"rejects what is below the horizon", {tilted_sample, tilted_pdf}},
-         {"the numbers exchanged and turned, in four sheets",
+         {"another way: a mixture", {mixed(0.3), mixed_pdf(0.3)}},
+         {"rejected pairs: rejects what is below the horizon", {tilted_sample, tilted_pdf}},
+         {"another way: the numbers exchanged and turned, in four sheets",
           {[](double u, double v) {
                return uniform_sample(2 * std::abs(v - 0.5), std::fmod(2 * u + 0.3, 1.0));
            },
            uniform_pdf}},
-         {"stretched", {stretched_sample, stretched_pdf}},
-         {"a narrow lobe",
+         {"another way: stretched", {stretched_sample, stretched_pdf}},
+         {"another way: a narrow lobe",
           {[](double u, double v) { return power_sample(u, v, 200); }, power(200)}}}};
 }
 
@@ -219,58 +224,60 @@ double stops_early(uint64_t seed, int n) {
 }
 
 Lineup<Estimator> hidden_estimators() {
-    return {
-        {{"the length of the interval forgotten",
-          {mean_of([](Rng& rng) { return bump(0.2 + 0.8 * rng.uniform()); }), above_fifth}},
-         {"a firefly is cut off",
-          {mean_of([](Rng& rng) { return std::min(4.0, bump(rng.uniform())); }), 2}},
-         {"roulette is not weighed", {roulette(1), 2}},
-         {"roulette is weighed by the other probability", {roulette(4 / 3.0), 2}},
-         {"the ratio is called unbiased", {ratio, 2, true}},
-         {"the fit is called unbiased", {fitted, 2, true}},
-         {"zeros are left out",
-          {mean_of([](Rng& rng) {
-               double x = rng.uniform();
-               while (x < 0.3) x = rng.uniform();
-               return bump(x) - bump(0.3);
-           }),
-           0.7 + 1 - 0.0081 - 0.7 * (1 + 4 * 0.027)}},
-         {"eight seeds, and no more", {[](uint64_t seed, int n) { return plain(seed % 8, n); }, 2}},
-         {"n is ignored", {[](uint64_t seed, int) { return plain(seed, 16); }, 2}},
-         {"it stops where it likes the mean", {stops_early, 2}},
-         {"strata without jitter",
-          {mean_of([](Rng&, int i, int n) { return bump(double(i) / n); }), 2}},
-         {"now and then 0 / 0",
-          {mean_of([](Rng& rng) {
-               const double x = std::floor(500 * rng.uniform());
-               return x / x * bump(rng.uniform());
-           }),
-           2}},
-         {"weights of another density",
-          {self_normalised([](double) { return 1.0; }), mean_above, false}},
-         {"all samples weigh alike, whatever the sign",
-          {mean_of([](Rng& rng) { return std::abs(bump(rng.uniform()) - 2); }), 0}},
-         {"the number n counts one too few",
-          {[](uint64_t seed, int n) { return plain(seed, n) * n / std::max(1, n - 1); }, 2}}},
-        {{"float",
-          {[](uint64_t seed, int n) {
-               Rng rng{hash(seed, 10)};
-               float sum = 0;
-               for (int i = 0; i < n; ++i) sum += float(bump(float(rng.uniform())));
-               return double(sum / float(n));
-           },
-           2}},
-         {"strata",
-          {mean_of([](Rng& rng, int i, int n) { return bump((i + rng.uniform()) / n); }), 2}},
-         {"a grid, shifted",  // by the same number for every i: rng is a copy
-          {mean_of([](Rng rng, int i, int n) { return bump((i + rng.uniform()) / n); }), 2}},
-         {"roulette", {roulette(4), 2}},
-         {"the ratio", {ratio, 2, false}},
-         {"weights that do not sum to 1",
-          {self_normalised([](double x) { return 1 / x; }), mean_above, false}},
-         {"the truth is 0, and numbers have both signs",
-          {mean_of([](Rng& rng) { return bump(rng.uniform()) - 2; }), 0}},
-         {"always the same", {[](uint64_t, int) { return 2.0; }, 2}}}};
+    return {{{"the mean: the length of the interval forgotten",
+              {mean_of([](Rng& rng) { return bump(0.2 + 0.8 * rng.uniform()); }), above_fifth}},
+             {"the mean: a firefly is cut off",
+              {mean_of([](Rng& rng) { return std::min(4.0, bump(rng.uniform())); }), 2}},
+             {"the mean: roulette is not weighed", {roulette(1), 2}},
+             {"the mean: roulette is weighed by the other probability", {roulette(4 / 3.0), 2}},
+             {"a bias of c / n: the ratio is called unbiased", {ratio, 2, true}},
+             {"a bias of c / n: the fit is called unbiased", {fitted, 2, true}},
+             {"the mean: zeros are left out",
+              {mean_of([](Rng& rng) {
+                   double x = rng.uniform();
+                   while (x < 0.3) x = rng.uniform();
+                   return bump(x) - bump(0.3);
+               }),
+               0.7 + 1 - 0.0081 - 0.7 * (1 + 4 * 0.027)}},
+             {"noise that does not fall: eight seeds, and no more",
+              {[](uint64_t seed, int n) { return plain(seed % 8, n); }, 2}},
+             {"noise that does not fall: n is ignored",
+              {[](uint64_t seed, int) { return plain(seed, 16); }, 2}},
+             {"the mean: it stops where it likes the mean", {stops_early, 2}},
+             {"the mean: strata without jitter",
+              {mean_of([](Rng&, int i, int n) { return bump(double(i) / n); }), 2}},
+             {"numbers that are not finite: now and then 0 / 0",
+              {mean_of([](Rng& rng) {
+                   const double x = std::floor(500 * rng.uniform());
+                   return x / x * bump(rng.uniform());
+               }),
+               2}},
+             {"the limit of a consistent one: weights of another density",
+              {self_normalised([](double) { return 1.0; }), mean_above, false}},
+             {"the mean: all samples weigh alike, whatever the sign",
+              {mean_of([](Rng& rng) { return std::abs(bump(rng.uniform()) - 2); }), 0}},
+             {"a bias of c / n: the number n counts one too few",
+              {[](uint64_t seed, int n) { return plain(seed, n) * n / std::max(1, n - 1); }, 2}}},
+            {{"the rounding of float: float",
+              {[](uint64_t seed, int n) {
+                   Rng rng{hash(seed, 10)};
+                   float sum = 0;
+                   for (int i = 0; i < n; ++i) sum += float(bump(float(rng.uniform())));
+                   return double(sum / float(n));
+               },
+               2}},
+             {"less noise than random numbers have: strata",
+              {mean_of([](Rng& rng, int i, int n) { return bump((i + rng.uniform()) / n); }), 2}},
+             // By the same number for every i: rng is a copy.
+             {"less noise than random numbers have: a grid, shifted",
+              {mean_of([](Rng rng, int i, int n) { return bump((i + rng.uniform()) / n); }), 2}},
+             {"another way: roulette", {roulette(4), 2}},
+             {"a declared bias: the ratio", {ratio, 2, false}},
+             {"a declared bias: weights that do not sum to 1",
+              {self_normalised([](double x) { return 1 / x; }), mean_above, false}},
+             {"a truth of 0: the truth is 0, and numbers have both signs",
+              {mean_of([](Rng& rng) { return bump(rng.uniform()) - 2; }), 0}},
+             {"no noise at all: always the same", {[](uint64_t, int) { return 2.0; }, 2}}}};
 }
 
 // ---- Intersectors -------------------------------------------------------------------------------
@@ -378,63 +385,71 @@ Lineup<Intersector> hidden_intersectors() {
         });
     };
     return {
-        {{"spheres: the far root", rooted([](double, double far) { return far; })},
-         {"spheres: the near root alone", rooted([](double near, double) { return near; })},
-         {"spheres: the nearer in size, behind the eye",
+        {{"roots of a sphere: spheres: the far root",
+          rooted([](double, double far) { return far; })},
+         {"roots of a sphere: spheres: the near root alone",
+          rooted([](double near, double) { return near; })},
+         {"roots of a sphere: spheres: the nearer in size, behind the eye",
           balls([](const Body& s, const Beam& b) -> Meeting {
               const auto t = roots<double>(s, b);
               return t && std::abs(t->first) <= b.tmax ? Meeting(std::abs(t->first)) : Meeting();
           })},
-         {"spheres: 5 % too small", balls([](Body s, const Beam& b) {
+         {"the radius: spheres: 5 % too small", balls([](Body s, const Beam& b) {
               s.r *= 0.95;
               return ball(s, b);
           })},
-         {"spheres: no tmax", balls([](const Body& s, const Beam& b) {
+         {"tmax: spheres: no tmax", balls([](const Body& s, const Beam& b) {
               return ball(s, {b.o, b.d});
           })},
-         {"spheres: distances to the centre's foot", balls([](const Body& s, const Beam& b) {
+         {"the distance: spheres: distances to the centre's foot",
+          balls([](const Body& s, const Beam& b) {
               return ball(s, b) ? Meeting(dot(s.a - b.o, b.d)) : Meeting();
           })},
-         {"spheres: the radius is not squared", balls([](Body s, const Beam& b) {
+         {"the radius: spheres: the radius is not squared", balls([](Body s, const Beam& b) {
               s.r = std::sqrt(s.r);
               return ball(s, b);
           })},
-         {"triangles: a parallelogram", placed([](Place x, const Beam& b) {
+         {"edges of a triangle: triangles: a parallelogram", placed([](Place x, const Beam& b) {
               return ahead(x, b) && x.v >= 0 && x.w >= 0 && x.v <= 1 && x.w <= 1;
           })},
-         {"triangles: one weight may be negative",
+         {"edges of a triangle: triangles: one weight may be negative",
           placed([](Place x, const Beam& b) { return ahead(x, b) && x.v >= 0 && x.v + x.w <= 1; })},
-         {"triangles: behind the eye, too",
+         {"what lies behind: triangles: behind the eye, too",
           placed([](Place x, const Beam& b) { return inside(x) && x.t <= b.tmax; })},
-         {"triangles: no tmax", placed([](Place x, const Beam&) { return inside(x) && x.t > 0; })},
-         {"triangles: from one side", flats([](const Body& s, const Beam& b) {
+         {"tmax: triangles: no tmax",
+          placed([](Place x, const Beam&) { return inside(x) && x.t > 0; })},
+         {"sides of a triangle: triangles: from one side", flats([](const Body& s, const Beam& b) {
               return dot(cross(s.b - s.a, s.c - s.a), b.d) > 0 ? Meeting() : flat(s, b);
           })},
-         {"triangles: small ones are taken for edge-on", flats([](const Body& s, const Beam& b) {
+         {"small bodies and distances: triangles: small ones are taken for edge-on",
+          flats([](const Body& s, const Beam& b) {
               return std::abs(dot(cross(s.b - s.a, s.c - s.a), b.d)) < 1e-4 ? Meeting()
                                                                             : flat(s, b);
           })},
-         {"triangles: 5 % off the edge", placed([](Place x, const Beam& b) {
+         {"edges of a triangle: triangles: 5 % off the edge", placed([](Place x, const Beam& b) {
               return ahead(x, b) && x.v >= -0.05 && x.w >= -0.05 && x.v + x.w <= 1.05;
           })},
-         {"both: nothing is nearer than 0.05", {[](const Body& s, const Beam& b) {
+         {"small bodies and distances: both: nothing is nearer than 0.05",
+          {[](const Body& s, const Beam& b) {
               const auto t = sound(s, b);
               return t && *t < 0.05 ? Meeting() : t;
           }}},
-         {"both: the distance in units of the size", {[](const Body& s, const Beam& b) {
+         {"the distance: both: the distance in units of the size",
+          {[](const Body& s, const Beam& b) {
               const auto t = sound(s, b);
               return t ? Meeting(*t * 1.05) : t;
           }}}},
-        {{"float", {in_float}},
-         {"by areas", {by_areas}},
-         {"in the beam's frame", {in_its_frame}},
-         {"corners in another order", {[](const Body& s, const Beam& b) {
+        {{"the rounding of float: float", {in_float}},
+         {"another way: by areas", {by_areas}},
+         {"another way: in the beam's frame", {in_its_frame}},
+         {"another way: corners in another order", {[](const Body& s, const Beam& b) {
               return sound({s.r > 0 ? s.a : s.c, s.a, s.b, s.r}, b);
           }}},
-         {"edges do not belong", placed([](Place x, const Beam& b) {
+         {"another way: edges do not belong", placed([](Place x, const Beam& b) {
               return ahead(x, b) && x.v > 0 && x.w > 0 && x.v + x.w < 1;
           })},
-         {"step by step", {[](const Body& s, const Beam& b) { return march(s, b, b.tmax); }}}}};
+         {"another way: step by step",
+          {[](const Body& s, const Beam& b) { return march(s, b, b.tmax); }}}}};
 }
 
 }  // namespace

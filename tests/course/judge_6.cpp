@@ -1,6 +1,7 @@
 // course/judge_6.cpp  judges week 6: tests that the student wrote, by what they find and by false
 // alarms
 #include "course/judge.h"
+#include "course/kinds.h"
 #include "course/tally.h"
 
 using course::Judge, course::Out, course::Rows, course::Tally;
@@ -9,13 +10,46 @@ namespace {
 
 constexpr double subjects[] = {8, 8, 9};  // published ones of every exercise
 
-// The published subjects are few, and may be called by their numbers.
-std::string missed(const Tally& t) {
+// "2 of 3 about tmax, 1 of 1 about ...": of these subjects the ones of which this is so, by kinds.
+template <class Is>
+std::string by_kind(const Out& of, size_t begin, size_t end, Is is) {
+    std::string text;
+    for (size_t kind = 0; kind < course::kinds.size(); ++kind) {
+        size_t all = 0, some = 0;
+        for (size_t i = begin; i < end; ++i)
+            if (of.at(i) == double(kind)) ++all, some += is(i);
+        if (some > 0)
+            text += oracle::say("%s%zu of %zu about %s", text.empty() ? "" : ", ", some, all,
+                                course::kinds[kind].c_str());
+    }
+    return text;
+}
+
+// The published subjects are few, and may be called by their numbers; of hidden ones, their kinds.
+std::string missed(const Tally& t, const Out& of) {
     std::string text = oracle::say("%zu of %zu found", t.found(), t.wrong);
-    if (t.wrong > 6) return text;
+    if (t.found() == 0) return text + ": it never refuses any of them";
+    const std::string about = by_kind(of, 0, t.wrong, [&](size_t i) { return !t.is_found(i); });
+    if (!about.empty()) return text + ", but not " + about;
     for (size_t i = 0; i < t.wrong; ++i)
         if (!t.is_found(i)) text += oracle::say(", not number %zu", i + 1);
     return text;
+}
+
+// Whether right subjects are refused always, for what they are, or now and then, by chance.
+std::string refused(const Tally& t, const Out& of) {
+    std::string text = oracle::say("%zu false alarms in %zu runs", t.alarms, t.right_runs);
+    auto always = [&](size_t i) { return t.refused[i] == course::runs_of_right; };
+    size_t n = 0;
+    for (size_t i = t.wrong; i < t.refused.size(); ++i) n += always(i);
+    if (t.alarms == 0) return text;
+    if (t.alarms == t.right_runs) return text + ": whatever is right is refused";
+    if (n == 0) return text + ", now and then: it refuses what chance alone brings";
+    const std::string about = by_kind(of, t.wrong, t.refused.size(), always);
+    return text +
+           oracle::say("; %zu of %zu subjects are refused in every run", n,
+                       t.refused.size() - t.wrong) +
+           (about.empty() ? "" : ", " + about);
 }
 
 course::Judging judging(double exercise) {
@@ -24,16 +58,17 @@ course::Judging judging(double exercise) {
         const Out looks = j.probe("looks", Rows(Out{exercise})).numbers;
         for (double i = 0; i < subjects[size_t(exercise) - 1]; ++i)
             j.probe("practice", Rows(Out{exercise, i}));
+        j.probe_stub("asks", Rows(Out{exercise}));
         j.exact("the same seed gives the same run", looks.at(0) == 1,
                 "twice the same seed, and the subject was asked other questions");
         j.exact("other seeds give other random numbers", looks.at(1) == 1,
                 "two seeds, and the subject was asked the same questions");
         const Tally t = course::tally(j, exercise);
+        const Out of = j.ask("kinds", Out{exercise});
         j.exact("a run takes 1 s of CPU at most, on average", t.in_time(),
                 oracle::say("%zu runs took %.3g s each", t.runs, t.seconds / double(t.runs)));
-        j.items.push_back({"right subjects pass", true, t.quiet(),
-                           oracle::say("%zu false alarms in %zu runs", t.alarms, t.right_runs)});
-        j.exact("wrong subjects are refused", t.found() == t.wrong, missed(t));
+        j.items.push_back({"right subjects pass", true, t.quiet(), refused(t, of)});
+        j.exact("wrong subjects are refused", t.found() == t.wrong, missed(t, of));
         j.credit = t.credit();
     };
 }

@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "course/answers.h"
+#include "course/kinds.h"
 #include "course/practice.h"
 #include "course/shuffle.h"
 
@@ -27,6 +28,7 @@ struct Trial {
     size_t wrong = 0, right = 0;
     std::function<bool(size_t index, uint64_t seed)> passes;
     std::function<Out(uint64_t seed)> looks;  // at what the test looks, from one run on a spy
+    Out kinds = {};                           // of all subjects, kinds.h
 };
 
 // What a spy has seen: of all that was asked, in its order, and some features by name.
@@ -45,10 +47,12 @@ template <class Subject>
 Trial trial(const Lineup<Subject>& lineup, bool test(const Subject&, uint64_t),
             std::function<Out(uint64_t)> looks) {
     std::vector<Subject> all;
+    Out of;
     for (const auto* side : {&lineup.wrong, &lineup.right})
-        for (const Named<Subject>& s : *side) all.push_back(sealed(s.subject));
+        for (const Named<Subject>& s : *side)
+            all.push_back(sealed(s.subject)), of.push_back(kind_of(s.name));
     return {lineup.wrong.size(), lineup.right.size(),
-            [=](size_t index, uint64_t seed) { return test(all[index], seed); }, looks};
+            [=](size_t index, uint64_t seed) { return test(all[index], seed); }, looks, of};
 }
 
 // Samples and densities, and many of them.
@@ -61,7 +65,7 @@ inline Out looks_of_samplers(uint64_t seed) {
                         return right.sample(u, v);
                     },
                     [&](vec3 w) {
-                        seen.look({}, {false, true, false});
+                        seen.look({w.x, w.y, w.z}, {false, true, false});
                         return right.pdf(w);
                     }},
                    seed);
@@ -129,6 +133,9 @@ inline int on_trial(const std::vector<Trial>& trials, const std::vector<Trial>& 
              const Trial t = at(trials, x[0]);
              return Out{double(t.wrong), double(t.right)};
          }},
+        {"kinds", 1, [=](In x) { return at(trials, x[0]).kinds; }},
+        // Exercise: a number that follows from all that the test asks.
+        {"asks", 1, [=](In x) { return at(practice, x[0]).looks(1)[0]; }},
         // Exercise, key, place, seed: whether the subject at this place passes, and its seconds.
         {"test", 4,
          [=](In x) {
