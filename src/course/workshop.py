@@ -219,7 +219,7 @@ class Workshop:
         began = time.monotonic()
         verdict = self.ask(number, program, run_limit)
         verdict.update({'compile': built.seconds, 'run': time.monotonic() - began})
-        if verdict['state'] == 'not judged' or 'processor time' in verdict['says']:
+        if verdict['state'] == 'not judged' or any('processor time' in item['seen'] for item in verdict['items']):
             verdict['wasted'] = run_limit
         return verdict
 

@@ -357,9 +357,18 @@ inline Judgement judge_one(const std::string& exercise, const Judging& judging,
     return result;
 }
 
+// What is wrong, in a line: a known mistake, or else the item that knows most.  A silence is told
+// where nothing that came before it says as much.
+inline std::string headline(const Judgement& r) {
+    if (r.named) return r.named->says;
+    const Item* most = most_telling(r.items);
+    if (!most) return "";
+    const bool ended = !r.silence.empty() && most->seen == r.silence;
+    return ended ? r.silence : most->what + ": " + most->seen;
+}
+
 // The verdict in a line, then what was looked at.
 inline void print(const Judgement& r) {
-    const Item* first = most_telling(r.items);
     const std::string sheet = r.exercise.substr(0, r.exercise.find('.'));
     if (r.state == "right")
         std::printf("%s right: %zu of %zu\n", r.exercise.c_str(), r.right(), r.items.size());
@@ -367,12 +376,9 @@ inline void print(const Judgement& r) {
         std::printf("%s open: the stub is still there\n", r.exercise.c_str());
     else if (r.named)
         std::printf("%s wrong: %s; read \"%s\" in sheet %s\n", r.exercise.c_str(),
-                    r.named->says.c_str(), r.named->read.c_str(), sheet.c_str());
-    else if (!r.silence.empty())
-        std::printf("%s wrong: %s\n", r.exercise.c_str(), r.silence.c_str());
-    else if (first)
-        std::printf("%s wrong: %s: %s\n", r.exercise.c_str(), first->what.c_str(),
-                    first->seen.c_str());
+                    headline(r).c_str(), r.named->read.c_str(), sheet.c_str());
+    else
+        std::printf("%s wrong: %s\n", r.exercise.c_str(), headline(r).c_str());
     for (const Item& i : r.items)
         std::printf("  %-5s  %-11s  %s%s%s\n",
                     i.right         ? "right"
@@ -397,14 +403,10 @@ inline std::string json_text(const std::string& text) {
 
 inline void write_json(const std::string& path, const Judgement& r) {
     std::ofstream file(path);
-    const Item* most = most_telling(r.items);
     file << "{\"exercise\": " << json_text(r.exercise) << ", \"state\": " << json_text(r.state)
          << ", \"credit\": " << (r.credit ? oracle::say("%.6g", *r.credit) : "null")
-         << ",\n \"named\": " << json_text(r.named ? r.named->name : "") << ", \"says\": "
-         << json_text(r.named              ? r.named->says
-                      : !r.silence.empty() ? r.silence
-                      : most               ? most->what + ": " + most->seen
-                                           : "")
+         << ",\n \"named\": " << json_text(r.named ? r.named->name : "")
+         << ", \"says\": " << json_text(headline(r))
          << ", \"read\": " << json_text(r.named ? r.named->read : "") << ",\n \"items\": [";
     for (size_t i = 0; i < r.items.size(); ++i)
         file << (i ? ",\n  " : "\n  ") << "{\"what\": " << json_text(r.items[i].what)

@@ -24,14 +24,14 @@ void one_is_one(Judge& j) {
 }
 
 Judgement judged(const std::string& line, const std::vector<KnownMistake>& mistakes = {},
-                 double patience = 2) {
+                 double patience = 2, const Judging& judging = one_is_one) {
     std::vector<std::string> words{"sh", "-c", line};
     std::vector<char*> argv;
     for (std::string& w : words) argv.push_back(w.data());
     argv.push_back(nullptr);
     try {
         Program program(argv.data(), patience);
-        return judge_one("9.1", one_is_one, mistakes, 1, program);
+        return judge_one("9.1", judging, mistakes, 1, program);
     } catch (const Silence& e) {
         return {{}, "9.1", "silent", e.what()};
     }
@@ -118,6 +118,19 @@ TEST_CASE("a program that is silent is wrong, and it is said why") {
         CHECK(r.state == "silent");
         CHECK(r.silence.find(c.says) != r.silence.npos);
     }
+}
+
+TEST_CASE("a silence is told where nothing that came before it is wrong") {
+    auto and_once_more = [](Judge& j) {
+        one_is_one(j);
+        (void)j.ask("one", Out{0.5});
+    };
+    const Judgement right = judged(answers(one), {}, 0.3, and_once_more),
+                    wrong = judged(answers(two), {}, 0.3, and_once_more);
+    CHECK(right.state == "silent");
+    CHECK(headline(right) == "one(0.5) does not end: no answer for 0.3 s");
+    CHECK(wrong.state == "silent");
+    CHECK(headline(wrong) == "one is 1: 1 expected, 2 came");
 }
 
 TEST_CASE("whoever does not answer is ended, with all that he began") {
