@@ -241,12 +241,13 @@ class Workshop:
                     verdict = json.load(file)
             except (OSError, ValueError):
                 return {'state': 'not judged', 'says': f'the judge ended with status {status}: {said}', 'items': []}
-        return {name: verdict[name] for name in ('state', 'named', 'credit', 'says', 'read', 'items')}
+        return {name: verdict[name] for name in ('state', 'named', 'credit', 'allows', 'says', 'read', 'items')}
 
     # ---- What solution and stub are worth ----
 
     def weigh(self, jobs, scratch):
-        """number -> (items, of which the stub has right); limits of processor time follow from the solution's time.
+        """number -> (items, of which the stub has right); limits of processor time follow from the solution's time, and
+        from what the exercise allows.
 
         The solution must have all right by this seed, and no stub may; else nobody can be graded.
         """
@@ -262,7 +263,7 @@ class Workshop:
                 partial.rename(path)
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             list(pool.map(weigh, [n for n in self.solutions if n not in worth]))
-        self.limits = {n: (5 + int(4 * w['compile']), 3 + int(3 * w['run'])) for n, w in worth.items()}
+        self.limits = {n: (5 + int(4 * w['compile']), 3 + int(3 * w['run'] + w['allows'])) for n, w in worth.items()}
         return {n: (w['items'], w['stub']) for n, w in worth.items()}
 
     def weigh_one(self, number, scratch):
@@ -275,4 +276,4 @@ class Workshop:
         if stub['state'] in ('right', 'not compiled', 'not judged'):
             raise Broken(f'{number}: the stub is {stub["state"]}: {stub["says"]}')
         return {'items': len(solution['items']), 'stub': sum(i['right'] for i in stub['items']),
-                'compile': solution['compile'], 'run': solution['run']}
+                'compile': solution['compile'], 'run': solution['run'], 'allows': solution['allows']}

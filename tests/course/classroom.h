@@ -36,6 +36,8 @@ using Regions = std::map<std::string, std::string>;
 inline const Regions stubs{{"1.1", twice_stub}, {"1.2", square_stub}, {"1.3", cube_stub}};
 
 inline const char* answers = R"(
+ #include <ctime>
+
  #include "course/answers.h"
  #include "path/cube.h"
 
@@ -65,7 +67,7 @@ course::Judging answers_like(const std::string& name, double (*truth)(double)) {
         for (size_t i = 0; i < drawn.size(); ++i)
             off = course::worse(off, std::abs(answers[i][0] - truth(drawn[i][0])));
         j.exact("at numbers of the seed", off < 1e-9);
-        if (name == "cube") j.credit = came.numbers[1] == 1 ? 0.25 : 0;
+        if (name == "cube") j.credit = came.numbers[1] == 1 ? 0.25 : 0, j.allows = 5;
     };
 }
 

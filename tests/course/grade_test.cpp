@@ -75,6 +75,19 @@ TEST_CASE("points: each exercise alone, the parts that are right, nothing for wh
           "spaces,,0,0,0,0,12,\r\nupper,,0,0,6,6,12,\r\n");
 }
 
+TEST_CASE("whoever takes the time that an exercise allows is not stopped") {
+    if (!sandboxed()) return;
+    Course course("slow");
+    const auto after = [](const char* seconds) {
+        return "    static const long begun = ::clock();\n    while (::clock() < begun + " +
+               std::string(seconds) + " * CLOCKS_PER_SEC) {}\n" + cube_right;
+    };
+    course.hand_in("slow", {{"1.2", square_right}, {"1.3", after("5")}});
+    course.hand_in("too slow", {{"1.2", square_right}, {"1.3", after("1000")}});
+    course.grade();
+    course.expect({{"slow", "1.3", "", 6}, {"too slow", "1.3", "processor time", 0}});
+}
+
 TEST_CASE("only regions are taken: not the rest of the file, nor tests, Makefile or judge") {
     if (!sandboxed()) return;
     Course course("regions");

@@ -167,6 +167,7 @@ struct Evidence {
     Out fingerprint = {};               // answers to probes: by them known mistakes are told
     Out of_stub = {};                   // answers to further probes, by which the stub is told
     std::optional<double> credit = {};  // part of the points, where items do not say it
+    double allows = 0;                  // seconds of CPU that answers may take by a rule of its own
 };
 
 class Judge : public Evidence {
@@ -405,6 +406,7 @@ inline void write_json(const std::string& path, const Judgement& r) {
     std::ofstream file(path);
     file << "{\"exercise\": " << json_text(r.exercise) << ", \"state\": " << json_text(r.state)
          << ", \"credit\": " << (r.credit ? oracle::say("%.6g", *r.credit) : "null")
+         << ", \"allows\": " << oracle::say("%.6g", r.allows)
          << ",\n \"named\": " << json_text(r.named ? r.named->name : "")
          << ", \"says\": " << json_text(headline(r))
          << ", \"read\": " << json_text(r.named ? r.named->read : "") << ",\n \"items\": [";

@@ -142,16 +142,10 @@ inline int on_trial(const std::vector<Trial>& trials, const std::vector<Trial>& 
              const Trial t = at(trials, x[0]);
              return run(t, shuffled(x[1], t.wrong + t.right).at(size_t(x[2])), x[3]);
          }},
-        // Exercise, index: whether this published subject passes; of right ones, how many of ten
-        // runs do: all, some, few.
-        {"practice", 2,
+        // Exercise, index, seed: whether this published subject passes.
+        {"practice", 3,
          [=](In x) {
-             const Trial t = at(practice, x[0]);
-             const auto index = size_t(x[1]);
-             if (index < t.wrong) return Out{double(t.passes(index, 1))};
-             int passed = 0;
-             for (uint64_t seed = 1; seed <= 10; ++seed) passed += t.passes(index, seed);
-             return Out{passed == 10 ? 2.0 : passed > 5 ? 1.0 : 0.0};
+             return Out{double(at(practice, x[0]).passes(size_t(x[1]), uint64_t(x[2])))};
          }},
         // Exercise: whether a seed gives the same questions again, another one others, and what
         // they look at.
