@@ -165,7 +165,7 @@ def write_rest(plan, to):
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
           '    make check           # what is right, and what is to do\n\n' % plan.open[0].number +
-          'You need make, g++ 12 or clang++ 15, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
+          'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
           'Start with the sheet of the week.  '
           f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
           ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in listed) +
