@@ -77,6 +77,14 @@ TEST_CASE("choices: one, one that never comes, one of a million; none among whol
               first, [](int) { return 0.99999994f; }, 1)
               .pass);
     CHECK(choice(second, whole, 3).pass);
+    // Probabilities by floats, returned as doubles.
+    auto third = [](double u) { return int(3 * u); };
+    CHECK(choice(
+              third, [](int) { return double(1 / 3.0f); }, 3)
+              .pass);
+    says(choice(
+             third, [](int) { return 1 / 3.0 + 1e-6; }, 3),
+         "the probabilities sum to 1.000003, expected 1");
     int refused = 0;
     for (double q : {1e-8, 1e-7, 1e-6}) {
         auto rare = [q](double u) { return u < q; };

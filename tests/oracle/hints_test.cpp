@@ -121,6 +121,14 @@ TEST_CASE("hints: directions") {
     auto lobe = [](double u, double v) { return about_z(std::pow(u, 1 / 8.0), 2 * pi * v); };
     auto ninth = [](Triple w) { return w[2] > 0 ? 9 / (2 * pi) * std::pow(w[2], 8) : 0; };
     auto sum = [=](Triple w) { return 2 * exchanged(w); };
+    // atan without the quadrant.
+    auto half_turn = [](double u, double v) {
+        return about_z(std::sqrt(v), std::atan(std::tan(2 * pi * u)));
+    };
+    auto clamped = [](double u, double v) {
+        return about_z(std::min(1.0, std::pow(u, 1 / 8.0) + 0.1), 2 * pi * v);
+    };
+    auto lobe_of_8 = [](Triple w) { return w[2] > 0 ? 8 / (2 * pi) * std::pow(w[2], 7) : 0; };
     auto weighted = [](double choice, double u, double v) {
         return about_z(std::pow(u, choice < 0.7 ? 1 / 2.0 : 1 / 21.0), 2 * pi * v);
     };
@@ -136,7 +144,10 @@ TEST_CASE("hints: directions") {
           "times where it is < 0: looks like the probability of one side"},
          {expect_density(random, either_side, below_halved), "twice) times where it is < 0"},
          {expect_density(random, sphere, more_above),
-          "1.2 times the density of the samples where z > 0"},
+          "of the points; looks like the probability of a choice"},
+         {expect_density(random, half_turn, cosine_pdf), "where x > 0, and hardly any come"},
+         {expect_density(random, clamped, lobe_of_8),
+          "numbers clamped to an end, or a mirror (.discrete says how many)?"},
          {expect_density(random, forward, backward), "z negated in one of the two"},
          {expect_density(random, cosine, eighth_more),
           "times the density of the samples, everywhere: a constant factor"},
@@ -182,11 +193,18 @@ TEST_CASE("hints: points") {
         const double p[] = {0.1, 0.3, 0.2, 0.3, 0.1};
         return x < 0 || x >= 1 ? 0 : 5 * p[size_t(5 * x)];
     };
+    // Texels of 2 rows and 3 columns, by their corners; the pdf is that of other rows.
+    auto corners = [](double u, double v) {
+        return Pair{std::floor(3 * u) / 3, v < 0.8 ? 0 : 0.5};
+    };
+    auto texels = [](Pair x) { return x.second < 0.5 ? 0.4 : 1.6; };
     all_say(
         {{expect_density(
               random, clamped, [](double) { return 1.0; }, Interval{0, 1}),
           "looks like numbers clamped to an end"},
          {expect_density(random, times_sigma, exponential), "6.25 times as wide"},
+         {expect_density(random, corners, texels, Square{}),
+          "and 4 points more repeat: looks like corners of cells"},
          {expect_density(random, without_2, normal), "(1 over the root of 2) times as wide"},
          {expect_density(random, closest, start, Interval{0, 3}), "moved by 1"},
          {expect_density(random, slope, along_y, Square{}), "x and y exchanged in one of the two"},
@@ -231,6 +249,30 @@ TEST_CASE("hints: BSDFs") {
           "is a constant factor (1/pi, 1/4) missing?"}});
 }
 
+TEST_CASE("hints: means") {
+    const Aside aside;
+    Random random(seed_here());
+    auto furnace = [&](double albedo) {
+        double sum = 1;
+        for (double beta = 1; random() < 0.7;) sum += beta *= albedo / 0.7;
+        return sum;
+    };
+    auto mean = [](double truth, auto f) { return expect_mean(truth, 200000, f); };
+    auto control = [&] {
+        const double x = random();
+        return std::exp(x) - (1 + x);
+    };
+    all_say({{mean(2.5, [&] { return furnace(0.6 / pi); }),
+              "times; looks like divided by pi twice, or pi forgotten"},
+             {mean(1.0, [&] { return random() < 0.5 ? 2 * random() : 0; }),
+              "half), as are those that are not 0"},
+             {mean(1.0, [&] { return random() < 0.3 ? 1 : 0; }),
+              "those that are not 0: looks like a probability that is not divided by"},
+             {mean(std::exp(1) - 1, control), "; 1.5 is missing: a term?"},
+             {mean(0.6, [&] { return random(); }), ", 5/6: a count that is off by one?"},
+             {mean(1.0, [&] { return (2 + 4 * random()) / pi; }), "(4/pi)"}});
+}
+
 TEST_CASE("hints: choices and images") {
     const Aside aside;
     Random random(seed_here());
@@ -252,6 +294,13 @@ TEST_CASE("hints: choices and images") {
         }
         return expect_image(16, 12, values, errors, truth);
     };
+    // The reference's pixels at other places.
+    auto elsewhere = [](auto from) {
+        std::vector<double> values, errors(15 * 12, 0.01), truth;
+        for (size_t i = 0; i < 15 * 12; ++i) truth.push_back(1 + double(i * i % 17));
+        for (size_t i = 0; i < 15 * 12; ++i) values.push_back(truth[from(i % 15, i / 15)]);
+        return expect_image(15, 12, values, errors, truth);
+    };
     all_say(
         {{chosen({0.1, 0.2, 0.7}, {0.1, 0.2, 0.3, 0.4}), "2 takes its share: a search that ends"},
          {chosen({0.25, 0.25, 0.5}, {0.2, 0.2, 0.4, 0.2}), "looks like a range too short"},
@@ -260,8 +309,34 @@ TEST_CASE("hints: choices and images") {
          {chosen({0.1, 0.5, 0.4}, {1 / 3.0, 1 / 3.0, 1 / 3.0}), "which this is not"},
          {chosen({0.1, 0.4, 0.3, 0.2}, {0.4, 0.2, 0.3, 0.1}), "in another order"},
          {chosen({0.5, 0.2, 0.3}, {0.4, 0.3, 0.3}), "expected 0.4, 0.3, 0.3"},
+         {chosen({0, 0.6, 0.4}, {0.25, 0.45, 0.3}), "the others share it in proportion; chosen"},
+         {chosen({0.4, 0, 0.3, 0.3}, {0.2, 0.2, 0.42, 0.18}),
+          "between 0 to 1 and the others, used again without scaling"},
+         {chosen({0.25, 0, 0.15, 0.1, 0, 0.5}, {0.125, 0.125, 0.1, 0.15, 0.25, 0.25}),
+          "a group of 2, used again"},
+         {chosen({0.1, 0.2, 0.2, 0.2, 0.3}, std::vector<double>(5, 0.2)),
+          "an index rounded to nearest"},
+         {chosen({0.125, 0.25, 0.25, 0.25, 0.125}, std::vector<double>(5, 0.2)),
+          "an index rounded to nearest"},
+         {chosen({0.03125, 0.0625, 0.84375, 0.0625}, {0.125, 0.25, 0.375, 0.25}),
+          "3 others 1/4 times: looks like probabilities not multiplied"},
+         {chosen({0.1, 0.3, 0.4, 0.2}, {0.1, 0.4, 0.8, 1}), "looks like cumulated probabilities"},
+         {chosen({0.3, 0.7}, {0.3, 1}), "; chosen are 0.3, 0.7, expected 0.3, 1"},
+         {chosen({0.5, 0.5}, {0.5, 0.5 + 1e-5}), "sum to 1.00001, expected 1"},
          {image([](size_t, size_t y) { return y == 11 ? 0.0 : 1.0; }),
           "pixels (0, 11) to (15, 11) are black, all others are right"},
+         {image([](size_t, size_t y) { return y % 2 == 1 ? 0.0 : 1.0; }),
+          "rows 1, 3, 5, ... are black, all others are right"},
+         {image([](size_t x, size_t) { return x % 3 == 0 ? 2.0 : 1.0; }),
+          "columns 0, 3, 6, ... are 2 (2, twice) times the reference"},
+         {image([](size_t x, size_t y) {
+              const double a = double(x) / 7.5 - 1, b = double(y) / 5.5 - 1;
+              return 1 / (1 + 0.3 * (a * a + b * b));
+          }),
+          "times in the corners: a weight of the camera"},
+         {elsewhere([](size_t x, size_t y) { return x * 12 + y; }), "rows and columns exchanged"},
+         {elsewhere([](size_t x, size_t y) { return y * 15 + x / 3 * 3 + 2 - x % 3; }),
+          "colours in another order"},
          {image([](size_t x, size_t y) { return x < 4 && y > 7 ? 1.5 : 1.0; }),
           "pixels (0, 8) to (3, 11) are 1.5 times"},
          {image([](size_t x, size_t y) { return x == 7 && y == 9 ? 0.5 : 1.0; }),

@@ -265,6 +265,10 @@ inline std::string percent(double x) { return say("%.3g %%", 100 * x); }
 std::string times(double x, double tolerance);
 // Why an estimate may be `ratio` times the truth, known within `tolerance`.
 std::string cause_of(double ratio, double tolerance, const std::vector<Factor>& factors);
+struct Estimate;
+// Why an estimate, of these numbers if they are known, may not be the truth.
+std::string mean_hint(const Estimate& e, double truth, const std::vector<double>& numbers,
+                      const std::vector<Factor>& factors);
 
 // ---- Judgement ----------------------------------------------------------------------------------
 
@@ -321,13 +325,14 @@ inline Verdict judge_exact(const char* what, double value, double truth, double 
 }
 
 // The estimate's mean is `truth`: Student's t-test.
-inline Verdict judge(const char* what, const Estimate& e, double truth, const Options& o = {}) {
+inline Verdict judge(const char* what, const Estimate& e, double truth, const Options& o = {},
+                     const std::vector<double>& numbers = {}) {
     if (!std::isfinite(e.mean) || !std::isfinite(e.standard_error))
         return failure(say("%s %g +- %g is not finite", what, e.mean, e.standard_error));
     if (!(e.df >= 1)) return failure("one number has no spread: no degree of freedom");
     if (e.standard_error <= 8 * e.unit * std::abs(e.mean))
         return judge_exact(what, e.mean, truth, e.unit, o);
-    const double t = (e.mean - truth) / e.standard_error, ratio = e.mean / truth;
+    const double t = (e.mean - truth) / e.standard_error;
     const double seen = smallest_shift(e.df, o.alpha) * e.standard_error;
     Verdict v = verdict_of(p_of_t(t, e.df), seen / (truth != 0 ? std::abs(truth) : 1), o);
     v.pass = v.pass || same_but_rounding(e.mean, truth, e.unit);
@@ -336,17 +341,10 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
                           : say("%.1e of itself away", std::abs(e.mean - truth) / std::abs(e.mean));
     v.text = say("%s %.7g +- %.2g, expected %.7g: %s, %s", what, e.mean, e.standard_error, truth,
                  sigma.c_str(), say_p(v.p).c_str());
-    if (!v.pass && same_but_rounding(e.mean, truth, e.unit, 1000)) {
+    if (!v.pass && same_but_rounding(e.mean, truth, e.unit, 1000))
         v.text += rounding_of(e.unit);
-    } else if (!v.pass && truth != 0) {
-        const double within = 5 * e.standard_error / std::abs(e.mean);
-        if (std::abs(e.mean) <= 5 * e.standard_error)
-            v.text += e.both_signs ? "; 0 within its error: what has either sign may cancel"
-                                   : "; 0 within its error";
-        else
-            v.text += "; ratio " + times(ratio, within) + (ratio < 0 ? ", of the wrong sign" : "") +
-                      cause_of(ratio, within, o.factors);
-    }
+    else if (!v.pass && truth != 0)
+        v.text += mean_hint(e, truth, numbers, o.factors);
     v.text += (v.pass ? "; smallest bias seen with 99.9 % power: "
                       : "\nsmallest bias seen with 99.9 % power: ") +
               (truth != 0 ? percent(v.delta_min) : say("%.2g", v.delta_min));
@@ -464,9 +462,6 @@ struct Draws {
     }
 };
 
-// Draws the running mean; says where.
-std::string picture_of(const Draws& d, double truth, const Options& o);
-
 template <class F>
 Draws draw(uint64_t n, F f) {
     Draws draws;
@@ -485,8 +480,7 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
     else if (d.constant())
         v = judge_exact(what, d.mean(), truth, d.unit, o);
     else
-        v = judge(what, d.estimate(), truth, o);
-    if (!v.pass && d.n() >= 2 && std::isfinite(d.variance())) v.text += picture_of(d, truth, o);
+        v = judge(what, d.estimate(), truth, o, d.values);
     return named(v, o);
 }
 
@@ -882,9 +876,10 @@ auto model(Sample& sample, Pdf& pdf) {
         unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
 }
 
-// Part two says what is wrong with a choice.
+// Part two says what is wrong with a choice, or with probabilities that do not sum to 1.
 std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
                         double none, double tolerance);
+std::string sum_hint(const std::vector<double>& expected, const std::vector<double>& seen);
 
 // Whether counts are those of these probabilities, less a part that fails; rare ones by Poisson.
 struct ChoiceFit {
@@ -961,9 +956,13 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
                            o);
         ++(index < 0 ? none : seen[size_t(index)]);
     }
-    const double rounding = std::max(64 * unit_of(probability(0)) * double(count), 1e-9);
+    // Floats may have been returned as doubles.
+    const double rounding = std::max(64 * unit_of(probability(0)), 0x1p-24) * double(count);
     if (none == 0 && std::abs(total - 1) > rounding + o.tolerance)
-        return failure("the probabilities sum to " + times(total, 1e-4) + ", expected 1", o);
+        return failure("the probabilities sum to " +
+                           (std::abs(total - 1) < 1e-3 ? say("%.9g", total) : times(total, 1e-4)) +
+                           ", expected 1" + sum_hint(expected, seen),
+                       o);
     return judge_choices(expected, seen, none, o);
 }
 
@@ -1428,7 +1427,9 @@ struct DensityCheck {
     double samples = 0, none = 0, mirrored = 0;
     std::string first_none = {};
     std::vector<Point<N>> mirrors = {};  // points that are drawn again and again, as was said,
-    std::string repeated = {};           // or was not
+    std::string repeated = {};           // or was not:
+    double repeating = 0;                // this part of the samples,
+    size_t heaps = 0;                    // and so many points
     std::vector<Point<D>> pilot = {};
     std::vector<Point<D>> places = {};  // theirs, and mirror images where the pdf is positive, too:
     std::vector<double> per_dc = {}, heights = {};  // the pdf there per dc, and by itself
@@ -1546,10 +1547,8 @@ struct DensityCheck {
             if (o.discrete > 0)
                 mirrors.push_back(points[i]);
             else if (part < 0.9 && part > 200 * model.unit * model.pdf(points[i]))
-                repeated =
-                    percent(part) + " of the samples are " + at(points[i]) +
-                    (directions ? ": looks like a mirror (.discrete says how many samples are)"
-                                : ": looks like numbers clamped to an end");
+                repeating += part, ++heaps,
+                    repeated = percent(part) + " of the samples are " + at(points[i]);
         }
     }
 
@@ -2197,6 +2196,9 @@ struct Image {
     std::vector<double> f, s, truth;  // values, their standard errors, the reference
     const Options& o;
     size_t n() const { return width * height; }
+    size_t block_of(size_t i) const {
+        return (i / width) * 4 / height * 4 + (i % width) * 4 / width;
+    }
 
     // Of the image divided by c against these values.
     ImageResult against(const std::vector<double>& g, double c = 1) const {
@@ -2213,8 +2215,7 @@ struct Image {
         for (size_t i = 0; i < n(); ++i) {
             const double off = f[i] / c - g[i], error = s[i] / c;
             Sum one{std::abs(off) <= 1e-6 * std::abs(g[i]) ? 0 : off, error * error};
-            for (Sum* sum :
-                 {&whole, &blocks[(i / width) * 4 / height * 4 + (i % width) * 4 / width]})
+            for (Sum* sum : {&whole, &blocks[block_of(i)]})
                 sum->off += one.off, sum->variance += one.variance;
             if (const double z = std::abs(one.z()); z > most) most = z, r.worst = i;
         }
@@ -2283,33 +2284,20 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
 
 // The number in words, if it is one of those that are forgotten.
 inline std::string constant_named(double x, double tolerance) {
-    const struct {
-        double value;
-        const char* name;
-    } known[] = {{1 / pi, "1/pi"},
-                 {pi, "pi"},
-                 {2 * pi, "2 pi"},
-                 {1 / (2 * pi), "1/(2 pi)"},
-                 {4 * pi, "4 pi"},
-                 {1 / (4 * pi), "1/(4 pi)"},
-                 {pi / 2, "pi/2"},
-                 {2 / pi, "2/pi"},
-                 {pi * pi, "pi^2"},
-                 {1 / (pi * pi), "1/pi^2"},
-                 {0.5, "1/2"},
-                 {0.25, "1/4"},
-                 {2.0 / 3, "2/3"},
-                 {1.5, "3/2"},
-                 {1.0 / 3, "1/3"},
-                 {0.75, "3/4"},
-                 {4.0 / 3, "4/3"},
-                 {std::numbers::sqrt2, "the root of 2"},
-                 {1 / std::numbers::sqrt2, "1 over the root of 2"}};
+    static constexpr double root = std::numbers::sqrt2;
+    static constexpr double values[] = {1 / pi,  pi,     2 * pi,  0.5 / pi, 4 * pi,  0.25 / pi,
+                                        pi / 2,  2 / pi, pi / 4,  4 / pi,   pi * pi, 1 / (pi * pi),
+                                        0.5,     0.25,   2.0 / 3, 1.5,      1.0 / 3, 0.75,
+                                        4.0 / 3, root,   1 / root};
+    static constexpr const char* names[] = {
+        "1/pi", "pi",   "2 pi", "1/(2 pi)", "4 pi",   "1/(4 pi)",      "pi/2",
+        "2/pi", "pi/4", "4/pi", "pi^2",     "1/pi^2", "1/2",           "1/4",
+        "2/3",  "3/2",  "1/3",  "3/4",      "4/3",    "the root of 2", "1 over the root of 2"};
     const char* name = nullptr;
-    for (const auto& k : known)
-        if (std::abs(x / k.value - 1) <= tolerance) {
+    for (size_t i = 0; i < std::size(values); ++i)
+        if (std::abs(x / values[i] - 1) <= tolerance) {
             if (name) return "";  // two are as near
-            name = k.name;
+            name = names[i];
         }
     return name ? name : "";
 }
@@ -2357,6 +2345,44 @@ inline std::string cause_of(double ratio, double tolerance, const std::vector<Fa
     std::string text = "; looks like " + causes[0];
     for (size_t i = 1; i < causes.size(); ++i) text += " or " + causes[i];
     return text;
+}
+
+inline std::string mean_hint(const Estimate& e, double truth, const std::vector<double>& numbers,
+                             const std::vector<Factor>& factors) {
+    const double ratio = e.mean / truth, error = 5 * e.standard_error,
+                 within = error / std::abs(e.mean), n = double(numbers.size());
+    if (within >= 1)
+        return e.both_signs ? "; 0 within its error: what has either sign may cancel"
+                            : "; 0 within its error";
+    const std::string name = times(ratio, within), cause = cause_of(ratio, within, factors);
+    const std::string first = "; ratio " + name + (ratio < 0 ? ", of the wrong sign" : "") + cause;
+    if (!cause.empty()) return first;
+    const bool named = name.back() == ')';
+    double lit = 0, least = infinity;
+    for (double x : numbers) lit += x != 0, least = std::min(least, x);
+    // A choice returns 0 where it is not taken.
+    const double part = lit / n, close = 0.6 * within + 3 * std::sqrt((1 - part) / lit);
+    if (part < 0.98 && close < 0.03 && std::abs(ratio / part - 1) < close)
+        return first + ", as are those that are not 0" +
+               (named ? "" : ": looks like a probability that is not divided by");
+    // 1 + a + a^2 + ...: a path that ends at once brings 1.
+    if (std::abs(least - 1) < 1e-6 && e.mean > 1 && truth > 1) {
+        const double bounce = 1 - 1 / e.mean, by = bounce / (1 - 1 / truth);
+        const std::string why = cause_of(by, 0.6 * error / (e.mean * e.mean * bounce), factors);
+        if (!why.empty()) return first + say("; what a bounce brings is %.4g times", by) + why;
+    }
+    if (named) return first;
+    const double less = std::min(ratio, 1 / ratio), count = less / (1 - less),
+                 count_off = within * count / (1 - less);
+    if (count > 1.5 && count_off < 0.25 && std::abs(count - std::round(count)) < count_off)
+        return first + say(", %.0f/%.0f: a count that is off by one?",
+                           std::round(ratio < 1 ? count : count + 1),
+                           std::round(ratio < 1 ? count + 1 : count));
+    const double off = e.mean - truth;
+    if (error < 0.01 && std::abs(off - std::round(4 * off) / 4) < error && std::abs(off) > 0.2)
+        return first + say("; %.4g is %s: a term?", std::abs(std::round(4 * off) / 4),
+                           off < 0 ? "missing" : "too much");
+    return first;
 }
 
 // ---- The mistake behind a density ---------------------------------------------------------------
@@ -2551,7 +2577,6 @@ struct Mistake {
         if (why.empty()) why = symmetry();
         if (why.empty()) why = linear();
         if (why.empty()) why = moved();
-        if (why.empty()) why = sides();
         if (why.empty()) why = steps();
         return why.empty() && good.size() >= 50 ? which_is_uniform() : why;
     }
@@ -2904,21 +2929,6 @@ struct Mistake {
                          "row, a lobe) or its index"
                    : "";
     }
-
-    // A constant factor on either side of a plane of coordinates.
-    std::string sides() const {
-        for (size_t k = 0; k < N && scene.directions; ++k) {
-            std::vector<double> of[2];
-            for (size_t i = 0; i < good.size(); ++i) of[good[i].x[k] < 0].push_back(ratios[i]);
-            if (std::min(of[0].size(), of[1].size()) < 20) continue;
-            const Law above = law_of(of[0], tolerance), below = law_of(of[1], tolerance);
-            if (above.holds && below.holds)
-                return "the pdf is " + times(above.factor, 0.003) +
-                       say(" times the density of the samples where %c > 0, ", "xyz"[k % 3]) +
-                       times(below.factor, 0.003) + " times where it is < 0";
-        }
-        return "";
-    }
 };
 
 // total: integral of the pdf; share: of the samples that failed.
@@ -3057,11 +3067,17 @@ std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
         }
         const double a = products / squares, b = (1 - a * half) / (1 - half);
         for (size_t i = 0; i < 32; ++i) p[i] += a * slope[i];
-        if (a > 0 && b > 0 && follow(p, {}))
-            return "samples are " + times(a * arrives / check.parts.total, 0.01) +
-                   say(" times as dense as the pdf says where %c > 0, ", "xyz"[k % 3]) +
-                   times(b * arrives / check.parts.total, 0.01) +
-                   " times where it is < 0: looks like the probability of one side";
+        if (std::min(a, b) < -0.01 || !follow(p, {})) continue;
+        const double by = arrives / check.parts.total;
+        const std::string dense = " times as dense as the pdf says where ";
+        if (std::min(a, b) < 0.01)
+            return "samples are " + times(std::max(a, b) * by, 0.01) + dense +
+                   say("%c %c 0, and hardly any come elsewhere: looks like a part of the domain "
+                       "(half of phi?) never sampled",
+                       "xyz"[k % 3], a > b ? '>' : '<');
+        return "samples are " + times(a * by, 0.01) + dense + say("%c > 0, ", "xyz"[k % 3]) +
+               times(b * by, 0.01) +
+               " times where it is < 0: looks like the probability of one side";
     }
     return "";
 }
@@ -3078,7 +3094,17 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
                                         std::abs(total - 1 + share) < 10 * check.close
                                     ? if_double
                                     : "";
-    if (!check.repeated.empty()) return check.repeated;
+    if (check.heaps > 2)
+        return check.repeated + say(", and %zu points more repeat", check.heaps - 1) +
+               ": looks like corners of cells, without a random number within";
+    // Where the pdf lacks just this part it was left out on purpose.
+    if (check.heaps > 0 && !check.directions)
+        return check.repeated + ": looks like numbers clamped to an end";
+    if (check.heaps > 0)
+        return check.repeated +
+               (std::abs(total + share + check.repeating - 1) < 0.02
+                    ? ": looks like a mirror (.discrete says how many samples are)"
+                    : ": numbers clamped to an end, or a mirror (.discrete says how many)?");
     if (const std::string why = explained(check, sheets.all, total); !why.empty())
         return why + rounded;
     const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
@@ -3193,6 +3219,43 @@ inline std::string albedo_hint(const std::vector<Albedo>& all) {
 
 // ---- What is wrong with a choice ----------------------------------------------------------------
 
+// Few are all listed.
+inline std::string list_of(const std::vector<double>& expected, const std::vector<double>& seen,
+                           double samples) {
+    if (expected.size() > 8) return "";
+    std::string chosen, wanted;
+    for (size_t i = 0; i < expected.size(); ++i) {
+        const char* comma = i == 0 ? "" : ", ";
+        chosen += comma + say("%.3g", seen[i] / samples);
+        wanted += comma + say("%.3g", expected[i]);
+    }
+    return "; chosen are " + chosen + ", expected " + wanted;
+}
+
+inline std::string sum_hint(const std::vector<double>& expected, const std::vector<double>& seen) {
+    std::vector<double> differences = expected;
+    for (size_t i = 1; i < expected.size(); ++i)
+        differences[i] = std::max(0.0, expected[i] - expected[i - 1]);
+    return (fit_choices(differences, seen, 0, 0).p > 1e-4
+                ? ": looks like cumulated probabilities in place of each one's"
+                : "") +
+           list_of(expected, seen, sum_of(seen));
+}
+
+// The probabilities of a choice of a group by a number that then, not scaled, chooses in the group:
+// of the first k and of all others, or of k each.
+inline std::vector<double> chosen_again(const std::vector<double>& p, size_t k, bool alike) {
+    std::vector<double> sums{0}, again;
+    for (double x : p) sums.push_back(sums.back() + x);
+    for (size_t i = 0; i < p.size(); ++i) {
+        const size_t a = alike ? i / k * k : i < k ? 0 : k, b = alike || i < k ? a + k : p.size();
+        const double low = sums[a], high = sums[b], begin = (sums[i] - low) / (high - low),
+                     end = i + 1 == b ? sums.back() : (sums[i + 1] - low) / (high - low);
+        again.push_back(std::max(0.0, std::min(end, high) - std::max(begin, low)));
+    }
+    return again;
+}
+
 inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
                                double none, double tolerance) {
     const size_t count = expected.size();
@@ -3202,44 +3265,13 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
     auto explains = [&](const std::vector<double>& p) {
         return fit_choices(p, seen, none, tolerance).p > 1e-4;
     };
-    auto list = [](const std::vector<double>& p) {
-        std::string text;
-        for (double x : p) text += (text.empty() ? "" : ", ") + say("%.3g", x);
-        return text;
-    };
-    // Few are all listed.
-    const std::string all =
-        count > 8 ? "" : "; chosen are " + list(frequencies) + ", expected " + list(expected);
+    const std::string all = list_of(expected, seen, samples);
     if (none > 0 && std::abs(total - 1) < 1e-6)
         return percent(none / samples) +
                " of the choices are none, though the probabilities sum to 1";
     if (count == 1 && explains({1 - total}))
         return percent(seen[0] / samples) + " are chosen, " + percent(total) +
                " expected: looks like a comparison turned round (p for 1 - p)";
-    for (size_t i = 0; i < count; ++i) {
-        if (seen[i] > 0 || expected[i] * samples < 20) continue;
-        std::string first =
-            say("index %zu is never chosen, though its probability is %.4g", i, expected[i]);
-        for (size_t j = 0; j < count; ++j) {
-            auto merged = expected;
-            merged[j] += std::exchange(merged[i], 0);
-            if (j != i && explains(merged))
-                return first + say("; %zu takes its share", j) +
-                       (i + 1 == count || i == 0 ? ": a search that ends too early" : "");
-        }
-        auto others = expected;
-        for (double& p : others) p *= total / (total - expected[i]);
-        others[i] = 0;
-        if (total > expected[i] && explains(others))
-            return first + "; the others share it: looks like a range too short" + all;
-        for (bool up : {true, false}) {
-            std::vector<double> moved(count);
-            for (size_t j = 0; j < count; ++j)
-                moved[up ? std::min(j + 1, count - 1) : j - std::min<size_t>(j, 1)] += expected[j];
-            if (explains(moved)) return first + "; looks like an index off by one" + all;
-        }
-        return first + all;
-    }
     const size_t worst = worst_of(count, [&](size_t i) {
         const double mean = expected[i] * samples;
         return seen[i] == mean ? 0 : std::abs(seen[i] - mean) / std::sqrt(mean);
@@ -3249,6 +3281,50 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
             ? say("index %zu is chosen, though its probability is 0", worst)
             : say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
                   seen[worst] / (expected[worst] * samples), expected[worst]);
+    for (size_t k = 1; k < count; ++k)
+        for (const bool alike : {false, true})
+            if ((!alike || (1 < k && 2 * k < count && count % k == 0)) &&
+                explains(chosen_again(expected, k, alike)))
+                return first + "; looks like the number that chose " +
+                       (alike ? say("a group of %zu", k)
+                              : say("between 0 to %zu and the others", k - 1)) +
+                       ", used again without scaling" + all;
+    for (size_t i = 0; i < count; ++i) {
+        if (seen[i] > 0 || expected[i] * samples < 20) continue;
+        const std::string never =
+            say("index %zu is never chosen, though its probability is %.4g", i, expected[i]);
+        for (const bool up : {true, false}) {
+            std::vector<double> moved(count);
+            for (size_t j = 0; j < count; ++j)
+                moved[up ? std::min(j + 1, count - 1) : j - std::min<size_t>(j, 1)] += expected[j];
+            if (count > 2 && explains(moved))
+                return never + "; looks like an index off by one" + all;
+        }
+        for (size_t j = 0; j < count; ++j) {
+            auto merged = expected;
+            merged[j] += std::exchange(merged[i], 0);
+            if (j != i && explains(merged))
+                return never + say("; %zu takes its share", j) +
+                       (i + 1 == count && j + 1 == i ? ": a search that ends too early"
+                        : i == 0 && j == 1           ? ": a search that begins too late"
+                                                     : "");
+        }
+        auto others = expected;
+        for (double& p : others) p *= total / (total - expected[i]);
+        others[i] = 0;
+        if (total > expected[i] && explains(others))
+            return never + "; the others share it in proportion" +
+                   (i + 1 == count ? ": looks like a range too short" : "") + all;
+        return never + all;
+    }
+    size_t divided = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const double mean = expected[i] * samples / double(count);
+        divided += mean >= 100 && std::abs(seen[i] - mean) < 4 * std::sqrt(mean);
+    }
+    if (count > 2 && 2 * divided > count)
+        return first + say("; %zu others 1/%zu times: ", divided, count) +
+               "looks like probabilities not multiplied by their number (an alias table?)" + all;
     // The same probabilities elsewhere, if there are so many that it is not by chance.
     std::vector<std::pair<std::string, std::vector<double>>> others;
     auto other = [&](size_t fewest, const std::string& cause, const std::vector<double>& p) {
@@ -3264,8 +3340,16 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
     }
     other(1, "a uniform choice", std::vector<double>(count, total / double(count)));
     if (const auto [low, high] = std::minmax_element(expected.begin(), expected.end());
-        *high < *low * (1 + 1e-6))
+        *high < *low * (1 + 1e-6)) {
+        // round(u n) and round(u (n - 1)).
+        for (const double n : {double(count), double(count) - 1}) {
+            std::vector<double> rounded(count, total / n);
+            rounded[0] /= 2;
+            rounded[count - 1] *= n < double(count) ? 0.5 : 1.5;
+            other(3, "an index rounded to nearest in place of down", rounded);
+        }
         other(1, "probabilities of a uniform choice, which this is not", frequencies);
+    }
     std::vector<std::pair<double, size_t>> by_seen;
     for (size_t i = 0; i < count; ++i) by_seen.emplace_back(seen[i], i);
     std::sort(by_seen.begin(), by_seen.end());
@@ -3280,34 +3364,48 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
 
 // ---- What is wrong with an image ----------------------------------------------------------------
 
-// The rectangle of the pixels that are off, if most in it are, and all others are right.
+// What a rectangle of pixels is, or every second, third or fourth row or column, if most of it is
+// off and all others are right.
 inline std::string Image::all_others_right() const {
-    size_t x0 = width, x1 = 0, y0 = height, y1 = 0, off = 0;
-    for (size_t i = 0; i < n(); ++i) {
-        if (std::abs(f[i] - truth[i]) <= 5 * s[i] + 1e-6 * std::abs(truth[i])) continue;
-        x0 = std::min(x0, i % width), x1 = std::max(x1, i % width);
-        y0 = std::min(y0, i / width), y1 = std::max(y1, i / width);
-        ++off;
-    }
-    if (off == 0) return "";
-    const size_t inside = (x1 - x0 + 1) * (y1 - y0 + 1);
-    if (2 * off < inside || 2 * inside > n()) return "";
-    std::vector<double> mended = truth;
-    double seen = 0, wanted = 0, variance = 0;
-    for (size_t y = y0; y <= y1; ++y)
-        for (size_t x = x0; x <= x1; ++x) {
-            const size_t i = y * width + x;
+    auto off = [&](size_t i) {
+        return std::abs(f[i] - truth[i]) > 5 * s[i] + 1e-6 * std::abs(truth[i]);
+    };
+    std::string why;
+    auto try_those = [&](const std::string& who, auto in) {
+        std::vector<double> mended = truth;
+        double seen = 0, wanted = 0, variance = 0, wrong = 0, inside = 0;
+        for (size_t i = 0; i < n(); ++i) {
+            if (!in(i % width, i / width)) continue;
             mended[i] = f[i];
             seen += f[i], wanted += truth[i], variance += s[i] * s[i];
+            wrong += off(i), ++inside;
         }
-    if (against(mended).p <= o.alpha) return "";
-    const double ratio = seen / wanted, error = std::sqrt(variance);
-    return (inside == 1 ? say("pixel (%zu, %zu) is ", x0, y0)
-                        : say("pixels (%zu, %zu) to (%zu, %zu) are ", x0, y0, x1, y1)) +
-           (std::abs(seen) <= 5 * error ? "black"
-            : wanted == 0               ? "not black"
-                          : times(ratio, 5 * error / std::abs(seen)) + " times the reference") +
-           ", all others are right";
+        if (!why.empty() || 2 * wrong < inside || 3 * inside > 2 * double(n()) ||
+            against(mended).p <= o.alpha)
+            return;
+        const double error = 5 * std::sqrt(variance);
+        why = who +
+              (std::abs(seen) <= error ? "black"
+               : wanted == 0
+                   ? "not black"
+                   : times(seen / wanted, error / std::abs(seen)) + " times the reference") +
+              ", all others are right";
+    };
+    size_t x0 = width, x1 = 0, y0 = height, y1 = 0;
+    for (size_t i = 0; i < n(); ++i) {
+        if (!off(i)) continue;
+        x0 = std::min(x0, i % width), x1 = std::max(x1, i % width);
+        y0 = std::min(y0, i / width), y1 = std::max(y1, i / width);
+    }
+    try_those(x0 == x1 && y0 == y1 ? say("pixel (%zu, %zu) is ", x0, y0)
+                                   : say("pixels (%zu, %zu) to (%zu, %zu) are ", x0, y0, x1, y1),
+              [&](size_t x, size_t y) { return x0 <= x && x <= x1 && y0 <= y && y <= y1; });
+    for (size_t step = 2; step <= 4; ++step)
+        for (size_t k = 0; k < 2 * step; ++k)
+            try_those(say("%s %zu, %zu, %zu, ... are ", k < step ? "rows" : "columns", k % step,
+                          k % step + step, k % step + 2 * step),
+                      [&](size_t x, size_t y) { return (k < step ? y : x) % step == k % step; });
+    return why;
 }
 
 inline std::string Image::hint(const ImageResult& r) const {
@@ -3331,6 +3429,16 @@ inline std::string Image::hint(const ImageResult& r) const {
              "the image is the reference upside down: looks like rows written in the other order");
     explains(moved(false, [&](size_t x, size_t y) { return y * width + width - 1 - x; }),
              "the image is the reference mirrored: looks like x reversed");
+    explains(moved(false, [&](size_t x, size_t y) { return x * height + y; }),
+             "the image is the reference with rows and columns exchanged");
+    const size_t orders[][3] = {{2, 1, 0}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}};
+    for (const auto& order : orders)
+        if (width % 3 == 0)
+            explains(moved(false, [&](size_t x,
+                                      size_t y) { return y * width + x / 3 * 3 + order[x % 3]; }),
+                     say("the image is the reference with columns 3k + %zu, %zu, %zu for 0, 1, 2: "
+                         "looks like colours in another order",
+                         order[0], order[1], order[2]));
     if (sum != 0 && sum_f / sum > 0) {
         const double within = 5 * std::sqrt(variance) / std::abs(sum_f);
         explains(truth,
@@ -3369,15 +3477,26 @@ inline std::string Image::hint(const ImageResult& r) const {
             explains(shifted(dx, dy),
                      std::string("the image is the reference one pixel further ") + where);
     if (first.empty()) first = all_others_right();
+    // By 16 blocks: those in the middle, at the edges, in the corners.
+    std::array<double, 16> seen{}, wanted{};
+    std::array<double, 3> low{infinity, infinity, infinity}, high{};
+    for (size_t i = 0; i < n(); ++i) seen[block_of(i)] += f[i], wanted[block_of(i)] += truth[i];
+    for (size_t b = 0; b < 16; ++b) {
+        const size_t group = (b % 4 % 3 == 0) + (b / 4 % 3 == 0);
+        low[group] = std::min(low[group], seen[b] / wanted[b]);
+        high[group] = std::max(high[group], seen[b] / wanted[b]);
+    }
+    if (first.empty() && ((low[0] > high[1] && low[1] > high[2] && low[0] > 1.05 * high[2]) ||
+                          (high[0] < low[1] && high[1] < low[2] && 1.05 * high[0] < low[2])))
+        first =
+            say("the image is %.3g times the reference in the middle, %.3g times at the edges, "
+                "%.3g times in the corners: a weight of the camera (cos^4, a filter)?",
+                (low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2);
     if (first.empty() && r.by_block) {
         const size_t x0 = (r.block % 4 * width + 3) / 4, x1 = ((r.block % 4 + 1) * width + 3) / 4,
                      y0 = (r.block / 4 * height + 3) / 4, y1 = ((r.block / 4 + 1) * height + 3) / 4;
-        double seen = 0, wanted = 0;
-        for (size_t y = y0; y < y1; ++y)
-            for (size_t x = x0; x < x1; ++x)
-                seen += f[y * width + x], wanted += truth[y * width + x];
         first = say("the block of pixels (%zu, %zu) to (%zu, %zu) is %.4g times the reference", x0,
-                    y0, x1 - 1, y1 - 1, seen / wanted) +
+                    y0, x1 - 1, y1 - 1, seen[r.block] / wanted[r.block]) +
                 say(", all pixels %.4g times", sum_f / sum);
     }
     if (first.empty())
@@ -3457,42 +3576,6 @@ inline std::string grey(double x) {
 inline std::string blue_white_red(double x) {
     const int fade = int(255 * (1 - std::min(1.0, std::abs(x))));
     return x < 0 ? say("fill:rgb(%d,%d,255)", fade, fade) : say("fill:rgb(255,%d,%d)", fade, fade);
-}
-
-// The running mean, and the band in which it would be with a mean of `truth`.
-inline std::string picture_of(const Draws& draws, double truth, const Options& o) {
-    const Estimate e = draws.estimate();
-    const double t = where_equal([&](double x) { return p_of_t(x, e.df); }, o.alpha);
-    std::vector<std::pair<double, double>> running, above, below;
-    const double deviation = std::sqrt(draws.variance());
-    const double half = std::max(1.5 * std::abs(e.mean - truth), 3 * t * e.standard_error);
-    auto add = [&](auto& curve, double i, double y) {
-        curve.emplace_back(60 + 520 * i / draws.n(),
-                           180 - 140 * std::clamp((y - truth) / half, -1.1, 1.1));
-    };
-    double sum = 0;
-    const size_t step = std::max<size_t>(1, draws.values.size() / 260);
-    for (size_t i = 0; i < draws.values.size(); ++i) {
-        sum += draws.values[i];
-        if ((i + 1) % step != 0) continue;
-        const double k = double(i + 1), band = t * deviation / std::sqrt(k);
-        add(running, k, sum / k);
-        add(above, k, truth + band);
-        add(below, k, truth - band);
-    }
-    Drawing d{600, 350};
-    d.curve({{60, 180}, {580, 180}}, "stroke:black");
-    d.curve(above, "stroke:grey");
-    d.curve(below, "stroke:grey");
-    d.curve(running, "stroke:rgb(200,0,0);stroke-width:2");
-    d.text(60, 20,
-           say("running mean (red) of %.0f samples; grey: where it is with a mean of %.6g",
-               draws.n(), truth));
-    d.text(2, 184, say("%.4g", truth));
-    d.text(2, 44, say("%.4g", truth + half));
-    d.text(2, 324, say("%.4g", truth - half));
-    d.text(500, 345, say("n = %.0f", draws.n()));
-    return d.written(o.name);
 }
 
 // Maps of 100 000 samples more, of the pdf, and of their difference; on a line bars and a curve.
