@@ -263,7 +263,7 @@ TEST_CASE("hints: means") {
         return std::exp(x) - (1 + x);
     };
     all_say({{mean(2.5, [&] { return furnace(0.6 / pi); }),
-              "times; looks like divided by pi twice, or pi forgotten"},
+              "what it should; looks like divided by pi twice, or pi forgotten"},
              {mean(1.0, [&] { return random() < 0.5 ? 2 * random() : 0; }),
               "half), as are those that are not 0"},
              {mean(1.0, [&] { return random() < 0.3 ? 1 : 0; }),
@@ -336,7 +336,7 @@ TEST_CASE("hints: choices and images") {
           "times in the corners: a weight of the camera"},
          {elsewhere([](size_t x, size_t y) { return x * 12 + y; }), "rows and columns exchanged"},
          {elsewhere([](size_t x, size_t y) { return y * 15 + x / 3 * 3 + 2 - x % 3; }),
-          "colours in another order"},
+          "looks like red and blue exchanged"},
          {image([](size_t x, size_t y) { return x < 4 && y > 7 ? 1.5 : 1.0; }),
           "pixels (0, 8) to (3, 11) are 1.5 times"},
          {image([](size_t x, size_t y) { return x == 7 && y == 9 ? 0.5 : 1.0; }),
