@@ -29,6 +29,7 @@ void print(const char*) {}
 
 #include <doctest/doctest.h>
 
+#define ORACLE_CHECKS
 #include "oracle/expect.h"
 
 namespace {

@@ -1811,77 +1811,7 @@ struct DensityCheck {
         return parts;
     }
 
-    Verdict run() {
-        find_mirrors();
-        fly_pilot();
-        for (size_t i = 0; i < (pilot.empty() ? 100 : 4096) && wrong.empty(); ++i) (void)one();
-        if (wrong.empty() && pilot.empty())
-            return failure("of " + say("%.0f", samples) +
-                           " samples hardly any comes where the pdf is positive: " + first_none +
-                           symmetry_of(*this));
-        if (wrong.empty()) try_rims();
-        if (wrong.empty()) wrong = other_pdf();
-        if (!wrong.empty()) return failure(wrong);
-        samples = none = mirrored = 0;
-        cells = Cells<D>(pilot);
-        parts = integrate();
-        // Rounding may make a 0 negative.
-        if (wrong.empty() && most_negative < -1e-12 * median(heights))
-            wrong = say("the pdf is negative, %.4g, at ", most_negative) + where_negative;
-        if (!wrong.empty()) return failure(wrong);
-
-        close = allowed() + 6 * parts.error;
-        if constexpr (M == D)
-            sheets = sheets_of(model, random,
-                               std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)),
-                               o.tolerance, false);
-        const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
-        const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
-        const bool off_already = sheets.off || parts.total > 1 - o.discrete + close;
-        for (uint64_t i = 0; i < (off_already ? std::min<uint64_t>(n, 100000) : n); ++i)
-            if (const auto c = one()) ++counts[cells.of(*c)];
-        if (!wrong.empty()) return failure(wrong);
-
-        // What fails is missing from the integral, as closely as it is known.
-        const double others = samples * (1 - o.discrete),
-                     fewest = others - samples * (parts.total + close),
-                     most = others - samples * (parts.total - close);
-        double p_share = 0;
-        if (none == 0)
-            balanced = std::abs(parts.total - (1 - o.discrete)) <= close ||
-                       (parts.total < 1 - o.discrete && fewest < -std::log(o.alpha / 4));
-        else {
-            p_share = 2 * std::min(p_at_least(none, samples, most / samples),
-                                   1 - p_at_least(none + 1, samples, fewest / samples));
-            balanced = p_share > o.alpha / 2;
-        }
-        std::vector<double> variances;
-        for (size_t i = 0; i < 32; ++i) {
-            expected[i] = parts.value[i] / parts.total;
-            variances.push_back(parts.variance[i] / (parts.total * parts.total));
-        }
-        const double part = o.discrete > 0 ? 4 : none > 0 ? 2 : 1;
-        Verdict v =
-            judge_counts(counts, expected,
-                         {.alpha = o.alpha / part, .tolerance = o.tolerance + moved()}, variances);
-        alpha_spent += o.alpha - o.alpha / part;
-        if (o.discrete > 0 && (p_at_least(mirrored, samples, o.discrete) < o.alpha / 8 ||
-                               1 - p_at_least(mirrored + 1, samples, o.discrete) < o.alpha / 8))
-            return failure(percent(mirrored / samples) + " of the samples are mirrors', " +
-                           percent(o.discrete) + " were announced (.discrete)");
-        counted = v.pass;
-        v.text +=
-            "; the pdf integrates to " + say("%.8g over the %s", parts.total, Domain::measure);
-        if (parts.error > 0) v.text += say(" +- %.1e", parts.error);
-        if (none > 0) v.text += "; " + percent(none / samples) + " of the samples fail";
-        if (sheets.blind > 0) v.text += say("; Jacobian within %.1e", sheets.blind);
-        v.delta_min = std::max(v.delta_min, close);  // where rounding rules
-        v.pass = counted && balanced && !sheets.off;
-        if (v.pass) return v;
-        if (!balanced || sheets.off) v.p = sheets.off ? 0 : p_share;
-        v.text = first_line_of(*this) + "\n" + v.text + picture_of(*this);
-        return v;
-    }
+    Verdict run();
 
     Range<D> range(size_t cell) const { return cells.range(cell, {domain.lower, domain.upper}); }
     size_t worst_cell() const {
@@ -1913,6 +1843,77 @@ struct DensityCheck {
         return square;
     }
 };
+
+template <size_t M, size_t N, class Domain>
+Verdict DensityCheck<M, N, Domain>::run() {
+    find_mirrors();
+    fly_pilot();
+    for (size_t i = 0; i < (pilot.empty() ? 100 : 4096) && wrong.empty(); ++i) (void)one();
+    if (wrong.empty() && pilot.empty())
+        return failure("of " + say("%.0f", samples) +
+                       " samples hardly any comes where the pdf is positive: " + first_none +
+                       symmetry_of(*this));
+    if (wrong.empty()) try_rims();
+    if (wrong.empty()) wrong = other_pdf();
+    if (!wrong.empty()) return failure(wrong);
+    samples = none = mirrored = 0;
+    cells = Cells<D>(pilot);
+    parts = integrate();
+    // Rounding may make a 0 negative.
+    if (wrong.empty() && most_negative < -1e-12 * median(heights))
+        wrong = say("the pdf is negative, %.4g, at ", most_negative) + where_negative;
+    if (!wrong.empty()) return failure(wrong);
+
+    close = allowed() + 6 * parts.error;
+    if constexpr (M == D)
+        sheets =
+            sheets_of(model, random, std::max(model.single ? 2e-3 : 1e-6, 3 * (rounding + jumps)),
+                      o.tolerance, false);
+    const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
+    const uint64_t n = o.n ? o.n : uint64_t(needed / std::max(0.1, arriving) + 1);
+    const bool off_already = sheets.off || parts.total > 1 - o.discrete + close;
+    for (uint64_t i = 0; i < (off_already ? std::min<uint64_t>(n, 100000) : n); ++i)
+        if (const auto c = one()) ++counts[cells.of(*c)];
+    if (!wrong.empty()) return failure(wrong);
+
+    // What fails is missing from the integral, as closely as it is known.
+    const double others = samples * (1 - o.discrete),
+                 fewest = others - samples * (parts.total + close),
+                 most = others - samples * (parts.total - close);
+    double p_share = 0;
+    if (none == 0)
+        balanced = std::abs(parts.total - (1 - o.discrete)) <= close ||
+                   (parts.total < 1 - o.discrete && fewest < -std::log(o.alpha / 4));
+    else {
+        p_share = 2 * std::min(p_at_least(none, samples, most / samples),
+                               1 - p_at_least(none + 1, samples, fewest / samples));
+        balanced = p_share > o.alpha / 2;
+    }
+    std::vector<double> variances;
+    for (size_t i = 0; i < 32; ++i) {
+        expected[i] = parts.value[i] / parts.total;
+        variances.push_back(parts.variance[i] / (parts.total * parts.total));
+    }
+    const double part = o.discrete > 0 ? 4 : none > 0 ? 2 : 1;
+    Verdict v = judge_counts(
+        counts, expected, {.alpha = o.alpha / part, .tolerance = o.tolerance + moved()}, variances);
+    alpha_spent += o.alpha - o.alpha / part;
+    if (o.discrete > 0 && (p_at_least(mirrored, samples, o.discrete) < o.alpha / 8 ||
+                           1 - p_at_least(mirrored + 1, samples, o.discrete) < o.alpha / 8))
+        return failure(percent(mirrored / samples) + " of the samples are mirrors', " +
+                       percent(o.discrete) + " were announced (.discrete)");
+    counted = v.pass;
+    v.text += "; the pdf integrates to " + say("%.8g over the %s", parts.total, Domain::measure);
+    if (parts.error > 0) v.text += say(" +- %.1e", parts.error);
+    if (none > 0) v.text += "; " + percent(none / samples) + " of the samples fail";
+    if (sheets.blind > 0) v.text += say("; Jacobian within %.1e", sheets.blind);
+    v.delta_min = std::max(v.delta_min, close);  // where rounding rules
+    v.pass = counted && balanced && !sheets.off;
+    if (v.pass) return v;
+    if (!balanced || sheets.off) v.p = sheets.off ? 0 : p_share;
+    v.text = first_line_of(*this) + "\n" + v.text + picture_of(*this);
+    return v;
+}
 
 // Samples of sample(u, v, ...) have the density pdf(sample), which integrates to 1 over the domain
 // less the part of samples that fail (nothing returned, or pdf 0): by quadrature; by the Jacobian,
@@ -3701,9 +3702,19 @@ inline std::string Image::picture() const {
     return d.written(o.name);
 }
 
-}  // namespace oracle
-
 #ifndef __clang__
 #pragma GCC pop_options
 #endif
+
+// Most of the time that a check of a density takes to compile.  Of a program of several files one
+// is compiled with -DORACLE_CHECKS=, all others with -DORACLE_CHECKS=extern.
+#ifdef ORACLE_CHECKS
+ORACLE_CHECKS template Verdict DensityCheck<2, 3, Sphere>::run();
+ORACLE_CHECKS template Verdict DensityCheck<3, 3, Sphere>::run();
+ORACLE_CHECKS template Verdict DensityCheck<2, 2, Plane>::run();
+ORACLE_CHECKS template Verdict DensityCheck<1, 1, Line>::run();
+#endif
+
+}  // namespace oracle
+
 #pragma GCC diagnostic pop
