@@ -135,7 +135,7 @@ TEST_CASE("hints: directions") {
     all_say(
         {{expect_density(random, wedges, cosine_pdf), "branches that overlap and leave a gap"},
          {expect_density(random, cosine, even), "the pdf is uniform, samples are not"},
-         {expect_density(random, normals, narrow), "narrower than the samples (a roughness"},
+         {expect_density(random, normals, narrow), "narrower than the samples"},
          {expect_density(random, disc, per_area), "the cosine to (-0.5145"},
          {expect_density(random, texels, no_sine), "a density per (theta, phi)"},
          {expect_density(random, cube, [](Triple) { return 1 / (4 * pi); }), "points of a cube"},

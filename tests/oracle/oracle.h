@@ -2380,7 +2380,7 @@ inline std::string mean_hint(const Estimate& e, double truth, const std::vector<
     if (named) return first;
     const double less = std::min(ratio, 1 / ratio), count = less / (1 - less),
                  count_off = within * count / (1 - less);
-    if (count > 1.5 && count_off < 0.25 && std::abs(count - std::round(count)) < count_off)
+    if (count > 4.5 && count_off < 0.25 && std::abs(count - std::round(count)) < count_off)
         return first + say(", %.0f/%.0f: a count that is off by one?",
                            std::round(ratio < 1 ? count : count + 1),
                            std::round(ratio < 1 ? count + 1 : count));
@@ -2977,8 +2977,7 @@ inline std::string width_of(std::vector<std::pair<double, double>> distance_and_
     if (!(std::abs(medians[4] / medians[0] - 1) >= 0.1) ||
         !(rises || std::is_sorted(medians.rbegin(), medians.rend())))
         return "";
-    return std::string(rises ? "wider" : "narrower") +
-           " than the samples (a roughness, an exponent, the weights of a mixture?)";
+    return std::string(rises ? "wider" : "narrower") + " than the samples";
 }
 
 // The pdf beside the density of the samples, where their map tells it.
