@@ -53,7 +53,7 @@ TEST_CASE(
              {"refuses now and then",
               [&](size_t subject) { return subject < 12 && runs[subject]++ == 0; }, 0, 0, 0},
              {"says yes to all", [](size_t) { return false; }, 0, 0, 0},
-             {"says no to all", [](size_t) { return true; }, 0, 12, 7 * 17}}) {
+             {"says no to all", [](size_t) { return true; }, 0, 12, 7 * 23}}) {
         auto j = played(r.refuses);
         const Tally t = tally(j, 1);
         CAPTURE(r.who);
@@ -61,8 +61,8 @@ TEST_CASE(
         CHECK(t.found() == r.found);
         CHECK(t.alarms == r.alarms);
         CHECK(t.quiet() == (r.alarms == 0));
-        CHECK(t.runs == 12 * 3 + 7 * 17);
-        CHECK(t.right_runs >= 100);
+        CHECK(t.runs == 12 * 3 + 7 * 23);
+        CHECK(t.right_runs >= 130);
         CHECK(t.in_time());
         CHECK(j.seeds.size() == t.runs);
     }
@@ -79,7 +79,7 @@ TEST_CASE("a false alarm that chance explains costs nothing, more cost five time
         const Tally t = tally(j, 1);
         CHECK(t.alarms == size_t(alarms));
         CHECK(t.quiet() == (alarms <= 2));
-        CHECK(t.credit() == doctest::Approx(alarms <= 2 ? 1 : 1 - 5.0 * alarms / (7 * 17)));
+        CHECK(t.credit() == doctest::Approx(alarms <= 2 ? 1 : 1 - 5.0 * alarms / (7 * 23)));
     }
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("when time is up no more is asked") {
     auto j = played([](size_t subject) { return subject < 12; });
     j.seconds = 10;
     const Tally t = tally(j, 1);
-    CHECK(t.runs == 16);  // 155 runs have 155 s
+    CHECK(t.runs == 20);  // 197 runs have 197 s
     CHECK_FALSE(t.in_time());
     CHECK(t.credit() < 1);
 }

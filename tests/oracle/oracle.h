@@ -462,6 +462,9 @@ struct Draws {
     }
 };
 
+// Draws the running mean; says where.
+std::string picture_of(const Draws& d, double truth, const Options& o);
+
 template <class F>
 Draws draw(uint64_t n, F f) {
     Draws draws;
@@ -481,6 +484,7 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
         v = judge_exact(what, d.mean(), truth, d.unit, o);
     else
         v = judge(what, d.estimate(), truth, o, d.values);
+    if (!v.pass && d.n() >= 2 && std::isfinite(d.variance())) v.text += picture_of(d, truth, o);
     return named(v, o);
 }
 
@@ -3578,6 +3582,42 @@ inline std::string grey(double x) {
 inline std::string blue_white_red(double x) {
     const int fade = int(255 * (1 - std::min(1.0, std::abs(x))));
     return x < 0 ? say("fill:rgb(%d,%d,255)", fade, fade) : say("fill:rgb(255,%d,%d)", fade, fade);
+}
+
+// The running mean, and the band in which it would be with a mean of `truth`.
+inline std::string picture_of(const Draws& draws, double truth, const Options& o) {
+    const Estimate e = draws.estimate();
+    const double t = where_equal([&](double x) { return p_of_t(x, e.df); }, o.alpha);
+    std::vector<std::pair<double, double>> running, above, below;
+    const double deviation = std::sqrt(draws.variance());
+    const double half = std::max(1.5 * std::abs(e.mean - truth), 3 * t * e.standard_error);
+    auto add = [&](auto& curve, double i, double y) {
+        curve.emplace_back(60 + 520 * i / draws.n(),
+                           180 - 140 * std::clamp((y - truth) / half, -1.1, 1.1));
+    };
+    double sum = 0;
+    const size_t step = std::max<size_t>(1, draws.values.size() / 260);
+    for (size_t i = 0; i < draws.values.size(); ++i) {
+        sum += draws.values[i];
+        if ((i + 1) % step != 0) continue;
+        const double k = double(i + 1), band = t * deviation / std::sqrt(k);
+        add(running, k, sum / k);
+        add(above, k, truth + band);
+        add(below, k, truth - band);
+    }
+    Drawing d{600, 350};
+    d.curve({{60, 180}, {580, 180}}, "stroke:black");
+    d.curve(above, "stroke:grey");
+    d.curve(below, "stroke:grey");
+    d.curve(running, "stroke:rgb(200,0,0);stroke-width:2");
+    d.text(60, 20,
+           say("running mean (red) of %.0f samples; grey: where it is with a mean of %.6g",
+               draws.n(), truth));
+    d.text(2, 184, say("%.4g", truth));
+    d.text(2, 44, say("%.4g", truth + half));
+    d.text(2, 324, say("%.4g", truth - half));
+    d.text(500, 345, say("n = %.0f", draws.n()));
+    return d.written(o.name);
 }
 
 // Maps of 100 000 samples more, of the pdf, and of their difference; on a line bars and a curve.
