@@ -384,7 +384,7 @@ class Checked:
         said = ''.join(f'{n}) echo "{n} {v}"; [ "{v}" = right ] && exit 0;; ' for n, v in verdicts.items())
         drawn = f'[ -z "$ORACLE_PICTURES" ] || {{ mkdir -p "$ORACLE_PICTURES"; echo "{svg}" >"$ORACLE_PICTURES/oracle-check-1.svg"; }}; '
         for name, text in {'build/course/judge_1': f'{drawn if svg else ""}case $3 in {said} esac; exit 1',
-                           'build/penumbra': 'echo "x: 1.0 s"; echo wrote',
+                           'build/penumbra': 'echo "x: 4 samples per pixel, 1.0 s"; echo wrote; echo "x: the image is black"',
                            'build/beside': f'echo "d_rel {off} %; mean 1 1 1"'}.items():
             starter.write(self.top / name, f'#!/bin/sh\n{text}\n', True)
         for name, text in {'exercises.txt': ''.join(f'{n} | {n} | a.h | | 1 | 1\n' for n in verdicts),
