@@ -2,8 +2,7 @@
 //
 //   beside IMAGE.pfm EXPECTED.pfm SIDE-BY-SIDE.png
 //
-// Prints d_rel = sqrt(sum (f - F)^2 / sum F^2), F what is expected (Khodulev 1996), and the mean of
-// each channel.
+// Prints d_rel and the mean of each channel.
 #include "base/program.h"
 #include "keep/read_pfm.h"
 
@@ -30,16 +29,6 @@ double white_of(const Image& image) {
     return white > 0 ? double(white) : 1;
 }
 
-double relative_error(const Image& f, const Image& F) {
-    double difference = 0, sum = 0;
-    for (size_t i = 0; i < f.pixels.size(); ++i)
-        for (size_t c = 0; c < 3; ++c) {
-            difference += sqr(double(f.pixels[i][c]) - double(F.pixels[i][c]));
-            sum += sqr(double(F.pixels[i][c]));
-        }
-    return std::sqrt(difference / sum);
-}
-
 // The image, what is expected, and grey plus twice the difference.
 Image side_by_side(const Image& f, const Image& F, double white) {
     const int w = f.width;
@@ -60,8 +49,8 @@ int run(const std::vector<std::string>& words) {
     const double white = white_of(F);
     write_image(words[2], side_by_side(f, F, white), 1 / white);
     const Channels a = mean_of(f), b = mean_of(F);
-    std::printf("d_rel %.3g %%; mean %.4g %.4g %.4g, expected %.4g %.4g %.4g\n",
-                100 * relative_error(f, F), a[0], a[1], a[2], b[0], b[1], b[2]);
+    std::printf("d_rel %.3g %%; mean %.4g %.4g %.4g, expected %.4g %.4g %.4g\n", 100 * d_rel(F, f),
+                a[0], a[1], a[2], b[0], b[1], b[2]);
     return 0;
 }
 

@@ -22,7 +22,7 @@ out/%.png: scenes/%.scene build/penumbra$(SUFFIX)  ## out/NAME.png: render scene
 # A program is a .cpp of its own name: penumbra, and those of the projects.
 define program
 build/$(basename $(notdir $(1)))$(SUFFIX): $(1) build/compiler$(SUFFIX) | packages
-	@$$(CXX) $$(FLAGS) -O2 -MF $$@.d -MT $$@ -o $$@ $$<
+	@$$(CXX) $$(FLAGS) -O1 -MF $$@.d -MT $$@ -o $$@ $$<
 endef
 $(foreach source,$(wildcard src/*/*.cpp),$(eval $(call program,$(source))))
 -include $(wildcard build/*.d)

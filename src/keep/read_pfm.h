@@ -1,4 +1,4 @@
-// keep/read_pfm.h  1  images come back from PFM files
+// keep/read_pfm.h  1  images come back from PFM files, and are compared
 #pragma once
 #include <iomanip>
 
@@ -30,4 +30,15 @@ inline Image read_pfm(const std::string& path) {
         if (read_from(in, path, std::as_writable_bytes(pixels)) != row) refuse();
     }
     return image;
+}
+
+// Relative RMSE over all channels of all pixels (Khodulev 1996, ch. 5).
+inline double d_rel(const Image& truth, const Image& image) {
+    double off = 0, all = 0;
+    for (size_t i = 0; i < truth.pixels.size(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            const double f = double(truth.pixels[i][c]);
+            off += sqr(double(image.pixels[i][c]) - f), all += sqr(f);
+        }
+    return std::sqrt(off / all);
 }

@@ -52,17 +52,6 @@ inline std::string plus_minus(const Moments& m, const char* format) {
     return m.n > 1 ? text("%s ± %s", mean, text(format, std::sqrt(m.variance()))) : mean;
 }
 
-// Relative RMSE over all channels of all pixels (Khodulev 1996, ch. 5).
-inline double d_rel(const Image& truth, const Image& image) {
-    double off = 0, all = 0;
-    for (size_t i = 0; i < truth.pixels.size(); ++i)
-        for (size_t c = 0; c < 3; ++c) {
-            const double f = double(truth.pixels[i][c]);
-            off += sqr(double(image.pixels[i][c]) - f), all += sqr(f);
-        }
-    return std::sqrt(off / all);
-}
-
 // Mean of a power of all channels of all pixels.
 inline double image_mean(const Image& image, int power = 1) {
     double sum = 0;
