@@ -2,6 +2,7 @@
 #pragma once
 #include <iomanip>
 
+#include "base/vec.h"
 #include "film/image.h"
 
 // Throws UserError if it is not a PFM file as write_image makes them.
