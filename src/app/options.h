@@ -62,7 +62,7 @@ inline std::string parse_film(Text v) {
 inline OptionTable stop_rows(Options& o) {
     OptionTable rows = {
         {"--spp", "N",
-         "stop after N samples per pixel; noisy pixels take more (see --sets adaptive)",
+         "stop after N samples per pixel; noisy pixels take more (see --replications adaptive)",
          "the scene's, unless --time or --error is given",
          [&o](Text v) { o.spp = parse_count(v, 1, most_samples); }},
         {"--time", "S", "stop after S seconds; with --spp, whichever comes first", "",
@@ -79,7 +79,7 @@ inline OptionTable stop_rows(Options& o) {
 inline OptionTable sampling_rows(Options& o) {
     return in_group(
         "Sampling",
-        {{"--sets", "K|adaptive",
+        {{"--replications", "K|adaptive",
           "number of independent replications per pixel; their sample variance gives the error "
           "estimate; adaptive: 2, and up to 32 where the image is noisy",
           "adaptive",
@@ -149,7 +149,8 @@ inline void parse_options(OptionTable& table, Options& o, const std::vector<std:
         throw UserError("--sample: needs --pixel X,Y (for samples per pixel use --spp N)");
     if (o.replay && !o.keep.empty()) throw UserError("--keep: cannot be combined with --pixel");
     if (o.error > 0 && o.view != View::radiance) throw UserError("--error: needs --view radiance");
-    if (o.error > 0 && o.sets == 1) throw UserError("--error: needs --sets 2 or more, or adaptive");
+    if (o.error > 0 && o.sets == 1)
+        throw UserError("--error: needs --replications 2 or more, or adaptive");
     if (o.rows && o.keep.empty() && o.outputs.empty())
         throw UserError("--rows: needs --keep F.film, which build/merge takes, or -o");
 }

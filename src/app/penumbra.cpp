@@ -55,7 +55,7 @@ FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, 
                     {"depth", std::to_string(scene.depth)}};
     for (const Text name : {"--sampler", "--direction", "--light", "--roulette", "--view"})
         what.samples.push_back({std::string(name.substr(2)), row(table, name).json()});
-    what.samples.push_back({"sets", plan.sets ? std::to_string(plan.sets) : "adaptive"});
+    what.samples.push_back({"replications", plan.sets ? std::to_string(plan.sets) : "adaptive"});
     if (o.sampler == SamplerKind::stratified)
         what.samples.push_back({"grid", pair(p.columns, 'x', p.rows)});
     what.samples.push_back({"seed", std::to_string(o.seed)});

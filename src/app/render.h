@@ -78,7 +78,7 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent,
                                             : "time";
     run.error = error_of(film);
     run.doubt = doubt_of(film, run.error, plan.judge);
-    run.sets = film.sets_per_pixel();
+    run.sets = film.replications_per_pixel();
     run.exponent_of_cost = 1 / checks.history().exponent();
     return run;
 }
@@ -113,7 +113,7 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     };
     watch.show = [&](double now, double all) {
         if (all == 0) all = HUGE_VAL;
-        all = std::min(all, checks.expected() * film.sets_per_pixel());
+        all = std::min(all, checks.expected() * film.replications_per_pixel());
         progress.show(now / all, fixed(now * double(plan.at_once), 1) + " samples per pixel");
     };
     loop.run();

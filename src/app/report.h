@@ -154,7 +154,7 @@ inline void add_run(json::Object& object, const Run& run, Size size) {
     std::array<double, 3> of_mean = run.error.square;
     for (double& v : of_mean) v /= double(size.width) * double(size.height);
     object.add("variance_of_mean", json::numbers(of_mean));
-    object.add("sets_per_pixel", json::number(run.sets));
+    object.add("replications_per_pixel", json::number(run.sets));
     const std::string reason = why_no_error(run);
     auto if_known = [&](double x) { return json::number(reason.empty() ? x : double(NAN)); };
     object.add("d_rel", if_known(run.error.d_rel()));

@@ -48,7 +48,7 @@ struct Film {
 
     size_t pixels() const { return size_t(size.width) * size_t(size.height); }
     uint32_t sets_of(size_t pixel) const { return sets.empty() ? 1 : sets[pixel]; }
-    double sets_per_pixel() const { return double(sum.size()) / double(pixels()); }
+    double replications_per_pixel() const { return double(sum.size()) / double(pixels()); }
 
     // Threads take pixels in blocks, small enough that a small picture has work for all of them.
     size_t block_size() const { return std::clamp<size_t>(pixels() / 256, 1, 256); }

@@ -200,7 +200,7 @@ int compare(const std::vector<std::string>& words) {
     check_same_size(f, g);
     std::optional<Equality> e;
     if (variance_f && variance_g) e = equality(f, g, *variance_f, *variance_g);
-    if (r.alpha && !e) throw UserError("--alpha: needs two films of --sets 2 or more");
+    if (r.alpha && !e) throw UserError("--alpha: needs two films of --replications 2 or more");
     if (!r.map.empty()) check_writable(r.map);
     const Difference d = difference(f, g);
     print(d, e);

@@ -13,7 +13,7 @@ inline Spent spent_in(const FilmReader& file) {
 // Reads everything except the sums, which come next in the file, into a film f of the right size.
 // Returns the number of sums; throws UserError if the file holds no possible film.
 inline size_t read_but_sums(FilmReader& file, Film& f) {
-    const bool is_chosen = file.said("sets-chosen") == "yes";
+    const bool is_chosen = file.said("replications-chosen") == "yes";
     const size_t n = f.pixels();
     if (n == 0 || file.left() / sizeof(Sum) < n) file.refuse("is too short for its size");
     f.pilot = uint64_t(file.number("pilot"));
@@ -143,7 +143,7 @@ public:
                                      {"rays", std::to_string(spent.rays)},
                                      {"pilot", std::to_string(f.pilot)},
                                      {"evidence", std::to_string(f.evidence.size())},
-                                     {"sets-chosen", f.sets.empty() ? "no" : "yes"}});
+                                     {"replications-chosen", f.sets.empty() ? "no" : "yes"}});
             write_film_file(
                 path_, head,
                 {std::as_bytes(std::span(f.taken)), std::as_bytes(std::span(f.sets)),

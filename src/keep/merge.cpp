@@ -11,8 +11,9 @@ namespace {
 constexpr const char* before_options =
     "usage: merge [options] PART.film...\n\nMerges films of `penumbra --keep PART.film` into "
     "one\npicture: bands (--rows A-B), and independent renders of them (--seed N).\n\n"
-    "Bands with a fixed number of --sets make the picture of one render, bit for bit.\n"
-    "Bands with --sets adaptive choose replications by their own rows: the picture is\nunbiased, "
+    "Bands with a fixed number of --replications make the picture of one render, bit for bit.\n"
+    "Bands with --replications adaptive choose replications by their own rows: the picture "
+    "is\nunbiased, "
     "but not identical.  Seeds are averaged per pixel, weighted by samples.\n\n";
 
 struct Part {

@@ -116,7 +116,7 @@ private:
     }
     static std::string truth_words(const Subject& s) {
         if (!s.truth_words.empty()) return s.words + " " + s.truth_words;
-        return text("%s --spp %.0f --sets 16 --seed 1000000", s.words, double(s.truth));
+        return text("%s --spp %.0f --replications 16 --seed 1000000", s.words, double(s.truth));
     }
     std::string print_of_truth(const Subject& s) const {
         return fingerprint(program_ + truth_words(s) + read_file(words_in(s.words)[0]));

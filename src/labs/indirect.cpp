@@ -79,7 +79,7 @@ void tell_meshes(Page& page, RenderGrid& grid, const std::string& radiosity, boo
     for (int part : {8, 16, 32, 64})
         for (int particles : {30000, 100000, 300000, 1000000})
             settings.push_back({text("1/%d, %d", part, particles),
-                                text("--final-gather --sets 1 --mesh %g --particles %d",
+                                text("--final-gather --replications 1 --mesh %g --particles %d",
                                      double(diagonal(read_scene(file).scene)) / part, particles),
                                 radiosity});
     const Subject s{"cornell36", file + " --size 64x32", quick ? 512u : 16384u};
@@ -98,10 +98,11 @@ int study(const Scope& scope) {
     // References have up to 64 bounces.  The light beyond is negligible, because .8^64 is 10^-6.
     RenderGrid grid("indirect", penumbra + " --depth 64");
     grid.measure = [&](Row& r, const Image& image, const Truth& f) { pairs(r, image, f); };
-    const std::vector<Setting> methods = {{"path", "--sets 1", penumbra},
-                                          {"map", "--final-gather --sets 1", radiosity},
-                                          {"control", "", scope.self + " --render"},
-                                          {"path --roulette 0", "--sets 1 --roulette 0", penumbra}};
+    const std::vector<Setting> methods = {
+        {"path", "--replications 1", penumbra},
+        {"map", "--final-gather --replications 1", radiosity},
+        {"control", "", scope.self + " --render"},
+        {"path --roulette 0", "--replications 1 --roulette 0", penumbra}};
     std::vector<Subject> subjects;
     for (const std::string& scene : scenes)
         subjects.push_back(

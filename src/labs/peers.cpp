@@ -52,14 +52,14 @@ Rendered by_cycles(const Scene& scene, uint64_t spp, uint64_t seed, const std::s
     return taken;
 }
 
-// Renders an image by Cycles.  Unless --sets is 1, renders halves and reports the error of their
-// mean.
+// Renders an image by Cycles.  Unless --replications is 1, renders halves and reports the error of
+// their mean.
 Rendered render(const std::vector<std::string>& words) {
     const std::string stem = value_of(words, "-o") + "-cycles";
     const Scene scene = read_scene(words.at(0)).scene;
     const uint64_t spp = parse_count(value_of(words, "--spp"), 1, 1 << 20),
                    seed = parse_count(value_of(words, "--seed"), 0, 1 << 30);
-    if (value_of(words, "--sets") == "1") return by_cycles(scene, spp, seed, stem);
+    if (value_of(words, "--replications") == "1") return by_cycles(scene, spp, seed, stem);
     Rendered a = by_cycles(scene, spp / 2, seed, stem);
     const Rendered b = by_cycles(scene, spp / 2, seed + 1, stem);
     a.of["d_rel"] = d_rel(a.image, b.image) / 2;
@@ -95,13 +95,13 @@ int study(const Scope& scope, uint64_t seeds) {
     const uint64_t spp = scope.quick ? 16 : 64;
     const std::vector<Subject> both = {{"A", "scenes/cornell36.scene", 16 * spp},
                                        {"B", "scenes/cornell36b.scene", 16 * spp}};
-    std::vector<Setting> ours = {{"penumbra, the default", "--sets adaptive"}};
+    std::vector<Setting> ours = {{"penumbra, the default", "--replications adaptive"}};
     for (const char* words : {"", "--light nee --sampler independent", "--sampler independent",
                               "--sampler stratified", "--sampler halton"})
-        ours.push_back(
-            {std::string("penumbra, --sets 1 ") + words, std::string("--sets 1 ") + words});
+        ours.push_back({std::string("penumbra, --replications 1 ") + words,
+                        std::string("--replications 1 ") + words});
     Rows rows = RenderGrid("peers-cycles", scope.self + " --render")
-                    .run(both, {{cycles, "--sets 1"}}, {spp}, seeds);
+                    .run(both, {{cycles, "--replications 1"}}, {spp}, seeds);
     append(rows, RenderGrid("peers", scope.beside()).run(both, ours, {spp}, seeds));
     page.set("table", views(rows));
     for (const auto& [word, camera] : {std::pair{"time", "A"}, std::pair{"time B", "B"}})

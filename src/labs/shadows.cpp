@@ -110,7 +110,8 @@ void tell_efficiency(Page& page, RenderGrid& grid, bool quick) {
     for (const std::string sampler : {"independent", "sobol"}) {
         std::vector<Setting> settings;
         for (const char* e : names)
-            settings.push_back({e, text("--sets 1 --sampler %s --estimator %s", sampler, e)});
+            settings.push_back(
+                {e, text("--replications 1 --sampler %s --estimator %s", sampler, e)});
         const Rows rows = grid.run(subjects, settings, {samples}, quick ? 2 : 4);
         for (const auto& [scene, some] : grouped(rows, of_scene)) {
             lines.push_back({scene, sampler});
@@ -130,10 +131,11 @@ int study(const Scope& scope) {
     tell_efficiency(page, grid, scope.quick);
     std::vector<PlotPicture> pictures;
     for (const char* e : names)
-        pictures.push_back({rendering(text("%s scenes/penumbra.scene --size 256x128 --depth 1 "
-                                           "--sets 1 --spp 16 --sampler independent --estimator %s",
-                                           program, e)),
-                            e, "16 samples"});
+        pictures.push_back(
+            {rendering(text("%s scenes/penumbra.scene --size 256x128 --depth 1 "
+                            "--replications 1 --spp 16 --sampler independent --estimator %s",
+                            program, e)),
+             e, "16 samples"});
     page.plot(
         "shadows-penumbra",
         contact_sheet(pictures, 2, double(read_scene("scenes/penumbra.scene").scene.exposure)));

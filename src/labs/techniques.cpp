@@ -16,7 +16,8 @@ const std::string scene = "scenes/coursework.scene", uniform = "uniform", cosine
 
 std::vector<Setting> settings(const std::string& self) {
     auto words = [](const char* sampler, const char* direction, const char* light) {
-        return text("--sets 1 --sampler %s --direction %s --light %s", sampler, direction, light);
+        return text("--replications 1 --sampler %s --direction %s --light %s", sampler, direction,
+                    light);
     };
     const std::string own = self + " --render";
     return {{uniform, words("independent", "uniform", "none")},

@@ -29,7 +29,7 @@ Choices all_choices(const Scene& scene, const std::string& float_program) {
              {"", " --sampler halton", " --sampler stratified", " --sampler independent"})
             if (const bool none = light == " --light none"; !none || !points)
                 all.push_back({{own + sampler + light, sampler + light}, !none});
-    all.push_back({{own + " --sets 1", " --sets 1"}});
+    all.push_back({{own + " --replications 1", " --replications 1"}});
     all.push_back({{in_float, "", float_program}, false});
     return all;
 }

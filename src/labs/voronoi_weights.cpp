@@ -56,10 +56,11 @@ int study(const Scope& scope, uint64_t most) {
     const int side = quick ? 64 : 128;
     std::vector<Setting> settings;
     for (const char* weights : {"mc", "vor", "fvor", "cvor", "torus"})
-        settings.push_back({weights,
-                            std::string("--sets 1 --light nee --roulette 0 --weights ") + weights,
-                            scope.beside("voronoi")});
-    settings.push_back({stratified, "--sets 1 --light nee --roulette 0 --sampler stratified"});
+        settings.push_back(
+            {weights, std::string("--replications 1 --light nee --roulette 0 --weights ") + weights,
+             scope.beside("voronoi")});
+    settings.push_back(
+        {stratified, "--replications 1 --light nee --roulette 0 --sampler stratified"});
     std::vector<uint64_t> counts;
     for (uint64_t n = 64; n <= most; n *= 4) counts.push_back(n);
     Rows rows;

@@ -74,11 +74,12 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
               "", [&o](Text v) { o.error = parse_error(v); }},
              {"--time", "S", "stop after S seconds; with other limits, whichever comes first", "",
               [&o](Text v) { o.seconds = parse_positive(v); }},
-             taken("--spp", "stop after N paths per pixel; noisy pixels take more (see --sets)")}) +
+             taken("--spp",
+                   "stop after N paths per pixel; noisy pixels take more (see --replications)")}) +
         in_group("Sampling",
                  {{"--rays", "K", "K x K rays per pixel, on a grid, without --final-gather", "2",
                    [&o](Text v) { o.rays = int(parse_count(v, 1, 64)); }},
-                  taken("--sets", ""),
+                  taken("--replications", ""),
                   taken("--sampler", "sample points of particles, or of paths"),
                   seed_row(o)}) +
         in_group("Light transport", {taken("--direction", ""), taken("--light", "")}) +
@@ -106,10 +107,11 @@ inline void parse_radiosity(OptionTable& table, RadiosityOptions& o,
     need({"--final-gather"}, is_random(o), "needs --method particles");
     need({"--unshot", "--shots"}, !is_random(o), "needs --method shooting or hierarchy");
     need({"--particles", "--sampler", "--seed"}, is_random(o), "needs --method particles");
-    need({"--spp", "--sets", "--direction", "--light"}, o.final_gather, "needs --final-gather");
+    need({"--spp", "--replications", "--direction", "--light"}, o.final_gather,
+         "needs --final-gather");
     need({"--rays", "--view"}, !o.final_gather, "cannot be combined with --final-gather");
     if (o.final_gather) {
-        need({"--error"}, o.sets != 1, "needs --sets 2 or more, or adaptive");
+        need({"--error"}, o.sets != 1, "needs --replications 2 or more, or adaptive");
         if (!is_given(table, "--sampler")) o.sampler = SamplerKind::sobol;
         o.technique.roulette = 0;
         return;

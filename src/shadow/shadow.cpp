@@ -28,21 +28,21 @@ OptionTable shadow_table(ShadowOptions& o) {
     o.sets = 2;
     o.technique.light = LightMode::nee;
     OptionTable table =
-        without(option_table(o), {"--sets", "--light", "--time", "--error", "--keep", "--rows",
-                                  "--view", "--pixel", "--sample"}) +
+        without(option_table(o), {"--replications", "--light", "--time", "--error", "--keep",
+                                  "--rows", "--view", "--pixel", "--sample"}) +
         in_group("Light transport",
                  {one_of("--estimator", "stochastic|control|ratio|regression",
                          "direct light where the camera sees a diffuse surface: plain Monte Carlo; "
                          "or a control variate, "
                          "ratio or regression estimator on the analytic unshadowed radiance",
                          o.estimator)}) +
-        in_group("Sampling", {whole_number("--sets",
+        in_group("Sampling", {whole_number("--replications",
                                            "number of independent replications per pixel; their "
                                            "sample variance gives the error estimate",
                                            "2", o.sets, 1, most_sets)});
     row(table, "-o").otherwise = "out/NAME-shadow.png, .pfm";
-    row(table, "--sets").value = "K";
-    row(table, "--sets").json = [&o] { return std::to_string(o.sets); };
+    row(table, "--replications").value = "K";
+    row(table, "--replications").json = [&o] { return std::to_string(o.sets); };
     row(table, "--spp").help = "samples per pixel, of all replications together";
     row(table, "--spp").otherwise = "the scene's";
     return table;

@@ -26,8 +26,8 @@ OptionTable voronoi_table(VoronoiOptions& o) {
     o.sets = 2;
     o.sampler = SamplerKind::independent;
     OptionTable table =
-        without(option_table(o), {"--sets", "--sampler", "--time", "--error", "--keep", "--rows",
-                                  "--view", "--pixel", "--sample"}) +
+        without(option_table(o), {"--replications", "--sampler", "--time", "--error", "--keep",
+                                  "--rows", "--view", "--pixel", "--sample"}) +
         in_group(
             "Sampling",
             {one_of("--weights", "mc|vor|fvor|cvor|torus",
@@ -35,13 +35,13 @@ OptionTable voronoi_table(VoronoiOptions& o) {
                     "random sites in a strip around the pixel, the same without cells that leave "
                     "the strip, clipped to the pixel, or on a torus",
                     o.weights),
-             whole_number("--sets",
+             whole_number("--replications",
                           "number of independent replications per pixel; their sample variance "
                           "gives the error estimate",
                           "2", o.sets, 1, most_sets)});
     row(table, "-o").otherwise = "out/NAME-voronoi.png, .pfm";
-    row(table, "--sets").value = "K";
-    row(table, "--sets").json = [&o] { return std::to_string(o.sets); };
+    row(table, "--replications").value = "K";
+    row(table, "--replications").json = [&o] { return std::to_string(o.sets); };
     row(table, "--spp").help = "samples per pixel, of all replications together";
     row(table, "--spp").otherwise = "the scene's";
     return table;

@@ -27,7 +27,7 @@ TEST_CASE("every option sets what it is named after") {
     const Options o = parse(
         "--spp 7 --time 2.5 --depth 3 --roulette 0.5 --seed 18446744073709551615 --threads 5 "
         "--size 30x20 --exposure 0.25 --stats s.json --pixel 6,8 --sample 9,4 -o a.pfm -o b.png "
-        "--sets 3 --quiet --error 2.5%");
+        "--replications 3 --quiet --error 2.5%");
     CHECK(said(o.scene, o.spp, o.seconds, *o.depth) == "a.scene 7 2.5 3");
     CHECK(said(o.technique.roulette, o.seed, o.threads) == "0.5 18446744073709551615 5");
     CHECK(said(o.size->width, o.size->height, *o.exposure, o.stats) == "30 20 0.25 s.json");
@@ -43,7 +43,8 @@ TEST_CASE("every option sets what it is named after") {
     CHECK(version().starts_with("Penumbra "));
     CHECK(version().find(sizeof(real) == 4 ? ", float precision, " : ", double precision, ") !=
           std::string::npos);
-    const Options band = parse("--rows 3-17 --keep a.film --sets 4 --sets adaptive");
+    const Options band =
+        parse("--rows 3-17 --keep a.film --replications 4 --replications adaptive");
     CHECK(said(band.keep, band.rows->first, band.rows->last, band.rows->count(), band.sets) ==
           "a.film 3 17 15 0");
     const Options first = parse("--pixel 6,8"), set = parse("--sample 9 --pixel 6,8");
@@ -87,7 +88,8 @@ TEST_CASE("without options: Sobol' samples, importance-sampled, MIS, adaptive") 
 TEST_CASE("--spp is of all replications together, rounded up; two of them if they are chosen") {
     auto each = [](const std::string& line, uint64_t N) { return samples_each(parse(line), N); };
     CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: unknown
-    CHECK(said(each("--sets 1", 7), each("--sets 3", 7), each("--sets 1024", 7)) == "7 3 1");
+    CHECK(said(each("--replications 1", 7), each("--replications 3", 7),
+               each("--replications 1024", 7)) == "7 3 1");
 }
 
 TEST_CASE("a word that cannot be meant is refused, by its name") {
@@ -103,10 +105,10 @@ TEST_CASE("a word that cannot be meant is refused, by its name") {
         INFO(words, "\nexpected: ", why, "\ntold:     ", told);
         CHECK(told.starts_with(why));
     }
-    for (const std::string& fine :
-         parts_of("--error 99% --sets 2;--error 1% --spp 9 --time 3;--rows 0-0 -o a.pfm;"
-                  "--rows 1-2 --keep a.film;--spp 1099511627776 --sets 1024 --depth 1000000;"
-                  "--sample 1099511627776,1024 --pixel 0,0"))
+    for (const std::string& fine : parts_of(
+             "--error 99% --replications 2;--error 1% --spp 9 --time 3;--rows 0-0 -o a.pfm;"
+             "--rows 1-2 --keep a.film;--spp 1099511627776 --replications 1024 --depth 1000000;"
+             "--sample 1099511627776,1024 --pixel 0,0"))
         CHECK(complaint_of("a " + fine) == "");
 }
 
@@ -128,7 +130,7 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
   "width": 9,
   "height": 5,
   "error": null,
-  "sets": "adaptive",
+  "replications": "adaptive",
   "sampler": "sobol",
   "seed": 0,
   "direction": "bsdf",
@@ -139,14 +141,14 @@ TEST_CASE("the statistics begin with what was asked for, one by one") {
   "threads": 3
 }
 )");
-    CHECK(stats("--threads 5 --error 12.5% --sets 12 --sampler halton --direction uniform "
+    CHECK(stats("--threads 5 --error 12.5% --replications 12 --sampler halton --direction uniform "
                 "--light nee --roulette 0.5 --rows 4-7 -o a.pfm "
                 "--seed 18446744073709551615") == R"({
   "scene": "a \"b\"\\",
   "width": 9,
   "height": 5,
   "error": 0.125,
-  "sets": 12,
+  "replications": 12,
   "sampler": "halton",
   "seed": 18446744073709551615,
   "direction": "uniform",

@@ -34,7 +34,7 @@ inline std::vector<Refusal> refused_words() {
         {"--seed @", "18446744073709551616", "--seed: '@' is not a whole number"},
         {"--depth @", "1000001;4294967296", "--depth: '@' is not a whole number"},
         {"--spp @", "0;1099511627777;18446744073709551615", "--spp: '@' is not a whole number"},
-        {"--sets @", "0;1025", "--sets: '@' is not a whole number"},
+        {"--replications @", "0;1025", "--replications: '@' is not a whole number"},
         {"--roulette @", "1.1", "--roulette: '@' is more than 100 %"},
         {"--roulette @", "-0.1", "--roulette: '@' is negative"},
         {"--error @", "0;100%;1;-1%;nan", "--error: '"},
@@ -50,7 +50,7 @@ inline std::vector<Refusal> refused_words() {
         {"--sample 1", "", "--sample: needs --pixel X,Y (for samples per pixel use --spp N)"},
         {"--pixel 1,2 --keep a.film", "", "--keep: cannot be combined with --pixel"},
         {"--error 1% --view @", "normal;bvh", "--error: needs --view radiance"},
-        {"--error 1% --sets 1", "", "--error: needs --sets 2 or more, or adaptive"},
+        {"--error 1% --replications 1", "", "--error: needs --replications 2 or more, or adaptive"},
         {"--rows 1-2", "", "--rows: needs --keep F.film, which build/merge takes, or -o"},
     };
     for (const std::string option : {"--spp", "--depth", "--seed", "--threads"})

@@ -175,7 +175,7 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
                       ",\n  \"interrupted\": false,\n  \"samples_per_pixel\": 64.5,\n"
                       "  \"seconds\": 2,\n  \"cpu_seconds\": 3.5,\n  \"rays\": 4000000,\n"
                       "  \"mrays_per_second\": 2,\n  \"mean_radiance\": [2, 3, 4],\n"
-                      "  \"variance_of_mean\": [2, 4, 6],\n  \"sets_per_pixel\": 2.75,\n"
+                      "  \"variance_of_mean\": [2, 4, 6],\n  \"replications_per_pixel\": 2.75,\n"
                       "  \"d_rel\": 1,\n  \"d_rel_standard_error\": 0.25,\n"
                       "  \"d_rel_by_spread\": 1,\n  \"d_rel_reason\": null,\n"
                       "  \"seconds_to_half_d_rel\": " +

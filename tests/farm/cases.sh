@@ -7,7 +7,7 @@ resumed='^farm: resuming from its film'
 # The picture that a farm renders; $whole is that of one render.  Replications are fixed: adaptive ones
 # of a band depend only on its own rows.
 picture_of() {  # SAMPLES
-    picture=(--size "$size" --sets 2 --spp "$1" "$scene") whole=$work/whole-$1.pfm
+    picture=(--size "$size" --replications 2 --spp "$1" "$scene") whole=$work/whole-$1.pfm
     [ -e "$whole" ] || "$build/penumbra" -o "$whole" --quiet "${picture[@]}"
 }
 # Each of four bands takes longer than ten seconds, when a film is first written.

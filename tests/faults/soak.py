@@ -166,7 +166,7 @@ class Picture:
         self.timed = False  # --time may end it sooner
 
     def words(self, samples=None):
-        sets = ['--sets', str(self.sets)] if self.sets else []
+        sets = ['--replications', str(self.sets)] if self.sets else []
         return [os.path.join(ROOT, 'scenes', self.scene), *self.options, *sets, '--spp', str(samples or self.spp)]
 
     def has_all(self, samples):

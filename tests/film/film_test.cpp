@@ -84,7 +84,7 @@ TEST_CASE("a pixel is the mean of its replications, however passes divide the sa
     for (Size size : {Size{2, 2}, Size{1600, 1}}) {  // blocks of one pixel, and of six
         Film whole = film_of_kinds(size);
         fill(whole, 12, numbered);
-        CHECK(whole.sets_per_pixel() == 2.5);
+        CHECK(whole.replications_per_pixel() == 2.5);
         const Image image = image_of(whole);
         size_t at = 0, wrong = 0;
         Tally tally;
@@ -351,7 +351,7 @@ TEST_CASE("chosen replications keep the pilot, and fit into the memory that ther
     });
     Film pilot = make_film(size, 0);
     fill(pilot, 16, L);
-    CHECK(pilot.sets_per_pixel() == 1);
+    CHECK(pilot.replications_per_pixel() == 1);
     uint32_t last = 33;
     for (double K : {1e9, 4.0, 3.0, 2.5, 2.0, 0.1}) {
         Film f = pilot;
@@ -360,7 +360,7 @@ TEST_CASE("chosen replications keep the pilot, and fit into the memory that ther
         CHECK(most <= last);
         CHECK(*std::max_element(f.sets.begin(), f.sets.end()) <= most);
         CHECK(*std::min_element(f.sets.begin(), f.sets.end()) == 2);
-        CHECK(f.sets_per_pixel() <= std::max(2.0, K));
+        CHECK(f.replications_per_pixel() <= std::max(2.0, K));
         if (K > 100) CHECK(most == 32);
         if (K < 2) CHECK(most == 2);
         // The limit is the largest that fits into the memory.
@@ -380,7 +380,7 @@ TEST_CASE("chosen replications keep the pilot, and fit into the memory that ther
         CHECK(at == f.sum.size());
         const size_t bytes = f.sum.capacity() * sizeof f.sum[0] + f.sets.capacity() * 2 +
                              f.taken.capacity() * 8 + f.spread.capacity() * 4;
-        CHECK(double(bytes) <= bytes_of(size, f.sets_per_pixel()));
+        CHECK(double(bytes) <= bytes_of(size, f.replications_per_pixel()));
     }
     CHECK(last == 2);
 }

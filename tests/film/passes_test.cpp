@@ -246,7 +246,7 @@ TEST_CASE("a time is kept by films of replications that are chosen, of which the
         CAPTURE(seconds);
         CHECK(!r.film.sets.empty());
         CHECK(r.film.least_taken() > 0);
-        const double took = r.film.total() / 48, a_sample = r.film.sets_per_pixel();
+        const double took = r.film.total() / 48, a_sample = r.film.replications_per_pixel();
         CAPTURE(took);
         CHECK(took <= std::max(seconds + a_sample, 1 + a_sample));
         if (seconds > 2) CHECK(took > seconds - a_sample);
@@ -259,7 +259,7 @@ TEST_CASE("a time is kept by films of replications that are chosen, of which the
     // A sample of all pixels takes 10 ms: passes grow, and the one after the pilot is cut short.
     const Run fast = run({8, 6}, 0, {{0, 0.1}}, noisy, nullptr, 0.01 / 48);
     CHECK(fast.film.least_taken() > 0);
-    CHECK(fast.film.total() / 48 <= 10 + fast.film.sets_per_pixel());
+    CHECK(fast.film.total() / 48 <= 10 + fast.film.replications_per_pixel());
     // The time is over at once: replications are not chosen before the first sample.
     CHECK(run({8, 6}, 0, {{0, 1e-9}}, noisy, nullptr, 1.0 / 48).film.pilot == 1);
     // Grids of 6 samples by two replications take 0.12 s: a pass has one of them.
@@ -268,11 +268,11 @@ TEST_CASE("a time is kept by films of replications that are chosen, of which the
 
 TEST_CASE("replications are cut to fit into the memory, and the loop tells how many there may be") {
     const Run all = run({24, 12}, 0, {{20}});
-    const double K = all.film.sets_per_pixel();
+    const double K = all.film.replications_per_pixel();
     REQUIRE(K > 2.2);
     const Run cut = run({24, 12}, 0, {{20}, 1, 1, bytes_of({24, 12}, (K + 2) / 2)});
     CHECK(cut.most < 32);
-    CHECK(cut.film.sets_per_pixel() <= (K + 2) / 2);
+    CHECK(cut.film.replications_per_pixel() <= (K + 2) / 2);
     CHECK(cut.film.least_taken() == 20);
 }
 
@@ -292,8 +292,8 @@ TEST_CASE("progress is told in samples a pixel, now and in the end; then the clo
     plan.target.samples = 20;
     Loop(film, plan, noisy, watch).run();
     CHECK(shown.front().second == 40);  // assumes two replications
-    CHECK(shown.back().first == 20 * film.sets_per_pixel());
-    CHECK(shown.back().second == doctest::Approx(20 * film.sets_per_pixel()));
+    CHECK(shown.back().first == 20 * film.replications_per_pixel());
+    CHECK(shown.back().second == doctest::Approx(20 * film.replications_per_pixel()));
     shown.clear();
     plan.target = {0, 0};
     film = make_film({5, 5}, 1);

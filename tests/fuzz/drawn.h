@@ -32,7 +32,7 @@ inline std::vector<std::string> drawn_options(Choices& c) {
     say("--roulette", c.of({"0.25", "0", "1", "1e-9"}));
     say("--seed", std::to_string(c.byte()));
     if (c.rarely()) say("--view", c.of({"normal", "depth", "albedo", "bvh"}));
-    if (c.rarely()) say("--sets", c.of({"2", "3", "1", "adaptive"}));
+    if (c.rarely()) say("--replications", c.of({"2", "3", "1", "adaptive"}));
     if (c.rarely()) say("--rows", "0-0"), say("-o", "a.pfm");
     return words;
 }

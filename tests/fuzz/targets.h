@@ -186,7 +186,8 @@ private:
 
     bool is_adaptive() const { return kind_ % 2 == 1; }
     FilmOf what() const {
-        return {{}, {{"size", "5x3"}, {"sets", std::to_string(o_.sets)}, {"rows", "0-2"}}, {}};
+        return {
+            {}, {{"size", "5x3"}, {"replications", std::to_string(o_.sets)}, {"rows", "0-2"}}, {}};
     }
 };
 inline const std::string& small_film(unsigned kind) {

@@ -285,7 +285,7 @@ TEST_CASE("parts, one of them stopped in between, merge into the picture of one 
                  "camera 0 0 5  0 0 0  40\ndiffuse grey .5 .5 .5\nlight lamp 9 9 9\n"
                  "quad -2 -1 -2  0 0 4  4 0 0  grey\nsphere 0 0 0  .5  lamp\n");
     const std::string script = "bash '" + fs::absolute("src/keep/farm.sh").string() + "' ",
-                      words = "--size 24x18 --sets 2 --spp 600 a.scene";
+                      words = "--size 24x18 --replications 2 --spp 600 a.scene";
     auto run = [&](const std::string& command) {
         const int status = std::system(
             ("cd '" + folder.path.string() + "' && { " + command + "; } >>out 2>>err").c_str());

@@ -25,7 +25,7 @@ struct Studio {
 echo "$*" >>calls
 pixel='BYTES'
 case "$*" in
-    *"--sets 16"*) pixel='\0\0\200\077' ;;
+    *"--replications 16"*) pixel='\0\0\200\077' ;;
     *"--light nee"*) pixel='\0\0\0\100' ;;
 esac
 while [ $# -gt 1 ]; do
@@ -79,7 +79,7 @@ TEST_CASE("a row for each scene, setting, count and seed, and one reference") {
     CHECK(std::isnan(rows[0]["no such number"]));
     const auto calls = studio.calls();
     REQUIRE(calls.size() == 9);
-    CHECK(calls[0].find("a.scene --size 1x1 --spp 64 --sets 16") == 0);
+    CHECK(calls[0].find("a.scene --size 1x1 --spp 64 --replications 16") == 0);
     for (size_t k = 1; k <= 4; ++k) CHECK(calls[k].find("--seed 1 ") != std::string::npos);
     // Settings alternate.
     auto is_nee = [&](size_t k) { return calls[k].find("--light nee") != std::string::npos; };
@@ -144,5 +144,5 @@ TEST_CASE("programs have references of their own") {
     RenderGrid("others", "./other").run(subjects, settings, {4}, 1);
     const auto calls = studio.calls();
     REQUIRE(calls.size() == 12);
-    CHECK(calls[9].find("--sets 16") != std::string::npos);
+    CHECK(calls[9].find("--replications 16") != std::string::npos);
 }

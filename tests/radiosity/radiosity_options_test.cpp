@@ -135,9 +135,9 @@ TEST_CASE("radiosity: what says nothing to the method is refused, wherever it st
 
 TEST_CASE("radiosity: with --final-gather paths have the options of penumbra, maps particles") {
     const RadiosityOptions o =
-        parse({"--final-gather", "--spp", "12", "--sets", "4", "--error", "2%", "--time", "3",
-               "--sampler", "stratified", "--direction", "uniform", "--light", "nee", "--seed", "5",
-               "--particles", "70"});
+        parse({"--final-gather", "--spp", "12", "--replications", "4", "--error", "2%", "--time",
+               "3", "--sampler", "stratified", "--direction", "uniform", "--light", "nee", "--seed",
+               "5", "--particles", "70"});
     CHECK(o.final_gather);
     CHECK(o.method == Method::particles);
     CHECK(o.spp == 12);
@@ -154,12 +154,12 @@ TEST_CASE("radiosity: with --final-gather paths have the options of penumbra, ma
     const std::pair<std::vector<std::string>, const char*> rows[] = {
         {{"--final-gather", "--method", "hierarchy"}, "--final-gather: needs --method particles"},
         {{"--final-gather", "--shots", "3"}, "--shots: needs --method shooting or hierarchy"},
-        {{"--final-gather", "--sets", "1", "--error", "1%"},
-         "--error: needs --sets 2 or more, or adaptive"},
+        {{"--final-gather", "--replications", "1", "--error", "1%"},
+         "--error: needs --replications 2 or more, or adaptive"},
         {{"--final-gather", "--rays", "3"}, "--rays: cannot be combined with --final-gather"},
         {{"--final-gather", "--view", "mesh"}, "--view: cannot be combined with --final-gather"},
         {{"--spp", "4"}, "--spp: needs --final-gather"},
-        {{"--sets", "2"}, "--sets: needs --final-gather"},
+        {{"--replications", "2"}, "--replications: needs --final-gather"},
         {{"--direction", "bsdf"}, "--direction: needs --final-gather"},
         {{"--light", "mis"}, "--light: needs --final-gather"}};
     for (const auto& [words, why] : rows) CHECK(complaint(words) == why);

@@ -114,7 +114,7 @@ TEST_CASE("--help names every option on one page of stdout") {
     for (const std::string line : {"--help", "--help file.scene", "--spp 3 --quiet --help", "-h"})
         expect_help(folder, "penumbra " + line, 92,
                     "penumbra [options] SCENE;-o, --output FILE;--spp, --samples N;--time "
-                    "S;--error E;--sets K|adaptive;"
+                    "S;--error E;--replications K|adaptive;"
                     "uniform|bsdf;--direction;--light none|nee|mis;"
                     "--sampler independent|stratified|halton|sobol;"
                     "--view radiance|normal|depth|albedo|bvh;--keep F.film;--rows A-B;--pixel X,Y;"
@@ -133,8 +133,10 @@ TEST_CASE("--quiet prints nothing, but errors") {
 
 TEST_CASE("the summary is a line of samples, seconds, Mrays/s and the error, and one of files") {
     const Place place(good);
-    for (const auto& [options, samples] : std::map<std::string, unsigned>{
-             {"--sets 2", 64}, {"--sets 1 --spp 7", 7}, {"--spp 9 --spp 2 --time 1e6", 2}}) {
+    for (const auto& [options, samples] :
+         std::map<std::string, unsigned>{{"--replications 2", 64},
+                                         {"--replications 1 --spp 7", 7},
+                                         {"--spp 9 --spp 2 --time 1e6", 2}}) {
         const Outcome o = place.render("--size 64x64 " + options);
         INFO(o.err);
         const Summary s = summary(o.err);
@@ -159,9 +161,9 @@ TEST_CASE("--time stops before --spp is reached; 64 samples are meant only if ne
     CHECK(timed > 0);
     CHECK(timed < 1000000000);
     const Place few(good + "samples 3\n");
-    CHECK(samples(few, "--sets 1") == 3);
-    CHECK(samples(few, "--sets 2") == 4);
-    CHECK(samples(few, "--sets 1 --spp 5") == 5);
+    CHECK(samples(few, "--replications 1") == 3);
+    CHECK(samples(few, "--replications 2") == 4);
+    CHECK(samples(few, "--replications 1 --spp 5") == 5);
     CHECK(samples(few, "--time 0.2") > 3);
 }
 
@@ -279,7 +281,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
                twice = stats(line + "--threads 1 --spp 48");
     std::map<std::string, std::string> asked = {
         {"precision", sizeof(real) == 4 ? "\"float\"" : "\"double\""}};
-    const Words known = split(R"(scene "file.scene" width 16 height 8 error null sets "adaptive"
+    const Words known = split(R"(scene "file.scene" width 16 height 8 error null replications "adaptive"
         sampler "sobol" direction "bsdf" light "mis" roulette 0.25 view "radiance" rows null seed 5
         threads 1 depth 7 interrupted false d_rel_reason null bias "unbiased"
         stopped_by "samples")");
@@ -293,7 +295,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
                    "peak_memory_bytes"),
                of_samples = named(
                    "samples_per_pixel rays mean_radiance variance_of_mean "
-                   "sets_per_pixel d_rel d_rel_standard_error d_rel_by_spread");
+                   "replications_per_pixel d_rel d_rel_standard_error d_rel_by_spread");
     CHECK(one.size() == asked.size() + of_time.size() + of_samples.size());
     auto number = [](const auto& values, const std::string& key) {
         const std::string& text = values.at(key);
@@ -308,13 +310,13 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
             CHECK(three.at(key) == value);
             CHECK(number(one, key) > 0);
             // The same pilot samples lead to the same replications.
-            CHECK((value == twice.at(key)) == (key == "sets_per_pixel"));
+            CHECK((value == twice.at(key)) == (key == "replications_per_pixel"));
         } else {
             CHECK(of_time.contains(key));
             CHECK(number(one, key) > 0);
         }
     }
-    const double K = number(one, "sets_per_pixel"), seconds = number(one, "seconds");
+    const double K = number(one, "replications_per_pixel"), seconds = number(one, "seconds");
     CHECK(number(one, "samples_per_pixel") == doctest::Approx(12 * K));
     CHECK(number(twice, "samples_per_pixel") == doctest::Approx(24 * K));
     CHECK(number(one, "mrays_per_second") == doctest::Approx(number(one, "rays") / seconds * 1e-6));
@@ -380,7 +382,7 @@ TEST_CASE("variance and error are right however bright the light: 2^93 and 2^-80
         place.render("--spp 8 --stats s.json -o a.pfm " + options);
         return place.read("s.json");
     };
-    for (const std::string options : {"--sampler independent", "", "--sets 3"}) {
+    for (const std::string options : {"--sampler independent", "", "--replications 3"}) {
         INFO(options);
         const std::string one = stats("1", options);
         CHECK(number_of(one, "variance_of_mean") > 0);
@@ -406,7 +408,7 @@ TEST_CASE("the summary states the error, or why it is not known; --error says wh
         CHECK(summary(o.err).found);
         return summary(o.err);
     };
-    for (const std::string options : {"", "--sampler halton", "--sets 2"}) {
+    for (const std::string options : {"", "--sampler halton", "--replications 2"}) {
         INFO(options);
         const Summary s = told(options);
         CHECK(s.error.starts_with("estimated error "));
@@ -414,10 +416,11 @@ TEST_CASE("the summary states the error, or why it is not known; --error says wh
         CHECK(contains(s.error, " s more for "));
         CHECK(s.stopped_by == "");
     }
-    CHECK(told("--sets 1").error == "error not known: one replication");
+    CHECK(told("--replications 1").error == "error not known: one replication");
     CHECK(told("--spp 1").error == "error not known: one sample");
     CHECK(told("--view normal").error == "");
-    const Summary error = told("--error 10%"), samples = told("--error 1e-5 --spp 20 --sets 2"),
+    const Summary error = told("--error 10%"),
+                  samples = told("--error 1e-5 --spp 20 --replications 2"),
                   time = told("--error 1e-6 --time 0.05 --spp 1000000000");
     CHECK(error.stopped_by == "error");
     CHECK(error.samples >= 16);
@@ -465,7 +468,8 @@ TEST_CASE("an image depends on the seed, and not on threads, passes or the run")
     std::set<std::string> different{one};
     for (const std::string& options :
          parts_of("--seed 1;--seed 2;--seed 18446744073709551615;--spp 8;--spp 4;--light nee;"
-                  "--direction uniform;--depth 1;--sets 1;--sets 4;--sampler halton;--roulette 1"))
+                  "--direction uniform;--depth 1;--replications 1;--replications 4;--sampler "
+                  "halton;--roulette 1"))
         different.insert(image(options));
     CHECK(different.size() == 13);
 }

@@ -132,7 +132,7 @@ TEST_CASE("compare: two films show the same, or not") {
     for (const auto& [name, more] : {std::pair<std::string, std::string>{"a", "--seed 1"},
                                      {"b", "--seed 2"},
                                      {"c", "--depth 0"},
-                                     {"d", "--sets 1"}}) {
+                                     {"d", "--replications 1"}}) {
         const std::string film = folder / (name + ".film"), image = folder / (name + ".pfm");
         place.render(options + more + " -o " + image + " --keep " + film);
         // The film and the image have the same pixels.
@@ -251,7 +251,8 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
               "--limit: '@' is more than 100 %; for percent say 2%"},
              {"one.pfm one.pfm --limit @%", "nan", "--limit: '@' is not a number"},
              {"one.pfm one.pfm --limit @", "one.pfm", "--limit: '@' is not a number"},
-             {"two.film two.pfm --alpha 1e-6", "", "--alpha: needs two films of --sets 2 or more"},
+             {"two.film two.pfm --alpha 1e-6", "",
+              "--alpha: needs two films of --replications 2 or more"},
              {"two.film two.film --alpha @", "0;100%", "--alpha: must be between 0 and 1"},
              {"one.pfm one.pfm --heat a.png", "",
               "unknown option '--heat' (did you mean '--heatmap'?)"},

@@ -51,7 +51,7 @@ TEST_CASE("a signal that was ignored from the start stays ignored") {
 
 TEST_CASE("Ctrl-C is heard within a path, too") {
     const Place place(hall_of_mirrors("8192 1", 1000000));  // an hour per pass, 0.2 s per sample
-    for (const std::string sets : {"", "--sets 3"}) {
+    for (const std::string sets : {"", "--replications 3"}) {
         const Untouched all(place);
         Process process(place, "penumbra -o a.pfm file.scene " + sets);
         REQUIRE(process.listen(30, has_begun));

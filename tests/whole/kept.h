@@ -9,9 +9,9 @@ inline void expect_same_run(const Folder& folder, const std::string& a, const st
                             bool is_merged = false) {
     CHECK(folder.same(a + ".pfm", b + ".pfm"));
     const std::string of_a = folder.read(a + ".json"), of_b = folder.read(b + ".json");
-    for (const char* key :
-         {"samples_per_pixel", "mean_radiance", "variance_of_mean", "sets_per_pixel", "d_rel",
-          "d_rel_standard_error", "d_rel_reason", "bias", "interrupted", "rays", "stopped_by"}) {
+    for (const char* key : {"samples_per_pixel", "mean_radiance", "variance_of_mean",
+                            "replications_per_pixel", "d_rel", "d_rel_standard_error",
+                            "d_rel_reason", "bias", "interrupted", "rays", "stopped_by"}) {
         if (is_merged && std::string(key) == "stopped_by") continue;
         INFO(std::string(key));
         CHECK(stated(of_a, key) == stated(of_b, key));

@@ -30,7 +30,7 @@ TEST_CASE("a film of other samples is refused by what differs, and nothing is to
     for (const auto& [options, why] :
          {std::pair<std::string, std::string>{"--size 9x4", "size 8x4, not 9x4"},
           {"--sampler halton", "sampler sobol, not halton"},
-          {"--sets 2", "sets adaptive, not 2"},
+          {"--replications 2", "replications adaptive, not 2"},
           {"--direction uniform", "direction bsdf, not uniform"},
           {"--light nee", "light mis, not nee"},
           {"--depth 3", "depth 8, not 3"},
@@ -48,11 +48,11 @@ TEST_CASE("a film of other samples is refused by what differs, and nothing is to
 
 TEST_CASE("where samples depend on how many there are, another grid is refused") {
     const Kept folder;
-    folder.keep("a.film", "--sets 1 --spp 12 --sampler stratified");
-    folder.refuse("--sets 1 --spp 20 --sampler stratified --keep a.film",
+    folder.keep("a.film", "--replications 1 --spp 12 --sampler stratified");
+    folder.refuse("--replications 1 --spp 20 --sampler stratified --keep a.film",
                   "a.film: was rendered with grid 4x3, not 5x4\n");
-    folder.keep("b.film", "--sets 1 --spp 256 --sampler stratified");
-    folder.keep("b.film", "--sets 1 --spp 512 --sampler stratified");
+    folder.keep("b.film", "--replications 1 --spp 256 --sampler stratified");
+    folder.keep("b.film", "--replications 1 --spp 512 --sampler stratified");
 }
 
 TEST_CASE("another scene, by one byte of any of its files; the same one elsewhere") {
@@ -73,8 +73,8 @@ TEST_CASE("another scene, by one byte of any of its files; the same one elsewher
 TEST_CASE("a film of one sample a pixel has one replication, and gets no other") {
     const Kept folder;
     folder.keep("a.film", "--spp 1");
-    folder.refuse("--spp 2 --keep a.film", "a.film: was rendered with sets 1, not adaptive\n");
-    folder.render("--spp 8 --sets 1 --keep a.film -o z.pfm");
+    folder.refuse("--spp 2 --keep a.film", "a.film: was rendered with replications 1, not adaptive\n");
+    folder.render("--spp 8 --replications 1 --keep a.film -o z.pfm");
 }
 
 TEST_CASE("a film that is torn, damaged, longer, empty, a folder or in none") {

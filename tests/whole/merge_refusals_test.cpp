@@ -64,7 +64,7 @@ TEST_CASE("a part of another picture is told by what differs") {
         folder.refuse("a.film c.film", "c.film: was rendered with " + why + "\n");
     };
     refuse("--sampler halton", "sampler halton, not sobol as in a.film");
-    refuse("--sets 2", "sets 2, not adaptive as in a.film");
+    refuse("--replications 2", "replications 2, not adaptive as in a.film");
     refuse("--depth 2", "depth 2, not 8 as in a.film");
     refuse("--size 8x8", "size 8x8, not 8x7 as in a.film");
     refuse("--sampler stratified", "sampler stratified, not sobol as in a.film");

@@ -31,11 +31,13 @@ struct Scenes : Unequal {
 
 }  // namespace
 
-TEST_CASE("bands of fixed --sets make up the picture, bit by bit, and all that is said of it") {
+TEST_CASE(
+    "bands of fixed --replications make up the picture, bit by bit, and all that is said of it") {
     const Scenes folder;
-    for (const std::string& options :
-         parts_of("--sets 2 --spp 37;--sets 1 --spp 9;--sets 3 --spp 40 --sampler stratified;"
-                  "--sets 2 --spp 20 --sampler halton --light nee;--sets 2 --spp 2 --view normal"))
+    for (const std::string& options : parts_of("--replications 2 --spp 37;--replications 1 --spp "
+                                               "9;--replications 3 --spp 40 --sampler stratified;"
+                                               "--replications 2 --spp 20 --sampler halton --light "
+                                               "nee;--replications 2 --spp 2 --view normal"))
         folder.expect_whole(options, {"--rows 0-0", "--rows 1-4 --threads 1", "--rows 5-6"});
 }
 
@@ -68,7 +70,7 @@ TEST_CASE("adaptive bands choose by their own rows: each is what a band alone is
 
 TEST_CASE("seeds are independent pictures: their mean by samples, and the variance of that") {
     const Scenes folder;
-    for (const std::string options : {"--sets 8", "--sets adaptive"}) {
+    for (const std::string options : {"--replications 8", "--replications adaptive"}) {
         INFO(options);
         const Words words = folder.of(options);
         // 16, 16 and 96 samples with fixed replications: weights 1/8, 1/8, 3/4.
@@ -111,7 +113,7 @@ TEST_CASE("seeds are independent pictures: their mean by samples, and the varian
 
 TEST_CASE("bands may have several seeds, each band its own") {
     const Scenes folder;
-    const Words words = folder.of("--sets 2 --spp 8");
+    const Words words = folder.of("--replications 2 --spp 8");
     folder.merge_parts(words, {"--seed 1", "--seed 2"}, "whole");
     folder.merge_parts(words,
                        {"--seed 2 --rows 0-2", "--seed 1 --rows 3-6", "--seed 2 --rows 3-6",
@@ -126,7 +128,7 @@ TEST_CASE("bands may have several seeds, each band its own") {
 
 TEST_CASE("a part that is interrupted, or given more samples, goes on, and is merged") {
     const Scenes folder;
-    const Words words = folder.of("--sets 2");
+    const Words words = folder.of("--replications 2");
     expect_success(folder, words + split("--spp 37") + outputs("whole"));
     for (const std::string options :
          {"--spp 20 --rows 0-3 --keep a.film", "--spp 37 --rows 0-3 --keep a.film",
@@ -145,7 +147,7 @@ TEST_CASE("a part that is interrupted, or given more samples, goes on, and is me
 TEST_CASE("memory of merging: the picture, and of each film a row and 2 bytes a pixel") {
     const Scenes folder;
     folder.write("unequal.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
-    folder.merge_parts(folder.of("--spp 2 --sets 2 --depth 0") + split("--size 1024x1024"),
+    folder.merge_parts(folder.of("--spp 2 --replications 2 --depth 0") + split("--size 1024x1024"),
                        {"--seed 0", "--seed 1", "--seed 2"}, "all");
     const double pixels = 1024.0 * 1024, memory = folder.number("all", "peak_memory_bytes");
     INFO(memory, " bytes of ", pixels, " pixels");

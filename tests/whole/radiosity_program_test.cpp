@@ -307,7 +307,7 @@ TEST_CASE("radiosity --final-gather: the image of the path tracer, by options of
     const Room place(room);
     const double truth = mean_of(place.image("--spp 64 --depth 30"));
     const std::string gather = "--final-gather --mesh 1 --particles 100000 ";
-    const Outcome o = place.maps(gather + "--sets 2 --spp 64 --stats s.json -o b.pfm");
+    const Outcome o = place.maps(gather + "--replications 2 --spp 64 --stats s.json -o b.pfm");
     CHECK(mean_of(read_pfm(place / "b.pfm")) == about(truth, 0.02));
     CHECK(contains(o.err, "file.scene: 64 samples per pixel, "));
     CHECK(contains(o.err, " (noise only; the estimator is biased)"));

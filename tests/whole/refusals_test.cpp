@@ -209,18 +209,19 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
              {"--size 4x5 --pixel 4,0", "", "--pixel: outside the image"},
              {"--size 5x4 --pixel 0,4", "", "--pixel: outside the image"},
              {"--rows 1-4 -o a.pfm", "", "--rows: the picture has rows 0-3"},
-             {"--size 65536x16384 --sets 1024 -o a.pfm", "", "65536x16384 pixels do not fit"},
+             {"--size 65536x16384 --replications 1024 -o a.pfm", "",
+              "65536x16384 pixels do not fit"},
          }))
         expect_refusal(place, "penumbra " + words + " file.scene", why);
     for (const auto& [words, why] : refused_words())
         expect_refusal(place, "penumbra " + words + " file.scene", why);
 
     // Each option without its value; with a wrong value before or after a right one.
-    for (const std::string& row :
-         parts_of("-o a.png a.gif;--spp 1 0;--time 1 0;--light mis miss;--error 1% 100%;"
-                  "--sets adaptive 0;--rows 0-1 1;--keep a.film a;--depth 1 -1;--roulette 1 2;"
-                  "--seed 1 one;--threads 1 0;--size 2x2 2;--exposure 1 0;--direction bsdf brdf;"
-                  "--sampler halton haltan;--view depth dept;--pixel 1,1 1;--sample 1 -1")) {
+    for (const std::string& row : parts_of(
+             "-o a.png a.gif;--spp 1 0;--time 1 0;--light mis miss;--error 1% 100%;"
+             "--replications adaptive 0;--rows 0-1 1;--keep a.film a;--depth 1 -1;--roulette 1 2;"
+             "--seed 1 one;--threads 1 0;--size 2x2 2;--exposure 1 0;--direction bsdf brdf;"
+             "--sampler halton haltan;--view depth dept;--pixel 1,1 1;--sample 1 -1")) {
         const Words words = split(row);
         const std::string &option = words[0], right = " " + words[1], wrong = " " + words[2];
         expect_refusals(place, "penumbra",

@@ -24,9 +24,10 @@ private:
 
 TEST_CASE("with more samples than before: the same image as at once, by any number of threads") {
     const Unequal folder("12x6");
-    for (const std::string& options :
-         parts_of(";--sampler independent --sets 1;--sampler halton;--sets 3 --light nee;"
-                  "--sets 2 --direction uniform --roulette 0.3 --seed 3 --depth 2;--view normal")) {
+    for (const std::string& options : parts_of(";--sampler independent --replications 1;--sampler "
+                                               "halton;--replications 3 --light nee;"
+                                               "--replications 2 --direction uniform --roulette "
+                                               "0.3 --seed 3 --depth 2;--view normal")) {
         INFO(options);
         const Words words = folder.of(options);
         expect_success(folder, words + split("--spp 71") + outputs("whole"));
@@ -61,8 +62,8 @@ TEST_CASE("interrupted at random moments, mostly in a pass: the same image in th
     const Unequal folder("40x30");
     int interruptions = 0, amid = 0;
     for (const std::string options :
-         {"--spp 300", "--spp 242 --sampler stratified", "--spp 200 --sets 3 --sampler halton",
-          "--error 6% --sampler independent"}) {
+         {"--spp 300", "--spp 242 --sampler stratified",
+          "--spp 200 --replications 3 --sampler halton", "--error 6% --sampler independent"}) {
         INFO(options);
         RandomMoments moments(seconds_of(folder, folder.of(options) + outputs("whole")));
         const Words kept = folder.of(options) + split("--keep a.film") + outputs("parts");
@@ -170,7 +171,7 @@ TEST_CASE("a disk that is full costs the film, and no image; the one that is the
 TEST_CASE("going on takes no more memory than beginning") {
     const Unequal folder("1024x512");
     folder.write("unequal.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
-    const Words words = folder.of("--depth 0 --sets 2");
+    const Words words = folder.of("--depth 0 --replications 2");
     expect_success(folder, words + split("--spp 4") + outputs("whole"));
     expect_success(folder, words + split("--spp 2 -o x.pfm --keep a.film"));
     expect_success(folder, words + split("--spp 4 --keep a.film") + outputs("parts"));

@@ -43,7 +43,8 @@ TEST_CASE("shadow and voronoi: one page of help; out/NAME-PROGRAM.png and .pfm; 
             CHECK_FALSE(contains(help, "\n  " + gone));
 
         const Outcome o = expect_success(
-            folder, programs[k] + " a.scene --sets 3 --spp 10 --size 136x72 --stats s.json");
+            folder,
+            programs[k] + " a.scene --replications 3 --spp 10 --size 136x72 --stats s.json");
         const std::string stem = "out/a-" + programs[k];
         CHECK(o.err.ends_with("\nwrote " + stem + ".png, " + stem + ".pfm, s.json\n"));
         CHECK(contains(o.err, "a.scene: 12 samples per pixel, "));
@@ -51,7 +52,7 @@ TEST_CASE("shadow and voronoi: one page of help; out/NAME-PROGRAM.png and .pfm; 
         CHECK(all_finite(read_pfm(folder / (stem + ".pfm"))));
         const std::string json = folder.read("s.json");
         CHECK(stated(json, "samples_per_pixel") == "12");
-        CHECK(stated(json, "sets_per_pixel") == "3");
+        CHECK(stated(json, "replications_per_pixel") == "3");
         CHECK(stated(json, "stopped_by") == "\"samples\"");
         for (const char* key : {"redraws", "fallbacks"})
             CHECK(contains(json, "\"" + std::string(key) + "\": 0") == (programs[k] == "voronoi"));
@@ -61,7 +62,7 @@ TEST_CASE("shadow and voronoi: one page of help; out/NAME-PROGRAM.png and .pfm; 
 TEST_CASE(
     "shadow and voronoi: plain samples make penumbra's image; the others are of their class") {
     const Shadows folder;
-    const std::string common = " --sets 2 --spp 32 --roulette .25 --seed 3 ";
+    const std::string common = " --replications 2 --spp 32 --roulette .25 --seed 3 ";
     for (const std::string sampler : {"independent", "stratified", "halton", "sobol"}) {
         const std::string by = common + "--sampler " + sampler;
         CHECK(apart(folder.image("shadow", by + " --estimator stochastic"),
@@ -72,7 +73,7 @@ TEST_CASE(
         CHECK(apart(folder.image("voronoi", by + " --weights mc"),
                     folder.image("penumbra", by + " --sampler independent")) < 1e-6);
     }
-    const Image truth = folder.image("penumbra", "--sets 1 --spp 4096");
+    const Image truth = folder.image("penumbra", "--replications 1 --spp 4096");
     const std::pair<std::string, std::string> rows[] = {
         {"shadow", "stochastic unbiased"}, {"shadow", "control unbiased"},
         {"shadow", "ratio consistent"},    {"shadow", "regression consistent"},
@@ -93,12 +94,13 @@ TEST_CASE(
 
 TEST_CASE("shadow and voronoi refuse, in one line, what they cannot do") {
     const Shadows folder;
-    expect_refusals(folder, "shadow",
-                    {{"--estimator mean a.scene", "--estimator: unknown value 'mean'"},
-                     {"--sets adaptive a.scene", "--sets: 'adaptive' is not a whole number"},
-                     {"--light mis a.scene", "unknown option '--light'"},
-                     {"--time 3 a.scene", "unknown option '--time'"},
-                     {"", "no scene given"}});
+    expect_refusals(
+        folder, "shadow",
+        {{"--estimator mean a.scene", "--estimator: unknown value 'mean'"},
+         {"--replications adaptive a.scene", "--replications: 'adaptive' is not a whole number"},
+         {"--light mis a.scene", "unknown option '--light'"},
+         {"--time 3 a.scene", "unknown option '--time'"},
+         {"", "no scene given"}});
     expect_refusals(folder, "voronoi",
                     {{"--weights area a.scene", "--weights: unknown value 'area'"},
                      {"--sampler sobol a.scene", "unknown option '--sampler'"},
