@@ -148,7 +148,9 @@ private:
     }
 
     void mesh() {
-        const std::string path = (folder_ / words_[next_++]).string();
+        const std::string path = (folder_ / words_[next_++]).lexically_normal().string();
+        if (path.starts_with("build/") && !std::filesystem::exists(path))
+            throw UserError(path + ": not made yet: make " + path);
         const real scale = length_of("scale");
         const vec3 move = point();
         std::optional<uint32_t> given;

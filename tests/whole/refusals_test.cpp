@@ -181,6 +181,7 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
     place.write("out/file.pfm", "old");
     place.write("old.pfm", "old");
     place.write("folder.png/a", "");
+    place.write("built.scene", "mesh build/a.obj 1 0 0 0\n");
     const std::string long_name(1000, 'a');
 
     expect_refusals(
@@ -191,6 +192,7 @@ TEST_CASE("an option that is wrong is refused, wherever it stands, and no file i
          {"missing.scene", "missing.scene: cannot open: No such file or directory"},
          {"missing/file.scene", "missing/file.scene: cannot open: No such file or directory"},
          {"file.scene/file.scene", "file.scene/file.scene: cannot open: Not a directory"},
+         {"built.scene", "built.scene:1: build/a.obj: not made yet: make build/a.obj"},
          {"out", "out: is a directory"},
          {".", ".: is a directory"},
          {long_name, long_name + ": cannot open: File name too long"},
