@@ -265,6 +265,10 @@ key("z"); key("z"); say("zoom", getComputedStyle(document.querySelector(".view")
 mouse(9.5 / 12, 4.5 / 8); say("at", stage.dataset.at);
 key("Z"); say("out", $("zoom").value);
 key("m"); key("m"); say("mode", stage.dataset.mode);
+key("2"); say("two", stage.dataset.mode + stage.dataset.shown);
+key("1"); say("one", stage.dataset.mode + stage.dataset.shown);
+key("r"); key("2"); await soon(); say("reference", drawn("b", 5, 2));
+key("r"); await soon(); say("again", drawn("b", 5, 2));
 key("?"); say("help", $("help").open);
 )js");
     CHECK(seen["bright"] == bytes_of(sample[0].shots[1].image.at(5, 2), 1.5));
@@ -273,7 +277,33 @@ key("?"); say("help", $("help").open);
     CHECK(seen["at"] == "9,4");
     CHECK(seen["out"] == "2");
     CHECK(seen["mode"] == "error");
+    CHECK(seen["two"] + seen["one"] == "flipbflipa");
+    CHECK(seen["reference"] == bytes_of(sample[0].shots[0].image.at(5, 2), 0.375));
+    CHECK(seen["again"] == bytes_of(sample[0].shots[2].image.at(5, 2), 0.375));
     CHECK(seen["help"] == "true");
+}
+
+TEST_CASE("the wheel zooms about the pixel that it points at, and scrolls the page beyond") {
+    if (browser().empty()) return;
+    auto seen = driven("#scene=first&at=2,1", R"js(
+const view = document.querySelector(".a .view"), frame = view.parentElement;
+const box = frame.getBoundingClientRect();
+const turn = (fx, fy, deltaY) => view.dispatchEvent(new WheelEvent("wheel", { deltaY,
+    bubbles: true, cancelable: true, clientX: box.left + fx * box.width,
+    clientY: box.top + fy * box.height }));
+const seen_at = (fx, fy) => (view.dispatchEvent(new PointerEvent("pointermove", { bubbles: true,
+    clientX: box.left + fx * box.width, clientY: box.top + fy * box.height })), stage.dataset.at);
+say("taken", [!turn(.71, .31, 100), !turn(.71, .31, -200), !turn(.71, .31, -400)]);
+say("zoom", $("zoom").value + " " + seen_at(.71, .31));
+const before = seen_at(.2, .9);
+turn(.2, .9, -100);
+say("again", Math.round(100 * $("zoom").value) + " " + (seen_at(.2, .9) === before) + before);
+say("out", [!turn(.2, .9, 9999), $("zoom").value]);
+)js");
+    CHECK(seen["taken"] == "false,true,true");
+    CHECK(seen["zoom"] == "8 8,2");
+    CHECK(seen["again"] == "1131 true7,3");
+    CHECK(seen["out"] == "true,1");
 }
 
 TEST_CASE("error maps show each pixel's error, the worse the brighter; another scene has its own") {
