@@ -240,15 +240,12 @@ double speed(const Rows& rows) { return mean(rows, "speed"); }
 // "1.10 primary, 0.90 bounce and 1.20 shadow": the wide BVH's speed over another tracer's,
 // geometric means over scenes.
 std::string mean_ratio(const Rows& rows, const char* other) {
-    std::string words;
-    for (const auto& [kind, name] : kinds)
-        words += text(kind == primary  ? "%.2f %s"
-                      : kind == bounce ? ", %.2f %s"
-                                       : " and %.2f %s",
-                      over(where(rows, [n = name](auto& r) { return r.scene.ends_with(n); }),
-                           "wide", other, speed),
-                      name);
-    return words;
+    auto ratio = [&](const char* name) {
+        const Rows some = where(rows, [&](auto& r) { return r.scene.ends_with(name); });
+        return over(some, "wide", other, speed);
+    };
+    return text("%.2f primary, %.2f bounce and %.2f shadow", ratio("primary"), ratio("bounce"),
+                ratio("shadow"));
 }
 
 int study(const Scope& scope) {

@@ -172,7 +172,7 @@ int study(const Scope& scope) {
         [](double) {});
     Rows rows;
     for (const Rows& part : parts) append(rows, part);
-    page.plot("estimators1d", plot(in_scene(rows, "e"), "samples N", "rmse × √N / W", of_setting,
+    page.plot("estimators1d", plot(in_scene(rows, "e"), "samples N", "RMSE × √N / W", of_setting,
                                    count_of, mean_of("rmse"), "case e"));
     page.data("estimators1d", csv_of(rows, {"rmse", "deviation", "variance off", "bias off"}));
     page.set("table", paper_table(page, rows));

@@ -23,9 +23,8 @@ inline void execute(std::vector<std::string> words) {
     while (::waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
             throw SystemError(words[0] + ": cannot wait for it: " + std::strerror(errno));
-    if (WIFSIGNALED(status))
-        throw SystemError(words[0] + " failed: killed by signal " +
-                          std::to_string(WTERMSIG(status)));
-    if (const int code = WEXITSTATUS(status))
-        throw SystemError(words[0] + " failed: exit status " + std::to_string(code));
+    const bool killed = WIFSIGNALED(status);
+    if (status != 0)
+        throw SystemError(words[0] + " failed: " + (killed ? "killed by signal " : "exit status ") +
+                          std::to_string(killed ? WTERMSIG(status) : WEXITSTATUS(status)));
 }

@@ -80,7 +80,8 @@ Race run_race(RenderGrid& grid, const Course& c) {
     add(walks, nullptr, 2);
     for (const auto& [method, least] : {std::pair("shooting", c.flat), {"hierarchy", c.faces}}) {
         std::vector<Setting> stops;
-        for (double unshot : decades_down_to(least)) {
+        for (double unshot : {.5, .2, .1, .05, .02, .01, .005, .002, .001, .0005, .0002, .0001}) {
+            if (unshot < least) break;
             const std::string words = text("--method %s --unshot %g", method, unshot);
             stops.push_back({text("%s %g", method, unshot), words});
         }
@@ -113,7 +114,8 @@ void tell_races(Page& page, const std::vector<Race>& races) {
     double latest[2] = {};  // the largest error of particles where each method catches up
     for (const Race& r : races) {
         const double spread = std::sqrt(r.k.variance()) / r.k.mean;
-        references.push_back({r.name, plus_minus(r.k, "%.3f"), text("%.3f", r.check.mean),
+        references.push_back({r.name, told({r.k.mean, std::sqrt(r.k.variance())}, "%.3f"),
+                              text("%.3f", r.check.mean),
                               page.verdict(std::abs(r.check.mean / r.k.mean - 1) < 4 * spread),
                               percent(r.rows[0]["own"])});
         ahead_of.push_back({r.name, text("%.2f", slope(r.particles.seconds, r.particles.error))});

@@ -44,13 +44,4 @@ inline Ahead ahead(const Curve& particles, const Curve& deterministic) {
     return a;
 }
 
-// The numbers 0.5, 0.2, 0.1, 0.05, ... down to the least.
-inline std::vector<double> decades_down_to(double least) {
-    std::vector<double> list;
-    for (double decade = 1; decade > least * 0.99; decade /= 10)
-        for (double part : {0.5, 0.2, 0.1})
-            if (decade * part > least * 0.99) list.push_back(decade * part);
-    return list;
-}
-
 }  // namespace illumination

@@ -142,7 +142,7 @@ void add_shot(Rows& rows, const Walls& w, const std::string& name, Shooter shoot
     std::vector<IlluminationMap> maps;
     std::vector<double> unshot;
     for (double until : {1e-2, 1e-3, 1e-4}) {
-        shoot_on(run, {until, 0, 0});
+        run.run({until, 0, 0}, [](const Shooting&) {});
         maps.push_back(run.map()), unshot.push_back(run.unshot());
     }
     const auto limit = beyond(maps[2], maps[1], unshot[2] / (unshot[1] - unshot[2]));

@@ -46,12 +46,6 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y) 
     return xy / xx;
 }
 
-// "1.21 ± 0.03": mean and standard deviation, in a given format.  One run has no deviation.
-inline std::string plus_minus(const Moments& m, const char* format) {
-    const std::string mean = text(format, m.mean);
-    return m.n > 1 ? text("%s ± %s", mean, text(format, std::sqrt(m.variance()))) : mean;
-}
-
 // Mean of a power of all channels of all pixels.
 inline double image_mean(const Image& image, int power = 1) {
     double sum = 0;

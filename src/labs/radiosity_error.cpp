@@ -95,7 +95,7 @@ void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {
     Shooting run(room.scene, room.mesh, shooter, all_cores());
     Runs runs;
     for (double asked : {0.5, 0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 1e-4}) {
-        shoot_on(run, {0, patience, 0, asked});
+        run.run({0, patience, 0, asked}, [](const Shooting&) {});
         if (run.error() > asked && !runs.empty()) break;  // its last shot is incomplete
         runs.push_back(run_of(room, shooter == Shooter::face ? "hierarchy" : "shooting", asked,
                               run.error(), {}, run.map()));
@@ -132,8 +132,8 @@ int study(const Scope& scope) {
         auto room = [&](int parts) {
             return make_room(place.first, read, double(diagonal(read)) / parts);
         };
-        add_walks(walked, room(12), place.second, quick ? 8 : 32);
         if (!quick && place.second < 0.1) add_walks(walked, room(32), 0.1, 32);
+        add_walks(walked, room(12), place.second, quick ? 8 : 32);
         for (int parts : {8, 16})
             for (Shooter shooter : {Shooter::face, Shooter::element})
                 add_shots(shot, room(parts), shooter, quick ? 5 : 60);

@@ -20,11 +20,6 @@ inline Scene scene_named(const std::string& name) {
     return read_scene("scenes/" + name + ".scene").scene;
 }
 
-// Continues a run of shooting to the target.
-inline void shoot_on(Shooting& run, const ShootingTarget& target) {
-    run.run(target, [](const Shooting&) {});
-}
-
 // Traces n particles.
 inline void walk(Particles& particles, uint64_t n, unsigned threads = all_cores()) {
     in_parallel(

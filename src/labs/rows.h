@@ -120,7 +120,11 @@ Estimate jackknife(const Rows& rows, Number number) {
 }
 inline std::string told(const Estimate& e, const char* format) {
     if (std::isnan(e.value)) return "–";
-    return text(format, e.value) + (std::isnan(e.error) ? "" : " ± " + text(format, e.error));
+    if (std::isnan(e.error)) return text(format, e.value);
+    std::string error = text(format, e.error);
+    if (e.error > 0 && error.find_first_of("123456789") == error.npos)
+        error.back() = '1', error.insert(0, "< ");
+    return text(format, e.value) + " ± " + error;
 }
 
 // The ratio of a number between two settings over all scenes.  "=": their images are identical.

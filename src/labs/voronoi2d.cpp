@@ -207,7 +207,7 @@ int study(const Scope& scope, uint64_t trials) {
                !r.setting.starts_with("vor, Poisson");
     });
     page.plot("voronoi2d",
-              plot(drawn, "points, N", "rmse", of_setting, count_of, mean_of("error"), "holder_1"));
+              plot(drawn, "points, N", "RMSE", of_setting, count_of, mean_of("error"), "holder_1"));
     tell_findings(page, rows, last);
     return page.finish();
 }

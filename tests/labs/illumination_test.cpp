@@ -67,11 +67,3 @@ TEST_CASE("an error between two points of a curve lies on a power, beyond them o
     CHECK(error_at(c, 64) == doctest::Approx(0.05));
     CHECK(error_at(c, 0.25) == doctest::Approx(1.6));
 }
-
-TEST_CASE("what remains unshot is looked at by decades") {
-    const std::vector<double> wanted = {0.5, 0.2, 0.1, 0.05, 0.02, 0.01},
-                              got = decades_down_to(0.01);
-    REQUIRE(got.size() == wanted.size());
-    for (size_t i = 0; i < got.size(); ++i) CHECK(got[i] == doctest::Approx(wanted[i]));
-    CHECK(decades_down_to(0.02).back() == doctest::Approx(0.02));
-}

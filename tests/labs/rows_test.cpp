@@ -49,6 +49,8 @@ TEST_CASE("the jackknife of a mean is its standard error") {
     CHECK(e.value == doctest::Approx(all.mean));
     CHECK(e.error == doctest::Approx(all.standard_error()));
     CHECK(told({2, 0.1}, "%.2f") == "2.00 ± 0.10");
+    CHECK(told({2, 0.004}, "%.2f") == "2.00 ± < 0.01");
+    CHECK(told({2, 0}, "%.2f") == "2.00 ± 0.00");
     CHECK(told({NAN, 0.1}, "%.2f") == "–");
     rows.resize(1);
     CHECK(told(jackknife(rows, relative_error), "%.1f") == "1.0");
