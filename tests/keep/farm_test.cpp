@@ -69,16 +69,12 @@ TEST_CASE("bands make up the picture, as even as can be, each by all seeds") {
           "part --rows 4-5 --seed 0\npart --rows 4-5 --seed 1\n");
 }
 
-TEST_CASE("one part has all rows, and says nothing of seeds") {
-    const Yard yard;
-    CHECK(yard.plan("").status == 0);
-    CHECK(parts_of(yard.folder.read("farm/farm.plan")) == "part --rows 0-5\n");
-}
-
-TEST_CASE("a picture has as many files, of every format, as outputs are given") {
+TEST_CASE(
+    "one part has all rows, and says nothing of seeds; a picture has as many files as given") {
     const Yard yard;
     CHECK(yard.plan("-o b.hdr --output c.png").status == 0);
     const std::string plan = yard.folder.read("farm/farm.plan");
+    CHECK(parts_of(plan) == "part --rows 0-5\n");
     for (const char* file : {"a.pfm", "b.hdr", "c.png"})
         CHECK(plan.find("output -o\noutput " + (yard.folder / file) + "\n") != plan.npos);
 }
@@ -92,19 +88,20 @@ TEST_CASE("what cannot be rendered is refused before it is planned") {
         CHECK(said.has(why));
         CHECK_FALSE(yard.folder.has("farm/farm.plan"));
     };
-    refused(farm_words + "--bands 7 -- " + picture, "farm: --bands 7: the picture has 6 rows");
-    refused(farm_words + "--seeds 2 -- --seed 1 " + picture, "farm: --seed: --seeds 2 sets it");
-    refused(farm_words + "--bands 0 -- " + picture,
-            "farm: --bands '0' is not a number of 1 or more");
-    refused(farm_words + "--bands -- " + picture, "farm: --bands '--' is not a number");
-    refused(farm_words + "--hosts h -- " + picture, "farm: --hosts: not a farm option");
-    refused(farm_words + "-- --spp 5 a.scene", "farm: --size WxH");
-    refused(farm_words + "-- --size 8x6 a.scene", "farm: --spp ''");
-    refused(farm_words + "-- --rows 0-1 " + picture, "farm: --rows: the farm sets it");
-    refused(farm_words + "-- --rows=0-1 " + picture, "farm: --rows: the farm sets it");
-    refused(farm_words + "-- --output b.pfm " + picture, "farm: --output: the farm sets it");
-    refused(farm_words + picture, "farm: --size: not a farm option");
-    refused(farm_words, "farm: missing -- OPTIONS OF PENUMBRA SCENE");
+    const std::pair<std::string, std::string> rows[] = {
+        {"--bands 7 -- " + picture, "--bands 7: the picture has 6 rows"},
+        {"--seeds 2 -- --seed 1 " + picture, "--seed: --seeds 2 sets it"},
+        {"--bands 0 -- " + picture, "--bands '0' is not a number of 1 or more"},
+        {"--bands -- " + picture, "--bands '--' is not a number"},
+        {"--hosts h -- " + picture, "--hosts: not a farm option"},
+        {"-- --spp 5 a.scene", "--size WxH"},
+        {"-- --size 8x6 a.scene", "--spp ''"},
+        {"-- --rows 0-1 " + picture, "--rows: the farm sets it"},
+        {"-- --rows=0-1 " + picture, "--rows: the farm sets it"},
+        {"-- --output b.pfm " + picture, "--output: the farm sets it"},
+        {picture, "--size: not a farm option"},
+        {"", "missing -- OPTIONS OF PENUMBRA SCENE"}};
+    for (const auto& [words, why] : rows) refused(farm_words + words, "farm: " + why);
     refused("--build build --folder farm -- " + picture, "farm: -o FILE");
     refused("--build build -o a.pfm -- " + picture, "farm: --folder");
     refused(farm_words + "-o a.jpg -- " + picture, "a.jpg: must end in .png, .pfm or .hdr");

@@ -1,8 +1,6 @@
 // keep/keep_test.cpp  checkpoints return the film that was written, resume it, or are refused
 #include "keep/keep.h"
 
-#include <sys/wait.h>
-
 #include <thread>
 
 #include "base/complaint.h"
@@ -252,33 +250,6 @@ TEST_CASE("a film without samples replaces none; one that cannot be written says
     chosen.pilot = 16;
     CHECK(keeper.write(chosen, {}, true) == "");
     CHECK(folder.read("a.film") != bytes);
-    const Keeper nowhere(folder / "no/a.film", of);
-    CHECK(nowhere.write(empty, {}, true) ==
+    CHECK(Keeper(folder / "no/a.film", of).write(empty, {}, true) ==
           folder / "no/a.film" + ": cannot write: No such file or directory");
-}
-
-TEST_CASE("kill -9 in a write: the film is the old one or the new one") {
-    const Folder folder;
-    const std::string path = folder / "a.film";
-    std::vector<Film> films;
-    for (const uint64_t n : {1, 2}) films.push_back(fill(make_film({200, 100}, 3), n));
-    const uint64_t seed = seed_here();
-    Keeper(path, of).write(films[0], {}, true);
-    int within = 0;
-    for (uint64_t k = 0; k < 40; ++k) {
-        const pid_t child = ::fork();
-        REQUIRE(child >= 0);
-        if (child == 0)
-            for (size_t i = 0;; ++i) Keeper(path, of).write(films[i % 2], {}, true);
-        std::this_thread::sleep_for(
-            std::chrono::microseconds(uint64_t(2e4 * to_unit(hash(seed, k)))));
-        ::kill(child, SIGKILL);
-        ::waitpid(child, nullptr, 0);
-        within += folder.files() > 1;
-        const Film film = restored(path, make_film({200, 100}, 3));
-        CHECK((same(film, films[0]) || same(film, films[1])));
-        remove_stale(path);
-        CHECK(folder.files() == 1);
-    }
-    CHECK(within > 0);
 }
