@@ -102,15 +102,23 @@ TEST_CASE("a plan is what options and scene ask for") {
     }
 }
 
-TEST_CASE("a scene without light needs no error to be black") {
-    Scene dark = small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
+TEST_CASE(
+    "a scene without light needs no error to be black; where light was missed, none is known") {
+    const Scene dark =
+        small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
     Options o = quick(SamplerKind::sobol, 0);
     o.error = 0.1;
     CHECK(plan_of(o, dark).target.error == 0);
     CHECK(plan_of(o, dark).target.samples == dark.samples / 2);
-    const Run run = rendered(o, dark).run;
-    CHECK(run.stopped_by == "samples");
-    CHECK(std::isnan(run.error.d_rel()));
+    const Scene turned =
+        small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nquad -1 -1 0  0 2 0  2 0 0  l\n", {9, 9});
+    o.spp = 40;
+    for (const Scene& scene : {dark, turned}) {
+        const Run run = rendered(o, scene).run;
+        CHECK(run.stopped_by == "samples");
+        CHECK(run.error.norm == 0);
+        CHECK(std::isnan(run.error.d_rel()));
+    }
 }
 
 TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
@@ -285,18 +293,6 @@ TEST_CASE("--error with limits: whichever comes first ends the image, and is sai
     CHECK(time.run.seconds < 5);
     o.spp = 0, o.seconds = 1e-9;
     CHECK(rendered(o, scene).run.stopped_by == "time");  // in the pilot
-}
-
-TEST_CASE("of a black image no error is known: light may have been missed") {
-    Options o = quick(SamplerKind::sobol, 0);
-    o.error = 0.01;
-    o.spp = 40;
-    const Picture unlit = rendered(
-        o,
-        small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nquad -1 -1 0  0 2 0  2 0 0  l\n", {9, 9}));
-    CHECK(unlit.run.stopped_by == "samples");
-    CHECK(unlit.run.error.norm == 0);
-    CHECK(std::isnan(unlit.run.error.d_rel()));
 }
 
 TEST_CASE("what half the error costs follows from its course, of samples that end as they do") {

@@ -17,12 +17,9 @@ rgb seen(const Scene& scene, View view, const Ray& ray) {
 
 }  // namespace
 
-TEST_CASE("views show normal, distance, albedo and work") {
-    const Scene scene = scene_of(R"(
-camera 0 0 5  0 0 0  40
-phong gloss 0.1 0.2 0.3  0.5 0.25 0.125  9
-sphere 0 0 0  1  gloss
-)");
+TEST_CASE("views show normal, distance, albedo and work; glass is as white as it is clear") {
+    const Scene scene =
+        scene_of("camera 0 0 5  0 0 0  40\nphong p .1 .2 .3  .5 .25 .125  9\nsphere 0 0 0  1  p\n");
     const Ray hit{{0, 0, 5}, {0, 0, -1}}, miss{{0, 0, 5}, {0, 0, 1}};
     CHECK(seen(scene, View::normal, hit) == rgb{0.5, 0.5, 1});
     CHECK(seen(scene, View::depth, hit) == rgb{4, 4, 4});
@@ -33,26 +30,16 @@ sphere 0 0 0  1  gloss
     for (View v : {View::normal, View::depth, View::albedo})
         CHECK(seen(scene, v, miss) == rgb{0, 0, 0});
     CHECK(seen(scene, View::occlusion, miss) == rgb{1, 1, 1});
-}
-
-TEST_CASE("glass is as white as it is clear") {
-    const Scene scene = scene_of(R"(
-camera 0 0 5  0 0 0  40
-glass clear 1.5
-sphere 0 0 0  1  clear
-)");
-    CHECK(seen(scene, View::albedo, {{0, 0, 5}, {0, 0, -1}}) == rgb{1, 1, 1});
+    const Scene glass = scene_of("camera 0 0 5  0 0 0  40\nglass g 1.5\nsphere 0 0 0  1  g\n");
+    CHECK(seen(glass, View::albedo, hit) == rgb{1, 1, 1});
 }
 
 // From inside a sphere of radius r, a direction of cosine c meets it after 2 r c.  The box of the
 // sphere has a diagonal of 2 sqrt(3) r.  So it is open where c > sqrt(3) / 4, with probability
 // 13/16.
 TEST_CASE("13/16 of the directions from inside a sphere are open") {
-    const Scene scene = scene_of(R"(
-camera 0 0 0  0 0 -1  40
-diffuse grey 0.5 0.5 0.5
-sphere 0 0 0  1  grey
-)");
+    const Scene scene =
+        scene_of("camera 0 0 0  0 0 -1  40\ndiffuse d .5 .5 .5\nsphere 0 0 0  1  d\n");
     const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1, 0);
     Moments open;
     for (uint64_t i = 0; i < 40000; ++i)
