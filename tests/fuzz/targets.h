@@ -64,11 +64,8 @@ inline void pfm(std::string_view input) {
 // Splits text into one word per line.
 inline std::vector<std::string> words_of(std::string_view input) {
     std::vector<std::string> words;
-    for (size_t start = 0; start < input.size() && words.size() < 1000;) {
-        const size_t end = std::min(input.find('\n', start), input.size());
-        words.emplace_back(input.substr(start, end - start));
-        start = end + 1;
-    }
+    std::istringstream in{std::string(input)};
+    for (std::string word; words.size() < 1000 && std::getline(in, word);) words.push_back(word);
     return words;
 }
 
@@ -218,13 +215,12 @@ inline std::string edited(std::string bytes, Choices& c) {
 inline void write_forged(const std::string& name, const std::string& bytes) {
     const size_t end = std::min(bytes.find("\n\n"), bytes.size());
     Facts head;
-    for (size_t line = 0, start = 0; start < end; ++line) {
-        const size_t stop = std::min(bytes.find('\n', start), end);
-        const std::string text = bytes.substr(start, stop - start);
-        const size_t space = std::min(text.find(' '), text.size());
-        if (line >= 3)  // the writer adds the first ones
-            head.push_back({text.substr(0, space), text.substr(std::min(space + 1, text.size()))});
-        start = stop + 1;
+    std::istringstream lines(bytes.substr(0, end));
+    std::string line;
+    for (int i = 0; std::getline(lines, line); ++i) {
+        const size_t space = std::min(line.find(' '), line.size());
+        if (i >= 3)  // the writer adds the first ones
+            head.push_back({line.substr(0, space), line.substr(std::min(space + 1, line.size()))});
     }
     const size_t numbers = std::min(end + 2, bytes.size());
     write_film_file(name, head, {std::as_bytes(std::span(bytes).subspan(numbers))});

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "base/complaint.h"
+
 using namespace fuzz;
 
 namespace {
@@ -11,13 +13,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // What a target reports for a file: "" if nothing is wrong.
-std::string complaint(const fuzz::Target& target, const std::string& input) {
-    try {
-        target.run(input);
-        return "";
-    } catch (const std::exception& e) {
-        return e.what();
-    }
+std::string told(const fuzz::Target& target, const std::string& input) {
+    return complaint<std::exception>([&] { target.run(input); });
+}
+
+std::string drawn_bytes(uint64_t seed, size_t n) {
+    std::string bytes;
+    while (bytes.size() < n) bytes += char(mix(seed + bytes.size()) & 0xff);
+    return bytes;
 }
 
 // The files of a folder for a target; none if the folder does not exist.
@@ -44,7 +47,7 @@ TEST_CASE("what fuzzers found, and what they begin with, breaks nothing") {
         for (const char* kind : {"tests/fuzz/seeds", "tests/fuzz/regressions"})
             for (const std::string& file : files_in(fs::path(kind) / target.name)) {
                 INFO("build/fuzz/fuzz --target=", target.name, " ", file);
-                CHECK(complaint(target, read_file(file)) == "");
+                CHECK(told(target, read_file(file)) == "");
                 ++seeds;
             }
         INFO(target.name);
@@ -53,17 +56,15 @@ TEST_CASE("what fuzzers found, and what they begin with, breaks nothing") {
 }
 
 TEST_CASE("seeds are accepted: fuzzers begin with what is right") {
-    for (const std::string& file : files_in("tests/fuzz/seeds/scene")) {
-        const std::string input = read_file(file);
-        const Bundle files = bundle(input, "s.scene");
-        write_meshes(files);
-        CHECK_NOTHROW(parse_scene(std::string(files.at("s.scene")), place() / "s.scene"));
-    }
-    for (const std::string& file : files_in("tests/fuzz/seeds/obj")) {
-        const std::string input = read_file(file);
-        write_meshes(bundle(input, "m.obj"));
-        CHECK_NOTHROW(parse_scene(fuzz::around_mesh, place() / "s.scene"));
-    }
+    for (const auto& [kind, name] : {std::pair{"scene", "s.scene"}, {"obj", "m.obj"}})
+        for (const std::string& file : files_in(std::string("tests/fuzz/seeds/") + kind)) {
+            const std::string input = read_file(file);
+            const Bundle files = bundle(input, name);
+            write_meshes(files);
+            const bool is_scene = files.contains("s.scene");
+            const std::string text = is_scene ? std::string(files.at(name)) : fuzz::around_mesh;
+            CHECK_NOTHROW(parse_scene(text, place() / "s.scene"));
+        }
     for (const std::string& file : files_in("tests/fuzz/seeds/pfm")) CHECK_NOTHROW(read_pfm(file));
     for (unsigned kind = 0; kind < SmallFilm::kinds; ++kind) {
         place().write("f.film", small_film(kind));
@@ -87,26 +88,21 @@ TEST_CASE(
     int accepted = 0, moderate = 0;
     constexpr int draws = 400;
     for (uint64_t k = 0; k < draws; ++k) {
-        std::string bytes;
-        for (uint64_t i = 0; i < 120; ++i) bytes += char(mix(1000 * k + i) & 0xff);
+        const std::string bytes = drawn_bytes(1000 * k, 120);
         const Drawn d = drawn(bytes);
         all += d.scene;
         for (const std::string& word : d.options) all += " " + word;
         moderate += d.moderate;
-        try {
-            const auto parsed = parse_scene(d.scene, "s.scene");
-            check_scene(parsed.scene);
-            ++accepted;
-        } catch (const UserError& e) {
-            // These reasons depend on the numbers, which the generator does not check.
-            bool expected = false;
-            const std::string why = e.what();
-            for (const char* reason :
-                 {"camera must look", "point light lies", "empty scene", "too small", "too large"})
-                expected = expected || why.find(reason) != why.npos;
-            INFO(why, "\n", d.scene);
-            CHECK(expected);
-        }
+        const std::string why =
+            complaint([&] { check_scene(parse_scene(d.scene, "s.scene").scene); });
+        accepted += why.empty();
+        // These reasons depend on the numbers, which the generator does not check.
+        bool expected = why.empty();
+        for (const char* reason :
+             {"camera must look", "point light lies", "empty scene", "too small", "too large"})
+            expected = expected || why.find(reason) != why.npos;
+        INFO(why, "\n", d.scene);
+        CHECK(expected);
     }
     CHECK(accepted > draws / 2);
     CHECK(moderate > draws / 2);
@@ -122,9 +118,8 @@ TEST_CASE(
 TEST_CASE("light modes agree wherever lamps lie") {
     int lifted = 0;
     for (uint64_t k = 0; k < 60; ++k) {
-        std::string bytes;
-        for (uint64_t i = 0; i < 40; ++i) bytes += char(mix(1000 * k + i + 500) & 0xff);
-        CHECK(complaint(*fuzz::find("lamps"), bytes) == "");
+        const std::string bytes = drawn_bytes(1000 * k + 500, 40);
+        CHECK(told(*fuzz::find("lamps"), bytes) == "");
         Choices c(bytes);
         const auto parsed = parse_scene(drawn_lamps(c), "s.scene");
         lifted += std::any_of(parsed.warnings.begin(), parsed.warnings.end(),
