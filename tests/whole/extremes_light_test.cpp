@@ -101,37 +101,32 @@ bool sane(const std::optional<LightSample>& s) {
 
 // Receivers on the surface of a sphere light, one ulp below and above it, and inside.
 double insane_on_a_light() {
-    Dice random{{oracle::seed_of("on a light")}};
-    int insane = 0;
-    for (int i = 0; i < 20000; ++i) {
+    return count_of("on a light", 20000, [](Dice& random, int i) {
         const Light l = bright_sphere(random.direction(), random.decades(-3, 3));
         const real at[] = {l.r, std::nextafter(l.r, real(0)), std::nextafter(l.r, infinity),
                            l.r * random(0, 1), 0};
         const vec3 p = l.p + at[i % 5] * random.direction();
         const vec2 corners[] = {{0, 0}, {below_one, below_one}, random.pair()};
+        int insane = !std::isfinite(pdf_light(l, p, {l.p, {0, 0, 1}, 0}));
         for (vec2 u : corners) insane += !sane(sample_light(l, p, u));
-        insane += !std::isfinite(pdf_light(l, p, {l.p, {0, 0, 1}, 0}));
-    }
-    return insane;
+        return insane;
+    });
 }
 
 // Receivers at corners, on edges, in the plane of a quad and next to it.
 double insane_beside_a_light() {
-    Dice random{{oracle::seed_of("beside a light")}};
-    int insane = 0;
-    for (int i = 0; i < 20000; ++i) {
+    return count_of("beside a light", 20000, [](Dice& random, int i) {
         Light l = quad_light({1, 2, 3}, {2, 0, 0}, {0, 0, 4});
         l.L = {1, 1, 1}, l.twosided = i % 2 == 0;
         const real heights[] = {0, std::numeric_limits<real>::denorm_min(), real(1e-30), -0.0};
         const vec3 p = l.p + random(0, 1) * l.u + vec3{0, heights[i / 2 % 4], 0};
         const vec2 u = random.pair();
         l.p.y = 0;
-        insane += !sane(sample_light(l, {p.x, heights[i / 2 % 4], p.z}, u));
-        insane += !sane(sample_light(l, l.p, {0, 0}));
-        insane += !sane(sample_light(l, l.p + u.x * l.u + u.y * l.v, u));
-        insane += pdf_light(l, {p.x, 0, p.z}, {l.p + l.u, {0, 1, 0}, 0}) != 0;
-    }
-    return insane;
+        return !sane(sample_light(l, {p.x, heights[i / 2 % 4], p.z}, u)) +
+               !sane(sample_light(l, l.p, {0, 0})) +
+               !sane(sample_light(l, l.p + u.x * l.u + u.y * l.v, u)) +
+               (pdf_light(l, {p.x, 0, p.z}, {l.p + l.u, {0, 1, 0}, 0}) != 0);
+    });
 }
 
 // A quad seen at a grazing angle from h above its plane, point by point: cos / pdf is x h A / d^4
@@ -203,16 +198,13 @@ double choice_of_lights(double ratio) {
 }
 
 double weights_of_two() {
-    Dice random{{oracle::seed_of("weights")}};
-    Worst worst;
-    for (int i = 0; i < 100000; ++i) {
+    return worst_of("weights", 100000, [](Dice& random, Worst& worst) {
         const real p = random.decades(-30, 30), q = random.decades(-30, 30);
         worst.see(std::abs(power_heuristic(p, q) + power_heuristic(q, p) - 1));
-    }
-    worst.see(std::abs(power_heuristic(infinity, 1) - 1));
-    worst.see(power_heuristic(0, 1));
-    worst.see(std::abs(power_heuristic(1, 0) - 1));
-    return worst.value;
+        worst.see(std::abs(power_heuristic(infinity, 1) - 1));
+        worst.see(power_heuristic(0, 1));
+        worst.see(std::abs(power_heuristic(1, 0) - 1));
+    });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // whole/extremes_world_test.cpp  rays and shapes, directions, materials, the camera
 #include "base/stats.h"
 #include "whole/extremes.h"
+#include "world/nearest.h"
 #include "world/scene.h"
 
 namespace {
@@ -47,84 +48,72 @@ double over_a_planet() {
 
 // Counts rays that leave a surface point outwards, at any angle, and hit their own shape.
 double met_again() {
-    Dice random{{oracle::seed_of("met again")}};
-    int again = 0;
-    for (int i = 0; i < 20000; ++i) {
+    return count_of("met again", 20000, [](Dice& random, int i) {
         const real sizes[] = {real(1e-6), 1, real(1e6)};
         const real size = sizes[i % 3], distance = i % 2 ? real(1e6) : 0;
         const vec3 at = distance * random.direction();
         Shape s{at, {}, {}, size};
         if (i % 5 == 0) s = {at, at + size * random.direction(), at + size * random.direction()};
-        if (!s.is_sphere() && s.a == s.b) continue;
+        int again = 0;
+        if (!s.is_sphere() && s.a == s.b) return again;
         const vec3 target = s.is_sphere() ? s.a : (s.a + s.b + s.c) / 3;
         const vec3 o = target + 4 * size * random.direction();
-        if (o == target) continue;
+        if (o == target) return again;
         const Ray ray{o, unit(target - o)};
         const auto hit = meet(s, ray);
-        if (!hit) continue;
+        if (!hit) return again;
         const Surface x = surface(s, ray, *hit);
-        if (!is_finite(x.n)) continue;
+        if (!is_finite(x.n)) return again;
         const Frame f = frame(x.n);
         for (int k = 0; k < 16; ++k) {
             const real z = k % 2 ? random(0, 1) : random.decades(-12, 0);
             const vec3 d = f.to_world(spherical(z, std::sqrt(1 - z * z), random(0, 1)));
             if (dot(d, x.n) > 0) again += meet(s, spawn(x, d)).has_value();
         }
-    }
-    return again;
+        return again;
+    });
 }
 
 // Counts rays from inside, aimed at corners and edges, that leave the mesh.
 double leaks(Triangles mesh, vec3 move) {
     for (Shape& s : mesh) s = {s.a + move, s.b + move, s.c + move};
     const Tree bvh(mesh);
-    Dice random{{oracle::seed_of("leaks")}};
-    int leaked = 0;
-    for (int i = 0; i < 40000; ++i) {
+    return count_of("leaks", 40000, [&](Dice& random, int i) {
         const Shape& s = mesh[random.below(mesh.size())];
         const vec3 corner[3] = {s.a, s.b, s.c};
         const size_t k = random.below(3);
         const real along = i % 3 ? random(0, 1) : 0;
         const vec3 target = corner[k] + along * (corner[(k + 1) % 3] - corner[k]);
         const vec3 o = move + random(0, real(0.3)) * random.direction();
-        leaked += !bvh.closest({o, unit(target - o)});
-    }
-    return leaked;
+        return !bvh.closest({o, unit(target - o)});
+    });
 }
 
 // Rays along axes, in the faces of boxes and of the BVH: compares the BVH with a loop.
 double along_axes() {
-    Dice random{{oracle::seed_of("along axes")}};
+    Dice dice{{oracle::seed_of("boxes")}};
+    auto corner = [](Dice& random, size_t n) {
+        return vec3{real(random.below(n)), real(random.below(n)), real(random.below(n))};
+    };
     Scene boxes;
     boxes.materials.resize(1);
     for (int i = 0; i < 60; ++i)
-        add_box(boxes, {1, 1, real(i % 3 ? 1 : 0.5)}, 0,
-                {real(random.below(6)), real(random.below(6)), real(random.below(6))}, 0);
+        add_box(boxes, {1, 1, real(i % 3 ? 1 : 0.5)}, 0, corner(dice, 6), 0);
     const std::vector<Shape>& shapes = boxes.shapes;
     const Tree bvh(shapes);
-    int wrong = 0;
-    for (int i = 0; i < 20000; ++i) {
-        const vec3 o{real(random.below(7)) - (i % 7 == 0 ? 10 : 0), real(random.below(7)),
-                     real(random.below(7))};
+    return count_of("along axes", 20000, [&](Dice& random, int i) {
+        const vec3 o = corner(random, 7) - vec3{real(i % 7 == 0 ? 10 : 0), 0, 0};
         vec3 d{i & 1 ? -real(0) : real(0), i & 2 ? -real(0) : real(0), i & 4 ? -real(0) : real(0)};
         d.*axis[i % 3] = i & 8 ? -1 : 1;
         const Ray ray{o, d};
-        Hit best;
-        for (size_t j = 0; j < shapes.size(); ++j)
-            if (const auto hit = meet(shapes[j], ray); hit && hit->t < best.t)
-                best = *hit, best.id = uint32_t(j);
         const auto hit = bvh.closest(ray);
-        wrong += hit ? hit->id != best.id || hit->t != best.t : best.id != UINT32_MAX;
-        wrong += bvh.occluded(ray) != hit.has_value();
-    }
-    return wrong;
+        return !same(hit, nearest(shapes, ray)) + (bvh.occluded(ray) != hit.has_value());
+    });
 }
 
 // A ray sees the first of coincident shapes, whatever surrounds them.
 double coincident() {
-    Dice random{{oracle::seed_of("coincident")}};
-    int wrong = 0;
-    for (int trial = 0; trial < 50; ++trial) {
+    return count_of("coincident", 50, [](Dice& random, int) {
         std::vector<Shape> shapes;
         const Shape wall{{-9, -9, 0}, {9, -9, 0}, {0, 12, 0}};
         const size_t n = 1 + random.below(40), first = random.below(n);
@@ -133,43 +122,48 @@ double coincident() {
                                  ? wall
                                  : Shape{random.direction() - vec3{0, 0, 3}, {}, {}, 1});
         const Tree bvh(shapes);
+        int wrong = 0;
         for (int i = 0; i < 200; ++i) {
-            const vec3 o{random(-2, 2), random(-2, 2), 5};
-            const auto hit = bvh.closest({o, {0, 0, -1}});
+            const auto hit = bvh.closest({{random(-2, 2), random(-2, 2), 5}, {0, 0, -1}});
             wrong += !hit || hit->id != first;
         }
-    }
-    return wrong;
+        return wrong;
+    });
 }
 
-// A sheet `gap` before a wall, about 10 away: the part of rays that hit the wall.
-double sheet_before_wall(real gap) {
+// A sheet `gap` before a wall, and two points of random places before it, near and about 10 away.
+struct Sheet {
     std::vector<Shape> shapes;
-    for (real z : {real(0), gap}) shapes.push_back({{-20, -20, z}, {20, -20, z}, {0, 30, z}});
-    const Tree bvh(shapes);
-    Dice random{{oracle::seed_of("sheet")}};
-    const int n = 20000;
-    int wall = 0;
-    for (int i = 0; i < n; ++i) {
-        const vec3 o{random(-3, 3), random(-3, 3), 10}, to{random(-3, 3), random(-3, 3), 0};
-        const auto hit = bvh.closest({o, unit(to - o)});
-        wall += !hit || hit->id == 0;
+    explicit Sheet(real gap) {
+        for (real z : {real(0), gap}) shapes.push_back({{-20, -20, z}, {20, -20, z}, {0, 30, z}});
     }
-    return double(wall) / n;
+    static vec3 point(Dice& random, real z) { return {random(-3, 3), random(-3, 3), z}; }
+};
+
+// The part of rays from afar that hit the wall.
+double sheet_before_wall(real gap) {
+    const Tree bvh(Sheet(gap).shapes);
+    return count_of("sheet", 20000,
+                    [&](Dice& random, int) {
+                        const vec3 o = Sheet::point(random, 10), to = Sheet::point(random, 0);
+                        const auto hit = bvh.closest({o, unit(to - o)});
+                        return !hit || hit->id == 0;
+                    }) /
+           20000;
 }
 
-// The same sheet over a floor: the part of the floor's shadow rays that miss the sheet.
+// The part of the wall's shadow rays that miss the sheet.
 double shadow_of_sheet(real gap) {
-    const Shape floor{{-20, -20, 0}, {20, -20, 0}, {0, 30, 0}};
-    const Tree bvh({floor, {{-20, -20, gap}, {20, -20, gap}, {0, 30, gap}}});
-    Dice random{{oracle::seed_of("shadow of a sheet")}};
-    const int n = 20000;
-    int lit = 0;
-    for (int i = 0; i < n; ++i) {
-        const Surface x{{random(-3, 3), random(-3, 3), 0}, {0, 0, 1}, rounding_error(floor)};
-        lit += !bvh.occluded(spawn_to(x, {{random(-3, 3), random(-3, 3), 10}, {0, 0, -1}, 0}));
-    }
-    return double(lit) / n;
+    const Sheet sheet(gap);
+    const Tree bvh(sheet.shapes);
+    return count_of(
+               "shadow of a sheet", 20000,
+               [&](Dice& random, int) {
+                   const Surface x{
+                       Sheet::point(random, 0), {0, 0, 1}, rounding_error(sheet.shapes[0])};
+                   return !bvh.occluded(spawn_to(x, {Sheet::point(random, 10), {0, 0, -1}, 0}));
+               }) /
+           20000;
 }
 
 // Triangles with edges of 10^-k, and without area, as scenes accept them.  Each is dropped, or has
@@ -212,10 +206,9 @@ double skewness(const Frame& f) {
 }
 
 double frames_anywhere() {
-    Dice random{{oracle::seed_of("frames")}};
-    Worst worst;
-    for (int i = 0; i < 20000; ++i) worst.see(skewness(frame(random.direction())));
-    return worst.value;
+    return worst_of("frames", 20000, [](Dice& random, Worst& worst) {
+        worst.see(skewness(frame(random.direction())));
+    });
 }
 
 // Directions 1e-9, 1e-20 and 0 from both poles.
@@ -305,17 +298,12 @@ double glass_off(real ior, bool outside, real z) {
     return double(std::abs(reflectance - truth));
 }
 
-double glass_like_air() {
+// At cosines down to 10^-12.
+double grazing_glass(std::vector<real> indices, bool from_outside_alone) {
     Worst worst;
-    for (bool outside : {false, true})
-        for (real z = 1; z > real(1e-12); z *= real(0.7)) worst.see(glass_off(1, outside, z));
-    return worst.value;
-}
-
-double grazing_glass() {
-    Worst worst;
-    for (real ior : {real(1.5), real(2.4), real(100)})
-        for (real z = 1; z > real(1e-12); z *= real(0.7)) worst.see(glass_off(ior, true, z));
+    for (real ior : indices)
+        for (bool outside : {true, from_outside_alone})
+            for (real z = 1; z > real(1e-12); z *= real(0.7)) worst.see(glass_off(ior, outside, z));
     return worst.value;
 }
 
@@ -423,9 +411,10 @@ TEST_CASE("extremes of shapes and directions: no more error than they may have")
         // Rounding of the cosine, 4 ulp, times the exponent.
         {"Phong exponent 10^5, grazing: density", ulps(4e5), [&] { return lobe.density; }},
         {"Phong exponent 10^5, grazing: weight", ulps(16), [&] { return lobe.weight; }},
-        {"glass of index 1, cosines down to 10^-12: reflectance", ulps(8), glass_like_air},
+        {"glass of index 1, cosines down to 10^-12: reflectance", ulps(8),
+         of(grazing_glass, std::vector<real>{1}, false)},
         {"glass of index 1.5 ... 100, cosines down to 10^-12: reflectance", ulps(16),
-         grazing_glass},
+         of(grazing_glass, std::vector<real>{real(1.5), real(2.4), 100}, true)},
         // 4 ulp of cos^2 cancel; their root is the refracted cosine over n cos. 1 - R is 2 (n + 1 /
         // n) / cos times that: 2 (n^2 + 1) sqrt(4 ulp), n = 2.4.
         {"glass at its critical angle: reflectance", within(2.9e-7, 6.6e-3), critical_glass},

@@ -21,9 +21,9 @@ TEST_CASE("each call of a small render fails in each way, and the power before e
     expect_nothing_wrong("--each");
 }
 
-TEST_CASE("twenty renders under random faults, and one that is killed and resumed") {
+TEST_CASE("twenty renders under random faults, and four that are killed and resumed") {
     expect_nothing_wrong("--runs 20 --jobs 2");
-    expect_nothing_wrong("--runs 1 --only 'killed and resumed'");
+    expect_nothing_wrong("--runs 4 --jobs 2 --only 'killed and resumed'");
 }
 
 TEST_CASE("no damaged film is gone on from") {

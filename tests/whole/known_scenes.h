@@ -133,8 +133,12 @@ struct Known {
 inline std::vector<Known> known_scenes() {
     std::vector<Known> rows;
     auto add = [&](const Known& k) -> Known& { return rows.emplace_back(k); };
-    const std::string patch = receiver;
     const Start none = nullptr;
+    // The patch under these lights, with the irradiance E.
+    auto lit = [&](const char* name, const std::string& lights, double E, int aimed,
+                   int chance) -> Known& {
+        return add({name, receiver + lights, 0.8 / Pi * E, none, aimed, chance});
+    };
 
     // Furnace: radiance Le + rho L everywhere; a convex body shows rho L of its surroundings.
     const std::string furnace = R"(
@@ -214,65 +218,55 @@ diffuse up 0.8 0.8 0.8
         {"small sphere, 89 degrees", 89, 0.05, 2, 3, 0},
     };
     for (const auto& t : tilts) {
-        Known& sphere_row =
-            add({t.name, patch + sphere(at_angle(t.degrees, t.d), t.s * t.d, "lamp"),
-                 0.8 / Pi * sphere_irradiance(t.s, std::cos(t.degrees * Pi / 180)), none, t.aimed,
-                 t.chance});
-        if (t.chance == 0) sphere_row.no_none = rare;
+        Known& row = lit(t.name, sphere(at_angle(t.degrees, t.d), t.s * t.d, "lamp"),
+                         sphere_irradiance(t.s, std::cos(t.degrees * Pi / 180)), t.aimed, t.chance);
+        if (t.chance == 0) row.no_none = rare;
     }
 
     // Point light: E = I cos / d^2.
     const Point p = at_angle(40, 2.5);
-    add({"point light", patch + "pointlight" + words(p) + " 3 4 5\n",
-         0.8 / Pi * 4 * p.y / (2.5 * 2.5 * 2.5), none, 1, 0})
+    lit("point light", "pointlight" + words(p) + " 3 4 5\n", 4 * p.y / (2.5 * 2.5 * 2.5), 1, 0)
         .no_none = never_hit;
 
     // Knife edge: half of the sphere is behind a plane that ends on its axis.
     for (const bool upper : {true, false}) {
         const Point a = at_angle(30, 1), to_seen = (upper ? 1.0 : -1.0) * Point{-a.y, a.x, 0};
-        std::string text = patch + sphere(3 * a, 1.5, "lamp");
-        text += quad(a - Point{0, 0, 2}, {0, 0, 4}, -2 * to_seen, "black");
-        add({upper ? "knife edge, upper half" : "knife edge, lower half", text,
-             0.8 / Pi * half_sphere_irradiance(0.5, a.y, to_seen.y), none, 2, 9});
+        lit(upper ? "knife edge, upper half" : "knife edge, lower half",
+            sphere(3 * a, 1.5, "lamp") + quad(a - Point{0, 0, 2}, {0, 0, 4}, -2 * to_seen, "black"),
+            half_sphere_irradiance(0.5, a.y, to_seen.y), 2, 9);
     }
 
     // Polygons overhead, across the horizon, seen from behind, among others, past an edge.
     auto ceiling = [](double left, double right, double y, double z) {
         return std::vector<Point>{{left, y, -z}, {right, y, -z}, {right, y, z}, {left, y, z}};
     };
-    std::string text = patch + quad({-1.5, 1.5, -1.5}, {3, 0, 0}, {0, 0, 3}, "lamp");
-    add({"ceiling", text, 0.8 / Pi * polygon_irradiance(ceiling(-1.5, 1.5, 1.5, 1.5)), none, 1, 2});
+    std::string text = quad({-1.5, 1.5, -1.5}, {3, 0, 0}, {0, 0, 3}, "lamp");
+    lit("ceiling", text, polygon_irradiance(ceiling(-1.5, 1.5, 1.5, 1.5)), 1, 2);
     text += quad({0.2, 0.5, -4}, {4, 0, 0}, {0, 0, 8}, "black");
-    add({"ceiling past an edge", text, 0.8 / Pi * polygon_irradiance(ceiling(-1.5, 0.6, 1.5, 1.5)),
-         none, 2, 3});
-    text = patch + quad({2, -2, -2}, {0, 0, 4}, {0, 4, 0}, "lamp");
-    add({"wall across the horizon", text,
-         0.8 / Pi * polygon_irradiance({{2, -2, -2}, {2, -2, 2}, {2, 2, 2}, {2, 2, -2}}), none, 3,
-         7});
+    lit("ceiling past an edge", text, polygon_irradiance(ceiling(-1.5, 0.6, 1.5, 1.5)), 2, 3);
+    lit("wall across the horizon", quad({2, -2, -2}, {0, 0, 4}, {0, 4, 0}, "lamp"),
+        polygon_irradiance({{2, -2, -2}, {2, -2, 2}, {2, 2, 2}, {2, 2, -2}}), 3, 7);
     const Point a{1.6, -0.7, 1}, b{1.4, 1.5, -1.2}, c{-0.9, 1.8, 0.6};
-    add({"two-sided triangle, its back", patch + triangle(a, b, c, "both"),
-         0.8 / Pi * polygon_irradiance({a, b, c}), none, 2, 3});
-    text = patch + sphere(at_angle(-50, 2), 0.8, "strong");
+    lit("two-sided triangle, its back", triangle(a, b, c, "both"), polygon_irradiance({a, b, c}), 2,
+        3);
+    text = sphere(at_angle(-50, 2), 0.8, "strong");
     text += quad({0.5, 1, -1}, {2, 0, 0}, {0, 0, 2}, "bright");
     text += triangle({-0.3, 2, 0.3}, {0.3, 2, -0.3}, {-0.3, 2, -0.3}, "strong");
     text += triangle({3, 1, 0}, {3, 2, 0}, {3, 1, 2}, "strong");
-    const double unequal = 0.8 / Pi *
-                           (8 * sphere_irradiance(0.4, std::cos(50 * Pi / 180)) +
-                            4 * polygon_irradiance(ceiling(0.5, 2.5, 1, 1)));
-    add({"unequal lights, two turned away", text, unequal, none, 4, 4});
+    const double unequal = 8 * sphere_irradiance(0.4, std::cos(50 * Pi / 180)) +
+                           4 * polygon_irradiance(ceiling(0.5, 2.5, 1, 1));
+    lit("unequal lights, two turned away", text, unequal, 4, 4);
     // With so many lights the choice is by power.
     for (const double left : {1.0, 2.0, 3.0})
         text += triangle({left, 3, 0}, {left, 3, 1}, {left + 1, 3, 0}, "lamp");
-    add({"seven unequal lights, five turned away", text, unequal, none, 8, 4});
+    lit("seven unequal lights, five turned away", text, unequal, 8, 4);
 
     // Eclipse: E = pi cos (sin^2 of the light - sin^2 of the body before it).
-    text = patch + sphere(at_angle(30, 3), 1.5, "lamp");
-    text += sphere(at_angle(30, 1), 0.3, "black");
-    add({"sphere eclipsed by a sphere", text, 0.8 * std::cos(Pi / 6) * (0.5 * 0.5 - 0.3 * 0.3),
-         none, 2, 7});
-    text = patch + disc(0, 2, 1.5, "lamp");
-    text += disc(0, 1, 0.4, "black");
-    add({"disc eclipsed by a disc", text, 0.8 * (1.5 * 1.5 / 6.25 - 0.16 / 1.16), none, 1, 4});
+    lit("sphere eclipsed by a sphere",
+        sphere(at_angle(30, 3), 1.5, "lamp") + sphere(at_angle(30, 1), 0.3, "black"),
+        Pi * std::cos(Pi / 6) * (0.5 * 0.5 - 0.3 * 0.3), 2, 7);
+    lit("disc eclipsed by a disc", disc(0, 2, 1.5, "lamp") + disc(0, 1, 0.4, "black"),
+        Pi * (1.5 * 1.5 / 6.25 - 0.16 / 1.16), 1, 4);
 
     // Form factors: the mean E over a surface, from another of radiance 1, is pi F.
     const std::string plain =
@@ -293,16 +287,14 @@ diffuse up 0.8 0.8 0.8
     };
     add({"coaxial discs", floor + disc(0, 1.5, 2, "lamp"), 0.8 * coaxial(1, 2, 1.5), on_disc, 1,
          2});
-    add({"disc to the side", patch + disc(1, 1.5, 1.2, "lamp"), 0.8 * element_to_disc(1, 1.2, 1.5),
-         none, 1, 4});
-    const Start on_inner = [](vec2 u) {
-        const Point n = on_sphere(double(u.x), double(u.y));
-        return onto(n, n);
+    lit("disc to the side", disc(1, 1.5, 1.2, "lamp"), Pi * element_to_disc(1, 1.2, 1.5), 1, 4);
+    auto on_ball = [](double r, double side) -> Start {
+        return [=](vec2 u) {
+            const Point n = on_sphere(double(u.x), double(u.y));
+            return onto(r * n, side * n);
+        };
     };
-    const Start on_outer = [](vec2 u) {
-        const Point n = on_sphere(double(u.x), double(u.y));
-        return onto(2 * n, -1 * n);
-    };
+    const Start on_inner = on_ball(1, 1), on_outer = on_ball(2, -1);
     add({"sphere around a bright sphere", plain + "sphere 0 0 0  2 grey\nsphere 0 0 0  1 lamp\n",
          0.8 / 4, on_outer, 1, 4});
     const std::string bright_shell = plain + "sphere 0 0 0  2 inside\nsphere 0 0 0  1 grey\n";

@@ -6,8 +6,7 @@ TEST_CASE("a large picture takes at most 32 bytes a pixel, and 24 for each repli
     MESSAGE("the address sanitizer needs more memory than that: not tested");
 #else
     const Place place(camera + "light l 1 1 1\nsphere 0 0 0  1  l\n");  // a path ends on it
-    place.render("--size 2048x1024 --spp 18 --sampler independent --stats a.json");
-    const std::string stats = place.read("a.json");
+    const std::string stats = place.stats("--size 2048x1024 --spp 18 --sampler independent");
     const double K = number_of(stats, "replications_per_pixel");
     CHECK(K > 2);
     CHECK(number_of(stats, "samples_per_pixel") == doctest::Approx(9 * K));

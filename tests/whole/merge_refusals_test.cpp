@@ -23,8 +23,8 @@ struct Parts : Place {
 // Two parts: rows 0-2 and 3-6.
 struct TwoParts : Parts {
     TwoParts() {
-        part("a.film", "--spp 20 --rows 0-2");
-        part("b.film", "--spp 20 --rows 3-6");
+        for (const std::string rows : {"0-2", "3-6"})
+            part(rows + ".film", "--spp 20 --rows " + rows);
     }
 };
 
@@ -58,44 +58,43 @@ TEST_CASE("rows that are missing, or there twice, are told; so are equal seeds")
 
 TEST_CASE("a part of another picture is told by what differs") {
     const TwoParts folder;
-    auto refuse = [&](const std::string& options, const std::string& why) {
+    auto render = [&](const std::string& options) {
         fs::remove(folder / "c.film");
         folder.part("c.film", "--spp 20 --rows 3-6 " + options);
-        folder.refuse("a.film c.film", "c.film: was rendered with " + why + "\n");
     };
-    refuse("--sampler halton", "sampler halton, not sobol as in a.film");
-    refuse("--replications 2", "replications 2, not adaptive as in a.film");
-    refuse("--depth 2", "depth 2, not 8 as in a.film");
-    refuse("--size 8x8", "size 8x8, not 8x7 as in a.film");
-    refuse("--sampler stratified", "sampler stratified, not sobol as in a.film");
+    for (const auto& [options, why] :
+         std::vector<Refusal>{{"--sampler halton", "sampler halton, not sobol"},
+                              {"--sampler stratified", "sampler stratified, not sobol"},
+                              {"--replications 2", "replications 2, not adaptive"},
+                              {"--depth 2", "depth 2, not 8"},
+                              {"--size 8x8", "size 8x8, not 8x7"}}) {
+        render(options);
+        folder.refuse("0-2.film c.film", "c.film: was rendered with " + why + " as in 0-2.film\n");
+    }
     folder.write("file.scene", good + "\n");
-    fs::remove(folder / "c.film");
-    folder.part("c.film", "--spp 20 --rows 3-6");
-    for (const std::string films : {"a.film c.film", "c.film a.film"})
-        folder.refuse(films,
-                      films.substr(7) + ": was rendered from another version of file.scene\n");
-    expect_success(folder, "merge -o y.pfm a.film b.film");
+    render("");
+    const std::string other = ": was rendered from another version of file.scene\n";
+    folder.refuse("0-2.film c.film", "c.film" + other);
+    folder.refuse("c.film 0-2.film", "0-2.film" + other);
+    expect_success(folder, "merge -o y.pfm 0-2.film 3-6.film");
 }
 
 TEST_CASE("a part that is damaged, cut short, of another precision, or no film") {
     const TwoParts folder;
-    const std::string film = folder.read("b.film");
-    for (size_t at = 3; at < film.size(); at += film.size() / 17) {
-        std::string damaged = film;
-        damaged[at] = char(damaged[at] ^ 32);
-        folder.write("c.film", damaged);
-        folder.refuse("a.film c.film", "c.film: ");
-    }
-    folder.write("c.film", film.substr(0, film.size() - 8));
-    folder.refuse("a.film c.film", "c.film: is cut short\n");
-    folder.write("c.film", "");
-    folder.refuse("c.film a.film", "c.film: ");
-    folder.refuse("file.scene a.film", "file.scene: is not a film\n");
-    const bool is_float = in_head(folder, "b.film", "precision") == "float";
-    change_head(folder / "b.film", folder / "c.film",
-                {{"precision", is_float ? "double" : "float"}});
-    folder.refuse("c.film", is_float ? "c.film: was rendered with precision double, not float\n"
-                                     : "c.film: was rendered with precision float, not double\n");
+    auto refuse = [&](const std::string& bytes, const std::string& why) {
+        folder.write("c.film", bytes);
+        folder.refuse("0-2.film c.film", "c.film: " + why + "\n");
+    };
+    std::string film = folder.read("3-6.film");
+    refuse(film.substr(0, film.size() - 8), "is cut short");
+    film.back() = char(film.back() ^ 32);
+    refuse(film, "is damaged (its checksum differs)");
+    refuse("", "is not a film");
+    folder.refuse("file.scene 0-2.film", "file.scene: is not a film\n");
+    const bool is_float = in_head(folder, "3-6.film", "precision") == "float";
+    const std::string its = is_float ? "float" : "double", other = is_float ? "double" : "float";
+    change_head(folder / "3-6.film", folder / "c.film", {{"precision", other}});
+    folder.refuse("c.film", "c.film: was rendered with precision " + other + ", not " + its + "\n");
 }
 
 TEST_CASE("a head that no run writes is no part") {
@@ -146,9 +145,8 @@ TEST_CASE("a pixel that no file can hold is told, and nothing is written") {
     std::memcpy(numbers.data() + numbers.size() - sizeof infinite, &infinite, sizeof infinite);
     write_film_file(folder / "b.film", file.head(), {numbers});
     const Untouched all(folder);
-    const Outcome o = run(folder, "merge -o y.pfm -o y.png --stats y.json b.film");
-    CHECK(o.status == 1);
-    CHECK(o.err == "pixel 7,6 is more than a file can hold; nothing was written\n");
+    CHECK(expect_exit(folder, "merge -o y.pfm -o y.png --stats y.json b.film", 1).err ==
+          "pixel 7,6 is more than a file can hold; nothing was written\n");
 }
 
 TEST_CASE("merging stops at Ctrl-C, and leaves no file") {

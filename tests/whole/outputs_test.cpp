@@ -1,5 +1,4 @@
 // whole/outputs_test.cpp  the names and completeness of written files
-#include "base/files.h"
 #include "whole/process.h"
 
 TEST_CASE("without -o the images are out/NAME.png and out/NAME.pfm; with it, those alone") {
@@ -17,10 +16,10 @@ TEST_CASE("without -o the images are out/NAME.png and out/NAME.pfm; with it, tho
     other.render("-o b.hdr --spp 2");
     CHECK(other.read("a.hdr").starts_with("#?RADIANCE\n"));
     CHECK(other.same("a.hdr", "b.hdr"));  // exposure is for PNG
-    const bool same_pfm = other.read("a.pfm") == folder.read("out/my.first scene.pfm"),
-               same_png = other.read("b.png") == folder.read("out/my.first scene.png");
-    CHECK(same_pfm);
-    CHECK(same_png);
+    for (const auto& [a, b] : {std::pair{"a.pfm", "scene.pfm"}, {"b.png", "scene.png"}}) {
+        const bool same = other.read(a) == folder.read("out/my.first " + std::string(b));
+        CHECK(same);
+    }
     CHECK(other.read("a.pfm").starts_with("PF\n8 4\n"));
     CHECK(other.read("b.png").starts_with("\x89PNG"));
 
@@ -30,39 +29,8 @@ TEST_CASE("without -o the images are out/NAME.png and out/NAME.pfm; with it, tho
     CHECK(band.files() == 2);
 }
 
-TEST_CASE("a disk that fills up: exit status 1, the old image is whole, and nothing beside it") {
-    const Place place(good);
-    place.write("a.pfm", "old");
-    const Untouched all(place);
-    const Outcome o =
-        run(place, "penumbra --size 64x64 --spp 1 -o a.pfm file.scene", {.largest_file = 4096});
-    CHECK(o.status == 1);
-    CHECK(contains(o.err, "a.pfm: cannot write: "));
-}
-
-TEST_CASE("a name as long as names may be, and a link, are written; what a killed run left goes") {
-    const Place place(good);
-    const std::string name = std::string(251, 'a') + ".pfm";
-    place.write("deep/old.pfm", "old");
-    fs::create_symlink("deep/old.pfm", place / "link.pfm");
-    // No process of Linux has this number.  One file is next to the link, one next to its target.
-    const std::string beside = ".link.pfm.part2147483646";
-    place.write(beside, "not beside what is written");
-    const fs::path left = aside(place / "link.pfm", "2147483646");
-    place.write("deep/" + left.filename().string(), "half");
-    CHECK(fs::exists(left));
-    place.render("-o " + name + " -o link.pfm --spp 2");
-    CHECK(fs::is_symlink(place / "link.pfm"));
-    CHECK(place.same(name, "deep/old.pfm"));
-    CHECK(place.has(beside));
-    CHECK(!fs::exists(left));
-    CHECK(place.files() == 6);
-}
-
 TEST_CASE("two things never get one file, nor does anything the file of the scene") {
-    const Place place(good + "mesh m.obj 1 0 0 0\n");
-    place.write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
-    place.write("m.mtl", "newmtl a\nKd 1 1 1\n");
+    const MeshPlace place;
     place.write("out/scene.pfm", good);
     place.write("a.png", "old");
     fs::create_symlink("a.png", place / "link.pfm");
@@ -96,17 +64,13 @@ TEST_CASE("what stdout does not take is an error") {
     place.write("a.pfm", pfm(1, 1, {1, 1, 1}));
     for (const std::string& command :
          parts_of("penumbra --help;penumbra --pixel 1,1 file.scene;radiosity --help;"
-                  "compare a.pfm a.pfm;compare --help;knot --help")) {
-        const Outcome o = run(place, command, {.output = "/dev/full"});
-        INFO(command);
-        CHECK(o.status == 1);
-        CHECK(o.err == "stdout: cannot write: No space left on device\n");
-    }
+                  "compare a.pfm a.pfm;compare --help;knot --help"))
+        CHECK(expect_exit(place, command, 1, {.output = "/dev/full"}).err ==
+              "stdout: cannot write: No space left on device\n");
 }
 
 TEST_CASE("a stderr that nobody reads costs no image") {
     const Place place(good + "triangle 0 0 0 1 1 1 2 2 2 m\n");  // a warning
-    const Outcome o = run(place, "penumbra --spp 2 -o a.pfm file.scene", {.deaf = true});
-    CHECK(o.status == 0);
+    expect_exit(place, "penumbra --spp 2 -o a.pfm file.scene", 0, {.deaf = true});
     CHECK(place.has("a.pfm"));
 }

@@ -22,12 +22,6 @@ std::string replaced(const std::string& from, const std::string& to, std::string
 
 ParsedScene parsed(const std::string& text) { return parse_scene(text, "test"); }
 
-std::string number(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", x);
-    return text;
-}
-
 bool warns(const ParsedScene& scene, const std::string& words) {
     return std::any_of(scene.warnings.begin(), scene.warnings.end(),
                        [&](const std::string& w) { return w.find(words) != w.npos; });
@@ -74,7 +68,7 @@ std::string told(const std::string& eye, const std::string& others) {
     return all;
 }
 std::string off(const std::string& text, double offsets) {
-    return with(text, number(offsets * offset));
+    return with(text, said(offsets * offset));
 }
 const std::string from_above = "0 9 20  0 0 0  50", panel = "quad -9 9 -9  18 0 0  0 0 18  l\n";
 
@@ -174,13 +168,13 @@ TEST_CASE("a point light on a surface is refused, off it accepted") {
          {"0.5 1e-4 0.5", "0.5 -1e-4 0.5", "5 0 0", "1 2 1", "2 2.501 2", "2 2 2"})
         CHECK(at(place) == "");
     // 4 ulp of the quad's size, which is 4, and 4 ulp of this place are the limit.
-    CHECK(at(("0.5 " + number(17 * double(ulp)) + " 0.5").c_str()) != "");
-    CHECK(at(("0.5 " + number(19 * double(ulp)) + " 0.5").c_str()) == "");
+    CHECK(at(("0.5 " + said(17 * double(ulp)) + " 0.5").c_str()) != "");
+    CHECK(at(("0.5 " + said(19 * double(ulp)) + " 0.5").c_str()) == "");
 }
 
 TEST_CASE("coordinates that rounding makes coarse are told, with the shape") {
     auto box_at = [](double x) {
-        const std::string at = number(x), wall = number(x - 2);
+        const std::string at = said(x), wall = said(x - 2);
         return parsed("camera " + at + " 0 1.8  " + at + " 0 0  60\ndiffuse half .5 .5 .5\n" +
                       "light glow .4 .4 .4 twosided half\nbox 4 3 4  0  " + wall +
                       " -1.5 -2   glow\n");
