@@ -245,8 +245,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             Options o = quick(kind, 0);
             o.error = E;
             const Picture p = rendered(o, scene);
-            CAPTURE(int(kind));
-            CAPTURE(E);
+            INFO("sampler ", int(kind), ", E = ", E);
             CHECK(p.run.stopped_by == "error");
             // The reference applies the rule to a film at every number of samples with a check.
             const Work j(o, scene);

@@ -55,9 +55,7 @@ TEST_CASE("a film comes back as it was: before its sets, after them, and amid a 
         for (const uint64_t n : {1, 16, 20})
             for (const int64_t stop_after : {int64_t(500), INT64_MAX}) {
                 const Film film = fill(empty, n, 1, stop_after);
-                CAPTURE(sets);
-                CAPTURE(n);
-                CAPTURE(stop_after);
+                INFO(sets, " sets, ", n, " samples, stopped after ", stop_after);
                 CHECK(keeper.write(film, {}, true) == "");
                 CHECK(same(restored(folder / "a.film", empty), film));
             }

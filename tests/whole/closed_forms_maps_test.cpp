@@ -70,9 +70,7 @@ TEST_CASE("paths that end on maps meet every closed form of diffuse triangles") 
                 const bool nee = !e.known->no_nee && kind == SamplerKind::halton;
                 Gather g{e.scene, {Direction::bsdf, LightMode::mis, 0}, known};
                 g.technique.light = nee ? LightMode::nee : LightMode::mis;
-                CAPTURE(e.name);
-                CAPTURE(scale);
-                CAPTURE(int(kind));
+                INFO(e.name, ", scale ", scale, ", sampler ", int(kind));
                 EXPECT(oracle::expect_replicates(
                            e.truth, 64,
                            [&](int r) {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/folder.h"
+#include "course/python.h"
 
 TEST_CASE("passes" * doctest::skip()) { CHECK(true); }
 TEST_CASE("fails" * doctest::skip()) {
@@ -43,12 +44,22 @@ TEST_CASE("waits" * doctest::skip()) {
 
 namespace {
 
-struct Said {
-    int status = -1;
-    std::string out;
-    bool has(const std::string& part) const { return out.find(part) != out.npos; }
-    long lines() const { return std::count(out.begin(), out.end(), '\n'); }
-};
+bool has(const Printed& said, const std::string& part) {
+    return said.text.find(part) != said.text.npos;
+}
+long lines(const Printed& said) { return std::count(said.text.begin(), said.text.end(), '\n'); }
+
+// Expects this exit status, these parts in what is said, and this last line.
+void expect(const Printed& said, int status, const std::vector<std::string>& parts,
+            const std::string& last) {
+    INFO(said.text);
+    CHECK(said.status == status);
+    for (const std::string& part : parts) {
+        INFO("expected: ", part);
+        CHECK(has(said, part));
+    }
+    CHECK(said.text.ends_with("\n" + last + "\n"));
+}
 
 // A small code base; its `make` finds everything built.
 struct House {
@@ -77,14 +88,11 @@ done
         fs::permissions(folder / ("built/" + name + "_test.exe"), fs::perms::owner_all);
     }
     // Runs `make test` with these variables, and ONLY= these names.
-    Said test(const std::string& variables = "", const std::string& names = "") const {
-        const std::string command =
-            "cd '" + folder.path.string() +
-            "' && env -i PATH=\"$PATH\" LAYERS='base:0 world:1 path:2 film:2 whole:3' TESTS=built "
-            "MAKE='bash ./make' " +
-            variables + " bash tests/run " + names + " >out 2>&1";
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read("out")};
+    Printed test(const std::string& variables = "", const std::string& names = "") const {
+        return output_of("cd '" + folder.path.string() +
+                         "' && env -i PATH=\"$PATH\" LAYERS='base:0 world:1 path:2 film:2 whole:3' "
+                         "TESTS=built MAKE='bash ./make' " +
+                         variables + " bash tests/run " + names);
     }
     std::string log(const std::string& name) const { return folder.read("build/logs/" + name); }
 };
@@ -102,13 +110,11 @@ TEST_CASE("green: a line for each layer, then how many passed") {
     House house;
     house.add("base/low", 1, passes);
     house.add("world/mid", 1, passes);
-    const Said said = house.test();
-    INFO(said.out);
-    CHECK(said.status == 0);
-    CHECK(said.has("base             1 file, 1 cases passed"));
-    CHECK(said.has("world            1 file, 1 cases passed"));
-    CHECK(said.out.ends_with("\n2 passed, 0 failed\n"));
-    CHECK(said.lines() == 3);
+    const Printed said = house.test();
+    expect(said, 0,
+           {"base             1 file, 1 cases passed", "world            1 file, 1 cases passed"},
+           "2 passed, 0 failed");
+    CHECK(lines(said) == 3);
 }
 
 TEST_CASE("a failed layer: one line a case, where to start, and what stands on it waits") {
@@ -117,51 +123,43 @@ TEST_CASE("a failed layer: one line a case, where to start, and what stands on i
     house.add("base/first", 1, cases("has a verdict,throws"));
     house.add("world/mid", 1, "touch ran\n" + passes);
     house.add("film/high", 1, passes);
-    const Said said = house.test();
-    INFO(said.out);
-    CHECK(said.status == 1);
-    CHECK(said.has("base/first_test: has a verdict: twice as bright\n"));
-    CHECK(said.has("base/first_test: throws: threw: no light\n"));
-    CHECK(said.has("base/second_test: fails: tests/whole/runner_test.cpp:"));
-    CHECK(said.has(": two == 3; it is 2 == 3; a note\n"));
-    CHECK(said.out.find("first_test") < said.out.find("second_test"));
-    CHECK(said.has("\nstart here: has a verdict, tests/whole/runner_test.cpp:"));
-    CHECK(said.has("; make test ONLY=first\n"));
-    CHECK(said.has("\nwaits for base: world film; make test ALL=1 runs all\n"));
-    CHECK(said.out.ends_with("\n2 passed, 3 failed\n"));
-    CHECK(!said.has("\nworld "));
+    const Printed said = house.test();
+    expect(said, 1,
+           {"base/first_test: has a verdict: twice as bright\n",
+            "base/first_test: throws: threw: no light\n",
+            "base/second_test: fails: tests/whole/runner_test.cpp:",
+            ": two == 3; it is 2 == 3; a note\n",
+            "\nstart here: has a verdict, tests/whole/runner_test.cpp:", "; make test ONLY=first\n",
+            "\nwaits for base: world film; make test ALL=1 runs all\n"},
+           "2 passed, 3 failed");
+    CHECK(said.text.find("first_test") < said.text.find("second_test"));
+    CHECK(!has(said, "\nworld "));
     CHECK(!fs::exists(house.folder / "build/logs/world.mid_test"));
     CHECK(house.log("base.second_test").find("two == 4") != std::string::npos);
 
-    const Said all = house.test("ALL=1");
-    INFO(all.out);
-    CHECK(all.status == 1);
+    const Printed all = house.test("ALL=1");
+    expect(all, 1, {}, "4 passed, 3 failed");
     CHECK(house.folder.has("ran"));
-    CHECK(!all.has("waits for"));
-    CHECK(all.out.ends_with("\n4 passed, 3 failed\n"));
+    CHECK(!has(all, "waits for"));
 }
 
 TEST_CASE("a crash names its case, keeps what was printed, and stops no other test") {
-    const struct {
-        const char *name, *verdict;
-    } ends[] = {
+    const std::pair<std::string, std::string> ends[] = {
         {"crashes", "crashed: SIGSEGV"},
         {"terminates",
          "crashed: SIGABRT - Abort (abnormal termination) signal: terminate called "
          "after throwing an instance of 'std::runtime_error': what():  nobody"},
         {"leaves", "ended the program: exit status 7\n"},
     };
-    for (const auto& end : ends) {
+    for (const auto& [name, verdict] : ends) {
         House house;
-        house.add("base/bad", 1, cases(end.name));
+        house.add("base/bad", 1, cases(name));
         house.add("base/good", 2, passes);
-        const Said said = house.test();
-        INFO(said.out);
-        CHECK(said.status == 1);
-        CHECK(said.has(std::string("base/bad_test: ") + end.name + ": " + end.verdict));
-        CHECK(said.has(std::string("start here: ") + end.name + ", tests/whole/runner_test.cpp:"));
-        CHECK(said.out.ends_with("\n2 passed, 1 failed\n"));
-        if (end.name == std::string("crashes"))
+        expect(house.test(), 1,
+               {"base/bad_test: " + name + ": " + verdict,
+                "start here: " + name + ", tests/whole/runner_test.cpp:"},
+               "2 passed, 1 failed");
+        if (name == "crashes")
             CHECK(house.log("base.bad_test").find("about to crash") != std::string::npos);
     }
 }
@@ -169,13 +167,12 @@ TEST_CASE("a crash names its case, keeps what was printed, and stops no other te
 TEST_CASE("a test that does not end is ended, and names its case") {
     House house;
     house.add("base/loop", 1, cases("loops"));
-    Said said = house.test("LIMIT_CPU=1");
-    CHECK(said.has("loop_test: loops: used up 1 s of CPU time: an endless loop?\n"));
-    CHECK(said.out.ends_with("\n1 passed, 1 failed\n"));
+    expect(house.test("LIMIT_CPU=1"), 1,
+           {"loop_test: loops: used up 1 s of CPU time: an endless loop?\n"}, "1 passed, 1 failed");
     house.add("base/loop", 1, cases("waits"));
-    said = house.test("LIMIT_CLOCK=1");
-    CHECK(said.has("loop_test: waits: did not end within 1 s: does it wait for ever?\n"));
-    CHECK(said.out.ends_with("\n1 passed, 1 failed\n"));
+    expect(house.test("LIMIT_CLOCK=1"), 1,
+           {"loop_test: waits: did not end within 1 s: does it wait for ever?\n"},
+           "1 passed, 1 failed");
 }
 
 TEST_CASE("what does not compile is said once, by its first error, and the layer has failed") {
@@ -186,16 +183,14 @@ TEST_CASE("what does not compile is said once, by its first error, and the layer
         "src/base/a.h:9:1: error: and so on\n";
     house.folder.write("tests/base/a_test.broken", errors);
     house.folder.write("tests/base/b_test.broken", errors);
-    const Said said = house.test();
-    INFO(said.out);
-    CHECK(said.status == 1);
-    CHECK(said.has("1 cases passed, 2 not built"));
-    CHECK(said.has("\nnot built: src/base/a.h:7:1: error: oh (2 times); build/logs/compile\n"));
-    CHECK(said.has("\nsrc/base/a.h:3:5: warning: unused parameter 'u'\n"));
-    CHECK(!said.has("and so on"));
-    CHECK(said.has("\nstart here: src/base/a.h:7:1: error: oh\n"));
-    CHECK(said.has("waits for base: world;"));
-    CHECK(said.out.ends_with("\n1 passed, 2 failed\n"));
+    const Printed said = house.test();
+    expect(said, 1,
+           {"1 cases passed, 2 not built",
+            "\nnot built: src/base/a.h:7:1: error: oh (2 times); build/logs/compile\n",
+            "\nsrc/base/a.h:3:5: warning: unused parameter 'u'\n",
+            "\nstart here: src/base/a.h:7:1: error: oh\n", "waits for base: world;"},
+           "1 passed, 2 failed");
+    CHECK(!has(said, "and so on"));
 }
 
 TEST_CASE("a flood of failures fits on a screen") {
@@ -208,13 +203,12 @@ exit 1
 )";
     for (int files : {1, 3, 8, 40}) {
         for (int i = 0; i < files; ++i) house.add("base/f" + std::to_string(100 + i), 1, flood);
-        const Said said = house.test();
-        INFO(said.out);
-        CHECK(said.lines() <= 40);
-        CHECK(said.has("base/f100_test: case 1: is wrong"));
-        CHECK(said.has("more failed cases: build/logs\n"));
-        CHECK(said.has("\nstart here: case 1, tests/a_test.cpp:1; make test ONLY=f100\n"));
-        CHECK(said.out.ends_with("\n0 passed, " + std::to_string(100 * files) + " failed\n"));
+        const Printed said = house.test();
+        expect(said, 1,
+               {"base/f100_test: case 1: is wrong", "more failed cases: build/logs\n",
+                "\nstart here: case 1, tests/a_test.cpp:1; make test ONLY=f100\n"},
+               "0 passed, " + std::to_string(100 * files) + " failed");
+        CHECK(lines(said) <= 40);
     }
 }
 
@@ -235,9 +229,7 @@ TEST_CASE(
                       shapes = "world/shapes_test\nworld/shapes_spawn_test\n";
     const std::string world =
         "world/shapes_test\nworld/lights_test\n" + bvh + "world/shapes_spawn_test\n";
-    const struct {
-        std::string names, tests;
-    } known[] = {
+    const std::pair<std::string, std::string> known[] = {
         {"bvh", bvh},
         {"world/bvh", bvh},
         {"src/world/bvh.h", bvh},
@@ -253,22 +245,19 @@ TEST_CASE(
         {"bvh low", "base/low_test\n" + bvh},
         {"", "base/low_test\n" + world + "film/image_test\n" + film},
     };
-    for (const auto& k : known) {
-        const Said said = house.test("LIST=1", k.names);
-        INFO("ONLY=", k.names);
+    for (const auto& [names, tests] : known) {
+        const Printed said = house.test("LIST=1", names);
+        INFO("ONLY=", names);
         CHECK(said.status == 0);
-        CHECK(said.out == k.tests);
+        CHECK(said.text == tests);
     }
-    const struct {
-        const char *name, *answer;
-    } unknown[] = {{"bhv", "no test is named bhv; is it one of: bvh\n"},
-                   {"src/world/shape.h",
-                    "no test is named src/world/shape.h; is it one of: shapes shapes_spawn\n"},
-                   {"quaternion", "no test is named quaternion\n"}};
-    for (const auto& u : unknown) {
-        const Said said = house.test("", u.name);
+    for (const auto& [name, also] : std::map<std::string, std::string>{
+             {"bhv", "; is it one of: bvh"},
+             {"src/world/shape.h", "; is it one of: shapes shapes_spawn"},
+             {"quaternion", ""}}) {
+        const Printed said = house.test("", name);
         CHECK(said.status == 2);
-        CHECK(said.out == u.answer);
+        CHECK(said.text == "no test is named " + name + also + "\n");
     }
 }
 
@@ -276,11 +265,8 @@ TEST_CASE("what is asked for by name is run alone, wherever it stands, and shows
     House house;
     house.add("base/low", 1, cases("fails"));
     house.add("world/mid", 1, "echo a table\n" + passes);
-    const Said said = house.test("", "mid");
-    INFO(said.out);
-    CHECK(said.status == 0);
-    CHECK(said.has("\na table\n"));
-    CHECK(!said.has("base"));
-    CHECK(said.out.ends_with("\n1 passed, 0 failed\n"));
-    CHECK(house.test("", "mid low").out.ends_with("\n2 passed, 1 failed\n"));
+    const Printed said = house.test("", "mid");
+    expect(said, 0, {"\na table\n"}, "1 passed, 0 failed");
+    CHECK(!has(said, "base"));
+    expect(house.test("", "mid low"), 1, {}, "2 passed, 1 failed");
 }
