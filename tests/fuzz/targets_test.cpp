@@ -73,14 +73,6 @@ TEST_CASE("seeds are accepted: fuzzers begin with what is right") {
     }
 }
 
-TEST_CASE("an input's files are parted at their marks") {
-    const Bundle files = bundle("a\nb\n=== m.obj\n=== m.mtl\nnewmtl === x\n=== no\nend", "s.scene");
-    CHECK(files ==
-          Bundle{{"s.scene", "a\nb\n"}, {"m.obj", ""}, {"m.mtl", "newmtl === x\n"}, {"no", "end"}});
-    CHECK(bundle("", "a") == Bundle{{"a", ""}});
-    CHECK(bundle("=== a", "a") == Bundle{{"a", ""}});
-}
-
 // Most draws must be valid scenes: a fuzzer that draws refused ones finds nothing.
 TEST_CASE(
     "drawn scenes are well-formed, of every kind of shape and material, and most are accepted") {
