@@ -131,7 +131,7 @@ double coincident() {
     });
 }
 
-// A sheet `gap` before a wall, and two points of random places before it, near and about 10 away.
+// A sheet `gap` before a wall, and random points at a height z above the wall.
 struct Sheet {
     std::vector<Shape> shapes;
     explicit Sheet(real gap) {
