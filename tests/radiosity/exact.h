@@ -43,24 +43,19 @@ inline const std::array<CubeHat, 4> cube_hats = {{{{0, 8}, 2, 24009.1885},
                                                   {{1, 3, 5, 7}, 3, 38863.1216},
                                                   {{4}, 6, 89211.2888}}};
 
-// ---- Form factors -------------------------------------------------------------------------------
+// ---- Two concentric spheres ---------------------------------------------------------------------
 
-// Form factors from the inside of a sphere of radius R to one of radius r anywhere inside, and to
-// itself (F_21 and F_22 of Howell's C-136).  They follow by reciprocity, since all light from the
-// inner sphere arrives.
-inline double to_inner_sphere(double r, double R) { return (r / R) * (r / R); }
-inline double to_itself(double r, double R) { return (1 - r / R) * (1 + r / R); }
-
-// Two such concentric spheres with reflectances rho and exitances M.
+// Their radii, reflectances rho and exitances M.
 struct Spheres {
     double r, R, rho_inner, rho_outer, M_inner, M_outer;
 };
 struct OfSpheres {
     double inner, outer;
 };
-// E_inner = B_outer and E_outer = F_21 B_inner + F_22 B_outer, where B = M + rho E.
+// E_inner = B_outer and E_outer = F_21 B_inner + F_22 B_outer, where B = M + rho E.  The form
+// factors (Howell's C-136) follow by reciprocity: all light from the inner sphere arrives.
 inline OfSpheres illuminances(const Spheres& s) {
-    const double to_inner = to_inner_sphere(s.r, s.R), own = to_itself(s.r, s.R);
+    const double to_inner = (s.r / s.R) * (s.r / s.R), own = 1 - to_inner;
     const double outer = (to_inner * (s.M_inner + s.rho_inner * s.M_outer) + own * s.M_outer) /
                          (1 - s.rho_outer * (own + to_inner * s.rho_inner));
     return {s.M_outer + s.rho_outer * outer, outer};

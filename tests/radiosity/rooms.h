@@ -33,9 +33,10 @@ inline void add_room(Scene& s, vec3 size, uint32_t first, uint32_t several = 1) 
                               std::array{0, 2, 6, 4}, std::array{1, 5, 7, 3}})  // -x, +x
         add_face(s, c[p], c[q], c[r], c[t], first + k++ % several);
 }
-inline Scene room(vec3 size, const Material& m) {
+inline Scene room(vec3 size, const Material& m, vec3 light = {}, rgb intensity = {}) {
     Scene s;
     add_room(s, size, add(s, m));
+    add_point_light(s, light, intensity);  // none if it is dark
     prepare(s);
     return s;
 }
@@ -86,19 +87,33 @@ inline Scene cubic_room() {
     return s;
 }
 
-// A scene with only the parallelogram a, a + u, a + u + v, a + v, or the triangle a, a + u, a + v.
-inline Scene one_quad(vec3 a, vec3 u, vec3 v) {
+// A parallelogram a, a + u, a + u + v, a + v with a material of its own.
+struct Quad {
+    vec3 a, u, v;
+    Material material = diffuse(grey(0.5));
+};
+// A scene with only these, and a point light.
+inline Scene scene_of_quads(const std::vector<Quad>& quads, vec3 light = {}, rgb intensity = {}) {
     Scene s;
-    add_quad(s, a, u, v, add(s, diffuse(grey(0.5))));
+    for (const Quad& q : quads) add_quad(s, q.a, q.u, q.v, add(s, q.material));
+    add_point_light(s, light, intensity);
     prepare(s);
     return s;
 }
+// A scene with only the triangle a, a + u, a + v.
 inline Scene one_triangle(vec3 a, vec3 u, vec3 v) {
     Scene s;
     add_triangle(s, a, a + u, a + v, add(s, diffuse(grey(0.5))));
     prepare(s);
     return s;
 }
+
+// A scene and its mesh of edges of at most H.
+struct Meshed {
+    Scene scene;
+    Mesh mesh;
+    Meshed(Scene s, double H) : scene(std::move(s)), mesh(make_mesh(scene, H)) {}
+};
 
 inline vec3 corner_of(const Mesh& mesh, uint32_t element, size_t k) {
     return mesh.at[mesh.corners[element][k]];

@@ -14,78 +14,63 @@ constexpr double Pi = std::numbers::pi;
 
 auto silent = [](const Shooting&) {};
 
-IlluminationMap shot(const Scene& s, const Mesh& mesh, Shooter shooter,
-                     const ShootingTarget& target) {
-    Shooting shooting(s, mesh, shooter, 1);
+Shooting shooting_in(const Meshed& m, Shooter shooter, unsigned threads = 1) {
+    return {m.scene, m.mesh, shooter, threads};
+}
+IlluminationMap shot(const Meshed& m, Shooter shooter, const ShootingTarget& target) {
+    Shooting shooting = shooting_in(m, shooter);
     shooting.run(target, silent);
     return shooting.map();
 }
 
-// Independent accounts: what every side of an element has sent, recomputed from the map.
-class Books {
-public:
-    Books(const Scene& s, const Mesh& mesh)
-        : s_(s), mesh_(mesh), face_(face_of_element(mesh)), sent_(2 * mesh.elements()) {
-        for (const Light& l : s.lights)
-            if (l.kind == Light::Kind::point) points_.push_back(4 * Pi * double(mean_of(l.L)));
-        emitted_ = unsent(IlluminationMap(number_of_sides(mesh)));
-    }
-    double unshot(const IlluminationMap& map) const { return unsent(map) / emitted_; }
-    int lamps() const { return lamps_; }
+// Independent accounts: the exitance that every side of an element has sent, number 2 e + back.
+struct Books {
+    const Meshed& m;
+    const std::vector<uint32_t> face_of = face_of_element(m.mesh);
+    std::vector<double> sent = std::vector<double>(2 * m.mesh.elements());
+    int lamps = 0;
 
-    // Marks the next shooter as sent.
-    void shoot(const IlluminationMap& map, Shooter shooter) {
-        if (next_ < points_.size()) {
-            ++next_;
-            return;
-        }
-        // The power of sides of elements or faces; unsent emitters come first.
-        auto owner = [&](size_t k) {
-            return shooter == Shooter::face ? 2 * size_t(face_[k / 2]) + k % 2 : k;
-        };
-        std::vector<std::pair<bool, double>> order(owner(sent_.size() - 1) + 1);
-        for (size_t k = 0; k < sent_.size(); ++k) {
-            order[owner(k)].second += unsent_of(map, k);
-            order[owner(k)].first |= sent_[k] == 0 && max_of(emission(s_, face(k), k % 2)) > 0;
-        }
-        const auto best = std::max_element(order.begin(), order.end());
-        lamps_ += best->first;
-        for (size_t k = 0; k < sent_.size(); ++k)
-            if (owner(k) == size_t(best - order.begin())) sent_[k] = exitance(map, k);
-    }
-
-private:
-    const Scene& s_;
-    const Mesh& mesh_;
-    const std::vector<uint32_t> face_;
-    std::vector<double> sent_, points_;
-    size_t next_ = 0;
-    double emitted_ = 0;
-    int lamps_ = 0;
-
-    const Face& face(size_t k) const { return mesh_.faces[face_[k / 2]]; }
-    // The mean over the element and the channels.
+    const Face& face(size_t k) const { return m.mesh.faces[face_of[k / 2]]; }
+    // Recomputed from the map: the mean over the element and the channels.
     double exitance(const IlluminationMap& map, size_t k) const {
-        rgb sum = pi * emission(s_, face(k), k % 2);
-        for (uint32_t v : mesh_.corners[k / 2]) sum += albedo(s_, face(k)) * map[2 * v + k % 2] / 3;
+        rgb sum = pi * emission(m.scene, face(k), k % 2);
+        for (uint32_t v : m.mesh.corners[k / 2])
+            sum += albedo(m.scene, face(k)) * map[2 * v + k % 2] / 3;
         return double(mean_of(sum));
     }
-    double unsent_of(const IlluminationMap& map, size_t k) const {
-        return double(area_of(face(k))) * (exitance(map, k) - sent_[k]);
+    double unsent(const IlluminationMap& map, size_t k) const {
+        return double(area_of(face(k))) * (exitance(map, k) - sent[k]);
     }
     double unsent(const IlluminationMap& map) const {
-        double sum = std::accumulate(points_.begin() + ptrdiff_t(next_), points_.end(), 0.0);
-        for (size_t k = 0; k < sent_.size(); ++k) sum += unsent_of(map, k);
+        double sum = 0;
+        for (size_t k = 0; k < sent.size(); ++k) sum += unsent(map, k);
         return sum;
+    }
+    // Marks the next shooter as sent: the side of an element or face with the most power, but
+    // unsent emitters come first.
+    void shoot(const IlluminationMap& map, Shooter shooter) {
+        auto owner = [&](size_t k) {
+            return shooter == Shooter::face ? 2 * size_t(face_of[k / 2]) + k % 2 : k;
+        };
+        std::vector<std::pair<bool, double>> order(owner(sent.size() - 1) + 1);
+        for (size_t k = 0; k < sent.size(); ++k) {
+            order[owner(k)].second += unsent(map, k);
+            order[owner(k)].first |= sent[k] == 0 && max_of(emission(m.scene, face(k), k % 2)) > 0;
+        }
+        const auto best = std::max_element(order.begin(), order.end());
+        lamps += best->first;
+        for (size_t k = 0; k < sent.size(); ++k)
+            if (owner(k) == size_t(best - order.begin())) sent[k] = exitance(map, k);
     }
 };
 
-// The converged maps of the study.
-struct Study {
-    Scene scene = study();
-    Mesh mesh = make_mesh(scene, 1.5);
-    IlluminationMap of_elements = shot(scene, mesh, Shooter::element, {3e-4, 0, 0}),
-                    of_faces = shot(scene, mesh, Shooter::face, {3e-4, 0, 0});
+// The study, and its converged maps.
+struct Study : Meshed {
+    IlluminationMap of_elements, of_faces;
+    Study()
+        : Meshed(study(), 1.5),
+          of_elements(shot(*this, Shooter::element, {3e-4, 0, 0})),
+          of_faces(shot(*this, Shooter::face, {3e-4, 0, 0})) {}
     const IlluminationMap& limit(Shooter by) const {
         return by == Shooter::face ? of_faces : of_elements;
     }
@@ -104,18 +89,17 @@ double apart(const Mesh& mesh, const IlluminationMap& map, const IlluminationMap
 }  // namespace
 
 TEST_CASE("a furnace is uniform: L = Le / (1 - rho) on every wall, nothing behind") {
-    const Scene s = room({2, 3, 1}, diffuse({0.5, 0.2, 0}, {1, 2, 3}));
     for (Shooter shooter : shooters)
         for (double H : {9.0, 2.2}) {
             CAPTURE(H);
-            const Mesh mesh = make_mesh(s, H);
-            Shooting shooting(s, mesh, shooter, 1);
+            const Meshed m(room({2, 3, 1}, diffuse({0.5, 0.2, 0}, {1, 2, 3})), H);
+            Shooting shooting = shooting_in(m, shooter);
             shooting.run({single ? 1e-5 : 1e-14, 0, 10000}, silent);
             CHECK(shooting.unshot() <= (single ? 1e-5 : 1e-14));
             // Walls that have not received from all others are not uniform.  Elements send exactly
             // what they have; faint nodes send their means: measured 2.7e-3.
             const double room = shooter == Shooter::face ? 5e-3 : 1e-12;
-            for (size_t v = 0; v < mesh.vertices(); ++v) {
+            for (size_t v = 0; v < m.mesh.vertices(); ++v) {
                 const rgb E = shooting.map()[2 * v];
                 CHECK(double(E.x) == approx(Pi * 2, room, 4e-3));
                 CHECK(double(E.y) == approx(Pi * 2.5, room, 4e-3));
@@ -126,24 +110,25 @@ TEST_CASE("a furnace is uniform: L = Le / (1 - rho) on every wall, nothing behin
 }
 
 TEST_CASE("what is not yet sent is known; lights send first, then what has most; no vertex falls") {
-    const Scene s = study();
-    const Mesh mesh = make_mesh(s, 0.9);
+    const Meshed m(study(), 0.9);
+    const double emitted = double(mean_of(emitted_power(m.scene)));
     for (Shooter shooter : shooters) {
         const bool faces = shooter == Shooter::face;
-        Shooting shooting(s, mesh, shooter, 1);
-        Books books(s, mesh);
+        Shooting shooting = shooting_in(m, shooter);
+        Books books{m};
         CHECK(shooting.unshot() == 1);
         double off = 0, first = 0;
         const uint64_t most = faces ? 40 : 300;  // before only rounding is left
         uint64_t shots = 0;
-        IlluminationMap before(number_of_sides(mesh));
+        IlluminationMap before(number_of_sides(m.mesh));
         int fallen = 0, grown = 0;
         shooting.run({0, 0, most}, [&](const Shooting& now) {
             if (now.shots() == shots) return;  // the last call: no shooter
-            // The point light counts as sent as soon as it is chosen.
-            if (++shots > 1)
-                off = std::max(off, std::abs(now.unshot() / books.unshot(now.map()) - 1));
-            if (shots == 2) first = now.unshot();
+            // The point light is the first, and counts as sent as soon as it is chosen.
+            if (++shots == 1) return;
+            const double unshot = books.unsent(now.map()) / emitted;
+            off = std::max(off, std::abs(now.unshot() / unshot - 1));
+            if (shots == 2) first = unshot;
             books.shoot(now.map(), shooter);
             for (size_t k = 0; k < before.size(); ++k)
                 for (auto a : axis) {
@@ -157,23 +142,24 @@ TEST_CASE("what is not yet sent is known; lights send first, then what has most;
         CHECK(shots == most);
         CHECK(shooting.shots() == most);
         CHECK(off <= (single ? 1e-3 : 1e-11));
-        CHECK(shooting.unshot() == approx(books.unshot(shooting.map()), 1e-11, 1e-3));
+        CHECK(shooting.unshot() == approx(books.unsent(shooting.map()) / emitted, 1e-11, 1e-3));
         CHECK(shooting.unshot() < first / 3);
-        // The point has sent before; the lamp and both sides of the triangle follow.
-        CHECK(books.lamps() ==
-              (faces ? 3 : int(mesh.faces[6].elements() + 2 * mesh.faces[8].elements())));
+        // The lamp and both sides of the triangle.
+        CHECK(books.lamps ==
+              (faces ? 3 : int(m.mesh.faces[6].elements() + 2 * m.mesh.faces[8].elements())));
     }
 }
 
 TEST_CASE("bit for bit the same for 1, 2, 3 and 5 threads, and in several runs") {
-    const Scene s = study();
-    const Mesh mesh = make_mesh(s, 0.9);
+    const Meshed m(study(), 0.9);
+    const std::pair<unsigned, std::vector<uint64_t>> rows[] = {
+        {2, {20}}, {3, {20}}, {5, {20}}, {2, {1, 2, 7, 7, 20}}};
     for (Shooter shooter : shooters) {
-        Shooting one(s, mesh, shooter, 1);
+        Shooting one = shooting_in(m, shooter);
         one.run({0, 0, 20}, silent);
-        auto check = [&](unsigned threads, const std::vector<uint64_t>& runs) {
+        for (const auto& [threads, runs] : rows) {
             CAPTURE(threads);
-            Shooting other(s, mesh, shooter, threads);
+            Shooting other = shooting_in(m, shooter, threads);
             for (uint64_t shots : runs) {
                 other.run({0, 0, shots}, silent);
                 CHECK(other.shots() == shots);
@@ -181,17 +167,14 @@ TEST_CASE("bit for bit the same for 1, 2, 3 and 5 threads, and in several runs")
             CHECK(other.map() == one.map());
             CHECK(other.rays() == one.rays());
             CHECK(other.unshot() == one.unshot());
-        };
-        for (unsigned threads : {2u, 3u, 5u}) check(threads, {20});
-        check(2, {1, 2, 7, 7, 20});
+        }
     }
 }
 
 TEST_CASE("shooting stops: at a part that is unshot, a number of shots, a time, Ctrl-C, the end") {
-    const Scene s = study();
-    const Mesh mesh = make_mesh(s, 1.5);
+    const Meshed m(study(), 1.5);
     for (Shooter shooter : shooters) {
-        Shooting shooting(s, mesh, shooter, 2);
+        Shooting shooting = shooting_in(m, shooter, 2);
         double before = 1;
         shooting.run({0.3, 0, 0}, [&](const Shooting& now) {
             if (now.unshot() > 0.3) before = now.unshot();
@@ -216,18 +199,15 @@ TEST_CASE("shooting stops: at a part that is unshot, a number of shots, a time, 
         CHECK(shooting.unshot() <= 0.01);
     }
     // Nothing remains: a lamp in the void, and its light hits nothing.
-    Scene dark;
-    add_quad(dark, {}, {1, 0, 0}, {0, 1, 0}, add(dark, diffuse(grey(0.5), grey(1), true)));
-    prepare(dark);
-    const Mesh lone = make_mesh(dark, 0.8);
-    Shooting all(dark, lone, Shooter::element, 1);
+    const Meshed lone(
+        scene_of_quads({{{}, {1, 0, 0}, {0, 1, 0}, diffuse(grey(0.5), grey(1), true)}}), 0.8);
+    Shooting all = shooting_in(lone, Shooter::element);
     all.run({}, silent);
     CHECK(all.unshot() == 0);
-    CHECK(all.shots() == 2 * lone.elements());
-    CHECK(all.map() == IlluminationMap(number_of_sides(lone)));  // no shot at the shooter itself
-    Scene black = room({1, 1, 1}, diffuse(grey(0.5)));
-    Shooting none(black, make_mesh(black, 1), Shooter::face, 1);
-    CHECK(none.unshot() == 0);
+    CHECK(all.shots() == 2 * lone.mesh.elements());
+    CHECK(all.map() == IlluminationMap(number_of_sides(lone.mesh)));  // none at the shooter itself
+    const Meshed black(room({1, 1, 1}, diffuse(grey(0.5))), 1);
+    CHECK(shooting_in(black, Shooter::face).unshot() == 0);
 }
 
 TEST_CASE("the stated error is a bound, and close where walls are alike and return most light") {
@@ -236,15 +216,14 @@ TEST_CASE("the stated error is a bound, and close where walls are alike and retu
     for (int k = 0; k < 5; ++k) add(bright, diffuse(grey(0.8)));
     add_room(bright, {1, 1, 1}, lamp, 6);
     prepare(bright);
-    const Mesh walls = make_mesh(bright, 0.7);
+    const Meshed walls(bright, 0.7);
     const Study& lit = solved_study();
     for (Shooter shooter : shooters)
         for (bool alike : {true, false}) {
-            const Scene& s = alike ? bright : lit.scene;
-            const Mesh& mesh = alike ? walls : lit.mesh;
+            const Meshed& m = alike ? walls : lit;
             const IlluminationMap limit =
-                alike ? shot(s, mesh, shooter, {1e-4, 0, 0}) : lit.limit(shooter);
-            Shooting run(s, mesh, shooter, 1);
+                alike ? shot(m, shooter, {1e-4, 0, 0}) : lit.limit(shooter);
+            Shooting run = shooting_in(m, shooter);
             CHECK(run.error() == 1);
             double worst = 0;
             for (double error : {0.7, 0.3, 0.1, 0.05}) {
@@ -256,16 +235,15 @@ TEST_CASE("the stated error is a bound, and close where walls are alike and retu
                 CHECK(run.error() <= error);
                 CHECK(before > error);
                 CHECK(run.error() > 0.3 * error);
-                const double off = apart(mesh, run.map(), limit);
+                const double off = apart(m.mesh, run.map(), limit);
                 CHECK(off <= run.error());
                 worst = std::max(worst, off / run.error());
             }
             CAPTURE(worst);
             CHECK(worst > (alike ? 0.7 : 0.2));
         }
-    const Scene pointed = cubic_room();  // its only light has no area
-    const Mesh mesh = make_mesh(pointed, 8);
-    CHECK(Shooting(pointed, mesh, Shooter::face, 1).error() == 1);
+    const Meshed pointed(cubic_room(), 8);  // its only light has no area
+    CHECK(shooting_in(pointed, Shooter::face).error() == 1);
 }
 
 TEST_CASE("the bound by hand: squares of what is linear between corners, over what is absorbed") {
@@ -291,7 +269,7 @@ TEST_CASE("light of a shot that is cut short is part of the stated error for goo
     for (Shooter shooter : shooters)
         for (uint64_t cut : {1, 2}) {
             CAPTURE(cut);
-            Shooting run(lit.scene, lit.mesh, shooter, 1);
+            Shooting run = shooting_in(lit, shooter);
             run.run(end, [&](const Shooting& now) {
                 if (now.shots() == cut) interrupted = 1;
             });
@@ -309,16 +287,17 @@ TEST_CASE("a point light: I cos / d^2 at every vertex that sees it, exactly 0 at
     const vec3 p{1, 1.5, 1};
     add_point_light(s, p, {3, 1, 0});
     s.pick_cdf.clear(), prepare(s);
-    const Mesh mesh = make_mesh(s, 0.5);
+    const Meshed m(s, 0.5);
     for (Shooter shooter : shooters) {
-        Shooting shooting(s, mesh, shooter, 1);
+        Shooting shooting = shooting_in(m, shooter);
         shooting.run({}, silent);
         CHECK(shooting.shots() == 1);
         CHECK(shooting.unshot() == 0);
+        CHECK(shooting.rays() == m.mesh.vertices());  // none to the side that faces away
         int lit = 0, hidden = 0;
-        for (const Face& f : mesh.faces)
+        for (const Face& f : m.mesh.faces)
             for (uint32_t v = f.vertex; v < f.vertex + f.vertices(); ++v) {
-                const vec3 x = mesh.at[v], d = p - x;
+                const vec3 x = m.mesh.at[v], d = p - x;
                 const double cosine = double(dot(d, f.n)) / double(length(d));
                 // Where the segment to the light crosses the shelf's height.
                 const vec3 at = x + d * ((1 - x.y) / d.y);
@@ -343,17 +322,19 @@ TEST_CASE("a point light: I cos / d^2 at every vertex that sees it, exactly 0 at
 TEST_CASE(
     "a lamp that emits on both sides lights both; what is behind a wall gets exactly nothing") {
     for (bool twosided : {false, true}) {
-        Scene s;
-        const uint32_t lamp = add(s, diffuse(grey(0), grey(1), twosided));
-        const uint32_t wall = add(s, diffuse(grey(0)));
-        add_quad(s, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, lamp);    // faces +z
-        add_quad(s, {-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, wall);    // its back is lit
-        add_quad(s, {-9, -9, 3}, {18, 0, 0}, {0, 18, 0}, wall);  // partly hidden by it
-        add_quad(s, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, wall);
-        prepare(s);
-        const Mesh mesh = make_mesh(s, 1.5);
+        const Material wall = diffuse(grey(0));
+        auto square = [](real z, const Material& of) {
+            return Quad{{-1, -1, z}, {2, 0, 0}, {0, 2, 0}, of};
+        };
+        const Meshed m(
+            scene_of_quads({square(0, diffuse(grey(0), grey(1), twosided)),  // faces +z
+                            square(2, wall),                                 // its back is lit
+                            {{-9, -9, 3}, {18, 0, 0}, {0, 18, 0}, wall},     // partly hidden by it
+                            square(-2, wall)}),
+            1.5);
+        const Mesh& mesh = m.mesh;
         for (Shooter shooter : shooters) {
-            const IlluminationMap map = shot(s, mesh, shooter, {});
+            const IlluminationMap map = shot(m, shooter, {});
             const Face &near = mesh.faces[1], &far = mesh.faces[2], &below = mesh.faces[3];
             for (uint32_t v = near.vertex; v < near.vertex + near.vertices(); ++v) {
                 // C-11 as a clipped polygon: +y of the closed form is -z here.
@@ -387,18 +368,15 @@ TEST_CASE(
 
 TEST_CASE("what falls on a back is sent from the back") {
     // A point light above a panel that faces down, between two ceilings that face up and down.
-    Scene s;
-    const uint32_t panel = add(s, diffuse({real(0.5), 0, 0})), black = add(s, diffuse(grey(0)));
-    add_quad(s, {-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, panel);  // x x z: faces -y
-    add_quad(s, {-1, 2, -1}, {0, 0, 2}, {2, 0, 0}, black);  // faces +y
-    add_quad(s, {-1, -2, -1}, {0, 0, 2}, {2, 0, 0}, black);
-    add_point_light(s, {0, 1, 0}, grey(1));
-    prepare(s);
-    const Mesh mesh = make_mesh(s, 1.5);
+    const Material panel = diffuse({real(0.5), 0, 0}), black = diffuse(grey(0));
+    const Meshed m(scene_of_quads({{{-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, panel},  // x x z: faces -y
+                                   {{-1, 2, -1}, {0, 0, 2}, {2, 0, 0}, black},  // faces +y
+                                   {{-1, -2, -1}, {0, 0, 2}, {2, 0, 0}, black}},
+                                  {0, 1, 0}, grey(1)),
+                   1.5);
     for (Shooter shooter : shooters) {
-        const IlluminationMap first = shot(s, mesh, shooter, {0, 0, 1}),
-                              all = shot(s, mesh, shooter, {});
-        const Face &above = mesh.faces[1], &below = mesh.faces[2];
+        const IlluminationMap first = shot(m, shooter, {0, 0, 1}), all = shot(m, shooter, {});
+        const Face &above = m.mesh.faces[1], &below = m.mesh.faces[2];
         for (uint32_t v = above.vertex; v < above.vertex + above.vertices(); ++v) {
             CHECK(all[2 * v + 1].x > first[2 * v + 1].x);
             CHECK(all[2 * v + 1].y == first[2 * v + 1].y);
@@ -415,15 +393,14 @@ TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one 
     // everywhere, so that every point has that error; smooth parts have H^2.  Measured from 4 to 8
     // cells per side: 1.5 to 1.85; the errors are at most 5.8 % and 2.1 %, 8.3 % and 3 % of the
     // mean.
-    const Scene s = cubic_room();
     for (Shooter shooter : shooters) {
         std::array<double, 7> before{}, error{};
         for (int n : {4, 8}) {
             if (n == 8 && shooter == Shooter::element) continue;  // within 0.3 % of those of faces
             CAPTURE(n);
-            const Mesh mesh = make_mesh(s, 10 * std::sqrt(2.0) / n * (1 + 1e-6));
-            const IlluminationMap map = shot(s, mesh, shooter, {1e-4, 0, 0});
-            const Face& f = mesh.faces[0];
+            const Meshed m(cubic_room(), 10 * std::sqrt(2.0) / n * (1 + 1e-6));
+            const IlluminationMap map = shot(m, shooter, {1e-4, 0, 0});
+            const Face& f = m.mesh.faces[0];
             // The box faces outwards: its faces are lit on their backs.
             for (size_t k = 0; k < 6; ++k) {
                 const exact::CubePoint& p = exact::cube_points[k];
@@ -432,7 +409,7 @@ TEST_CASE("the cube: luminance at A to F and in the mean comes to the exact one 
                 CHECK(map[2 * v] == rgb{});
                 error[k] = double(map[2 * v + 1].x) * exact::cube_albedo / Pi / p.luminance - 1;
             }
-            const double mean = double(integral(mesh, map, f, true).x) / 100;
+            const double mean = double(integral(m.mesh, map, f, true).x) / 100;
             error[6] = mean * exact::cube_albedo / Pi / exact::cube_mean_luminance - 1;
             for (size_t k = 0; k < 7; ++k) {
                 CAPTURE(k);
@@ -464,13 +441,12 @@ TEST_CASE("a dim room is lit as if it were alone, however bright another one is"
         "quad -.5 2.9 -.5  1 0 0  0 0 1  dim\nbox .8 .8 .8  20  -.4 .3 -.4  w\n";
     const std::string bright = "box 2 2 2  0  20 0 0  w\nquad 20.5 1.9 .5  1 0 0  0 0 1  bright\n";
     auto mean = [&](const std::string& text, double unshot) {
-        const Scene s = parse_scene(text, "s").scene;
-        const Mesh mesh = make_mesh(s, 2);
-        const IlluminationMap map = shot(s, mesh, Shooter::face, {unshot, 0, 0});
+        const Meshed m(parse_scene(text, "s").scene, 2);
+        const IlluminationMap map = shot(m, Shooter::face, {unshot, 0, 0});
         double sum = 0;
         for (size_t k = 0; k < 13; ++k)  // faces in the dim room
             for (bool back : {true, false})
-                sum += double(integral(mesh, map, mesh.faces[k], back).x);
+                sum += double(integral(m.mesh, map, m.mesh.faces[k], back).x);
         return sum;
     };
     CHECK(mean(dim + bright, 3e-7) == approx(mean(dim, 1e-3), 0.01, 0.01));

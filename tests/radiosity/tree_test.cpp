@@ -113,8 +113,7 @@ TEST_CASE("a node is within its radius of its centre, which is as small as can b
 }
 
 TEST_CASE("nodes stay compact: none of a square face is longer than two of its widths") {
-    const Scene s = one_quad({}, {8, 0, 0}, {0, 8, 0});
-    const Mesh mesh = make_mesh(s, 1.5);
+    const Mesh mesh = make_mesh(scene_of_quads({{{}, {8, 0, 0}, {0, 8, 0}}}), 1.5);
     const Trees trees(mesh);
     int depth_of_leaf = 0;
     for (uint32_t i = trees.first(0); i < trees.first(1); ++i) {

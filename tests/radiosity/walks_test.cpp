@@ -16,10 +16,10 @@ CommonOptions quietly(unsigned threads = 1) {
     return o;
 }
 
-Walked walk_to(const Scene& s, const Mesh& mesh, const WalksTarget& target, uint64_t seed,
+Walked walk_to(const Meshed& m, const WalksTarget& target, uint64_t seed,
                SamplerKind kind = SamplerKind::halton) {
     const Pattern pattern = Particles::pattern(kind, hash(seed_here(), seed), target.particles);
-    return walk_all(s, mesh, pattern, target, quietly());
+    return walk_all(m.scene, m.mesh, pattern, target, quietly());
 }
 
 constexpr uint64_t first_look = ErrorTarget::least * Particles::batches;
@@ -44,28 +44,26 @@ TEST_CASE(
 }
 
 TEST_CASE("--error: the error at the stop is the stated one, which is at most what was asked for") {
-    const Scene s = furnace();
-    const Mesh mesh = make_mesh(s, 0.6);
+    const Meshed m(furnace(), 0.6);
     constexpr double asked = 0.025;
     Moments actual, stated;
     for (uint64_t r = 0; r < 20; ++r) {
-        const Walked w = walk_to(s, mesh, {0, 0, asked}, r);
+        const Walked w = walk_to(m, {0, 0, asked}, r);
         CHECK(w.particles > 1.5 * first_look);
         CHECK(w.stated.error + 1.5 * w.stated.uncertainty <= asked);
         CHECK(w.stated.error > 0.93 * asked);
-        actual.add(furnace_error2(mesh, w.map)), stated.add(w.stated.error * w.stated.error);
+        actual.add(furnace_error2(m.mesh, w.map)), stated.add(w.stated.error * w.stated.error);
     }
     EXPECT(oracle::expect_equal(estimate(actual), estimate(stated)), 0.25);
 }
 
 TEST_CASE("--error: particles, seconds and the first look are limits") {
-    const Scene s = furnace();
-    const Mesh mesh = make_mesh(s, 2.2);
+    const Meshed m(furnace(), 2.2);
     for (SamplerKind kind : all_samplers) {
-        CHECK(walk_to(s, mesh, {0, 0, 0.9}, 1, kind).particles == first_look);
-        CHECK(walk_to(s, mesh, {1600, 0, 0.9}, 1, kind).particles == 1600);
-        CHECK(walk_to(s, mesh, {100000, 0, 1e-9}, 1, kind).particles == 100000);
-        const Walked w = walk_to(s, mesh, {0, 0.05, 1e-9}, 1, kind);
+        CHECK(walk_to(m, {0, 0, 0.9}, 1, kind).particles == first_look);
+        CHECK(walk_to(m, {1600, 0, 0.9}, 1, kind).particles == 1600);
+        CHECK(walk_to(m, {100000, 0, 1e-9}, 1, kind).particles == 100000);
+        const Walked w = walk_to(m, {0, 0.05, 1e-9}, 1, kind);
         CHECK(w.particles > 0);
         CHECK(w.seconds >= 0.05 * 0.5);
         CHECK(w.stated.error > 1e-9);
@@ -77,14 +75,13 @@ TEST_CASE("--error alone: where no particle loses light the run ends with a mess
     const rgb glow{1, 1, 1};
     const Scene white = room(size, diffuse({0.5, 1, 0.7}, glow)),
                 red_and_blue = room(size, diffuse({0.5, 1, 0.7}, {1, 0, 1}));
-    Scene absorbs, open;  // one wall of two; an opening
-    const uint32_t walls = add(absorbs, diffuse(grey(1), glow));
-    add(absorbs, diffuse(grey(0.5), glow));
-    add_room(absorbs, size, walls, 2);
+    const Material shining = diffuse(grey(1), glow);
+    const Scene open = scene_of_quads(
+        {{{}, {1, 0, 0}, {0, 1, 0}, shining}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, shining}});
+    Scene absorbs;  // one wall of two
+    add(absorbs, shining), add(absorbs, diffuse(grey(0.5), glow));
+    add_room(absorbs, size, 0, 2);
     prepare(absorbs);
-    add_quad(open, {}, {1, 0, 0}, {0, 1, 0}, add(open, diffuse(grey(1), glow)));
-    add_quad(open, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 0);
-    prepare(open);
     const std::string message = "--error: none of " + std::to_string(first_look) +
                                 " particles lost light in some channel: its light never ends";
     const struct {
@@ -96,20 +93,22 @@ TEST_CASE("--error alone: where no particle loses light the run ends with a mess
                 {absorbs, {0, 0, 0.05}, ""},    {open, {0, 0, 0.003}, ""}};
     for (const auto& row : rows) {
         CAPTURE(&row - rows);
-        const Mesh mesh = make_mesh(row.scene, 2.2);
-        const std::string found = ::complaint([&] { walk_to(row.scene, mesh, row.target, 1); });
+        const Meshed m(row.scene, 2.2);
+        const std::string found = ::complaint([&] { walk_to(m, row.target, 1); });
         CHECK(found.substr(0, message.size()) == row.message);
     }
 }
 
 TEST_CASE("--error: the run is the same for any number of threads, and that of as many particles") {
-    const Scene s = furnace();
-    const Mesh mesh = make_mesh(s, 1);
+    const Meshed m(furnace(), 1);
     const Pattern pattern = Particles::pattern(SamplerKind::halton, 1, 0);
-    const Walked one = walk_all(s, mesh, pattern, {0, 0, 0.015}, quietly());
+    auto walk = [&](const WalksTarget& target, unsigned threads) {
+        return walk_all(m.scene, m.mesh, pattern, target, quietly(threads));
+    };
+    const Walked one = walk({0, 0, 0.015}, 1);
     CHECK(one.particles > first_look);
-    CHECK(walk_all(s, mesh, pattern, {0, 0, 0.015}, quietly(3)).map == one.map);
-    CHECK(walk_all(s, mesh, pattern, {one.particles, 0, 0}, quietly(2)).map == one.map);
+    CHECK(walk({0, 0, 0.015}, 3).map == one.map);
+    CHECK(walk({one.particles, 0, 0}, 2).map == one.map);
 }
 
 TEST_CASE("--error: light that is rare but bright is seen before the run may end") {
@@ -122,20 +121,18 @@ TEST_CASE("--error: light that is rare but bright is seen before the run may end
              add(s, diffuse(grey(0), grey(1e-3 / (0.004 * 0.004)))));
     add_quad(s, {near, near - a, near}, {0, 0, a}, {a, 0, 0}, black);
     prepare(s);
-    const Mesh mesh = make_mesh(s, 3);
-    const Face& plate = mesh.faces.back();
+    const Meshed m(s, 3);
+    const Face& plate = m.mesh.faces.back();
     REQUIRE(plate.vertices() == 4);
     for (uint64_t r = 0; r < 12; ++r) {
-        const Walked w = walk_to(s, mesh, {0, 0, 0.3}, r);
-        CHECK(double(integral(mesh, w.map, plate, false).x) > 0);
+        const Walked w = walk_to(m, {0, 0, 0.3}, r);
+        CHECK(double(integral(m.mesh, w.map, plate, false).x) > 0);
         CHECK(w.stated.error <= 0.3);
     }
 }
 
 TEST_CASE("no light, no error: nothing walks") {
-    const Scene s = room({1, 1, 1}, diffuse(grey(0.5)));
-    const Mesh mesh = make_mesh(s, 2);
-    const Walked w = walk_to(s, mesh, {0, 0, 0.1}, 1);
+    const Walked w = walk_to(Meshed(room({1, 1, 1}, diffuse(grey(0.5))), 2), {0, 0, 0.1}, 1);
     CHECK(w.particles == 0);
     CHECK(std::isnan(w.stated.error));
 }
