@@ -142,9 +142,7 @@ TEST_CASE("polygon lights: the side that emits, both sides, edge-on") {
 }
 
 TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
-    Light l;
-    l.p = {1, 2, 3};
-    l.L = {18, 9, 0};
+    const Light l = point_light({1, 2, 3}, {18, 9, 0});
     const auto s = sample_light(l, {1, 2, 0}, {});
     REQUIRE(s);
     CHECK(s->wi == vec3{0, 0, 1});
@@ -153,21 +151,6 @@ TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
     CHECK(s->delta);
     CHECK(pdf_light(l, {1, 2, 0}, s->at) == 0);
     CHECK(!sample_light(l, {1, 2, 3}, {}));
-}
-
-TEST_CASE("what a light is made with: normal and density of a polygon") {
-    const vec3 p{1, 2, 3}, u{3, 0, 0}, v{0, 0, -2};
-    for (const auto& [l, kind, pdf] :
-         {std::tuple{triangle_light(p, u, v), Light::Kind::triangle, real(1) / 3},
-          {quad_light(p, u, v), Light::Kind::quad, real(1) / 6}}) {
-        CHECK((l.p == p && l.u == u && l.v == v));
-        CHECK(l.n == vec3{0, 1, 0});
-        CHECK(!l.twosided);
-        CHECK((l.kind == kind && l.pdf_area == pdf));
-    }
-    const Light sphere = sphere_light(p, 4), point = point_light(p, {1, 2, 3});
-    CHECK((sphere.kind == Light::Kind::sphere && sphere.p == p && sphere.r == 4));
-    CHECK((point.kind == Light::Kind::point && point.p == p && point.L == rgb{1, 2, 3}));
 }
 
 TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels") {
