@@ -145,7 +145,6 @@ TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in
     oracle::Random random(seed_here());
     ShadowMoments one, even, odd;
     SumsAbout sums{1e8};
-    double bb = 0, b_wV = 0, b_U = 0, UU = 0, vv = 0;
     std::vector<LightTriple> samples;
     for (int i = 0; i < 501; ++i) {
         const double b = 2 * random() - 1, U = 1e8, w = U + b;
@@ -155,21 +154,19 @@ TEST_CASE("estimators: moments far from 0 keep their digits, in any order and in
         (i % 2 ? odd : even).add(U_, w_, wV_);
         sums.add(w, wV_);
     }
-    double mean_b = 0, mean_wV = 0, mean_U = 0;
-    for (const auto& [U, w, wV] : samples) {
-        mean_b += (w - U) / 501;
-        mean_wV += wV / 501;
-        mean_U += U / 501;
-    }
-    for (const auto& [U, w, wV] : samples) {
-        bb += (w - U - mean_b) * (w - U - mean_b);
-        b_wV += (w - U - mean_b) * (wV - mean_wV);
-        b_U += (w - U - mean_b) * (U - mean_U);
-        UU += (U - mean_U) * (U - mean_U);
-        vv += (wV - mean_wV) * (wV - mean_wV);
-    }
+    // The sum of products of distances from the means.
+    auto product = [&](auto f, auto g) {
+        double mean_f = 0, mean_g = 0, sum = 0;
+        for (const LightTriple& s : samples) mean_f += f(s) / 501, mean_g += g(s) / 501;
+        for (const LightTriple& s : samples) sum += (f(s) - mean_f) * (g(s) - mean_g);
+        return sum;
+    };
+    auto U = [](const LightTriple& s) { return s.U; };
+    auto b = [](const LightTriple& s) { return s.w - s.U; };
+    auto wV = [](const LightTriple& s) { return s.wV; };
+    const double bb = product(b, b), b_wV = product(b, wV), b_U = product(b, U);
     // Errors are relative to the largest possible product: a covariance may be small by chance.
-    const double most_wV = std::sqrt(bb * vv), most_U = std::sqrt(bb * UU);
+    const double most_wV = std::sqrt(bb * product(wV, wV)), most_U = std::sqrt(bb * product(U, U));
     for (const ShadowMoments& m :
          {one, merge(even, odd), merge(odd, even), merge(ShadowMoments{}, one)}) {
         CHECK(m.n == 501);

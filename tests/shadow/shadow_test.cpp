@@ -2,6 +2,7 @@
 // forms
 #include "shadow/shadow.h"
 
+#include "base/closed_forms.h"
 #include "base/moments.h"
 #include "shadow/checks.h"
 #include "world/scene_file.h"
@@ -67,11 +68,6 @@ std::string knife_edge(int side) {
     return sphere_at(30) + oracle::say("quad %.17g %.17g -4   0 0 8   %.17g %.17g 0   black\n",
                                        0.8 * s, 0.8 * c, -4 * side * c, 4 * side * s);
 }
-double knife_edge_irradiance(int side) {
-    const double pi_ = std::numbers::pi, s = 0.5, sigma = std::asin(s), c30 = std::cos(pi_ / 6);
-    return pi_ / 2 * s * s * c30 + (sigma - s * std::sqrt(1 - s * s)) * -side * 0.5;
-}
-
 const char* const many = R"(
 light red 3 1 0.5
 light green 0.5 4 1
@@ -159,16 +155,15 @@ TEST_CASE("direct: with nothing in the way w V is w; with all in the way 0") {
 }
 
 TEST_CASE("direct: the knife edge by four estimators") {
-    CHECK(knife_edge_irradiance(-1) == doctest::Approx(0.385380).epsilon(1e-6));
-    CHECK(knife_edge_irradiance(1) == doctest::Approx(0.294794).epsilon(1e-6));
     for (int side : {-1, 1})
         for (Estimator e : estimators) {
             const Receiver r = receiver(knife_edge(side));
             uint64_t i = 0;
             // The bias of ratio and regression at 512 is below a tenth of the detectable one.
             auto of_512 = [&] { return estimate(e, r.moments(512, i, "knife edge")); };
-            const double truth = 0.5 * knife_edge_irradiance(side) / std::numbers::pi;
-            EXPECT(oracle::expect_mean(truth, 200, of_512)
+            const double E = closed_forms::half_sphere_irradiance(
+                0.5, std::cos(std::numbers::pi / 6), -side * 0.5);
+            EXPECT(oracle::expect_mean(0.5 * E / std::numbers::pi, 200, of_512)
                        .of(oracle::say("side %d, estimator %d", side, int(e))),
                    0.045);
         }
