@@ -257,11 +257,9 @@ TEST_CASE("asking whether a file can be written changes nothing") {
     check_writable(folder / "b.pfm");
     CHECK(read_file(folder / "a.pfm") == "old");
     CHECK(folder.files() == 1);
-    CHECK_THROWS_AS(check_writable(folder / "missing/a.pfm"), UserError);
-    CHECK_THROWS_AS(check_writable(folder / "a.pfm/a.pfm"), UserError);
-    CHECK_THROWS_AS(check_writable(folder.path.string()), UserError);
-    CHECK_THROWS_AS(check_writable(folder / std::string(1000, 'a')), UserError);
     fs::create_symlink("loop", folder / "loop");
-    CHECK_THROWS_AS(check_writable(folder / "loop"), UserError);
+    for (const std::string name : {"missing/a.pfm", "a.pfm/a.pfm", ".", "loop"})
+        CHECK_THROWS_AS(check_writable(folder / name), UserError);
+    CHECK_THROWS_AS(check_writable(folder / std::string(1000, 'a')), UserError);
     CHECK(fs::is_symlink(folder / "loop"));
 }

@@ -7,19 +7,13 @@
 #include "base/rng.h"
 #include "oracle/expect.h"
 
-namespace {
-
-double uniform(Rng& rng) { return double(rng.bits() >> 11) * 0x1p-53; }
-
-}  // namespace
-
 TEST_CASE("moments are those of the numbers, also far from zero and merged in any parts") {
     Rng rng{seed_here()};
     Moments all, parts[4];
     long double sum = 0, squares = 0;
     const int n = 10000;
     for (int i = 0; i < n; ++i) {
-        const double x = std::exp(uniform(rng)), shifted = x + 1e8;
+        const double x = std::exp(rng.uniform()), shifted = x + 1e8;
         all.add(shifted);
         parts[i % 7 % 4].add(shifted);
         const long double exact = (long double)(shifted)-1e8L;
