@@ -25,7 +25,6 @@ Codes all() {
     lines<T>(codes);
     planes<T>(codes);
     choices<T>(codes);
-    for (Code& code : codes) code.name = code.family + ": " + code.name;
     return codes;
 }
 

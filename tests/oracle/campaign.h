@@ -20,16 +20,10 @@ using textbook::Vec;
 
 struct Code {
     std::string family, name;
-    size_t dimensions;
     std::function<oracle::Verdict(oracle::Random&, const oracle::Options&)> check;
     double tolerance = 0;
 };
 using Codes = std::vector<Code>;
-
-template <class T>
-std::string named(const std::string& name) {
-    return name + (std::is_same_v<T, float> ? ", float" : ", double");
-}
 
 // Functions whose types are those of all samplers with these numbers: the checks are compiled once.
 template <class R, class T, size_t... I, class F>
@@ -37,36 +31,70 @@ auto function_of(const F& f, std::index_sequence<I...>) {
     return std::function<R(decltype(static_cast<void>(I), T())...)>(f);
 }
 
-// A sampler of numbers T to points, or to nothing; on the domain, or on the usual one.
-template <class T, class Sample, class Pdf, class... Domain>
-void add(Codes& codes, const std::string& family, const std::string& name, const Sample& sample,
-         const Pdf& pdf, const Domain&... domain) {
-    constexpr size_t numbers = oracle::numbers_of<Sample>();
-    using Result = decltype(oracle::call(sample, oracle::Point<numbers>{}));
-    using Place = typename decltype([] {
-        if constexpr (requires(const Result& r) { r.has_value(); })
-            return std::type_identity<typename Result::value_type>{};
-        else
-            return std::type_identity<Result>{};
-    }())::type;
-    const auto erased = function_of<Result, T>(sample, std::make_index_sequence<numbers>());
-    const std::function<T(const Place&)> density = pdf;
-    codes.push_back({family, named<T>(name), oracle::coordinates_of<Place>(),
-                     [=](oracle::Random& random, const oracle::Options& options) {
-                         return oracle::expect_density(random, erased, density, domain..., options);
-                     }});
-}
+template <class Result>
+struct PlaceOf {
+    using type = Result;
+};
+template <class Place>
+struct PlaceOf<std::optional<Place>> {
+    using type = Place;
+};
 
-template <class T, class Choose, class Probability>
-void add_choice(Codes& codes, const std::string& name, const Choose& choose,
-                const Probability& probability, size_t count) {
-    const std::function<int(T)> erased = choose;
-    const std::function<T(int)> chance = probability;
-    codes.push_back(
-        {"choices", named<T>(name), 0, [=](oracle::Random& random, const oracle::Options& options) {
-             return oracle::expect_choice(random, erased, chance, count, options);
-         }});
-}
+// A family of codes with numbers T: add(name, sample).pdf(density) adds a code to it.
+template <class T>
+struct Family {
+    Codes& codes;
+    std::string family;
+
+    template <class Sample>
+    auto operator()(const std::string& name, Sample sample) const {
+        const char* number = std::is_same_v<T, float> ? ", float" : ", double";
+        return Sampler<Sample>{codes, family, family + ": " + name + number, sample};
+    }
+    // An object that knows both.
+    template <class Object, class... Domain>
+    void both(const std::string& name, const Object& o, const Domain&... domain) const {
+        (*this)(name, std::bind_front(&Object::sample, o))
+            .pdf(std::bind_front(&Object::pdf, o), domain...);
+    }
+
+    template <class Sample>
+    struct Sampler {
+        Codes& codes;
+        std::string family, name;
+        Sample sample;
+
+        // Samples are points, or nothing; on the domain, or on the usual one.
+        template <class Pdf, class... Domain>
+        void pdf(const Pdf& density, const Domain&... domain) const {
+            constexpr size_t numbers = oracle::numbers_of<Sample>();
+            using Result = decltype(oracle::call(sample, oracle::Point<numbers>{}));
+            const auto sampler =
+                function_of<Result, T>(sample, std::make_index_sequence<numbers>());
+            const std::function<T(const typename PlaceOf<Result>::type&)> p = density;
+            add([=](oracle::Random& random, const oracle::Options& options) {
+                return oracle::expect_density(random, sampler, p, domain..., options);
+            });
+        }
+        template <class Domain, class Pdf>
+        void on(const Domain& domain, const Pdf& density) const {
+            pdf(density, domain);
+        }
+        // Samples are choices of one of `count`.
+        void chance(size_t count, const std::function<T(int)>& probability) const {
+            const std::function<int(T)> choose = sample;
+            add([=](oracle::Random& random, const oracle::Options& options) {
+                return oracle::expect_choice(random, choose, probability, count, options);
+            });
+        }
+
+    private:
+        template <class Check>
+        void add(const Check& check) const {
+            codes.push_back({family, name, check});
+        }
+    };
+};
 
 // An orthonormal basis about z (Duff et al. 2017).
 template <class T>
@@ -87,11 +115,22 @@ T positive(T u) {
     return std::max(u, T(0x1p-30));
 }
 
+// The point at the part v of a circle.
+template <class T>
+std::pair<T, T> on_circle(T r, T v) {
+    const T phi = 2 * pi<T> * v;
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+// A direction of this cosine, likewise.
+template <class T>
+Vec<T> about_z(T cosine, T v) {
+    return polar(cosine, 2 * pi<T> * v);
+}
+
 // Uniform in the unit disc, by polar coordinates, and by squares (Shirley, Chiu 1997).
 template <class T>
 std::pair<T, T> polar_disc(T u, T v) {
-    const T r = std::sqrt(u), phi = 2 * pi<T> * v;
-    return {r * std::cos(phi), r * std::sin(phi)};
+    return on_circle(std::sqrt(u), v);
 }
 template <class T>
 std::pair<T, T> concentric_disc(T u, T v) {

@@ -67,21 +67,15 @@ struct SphericalRectangle {
 
 template <class T>
 void solid_angles(Codes& codes) {
-    const std::string family = "spherical polygons";
+    const Family<T> add{codes, "spherical polygons"};
     auto triangle = [&](const char* name, Vec<T> a, Vec<T> b, Vec<T> c) {
-        const SphericalTriangle<T> t(a, b, c);
-        add<T>(
-            codes, family, name, [t](T u, T v) { return t.sample(u, v); },
-            [t](Vec<T> w) { return t.pdf(w); });
+        add.both(name, SphericalTriangle<T>(a, b, c));
     };
     triangle("triangle, an octant", {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
     triangle("triangle, nearly half of all", {1, 0, T(0.05)}, {T(-0.5), T(0.87), T(0.05)},
              {T(-0.5), T(-0.87), T(0.05)});
     auto rectangle = [&](const char* name, T x0, T x1, T y0, T y1, T d) {
-        const SphericalRectangle<T> r(x0, x1, y0, y1, d);
-        add<T>(
-            codes, family, name, [r](T u, T v) { return r.sample(u, v); },
-            [r](Vec<T> w) { return r.pdf(w); });
+        add.both(name, SphericalRectangle<T>(x0, x1, y0, y1, d));
     };
     rectangle("rectangle 2 x 1, at 1", -1, 1, T(-0.5), T(0.5), 1);
     rectangle("rectangle beside the foot, at 1", T(0.5), 3, 1, 2, 1);
@@ -96,7 +90,7 @@ void solid_angles(Codes& codes) {
 // Points of a light by area, as directions: density distance^2 / (area cos).
 template <class T>
 void areas(Codes& codes) {
-    const std::string family = "lights by area";
+    const Family<T> add{codes, "lights by area"};
     struct Lamp {
         const char* name;
         T x0, x1, y0, y1, height;
@@ -104,54 +98,43 @@ void areas(Codes& codes) {
     for (const auto& c : {Lamp{"rectangle 2 x 2, at 2", -1, 1, -1, 1, 2},
                           {"rectangle beside the foot, at 1", 1, 4, T(-0.5), T(0.5), 1},
                           {"rectangle 10 x 10, at 0.5", -5, 5, -5, 5, T(0.5)}}) {
-        const char* name = c.name;
         const T x0 = c.x0, x1 = c.x1, y0 = c.y0, y1 = c.y1, height = c.height;
-        add<T>(
-            codes, family, name,
-            [=](T u, T v) {
-                return unit(Vec<T>{x0 + u * (x1 - x0), y0 + v * (y1 - y0), height});
-            },
-            [=](Vec<T> w) {
-                if (w.z <= 0) return T(0);
-                const T s = height / w.z, x = w.x * s, y = w.y * s;
-                if (!(x >= x0 && x <= x1 && y >= y0 && y <= y1)) return T(0);
-                return s * s / ((x1 - x0) * (y1 - y0) * w.z);
-            });
+        add(c.name, [=](T u, T v) {
+            return unit(Vec<T>{x0 + u * (x1 - x0), y0 + v * (y1 - y0), height});
+        }).pdf([=](Vec<T> w) {
+            if (w.z <= 0) return T(0);
+            const T s = height / w.z, x = w.x * s, y = w.y * s;
+            if (!(x >= x0 && x <= x1 && y >= y0 && y <= y1)) return T(0);
+            return s * s / ((x1 - x0) * (y1 - y0) * w.z);
+        });
     }
     for (const T height : {T(0.5), T(3)})
-        add<T>(
-            codes, family, say("disc of radius 1, at %g", height),
-            [height](T u, T v) {
-                const auto [x, y] = concentric_disc(u, v);
-                return unit(Vec<T>{x, y, height});
-            },
-            [height](Vec<T> w) {
-                if (w.z <= 0) return T(0);
-                const T s = height / w.z;
-                if (s * s * (w.x * w.x + w.y * w.y) > 1) return T(0);
-                return s * s / (pi<T> * w.z);
-            });
-    add<T>(
-        codes, family, "triangle",
-        [](T u, T v) {
-            const T r = std::sqrt(u);
-            return unit(Vec<T>{2 * r * (1 - v) - T(0.5), 3 * r * v - 1, 1});
-        },
-        [](Vec<T> w) {
+        add(say("disc of radius 1, at %g", height), [height](T u, T v) {
+            const auto [x, y] = concentric_disc(u, v);
+            return unit(Vec<T>{x, y, height});
+        }).pdf([height](Vec<T> w) {
             if (w.z <= 0) return T(0);
-            const T b = (w.x / w.z + T(0.5)) / 2, c = (w.y / w.z + 1) / 3;
-            return b >= 0 && c >= 0 && b + c <= 1 ? 1 / (3 * w.z * w.z * w.z) : 0;
+            const T s = height / w.z;
+            if (s * s * (w.x * w.x + w.y * w.y) > 1) return T(0);
+            return s * s / (pi<T> * w.z);
         });
+    add("triangle", [](T u, T v) {
+        const T r = std::sqrt(u);
+        return unit(Vec<T>{2 * r * (1 - v) - T(0.5), 3 * r * v - 1, 1});
+    }).pdf([](Vec<T> w) {
+        if (w.z <= 0) return T(0);
+        const T b = (w.x / w.z + T(0.5)) / 2, c = (w.y / w.z + 1) / 3;
+        return b >= 0 && c >= 0 && b + c <= 1 ? 1 / (3 * w.z * w.z * w.z) : 0;
+    });
     // The far half of a sphere is hidden: these samples fail.
     for (const T distance : {T(1.2), T(4)})
-        add<T>(
-            codes, family, say("sphere of radius 1, at %g, half of it hidden", distance),
+        add(say("sphere of radius 1, at %g, half of it hidden", distance),
             [distance](T u, T v) -> std::optional<Vec<T>> {
-                const Vec<T> n = polar(1 - 2 * u, 2 * pi<T> * v), p = n + Vec<T>{0, 0, distance};
+                const Vec<T> n = about_z(1 - 2 * u, v), p = n + Vec<T>{0, 0, distance};
                 if (dot(n, p) >= 0) return {};
                 return unit(p);
-            },
-            [distance](Vec<T> w) {
+            })
+            .pdf([distance](Vec<T> w) {
                 const T b = distance * w.z, s2 = w.x * w.x + w.y * w.y;
                 const T rest = 1 - distance * distance * s2;
                 if (b <= 0 || rest <= 0) return T(0);
@@ -163,6 +146,7 @@ void areas(Codes& codes) {
 // Maps of the environment: cells of (phi, theta), of very unequal weights.
 template <class T>
 void maps(Codes& codes) {
+    const Family<T> add{codes, "maps of the environment"};
     for (const size_t width : {size_t(4), size_t(16), size_t(64)}) {
         std::vector<double> weights;
         for (size_t i = 0; i < width * width / 2; ++i)
@@ -170,22 +154,18 @@ void maps(Codes& codes) {
                               : i % 7 == 2 ? 20
                                            : 0.1 + std::fmod(double(i) * 0.61803, 1));
         const Tiles<T> tiles(width, weights);
-        add<T>(
-            codes, "maps of the environment", say("%zu x %zu", width, width / 2),
-            [tiles](T u, T v) {
-                const auto [x, y] = tiles.sample(u, v);
-                return Vec<T>{std::sin(pi<T> * y) * std::cos(2 * pi<T> * x),
-                              std::sin(pi<T> * y) * std::sin(2 * pi<T> * x), std::cos(pi<T> * y)};
-            },
-            [tiles](Vec<T> w) {
-                T x = std::atan2(w.y, w.x) / (2 * pi<T>);
-                if (x < 0) x += 1;
-                const T sine = std::sqrt(w.x * w.x + w.y * w.y), y = std::atan2(sine, w.z) / pi<T>;
-                return sine > 0
-                           ? tiles.pdf({std::min(x, T(0.9999999)), std::min(y, T(0.9999999))}) /
-                                 (2 * pi<T> * pi<T> * sine)
-                           : 0;
-            });
+        add(say("%zu x %zu", width, width / 2), [tiles](T u, T v) {
+            const auto [x, y] = tiles.sample(u, v);
+            const auto [wx, wy] = on_circle(std::sin(pi<T> * y), x);
+            return Vec<T>{wx, wy, std::cos(pi<T> * y)};
+        }).pdf([tiles](Vec<T> w) {
+            T x = std::atan2(w.y, w.x) / (2 * pi<T>);
+            if (x < 0) x += 1;
+            const T sine = std::sqrt(w.x * w.x + w.y * w.y), y = std::atan2(sine, w.z) / pi<T>;
+            return sine > 0 ? tiles.pdf({std::min(x, T(0.9999999)), std::min(y, T(0.9999999))}) /
+                                  (2 * pi<T> * pi<T> * sine)
+                            : 0;
+        });
     }
 }
 

@@ -16,58 +16,46 @@ T linear_pdf(T x, T a, T b) {
 
 template <class T>
 void slopes(Codes& codes) {
-    const std::string family = "slopes and curves";
+    const Family<T> add{codes, "slopes and curves"};
     for (const auto& c : {std::pair<T, T>{0, 1}, {5, 0}, {1, 3}, {1, T(1.002)}}) {
         const T a = c.first, b = c.second;
-        add<T>(
-            codes, family, say("linear, %g to %g", a, b),
-            [a, b](T u) { return linear_sample(u, a, b); },
-            [a, b](T x) { return linear_pdf(x, a, b); });
+        add(say("linear, %g to %g", a, b), [a, b](T u) {
+            return linear_sample(u, a, b);
+        }).pdf([a, b](T x) { return linear_pdf(x, a, b); });
     }
     for (const T r : {T(0.1), T(2)})
-        add<T>(
-            codes, family, say("tent of radius %g", r),
-            [r](T u) {
-                return u < T(0.5) ? r * (linear_sample(2 * u, T(0), T(1)) - 1)
-                                  : r * linear_sample(2 * u - 1, T(1), T(0));
-            },
-            [r](T x) { return std::max(T(0), 1 - std::abs(x) / r) / r; });
-    add<T>(
-        codes, family, "tent from 1 over 1.2 to 5",
-        [](T u) {
-            const T border = T(0.05);
-            return u < border ? 1 + T(0.2) * std::sqrt(u / border)
-                              : 5 - T(3.8) * std::sqrt((1 - u) / (1 - border));
-        },
-        [](T x) {
-            if (x < 1 || x > 5) return T(0);
-            return (x < T(1.2) ? (x - 1) / T(0.2) : (5 - x) / T(3.8)) / 2;
-        });
+        add(say("tent of radius %g", r), [r](T u) {
+            return u < T(0.5) ? r * (linear_sample(2 * u, T(0), T(1)) - 1)
+                              : r * linear_sample(2 * u - 1, T(1), T(0));
+        }).pdf([r](T x) { return std::max(T(0), 1 - std::abs(x) / r) / r; });
+    add("tent from 1 over 1.2 to 5", [](T u) {
+        const T border = T(0.05);
+        return u < border ? 1 + T(0.2) * std::sqrt(u / border)
+                          : 5 - T(3.8) * std::sqrt((1 - u) / (1 - border));
+    }).pdf([](T x) {
+        if (x < 1 || x > 5) return T(0);
+        return (x < T(1.2) ? (x - 1) / T(0.2) : (5 - x) / T(3.8)) / 2;
+    });
     for (const T s : {T(0.1), T(3)})
-        add<T>(
-            codes, family, say("logistic, s = %g", s),
-            [s](T u) { return -s * std::log(1 / positive(u) - 1); },
-            [s](T x) {
-                const T e = std::exp(-std::abs(x) / s);
-                return e / (s * (1 + e) * (1 + e));
-            });
-    add<T>(
-        codes, family, "logistic, trimmed to (-1, 2)",
-        [](T u) {
-            const T low = 1 / (1 + std::exp(T(2))), high = 1 / (1 + std::exp(T(-4)));
-            return T(-0.5) * std::log(1 / (low + u * (high - low)) - 1);
-        },
-        [](T x) {
-            if (x < -1 || x > 2) return T(0);
-            const T low = 1 / (1 + std::exp(T(2))), high = 1 / (1 + std::exp(T(-4)));
-            const T e = std::exp(-2 * std::abs(x));
-            return 2 * e / ((1 + e) * (1 + e) * (high - low));
+        add(say("logistic, s = %g", s), [s](T u) {
+            return -s * std::log(1 / positive(u) - 1);
+        }).pdf([s](T x) {
+            const T e = std::exp(-std::abs(x) / s);
+            return e / (s * (1 + e) * (1 + e));
         });
+    add("logistic, trimmed to (-1, 2)", [](T u) {
+        const T low = 1 / (1 + std::exp(T(2))), high = 1 / (1 + std::exp(T(-4)));
+        return T(-0.5) * std::log(1 / (low + u * (high - low)) - 1);
+    }).pdf([](T x) {
+        if (x < -1 || x > 2) return T(0);
+        const T low = 1 / (1 + std::exp(T(2))), high = 1 / (1 + std::exp(T(-4)));
+        const T e = std::exp(-2 * std::abs(x));
+        return 2 * e / ((1 + e) * (1 + e) * (high - low));
+    });
     for (const auto& c : {std::pair<T, T>{0, 1}, {-2, 5}}) {
         const T a = c.first, b = c.second;
-        add<T>(
-            codes, family, say("smoothstep from %g to %g", a, b),
-            // The density 2 (3 t^2 - 2 t^3) has the distribution 2 t^3 - t^4.
+        add(say("smoothstep from %g to %g", a,
+                b),  // The density 2 (3 t^2 - 2 t^3) has the distribution 2 t^3 - t^4.
             [a, b](T u) {
                 double low = 0, high = 1;
                 for (int i = 0; i < 50; ++i) {
@@ -75,62 +63,48 @@ void slopes(Codes& codes) {
                     (t * t * t * (2 - t) < double(u) ? low : high) = t;
                 }
                 return a + T(low) * (b - a);
-            },
-            [a, b](T x) {
+            })
+            .pdf([a, b](T x) {
                 const T t = (x - a) / (b - a);
                 return t >= 0 && t <= 1 ? 2 * t * t * (3 - 2 * t) / (b - a) : 0;
             });
     }
-    add<T>(
-        codes, family, "derivative of smoothstep",
-        [](T u) { return T(0.5) - std::sin(std::asin(1 - 2 * u) / 3); },
-        [](T x) { return x >= 0 && x <= 1 ? 6 * x * (1 - x) : 0; });
-    add<T>(
-        codes, family, "visible wavelengths by their sensitivity",
-        [](T u) {
-            const T low = std::tanh(T(0.0072) * (360 - 538)),
-                    high = std::tanh(T(0.0072) * (830 - 538));
-            return 538 + std::atanh(low + u * (high - low)) / T(0.0072);
-        },
-        [](T x) {
-            if (x < 360 || x > 830) return T(0);
-            const T low = std::tanh(T(0.0072) * (360 - 538)),
-                    high = std::tanh(T(0.0072) * (830 - 538));
-            const T c = std::cosh(T(0.0072) * (x - 538));
-            return T(0.0072) / ((high - low) * c * c);
-        });
+    add("derivative of smoothstep", [](T u) {
+        return T(0.5) - std::sin(std::asin(1 - 2 * u) / 3);
+    }).pdf([](T x) { return x >= 0 && x <= 1 ? 6 * x * (1 - x) : 0; });
+    add("visible wavelengths by their sensitivity", [](T u) {
+        const T low = std::tanh(T(0.0072) * (360 - 538)), high = std::tanh(T(0.0072) * (830 - 538));
+        return 538 + std::atanh(low + u * (high - low)) / T(0.0072);
+    }).pdf([](T x) {
+        if (x < 360 || x > 830) return T(0);
+        const T low = std::tanh(T(0.0072) * (360 - 538)), high = std::tanh(T(0.0072) * (830 - 538));
+        const T c = std::cosh(T(0.0072) * (x - 538));
+        return T(0.0072) / ((high - low) * c * c);
+    });
     struct Segment {
         T d, a, b;
     };
     for (const auto& c : {Segment{1, -2, 3}, {T(0.05), -1, 4}, {2, 10, 30}}) {
         const T d = c.d, a = c.a, b = c.b;
-        add<T>(
-            codes, family, say("equi-angular, %g away, (%g, %g)", d, a, b),
-            [=](T u) {
-                const T low = std::atan(a / d), high = std::atan(b / d);
-                return d * std::tan(low + u * (high - low));
-            },
-            [=](T x) {
-                if (x < a || x > b) return T(0);
-                return d / ((std::atan(b / d) - std::atan(a / d)) * (d * d + x * x));
-            });
+        add(say("equi-angular, %g away, (%g, %g)", d, a, b), [=](T u) {
+            const T low = std::atan(a / d), high = std::atan(b / d);
+            return d * std::tan(low + u * (high - low));
+        }).pdf([=](T x) {
+            if (x < a || x > b) return T(0);
+            return d / ((std::atan(b / d) - std::atan(a / d)) * (d * d + x * x));
+        });
     }
     for (const T k : {T(-0.5), T(0.5), T(3), T(20)})
-        add<T>(
-            codes, family, say("x to the power of %g", k),
-            [k](T u) { return std::pow(u, 1 / (k + 1)); },
-            [k](T x) { return x > 0 && x <= 1 ? (k + 1) * std::pow(x, k) : 0; });
-    add<T>(
-        codes, family, "arcsine",
-        [](T u) {
-            const T s = std::sin(pi<T> / 2 * u);
-            return s * s;
-        },
-        [](T x) { return x > 0 && x < 1 ? 1 / (pi<T> * std::sqrt(x * (1 - x))) : 0; });
-    add<T>(
-        codes, family, "middle one of three numbers",
-        [](T a, T b, T c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); },
-        [](T x) { return x >= 0 && x <= 1 ? 6 * x * (1 - x) : 0; });
+        add(say("x to the power of %g", k), [k](T u) {
+            return std::pow(u, 1 / (k + 1));
+        }).pdf([k](T x) { return x > 0 && x <= 1 ? (k + 1) * std::pow(x, k) : 0; });
+    add("arcsine", [](T u) {
+        const T s = std::sin(pi<T> / 2 * u);
+        return s * s;
+    }).pdf([](T x) { return x > 0 && x < 1 ? 1 / (pi<T> * std::sqrt(x * (1 - x))) : 0; });
+    add("middle one of three numbers", [](T a, T b, T c) {
+        return std::max(std::min(a, b), std::min(std::max(a, b), c));
+    }).pdf([](T x) { return x >= 0 && x <= 1 ? 6 * x * (1 - x) : 0; });
 }
 
 template <class T>
@@ -140,137 +114,116 @@ T exponential_pdf(T x, T rate) {
 
 template <class T>
 void exponentials(Codes& codes) {
-    const std::string family = "exponentials";
+    const Family<T> add{codes, "exponentials"};
     for (const T rate : {T(1e-3), T(1), T(1e3)})
-        add<T>(
-            codes, family, say("rate %g", rate), [rate](T u) { return -std::log1p(-u) / rate; },
-            [rate](T x) { return exponential_pdf(x, rate); });
+        add(say("rate %g", rate), [rate](T u) { return -std::log1p(-u) / rate; }).pdf([rate](T x) {
+            return exponential_pdf(x, rate);
+        });
     for (const auto& c : {std::pair<T, T>{1, 3}, {T(0.01), 5}, {20, 2}}) {
         const T rate = c.first, end = c.second;
         auto sample = [=](T u) { return -std::log1p(u * std::expm1(-rate * end)) / rate; };
         auto pdf = [=](T x) {
             return x <= end ? exponential_pdf(x, rate) / -std::expm1(-rate * end) : 0;
         };
-        add<T>(codes, family, say("rate %g, trimmed at %g, line", rate, end), sample, pdf);
-        add<T>(codes, family, say("rate %g, trimmed at %g, interval", rate, end), sample, pdf,
-               oracle::Interval(0, double(end)));
+        add(say("rate %g, trimmed at %g, line", rate, end), sample).pdf(pdf);
+        add(say("rate %g, trimmed at %g, interval", rate, end), sample)
+            .on(oracle::Interval(0, double(end)), pdf);
     }
-    add<T>(
-        codes, family, "Laplace",
-        [](T u) { return u < T(0.5) ? std::log(2 * positive(u)) : -std::log(2 * (1 - u)); },
-        [](T x) { return std::exp(-std::abs(x)) / 2; });
-    add<T>(
-        codes, family, "sum of two", [](T u, T v) { return -std::log((1 - u) * (1 - v)); },
-        [](T x) { return x > 0 ? x * std::exp(-x) : 0; });
+    add("Laplace", [](T u) {
+        return u < T(0.5) ? std::log(2 * positive(u)) : -std::log(2 * (1 - u));
+    }).pdf([](T x) { return std::exp(-std::abs(x)) / 2; });
+    add("sum of two", [](T u, T v) { return -std::log((1 - u) * (1 - v)); }).pdf([](T x) {
+        return x > 0 ? x * std::exp(-x) : 0;
+    });
 }
 
 template <class T>
 void tails(Codes& codes) {
-    const std::string family = "heavy tails";
+    const Family<T> add{codes, "heavy tails"};
     for (const auto& c : {std::pair<T, T>{0, 1}, {T(1e3), T(0.01)}, {-5, 100}}) {
         const T at = c.first, width = c.second;
-        add<T>(
-            codes, family, say("Cauchy at %g, width %g", at, width),
-            [=](T u) { return at + width * std::tan(pi<T> * (u - T(0.5))); },
-            [=](T x) {
-                const T t = (x - at) / width;
-                return 1 / (pi<T> * width * (1 + t * t));
-            });
+        add(say("Cauchy at %g, width %g", at, width), [=](T u) {
+            return at + width * std::tan(pi<T> * (u - T(0.5)));
+        }).pdf([=](T x) {
+            const T t = (x - at) / width;
+            return 1 / (pi<T> * width * (1 + t * t));
+        });
     }
     for (const T k : {T(0.3), T(0.5), T(1.1), T(3)})
-        add<T>(
-            codes, family, say("Pareto %g", k), [k](T u) { return std::pow(1 - u, -1 / k); },
-            [k](T x) { return x >= 1 ? k * std::pow(x, -k - 1) : 0; });
-    for (const T sigma : {T(0.5), T(1), T(3)})
-        add<T>(
-            codes, family, say("lognormal, sigma = %g", sigma),
-            [sigma](T u, T v) { return std::exp(sigma * normal(u, v)); },
-            [sigma](T x) { return x > 0 ? normal_pdf(std::log(x), sigma) / x : 0; });
-    add<T>(
-        codes, family, "Student's t, 2 degrees",
-        [](T u) {
-            const T w = positive(u);
-            return (2 * w - 1) / std::sqrt(2 * w * (1 - w));
-        },
-        [](T x) { return std::pow(2 + x * x, T(-1.5)); });
-    for (const T k : {T(0.3), T(0.6), T(4)})
-        add<T>(
-            codes, family, say("stretched exponential, %g", k),
-            [k](T u) { return std::pow(-std::log1p(-positive(u)), 1 / k); },
-            [k](T x) { return x > 0 ? k * std::pow(x, k - 1) * std::exp(-std::pow(x, k)) : 0; });
-    add<T>(
-        codes, family, "Gumbel", [](T u) { return -std::log(-std::log(positive(u))); },
-        [](T x) { return std::exp(-x - std::exp(-x)); });
-    add<T>(
-        codes, family, "Levy",
-        [](T u, T v) {
-            const T x = normal(u, v);
-            return 1 / (x * x + T(1e-30));
-        },
-        [](T x) {
-            return x > 0 ? std::exp(-1 / (2 * x)) / std::sqrt(2 * pi<T>) / (x * std::sqrt(x)) : 0;
+        add(say("Pareto %g", k), [k](T u) { return std::pow(1 - u, -1 / k); }).pdf([k](T x) {
+            return x >= 1 ? k * std::pow(x, -k - 1) : 0;
         });
-    add<T>(
-        codes, family, "1 / x from 1e-6 to 1e6, line",
-        [](T u) { return T(1e-6) * std::exp(u * std::log(T(1e12))); },
-        [](T x) { return x >= T(1e-6) && x <= T(1e6) ? 1 / (x * std::log(T(1e12))) : 0; });
-    add<T>(
-        codes, family, "1 / x^2 from 1 to 100, interval", [](T u) { return 1 / (1 - u * T(0.99)); },
-        [](T x) { return x >= 1 && x <= 100 ? 1 / (T(0.99) * x * x) : 0; },
-        oracle::Interval(1, 100));
+    for (const T sigma : {T(0.5), T(1), T(3)})
+        add(say("lognormal, sigma = %g", sigma), [sigma](T u, T v) {
+            return std::exp(sigma * normal(u, v));
+        }).pdf([sigma](T x) { return x > 0 ? normal_pdf(std::log(x), sigma) / x : 0; });
+    add("Student's t, 2 degrees", [](T u) {
+        const T w = positive(u);
+        return (2 * w - 1) / std::sqrt(2 * w * (1 - w));
+    }).pdf([](T x) { return std::pow(2 + x * x, T(-1.5)); });
+    for (const T k : {T(0.3), T(0.6), T(4)})
+        add(say("stretched exponential, %g", k), [k](T u) {
+            return std::pow(-std::log1p(-positive(u)), 1 / k);
+        }).pdf([k](T x) { return x > 0 ? k * std::pow(x, k - 1) * std::exp(-std::pow(x, k)) : 0; });
+    add("Gumbel", [](T u) { return -std::log(-std::log(positive(u))); }).pdf([](T x) {
+        return std::exp(-x - std::exp(-x));
+    });
+    add("Levy", [](T u, T v) {
+        const T x = normal(u, v);
+        return 1 / (x * x + T(1e-30));
+    }).pdf([](T x) {
+        return x > 0 ? std::exp(-1 / (2 * x)) / std::sqrt(2 * pi<T>) / (x * std::sqrt(x)) : 0;
+    });
+    add("1 / x from 1e-6 to 1e6, line", [](T u) {
+        return T(1e-6) * std::exp(u * std::log(T(1e12)));
+    }).pdf([](T x) { return x >= T(1e-6) && x <= T(1e6) ? 1 / (x * std::log(T(1e12))) : 0; });
+    add("1 / x^2 from 1 to 100, interval", [](T u) {
+        return 1 / (1 - u * T(0.99));
+    }).on(oracle::Interval(1, 100), [](T x) {
+        return x >= 1 && x <= 100 ? 1 / (T(0.99) * x * x) : 0;
+    });
 }
 
 template <class T>
 void peaks(Codes& codes) {
-    const std::string family = "peaks, mixtures of scales";
+    const Family<T> add{codes, "peaks, mixtures of scales"};
     struct Peak {
         T at, width;
     };
     for (const auto& c : {Peak{0, 1}, {T(1e4), 1}, {-50, T(1e-3)}}) {
         const T at = c.at, width = c.width;
-        add<T>(
-            codes, family, say("normal at %g, width %g", at, width),
-            [=](T u, T v) { return at + width * normal(u, v); },
-            [=](T x) { return normal_pdf(x - at, width); });
+        add(say("normal at %g, width %g", at, width), [=](T u, T v) {
+            return at + width * normal(u, v);
+        }).pdf([=](T x) { return normal_pdf(x - at, width); });
     }
-    add<T>(
-        codes, family, "uniform from 1000 to 1001, line", [](T u) { return 1000 + u; },
-        [](T x) { return x >= 1000 && x <= 1001 ? 1 : 0; });
+    add("uniform from 1000 to 1001, line", [](T u) { return 1000 + u; }).pdf([](T x) {
+        return x >= 1000 && x <= 1001 ? 1 : 0;
+    });
     if constexpr (std::is_same_v<T, double>) {
-        add<T>(
-            codes, family, "normal at 1e6, width 1e-3",
-            [](T u, T v) { return 1e6 + 1e-3 * normal(u, v); },
-            [](T x) { return normal_pdf(x - 1e6, 1e-3); });
-        add<T>(
-            codes, family, "logistic at 1e8, width 0.1",
-            [](T u) { return 1e8 - 0.1 * std::log(1 / positive(u) - 1); },
-            [](T x) {
-                const T e = std::exp(-std::abs(x - 1e8) / 0.1);
-                return e / (0.1 * (1 + e) * (1 + e));
-            });
+        add("normal at 1e6, width 1e-3", [](T u, T v) {
+            return 1e6 + 1e-3 * normal(u, v);
+        }).pdf([](T x) { return normal_pdf(x - 1e6, 1e-3); });
+        add("logistic at 1e8, width 0.1", [](T u) {
+            return 1e8 - 0.1 * std::log(1 / positive(u) - 1);
+        }).pdf([](T x) {
+            const T e = std::exp(-std::abs(x - 1e8) / 0.1);
+            return e / (0.1 * (1 + e) * (1 + e));
+        });
     }
-    add<T>(
-        codes, family, "exponentials of rates 1 and 1e4",
-        [](T u) { return u < T(0.5) ? -std::log1p(-2 * u) : -std::log1p(-(2 * u - 1)) / T(1e4); },
-        [](T x) { return (exponential_pdf(x, T(1)) + exponential_pdf(x, T(1e4))) / 2; });
-    add<T>(
-        codes, family, "normal of widths 1 and 1e-3, three numbers",
-        [](T which, T u, T v) { return (which < T(0.3) ? 1 : T(1e-3)) * normal(u, v); },
-        [](T x) { return T(0.3) * normal_pdf(x) + T(0.7) * normal_pdf(x, T(1e-3)); });
-    add<T>(
-        codes, family, "two peaks 1000 apart",
-        [](T u, T v) {
-            return u < T(0.2) ? normal(5 * u, v) : 1000 + normal((u - T(0.2)) / T(0.8), v);
-        },
-        [](T x) { return T(0.2) * normal_pdf(x) + T(0.8) * normal_pdf(x - 1000); });
-    add<T>(
-        codes, family, "free paths: half stop at a wall",
-        [](T u) -> std::optional<T> {
-            const T t = -std::log1p(-u);
-            if (t > T(0.693147)) return {};
-            return t;
-        },
-        [](T x) { return x <= T(0.693147) ? exponential_pdf(x, T(1)) : 0; });
+    add("exponentials of rates 1 and 1e4", [](T u) {
+        return u < T(0.5) ? -std::log1p(-2 * u) : -std::log1p(-(2 * u - 1)) / T(1e4);
+    }).pdf([](T x) { return (exponential_pdf(x, T(1)) + exponential_pdf(x, T(1e4))) / 2; });
+    add("normal of widths 1 and 1e-3, three numbers", [](T which, T u, T v) {
+        return (which < T(0.3) ? 1 : T(1e-3)) * normal(u, v);
+    }).pdf([](T x) { return T(0.3) * normal_pdf(x) + T(0.7) * normal_pdf(x, T(1e-3)); });
+    add("two peaks 1000 apart", [](T u, T v) {
+        return u < T(0.2) ? normal(5 * u, v) : 1000 + normal((u - T(0.2)) / T(0.8), v);
+    }).pdf([](T x) { return T(0.2) * normal_pdf(x) + T(0.8) * normal_pdf(x - 1000); });
+    add("free paths: half stop at a wall", [](T u) -> std::optional<T> {
+        const T t = -std::log1p(-u);
+        if (t > T(0.693147)) return {};
+        return t;
+    }).pdf([](T x) { return x <= T(0.693147) ? exponential_pdf(x, T(1)) : 0; });
 }
 
 // Weights as renderers have them: a few zeros, some much larger than others.
@@ -285,36 +238,30 @@ inline std::vector<double> unequal(size_t n, double largest) {
 
 template <class T>
 void steps(Codes& codes) {
-    const std::string family = "steps";
+    const Family<T> add{codes, "steps"};
     for (const auto& c : {std::pair<T, T>{0, 1}, {-3, 7}}) {
         const T a = c.first, b = c.second;
         auto sample = [=](T u) { return a + u * (b - a); };
         auto pdf = [=](T x) { return x >= a && x <= b ? 1 / (b - a) : 0; };
-        add<T>(codes, family, say("uniform from %g to %g, line", a, b), sample, pdf);
-        add<T>(codes, family, say("uniform from %g to %g, interval", a, b), sample, pdf,
-               oracle::Interval(double(a), double(b)));
+        add(say("uniform from %g to %g, line", a, b), sample).pdf(pdf);
+        add(say("uniform from %g to %g, interval", a, b), sample)
+            .on(oracle::Interval(double(a), double(b)), pdf);
     }
     for (const size_t n : {1, 2, 3, 7, 16, 64})
         for (const double largest : {1.0, 1000.0}) {
             if (n < 3 && largest > 1) continue;
             const Steps<T> s{Table<T>(unequal(n, largest))};
-            auto sample = [s](T u) { return s.sample(u); };
-            auto pdf = [s](T x) { return s.pdf(x); };
-            add<T>(codes, family, say("%zu steps, up to %g, interval", n, largest), sample, pdf,
-                   oracle::Interval(0, 1));
-            if (n == 7 || n == 64)
-                add<T>(codes, family, say("%zu steps, up to %g, line", n, largest), sample, pdf);
+            const std::string name = say("%zu steps, up to %g, ", n, largest);
+            add.both(name + "interval", s, oracle::Interval(0, 1));
+            if (n == 7 || n == 64) add.both(name + "line", s);
         }
-    add<T>(
-        codes, family, "comb of 16 teeth",
-        [](T u) {
-            const T tooth = std::floor(16 * u);
-            return tooth + T(0.1) * (16 * u - tooth);
-        },
-        [](T x) {
-            if (x < 0 || x >= 16) return T(0);
-            return x - std::floor(x) <= T(0.1) ? T(0.625) : T(0);
-        });
+    add("comb of 16 teeth", [](T u) {
+        const T tooth = std::floor(16 * u);
+        return tooth + T(0.1) * (16 * u - tooth);
+    }).pdf([](T x) {
+        if (x < 0 || x >= 16) return T(0);
+        return x - std::floor(x) <= T(0.1) ? T(0.625) : T(0);
+    });
 }
 
 // An alias table (Vose 1991), which splits one number.
@@ -351,36 +298,34 @@ struct Alias {
 
 template <class T>
 void choices(Codes& codes) {
+    const Family<T> add{codes, "choices"};
     for (const T p : {T(1e-3), T(0.3), T(0.5)})
-        add_choice<T>(
-            codes, say("one of two, %g", p), [p](T u) { return u < p ? 0 : 1; },
-            [p](int i) { return i == 0 ? p : 1 - p; }, 2);
+        add(say("one of two, %g", p), [p](T u) { return u < p ? 0 : 1; }).chance(2, [p](int i) {
+            return i == 0 ? p : 1 - p;
+        });
     for (const int n : {3, 100})
-        add_choice<T>(
-            codes, say("one of %d alike", n), [n](T u) { return std::min(n - 1, int(u * T(n))); },
-            [n](int) { return 1 / T(n); }, size_t(n));
+        add(say("one of %d alike", n), [n](T u) {
+            return std::min(n - 1, int(u * T(n)));
+        }).chance(size_t(n), [n](int) { return 1 / T(n); });
     for (const size_t n : {3, 16, 64, 1000})
         for (const double largest : {1.0, 1e5}) {
             if (n == 3 && largest > 1) continue;
             const Table<T> table(unequal(n, largest));
-            add_choice<T>(
-                codes, say("%zu weights up to %g, by their sums", n, largest),
-                [table](T u) { return int(table.choose(u).first); },
-                [table](int i) { return table.probability(size_t(i)); }, n);
+            add(say("%zu weights up to %g, by their sums", n, largest), [table](T u) {
+                return int(table.choose(u).first);
+            }).chance(n, [table](int i) { return table.probability(size_t(i)); });
             const Alias<T> alias(unequal(n, largest));
-            add_choice<T>(
-                codes, say("%zu weights up to %g, alias table", n, largest), alias,
-                [alias](int i) { return alias.probability[size_t(i)]; }, n);
+            add(say("%zu weights up to %g, alias table", n, largest), alias)
+                .chance(n, [alias](int i) { return alias.probability[size_t(i)]; });
         }
-    add_choice<T>(
-        codes, "roulette: number of the bounce",
-        [](T u) { return std::min(19, int(std::log(1 - u) / std::log(T(0.7)))); },
-        [](int i) { return i < 19 ? T(0.3) * std::pow(T(0.7), T(i)) : std::pow(T(0.7), T(19)); },
-        20);
-    add_choice<T>(
-        codes, "one of three lobes, or none",
-        [](T u) { return u < T(0.8) ? int(u / T(0.27)) : -1; },
-        [](int i) { return i < 2 ? T(0.27) : T(0.26); }, 3);
+    add("roulette: number of the bounce", [](T u) {
+        return std::min(19, int(std::log(1 - u) / std::log(T(0.7))));
+    }).chance(20, [](int i) {
+        return i < 19 ? T(0.3) * std::pow(T(0.7), T(i)) : std::pow(T(0.7), T(19));
+    });
+    add("one of three lobes, or none", [](T u) {
+        return u < T(0.8) ? int(u / T(0.27)) : -1;
+    }).chance(3, [](int i) { return i < 2 ? T(0.27) : T(0.26); });
 }
 
 template <class T>

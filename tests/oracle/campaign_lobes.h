@@ -7,11 +7,12 @@ namespace campaign {
 template <class T>
 struct Roughness {
     T x, y;
+    Roughness(double a) : Roughness(a, a) {}
+    Roughness(double a, double b) : x(T(a)), y(T(b)) {}
     std::string text() const { return x == y ? say("%g", x) : say("(%g, %g)", x, y); }
 };
 
-// ---- Distributions D of normals, and normals h of density D cos
-// ----------------------------------
+// ---- Distributions D of normals, and normals h of density D cos ---------------------------------
 
 // GGX (Walter et al. 2007; anisotropic: Burley 2012), by slopes: small roughness keeps its digits.
 template <class T>
@@ -38,83 +39,66 @@ T beckmann(Vec<T> h, Roughness<T> a) {
     return std::exp(-(x * x + y * y)) / (pi<T> * a.x * a.y * c2 * c2);
 }
 
-template <class T>
-void normals(Codes& codes) {
-    const std::string ggx_family = "GGX, all normals";
-    for (const Roughness<T> a : {Roughness<T>{T(1e-3), T(1e-3)},
-                                 {T(0.01), T(0.01)},
-                                 {T(0.05), T(0.05)},
-                                 {T(0.2), T(0.2)},
-                                 {T(0.5), T(0.5)},
-                                 {T(0.8), T(0.8)},
-                                 {T(1), T(1)},
-                                 {T(0.5), T(0.05)},
-                                 {T(0.1), T(1)},
-                                 {T(0.03), T(0.003)}})
-        add<T>(
-            codes, ggx_family, "h by slopes, " + a.text(),
-            [a](T u, T v) { return ggx_normal(u, v, a); },
-            [a](Vec<T> h) { return ggx(h, a) * h.z; });
-    for (const T a : {T(1e-3), T(0.1), T(0.5)})
-        add<T>(
-            codes, ggx_family, say("h by cos, %g", a),
-            [a](T u, T v) {
-                return polar(std::sqrt((1 - u) / (1 + (a * a - 1) * u)), 2 * pi<T> * v);
-            },
-            [a](Vec<T> h) { return textbook::ggx_d(h, a) * h.z; });
-    for (const Roughness<T> a : {Roughness<T>{T(0.01), T(0.01)},
-                                 {T(0.1), T(0.1)},
-                                 {T(0.5), T(0.5)},
-                                 {T(1), T(1)},
-                                 {T(0.6), T(0.06)}})
-        add<T>(
-            codes, "Beckmann", "h, " + a.text(), [a](T u, T v) { return beckmann_normal(u, v, a); },
-            [a](Vec<T> h) { return beckmann(h, a) * h.z; });
-    // GTR1 (Burley 2012), by sin^2 and by cos^2.
-    for (const T a : {T(1e-3), T(0.01), T(0.1), T(0.5), T(0.9)})
-        add<T>(
-            codes, "GTR1", say("h by sin, %g", a),
-            [a](T u, T v) {
-                const T s2 = a * a * std::expm1(-u * 2 * std::log(a)) / (1 - a * a);
-                const T sine = std::sqrt(s2), phi = 2 * pi<T> * v;
-                return Vec<T>{sine * std::cos(phi), sine * std::sin(phi),
-                              std::sqrt(std::max(T(0), 1 - s2))};
-            },
-            [a](Vec<T> h) {
-                if (h.z <= 0) return T(0);
-                const T s2 = h.x * h.x + h.y * h.y;
-                return h.z * (1 - a * a) / (-2 * pi<T> * std::log(a) * (s2 + a * a * h.z * h.z));
-            });
-    for (const T a : {T(1e-3), T(0.1)})
-        add<T>(
-            codes, "GTR1", say("h by cos, %g", a),
-            [a](T u, T v) {
-                const T c2 = (1 - std::pow(a * a, 1 - u)) / (1 - a * a);
-                return polar(std::sqrt(std::max(T(0), c2)), 2 * pi<T> * v);
-            },
-            [a](Vec<T> h) {
-                if (h.z <= 0) return T(0);
-                const T t = 1 + (a * a - 1) * h.z * h.z;
-                return h.z * (a * a - 1) / (pi<T> * std::log(a * a) * t);
-            });
-    // "Charlie" (Estevez, Kulla 2017).
-    for (const T a : {T(0.05), T(0.3), T(0.5), T(1)})
-        add<T>(
-            codes, "Charlie", say("h, %g", a),
-            [a](T u, T v) {
-                const T sine = std::pow(u, a / (2 * a + 1)), phi = 2 * pi<T> * v;
-                return Vec<T>{sine * std::cos(phi), sine * std::sin(phi),
-                              std::sqrt(std::max(T(0), 1 - sine * sine))};
-            },
-            [a](Vec<T> h) {
-                if (h.z <= 0) return T(0);
-                const T sine = std::sqrt(h.x * h.x + h.y * h.y);
-                return (2 + 1 / a) * std::pow(sine, 1 / a) / (2 * pi<T>)*h.z;
-            });
+// The density of what normals of this density reflect.
+template <class T, class Pdf>
+T reflected_pdf(Vec<T> wo, Vec<T> wi, const Pdf& of_normal) {
+    if (wi.z <= 0) return 0;
+    const Vec<T> h = unit(wo + wi);
+    return of_normal(h) / (4 * dot(wo, h));
 }
 
-// ---- Ashikhmin and Shirley 2000
-// ------------------------------------------------------------------
+template <class T>
+void normals(Codes& codes) {
+    const Family<T> in_ggx{codes, "GGX, all normals"}, in_beckmann{codes, "Beckmann"},
+        gtr1{codes, "GTR1"}, charlie{codes, "Charlie"};
+    using Some = std::initializer_list<Roughness<T>>;
+    for (const Roughness<T> a :
+         Some{1e-3, 0.01, 0.05, 0.2, 0.5, 0.8, 1, {0.5, 0.05}, {0.1, 1}, {0.03, 0.003}})
+        in_ggx("h by slopes, " + a.text(), [a](T u, T v) {
+            return ggx_normal(u, v, a);
+        }).pdf([a](Vec<T> h) { return ggx(h, a) * h.z; });
+    for (const T a : {T(1e-3), T(0.1), T(0.5)})
+        in_ggx(say("h by cos, %g", a), [a](T u, T v) {
+            return about_z(std::sqrt((1 - u) / (1 + (a * a - 1) * u)), v);
+        }).pdf([a](Vec<T> h) { return textbook::ggx_d(h, a) * h.z; });
+    for (const Roughness<T> a : Some{0.01, 0.1, 0.5, 1, {0.6, 0.06}})
+        in_beckmann("h, " + a.text(), [a](T u, T v) {
+            return beckmann_normal(u, v, a);
+        }).pdf([a](Vec<T> h) { return beckmann(h, a) * h.z; });
+    // GTR1 (Burley 2012), by sin^2 and by cos^2.
+    for (const T a : {T(1e-3), T(0.01), T(0.1), T(0.5), T(0.9)})
+        gtr1(say("h by sin, %g", a), [a](T u, T v) {
+            const T s2 = a * a * std::expm1(-u * 2 * std::log(a)) / (1 - a * a);
+            const auto [x, y] = on_circle(std::sqrt(s2), v);
+            return Vec<T>{x, y, std::sqrt(std::max(T(0), 1 - s2))};
+        }).pdf([a](Vec<T> h) {
+            if (h.z <= 0) return T(0);
+            const T s2 = h.x * h.x + h.y * h.y;
+            return h.z * (1 - a * a) / (-2 * pi<T> * std::log(a) * (s2 + a * a * h.z * h.z));
+        });
+    for (const T a : {T(1e-3), T(0.1)})
+        gtr1(say("h by cos, %g", a), [a](T u, T v) {
+            const T c2 = (1 - std::pow(a * a, 1 - u)) / (1 - a * a);
+            return about_z(std::sqrt(std::max(T(0), c2)), v);
+        }).pdf([a](Vec<T> h) {
+            if (h.z <= 0) return T(0);
+            const T t = 1 + (a * a - 1) * h.z * h.z;
+            return h.z * (a * a - 1) / (pi<T> * std::log(a * a) * t);
+        });
+    // "Charlie" (Estevez, Kulla 2017).
+    for (const T a : {T(0.05), T(0.3), T(0.5), T(1)})
+        charlie(say("h, %g", a), [a](T u, T v) {
+            const T sine = std::pow(u, a / (2 * a + 1));
+            const auto [x, y] = on_circle(sine, v);
+            return Vec<T>{x, y, std::sqrt(std::max(T(0), 1 - sine * sine))};
+        }).pdf([a](Vec<T> h) {
+            if (h.z <= 0) return T(0);
+            const T sine = std::sqrt(h.x * h.x + h.y * h.y);
+            return (2 + 1 / a) * std::pow(sine, 1 / a) / (2 * pi<T>)*h.z;
+        });
+}
+
+// ---- Ashikhmin and Shirley 2000 -----------------------------------------------------------------
 
 // Half vectors, a quadrant at a time.
 template <class T>
@@ -138,27 +122,22 @@ T ashikhmin(Vec<T> h, T nu, T nv) {
 
 template <class T>
 void ashikhmins(Codes& codes) {
-    const std::string family = "Ashikhmin and Shirley";
+    const Family<T> add{codes, "Ashikhmin and Shirley"};
     for (const auto& c : {std::pair<T, T>{0, 0}, {10, 10}, {100, 10}, {10, 1000}, {1e4, 1e3}}) {
         const T nu = c.first, nv = c.second;
-        add<T>(
-            codes, family, say("h, (%g, %g)", nu, nv),
-            [nu, nv](T u, T v) { return ashikhmin_normal(u, v, nu, nv); },
-            [nu, nv](Vec<T> h) { return ashikhmin(h, nu, nv); });
+        add(say("h, (%g, %g)", nu, nv), [nu, nv](T u, T v) {
+            return ashikhmin_normal(u, v, nu, nv);
+        }).pdf([nu, nv](Vec<T> h) { return ashikhmin(h, nu, nv); });
     }
     const Vec<T> wo = polar(T(0.6), T(1));
-    add<T>(
-        codes, family, "wi, (100, 20)",
-        [=](T u, T v) { return reflected(wo, ashikhmin_normal(u, v, T(100), T(20))); },
-        [=](Vec<T> wi) {
-            if (wi.z <= 0) return T(0);
-            const Vec<T> h = unit(wo + wi);
-            return ashikhmin(h, T(100), T(20)) / (4 * dot(wo, h));
-        });
+    add("wi, (100, 20)", [=](T u, T v) {
+        return reflected(wo, ashikhmin_normal(u, v, T(100), T(20)));
+    }).pdf([=](Vec<T> wi) {
+        return reflected_pdf(wo, wi, [](Vec<T> h) { return ashikhmin(h, T(100), T(20)); });
+    });
 }
 
-// ---- Reflection and refraction
-// -------------------------------------------------------------------
+// ---- Reflection and refraction ------------------------------------------------------------------
 
 template <class T>
 Vec<T> view(double degrees) {
@@ -189,7 +168,7 @@ Vec<T> visible_by_disc(Vec<T> wo, T u, T v, Roughness<T> a) {
 template <class T>
 Vec<T> visible_by_cap(Vec<T> wo, T u, T v, Roughness<T> a) {
     const Vec<T> s = unit(Vec<T>{a.x * wo.x, a.y * wo.y, wo.z});
-    const Vec<T> n = polar((1 - u) * (1 + s.z) - s.z, 2 * pi<T> * v) + s;
+    const Vec<T> n = about_z((1 - u) * (1 + s.z) - s.z, v) + s;
     return unit(Vec<T>{a.x * n.x, a.y * n.y, n.z});
 }
 template <class T>
@@ -242,103 +221,80 @@ struct BeckmannVisible {
 };
 
 template <class T>
+struct View {
+    Vec<T> wo;
+    Roughness<T> a;
+    std::string text;  // with which the name of a code ends
+    View(double degrees, Roughness<T> rough)
+        : wo(view<T>(degrees)), a(rough), text(say("at %g degrees, ", degrees) + a.text()) {}
+};
+
+template <class T>
 void reflections(Codes& codes) {
-    struct Case {
-        double degrees;
-        T x, y;
-    };
-    for (const auto& [degrees, x, y] : {Case{30, T(0.1), T(0.1)},
-                                        {30, T(0.5), T(0.5)},
-                                        {60, T(0.3), T(0.3)},
-                                        {80, T(0.3), T(0.3)},
-                                        {0, T(1), T(1)},
-                                        {45, T(0.5), T(0.1)}}) {
-        const Vec<T> wo = view<T>(degrees);
-        const Roughness<T> a{x, y};
-        add<T>(
-            codes, "GGX, all normals", say("wi at %g degrees, ", degrees) + a.text(),
-            [wo, a](T u, T v) { return reflected(wo, ggx_normal(u, v, a)); },
-            [wo, a](Vec<T> wi) {
-                if (wi.z <= 0) return T(0);
-                const Vec<T> h = unit(wo + wi);
-                return ggx(h, a) * h.z / (4 * dot(wo, h));
-            });
+    const Family<T> in_ggx{codes, "GGX, all normals"}, beckmanns{codes, "Beckmann"},
+        visible{codes, "GGX, visible normals"}, refraction{codes, "refraction"};
+    using Views = std::initializer_list<View<T>>;
+    for (const View<T>& s :
+         Views{{30, 0.1}, {30, 0.5}, {60, 0.3}, {80, 0.3}, {0, 1}, {45, {0.5, 0.1}}})
+        in_ggx("wi " + s.text, [s](T u, T v) {
+            return reflected(s.wo, ggx_normal(u, v, s.a));
+        }).pdf([s](Vec<T> wi) {
+            return reflected_pdf(s.wo, wi, [&](Vec<T> h) { return ggx(h, s.a) * h.z; });
+        });
+    for (const View<T>& s : Views{{30, 0.3}, {70, {0.5, 0.2}}})
+        beckmanns("wi " + s.text, [s](T u, T v) {
+            return reflected(s.wo, beckmann_normal(u, v, s.a));
+        }).pdf([s](Vec<T> wi) {
+            return reflected_pdf(s.wo, wi, [&](Vec<T> h) { return beckmann(h, s.a) * h.z; });
+        });
+    for (const auto& [degrees, x, y] : {std::tuple(30, 0.3, 0.3), {65, 0.5, 0.2}}) {
+        const View<T> s(degrees, {x, y});
+        const BeckmannVisible<T> by_slopes{view<double>(degrees), {double(s.a.x), double(s.a.y)}};
+        beckmanns.both("wi by visible normals " + s.text, by_slopes);
     }
-    for (const auto& [degrees, x, y] : {Case{30, T(0.3), T(0.3)}, {70, T(0.5), T(0.2)}}) {
-        const Vec<T> wo = view<T>(degrees);
-        const Roughness<T> a{x, y};
-        add<T>(
-            codes, "Beckmann", say("wi at %g degrees, ", degrees) + a.text(),
-            [wo, a](T u, T v) { return reflected(wo, beckmann_normal(u, v, a)); },
-            [wo, a](Vec<T> wi) {
-                if (wi.z <= 0) return T(0);
-                const Vec<T> h = unit(wo + wi);
-                return beckmann(h, a) * h.z / (4 * dot(wo, h));
-            });
-    }
-    for (const auto& [degrees, x, y] : {Case{30, T(0.3), T(0.3)}, {65, T(0.5), T(0.2)}}) {
-        const BeckmannVisible<T> visible{view<double>(degrees), {double(x), double(y)}};
-        add<T>(
-            codes, "Beckmann",
-            say("wi by visible normals at %g degrees, ", degrees) + Roughness<T>{x, y}.text(),
-            [visible](T u, T v) { return visible.sample(u, v); },
-            [visible](Vec<T> wi) { return visible.pdf(wi); });
-    }
-    for (const auto& [degrees, x, y] : {Case{45, T(1e-3), T(1e-3)},
-                                        {45, T(0.02), T(0.02)},
-                                        {45, T(0.3), T(0.3)},
-                                        {45, T(1), T(1)},
-                                        {0, T(0.1), T(0.1)},
-                                        {85, T(0.1), T(0.1)},
-                                        {85, T(0.7), T(0.7)},
-                                        {89, T(0.3), T(0.3)},
-                                        {60, T(0.6), T(0.06)},
-                                        {75, T(0.05), T(0.5)},
-                                        {30, T(0.03), T(0.003)}}) {
-        const Vec<T> wo = view<T>(degrees);
-        const Roughness<T> a{x, y};
-        add<T>(
-            codes, "GGX, visible normals", say("wi at %g degrees, ", degrees) + a.text(),
-            [wo, a](T u, T v) { return reflected(wo, visible_by_disc(wo, u, v, a)); },
-            [wo, a](Vec<T> wi) { return visible_reflected_pdf(wo, wi, a); });
-    }
-    for (const auto& [degrees, x, y] : {Case{45, T(0.3), T(0.3)}, {70, T(0.5), T(0.1)}}) {
-        const Vec<T> wo = view<T>(degrees);
-        const Roughness<T> a{x, y};
-        const std::string where = say(" at %g degrees, ", degrees) + a.text();
-        add<T>(
-            codes, "GGX, visible normals", "h" + where,
-            [wo, a](T u, T v) { return visible_by_disc(wo, u, v, a); },
-            [wo, a](Vec<T> h) { return visible_pdf(wo, h, a); });
-        add<T>(
-            codes, "GGX, visible normals", "wi by caps" + where,
-            [wo, a](T u, T v) { return reflected(wo, visible_by_cap(wo, u, v, a)); },
-            [wo, a](Vec<T> wi) { return visible_reflected_pdf(wo, wi, a); });
+    for (const View<T>& s : Views{{45, 1e-3},
+                                  {45, 0.02},
+                                  {45, 0.3},
+                                  {45, 1},
+                                  {0, 0.1},
+                                  {85, 0.1},
+                                  {85, 0.7},
+                                  {89, 0.3},
+                                  {60, {0.6, 0.06}},
+                                  {75, {0.05, 0.5}},
+                                  {30, {0.03, 0.003}}})
+        visible("wi " + s.text, [s](T u, T v) {
+            return reflected(s.wo, visible_by_disc(s.wo, u, v, s.a));
+        }).pdf([s](Vec<T> wi) { return visible_reflected_pdf(s.wo, wi, s.a); });
+    for (const View<T>& s : Views{{45, 0.3}, {70, {0.5, 0.1}}}) {
+        visible("h " + s.text, [s](T u, T v) {
+            return visible_by_disc(s.wo, u, v, s.a);
+        }).pdf([s](Vec<T> h) { return visible_pdf(s.wo, h, s.a); });
+        visible("wi by caps " + s.text, [s](T u, T v) {
+            return reflected(s.wo, visible_by_cap(s.wo, u, v, s.a));
+        }).pdf([s](Vec<T> wi) { return visible_reflected_pdf(s.wo, wi, s.a); });
     }
     // In the world's coordinates, about a normal.
+    const Frame<T> frame(unit(Vec<T>{1, -2, T(0.5)}));
     for (const T rough : {T(0.1), T(0.5)}) {
-        const Frame<T> frame(unit(Vec<T>{1, -2, T(0.5)}));
-        const Vec<T> wo = view<T>(55);
-        const Roughness<T> a{rough, rough};
-        add<T>(
-            codes, "GGX, visible normals", say("wi by caps in the world, %g", rough),
-            [=](T u, T v) { return frame.world(reflected(wo, visible_by_cap(wo, u, v, a))); },
-            [=](Vec<T> wi) { return visible_reflected_pdf(wo, frame.local(wi), a); });
+        const View<T> s(55, rough);
+        visible(say("wi by caps in the world, %g", rough), [=](T u, T v) {
+            return frame.world(reflected(s.wo, visible_by_cap(s.wo, u, v, s.a)));
+        }).pdf([=](Vec<T> wi) { return visible_reflected_pdf(s.wo, frame.local(wi), s.a); });
     }
     // Refraction (Walter et al. 2007), into glass and out of it; ratio: index above over below.
     for (const T ratio : {1 / T(1.5), T(1.5)})
         for (const T rough : {T(0.1), T(0.4)}) {
             const Vec<T> wo = view<T>(35);
-            const Roughness<T> a{rough, rough};
-            add<T>(
-                codes, "refraction", say("wi, ratio %.3g, roughness %g", ratio, rough),
-                [=](T u, T v) -> std::optional<Vec<T>> {
-                    const Vec<T> h = ggx_normal(u, v, a);
-                    const T c = dot(wo, h), under = 1 + ratio * ratio * (c * c - 1);
-                    if (c <= 0 || under <= 0) return {};
-                    return (ratio * c - std::sqrt(under)) * h + -ratio * wo;
-                },
-                [=](Vec<T> wi) {
+            const Roughness<T> a = rough;
+            refraction(say("wi, ratio %.3g, roughness %g", ratio, rough),
+                       [=](T u, T v) -> std::optional<Vec<T>> {
+                           const Vec<T> h = ggx_normal(u, v, a);
+                           const T c = dot(wo, h), under = 1 + ratio * ratio * (c * c - 1);
+                           if (c <= 0 || under <= 0) return {};
+                           return (ratio * c - std::sqrt(under)) * h + -ratio * wo;
+                       })
+                .pdf([=](Vec<T> wi) {
                     if (wi.z >= 0) return T(0);
                     Vec<T> h = unit(ratio * wo + wi);
                     if (h.z < 0) h = T(-1) * h;
@@ -349,59 +305,43 @@ void reflections(Codes& codes) {
         }
 }
 
-// ---- Mixtures
-// ------------------------------------------------------------------------------------
+// ---- Mixtures -----------------------------------------------------------------------------------
 
 template <class T>
 void mixtures(Codes& codes) {
-    const std::string family = "mixtures";
+    const Family<T> add{codes, "mixtures"};
     const Vec<T> wo = view<T>(50);
     for (const T rough : {T(0.02), T(0.1), T(0.3)}) {
-        const Roughness<T> a{rough, rough};
+        const Roughness<T> a = rough;
         auto pdf = [=](Vec<T> wi) {
             return textbook::cosine_pdf(wi) / 2 + visible_reflected_pdf(wo, wi, a) / 2;
         };
         auto lobe = [=](T u, T v) { return reflected(wo, visible_by_disc(wo, u, v, a)); };
-        add<T>(
-            codes, family, say("diffuse and GGX %g, three numbers", rough),
-            [=](T which, T u, T v) {
-                return which < T(0.5) ? textbook::cosine_sample(u, v) : lobe(u, v);
-            },
-            pdf);
-        add<T>(
-            codes, family, say("diffuse and GGX %g, two numbers", rough),
-            [=](T u, T v) {
-                return u < T(0.5) ? textbook::cosine_sample(2 * u, v) : lobe(2 * u - 1, v);
-            },
-            pdf);
+        add(say("diffuse and GGX %g, three numbers", rough), [=](T which, T u, T v) {
+            return which < T(0.5) ? textbook::cosine_sample(u, v) : lobe(u, v);
+        }).pdf(pdf);
+        add(say("diffuse and GGX %g, two numbers", rough), [=](T u, T v) {
+            return u < T(0.5) ? textbook::cosine_sample(2 * u, v) : lobe(2 * u - 1, v);
+        }).pdf(pdf);
     }
-    add<T>(
-        codes, family, "cosine and uniform hemisphere",
-        [](T u, T v) {
-            return u < T(0.25) ? textbook::cosine_sample(4 * u, v)
-                               : polar((u - T(0.25)) / T(0.75), 2 * pi<T> * v);
-        },
-        [](Vec<T> w) { return w.z >= 0 ? w.z / (4 * pi<T>)+T(0.75) / (2 * pi<T>) : 0; });
-    add<T>(
-        codes, family, "diffuse reflection and transmission",
-        [](T u, T v) {
-            if (u < T(0.6)) return textbook::cosine_sample(u / T(0.6), v);
-            Vec<T> w = textbook::cosine_sample((u - T(0.6)) / T(0.4), v);
-            w.z = -w.z;
-            return w;
-        },
-        [](Vec<T> w) { return (w.z > 0 ? T(0.6) * w.z : T(-0.4) * w.z) / pi<T>; });
-    add<T>(
-        codes, family, "diffuse, Phong 10 and Phong 1000, three numbers",
-        [](T which, T u, T v) {
-            return which < T(0.2)   ? textbook::cosine_sample(u, v)
-                   : which < T(0.5) ? textbook::phong_sample(u, v, T(10))
-                                    : textbook::phong_sample(u, v, T(1000));
-        },
-        [](Vec<T> w) {
-            return T(0.2) * textbook::cosine_pdf(w) + T(0.3) * textbook::phong_pdf(w, T(10)) +
-                   T(0.5) * textbook::phong_pdf(w, T(1000));
-        });
+    add("cosine and uniform hemisphere", [](T u, T v) {
+        return u < T(0.25) ? textbook::cosine_sample(4 * u, v)
+                           : about_z((u - T(0.25)) / T(0.75), v);
+    }).pdf([](Vec<T> w) { return w.z >= 0 ? w.z / (4 * pi<T>)+T(0.75) / (2 * pi<T>) : 0; });
+    add("diffuse reflection and transmission", [](T u, T v) {
+        if (u < T(0.6)) return textbook::cosine_sample(u / T(0.6), v);
+        Vec<T> w = textbook::cosine_sample((u - T(0.6)) / T(0.4), v);
+        w.z = -w.z;
+        return w;
+    }).pdf([](Vec<T> w) { return (w.z > 0 ? T(0.6) * w.z : T(-0.4) * w.z) / pi<T>; });
+    add("diffuse, Phong 10 and Phong 1000, three numbers", [](T which, T u, T v) {
+        return which < T(0.2)   ? textbook::cosine_sample(u, v)
+               : which < T(0.5) ? textbook::phong_sample(u, v, T(10))
+                                : textbook::phong_sample(u, v, T(1000));
+    }).pdf([](Vec<T> w) {
+        return T(0.2) * textbook::cosine_pdf(w) + T(0.3) * textbook::phong_pdf(w, T(10)) +
+               T(0.5) * textbook::phong_pdf(w, T(1000));
+    });
 }
 
 template <class T>
