@@ -42,11 +42,12 @@ vec3 concentric_sample(double u, double v) {
     return {real(r * std::cos(phi)), real(r * std::sin(phi)), real(std::sqrt(1 - r * r))};
 }
 
-// All of it in float.
+// All of it in float.  At both ends of u is the horizon, which rounding may take to z = -4e-8.
 vec3 float_sample(double u, double v) {
-    const float r = std::sqrt(float(u)), phi = 2 * std::numbers::pi_v<float> * float(v);
+    const float r = std::sqrt(std::abs(2 * float(u) - 1)),
+                phi = 2 * std::numbers::pi_v<float> * float(v);
     const float x = r * std::cos(phi), y = r * std::sin(phi);
-    return {x, y, std::cos(std::asin(r))};  // -4e-8 where r rounds to 1
+    return {x, y, std::cos(std::asin(r))};
 }
 
 // About an axis of 45 degrees: what falls below the horizon is rejected.

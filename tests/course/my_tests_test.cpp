@@ -47,6 +47,22 @@ TEST_CASE("a test of intersectors finds wrong ones, and lets right ones pass") {
     expect_judgement(hidden_intersectors(), intersector_passes, 300);
 }
 
+TEST_CASE("right intersectors meet the farthest point of a sphere, through its centre") {
+    oracle::Random random(seed_here());
+    auto number = [&] { return real(2 * random() - 1); };
+    for (const auto& lineup : {practice_intersectors(), hidden_intersectors()})
+        for (const Named<Intersector>& s : lineup.right)
+            for (int i = 0; i < 300; ++i) {
+                const vec3 centre{number(), number(), number()};
+                const vec3 d = unit({number(), number(), number()});
+                const real r = std::exp2(4 * number()), t = real(1.7) * r;
+                const auto came = s.subject.meet({centre, {}, {}, r}, {centre - (t - r) * d, d});
+                INFO(s.name);
+                REQUIRE(came);
+                CHECK(std::abs(*came - t) <= 1e-3 * t);
+            }
+}
+
 TEST_CASE("tests draw what follows from their seeds") {
     const Aside aside;
     for (const Trial& t : practice()) {

@@ -118,14 +118,15 @@ inline double distance_to(const Body& s, vec3 p) {
 }
 
 // Goes on by the distance to the body, which cannot step over it (Hart 1996, sphere tracing), until
-// all of the body lies behind.
+// all of the body lies behind.  The last step to a body's farthest point may be rounded beyond it.
 inline std::optional<double> march(const Body& s, const Beam& beam, double tmax) {
     double t = 0, end = s.r;
     for (vec3 p : {s.a, s.r > 0 ? s.a : s.b, s.r > 0 ? s.a : s.c})
         end = std::max(end, double(length(p - beam.o) + s.r));
-    for (int i = 0; i < 5000 && t <= std::min(tmax, end); ++i) {
+    const double rounding = 64 * ulp * end;
+    for (int i = 0; i < 5000 && t <= std::min(tmax, end + rounding); ++i) {
         const double d = distance_to(s, beam.o + real(t) * beam.d);
-        if (d <= 64 * ulp * end) return t;
+        if (d <= rounding) return t;
         t += d;
     }
     return {};
