@@ -186,31 +186,22 @@ TEST_CASE("archives are read, not unpacked; a folder may have another name") {
     Course course("archives");
     const std::string at = "cd '" + house().folder / course.in + "' && ";
     course.hand_in("deep", {{"1.1", whole}}, "homework of mine/penumbra-starter/");
-    course.hand_in("twice", {{"1.1", whole}}, "a/");
-    course.hand_in("twice", {}, "b/");
     course.hand_in("x", {{"1.1", whole}});
     shell(at +
-          "tar czf 'ann b.tar.gz' x && tar cf plain.tar x && tar czf up.tar.gz --transform "
-          "'s,^x,../../x,' -P x && "
-          "head -c 300 up.tar.gz >short.tar.gz && head -c 1000 /dev/zero >zero.tar.gz");
+          "tar czf 'ann b.tar.gz' x && tar czf up.tar.gz --transform 's,^x,../../x,' -P x && "
+          "head -c 1000 /dev/zero >zero.tar.gz");
     shell(at +
           "cp x/src/path/cube.h solution.h && mkdir y && cp -r x/src y && ln -sf "
           "../../../solution.h y/src/path/cube.h && "
           "ln -f y/src/world/numbers.h y/hard.h && tar czf links.tar.gz y/hard.h y && rm -r x y "
           "solution.h");
-    shell(at +
-          "mkdir z z/src && head -c 400000000 /dev/zero >z/src/zeros && tar czf bomb.tar.gz z && "
-          "rm -r z");
     course.grade();
-    for (const std::string name : {"deep", "ann b", "plain"})
+    for (const std::string name : {"deep", "ann b"})
         course.expect({{name, "1.1", "", 2}, {name, "1.2", "", -1, "open"}});
-    course.expect({{"twice", "1.1", "holds 2 copies of src that differ"},
-                   {"up", "1.1", "holds no src/"},
-                   {"short", "1.1", "the archive is damaged"},
+    course.expect({{"up", "1.1", "holds no src/"},
                    {"zero", "1.1", "", 0},
                    {"links", "1.1", "numbers.h is a link"},
-                   {"links", "1.3", "cube.h is a link"},
-                   {"bomb", "1.1", "more than 268435456 bytes"}});
+                   {"links", "1.3", "cube.h is a link"}});
     CHECK(!fs::exists(house().folder / "x"));
     CHECK(!fs::exists(house().folder.path.parent_path() / "x"));
 }

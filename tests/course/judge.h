@@ -40,6 +40,14 @@ inline double length(const Triple& a) { return std::sqrt(dot(a, a)); }
 inline Triple unit(const Triple& a) { return 1 / length(a) * a; }
 inline Triple triple(In x, size_t at = 0) { return {x[at], x[at + 1], x[at + 2]}; }
 
+// Rows f(0), f(1), ... f(n - 1).
+template <class F>
+Rows rows_of(size_t n, F f) {
+    Rows rows;
+    for (size_t i = 0; i < n; ++i) rows.add(f(i));
+    return rows;
+}
+
 // a equals b up to a relative error, or an absolute one below 1; NaN equals nothing, and what is
 // infinite only itself.
 inline bool near(double a, double b, double tolerance) {
@@ -104,6 +112,26 @@ struct Item {
     int knows() const {
         if (seen.find("looks like") != seen.npos) return 3;
         return off < 1e-6 ? 0 : costs < 0.5 ? 1 : 2;
+    }
+};
+
+// The greatest of many errors, and what was seen there; what is not a number is the greatest of
+// all.
+struct Worst {
+    double off = 0;
+    std::string seen = "";
+    void see(double by, const std::string& what) {
+        if (by <= off || std::isinf(off)) return;
+        off = std::isnan(by) ? oracle::infinity : by, seen = what;
+    }
+};
+
+// How many of many are wrong, and what was seen at the first of these.
+struct Several {
+    size_t n = 0, wrong = 0;
+    std::string first = "";
+    void see(bool right, const std::string& what) {
+        if (++n; !right && wrong++ == 0) first = what;
     }
 };
 
@@ -258,6 +286,14 @@ public:
                const char* seen = "off by %.3g") {
         exact(what, off < limit, oracle::say(seen, off));
         items.back().off = off;
+    }
+    void worst(const std::string& what, const Worst& w, double limit) {
+        exact(what, w.off <= limit, w.seen);
+    }
+    // All of them are right, and there are some.
+    void all(const std::string& what, const Several& s) {
+        const std::string count = oracle::say(" (%zu of %zu are wrong)", s.wrong, s.n);
+        exact(what, s.n > 0 && s.wrong == 0, s.first + (s.n > 1 ? count : ""));
     }
     void none(const std::string& what, size_t count, const char* seen) {
         exact(what, count == 0, oracle::say(seen, count));

@@ -74,23 +74,23 @@ void on_average(Judge& j, const std::string& which, const std::string& sample, c
 // Directions that samplers make of these numbers.
 void expect_unit(Judge& j, const std::string& which,
                  const std::vector<std::pair<std::string, Rows>>& asked, bool upper = false) {
-    double off = 0, lowest = 1;
-    Out where{0, 0};
+    Worst lengths;
+    double lowest = 1;
     for (const auto& [sample, at] : asked) {
         const Rows directions = j.ask(sample, at);
         for (size_t i = 0; i < directions.size(); ++i) {
             const Triple w = triple(directions[i]);
             const double by = std::abs(dot(w, w) - 1);
-            if (!(by <= off) && !std::isnan(off)) off = by, where = {at[i][0], at[i][1]};
+            lengths.see(by,
+                        oracle::say("at u = (%.4g, %.4g) the square of the length is off by %.3g",
+                                    at[i][0], at[i][1], by));
             lowest = -worse(-lowest, -w[2]);
         }
     }
-    const bool right = off < digits(j);
+    const bool right = lengths.off < digits(j);
     j.exact(which + " have length 1" + (upper ? " and are above the horizon" : ""),
             right && (!upper || lowest >= 0),
-            right ? oracle::say("the lowest z is %.6g", lowest)
-                  : oracle::say("at u = (%.4g, %.4g) the square of the length is off by %.3g",
-                                where[0], where[1], off));
+            right ? oracle::say("the lowest z is %.6g", lowest) : lengths.seen);
 }
 
 // The integral over the upper hemisphere of what depends on the cosine c alone, by Simpson's rule
@@ -106,8 +106,7 @@ double over_hemisphere(const Out& values) {
     return sum;
 }
 double over_hemisphere(Judge& j, const std::string& pdf, const Out& more = {}) {
-    Rows at;
-    for (int i = 0; i <= steps; ++i) at.add(row(cosine_at(i), more));
+    const Rows at = rows_of(steps + 1, [&](size_t i) { return row(cosine_at(int(i)), more); });
     return over_hemisphere(j.ask(pdf, at).numbers);
 }
 
@@ -259,12 +258,12 @@ void phong_lobe(Judge& j) {
             oracle::say("it is %.6g at 60 degrees and %.6g on the axis", p[1], p[0]));
     j.exact("the density behind the lobe is 0, for even n, too", p[3] == 0,
             oracle::say("it is %.6g at a cosine of -0.5 with n = 2", p[3]));
-    double worst = 1;
+    Worst integral;
     for (double n : {0.0, 1.0, 2.5, 20.0, 400.0}) {
         const double sum = over_hemisphere(j, pdf, {n});
-        if (!(std::abs(sum - 1) <= std::abs(worst - 1))) worst = sum;
+        integral.see(std::abs(sum - 1), oracle::say("with n = %g it is %.9g, 1 expected", n, sum));
     }
-    j.number("the density integrates to 1, whatever n is", worst, 1, 1e-4);
+    j.worst("the density integrates to 1, whatever n is", integral, 1e-4);
     for (double n : {3.0, 50.0})
         on_average(j, oracle::say("directions with n = %.0f", n), sample, {n}, (n + 1) / (n + 2),
                    (n + 1) / (n + 3));

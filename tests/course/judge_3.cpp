@@ -1,111 +1,10 @@
 // course/judge_3.cpp  judges week 3: the path
-//
-// Scenes stand here, beside what is known of them; the program that answers only builds them.
-#include "course/judge.h"
+#include "course/judge_3_light.h"
+#include "course/judge_3_scenes.h"
 
 using namespace course;
 
 namespace {
-
-// ---- Scenes -------------------------------------------------------------------------------------
-
-struct Stuff {
-    enum Kind { rough, mirror, glass } kind = rough;
-    Triple kd{}, ks{};
-    double exponent = 0, ior = 1;
-    Triple Le{};
-    bool twosided = false;
-};
-
-Stuff glowing(const Triple& Le, Stuff m = {}) {
-    m.Le = Le;
-    return m;
-}
-
-Out thing(double kind, const Triple& a, const Triple& b, const Triple& c, const Stuff& m) {
-    return row(kind, a, b, c, int(m.kind), m.kd, m.ks, m.exponent, m.ior, m.Le, m.twosided);
-}
-Out ball(const Triple& centre, double r, const Stuff& m) {
-    return thing(0, centre, {r, 0, 0}, {}, m);
-}
-Out quad(const Triple& p, const Triple& u, const Triple& v, const Stuff& m) {
-    return thing(1, p, u, v, m);
-}
-Out point_light(const Triple& p, const Triple& intensity) { return thing(2, p, intensity, {}, {}); }
-
-void build(Judge& j, int depth, const std::vector<Out>& things) {
-    Out all{double(depth)};
-    for (const Out& t : things) all = row(all, t);
-    j.ask("scene", all);
-}
-
-// ---- Questions ----------------------------------------------------------------------------------
-
-enum Light { by_chance, by_aiming, by_both };
-enum Directions { uniform, by_bsdf };
-
-struct Technique {
-    Light light = by_chance;
-    Directions directions = by_bsdf;
-    double roulette = 0;
-    Out numbers() const { return {double(light), double(directions), roulette}; }
-};
-
-// A path's ray that was drawn with density pdf after k scatterings, n being the normal it left.
-Out segment(const Triple& o, const Triple& d, const Triple& beta = {1, 1, 1}, int k = 0,
-            double pdf = oracle::infinity, const Triple& n = {}) {
-    return row(o, d, o, pdf, beta, k, n);
-}
-
-// What is asked of path `seed`.
-Out question(const Technique& t, uint64_t seed, const Out& more) {
-    return row(t.numbers(), seed, more);
-}
-Out ray(const Triple& o, const Triple& d) { return row(o, d); }
-
-// Who computes in float here and there is as right: errors of some roundings, and of 1e-6, are
-// none.
-double tolerance(const Judge& j, double roundings = 1e4) {
-    return std::max(1e-6, roundings * j.epsilon);
-}
-// Which factor they are off by, if it is one for all, and what may have been forgotten.
-std::string off_by(In came, In expected, const std::vector<oracle::Factor>& factors = {}) {
-    double factor = 0;
-    for (size_t i = 0; i < came.size(); ++i)
-        if (std::abs(expected[i]) > 1e-9) factor = came[i] / expected[i];
-    for (size_t i = 0; i < came.size(); ++i)
-        if (!(std::abs(came[i] - factor * expected[i]) <= 1e-6 * std::abs(came[i]) + 1e-12))
-            return "";
-    if (factor == 0 || !std::isfinite(factor)) return "";
-    return ", " + oracle::times(factor, 1e-5) + " times as much" +
-           oracle::cause_of(factor, 1e-5, factors);
-}
-// A colour.
-void colour(Judge& j, const std::string& what, const Triple& came, const Triple& expected,
-            const std::vector<oracle::Factor>& factors = {}) {
-    j.vector(what, came, expected, tolerance(j));
-    if (!j.items.back().right) j.items.back().seen += off_by(came, expected, factors);
-}
-
-// What happened at a vertex.
-struct Step {
-    bool goes_on;
-    double weight;
-    Triple Le, direct, beta;
-    Triple along, normal;  // where the path goes on, in the world
-    Out next;
-    Triple f, wi;  // wi is local
-    double pdf;
-    Triple factor() const { return std::abs(wi[2]) / pdf * f; }
-};
-Step step(In x) {
-    return {x[1] != 0,     x[2],          triple(x, 3),  triple(x, 6),
-            triple(x, 25), triple(x, 9),  triple(x, 12), Out(x.begin() + 15, x.begin() + 32),
-            triple(x, 32), triple(x, 35), x[38]};
-}
-Step take_step(Judge& j, const Technique& t, uint64_t seed, const Out& from) {
-    return step(j.ask("step", question(t, seed, from)));
-}
 
 // ---- 3.1 The sum over a path --------------------------------------------------------------------
 
@@ -195,10 +94,7 @@ void a_lamp_is_met(Judge& j) {
     if (met == 0) return j.exact("a lamp that fills half of the sky is met", false, "no ray does");
     const Out none(came.size()), both = remember(by_aim, by_weight);
     remember(by_aim, emitted), remember(by_aim, none), remember(none, by_weight);
-    size_t at = 0;
-    while (at + 1 < both.size() && near(came[at], both[at], tolerance(j))) ++at;
-    j.number("light found by chance counts by its weight, beside that by aiming", came[at],
-             both[at], tolerance(j));
+    all_near(j, "light found by chance counts by its weight, beside that by aiming", came, both);
 }
 
 void sum_over_a_path(Judge& j) {
@@ -238,21 +134,20 @@ void of_a_mirror(Judge& j) {
 struct Scatterings {
     std::vector<Step> steps;
     Out came, expected;
-    double off = 0;
-    std::string seen;
+    Worst factor;
     void look(Judge& j, const Technique& t, uint64_t seed, const Out& from, const Triple& before) {
-        const Step& s = steps.emplace_back(take_step(j, t, seed, from));
+        const Step s = take_step(j, t, seed, from);
         if (!s.goes_on || !(s.pdf > 0)) return;
+        steps.push_back(s);
         const Triple truth = s.factor() * before;
         came.push_back(s.beta[0]), expected.push_back(truth[0]);
-        const double d = length(s.beta - truth) / std::max(1e-9, length(truth));
-        if (d <= off) return;
-        off = std::isnan(d) ? oracle::infinity : d;
-        seen = oracle::say("by f = %.4g, a cosine of %.4g and pdf = %.4g, %.6g expected, %.6g came",
-                           s.f[0], s.wi[2], s.pdf, truth[0], s.beta[0]);
+        factor.see(
+            length(s.beta - truth) / std::max(1e-9, length(truth)),
+            oracle::say("by f = %.4g, a cosine of %.4g and pdf = %.4g, %.6g expected, %.6g came",
+                        s.f[0], s.wi[2], s.pdf, truth[0], s.beta[0]));
     }
     void judge(Judge& j, const std::string& what) const {
-        j.exact(what, !came.empty() && off <= tolerance(j), seen);
+        j.exact(what, !came.empty() && factor.off <= tolerance(j), factor.seen);
     }
 };
 
@@ -260,8 +155,9 @@ void of_a_rough_ball(Judge& j) {
     const Triple kd{0.2, 0.5, 0.8};
     build(j, 8, {ball({0, 0, 0}, 1, {Stuff::rough, kd})});
     const Out from = towards_a_ball(2);
-    Out came, usual, likely, without_f, to_the_eye, of_the_world;
-    Out twice, without_cosine, not_over_pdf;
+    // Directions are those of other exercises; a formula is told whatever they are.
+    Out came;
+    std::array<Out, 8> formulas;
     for (Directions d : {by_bsdf, uniform}) {
         Scatterings s;
         for (uint64_t seed = 1; seed <= 200; ++seed)
@@ -269,21 +165,21 @@ void of_a_rough_ball(Judge& j) {
         s.judge(j, d == uniform ? "f |cos| / pdf of a rough ball, if directions are uniform"
                                 : "f |cos| / pdf of a rough ball, if they follow the cosine");
         for (const Step& e : s.steps) {
-            if (!e.goes_on || !(e.pdf > 0)) continue;
             const double f = e.f[0], cos = std::abs(e.wi[2]);
-            came.push_back(e.beta[0]), usual.push_back(f * cos / e.pdf);
-            likely.push_back(f * cos * e.pdf), not_over_pdf.push_back(f * cos);
-            twice.push_back(f * cos * cos / e.pdf), without_cosine.push_back(f / e.pdf);
-            without_f.push_back(cos / e.pdf),
-                of_the_world.push_back(f * std::abs(e.along[2]) / e.pdf);
-            to_the_eye.push_back(f * -dot(triple(from, 3), e.normal) / e.pdf);
+            const double values[] = {f * cos / e.pdf,
+                                     f * cos * e.pdf,
+                                     cos / e.pdf,
+                                     f * -dot(triple(from, 3), e.normal) / e.pdf,
+                                     f * std::abs(e.along[2]) / e.pdf,
+                                     f * cos * cos / e.pdf,
+                                     f / e.pdf,
+                                     f * cos};
+            came.push_back(e.beta[0]);
+            for (size_t k = 0; k < formulas.size(); ++k) formulas[k].push_back(values[k]);
         }
     }
-    // Directions are those of other exercises; a formula is told whatever they are.
     if (!came.empty())
-        for (const Out& formula : {usual, likely, without_f, to_the_eye, of_the_world, twice,
-                                   without_cosine, not_over_pdf})
-            j.remember_factor(came, formula);
+        for (const Out& formula : formulas) j.remember_factor(came, formula);
 }
 
 // Balls of one stuff after the other in any pose, met from outside or inside.
@@ -293,17 +189,16 @@ void of_any_ball(Judge& j, bool outside) {
         Scatterings s;
         for (int i = 0; i < 16; ++i) {
             const Pose pose = any_pose(j.random, std::ldexp(1, i % 3 * 10 - 10));
-            const auto colour = [&] { return Triple{j.random(), j.random(), j.random()}; };
-            const Stuff stuffs[] = {{Stuff::rough, colour()},
-                                    {Stuff::rough, colour(), colour(), 8},
-                                    {Stuff::mirror, {}, colour()},
+            const Stuff stuffs[] = {{Stuff::rough, any_colour(j)},
+                                    {Stuff::rough, any_colour(j), any_colour(j), 8},
+                                    {Stuff::mirror, {}, any_colour(j)},
                                     {Stuff::glass, {}, {}, 0, 1.5}};
             build(j, 20, {ball(pose.at({}), pose.scale, stuffs[kind])});
-            const Triple n = any_direction(j.random), before = colour();
+            const Triple n = any_direction(j.random), before = any_colour(j);
             const Triple o = outside ? 2 * n + 0.5 * in_cube(j.random) : 0.5 * in_cube(j.random);
             const Triple to = 0.5 * any_direction(j.random);
             const int k = int(10 * j.random());
-            s.look(j, {by_chance, i % 2 ? uniform : by_bsdf}, j.random.bits() >> 32,
+            s.look(j, {by_chance, i % 2 ? uniform : by_bsdf}, any_seed(j),
                    segment(pose.at(o), pose.turned(unit(to - o)), before, k), before);
         }
         s.judge(j, oracle::say("f |cos| / pdf of %s ball, %s, in any place and pose", names[kind],
@@ -337,402 +232,41 @@ void throughput(Judge& j) {
     of_any_ball(j, false);
 }
 
-// ---- 3.3 Light by aiming at it ------------------------------------------------------------------
-
-const Triple albedo{0.2, 0.5, 0.8};
-const Out ground = ball({0, 0, -10}, 10, {Stuff::rough, albedo});
-
-// The eye looks from the side at the origin, where the ground's normal is z.
-Out aimed(const Technique& t, uint64_t seed) {
-    return question(t, seed, ray({-0.3, 0, 0.4}, {0.6, 0, -0.8}));
-}
-
-void from_a_point(Judge& j) {
-    const Triple I{3, 2, 1}, at{1, 2, 2};  // 3 away, by a cosine of 2/3
-    const Stuff rough{Stuff::rough, albedo};
-    const Triple truth = (2 / 27.0 / oracle::pi) * albedo * I;
-    build(j, 4, {ground, point_light(at, I)});
-    const Rows L = j.probe("direct_light", {aimed({by_aiming}, 1), aimed({by_both}, 1)});
-    const std::vector<oracle::Factor> factors{{"the distance squared", 9}, {"the cosine", 2 / 3.0}};
-    colour(j, "a point light's intensity, distance and cosine", triple(L[0]), truth, factors);
-    build(j, 4, {ground, point_light(at, I), ball({0.5, 1, 1}, 0.2, rough)});
-    const Rows hidden = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
-    build(j, 4, {ground, point_light(at, I), ball({1.5, 3, 3}, 0.2, rough)});
-    const Rows beyond = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
-    colour(j, "nothing of it behind an obstacle", triple(hidden[0]), {0, 0, 0});
-    colour(j, "all of it before an obstacle", triple(beyond[0]), triple(L[0]));
-    colour(j, "no share of it is left to rays that cannot meet it", triple(L[1]), truth);
-    build(j, 4, {ground, point_light(at, 1e6 * I)});
-    const Out strong = j.ask("direct_light", aimed({by_aiming}, 1));
-    colour(j, "a light a million times as strong", triple(strong), 1e6 * truth);
-    j.limit();
-}
-
-// A lamp far above a ball: seen from a point of its upper side.
-void no_surface_shades_itself(Judge& j) {
-    const double far = 1e4;
-    build(
-        j, 4,
-        {ball({0, 0, 0}, 1, {Stuff::rough, albedo}), point_light({0, 0, far}, {far * far, 0, 0})});
-    const auto from = [](const Triple& n) { return question({by_aiming}, 1, ray(3 * n, -1 * n)); };
-    const auto on_the_ball = [](double z, double turns) {
-        const double r = std::sqrt(1 - z * z), phi = 2 * oracle::pi * turns;
-        return Triple{r * std::cos(phi), r * std::sin(phi), z};
-    };
-    Rows some;
-    for (int i = 0; i < 3; ++i) some.add(from(on_the_ball(0.3 + 0.2 * i, 0.1 + 0.37 * i)));
-    j.probe("direct_light", some);
-    const auto dark = [&](oracle::Random& random) {
-        Rows ask;
-        for (int i = 0; i < 400; ++i) ask.add(from(on_the_ball(0.1 + 0.9 * random(), random())));
-        const Rows L = j.ask("direct_light", ask);
-        size_t n = 0;
-        for (size_t i = 0; i < L.size(); ++i) n += L[i][0] <= 0;
-        return n;
-    };
-    oracle::Random fixed(1);
-    j.remember({double(dark(fixed) > 0)});
-    j.none("no surface is in its own way", dark(j.random),
-           "%zu of 400 points are dark in broad light");
-}
-
-// The eye aims at one of two; each is worth 1 over the chance to be aimed at.
-void from_two_points(Judge& j) {
-    const Triple a = (2 / 27.0 / oracle::pi) * Triple{3, 2, 1} * albedo;    // 3 away
-    const Triple b = (2 / 108.0 / oracle::pi) * Triple{4, 8, 16} * albedo;  // 6 away
-    build(j, 4, {ground, point_light({1, 2, 2}, {3, 2, 1}), point_light({-4, 2, 4}, {4, 8, 16})});
-    const Technique t{by_aiming};
-    j.probe("direct_light", {aimed(t, 1), aimed(t, 2)});
-    Rows ask;
-    for (int i = 0; i < 4000; ++i) ask.add(aimed(t, j.random.bits() >> 32));
-    const Rows L = j.ask("direct_light", ask);
-    double chance_of_a = 0, chance_of_b = 0;
-    for (size_t i = 0; i < L.size(); ++i)
-        if (L[i][0] * a[2] > L[i][2] * a[0] * 0.99)
-            chance_of_a = a[0] / L[i][0];
-        else
-            chance_of_b = b[0] / L[i][0];
-    j.number("chances by which two lights' samples are divided add up to",
-             chance_of_a + chance_of_b, 1, tolerance(j));
-    j.mean("mean of one of two lights: their sum", a[1] + b[1], L, [](In x) { return x[1]; });
-}
-
-// ---- Any scene ----
-
-// What a light sample is made of (answers_3.cpp), and what came of it.
-struct LightSample {
-    double chance, pdf, cosine, of_rays;
-    bool delta;
-    Triple f, L, x, y, came;
-    double told_pdf, told_weight;
-    double weight(const Technique& t) const {
-        const double p = chance * pdf, q = of_rays;
-        return t.light == by_both && !delta ? p * p / (p * p + q * q) : 1;
-    }
-    Triple expected(const Technique& t) const {
-        return cosine / (chance * pdf) * weight(t) * (f * L);
-    }
-};
-LightSample light_sample(In r) {
-    return {r[0],         r[1],          r[3],          r[4],          r[2] != 0, triple(r, 5),
-            triple(r, 8), triple(r, 11), triple(r, 14), triple(r, 17), r[20],     r[21]};
-}
-
-// A lamp that fills much of the sky: its sample in full, and beside rays that may meet it.
-void from_a_lamp(Judge& j) {
-    build(j, 4, {ground, ball({0, 0, 4}, 3.2, glowing({1, 2, 3}))});
-    for (Light light : {by_aiming, by_both}) {
-        const Technique t{light, uniform};
-        Out came, expected;
-        for (uint64_t seed = 1; seed <= 32; ++seed) {
-            const LightSample s = light_sample(j.ask("light_sample", aimed(t, seed)));
-            if (!(s.pdf > 0) || s.cosine < 0.01) continue;
-            came.push_back(s.came[1]), expected.push_back(s.expected(t)[1]);
-        }
-        j.remember_factor(came, expected);
-        size_t at = 0;
-        while (at + 1 < came.size() && near(came[at], expected[at], tolerance(j))) ++at;
-        j.number(light == by_aiming ? "a lamp's L f cos / pdf"
-                                    : "its share of that beside rays that may meet it",
-                 came.at(at), expected.at(at), tolerance(j));
-    }
-    // Of two lamps the weight knows the chance, too.
-    build(
-        j, 4,
-        {ground, ball({0, 3, 4}, 2, glowing({1, 2, 3})), ball({0, -3, 4}, 2, glowing({6, 5, 4}))});
-    Out came, expected;
-    for (uint64_t seed = 1; seed <= 32; ++seed) {
-        const Technique t{by_both, uniform};
-        const LightSample s = light_sample(j.ask("light_sample", aimed(t, seed)));
-        if (!(s.pdf > 0) || s.cosine < 0.01) continue;
-        came.push_back(s.came[1]), expected.push_back(s.expected(t)[1]);
-    }
-    j.remember_factor(came, expected);
-}
-
-struct Ball {
-    Triple centre;
-    double r;
-    // How far from its surface the segment from x to y stays; negative: it goes through.
-    double clear_of(const Triple& x, const Triple& y) const {
-        const Triple d = y - x, to = centre - x;
-        const double along = std::clamp(dot(to, d) / dot(d, d), 0.0, 1.0);
-        return length(to - along * d) - r;
-    }
-};
-
-// What was asked of light samples in scenes of one kind.
-struct Asked {
-    std::string what;
-    size_t n = 0, wrong = 0;
-    std::string first = {};
-    void see(bool right, const std::string& seen) {
-        ++n;
-        if (!right && wrong++ == 0) first = seen;
-    }
-    void judge(Judge& j) const {
-        j.exact(what, n > 0 && wrong == 0,
-                first + oracle::say(" (%zu of %zu are wrong)", wrong, n));
-    }
-};
-
-// A ball seen from outside, or a room within one, among lamps and point lights of unequal powers,
-// with balls in the way.
-void of_any_scene(Judge& j, bool inside, double scale, Asked& lit, Asked& share, Asked& dark,
-                  Asked& told) {
-    const Pose pose = any_pose(j.random, scale);
-    const auto colour = [&] { return Triple{j.random(), j.random(), j.random()}; };
-    Stuff stuff{Stuff::rough, 0.5 * colour()};
-    if (j.random() < 0.5) stuff.ks = 0.5 * colour(), stuff.exponent = 6;
-    const double size = inside ? 12 : 1;
-    std::vector<Ball> lamps, others;
-    std::vector<Out> things;
-    const auto place = [&](const Triple& at, double r, const Stuff& m, std::vector<Ball>& list) {
-        things.push_back(ball(pose.at(at), scale * r, m));
-        list.push_back({pose.at(at), scale * r});
-    };
-    for (int i = 0; i < 8; ++i) place(3.2 * any_direction(j.random), 0.7, {}, others);
-    things.push_back(ball(pose.at({}), scale * size, stuff));
-    for (int i = 0; i < 2; ++i)
-        place(7 * any_direction(j.random), 1, glowing(std::pow(30, j.random()) * colour()), lamps);
-    for (int i = 0; i < 2; ++i)
-        things.push_back(point_light(pose.at(5 * any_direction(j.random)),
-                                     40 * scale * scale * std::pow(30, j.random()) * colour()));
-    build(j, 4, things);
-    for (int i = 0; i < 48; ++i) {
-        Triple n = any_direction(j.random), w = any_direction(j.random);
-        if ((dot(n, w) < 0) != inside) w = -1.0 * w;
-        if (std::abs(dot(n, w)) < 0.2) continue;
-        const Technique t{i % 2 ? by_both : by_aiming, i % 4 < 2 ? uniform : by_bsdf};
-        const LightSample s = light_sample(j.ask(
-            "light_sample", question(t, j.random.bits() >> 32,
-                                     ray(pose.at(size * n + 0.5 * w), -1.0 * pose.turned(w)))));
-        if (!(s.pdf > 0) || s.cosine < 1e-3 || length(s.f) < 1e-6) continue;
-        double clear = oracle::infinity;
-        for (const Ball& b : others) clear = std::min(clear, b.clear_of(s.x, s.y) / scale);
-        for (const Ball& b : lamps)
-            if (std::abs(length(s.y - b.centre) / b.r - 1) > 1e-3)
-                clear = std::min(clear, b.clear_of(s.x, s.y) / scale);
-        if (std::abs(clear) < 0.01) continue;
-        const Triple expected = s.expected(t);
-        const double error = tolerance(j) * length(expected);
-        const std::string seen = oracle::say("%.6g expected, %.6g came, %.4g times as much",
-                                             expected[1], s.came[1], s.came[1] / expected[1]);
-        if (clear < 0)
-            dark.see(length(s.came) == 0, oracle::say("%.6g came", s.came[1]));
-        else
-            (t.light == by_both && !s.delta ? share : lit)
-                .see(length(s.came - expected) <= error, seen);
-        if (clear > 0)
-            told.see(near(s.told_pdf / (s.chance * s.pdf), 1, tolerance(j)) &&
-                         near(s.told_weight, s.weight(t), tolerance(j)),
-                     oracle::say("pdf = %.6g and weight = %.6g expected, %.6g and %.6g came",
-                                 s.chance * s.pdf, s.weight(t), s.told_pdf, s.told_weight));
-    }
-}
-
-void from_any_light(Judge& j) {
-    Asked lit{"of lights of unequal powers, each counts by f L cos over its chance and density"},
-        share{"and under MIS by its weight"}, dark{"what a ball hides is dark"},
-        inside{"the same from within a ball, where normals point away"},
-        sizes{"a scene a billion times as small or large is lit alike"},
-        told{"account is told the density, and the weight"};
-    for (int i = 0; i < 12; ++i) of_any_scene(j, false, 1, lit, share, dark, told);
-    for (int i = 0; i < 12; ++i) of_any_scene(j, true, 1, inside, inside, inside, told);
-    for (int i = 0; i < 12; ++i)
-        of_any_scene(j, i % 4 < 2, i % 2 ? 0x1p30 : 0x1p-30, sizes, sizes, sizes, told);
-    for (const Asked* a : {&lit, &share, &dark, &inside}) a->judge(j);
-    for (const Asked* a : {&sizes, &told}) a->judge(j), j.limit();
-}
-
-void light_by_aiming(Judge& j) {
-    from_a_point(j);
-    no_surface_shades_itself(j);
-    from_two_points(j);
-    from_a_lamp(j);
-    from_any_light(j);
-}
-
-// ---- 3.4 Both, weighted -------------------------------------------------------------------------
-
-// A light's shape, a point of it and the light's normal there, met by a ray from the origin.
-struct Place {
-    double shape;
-    Triple p, n;
-    double k = 1;
-};
-
-Out met(const Technique& t, double pdf, const Place& y) {
-    const Out s = segment({0, 0, 0}, unit(y.p), {1, 1, 1}, int(y.k), pdf, {0, 0, 1});
-    return row(t.numbers(), s, y.shape, y.p, y.n);
-}
-
-double weight(Judge& j, const Technique& t, double pdf, const Place& y) {
-    return j.probe("weight_of_emission", Rows(met(t, pdf, y))).numbers[0];
-}
-
-// The density with which light samples go there, as the program itself says.
-double density(Judge& j, const Technique& t, const Place& y) {
-    const Out both = j.ask("likelihood", met(t, 1, y));
-    return both[0] * both[1];
-}
-
-void of_one_lamp(Judge& j) {
-    const Stuff lamp = glowing({1, 1, 1});
-    build(j, 4, {ball({0, 0, 4}, 2, lamp)});
-    const Place y{0, {0, 0, 2}, {0, 0, -1}}, seen{0, {0, 0, 2}, {0, 0, -1}, 0};
-    j.number("the weight where nobody aims", weight(j, {by_chance}, 0.3, y), 1, 0);
-    const double eye = weight(j, {by_aiming}, oracle::infinity, seen),
-                 in_mirror = weight(j, {by_aiming}, oracle::infinity, y),
-                 both = weight(j, {by_both}, oracle::infinity, y);
-    j.exact("lamps that the eye sees, straight or in a mirror, weigh 1",
-            eye == 1 && in_mirror == 1 && both == 1,
-            oracle::say("they weigh %.6g and %.6g", eye, in_mirror));
-    j.number("the weight where light is found by aiming alone", weight(j, {by_aiming}, 0.3, y), 0,
-             0);
-    weight(j, {by_both}, 0.3, y), weight(j, {by_both}, 5, y);
-    const double q = density(j, {by_both}, y);
-    const auto of = [&](double p) { return j.ask("weight_of_emission", met({by_both}, p, y))[0]; };
-    j.number("the weight of a ray three times as likely as the light sample", of(3 * q), 0.9,
-             tolerance(j, 64));
-    j.number("the weight of a ray a third as likely", of(q / 3), 0.1, tolerance(j, 64));
-}
-
-// Samples of a ball's light do not go to its inside: who stands there meets it by chance alone.
-void within_a_lamp(Judge& j) {
-    Stuff lamp = glowing({1, 1, 1});
-    lamp.twosided = true;
-    build(j, 4, {ball({0, 0, 0}, 5, lamp)});
-    const Place y{0, {0, 0, 5}, {0, 0, 1}};
-    const double aiming = weight(j, {by_aiming}, 0.3, y), both = weight(j, {by_both}, 0.3, y);
-    j.exact("a light that cannot be aimed at from there weighs 1",
-            near(aiming, 1, tolerance(j, 4)) && near(both, 1, tolerance(j, 4)),
-            oracle::say("it weighs %.6g, and %.6g where both ways are used", aiming, both));
-}
-
-void of_two_lamps(Judge& j) {
-    const Stuff dim = glowing({1, 1, 1}), bright = glowing({5, 5, 5});
-    build(j, 4, {ball({3, 0, 4}, 1, dim), quad({-3, -1, 3}, {0, 2, 0}, {2, 0, 0}, bright)});
-    const std::vector<Place> places = {{0, {2.4, 0, 3.2}, {-0.6, 0, -0.8}},
-                                       {1, {-2.5, 0.5, 3}, {0, 0, -1}}};
-    const Technique t{by_both};
-    for (const Place& y : places) weight(j, t, 0.3, y);
-    double off = 0;
-    for (const Place& y : places)
-        off =
-            worse(off, std::abs(j.ask("weight_of_emission", met(t, density(j, t, y), y))[0] - 0.5));
-    j.exact("of two lamps: 1/2 where both ways are as likely", off <= tolerance(j, 64),
-            oracle::say("off by %.6g", off));
-}
-
-// Lamps that shine on each other: seen from one of them the other is the likelier.
-void of_facing_lamps(Judge& j) {
-    const Stuff dim = glowing({1, 1, 1}), bright = glowing({5, 5, 5});
-    build(j, 4, {ball({3, 0, 4}, 1, dim), ball({-3, 0, 4}, 1, bright)});
-    weight(j, {by_both}, 0.3, {0, {2.4, 0, 3.2}, {-0.6, 0, -0.8}});
-}
-
-// Lamps of both kinds among balls that are none, in any order and pose.
-void of_any_lamp(Judge& j) {
-    double off = 0;
-    std::string seen;
-    for (int i = 0; i < 40; ++i) {
-        const Pose pose = any_pose(j.random, std::ldexp(1, i % 3 * 8 - 8));
-        const Stuff lamp = glowing(std::pow(30, j.random()) * Triple{1, 2, 3});
-        std::vector<Out> things;
-        std::vector<Place> places;
-        double shapes = 0;
-        for (int k = 0; k < 6; ++k) {
-            const Triple at = 6 * any_direction(j.random), u = any_direction(j.random);
-            const Triple v = unit(cross(u, at)), n = unit(cross(u, v));
-            if (k == 2 || k == 5) {
-                things.push_back(quad(pose.at(at), pose.scale * pose.turned(u),
-                                      pose.scale * pose.turned(v), lamp));
-                const Triple y = at + j.random() * u + j.random() * v;
-                places.push_back({shapes, pose.at(y), unit(cross(pose.turned(u), pose.turned(v)))});
-                shapes += 2;
-            } else {
-                things.push_back(ball(pose.at(at), pose.scale, k % 2 ? lamp : Stuff{}));
-                const Triple m = dot(n, at) < 0 ? n : -1.0 * n;
-                if (k % 2) places.push_back({shapes, pose.at(at + m), pose.turned(m)});
-                ++shapes;
-            }
-        }
-        build(j, 4, things);
-        for (Place y : places) {
-            // From a point near the middle, with a normal towards the lamp.
-            const Triple from = pose.at(0.5 * in_cube(j.random));
-            const Technique t{i % 4 ? by_both : by_aiming};
-            const double p = std::pow(100, 2 * j.random() - 1);
-            const Out s = segment(from, unit(y.p - from), {1, 1, 1}, 1 + i % 5, p,
-                                  unit(unit(y.p - from) + 0.5 * any_direction(j.random)));
-            const Out asked = row(t.numbers(), s, y.shape, y.p, y.n);
-            const Out both = j.ask("likelihood", asked);
-            const double q = both[0] * both[1], came = j.ask("weight_of_emission", asked)[0];
-            const double truth = t.light == by_aiming ? q <= 0 : p * p / (p * p + q * q);
-            if (std::abs(came - truth) <= off) continue;
-            off = std::isnan(came) ? oracle::infinity : std::abs(came - truth);
-            seen = oracle::say(
-                "densities of %.4g by chance and %.4g by aiming: %.6g expected, "
-                "%.6g came",
-                p, q, truth, came);
-        }
-    }
-    j.exact("of many lamps, beside balls that are none: any densities", off <= tolerance(j, 1e4),
-            seen);
-}
-
-void both_weighted(Judge& j) {
-    of_one_lamp(j);
-    of_two_lamps(j);
-    of_facing_lamps(j);
-    of_any_lamp(j);
-    within_a_lamp(j);
-}
-
 // ---- 3.5 Russian roulette -----------------------------------------------------------------------
+
+// Paths from a seed on, their throughput where roulette has a threshold, and the numbers it draws.
+Rows asked_of_roulette(double threshold, size_t n, uint64_t first, const Out& from) {
+    return rows_of(n, [&](size_t i) {
+        return question({by_chance, by_bsdf, threshold}, first + i, from);
+    });
+}
+struct Fates {
+    Rows beta;
+    Out number;
+    Fates(Judge& j, double threshold, size_t n, const Out& from) {
+        const uint64_t first = any_seed(j);
+        beta = j.ask("throughput", asked_of_roulette(threshold, n, first, from));
+        number = j.ask("number", rows_of(n,
+                                         [&](size_t i) {
+                                             return Out{double(first + i), 2, 6};
+                                         }))
+                     .numbers;
+    }
+    bool lives(size_t i) const { return beta[i][2] > 0; }
+};
 
 // Whoever is dim dies often: the number that roulette draws says when.
 void fate_of_the_dim(Judge& j, double threshold, const Triple& before, double chance) {
-    const int n = 20000;
-    const Out from = towards_a_ball(2, before, 2);
-    const uint64_t first = j.random.bits() >> 32;
-    Rows paths, which;
-    for (int i = 0; i < n; ++i) {
-        paths.add(question({by_chance, by_bsdf, threshold}, first + uint64_t(i), from));
-        which.add({double(first + uint64_t(i)), 2, 6});
-    }
-    const Rows beta = j.ask("throughput", paths), u = j.ask("number", which);
+    const Fates f(j, threshold, 20000, towards_a_ball(2, before, 2));
     size_t low = 0, high = 0, alive = 0;  // those of other fates, if low or high numbers save
-    for (size_t i = 0; i < beta.size(); ++i) {
-        const bool lives = beta[i][2] > 0;
-        alive += lives;
-        low += lives != (u[i][0] < chance), high += lives != (u[i][0] >= 1 - chance);
+    for (size_t i = 0; i < f.beta.size(); ++i) {
+        alive += f.lives(i);
+        low += f.lives(i) != (f.number[i] < chance),
+            high += f.lives(i) != (f.number[i] >= 1 - chance);
     }
     j.exact("of the dim as few survive as the law says", std::min(low, high) == 0,
-            oracle::say("of 20000 paths with a chance of %.3g about "
-                        "%.0f should, and %zu do",
-                        chance, n * chance, alive));
+            oracle::say("of 20000 paths with a chance of %.3g about %.0f should, and %zu do",
+                        chance, 20000 * chance, alive));
 }
 
 // A mirror, which takes part of the path's throughput and no random number.
@@ -741,55 +275,49 @@ void roulette(Judge& j) {
     const Triple before{0.4, 1.2, 1.6};
     build(j, 8, {ball({0, 0, 0}, 1, {Stuff::mirror, {}, {0.5, 0.5, 0.5}})});
     const Out from = towards_a_ball(2, before, 2);
-    const auto asked = [&](double threshold, int n, uint64_t first) {
-        Rows rows;
-        for (int i = 0; i < n; ++i)
-            rows.add(question({by_chance, by_bsdf, threshold}, first + uint64_t(i), from));
-        return rows;
+    const auto asked = [&](double threshold, size_t n) {
+        return asked_of_roulette(threshold, n, 1, from);
     };
-    j.probe("throughput", asked(0.7 * T, 6, 1));
-    const Rows many = j.ask("throughput", asked(T, 64, 1));
+    j.probe("throughput", asked(0.7 * T, 6));
+    const Rows many = j.ask("throughput", asked(T, 64));
     double survivors = 0;
     for (size_t i = 0; i < many.size(); ++i) survivors += many[i][2] > 0;
     j.remember({survivors});
-    j.probe("throughput", asked(0.05, 1, 1));
+    j.probe("throughput", asked(0.05, 1));
     const Triple without = triple(j.ask("throughput", question({}, 1, from)));
     const Triple whole = without[2] > 0 ? without : 0.5 * before;
     j.exact("where the threshold is 0 nobody dies", without[2] > 0, "a path was ended");
     const double chance = whole[2] / T;
 
-    const Rows bright = j.ask("throughput", asked(0.9 * whole[2], 64, 1));
+    const Rows bright = j.ask("throughput", asked(0.9 * whole[2], 64));
     bool untouched = true;
     for (size_t i = 0; i < bright.size(); ++i) untouched &= triple(bright[i]) == whole;
     j.exact("a path whose largest channel is above the threshold goes on as it is", untouched,
             "one of 1.1 times the threshold was ended, or changed");
 
-    const uint64_t first = j.random.bits() >> 32;
-    const int n = 100000;
-    const Rows beta = j.ask("throughput", asked(T, n, first));
-    Rows which;
-    for (int i = 0; i < n; ++i) which.add({double(first + uint64_t(i)), 2, 6});
-    const Rows u = j.ask("number", which);
-    double alive = 0, highest_alive = 0, lowest_alive = 1, highest_dead = 0, lowest_dead = 1;
+    const size_t n = 100000;
+    const Fates f(j, T, n, from);
+    size_t alive = 0;
+    double highest_alive = 0, lowest_alive = 1, highest_dead = 0, lowest_dead = 1;
     Triple survivor{};
-    for (size_t i = 0; i < beta.size(); ++i) {
-        const bool lives = beta[i][2] > 0;
-        alive += lives;
-        if (lives) survivor = triple(beta[i]);
-        double& high = lives ? highest_alive : highest_dead;
-        double& low = lives ? lowest_alive : lowest_dead;
-        high = std::max(high, u[i][0]), low = std::min(low, u[i][0]);
+    for (size_t i = 0; i < n; ++i) {
+        alive += f.lives(i);
+        if (f.lives(i)) survivor = triple(f.beta[i]);
+        double& high = f.lives(i) ? highest_alive : highest_dead;
+        double& low = f.lives(i) ? lowest_alive : lowest_dead;
+        high = std::max(high, f.number[i]), low = std::min(low, f.number[i]);
     }
     colour(j, "who survives has the threshold in its largest channel, and its colour", survivor,
            (1 / chance) * whole);
     j.exact(
         "the number that roulette draws decides, and nothing else",
         alive > 0 && alive < n && (highest_alive <= lowest_dead || highest_dead <= lowest_alive),
-        oracle::say("of %d paths %.0f survive, with numbers of %.3g to %.3g", n, alive,
+        oracle::say("of %zu paths %zu survive, with numbers of %.3g to %.3g", n, alive,
                     lowest_alive, highest_alive));
     fate_of_the_dim(j, T, 0.01 * before, 0.01 * chance);
-    j.mean("share of paths that survive", chance, beta, [](In b) { return b[2] > 0 ? 1.0 : 0.0; });
-    j.mean("mean throughput, the dead counted as 0", whole[0], beta, [](In b) { return b[0]; });
+    j.mean("share of paths that survive", chance, f.beta,
+           [](In b) { return b[2] > 0 ? 1.0 : 0.0; });
+    j.mean("mean throughput, the dead counted as 0", whole[0], f.beta, [](In b) { return b[0]; });
 }
 
 // ---- 3.6 Glass ----------------------------------------------------------------------------------
@@ -807,9 +335,9 @@ struct Ways {
     int n_reflected = 0, n = 0;
 };
 Ways ways(Judge& j, double ior, bool outside, double cosine) {
-    Rows ask;
-    for (int i = 0; i < 512; ++i) ask.add(at_glass(ior, outside, (i + 0.5) / 512, cosine));
-    const Rows b = j.ask("sample_glass", ask);
+    const Rows b = j.ask("sample_glass", rows_of(512, [&](size_t i) {
+                             return at_glass(ior, outside, (double(i) + 0.5) / 512, cosine);
+                         }));
     Ways w;
     for (size_t i = 0; i < b.size(); ++i, ++w.n) {
         const Triple wi = triple(b[i]);
@@ -843,23 +371,22 @@ void directions_of_glass(Judge& j) {
 
 // Reflectances of index 1.5, in numbers.
 void reflectance_of_glass(Judge& j) {
-    struct Known {
+    const struct {
         bool outside;
         double cosine, reflectance;
-    } at{};
-    double worst = 0;
-    for (const Known& k :
-         std::initializer_list<Known>{{true, 1, 0.04},
-                                      {true, 0.5, 0.0891867128022121},
-                                      {true, 1 / std::sqrt(3.25), 0.0739644970414201},
-                                      {false, 0.8, 0.1141411002213539},
-                                      {true, 0.001, 0.9942055725085013}}) {
+    } known[] = {{true, 1, 0.04},
+                 {true, 0.5, 0.0891867128022121},
+                 {true, 1 / std::sqrt(3.25), 0.0739644970414201},
+                 {false, 0.8, 0.1141411002213539},
+                 {true, 0.001, 0.9942055725085013}};
+    Worst reflected;
+    for (const auto& k : known) {
         const double off = std::abs(ways(j, 1.5, k.outside, k.cosine).reflected - k.reflectance);
-        if (!(off <= worst)) worst = off, at = k;
+        reflected.see(
+            off, oracle::say("off by %.6g where %.6g is reflected, at a cosine of %.4g %s", off,
+                             k.reflectance, k.cosine, k.outside ? "from outside" : "from inside"));
     }
-    j.exact("it reflects as much as Fresnel's law says", worst <= tolerance(j),
-            oracle::say("off by %.6g where %.6g is reflected, at a cosine of %.4g %s", worst,
-                        at.reflectance, at.cosine, at.outside ? "from outside" : "from inside"));
+    j.worst("it reflects as much as Fresnel's law says", reflected, tolerance(j));
 }
 
 // The same laws for other indices, angles and both sides.
@@ -922,9 +449,9 @@ void glass(Judge& j) {
     j.number("probabilities of both ways add up to", slanted.pdf_reflected + slanted.pdf_refracted,
              1, tolerance(j, 64));
     of_any_glass(j);
-    Rows ask;
-    for (int i = 0; i < 100000; ++i) ask.add(at_glass(1.5, true, j.random(), 0.3));
-    const Rows b = j.ask("sample_glass", ask);
+    const Rows b =
+        j.ask("sample_glass",
+              rows_of(100000, [&](size_t) { return at_glass(1.5, true, j.random(), 0.3); }));
     j.mean("of light at a cosine of 0.3, R is reflected", R, b, [](In x) { return x[2] > 0; });
 }
 

@@ -75,8 +75,7 @@ void radical_inverse(Judge& j) {
 
     size_t empty = 0;
     for (const auto& [base, n] : {std::pair(2, 64), {3, 81}, {5, 125}, {7, 343}, {29, 841}}) {
-        Rows at;
-        for (int i = 0; i < n; ++i) at.add(inverse(base, uint64_t(i)));
+        const Rows at = rows_of(size_t(n), [base = base](size_t i) { return inverse(base, i); });
         empty += holes(count(j, question, at, size_t(n)));
     }
     j.none("the first b^k indices put one point into each of b^k parts", empty,
@@ -87,15 +86,16 @@ void radical_inverse(Judge& j) {
                            inverse(10, 4000000000000000000u), inverse(10, UINT64_MAX),
                            inverse(10, 10000000000000000001u)});
     // Digits that no sum shows may be dropped.
-    double off_large = 0;
+    const char* indices[] = {"2^40 + 1 in base 2", "3^35 + 2 in base 3", "4 * 10^18 in base 10",
+                             "2^64 - 1 in base 10", "10^19 + 1 in base 10"};
     const double truth[] = {0.5 + 0x1p-41, 2 / 3.0, 4e-19, 0.51615590737044764, 0.1};
+    Worst off_large;
     for (size_t i = 0; i < large.size(); ++i)
-        off_large = worse(off_large, std::abs(large.numbers[i] - truth[i]));
-    j.exact("indices beyond 32 bits keep their digits, as far as 64 bits go",
-            off_large < 64 * j.epsilon,
-            oracle::say("2^40 + 1 in base 2 becomes 0.5 + %.3g, in base 10 %.17g is expected of "
-                        "18446744073709551615, and %.17g came; 0.1 of 10^19 + 1, and %.9g came",
-                        large.numbers[0] - 0.5, truth[3], large.numbers[3], large.numbers[4]));
+        off_large.see(
+            std::abs(large.numbers[i] - truth[i]),
+            oracle::say("%s: %.17g expected, %.17g came", indices[i], truth[i], large.numbers[i]));
+    j.worst("indices beyond 32 bits keep their digits, as far as 64 bits go", off_large,
+            64 * j.epsilon);
     // Of all nines and the like: 1 - b^-k, which rounds to 1; with 65 digits they do not fit.
     const Rows near_one =
         j.ask(question, {inverse(2, UINT64_MAX), inverse(3, 12157665459056928800u),
@@ -117,9 +117,9 @@ Out scrambled(double base, uint64_t index, uint64_t shift, uint64_t factor) {
 
 // Of n indices with random bits, parts of [0,1) that stay empty, of n; of many trials.
 size_t empty_parts(Judge& j, oracle::Random& random, int base, int n, uint64_t first = 0) {
-    Rows at;
     const uint64_t shift = random.bits(), factor = random.bits();
-    for (int i = 0; i < n; ++i) at.add(scrambled(base, first + uint64_t(i), shift, factor));
+    const Rows at =
+        rows_of(size_t(n), [&](size_t i) { return scrambled(base, first + i, shift, factor); });
     return holes(count(j, scrambling, at, size_t(n)));
 }
 size_t empty_parts(Judge& j, oracle::Random& random) {
@@ -167,12 +167,11 @@ std::string unevenness(Judge& j) {
 
 // With random bits, in n parts.
 std::vector<uint64_t> counts_of(Judge& j, oracle::Random& random, int base, uint64_t index,
-                                size_t n, int draws) {
-    Rows at;
-    for (int i = 0; i < draws; ++i) {
+                                size_t n, size_t draws) {
+    const Rows at = rows_of(draws, [&](size_t) {
         const uint64_t shift = random.bits(), factor = random.bits();
-        at.add(scrambled(base, index, shift, factor));
-    }
+        return scrambled(base, index, shift, factor);
+    });
     return count(j, scrambling, at, n);
 }
 
@@ -258,30 +257,21 @@ size_t equal_numbers(In a, In b) {
 const size_t of_vertex = 7;
 const uint32_t primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
 
-// Of the boxes that two numbers' bases cut out, those that stay empty: none is after as many
-// samples.
-size_t empty_boxes(Judge& j, size_t dim, size_t other, size_t pixels) {
-    const size_t a = primes[dim], b = primes[other];
-    const Rows x = paths(j, 3, 11, int(pixels), int(a * b));
+// Of the boxes that numbers' bases cut out, those that stay empty: none is after as many samples.
+size_t empty_boxes(Judge& j, const std::vector<size_t>& dims) {
+    const size_t pixels = 3;
+    size_t boxes = 1;
+    for (size_t dim : dims) boxes *= primes[dim];
+    const Rows x = paths(j, 3, 11, int(pixels), int(boxes));
     size_t empty = 0;
     for (size_t p = 0; p < pixels; ++p) {
-        std::set<size_t> hit;
-        for (size_t i = p * a * b; i < (p + 1) * a * b; ++i)
-            hit.insert(part(j, a, x[i][dim]) * (b + 1) + part(j, b, x[i][other]));
-        empty += a * b - std::min(a * b, hit.size());
-    }
-    return empty;
-}
-
-// Of the parts that a number's base cuts out, those that stay empty after as many samples.
-size_t empty_alone(Judge& j, size_t dim, size_t pixels) {
-    const size_t b = primes[dim];
-    const Rows x = paths(j, 3, 11, int(pixels), int(b));
-    size_t empty = 0;
-    for (size_t p = 0; p < pixels; ++p) {
-        std::set<size_t> hit;
-        for (size_t i = p * b; i < (p + 1) * b; ++i) hit.insert(part(j, b, x[i][dim]));
-        empty += b - std::min(b, hit.size());
+        std::set<std::vector<size_t>> hit;
+        for (size_t i = p * boxes; i < (p + 1) * boxes; ++i) {
+            std::vector<size_t> box;
+            for (size_t dim : dims) box.push_back(part(j, primes[dim], x[i][dim]));
+            hit.insert(box);
+        }
+        empty += boxes - std::min(boxes, hit.size());
     }
     return empty;
 }
@@ -342,12 +332,12 @@ void dimensions(Judge& j) {
     const std::set<double> different(here[0].begin(), here[0].end());
     const size_t again = equal_numbers(here[0], here[1]), pixel = equal_numbers(here[0], here[2]);
     const size_t seed = equal_numbers(here[0], reseeded[0]);
-    const size_t empty[] = {empty_boxes(j, 0, 1, 3), empty_boxes(j, 2, 3, 3),
-                            empty_boxes(j, 2, 2 + of_vertex, 3)};
-    j.remember({double(empty_alone(j, 0, 3) > 0)});
+    const size_t empty[] = {empty_boxes(j, {0, 1}), empty_boxes(j, {2, 3}),
+                            empty_boxes(j, {2, 2 + of_vertex})};
+    j.remember({double(empty_boxes(j, {0}) > 0)});
     std::string alone;
     for (size_t dim : {0, 2, 3})
-        if (const size_t parts = empty_alone(j, dim, 3); parts > 0 && alone.empty())
+        if (const size_t parts = empty_boxes(j, {dim}); parts > 0 && alone.empty())
             alone = oracle::say("; even of number %zu alone, whose base is %u, %zu parts of %zu do",
                                 dim, primes[dim], parts, 3 * size_t(primes[dim]));
     const Pairs pairs = pairs_of(j);
@@ -386,22 +376,28 @@ Out in_cell(double which, double columns, double rows, uint64_t random) {
 
 // Of `parts`, those that a random number of theirs has missed.
 size_t missed_parts(Judge& j, oracle::Random& random, size_t parts) {
-    Rows at;
-    for (size_t which = 0; which < parts; ++which)
-        at.add(in_part(double(which), double(parts), random.bits()));
-    const Rows x = j.ask("in_part", at);
+    const Rows x = j.ask("in_part", rows_of(parts, [&](size_t which) {
+                             return in_part(double(which), double(parts), random.bits());
+                         }));
     size_t missed = 0;
     for (size_t which = 0; which < parts; ++which)
         missed += part(j, parts, x.numbers[which]) != which;
     return missed;
 }
 
+// Numbers of the third of five parts, and points of cell 5 of 4 x 3.
+Out thirds(Judge& j, oracle::Random& random, size_t n) {
+    return j.ask("in_part", rows_of(n, [&](size_t) { return in_part(2, 5, random.bits()); }))
+        .numbers;
+}
+Rows fifths(Judge& j, oracle::Random& random, size_t n) {
+    return j.ask("in_cell", rows_of(n, [&](size_t) { return in_cell(5, 4, 3, random.bits()); }));
+}
+
 // Where in the third of five parts a number is, of n; the last count: elsewhere.
-std::vector<uint64_t> places_in_part(Judge& j, oracle::Random& random, size_t n, int draws) {
-    Rows at;
-    for (int i = 0; i < draws; ++i) at.add(in_part(2, 5, random.bits()));
+std::vector<uint64_t> places_in_part(Judge& j, oracle::Random& random, size_t n, size_t draws) {
     std::vector<uint64_t> counts(n + 1);
-    for (double x : j.ask("in_part", at).numbers) {
+    for (double x : thirds(j, random, draws)) {
         const size_t place = part(j, 5 * n, x);
         ++counts[place / n == 2 ? place % n : n];
     }
@@ -410,10 +406,10 @@ std::vector<uint64_t> places_in_part(Judge& j, oracle::Random& random, size_t n,
 
 // Of a grid's cells, those that have no point after a point of each.
 size_t empty_cells(Judge& j, oracle::Random& random, size_t columns, size_t rows) {
-    Rows at;
-    for (size_t cell = 0; cell < columns * rows; ++cell)
-        at.add(in_cell(double(cell), double(columns), double(rows), random.bits()));
-    const Rows x = j.ask("in_cell", at);
+    const Rows x =
+        j.ask("in_cell", rows_of(columns * rows, [&](size_t cell) {
+                  return in_cell(double(cell), double(columns), double(rows), random.bits());
+              }));
     std::set<size_t> hit;
     for (size_t i = 0; i < x.size(); ++i) {
         const size_t a = part(j, columns, x[i][0]), b = part(j, rows, x[i][1]);
@@ -423,10 +419,8 @@ size_t empty_cells(Judge& j, oracle::Random& random, size_t columns, size_t rows
 }
 
 // Where in its cell a point is, in n x n; the last count: outside of the square.
-std::vector<uint64_t> places_in_cell(Judge& j, oracle::Random& random, size_t n, int draws) {
-    Rows at;
-    for (int i = 0; i < draws; ++i) at.add(in_cell(5, 4, 3, random.bits()));
-    const Rows x = j.ask("in_cell", at);
+std::vector<uint64_t> places_in_cell(Judge& j, oracle::Random& random, size_t n, size_t draws) {
+    const Rows x = fifths(j, random, draws);
     std::vector<uint64_t> counts(n * n + 1);
     for (size_t i = 0; i < x.size(); ++i) {
         const double a = x[i][0], b = x[i][1];
@@ -452,9 +446,7 @@ void strata(Judge& j) {
     double first = 0;
     const bool below = in_range(ends, first);
     const auto along = places_in_part(j, fixed, 10, 1000);
-    Rows third;
-    for (int i = 0; i < 200; ++i) third.add(in_part(2, 5, fixed.bits()));
-    const Out of_third = j.ask("in_part", third).numbers;
+    const Out of_third = thirds(j, fixed, 200);
     const double lowest = *std::min_element(of_third.begin(), of_third.end());
     j.remember(row(all_missed(fixed) > 0, without_zeros(places), places.back() > 0,
                    without_zeros(along), along[0] > 0, along.back() > 0, lowest < 0.39, below));
@@ -464,9 +456,7 @@ void strata(Judge& j) {
     // Between which twentieths the third of five parts is, and in which cell of 4 x 3 points of
     // cell 5 are; -1: not in one.
     const double highest = *std::max_element(of_third.begin(), of_third.end());
-    Rows sixth;
-    for (int i = 0; i < 200; ++i) sixth.add(in_cell(5, 4, 3, fixed.bits()));
-    const Rows points = j.ask("in_cell", sixth);
+    const Rows points = fifths(j, fixed, 200);
     Out cell{std::floor(4 * points[0][0]), std::floor(3 * points[0][1])};
     for (size_t i = 0; i < points.size(); ++i) {
         if (std::floor(4 * points[i][0]) != cell[0]) cell[0] = -1;

@@ -33,8 +33,7 @@ double furnace_off(const Shot& s, const Room& r) {
     double most = 0;
     for (size_t c = 0; c < 3; ++c) {
         const double E = oracle::pi * r.L[c] / (1 - r.rho[c]);
-        for (double came : {s.least[c], s.greatest[c]})
-            most = came == came ? std::max(most, std::abs(came / E - 1)) : oracle::infinity;
+        for (double came : {s.least[c], s.greatest[c]}) most = worse(most, std::abs(came / E - 1));
     }
     return most;
 }
@@ -54,10 +53,6 @@ template <class Of>
 Triple mean_of_corners(Of of) {
     return 1 / 3.0 * (of(0) + of(1) + of(2));
 }
-double off_by(const Triple& a, const Triple& b) {
-    const double d = length(a - b);
-    return d == d ? d : oracle::infinity;
-}
 
 void loading(Judge& j) {
     const double digits = 1e3 * j.epsilon;
@@ -73,8 +68,8 @@ void loading(Judge& j) {
                     if (leaf && at > head) break;
                     for (size_t k = 0; k < 3; ++k) {
                         const Triple L = 1 / oracle::pi * (e.M(k) - e.before(k));
-                        sent = std::max(sent, off_by(e.L(k), L));
-                        shot = std::max(shot, off_by(e.shot(k), e.M(k)));
+                        sent = worse(sent, length(e.L(k) - L));
+                        shot = worse(shot, length(e.shot(k) - e.M(k)));
                     }
                     const Triple M = mean_of_corners([&](size_t k) { return e.M(k); }),
                                  L = mean_of_corners([&](size_t k) { return e.L(k); });
@@ -82,9 +77,9 @@ void loading(Judge& j) {
                     sum = sum + e.area() * L, area += e.area();
                 }
                 double& of = leaf ? mean : triangle ? quarters : whole;
-                of = std::max(of, off_by(triple(out), 1 / area * sum));
+                of = worse(of, length(triple(out) - 1 / area * sum));
                 for (size_t k = 0; !leaf && k < 3; ++k)
-                    filled = std::max(filled, off_by(triple(out, 3 + 3 * k), triple(out)));
+                    filled = worse(filled, length(triple(out, 3 + 3 * k) - triple(out)));
                 // By an element, and by the face that is uneven, mistakes are told.
                 if (triangle && !leaf) j.remember({out[0], out[1]});
                 if (!triangle)
@@ -145,7 +140,7 @@ void shooting(Judge& j) {
     for (double k : {1, 2, 3, 5, 8, 13, 21, 34, 55}) {
         first.shots = k;
         const double now = shoot(j, first).unshot;
-        rise = now == now ? std::max(rise, now - before) : oracle::infinity;
+        rise = worse(rise, now - before);
         before = now;
     }
     j.exact(
@@ -203,34 +198,36 @@ void walking(Judge& j) {
     const Out albedo = {0.8, 0.5, 0.2};
     constexpr size_t n = 30000;
     const Rows coloured = walks(j, albedo, n);
-    double lost = 0, growth = 0;
+    double lost = 0;
     size_t away = 0;
     for (size_t i = 0; i < n; ++i) {
         away += coloured[i][escaped] > 0;
         for (size_t c = 0; c < 3; ++c) {
             const double e = coloured[i][emitted + c];
             const double left = e - coloured[i][absorbed + c] - coloured[i][escaped + c];
-            lost = left == left ? std::max(lost, std::abs(left / e)) : oracle::infinity;
-            growth = worse(growth, coloured[i][greatest + c] / e);
+            lost = worse(lost, std::abs(left / e));
         }
     }
     j.none("nothing escapes from a closed room", away, "%zu of 30000 particles do");
     j.below("of every particle, emitted = absorbed + escaped", lost, 1e4 * j.epsilon, off);
-    j.below("no particle gains power on walls that reflect 4/5 at most", growth,
-            1 + 1e4 * j.epsilon, "one has %.4g times its own");
-    const auto gained = [&](const Out& of) {
-        const Rows some = walks(j, of, 200);
+    // The greatest power of any particle, in parts of what was emitted.
+    const auto most_of = [](const Rows& some) {
         double most = 0;
         for (size_t i = 0; i < some.size(); ++i)
             for (size_t c = 0; c < 3; ++c)
                 most = worse(most, some[i][greatest + c] / some[i][emitted + c]);
         return most;
     };
+    const auto gained = [&](const Out& of) { return most_of(walks(j, of, 200)); };
+    const double own = 1 + 1e4 * j.epsilon;
+    const char* gain = "one has %.4g times its own";
+    j.below("no particle gains power on walls that reflect 4/5 at most", most_of(coloured), own,
+            gain);
+    const double on_blue = gained({0.5, 0.2, 0.8}), on_green = gained({0.2, 0.8, 0.5});
     j.below("nor on green ones, nor on blue ones: the greatest channel decides",
-            worse(gained({0.2, 0.8, 0.5}), gained({0.5, 0.2, 0.8})), 1 + 1e4 * j.epsilon,
-            "one has %.4g times its own");
+            worse(on_blue, on_green), own, gain);
     j.below("nor on walls that reflect 99 %: 0.98 is for white ones alone",
-            gained({0.99, 0.99, 0.99}), 1 + 1e4 * j.epsilon, "one has %.4g times its own");
+            gained({0.99, 0.99, 0.99}), own, gain);
     const char* names[] = {"red, albedo .8: all stops bring 5 times what is emitted",
                            "green, albedo .5: twice", "blue, albedo .2: 1.25 times"};
     for (size_t c = 0; c < 3; ++c)
@@ -238,25 +235,27 @@ void walking(Judge& j) {
                [c](In w) { return w[sum + c] / w[emitted + c]; });
     j.mean("the second stop of blue light brings a fifth of the first", 0.2, coloured,
            [](In w) { return w[second + 2] / w[emitted + 2]; });
-    Rows went;
-    for (size_t i = 0; i < n; ++i)
-        if (coloured[i][stops] > 1) went.add(Out(coloured[i].begin(), coloured[i].end()));
-    const std::string leave = "those that go on leave by Lambert's law: the mean cosine is 2/3";
-    if (went.size() < 1000)
-        j.statistical(leave, oracle::failure("hardly any goes on"));
-    else
-        j.mean(leave, 2 / 3.0, went, [](In w) { return w[cosine]; });
-    Rows far;
-    for (size_t i = 0; i < n; ++i)
-        if (coloured[i][stops] > 2) far.add(Out(coloured[i].begin(), coloured[i].end()));
-    const std::string anew = "the new direction does not depend on the old one",
-                      again = "two stops have directions that do not depend on each other";
-    if (far.size() < 1000) {
-        j.statistical(anew, oracle::failure("hardly any goes on twice"));
-    } else {
-        j.mean(anew, 0, far, [](In w) { return w[along]; });
-        j.mean(again, 0, far, [](In w) { return (w[cosine] - 2 / 3.0) * (w[then] - 2 / 3.0); });
-    }
+    // Rows of walks with so many stops.
+    const auto with_stops = [&](double least) {
+        Rows some;
+        for (size_t i = 0; i < n; ++i)
+            if (coloured[i][stops] >= least) some.add(Out(coloured[i].begin(), coloured[i].end()));
+        return some;
+    };
+    const Rows went = with_stops(2), far = with_stops(3);
+    const auto mean_if_many = [&](const std::string& what, double truth, const Rows& rows,
+                                  auto of) {
+        if (rows.size() < 1000)
+            j.statistical(what, oracle::failure("hardly any goes on"));
+        else
+            j.mean(what, truth, rows, of);
+    };
+    mean_if_many("those that go on leave by Lambert's law: the mean cosine is 2/3", 2 / 3.0, went,
+                 [](In w) { return w[cosine]; });
+    mean_if_many("the new direction does not depend on the old one", 0, far,
+                 [](In w) { return w[along]; });
+    mean_if_many("two stops have directions that do not depend on each other", 0, far,
+                 [](In w) { return (w[cosine] - 2 / 3.0) * (w[then] - 2 / 3.0); });
     // Means in tenths, whatever the numbers.
     double turn = 0, straight = 0;
     for (size_t i = 0; i < went.size(); ++i) turn += went[i][cosine] / double(went.size());

@@ -168,11 +168,12 @@ Measure measure(Judge& j, const Places& p, bool probe = false) {
         probe ? j.probe("measured", Rows(numbers_of(p))).numbers : j.ask("measured", numbers_of(p));
     return {m.at(0), m.at(1), m.at(2)};
 }
+bool alike(const Measure& a, const Measure& b, double tolerance) {
+    return near({a.area, a.x, a.y}, {b.area, b.x, b.y}, tolerance);
+}
 void same(Judge& j, const std::string& what, const Measure& came, const Measure& expected,
           double tolerance = 1e-12) {
-    const bool right =
-        near({came.area, came.x, came.y}, {expected.area, expected.x, expected.y}, tolerance);
-    j.exact(what, right,
+    j.exact(what, alike(came, expected, tolerance),
             oracle::say("area %.6g, centroid (%.6g, %.6g) expected; %.6g, (%.6g, %.6g) came",
                         expected.area, expected.x, expected.y, came.area, came.x, came.y));
 }
@@ -224,9 +225,7 @@ void measuring(Judge& j) {
         }
         const Measure came = measure(j, any),
                       expected = {fan.area, fan.x / fan.area, fan.y / fan.area};
-        const bool right =
-            near({came.area, came.x, came.y}, {expected.area, expected.x, expected.y}, 1e-11);
-        if (right && k < 19) continue;
+        if (alike(came, expected, 1e-11) && k < 19) continue;
         same(j, "any polygon, with the site inside or not: triangles from its first corner", came,
              expected, 1e-11);
         break;

@@ -185,7 +185,8 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         expect(folders == ['app', 'base', 'course', 'film', 'keep', 'path', 'world'], folders)
         names = sorted(p.name for p in (made.folder / 'tests/course').iterdir())
         expect(not [n for n in names if n.endswith('_test.cpp') or n.endswith('.py') or 'hidden' in n], names)
-        expect([n for n in names if n.startswith('judge_')] == ['judge_2.cpp', 'judge_3.cpp'], names)
+        expect([n for n in names if n.startswith('judge_')] ==
+               ['judge_2.cpp', 'judge_3.cpp', 'judge_3_light.h', 'judge_3_scenes.h'], names)
         expect(not list(made.folder.rglob('*.mutants')), 'mutants')
         for table in ('exercises.txt', 'mistakes.txt'):
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
