@@ -27,14 +27,14 @@ pre { background: #f4f4f0; padding: .6em 1em; overflow-x: auto; font-size: 14px 
 details { border-left: 3px solid #c90; margin: .5em 0; padding: .1em 1em } summary { cursor: pointer; color: #850 }
 table { border-collapse: collapse } td, th { border-bottom: 1px solid #ddd; padding: .2em .7em; text-align: left }
 img { max-width: 100% } math { font-family: "Latin Modern Math", "STIX Two Math", "Cambria Math", "DejaVu Serif", serif }
-math[display=block] { margin: .7em 0 } mfrac > * { padding: .15em .1em } math mn, math mtext { font-family: inherit }
+math[display=block] { padding: .4em 0; break-before: avoid } mfrac > * { padding: .15em .1em } math mn, math mtext { font-family: inherit }
 .blank { display: inline-block; width: 8em; border-bottom: 1px solid #222 } mtext.blank { padding: 0 2.2em; border-bottom: 1px solid #222; width: auto }
 .wide { width: 18em } .whole { white-space: nowrap }
 mfrac > mtext.blank { padding: .9em 2.2em .2em; border-bottom: 0 }
 .answer { color: #a00; font-weight: bold } mrow.answer { border-bottom: 1px solid #a00 }
 @media print {
   body { font-size: 11pt; margin: 0; max-width: none; padding: 0 } details { display: none } pre { white-space: pre-wrap }
-  h1, h2, h3, h2 + p { break-after: avoid } p, li, tr, img, pre, math { break-inside: avoid }
+  h1, h2, h3, h2 + p, p:has(+ ul, + ol, + pre, + table) { break-after: avoid } p, li, table, img, pre, math { break-inside: avoid }
   p:has(.blank), li:has(.blank) { line-height: 2.1 }
 }
 </style>
