@@ -20,7 +20,7 @@ SHEETS = ROOT / 'reference/course'
 FOR_INSTRUCTORS = ['sessions', 'grading']  # and README, which is read here
 BROWSERS = ['chromium', 'chromium-browser', 'google-chrome', 'chrome']
 STYLE = '''<style>
-@page { size: PAPER; margin: 20mm 22mm 22mm; @bottom-center { content: "TITLE · " counter(page) " / " counter(pages); font: 9pt sans-serif } }
+@page { size: PAPER; margin: 18mm 22mm 20mm; @bottom-center { content: "TITLE · " counter(page) " / " counter(pages); font: 9pt sans-serif } }
 body { max-width: 46em; margin: 2em auto; padding: 0 1em; font: 17px/1.5 Georgia, "DejaVu Serif", serif; color: #222; background: #fff }
 h1, h2, h3, nav { font-family: system-ui, sans-serif; line-height: 1.2 } h2 { margin-top: 2em; border-top: 1px solid #ccc; padding-top: .7em }
 pre { background: #f4f4f0; padding: .6em 1em; overflow-x: auto; font-size: 14px } code { font-size: 90% }
@@ -36,6 +36,7 @@ mfrac > mtext.blank { padding: .9em 2.2em .2em; border-bottom: 0 }
   body { font-size: 11pt; margin: 0; max-width: none; padding: 0 } details { display: none } pre { white-space: pre-wrap }
   h1, h2, h3, h2 + p, p:has(+ ul, + ol, + pre, + table) { break-after: avoid } p, li, table, img, pre, math { break-inside: avoid }
   p:has(.blank), li:has(.blank) { line-height: 2.1 }
+  p:has(math), li:has(math) { padding-top: .35em } p:has(math) { margin-top: .65em }
 }
 </style>
 '''
