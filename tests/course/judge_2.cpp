@@ -298,14 +298,11 @@ void phong_lobe(Judge& j) {
 // From the axis, in parts of the cone's own sin^2.
 double part_of_cone(In w, double sin2) { return (w[0] * w[0] + w[1] * w[1]) / sin2; }
 
-// By its rings, of 2 pi sin(theta) d theta each: Gauss's rule of two points in each of 1000.
+// By its rings, of 2 pi sin(theta) d theta each.
 double solid_angle_of_rings(double sin2) {
-    const int n = 1000;
-    const double sigma = std::asin(std::sqrt(sin2)), off = 0.5 / std::sqrt(3.0);
-    double sum = 0;
-    for (int i = 0; i < n; ++i)
-        for (double x : {0.5 - off, 0.5 + off}) sum += std::sin((i + x) / n * sigma);
-    return 2 * pi * sigma * sum / (2 * n);
+    return 2 * pi *
+           oracle::integral([](double theta) { return std::sin(theta); }, 0,
+                            std::asin(std::sqrt(sin2)), {.noise = 1e-12});
 }
 
 // The rim is as wide as digits are lost: where sin^2 is 0.99, that adds 6 times as much to the
