@@ -11,44 +11,42 @@ inline Mistakes held_out_directions() {
     const auto ball = about_z([](auto u) { return 1 - 2 * u; });
     const double cap = std::sqrt(1 - 0.7);
     return {
-        density<float>("uniform sphere, float", {}, ball, constant(1 / (4 * pi))),
-        density<float>("1/(2 pi) for the sphere", twice | Words{"hemisphere", "2 pi", "4 pi"}, ball,
+        density<float>("uniform sphere, float", "", ball, constant(1 / (4 * pi))),
+        density<float>("1/(2 pi) for the sphere", "(2, twice) times the density", ball,
                        constant(1 / (2 * pi))),
-        density<float>("sphere by theta = pi u", sine,
+        density<float>("sphere by theta = pi u", "without its square root",
                        about_z([](auto u) { return std::cos(pi * u); }), constant(1 / (4 * pi))),
-        density<float>("sampler's pole y, the pdf's z",
-                       {"exchanged", "swapped", "y and z", "z and y", "permuted"}, changed([](F w) {
+        density<float>("sampler's pole y, the pdf's z", "y and z exchanged in one",
+                       changed([](F w) {
                            return F{w.x, w.z, w.y};
                        }),
                        cosine_pdf),
-        density<double>("cosine twice", cosine, by_cosine,
+        density<double>("cosine twice", "a factor cos(theta) too many", by_cosine,
                         above([](auto z) { return z * z / pi; })),
         density<double>(
-            "z = sqrt(1 - u^2) with r = sqrt(u)", of_length,
+            "z = sqrt(1 - u^2) with r = sqrt(u)", "its length is",
             [](double u, double v) {
                 const D w = by_cosine(u, v);
                 return D{w.x, w.y, std::sqrt(1 - u * u)};
             },
             cosine_pdf),
-        density<double>("pdf of the unturned frame",
-                        {"axis", "frame", "normal", "turned", "rotated", "tilted"},
-                        about(n, by_cross), cosine_pdf),
-        density<float>("signed cosine about n, float", negative, about(m, by_cross),
+        density<double>("pdf of the unturned frame", "taken to another normal", about(n, by_cross),
+                        cosine_pdf),
+        density<float>("signed cosine about n, float", "the pdf is negative", about(m, by_cross),
                        [=](F w) { return dot(w, m) / pi; }),
-        density<double>("phi from 0 to pi / 2, a quarter", {"quarter", "1/4", "phi"},
+        density<double>("phi from 0 to pi / 2, a quarter", "(4, four times) times as dense",
                         about_z([](auto u) { return std::sqrt(1 - u); }, pi / 2), cosine_pdf),
-        density<double>("tangents not normalized", of_length,
+        density<double>("tangents not normalized", "its length is",
                         about(n,
                               [](D z) {
                                   const D t = cross(z, D{1, 0, 0});
                                   return std::pair{cross(t, z), t};
                               }),
                         cosine_about(n)),
-        density<double>("the cone's solid angle pi sin^2",
-                        {"constant", "everywhere", "solid angle"}, cone(cap),
-                        cone_pdf(cap, 1 / (pi * 0.7))),
-        density<float>("the cone's pdf by 4 pi (1 - cos)", twice, cone(0.9),
-                       cone_pdf(0.9, 1 / (4 * pi * 0.1))),
+        density<double>("the cone's solid angle pi sin^2", "everywhere: a constant factor",
+                        cone(cap), cone_pdf(cap, 1 / (pi * 0.7))),
+        density<float>("the cone's pdf by 4 pi (1 - cos)", "(1/2, half) times the density",
+                       cone(0.9), cone_pdf(0.9, 1 / (4 * pi * 0.1))),
     };
 }
 
@@ -72,30 +70,28 @@ inline Mistakes held_out_microfacets() {
         };
     };
     return {
-        microfacet("Blinn", {}, o, a, blinn, [=](D h) { return d(h) / (4 * dot(o, h)); }),
-        microfacet("anisotropic", {}, o, a, stretched, stretched_pdf(0.5, 0.2)),
-        microfacet("Blinn per half vector", {"4 wo.h", "half vector"}, o, a, blinn, d),
-        microfacet("visible normals per half vector", {"4 wo.h", "half vector"}, p, b,
+        microfacet("Blinn", "", o, a, blinn, [=](D h) { return d(h) / (4 * dot(o, h)); }),
+        microfacet("anisotropic", "", o, a, stretched, stretched_pdf(0.5, 0.2)),
+        microfacet("Blinn per half vector", "1/(4 wo.h) forgotten", o, a, blinn, d),
+        microfacet("visible normals per half vector", "1/(4 wo.h) forgotten", p, b,
                    ggx_visible(p, b),
                    [=](F h) { return ggx_g1(p, b) * dot(p, h) * ggx_d(h, b) / p.z; }),
-        microfacet("n.wo forgotten", {"n.wo"}, p, b, ggx_visible(p, b),
+        microfacet("n.wo forgotten", "a factor n.wo too many", p, b, ggx_visible(p, b),
                    [=](F h) { return ggx_g1(p, b) * ggx_d(h, b) / 4; }),
-        microfacet("Jacobian 2 wo.h for 4 wo.h", twice, o, a, ggx_half(o, a),
-                   [=](D h) { return ggx_d(h, a) * h.z / (2 * dot(o, h)); }),
-        microfacet("n.h for wo.h in the Jacobian", {"n.h", "4 wo.h"}, p, b, ggx_half(p, b),
-                   [=](F h) { return ggx_d(h, b) / 4; }),
-        microfacet("alpha along x and y exchanged in the pdf",
-                   {"x and y", "y and x", "exchanged", "swapped"}, o, a, stretched,
-                   stretched_pdf(0.2, 0.5)),
-        microfacet("roughness squared in the sampler alone",
-                   {"alpha", "roughness", "width", "narrower", "wider"}, o, a, ggx_half(o, a * a),
-                   [=](D h) { return ggx_d(h, a) * h.z / (4 * dot(o, h)); }),
+        microfacet("Jacobian 2 wo.h for 4 wo.h", "(2, twice) times the density", o, a,
+                   ggx_half(o, a), [=](D h) { return ggx_d(h, a) * h.z / (2 * dot(o, h)); }),
+        microfacet("n.h for wo.h in the Jacobian", "4 wo.h too many, and n.h forgotten", p, b,
+                   ggx_half(p, b), [=](F h) { return ggx_d(h, b) / 4; }),
+        microfacet("alpha along x and y exchanged in the pdf", "of the samples fail", o, a,
+                   stretched, stretched_pdf(0.2, 0.5)),
+        microfacet("roughness squared in the sampler alone", "wider than the samples", o, a,
+                   ggx_half(o, a * a), [=](D h) { return ggx_d(h, a) * h.z / (4 * dot(o, h)); }),
     };
 }
 
 // By area, from a sphere of radius 1/2, 2 away along z: its far side fails.
 template <class Pdf>
-Mistake ball(std::string name, Words expected, Pdf pdf) {
+Mistake ball(std::string name, std::string expected, Pdf pdf) {
     auto draw = [](double u, double v) -> std::optional<D> {
         const D n = polar(1 - 2 * u, 2 * pi * v), p = D{0, 0, 2} + 0.5 * n;
         if (dot(p, n) >= 0) return {};
@@ -133,20 +129,20 @@ inline Mistakes held_out_lights() {
     };
     auto of_theta = [](D w) { return std::max(1e-9, std::hypot(w.x, w.y)); };
     return {
-        density<double>("environment", {}, sample,
+        density<double>("environment", "", sample,
                         [=](D w) { return texel(w) / (2 * pi * pi * of_theta(w)); }),
-        density<double>("environment without sine", sine, sample,
+        density<double>("environment without sine", "a density per (theta, phi)", sample,
                         [=](D w) { return texel(w) / (2 * pi * pi); }),
-        density<double>("environment of pi by pi", twice, sample,
+        density<double>("environment of pi by pi", "(2, twice) times the density", sample,
                         [=](D w) { return texel(w) / (pi * pi * of_theta(w)); }),
-        light<double>("pdf 1/A, per area", {"r^2", "cos at the light", "per area", "area"}, quad,
+        light<double>("pdf 1/A, per area", "cos at the light^3; the pdf is uniform", quad,
                       [](double, double, double) { return 0.5; }),
-        light<double>("distance for its square", {"r^2", "r", "root of r^2", "distance"}, quad,
+        light<double>("distance for its square", "a root of r^2", quad,
                       [](double r2, double c, double) { return std::sqrt(r2) / (2 * c); }),
-        ball("ball by area", {}, [](double r2, double c) { return r2 / (pi * c); }),
-        ball("ball's area pi R^2", {"4", "1/4", "area", "disc"},
+        ball("ball by area", "", [](double r2, double c) { return r2 / (pi * c); }),
+        ball("ball's area pi R^2", "(4, four times) times the density",
              [](double r2, double c) { return r2 / (pi / 4 * c); }),
-        ball("ball without cosine", {"cos at the light"},
+        ball("ball without cosine", "cos at the light too many",
              [](double r2, double) { return r2 / pi; }),
     };
 }
@@ -159,61 +155,61 @@ inline Mistakes held_out_numbers() {
     };
     auto by_root = [](float u) { return std::sqrt(u); };
     return {
-        any_density("ramp, float", {}, by_root, line(2)),
-        any_density("ramp without its 2", twice, by_root, line(1)),
+        any_density("ramp, float", "", by_root, line(2)),
+        any_density("ramp without its 2", "(1/2, half) times the density", by_root, line(1)),
         any_density(
-            "ramp without root", root | Words{"uniform"}, [](float u) { return u; }, line(2)),
+            "ramp without root", "x drawn uniformly, without its root", [](float u) { return u; },
+            line(2)),
         choice(
-            "index out of range", {"range", "index", "out of range", "outside"}, 4,
+            "index out of range", "index 4 of 4 chosen, beyond the last", 4,
             [](double u) { return int(5 * u); }, [](int) { return 0.25; }),
         choice(
-            "light of probability 0 chosen", {"probability 0", "0", "zero", "never"}, 4,
+            "light of probability 0 chosen", "index 1 is chosen, though its probability is 0", 4,
             [=](double u) { return u < 0.1 ? 1 : among(power, u); }, its),
         choice(
-            "next one's probability",
-            {"next", "shifted", "neighbour", "neighbor", "off by one", "exchanged", "permuted"}, 4,
+            "next one's probability", "index and probability shifted by one", 4,
             [=](double u) { return among(rising, u); },
             [=](int i) { return rising[size_t((i + 1) % 4)]; }),
     };
 }
 
 inline Mistakes held_out_estimators() {
-    const Words receiver{"cos at the receiver"};
     return {
-        direct("no receiver's cosine", receiver, [](Lit x) { return x.right() / x.co / 0.3; }),
-        direct("the receiver's cosine in the BRDF, too", receiver,
+        direct("no receiver's cosine", "cos at the receiver forgotten",
+               [](Lit x) { return x.right() / x.co / 0.3; }),
+        direct("the receiver's cosine in the BRDF, too", "a factor cos at the receiver too many",
                [](Lit x) { return x.right() * x.co / 0.3; }),
-        direct("divided by 1 - p", {"pick probability"}, [](Lit x) { return x.right() / 0.7; }),
-        direct("r^2 in the numerator", {"r^2"},
+        direct("divided by 1 - p", "divided by 1 - pick probability",
+               [](Lit x) { return x.right() / 0.7; }),
+        direct("r^2 in the numerator", "multiplied by r^2 in place of divided",
                [](Lit x) { return x.right() * std::pow(x.r, 4) / 0.3; }),
-        direct("everything in the shadow of the wall behind", black, [](Lit) { return 0.0; }),
-        sphere("area 4 pi (2R)^2", {"4", "area", "diameter"}, 4 * pi,
+        direct("everything in the shadow of the wall behind", "0 in every sample",
+               [](Lit) { return 0.0; }),
+        sphere("area 4 pi (2R)^2", "(4, four times)", 4 * pi,
                [](double c) { return std::max(0.0, c); }),
-        sphere("signed cosine at the light's far side", negative | Words{"sign"}, pi,
+        sphere("signed cosine at the light's far side", "0 within its error", pi,
                [](double c) { return c; }),
-        furnace("roulette survives with 1 - q", {"survival probability", "roulette", "1 - q"}, 0.7,
-                0.8, 1 / 0.8, 1, true),
-        furnace("survivors not divided, q = 0.8", {"survival probability", "roulette"}, 0.7, 0.8,
-                1),
-        mean("one-sample MIS without its choice", {"2", "1/2", "half", "probability"}, 1.0 / 3,
+        furnace("roulette survives with 1 - q", "ratio 0.36", 0.7, 0.8, 1 / 0.8, 1, true),
+        furnace("survivors not divided, q = 0.8", "ratio 0.68", 0.7, 0.8, 1),
+        mean("one-sample MIS without its choice", "(1/2, half)", 1.0 / 3,
              [](Random& r) {
                  const bool first = r() < 0.5;
                  const double x = first ? r() : std::sqrt(r());
                  return x * x / (1 + 2 * x);
              }),
-        mean("control's mean taken off, not added", {"control", "sign"}, 0.25,
+        mean("control's mean taken off, not added", "of the wrong sign", 0.25,
              [](Random& r) {
                  const double x = r();
                  return (x < 0.5 ? 2 * x : 0) - (2 * x) - 1;
              }),
-        mean("variance of two divided by n, not n - 1", {"2", "1/2", "half", "n - 1"}, 1.0 / 12,
+        mean("variance of two divided by n, not n - 1", "(1/2, half)", 1.0 / 12,
              [](Random& r) {
                  const double a = r(), b = r(), m = (a + b) / 2;
                  return ((a - m) * (a - m) + (b - m) * (b - m)) / 2;
              }),
-        mean("1/r^2 at uniform points of a ball", infinite, 3,
+        mean("1/r^2 at uniform points of a ball", "variance may be infinite", 3,
              [](Random& r) { return std::pow(1 - r(), -2 / 3.0); }),
-        mean("constant sampled by cos^4", infinite, 2 * pi,
+        mean("constant sampled by cos^4", "variance may be infinite", 2 * pi,
              [](Random& r) { return 2 * pi / 5 * std::pow(1 - r(), -4 / 5.0); }),
     };
 }
@@ -221,16 +217,16 @@ inline Mistakes held_out_estimators() {
 inline Mistakes held_out_bsdfs() {
     auto schlick = [](double c) { return 0.04 + 0.96 * std::pow(std::max(0.0, 1 - c), 5); };
     return {
-        bsdf("Schlick by wo.h", {},
+        bsdf("Schlick by wo.h", "",
              [=](D wo, D wi) { return schlick(dot(wo, unit(wo + wi))) / pi; }),
-        bsdf("Schlick by n.wi", {"reciprocal", "reciprocity"},
+        bsdf("Schlick by n.wi", "a factor of their cosines alone",
              [=](D, D wi) { return schlick(wi.z) / pi; }),
-        bsdf("Phong lobe of 10 cos^n", {"albedo", "energy"},
+        bsdf("Phong lobe of 10 cos^n", "more leaves than comes",
              [](D wo, D wi) {
                  const double c = -wo.x * wi.x - wo.y * wi.y + wo.z * wi.z;
                  return 10 * std::pow(std::max(0.0, c), 8);
              }),
-        bsdf("root of a negative refracted cosine", not_finite,
+        bsdf("root of a negative refracted cosine", "eval is not finite",
              [](D wo, D wi) {
                  const double h = dot(wo, unit(wo + wi)), t = std::sqrt(1 - 2.25 * (1 - h * h));
                  const double f = (1.5 * h - t) / (1.5 * h + t);

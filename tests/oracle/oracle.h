@@ -266,9 +266,8 @@ std::string times(double x, double tolerance);
 // Why an estimate may be `ratio` times the truth, known within `tolerance`.
 std::string cause_of(double ratio, double tolerance, const std::vector<Factor>& factors);
 struct Estimate;
-// Why an estimate, of these numbers if they are known, may not be the truth.
-std::string mean_hint(const Estimate& e, double truth, const std::vector<double>& numbers,
-                      const std::vector<Factor>& factors);
+// Why an estimate may not be the truth.
+std::string mean_hint(const Estimate& e, double truth, const std::vector<Factor>& factors);
 
 // ---- Judgement ----------------------------------------------------------------------------------
 
@@ -278,7 +277,6 @@ struct Estimate {
     double mean = 0, standard_error = 0;
     double df = infinity;
     double unit = 0x1p-53;
-    bool both_signs = false;  // of the numbers, as far as it is known
 };
 
 inline Verdict named(const Verdict& v, const Options& o) {
@@ -325,8 +323,7 @@ inline Verdict judge_exact(const char* what, double value, double truth, double 
 }
 
 // The estimate's mean is `truth`: Student's t-test.
-inline Verdict judge(const char* what, const Estimate& e, double truth, const Options& o = {},
-                     const std::vector<double>& numbers = {}) {
+inline Verdict judge(const char* what, const Estimate& e, double truth, const Options& o = {}) {
     if (!std::isfinite(e.mean) || !std::isfinite(e.standard_error))
         return failure(say("%s %g +- %g is not finite", what, e.mean, e.standard_error));
     if (!(e.df >= 1)) return failure("one number has no spread: no degree of freedom");
@@ -344,7 +341,7 @@ inline Verdict judge(const char* what, const Estimate& e, double truth, const Op
     if (!v.pass && same_but_rounding(e.mean, truth, e.unit, 1000))
         v.text += rounding_of(e.unit);
     else if (!v.pass && truth != 0)
-        v.text += mean_hint(e, truth, numbers, o.factors);
+        v.text += mean_hint(e, truth, o.factors);
     v.text += (v.pass ? "; smallest bias seen with 99.9 % power: "
                       : "\nsmallest bias seen with 99.9 % power: ") +
               (truth != 0 ? percent(v.delta_min) : say("%.2g", v.delta_min));
@@ -404,10 +401,7 @@ struct Draws {
         const double m2 = moment(2);
         return m2 > 0 ? moment(3) / (m2 * std::sqrt(m2)) : 0;
     }
-    Estimate estimate() const {
-        const auto [least, most] = std::minmax_element(values.begin(), values.end());
-        return {mean(), std::sqrt(variance() / n()), n() - 1, unit, *least < 0 && *most > 0};
-    }
+    Estimate estimate() const { return {mean(), std::sqrt(variance() / n()), n() - 1, unit}; }
 
     bool constant() const {
         const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -483,7 +477,7 @@ inline Verdict judge(const char* what, const Draws& d, double truth, const Optio
     else if (d.constant())
         v = judge_exact(what, d.mean(), truth, d.unit, o);
     else
-        v = judge(what, d.estimate(), truth, o, d.values);
+        v = judge(what, d.estimate(), truth, o);
     if (!v.pass && d.n() >= 2 && std::isfinite(d.variance())) v.text += picture_of(d, truth, o);
     return named(v, o);
 }
@@ -880,10 +874,9 @@ auto model(Sample& sample, Pdf& pdf) {
         unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
 }
 
-// Part two says what is wrong with a choice, or with probabilities that do not sum to 1.
+// Part two says what is wrong with a choice.
 std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
                         double none, double tolerance);
-std::string sum_hint(const std::vector<double>& expected, const std::vector<double>& seen);
 
 // Whether counts are those of these probabilities, less a part that fails; rare ones by Poisson.
 struct ChoiceFit {
@@ -965,7 +958,7 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
     if (none == 0 && std::abs(total - 1) > rounding + o.tolerance)
         return failure("the probabilities sum to " +
                            (std::abs(total - 1) < 1e-3 ? say("%.9g", total) : times(total, 1e-4)) +
-                           ", expected 1" + sum_hint(expected, seen),
+                           ", expected 1",
                        o);
     return judge_choices(expected, seen, none, o);
 }
@@ -1414,6 +1407,18 @@ double nested(const F& f, Point<D>& c, const Range<D>& range, const Agreement& g
 struct Parts {
     std::array<double, 32> value{}, variance{};
     double total = 0, error = 0;  // standard error of the total
+
+    // Of the total.
+    std::vector<double> shares() const {
+        std::vector<double> p;
+        for (double x : value) p.push_back(x / total);
+        return p;
+    }
+    std::vector<double> variances() const {
+        std::vector<double> v;
+        for (double x : variance) v.push_back(x / (total * total));
+        return v;
+    }
 };
 
 // One check of a sampler against a density; its steps in the order of their costs.
@@ -1893,14 +1898,11 @@ Verdict DensityCheck<M, N, Domain>::run() {
                                1 - p_at_least(none + 1, samples, fewest / samples));
         balanced = p_share > o.alpha / 2;
     }
-    std::vector<double> variances;
-    for (size_t i = 0; i < 32; ++i) {
-        expected[i] = parts.value[i] / parts.total;
-        variances.push_back(parts.variance[i] / (parts.total * parts.total));
-    }
+    expected = parts.shares();
     const double part = o.discrete > 0 ? 4 : none > 0 ? 2 : 1;
-    Verdict v = judge_counts(
-        counts, expected, {.alpha = o.alpha / part, .tolerance = o.tolerance + moved()}, variances);
+    Verdict v = judge_counts(counts, expected,
+                             {.alpha = o.alpha / part, .tolerance = o.tolerance + moved()},
+                             parts.variances());
     alpha_spent += o.alpha - o.alpha / part;
     if (o.discrete > 0 && (p_at_least(mirrored, samples, o.discrete) < o.alpha / 8 ||
                            1 - p_at_least(mirrored + 1, samples, o.discrete) < o.alpha / 8))
@@ -2116,8 +2118,10 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     auto f = [&](const Triple& a, const Triple& b) {
         return brightness(eval(of_host<V>(a), of_host<V>(b)));
     };
-    // Half vectors of exchanged directions are rounded.
-    const Exchange e = exchange(random, f, std::is_same_v<T, float> ? 0.02 : 1e-6);
+    // Half vectors of exchanged directions are rounded, or what eval computes of them.
+    using Colour = decltype(eval(of_host<V>(Triple{}), of_host<V>(Triple{})));
+    constexpr bool single = std::is_same_v<T, float> || std::is_same_v<Coordinate<Colour>, float>;
+    const Exchange e = exchange(random, f, single ? 0.02 : 1e-6);
     if (!e.wrong.empty()) return failure(e.wrong, o);
 
     Verdict all{true, 1, 0, ""};
@@ -2293,37 +2297,51 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
 
 // The number in words, if it is one of those that are forgotten.
 inline std::string constant_named(double x, double tolerance) {
-    static constexpr double root = std::numbers::sqrt2;
-    static constexpr double values[] = {1 / pi,  pi,     2 * pi,  0.5 / pi, 4 * pi,  0.25 / pi,
-                                        pi / 2,  2 / pi, pi / 4,  4 / pi,   pi * pi, 1 / (pi * pi),
-                                        0.5,     0.25,   2.0 / 3, 1.5,      1.0 / 3, 0.75,
-                                        4.0 / 3, root,   1 / root};
-    static constexpr const char* names[] = {
-        "1/pi", "pi",   "2 pi", "1/(2 pi)", "4 pi",   "1/(4 pi)",      "pi/2",
-        "2/pi", "pi/4", "4/pi", "pi^2",     "1/pi^2", "1/2",           "1/4",
-        "2/3",  "3/2",  "1/3",  "3/4",      "4/3",    "the root of 2", "1 over the root of 2"};
-    const char* name = nullptr;
-    for (size_t i = 0; i < std::size(values); ++i)
-        if (std::abs(x / values[i] - 1) <= tolerance) {
-            if (name) return "";  // two are as near
-            name = names[i];
-        }
-    return name ? name : "";
+    static constexpr std::pair<double, const char*> wholes[] = {
+        {2, "2, twice"}, {0.5, "1/2, half"}, {4, "4, four times"}, {0.25, "1/4"}};
+    static constexpr std::pair<double, const char*> others[] = {
+        {pi, "pi"},
+        {1 / pi, "1/pi"},
+        {2 * pi, "2 pi"},
+        {0.5 / pi, "1/(2 pi)"},
+        {4 * pi, "4 pi"},
+        {0.25 / pi, "1/(4 pi)"},
+        {pi / 2, "pi/2"},
+        {2 / pi, "2/pi"},
+        {2.0 / 3, "2/3"},
+        {1.5, "3/2"},
+        {1.0 / 3, "1/3"},
+        {0.75, "3/4"},
+        {4.0 / 3, "4/3"},
+        {std::numbers::sqrt2, "the root of 2"},
+        {1 / std::numbers::sqrt2, "1 over the root of 2"}};
+    for (const auto& [value, name] : wholes)
+        if (std::abs(x / value - 1) <= std::min(tolerance, 0.02)) return name;
+    for (const auto& [value, name] : others)
+        if (tolerance <= 0.005 && std::abs(x / value - 1) <= tolerance) return name;
+    return "";
 }
 inline std::string times(double x, double tolerance) {
-    if (std::abs(x / 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (2, twice)", x);
-    if (std::abs(x * 2 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/2, half)", x);
-    if (std::abs(x / 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (4, four times)", x);
-    if (std::abs(x * 4 - 1) <= std::min(tolerance, 0.02)) return say("%.4g (1/4)", x);
-    const std::string name = tolerance <= 0.005 ? constant_named(x, tolerance) : "";
+    const std::string name = constant_named(x, tolerance);
     return say("%.4g", x) + (name.empty() ? "" : " (" + name + ")");
 }
 
+// Why something is off by the power k of a factor.
+inline std::string cause_of_power(const std::string& name, double k, const std::string& where) {
+    return k == 1    ? "a factor " + name + " too many" + where + ", or 1/(" + name + ") forgotten"
+           : k == -1 ? name + " forgotten" + where + ", or divided by twice"
+           : k == 2  ? "multiplied by " + name + " in place of divided" + where
+           : k == -2 ? "divided by " + name + " in place of multiplied" + where
+           : std::abs(k) < 1 ? "a root of " + name
+                             : "";
+}
+
 // Why an estimate may be `ratio` times the truth, known within `tolerance`: the causes that explain
-// it, unless there are many.
+// it, unless there are many.  2 and 1/2 have too many: counted twice, a choice not divided by, a
+// half domain.
 inline std::string cause_of(double ratio, double tolerance, const std::vector<Factor>& factors) {
     if (!(tolerance < 0.05)) return "";
-    const double close = std::max(1e-9, std::min(0.02, tolerance));
+    const double close = std::clamp(tolerance, 1e-9, 0.02);
     std::vector<std::string> causes;
     auto may_be = [&](double x, const std::string& cause) {
         if (std::abs(ratio / x - 1) <= close) causes.push_back(cause);
@@ -2331,68 +2349,37 @@ inline std::string cause_of(double ratio, double tolerance, const std::vector<Fa
     for (const Factor& f : factors) {
         const double x = f.at({});
         if (std::abs(x - 1) <= 3 * close || !(std::abs(x) > 0)) continue;
-        may_be(1 / x, f.name + " forgotten, or divided by twice");
-        may_be(x, "a factor " + f.name + " too many, or 1/(" + f.name + ") forgotten");
-        if (0 < x && x < 1) {
-            may_be(x / (1 - x), "divided by 1 - " + f.name + " in place of " + f.name);
-            may_be((1 - x) / x, "multiplied by 1 - " + f.name + " in place of " + f.name);
-        }
-        may_be(1 / (x * x), "divided by " + f.name + " in place of multiplied");
-        may_be(x * x, "multiplied by " + f.name + " in place of divided");
-        if (x > 0) may_be(std::sqrt(x), "a root of " + f.name);
-        if (x > 0) may_be(1 / std::sqrt(x), "a root of " + f.name + " in place of it");
+        for (double k : {-1.0, 1.0, -2.0, 2.0, 0.5, -0.5})
+            may_be(std::pow(x, k), cause_of_power(f.name, k, ""));
+        may_be(x / (1 - x), "divided by 1 - " + f.name + " in place of " + f.name);
+        may_be((1 - x) / x, "multiplied by 1 - " + f.name + " in place of " + f.name);
     }
     may_be(pi, "1/pi forgotten (an albedo is not a BRDF)");
     may_be(1 / pi, "divided by pi twice, or pi forgotten");
-    may_be(2 * pi, "1/(2 pi) forgotten");
-    may_be(1 / (2 * pi), "2 pi forgotten, or divided by it twice");
-    may_be(4 * pi, "1/(4 pi) forgotten");
-    may_be(1 / (4 * pi), "4 pi forgotten, or divided by it twice");
+    for (double k : {2.0, 4.0}) {
+        may_be(k * pi, say("1/(%g pi) forgotten", k));
+        may_be(1 / (k * pi), say("%g pi forgotten, or divided by it twice", k));
+    }
     may_be(-1, "the sign reversed");
-    // 2 and 1/2 have too many: counted twice, a choice not divided by, a half domain.
     if (causes.empty() || causes.size() > 3) return "";
     std::string text = "; looks like " + causes[0];
     for (size_t i = 1; i < causes.size(); ++i) text += " or " + causes[i];
     return text;
 }
 
-inline std::string mean_hint(const Estimate& e, double truth, const std::vector<double>& numbers,
-                             const std::vector<Factor>& factors) {
-    const double ratio = e.mean / truth, error = 5 * e.standard_error,
-                 within = error / std::abs(e.mean), n = double(numbers.size());
-    if (within >= 1)
-        return e.both_signs ? "; 0 within its error: what has either sign may cancel"
-                            : "; 0 within its error";
+inline std::string mean_hint(const Estimate& e, double truth, const std::vector<Factor>& factors) {
+    const double ratio = e.mean / truth, within = 5 * e.standard_error / std::abs(e.mean);
+    if (within >= 1) return "; 0 within its error";
     const std::string name = times(ratio, within), cause = cause_of(ratio, within, factors);
-    const std::string first = "; ratio " + name + (ratio < 0 ? ", of the wrong sign" : "") + cause;
-    if (!cause.empty()) return first;
-    const bool named = name.back() == ')';
-    double lit = 0, least = infinity;
-    for (double x : numbers) lit += x != 0, least = std::min(least, x);
-    // A choice returns 0 where it is not taken.
-    const double part = lit / n, close = 0.6 * within + 3 * std::sqrt((1 - part) / lit);
-    if (part < 0.98 && close < 0.03 && std::abs(ratio / part - 1) < close)
-        return first + ", as are those that are not 0" +
-               (named ? "" : ": looks like a probability that is not divided by");
-    // 1 + a + a^2 + ...: a path that ends at once brings 1.
-    if (std::abs(least - 1) < 1e-6 && e.mean > 1 && truth > 1) {
-        const double bounce = 1 - 1 / e.mean, by = bounce / (1 - 1 / truth);
-        const std::string why = cause_of(by, 0.6 * error / (e.mean * e.mean * bounce), factors);
-        if (!why.empty())
-            return first + say("; a bounce brings %.4g times what it should", by) + why;
-    }
-    if (named) return first;
+    const std::string text = "; ratio " + name + (ratio < 0 ? ", of the wrong sign" : "") + cause;
+    // n / (n + 1), or its inverse.
     const double less = std::min(ratio, 1 / ratio), count = less / (1 - less),
-                 count_off = within * count / (1 - less);
-    if (count > 4.5 && count_off < 0.25 && std::abs(count - std::round(count)) < count_off)
-        return first + say(", %.0f/%.0f: a count that is off by one?",
-                           std::round(ratio < 1 ? count : count + 1),
-                           std::round(ratio < 1 ? count + 1 : count));
-    const double off = e.mean - truth;
-    if (error < 0.01 && std::abs(off - std::round(4 * off) / 4) < error && std::abs(off) > 0.2)
-        return first + say("; %.4g is %s: a term?", std::abs(std::round(4 * off) / 4),
-                           off < 0 ? "missing" : "too much");
-    return first;
+                 n = std::round(count), known = within * count / (1 - less);
+    if (!cause.empty() || name.back() == ')' || n < 5 || known >= 0.25 ||
+        std::abs(count - n) >= known)
+        return text;
+    return text + say(", %.0f/%.0f: a count that is off by one?", ratio < 1 ? n : n + 1,
+                      ratio < 1 ? n + 1 : n);
 }
 
 // ---- The mistake behind a density ---------------------------------------------------------------
@@ -2406,49 +2393,61 @@ double along(const Point<N>& x, const Triple& axis) {
 }
 
 // A function of the place that pdfs or samplers are known to forget.
-enum class Kind { cosine, sine, coordinate, cube, named };
 template <size_t N>
 struct Base {
     std::string name;
-    Kind kind;
     std::function<double(const Point<N>&)> at;
+    bool of_host = false;    // one of Options::factors
+    std::string drawn = {};  // why a pdf that integrates to 1 may be off by
+    double power = 1;        // this power of it
+    bool cosine = false;
 };
 
 template <size_t N>
 std::vector<Base<N>> bases_of(const Options& o, const Scene<N>& scene) {
     using X = const Point<N>&;
     std::vector<Base<N>> bases;
-    auto add = [&](const std::string& name, Kind kind, std::function<double(X)> at) {
-        bases.push_back({name, kind, std::move(at)});
-    };
     for (const Factor& f : o.factors)
-        add(f.name, Kind::named, [&f](X x) {
-            Triple three{};
-            std::copy_n(x.begin(), std::min<size_t>(3, N), three.begin());
-            return f.at(three);
-        });
+        bases.push_back({f.name,
+                         [&f](X x) {
+                             Triple three{};
+                             std::copy_n(x.begin(), std::min<size_t>(3, N), three.begin());
+                             return f.at(three);
+                         },
+                         true});
     if (scene.directions) {
         const Triple n = scene.normal, lobe = scene.lobe;
-        add("cos(theta)", Kind::cosine, [=](X w) { return along(w, n); });
-        add("sin(theta)", Kind::sine,
-            [=](X w) { return std::sqrt(std::max(0.0, 1 - along(w, n) * along(w, n))); });
+        bases.push_back({"cos(theta)", [=](X w) { return along(w, n); }, false, "", 1, true});
+        bases.push_back(
+            {"sin(theta)",
+             [=](X w) { return std::sqrt(std::max(0.0, 1 - std::pow(along(w, n), 2))); }, false,
+             "theta drawn uniformly, or r = u without its square root: samples lack a "
+             "factor sin(theta)"});
         if (dot(n, lobe) < 0.999)
-            add("the cosine to the lobe's axis", Kind::cosine, [=](X w) { return along(w, lobe); });
-        add("max(|x|, |y|, |z|)", Kind::cube, [](X w) {
-            double most = 0;
-            for (double x : w) most = std::max(most, std::abs(x));
-            return most;
-        });
+            bases.push_back({"the cosine to the lobe's axis", [=](X w) { return along(w, lobe); },
+                             false, "", 1, true});
+        bases.push_back({"max(|x|, |y|, |z|)",
+                         [](X w) {
+                             double most = 0;
+                             for (double x : w) most = std::max(most, std::abs(x));
+                             return most;
+                         },
+                         false, "points of a cube, normalised without rejection", 3});
         return bases;
     }
-    for (size_t k = 0; k < std::min<size_t>(3, N); ++k)
-        add(std::string(1, "xyz"[k]), Kind::coordinate, [k](X x) { return std::abs(x[k]); });
+    for (size_t k = 0; k < std::min<size_t>(3, N); ++k) {
+        const std::string x(1, "xyz"[k]);
+        bases.push_back({x, [k](X p) { return std::abs(p[k]); }, false,
+                         x + " drawn uniformly, without its root"});
+    }
     if (N > 1)
-        add("r", Kind::coordinate, [](X x) {
-            double square = 0;
-            for (double c : x) square += c * c;
-            return std::sqrt(square);
-        });
+        bases.push_back({"r",
+                         [](X x) {
+                             double square = 0;
+                             for (double c : x) square += c * c;
+                             return std::sqrt(square);
+                         },
+                         false, "r drawn uniformly, without its root"});
     return bases;
 }
 
@@ -2474,24 +2473,14 @@ inline std::string factor_and(double factor, double tolerance, const std::string
     return (std::abs(factor - 1) <= tolerance ? "" : times(factor, 0.003) + " ") + what;
 }
 
-// In words, why p / q is a power of a base: normalised is whether the pdf integrates to 1.
-inline std::string cause_of_base(const std::string& name, Kind kind, double k, bool normalised) {
-    if (kind == Kind::named)
-        return k == 1 ? "a factor " + name + " too many in the pdf, or 1/(" + name + ") forgotten"
-               : k == -1 ? name + " forgotten in the pdf, or divided by twice"
-               : k == 2  ? "multiplied by " + name + " in place of divided, in the pdf"
-               : k == -2 ? "divided by " + name + " in place of multiplied, in the pdf"
-                         : "a root of " + name;
-    if (kind == Kind::sine && k == 1)
-        return normalised ? "theta drawn uniformly, or r = u without its square root: samples lack "
-                            "a factor sin(theta)"
-                          : "a density per (theta, phi), not per solid angle";
-    if (kind == Kind::cube)
-        return std::abs(k) == 3 ? "points of a cube, normalised without rejection" : "";
-    if (normalised)
-        return kind == Kind::coordinate && k == 1 ? name + " drawn uniformly, without its root"
-                                                  : "";
-    return "a factor " + name + (k > 0 ? " too many" : " missing") + " in the pdf";
+// In words, why p / q is the power k of a base: normalised is whether the pdf integrates to 1.
+template <size_t N>
+std::string cause_of_base(const Base<N>& b, double k, bool normalised) {
+    if (b.of_host) return cause_of_power(b.name, k, " in the pdf");
+    if (normalised || b.power != 1) return k == b.power ? b.drawn : "";
+    return b.name == "sin(theta)" && k == 1
+               ? "a density per (theta, phi), not per solid angle"
+               : "a factor " + b.name + (k > 0 ? " too many" : " missing") + " in the pdf";
 }
 
 // Linear equations by Gauss and Jordan; NaN if they have no solution.
@@ -2516,34 +2505,37 @@ using Map = std::function<Point<N>(const Point<N>&)>;
 struct Mirror {
     const char* name;
     std::array<size_t, 3> from;
-    Triple sign;
-    bool within(size_t dimensions) const {
-        bool others = false;
-        for (size_t k = dimensions; k < 3; ++k) others = others || from[k] != k || sign[k] != 1;
-        return dimensions <= 3 && !others;
-    }
+    double x = 1, y = 1, z = 1;  // signs
+
     template <size_t N>
-    Point<N> image(Point<N> x, const Point<N>& centre) const {
-        const Point<N> old = x;
-        for (size_t k = 0; k < std::min<size_t>(3, N); ++k)
-            x[k] = centre[k] + sign[k] * (old[from[k]] - centre[from[k]]);
-        return x;
+    std::optional<Map<N>> about(const Point<N>& centre) const {
+        const Triple sign{x, y, z};
+        for (size_t k = N; k < 3; ++k)
+            if (from[k] != k || sign[k] != 1) return {};
+        if constexpr (N <= 3)
+            return [=, order = from](const Point<N>& p) {
+                Point<N> image;
+                for (size_t k = 0; k < N; ++k)
+                    image[k] = centre[k] + sign[k] * (p[order[k]] - centre[order[k]]);
+                return image;
+            };
+        return {};
     }
 };
 inline constexpr Mirror mirrors[] = {
-    {"z negated", {0, 1, 2}, {1, 1, -1}},
-    {"x negated", {0, 1, 2}, {-1, 1, 1}},
-    {"y negated", {0, 1, 2}, {1, -1, 1}},
-    {"the direction negated", {0, 1, 2}, {-1, -1, -1}},
-    {"x and z exchanged", {2, 1, 0}, {1, 1, 1}},
-    {"y and z exchanged", {0, 2, 1}, {1, 1, 1}},
-    {"x and y exchanged", {1, 0, 2}, {1, 1, 1}},
-    {"x, y, z in another order", {1, 2, 0}, {1, 1, 1}},
-    {"x, y, z in another order", {2, 0, 1}, {1, 1, 1}},
+    {"z negated", {0, 1, 2}, 1, 1, -1}, {"x negated", {0, 1, 2}, -1, 1, 1},
+    {"y negated", {0, 1, 2}, 1, -1, 1}, {"the direction negated", {0, 1, 2}, -1, -1, -1},
+    {"x and z exchanged", {2, 1, 0}},   {"y and z exchanged", {0, 2, 1}},
+    {"x and y exchanged", {1, 0, 2}},
 };
-inline std::string words_of_image(const std::string& name) {
-    return "samples have the density of the pdf with " + name + ": looks like " + name +
-           " in one of the two";
+// The first mirror image of the pdf that fits, in words.
+template <size_t N>
+std::string mirror_that(const Point<N>& centre, const auto& fits) {
+    for (const Mirror& m : mirrors)
+        if (const auto image = m.about(centre); image && fits(*image))
+            return std::string("samples have the density of the pdf with ") + m.name +
+                   ": looks like " + m.name + " in one of the two";
+    return "";
 }
 
 // What the sheets of a map, the integral of the pdf and its symmetries say of the mistake: a fact,
@@ -2577,18 +2569,15 @@ struct Mistake {
         for (const Local<N>& l : sheets)
             if (l.p > 0 && l.error <= tolerance) good.push_back(l), ratios.push_back(l.product());
         normalised = std::abs(total + share - 1) < close();
-        std::string why;
-        if (good.size() >= 50) {
-            if (const Law law = law_of(ratios, tolerance); law.holds) return constant(law.factor);
-            why = power_law();
-            if (why.empty()) why = two_powers();
-            if (why.empty()) why = exponent();
-        }
-        if (why.empty()) why = symmetry();
-        if (why.empty()) why = linear();
-        if (why.empty()) why = moved();
-        if (why.empty()) why = steps();
-        return why.empty() && good.size() >= 50 ? which_is_uniform() : why;
+        const bool many = good.size() >= 50;
+        if (const Law law = law_of(ratios, tolerance); many && law.holds)
+            return constant(law.factor);
+        for (auto step :
+             {&Mistake::power_law, &Mistake::two_powers, &Mistake::symmetry, &Mistake::linear,
+              &Mistake::moved, &Mistake::steps, &Mistake::which_is_uniform})
+            if (many || step == &Mistake::symmetry || step == &Mistake::moved)
+                if (const std::string why = (this->*step)(); !why.empty()) return why;
+        return "";
     }
 
     // How well the integral and the failed part are known, together.
@@ -2636,21 +2625,19 @@ struct Mistake {
         if (std::abs(total / c + share - 1) > close()) return "";
         std::string cause;
         for (const Base<N>& b : bases) {
-            if (b.kind != Kind::named) continue;
             std::vector<double> f;
             for (const Local<N>& l : good) f.push_back(b.at(l.x));
             const Law law = law_of(f, 1e-6);
-            if (!law.holds || law.plain(tolerance)) continue;
-            const std::string or_ = cause.empty() ? "" : " or ";
-            if (std::abs(c * law.factor - 1) <= tolerance)
-                cause += or_ + b.name + " forgotten in the pdf";
-            if (std::abs(c / law.factor - 1) <= tolerance)
-                cause += or_ + "a factor " + b.name + " too many in the pdf";
+            if (!b.of_host || !law.holds || law.plain(tolerance)) continue;
+            for (double k : {-1.0, 1.0})
+                if (std::abs(c / std::pow(law.factor, k) - 1) <= tolerance)
+                    cause += (cause.empty() ? "; looks like " : " or ") +
+                             cause_of_power(b.name, k, " in the pdf");
         }
         const std::string name = constant_named(c, 0.003);
         if (cause.empty() && (name == "pi" || name == "2 pi" || name == "4 pi"))
-            cause = (name == "pi" ? "1/pi" : "1/(" + name + ")") + " forgotten";
-        cause = cause.empty() ? ": a constant factor, its normalisation" : "; looks like " + cause;
+            cause = "; looks like 1/" + (name == "pi" ? name : "(" + name + ")") + " forgotten";
+        if (cause.empty()) cause = ": a constant factor, its normalisation";
         // The cosine of a cone so narrow has no more digits.
         std::vector<double> heights;
         for (const Local<N>& l : good) heights.push_back(l.p);
@@ -2686,38 +2673,31 @@ struct Mistake {
         for (size_t i = 0; i < good.size(); ++i) rest.push_back(ratios[i] / f(good[i].x));
         return law_of(rest, tolerance);
     }
-    Law law_over(const Base<N>& a, double j, const Base<N>& b, double k) const {
-        return law_over([&](X x) { return std::pow(a.at(x), j) * std::pow(b.at(x), k); });
-    }
 
     // p / q = c b^k.  One without a constant goes before those with one, one that the host named
     // before others.
     std::string power_law() const {
-        struct {
-            const Base<N>* base;
-            double power, factor;
-            int rank;
-        } best{nullptr, 0, 0, 4};
+        const Base<N>* b = nullptr;
+        double k = 0, factor = 0;
+        int rank = 4;
         size_t fits = 0;
-        for (const double k : {1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 0.5, -0.5})
-            for (const Base<N>& b : bases) {
-                const Law law = law_over(b, k, b, 0);
-                const int rank = 2 * !law.plain(tolerance) + (b.kind != Kind::named);
+        for (const double power : {1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 0.5, -0.5})
+            for (const Base<N>& base : bases) {
+                const Law law = law_over([&](X x) { return std::pow(base.at(x), power); });
+                const int r = 2 * !law.plain(tolerance) + !base.of_host;
                 fits += law.holds;
-                if (law.holds && rank < best.rank) best = {&b, k, law.factor, rank};
+                if (law.holds && r < rank) b = &base, k = power, factor = law.factor, rank = r;
             }
-        if (fits == 0) return "";
-        const auto& [b, k, factor, rank] = best;
+        if (!b) return "";
+        const std::string uniform = which_is_uniform();
         // With a constant left over, a named factor is one of several that vary alike; nor is it
         // all with a cosine: a distance may be 1 / cos(theta).
-        const bool unsure =
-            rank >= 2 && (b->kind == Kind::named ? fits > 1 : b->kind == Kind::cosine);
-        const std::string uniform = which_is_uniform();
-        const bool exponents = normalised && rank >= 2 && uniform.empty() &&
-                               (b->kind == Kind::cosine || b->kind == Kind::coordinate);
+        const bool unsure = rank >= 2 && (b->of_host ? fits > 1 : b->cosine);
+        const bool exponents = normalised && rank >= 2 && uniform.empty() && !b->of_host &&
+                               b->power == 1 && b->name != "sin(theta)";
         const std::string cause = exponents ? "an exponent in one of the two"
                                   : unsure  ? ""
-                                            : cause_of_base(b->name, b->kind, k, normalised);
+                                            : cause_of_base(*b, k, normalised);
         return over(factor, power(b->name, k)) + (cause.empty() ? "" : ": looks like " + cause) +
                (uniform.empty() ? "" : "; " + uniform);
     }
@@ -2734,71 +2714,55 @@ struct Mistake {
             for (const double k : {1.0, -1.0, 2.0, -2.0})
                 for (const Base<N>& a : bases)
                     for (const Base<N>& b : bases) {
-                        if (&a >= &b || a.kind != Kind::named) continue;
-                        const Law law = law_over(a, j, b, k);
-                        if (!law.holds ||
-                            (!law.plain(tolerance) && constant_named(law.factor, 0.003).empty()))
-                            continue;
-                        return over(law.factor, power(a.name, j) + " " + power(b.name, k)) +
-                               ": looks like " + a.name + (j > 0 ? " too many" : " forgotten") +
-                               ", and " + b.name + (k > 0 ? " too many" : " forgotten") +
-                               ", in the pdf";
+                        if (&a >= &b || !a.of_host) continue;
+                        const Law law = law_over(
+                            [&](X x) { return std::pow(a.at(x), j) * std::pow(b.at(x), k); });
+                        if (law.plain(tolerance) ||
+                            (law.holds && !constant_named(law.factor, 0.003).empty()))
+                            return over(law.factor, power(a.name, j) + " " + power(b.name, k)) +
+                                   ": looks like " + a.name + (j > 0 ? " too many" : " forgotten") +
+                                   ", and " + b.name + (k > 0 ? " too many" : " forgotten") +
+                                   ", in the pdf";
                     }
         return "";
     }
 
-    // Any power of the cosine to an axis: the exponent of a lobe.
-    std::string exponent() const {
-        for (const Base<N>& b : bases) {
-            if (b.kind != Kind::cosine) continue;
-            std::vector<double> slopes;
-            for (size_t i = 0; i + 1 < good.size(); ++i) {
-                const double x = std::log(b.at(good[i + 1].x) / b.at(good[i].x));
-                if (std::abs(x) > 1e-6) slopes.push_back(std::log(ratios[i + 1] / ratios[i]) / x);
-            }
-            const double k = slopes.size() < 40 ? 0 : median(slopes);
-            if (const Law law = law_over(b, k, b, 0); law.holds && std::abs(k) > 0.05)
-                return over(law.factor, power(b.name, k)) + ": looks like the exponent of a lobe";
-        }
-        return "";
-    }
-
-    // A power k of p / q, with a cosine in its place or without, is a linear function a x + b: the
-    // cosine to a direction that nobody named, a half vector, a factor that a warp lacks.  By least
-    // squares; for directions b is there for squares alone.
+    // A power k of p / q, times a power j of a cosine, is a linear function a x + b: the cosine to
+    // a direction that nobody named, a half vector (of whose squares b is a part), a factor that a
+    // warp lacks.  By least squares.
     std::string linear() const {
-        if (good.size() < 50) return "";
-        for (const double k : {1.0, -1.0, 2.0, -2.0})
-            for (const double j : {0.0, 1.0, -1.0}) {
-                const bool square = std::abs(k) == 2;
-                if (j != 0 && (!scene.directions || square)) break;
-                const double one = scene.directions && !square ? 0 : 1;
-                std::array<std::array<double, N + 2>, N + 1> rows{};
-                std::vector<double> left;
-                for (size_t i = 0; i < good.size(); ++i) {
-                    X x = good[i].x;
-                    left.push_back(std::pow(ratios[i] * std::pow(along(x, scene.normal), j), k));
-                    std::array<double, N + 2> row;
-                    std::copy(x.begin(), x.end(), row.begin());
-                    row[N] = one, row[N + 1] = left[i];
-                    for (size_t r = 0; r <= N; ++r)
-                        for (size_t c = 0; c <= N + 1; ++c)
-                            rows[r][c] += row[r] * row[c] / (left[i] * left[i]);
-                }
-                rows[N][N] += 1 - one;
-                const auto a = solved(rows);
-                std::vector<double> rest;
-                for (size_t i = 0; i < good.size(); ++i) {
-                    double sum = a[N];
-                    for (size_t c = 0; c < N; ++c) sum += a[c] * good[i].x[c];
-                    rest.push_back(left[i] / sum);
-                }
-                // In a small domain everything is linear.
-                const double spread = median(left, 0.95) / median(left, 0.05);
-                if (spread > (square ? 1.5 : 1) + 30 * tolerance &&
-                    law_of(rest, tolerance).plain(tolerance))
-                    return words_of(a, j, k);
+        const std::pair<double, double> powers[] = {{1, 0},  {1, 1},   {1, -1}, {-1, 0},
+                                                    {-1, 1}, {-1, -1}, {2, 0},  {-2, 0}};
+        for (const auto& [k, j] : powers) {
+            const bool square = std::abs(k) == 2;
+            if (!scene.directions && (j != 0 || square)) continue;
+            const double one = scene.directions && !square ? 0 : 1;
+            std::array<std::array<double, N + 2>, N + 1> rows{};
+            std::vector<double> left;
+            for (size_t i = 0; i < good.size(); ++i) {
+                X x = good[i].x;
+                left.push_back(std::pow(ratios[i] * std::pow(along(x, scene.normal), j), k));
+                std::array<double, N + 2> row;
+                std::copy(x.begin(), x.end(), row.begin());
+                row[N] = one, row[N + 1] = left[i];
+                for (size_t r = 0; r <= N; ++r)
+                    for (size_t c = 0; c <= N + 1; ++c)
+                        rows[r][c] += row[r] * row[c] / (left[i] * left[i]);
             }
+            rows[N][N] += 1 - one;
+            const auto a = solved(rows);
+            std::vector<double> rest;
+            for (size_t i = 0; i < good.size(); ++i) {
+                double sum = a[N];
+                for (size_t c = 0; c < N; ++c) sum += a[c] * good[i].x[c];
+                rest.push_back(left[i] / sum);
+            }
+            // In a small domain everything is linear.
+            const double spread = median(left, 0.95) / median(left, 0.05);
+            if (spread > (square ? 1.5 : 1) + 30 * tolerance &&
+                law_of(rest, tolerance).plain(tolerance))
+                return words_of(a, j, k);
+        }
         return "";
     }
     std::string words_of(const std::array<double, N + 1>& a, double j, double k) const {
@@ -2808,28 +2772,26 @@ struct Mistake {
         Point<N> n;
         for (size_t c = 0; c < N; ++c) n[c] = a[c] / length;
         const std::string cosine = "the cosine to " + say_point(n);
-        const char* fate = k > 0 ? " too many" : " forgotten";
+        const char* fate = k > 0 ? " too many in the pdf" : " forgotten in the pdf";
         // |w + wo|^2 = 2 (1 + w.wo) = 4 (wo.h)^2
-        if (scene.directions && std::abs(k) == 2 && std::abs(a[N] / length - 1) < 0.02)
-            return over(std::pow(2 * length, 1 / k) / std::pow(4, 2 / k),
-                        power("(4 wo.h)", k / 2)) +
-                   " with wo = " + say_point(n) + ": looks like 4 wo.h of the half vector" + fate +
-                   " in the pdf";
-        if (scene.directions && std::abs(k) == 2)
-            return over(std::pow(a[N], 1 / k),
-                        power(say("(1 + %.3g ", length / a[N]) + cosine + ")", 1 / k)) +
-                   ": looks like an exponent";
+        if (std::abs(k) == 2)
+            return std::abs(a[N] / length - 1) > 0.02
+                       ? ""
+                       : over(std::pow(2 * length, 1 / k) / std::pow(4, 2 / k),
+                              power("(4 wo.h)", k / 2)) +
+                             " with wo = " + say_point(n) +
+                             ": looks like 4 wo.h of the half vector" + fate;
         if (scene.directions)
             return over(std::pow(length, k), power("(" + cosine + ")", k)) +
                    (j == 0 ? "" : " " + power("cos(theta)", -j)) + ": looks like " + cosine + fate +
-                   " in the pdf" + (j == 0 ? "" : ", or taken to another normal");
+                   (j == 0 ? "" : ", or taken to another normal");
         std::string sum;
         for (size_t c = 0; c <= N; ++c) {
             if (std::abs(a[c]) < 0.01 * std::hypot(length, a[N])) continue;
             sum += sum.empty() ? (a[c] < 0 ? "-" : "") : a[c] < 0 ? " - " : " + ";
             sum += say("%.3g", std::abs(a[c])) + (c < N ? say(" %c", "xyz"[c % 3]) : "");
         }
-        return over(1, power("(" + sum + ")", 1 / k)) +
+        return over(1, power("(" + sum + ")", k)) +
                (normalised && k > 0
                     ? ": looks like a number that is not warped, or without its root"
                     : "");
@@ -2837,14 +2799,11 @@ struct Mistake {
 
     // Samples have the density of the pdf of a mirror image.
     std::string symmetry() const {
-        for (const Mirror& m : mirrors)
-            if (m.within(N) &&
-                law_of_image([&](X x) { return m.image(x, scene.centre); }, 1).plain(tolerance))
-                return words_of_image(m.name) +
-                       (scene.directions && m.name[0] == 'z' && scene.normal[2] == 1
-                            ? ", below the horizon"
-                            : "");
-        return "";
+        const std::string why = mirror_that(scene.centre, [&](const Map<N>& image) {
+            return law_of_image(image, 1).plain(tolerance);
+        });
+        const bool below = scene.directions && scene.normal[2] == 1;
+        return why + (below && why.find("z negated") < why.size() ? ", below the horizon" : "");
     }
     Law law_of_image(const Map<N>& image, double stretch) const {
         std::vector<double> turned, heights;
@@ -2891,31 +2850,29 @@ struct Mistake {
         return "";
     }
     // The b between -most and most for which samples have the density of the pdf at image(b),
-    // stretched exp(power b) times; 0 if there is none beyond `least`.
+    // stretched exp(power b) times; 0 if there is none beyond `least`.  On a grid, then by ever
+    // smaller steps.
     double fitted(double most, double least, double power,
                   const std::function<Map<N>(double)>& image) const {
-        const double b = best(most, [&](double at) {
-            // How far the two are apart, where the pdf is not 0.
-            const Map<N> map = image(at);
+        // How far the two are apart, where the pdf is not 0.
+        auto apart = [&](double b) {
+            const Map<N> map = image(b);
             double sum = 0, n = 0;
             for (const Local<N>& l : sheets)
-                if (const double p = pdf(map(l.x)) / std::exp(power * at); p > 0)
+                if (const double p = pdf(map(l.x)) / std::exp(power * b); p > 0)
                     sum += std::min(0.3, std::abs(std::log(p / l.q))), ++n;
             return n < 0.4 * double(sheets.size()) ? 1 : sum / n;
-        });
-        const bool plain = law_of_image(image(b), std::exp(power * b)).plain(tolerance);
-        return plain && std::abs(b) > least ? b : 0;
-    }
-    // Where f is least between -most and most: on a grid, then by ever smaller steps.
-    static double best(double most, const auto& f) {
-        double at = 0, least = infinity;
+        };
+        double best = 0, nearest = infinity;
         for (double step = most / 100; step > 2e-7 * most; step /= 2) {
-            const int reach = least == infinity ? 100 : 1;
-            const double middle = at;
+            const int reach = nearest == infinity ? 100 : 1;
+            const double middle = best;
             for (int i = -reach; i <= reach; ++i)
-                if (const double x = middle + i * step, y = f(x); y < least) least = y, at = x;
+                if (const double b = middle + i * step, d = apart(b); d < nearest)
+                    nearest = d, best = b;
         }
-        return at;
+        const bool plain = law_of_image(image(best), std::exp(power * best)).plain(tolerance);
+        return plain && std::abs(best) > least ? best : 0;
     }
 
     // Few constant factors, each at many points.
@@ -3020,114 +2977,111 @@ std::string law_of_pdfs(const auto& check, const std::vector<double>& ratios,
     return "";
 }
 
-// Whether counts follow the pdf times a power of a base, or one of its mirror images, or constants
-// on either side of a plane: for samplers whose map tells nothing.
+// Whether counts follow the pdf times a power of a base, or one of its mirror images: for samplers
+// whose map tells nothing.
 template <size_t M, size_t N, class Domain>
 std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
     using X = const Point<N>&;
-    const int checks = statistical_checks;  // guesses are none
-    const double spent = alpha_spent;
-    auto parts_of = [&](const std::function<double(X)>& guess) {
+    auto fits = [&](const std::function<double(X)>& guess) {
         check.claim = guess;
         const Parts parts = check.integrate();
         check.claim = {};
-        return parts;
-    };
-    auto follow = [&](const std::vector<double>& p, const std::vector<double>& variances) {
-        const bool pass = judge_counts(check.counts, p, {.alpha = 1e-3}, variances).pass;
+        if (!(parts.total > 0 && std::isfinite(parts.total))) return false;
+        const int checks = statistical_checks;  // a guess is none
+        const double spent = alpha_spent;
+        const bool pass =
+            judge_counts(check.counts, parts.shares(), {.alpha = 1e-3}, parts.variances()).pass;
         statistical_checks = checks, alpha_spent = spent;
         return pass;
-    };
-    auto fits = [&](const std::function<double(X)>& guess) {
-        const Parts parts = parts_of(guess);
-        std::vector<double> p, variances;
-        for (size_t i = 0; i < 32; ++i) {
-            p.push_back(parts.value[i] / parts.total);
-            variances.push_back(parts.variance[i] / (parts.total * parts.total));
-        }
-        return parts.total > 0 && std::isfinite(parts.total) && follow(p, variances);
     };
     const auto& pdf = check.model.pdf;
     for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
         for (const Base<N>& b : bases_of(check.o, check.scene()))
             if (fits([&](X x) { return pdf(x) * std::pow(b.at(x), k); })) {
-                const std::string cause = cause_of_base(b.name, b.kind, -k, check.balanced);
+                const std::string cause = cause_of_base(b, -k, check.balanced);
                 return "samples have the density of the pdf times " + power(b.name, k) +
                        (cause.empty() ? "" : ": looks like " + cause);
             }
-    for (const Mirror& m : mirrors)
-        if (m.within(N) && fits([&](X x) { return pdf(m.image(x, check.scene().centre)); }))
-            return words_of_image(m.name);
-    const double n = sum_of(check.counts), arrives = n / check.samples;
-    for (size_t k = 0; k < N && check.directions; ++k) {
-        const Parts above = parts_of([&](X x) { return x[k] > 0 ? pdf(x) : 0; });
-        const double half = above.total / check.parts.total;
-        if (!(std::min(half, 1 - half) > 0.01)) continue;
-        // p = a above + b below sums to 1: the a that fits best.
-        std::vector<double> p, slope;
-        double products = 0, squares = 0;
-        for (size_t i = 0; i < 32; ++i) {
-            const double up = above.value[i] / check.parts.total, down = check.expected[i] - up;
-            const double seen = check.counts[i] / n, weight = 1 / (seen + 1 / n);
-            p.push_back(down / (1 - half));
-            slope.push_back(up - p[i] * half);
-            products += slope[i] * (seen - p[i]) * weight;
-            squares += slope[i] * slope[i] * weight;
-        }
-        const double a = products / squares, b = (1 - a * half) / (1 - half);
-        for (size_t i = 0; i < 32; ++i) p[i] += a * slope[i];
-        if (std::min(a, b) < -0.01 || !follow(p, {})) continue;
-        const double by = arrives / check.parts.total;
-        const std::string dense = " times as dense as the pdf says where ";
-        if (std::min(a, b) < 0.01)
-            return "samples are " + times(std::max(a, b) * by, 0.01) + dense +
-                   say("%c %c 0, and hardly any come elsewhere: looks like a part of the domain "
-                       "(half of phi?) never sampled",
-                       "xyz"[k % 3], a > b ? '>' : '<');
-        return "samples are " + times(a * by, 0.01) + dense + say("%c > 0, ", "xyz"[k % 3]) +
-               times(b * by, 0.01) +
-               " times where it is < 0: looks like the probability of one side";
+    return mirror_that(check.scene().centre, [&](const Map<N>& image) {
+        return fits([&](X x) { return pdf(image(x)); });
+    });
+}
+
+// Where counts differ most, by their cells: every other hint was silent.
+template <size_t M, size_t N, class Domain>
+std::string worst_cells_of(const DensityCheck<M, N, Domain>& check) {
+    // In the middle of those that the pilot found there: the range's may be where nothing is.
+    std::array<std::vector<Point<N>>, 32> inside;
+    for (const auto& c : check.pilot) inside[check.cells.of(c)].push_back(check.domain.at(c));
+    auto middle_of = [&](size_t cell) {
+        const auto& here = inside[cell];
+        return check.at(here.empty() ? check.domain.at(check.range(cell).middle())
+                                     : here[here.size() / 2]);
+    };
+    const double n = sum_of(check.counts);
+    const size_t worst = check.worst_cell();
+    if (!(check.expected[worst] > 0))
+        return "samples come where the pdf is 0, near " + middle_of(worst);
+    std::vector<double> dense;
+    std::vector<std::pair<double, double>> by_distance;
+    for (size_t i = 0; i < 32; ++i) {
+        const double expected = n * check.expected[i];
+        dense.push_back(expected > 0 ? check.counts[i] / expected : 1);
+        for (const Point<N>& x : inside[i])
+            by_distance.emplace_back(check.distance(x), 1 / dense[i]);
     }
-    return "";
+    const auto [least, most] = std::minmax_element(dense.begin(), dense.end());
+    const size_t other = size_t((dense[worst] > 1 ? least : most) - dense.begin());
+    const std::string width = width_of(by_distance);
+    std::vector<double> products{infinity};
+    for (const auto& l : check.sheets.all) products.push_back(l.product());
+    const bool pieces = median(products, 0.1) > 0.98 && median(products, 0.9) < 1.02;
+    return (pieces ? "every piece of the map has the density of the pdf, but " : "") +
+           ("samples are " + say("%.4g", dense[worst]) +
+            " times as dense as the pdf says, around ") +
+           middle_of(worst) + say(", and %.4g times around ", dense[other]) + middle_of(other) +
+           (pieces          ? ": looks like branches that overlap and leave a gap"
+            : width.empty() ? ""
+                            : ": the pdf is " + width);
 }
 
 // The first line of a refusal.
 template <size_t M, size_t N, class Domain>
 std::string first_line_of(DensityCheck<M, N, Domain>& check) {
-    constexpr size_t D = Domain::dimensions;
     const auto& sheets = check.sheets;
     const double total = check.parts.total, share = check.none / check.samples + check.o.discrete;
+    if (check.heaps > 2)
+        return check.repeated + say(", and %zu points more repeat", check.heaps - 1) +
+               ": looks like corners of cells, without a random number within";
+    if (check.heaps > 0 && !check.directions)
+        return check.repeated + ": looks like numbers clamped to an end";
+    // Where the pdf lacks just this part it was left out on purpose.
+    if (check.heaps > 0)
+        return check.repeated +
+               (std::abs(total + share + check.repeating - 1) < 0.02
+                    ? ": looks like a mirror (.discrete says how many samples are)"
+                    : ": numbers clamped to an end, or a mirror (.discrete says how many)?");
     const bool blurred = !sheets.off || std::abs(sheets.off->product() - 1) <
                                             3 * (sheets.off->error + 4 * sheets.off->noise);
     const std::string rounded = check.model.single && check.counted && blurred &&
                                         std::abs(total - 1 + share) < 10 * check.close
                                     ? if_double
                                     : "";
-    if (check.heaps > 2)
-        return check.repeated + say(", and %zu points more repeat", check.heaps - 1) +
-               ": looks like corners of cells, without a random number within";
-    // Where the pdf lacks just this part it was left out on purpose.
-    if (check.heaps > 0 && !check.directions)
-        return check.repeated + ": looks like numbers clamped to an end";
-    if (check.heaps > 0)
-        return check.repeated +
-               (std::abs(total + share + check.repeating - 1) < 0.02
-                    ? ": looks like a mirror (.discrete says how many samples are)"
-                    : ": numbers clamped to an end, or a mirror (.discrete says how many)?");
     if (const std::string why = explained(check, sheets.all, total); !why.empty())
         return why + rounded;
     const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
+    const bool mapless = sheets.all.size() < 100,
+               by_cells = !check.counted && check.samples >= 50000;
     // By counts the shape is right.
-    if (!check.balanced && check.counted && sheets.all.size() < 100 &&
-        std::abs(total / (1 - share) - 1) > 0.1 && std::abs(total - 1) > check.close)
+    if (!check.balanced && check.counted && mapless && std::abs(total / (1 - share) - 1) > 0.1 &&
+        std::abs(total - 1) > check.close)
         return "the pdf is " + times(total / (1 - share), 0.003) +
                " times the density of the samples, as far as counts tell: a constant factor; " +
                integral_is + (share > 0 ? ", " + percent(share) + " of the samples fail" : "") +
                rounded;
-    const bool by_cells = !check.counted && check.samples >= 50000;
-    if (!check.balanced && by_cells && sheets.all.size() < 100)
+    if (by_cells && (check.balanced ? !sheets.off : mapless))
         if (const std::string why = law_of_cells(check); !why.empty())
-            return why + "; " + integral_is + rounded;
+            return why + (check.balanced ? "" : "; " + integral_is) + rounded;
     if (!check.balanced && check.none > 0) {
         const std::string fails = compared(check) + percent(check.none / check.samples) +
                                   " of the samples fail (" + check.first_none + ")";
@@ -3143,41 +3097,7 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
         return compared(check) + "samples are " + say("%.4g", 1 / sheets.off->product()) +
                " times as dense as the pdf says, at " + check.at(sheets.off->x) +
                ", u = " + say_point(sheets.u) + rounded;
-    if (by_cells)
-        if (const std::string why = law_of_cells(check); !why.empty()) return why + rounded;
-    // In the middle of those that the pilot found there: the range's may be where nothing is.
-    std::array<std::vector<Point<D>>, 32> inside;
-    for (const Point<D>& c : check.pilot) inside[check.cells.of(c)].push_back(c);
-    auto middle_of = [&](size_t cell) {
-        const auto& here = inside[cell];
-        return check.at(
-            check.domain.at(here.empty() ? check.range(cell).middle() : here[here.size() / 2]));
-    };
-    const double n = sum_of(check.counts);
-    const size_t worst = check.worst_cell();
-    if (!(check.expected[worst] > 0))
-        return "samples come where the pdf is 0, near " + middle_of(worst);
-    std::vector<double> dense;
-    std::vector<std::pair<double, double>> by_distance;
-    for (size_t i = 0; i < 32; ++i) {
-        const double expected = n * check.expected[i];
-        dense.push_back(expected > 0 ? check.counts[i] / expected : 1);
-        for (const Point<D>& c : inside[i])
-            by_distance.emplace_back(check.distance(check.domain.at(c)), 1 / dense[i]);
-    }
-    const auto [least, most] = std::minmax_element(dense.begin(), dense.end());
-    const size_t other = size_t((dense[worst] > 1 ? least : most) - dense.begin());
-    const std::string width = width_of(by_distance);
-    std::vector<double> products{infinity};
-    for (const Local<N>& l : sheets.all) products.push_back(l.product());
-    const bool pieces = median(products, 0.1) > 0.98 && median(products, 0.9) < 1.02;
-    return (pieces ? "every piece of the map has the density of the pdf, but " : "") +
-           ("samples are " + say("%.4g", dense[worst]) +
-            " times as dense as the pdf says, around ") +
-           middle_of(worst) + say(", and %.4g times around ", dense[other]) + middle_of(other) +
-           (pieces          ? ": looks like branches that overlap and leave a gap"
-            : width.empty() ? ""
-                            : ": the pdf is " + width);
+    return worst_cells_of(check);
 }
 
 // ---- What is wrong with a BSDF ------------------------------------------------------------------
@@ -3208,149 +3128,53 @@ inline std::string albedo_hint(const std::vector<Albedo>& all) {
     const Albedo* worst = nullptr;
     std::string list;
     for (const Albedo& a : all) {
-        if (a.mean <= 1 + 1e-3 + 5 * a.error * a.mean) continue;
-        if (!worst || a.mean > worst->mean) worst = &a;
+        list += (list.empty() ? "" : ", ") + say("%.3g at cos %.2g", a.mean, a.wo[2]);
+        if (a.mean > 1 + 1e-3 + 5 * a.error * a.mean && (!worst || a.mean > worst->mean))
+            worst = &a;
     }
     if (!worst) return "";
-    for (const Albedo& a : all)
-        list += (list.empty() ? "" : ", ") + say("%.3g at cos %.2g", a.mean, a.wo[2]);
-    const double steep = all[0].mean;
+    const bool rises = worst->mean > 2 * all[0].mean;
     return "an albedo of " + times(worst->mean, std::max(0.003, 3 * worst->error)) +
            ": more leaves than comes, for wo = " + say_point(worst->wo) + " (" + list + ")" +
-           (worst->mean > 2 * steep && worst->wo[2] * all[0].wo[2] < 0.3
-                ? "; looks like masking forgotten, or a division by the cosine of wo"
-            : worst->mean > 2 * steep ? ""
-            : worst->mean > 2
-                ? "; is a constant factor (1/pi, 1/4) missing?"
-                : "; are lobes added without weights (1 - F), or is a constant factor "
-                  "(1/pi, 1/4) missing?");
+           (rises && std::abs(worst->wo[2]) < 0.3
+                ? "; it grows towards grazing wo, as 1/cos and tan do: is masking forgotten, or a "
+                  "bound of the angle?"
+            : rises           ? ""
+            : worst->mean > 2 ? "; is a constant factor (1/pi, 1/4) missing?"
+                              : "; are lobes added without weights (1 - F), or is a constant "
+                                "factor (1/pi, 1/4) missing?");
 }
 
 // ---- What is wrong with a choice ----------------------------------------------------------------
-
-// Few are all listed.
-inline std::string list_of(const std::vector<double>& expected, const std::vector<double>& seen,
-                           double samples) {
-    if (expected.size() > 8) return "";
-    std::string chosen, wanted;
-    for (size_t i = 0; i < expected.size(); ++i) {
-        const char* comma = i == 0 ? "" : ", ";
-        chosen += comma + say("%.3g", seen[i] / samples);
-        wanted += comma + say("%.3g", expected[i]);
-    }
-    return "; chosen are " + chosen + ", expected " + wanted;
-}
-
-inline std::string sum_hint(const std::vector<double>& expected, const std::vector<double>& seen) {
-    std::vector<double> differences = expected;
-    for (size_t i = 1; i < expected.size(); ++i)
-        differences[i] = std::max(0.0, expected[i] - expected[i - 1]);
-    return (expected.size() > 2 && fit_choices(differences, seen, 0, 0).p > 1e-4
-                ? ": looks like cumulated probabilities in place of each one's"
-                : "") +
-           list_of(expected, seen, sum_of(seen));
-}
-
-// The probabilities of a choice of a group by a number that then, not scaled, chooses in the group:
-// of the first k and of all others, or of k each.
-inline std::vector<double> chosen_again(const std::vector<double>& p, size_t k, bool alike) {
-    std::vector<double> sums{0}, again;
-    for (double x : p) sums.push_back(sums.back() + x);
-    for (size_t i = 0; i < p.size(); ++i) {
-        const size_t a = alike ? i / k * k : i < k ? 0 : k, b = alike || i < k ? a + k : p.size();
-        const double low = sums[a], high = sums[b], begin = (sums[i] - low) / (high - low),
-                     end = i + 1 == b ? sums.back() : (sums[i + 1] - low) / (high - low);
-        again.push_back(std::max(0.0, std::min(end, high) - std::max(begin, low)));
-    }
-    return again;
-}
 
 inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
                                double none, double tolerance) {
     const size_t count = expected.size();
     const double total = sum_of(expected), samples = none + sum_of(seen);
-    std::vector<double> frequencies;
-    for (double x : seen) frequencies.push_back(x / samples);
-    auto explains = [&](const std::vector<double>& p) {
-        return fit_choices(p, seen, none, tolerance).p > 1e-4;
-    };
-    const std::string all = list_of(expected, seen, samples);
     if (none > 0 && std::abs(total - 1) < 1e-6)
         return percent(none / samples) +
                " of the choices are none, though the probabilities sum to 1";
-    if (count == 1 && explains({1 - total}))
-        return percent(seen[0] / samples) + " are chosen, " + percent(total) +
-               " expected: looks like a comparison turned round (p for 1 - p)";
-    const size_t worst = worst_of(count, [&](size_t i) {
-        const double mean = expected[i] * samples;
-        return seen[i] == mean ? 0 : std::abs(seen[i] - mean) / std::sqrt(mean);
-    });
-    std::string first =
-        expected[worst] == 0
-            ? say("index %zu is chosen, though its probability is 0", worst)
-            : say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
-                  seen[worst] / (expected[worst] * samples), expected[worst]);
-    // Other probabilities, if there are so many that it is not by chance.
     std::string cause;
+    // Other probabilities, if there are so many that it is not by chance.
     auto other = [&](size_t fewest, const std::string& words, const std::vector<double>& p) {
-        if (cause.empty() && count >= fewest && explains(p)) cause = "; " + words;
+        if (cause.empty() && count >= fewest && fit_choices(p, seen, none, tolerance).p > 1e-4)
+            cause = "; looks like " + words;
     };
-    for (size_t k = 1; k < std::min<size_t>(count, 256); ++k) {
-        const std::string again = ", used again without scaling";
-        other(
-            3,
-            say("looks like the number that chose between 0 to %zu and the others", k - 1) + again,
-            chosen_again(expected, k, false));
-        if (1 < k && 2 * k < count && count % k == 0)
-            other(3, say("looks like the number that chose a group of %zu", k) + again,
-                  chosen_again(expected, k, true));
+    for (const size_t by : {size_t(1), count - 1}) {
+        std::vector<double> rotated = expected, moved(count);
+        std::rotate(rotated.begin(), rotated.begin() + long(by % count), rotated.end());
+        for (size_t i = 0; i < count; ++i)
+            moved[by == 1 ? std::min(i + 1, count - 1) : i - std::min<size_t>(i, 1)] += expected[i];
+        other(3, "an index off by one", moved);
+        other(4, "index and probability shifted by one", rotated);
     }
-    size_t i = 0, divided = 0;
-    while (i < count && (seen[i] > 0 || expected[i] * samples < 20)) ++i;
-    if (i < count) {
-        first = say("index %zu is never chosen, though its probability is %.4g", i, expected[i]);
-        for (const bool up : {true, false}) {
-            std::vector<double> moved(count);
-            for (size_t j = 0; j < count; ++j)
-                moved[up ? std::min(j + 1, count - 1) : j - std::min<size_t>(j, 1)] += expected[j];
-            other(3, "looks like an index off by one", moved);
-        }
-        const size_t heir =
-            worst_of(count, [&](size_t j) { return seen[j] - expected[j] * samples; });
-        auto merged = expected, scaled = expected;
-        merged[heir] += std::exchange(merged[i], 0);
-        other(2,
-              say("%zu takes its share", heir) +
-                  (i + 1 == count && heir + 1 == i ? ": a search that ends too early"
-                   : i == 0 && heir == 1           ? ": a search that begins too late"
-                                                   : ""),
-              merged);
-        for (double& p : scaled) p *= total / (total - expected[i]);
-        scaled[i] = 0;
-        other(2,
-              std::string("the others share it in proportion") +
-                  (i + 1 == count ? ": looks like a range too short" : ""),
-              scaled);
-        return first + cause + all;
-    }
-    for (i = 0; i < count; ++i) {
-        const double mean = expected[i] * samples / double(count);
-        divided += mean >= 100 && std::abs(seen[i] - mean) < 4 * std::sqrt(mean);
-    }
-    if (cause.empty() && count > 2 && 2 * divided > count)
-        cause =
-            say("; %zu others 1/%zu times: looks like probabilities not multiplied by their "
-                "number (an alias table?)",
-                divided, count);
-    auto turned = expected;
-    std::reverse(turned.begin(), turned.end());
-    if (count == 2) other(2, "looks like the two exchanged (p for 1 - p)", turned);
-    for (size_t by : {size_t(1), count - 1}) {
-        turned = expected;
-        std::rotate(turned.begin(), turned.begin() + long(by), turned.end());
-        other(4, "looks like index and probability shifted by one", turned);
-    }
-    other(1, "looks like a uniform choice", std::vector<double>(count, total / double(count)));
+    if (count == 2) other(2, "the two exchanged (p for 1 - p)", {expected[1], expected[0]});
+    if (count == 1) other(1, "a comparison turned round (p for 1 - p)", {1 - total});
+    other(1, "a uniform choice", std::vector<double>(count, total / double(count)));
+    std::vector<double> shorter = expected;
+    shorter.back() = 0;
+    for (double& p : shorter) p *= total / (total - expected.back());
+    other(2, "a range too short", shorter);
     if (const auto [low, high] = std::minmax_element(expected.begin(), expected.end());
         *high < *low * (1 + 1e-6)) {
         // round(u n) and round(u (n - 1)).
@@ -3358,48 +3182,36 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
             std::vector<double> rounded(count, total / n);
             rounded[0] /= 2;
             rounded[count - 1] *= n < double(count) ? 0.5 : 1.5;
-            other(3, "looks like an index rounded to nearest in place of down", rounded);
+            other(3, "an index rounded to nearest in place of down", rounded);
         }
-        other(1, "looks like probabilities of a uniform choice, which this is not", frequencies);
+        if (cause.empty()) cause = "; the probabilities are uniform, the choice is not";
     }
-    std::vector<std::pair<double, size_t>> by_seen;
-    for (i = 0; i < count; ++i) by_seen.emplace_back(seen[i], i);
-    std::sort(by_seen.begin(), by_seen.end());
-    auto sorted = expected;
-    std::sort(sorted.begin(), sorted.end());
-    for (i = 0; i < count; ++i) turned[by_seen[i].second] = sorted[i];
-    other(4, "looks like the probabilities in another order", turned);
-    return first + cause + all;
+    std::string list, wanted;  // few are all listed
+    for (size_t i = 0; i < count && count <= 8; ++i) {
+        list += (i == 0 ? "; chosen are " : ", ") + say("%.3g", seen[i] / samples);
+        wanted += (i == 0 ? ", expected " : ", ") + say("%.3g", expected[i]);
+    }
+    size_t i = 0;
+    while (i < count && (seen[i] > 0 || expected[i] * samples < 20)) ++i;
+    const size_t worst = worst_of(count, [&](size_t k) {
+        const double mean = expected[k] * samples;
+        return seen[k] == mean ? 0 : std::abs(seen[k] - mean) / std::sqrt(mean);
+    });
+    return (i < count
+                ? say("index %zu is never chosen, though its probability is %.4g", i, expected[i])
+            : expected[worst] == 0
+                ? say("index %zu is chosen, though its probability is 0", worst)
+                : say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
+                      seen[worst] / (expected[worst] * samples), expected[worst])) +
+           cause + list + wanted;
 }
 
 // ---- What is wrong with an image ----------------------------------------------------------------
 
-// What a rectangle of pixels is, or every second, third or fourth row or column, if most of it is
-// off and all others are right.
+// What a rectangle of pixels is, if most of it is off and all others are right.
 inline std::string Image::all_others_right() const {
     auto off = [&](size_t i) {
         return std::abs(f[i] - truth[i]) > 5 * s[i] + 1e-6 * std::abs(truth[i]);
-    };
-    std::string why;
-    auto try_those = [&](const std::string& who, auto in) {
-        std::vector<double> mended = truth;
-        double seen = 0, wanted = 0, variance = 0, wrong = 0, inside = 0;
-        for (size_t i = 0; i < n(); ++i) {
-            if (!in(i % width, i / width)) continue;
-            mended[i] = f[i];
-            seen += f[i], wanted += truth[i], variance += s[i] * s[i];
-            wrong += off(i), ++inside;
-        }
-        if (!why.empty() || 2 * wrong < inside || 3 * inside > 2 * double(n()) ||
-            against(mended).p <= o.alpha)
-            return;
-        const double error = 5 * std::sqrt(variance);
-        why = who +
-              (std::abs(seen) <= error ? "black"
-               : wanted == 0
-                   ? "not black"
-                   : times(seen / wanted, error / std::abs(seen)) + " times the reference") +
-              ", all others are right";
     };
     size_t x0 = width, x1 = 0, y0 = height, y1 = 0;
     for (size_t i = 0; i < n(); ++i) {
@@ -3407,82 +3219,79 @@ inline std::string Image::all_others_right() const {
         x0 = std::min(x0, i % width), x1 = std::max(x1, i % width);
         y0 = std::min(y0, i / width), y1 = std::max(y1, i / width);
     }
-    try_those(x0 == x1 && y0 == y1 ? say("pixel (%zu, %zu) is ", x0, y0)
-                                   : say("pixels (%zu, %zu) to (%zu, %zu) are ", x0, y0, x1, y1),
-              [&](size_t x, size_t y) { return x0 <= x && x <= x1 && y0 <= y && y <= y1; });
-    for (size_t step = 2; step <= 4; ++step)
-        for (size_t k = 0; k < 2 * step; ++k)
-            try_those(say("%s %zu, %zu, %zu, ... are ", k < step ? "rows" : "columns", k % step,
-                          k % step + step, k % step + 2 * step),
-                      [&](size_t x, size_t y) { return (k < step ? y : x) % step == k % step; });
-    return why;
+    std::vector<double> mended = truth;
+    double seen = 0, wanted = 0, variance = 0, wrong = 0, inside = 0;
+    for (size_t y = y0; y <= y1; ++y)
+        for (size_t x = x0; x <= x1; ++x) {
+            const size_t i = y * width + x;
+            mended[i] = f[i];
+            seen += f[i], wanted += truth[i], variance += s[i] * s[i];
+            wrong += off(i), ++inside;
+        }
+    if (!(2 * wrong >= inside && 3 * inside <= 2 * double(n()) && against(mended).p > o.alpha))
+        return "";
+    const double error = 5 * std::sqrt(variance);
+    return (inside == 1 ? say("pixel (%zu, %zu) is ", x0, y0)
+                        : say("pixels (%zu, %zu) to (%zu, %zu) are ", x0, y0, x1, y1)) +
+           (std::abs(seen) <= error
+                ? "black"
+                : times(seen / wanted, error / std::abs(seen)) + " times the reference") +
+           ", all others are right";
 }
 
 inline std::string Image::hint(const ImageResult& r) const {
-    double sum = 0, sum_f = 0, variance = 0;
-    for (size_t i = 0; i < n(); ++i) sum += truth[i], sum_f += f[i], variance += s[i] * s[i];
+    double variance = 0, clamped = 0, n_clamped = 0;
+    const double sum = sum_of(truth), sum_f = sum_of(f),
+                 most = *std::max_element(f.begin(), f.end());
     std::string first;
-    auto explains = [&](const std::vector<double>& g, const std::string& cause, double c = 1) {
-        if (first.empty() && against(g, c).p > std::max(1e-5, 10 * o.alpha)) first = cause;
+    auto explains = [&](const std::vector<double>& g, const std::string& what, double c = 1) {
+        if (first.empty() && against(g, c).p > std::max(1e-5, 10 * o.alpha))
+            first = "the image is " + what;
     };
-    // The reference's pixels at other places; without the border, which may have no neighbour.
-    auto moved = [&](bool inside, const std::function<size_t(size_t, size_t)>& from) {
+    // The reference's pixels at other places; or only within the border, which has all neighbours.
+    auto moved = [&](bool inside, auto from) {
         std::vector<double> g = f;
-        for (size_t i = 0; i < n(); ++i) {
-            const size_t x = i % width, y = i / width;
-            if (!inside || (x > 0 && x + 1 < width && y > 0 && y + 1 < height))
-                g[i] = truth[from(x, y)];
-        }
+        for (size_t y = inside; y + inside < height; ++y)
+            for (size_t x = inside; x + inside < width; ++x) g[y * width + x] = truth[from(x, y)];
         return g;
     };
     explains(moved(false, [&](size_t x, size_t y) { return (height - 1 - y) * width + x; }),
-             "the image is the reference upside down: looks like rows written in the other order");
+             "the reference upside down: looks like rows written in the other order");
     explains(moved(false, [&](size_t x, size_t y) { return y * width + width - 1 - x; }),
-             "the image is the reference mirrored: looks like x reversed");
+             "the reference mirrored: looks like x reversed");
     explains(moved(false, [&](size_t x, size_t y) { return x * height + y; }),
-             "the image is the reference with rows and columns exchanged");
-    if (width % 3 == 0)
-        explains(moved(false, [&](size_t x, size_t y) { return y * width + x + 2 - 2 * (x % 3); }),
-                 "the image is the reference with columns 3k and 3k + 2 exchanged: looks like red "
-                 "and blue exchanged");
+             "the reference with rows and columns exchanged");
+    for (size_t i = 0; i < n(); ++i) {
+        variance += s[i] * s[i];
+        if (truth[i] > most) clamped += f[i], ++n_clamped;
+    }
     if (sum != 0 && sum_f / sum > 0) {
         const double within = 5 * std::sqrt(variance) / std::abs(sum_f);
         explains(truth,
-                 "the image is " + times(sum_f / sum, within) + " times the reference, everywhere" +
+                 times(sum_f / sum, within) + " times the reference, everywhere" +
                      cause_of(sum_f / sum, within, o.factors),
                  sum_f / sum);
     }
-    double most = 0, clamped = 0, n_clamped = 0;
-    for (double x : f) most = std::max(most, x);
-    for (size_t i = 0; i < n(); ++i)
-        if (truth[i] > most) clamped += f[i], ++n_clamped;
     if (n_clamped > 0) {
         std::vector<double> g = truth;
         for (double& x : g) x = std::min(x, clamped / n_clamped);
-        explains(
-            g, say("the image is the reference, but nowhere above %.4g: looks like values clamped",
-                   clamped / n_clamped));
+        explains(g, say("the reference, but nowhere above %.4g: looks like values clamped",
+                        clamped / n_clamped));
     }
-    for (double gamma : {1 / 2.2, 2.2, 0.5, 2.0}) {
-        std::vector<double> g = truth;
-        for (double& x : g) x = std::pow(std::max(0.0, x), gamma);
-        explains(g, say("the image is the reference to the power of %.4g: looks like gamma %s",
-                        gamma, gamma < 1 ? "applied" : "removed twice"));
-    }
-    const struct {
-        size_t dx, dy;  // + 1
-        const char* where;
-    } shifts[] = {{2, 1, "left"}, {0, 1, "right"}, {1, 2, "up"}, {1, 0, "down"}};
-    // Only where it is the inside that differs.
-    auto shifted = [&](size_t dx, size_t dy) {
-        return moved(true,
-                     [=, this](size_t x, size_t y) { return (y + dy - 1) * width + x + dx - 1; });
+    auto shifted = [&](int dx, int dy) {
+        return moved(true, [=, this](size_t x, size_t y) {
+            return (y + size_t(dy)) * width + x + size_t(dx);
+        });
     };
-    if (width > 4 && height > 4 && against(shifted(1, 1)).p <= o.alpha)
-        for (const auto& [dx, dy, where] : shifts)
-            explains(shifted(dx, dy),
-                     std::string("the image is the reference one pixel further ") + where);
+    // Only where it is the inside that differs.
+    if (width > 4 && height > 4 && against(shifted(0, 0)).p <= o.alpha) {
+        explains(shifted(1, 0), "the reference one pixel further left");
+        explains(shifted(-1, 0), "the reference one pixel further right");
+        explains(shifted(0, 1), "the reference one pixel further up");
+        explains(shifted(0, -1), "the reference one pixel further down");
+    }
     if (first.empty()) first = all_others_right();
+    if (!first.empty()) return first;
     // By 16 blocks: those in the middle, at the edges, in the corners.
     std::array<double, 16> seen{}, wanted{};
     std::array<double, 3> low{infinity, infinity, infinity}, high{};
@@ -3492,30 +3301,26 @@ inline std::string Image::hint(const ImageResult& r) const {
         low[group] = std::min(low[group], seen[b] / wanted[b]);
         high[group] = std::max(high[group], seen[b] / wanted[b]);
     }
-    if (first.empty() && ((low[0] > high[1] && low[1] > high[2] && low[0] > 1.05 * high[2]) ||
-                          (high[0] < low[1] && high[1] < low[2] && 1.05 * high[0] < low[2])))
-        first =
-            say("the image is %.3g times the reference in the middle, %.3g times at the edges, "
-                "%.3g times in the corners: a weight of the camera (cos^4, a filter)?",
-                (low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2);
-    if (first.empty() && r.by_block) {
-        const size_t x0 = (r.block % 4 * width + 3) / 4, x1 = ((r.block % 4 + 1) * width + 3) / 4,
-                     y0 = (r.block / 4 * height + 3) / 4, y1 = ((r.block / 4 + 1) * height + 3) / 4;
-        first = say("the block of pixels (%zu, %zu) to (%zu, %zu) is %.4g times the reference", x0,
-                    y0, x1 - 1, y1 - 1, seen[r.block] / wanted[r.block]) +
-                say(", all pixels %.4g times", sum_f / sum);
-    }
-    if (first.empty())
-        first = say("pixel (%zu, %zu)", r.worst % width, r.worst / width) +
-                say(" is %.6g +- %.2g, expected %.6g", f[r.worst], s[r.worst], truth[r.worst]) +
-                say("; all pixels: %.4g times the reference", sum_f / sum);
-    return first;
+    const bool darker = low[0] > high[1] && low[1] > high[2] && low[0] > 1.05 * high[2],
+               brighter = high[0] < low[1] && high[1] < low[2] && 1.05 * high[0] < low[2];
+    if (darker || brighter)
+        return say(
+            "the image is %.3g times the reference in the middle, %.3g times at the edges, "
+            "%.3g times in the corners: a weight of the camera (cos^4, a filter)?",
+            (low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2);
+    const std::string all = say("all pixels: %.4g times the reference", sum_f / sum);
+    if (!r.by_block)
+        return say("pixel (%zu, %zu)", r.worst % width, r.worst / width) +
+               say(" is %.6g +- %.2g, expected %.6g; ", f[r.worst], s[r.worst], truth[r.worst]) +
+               all;
+    const size_t x0 = (r.block % 4 * width + 3) / 4, x1 = ((r.block % 4 + 1) * width + 3) / 4,
+                 y0 = (r.block / 4 * height + 3) / 4, y1 = ((r.block / 4 + 1) * height + 3) / 4;
+    return say("the block of pixels (%zu, %zu) to (%zu, %zu) is %.4g times the reference; ", x0, y0,
+               x1 - 1, y1 - 1, seen[r.block] / wanted[r.block]) +
+           all;
 }
 
 // ---- Pictures -----------------------------------------------------------------------------------
-
-// The colours of the cells of three maps.
-using Maps = std::array<std::vector<std::string>, 3>;
 
 // A picture in SVG of a width and height in pixels; y points down.
 struct Drawing {
@@ -3536,14 +3341,23 @@ struct Drawing {
         for (const auto& [x, y] : points) body += say("%.1f,%.1f ", x, y);
         body += "' style='fill:none;" + style + "'/>\n";
     }
-    void draw(const Maps& maps, size_t across, double h, const std::array<const char*, 3>& titles) {
+
+    // Three maps, row by row from the top, each 350 wide: black is 1, white 0; for the third, red
+    // is 1, blue -1.
+    void maps(const std::array<std::vector<double>, 3>& values, size_t across, double h,
+              const std::array<const char*, 3>& titles) {
         const double w = 350.0 / double(across);
         for (size_t k = 0; k < 3; ++k) {
             const double left = 10 + 362 * double(k);
             text(left, 20, titles[k]);
-            for (size_t i = 0; i < maps[k].size(); ++i)
+            for (size_t i = 0; i < values[k].size(); ++i) {
+                const double x = std::clamp(values[k][i], k == 2 ? -1.0 : 0.0, 1.0);
+                const int fade = int(255 * (1 - std::abs(x)));
                 rectangle(left + w * double(i % across), 30 + h * double(i / across), w + 0.1,
-                          h + 0.1, maps[k][i]);
+                          h + 0.1,
+                          say("fill:rgb(%d,%d,%d)", k == 2 && x > 0 ? 255 : fade, fade,
+                              k == 2 && x <= 0 ? 255 : fade));
+            }
         }
     }
 
@@ -3574,16 +3388,6 @@ struct Drawing {
     }
 };
 
-// White at 0, black at 1; or blue at -1, white at 0, red at 1.
-inline std::string grey(double x) {
-    const int level = int(255 * (1 - std::clamp(x, 0.0, 1.0)));
-    return say("fill:rgb(%d,%d,%d)", level, level, level);
-}
-inline std::string blue_white_red(double x) {
-    const int fade = int(255 * (1 - std::min(1.0, std::abs(x))));
-    return x < 0 ? say("fill:rgb(%d,%d,255)", fade, fade) : say("fill:rgb(255,%d,%d)", fade, fade);
-}
-
 // The running mean, and the band in which it would be with a mean of `truth`.
 inline std::string picture_of(const Draws& draws, double truth, const Options& o) {
     const Estimate e = draws.estimate();
@@ -3613,14 +3417,13 @@ inline std::string picture_of(const Draws& draws, double truth, const Options& o
     d.text(60, 20,
            say("running mean (red) of %.0f samples; grey: where it is with a mean of %.6g",
                draws.n(), truth));
-    d.text(2, 184, say("%.4g", truth));
-    d.text(2, 44, say("%.4g", truth + half));
-    d.text(2, 324, say("%.4g", truth - half));
+    for (double k : {-1.0, 0.0, 1.0}) d.text(2, 184 - 140 * k, say("%.4g", truth + k * half));
     d.text(500, 345, say("n = %.0f", draws.n()));
     return d.written(o.name);
 }
 
-// Maps of 100 000 samples more, of the pdf, and of their difference; on a line bars and a curve.
+// 100 000 samples more and the pdf: on a line bars and a curve, else two maps and that of their
+// difference.
 template <size_t M, size_t N, class Domain>
 std::string picture_of(DensityCheck<M, N, Domain>& check) {
     constexpr size_t D = Domain::dimensions, across = 48, down = D == 1 ? 1 : 32;
@@ -3628,6 +3431,7 @@ std::string picture_of(DensityCheck<M, N, Domain>& check) {
     // phi (or the first coordinate) runs to the right, theta downwards.
     constexpr size_t right = D == 1 ? 0 : 1;
     Range<D> shown{check.domain.lower, check.domain.upper};
+    double area = 1, total = 0, most = 1;
     for (size_t k = 0; k < D; ++k) {
         const auto [low, high] =
             std::minmax_element(check.pilot.begin(), check.pilot.end(),
@@ -3635,12 +3439,12 @@ std::string picture_of(DensityCheck<M, N, Domain>& check) {
         const double margin = 0.05 * ((*high)[k] - (*low)[k]) + 1e-12;
         shown.lower[k] = std::max(shown.lower[k], (*low)[k] - margin);
         shown.upper[k] = std::min(shown.upper[k], (*high)[k] + margin);
+        area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
     }
     auto part = [&](const Point<D>& c, size_t k) {
         return (c[k] - shown.lower[k]) / (shown.upper[k] - shown.lower[k]);
     };
     std::vector<double> seen(across * down), claimed(across * down);
-    double total = 0, area = 1, most = 1;
     for (int i = 0; i < 100000; ++i)
         if (const auto c = check.one()) {
             ++total;
@@ -3648,8 +3452,6 @@ std::string picture_of(DensityCheck<M, N, Domain>& check) {
             if (x >= 0 && x < 1 && y >= 0 && y < 1)
                 ++seen[size_t(y * double(down)) * across + size_t(x * double(across))];
         }
-    for (size_t k = 0; k < D; ++k)
-        area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
     for (size_t i = 0; i < seen.size(); ++i) {
         for (int s = 0; s < 9; ++s) {
             Point<D> c;
@@ -3665,16 +3467,15 @@ std::string picture_of(DensityCheck<M, N, Domain>& check) {
         }
         most = std::max({most, seen[i], claimed[i]});
     }
-    const Range<D> cell = check.range(check.worst_cell());
-    auto lower = [&](size_t k, double length) {
-        return length * std::clamp(part(cell.lower, k), 0.0, 1.0);
-    };
-    auto extent = [&](size_t k, double length) {
-        return length * std::clamp(part(cell.upper, k), 0.0, 1.0) - lower(k, length);
-    };
-    const std::string from = say_point(check.domain.at(shown.lower)),
-                      to = say_point(check.domain.at(shown.upper));
+    // The worst cell, in parts of what is shown.
+    Range<D> worst = check.range(check.worst_cell());
+    for (Point<D>* end : {&worst.lower, &worst.upper}) {
+        const Point<D> c = *end;
+        for (size_t k = 0; k < D; ++k) (*end)[k] = std::clamp(part(c, k), 0.0, 1.0);
+    }
     Drawing d{D == 1 ? 620.0 : 1100.0, 330};
+    const std::string ends = "from " + say_point(check.domain.at(shown.lower)) + " to " +
+                             say_point(check.domain.at(shown.upper));
     if (D == 1) {
         std::vector<std::pair<double, double>> line;
         for (size_t i = 0; i < across; ++i) {
@@ -3683,59 +3484,58 @@ std::string picture_of(DensityCheck<M, N, Domain>& check) {
             line.emplace_back(x + 5, 290 - 240 * claimed[i] / most);
         }
         d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
-        d.text(40, 20, "samples (grey) and pdf (red); worst cell below");
-        d.rectangle(40 + lower(0, 552), 300, extent(0, 552), 6, "fill:black");
-        d.text(40, 322, from);
-        d.text(560, 322, to);
+        d.text(40, 20, "samples (grey) and pdf (red), " + ends + "; worst cell below");
+        d.rectangle(40 + 552 * worst.lower[0], 300, 552 * (worst.upper[0] - worst.lower[0]), 6,
+                    "fill:black");
         return d.written(check.o.name);
     }
-    Maps maps;
+    std::array<std::vector<double>, 3> values;
     for (size_t i = 0; i < seen.size(); ++i) {
-        maps[0].push_back(grey(std::sqrt(seen[i] / most)));
-        maps[1].push_back(grey(std::sqrt(claimed[i] / most)));
-        maps[2].push_back(
-            blue_white_red((seen[i] - claimed[i]) / (std::sqrt(claimed[i] + seen[i] + 1) * 6)));
+        values[0].push_back(std::sqrt(seen[i] / most));
+        values[1].push_back(std::sqrt(claimed[i] / most));
+        values[2].push_back((seen[i] - claimed[i]) / (std::sqrt(claimed[i] + seen[i] + 1) * 6));
     }
-    d.draw(maps, across, 8, {"samples", "pdf", "samples - pdf: red too many, blue too few"});
+    d.maps(values, across, 8, {"samples", "pdf", "samples - pdf: red too many, blue too few"});
     for (double left : {10, 372, 734}) {
         d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
-        d.rectangle(left + lower(right, 350), 30 + lower(0, 256), extent(right, 350),
-                    extent(0, 256), "fill:none;stroke:rgb(0,140,0);stroke-width:3");
+        d.rectangle(left + 350 * worst.lower[right], 30 + 256 * worst.lower[0],
+                    350 * (worst.upper[right] - worst.lower[right]),
+                    256 * (worst.upper[0] - worst.lower[0]),
+                    "fill:none;stroke:rgb(0,140,0);stroke-width:3");
     }
-    d.text(
-        10, 304,
-        (check.directions
-             ? say("to the right phi from %.4g to %.4g, down theta from %.4g to %.4g",
-                   shown.lower[right], shown.upper[right], shown.lower[0], shown.upper[0])
-             : "the second coordinate to the right, the first down, from " + from + " to " + to) +
-            "; worst cell in green");
+    d.text(10, 304,
+           (check.directions ? "phi to the right, theta down, "
+                             : "the second coordinate to the right, the first down, ") +
+               ends + "; worst cell in green");
     return d.written(check.o.name);
 }
 
 inline std::string Image::picture() const {
     // The three, by blocks of pixels.
     const size_t across = std::min<size_t>(width, 64), down = std::min<size_t>(height, 48);
-    std::vector<double> image(across * down), wanted(across * down), weight(across * down);
+    std::array<std::vector<double>, 3> values;
+    for (auto& v : values) v.resize(across * down);
+    std::vector<double> weight(across * down);
+    double most = 1e-300, most_off = 1e-300;
+    for (size_t i = 0; i < n(); ++i)
+        ++weight[(i / width) * down / height * across + (i % width) * across / width];
     for (size_t i = 0; i < n(); ++i) {
         const size_t b = (i / width) * down / height * across + (i % width) * across / width;
-        image[b] += f[i], wanted[b] += truth[i], ++weight[b];
+        values[0][b] += f[i] / weight[b], values[1][b] += truth[i] / weight[b];
+        values[2][b] += (f[i] - truth[i]) / weight[b];
     }
-    double most = 1e-300, most_off = 1e-300;
-    for (size_t b = 0; b < image.size(); ++b) {
-        image[b] /= weight[b], wanted[b] /= weight[b];
-        most = std::max({most, image[b], wanted[b]});
-        most_off = std::max(most_off, std::abs(image[b] - wanted[b]));
+    for (size_t b = 0; b < weight.size(); ++b) {
+        most = std::max({most, values[0][b], values[1][b]});
+        most_off = std::max(most_off, std::abs(values[2][b]));
     }
-    auto tone = [&](double x) { return grey(1 - std::pow(std::max(0.0, x / most), 1 / 2.2)); };
-    Maps maps;
-    for (size_t b = 0; b < image.size(); ++b) {
-        maps[0].push_back(tone(image[b]));
-        maps[1].push_back(tone(wanted[b]));
-        maps[2].push_back(blue_white_red((image[b] - wanted[b]) / most_off));
+    for (size_t b = 0; b < weight.size(); ++b) {
+        for (size_t k : {0, 1})
+            values[k][b] = 1 - std::pow(std::max(0.0, values[k][b] / most), 1 / 2.2);
+        values[2][b] /= most_off;
     }
     const double h = 350.0 * double(height) / double(width) / double(down);
     Drawing d{1100, 60 + h * double(down)};
-    d.draw(maps, across, h,
+    d.maps(values, across, h,
            {"image", "reference", "image - reference: red too bright, blue too dark"});
     d.text(10, 50 + h * double(down), say("white is %.4g; full red and blue %.4g", most, most_off));
     return d.written(o.name);
