@@ -355,40 +355,17 @@ TEST_CASE("narrow lobes: one that the pdf or the sampler misses, one in a hundre
     CHECK(!expect_density(random, both, without, o).pass);
 }
 
-// Textbook code, in float and in double.  TEXTBOOK_SEEDS=200 tries more seeds, every tenth with the
-// default options, too, and with densities off by 1 %.
+// Textbook code, in float and in double.
 namespace {
 
 template <class T>
 void check_textbook(const std::string& what, const std::function<textbook::Vec<T>(T, T)>& sample,
                     const std::function<T(textbook::Vec<T>)>& density) {
-    const char* more = std::getenv("TEXTBOOK_SEEDS");
-    const int seeds = more ? std::atoi(more) : 1;
-    int refused = 0, missed = 0, off = 0;
-    std::string text;
     const Aside aside;
-    for (int i = 0; i < seeds; ++i) {
-        Random random(seed_here() + uint64_t(i) * 0x9e3779b9);
-        const Verdict v = expect_density(random, sample, density, {.sees = 0.03});
-        if (!v.pass) ++refused, text = v.text;
-        if (!more || i % 10 != 0) continue;
-        const Verdict fine = expect_density(random, sample, density);
-        if (!fine.pass) ++refused, text = fine.text;
-        for (T factor : {T(0.99), T(1.01)}) {
-            ++off;
-            missed += expect_density(random, sample, [&](textbook::Vec<T> w) {
-                          return factor * density(w);
-                      }).pass;
-        }
-    }
-    INFO(what, sizeof(T) == 4 ? " in float: " : " in double: ", refused, " refused of ", seeds,
-         ", ", missed, " off by 1 % missed: ", text);
-    if (more)
-        std::printf("%-30s %s: %d of %d refused, %d of %d off by 1 %% missed\n", what.c_str(),
-                    sizeof(T) == 4 ? "float" : "double", refused, seeds, missed, off),
-            std::fflush(stdout);
-    CHECK(refused == 0);
-    CHECK(missed == 0);
+    Random random(seed_here());
+    const Verdict v = expect_density(random, sample, density, {.sees = 0.03});
+    INFO(what, sizeof(T) == 4 ? " in float: " : " in double: ", v.text);
+    CHECK(v.pass);
 }
 
 template <class T>
