@@ -420,9 +420,8 @@ struct Draws {
         return far[k] > 0 ? sum / double(k) : 0;
     }
 
-    // Whether the tail is that of an infinite variance, as far as k numbers can tell: xi > 0.4,
-    // and among the farthest of them still within 5 standard errors of 1/2, which bounded lumps are
-    // not.
+    // The tail is that of an infinite variance, as far as k numbers can tell: xi > 0.4, and still
+    // within 5 standard errors of 1/2 among the farthest of them.  Bounded outliers are not.
     static constexpr size_t tail = 400;
     bool heavy() const {
         if (values.size() < 100 * tail || tail_index(tail) <= 0.4) return false;
@@ -626,9 +625,9 @@ Rule rule(const F& f, double a, double b) {
     return r;
 }
 
-// How closely parts of an integral must agree: within `tolerance`, the same for each part (a jump
-// then costs log2(jump / tolerance) halvings, and few parts come close), or within `noise`, the
-// relative rounding of f.  Two rules agree by chance where a kink lies just so: `halves` must, too.
+// Parts of an integral must agree within `tolerance`, the same for each part (a jump then costs
+// log2(jump / tolerance) halvings, and few parts come close), or within `noise`, the relative
+// rounding of f.  Two rules agree by chance where a kink lies just so: `halves` must, too.
 struct Agreement {
     double tolerance = 0, noise = 0x1p-50;
     int depth = 30;           // halvings
@@ -737,8 +736,8 @@ std::string say_point(const Point<N>& c) {
     return N == 1 ? text : "(" + text + ")";
 }
 
-// How f takes numbers of type A: as they are, or one argument that is made from {them}.  Braces
-// refuse to make a float of a double, and tell which of them f wants.
+// f takes numbers of type A as they are, or one argument that {them} initialises.  Braces do not
+// convert a double to a float, and so tell which of the two f wants.
 enum class Taken { not_at_all, exactly, converted, in_braces };
 template <class F, class A, size_t... I>
 constexpr Taken taken(std::index_sequence<I...>) {
@@ -750,7 +749,7 @@ constexpr Taken taken(std::index_sequence<I...>) {
 template <class F, class A, size_t D>
 constexpr Taken takes = oracle::taken<F, A>(std::make_index_sequence<D>());
 
-// Whether call() makes floats of them: 1 - 2^-54 would become 1.
+// call() converts them to float: 1 - 2^-54 would become 1.
 template <class F, size_t D>
 constexpr bool takes_floats = takes<F, double, D> != Taken::exactly &&
                               (takes<F, float, D> == Taken::exactly ||
@@ -768,7 +767,7 @@ auto call(F& f, const Point<D>& u) {
     (std::make_index_sequence<D>());
 }
 
-// How many numbers f takes; 0 if it draws by itself.
+// The number of arguments of f; 0 if it draws by itself.
 template <class F, size_t D = 8>
 constexpr size_t numbers_of() {
     if constexpr (D == 0 || takes<F, double, D> != Taken::not_at_all ||
@@ -778,7 +777,7 @@ constexpr size_t numbers_of() {
         return numbers_of<F, D - 1>();
 }
 
-// What a sampler returns may be nothing: an optional or a pointer.
+// A sampler may return nothing: an optional or a pointer.
 template <class R>
 constexpr bool may_fail = requires(const R& r) {
     r ? *r : *r;
@@ -878,7 +877,7 @@ auto model(Sample& sample, Pdf& pdf) {
 std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
                         double none, double tolerance);
 
-// Whether counts are those of these probabilities, less a part that fails; rare ones by Poisson.
+// Counts follow these probabilities, less a part that fails; rare ones by Poisson.
 struct ChoiceFit {
     double p = 1, chi2 = 0, cells = 0;
 };
@@ -1130,8 +1129,8 @@ auto usual_domain() {
 
 // ---- The density of samples where their map is smooth ------------------------------------------
 
-// What differences of the map tell at one point x(u): the density p that the pdf claims there, and
-// q = 1 / sqrt(det J^T J) that this sheet of the map has.  Where several u lead to x, p > q.
+// The density p that the pdf has at one point x(u), and q = 1 / sqrt(det J^T J) of this sheet of
+// the map, by differences.  Where several u lead to x, p > q.
 template <size_t N>
 struct Local {
     Point<N> x;
@@ -1202,7 +1201,7 @@ std::optional<Local<N>> local_at(const Model<D, N>& model, const Point<D>& u) {
             coarse[k][i] = (8 * d2[i] - d4[i]) / (12 * h);
             fine[k][i] = (8 * d1[i] - d2[i]) / (6 * h);
             square += fine[k][i] * fine[k][i];
-            // Of equal steps, of which curvature is no part.
+            // Fourth differences of equal steps: curvature cancels.
             for (size_t j = 2; j < 11; ++j)
                 rough += std::pow(near[j - 2][i] - 4 * near[j - 1][i] + 6 * near[j][i] -
                                       4 * near[j + 1][i] + near[j + 2][i],
@@ -1239,9 +1238,9 @@ inline double median(std::vector<double> x, double part = 0.5) {
     return *middle;
 }
 
-// Whether p / q is off 1 about u by more than rounding: at 15 points close to u its median is
-// beyond `tolerance`, twice its quartiles' distance and the noise.  > 0: too large, < 0: too small.
-// In float coordinates are steps: points closer than h would be off alike.
+// p / q differs from 1 about u by more than rounding: its median at 15 points close to u exceeds
+// `tolerance`, twice the interquartile range and the noise.  > 0: too large, < 0: too small.  In
+// float coordinates are steps: points closer than h would be off alike.
 template <size_t D, size_t N>
 int off_about(const Model<D, N>& model, const Point<D>& u, Random& random, double tolerance) {
     std::vector<double> off, noise;
@@ -1408,7 +1407,7 @@ struct Parts {
     std::array<double, 32> value{}, variance{};
     double total = 0, error = 0;  // standard error of the total
 
-    // Of the total.
+    // As fractions of the total.
     std::vector<double> shares() const {
         std::vector<double> p;
         for (double x : value) p.push_back(x / total);
@@ -1561,7 +1560,7 @@ struct DensityCheck {
         }
     }
 
-    // What sample says the pdf is, beside what pdf says.
+    // The pdf that sample returns against that of pdf().
     std::string other_pdf() {
         if (!model.says_pdf) return "";
         std::vector<double> ratios;
@@ -1632,7 +1631,7 @@ struct DensityCheck {
                     places.push_back(domain.coordinates(image));
                     per_dc.push_back(there * domain.weight(places.back()));
                 }
-            // What an ulp or two of the coordinates changes; jumps are met by few.
+            // The change by an ulp or two of the coordinates; few points meet a jump.
             for (int j = 0; j < jitters; ++j) {
                 const double change = std::abs(model.pdf(jittered(points[i])) / p - 1);
                 (change < 0.5 ? rounding : jumps) += std::min(1.0, change);
@@ -1885,7 +1884,7 @@ Verdict DensityCheck<M, N, Domain>::run() {
         if (const auto c = one()) ++counts[cells.of(*c)];
     if (!wrong.empty()) return failure(wrong);
 
-    // What fails is missing from the integral, as closely as it is known.
+    // The failed samples are missing from the integral, as closely as it is known.
     const double others = samples * (1 - o.discrete),
                  fewest = others - samples * (parts.total + close),
                  most = others - samples * (parts.total - close);
@@ -1963,9 +1962,9 @@ auto points_in(Random& random, const Domain& domain, size_t n) {
     return points;
 }
 
-// Samples that were drawn elsewhere (by a GPU, by Python) have the density of which pdfs[i] is the
-// value at points[i], where points = points_in(random, domain, n): chi-squared.  o.n: how many
-// samples were tried, if some failed and are no part of the array.
+// Samples from elsewhere (a GPU, Python) have the density whose value at points[i] is pdfs[i], with
+// points = points_in(random, domain, n): chi-squared.  o.n: the number of samples drawn, if some
+// failed and are not in the array.
 template <class Samples, class Points, class Pdfs, class Domain>
 Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs& pdfs,
                        const Domain& domain, const Options& o = {}) {
@@ -2051,8 +2050,7 @@ using Eval = std::function<double(const Triple&, const Triple&)>;
 using Pairs = std::vector<std::pair<Triple, Triple>>;
 std::string exchange_hint(const Eval& f, const Pairs& pairs, double close);
 
-// What a BSDF does if wo and wi are exchanged, above the surface and through it, where it may be
-// scaled by a constant.
+// A BSDF with wo and wi exchanged, above the surface and through it, where a constant may scale it.
 struct Exchange {
     std::string wrong = {};
     bool reflects = false, transmits = false;
@@ -2125,8 +2123,8 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     if (!e.wrong.empty()) return failure(e.wrong, o);
 
     Verdict all{true, 1, 0, ""};
-    // Of eval for importance, and of eval for radiance, which what is transmitted has more of by
-    // eta^2: it is not known which of the two it is.
+    // eval may be for importance or for radiance, which transmission scales by eta^2: albedos of
+    // both, as it is not known which of the two it is.
     std::array<std::vector<Albedo>, 2> albedos;
     for (double side : {1.0, -1.0})
         for (const auto& [z, phi] : {std::pair{0.95, 1.0}, {0.6, 3.0}, {0.2, 5.0}, {0.02, 2.0}}) {
@@ -2194,7 +2192,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
 
 // ---- Images -------------------------------------------------------------------------------------
 
-// How far an image is from a reference.
+// The distance of an image from a reference.
 struct ImageResult {
     double p = 1, mean = 0, mean_p = 1, z = 0;
     size_t worst = 0, block = 0;
@@ -2209,7 +2207,7 @@ struct Image {
         return (i / width) * 4 / height * 4 + (i % width) * 4 / width;
     }
 
-    // Of the image divided by c against these values.
+    // The image divided by c against these values.
     ImageResult against(const std::vector<double>& g, double c = 1) const {
         struct Sum {
             double off = 0, variance = 0;
@@ -2538,8 +2536,8 @@ std::string mirror_that(const Point<N>& centre, const auto& fits) {
     return "";
 }
 
-// What the sheets of a map, the integral of the pdf and its symmetries say of the mistake: a fact,
-// then "looks like" and a cause where one explains all of it.
+// The mistake, by the sheets of a map, the integral of the pdf and its symmetries: a fact, then
+// "looks like" and a cause where one explains all of it.
 template <size_t N>
 struct Mistake {
     using X = const Point<N>&;
@@ -2580,7 +2578,7 @@ struct Mistake {
         return "";
     }
 
-    // How well the integral and the failed part are known, together.
+    // The error of the integral and of the failed part, together.
     double close() const { return std::max(share > 0 ? 0.01 : 1e-3, tolerance); }
 
     std::string degenerate(const std::vector<Local<N>>& all) const {
@@ -2728,8 +2726,8 @@ struct Mistake {
     }
 
     // A power k of p / q, times a power j of a cosine, is a linear function a x + b: the cosine to
-    // a direction that nobody named, a half vector (of whose squares b is a part), a factor that a
-    // warp lacks.  By least squares.
+    // a direction that nobody named, the square of a half vector's cosine, a factor that a warp
+    // lacks.  By least squares.
     std::string linear() const {
         const std::pair<double, double> powers[] = {{1, 0},  {1, 1},   {1, -1}, {-1, 0},
                                                     {-1, 1}, {-1, -1}, {2, 0},  {-2, 0}};
@@ -2814,7 +2812,7 @@ struct Mistake {
             if (const double p = pdf(image(l.x)); p > 0)
                 turned.push_back(p / l.q / stretch), heights.push_back(p);
         }
-        // What is uniform has every scale.
+        // A uniform density has every scale.
         if (law_of(heights, tolerance).holds) return {};
         if (double(turned.size()) < 0.9 * std::min(1.0, total) * double(exact)) return {};
         return law_of(turned, tolerance);
@@ -2854,7 +2852,7 @@ struct Mistake {
     // smaller steps.
     double fitted(double most, double least, double power,
                   const std::function<Map<N>(double)>& image) const {
-        // How far the two are apart, where the pdf is not 0.
+        // The mean distance of the two, where the pdf is not 0.
         auto apart = [&](double b) {
             const Map<N> map = image(b);
             double sum = 0, n = 0;
@@ -2905,13 +2903,13 @@ std::string mistake_behind(const std::vector<Local<N>>& all, const auto& model,
     return Mistake<N>{model.pdf, scene, model.single, model.unit, total, share, bases_of(o, scene)}
         .name(all);
 }
-// The same of a check's sheets.
+// The same for the sheets of a check.
 std::string explained(const auto& check, const auto& all, double total) {
     const double share = check.none / std::max(1.0, check.samples) + check.o.discrete;
     return mistake_behind(all, check.model, check.scene(), total, share, check.o);
 }
 
-// Of samples that all come where the pdf is 0.
+// A hint for samples that all come where the pdf is 0.
 template <size_t M, size_t N, class Domain>
 std::string symmetry_of(DensityCheck<M, N, Domain>& check) {
     if constexpr (M == Domain::dimensions) {
@@ -2977,8 +2975,8 @@ std::string law_of_pdfs(const auto& check, const std::vector<double>& ratios,
     return "";
 }
 
-// Whether counts follow the pdf times a power of a base, or one of its mirror images: for samplers
-// whose map tells nothing.
+// The counts follow the pdf times a power of a base, or one of its mirror images: for samplers
+// without a smooth map.
 template <size_t M, size_t N, class Domain>
 std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
     using X = const Point<N>&;
@@ -3102,8 +3100,8 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
 
 // ---- What is wrong with a BSDF ------------------------------------------------------------------
 
-// Whether f(a, b) / f(b, a) is a ratio of the cosines of a and b; or depends on them alone: it is
-// the same if b turns.
+// f(a, b) / f(b, a) is a ratio of the cosines of a and b; or depends only on them: it is the same
+// if b turns.
 inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close) {
     std::vector<double> cosine, inverse, turning;
     for (const auto& [a, b] : pairs) {
@@ -3123,7 +3121,7 @@ inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close
                : "";
 }
 
-// Of directions wo, from steep to grazing, the albedo and its relative error.
+// `all` are directions wo from steep to grazing, each with its albedo and the relative error.
 inline std::string albedo_hint(const std::vector<Albedo>& all) {
     const Albedo* worst = nullptr;
     std::string list;
@@ -3208,7 +3206,7 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
 
 // ---- What is wrong with an image ----------------------------------------------------------------
 
-// What a rectangle of pixels is, if most of it is off and all others are right.
+// A rectangle of pixels, if most of it is off and all others are right.
 inline std::string Image::all_others_right() const {
     auto off = [&](size_t i) {
         return std::abs(f[i] - truth[i]) > 5 * s[i] + 1e-6 * std::abs(truth[i]);
