@@ -280,6 +280,19 @@ TEST_CASE("BSDFs that transmit, from three numbers") {
     oracle::says(oracle::expect_bsdf(random, sample, grazing, eval, o), "1.1");
 }
 
+TEST_CASE("BSDFs that are computed in float, of directions in double") {
+    oracle::Random random(seed_here());
+    using D = array<double, 3>;
+    auto sample = [](D, double u, double v) { return cosine(u, v); };
+    auto pdf = [](D, D wi) { return cosine_pdf(wi[2]); };
+    auto eval = [](D wo, D wi) {  // reciprocal but for the rounding of a difference
+        const float a = float(wo[2]), b = float(wi[2]);
+        return a > 0 && b > 0 ? 0.3f + 100 * ((1 + a * 1e-3f) - (1 + b * 1e-3f) - (a - b) * 1e-3f)
+                              : 0;
+    };
+    EXPECT(oracle::expect_bsdf(random, sample, pdf, eval, {.sees = 0.05}), 0.06);
+}
+
 TEST_CASE("the host's own names are as they were") {
     CHECK(dot(Vec{1, 2, 3}, Vec{1, 1, 1}) == 6);
     CHECK(alpha + n > pi - 2);
