@@ -316,7 +316,7 @@ hunted: packages  ## grade a bug hunt; N=3: of the copy build/plant/3, HUNT=FILE
 	@$(if $(and $(N),$(HUNT)),,echo "make hunted N=NUMBER HUNT=FILE: which copy, and its test?" >&2; exit 2;) \
 	CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -O1" python3 src/course/hunted.py 'build/plant/$(N)' '$(HUNT)'
 
-mistakes:  ## regenerate the table of known mistakes, tests/course/mistakes.txt (5 minutes)
+mistakes:  ## regenerate the table of known mistakes, tests/course/mistakes.txt (half an hour)
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/mistakes.py $(if $(EX),--only '$(EX)')
 mistakes: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%)
 
