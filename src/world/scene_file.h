@@ -148,14 +148,15 @@ private:
     }
 
     void mesh() {
-        const std::string path = (folder_ / words_[next_++]).lexically_normal().string();
-        if (path.starts_with("build/") && !std::filesystem::exists(path))
-            throw UserError(path + ": not made yet: make " + path);
+        const std::filesystem::path path = folder_ / words_[next_++];
+        const std::string made = path.lexically_normal().string();
+        if (made.starts_with("build/") && !std::filesystem::exists(path))
+            throw UserError(made + ": not made yet: make " + made);
         const real scale = length_of("scale");
         const vec3 move = point();
         std::optional<uint32_t> given;
         if (next_ < words_.size()) given = material();
-        const auto files = ObjReader(scene_, scale, move, given).read(path);
+        const auto files = ObjReader(scene_, scale, move, given).read(path.string());
         files_.insert(files_.end(), files.begin(), files.end());
     }
 
