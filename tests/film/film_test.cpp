@@ -2,6 +2,7 @@
 #include "film/film.h"
 
 #include <map>
+#include <numeric>
 
 #include "base/cases.h"
 #include "base/moments.h"
@@ -383,6 +384,15 @@ TEST_CASE("chosen replications keep the pilot, and fit into the memory that ther
         CHECK(double(bytes) <= bytes_of(size, f.replications_per_pixel()));
     }
     CHECK(last == 2);
+    // Pixels where light is rare have 8, or more if their neighbours are noisy.
+    std::vector<size_t> every(1200);
+    std::iota(every.begin(), every.end(), size_t(0));
+    Film usual = pilot, rare = pilot;
+    choose_sets(usual, INFINITY);
+    choose_sets(rare, INFINITY, every);
+    for (uint16_t& k : usual.sets) k = std::max(k, uint16_t(8));
+    CHECK(rare.sets == usual.sets);
+    CHECK(*std::max_element(usual.sets.begin(), usual.sets.end()) > 8);
 }
 
 TEST_CASE("chosen replications leave every pixel's mean unbiased, that of rare light, too") {

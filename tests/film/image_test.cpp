@@ -63,7 +63,7 @@ TEST_CASE("a Radiance file holds 8 bits of each channel and an exponent, from th
     const Folder folder;
     Image image(3, 2);
     image.at(0, 0) = {1, 0.5f, 0.25f};
-    image.at(1, 0) = {0, 0, 0};
+    image.at(1, 0) = {-0.25f, 0.5f, 0};
     image.at(2, 0) = {-1, 3e38f, 0x1p126f};  // the nearest representable value
     image.at(0, 1) = {-3, -0.25f, -1e30f};
     image.at(1, 1) = {1e-30f, 255.99f, 256};
@@ -74,7 +74,7 @@ TEST_CASE("a Radiance file holds 8 bits of each channel and an exponent, from th
     REQUIRE(bytes.size() == header.size() + 24);
     CHECK(bytes.starts_with(header));
     CHECK(bytes.substr(header.size(), 4) == "\x80\x40\x20\x81");
-    CHECK(bytes.substr(header.size() + 4, 3) == std::string(3, '\0'));
+    CHECK(bytes.substr(header.size() + 4, 4) == std::string("\0\x80\0\x80", 4));
     CHECK(bytes.substr(header.size() + 8, 4) == std::string("\0\xff\x80\xff", 4));
     CHECK(bytes.substr(header.size() + 12, 3) == std::string(3, '\0'));
     CHECK(bytes.substr(header.size() + 16, 4) == std::string("\0\x7f\x80\x89", 4));

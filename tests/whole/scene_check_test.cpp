@@ -140,6 +140,11 @@ TEST_CASE("a lamp of two sides in a wall shines on both; two of one side, back t
         for (const std::string& others : {wall + both, both + wall, pair, wall + pair})
             CHECK(std::abs(lit(others) - alone) <= (single ? 2 : 0));
     }
+    // Light samples lie where the copies of the lamp do.
+    const Scene two = parsed(room + wall + both).scene;
+    for (size_t i = 0; i < two.shapes.size(); ++i)
+        if (two.light_of[i] != no_light)
+            CHECK(two.shapes[i].a.z == two.lights[size_t(two.light_of[i])].p.z);
 }
 
 TEST_CASE("a lamp in a ball of its size shines, and the first of two") {

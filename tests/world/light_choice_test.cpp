@@ -16,7 +16,7 @@ Light shining(Light l, real L, bool twosided = false) {
 
 // A light of the given kind near the origin, of size r.
 Light light_of(Dice& dice, Light::Kind kind, real r) {
-    const vec3 p = dice.direction(r), u = dice.direction(r), v = dice.direction(r);
+    const vec3 p = dice.direction(r), u = dice.direction(r), v = dice.direction(r * dice(0.5, 2));
     const real L = dice.decades(-2, 2);
     const bool twosided = dice.below(2);
     if (kind == Light::Kind::point) return shining(point_light(p, {}), L);
@@ -67,13 +67,15 @@ TEST_CASE("one of a few lights is chosen as often as is said") {
 
 TEST_CASE("a light weighs nothing only where it sends nothing") {
     Dice dice;
-    int sent = 0, lost = 0, below = 0, behind = 0, wasted = 0;
+    int sent = 0, lost = 0, below = 0, behind = 0, wasted = 0, beyond = 0;
     for (int i = 0; i < 40000; ++i) {
         const real r = dice.decades(-1, 1);
         const std::vector<Light> lights{light_of(dice, r), shining(point_light({}, {}), 1)};
         const vec3 p = dice.direction(dice(0, 4)), m = dice.direction();
         const Light first = scene_of(lights).lights[0];
         const real weighs = light_weight(first, p, m);
+        for (const vec3 corner : {first.p, first.p + first.u, first.p + first.v})
+            beyond += length(corner - first.centre) > first.reach * (1 + 8 * ulp);
         real E = 0;
         for (int k = 0; k < 8; ++k) E += sends(lights[0], p, m, dice.pair());
         // The bound is the rounding error of a cosine near 0.
@@ -92,6 +94,7 @@ TEST_CASE("a light weighs nothing only where it sends nothing") {
     CHECK(below > 2000);
     CHECK(behind > 2000);
     CHECK(wasted == 0);
+    CHECK(beyond == 0);
 }
 
 TEST_CASE("far away, lights weigh what they send") {
