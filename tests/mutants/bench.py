@@ -16,6 +16,7 @@ from mutants import ROOT, source
 
 LIMIT, BASELINE_LIMIT = 120, 80  # seconds of CPU of a mutant's tests, and of the same without it
 COMPILER = shlex.split(os.environ.get('CXX', '')) + shlex.split(os.environ.get('FLAGS', ''))
+FAST = '-O0' if 'clang' in ''.join(COMPILER[:1]) else '-Og'  # the level that compiles and runs a test soonest
 
 
 class Bench:
@@ -28,8 +29,8 @@ class Bench:
         self.locks = {test: threading.Lock() for test in of_test}
         self.tree.mkdir()
         subprocess.run(['cp', '-R', *kept.PROJECT, self.tree], cwd=ROOT, check=True)
-        commands = [[level, '-x', 'c++-header', '-o', f'{self.top}/std{level}.h.gch', 'tests/std.h'] for level in ('-Og', '-O1')]
-        for words in commands + [['-Og', '-c', '-o', self.top / 'main.o', 'tests/main.cpp']]:
+        commands = [[level, '-x', 'c++-header', '-o', f'{self.top}/std{level}.h.gch', 'tests/std.h'] for level in (FAST, '-O1')]
+        for words in commands + [[FAST, '-c', '-o', self.top / 'main.o', 'tests/main.cpp']]:
             subprocess.run([*COMPILER, *words], cwd=ROOT, check=True)
 
     def execute(self, folder, seconds, *words):
@@ -78,7 +79,7 @@ class Bench:
             those, wrong = self.of_test[test], []
             cases = sorted({m.case for m in those})
             # The compiler takes most of the time, unless a test computes much.
-            for level, seconds in (('-Og', 10), ('-O1', BASELINE_LIMIT)):
+            for level, seconds in ((FAST, 10), ('-O1', BASELINE_LIMIT)):
                 folder = self.top / f'{test}{level}'
                 if not self.build(folder, level, test, sorted({p for m in those for p in m.program.split()})):
                     wrong = [f'{test} does not compile, see {folder}/log']
