@@ -57,6 +57,8 @@ TEST_CASE("a film alone is its picture, whatever its sets") {
     expect_success(folder, folder.of("--exposure 9 -o bright.png"));
     expect_success(folder, "merge --exposure 9 -o b.png a.film");
     CHECK(folder.same("b.png", "bright.png"));
+    expect_success(folder, "merge -o c.png a.film");
+    CHECK(folder.same("c.png", "a.png"));
 }
 
 TEST_CASE("adaptive bands choose by their own rows: each is what a band alone is") {
