@@ -120,7 +120,7 @@ TEST_CASE("what has no area is dropped and counted") {
 }
 
 TEST_CASE("a box faces outwards and turns about y: x' = c x + s z, z' = c z - s x") {
-    for (real degrees : {real(0), real(30), real(90), real(-135)}) {
+    for (real degrees : {real(0), real(30), real(90), real(-135), real(480)}) {
         Scene s = empty_scene();
         const vec3 size{1, 2, 3}, move{10, 20, 30};
         add_box(s, size, degrees, move, grey);
