@@ -1765,7 +1765,8 @@ struct DensityCheck {
         const double off = std::abs(parts.total - (1 - o.discrete));
         double other = 0;
         bool doubtful = off > allowed() && arriving > 0.9999 && !claim;
-        if (doubtful && D <= 2 && !model.single && off < 1e-4) {
+        const double near = model.single ? left > 0 ? 0 : 1e-3 : 1e-4;
+        if (doubtful && D <= 2 && off < near) {
             const Parts again = by_rules(true);
             other = std::abs(again.total - parts.total);
             parts = again;
