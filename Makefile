@@ -137,7 +137,7 @@ bench: build/knot.obj       ## rays per second, compared with Embree (libembree-
 peers: $(PENUMBRA)         ## efficiency, compared with Cycles (blender; 5 minutes); SEEDS=5: more renders
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time for every setting, and a page to choose (30 minutes; FULL=1: 4 hours)
 calibration: $(PENUMBRA) build/knot.obj  ## calibration of the error estimate (3 hours; SEEDS=4: 1 hour)
-oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracle: 600 correct codes, 100 seeds (70 minutes); SEEDS=5, ONLY=GGX: into out/
+oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracle: 600 correct codes, 100 seeds (100 minutes); SEEDS=5, ONLY=GGX: into out/
 	@mkdir -p out
 	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
 	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
