@@ -1,7 +1,6 @@
 // base/words.h  1  user errors, numbers from words, suggestions
 #pragma once
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>

@@ -10,7 +10,6 @@
 #include <functional>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <string>
 #include <vector>

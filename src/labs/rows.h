@@ -1,6 +1,7 @@
 // labs/rows.h  4  numbers of many renders: means with standard errors, tables, plots
 #pragma once
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "labs/page.h"

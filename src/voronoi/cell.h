@@ -2,10 +2,8 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "voronoi/polygon.h"
 

@@ -3,8 +3,6 @@
 // Local coordinates: z is the surface normal on wo's side, so wo.z > 0.  wo points to the eye, wi
 // to the light, both unit.  eval is f without the cosine (1/sr).
 #pragma once
-#include <optional>
-
 #include "world/warp.h"
 
 // Scattering by a surface, on both of its sides, and its emission.

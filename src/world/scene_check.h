@@ -2,7 +2,6 @@
 #pragma once
 #include <map>
 #include <numeric>
-#include <span>
 
 #include "world/scene.h"
 

@@ -3,8 +3,6 @@
 
 #include <doctest/doctest.h>
 
-#include <ctime>
-
 #include "base/folder.h"
 
 namespace {

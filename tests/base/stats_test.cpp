@@ -1,9 +1,6 @@
 // base/stats_test.cpp  moments of data that defeat sums of squares
 #include "base/stats.h"
 
-#include <initializer_list>
-#include <numbers>
-
 #include "base/rng.h"
 #include "oracle/expect.h"
 

@@ -1,8 +1,6 @@
 // labs/lab_test.cpp  the kit of the experiments: options, statistics, reports
 #include "labs/lab.h"
 
-#include <optional>
-
 #include "base/folder.h"
 
 namespace {

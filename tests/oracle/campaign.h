@@ -1,6 +1,5 @@
 // oracle/campaign.h  right samplers and densities, each with its name, and a check by the oracle
 #pragma once
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>

@@ -5,10 +5,7 @@
 // by name, the same as for the right variant.  An entry without words is right, and passes.
 #pragma once
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>

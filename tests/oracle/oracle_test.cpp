@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <chrono>
-#include <limits>
 
 #include "oracle/expect.h"
 #include "oracle/textbook.h"

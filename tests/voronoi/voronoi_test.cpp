@@ -1,7 +1,6 @@
 // voronoi/voronoi_test.cpp  cell areas: exact cases, brute force, and the bias of clipping
 #include "voronoi/voronoi.h"
 
-#include <atomic>
 #include <numbers>
 
 #include "base/allocations.h"

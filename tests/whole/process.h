@@ -13,7 +13,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <exception>
 
 #include "base/cases.h"
 #include "base/folder.h"
