@@ -1765,7 +1765,7 @@ struct DensityCheck {
         const double off = std::abs(parts.total - (1 - o.discrete));
         double other = 0;
         bool doubtful = off > allowed() && arriving > 0.9999 && !claim;
-        const double near = model.single ? left > 0 ? 0 : 1e-3 : 1e-4;
+        const double near = !model.single ? 1e-4 : left > 0 ? 0 : 1e-3;  // left: scatter tells
         if (doubtful && D <= 2 && off < near) {
             const Parts again = by_rules(true);
             other = std::abs(again.total - parts.total);

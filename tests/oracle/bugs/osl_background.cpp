@@ -3,6 +3,7 @@
 // source: AcademySoftwareFoundation/OpenShadingLanguage 6c670a687004d17fd81e8834fb30a04c7a9171f1 src/testrender/background.h
 // cut: /^struct Background {/,/^};/
 // repair: s/return values\[i\];/return pdf > 0 ? values[i] : Vec3(0);/
+#include <algorithm>
 #include "bug.h"
 
 #define OSL_DASSERT(condition)
