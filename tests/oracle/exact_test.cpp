@@ -188,7 +188,6 @@ TEST_CASE("what cannot be judged is refused: by the name that it was given, once
         {expect_bsdf(random, sample_of, pdf_of, black, rough), "eval is 0"}};
     for (const auto& [v, why] : refused) {
         says(v, why);
-        INFO(v.text);
         CHECK(!v.pass);
         CHECK(v.text.rfind("mine: ", 0) == 0);
         CHECK(v.text.rfind("mine: ") == 0);
