@@ -203,7 +203,7 @@ Svg plot(const Rows& rows, const std::string& x, const std::string& y, Word seri
          const std::string& title) {
     std::vector<Series> all;
     for (const auto& [word, group] : grouped(rows, series)) {
-        Series& s = all.emplace_back(word);
+        Series& s = all.emplace_back(Series{word, {}, {}});
         for (const auto& [count, cell] : grouped(group, of_count))
             s.x.push_back(x_of(cell)), s.y.push_back(y_of(cell));
     }

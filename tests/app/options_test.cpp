@@ -69,9 +69,9 @@ TEST_CASE("words of choices mean what they say") {
         {"--sampler sobol --view albedo", {S::sobol, D::bsdf, L::mis, V::albedo}},
         {"--direction bsdf --view bvh", {S::sobol, D::bsdf, L::mis, V::bvh}},
         {"--light mis --view occlusion", {S::sobol, D::bsdf, L::mis, V::occlusion}}};
-    for (const auto& [line, expected] : rows) {
-        INFO(line);
-        CHECK((chosen(line) == expected));
+    for (const auto& row : rows) {
+        INFO(row.first);
+        CHECK((chosen(row.first) == row.second));
     }
 }
 
@@ -100,10 +100,10 @@ TEST_CASE("a word that cannot be meant is refused, by its name") {
     rows.push_back({"a b", "two scenes: 'a' and 'b'"});
     rows.push_back({"a --spp", "--spp: needs a value"});
     rows.push_back({"-x", "unknown option '-x' (did you mean '-o'?)"});
-    for (const auto& [words, why] : rows) {
-        const std::string told = complaint_of(words);
-        INFO(words, "\nexpected: ", why, "\ntold:     ", told);
-        CHECK(told.starts_with(why));
+    for (const Refusal& row : rows) {
+        const std::string told = complaint_of(row.words);
+        INFO(row.words, "\nexpected: ", row.why, "\ntold:     ", told);
+        CHECK(told.starts_with(row.why));
     }
     for (const std::string& fine : parts_of(
              "--error 99% --replications 2;--error 1% --spp 9 --time 3;--rows 0-0 -o a.pfm;"

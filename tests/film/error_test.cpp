@@ -189,7 +189,8 @@ TEST_CASE("the standard error of d^2 is its spread from seed to seed") {
 
 TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, samples that differ") {
     for (SamplerKind kind : samplers)
-        for (const auto& [sets, others] : {std::pair(0u, 4), std::pair(3u, 24)}) {
+        for (const unsigned sets : {0u, 3u}) {
+            const int others = sets ? 24 : 4;
             Spread spread;
             for (uint64_t r = 0; r < 200; ++r) {
                 const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1, 24);

@@ -142,9 +142,9 @@ TEST_CASE("paths are unbiased with good maps, with none, with wrong ones") {
     const Scene s = coloured();
     const Mesh mesh = make_mesh(s, 0.5);
     const IlluminationMap good = by_particles(s, mesh, 100000);
-    for (const auto& [factor, seen] :
-         {std::pair{grey(1), 0.1}, {grey(0), 0.1}, {rgb{3, 2, -1}, 0.2}}) {
+    for (const rgb factor : {grey(1), grey(0), rgb{3, 2, -1}}) {
         const KnownLight known = known_light(s, mesh, times(good, factor));
+        const double seen = factor.z < 0 ? 0.2 : 0.1;
         for (const Technique& t : techniques)
             for (SamplerKind kind : kinds) {
                 CAPTURE(mean_of(factor));

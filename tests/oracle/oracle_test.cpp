@@ -307,10 +307,11 @@ TEST_CASE("densities on other domains, with jumps and with failing samples, need
         {"four dimensions", expect_density(random, four, square, box, o)},
         {"texels", expect_density(random, rejected, of_texel, Square{}, o)},
         {"mixture", expect_density(random, mixed_direction, mixed_pdf(0.3), o)}};
-    for (const auto& [what, v] : right) {
-        INFO(what, ": ", v.text);
+    for (const auto& row : right) {
+        const Verdict& v = row.second;
+        INFO(row.first, ": ", v.text);
         CHECK(v.pass);
-        if (what == std::string("texels")) says(v, "of the samples fail");
+        if (row.first == std::string("texels")) says(v, "of the samples fail");
     }
     for (int i = 0; i < 5; ++i) {
         const Verdict v = expect_density(random, corner_of_square, below_diagonal, o);

@@ -157,10 +157,10 @@ TEST_CASE("bit for bit the same for 1, 2, 3 and 5 threads, and in several runs")
     for (Shooter shooter : shooters) {
         Shooting one = shooting_in(m, shooter);
         one.run({0, 0, 20}, silent);
-        for (const auto& [threads, runs] : rows) {
-            CAPTURE(threads);
-            Shooting other = shooting_in(m, shooter, threads);
-            for (uint64_t shots : runs) {
+        for (const auto& row : rows) {
+            CAPTURE(row.first);
+            Shooting other = shooting_in(m, shooter, row.first);
+            for (uint64_t shots : row.second) {
                 other.run({0, 0, shots}, silent);
                 CHECK(other.shots() == shots);
             }

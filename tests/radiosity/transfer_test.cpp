@@ -173,11 +173,11 @@ TEST_CASE("an element gets four shadow rays within eight radii, one beyond; its 
         {8.01, 1, 1}, {7.99, 4, 4},  {4.01, 4, 4},     {3.99, 4, 4},  // four quarters
         {2.5, 4, 4},  {1.5, 16, 16}, {0.1, 101, 4096}, {1e-4, 1, 4096}};
     for (const auto& [radii, least, most] : rows) {
-        CAPTURE(radii);
         Transfer transfer(parts.scene);
         const vec3 p = node.centre + vec3{0, 0, real(radii)} * node.radius;
         transfer.from_element(receiver(p, {0, 0, -1}), parts.source(0), node,
                               {{grey(1), grey(1), grey(1)}});
+        CAPTURE(p.z);
         CHECK(transfer.rays >= least);
         CHECK(transfer.rays <= most);
     }

@@ -49,9 +49,10 @@ TEST_CASE("sphere irradiance: published values at 75, 90 and 105 degrees") {
                 {std::cos(105 * std::numbers::pi / 180), 0.25, 0.017924877377, 5e-11},
                 {1, 0.25, std::numbers::pi / 4, 1e-12},
                 {0, 1, std::numbers::pi / 2, 1e-12}};
-    for (const auto& [cosine, s2, E, within] : rows) {
-        CAPTURE(cosine);
-        CHECK(double(irradiance_sphere(real(cosine), real(s2))) == approx(E, within));
+    for (const auto& row : rows) {
+        CAPTURE(row.cosine);
+        CHECK(double(irradiance_sphere(real(row.cosine), real(row.s2))) ==
+              approx(row.E, row.within));
     }
     CHECK(irradiance_sphere(std::cos(121 * pi / 180), 0.25) == 0);
     CHECK(irradiance_sphere(-1, 1) == 0);

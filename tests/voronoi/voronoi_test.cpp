@@ -162,7 +162,7 @@ TEST_CASE("exact areas: one site, two, four, on the border, in a corner") {
         const auto& cells = v.clipped(sites, unit_square);
         REQUIRE(cells.size() == areas.size());
         for (size_t i = 0; i < areas.size(); ++i) {
-            CAPTURE(areas.size());
+            CAPTURE(cells.size());
             CAPTURE(i);
             if (areas.size() == 5)
                 CHECK(cells[i].area == doctest::Approx(areas[i]).epsilon(1e-15));

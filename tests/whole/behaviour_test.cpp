@@ -258,8 +258,9 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         const std::string& text = values.at(key);
         return std::strtod(text.c_str() + (text[0] == '['), nullptr);
     };
-    for (const auto& [key, value] : one) {
-        INFO(key);
+    for (const auto& stat : one) {
+        const auto& [key, value] = stat;
+        INFO(stat.first);
         if (among(of_time, key)) {
             CHECK(number(one, key) > 0);
         } else if (among(of_samples, key)) {

@@ -182,7 +182,7 @@ TEST_CASE("compare judges: the last line and the exit status say the same, and w
     for (const auto& [words, last] : rows) {
         const Outcome o =
             expect_exit(folder, "compare " + words, last.starts_with("same: ") ? 0 : 1);
-        INFO(words, "\n", o.out);
+        INFO(o.out);
         CHECK(o.err == "");
         CHECK(o.out.ends_with("\n" + last + "\n"));
     }

@@ -40,12 +40,12 @@ TEST_CASE("up is up and right is right, in wide and in tall pictures") {
         {"0 0 -5  0 0 0", "0.8 0.5 0  -0.4 0 0  0 0.6 0"},   // right: -x
         {"5 0 0  0 0 0", "0 0.5 0.8  0 0 -0.4  0 0.6 0"},    // right: -z
         {"-5 2 0  0 2 0", "0 2.5 -0.8  0 0 0.4  0 0.6 0"}};  // right: +z
-    for (const auto& [eye, square] : views)
+    for (const auto& view : views)
         for (const Size size : {Size{64, 32}, Size{32, 64}, Size{48, 48}, Size{90, 31}}) {
             const int w = size.width, h = size.height;
-            INFO(eye, ", ", w, "x", h);
-            const Place place("camera " + eye + "  40\nlight l 0.5 0.25 1\nquad " + square +
-                              " l\n");
+            INFO(view.first, ", ", w, "x", h);
+            const Place place("camera " + view.first + "  40\nlight l 0.5 0.25 1\nquad " +
+                              view.second + " l\n");
             place.render("--spp 16 --depth 0 -o image.pfm -o image.png --size " +
                          std::to_string(w) + "x" + std::to_string(h));
             const Image image = read_pfm(place / "image.pfm");

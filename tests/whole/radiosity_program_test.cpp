@@ -140,8 +140,9 @@ TEST_CASE("radiosity --error: what came first ends the run, and is said") {
         {"--mesh 5 --error 1e-9 --time 1000 --unshot 20%", "--unshot"},
         {"--mesh 0.5 --method shooting --error 1e-9 --time 0.2", "--time"},
         {"--mesh 5 --method shooting --error 20%", "--error"}};
-    for (const auto& [options, stopped_by] : rows) {
-        INFO(options);
+    for (const auto& row : rows) {
+        const auto& [options, stopped_by] = row;
+        INFO(row.first);
         const Outcome o = place.maps("--stats s.json " + options);
         INFO(o.err);
         const std::string stats = place.read("s.json");

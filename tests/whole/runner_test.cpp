@@ -245,11 +245,11 @@ TEST_CASE(
         {"bvh low", "base/low_test\n" + bvh},
         {"", "base/low_test\n" + world + "film/image_test\n" + film},
     };
-    for (const auto& [names, tests] : known) {
-        const Printed said = house.test("LIST=1", names);
-        INFO("ONLY=", names);
+    for (const auto& row : known) {
+        const Printed said = house.test("LIST=1", row.first);
+        INFO("ONLY=", row.first);
         CHECK(said.status == 0);
-        CHECK(said.text == tests);
+        CHECK(said.text == row.second);
     }
     for (const auto& [name, also] : std::map<std::string, std::string>{
              {"bhv", "; is it one of: bvh"},

@@ -67,10 +67,11 @@ TEST_CASE(
         {"voronoi", "mc unbiased"},        {"voronoi", "vor consistent"},
         {"voronoi", "fvor consistent"},    {"voronoi", "cvor consistent"},
         {"voronoi", "torus unbiased"}};
-    for (const auto& [program, row] : rows) {
-        const Words words = split(row);
+    for (const auto& row : rows) {
+        const auto& [program, estimator] = row;
+        const Words words = split(estimator);
         const std::string option = words_of[program == "voronoi"] + " " + words[0];
-        INFO(program, " ", option);
+        INFO(row.first, " ", option);
         const Image image = folder.image(program, option + common + "--stats s.json --threads 1");
         CHECK(folder.image(program, option + common + "--threads 3").pixels == image.pixels);
         CHECK(stated(folder.read("s.json"), "bias") == "\"" + words[1] + "\"");

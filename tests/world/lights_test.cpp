@@ -93,9 +93,9 @@ TEST_CASE("no sample from the inside of a sphere light, from its surface, nor wi
                                             {1.0, 0.0, false},
                                             {1 + 0.9e-4, 1e-4, false},
                                             {1 + 1.1e-4, 1e-4, true}}) {
-        CAPTURE(d);
         l.error = real(error);
         const vec3 p{0, real(d), 0};
+        CAPTURE(p.y);
         CHECK(sample_light(l, p, {0.3, 0.4}).has_value() == sampled);
         CHECK((pdf_light(l, p, {{0, 1, 0}, {0, 1, 0}, 0}) > 0) == sampled);
     }
