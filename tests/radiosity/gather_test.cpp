@@ -34,6 +34,14 @@ const Technique techniques[] = {{Direction::bsdf, LightMode::mis, 0},
 
 }  // namespace
 
+TEST_CASE("known light is rho E / pi on both sides of every face") {
+    const Scene s = glowing();
+    Mesh mesh = make_mesh(s, 1);
+    const size_t sides = number_of_sides(mesh);
+    for (const rgb& R : known_light(s, std::move(mesh), IlluminationMap(sides, grey(3))).R)
+        CHECK(double(R.x) == approx(1.5 / double(pi)));
+}
+
 TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light found by hitting") {
     const Scene s = glowing();
     const KnownLight known = maps_of(s, grey(1));

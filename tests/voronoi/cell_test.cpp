@@ -38,6 +38,16 @@ struct Both {
 
 }  // namespace
 
+TEST_CASE("lines are refused before a vector beyond them leaves the arrays") {
+    const std::vector<double> x(2 * cell::lanes, 0.5);
+    HalfPlanes lines;
+    lines.start({{-1, -1}, {1, 1}});
+    while (lines.size() < 127 && lines.add(x.data(), x.data(), 0, 1, {0, 0})) {
+    }
+    lines.add(x.data(), x.data(), 0, cell::lanes, {0, 0});
+    CHECK(lines.size() <= 128);
+}
+
 TEST_CASE("no neighbour: the frame, also if the site is on its border or in a corner") {
     HalfPlanes lines;
     for (const Rectangle& r : {frame, Rectangle{{0, -1}, {3, 1}}, Rectangle{{-4, -4}, {0, 0}}}) {
