@@ -74,7 +74,8 @@ TEST_CASE("a part of an image begins at its left and its top") {
 TEST_CASE("numbers of statistics: those that stand alone, by their whole names; null is NaN") {
     const auto of = numbers_of(
         "{\n  \"scene\": \"a.scene\",\n  \"cpu_seconds\": 25,\n  \"seconds\": 12.5,\n"
-        "  \"mean\": [1, null, 3e-05],\n  \"roulette\": null,\n  \"last\": 7\n}\n");
+        "  \"mean\": [1, null, 3e-05],\n  \"roulette\": null,\n  \"chosen\": true,\n  \"last\": "
+        "7\n}\n");
     CHECK(of.size() == 4);
     CHECK(of.at("cpu_seconds") == 25);
     CHECK(of.at("seconds") == 12.5);

@@ -28,6 +28,14 @@ TEST_CASE_TEMPLATE_INVOKE(beyond_float, WideBvh);
 TEST_CASE_TEMPLATE_INVOKE(infinitely_far, WideBvh);
 TEST_CASE_TEMPLATE_INVOKE(empty_and_nan, WideBvh);
 
+TEST_CASE("shapes beyond the 65536th keep their numbers") {
+    Dice random{{7}};
+    ComparisonOf<WideBvh> c{many(80000, real(0.05), random)};
+    judge(c, 200, 1, random);
+    CHECK(c.different == 0);
+    CHECK(c.hits > 100);
+}
+
 TEST_CASE("a ray opens 7.8 nodes among 20000 triangles, 35.6 among 2000 large ones, no more") {
     // Traversal is nearest first and skips boxes behind the hit: 7.80 nodes and 11.9 shapes.  In
     // node order they are 9.0 and 15.1, with boxes behind the hit 8.1 and 12.3.
