@@ -76,6 +76,7 @@ def test_the_renderer_is_built_for_exercises_with_a_picture_alone():
 def test_the_page_has_verdict_items_picture_and_scale():
     with Room() as room:
         room.check('2.2')
+        expect('half &lt;i>of it</h1>' in room.page() and '1 &lt; 2 &amp; 3' in room.page(), room.page())
         dom = shown(room)
         for part in ('>2.2 wrong: half &lt;i&gt;of it</h1>', '<td>statistical</td><td>it follows 1 &lt; 2 &amp; 3: p = 1e-9', 'src="2.2.png?',
                      '<b>yours</b><b>expected</b><b>difference</b>', '>+0.4</span>', 'h1 class="other"'):
