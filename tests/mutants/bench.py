@@ -60,7 +60,7 @@ class Bench:
                                    *[(f'build/{p}', source('src', p), []) for p in programs]]:
             if wrong and kept.included(cpp).isdisjoint(map(Path, wrong)):
                 os.link(self.top / f'{test}{level}' / output, folder / output)  # the same as without the mutant
-            elif self.execute(folder, 600, *COMPILER, level, *words[:2], '-o', output, cpp, *words[2:]) != 0:
+            elif self.execute(folder, 600, *COMPILER, level, *words, '-o', output, cpp) != 0:
                 return False
         return True
 
