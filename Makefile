@@ -225,7 +225,7 @@ $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 # By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
 # for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
 # those that others must not see.
-TOGETHER := world wide path film keep unseen app shadow voronoi radiosity whole
+TOGETHER := world wide mesh path film keep unseen app shadow voronoi radiosity whole
 ALONE    := oracle/hosts_test
 FOLDER   = $(patsubst %/,%,$(dir $1))
 UNIT     = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(if $(filter $(TOGETHER),$(call FOLDER,$1)),core,$(call FOLDER,$1))$(if $(filter $(LATER),$1),-later)$(if $(filter $(HEAVY),$1),-heavy))
@@ -357,12 +357,12 @@ packages:
 
 # Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of their folder
 # and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-LAYERS := base:0 world:1 wide:2 path:2 film:3 keep:4 unseen:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
-# The core names no module, but in three headers: which tree, whether films are kept, whether light may be unseen.  Nor do
+LAYERS := base:0 world:1 wide:2 mesh:2 path:2 film:3 keep:4 unseen:4 app:5 shadow:6 voronoi:6 radiosity:7 labs:8 course:8 oracle:9 whole:9 faults:9 fuzz:9
+# The core names no module, but in four headers: which tree, whether meshes are read, whether films are kept, whether light may be unseen.  Nor do
 # tests of the core.  A module's program stands above the app.
 CORE  := base world path film app
-MODULES := wide keep unseen shadow voronoi radiosity
-DOORS := world/tree.h:wide app/keep.h:keep app/unseen.h:unseen
+MODULES := wide mesh keep unseen shadow voronoi radiosity
+DOORS := world/tree.h:wide world/mesh.h:mesh app/keep.h:keep app/unseen.h:unseen
 # Of a folder that is named here, a module includes these headers alone.
 NEEDS := wide:world/shapes.h
 

@@ -3,8 +3,9 @@
 #include <map>
 #include <set>
 
+#include "base/files.h"
 #include "world/grammar.h"
-#include "world/obj.h"
+#include "world/mesh.h"
 #include "world/scene_check.h"
 
 // A scene, warnings to its author, and the files that it was read from.

@@ -1,6 +1,6 @@
-// world/obj_test.cpp  meshes: accepted and refused statements, line numbers of errors, images equal
+// mesh/obj_test.cpp  meshes: accepted and refused statements, line numbers of errors, images equal
 // to those of scenes written by hand
-#include "world/obj.h"
+#include "mesh/obj.h"
 
 #include "base/complaint.h"
 #include "base/folder.h"

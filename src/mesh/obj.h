@@ -1,17 +1,11 @@
-// world/obj.h  7  meshes in: Wavefront OBJ and MTL files
+// mesh/obj.h  1  meshes in: Wavefront OBJ and MTL files
 #pragma once
 #include <filesystem>
 #include <map>
 #include <optional>
 
 #include "base/files.h"
-#include "world/scene.h"
-
-// Coordinates are no larger: their fourth powers must neither overflow nor vanish.
-inline constexpr double longest_length = sizeof(real) == 4 ? 1e9 : 1e30;
-
-// A scene of so many shapes takes 1 GB; a mesh that is placed again and again asks for any number.
-inline constexpr size_t most_shapes = 1 << 22;
+#include "world/mesh.h"
 
 // A polygon's corners, turned so that the triangles (0, i, i+1) all face the same way.  Convex
 // polygons are not turned.  Nothing if none of the first corners will do as the start.
