@@ -103,15 +103,21 @@ inline Size parse_size(std::string_view width, std::string_view height) {
     return {int(w), int(h)};
 }
 
-// The words of a line before a comment, separated by white space.
+// The words of a line before a comment, separated by white space; those with blanks in quotes.
 using Words = std::vector<std::string>;
 inline Words words_before(std::string_view line, char comment) {
     constexpr std::string_view space = " \t\n\v\f\r";
-    line = line.substr(0, line.find(comment));
     Words words;
     for (size_t end = 0, start; (start = line.find_first_not_of(space, end)) != line.npos;) {
-        end = std::min(line.find_first_of(space, start), line.size());
-        words.emplace_back(line.substr(start, end - start));
+        const bool quoted = line[start] == '"';
+        if (quoted && (end = line.find('"', start + 1)) == line.npos)
+            throw UserError("a quote that does not end");
+        if (!quoted)
+            end = std::min(
+                {line.find_first_of(space, start), line.find(comment, start), line.size()});
+        if (start == end) break;
+        words.emplace_back(line.substr(start + quoted, end - start - quoted));
+        end += quoted;
     }
     return words;
 }
@@ -120,19 +126,21 @@ inline UserError error_at(const std::string& file, uint32_t line, const std::str
     return UserError(file + ":" + std::to_string(line) + ": " + why);
 }
 
-// Calls read(words, line) for every line of a file's text that has words; '#' begins a comment.
-// UserErrors get the name of the file and the line.
+// Calls read(line, number) for every line of a file's text; \n, \r\n or \r ends it.  UserErrors get
+// the name of the file and the number.
 template <class Read>
-void read_lines(const std::string& text, const std::string& file, Read read) {
-    std::istringstream in(text);
-    uint32_t number = 0;
-    for (std::string line; std::getline(in, line);) {
-        ++number;
+void read_lines(std::string_view text, const std::string& file, Read read) {
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
+    for (uint32_t number = 1; !text.empty(); ++number) {
+        const auto ends = [](char c) { return c == '\r' || c == '\n'; };
+        const size_t end = size_t(std::ranges::find_if(text, ends) - text.begin());
         try {
-            if (const Words words = words_before(line, '#'); !words.empty()) read(words, number);
+            read(text.substr(0, end), number);
         } catch (const UserError& e) {
             throw error_at(file, number, e.what());
         }
+        const size_t next = end + 1 + text.substr(end).starts_with("\r\n");
+        text.remove_prefix(std::min(next, text.size()));
     }
 }
 

@@ -1,147 +1,236 @@
-// mesh/obj.h  1  meshes in: Wavefront OBJ and MTL files
+// mesh/obj.h  3  meshes in: Wavefront OBJ files
 #pragma once
 #include <filesystem>
 #include <map>
-#include <optional>
+#include <set>
+#include <span>
 
-#include "base/files.h"
+#include "mesh/ears.h"
+#include "mesh/mtl.h"
 #include "world/mesh.h"
 
-// A polygon's corners, turned so that the triangles (0, i, i+1) all face the same way.  Convex
-// polygons are not turned.  Nothing if none of the first corners will do as the start.
-inline constexpr size_t most_starts = 16;
-inline std::optional<std::vector<vec3>> fan_of(std::vector<vec3> corners) {
-    const size_t n = corners.size();
-    vec3 normal;  // twice the area (Newell)
-    for (size_t i = 1; i + 1 < n; ++i)
-        normal += cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
-    auto all_face_its_way = [&] {
-        for (size_t i = 1; i + 1 < n; ++i)
-            if (!(dot(cross(corners[i] - corners[0], corners[i + 1] - corners[0]), normal) >= 0))
-                return false;
-        return true;
-    };
-    for (size_t start = 0; start < std::min(n, most_starts); ++start) {
-        if (all_face_its_way()) return corners;
-        std::rotate(corners.begin(), corners.begin() + 1, corners.end());
-    }
-    return {};
-}
-
-// Adds a mesh to a scene: its polygons, scaled and moved, and its materials.  Reads `v` and `f`
-// (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative, from the last
-// vertex back), `usemtl` and `mtllib` (`newmtl` with `Kd` and `Ke`; the rest of an MTL file has no
-// meaning here).  Texture coordinates, normals, groups, lines and points are skipped.
+// Adds a mesh to a scene: its polygons, placed, and those of its materials that they name.  Reads
+// `v` and `f` (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative, from
+// the last vertex back), `usemtl` and `mtllib`.  Other lines are skipped.
 class ObjReader {
 public:
-    // Faces that name no material have the one that is given.
-    ObjReader(Scene& scene, real scale, vec3 move, std::optional<uint32_t> given)
-        : scene_(scene), scale_(scale), move_(move), current_(given) {}
+    // Faces whose material is not known have the one that is given, or are grey.  `line`: of the
+    // scene's file.  Cutting up polygons spends `left`, which all meshes of a scene share.
+    ObjReader(Scene& scene, const Placement& place, std::optional<uint32_t> given, uint32_t line,
+              int64_t& left)
+        : scene_(scene), place_(place), given_(given), line_(line), left_(left) {}
 
-    // Returns the files that it read.  Throws UserError "PATH:LINE: what is wrong".
-    std::vector<std::string> read(const std::string& path) {
-        read_file_of(path, [&](const Words& words) { statement(words, path); });
-        if (faces_ == 0) throw UserError(path + ": no face in it");
-        return files_;
+    std::vector<std::string> files, warnings;
+
+    // Throws UserError "PATH:LINE: what is wrong".
+    void read(const std::string& path) {
+        path_ = path;
+        files.push_back(path);
+        scene_.mesh_of[line_] = std::filesystem::path(path).filename().string();
+        scene_.line_in_mesh.resize(scene_.shapes.size());
+        read_obj_lines(path, [&](const ObjLine& l, uint32_t line) { statement(l, line); });
+        // It is not shown: what is no mesh at all may be anything.
+        if (faces_.empty() && first_skipped_ > 0)
+            throw error_at(path, first_skipped_, "not a line of an OBJ file");
+        if (faces_.empty()) throw UserError(path + ": no face in it");
+        for (const Face& face : faces_) {
+            try {
+                add(face);
+            } catch (const UserError& e) {
+                throw error_at(path, face.line, e.what());
+            }
+        }
+        for (const auto& [note, met] : notes_)
+            warnings.push_back(note.path + ": " + counted(met.count, note.noun) +
+                               (met.count == 1 ? " is " : " are ") + note.fact + ", first " +
+                               (met.name.empty() ? "" : in_quotes(met.name) + " ") + "at line " +
+                               std::to_string(met.line) + note.remedy);
     }
 
 private:
+    struct Face {
+        uint32_t line, use, first, count;
+    };
+    // A name of `usemtl`, its first line, and its material, as soon as a face needs it.
+    struct Use {
+        std::string name;
+        uint32_t line = 0;
+        std::optional<uint32_t> material = {};
+    };
+    // A warning, how often it applies, and where first.
+    struct Note {
+        std::string path, noun, fact, remedy;
+        auto operator<=>(const Note&) const = default;
+    };
+    struct Met {
+        size_t count = 0;
+        uint32_t line = 0;
+        std::string name = {};
+    };
+
     Scene& scene_;
-    const real scale_;
-    const vec3 move_;
-    std::optional<uint32_t> current_;
-    std::map<std::string, uint32_t> material_;  // by name
+    const Placement place_;
+    const std::optional<uint32_t> given_;
+    const uint32_t line_;
+    int64_t& left_;
+    std::string path_;
+    std::set<std::string> libraries_;
+    std::map<std::string, Mtl> mtl_;
+    std::map<std::string, uint32_t> use_of_;
+    std::vector<Use> uses_{{}};
+    uint32_t use_ = 0;  // the current one; 0: none
     std::vector<vec3> vertices_;
-    std::vector<std::string> files_;
-    size_t faces_ = 0;
+    std::vector<uint32_t> corners_;  // of all faces: indices of vertices
+    std::vector<Face> faces_;
+    uint32_t first_skipped_ = 0;
+    std::map<Note, Met> notes_;
 
-    template <class Read>
-    void read_file_of(const std::string& path, Read read) {
-        files_.push_back(path);
-        read_lines(read_file(path), path, [&](const Words& words, uint32_t) { read(words); });
+    void note(const Note& note, uint32_t line, const std::string& name = {}) {
+        Met& met = notes_[note];
+        if (met.count++ == 0) met.line = line, met.name = name;
     }
 
-    void statement(const Words& words, const std::string& path) {
-        const std::string& keyword = words[0];
-        constexpr std::string_view skipped[] = {"vt", "vn", "vp", "g", "o", "s", "l", "p"};
-        if (keyword == "v") {
-            vertices_.push_back(triple(words) * scale_ + move_);
-        } else if (keyword == "f") {
-            face(words);
-        } else if (keyword == "usemtl") {
-            current_ = look_up(material_, name(words), "material");
-        } else if (keyword == "mtllib") {
-            const auto folder = std::filesystem::path(path).parent_path();
-            const std::string library = (folder / name(words)).string();
-            const size_t before = material_.size();
-            read_file_of(library, [&](const Words& of_it) { material_statement(of_it, before); });
-            if (material_.size() == before) throw UserError(library + ": no material in it");
-        } else if (std::ranges::find(skipped, keyword) == std::end(skipped)) {
-            // It is not shown: what is no mesh at all may be anything.
-            throw UserError("not a line of an OBJ file");
+    // ---- Lines ----------------------------------------------------------------------------------
+
+    void statement(const ObjLine& l, uint32_t line) {
+        constexpr std::string_view meaningless[] = {"vt", "vn", "vp", "g", "o", "s", "l", "p"};
+        if (l[0] == "v") {
+            if (l.size() < 4) throw UserError("v needs three numbers");
+            for (size_t i = 4; i < l.size(); ++i) coordinate(l[i]);  // a weight or a colour
+            vertices_.push_back(place_({coordinate(l[1]), coordinate(l[2]), coordinate(l[3])}));
+        } else if (l[0] == "f") {
+            face(l, line);
+        } else if (l[0] == "usemtl") {
+            const auto [use, fresh] = use_of_.try_emplace(l.name(), uint32_t(uses_.size()));
+            if (fresh) uses_.push_back({l.name(), line});
+            use_ = l.size() > 1 ? use->second : 0;
+        } else if (l[0] == "mtllib") {
+            libraries(l, line);
+        } else if (std::ranges::find(meaningless, l[0]) == std::end(meaningless)) {
+            if (first_skipped_ == 0) first_skipped_ = line;
+            note({path_, "line", "skipped", ""}, line, std::string(l[0]));
         }
     }
 
-    // `before`: materials of other libraries.
-    void material_statement(const Words& words, size_t before) {
-        const std::string& keyword = words[0];
-        if (keyword == "newmtl") {
-            if (!material_.try_emplace(name(words), uint32_t(scene_.materials.size())).second)
-                throw UserError("a second material " + in_quotes(name(words)));
-            add_material(scene_, {}, name(words));
-        }
-        if (keyword != "Kd" && keyword != "Ke") return;
-        if (material_.size() == before) throw UserError(keyword + " before newmtl");
-        const rgb colour = triple(words);
-        if (std::min({colour.x, colour.y, colour.z}) < 0)
-            throw UserError("a colour must not be negative");
-        if (keyword == "Kd" && max_of(colour) > 1) throw UserError("Kd must not exceed 1");
-        Material& m = scene_.materials.back();
-        (keyword == "Kd" ? m.kd : m.Le) = colour;
+    // Some programs write "nan" or "-nan(ind)" where they had no number.
+    static real coordinate(std::string_view word) {
+        if (word.starts_with("nan") || word.starts_with("-nan"))
+            return std::numeric_limits<real>::quiet_NaN();
+        return real(parse_number(word));
     }
 
-    void face(const Words& words) {
-        std::vector<vec3> corners;
-        const size_t count = vertices_.size();
-        for (size_t i = 1; i < words.size(); ++i) {
-            const std::string text = words[i].substr(0, words[i].find('/'));
+    // Vertices may follow the faces that they belong to.
+    void face(const ObjLine& l, uint32_t line) {
+        faces_.push_back({line, use_, uint32_t(corners_.size()), uint32_t(l.size() - 1)});
+        for (size_t i = 1; i < l.size(); ++i) {
+            const std::string_view text = l[i].substr(0, l[i].find('/'));
             const double index = parse_number(text);
-            const double k = index < 0 ? double(count) + index : index - 1;
-            if (index != std::floor(index) || !(k >= 0 && k < double(count)))
-                throw UserError("no vertex " + in_quotes(text) + " among the " +
-                                std::to_string(count) + " so far");
-            corners.push_back(vertices_[size_t(k)]);
-            if (double(max_abs(corners.back())) > longest_length) throw UserError("too far away");
+            const double k = index < 0 ? double(vertices_.size()) + index : index - 1;
+            if (index != std::floor(index) || !(k >= 0 && k < UINT32_MAX)) throw no_vertex(text);
+            corners_.push_back(uint32_t(k));
         }
-        if (corners.size() < 3) throw UserError("a face needs three corners or more");
-        if (!current_) throw UserError("no material: give one here or in 'mesh'");
-        polygon(corners);
-        ++faces_;
-        if (std::max(scene_.shapes.size(), scene_.materials.size()) > most_shapes)
-            throw UserError("more than " + std::to_string(most_shapes) + " shapes, or materials");
+        if (faces_.size() > most_shapes) throw too_many();
+    }
+    UserError no_vertex(std::string_view text) const {
+        return UserError("no vertex " + in_quotes(text) + " among " +
+                         std::to_string(vertices_.size()));
+    }
+    static UserError too_many() {
+        return UserError("more than " + std::to_string(most_shapes) + " shapes");
+    }
+
+    // ---- Materials ------------------------------------------------------------------------------
+
+    // One name with blanks, or several names; '\' as Windows writes them.
+    void libraries(const ObjLine& l, uint32_t line) {
+        const auto path = [&](std::string name) {
+            std::ranges::replace(name, '\\', '/');
+            return (std::filesystem::path(path_).parent_path() / name).string();
+        };
+        std::vector<std::string> names(l.words.begin() + 1, l.words.end());
+        if (std::filesystem::is_regular_file(path(l.name()))) names = {l.name()};
+        for (const std::string& name : names) {
+            if (!libraries_.insert(path(name)).second) continue;
+            if (std::filesystem::is_regular_file(path(name)))
+                library(path(name));
+            else
+                note({path_, "material file", "missing", ""}, line, name);
+        }
+    }
+
+    void library(const std::string& path) {
+        files.push_back(path);
+        Mtl second, *current = nullptr;
+        read_obj_lines(path, [&](const ObjLine& l, uint32_t line) {
+            if (l[0] == "newmtl") {
+                const auto [own, fresh] = mtl_.try_emplace(l.name());
+                current = fresh ? &own->second : &second;
+                if (!fresh)
+                    note({path, "material", "defined twice", ": the first counts"}, line, l.name());
+            } else if (!current || !current->read(l)) {
+                unused(l[0], path, line);
+            }
+        });
+    }
+
+    // Words other than letters are not shown: what is no library at all may be anything.
+    void unused(std::string_view word, const std::string& path, uint32_t line) {
+        constexpr std::string_view textures[] = {"bump", "disp", "decal", "refl", "norm"};
+        const bool texture =
+            word.starts_with("map_") || std::ranges::find(textures, word) != std::end(textures);
+        const bool letters =
+            std::ranges::all_of(word, [](unsigned char c) { return std::isalpha(c) || c == '_'; });
+        note({path, texture ? "texture" : "statement", "not used", ""}, line,
+             std::string(letters ? word : ""));
+    }
+
+    uint32_t material(uint32_t use, uint32_t line) {
+        Use& u = uses_[use];
+        const std::string instead =
+            ": " + in_quotes(given_ ? scene_.names[*given_] : "grey") + " is used";
+        if (use == 0 && !given_) note({path_, "face", "without material", instead}, line);
+        if (u.material) return *u.material;
+        const auto found = mtl_.find(u.name);
+        if (found == mtl_.end()) {
+            if (use > 0) note({path_, "material", "not defined", instead}, u.line, u.name);
+            if (given_) return *(u.material = given_);
+            Material grey;
+            grey.kd = {0.5, 0.5, 0.5};
+            add_material(scene_, grey, "grey");
+        } else {
+            if (found->second.albedo() > 1)
+                note({path_, "material", "too bright", ": scaled to an albedo of 1"}, u.line,
+                     u.name);
+            add_material(scene_, found->second.material(), u.name);
+        }
+        return *(u.material = uint32_t(scene_.materials.size() - 1));
+    }
+
+    // ---- Polygons -------------------------------------------------------------------------------
+
+    void add(const Face& face) {
+        Corners c;
+        for (uint32_t k : std::span(corners_).subspan(face.first, face.count)) {
+            if (k >= vertices_.size()) throw no_vertex(std::to_string(uint64_t(k) + 1));
+            c.push_back(vertices_[k]);
+            if (double(max_abs(c.back())) > longest_length) throw UserError("too far away");
+        }
+        if (c.size() < 3 || !std::ranges::all_of(c, is_finite))
+            return note({path_, "face", "left out", ": faces need three corners of numbers"},
+                        face.line);
+        polygon(c, material(face.use, face.line), face.line);
+        if (scene_.shapes.size() > most_shapes) throw too_many();
+        scene_.line_in_mesh.resize(scene_.shapes.size(), face.line);
     }
 
     // Parallelograms are lights in one piece.
-    void polygon(const std::vector<vec3>& corners) {
-        const auto fan = fan_of(corners);
-        if (!fan)
-            throw UserError("none of its first " + std::to_string(most_starts) +
-                            " corners sees all others: cut this polygon up");
-        const std::vector<vec3>& c = *fan;
-        if (c.size() == 4 && c[0] + c[2] == c[1] + c[3])
-            add_face(scene_, c[0], c[1], c[2], c[3], *current_);
-        else
-            for (size_t i = 1; i + 1 < c.size(); ++i)
-                add_triangle(scene_, c[0], c[i], c[i + 1], *current_);
-    }
-
-    static const std::string& name(const Words& words) {
-        if (words.size() < 2) throw UserError(words[0] + " needs a name");
-        return words[1];
-    }
-    static vec3 triple(const Words& words) {
-        if (words.size() < 4) throw UserError(words[0] + " needs three numbers");
-        return {real(parse_number(words[1])), real(parse_number(words[2])),
-                real(parse_number(words[3]))};
+    void polygon(const Corners& c, uint32_t material, uint32_t line) {
+        const bool plain = face_one_way(c, fan_of(c), false);
+        if (plain && c.size() == 4 && c[0] + c[2] == c[1] + c[3])
+            return add_face(scene_, c[0], c[1], c[2], c[3], material);
+        const Triangles triangles = plain ? fan_of(c) : Ears(c).cut(left_).value_or(fan_of(c));
+        if (!plain && (area_vector(c) == vec3{} || !face_one_way(c, triangles, true)))
+            note({path_, "face", "folded, or too large", ": triangles may overlap"}, line);
+        for (auto [i, j, k] : triangles) add_triangle(scene_, c[i], c[j], c[k], material);
     }
 };

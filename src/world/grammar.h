@@ -38,9 +38,10 @@ inline constexpr Statement grammar[] = {
      "emits on the side of (B−A)×(C−A)"},
     {Statement::content, "quad", "X Y Z  UX UY UZ  VX VY VZ  MATERIAL",
      "a parallelogram: a corner and two edges; emits on the side of U×V"},
-    {Statement::content, "mesh", "FILE.obj  SCALE  X Y Z  [MATERIAL]",
-     "polygons (`v`, `f`, `usemtl`, `mtllib` with `Kd` and `Ke`), scaled, then moved; MATERIAL is "
-     "for faces that name none; FILE is relative to the scene's folder"},
+    {Statement::content, "mesh", "FILE.obj  SCALE  X Y Z  [turn DEGREES_ABOUT_Y] [z_up] [MATERIAL]",
+     "polygons, scaled, z made y by `z_up`, rotated about y, moved; MATERIAL is for faces whose "
+     "own "
+     "is missing; FILE is relative to the scene's folder, in quotes if it has blanks"},
     {Statement::content, "box", "WIDTH HEIGHT DEPTH  DEGREES_ABOUT_Y  X Y Z  MATERIAL",
      "axis-aligned with a corner at the origin, then rotated about y and moved; emits outwards"},
 };
@@ -54,7 +55,12 @@ inline const Statement& statement_of(const std::vector<std::string>& words) {
         if (s.keyword != words[0]) continue;
         size_t least = 0, most = 0;
         std::istringstream in{std::string(s.words)};
-        for (std::string word; in >> word; ++most) least += word[0] != '[';
+        int brackets = 0;  // optional words stand in them
+        for (std::string word; in >> word; ++most) {
+            brackets += word.front() == '[';
+            least += brackets == 0;
+            brackets -= word.back() == ']';
+        }
         const size_t found = words.size() - 1;
         if (found >= least && found <= most) return s;
         throw UserError("too " + std::string(found < least ? "few" : "many") + " words (" +

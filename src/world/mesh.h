@@ -10,12 +10,27 @@ inline constexpr double longest_length = sizeof(real) == 4 ? 1e9 : 1e30;
 // A scene of so many shapes takes 1 GB; a mesh that is placed again and again asks for any number.
 inline constexpr size_t most_shapes = 1 << 22;
 
+// A mesh is scaled, its z axis made the y axis if that is up, turned about y as boxes are, moved.
+struct Placement {
+    real scale = 1;
+    bool z_up = false;
+    vec2 turn{1, 0};  // cosine and sine
+    vec3 move = {};
+
+    vec3 operator()(vec3 p) const {
+        p = p * scale;
+        if (z_up) p = {p.x, p.z, -p.y};
+        return vec3{turn.x * p.x + turn.y * p.z, p.y, turn.x * p.z - turn.y * p.x} + move;
+    }
+};
+
 #if __has_include("mesh/obj.h")
 #include "mesh/obj.h"
 #else
 struct ObjReader {
-    ObjReader(Scene&, real, vec3, std::optional<uint32_t>) {}
-    std::vector<std::string> read(const std::string& path) {
+    std::vector<std::string> files, warnings;
+    ObjReader(Scene&, const Placement&, std::optional<uint32_t>, uint32_t, int64_t&) {}
+    void read(const std::string& path) {
         throw UserError(path + ": this program was built without src/mesh");
     }
 };

@@ -1,5 +1,6 @@
 // world/scene.h  6  the scene: camera, shapes, materials, lights
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -49,20 +50,30 @@ struct Scene {
     std::vector<Light> lights;
 
     // For messages: names of materials, and the lines of the file that made shapes and lights.
-    // Empty where no file is.
+    // Empty where no file is.  Of meshes, their files by line, and their own lines or 0.
     std::vector<std::string> names;
-    std::vector<uint32_t> line_of, line_of_light;
+    std::vector<uint32_t> line_of, line_of_light, line_in_mesh;
+    std::map<uint32_t, std::string> mesh_of;
     int dropped = 0;  // triangles that have no area
 
     Tree bvh;                      // from here on made by prepare
     std::vector<Facing> facing;    // of each shape
     std::vector<double> pick_cdf;  // running sum of lights[i].pick
 
-    const Material& material(const Hit& hit) const { return materials[material_of[hit.id]]; }
+    const Material& material_at(uint32_t shape) const { return materials[material_of[shape]]; }
+    const Material& material(const Hit& hit) const { return material_at(hit.id); }
     Surface surface(const Ray& ray, const Hit& hit) const {
         return ::surface(shapes[hit.id], facing[hit.id], ray, hit);
     }
 };
+
+// "line 3", or in a mesh "line 3 (m.obj:10)".
+inline std::string place(const Scene& s, uint32_t shape) {
+    const std::string line = "line " + std::to_string(s.line_of[shape]);
+    if (shape >= s.line_in_mesh.size() || s.line_in_mesh[shape] == 0) return line;
+    return line + " (" + s.mesh_of.at(s.line_of[shape]) + ":" +
+           std::to_string(s.line_in_mesh[shape]) + ")";
+}
 
 // Diagonal of the box about all shapes.
 inline real diagonal(const Scene& s) {
@@ -130,12 +141,17 @@ inline void add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
     add_face(s, p, p + u, p + u + v, p + v, material);
 }
 
+// Cosine and sine of an angle in degrees.
+inline vec2 turned_about_y(real degrees) {
+    const real turns = degrees / 360;
+    return turned(turns - std::floor(turns));
+}
+
 // Size along x, y, z from the origin, then rotated about y (x' = c x + s z, z' = c z - s x), then
 // moved.  Faces outwards.  Each corner is computed once, so the box is watertight.
 inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t material) {
-    const real turns = degrees / 360;
-    const vec2 at = turned(turns - std::floor(turns));
-    const double cosine = double(at.x), sine = double(at.y);
+    const vec2 turn = turned_about_y(degrees);
+    const double cosine = double(turn.x), sine = double(turn.y);
     vec3 corner[8];  // bit 0: far in x, bit 1: in y, bit 2: in z
     for (int i = 0; i < 8; ++i) {
         const double x = double(size.x) * (i & 1), z = double(size.z) * (i >> 2);

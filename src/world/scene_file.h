@@ -23,6 +23,7 @@ public:
     void statement(const Words& words, uint32_t line) {
         words_ = words;
         next_ = 1;
+        line_ = line;
         const Statement& statement = statement_of(words);
         if (statement.kind == Statement::setting) set(words[0]);
         if (statement.kind == Statement::material) define(words[0]);
@@ -74,6 +75,8 @@ private:
     std::set<std::string> seen_;                 // statements that stand only once
     Words words_;
     size_t next_ = 0;  // word to read
+    uint32_t line_ = 0;
+    int64_t left_ = 1 << 28;  // tests to cut up polygons: about a second
 
     // ---- Statements ---------------------------------------------------------------------------
 
@@ -153,12 +156,25 @@ private:
         const std::string made = path.lexically_normal().string();
         if (made.starts_with("build/") && !std::filesystem::exists(path))
             throw UserError(made + ": not made yet: make " + made);
-        const real scale = length_of("scale");
-        const vec3 move = point();
+        Placement place{length_of("scale")};
+        place.move = point();
+        for (; next_ < words_.size() && (words_[next_] == "turn" || words_[next_] == "z_up");) {
+            if (words_[next_++] == "z_up")
+                place.z_up = true;
+            else if (next_ == words_.size())
+                throw UserError("turn needs degrees");
+            else
+                place.turn = turned_about_y(number());
+        }
         std::optional<uint32_t> given;
         if (next_ < words_.size()) given = material();
-        const auto files = ObjReader(scene_, scale, move, given).read(path.string());
-        files_.insert(files_.end(), files.begin(), files.end());
+        if (next_ < words_.size()) throw UserError("unknown word " + in_quotes(words_[next_]));
+        ObjReader reader(scene_, place, given, line_, left_);
+        reader.read(path.string());
+        files_.insert(files_.end(), reader.files.begin(), reader.files.end());
+        for (const std::string& warning : reader.warnings)
+            if (std::ranges::find(warnings_, warning) == warnings_.end())
+                warnings_.push_back(warning);
     }
 
     // diffuse, phong, mirror, glass, light
@@ -198,8 +214,10 @@ private:
 // Throws UserError "NAME:LINE: what is wrong".
 inline ParsedScene parse_scene(const std::string& text, const std::string& name) {
     SceneReader reader(std::filesystem::path(name).parent_path());
-    read_lines(text, name,
-               [&](const Words& words, uint32_t line) { reader.statement(words, line); });
+    read_lines(text, name, [&](std::string_view text_of, uint32_t line) {
+        if (const Words words = words_before(text_of, '#'); !words.empty())
+            reader.statement(words, line);
+    });
     return reader.finish(name);
 }
 

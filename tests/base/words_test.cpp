@@ -79,6 +79,8 @@ TEST_CASE("the words of a line end at white space of any kind and at a comment")
     CHECK(words_before("a b#c d", '#') == Words{"a", "b"});
     CHECK(words_before("#a", '#') == Words{});
     CHECK(words_before("", '#') == Words{});
+    CHECK(words_before("a \"b # c\" \"\"d\"e\" #\"", '#') == Words{"a", "b # c", "", "d\"e\""});
+    CHECK(complaint([] { words_before("a \"b", '#'); }) == "a quote that does not end");
     CHECK(words_before(std::string("a\0b c", 5), '#') == Words{std::string("a\0b", 3), "c"});
 }
 

@@ -1,0 +1,108 @@
+// mesh/mtl.h  2  materials of MTL files
+#pragma once
+#include <optional>
+
+#include "base/files.h"
+#include "world/bsdf.h"
+
+// The words of a line of an OBJ or MTL file.  '#' begins a comment at the start or after a blank.
+struct ObjLine {
+    std::vector<std::string_view> words;
+
+    explicit ObjLine(std::string_view line) {
+        constexpr std::string_view space = " \t\v\f";
+        words.reserve(8);
+        for (size_t end = 0, start; (start = line.find_first_not_of(space, end)) != line.npos;) {
+            if (line[start] == '#') break;
+            end = std::min(line.find_first_of(space, start), line.size());
+            words.push_back(line.substr(start, end - start));
+        }
+    }
+    std::string_view operator[](size_t i) const { return words[i]; }
+    size_t size() const { return words.size(); }
+    // All words but the first: a name may hold blanks.
+    std::string name() const {
+        if (size() < 2) return {};
+        return {words[1].data(), words.back().data() + words.back().size()};
+    }
+};
+
+// Calls read(line, number) for every line that has words; a backslash joins it with the next.
+template <class Read>
+void read_obj_lines(const std::string& path, Read read) {
+    std::string joined;
+    read_lines(read_file(path) + "\n\n", path, [&](std::string_view line, uint32_t number) {
+        const bool goes_on = line.ends_with('\\');
+        if (goes_on || !joined.empty()) joined += line;
+        if (goes_on) return void(joined.back() = ' ');
+        const ObjLine whole(joined.empty() ? line : joined);
+        if (whole.size() > 0) read(whole, number);
+        joined.clear();
+    });
+}
+
+// A material of an MTL file.  Glass has no colour, mirrors only that of Ks.
+struct Mtl {
+    rgb kd, ks, Le;
+    real exponent = 0;
+    int illum = 2;
+    std::optional<real> ior, opacity, transparency;
+
+    // False if Penumbra has nothing like it.
+    bool read(const ObjLine& l) {
+        const std::string_view keyword = l[0], last = l.words.back();
+        auto number = [&] { return real(parse_number(last)); };
+        if (l.size() < 2) return false;
+        if (keyword == "illum")
+            illum = int(parse_number(last, 1000));
+        else if (keyword == "Ns")
+            exponent = std::clamp(number(), real(0), real(1e6));
+        else if (keyword == "Ni")
+            ior = number();
+        else if (keyword == "d")
+            opacity = number();
+        else if (keyword == "Tr")
+            transparency = number();
+        else if (keyword == "Kd" || keyword == "Ks" || keyword == "Ke")
+            return read_colour(l, keyword == "Kd" ? kd : keyword == "Ks" ? ks : Le);
+        else
+            return false;
+        return true;
+    }
+
+    // One number is grey.
+    static bool read_colour(const ObjLine& l, rgb& colour) {
+        if (l[1] == "spectral" || l[1] == "xyz") return false;
+        for (size_t k = 0; k < 3; ++k)
+            if ((colour.*axis[k] = real(parse_number(l[std::min(k + 1, l.size() - 1)]))) < 0)
+                throw UserError("a colour must not be negative");
+        return true;
+    }
+
+    bool is_glass() const {
+        const bool clear = opacity.value_or(1 - transparency.value_or(0)) < 1;
+        return illum == 4 || illum == 6 || illum == 7 || illum == 9 || (clear && ior > 1);
+    }
+    bool is_mirror() const { return (illum == 3 || illum == 5) && max_of(ks) > 0; }
+
+    // Reflects no more than it receives.
+    real albedo() const {
+        return max_of(is_glass() ? rgb{} : is_mirror() ? ks : illum > 1 ? kd + ks : kd);
+    }
+    Material material() const {
+        Material m;
+        m.Le = Le;
+        const real scale = albedo() > 1 ? below_one / albedo() : 1;
+        if (is_glass()) {
+            m.kind = Material::Kind::glass;
+            m.ior = ior > 0 ? *ior : real(1.5);
+        } else if (is_mirror()) {
+            m.kind = Material::Kind::mirror;
+            m.ks = ks * scale;
+        } else {
+            m.kd = kd * scale;
+            if (illum > 1) m.ks = ks * scale, m.exponent = exponent;
+        }
+        return m;
+    }
+};
