@@ -1,31 +1,38 @@
-// world/scene_check.h  8  hidden problems of a scene: lights in surfaces, points on them, rounding
+// world/scene_check.h  8  hidden problems of a scene: surfaces in one place, hidden lights,
+// rounding
 #pragma once
 #include <map>
 #include <numeric>
+#include <set>
+#include <span>
+#include <utility>
 
 #include "world/scene.h"
 
-// ---- Lights that lie in other surfaces ----------------------------------------------------------
+// ---- Surfaces that lie in each other ------------------------------------------------------------
 
-// True if two shapes share more than an edge of one surface, within the bound of spawn.
-inline bool share_surface(const Shape& s, const Shape& t) {
-    const real e = 2 * (rounding_error(s) + rounding_error(t));
+// True if two shapes share more than an edge of one surface, within the distance e.
+inline bool share_surface(const Shape& s, const Shape& t, real e) {
     if (s.is_sphere() || t.is_sphere())
         return s.is_sphere() && t.is_sphere() && length(s.a - t.a) + std::abs(s.r - t.r) <= e;
     const vec3 corners[2][3] = {{s.a, s.b, s.c}, {t.a, t.b, t.c}};
-    bool is_in_plane = false;
-    for (size_t k : {0, 1}) {
-        const auto &own = corners[k], &others = corners[1 - k];
-        const vec3 n = unit(cross(own[1] - own[0], own[2] - own[0]));
-        auto farthest = [&](vec3 from, vec3 along) {
-            return std::max({dot(others[0] - from, along), dot(others[1] - from, along),
-                             dot(others[2] - from, along)});
-        };
-        is_in_plane |= farthest(own[0], n) <= e && farthest(own[0], -n) <= e;
-        for (size_t i = 0; i < 3; ++i)
-            if (farthest(own[i], unit(cross(n, own[(i + 1) % 3] - own[i]))) <= e) return false;
-    }
-    return is_in_plane;
+    const vec3 normal[2] = {unit(area_vector(s)), unit(area_vector(t))};
+    auto farthest = [&](size_t k, vec3 from, vec3 along) {
+        const auto& others = corners[1 - k];
+        return std::max({dot(others[0] - from, along), dot(others[1] - from, along),
+                         dot(others[2] - from, along)});
+    };
+    auto has_other_in_plane = [&](size_t k) {
+        return farthest(k, corners[k][0], normal[k]) <= e &&
+               farthest(k, corners[k][0], -normal[k]) <= e;
+    };
+    if (!has_other_in_plane(0) && !has_other_in_plane(1)) return false;
+    for (size_t k : {0, 1})
+        for (size_t i = 0; i < 3; ++i) {
+            const vec3 edge = corners[k][(i + 1) % 3] - corners[k][i];
+            if (farthest(k, corners[k][i], unit(cross(normal[k], edge))) <= e) return false;
+        }
+    return true;
 }
 
 inline bool overlap(const Box& a, const Box& b) {
@@ -34,43 +41,80 @@ inline bool overlap(const Box& a, const Box& b) {
     return meets;
 }
 
-// For each light, the shapes of other lights or of none that share a surface with it.  Sweeps along
-// the axis of the lights' greatest extent.  Throws UserError "NAME: ..." if it would take seconds.
-inline std::vector<std::vector<uint32_t>> surfaces_of_lights(const Scene& s,
-                                                             const std::string& name) {
-    std::vector<Box> box;
-    Box lights;
-    for (const Shape& shape : s.shapes) {
-        if (s.light_of[box.size()] != no_light) lights.add(bounds(shape));
-        box.push_back(bounds(shape));
-    }
-    const vec3 size = lights.hi - lights.lo;
-    const auto along = std::ranges::max(axis, {}, [&](auto k) { return size.*k; });
-    std::vector<uint32_t> in_order(box.size());
-    std::iota(in_order.begin(), in_order.end(), 0u);
-    std::ranges::sort(in_order, {}, [&](uint32_t i) { return std::pair(box[i].lo.*along, i); });
-    std::vector<std::vector<uint32_t>> found(s.lights.size());
-    std::vector<uint32_t> open[2];  // shapes of no light, and of lights, that have not ended yet
-    int64_t left = 1 << 28;         // tests of boxes; a test of shapes counts as 32
-    for (uint32_t i : in_order) {
-        const bool lit = s.light_of[i] != no_light;
-        for (size_t kind = lit ? 0 : 1; kind < 2; ++kind) {
-            std::erase_if(open[kind],
-                          [&](uint32_t j) { return box[j].hi.*along < box[i].lo.*along; });
-            left -= int64_t(open[kind].size());
-            if (left < 0) throw UserError(name + ": too many shapes where lights are");
-            for (uint32_t j : open[kind]) {
-                if (s.light_of[i] == s.light_of[j] || !overlap(box[i], box[j])) continue;
-                left -= 32;
-                if (!share_surface(s.shapes[i], s.shapes[j])) continue;
-                if (lit) found[size_t(s.light_of[i])].push_back(j);
-                if (kind == 1) found[size_t(s.light_of[j])].push_back(i);
-            }
+// Finds the pairs of shapes, but those of one light, that share a surface within `room` beyond
+// rounding, and of which one is a light or glass.  A set of boxes is halved again and again; only
+// halves whose boxes overlap have pairs.  Throws UserError "NAME: ..." if it would take seconds.
+class Contacts {
+public:
+    using Pair = std::array<uint32_t, 2>;
+    std::vector<Pair> pairs;  // in order, the smaller index first
+
+    Contacts(const Scene& s, const std::string& name, real room = 0)
+        : scene_(s), name_(name), room_(room), left_((1 << 28) + 1024 * int64_t(s.shapes.size())) {
+        std::vector<Item> items;
+        Box movable;
+        for (uint32_t i = 0; i < s.shapes.size(); ++i) {
+            const Box b = bounds(s.shapes[i]);
+            const bool moves = s.light_of[i] != no_light || s.material_at(i).transmits();
+            items.push_back(
+                {{b.lo - vec3{room, room, room}, b.hi + vec3{room, room, room}}, i, moves});
+            if (moves) movable.add(items.back().box);
         }
-        open[lit].push_back(i);
+        std::erase_if(items, [&](const Item& item) { return !overlap(item.box, movable); });
+        search(items);
+        std::ranges::sort(pairs);
     }
-    return found;
-}
+
+private:
+    struct Item {
+        Box box;
+        uint32_t id;
+        bool moves;
+    };
+    using Items = std::span<Item>;
+    const Scene& scene_;
+    const std::string& name_;
+    const real room_;
+    int64_t left_;  // boxes to look at; a test of shapes counts as 64
+
+    void spend(size_t boxes) {
+        left_ -= int64_t(boxes);
+        if (left_ < 0) throw UserError(name_ + ": too many shapes where lights or glass are");
+    }
+    // The box about all, and whether one moves.
+    static Item about(Items items) {
+        Item all{};
+        for (const Item& item : items) all.box.add(item.box), all.moves |= item.moves;
+        return all;
+    }
+
+    void search(Items items) {
+        const Item all = about(items);
+        if (items.size() < 2 || !all.moves) return;
+        spend(items.size());
+        const auto k =
+            std::ranges::max(axis, {}, [&](auto a) { return all.box.hi.*a - all.box.lo.*a; });
+        const Items low = items.first(items.size() / 2), high = items.subspan(items.size() / 2);
+        std::ranges::nth_element(items, high.begin(), {},
+                                 [k](const Item& item) { return item.box.lo.*k + item.box.hi.*k; });
+        search(low), search(high), search(low, high);
+    }
+    void search(Items a, Items b) {
+        spend(a.size() + b.size());
+        const Item all_a = about(a), all_b = about(b);
+        if (!overlap(all_a.box, all_b.box) || !(all_a.moves || all_b.moves)) return;
+        if (a.size() < b.size()) std::swap(a, b);
+        if (a.size() == 1) return test(std::min(a[0].id, b[0].id), std::max(a[0].id, b[0].id));
+        search(a.first(a.size() / 2), b), search(a.subspan(a.size() / 2), b);
+    }
+    void test(uint32_t i, uint32_t j) {
+        if (scene_.light_of[i] != no_light && scene_.light_of[i] == scene_.light_of[j]) return;
+        spend(64);
+        const Shape &s = scene_.shapes[i], &t = scene_.shapes[j];
+        if (share_surface(s, t, room_ + 2 * (rounding_error(s) + rounding_error(t))))
+            pairs.push_back({i, j});
+    }
+};
 
 // Moved along a normal; a sphere, which has none, grows.
 inline Light lifted(Light l, real by) {
@@ -84,44 +128,193 @@ inline Shape lifted(Shape s, vec3 n, real by) {
     return s;
 }
 
-// Moves each light that lies in another surface in front of it, by more than the error of spawn_to.
-// Of two lights in one place the first is in front.  A two-sided light is doubled, with a copy on
-// either side.  Returns the lines of these lights, each once, and the line of a surface that each
-// lies in.
-inline std::vector<std::array<uint32_t, 2>> lift_lights(Scene& s, const std::string& name) {
-    const auto in = surfaces_of_lights(s, name);
-    real size = max_abs(s.camera.eye);
-    for (const Shape& shape : s.shapes) size = std::max(size, rounding_error(shape) / (16 * ulp));
-    const real step = 512 * ulp * size;
-    std::vector<std::array<uint32_t, 2>> lines;
-    std::vector<real> by(in.size());  // last first: a light is above all later ones in its place
-    std::vector<int32_t> back(in.size(), no_light);
-    for (size_t k = in.size(); k-- > 0;) {
-        for (uint32_t i : in[k]) {
-            const int32_t other = s.light_of[i];
-            by[k] = std::max(by[k], (other > int32_t(k) ? by[size_t(other)] : 0) + step);
-            const std::array<uint32_t, 2> line{s.line_of_light[k], s.line_of[i]};
-            if (other < int32_t(k) && (lines.empty() || lines.back()[0] != line[0]))
-                lines.push_back(line);
-        }
-        if (by[k] > 0 && s.lights[k].twosided) {
-            back[k] = int32_t(s.lights.size());
-            s.lights.push_back(lifted(s.lights[k], -by[k]));
-            s.line_of_light.push_back(s.line_of_light[k]);
+// Surfaces in one place, in the order in which they are moved farther: what is opaque stays;
+// lights, the last first; glass by its index of refraction, so that the order of statements does
+// not matter, then by its corners from the least on: a triangle that one mesh has twice is one
+// surface.
+using Depth = std::array<real, 13>;
+inline Depth depth_of(const Scene& s, uint32_t i) {
+    const Shape& t = s.shapes[i];
+    const Material& m = s.material_at(i);
+    if (!m.transmits()) return {real(s.light_of[i] == no_light ? 0 : 1), -real(s.light_of[i])};
+    std::array<std::array<real, 3>, 3> c{
+        {{t.a.x, t.a.y, t.a.z}, {t.b.x, t.b.y, t.b.z}, {t.c.x, t.c.y, t.c.z}}};
+    std::ranges::rotate(c, std::ranges::min_element(c));
+    Depth depth{2, m.ior, t.r, real(s.line_of[i])};
+    for (size_t k = 0; k < 9; ++k) depth[k + 4] = c[k / 3][k % 3];
+    return depth;
+}
+
+// Moves surfaces apart that lie in each other, by more than the error of spawn_to: lights outwards,
+// glass into its own body, so that no path is in glass and beyond what touches it.
+class Separation {
+public:
+    std::vector<std::string> warnings;  // one for a line
+
+    // Throws UserError "NAME:LINE: ..." where there is no room.
+    Separation(Scene& s, const std::string& name)
+        : scene_(s), pairs_(Contacts(s, name).pairs), moved_(s.lights.size() + s.shapes.size()) {
+        if (pairs_.empty()) return;
+        for (const auto& [i, j] : pairs_) touching_[i].push_back(j), touching_[j].push_back(i);
+        decide();
+        check_room(name);
+        warn();
+        move();
+    }
+
+private:
+    Scene& scene_;
+    const std::vector<Contacts::Pair> pairs_;
+    std::map<uint32_t, std::vector<uint32_t>> touching_;
+    std::vector<real> moved_;  // along the normal: each light, and each shape that is none
+
+    real& by(uint32_t i) {
+        const int32_t k = scene_.light_of[i];
+        return moved_[k == no_light ? scene_.lights.size() + i : size_t(k)];
+    }
+    bool is_glass(uint32_t i) const { return scene_.material_at(i).transmits(); }
+
+    // Each is moved a step farther than what comes before it.
+    void decide() {
+        real size = max_abs(scene_.camera.eye);
+        for (const Shape& shape : scene_.shapes)
+            size = std::max(size, rounding_error(shape) / (16 * ulp));
+        std::vector<std::pair<Depth, uint32_t>> order;
+        for (const auto& [i, others] : touching_) order.push_back({depth_of(scene_, i), i});
+        std::ranges::sort(order);
+        for (const auto& [depth, i] : order)
+            for (uint32_t j : touching_[i])
+                if (depth_of(scene_, j) < depth)
+                    by(i) = (is_glass(i) ? -1 : 1) *
+                            std::max(std::abs(by(i)), std::abs(by(j)) + 512 * ulp * size);
+    }
+
+    // Within the distance by which glass is moved there must be nothing but what it touches.
+    void check_room(const std::string& name) {
+        const real farthest = -std::min(real(0), std::ranges::min(moved_));
+        if (farthest == 0) return;
+        for (const auto& pair : Contacts(scene_, name, 2 * farthest).pairs)
+            for (size_t k : {0, 1})
+                if (const uint32_t i = pair[k], other = pair[1 - k];
+                    is_glass(i) && by(i) < 0 && !std::ranges::binary_search(pairs_, pair))
+                    throw error_at(name, scene_.line_of[i],
+                                   "this glass lies in the surface of " +
+                                       place(scene_, touching_[i][0]) +
+                                       " and has no room to be moved off: " + place(scene_, other) +
+                                       " is too near");
+    }
+
+    void warn() {
+        std::set<uint32_t> told;
+        for (auto [other, i] : pairs_) {
+            if (depth_of(scene_, other) == depth_of(scene_, i)) continue;
+            if (depth_of(scene_, other)[0] > depth_of(scene_, i)[0]) std::swap(other, i);
+            if (!told.insert(scene_.line_of[i]).second) continue;
+            const std::string in = " lies in the surface of " + place(scene_, other) + ": ";
+            warnings.push_back(
+                place(scene_, i) +
+                (is_glass(i)
+                     ? ": this glass" + in +
+                           "it is moved a hair into its own body, with air between"
+                     : ": this light" + in +
+                           "it is moved in front of it (of two lights in one place, the first)"));
         }
     }
-    for (size_t i = 0, n = s.shapes.size(); i < n; ++i) {
-        if (s.light_of[i] == no_light) continue;
-        const size_t k = size_t(s.light_of[i]);
-        const Shape shape = s.shapes[i];
-        s.shapes[i] = lifted(shape, s.lights[k].n, by[k]);
-        if (back[k] == no_light) continue;
-        add_shape(s, lifted(shape, s.lights[k].n, -by[k]), s.material_of[i], back[k]);
-        s.line_of.push_back(s.line_of[i]);
+
+    // A two-sided light is doubled, with a copy on either side.
+    void move() {
+        Scene& s = scene_;
+        const size_t lights = s.lights.size();
+        const std::vector<Shape> shapes = s.shapes;
+        std::vector<int32_t> back(lights, no_light);
+        std::vector<real> distance;
+        for (uint32_t i = 0; i < shapes.size(); ++i) distance.push_back(by(i));
+        for (size_t k = 0; k < lights; ++k) {
+            if (moved_[k] > 0 && s.lights[k].twosided) {
+                back[k] = int32_t(s.lights.size());
+                s.lights.push_back(lifted(s.lights[k], -moved_[k]));
+                s.line_of_light.push_back(s.line_of_light[k]);
+            }
+            s.lights[k] = lifted(s.lights[k], moved_[k]);
+        }
+        for (uint32_t i = 0; i < shapes.size(); ++i) {
+            if (distance[i] == 0) continue;
+            const int32_t k = s.light_of[i];
+            const vec3 n = k == no_light ? facing(shapes[i]).n : s.lights[size_t(k)].n;
+            s.shapes[i] = lifted(shapes[i], n, distance[i]);
+            if (k == no_light || back[size_t(k)] == no_light) continue;
+            add_shape(s, lifted(shapes[i], n, -distance[i]), s.material_of[i], back[size_t(k)]);
+            s.line_of.push_back(s.line_of[i]);
+        }
     }
-    for (size_t k = 0; k < in.size(); ++k) s.lights[k] = lifted(s.lights[k], by[k]);
-    std::ranges::reverse(lines);
-    return lines;
+};
+
+// ---- Light that cannot be found -----------------------------------------------------------------
+
+// The line of the shapes at which 64 rays of a light end, if it is one; else 0.  Glass ends those
+// of a point, for light samples do not pass it.
+inline uint32_t enclosing_line(const Scene& s, const Light& l) {
+    uint32_t line = 0;
+    for (int i = 0; i < 64; ++i) {
+        const real turns = real(0.618) * real(i);
+        vec3 d = sample_uniform_hemisphere({(real(i) + real(0.5)) / 64, turns - std::floor(turns)});
+        if (i % 2 == 1) d = -d;
+        if (!l.is_round() && !l.twosided && dot(d, l.n) < 0) d = -d;
+        Ray ray = spawn({l.centre + l.r * d, l.is_round() ? d : l.n, l.error}, d);
+        auto hit = s.bvh.closest(ray);
+        for (int k = 0; k < 64 && hit && l.kind != Light::Kind::point; ++k) {
+            if (!s.material(*hit).transmits()) break;
+            ray = spawn(s.surface(ray, *hit), d);
+            hit = s.bvh.closest(ray);
+        }
+        if (!hit || (i > 0 && s.line_of[hit->id] != line)) return 0;
+        line = s.line_of[hit->id];
+    }
+    return line;
+}
+
+// True if rays from p, there and back, pass the shapes of a line an odd number of times.
+inline bool is_inside(const Scene& s, vec3 p, uint32_t line) {
+    bool inside[2] = {};
+    for (size_t i = 0; i < s.shapes.size(); ++i) {
+        if (s.line_of[i] != line) continue;
+        const Shape& shape = s.shapes[i];
+        for (size_t k : {0, 1}) {
+            const vec3 d = vec3{real(0.36), real(0.48), real(0.8)} * real(k == 0 ? 1 : -1);
+            inside[k] ^= shape.is_sphere()
+                             ? length(p - shape.a) < shape.r
+                             : intersect_triangle(shape, {p, d}, shear(d), infinity).has_value();
+        }
+    }
+    return inside[0] && inside[1];
+}
+
+// Warnings: lights in bodies that do not let out their light, the first of each of 1000 lines, and
+// the light of points that only samples of directions could find.
+inline std::vector<std::string> hidden_lights(const Scene& s) {
+    std::vector<std::string> warnings;
+    std::set<uint32_t> told;
+    const bool deltas =
+        std::ranges::any_of(s.material_of, [&](uint32_t m) { return s.materials[m].is_delta(); });
+    bool points_told = !deltas;
+    for (size_t k = 0; k < s.lights.size(); ++k) {
+        const Light& l = s.lights[k];
+        const uint32_t own = s.line_of_light[k];
+        if (!told.insert(own).second || told.size() > 1000) continue;
+        const uint32_t line = enclosing_line(s, l);
+        const bool is_point = l.kind == Light::Kind::point;
+        const std::string start = "line " + std::to_string(own) + ": ";
+        if (line != 0 && line != own && is_inside(s, l.centre, line) &&
+            !is_inside(s, s.camera.eye, line))
+            warnings.push_back(start + "this light is inside line " + std::to_string(line) +
+                               ", and none of 64 rays came out");
+        if (is_point && !std::exchange(points_told, true))
+            warnings.push_back(start +
+                               "a point light does not shine through glass or by mirrors, where no "
+                               "path finds it: that light is missing; a sphere of radius r and "
+                               "radiance I / (pi r^2) shines there, too");
+    }
+    return warnings;
 }
 
 // ---- Points on surfaces, rounding ---------------------------------------------------------------
@@ -158,9 +351,13 @@ inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t o
 }
 
 // Lengths that are too short, one of each kind, with the line of a shape.  Pairs are searched at no
-// more than 2048 shapes: the first of each line, and others; without lights if some were lifted.
-inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool lifted) {
+// more than 2048 shapes: the first of each line, and others; without lights and glass if some were
+// moved.
+inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool moved) {
     std::map<std::string, uint32_t> found;
+    auto may_move = [&](uint32_t i) {
+        return s.light_of[i] != no_light || s.material_at(i).transmits();
+    };
     const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
     auto look_about = [&](vec3 p, const char* what) {
         if (const auto hit = near_hit(s, {p, p, p}, {}, UINT32_MAX, reach))
@@ -174,7 +371,7 @@ inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool lifte
         const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];
         if (i % (1 + s.shapes.size() / 1024) > 0 && !(first && firsts++ < 1024)) continue;
         const auto hit = pairs ? std::nullopt : near_hit(s, s.shapes[i], s.facing[i], i, reach);
-        if (!hit || (lifted && std::max(s.light_of[i], s.light_of[hit->id]) >= 0)) continue;
+        if (!hit || (moved && (may_move(i) || may_move(hit->id)))) continue;
         found.emplace("distance to line " + std::to_string(s.line_of[hit->id]), s.line_of[i]);
         ++pairs;
     }

@@ -42,11 +42,8 @@ public:
                             ": empty scene: " + (s.dropped > 0 ? dropped : "it has no shape"));
         auto warn = [&](const std::string& what) { warnings_.push_back(what); };
         if (s.dropped > 0) warn(dropped);
-        const auto lifted = lift_lights(s, name);
-        for (const auto& [line, other] : lifted)
-            warn("line " + std::to_string(line) + ": this light lies in the surface of line " +
-                 std::to_string(other) +
-                 ": it is moved in front of it (of two lights in one place, the first)");
+        const std::vector<std::string> moved = Separation(s, name).warnings;
+        warnings_.insert(warnings_.end(), moved.begin(), moved.end());
         prepare(s);
         for (size_t k = 0; k < s.lights.size(); ++k)
             for (size_t i = 0; s.lights[k].kind == Light::Kind::point && i < s.shapes.size(); ++i)
@@ -54,7 +51,8 @@ public:
                     throw error_at(name, s.line_of_light[k],
                                    "this point light lies on the surface of line " +
                                        std::to_string(s.line_of[i]) + ": move it off");
-        for (const auto& [length, line] : coarse_lengths(s, !lifted.empty()))
+        for (const std::string& warning : hidden_lights(s)) warn(warning);
+        for (const auto& [length, line] : coarse_lengths(s, !moved.empty()))
             warn("line " + std::to_string(line) + ": " + (sizeof(real) == 4 ? "float" : "double") +
                  " precision is too low here: ray origins are offset by more than 1 % of this "
                  "shape's " +

@@ -158,6 +158,215 @@ TEST_CASE("a lamp in a ball of its size shines, and the first of two") {
     CHECK(parsed(text + "sphere 0 1 0 .3 grey\nsphere 0 1 0 .3001 lamp\n").warnings.empty());
 }
 
+// ---- Glass that touches -------------------------------------------------------------------------
+
+namespace {
+
+const std::string ice_room = replaced("depth 3", "depth 40") + "glass ice 1.5\n" + over + "lamp\n";
+const double gap = single ? 4e-3 : 1e-7;
+
+// The light of two scenes that differ by a gap: nearly the same paths.
+void expect_as_with_a_gap(const ParsedScene& touching, const ParsedScene& apart) {
+    CHECK(touching.warnings.size() == 1);
+    CHECK(apart.warnings.empty());
+    const double light = light_of(apart.scene);
+    CHECK(light > 0);
+    CHECK(light_of(touching.scene) == doctest::Approx(light).epsilon(single ? 0.05 : 1e-5));
+}
+
+// Every path of a scene in a furnace of radiance 1 brings 1, if it ends before its depth.
+void expect_furnace(const std::string& bodies) {
+    const Scene scene = parsed(
+                            "size 8 8\ncamera .3 .7 9  .3 .7 0  40\ndepth 300\nglass a 1.3\n"
+                            "glass b 1.5\nglass c 2.4\nlight sky 1 1 1 twosided\n"
+                            "sphere 0 0 0 10 sky\n" +
+                            bodies)
+                            .scene;
+    int ended = 0, wrong = 0;
+    for (int i = 0; i < 64; ++i)
+        for (uint64_t k = 0; k < 8; ++k) {
+            const rgb L = radiance(scene, {Direction::bsdf, LightMode::none, 0},
+                                   {SamplerKind::independent, 3}, i % 8, i / 8, k);
+            ended += L.x != 0;
+            wrong += L.x != 0 && std::abs(double(L.x) - 1) > (single ? 1e-4 : 1e-9);
+        }
+    INFO(bodies);
+    CHECK(ended > 200);
+    CHECK(wrong <= (single ? ended / 50 : 0));  // in float a hair is as wide as that
+}
+
+}  // namespace
+
+TEST_CASE("glass on anything is as if a hair of air were between") {
+    auto block = [](double height) {
+        return "box 1.4 .7 1.4 20 -.7 " + said(height) + " -.7 ice\n";
+    };
+    // Tops at the height of the floor.
+    for (const std::string under :
+         {"", "box 8 1 8 0 -4 -1 -4 grey\n", "mirror m .9 .9 .9\nbox 8 1 8 0 -4 -1 -4 m\n",
+          "triangle -4 0 -4  4 0 -4  0 0 8  grey\n", "quad -4 0 -4  8 0 0  0 0 8  grey\n",
+          "quad -.1 0 -.1  .2 0 0  0 0 .2  grey\n"})
+        for (const bool before : {false, true}) {
+            INFO(under);
+            CAPTURE(before);
+            const std::string floor = "quad -4 0 -4  0 0 8  8 0 0  grey\n";
+            const std::string room = under.empty() ? ice_room : replaced(floor, "\n", ice_room);
+            auto with_block = [&](double height) {
+                return parsed(room + (before ? under + block(height) : block(height) + under));
+            };
+            const ParsedScene touching = with_block(0);
+            expect_as_with_a_gap(touching, with_block(gap));
+            CHECK(warns(touching, "this glass lies in the surface of line "));
+        }
+    const ParsedScene first = parsed(ice_room + block(0));
+    CHECK(first.warnings ==
+          std::vector<std::string>{"line 9: this glass lies in the surface of line 6: it is moved "
+                                   "a hair into its own body, "
+                                   "with air between"});
+    // No other order of statements changes a bit.
+    const std::string floor = "quad -4 0 -4  0 0 8  8 0 0  grey\n";
+    const Scene last = parsed(replaced(floor, "\n", ice_room) + block(0) + floor).scene;
+    CHECK(light_of(first.scene) == light_of(last));
+}
+
+TEST_CASE("a lamp on glass, under it and inside of its surface shines as with a gap") {
+    const std::string cap = "light glow 3 3 3\nlight both 2 2 2 twosided\n";
+    auto at = [&](double height, const std::string& lamp) {
+        return parsed(ice_room + cap + "box 1.4 " + said(.7 - height) + " 1.4 0 -.7 .1 -.7 ice\n" +
+                      lamp);
+    };
+    for (const char* lamp :
+         {"quad -.3 .8 -.3  0 0 .6  .6 0 0  glow\n", "quad -.3 .8 -.3  .6 0 0  0 0 .6  glow\n",
+          "quad -.9 .8 -.9  1.8 0 0  0 0 1.8  both\n"}) {
+        INFO(std::string(lamp));
+        expect_as_with_a_gap(at(0, lamp), at(gap, lamp));
+    }
+    // A lamp in the floor and glass upon both: two warnings, and the lamp is between them.
+    const Scene three = parsed(ice_room + cap +
+                               "quad -.3 0 -.3  0 0 .6  .6 0 0  glow\n"
+                               "box 1 .5 1  0  -.5 0 -.5  ice\n")
+                            .scene;
+    const real floor = three.shapes[0].a.y, lamp = three.shapes[4].a.y;
+    CHECK((floor == 0 && lamp > floor));
+    for (size_t i = 6; i < 18; ++i) {
+        const Shape& s = three.shapes[i];
+        if (s.a.y == s.b.y && s.a.y == s.c.y && s.a.y < real(.3)) CHECK(s.a.y > lamp);
+    }
+    // Balls of one size: glass in a wall is not seen, and a lamp in glass is.
+    const std::string ball = "sphere 0 .5 0  .5 ";
+    CHECK(light_of(parsed(ice_room + ball + "grey\n" + ball + "ice\n").scene) ==
+          light_of(parsed(ice_room + ball + "grey\n").scene));
+    CHECK(light_of(parsed(ice_room + cap + ball + "ice\n" + ball + "glow\n").scene) ==
+          light_of(parsed(ice_room + cap + ball + "glow\n").scene));
+}
+
+TEST_CASE("bodies of glass that touch or have faces in common lose no light in a furnace") {
+    expect_furnace("box 2 2 1 0 -1 -1 -1 b\nbox 2 2 1 0 -1 -1 0 b\n");
+    expect_furnace("box 2 2 1 0 -1 -1 -1 a\nbox 2 2 1 0 -1 -1 -1 c\n");  // one in the other
+    expect_furnace("sphere 0 .7 0 1 b\nsphere 0 .7 0 1 a\nsphere 0 .7 0 1 b\n");
+    Rng rng{7};
+    auto whole = [&](int from, int to) { return from + int(rng.uniform() * (to - from + 1)); };
+    for (int scene = 0; scene < 60; ++scene) {
+        std::string bodies;
+        for (int i = whole(2, 6); i > 0; --i)
+            bodies += said("box", whole(1, 3), whole(1, 3), whole(1, 3), 0, whole(-2, 1),
+                           whole(-2, 1), whole(-2, 1)) +
+                      " " + "abc"[whole(0, 2)] + "\n";
+        expect_furnace(bodies);
+    }
+}
+
+TEST_CASE("no path gets into an opaque body by glass that touches it") {
+    Rng rng{8};
+    auto whole = [&](int from, int to) { return from + int(rng.uniform() * (to - from + 1)); };
+    int met = 0, inside = 0;
+    for (int n = 0; n < 40; ++n) {
+        std::string bodies = "sphere 0 0 0 50 sky\nbox 6 1 6 0 -3 -3 -3 grey\n";
+        for (int i = whole(2, 5); i > 0; --i)
+            bodies += said("box", whole(1, 3), whole(1, 3), whole(1, 3), 0, whole(-2, 1),
+                           whole(-2, 1), whole(-2, 1)) +
+                      (whole(0, 2) ? " ice\n" : " grey\n");
+        const Scene scene = parsed(
+                                "size 8 8\ncamera .3 .7 9  .3 .7 0  40\ndepth 60\nglass ice 1.5\n"
+                                "diffuse grey .9 .9 .9\nlight sky 1 1 1 twosided\n" +
+                                bodies)
+                                .scene;
+        for (int i = 0; i < 64; ++i)
+            for (uint64_t k = 0; k < 16; ++k)
+                radiance(scene, {Direction::bsdf, LightMode::none, 0},
+                         {SamplerKind::independent, 3}, i % 8, i / 8, k,
+                         [&](const Segment&, const Step& e) {
+                             if (!e.met || !(max_of(e.x.material->kd) > 0)) return;
+                             ++met;
+                             inside += e.x.cos_o < 0;
+                         });
+    }
+    CHECK(met > 10000);
+    CHECK(inside == 0);
+}
+
+TEST_CASE("glass that has no room to be moved is refused, with both lines") {
+    const double hair = 512 * double(ulp) * 4;
+    auto why = [&](const std::string& shapes) {
+        return complaint([&] { parsed(ice_room + shapes); });
+    };
+    const std::string thin = "box 1 " + said(hair / 2) + " 1 0 -.5 0 -.5 ice\n";
+    CHECK(why(thin) ==
+          "test:9: this glass lies in the surface of line 6 and has no room to be moved off: line "
+          "9 is too near");
+    CHECK(why("box 1 " + said(8 * hair) + " 1 0 -.5 0 -.5 ice\n") == "");
+    const std::string coin = "quad -.2 " + said(hair / 2) + " -.2  .4 0 0  0 0 .4  grey\n";
+    CHECK(why("box 1 1 1 0 -.5 0 -.5 ice\n" + coin) ==
+          "test:9: this glass lies in the surface of line 6 and has no room to be moved off: line "
+          "10 is too near");
+    CHECK(why(coin + "box 1 1 1 0 -.5 0 -.5 ice\n") ==
+          "test:10: this glass lies in the surface of line 6 and has no room to be moved off: line "
+          "9 is too near");
+    // Beside, above and away from it, anything may be.
+    CHECK(why("box 1 1 1 0 -.5 0 -.5 ice\nquad .6 " + said(hair / 2) +
+              " -.2  .4 0 0  0 0 .4  grey\n") == "");
+}
+
+// ---- Light that cannot be found -----------------------------------------------------------------
+
+TEST_CASE(
+    "a lamp in a body that lets no light out is told, one in glass or around the eye is not") {
+    auto hidden = [](const std::string& shapes) {
+        std::string all;
+        for (const std::string& w :
+             parsed(room + "glass ice 1.5\nlight shade .1 .1 .1 grey\n" + shapes).warnings)
+            all += w + "\n";
+        return all;
+    };
+    const std::string lamp = "sphere 2 3 1 .5 lamp\n",
+                      inside =
+                          "line 9: this light is inside line 10, and none of 64 rays came out\n";
+    CHECK(hidden(lamp + "sphere 2 3 1 .6 shade\n") == inside);
+    CHECK(hidden(lamp + "sphere 2 3 1 .6 grey\n") == inside);
+    CHECK(hidden("quad 1.8 3 1  .2 0 0  0 0 .2  lamp\nbox 2 2 2 30 1 2 .5 grey\n") == inside);
+    CHECK(hidden("triangle 1.8 3 1  2 3 1  2 3 1.2  lamp\nsphere 2 3 1 .6 grey\nsphere 2 3 1 .7 "
+                 "ice\n") == inside);
+    CHECK(hidden(lamp + "sphere 2 3 1 .6 ice\nsphere 2 3 1 .7 grey\n") ==
+          "line 9: this light is inside line 11, and none of 64 rays came out\n");
+    for (const std::string open :
+         {"sphere 2 3 1 .6 ice\n", "sphere 2.6 3 1 .6 grey\n", "sphere 0 0 0 30 grey\n",
+          "box 20 9 20 0 -10 -1 -10 grey\n", "box 1 1 1 0 1.5 2.2 1.5 grey\n"}) {
+        INFO(open);
+        CHECK(hidden(lamp + open).find("inside") == std::string::npos);
+    }
+    const std::string point = "pointlight 2 3 1  9 9 9\n";
+    CHECK(hidden(point + "sphere 2 3 1 .6 grey\n") == inside);
+    const std::string missing =
+        "a point light does not shine through glass or by mirrors, where no path finds it: that "
+        "light is missing; "
+        "a sphere of radius r and radiance I / (pi r^2) shines there, too\n";
+    CHECK(hidden(point + "sphere 2 3 1 .6 ice\n") ==
+          "line 9: this light is inside line 10, and none of 64 rays came out\nline 9: " + missing);
+    CHECK(hidden(point + point + "mirror m 1 1 1\nsphere 0 1 0 .5 m\n") == "line 9: " + missing);
+    CHECK(hidden(point + "mirror m 1 1 1\n") == "");
+    CHECK(hidden(lamp + "sphere 0 1 0 .5 ice\n") == "");
+}
+
 TEST_CASE("a point light on a surface is refused, off it accepted") {
     auto at = [](const char* place) {
         const std::string text = "triangle 0 1 0  1 1 0  0 2 1  grey\nsphere 2 2 2 .5 grey\n";

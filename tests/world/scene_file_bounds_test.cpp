@@ -97,11 +97,11 @@ TEST_CASE("a hundred lights in one place have a warning each; thousands are refu
     CHECK(all.scene.lights.size() == 200);
     REQUIRE(all.warnings.size() == 99);
     CHECK(all.warnings[0].starts_with(
-        "line 5: this light lies in the surface of line 4: "));
+        "line 5 (m.obj:7): this light lies in the surface of line 4 (m.obj:7): "));
     CHECK(all.warnings[98].starts_with(
-        "line 103: this light lies in the surface of line "));
+        "line 103 (m.obj:7): this light lies in the surface of line "));
     CHECK(complaint(folder, repeated(4200, "sphere 0 0 0 1 l\n")) ==
-          "s.scene: too many shapes where lights are");
+          "s.scene: too many shapes where lights or glass are");
 }
 
 TEST_CASE("a wall of so many lights that none may be in one place, across any axis, is no crowd") {
