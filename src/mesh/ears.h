@@ -8,7 +8,7 @@
 #include "base/vec.h"
 
 using Corners = std::vector<vec3>;
-using Triangles = std::vector<std::array<size_t, 3>>;  // of a polygon: indices of its corners
+using Cuts = std::vector<std::array<size_t, 3>>;  // of a polygon: indices of its corners
 
 // Twice the area of a polygon, along its normal: the sum over a fan from its first corner.
 inline vec3 area_vector(const Corners& c) {
@@ -17,8 +17,8 @@ inline vec3 area_vector(const Corners& c) {
     return sum;
 }
 
-inline Triangles fan_of(const Corners& c) {
-    Triangles fan;
+inline Cuts fan_of(const Corners& c) {
+    Cuts fan;
     for (size_t i = 1; i + 1 < c.size(); ++i) fan.push_back({0, i, i + 1});
     return fan;
 }
@@ -26,7 +26,7 @@ inline Triangles fan_of(const Corners& c) {
 // True if all triangles have an area on the side of the polygon; `nearly`: if none has more than a
 // thousandth of the polygon's on the other side, which the rounding of a file to three digits
 // makes.
-inline bool face_one_way(const Corners& c, const Triangles& triangles, bool nearly) {
+inline bool face_one_way(const Corners& c, const Cuts& triangles, bool nearly) {
     const vec3 normal = area_vector(c);
     return std::ranges::all_of(triangles, [&](const auto& t) {
         const real area = dot(cross(c[t[1]] - c[t[0]], c[t[2]] - c[t[0]]), normal);
@@ -55,9 +55,9 @@ public:
     }
 
     // Nothing if the polygon crosses itself, or takes more than `left` tests, which it spends.
-    std::optional<Triangles> cut(int64_t& left) {
+    std::optional<Cuts> cut(int64_t& left) {
         if (left < int64_t(n_ * n_)) return {};
-        Triangles all;
+        Cuts all;
         std::vector<size_t> rest(n_);
         std::iota(rest.begin(), rest.end(), size_t(0));
         auto look = [&](size_t i) { height_[i] = height(i, rest, left); };

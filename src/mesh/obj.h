@@ -16,8 +16,8 @@ class ObjReader {
 public:
     // Faces whose material is not known have the one that is given, or are grey.  `line`: of the
     // scene's file.  Cutting up polygons spends `left`, which all meshes of a scene share.
-    ObjReader(Scene& scene, const Placement& place, std::optional<uint32_t> given, uint32_t line,
-              int64_t& left)
+    ObjReader(Scene& scene, const MeshPlacement& place, std::optional<uint32_t> given,
+              uint32_t line, int64_t& left)
         : scene_(scene), place_(place), given_(given), line_(line), left_(left) {}
 
     std::vector<std::string> files, warnings;
@@ -69,7 +69,7 @@ private:
     };
 
     Scene& scene_;
-    const Placement place_;
+    const MeshPlacement place_;
     const std::optional<uint32_t> given_;
     const uint32_t line_;
     int64_t& left_;
@@ -112,10 +112,9 @@ private:
         }
     }
 
-    // Some programs write "nan" or "-nan(ind)" where they had no number.
+    // Some programs write "nan", "-inf" or "1.#IND" where they had no number.
     static real coordinate(std::string_view word) {
-        if (word.starts_with("nan") || word.starts_with("-nan"))
-            return std::numeric_limits<real>::quiet_NaN();
+        if (word.find_first_of("nN") != word.npos) return std::numeric_limits<real>::quiet_NaN();
         return real(parse_number(word));
     }
 
@@ -228,8 +227,9 @@ private:
         const bool plain = face_one_way(c, fan_of(c), false);
         if (plain && c.size() == 4 && c[0] + c[2] == c[1] + c[3])
             return add_face(scene_, c[0], c[1], c[2], c[3], material);
-        const Triangles triangles = plain ? fan_of(c) : Ears(c).cut(left_).value_or(fan_of(c));
-        if (!plain && (area_vector(c) == vec3{} || !face_one_way(c, triangles, true)))
+        const Cuts triangles = plain ? fan_of(c) : Ears(c).cut(left_).value_or(fan_of(c));
+        if (!plain && c.size() > 3 &&
+            (area_vector(c) == vec3{} || !face_one_way(c, triangles, true)))
             note({path_, "face", "folded, or too large", ": triangles may overlap"}, line);
         for (auto [i, j, k] : triangles) add_triangle(scene_, c[i], c[j], c[k], material);
     }

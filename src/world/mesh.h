@@ -11,7 +11,7 @@ inline constexpr double longest_length = sizeof(real) == 4 ? 1e9 : 1e30;
 inline constexpr size_t most_shapes = 1 << 22;
 
 // A mesh is scaled, its z axis made the y axis if that is up, turned about y as boxes are, moved.
-struct Placement {
+struct MeshPlacement {
     real scale = 1;
     bool z_up = false;
     vec2 turn{1, 0};  // cosine and sine
@@ -29,7 +29,7 @@ struct Placement {
 #else
 struct ObjReader {
     std::vector<std::string> files, warnings;
-    ObjReader(Scene&, const Placement&, std::optional<uint32_t>, uint32_t, int64_t&) {}
+    ObjReader(Scene&, const MeshPlacement&, std::optional<uint32_t>, uint32_t, int64_t&) {}
     void read(const std::string& path) {
         throw UserError(path + ": this program was built without src/mesh");
     }

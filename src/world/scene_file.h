@@ -154,7 +154,7 @@ private:
         const std::string made = path.lexically_normal().string();
         if (made.starts_with("build/") && !std::filesystem::exists(path))
             throw UserError(made + ": not made yet: make " + made);
-        Placement place{length_of("scale")};
+        MeshPlacement place{length_of("scale")};
         place.move = point();
         for (; next_ < words_.size() && (words_[next_] == "turn" || words_[next_] == "z_up");) {
             if (words_[next_++] == "z_up")

@@ -9,10 +9,10 @@ namespace {
 
 const int64_t plenty = 1 << 28;
 
-std::optional<Triangles> cut(const Corners& c, int64_t left = plenty) { return Ears(c).cut(left); }
+std::optional<Cuts> cut(const Corners& c, int64_t left = plenty) { return Ears(c).cut(left); }
 
 // The areas of triangles on the polygon's side.
-std::vector<double> areas(const Corners& c, const Triangles& triangles) {
+std::vector<double> areas(const Corners& c, const Cuts& triangles) {
     const vec3 normal = unit(area_vector(c));
     std::vector<double> all;
     for (const auto& [i, j, k] : triangles)
@@ -154,7 +154,7 @@ TEST_CASE(
 
 TEST_CASE("triangles face one way with or without those that have no area") {
     const Corners c = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
-    CHECK(fan_of(c) == Triangles{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
+    CHECK(fan_of(c) == Cuts{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
     CHECK(face_one_way(c, fan_of(c), true));
     CHECK(!face_one_way(c, fan_of(c), false));
     CHECK(face_one_way(c, *cut(c), false));

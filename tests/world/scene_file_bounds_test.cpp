@@ -63,7 +63,7 @@ TEST_CASE("a mesh of 10 kB that a scene of 25 kB repeats: so many shapes are too
 
 TEST_CASE("of a library that a scene repeats, the materials that faces name count") {
     const Folder folder;
-    folder.write("m.obj", "mtllib m.mtl\nusemtl 7\n" + square + "f 1 2 3 4\n");
+    folder.write("m.obj", "mtllib m.mtl\nusemtl 7\n" + square + "f 1 2 3 4\nf 1 2 3\n");
     std::string many;
     for (int i = 0; i < 1000; ++i) many += "newmtl " + std::to_string(i) + "\n";
     folder.write("m.mtl", many);
