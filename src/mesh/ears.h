@@ -7,7 +7,9 @@
 
 #include "base/vec.h"
 
-using Corners = std::vector<vec3>;
+namespace mesh {
+
+using Corners = std::vector<vec3>;                // corners of a polygon
 using Cuts = std::vector<std::array<size_t, 3>>;  // of a polygon: indices of its corners
 
 // Twice the area of a polygon, along its normal: the sum over a fan from its first corner.
@@ -114,3 +116,5 @@ private:
         return longest > 0 ? twice / longest : 0;
     }
 };
+
+}  // namespace mesh

@@ -5,6 +5,8 @@
 #include "base/files.h"
 #include "world/bsdf.h"
 
+namespace mesh {
+
 // The words of a line of an OBJ or MTL file.  '#' begins a comment at the start or after a blank.
 struct ObjLine {
     std::vector<std::string_view> words;
@@ -106,3 +108,5 @@ struct Mtl {
         return m;
     }
 };
+
+}  // namespace mesh

@@ -9,6 +9,8 @@
 #include "mesh/mtl.h"
 #include "world/mesh.h"
 
+namespace mesh {
+
 // Adds a mesh to a scene: its polygons, placed, and those of its materials that they name.  Reads
 // `v` and `f` (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative, from
 // the last vertex back), `usemtl` and `mtllib`.  Other lines are skipped.
@@ -234,3 +236,5 @@ private:
         for (auto [i, j, k] : triangles) add_triangle(scene_, c[i], c[j], c[k], material);
     }
 };
+
+}  // namespace mesh

@@ -27,6 +27,7 @@ struct MeshPlacement {
 #if __has_include("mesh/obj.h")
 #include "mesh/obj.h"
 #else
+namespace mesh {
 struct ObjReader {
     std::vector<std::string> files, warnings;
     ObjReader(Scene&, const MeshPlacement&, std::optional<uint32_t>, uint32_t, int64_t&) {}
@@ -34,4 +35,5 @@ struct ObjReader {
         throw UserError(path + ": this program was built without src/mesh");
     }
 };
+}  // namespace mesh
 #endif

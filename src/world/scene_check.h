@@ -5,7 +5,6 @@
 #include <numeric>
 #include <set>
 #include <span>
-#include <utility>
 
 #include "world/scene.h"
 
@@ -41,6 +40,10 @@ inline bool overlap(const Box& a, const Box& b) {
     return meets;
 }
 
+inline bool may_move(const Scene& s, uint32_t i) {
+    return s.light_of[i] != no_light || s.material_at(i).transmits();
+}
+
 // Finds the pairs of shapes, but those of one light, that share a surface within `room` beyond
 // rounding, and of which one is a light or glass.  A set of boxes is halved again and again; only
 // halves whose boxes overlap have pairs.  Throws UserError "NAME: ..." if it would take seconds.
@@ -55,10 +58,10 @@ public:
         Box movable;
         for (uint32_t i = 0; i < s.shapes.size(); ++i) {
             const Box b = bounds(s.shapes[i]);
-            const bool moves = s.light_of[i] != no_light || s.material_at(i).transmits();
-            items.push_back(
-                {{b.lo - vec3{room, room, room}, b.hi + vec3{room, room, room}}, i, moves});
-            if (moves) movable.add(items.back().box);
+            items.push_back({{b.lo - vec3{room, room, room}, b.hi + vec3{room, room, room}},
+                             i,
+                             may_move(s, i)});
+            if (items.back().moves) movable.add(items.back().box);
         }
         std::erase_if(items, [&](const Item& item) { return !overlap(item.box, movable); });
         search(items);
@@ -176,9 +179,8 @@ private:
 
     // Each is moved a step farther than what comes before it.
     void decide() {
-        real size = max_abs(scene_.camera.eye);
-        for (const Shape& shape : scene_.shapes)
-            size = std::max(size, rounding_error(shape) / (16 * ulp));
+        real error = 16 * ulp * max_abs(scene_.camera.eye);
+        for (const Shape& shape : scene_.shapes) error = std::max(error, rounding_error(shape));
         std::vector<std::pair<Depth, uint32_t>> order;
         for (const auto& [i, others] : touching_) order.push_back({depth_of(scene_, i), i});
         std::ranges::sort(order);
@@ -186,7 +188,7 @@ private:
             for (uint32_t j : touching_[i])
                 if (depth_of(scene_, j) < depth)
                     by(i) = (is_glass(i) ? -1 : 1) *
-                            std::max(std::abs(by(i)), std::abs(by(j)) + 512 * ulp * size);
+                            std::max(std::abs(by(i)), std::abs(by(j)) + 32 * error);
     }
 
     // Within the distance by which glass is moved there must be nothing but what it touches.
@@ -289,31 +291,29 @@ inline bool is_inside(const Scene& s, vec3 p, uint32_t line) {
     return inside[0] && inside[1];
 }
 
-// Warnings: lights in bodies that do not let out their light, the first of each of 1000 lines, and
-// the light of points that only samples of directions could find.
+// Warnings: lights in bodies that do not let out their light, the first of each of 1000 lines;
+// light of points that only samples of directions could find.
 inline std::vector<std::string> hidden_lights(const Scene& s) {
     std::vector<std::string> warnings;
+    auto warn = [&](size_t light, const std::string& what) {
+        warnings.push_back("line " + std::to_string(s.line_of_light[light]) + ": " + what);
+    };
     std::set<uint32_t> told;
-    const bool deltas =
-        std::ranges::any_of(s.material_of, [&](uint32_t m) { return s.materials[m].is_delta(); });
-    bool points_told = !deltas;
     for (size_t k = 0; k < s.lights.size(); ++k) {
-        const Light& l = s.lights[k];
-        const uint32_t own = s.line_of_light[k];
-        if (!told.insert(own).second || told.size() > 1000) continue;
-        const uint32_t line = enclosing_line(s, l);
-        const bool is_point = l.kind == Light::Kind::point;
-        const std::string start = "line " + std::to_string(own) + ": ";
-        if (line != 0 && line != own && is_inside(s, l.centre, line) &&
+        if (!told.insert(s.line_of_light[k]).second || told.size() > 1000) continue;
+        const uint32_t line = enclosing_line(s, s.lights[k]);
+        if (line != 0 && line != s.line_of_light[k] && is_inside(s, s.lights[k].centre, line) &&
             !is_inside(s, s.camera.eye, line))
-            warnings.push_back(start + "this light is inside line " + std::to_string(line) +
-                               ", and none of 64 rays came out");
-        if (is_point && !std::exchange(points_told, true))
-            warnings.push_back(start +
-                               "a point light does not shine through glass or by mirrors, where no "
-                               "path finds it: that light is missing; a sphere of radius r and "
-                               "radiance I / (pi r^2) shines there, too");
+            warn(k, "this light is inside line " + std::to_string(line) +
+                        ", and none of 64 rays came out");
     }
+    const auto point = std::ranges::find(s.lights, Light::Kind::point, &Light::kind);
+    if (point != s.lights.end() &&
+        std::ranges::any_of(s.material_of, [&](auto m) { return s.materials[m].is_delta(); }))
+        warn(size_t(point - s.lights.begin()),
+             "a point light does not shine through glass or by mirrors, where no path finds it: "
+             "that light is missing; a sphere of radius r and radiance I / (pi r^2) shines there, "
+             "too");
     return warnings;
 }
 
@@ -355,9 +355,6 @@ inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t o
 // moved.
 inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool moved) {
     std::map<std::string, uint32_t> found;
-    auto may_move = [&](uint32_t i) {
-        return s.light_of[i] != no_light || s.material_at(i).transmits();
-    };
     const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
     auto look_about = [&](vec3 p, const char* what) {
         if (const auto hit = near_hit(s, {p, p, p}, {}, UINT32_MAX, reach))
@@ -371,7 +368,7 @@ inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool moved
         const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];
         if (i % (1 + s.shapes.size() / 1024) > 0 && !(first && firsts++ < 1024)) continue;
         const auto hit = pairs ? std::nullopt : near_hit(s, s.shapes[i], s.facing[i], i, reach);
-        if (!hit || (moved && (may_move(i) || may_move(hit->id)))) continue;
+        if (!hit || (moved && (may_move(s, i) || may_move(s, hit->id)))) continue;
         found.emplace("distance to line " + std::to_string(s.line_of[hit->id]), s.line_of[i]);
         ++pairs;
     }

@@ -167,7 +167,7 @@ private:
         std::optional<uint32_t> given;
         if (next_ < words_.size()) given = material();
         if (next_ < words_.size()) throw UserError("unknown word " + in_quotes(words_[next_]));
-        ObjReader reader(scene_, place, given, line_, left_);
+        mesh::ObjReader reader(scene_, place, given, line_, left_);
         reader.read(path.string());
         files_.insert(files_.end(), reader.files.begin(), reader.files.end());
         for (const std::string& warning : reader.warnings)

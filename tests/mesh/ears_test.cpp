@@ -7,6 +7,8 @@
 
 namespace {
 
+using namespace mesh;
+
 const int64_t plenty = 1 << 28;
 
 std::optional<Cuts> cut(const Corners& c, int64_t left = plenty) { return Ears(c).cut(left); }

@@ -42,6 +42,8 @@ std::vector<std::string> names(const Scene& s) {
 }
 using Names = std::vector<std::string>;
 
+using Corners = std::vector<vec3>;
+
 double area(const Scene& s) {
     double sum = 0;
     for (const Shape& t : s.shapes) sum += double(length(area_vector(t))) / 2;
@@ -140,6 +142,7 @@ TEST_CASE("faces whose material is missing have the mesh line's, or are grey") {
           Names{"grey", "grey", "grey", "grey", "grey", "grey"});
     CHECK(warnings(folder, faces) ==
           Told{"m.obj: 3 materials are not defined, first 'Default' at line 6: 'grey' is used"});
+    CHECK(scene_with(folder, faces).materials.size() == 1);
     // A library may follow.
     const Scene later = scene_with(folder, faces + "mtllib m.mtl\n", "1 0 0 0");
     CHECK(names(later).back() == "red");
@@ -254,6 +257,7 @@ TEST_CASE("faces: any number of corners, indices from the end, texture and norma
         CHECK(corners_of(s.shapes[0]) == Corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
         CHECK(corners_of(s.shapes[1]) == Corners{{0, 0, 0}, {1, 1, 0}, {0, 1, 0}});
     }
+    CHECK(scene_with(folder, "f 1 2 3\n" + corners + "f 1 2 3\n").shapes.size() == 2);
     std::string ngon, face = "f";
     for (int i = 0; i < 100; ++i) {
         ngon += at(std::cos(i * 0.0628318530718), std::sin(i * 0.0628318530718));
