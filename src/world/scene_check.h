@@ -55,15 +55,12 @@ public:
     Contacts(const Scene& s, const std::string& name, real room = 0)
         : scene_(s), name_(name), room_(room), left_((1 << 28) + 1024 * int64_t(s.shapes.size())) {
         std::vector<Item> items;
-        Box movable;
         for (uint32_t i = 0; i < s.shapes.size(); ++i) {
             const Box b = bounds(s.shapes[i]);
             items.push_back({{b.lo - vec3{room, room, room}, b.hi + vec3{room, room, room}},
                              i,
                              may_move(s, i)});
-            if (items.back().moves) movable.add(items.back().box);
         }
-        std::erase_if(items, [&](const Item& item) { return !overlap(item.box, movable); });
         search(items);
         std::ranges::sort(pairs);
     }

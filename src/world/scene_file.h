@@ -74,7 +74,7 @@ private:
     Words words_;
     size_t next_ = 0;  // word to read
     uint32_t line_ = 0;
-    int64_t left_ = 1 << 28;  // tests to cut up polygons: about a second
+    int64_t left_ = 1 << 27;  // tests to cut up polygons: about a second
 
     // ---- Statements ---------------------------------------------------------------------------
 

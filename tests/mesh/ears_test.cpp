@@ -7,7 +7,7 @@
 
 namespace {
 
-using namespace mesh;
+using mesh::area_vector, mesh::Corners, mesh::Cuts, mesh::Ears, mesh::face_one_way, mesh::fan_of;
 
 const int64_t plenty = 1 << 28;
 
