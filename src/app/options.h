@@ -156,7 +156,7 @@ inline void parse_options(OptionTable& table, Options& o, const std::vector<std:
 }
 
 // Samples of each replication, for N samples per pixel; 0: not known.
-inline uint64_t samples_each(const Options& o, uint64_t N) {
-    const uint64_t K = o.sets ? o.sets : 2;
+inline uint64_t samples_each(uint32_t sets, uint64_t N) {
+    const uint64_t K = sets ? sets : 2;
     return (N + K - 1) / K;
 }

@@ -37,8 +37,12 @@ inline Plan plan_of(const Options& o, const Scene& scene) {
     const double error = scene.lights.empty() ? 0 : o.error;
     const bool ends = o.spp > 0 || o.seconds > 0 || error > 0;
     const uint64_t N = ends ? o.spp : scene.samples;
-    Plan plan{{samples_each(o, N), o.seconds, error}, 1, o.threads, bytes_of_machine(), scene.size};
-    plan.sets = N == 1 && o.sets == 0 ? 1 : o.sets;
+    // Two replications tell nothing of the noise of a picture of few pixels.
+    const bool few = scene.size.width * scene.size.height < 16;
+    const uint32_t sets = o.sets ? o.sets : N == 1 ? 1 : few ? least_of_noisy : 0;
+    Plan plan{
+        {samples_each(sets, N), o.seconds, error}, 1, o.threads, bytes_of_machine(), scene.size};
+    plan.sets = sets;
     if (o.rows) plan.size.height = o.rows->count(), plan.first_row = o.rows->first;
     return plan;
 }

@@ -86,7 +86,9 @@ TEST_CASE("without options: Sobol' samples, importance-sampled, MIS, adaptive") 
 }
 
 TEST_CASE("--spp is of all replications together, rounded up; two of them if they are chosen") {
-    auto each = [](const std::string& line, uint64_t N) { return samples_each(parse(line), N); };
+    auto each = [](const std::string& line, uint64_t N) {
+        return samples_each(parse(line).sets, N);
+    };
     CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: unknown
     CHECK(said(each("--replications 1", 7), each("--replications 3", 7),
                each("--replications 1024", 7)) == "7 3 1");

@@ -100,6 +100,18 @@ TEST_CASE("a plan is what options and scene ask for") {
         o.spp = 2;
         CHECK(plan_of(o, scene).sets == sets);
     }
+    // Few pixels have 8 replications, unless the user wants others; a band is as its picture.
+    o = quick(SamplerKind::sobol, 64);
+    o.rows = {1, 1};
+    scene.size = {3, 5};
+    CHECK(picture() == "3 1 1 8");
+    CHECK(target() == "8 0 0");
+    scene.size = {4, 4};
+    CHECK(picture() == "4 1 1 0");
+    scene.size = {3, 5}, o.sets = 2;
+    CHECK(picture() == "3 1 1 2");
+    o.spp = 1, o.sets = 0;
+    CHECK(picture() == "3 1 1 1");
 }
 
 TEST_CASE(
@@ -267,6 +279,34 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             o.threads = 3;
             CHECK(rendered(o, scene).image.pixels == p.image.pixels);
         }
+}
+
+TEST_CASE("--error: pictures of a few pixels reach theirs, with noise or without") {
+    // The lamp is out of view; the wall behind the point light does not shade the floor.
+    const std::string room =
+        "camera 2 1 0  0 0 0  40\ndiffuse m .8 .8 .8\nlight l 5 5 5\n"
+        "quad -9 0 -9  0 0 18  18 0 0  m\nquad -9 3.001 -9  18 0 0  0 0 18  m\n";
+    const std::string noisy = room + "depth 2\nquad 4 .5 4  0 1 0  1 0 0  l\n",
+                      smooth = room + "depth 1\npointlight 0 3 0  10 10 10\n";
+    for (const Size size : {Size{1, 1}, Size{2, 1}, Size{3, 2}, Size{3, 5}})
+        for (uint64_t r = 0; r < 10; ++r) {
+            Options o = quick(SamplerKind::sobol, 1 << 20);
+            o.seed += r, o.error = 0.05;
+            INFO(size.width, "x", size.height, ", seed ", o.seed);
+            const Run run = rendered(o, small(noisy.c_str(), size)).run;
+            CHECK(run.doubt == "");
+            CHECK(run.stopped_by == "error");
+        }
+    Scene point = small(smooth.c_str(), {1, 1});
+    point.camera.tan_half = real(1e-5);
+    for (const uint32_t sets : {0u, 2u}) {
+        Options o = quick(SamplerKind::sobol, 4000);
+        o.sets = sets, o.error = 0.01;
+        const Run run = rendered(o, point).run;
+        CHECK(run.error.d2() > 0);
+        CHECK(run.stopped_by == "error");
+        CHECK(run.spp == 8 * run.sets);  // by the first check
+    }
 }
 
 TEST_CASE("--error with limits: whichever comes first ends the image, and is said") {

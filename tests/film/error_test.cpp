@@ -381,6 +381,10 @@ TEST_CASE("an error is in doubt: black, by few pixels, lost in noise, or as a ju
     CHECK(doubt_of(film, error(4, 2.01, 30), silent) == "a few pixels dominate it");
     CHECK(doubt_of(film, error(4, 2.01, 3), silent) == "a few pixels dominate it");
     CHECK(doubt_of(film, error(4, 2.01, 30), doubtful) == "rare light");
+    // Rounding is no noise: d_rel of 1e-6 is small, however poorly it is known.
+    CHECK(doubt_of(film, error(4, 3, 2.1e6), silent).empty());
+    CHECK(doubt_of(film, error(4, 3, 1.9e6), silent) == "a few pixels dominate it");
+    CHECK(doubt_of(film, error(4, 3, 2.1e6), doubtful) == "rare light");
     // |F|^2 = 9 - 4, so that d_rel has 9 / 5 of the relative spread; or |F|^2 would be negative.
     CHECK(doubt_of(film, error(4, 1.1, 3), silent).empty());
     CHECK(doubt_of(film, error(4, 1.12, 3), silent) == "the picture is mostly noise");
