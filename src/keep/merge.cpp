@@ -105,6 +105,8 @@ int program(const std::vector<std::string>& words) {
         const double last = file.number("rows", size.height - 1, '-');
         parts.push_back({path, file.said("seed"), file.said("rows"), int(file.number("rows", last)),
                          int(last)});
+        if (double(file.left()) < sizeof(Sum) * (last - parts.back().first + 1) * size.width)
+            file.refuse("is too short for its size");  // before there is a picture of that size
         const Spent spent = spent_in(file);
         run.seconds += spent.seconds, run.cpu_seconds += spent.cpu_seconds, run.rays += spent.rays;
     }
@@ -113,7 +115,9 @@ int program(const std::vector<std::string>& words) {
     check_cover(parts, size.height);
     o.scene = any.said("name");
     const auto views = words_of(view_names);
-    const View view = View(std::ranges::find(views, any.said("view")) - views.begin());
+    const auto shown = std::ranges::find(views, any.said("view"));
+    if (shown == views.end()) any.refuse(unknown("view", any.said("view"), views));
+    const View view = View(shown - views.begin());
     run.is_radiance = view == View::radiance;
     const auto outputs = outputs_of(o, "out/NAME" + suffix_of(view), paths, {}, size);
     catch_interrupt();

@@ -115,6 +115,15 @@ TEST_CASE("a head that no run writes is no part") {
         refuse(key, value, "invalid " + std::string(key) + " '" + value + "'");
     refuse("complete", "no", "is not complete: resume it with penumbra --keep c.film");
     refuse("size", "800x7", "is too short for its size");
+    const std::string known = "unknown view ";
+    refuse("view", "heat", known + "'heat'");
+    refuse("view", "Normal", known + "'Normal' (did you mean 'normal'?)");
+    refuse("view", "", known + "''");
+    // A size that the film does not have is told before its rows are looked at, and before there
+    // is a picture, which may be larger than memory.
+    change_head(folder / "a.film", folder / "d.film", {{"rows", "0-3"}});
+    change_head(folder / "d.film", folder / "c.film", {{"size", "65536x65536"}});
+    folder.refuse("c.film", "c.film: is too short for its size\n");
 }
 
 TEST_CASE("a merge writes over none of its parts, and no file twice") {
