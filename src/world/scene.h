@@ -170,16 +170,18 @@ inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
 }
 
 // Builds the BVH and the probabilities of lights, in proportion to their power.  Random numbers are
-// multiples of ulp, and so are the probabilities, exactly; an even share keeps each above 0.
+// multiples of ulp, and so are the probabilities, exactly; an even share keeps each above 0.  A
+// power that underflows counts as the least.
 inline void prepare(Scene& s) {
     s.bvh = Tree(s.shapes);
     s.facing.clear();
     for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
     const double n = double(s.lights.size()), even = std::min(0.5, 2 * n * double(ulp));
+    constexpr double least = std::numeric_limits<double>::min();
     double total = 0, sum = 0, before = 0;
-    for (const Light& l : s.lights) total += power(l);
+    for (const Light& l : s.lights) total += power(l) + least;
     for (Light& l : s.lights) {
-        sum += power(l);
+        sum += power(l) + least;
         const double cdf = even * double(s.pick_cdf.size() + 1) / n + (1 - even) * (sum / total);
         s.pick_cdf.push_back(std::round(cdf / double(ulp)) * double(ulp));
         l.pick = real(s.pick_cdf.back() - before);

@@ -90,6 +90,32 @@ double room_mean(double k, real move) {
     return relative(mean_of_all(room_samples(k, {move, -move, move})), mean_of_all(plain_room()));
 }
 
+// Lights as faint and as bright, as small and as large as they can be: one, two, or so many that
+// power chooses among them.  Counts scenes with a sample that is not finite.
+double faint_and_bright(bool balls) {
+    const double faintest = double(std::numeric_limits<real>::denorm_min());
+    const double least = double(std::numeric_limits<real>::min()), smallest = 2.1 / longest_length;
+    auto lamp = [=](double y, double d) {
+        return balls ? oracle::say("sphere 0 %.17g 0  %.17g  ", y, d / 2)
+                     : oracle::say("quad %.17g %.17g %.17g  %.17g 0 0  0 0 %.17g  ", -d / 2, y,
+                                   -d / 2, d, d);
+    };
+    int n = 0;
+    for (const double a : {faintest, 1e3 * faintest, least, 1.0, 1e30})
+        for (const double b : {faintest, least, 1.0, 1e30})
+            for (const double size : {smallest, 1e-6, 1.0, 1e6})
+                for (const int others : {0, 1, int(most_weighed)}) {
+                    std::string s = "size 8 4\ndepth 3\ncamera 0 1 6  0 1 0  60\n";
+                    s += oracle::say("light a %.17g 0 0\nlight b %.17g %.17g 0\n", a, b, b / 3);
+                    s += "diffuse m .5 .5 .5\nquad -5 0 -5  0 0 10  10 0 0  m\n";
+                    s += "quad -5 0 -3  10 0 0  0 9 0  m\n" + lamp(3, size) + "a\n";
+                    for (int i = 0; i < others; ++i) s += lamp(4 + i * (1 + size), 1) + "b\n";
+                    const auto samples = samples_of(s, 2);
+                    n += !std::ranges::all_of(samples, [](rgb L) { return is_finite(L); });
+                }
+    return n;
+}
+
 // rho = 1 - 1e-7 and Le = 1 everywhere, 1e4 bounces: L = (1 - rho^(D+1)) / (1 - rho).
 double white_furnace() {
     const Scene scene = parse_scene(
@@ -124,6 +150,10 @@ TEST_CASE("extremes of scenes: no more error than they may have") {
         {"scene moved by 10^6: mean", within(1e-6, any), of(room_mean, 1, 1e6)},
         {"radiance x 2^96 (10^29): samples not 2^96 x the same", to_the_bit, of(room_brighter, 96)},
         {"radiance x 2^-96: samples not 2^-96 x the same", to_the_bit, of(room_brighter, -96)},
+        {"sphere lights, faint or bright, small or large: scenes with samples not finite",
+         to_the_bit, of(faint_and_bright, true)},
+        {"quad lights, faint or bright, small or large: scenes with samples not finite", to_the_bit,
+         of(faint_and_bright, false)},
         {"albedo 1 - 10^-7, 10^4 scatterings: radiance", within(1e-11, 1e-3), white_furnace},
     });
 }

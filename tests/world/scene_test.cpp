@@ -170,6 +170,14 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     REQUIRE(!s.pick_cdf.empty());
     CHECK(s.lights[3].pick > 0);
     CHECK(&choose_light(s, below_one) == &s.lights[3]);
+    // Powers that underflow are alike.
+    for (const real faint : {std::numeric_limits<real>::denorm_min(), real(0)}) {
+        Scene dim = empty_scene();
+        for (int i = 0; i < 4; ++i) add_point_light(dim, {}, {1, 0, 0});
+        for (Light& l : dim.lights) l.L.x = faint;
+        prepare(dim);
+        for (const Light& l : dim.lights) CHECK(l.pick == real(0.25));
+    }
     // The last sum may round to less than 1: numbers above it select the last light.
     s.pick_cdf.back() = 0.99;
     CHECK(&choose_light(s, below_one) == &s.lights[3]);
