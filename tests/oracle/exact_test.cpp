@@ -133,6 +133,39 @@ TEST_CASE("images: one pixel of eight is named, and no further ones") {
     CHECK(expect_image(4, 2, values, errors, ones).text.find("further") == std::string::npos);
 }
 
+TEST_CASE("images: each of the 24 values of 4x2 pixels in RGB is looked at, in its channel") {
+    const Aside aside;
+    const std::vector<double> errors(24, 0.01);
+    std::vector<double> truth;
+    for (int i = 0; i < 24; ++i) truth.push_back(1 + i);
+    const Verdict right = expect_image(4, 2, truth, errors, truth);
+    says(right, "red, worst of RGB: 4x2 pixels, mean off by 0");
+    CHECK(right.pass);
+    for (size_t i = 0; i < 24; ++i) {
+        std::vector<double> values = truth;
+        values[i] += 0.2;
+        const char* const channel[] = {"red", "green", "blue"};
+        const std::string pixel = say(": pixel (%zu, %zu) is ", i / 3 % 4, i / 12);
+        for (const Verdict& v : {expect_image(4, 2, values, errors, truth),
+                                 expect_image(4, 2, values.data(), errors.data(), truth)}) {
+            INFO(v.text);
+            CHECK(!v.pass);
+            CHECK(v.text.starts_with(channel[i % 3] + pixel));
+        }
+        // Without a size an array is gray.
+        CHECK(expect_image(4, 2, values.data(), errors.data(), truth.data()).pass == (i >= 8));
+    }
+    // 5.6 sigma in one of 8 pixels of one of 3 channels, by one of 3 checks: not rare enough.
+    std::vector<double> rare = truth;
+    rare[5] += 0.056;
+    const Verdict kept = expect_image(4, 2, rare, errors, truth);
+    CHECK(kept.p / oracle::p_of_z(5.6) == doctest::Approx(9 * 8).epsilon(1e-3));
+    CHECK(kept.pass);
+    std::vector<double> dark = truth;
+    for (size_t i = 0; i < 24; ++i) dark[i] *= i % 3 == 1 ? 1 : 0.5;
+    says(expect_image(4, 2, dark, errors, truth), "red, blue: the image is 0.5 (1/2, half) times");
+}
+
 TEST_CASE("what cannot be judged is refused: by the name that it was given, once, and why") {
     const Aside aside;
     Random random(seed_here());
@@ -160,6 +193,7 @@ TEST_CASE("what cannot be judged is refused: by the name that it was given, once
     const uint64_t none[] = {0, 0}, few[] = {3, 4}, off[] = {500, 1}, one[] = {1000};
     const double halves[] = {0.5, 0.5}, all[] = {1, 0};
     const std::vector<double> nothing, value{nan}, error{nan}, number{1};
+    const std::vector<double> three(3, 1), seven(7, 1), eight(8, 1);
     const Estimate low{1, 0.1, 99}, high{2, 0.1, 99};
     const std::pair<Verdict, const char*> refused[] = {
         {expect_mean(1, 1000, broken, o), "sample 0 is nan"},
@@ -181,6 +215,12 @@ TEST_CASE("what cannot be judged is refused: by the name that it was given, once
         {expect_counts(off, all, o), "where the density is 0"},
         {expect_counts(one, all, o), "fewer than two cells"},
         {expect_image(0, 0, nothing, nothing, nothing, o), "no pixel"},
+        {expect_image(4, 2, seven, seven, seven, o), "7 values for 4x2 pixels, expected 8 or 24"},
+        {expect_image(4, 2, eight, eight, seven, o), "7 reference values for 4x2 pixels, expected"},
+        {expect_image(4, 2, eight, all, eight, o), "2 errors for 4x2 pixels, expected 8 or 24"},
+        {expect_image(1, 1, three, three, number, o), "1 reference values, but 3 values"},
+        {expect_image(1, 1, three, number, three, o), "1 errors, but 3 values"},
+        {expect_image(1, 1, three.data(), number, three, o), "3 reference values, but 1 errors"},
         {expect_image(1, 1, value, number, number, o), ""},
         {expect_image(1, 1, number, error, number, o), ""},
         {expect_density(random, always, everywhere, rough), "samples are all the same"},

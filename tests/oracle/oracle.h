@@ -2271,18 +2271,60 @@ struct Image {
 // An image with the standard errors of its values against a reference: all pixels together, 16
 // blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
 // normal, means of 256 samples or more; options.n says how many, for Student's t.  Anything with []
-// will do for values, errors and reference, row by row from the top.
+// will do for values, errors and reference, row by row from the top: one number per pixel, or
+// three, red, green and blue.  A pointer has as many as the others.  The noise of channels may be
+// correlated: each is judged by itself, at a third of alpha.
 template <class Values, class Errors, class Reference>
 Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
                      const Reference& reference, const Options& o = {}) {
-    Image image{width, height, {}, {}, {}, o};
-    if (image.n() == 0) return failure("no pixel", o);
-    for (size_t i = 0; i < image.n(); ++i) {
-        image.f.push_back(double(values[i]));
-        image.s.push_back(double(errors[i]));
-        image.truth.push_back(double(reference[i]));
+    auto size_of = [](const auto& array) {
+        if constexpr (requires { std::size(array); })
+            return size_t(std::size(array));
+        else
+            return size_t(-1);
+    };
+    const size_t n = width * height,
+                 sizes[] = {size_of(values), size_of(errors), size_of(reference)};
+    const char* const names[] = {"values", "errors", "reference values"};
+    if (n == 0) return failure("no pixel", o);
+    size_t known = 3;
+    for (size_t k = 0; k < 3; ++k) {
+        if (sizes[k] == size_t(-1)) continue;
+        const std::string has = say("%zu %s", sizes[k], names[k]);
+        if (sizes[k] != n && sizes[k] != 3 * n)
+            return failure(has + say(" for %zux%zu pixels, expected %zu or %zu (RGB)", width,
+                                     height, n, 3 * n),
+                           o);
+        if (known == 3) known = k;
+        if (sizes[k] != sizes[known])
+            return failure(has + say(", but %zu %s", sizes[known], names[known]), o);
     }
-    return named(image.judge(), o);
+    const size_t channels = known < 3 ? sizes[known] / n : 1;
+    auto channel = [&](size_t c, const std::string& name) {
+        Options of_channel = o;
+        of_channel.alpha /= double(channels);
+        if (!o.name.empty()) of_channel.name += name;
+        Image image{width, height, {}, {}, {}, of_channel};
+        for (size_t i = c; i < n * channels; i += channels) {
+            image.f.push_back(double(values[i]));
+            image.s.push_back(double(errors[i]));
+            image.truth.push_back(double(reference[i]));
+        }
+        return image.judge();
+    };
+    if (channels == 1) return named(channel(0, ""), o);
+    Verdict worst;
+    std::string wrong, of_worst;
+    double delta_min = 0;
+    for (size_t c = 0; c < 3; ++c) {
+        const std::string name = std::array{"red", "green", "blue"}[c];
+        const Verdict v = channel(c, " " + name);
+        if (!v.pass) wrong += (wrong.empty() ? "" : ", ") + name;
+        delta_min = std::max(delta_min, v.delta_min);
+        if (c == 0 || v.p < worst.p) worst = v, of_worst = name + ", worst of RGB";
+    }
+    worst.p = std::min(1.0, 3 * worst.p), worst.delta_min = delta_min;
+    return named(worst.of(wrong.empty() ? of_worst : wrong), o);
 }
 
 // =================================================================================================

@@ -227,21 +227,23 @@ TEST_CASE("choices: p-values are uniform, and a distortion of the stated size is
 
 TEST_CASE("images: right ones pass, and a bias of the stated size is seen") {
     Random random(seed_here());
-    const std::vector<double> truth(128, 2), errors(128, 0.1);
-    auto check = [&](double bias) {
-        std::vector<double> values(128);
-        for (double& x : values) x = 2 * (1 + bias) + 0.1 * normal(random);
-        return expect_image(16, 8, values, errors, truth);
-    };
-    const auto right = runs(2000, [&] { return check(0); });
-    // Sidak's and Bonferroni's corrections: as often as stated, or less often.
-    for (double tail : {0.01, 0.1}) {
-        double below = 0;
-        for (const Verdict& v : right) below += v.p < tail;
-        CHECK(below <= 2000 * tail + 5 * std::sqrt(2000 * tail));
-        CHECK(below >= 2000 * tail / 10);
+    for (const size_t channels : {1, 3}) {
+        const std::vector<double> truth(128 * channels, 2), errors(128 * channels, 0.1);
+        auto check = [&](double bias) {
+            std::vector<double> values(128 * channels);
+            for (double& x : values) x = 2 * (1 + bias) + 0.1 * normal(random);
+            return expect_image(16, 8, values, errors, truth);
+        };
+        const auto right = runs(2000, [&] { return check(0); });
+        // Sidak's and Bonferroni's corrections: as often as stated, or less often.
+        for (double tail : {0.01, 0.1}) {
+            double below = 0;
+            for (const Verdict& v : right) below += v.p < tail;
+            CHECK(below <= 2000 * tail + 5 * std::sqrt(2000 * tail));
+            CHECK(below >= 2000 * tail / 10);
+        }
+        check_seen(1000, [&] { return check(right[0].delta_min); });
     }
-    check_seen(1000, [&] { return check(right[0].delta_min); });
 }
 
 TEST_CASE("identities see an error of 10^-5 without noise") {
