@@ -385,8 +385,9 @@ class Checked:
         said = ''.join(f'{n}) echo "{n} {v}"; [ "{v}" = right ] && exit 0;; ' for n, v in verdicts.items())
         drawn = f'[ -z "$ORACLE_PICTURES" ] || {{ mkdir -p "$ORACLE_PICTURES"; echo "{svg}" >"$ORACLE_PICTURES/oracle-check-1.svg"; }}; '
         for name, text in {'build/course/judge_1': f'{drawn if svg else ""}case $3 in {said} esac; exit 1',
-                           'build/penumbra': 'echo "x: 4 samples per pixel, 1.0 s"; echo wrote; echo "x: the image is black"',
-                           'build/beside': f'echo "d_rel {off} %; mean 1 1 1"'}.items():
+                           'build/penumbra': 'for last; do :; done; echo alone >"$last"; echo "x: 4 samples per pixel, 1.0 s"; echo wrote; '
+                                             'echo "x: the image is black"',
+                           'build/beside': f'echo beside >"$3"; echo "d_rel {off} %; mean 1 1 1"'}.items():
             starter.write(self.top / name, f'#!/bin/sh\n{text}\n', True)
         for name, text in {'exercises.txt': ''.join(f'{n} | {n} | a.h | | 1 | 1\n' for n in verdicts),
                            'pictures.txt': '1 | 1.1 1.2 | 30 | penumbra --spp 1 x.scene\n', 'mistakes.txt': ''}.items():
@@ -409,12 +410,17 @@ class Checked:
 
 def test_a_picture_waits_or_is_far_off():
     for second, off, part, status in (('right', '29', None, 0), ('right', '31', 'right, but the picture is far off', 1),
-                                      ('right', '-nan', 'right, but the picture is far off', 1), ('wrong', '164', 'it waits for 1.2', 0),
+                                      ('right', '-nan', 'right, but the picture is far off', 1), ('wrong', '164', 'the expected picture waits for 1.2', 0),
                                       ('wrong', '29', None, 0)):
         with Checked({'1.1': 'right', '1.2': second}, off) as folder:
             said, came = folder.check('1.1')
             expect(came == status, second, off, said)
             expect(part in said if part else not re.search('far off|waits', said), second, off, said)
+            # What cannot resemble the expected picture yet stands alone.
+            alone = second == 'wrong' and off == '164'
+            page, drawn = ((folder.top / f'out/check/{name}').read_text() for name in ('index.html', '1.1.png'))
+            expect('<b>expected</b>' not in page and 'd_rel' not in said + page if alone else '<b>expected</b>' in page, off, said, page)
+            expect('src="1.1.png?' in page and drawn == ('alone\n' if alone else 'beside\n'), off, drawn)
     with Checked({'1.1': 'wrong', '1.2': 'right'}, '164') as folder:
         expect('far off' not in folder.check('1.1')[0], 'what is wrong is not right')
 
