@@ -217,7 +217,10 @@ def main():
 if __name__ == '__main__':
     try:
         main()
-    except (Broken, sandbox.Missing, regions.Malformed) as error:
+    except sandbox.Missing as error:
+        say(f'grade: {error}')
+        sys.exit(2)
+    except (Broken, regions.Malformed) as error:
         sys.exit(f'grade: {error}')
     except KeyboardInterrupt:
         sys.exit('grade: stopped; the same command resumes')

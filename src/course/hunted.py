@@ -97,4 +97,5 @@ if __name__ == '__main__':
     try:
         sys.exit(main())
     except sandbox.Missing as missing:
-        sys.exit(f'hunted: {missing}')
+        print(f'hunted: {missing}', file=sys.stderr)
+        sys.exit(2)

@@ -57,8 +57,12 @@ def demand():
     tried = subprocess.run([*prefix(), *system_files(), '/usr/bin/env'], env=environment(), text=True,
                            stdin=subprocess.DEVNULL, capture_output=True)
     if tried.returncode != 0:
-        raise Missing(f'bwrap (package {PACKAGE}) is installed but may not make namespaces here: '
-                      f'{tried.stderr.strip() or tried.returncode}')
+        raise Missing(f"""{tried.stderr.strip() or f'bwrap: exit status {tried.returncode}'}
+{PACKAGE} is installed, but may not make namespaces here. Do one of these:
+  on Debian         sudo sysctl kernel.unprivileged_userns_clone=1
+  on Ubuntu 24.04   sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0, or load an AppArmor profile for
+                    {shutil.which('bwrap')} that has the line "userns,"
+  anywhere          grade as root, or in a container that may make namespaces (docker run --privileged)""")
 
 
 def environment():

@@ -334,7 +334,7 @@ TEST_CASE("seeds are fresh, unless one is given or a grading goes on") {
     CHECK(one.said.has("1 student, 0 graded now"));
 }
 
-TEST_CASE("without bubblewrap nothing is compiled or run, and the package is named") {
+TEST_CASE("without bubblewrap nothing is compiled or run, and it is said what to do") {
     Course course("without");
     course.hand_in("x", {{"1.1", whole}});
     fs::create_directory(house().folder / "programs");
@@ -345,7 +345,22 @@ TEST_CASE("without bubblewrap nothing is compiled or run, and the package is nam
     course.said =
         house().grade("--out " + course.out + " '" + course.in + "'", house().folder / "programs");
     INFO(course.said.out);
-    CHECK(course.said.status == 1);
+    CHECK(course.said.status == 2);
     CHECK(course.said.has("install bubblewrap (apt install bubblewrap)"));
+    CHECK(!course.graded("x"));
+
+    // One that the system lets make no namespaces.
+    house().folder.write(
+        "programs/bwrap",
+        "#!/bin/sh\necho 'bwrap: setting up uid map: Permission denied' >&2\nexit 1\n");
+    fs::permissions(house().folder / "programs/bwrap", fs::perms::owner_all);
+    course.said =
+        house().grade("--out " + course.out + " '" + course.in + "'", house().folder / "programs");
+    INFO(course.said.out);
+    CHECK(course.said.status == 2);
+    for (const std::string part :
+         {"setting up uid map: Permission denied", "kernel.unprivileged_userns_clone=1",
+          "kernel.apparmor_restrict_unprivileged_userns=0", "as root"})
+        CHECK_MESSAGE(course.said.has(part), "it does not say: " << part);
     CHECK(!course.graded("x"));
 }
