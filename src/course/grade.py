@@ -31,6 +31,7 @@ from submission import Problem
 from workshop import Broken, Workshop, digest_of
 
 WASTE = 100  # seconds of processor time of a submission that its endless loops may use up
+SHORT = 40   # tokens: code as short as that may equal the public solution by chance
 
 
 class Student:
@@ -38,11 +39,13 @@ class Student:
 
     def __init__(self, handed_in, shop, numbers):
         self.name, self.number, self.shop, self.numbers = handed_in.name, handed_in.number, shop, numbers
-        self.verdicts, self.texts, self.original, self.wasted = {}, {}, {}, 0
+        self.verdicts, self.texts, self.original, self.wasted, self.public = {}, {}, {}, 0, {}
         self.lock = threading.Lock()
         files = submission.read(handed_in.paths, list(dict.fromkeys(shop.solutions[n][0] for n in numbers)))
         for number in numbers:
             self.take(number, files)
+        if sum(self.public.values()) < SHORT:
+            self.public = {}
         self.key = digest_of([shop.key, str(shop.seed), self.name,
                               *(f'{n} {self.original[n].text if n in self.original else self.verdicts[n]}' for n in numbers)])
 
@@ -56,9 +59,12 @@ class Student:
         except Problem as problem:
             self.verdicts[number] = verdict('missing', str(problem))
             return
-        if canonical(self.original[number].text) == canonical('\n'.join(solution.stub)):
+        code = canonical(self.original[number].text)
+        if code == canonical('\n'.join(solution.stub)):
             self.verdicts[number] = verdict('open')
             return
+        if code == canonical('\n'.join(solution.solution)):
+            self.public[number] = code.count(' ') + 1
         try:
             self.texts[number] = replace(self.original[number], text=without_comments(self.original[number]))
         except Problem as problem:
@@ -103,8 +109,8 @@ class Student:
             messages = reports.own_messages(found['compiler'], self.original[number]) or [
                 'no error lies in your own lines: is a brace, a bracket or a semicolon missing, or one too many?']
         return {'title': exercise.title, 'points': round(exercise.points * reports.share(found, *worth), 6),
-                'of': exercise.points, 'state': found['state'], 'says': reports.plain(found['says']), 'line': reports.headline(number, found), 'items': items,
-                'compiler': messages, 'together': together['state'] if together else ''}
+                'of': exercise.points, 'state': found['state'], 'line': reports.headline(number, found), 'items': items,
+                'look': reports.plain('equals the public solution' if number in self.public else reports.look(found)), 'compiler': messages, 'together': together['state'] if together else ''}
 
 
 def verdict(state, says=''):

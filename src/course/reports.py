@@ -118,12 +118,19 @@ def counted(n, what):
     return f'{n} {what}' + ('s' if n != 1 else '')
 
 
+def look(verdict):
+    """Why an instructor should look at it: it was not judged, refused or stopped; '': nothing of that."""
+    state, says = verdict['state'], verdict['says']
+    return {'missing': says, 'not judged': says, 'not compiled': says, 'refused': f'refused: {says}',
+            'silent': verdict['items'][-1]['seen'] if state == 'silent' else ''}.get(state, '')
+
+
 def flags(grade):
-    """What an instructor should look at: points that may be missing for no fault of the code, by their reasons."""
+    """What an instructor should look at, by its reasons."""
     parts, reasons = grade['exercises'], {}
     for number, e in parts.items():
-        if e['state'] in ('missing', 'not judged'):
-            reasons.setdefault(e['says'], []).append(number)
+        if e['look']:
+            reasons.setdefault(e['look'], []).append(number)
     return '; '.join(f'{"all" if len(numbers) == len(parts) > 1 else " ".join(numbers)}: {says}' for says, numbers in reasons.items())
 
 

@@ -207,7 +207,8 @@ TEST_CASE("archives are read, not unpacked; a folder may have another name") {
 }
 
 TEST_CASE(
-    "numbers of students go into tables for Moodle and Canvas; what is not judged is flagged") {
+    "numbers of students go into tables for Moodle and Canvas; what is to be looked at is "
+    "flagged") {
     if (!sandboxed()) return;
     Course course("tables");
     course.hand_in("Ada Lovelace_4711_assignsubmission_file_", {{"1.1", whole}}, "penumbra/");
@@ -216,13 +217,26 @@ TEST_CASE(
           "' && mkdir x_12_assignsubmission_file_ && head -c 99 /dev/urandom "
           ">x_12_assignsubmission_file_/x.zip");
     fs::remove(course.path("ann", "src/path/cube.h"));
+    // What is as short as the last two may be equal by chance.
+    course.hand_in("copy", {{"1.1", "// mine\ninline double twice( double x )\n{ return x+x; }\n"},
+                            {"1.2", square_right},
+                            {"1.3", cube_right}});
+    course.hand_in("honest", {{"1.1", whole}, {"1.2", square_right}, {"1.3", cube_right}});
+    course.hand_in("hostile",
+                   {{"1.1", "asm(\"hlt\");\n" + whole},
+                    {"1.2", "inline double square(double) { std::exit(0); }\n"},
+                    {"1.3", "    static char a[1ull << 33] = {1};\n    return a[0];\n"}});
     course.grade();
     INFO(course.said.out);
-    CHECK(course.said.has("3 submissions, 3 exercises"));
-    CHECK(course.said.has("2 to look at"));
+    CHECK(course.said.has("6 submissions, 3 exercises"));
+    CHECK(course.said.has("4 to look at"));
     CHECK(course.csv() ==
           "student,number,1.1,1.2,1.3,sum,of,look at\r\nAda Lovelace,4711,2,0,0,2,12,\r\n"
           "ann,,2,0,0,2,12,1.3: src/path/cube.h is missing\r\n"
+          "copy,,2,4,6,12,12,all: equals the public solution\r\nhonest,,2,4,6,12,12,\r\n"
+          "hostile,,0,0,0,0,12,\"1.1: refused: line 6 of src/world/numbers.h holds asm: names that "
+          "C++ and compilers reserve are not allowed in a region; 1.2: square(0), ... ends the "
+          "program, with exit status 0; 1.3: the program would have more than 64 MB\"\r\n"
           "x,12,0,0,0,0,12,all: the archive is damaged\r\n");
     // Moodle takes no table without dates, and keeps grades that are newer than these.
     const std::regex date(R"(,20\d\d-\d\d-\d\d \d\d:\d\d:\d\d \+0000,)");

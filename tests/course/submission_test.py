@@ -123,7 +123,7 @@ def test_a_bomb_is_not_unpacked():
 
 
 def test_tables_hold_all_of_a_long_course():
-    exercises = {f'{w}.{n}': {'points': 2, 'of': 2, 'state': 'missing', 'says': f'src/world/file{w}{n}.h is missing'}
+    exercises = {f'{w}.{n}': {'points': 2, 'of': 2, 'look': f'src/world/file{w}{n}.h is missing'}
                  for w in range(1, 8) for n in range(1, 8)}
     grade = {'student': 'Ada', 'number': '4711', 'sum': 98, 'of': 98, 'exercises': exercises}
     with tempfile.TemporaryDirectory() as folder:
