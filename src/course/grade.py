@@ -177,6 +177,8 @@ def grade_all(words, out):
     flagged = sum(bool(reports.flags(g)) for g in grades)
     say(f'{out}/grades.csv: {reports.counted(len(grades), "student")}, {fresh} graded now'
         + (f'; {flagged} to look at: see the last column' if flagged else ''))
+    if any(not g['number'] for g in grades):
+        say(reports.without_number(grades))
 
 
 def weekly():

@@ -6,6 +6,7 @@
 import csv
 import json
 import os
+import pathlib
 import re
 import time
 
@@ -140,13 +141,31 @@ def table(path, rows):
     os.replace(path + '.partial', path)
 
 
+def without_number(grades):
+    """Who is not in the tables for Moodle and Canvas, and what to do."""
+    lack = sum(not g['number'] for g in grades)
+    who = (f'{lack} of {counted(len(grades), "student")} have no number, and are not in moodle.csv and canvas.csv' if lack < len(grades) else
+           'No student has a number: moodle.csv and canvas.csv are not written')
+    return who + ('. Grade the folder that Moodle or Canvas lets you download as it is, '
+                  'or put a number of four digits or more into each name, such as Ada_4711.')
+
+
 def tables(folder, numbers, grades):
-    """grades.csv has a line per student; moodle.csv and canvas.csv are what these import, of students with a number."""
+    """grades.csv has a line per student; moodle.csv and canvas.csv are what these import, of students with a number.
+
+    Those without a number are counted in without-number.txt.  What an earlier grading left of these three is removed.
+    """
+    for name in ('moodle.csv', 'canvas.csv', 'without-number.txt'):
+        pathlib.Path(folder, name).unlink(missing_ok=True)
     known = [g for g in grades if g['number']]
     of = points(grades[0]['of']) if grades else '0'
     table(os.path.join(folder, 'grades.csv'), [['student', 'number', *numbers, 'sum', 'of', 'look at']] + [
         [g['student'], g['number'], *(points(g['exercises'][n]['points']) for n in numbers), points(g['sum']), points(g['of']), flags(g)]
         for g in grades])
+    if len(known) < len(grades):
+        write(os.path.join(folder, 'without-number.txt'), without_number(grades) + '\n')
+    if not known:
+        return
     # Moodle takes no table without dates, and keeps grades that are newer than these.
     date = time.strftime('%Y-%m-%d %H:%M:%S +0000', time.gmtime())
     table(os.path.join(folder, 'moodle.csv'),

@@ -238,6 +238,11 @@ TEST_CASE(
           "C++ and compilers reserve are not allowed in a region; 1.2: square(0), ... ends the "
           "program, with exit status 0; 1.3: the program would have more than 64 MB\"\r\n"
           "x,12,0,0,0,0,12,all: the archive is damaged\r\n");
+    const std::string who =
+        "4 of 6 students have no number, and are not in moodle.csv and "
+        "canvas.csv. Grade the folder";
+    CHECK(course.said.has(who));
+    CHECK(house().folder.read(course.out + "/without-number.txt").find(who) == 0);
     // Moodle takes no table without dates, and keeps grades that are newer than these.
     const std::regex date(R"(,20\d\d-\d\d-\d\d \d\d:\d\d:\d\d \+0000,)");
     CHECK(std::regex_replace(house().folder.read(course.out + "/moodle.csv"), date, ",DATE,") ==
@@ -247,6 +252,27 @@ TEST_CASE(
     CHECK(house().folder.read(course.out + "/canvas.csv") ==
           "Student,ID,SIS User ID,SIS Login ID,Section,Penumbra\r\n"
           "    Points Possible,,,,,12\r\nAda Lovelace,4711,,,,2\r\nx,12,,,,0\r\n");
+
+    // A table without students would be taken for one: it is not there, and something says why.
+    const auto written = [&](const std::string& name) {
+        return house().folder.has(course.out + "/" + name);
+    };
+    const auto submitted = [&](const std::string& name) {
+        return fs::path(house().folder / (course.in + "/" + name));
+    };
+    for (const char* name : {"Ada Lovelace_4711_assignsubmission_file_",
+                             "x_12_assignsubmission_file_", "ann", "copy", "hostile"})
+        fs::remove_all(submitted(name));
+    course.grade();
+    CHECK(!written("moodle.csv"));
+    CHECK(!written("canvas.csv"));
+    CHECK(course.said.has("No student has a number: moodle.csv and canvas.csv are not written."));
+    fs::rename(submitted("honest"), submitted("honest_4711"));
+    course.grade();
+    CHECK(written("moodle.csv"));
+    CHECK(written("canvas.csv"));
+    CHECK(!written("without-number.txt"));
+    CHECK(!course.said.has("canvas.csv"));
 }
 
 TEST_CASE("compilers' words: only those about the student's lines, by the lines of his file") {
