@@ -1,5 +1,6 @@
 # course/course.mk  4  how exercises are built and checked: for the solution's Makefile and the starter's
 COURSE := build/course$(SUFFIX)
+BRIEFLY = $(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-O1)
 
 # Another compiler builds anew.
 build/compiler$(SUFFIX): always
@@ -8,7 +9,7 @@ build/compiler$(SUFFIX): always
 # To be read by students as their compiler says it, and soon done: little is optimised.
 $(COURSE)/%: tests/course/%.cpp build/compiler$(SUFFIX) | packages
 	@mkdir -p $(@D)
-	@$(CXX) $(FLAGS) -O1 -Itests -MF $@.d -MT $@ -o $@ $<
+	@$(CXX) $(FLAGS) $(BRIEFLY) -Itests -MF $@.d -MT $@ -o $@ $<
 
 -include $(wildcard $(COURSE)/*.d)
 

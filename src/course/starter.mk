@@ -3,13 +3,13 @@ CXX      ?= g++
 REAL     ?= double
 FLAGS    := -std=c++20 -march=native -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
             -Wall -Wextra -Wpedantic -Wshadow
-SUFFIX   := $(if $(filter float,$(REAL)),-float)
+SUFFIX   := $(if $(filter float,$(REAL)),-float)$(if $(DEBUG),-debug)
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
   MAKEFLAGS += -j$(shell nproc 2>/dev/null || sysctl -n hw.ncpu 2>/dev/null || echo 2)
 endif
 
-.PHONY: all clean help packages
+.PHONY: all clean help packages penumbra
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -19,10 +19,14 @@ all: build/penumbra$(SUFFIX)  ## render every scene into out/ (default)
 out/%.png: scenes/%.scene build/penumbra$(SUFFIX)  ## out/NAME.png: render scenes/NAME.scene; ARGS="--spp 64": build/penumbra --help has more
 	@mkdir -p out; build/penumbra$(SUFFIX) $(or $(ARGS),--spp 16) -o $@ $<
 
+penumbra: build/penumbra$(SUFFIX)  ## build the renderer alone; DEBUG=1: build/penumbra-debug, for a debugger, with assertions
+	@echo $<
+$(if $(SUFFIX),build/penumbra: penumbra)
+
 # A program is a .cpp of its own name: penumbra, and those of the projects.
 define program
 build/$(basename $(notdir $(1)))$(SUFFIX): $(1) build/compiler$(SUFFIX) | packages
-	@$$(CXX) $$(FLAGS) -O1 -MF $$@.d -MT $$@ -o $$@ $$<
+	@$$(CXX) $$(FLAGS) $$(BRIEFLY) -MF $$@.d -MT $$@ -o $$@ $$<
 endef
 $(foreach source,$(wildcard src/*/*.cpp),$(eval $(call program,$(source))))
 -include $(wildcard build/*.d)
@@ -31,7 +35,7 @@ clean:  ## remove build/ and out/
 	rm -rf build out
 
 help:  ## print this
-	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float]"
+	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1]"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' Makefile src/course/course.mk
 
 # stb_image_write writes PNG files.

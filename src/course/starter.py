@@ -164,7 +164,8 @@ def write_rest(plan, to):
     write(to / 'README.md', '# A course with Penumbra\n\n'
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
-          '    make check           # what is right, and what is to do\n\n' % plan.open[0].number +
+          '    make check           # what is right, and what is to do\n'
+          '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n\n' % (2 * (plan.open[0].number,)) +
           'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
           'Start with the sheet of the week.  '
           f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +

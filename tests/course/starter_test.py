@@ -239,6 +239,24 @@ def test_another_compiler_builds_anew():
             expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
 
 
+def test_a_program_for_a_debugger_is_kept_apart_and_named():
+    with Made() as made:
+        starter.write(made.folder / 'cxx', '#!/bin/sh\n[ "$1" = -x ] && exit\necho "$@" >>built\nwhile [ "$1" != -o ]; do shift; done\n'
+                      'echo "#!/bin/sh" >"$2"; chmod +x "$2"\n', True)
+        for words, options, names in ((['build/penumbra'], '-O1', []), (['build/penumbra', 'DEBUG=1'], '-Og -g -D_GLIBCXX_ASSERTIONS',
+                                                                        ['build/penumbra-debug']),
+                                      (['check', 'EX=2.2', 'DEBUG=1'], '-Og -g -D_GLIBCXX_ASSERTIONS',
+                                       ['build/course-debug/answers_2', 'build/penumbra-debug'])):
+            shutil.rmtree(made.folder / 'build', ignore_errors=True)
+            (made.folder / 'built').unlink(missing_ok=True)
+            said = subprocess.run(['make', 'CXX=./cxx', *words], cwd=made.folder, capture_output=True, text=True).stdout
+            built = (made.folder / 'built').read_text()
+            expect(built and all(options in line for line in built.splitlines()), words, built)
+            expect('DEBUG=1' not in words or not (made.folder / 'build/penumbra').exists(), words, 'the other program was replaced')
+            for name in names:
+                expect(name in said and f'-o {name} ' in built, words, name, said, built)
+
+
 def test_a_header_within_src_will_do():
     with Made() as made:
         for header, works in ((None, False), ('src/stb/stb_image_write.h', True)):
