@@ -23,7 +23,7 @@ TOKEN = re.compile(r'''
 
 RESERVED = re.compile(r'__|^_[A-Z]')
 WORDS = {'asm', 'import', 'gnu', 'clang'}
-REFUSED = {'#': 'a # (directives are not allowed in a region)', '%:': 'a %: (directives are not allowed in a region)',
+REFUSED = {'#': 'a # (directives are not allowed in a region: it has only what its file includes)', '%:': 'a %: (directives are not allowed in a region)',
            '??=': 'a ??= (directives are not allowed in a region)', '/*': 'a comment that never ends',
            '"': 'a string that does not end on its line', "'": 'a character that does not end on its line',
            '\\': 'a backslash'}

@@ -28,7 +28,8 @@ COURSE = ['beside.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'update', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
 Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
-names with two underscores.
+names with two underscores. A region has only what its file includes, and no `<random>`: random numbers are arguments
+such as `u`, or come from `oracle::Random` (week 6).
 
 A mistake costs half of an exercise's points, or a quarter where `make check` says `wrong` and not `WRONG`: at the limits of a
 law. A mistake that it does not know by name may cost more.'''

@@ -420,8 +420,8 @@ class Checked:
     def __exit__(self, *_):
         shutil.rmtree(self.top)
 
-    def check(self, *exercises):
-        done = subprocess.run([str(self.top / 'tests/course/check'), *exercises], env={**os.environ, 'MAKE': 'true', 'SUFFIX': ''},
+    def check(self, *exercises, make='true'):
+        done = subprocess.run([str(self.top / 'tests/course/check'), *exercises], env={**os.environ, 'MAKE': make, 'SUFFIX': ''},
                               capture_output=True, text=True)
         return done.stdout, done.returncode
 
@@ -441,6 +441,20 @@ def test_a_picture_waits_or_is_far_off():
             expect('src="1.1.png?' in page and drawn == ('alone\n' if alone else 'beside\n'), off, drawn)
     with Checked({'1.1': 'wrong', '1.2': 'right'}, '164') as folder:
         expect('far off' not in folder.check('1.1')[0], 'what is wrong is not right')
+
+
+def test_it_is_said_why_a_region_has_no_header_of_its_own():
+    why = 'a region has only what its file includes'
+    with Checked({'1.1': 'wrong', '1.2': 'right'}, '3') as folder:
+        for error, said in (("no member named 'mt19937' in namespace 'std'", f'; {why}'), ("'mt19937' is not a member of 'std'", f'; {why}'),
+                            ("'y' was not declared in this scope", '')):
+            starter.write(folder.top / 'make', f'#!/bin/sh\necho "src/a.h:2:5: error: {error}"\nexit 1\n', True)
+            came = folder.check('1.1', make=str(folder.top / 'make'))[0]
+            expect(came == f'1.1 does not compile: src/a.h:2:5: error: {error}{said}\n', came)
+        for word, said in (('#', f'; {why}'), ('asm', '')):
+            (folder.top / 'src/a.h').write_text(f'// BEGIN 1.1\n{word}\n// END 1.1\n')
+            came = folder.check('1.1')[0]
+            expect(came == f'1.1 cannot be handed in: src/a.h: line 2: {word} is refused{said}\n', came)
 
 
 def test_a_drawing_is_that_of_the_exercise_and_says_what_it_shows():
