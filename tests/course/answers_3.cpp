@@ -102,8 +102,8 @@ Out light_sample(In x) {
                eval(*at->material, at->wo, wi), s->L, at->at.p, s->at.p, d.L, d.pdf, d.weight);
 }
 
-// How often account is told, and how often of the segment whose turn it is.
-Out accounts(In x) {
+// How often visit is called, and how often with the segment whose turn it is.
+Out visits(In x) {
     int calls = 0, in_turn = 0;
     Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3]),
        [&](const Segment& s, const Step&) { in_turn += s.k == calls++; });
@@ -149,7 +149,7 @@ int main() {
          [](In x) {
              return Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3]));
          }},
-        {"accounts", 10, accounts},
+        {"visits", 10, visits},
         {"step", 21, take_step},
         {"throughput", 21, throughput},
         {"direct_light", 10, found_by_aiming},

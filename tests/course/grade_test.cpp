@@ -64,7 +64,8 @@ TEST_CASE("points: each exercise alone, the parts that are right, nothing for wh
                    {"upper", "1.2", "", 0},
                    {"upper", "1.3", "", 6, "", "wrong"}});
     CHECK(course.verdict("all", "1.1").line == "right: 4 of 4");
-    CHECK(course.verdict("part", "1.1").line == "wrong: at -3: -6 expected, 0 came");
+    CHECK(course.verdict("part", "1.1").line ==
+          "wrong: this should hold: at -3: -6 expected, 0 came");
     CHECK(course.report("part").find("**wrong** (a quarter), exact: at \\-3") != std::string::npos);
     CHECK(course.verdict("named", "1.2").line ==
           "wrong: this is no square; read \\\"Squares\\\" in sheet 1");

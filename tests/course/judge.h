@@ -394,14 +394,15 @@ inline Judgement judge_one(const std::string& exercise, const Judging& judging,
     return result;
 }
 
-// What is wrong, in a line: a known mistake, or else the item that knows most.  A silence is told
-// where nothing that came before it says as much.
+// What is wrong, in a line: a known mistake, or else the item that knows most.  An item says what
+// should be, and is not to be read as the mistake.  A silence is told where nothing that came
+// before it says as much.
 inline std::string headline(const Judgement& r) {
     if (r.named) return r.named->says;
     const Item* most = most_telling(r.items);
     if (!most) return "";
     const bool ended = !r.silence.empty() && most->seen == r.silence;
-    return ended ? r.silence : most->what + ": " + most->seen;
+    return ended ? r.silence : "this should hold: " + most->what + ": " + most->seen;
 }
 
 // The verdict in a line, then what was looked at.

@@ -195,8 +195,8 @@ void random_spheres(Judge& j) {
     aimed(j, "intersect_sphere", "rays past 1000 spheres miss them", "a ray past a sphere", misses);
     aimed(j, "intersect_sphere", "from anywhere inside, the far side is met, whatever the scale",
           "from inside", inside, to_far, 1024);
-    aimed(j, "intersect_sphere", "unless the ray ends before it", "from inside, tmax before it",
-          ending);
+    aimed(j, "intersect_sphere", "from inside, a ray that ends before the far side meets nothing",
+          "from inside, tmax before it", ending);
 }
 
 void far_spheres(Judge& j) {
@@ -221,12 +221,12 @@ void sphere(Judge& j) {
         j, "intersect_sphere",
         {{"a sphere of radius 2, 7 away: its near side is 5 away",
           {{row(above, back, endless, c, 2), 5, "straight ahead"}}},
-         {"one of radius 2.5, passed at 1.5 or 2 from its centre, is 5 or 5.5 away",
+         {"a sphere of radius 2.5, passed at 1.5 or 2 from its centre, is 5 or 5.5 away",
           {{row(Triple{1, 3.5, 10}, back, endless, c, 2.5), 5, "at 1.5"},
            {row(Triple{1, 4, 10}, back, endless, c, 2.5), 5.5, "at 2"}}},
-         {"passed at 3 it is missed",
+         {"a sphere of radius 2.5, passed at 3 from its centre, is missed",
           {{row(Triple{1, 5, 10}, back, endless, c, 2.5), -1, "beside"}}},
-         {"from its inside the far side is seen",
+         {"from inside a sphere its far side is seen",
           {{row(in, back, endless, c, 2), 3, "from inside"}}},
          {"a sphere behind the origin is not seen", {{row(above, z, endless, c, 2), -1, "behind"}}},
          {"the ray ends at tmax",
@@ -290,7 +290,8 @@ void random_triangles(Judge& j) {
     j.below("v and w say where: (1-v-w) a + v b + w c", off, 4096 * j.epsilon);
     aimed(j, "intersect_triangle", "rays past an edge of 1000 triangles miss them",
           "a ray past an edge of a triangle", misses);
-    aimed(j, "intersect_triangle", "nor are they hit where all is a million times as small",
+    aimed(j, "intersect_triangle",
+          "rays past an edge miss triangles that are a million times as small",
           "scaled by 2^-20, past an edge", small);
     j.limit();
 }
@@ -333,19 +334,21 @@ void triangle(Judge& j) {
     const Triple shift{-1, -0.5, 1};
     const double tiny = 0x1p-24;
     look(j, question,
-         {{"from 5 above: 5 away", {{row(above, back, endless, a, b, c), 5, "above (1, 1, 0)"}}},
-          {"from below: its back is hit, too",
+         {{"a triangle is 5 away from 5 above it",
+           {{row(above, back, endless, a, b, c), 5, "above (1, 1, 0)"}}},
+          {"the back of a triangle is hit, too",
            {{row(Triple{1, 1, -5}, z, endless, a, b, c), 5, "below (1, 1, 0)"}}},
-          {"slanted, with its corners in another order, and elsewhere it is hit, too",
+          {"a triangle is hit slantwise, with its corners in another order, and elsewhere",
            {{row(Triple{-2, 1, -4}, Triple{0.6, 0, 0.8}, endless, a, b, c), 5,
              "slanted, from below"},
             {row(above, back, endless, a, c, b), 5, "corners in another order"},
             {row(-4.0 * z, z, endless, a + shift, b + shift, c + shift), 5, "elsewhere"}}},
-          {"beside it: missed",
+          {"a ray beside a triangle misses it",
            {{row(Triple{3, 1, 5}, back, endless, a, b, c), -1, "beyond the edge from b to c"},
             {row(Triple{2, -0.5, 5}, back, endless, a, b, c), -1, "beyond the edge from a to b"}}},
-          {"behind the origin: not hit", {{row(above, z, endless, a, b, c), -1, "behind"}}},
-          {"beyond the end of the ray: not hit",
+          {"a triangle behind the origin is not hit",
+           {{row(above, z, endless, a, b, c), -1, "behind"}}},
+          {"a triangle beyond the end of the ray is not hit",
            {{row(above, back, 4.5, a, b, c), -1, "tmax = 4.5, 5 away"}}},
           {"", {{row(Triple{2, 0, 5}, back, endless, a, b, c), 5, "on an edge"}}},
           {"no triangle is too small, and none too near",
@@ -407,8 +410,8 @@ void random_boxes(Judge& j) {
     }
     aimed(j, "enter_box", "boxes are entered where they were aimed at", "a face that was aimed at",
           hits, distance, 1024);
-    aimed(j, "enter_box", "so are flat ones, of no thickness", "a flat box that was aimed at", flat,
-          to_flat, 1024);
+    aimed(j, "enter_box", "flat boxes, of no thickness, are entered where they were aimed at",
+          "a flat box that was aimed at", flat, to_flat, 1024);
     aimed(j, "enter_box", "rays past an edge of 1000 boxes miss them", "a ray past an edge",
           misses);
 }
@@ -419,7 +422,7 @@ void box(Judge& j) {
     look(j, "enter_box",
          {{"along x, a box that begins at x = 2 is 2 away",
            {{row(o, x, endless, lo, hi), 2, "from the origin along x"}}},
-          {"backwards along x, from x = 9, one that ends at x = 5 is 4 away",
+          {"backwards along x, from x = 9, a box that ends at x = 5 is 4 away",
            {{row(right, left, endless, lo, hi), 4, "along -x"}}},
           {"slanted rays enter at 10/3, or pass above or beside",
            {{row(Triple{0, 0, -1}, d, endless, lo, hi), 10.0 / 3, "along (0.6, 0, 0.8)", 9.6},

@@ -103,7 +103,8 @@ void tree(Judge& j) {
     };
     finds("the left leaf is nearer, and its hit is before the right one: one is looked at", 0, 1.5,
           {1});
-    finds("the same with left and right exchanged", 1, 1.5, {2});
+    finds("the right leaf is nearer, and its hit is before the left one: one is looked at", 1, 1.5,
+          {2});
     finds("a hit behind where the other leaf begins: both are looked at, the nearer hit counts", 2,
           2.5, {1, 2});
     finds("no hit in the nearer leaf: the other one is looked at", 3, 2.5, {1, 2});
@@ -125,7 +126,7 @@ void tree(Judge& j) {
     number("boxes that the ray starts in, which it enters at 0, are opened",
            two_leaves(0, 0.5, 0, 0.25), 0.25);
     const double tiny = 0x1p-24;
-    number("the same where all is tiny, in units of 2^-24",
+    number("boxes that the ray starts in are opened where all is tiny, too, in units of 2^-24",
            two_leaves(tiny, 3 * tiny, 2 * tiny, 2.5 * tiny), 2.5, tiny);
     Table single, missed;
     single.make_leaf(0, 3), missed.make_leaf(0, 3), missed.enter(0) = -1;

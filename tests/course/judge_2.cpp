@@ -148,7 +148,7 @@ void uniform(Judge& j) {
     j.exact("directions of the hemisphere are above the horizon", lowest >= 0,
             oracle::say("one has z = %.6g", lowest));
     j.exact(
-        "it is the same at every height, and 0 below the horizon",
+        "the hemisphere's density is the same at every height, and 0 below the horizon",
         p[0] == p[1] && p[1] == p[2] && p[3] == 0,
         oracle::say("%.6g straight up, %.6g near the horizon, %.6g below it", p[0], p[2], p[3]));
     j.number("the hemisphere's density integrates to 1",
@@ -231,7 +231,7 @@ void triangle(Judge& j) {
     j.number("1 / density of the right triangle with legs of 3 and 4 is its area", 1 / p.numbers[0],
              6, digits(j));
     const Pose pose = any_pose(j.random);
-    j.number("turned in space, it keeps its density",
+    j.number("a triangle that is turned in space keeps its density",
              6 * j.ask("pdf_triangle_area", row(pose.turned(right), pose.turned(angle)))[0], 1,
              digits(j));
     j.number("density times area is 1 whatever the angle", p.numbers[1] * area(e, f), 1, digits(j));
@@ -351,7 +351,8 @@ void cone(Judge& j) {
             cause);
     j.number("a cone of 90 degrees has the solid angle of a hemisphere", angle[0] / pi, 2,
              digits(j));
-    j.number("a cone of 60 degrees has half of that", angle[1] / pi, 1, digits(j));
+    j.number("a cone of 60 degrees has half the solid angle of a hemisphere", angle[1] / pi, 1,
+             digits(j));
     j.number("density times solid angle is 1", p[1] * angle[2], 1, digits(j));
     const double narrow = 0x1p-11;
     j.number("a cone of 1.3 degrees has the solid angle of all its rings",
@@ -421,23 +422,23 @@ void area_to_solid_angle(Judge& j) {
                                      beside.at(0.9, 0.1), behind.at(0.1, 0.8), edge.at(0.3, 0.3)})
                       .numbers;
     const double close = std::max(256 * j.epsilon, digits(j));
-    j.number("straight above the middle of a light of 2 x 3, at a height of 2, it is 2/3", p[0],
-             2 / 3.0, close);
+    j.number("the density is 2/3 straight above the middle of a light of 2 x 3, at a height of 2",
+             p[0], 2 / 3.0, close);
     const Out scaled = j.ask(question, {table.at(0.1, 0.8, 8), slanted.at(0.2, 0.7, 8),
                                         table.at(0.1, 0.8, 0x1p-20)})
                            .numbers;
     const double change[] = {scaled[0] / p[1], scaled[1] / p[2], scaled[2] / p[1]};
-    j.exact("where all is eight times as large, it is the same",
+    j.exact("where all is eight times as large, the density is the same",
             std::abs(change[0] - 1) < close && std::abs(change[1] - 1) < close,
             oracle::say("it is %.6g and %.6g times as large", change[0], change[1]));
-    j.number("and a millionth as large, it is the same", change[2], 1, close);
+    j.number("where all is a millionth as large, the density is the same", change[2], 1, close);
     j.limit();
-    j.number("from behind it is as large as from the front", p[4] / p[1], 1, close);
-    j.exact("where the light is seen edge-on it is 0, for no direction leads there", p[5] == 0,
-            oracle::say("it is %.6g", p[5]));
+    j.number("from behind the density is as large as from the front", p[4] / p[1], 1, close);
+    j.exact("where the light is seen edge-on the density is 0, for no direction leads there",
+            p[5] == 0, oracle::say("it is %.6g", p[5]));
     Seen grazing = table;
     grazing.from = {7, 0, 0x1p-20};
-    j.number("seen at a slant of one in 7 million it is huge, and not 0",
+    j.number("seen at a slant of one in 7 million the density is huge, and not 0",
              j.ask(question, grazing.at(0.5, 0.5))[0] * 0x1p-20 / std::pow(49 + 0x1p-40, 1.5),
              1 / 6.0, close);
     j.limit();

@@ -21,19 +21,21 @@ void within_a_hall_of_mirrors(Judge& j, const Triple& Le, const std::vector<int>
     }
 }
 // Other code counts rays by it: each vertex once, with the segment that arrived there.
-void account_of_all(Judge& j) {
+void visits_of_all(Judge& j) {
     const Stuff mirror{Stuff::mirror, {}, {0.5, 0.5, 0.5}};
     build(j, 7, {ball({0, 0, 0}, 2, mirror)});
     const Out within = question({}, 1, ray({0.3, 0.1, -0.2}, {0.48, 0.6, 0.64}));
-    const Out eight = j.probe("accounts", Rows(within)).numbers;
+    const Out eight = j.probe("visits", Rows(within)).numbers;
     build(j, 7, {ball({0, 0, 0}, 1, mirror)});
     const Out away = question({}, 1, ray({0, 0, 4}, {0, 0, -1}));
-    const Out two = j.probe("accounts", Rows(away)).numbers;
-    j.number("the path is followed to its end: account is told of each of 8 vertices", eight[0], 8,
+    const Out two = j.probe("visits", Rows(away)).numbers;
+    j.number("the path is followed to its end: visit is called at each of 8 vertices", eight[0], 8,
              0);
-    j.number("and of a ray that meets nothing: of a mirror and of the ray that it sends away",
-             two[0], 2, 0);
-    j.number("account is told of a vertex with the segment that arrived there: how often of 8",
+    j.number(
+        "visit is called for a ray that meets nothing, too: at a mirror, and for the ray that it "
+        "sends away",
+        two[0], 2, 0);
+    j.number("visit is called with the segment that arrived at the vertex: how often of 8",
              eight[1], 8, 0);
 }
 
@@ -51,7 +53,8 @@ void a_lit_ball_and_its_image(Judge& j) {
            first.direct);
     const Step mirrored = take_step(j, t, 1, segment({0, 0.02, 4}, {0, 0, 1}));
     const Step seen = take_step(j, t, 1, mirrored.next);
-    colour(j, "and half of it in a mirror that takes half", triple(L[1]), 0.5 * seen.direct);
+    colour(j, "light found by aiming counts half in a mirror that takes half", triple(L[1]),
+           0.5 * seen.direct);
 }
 
 // A lamp on which another one shines.
@@ -98,7 +101,7 @@ void a_lamp_is_met(Judge& j) {
 }
 
 void sum_over_a_path(Judge& j) {
-    account_of_all(j);
+    visits_of_all(j);
     within_a_hall_of_mirrors(j, {0.4, 0.3, 0.2}, {0, 1, 7});
     within_a_hall_of_mirrors(j, {40000, 30000, 20000}, {60});
     a_lit_ball_and_its_image(j);
@@ -126,8 +129,10 @@ void of_a_mirror(Judge& j) {
     const Step s = take_step(j, {}, 1, towards_a_ball(2));
     const std::vector<oracle::Factor> factors{{"the cosine", std::abs(s.wi[2])}};
     colour(j, "a mirror of reflectance (0.3, 0.6, 0.9)", triple(b[0]), ks, factors);
-    colour(j, "the same at the end of a path of throughput (0.5, 0.25, 2)", triple(b[1]),
-           ks * before, factors);
+    colour(
+        j,
+        "a mirror of reflectance (0.3, 0.6, 0.9) at the end of a path of throughput (0.5, 0.25, 2)",
+        triple(b[1]), ks * before, factors);
 }
 
 // Whatever the direction and its density are: f |cos| / pdf of them, times what was before.
@@ -386,7 +391,7 @@ void reflectance_of_glass(Judge& j) {
             off, oracle::say("off by %.6g where %.6g is reflected, at a cosine of %.4g %s", off,
                              k.reflectance, k.cosine, k.outside ? "from outside" : "from inside"));
     }
-    j.worst("it reflects as much as Fresnel's law says", reflected, tolerance(j));
+    j.worst("glass reflects as much as Fresnel's law says", reflected, tolerance(j));
 }
 
 // The same laws for other indices, angles and both sides.
@@ -419,7 +424,7 @@ void of_any_glass(Judge& j) {
                                outside ? "from outside" : "from inside") +
                    seen;
     }
-    j.exact("all this of glass of any index", seen.empty(), seen);
+    j.exact("glass of any index obeys the laws of Snell and Fresnel", seen.empty(), seen);
 }
 
 void glass(Judge& j) {
@@ -429,7 +434,7 @@ void glass(Judge& j) {
     directions_of_glass(j);
     reflectance_of_glass(j);
     const Ways total = ways(j, 1.5, false, 0.5);
-    j.exact("beyond the critical angle it reflects all, always",
+    j.exact("beyond the critical angle glass reflects all, always",
             total.n_reflected == total.n && near(total.reflected, 1, tolerance(j, 64)) &&
                 near(total.pdf_reflected, 1, tolerance(j, 64)),
             oracle::say("%d of %d times, a share of %.6g", total.n_reflected, total.n,
@@ -444,7 +449,7 @@ void glass(Judge& j) {
     const double R = 0.20775634307089783;  // of Fresnel's law
     j.number("at a cosine of 0.3, what is refracted is (1 - R) over the index squared",
              slanted.refracted, (1 - R) / 2.25, tolerance(j, 1e3));
-    j.number("and R is the probability to be reflected", slanted.pdf_reflected, R,
+    j.number("at a cosine of 0.3, R is the probability to be reflected", slanted.pdf_reflected, R,
              tolerance(j, 1e3));
     j.number("probabilities of both ways add up to", slanted.pdf_reflected + slanted.pdf_refracted,
              1, tolerance(j, 64));

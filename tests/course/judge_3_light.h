@@ -27,9 +27,10 @@ void from_a_point(Judge& j) {
     const Rows hidden = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
     build(j, 4, {ground, point_light(at, I), ball({1.5, 3, 3}, 0.2, rough)});
     const Rows beyond = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
-    colour(j, "nothing of it behind an obstacle", triple(hidden[0]), {0, 0, 0});
-    colour(j, "all of it before an obstacle", triple(beyond[0]), triple(L[0]));
-    colour(j, "no share of it is left to rays that cannot meet it", triple(L[1]), truth);
+    colour(j, "nothing of a point light comes past an obstacle", triple(hidden[0]), {0, 0, 0});
+    colour(j, "all of a point light comes if an obstacle is behind it", triple(beyond[0]),
+           triple(L[0]));
+    colour(j, "no share of a point light is left to rays that cannot meet it", triple(L[1]), truth);
     build(j, 4, {ground, point_light(at, 1e6 * I)});
     const Out strong = j.ask("direct_light", aimed({by_aiming}, 1));
     colour(j, "a light a million times as strong", triple(strong), 1e6 * truth);
@@ -206,12 +207,12 @@ void from_any_light(Judge& j) {
     for (int i = 0; i < 12; ++i)
         of_any_scene(j, i % 4 < 2, i % 2 ? 0x1p30 : 0x1p-30, sizes, sizes, sizes, told);
     j.all("of lights of unequal powers, each counts by f L cos over its chance and density", lit);
-    j.all("and under MIS by its weight", share);
+    j.all("under MIS each of these lights counts by its weight, too", share);
     j.all("what a ball hides is dark", dark);
-    j.all("the same from within a ball, where normals point away", inside);
+    j.all("lights count alike from within a ball, where normals point away", inside);
     j.all("a scene a billion times as small or large is lit alike", sizes);
     j.limit();
-    j.all("account is told the density, and the weight", told);
+    j.all("direct_light returns the density and the weight", told);
     j.limit();
 }
 

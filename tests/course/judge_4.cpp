@@ -223,12 +223,12 @@ void scrambled_digits(Judge& j) {
     j.exact("the first b^k indices still put one point into each of b^k parts",
             empty == 0 && why.empty(),
             why.empty() ? oracle::say("%zu parts of 3380 stay empty", empty) : why);
-    j.none("so do b^k of the largest indices that 64 bits hold", empty_at_the_end(j, j.random),
-           "%zu parts of 905 stay empty");
+    j.none("b^k of the largest indices that 64 bits hold put one point into each of b^k parts",
+           empty_at_the_end(j, j.random), "%zu parts of 905 stay empty");
     j.limit();
     j.statistical("index 0 becomes any number, for random bits",
                   equal_counts(counts_of(j, j.random, 5, 0, 625, 80000)));
-    j.statistical("index 7 does, with two digits in base 5 that are scrambled apart",
+    j.statistical("index 7 becomes any number, with two digits in base 5 that are scrambled apart",
                   equal_counts(counts_of(j, j.random, 5, 7, 625, 80000)));
     // The first digits of 0 and of 1 are two: all pairs of two that differ are as likely.
     std::vector<double> equal(7, 1 / 6.0);

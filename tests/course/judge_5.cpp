@@ -140,7 +140,7 @@ void control_variate(Judge& j) {
         unlit.add({U.back(), 0, 0});
     }
     const Out is_lit = j.ask("control", lit).numbers;
-    same(j, "where nothing is in the way it is U", is_lit, U, 32 * digit);
+    same(j, "where nothing is in the way the estimate is U", is_lit, U, 32 * digit);
     Out gained = j.ask("control", more).numbers;
     for (size_t i = 0; i < gained.size(); ++i) gained[i] -= is_lit[i];
     same(j, "light that comes through counts as it is", gained, light, 64 * digit);
@@ -155,8 +155,8 @@ void control_variate(Judge& j) {
     });
     const Out one = j.ask("control", rows).numbers;
     j.mean("w = 3x^2, visible below x = 4/5: the mean is .512", 0.512, one, itself);
-    j.mean("its variance is .972, as computed in the sheet", 0.972032,
-           squared_errors(one, 0.512, 1), itself);
+    j.mean("w = 3x^2, visible below x = 4/5: the variance is .972, as computed in the sheet",
+           0.972032, squared_errors(one, 0.512, 1), itself);
 }
 
 // ---- 5.2 ----------------------------------------------------------------------------------------
@@ -170,14 +170,15 @@ void ratio(Judge& j) {
     const Out visible = j.probe("visible", asked).numbers, by = j.probe("ratio", asked).numbers;
     same(j, "U = 2.5, w = 3, w V = 2: two thirds come through", {visible[0], by[0]},
          {2 / 3.0, 5 / 3.0}, 8 * digit);
-    same(j, "where nothing is in the way it is U", {visible[1], by[1]}, {1, 2}, 8 * digit);
-    same(j, "where everything is, it is 0", {visible[2], by[2]}, {0, 0}, 0);
-    same(j, "it is 0 if no sample found any light", {visible[3], by[3]}, {0, 0}, 0);
+    same(j, "where nothing is in the way the estimate is U", {visible[1], by[1]}, {1, 2},
+         8 * digit);
+    same(j, "where everything is in the way the estimate is 0", {visible[2], by[2]}, {0, 0}, 0);
+    same(j, "the estimate is 0 if no sample found any light", {visible[3], by[3]}, {0, 0}, 0);
     const Out faint =
         j.ask("ratio", {{4, 2e-60, 4e-60, 1e-60, 0, 0, 0}, {4, 2e60, 4e60, 1e60, 0, 0, 0}}).numbers;
     j.remember({1e60 * faint[0], 1e-60 * faint[1]});
-    same(j, "in dim light and in glaring, too", {1e60 * faint[0], 1e-60 * faint[1]}, {0.5, 0.5},
-         8 * digit);
+    same(j, "the ratio is the same in dim light and in glaring light",
+         {1e60 * faint[0], 1e-60 * faint[1]}, {0.5, 0.5}, 8 * digit);
     const double scale = 1 + 9 * j.random(), U = 1 + j.random(), w = 1 + j.random(),
                  wV = j.random();
     const Out of = j.ask("ratio", {{4, U, w, wV, 1, 1, 1},
@@ -186,12 +187,12 @@ void ratio(Judge& j) {
                        .numbers;
     same(j, "w and w V twice as large change nothing, U twice as large doubles it", {of[1], of[2]},
          {of[0], scale * of[0]}, 64 * digit);
-    j.mean("of one sample it is biased: for the sheet's w = 2x the mean is 1/2, not 1/4", 0.5,
-           estimates(j, "ratio", 1, 40000), itself);
+    j.mean("the ratio of one sample is biased: for the sheet's w = 2x the mean is 1/2, not 1/4",
+           0.5, estimates(j, "ratio", 1, 40000), itself);
     const Out many = estimates(j, "ratio", 512, 19200);
-    j.mean("of 512 the bias is gone but for 1/6 n", 0.25 + 1 / 6.0 / 512, many, itself);
-    j.mean("and n times its variance is 1/6", 1 / 6.0, in_groups(squared_errors(many, 0.25, 512)),
-           itself);
+    j.mean("of 512 samples the bias is gone but for 1/6 n", 0.25 + 1 / 6.0 / 512, many, itself);
+    j.mean("of 512 samples n times the variance is 1/6", 1 / 6.0,
+           in_groups(squared_errors(many, 0.25, 512)), itself);
 }
 
 // ---- 5.3 ----------------------------------------------------------------------------------------
@@ -226,16 +227,17 @@ void regression(Judge& j) {
         line = worse(line, apart({on_line}, {S}));
     }
     const char* off = "it is off by %.3g";
-    j.exact("where nothing is in the way it is U, and 0 where everything is",
+    j.exact("where nothing is in the way the estimate is U, and 0 where everything is",
             lit < 1e-12 && dark < 1e-12, oracle::say(off, std::max(lit, dark)));
-    j.below("behind grey glass it is that part of U, though U varies", grey, 1e-12, off);
+    j.below("behind grey glass the estimate is that part of U, though U varies", grey, 1e-12, off);
     j.below("points (w, w V) on a line: its value at w = U", line, 1e-11, off);
-    j.number("of seven samples it is what ratio says",
+    j.number("of seven samples the estimate is what ratio says",
              j.ask("regression", Out{7, 2.5, 3, 2, 3.5, 3.5, 1.5}).at(0), 5 / 3.0, 16 * digit);
-    j.number("where w does not vary, too", of(Samples(20, {2, 3, 1.5})), 1, 16 * digit);
-    j.number("if the line is below 0 at w = U, so is its value", further[1], -0.25, 1e-12);
-    for (const auto& [what, scale] :
-         {std::pair("in dim light, too", 0x1p-50), {"in glaring, too", 0x1p50}}) {
+    j.number("where w does not vary the estimate is what ratio says", of(Samples(20, {2, 3, 1.5})),
+             1, 16 * digit);
+    j.number("if the line is below 0 at w = U, the estimate is, too", further[1], -0.25, 1e-12);
+    for (const auto& [what, scale] : {std::pair("dim light scales the estimate", 0x1p-50),
+                                      {"glaring light scales the estimate", 0x1p50}}) {
         const double there = of(
             changed(sixteen, [by = scale](LightSample& s) { s.U *= by, s.w *= by, s.wV *= by; }));
         j.number(what, there / scale, of(sixteen), 1e-12);
@@ -245,7 +247,7 @@ void regression(Judge& j) {
     const Out many = estimates(j, "regression", 1024, 19200);
     j.mean("of 1024 samples of w = 2x the bias is gone but for 1/8 n", 0.25 + 1 / 8.0 / 1024, many,
            itself);
-    j.mean("and n times its variance is 1/12, half of what ratio has", 1 / 12.0,
+    j.mean("of 1024 samples n times the variance is 1/12, half of what ratio has", 1 / 12.0,
            in_groups(squared_errors(many, 0.25, 1024)), itself);
 }
 
@@ -272,8 +274,8 @@ void moments(Judge& j) {
     const std::vector<const char*> names = {"n", "U", "w", "wV", "bb", "b_wV", "b_U"};
     same(j, "three samples by hand: n and the means", part(by_hand, 0, 4), {3, 2.5, 3, 2},
          16 * digit, names);
-    same(j, "and the moments bb = 3.5, b_wV = 3.5, b_U = 1.5", part(by_hand, 4, 7), {3.5, 3.5, 1.5},
-         16 * digit, {"bb", "b_wV", "b_U"});
+    same(j, "three samples by hand: the moments bb = 3.5, b_wV = 3.5, b_U = 1.5",
+         part(by_hand, 4, 7), {3.5, 3.5, 1.5}, 16 * digit, {"bb", "b_wV", "b_U"});
     const Out one = j.ask("moments", Out{2, 3, 1});
     same(j, "one sample is its own mean, and has no spread", one, {1, 2, 3, 1, 0, 0, 0}, 0, names);
     const Out expected = moments_of(twelve);
@@ -295,7 +297,7 @@ void moments(Judge& j) {
     const Out there = j.ask("moments", flat(far)), truth = moments_of(far);
     const double most_wV = std::sqrt(truth[4] * double(comoment(far, of_wV, of_wV))),
                  most_U = std::sqrt(truth[4] * double(comoment(far, of_U, of_U)));
-    same(j, "at 1e8 six digits are left",
+    same(j, "moments of numbers near 1e8 keep six digits",
          {there[4] / truth[4], (there[5] - truth[5]) / most_wV, (there[6] - truth[6]) / most_U},
          {1, 0, 0}, 1e-6, {"bb, in parts of itself", "b_wV, off by", "b_U, off by"});
     j.limit();
@@ -369,8 +371,8 @@ void lambert(Judge& j) {
     j.number("the sheet's square of side 2 at height 1", first, whole, digits);
     j.number("a triangle with an edge seen under 160 degrees", three[0], by_quadrature(wide),
              std::max(1e-9, digits));
-    j.number("seen from behind it sends as much", of({square.rbegin(), square.rend()}), first,
-             digits);
+    j.number("a square that is seen from behind sends as much",
+             of({square.rbegin(), square.rend()}), first, digits);
     j.number("two halves are the whole",
              of({square[0], square[1], square[2]}) + of({square[0], square[2], square[3]}), whole,
              digits);
@@ -400,7 +402,7 @@ void lambert(Judge& j) {
         const double truth = by_quadrature(t);
         if (truth > 0.1 * small * small) lost = worse(lost, std::abs(of(t) / truth - 1));
     }
-    j.below("small ones keep their digits", lost, small == 1e-3 ? 1e-8 : 0.05,
+    j.below("small triangles keep their digits", lost, small == 1e-3 ? 1e-8 : 0.05,
             "one is off by %.3g of itself");
     j.limit();
     // Without its short edge the long ones do not cancel.

@@ -89,13 +89,14 @@ void loading(Judge& j) {
     const char* by = "it is off by %.3g";
     j.below("an element sends (M - shot) / pi at each corner, its front and its back", sent, digits,
             by);
-    j.below("then all of M counts as shot, corner by corner", shot, digits, by);
-    j.below("and the mean of M over corners and channels is noted in sent_", noted, digits, by);
+    j.below("when an element has shot, all of M counts as shot, corner by corner", shot, digits,
+            by);
+    j.below("the mean of M over corners and channels is noted in sent_", noted, digits, by);
     j.below("an element returns the mean of its three corners", mean, digits, by);
     j.below("a wall of 2 x 3 cells returns the mean of its parts, weighted by their areas", whole,
             digits, by);
     j.below("a triangle returns the mean of its four parts", quarters, digits, by);
-    j.below("and writes it to all three corners", filled, digits, by);
+    j.below("a triangle writes the mean of its parts to all three corners", filled, digits, by);
 }
 
 void shooting(Judge& j) {
@@ -192,9 +193,9 @@ void walking(Judge& j) {
     }
     j.exact("black walls: a walk has one stop", least_stops == 1 && most_stops == 1,
             oracle::say("one has %g", least_stops < 1 ? least_stops : most_stops));
-    j.number("and returns one ray", other_rays, 1, 0);
+    j.number("black walls: a walk returns one ray", other_rays, 1, 0);
     j.number("hit is told of all of the power that arrives", brought, 1, 0);
-    j.number("and all of it is absorbed", kept, 1, 0);
+    j.number("black walls absorb all of the power that arrives", kept, 1, 0);
     const Out albedo = {0.8, 0.5, 0.2};
     constexpr size_t n = 30000;
     const Rows coloured = walks(j, albedo, n);
@@ -224,12 +225,14 @@ void walking(Judge& j) {
     j.below("no particle gains power on walls that reflect 4/5 at most", most_of(coloured), own,
             gain);
     const double on_blue = gained({0.5, 0.2, 0.8}), on_green = gained({0.2, 0.8, 0.5});
-    j.below("nor on green ones, nor on blue ones: the greatest channel decides",
-            worse(on_blue, on_green), own, gain);
-    j.below("nor on walls that reflect 99 %: 0.98 is for white ones alone",
+    j.below(
+        "no particle gains power on green walls, nor on blue ones: the greatest channel decides",
+        worse(on_blue, on_green), own, gain);
+    j.below("no particle gains power on walls that reflect 99 %: 0.98 is for white ones alone",
             gained({0.99, 0.99, 0.99}), own, gain);
     const char* names[] = {"red, albedo .8: all stops bring 5 times what is emitted",
-                           "green, albedo .5: twice", "blue, albedo .2: 1.25 times"};
+                           "green, albedo .5: all stops bring twice what is emitted",
+                           "blue, albedo .2: all stops bring 1.25 times what is emitted"};
     for (size_t c = 0; c < 3; ++c)
         j.mean(names[c], 1 / (1 - albedo[c]), coloured,
                [c](In w) { return w[sum + c] / w[emitted + c]; });

@@ -148,7 +148,8 @@ void cutting(Judge& j) {
     const double open = j.ask("open", Out{-1, -1, 1, 1, 1, 0, 0.5}).at(0);
     j.exact("a crossing is a new corner: `stays` is false, whatever it was of the old ones",
             open >= 2, oracle::say("it is so for %g of 2", open));
-    j.below("of sites 1e-9 apart, too", tiny, 1e-11, "a corner is off by %.3g of that");
+    j.below("corners of cells whose sites are 1e-9 apart", tiny, 1e-11,
+            "a corner is off by %.3g of that");
     j.limit();
 }
 

@@ -130,7 +130,8 @@ TEST_CASE("a silence is told where nothing that came before it is wrong") {
     CHECK(right.state == "silent");
     CHECK(headline(right) == "one(0.5) does not end: no answer for 0.3 s");
     CHECK(wrong.state == "silent");
-    CHECK(headline(wrong) == "one is 1: 1 expected, 2 came");
+    // An item says what should be, and must not be read as what is.
+    CHECK(headline(wrong) == "this should hold: one is 1: 1 expected, 2 came");
 }
 
 TEST_CASE("whoever does not answer is ended, with all that he began") {
