@@ -224,7 +224,7 @@ def test_nothing_is_run_without_a_sandbox():
         (pathlib.Path(top) / '1.key').write_text('file: src/world/warp.h\nlines: 1-1\n')
         done = subprocess.run([sys.executable, str(regions.ROOT / 'src/course/hunted.py'), f'{top}/1', __file__],
                               capture_output=True, text=True, env={'PATH': top})
-        expect(done.returncode == 1 and 'bubblewrap' in done.stderr, done.stderr)
+        expect(done.returncode == 2 and 'bubblewrap' in done.stderr, done.stderr)
 
 
 if __name__ == '__main__':
