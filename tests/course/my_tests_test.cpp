@@ -63,6 +63,30 @@ TEST_CASE("right intersectors meet the farthest point of a sphere, through its c
             }
 }
 
+// What is handed in meets float, so what is published must.
+TEST_CASE("a published sampler and a published intersector compute in float, and are right") {
+    const auto& sampler = practice_samplers().right[0].subject;
+    double off = 0, lowest = 1, apart = 0;
+    for (double u : {0.1, 0.3, 1 - 0x1p-24})
+        for (double v : {0., 0.2, 0.7}) {
+            const vec3 w = *sampler.sample(u, v);
+            off = std::max(off, std::abs(double(length(w)) - 1));
+            lowest = std::min(lowest, double(w.z));
+        }
+    CHECK(off > 1e-9);
+    CHECK(off < 1e-6);
+    CHECK(lowest < 0);
+    CHECK(lowest > -1e-7);
+    const auto all = practice_intersectors().right;
+    for (double z : {3.1, 4.7, 5.3}) {
+        const Beam beam{{0, 0, 0}, {0, 0, 1}};
+        const double t = *all[1].subject.meet({{0, 0, real(z)}, {}, {}, 1}, beam);
+        apart = std::max(apart, std::abs(t / (double(real(z)) - 1) - 1));
+    }
+    CHECK(apart > 1e-10);
+    CHECK(apart < 1e-6);
+}
+
 TEST_CASE("tests draw what follows from their seeds") {
     const Aside aside;
     for (const Trial& t : practice()) {

@@ -44,8 +44,14 @@ inline Lineup<Sampler> practice_samplers() {
                bowl_pdf}},
              {"not a number in a corner of the square",
               {[](double u, double v) { return about_z(bowl(u), turn * v * (v / v)); }, bowl_pdf}}},
-            {{"it begins with the other number, and goes round the other way",
-              {[](double u, double v) { return about_z(bowl(1 - v), -turn * u); }, bowl_pdf}},
+            {{"it begins with the other number, goes round the other way, and computes in float",
+              {[](double u, double v) {
+                   // Rounding takes the horizon to z = -4e-8.
+                   const float angle = std::acos(float(bowl(v))), phi = float(-turn * u);
+                   const float r = std::sin(angle);
+                   return vec3{r * std::cos(phi), r * std::sin(phi), std::cos(angle)};
+               },
+               bowl_pdf}},
              {"half of the pairs are rejected, and the density integrates to 1/2",
               {[=](double u, double v) -> std::optional<vec3> {
                    if (v > 0.5) return {};
@@ -158,11 +164,11 @@ inline Lineup<Intersector> practice_intersectors() {
                   return t ? std::optional(*t * 0.99) : t;
               }}}},
             {{"it goes there in steps", {sound}},
-             {"in units of its own", {[=](Body s, Beam beam) {
+             {"in units of its own, and in float", {[=](Body s, Beam beam) {
                   for (vec3* p : {&s.a, &s.b, &s.c, &beam.o}) *p = real(1000) * *p;
                   s.r *= 1000, beam.tmax *= 1000;
                   const auto t = sound(s, beam);
-                  return t ? std::optional(*t / 1000) : t;
+                  return t ? std::optional(double(float(*t / 1000))) : t;
               }}},
              {"corners in another order", {[=](const Body& s, const Beam& beam) {
                   return sound(s.r > 0 ? s : Body{s.c, s.b, s.a, 0}, beam);

@@ -57,7 +57,7 @@ Trial trial(const Lineup<Subject>& lineup, bool test(const Subject&, uint64_t),
 
 // Samples and densities, and many of them.
 inline Out looks_of_samplers(uint64_t seed) {
-    const Sampler right = practice_samplers().right[0].subject;
+    const Sampler right = practice_samplers().right.back().subject;  // in double
     Seen seen;
     size_t asked = 0;
     sampler_passes({[&](double u, double v) {
