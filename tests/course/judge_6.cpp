@@ -45,20 +45,22 @@ std::string missed(const Tally& t, const Out& of) {
     return text;
 }
 
-// Whether right subjects are refused always, for what they are, or now and then, by chance.
+// Whether right subjects are refused for what they are, or now and then, by chance.
 std::string refused(const Tally& t, const Out& of) {
     std::string text = oracle::say("%zu false alarms in %zu runs", t.alarms, t.right_runs);
-    auto always = [&](size_t i) { return t.refused[i] == course::runs_of_right; };
+    auto out = [&](size_t i) { return t.is_singled_out(i); };
     size_t n = 0;
-    for (size_t i = t.wrong; i < t.refused.size(); ++i) n += always(i);
+    std::string numbers;
+    for (size_t i = t.wrong; i < t.refused.size(); ++i)
+        if (out(i)) ++n, numbers += oracle::say(", number %zu", i + 1);
     if (t.alarms == 0) return text;
     if (t.alarms == t.right_runs) return text + ": whatever is right is refused";
     if (n == 0) return text + ", now and then: it refuses what chance alone brings";
-    const std::string about = by_kind(of, t.wrong, t.refused.size(), always);
+    const std::string about = by_kind(of, t.wrong, t.refused.size(), out);
     return text +
-           oracle::say("; %zu of %zu subjects are refused in every run", n,
+           oracle::say("; %zu of %zu right subjects are refused for what they are", n,
                        t.refused.size() - t.wrong) +
-           (about.empty() ? "" : ", " + about);
+           (about.empty() ? numbers : ", " + about);
 }
 
 course::Judging judging(double exercise) {

@@ -30,6 +30,12 @@ struct Tally {
     bool quiet() const {
         return oracle::p_at_least(double(alarms), double(right_runs), 1e-3) > 1e-3;
     }
+    // A right one that is refused always, or more often than chance makes of the others' share.
+    bool is_singled_out(size_t subject) const {
+        const double mine = double(refused[subject]), all = double(runs_of_right);
+        const double others = (double(alarms) - mine) / std::max(1.0, double(right_runs) - all);
+        return mine == all || oracle::p_at_least(mine, all, std::max(1e-3, others)) < 1e-3;
+    }
     // In [0,1].
     double credit() const {
         const double penalty = quiet() ? 0 : 5 * double(alarms) / double(right_runs);

@@ -83,6 +83,29 @@ TEST_CASE("a false alarm that chance explains costs nothing, more cost five time
     }
 }
 
+TEST_CASE("a right subject is singled out if it is refused more often than the others are") {
+    struct Row {
+        const char* who;
+        std::vector<int> refused;  // runs of each right subject
+        std::vector<size_t> out;
+    };
+    for (const Row& r :
+         std::vector<Row>{{"by chance, now and then", {2, 0, 1, 0, 0, 1, 0}, {}},
+                          {"by chance, often", {5, 5, 4, 6, 5, 3, 5}, {}},
+                          {"one, sometimes", {3, 0, 0, 0, 0, 0, 0}, {0}},
+                          {"two, always", {0, 23, 0, 23, 0, 0, 0}, {1, 3}},
+                          {"all but one", {23, 23, 23, 0, 23, 23, 23}, {0, 1, 2, 4, 5, 6}}}) {
+        std::vector<int> left = r.refused;
+        auto j = played([&](size_t subject) { return subject < 12 || left[subject - 12]-- > 0; });
+        const Tally t = tally(j, 1);
+        std::vector<size_t> out;
+        for (size_t i = 0; i < 7; ++i)
+            if (t.is_singled_out(12 + i)) out.push_back(i);
+        CAPTURE(r.who);
+        CHECK(out == r.out);
+    }
+}
+
 TEST_CASE("when time is up no more is asked") {
     auto j = played([](size_t subject) { return subject < 12; });
     j.seconds = 10;

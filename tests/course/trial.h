@@ -78,14 +78,14 @@ inline Out looks_of_estimators(uint64_t seed) {
     int first = 0;
     size_t asked = 0;
     for (bool unbiased : {true, false})
-        estimator_passes(
-            {[&](uint64_t of, int n) {
-                 if (first == 0) first = n;
-                 seen.look({double(of >> 11), double(n)}, {++asked >= 200, n != first, n >= 32});
-                 return mean_of_exp(of, n);
-             },
-             std::numbers::e - 1, unbiased},
-            seed);
+        estimator_passes({[&](uint64_t of, int n) {
+                              if (first == 0) first = n;
+                              seen.look({double(of >> 32), double(uint32_t(of)), double(n)},
+                                        {++asked >= 200, n != first, n >= 32});
+                              return mean_of_exp(of, n);
+                          },
+                          std::numbers::e - 1, unbiased},
+                         seed);
     return seen.out();
 }
 
