@@ -420,8 +420,8 @@ class Checked:
     def __exit__(self, *_):
         shutil.rmtree(self.top)
 
-    def check(self, *exercises, make='true'):
-        done = subprocess.run([str(self.top / 'tests/course/check'), *exercises], env={**os.environ, 'MAKE': make, 'SUFFIX': ''},
+    def check(self, *exercises, make='true', suffix=''):
+        done = subprocess.run([str(self.top / 'tests/course/check'), *exercises], env={**os.environ, 'MAKE': make, 'SUFFIX': suffix},
                               capture_output=True, text=True)
         return done.stdout, done.returncode
 
@@ -449,7 +449,7 @@ def test_it_is_said_why_a_region_has_no_header_of_its_own():
         for error, said in (("no member named 'mt19937' in namespace 'std'", f'; {why}'), ("'mt19937' is not a member of 'std'", f'; {why}'),
                             ("'y' was not declared in this scope", '')):
             starter.write(folder.top / 'make', f'#!/bin/sh\necho "src/a.h:2:5: error: {error}"\nexit 1\n', True)
-            came = folder.check('1.1', make=str(folder.top / 'make'))[0]
+            came = folder.check('1.1', make=str(folder.top / 'make'), suffix='-debug')[0]
             expect(came == f'1.1 does not compile: src/a.h:2:5: error: {error}{said}\n', came)
         for word, said in (('#', f'; {why}'), ('asm', '')):
             (folder.top / 'src/a.h').write_text(f'// BEGIN 1.1\n{word}\n// END 1.1\n')
