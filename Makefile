@@ -46,7 +46,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 .SECONDARY:
 
 all: $(PENUMBRA) build/compare$(SUFFIX)  ## build the renderer, render every scene into out/ (default)
-	@for s in $(SCENES); do $(MAKE) --no-print-directory out/$$s.png || exit 1; done
+	@for s in $(SCENES); do $(MAKE) --no-print-directory out/$$s.json || exit 1; done
 	@scenes/gallery out $(SCENES)
 
 gallery: $(PENUMBRA) build/knot.obj  ## large pictures with an error of 1 %: out/gallery/index.html (10 minutes)
@@ -60,19 +60,21 @@ penumbra: $(PENUMBRA)  ## build the renderer alone: build/penumbra
 
 programs: $(PROGRAMS)  ## build the renderers (build/penumbra, shadow, voronoi, radiosity) and every lab
 
-# A render that is interrupted leaves what it has in out/unfinished/, and nothing that make takes for done.
-out/%.png: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
+# A picture is done when its statistics are there: those that another command wrote have none, or older ones.  A render
+# that is interrupted leaves what it has in out/unfinished/.
+out/%.json: scenes/%.scene $(PENUMBRA)  ## out/NAME.png: render scenes/NAME.scene
 	@mkdir -p out/unfinished
 	$(PENUMBRA) $(SIZE:%=--size %) -o out/unfinished/$*.png -o out/unfinished/$*.pfm \
 	    --stats out/unfinished/$*.json $<
-	@mv out/unfinished/$*.* out/
+	@mv out/unfinished/$*.p?? out/ && mv out/unfinished/$*.json $@
+$(shell for png in out/*.png; do [ ! "$$png" -nt "$${png%png}json" ] || echo "$${png%png}json"; done): always
 
-out/%.pfm: out/%.png
-	@[ -e $@ ] || { rm $< && $(MAKE) --no-print-directory $<; }
+out/%.png out/%.pfm: out/%.json
+	@[ -e out/$*.png ] && [ -e out/$*.pfm ] || { rm $< && $(MAKE) --no-print-directory $<; }
 
 # A picture also depends on the meshes that its scene names, and on the materials that those name.
 PARTS := $(shell awk ' \
-    $$1 == "mesh" { picture = FILENAME; sub(/^scenes/, "out", picture); sub(/scene$$/, "png", picture); \
+    $$1 == "mesh" { picture = FILENAME; sub(/^scenes/, "out", picture); sub(/scene$$/, "json", picture); \
                     mesh = "scenes/" $$2; sub(/^scenes\/\.\.\//, "", mesh); print picture ":" mesh; \
                     folder = mesh; sub(/[^\/]*$$/, "", folder); \
                     while ((getline line < mesh) > 0) \
@@ -89,7 +91,7 @@ SUITE := $(OBJECTS)/all-tests
 # What a student does not wait for: tests of the course, of experiments, of the oracle's power, of this Makefile's tools,
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
-LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% world/scene_file_bounds% $(foreach t,faults memory mutants parts \
+LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% world/scene_file_bounds% $(foreach t,faults makefile memory mutants parts \
          radiosity_program resume runner stopping,whole/$t_test)
 
 test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer

@@ -1,0 +1,139 @@
+// whole/makefile_test.cpp  what the Makefile and the gallery do for whoever types make
+//
+// The compiler is a script that makes every program a script, which writes the files that it is
+// told to write.
+#include <doctest/doctest.h>
+
+#include "base/folder.h"
+#include "course/python.h"
+
+namespace {
+
+const std::string compiler = R"sh(#!/bin/sh
+echo "$*" >>compiled
+[ "${1-}" != --version ] || exit 0
+case $* in *-fsyntax-only*) cat >asked; while read -r header; do ! grep -q "$header" asked || exit 1; done <missing; exit ;; esac
+while [ "$1" != -o ]; do shift; done
+mkdir -p "$(dirname "$2")" && cp program "$2"
+)sh";
+const std::string program = R"sh(#!/bin/sh
+echo "$0 $*" >>rendered
+while [ $# -gt 0 ]; do
+    case $1 in -o) echo rendered >"$2" ;; --stats) cp statistics "$2" ;; esac
+    shift
+done
+)sh";
+const std::string statistics = R"sh({
+  "width": 40,
+  "height": 30,
+  "samples_per_pixel": 1.25e+2,
+  "seconds": 0.75,
+  "replications_per_pixel": 5,
+  "d_rel": 0.0312,
+  "d_rel_standard_error": 0.0021,
+  "d_rel_reason": null
+}
+)sh";
+
+struct Workshop : Folder {
+    Workshop() {
+        for (const std::string name : {"Makefile", "src/course/course.mk", "scenes/gallery"})
+            write(name, read_file(name));
+        write("tests/base/a_test.cpp", "");
+        write("src/app/penumbra.cpp", "");
+        write("src/keep/compare.cpp", "");
+        write("scenes/room.scene", "# A room.\nmesh a.obj 1 0 0 0\n");
+        write("scenes/a.obj", "");
+        write("statistics", statistics);
+        write("missing", "");
+        write("cc", compiler);
+        write("program", program);
+        for (const std::string name : {"scenes/gallery", "cc", "program"})
+            fs::permissions(path / name, fs::perms::owner_all);
+    }
+    Printed run(const std::string& command) const {
+        return output_of("cd '" + path.string() + "' && env -i PATH=\"$PATH\" " + command);
+    }
+    // Expects `make WORDS` to succeed, and returns what it says.
+    std::string make(const std::string& words = "") const {
+        const Printed said = run("make CXX=./cc " + words);
+        INFO("make ", words, ": ", said.text);
+        CHECK(said.status == 0);
+        return said.text;
+    }
+    // How often a program has run.
+    long renders() const {
+        const std::string lines = has("rendered") ? read("rendered") : "";
+        return std::count(lines.begin(), lines.end(), '\n');
+    }
+    void make_newer(const std::string& file, const std::string& than) const {
+        fs::last_write_time(path / file,
+                            fs::last_write_time(path / than) + std::chrono::seconds(2));
+    }
+};
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
+
+}  // namespace
+
+TEST_CASE("make renders again what is older than its parts, and what another command wrote") {
+    const Workshop shop;
+    shop.write("out/room.png", "by another command");
+    shop.make();
+    CHECK(shop.read("out/room.png") == "rendered\n");
+    CHECK(contains(shop.read("out/index.html"),
+                   "<p class=\"small\">125 samples per pixel, 0.8 s, error 3.1 % ± 0.2 %</p>"));
+    CHECK(contains(shop.read("out/index.html"), "--size 40x30 --spp 50 "));
+    CHECK(shop.renders() == 1);
+    shop.make();
+    shop.make("out/room.png out/room.pfm");
+    CHECK(shop.renders() == 1);
+    shop.make_newer("scenes/a.obj", "out/room.png");
+    shop.make("out/room.png");
+    CHECK(shop.renders() == 2);
+    fs::remove(shop / "scenes/a.obj");  // is no later than the picture
+    shop.write("scenes/a.obj", "");
+    shop.make_newer("out/room.json", "scenes/a.obj");
+
+    shop.write("out/room.png", "by another command");
+    shop.make_newer("out/room.png", "out/room.json");
+    shop.make("out/room.png");
+    CHECK(shop.read("out/room.png") == "rendered\n");
+    for (const std::string name : {"out/room.png", "out/room.pfm", "out/room.json"}) {
+        INFO(name);
+        fs::remove(shop / name);
+        shop.make("out/room.png out/room.pfm");
+        CHECK(shop.has(name));
+    }
+    CHECK(shop.renders() == 6);
+}
+
+TEST_CASE("the gallery shows no picture without its statistics") {
+    const Workshop shop;
+    shop.write("out/room.png", "");
+    auto refused = [&](const std::string& json, const std::string& why) {
+        if (!json.empty()) shop.write("out/room.json", json);
+        const Printed said = shop.run("scenes/gallery out room");
+        CHECK(said.text == "gallery: out/room.json" + why + "\n");
+        CHECK(said.status == 1);
+        CHECK(!shop.has("out/index.html"));
+    };
+    refused("", " is not there");
+    refused(statistics.substr(0, 20), " has no number \"samples_per_pixel\"");
+    for (const std::string key : {"height", "samples_per_pixel", "d_rel"}) {
+        std::string json = statistics;
+        json.replace(json.find(key) + key.size() + 3, 1, "x");
+        refused(json, " has no number \"" + key + "\"");
+    }
+    // An error that is not known has its reason, as it stands in the file.
+    std::string json = statistics;
+    json.replace(json.find("0.0312"), 6, "null");
+    refused(json, " has no reason why the error is not known");
+    json.replace(json.rfind("null"), 4, R"("a lamp, \"small\" & \\ bright")");
+    shop.write("out/room.json", json);
+    CHECK(shop.run("scenes/gallery out room").status == 0);
+    CHECK(contains(shop.read("out/index.html"),
+                   "error not known: a lamp, &quot;small&quot; &amp; \\ bright</p>"));
+}
