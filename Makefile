@@ -56,7 +56,7 @@ gallery: $(PENUMBRA) build/knot.obj  ## large pictures with an error of 1 %: out
 	        -o out/gallery/$$s.pfm --stats out/gallery/$$s.json scenes/$$s.scene || exit 1; done
 	@scenes/gallery out/gallery $(SCENES)
 
-penumbra: $(PENUMBRA)  ## build the renderer alone: build/penumbra
+penumbra: build/penumbra  ## build the renderer alone: build/penumbra
 
 programs: $(PROGRAMS)  ## build the renderers (build/penumbra, shadow, voronoi, radiosity) and every lab
 
@@ -183,6 +183,7 @@ clean:  ## remove build/ and out/
 
 help:  ## show this help
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [TREE=wide|plain] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
+	@echo "  variants stand beside build/penumbra: build/penumbra-float, -plain, -debug, -san"
 	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(firstword $(MAKEFILE_LIST)) $(wildcard src/course/course.mk)
 
 # ---- Building ------------------------------------------------------------------------------------
@@ -190,6 +191,14 @@ help:  ## show this help
 # Variants keep their objects apart but share build/: copy only what differs.
 build/%$(SUFFIX): $(OBJECTS)/%.exe always
 	@cmp -s $< $@ || cp $< $@
+
+# Who asks for build/penumbra with DEBUG=1 gets build/penumbra-debug, and is told.
+ifneq ($(SUFFIX),)
+PLAIN_NAMES := $(patsubst %,build/%,$(APPS) $(LABS) oracle-campaign)
+.PHONY: $(PLAIN_NAMES)
+$(PLAIN_NAMES): %: %$(SUFFIX)
+	@echo "this variant is $<; $@ is as it was"
+endif
 
 # No two programs have the same name.
 $(APPS:%=$(OBJECTS)/%.exe): $(OBJECTS)/commit.o

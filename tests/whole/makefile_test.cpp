@@ -14,7 +14,7 @@ echo "$*" >>compiled
 [ "${1-}" != --version ] || exit 0
 case $* in *-fsyntax-only*) cat >asked; while read -r header; do ! grep -q "$header" asked || exit 1; done <missing; exit ;; esac
 while [ "$1" != -o ]; do shift; done
-mkdir -p "$(dirname "$2")" && cp program "$2"
+mkdir -p "$(dirname "$2")" && { cat program; echo "# $*"; } >"$2" && chmod u+x "$2"
 )sh";
 const std::string program = R"sh(#!/bin/sh
 echo "$0 $*" >>rendered
@@ -42,13 +42,14 @@ struct Workshop : Folder {
         write("tests/base/a_test.cpp", "");
         write("src/app/penumbra.cpp", "");
         write("src/keep/compare.cpp", "");
+        write("src/labs/knot.cpp", "");
         write("scenes/room.scene", "# A room.\nmesh a.obj 1 0 0 0\n");
         write("scenes/a.obj", "");
         write("statistics", statistics);
         write("missing", "");
         write("cc", compiler);
         write("program", program);
-        for (const std::string name : {"scenes/gallery", "cc", "program"})
+        for (const std::string name : {"scenes/gallery", "cc"})
             fs::permissions(path / name, fs::perms::owner_all);
     }
     Printed run(const std::string& command) const {
@@ -136,4 +137,26 @@ TEST_CASE("the gallery shows no picture without its statistics") {
     CHECK(shop.run("scenes/gallery out room").status == 0);
     CHECK(contains(shop.read("out/index.html"),
                    "error not known: a lamp, &quot;small&quot; &amp; \\ bright</p>"));
+}
+
+TEST_CASE("make says the name of a variant, and leaves the program without a suffix as it is") {
+    const Workshop shop;
+    shop.make("build/penumbra build/compare build/knot");
+    const auto before = shop.read("build/penumbra");
+    for (const auto& [words, suffix] : std::map<std::string, std::string>{
+             {"DEBUG=1", "-debug"}, {"SAN=1", "-san"}, {"TREE=plain REAL=float", "-float-plain"}})
+        for (int time = 0; time < 2; ++time) {
+            const std::string said = shop.make("build/penumbra build/compare build/knot " + words);
+            for (const std::string plain : {"build/penumbra", "build/compare", "build/knot"}) {
+                INFO(words, " ", plain);
+                const std::string variant = plain + suffix;
+                CHECK(contains(said,
+                               "this variant is " + variant + "; " + plain + " is as it was\n"));
+                REQUIRE(shop.has(variant));
+                CHECK(contains(shop.read(variant), suffix.substr(suffix.rfind('-')) + "/"));
+            }
+        }
+    CHECK(contains(shop.make("penumbra DEBUG=1"), "this variant is build/penumbra-debug;"));
+    CHECK(shop.read("build/penumbra") == before);
+    CHECK(!contains(shop.make("build/penumbra"), "variant"));
 }
