@@ -4,6 +4,8 @@
 // told to write.
 #include <doctest/doctest.h>
 
+#include <regex>
+
 #include "base/folder.h"
 #include "course/python.h"
 
@@ -159,4 +161,28 @@ TEST_CASE("make says the name of a variant, and leaves the program without a suf
     CHECK(contains(shop.make("penumbra DEBUG=1"), "this variant is build/penumbra-debug;"));
     CHECK(shop.read("build/penumbra") == before);
     CHECK(!contains(shop.make("build/penumbra"), "variant"));
+}
+
+TEST_CASE("the gallery links pages, pictures and texts that are there, and no others") {
+    const Workshop shop;
+    shop.write("reference/hero.png", "");
+    auto dead = [&] {
+        std::string found;
+        const std::string page = shop.read("out/index.html");
+        const std::regex linked("(href|src)=\"([^\"]*)\"");
+        for (std::sregex_iterator i(page.begin(), page.end(), linked), end; i != end; ++i) {
+            const fs::path to = fs::path("out") / (*i)[2].str(), kind = to.extension();
+            const bool shown =
+                kind == ".png" || kind == ".html" || kind == ".json" || kind == ".scene";
+            if (!shown || !shop.has(to.string())) found += to.string() + " ";
+        }
+        return found;
+    };
+    shop.make();  // make trade has not run
+    CHECK(dead() == "");
+    CHECK(!contains(shop.read("out/index.html"), "trade"));
+    shop.write("out/trade/trade.html", "");
+    shop.make();
+    CHECK(dead() == "");
+    CHECK(contains(shop.read("out/index.html"), "href=\"../out/trade/trade.html\""));
 }
