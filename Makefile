@@ -9,8 +9,9 @@ SIZE  ?=
 UNUSED   ?= parameter variable function but-set-variable but-set-parameter label local-typedefs
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
 # Nobody asks errno about a root: loops that take roots run in vectors.
+HOMEBREW := $(addprefix -idirafter ,$(addsuffix /include,$(shell brew --prefix 2>/dev/null)))
 FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) $(if $(filter wide,$(TREE)),-DTREE_WIDE) -Isrc -MMD -MP \
-            -Wall -Wextra -Wpedantic -Wshadow -Werror $(UNUSED:%=-Wno-error=unused-%)
+            -Wall -Wextra -Wpedantic -Wshadow -Werror $(UNUSED:%=-Wno-error=unused-%) $(HOMEBREW)
 SANITISE := -O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all
 # A program is one file, and GCC stops inlining when a file has grown by 40 %: paths took 1.13 times as long.
 INLINE   := $(if $(findstring clang,$(CXX)),,--param inline-unit-growth=300)
@@ -40,7 +41,7 @@ PROGRAMS := $(APPS:%=build/%$(SUFFIX)) $(LABS:%=build/%$(SUFFIX))
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 
 .PHONY: all gallery programs test test-all test-everywhere test-farm mutants soak oracle-campaign penumbra techniques estimators1d shadows radiosity radiosity_error indirect bench \
-        peers trade calibration voronoi voronoi2d extremes readme clean help layers packages always \
+        peers trade calibration voronoi voronoi2d extremes readme clean help layers stb packages always \
         starter starter-check mistakes handout key grade plant hunted
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -290,7 +291,7 @@ $(OBJECTS)/std.h.gch: tests/std.h Makefile | packages
 	@mkdir -p $(@D)
 	$(CXX) $(FLAGS) $(OPTIMISE) -x c++-header -o $@ $<
 
-$(OBJECTS)/%.o: src/%.cpp Makefile | packages
+$(OBJECTS)/%.o: src/%.cpp Makefile | stb
 	@mkdir -p $(@D)
 	$(CXX) $(FLAGS) $(OPTIMISE) -c -o $@ $<
 
@@ -341,28 +342,29 @@ starter-check:  ## test the starter; FULL=1: each pair of stubs, too
 	@CXX='$(CXX)' FLAGS='$(FLAGS)' SUFFIX=$(SUFFIX) python3 src/course/starter_check.py $(if $(FULL),--full) $(if $(DRAW),--draw '$(DRAW)')
 starter-check: $(JUDGES) $(JUDGES:$(COURSE)/judge_%=$(COURSE)/answers_%)
 
-# ---- Packages: doctest and stb_image_write, from the system ---------------------------------------
+# ---- Packages: stb_image_write for programs, and doctest for tests, from the system ---------------
 
-DEBIAN_PACKAGES := doctest-dev libstb-dev
-HAVE_HEADERS     = printf '\043include <doctest/doctest.h>\n\043include <stb/stb_image_write.h>\n' \
-                   | $(CXX) -x c++ -fsyntax-only - 2>/dev/null
-INSTALL         := apt-get install -y $(DEBIAN_PACKAGES)
+stb:      NEEDED := libstb-dev stb/stb_image_write.h
+packages: NEEDED := doctest-dev doctest/doctest.h
+packages: stb
+INSTALL     = apt-get install -y $(firstword $(NEEDED))
+HAVE_HEADER = echo '\#include <$(lastword $(NEEDED))>' | $(CXX) $(HOMEBREW) -x c++ -fsyntax-only - 2>/dev/null
 
-packages:
+stb packages:
 	@command -v $(firstword $(CXX)) >/dev/null || \
 	    { echo "penumbra: no compiler $(CXX): install it, or say make CXX=..." >&2; exit 1; }
-	@$(HAVE_HEADERS) && exit 0; \
+	@$(HAVE_HEADER) && exit 0; \
 	if ! command -v apt-get >/dev/null; then \
-	    echo "penumbra: install doctest (doctest/doctest.h) and stb (stb/stb_image_write.h)" >&2; exit 1; \
+	    echo "penumbra: install the header $(lastword $(NEEDED))" >&2; exit 1; \
 	elif [ "$$(id -u)" = 0 ]; then as=; \
 	elif command -v sudo >/dev/null && sudo -n true 2>/dev/null; then as="sudo -n"; \
 	else \
-	    echo "penumbra: two header packages are missing; run: sudo $(INSTALL)" >&2; exit 1; \
+	    echo "penumbra: a package is missing; run: sudo $(INSTALL)$(if $(filter stb,$@),  (and doctest-dev for make test))" >&2; exit 1; \
 	fi; \
-	echo "installing $(DEBIAN_PACKAGES)"; \
+	echo "installing $(firstword $(NEEDED))"; \
 	$$as $(INSTALL) >/dev/null 2>&1 || { $$as apt-get update && $$as $(INSTALL); } >/dev/null || \
 	    { echo "penumbra: apt-get failed; run: sudo $(INSTALL)" >&2; exit 1; }; \
-	$(HAVE_HEADERS) || { echo "penumbra: $(DEBIAN_PACKAGES) are installed, but $(CXX) finds no headers" >&2; exit 1; }
+	$(HAVE_HEADER) || { echo "penumbra: $(firstword $(NEEDED)) is installed, but $(CXX) finds no header" >&2; exit 1; }
 
 # ---- Layers --------------------------------------------------------------------------------------------
 
@@ -379,7 +381,7 @@ NEEDS := wide:world/shapes.h
 
 # In a folder that has nothing else: the core must not miss what it does not name.
 .PHONY: core
-core: packages  ## the core alone: compile the renderer without any module, and count its lines
+core: stb  ## the core alone: compile the renderer without any module, and count its lines
 	@rm -rf build/core && mkdir -p build/core/src && cp -r $(CORE:%=src/%) build/core/src
 	$(CXX) $(filter-out -M% -DTREE_WIDE -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
 	build/core/penumbra --size 32x16 --spp 4 --quiet -o build/core/cornell.png scenes/cornell.scene

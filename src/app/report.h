@@ -82,7 +82,11 @@ inline double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 inline int64_t peak_memory_bytes() {
     rusage use{};
     getrusage(RUSAGE_SELF, &use);
+#ifdef __APPLE__
+    return int64_t(use.ru_maxrss);
+#else
     return int64_t(use.ru_maxrss) * 1024;
+#endif
 }
 
 // ---- In words -----------------------------------------------------------------------------------

@@ -13,7 +13,6 @@ namespace {
 
 const std::string compiler = R"sh(#!/bin/sh
 echo "$*" >>compiled
-[ "${1-}" != --version ] || exit 0
 case $* in *-fsyntax-only*) cat >asked; while read -r header; do ! grep -q "$header" asked || exit 1; done <missing; exit ;; esac
 while [ "$1" != -o ]; do shift; done
 mkdir -p "$(dirname "$2")" && { cat program; echo "# $*"; } >"$2" && chmod u+x "$2"
@@ -24,6 +23,10 @@ while [ $# -gt 0 ]; do
     case $1 in -o) echo rendered >"$2" ;; --stats) cp statistics "$2" ;; esac
     shift
 done
+)sh";
+const std::string apt_get = R"sh(#!/bin/sh
+echo "$*" >>installed
+name=${3#lib} && [ ! -e offline ] && sed -i "/${name%-dev}/d" missing
 )sh";
 const std::string statistics = R"sh({
   "width": 40,
@@ -49,13 +52,17 @@ struct Workshop : Folder {
         write("scenes/a.obj", "");
         write("statistics", statistics);
         write("missing", "");
+        write("bin/apt-get", apt_get);
+        write("bin/sudo", "#!/bin/sh\nshift; \"$@\"\n");
+        write("bin/brew", "#!/bin/sh\necho /opt/brew\n");
         write("cc", compiler);
         write("program", program);
-        for (const std::string name : {"scenes/gallery", "cc"})
+        for (const std::string name :
+             {"scenes/gallery", "cc", "bin/apt-get", "bin/sudo", "bin/brew"})
             fs::permissions(path / name, fs::perms::owner_all);
     }
     Printed run(const std::string& command) const {
-        return output_of("cd '" + path.string() + "' && env -i PATH=\"$PATH\" " + command);
+        return output_of("cd '" + path.string() + "' && env -i PATH=\"$PWD/bin:$PATH\" " + command);
     }
     // Expects `make WORDS` to succeed, and returns what it says.
     std::string make(const std::string& words = "") const {
@@ -185,4 +192,27 @@ TEST_CASE("the gallery links pages, pictures and texts that are there, and no ot
     shop.make();
     CHECK(dead() == "");
     CHECK(contains(shop.read("out/index.html"), "href=\"../out/trade/trade.html\""));
+}
+
+TEST_CASE("make installs stb for programs and doctest for tests, each when it is needed") {
+    const Workshop shop;
+    shop.write("missing", "doctest\nstb\n");
+    shop.make("build/penumbra");
+    CHECK(shop.read("installed") == "install -y libstb-dev\n");
+    shop.make("packages");
+    CHECK(shop.read("installed") == "install -y libstb-dev\ninstall -y doctest-dev\n");
+    shop.make("packages build/compare");
+    CHECK(shop.read("installed") == "install -y libstb-dev\ninstall -y doctest-dev\n");
+    shop.write("missing", "doctest\n");
+    shop.write("offline", "");
+    const Printed said = shop.run("make CXX=./cc packages");
+    CHECK(said.status == 2);
+    CHECK(contains(said.text,
+                   "penumbra: apt-get failed; run: sudo apt-get install -y doctest-dev\n"));
+}
+
+TEST_CASE("Homebrew's headers are found, after all others") {
+    const Workshop shop;
+    shop.make("build/penumbra");
+    CHECK(contains(shop.read("compiled"), " -idirafter /opt/brew/include "));
 }
