@@ -13,6 +13,13 @@ namespace {
 
 const std::string compiler = R"sh(#!/bin/sh
 echo "$*" >>compiled
+[ "${1-}" != --version ] || exec cat version
+case $(cat version),$* in
+    Clang*,*--param*) echo "error: argument unused"; exit 1 ;;
+    Clang*,*-Wno-invalid-feature-combination*) ;;
+    Clang*,*" -c "*src*) echo "error: +avx10.1-256 will be promoted"; exit 1 ;;
+    *,*invalid-feature-combination*) echo "error: no such option"; exit 1 ;;
+esac
 case $* in *-fsyntax-only*) cat >asked; while read -r header; do ! grep -q "$header" asked || exit 1; done <missing; exit ;; esac
 while [ "$1" != -o ]; do shift; done
 mkdir -p "$(dirname "$2")" && { cat program; echo "# $*"; } >"$2" && chmod u+x "$2"
@@ -51,6 +58,7 @@ struct Workshop : Folder {
         write("scenes/room.scene", "# A room.\nmesh a.obj 1 0 0 0\n");
         write("scenes/a.obj", "");
         write("statistics", statistics);
+        write("version", "GNU");
         write("missing", "");
         write("bin/apt-get", apt_get);
         write("bin/sudo", "#!/bin/sh\nshift; \"$@\"\n");
@@ -211,8 +219,11 @@ TEST_CASE("make installs stb for programs and doctest for tests, each when it is
                    "penumbra: apt-get failed; run: sudo apt-get install -y doctest-dev\n"));
 }
 
-TEST_CASE("Homebrew's headers are found, after all others") {
-    const Workshop shop;
-    shop.make("build/penumbra");
-    CHECK(contains(shop.read("compiled"), " -idirafter /opt/brew/include "));
+TEST_CASE("the compiler may be clang by another name, and finds Homebrew's headers last") {
+    for (const std::string version : {"GNU", "Clang"}) {
+        const Workshop shop;
+        shop.write("version", version == "Clang" ? "Clang: Apple clang version 19" : version);
+        shop.make("build/penumbra");
+        CHECK(contains(shop.read("compiled"), " -idirafter /opt/brew/include "));
+    }
 }
