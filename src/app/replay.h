@@ -51,8 +51,8 @@ private:
     // The material of this shape, and its line in the scene's file.
     std::string origin(uint32_t shape) const {
         if (scene_.line_of.empty()) return "";
-        return ", material " + in_quotes(scene_.names[scene_.material_of[shape]]) + ", line " +
-               std::to_string(scene_.line_of[shape]) + ",";
+        return ", material " + in_quotes(scene_.names[scene_.material_of[shape]]) + ", " +
+               place(scene_, shape) + ",";
     }
 
     void light(const DirectLight& d) const {

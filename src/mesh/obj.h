@@ -11,6 +11,9 @@
 
 namespace mesh {
 
+// A scene of so many shapes takes 1 GB; a mesh that is placed again and again asks for any number.
+inline constexpr size_t most_shapes = 1 << 22;
+
 // Adds a mesh to a scene: its polygons, placed, and those of its materials that they name.  Reads
 // `v` and `f` (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative, from
 // the last vertex back), `usemtl` and `mtllib`.  Other lines are skipped.

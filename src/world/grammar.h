@@ -55,12 +55,8 @@ inline const Statement& statement_of(const std::vector<std::string>& words) {
         if (s.keyword != words[0]) continue;
         size_t least = 0, most = 0;
         std::istringstream in{std::string(s.words)};
-        int brackets = 0;  // optional words stand in them
-        for (std::string word; in >> word; ++most) {
-            brackets += word.front() == '[';
-            least += brackets == 0;
-            brackets -= word.back() == ']';
-        }
+        bool needed = true;  // those that are not come last
+        for (std::string word; in >> word; ++most) least += needed = needed && word[0] != '[';
         const size_t found = words.size() - 1;
         if (found >= least && found <= most) return s;
         throw UserError("too " + std::string(found < least ? "few" : "many") + " words (" +

@@ -7,9 +7,6 @@
 // Coordinates are no larger: their fourth powers must neither overflow nor vanish.
 inline constexpr double longest_length = sizeof(real) == 4 ? 1e9 : 1e30;
 
-// A scene of so many shapes takes 1 GB; a mesh that is placed again and again asks for any number.
-inline constexpr size_t most_shapes = 1 << 22;
-
 // A mesh is scaled, its z axis made the y axis if that is up, turned about y as boxes are, moved.
 struct MeshPlacement {
     real scale = 1;

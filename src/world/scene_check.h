@@ -153,7 +153,10 @@ public:
 
     // Throws UserError "NAME:LINE: ..." where there is no room.
     Separation(Scene& s, const std::string& name)
-        : scene_(s), pairs_(Contacts(s, name).pairs), moved_(s.lights.size() + s.shapes.size()) {
+        : scene_(s),
+          lights_(s.lights.size()),
+          pairs_(Contacts(s, name).pairs),
+          moved_(lights_ + s.shapes.size()) {
         if (pairs_.empty()) return;
         for (const auto& [i, j] : pairs_) touching_[i].push_back(j), touching_[j].push_back(i);
         decide();
@@ -164,13 +167,14 @@ public:
 
 private:
     Scene& scene_;
+    const size_t lights_;
     const std::vector<Contacts::Pair> pairs_;
     std::map<uint32_t, std::vector<uint32_t>> touching_;
     std::vector<real> moved_;  // along the normal: each light, and each shape that is none
 
     real& by(uint32_t i) {
         const int32_t k = scene_.light_of[i];
-        return moved_[k == no_light ? scene_.lights.size() + i : size_t(k)];
+        return moved_[k == no_light ? lights_ + i : size_t(k)];
     }
     bool is_glass(uint32_t i) const { return scene_.material_at(i).transmits(); }
 
@@ -223,12 +227,8 @@ private:
     // A two-sided light is doubled, with a copy on either side.
     void move() {
         Scene& s = scene_;
-        const size_t lights = s.lights.size();
-        const std::vector<Shape> shapes = s.shapes;
-        std::vector<int32_t> back(lights, no_light);
-        std::vector<real> distance;
-        for (uint32_t i = 0; i < shapes.size(); ++i) distance.push_back(by(i));
-        for (size_t k = 0; k < lights; ++k) {
+        std::vector<int32_t> back(lights_, no_light);
+        for (size_t k = 0; k < lights_; ++k) {
             if (moved_[k] > 0 && s.lights[k].twosided) {
                 back[k] = int32_t(s.lights.size());
                 s.lights.push_back(lifted(s.lights[k], -moved_[k]));
@@ -236,13 +236,14 @@ private:
             }
             s.lights[k] = lifted(s.lights[k], moved_[k]);
         }
-        for (uint32_t i = 0; i < shapes.size(); ++i) {
-            if (distance[i] == 0) continue;
+        for (uint32_t i = 0, n = uint32_t(s.shapes.size()); i < n; ++i) {
+            if (by(i) == 0) continue;
+            const Shape shape = s.shapes[i];
             const int32_t k = s.light_of[i];
-            const vec3 n = k == no_light ? facing(shapes[i]).n : s.lights[size_t(k)].n;
-            s.shapes[i] = lifted(shapes[i], n, distance[i]);
+            const vec3 normal = k == no_light ? facing(shape).n : s.lights[size_t(k)].n;
+            s.shapes[i] = lifted(shape, normal, by(i));
             if (k == no_light || back[size_t(k)] == no_light) continue;
-            add_shape(s, lifted(shapes[i], n, -distance[i]), s.material_of[i], back[size_t(k)]);
+            add_shape(s, lifted(shape, normal, -by(i)), s.material_of[i], back[size_t(k)]);
             s.line_of.push_back(s.line_of[i]);
         }
     }
@@ -256,13 +257,12 @@ inline uint32_t enclosing_line(const Scene& s, const Light& l) {
     uint32_t line = 0;
     for (int i = 0; i < 64; ++i) {
         const real turns = real(0.618) * real(i);
-        vec3 d = sample_uniform_hemisphere({(real(i) + real(0.5)) / 64, turns - std::floor(turns)});
-        if (i % 2 == 1) d = -d;
+        vec3 d = sample_uniform_sphere({(real(i) + real(0.5)) / 64, turns - std::floor(turns)});
         if (!l.is_round() && !l.twosided && dot(d, l.n) < 0) d = -d;
         Ray ray = spawn({l.centre + l.r * d, l.is_round() ? d : l.n, l.error}, d);
         auto hit = s.bvh.closest(ray);
-        for (int k = 0; k < 64 && hit && l.kind != Light::Kind::point; ++k) {
-            if (!s.material(*hit).transmits()) break;
+        const bool passes = l.kind != Light::Kind::point;
+        for (int k = 0; k < 64 && passes && hit && s.material(*hit).transmits(); ++k) {
             ray = spawn(s.surface(ray, *hit), d);
             hit = s.bvh.closest(ray);
         }
