@@ -49,7 +49,7 @@ SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: $(PENUMBRA) build/compare$(SUFFIX)  ## build the renderer, render every scene into out/ (default)
+all: $(PENUMBRA)  ## build the renderer, render every scene into out/ (default)
 	@for s in $(SCENES); do $(MAKE) --no-print-directory out/$$s.json || exit 1; done
 	@scenes/gallery out $(SCENES)
 
@@ -302,7 +302,7 @@ $(OBJECTS)/%.o: src/%.cpp Makefile | stb
 
 # ---- The classroom -------------------------------------------------------------------------------
 
-include src/course/course.mk
+-include src/course/course.mk
 JUDGES := $(patsubst tests/course/%.cpp,$(COURSE)/%,$(wildcard tests/course/judge_*.cpp))
 
 # What the solution draws, students compare with.  They have the plain BVH.

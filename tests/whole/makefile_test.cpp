@@ -128,6 +128,14 @@ TEST_CASE("make renders again what is older than its parts, and what another com
     CHECK(shop.renders() == 6);
 }
 
+TEST_CASE("make draws the gallery without any module, and without the course") {
+    const Workshop shop;
+    fs::remove_all(shop / "src/keep");
+    fs::remove_all(shop / "src/course");
+    shop.make();
+    CHECK(shop.has("out/index.html"));
+}
+
 TEST_CASE("the gallery shows no picture without its statistics") {
     const Workshop shop;
     shop.write("out/room.png", "");
@@ -173,6 +181,7 @@ TEST_CASE("make says the name of a variant, and leaves the program without a suf
                 CHECK(contains(shop.read(variant), suffix.substr(suffix.rfind('-')) + "/"));
             }
         }
+    shop.make_newer("build/penumbra", "build/penumbra-debug");
     CHECK(contains(shop.make("penumbra DEBUG=1"), "this variant is build/penumbra-debug;"));
     CHECK(shop.read("build/penumbra") == before);
     CHECK(!contains(shop.make("build/penumbra"), "variant"));
