@@ -167,7 +167,7 @@ TEST_CASE("--pixel names the material and the line of what a path meets") {
     std::string all;
     for (int sample = 0; sample < 20; ++sample)
         all += replayed(place, "--size 3x3 --sample " + std::to_string(sample));
-    CHECK(contains(all, ", material 'm', line 7, at distance "));
+    CHECK(contains(all, ", material 'm', line 7 (m.obj:5), at distance "));
 }
 
 TEST_CASE("--pixel names each kind of light, or why none is sampled") {
