@@ -139,7 +139,7 @@ inline Depth depth_of(const Scene& s, uint32_t i) {
     if (!m.transmits()) return {real(s.light_of[i] == no_light ? 0 : 1), -real(s.light_of[i])};
     std::array<std::array<real, 3>, 3> c{
         {{t.a.x, t.a.y, t.a.z}, {t.b.x, t.b.y, t.b.z}, {t.c.x, t.c.y, t.c.z}}};
-    std::ranges::rotate(c, std::ranges::min_element(c));
+    std::rotate(c.begin(), std::ranges::min_element(c), c.end());
     Depth depth{2, m.ior, t.r, real(s.line_of[i])};
     for (size_t k = 0; k < 9; ++k) depth[k + 4] = c[k / 3][k % 3];
     return depth;

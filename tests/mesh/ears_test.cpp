@@ -36,7 +36,7 @@ void check(const Corners& c) {
 }
 
 Corners rotated(Corners c, size_t start) {
-    std::ranges::rotate(c, c.begin() + ptrdiff_t(start));
+    std::rotate(c.begin(), c.begin() + ptrdiff_t(start), c.end());
     return c;
 }
 

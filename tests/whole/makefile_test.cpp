@@ -168,17 +168,19 @@ TEST_CASE("make says the name of a variant, and leaves the program without a suf
     const Workshop shop;
     shop.make("build/penumbra build/compare build/knot");
     const auto before = shop.read("build/penumbra");
-    for (const auto& [words, suffix] : std::map<std::string, std::string>{
+    for (const auto& variant : std::map<std::string, std::string>{
              {"DEBUG=1", "-debug"}, {"SAN=1", "-san"}, {"TREE=plain REAL=float", "-float-plain"}})
         for (int time = 0; time < 2; ++time) {
-            const std::string said = shop.make("build/penumbra build/compare build/knot " + words);
+            const std::string said =
+                shop.make("build/penumbra build/compare build/knot " + variant.first);
             for (const std::string plain : {"build/penumbra", "build/compare", "build/knot"}) {
-                INFO(words, " ", plain);
-                const std::string variant = plain + suffix;
-                CHECK(contains(said,
-                               "this variant is " + variant + "; " + plain + " is as it was\n"));
-                REQUIRE(shop.has(variant));
-                CHECK(contains(shop.read(variant), suffix.substr(suffix.rfind('-')) + "/"));
+                INFO(variant.first, " ", plain);
+                const std::string built = plain + variant.second;
+                CHECK(
+                    contains(said, "this variant is " + built + "; " + plain + " is as it was\n"));
+                REQUIRE(shop.has(built));
+                CHECK(contains(shop.read(built),
+                               variant.second.substr(variant.second.rfind('-')) + "/"));
             }
         }
     shop.make_newer("build/penumbra", "build/penumbra-debug");

@@ -210,9 +210,9 @@ TEST_CASE("glass on anything is as if a hair of air were between") {
             INFO(under);
             CAPTURE(before);
             const std::string floor = "quad -4 0 -4  0 0 8  8 0 0  grey\n";
-            const std::string room = under.empty() ? ice_room : replaced(floor, "\n", ice_room);
+            const std::string bare = under.empty() ? ice_room : replaced(floor, "\n", ice_room);
             auto with_block = [&](double height) {
-                return parsed(room + (before ? under + block(height) : block(height) + under));
+                return parsed(bare + (before ? under + block(height) : block(height) + under));
             };
             const ParsedScene touching = with_block(0);
             expect_as_with_a_gap(touching, with_block(gap));

@@ -44,7 +44,7 @@ std::string many_cornered() {
 }
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-const std::string shining = "mtllib m.mtl\nusemtl a\n", mesh = "mesh m.obj 1 0 0 0\n",
+const std::string shining = "mtllib m.mtl\nusemtl a\n", placed = "mesh m.obj 1 0 0 0\n",
                   grey_mesh = "mesh m.obj 1 0 0 0 d\n";
 
 }  // namespace
@@ -54,7 +54,7 @@ TEST_CASE("a mesh of 10 kB that a scene of 25 kB repeats: so many shapes are too
     folder.write("m.obj", many_cornered());
     const size_t once = parsed(folder, before + grey_mesh).scene.shapes.size();
     CHECK(once > 3500);
-    const size_t times = most_shapes / once + 1;
+    const size_t times = mesh::most_shapes / once + 1;
     const std::string why = complaint(folder, repeated(times, grey_mesh)),
                       line = std::to_string(3 + times);
     CHECK(why.starts_with("s.scene:" + line + ": "));
@@ -68,7 +68,7 @@ TEST_CASE("of a library that a scene repeats, the materials that faces name coun
     for (int i = 0; i < 1000; ++i) many += "newmtl " + std::to_string(i) + "\n";
     folder.write("m.mtl", many);
     const size_t times = 500;
-    CHECK(parsed(folder, repeated(times, mesh)).scene.materials.size() == times + 2);
+    CHECK(parsed(folder, repeated(times, placed)).scene.materials.size() == times + 2);
 }
 
 TEST_CASE(
@@ -93,7 +93,7 @@ TEST_CASE("a hundred lights in one place have a warning each; thousands are refu
     const Folder folder;
     folder.write("m.mtl", "newmtl a\nKe 1 1 1\n");
     folder.write("m.obj", shining + square + "f 1 2 3\nf 3 4 1\n");
-    const ParsedScene all = parsed(folder, repeated(100, mesh));
+    const ParsedScene all = parsed(folder, repeated(100, placed));
     CHECK(all.scene.lights.size() == 200);
     REQUIRE(all.warnings.size() == 99);
     CHECK(all.warnings[0].starts_with(
@@ -119,7 +119,7 @@ TEST_CASE("a wall of so many lights that none may be in one place, across any ax
         const Folder folder;
         folder.write("m.mtl", "newmtl a\nKe 1 1 1\n");
         folder.write("m.obj", obj);
-        const ParsedScene wall = parsed(folder, before + mesh);
+        const ParsedScene wall = parsed(folder, before + placed);
         CHECK(wall.scene.lights.size() == n * n);
         CHECK(wall.warnings.empty());
     }
