@@ -166,6 +166,84 @@ TEST_CASE("images: each of the 24 values of 4x2 pixels in RGB is looked at, in i
     says(expect_image(4, 2, dark, errors, truth), "red, blue: the image is 0.5 (1/2, half) times");
 }
 
+namespace {
+
+struct WithValue {
+    Triple wi;
+    double pdf;
+    Triple f;
+};
+struct WithWeight {
+    std::array<float, 3> wi;
+    float pdf, weight;
+};
+
+}  // namespace
+
+TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") {
+    const Aside aside;
+    Random random(seed_here());
+    // Uniform directions; a glossy lobe, so that neither pdf nor eval is a power of a cosine.
+    auto uniform = [](double u, double v) {
+        const double r = std::sqrt(1 - u * u), phi = 2 * pi * v;
+        return Triple{r * std::cos(phi), r * std::sin(phi), u};
+    };
+    auto lobe = [](const auto& wo, const auto& wi) {
+        if (wo[2] <= 0 || wi[2] <= 0) return 0.0;
+        const double c = double(wo[2]) * double(wi[2]) - double(wo[0]) * double(wi[0]) -
+                         double(wo[1]) * double(wi[1]);
+        return (0.2 + 0.5 * std::max(0.0, c)) / pi;
+    };
+    auto pdf = [](const auto& wi) { return wi[2] > 0 ? 0.5 / pi : 0; };
+    auto values = [&](auto change) {
+        auto sample = [&](Triple wo, double u, double v) {
+            const Triple w = uniform(u, v);
+            const double f = lobe(wo, w) * change(w);
+            return WithValue{w, pdf(w), {f, 2 * f, 0}};
+        };
+        return expect_bsdf(
+            random, sample, [&](Triple, Triple w) { return pdf(w); },
+            [&](Triple wo, Triple wi) {
+                const double f = lobe(wo, wi);
+                return Triple{f, 2 * f, 0};
+            },
+            quick);
+    };
+    using floats = std::array<float, 3>;
+    auto weights = [&](auto change) {
+        auto sample = [&](floats wo, float u, float v) -> std::optional<WithWeight> {
+            const Triple w = uniform(double(u), double(v));
+            const floats wi = {float(w[0]), float(w[1]), float(w[2])};
+            if (u == 0) return {};
+            return WithWeight{wi, float(pdf(wi)), float(lobe(wo, wi) * change(w))};
+        };
+        return expect_bsdf(
+            random, sample, [&](floats, floats w) { return float(pdf(w)); },
+            [&](floats wo, floats w) { return float(lobe(wo, w)); }, quick);
+    };
+    CHECK(values([](Triple) { return 1; }).pass);
+    CHECK(weights([](Triple w) { return 2 * pi * w[2]; }).pass);
+    const std::pair<Verdict, const char*> refused[] = {
+        {values([](Triple) { return 0.5; }),
+         "the f that sample returns is 0.5 (1/2, half) times eval's value, at every direction"},
+        {values([](Triple w) { return w[2]; }),
+         "the f that sample returns is |cos| times eval's value, at every direction"},
+        {values([](Triple w) { return w[2] * 2 * pi; }), "(2 pi) |cos| times eval's value"},
+        {values([](Triple w) { return w[0] > 0   ? 1
+                                      : w[1] > 0 ? 2
+                                                 : 3; }), " % of directions"},
+        {values([](Triple) { return NAN; }),
+         "the f that sample returns is nan, but eval's value is "},
+        {weights([](Triple w) { return w[2]; }),
+         "the weight that sample returns is 0.1592 (1/(2 pi)) times eval's value |cos| / pdf, at "},
+        {weights([](Triple) { return 2 * pi; }),
+         "the weight that sample returns is |cos|^-1 times eval's value |cos| / pdf, at 99"}};
+    for (const auto& [v, why] : refused) {
+        says(v, why);
+        CHECK(!v.pass);
+    }
+}
+
 TEST_CASE("what cannot be judged is refused: by the name that it was given, once, and why") {
     const Aside aside;
     Random random(seed_here());

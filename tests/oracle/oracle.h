@@ -2105,6 +2105,53 @@ struct Albedo {
 };
 std::string albedo_hint(const std::vector<Albedo>& all);
 
+// What a sampler says of eval at a direction, beside what eval says.
+struct Stated {
+    Triple wi;
+    double said, wanted, pdf;
+};
+std::string stated_hint(const std::vector<Stated>& wrong, const std::string& what, double part);
+
+// The member f of what sample returns is eval's value; weight is f |cos| / pdf.  One value in a
+// hundred may round otherwise, where lobes are narrow or end.
+template <class From, class M>
+std::string judge_stated(Random& random, From& from_wo, const M& model,
+                         const std::function<double(const Triple&)>& f, const Options& o) {
+    using Raw = decltype(oracle::call(from_wo, model.draw(random)));
+    using R = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
+    constexpr bool value = requires(const R& r) { r.f; }
+    , weight = requires(const R& r) { r.weight; };
+    std::vector<Stated> wrong;
+    double compared = 0;
+    if constexpr (value || weight)
+        for (int i = 0; i < 2048 && o.discrete == 0; ++i) {
+            const Raw raw = oracle::call(from_wo, model.draw(random));
+            if constexpr (may_fail<Raw>)
+                if (!raw) continue;
+            const R& r = oracle::arrived(raw);
+            const Triple wi = oracle::point(oracle::point_in(r));
+            const double p = model.pdf(wi), light = f(wi);
+            if (!(p > 0)) continue;
+            double said, wanted = light, close = 64 * std::max(model.unit, model.pdf_unit);
+            if constexpr (value)
+                said = brightness(r.f);
+            else
+                said = brightness(r.weight), wanted *= std::abs(wi[2]) / p;
+            ++compared;
+            for (int k = 0; k < 4; ++k) {
+                Triple near = wi;
+                for (double& x : near) x += (random() - 0.5) * 8 * model.unit;
+                close = std::max(
+                    {close, std::abs(f(near) / light - 1), std::abs(model.pdf(near) / p - 1)});
+            }
+            const double tolerance = 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance;
+            if (said != wanted && !(std::abs(said / wanted - 1) <= tolerance))
+                wrong.push_back({wi, said, wanted, p});
+        }
+    if (double(wrong.size()) <= 8 + 0.01 * compared) return "";
+    return stated_hint(wrong, value ? "f" : "weight", double(wrong.size()) / compared);
+}
+
 // A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
 // if it transmits for these from below, too: samples sample(wo, u, v, ...) have the density
 // pdf(wo, wi); eval(wo, wi), without the cosine, is finite, not negative, reciprocal, and 0 where
@@ -2149,6 +2196,9 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             if (!v.pass) return v;
             all.p = std::min(all.p, v.p);
             all.delta_min = std::max(all.delta_min, v.delta_min);
+            const std::string off = judge_stated(
+                random, from_wo, erased, [&](const Triple& wi) { return f(out, wi); }, o);
+            if (!off.empty()) return failure(off, here);
             Draws albedo, scaled;
             for (int i = 0; i < 100000; ++i) {
                 const auto wi = erased.sample(erased.draw(random));
@@ -3165,6 +3215,31 @@ inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close
 }
 
 // `all` are directions wo from steep to grazing, each with its albedo and the relative error.
+inline std::string stated_hint(const std::vector<Stated>& wrong, const std::string& what,
+                               double part) {
+    const std::string expected = what == "f" ? "eval's value" : "eval's value |cos| / pdf",
+                      begin = "the " + what + " that sample returns is ",
+                      often = part == 1 ? ", at every direction"
+                                        : ", at " + percent(part) + " of directions";
+    for (const double a : {0.0, 1.0, -1.0})
+        for (const double b : {0.0, -1.0, 1.0}) {
+            std::vector<double> ratios;
+            for (const Stated& s : wrong)
+                ratios.push_back(s.said / s.wanted / std::pow(std::abs(s.wi[2]), a) /
+                                 std::pow(s.pdf, b));
+            const Law law = law_of(ratios, 0.01);
+            if (!law.holds) continue;
+            const std::string base = (a == 0 ? "" : power("|cos|", a)) +
+                                     (a == 0 || b == 0 ? "" : " ") +
+                                     (b == 0 ? "" : power("pdf", b));
+            return begin +
+                   (base.empty() ? times(law.factor, 0.003) : factor_and(law.factor, 0.01, base)) +
+                   " times " + expected + often;
+        }
+    return begin + say("%.4g, but ", wrong[0].said) + expected +
+           say(" is %.4g, for wi = ", wrong[0].wanted) + say_point(wrong[0].wi) + often;
+}
+
 inline std::string albedo_hint(const std::vector<Albedo>& all) {
     const Albedo* worst = nullptr;
     std::string list;
