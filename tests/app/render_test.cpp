@@ -298,12 +298,13 @@ TEST_CASE("--error: pictures of a few pixels reach theirs, with noise or without
             CHECK(run.stopped_by == "error");
         }
     Scene point = small(smooth.c_str(), {1, 1});
-    point.camera.tan_half = real(1e-5);
+    point.camera.tan_half = real(1e-3);
     for (const uint32_t sets : {0u, 2u}) {
         Options o = quick(SamplerKind::sobol, 4000);
         o.sets = sets, o.error = 0.01;
         const Run run = rendered(o, point).run;
         CHECK(run.error.d2() > 0);
+        CHECK(run.error.d_rel() < 1e-6);
         CHECK(run.stopped_by == "error");
         CHECK(run.spp == 8 * run.sets);  // by the first check
     }
