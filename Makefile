@@ -95,7 +95,7 @@ SUITE := $(OBJECTS)/all-tests
 # What a student does not wait for: tests of the course, of experiments, of the oracle's power, of this Makefile's tools,
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
-LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% world/scene_file_bounds% $(foreach t,faults makefile memory mutants parts \
+LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% world/scene_file_bounds% $(foreach t,faults from_blender makefile memory mutants parts \
          radiosity_program resume runner stopping,whole/$t_test)
 
 test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer

@@ -64,8 +64,9 @@ public:
         std::string head(1 << 16, '\0');  // none is longer
         head.resize(read_some(std::as_writable_bytes(std::span(head))));
         const size_t lines = check_first_lines(head), end = head.find("\n\n", lines - 1);
-        if (end == head.npos) refuse(cut_short);
-        left_ = std::strtoull(head.c_str() + head.find("\nbytes ") + 7, nullptr, 10);
+        const size_t bytes = head.find("\nbytes ");
+        if (end == head.npos || bytes == head.npos) refuse(cut_short);
+        left_ = std::strtoull(head.c_str() + bytes + 7, nullptr, 10);
         in_.clear();
         in_.seekg(0, std::ios::end);
         const uint64_t there = uint64_t(in_.tellg()) - (end + 2);

@@ -151,11 +151,15 @@ private:
             std::ranges::replace(name, '\\', '/');
             return (std::filesystem::path(path_).parent_path() / name).string();
         };
+        const auto is_there = [&](const std::string& name) {
+            std::error_code unreachable;
+            return std::filesystem::is_regular_file(path(name), unreachable);
+        };
         std::vector<std::string> names(l.words.begin() + 1, l.words.end());
-        if (std::filesystem::is_regular_file(path(l.name()))) names = {l.name()};
+        if (is_there(l.name())) names = {l.name()};
         for (const std::string& name : names) {
             if (!libraries_.insert(path(name)).second) continue;
-            if (std::filesystem::is_regular_file(path(name)))
+            if (is_there(name))
                 library(path(name));
             else
                 note({path_, "material file", "missing", ""}, line, name);

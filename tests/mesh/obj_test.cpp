@@ -132,6 +132,20 @@ TEST_CASE("what others write and Penumbra has not is told once, with its count a
               .warnings.size() == 2);
 }
 
+TEST_CASE("a library that cannot be reached is missing") {
+    const Folder folder;
+    const std::string long_name(300, 'x'), face = corners + "f 1 2 3\n";
+    CHECK(warnings(folder, "mtllib " + long_name + "\n" + face) ==
+          Told{"m.obj: 1 material file is missing, first '" + long_name.substr(0, 40) +
+               "...' at line 1"});
+    for (const std::string name : {".", "/dev/zero", "m.obj/no.mtl"}) {
+        INFO(name);
+        CHECK(warnings(folder, "mtllib " + name + "\n" + face) ==
+              Told{"m.obj: 1 material file is missing, first '" + name + "' at line 1"});
+    }
+    CHECK(warnings(folder, "mtllib\n" + face).empty());
+}
+
 TEST_CASE("faces whose material is missing have the mesh line's, or are grey") {
     const Folder folder;
     folder.write("m.mtl", "newmtl red\nKd 1 0 0\n");
