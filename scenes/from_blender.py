@@ -47,7 +47,7 @@ for it in bpy.data.objects:
 bpy.ops.wm.obj_export(filepath=out + ".obj", export_eval_mode="DAG_EVAL_RENDER")
 open(out + ".mtl", "w").writelines(map(mtl, bpy.data.materials))
 if scene.world: warn("the light of the world")
-x, y, z, eye = columns(camera)
+x, y, z, eye = columns(camera or sys.exit("from_blender: no camera"))
 target = [e - b + 1e-5 * u for e, b, u in zip(eye, z, y)]  # even straight down, a little up
 if abs(x.z) > 0.001 or camera.data.type != "PERSP": warn("the camera's roll or projection")
 (_, top, near), (_, bottom, _) = camera.data.view_frame(scene=scene)[:2]
