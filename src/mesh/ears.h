@@ -98,7 +98,6 @@ private:
         return difference_of_products(at_[b].x - at_[a].x, at_[c].y - at_[a].y, at_[c].x - at_[a].x,
                                       at_[b].y - at_[a].y);
     }
-    bool same(size_t a, size_t b) const { return at_[a].x == at_[b].x && at_[a].y == at_[b].y; }
     real height(size_t i, const std::vector<size_t>& rest, int64_t& left) const {
         const size_t a = before_[i], b = after_[i];
         const real twice = area(a, i, b);
@@ -107,7 +106,7 @@ private:
         for (size_t j : rest) {
             if (j == a || j == i || j == b || area(before_[j], j, after_[j]) > 0) continue;
             const bool inside = area(a, i, j) >= 0 && area(i, b, j) >= 0 && area(b, a, j) >= 0;
-            if (twice > 0 && inside && !same(j, a) && !same(j, i) && !same(j, b)) return -1;
+            if (twice > 0 && inside) return -1;
         }
         auto square = [&](size_t p, size_t q) {
             return sqr(at_[q].x - at_[p].x) + sqr(at_[q].y - at_[p].y);
