@@ -132,6 +132,27 @@ TEST_CASE("random stars, seen from anywhere") {
     }
 }
 
+TEST_CASE("random polygons with holes, which bridges join") {
+    for (uint64_t seed = 0; seed < 300; ++seed) {
+        CAPTURE(seed);
+        const size_t n = 3 + seed % 7;
+        Corners c;
+        for (size_t i = 0; i < n; ++i) {
+            const real turn = real(i) / real(n), angle = 2 * pi * turn;
+            const vec3 outer{10 * std::cos(angle), 10 * std::sin(angle), 0};
+            c.push_back(outer);
+            if (number(seed, i) < real(.2)) continue;
+            for (size_t k = 0; k <= 5; ++k) {
+                const real r = k % 5 == 0 ? real(.8) : real(.2) + number(seed, 9 * i + k) / 2;
+                const real to = angle - 2 * pi * real(k % 5) / 5;
+                c.push_back(outer * real(.62) + vec3{r * std::cos(to), r * std::sin(to), 0});
+            }
+            c.push_back(outer);
+        }
+        check(c);
+    }
+}
+
 TEST_CASE(
     "what crosses itself is not cut, nor what takes too long; one corner more may be in line") {
     CHECK(!cut({{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}}));  // a bow tie
