@@ -6,6 +6,7 @@
 #include "base/approx.h"
 #include "base/cases.h"
 #include "base/complaint.h"
+#include "base/folder.h"
 #include "path/paths.h"
 #include "world/scene_file.h"
 
@@ -354,6 +355,17 @@ TEST_CASE(
         INFO(open);
         CHECK(hidden(lamp + open).find("inside") == std::string::npos);
     }
+    // In an empty room with the eye, and in a tube that is open above and below.
+    const std::string head =
+        "camera 0 1 3  0 .5 0  50\ndiffuse grey .5 .5 .5\nlight lamp 2 2 2\n"
+        "sphere 0 1 0 .1 lamp\n";
+    CHECK(parsed(head + "box 8 8 8 0 -4 -4 -4 grey\n").warnings.empty());
+    CHECK(parsed(head + "box 2 2 2 0 -1 0 -1 grey\n").warnings.size() == 1);
+    const Folder folder;
+    folder.write("tube.obj",
+                 "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 4 -1\nv 1 4 -1\nv 1 4 1\nv -1 4 1\n"
+                 "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    CHECK(parse_scene(head + "mesh tube.obj 1 0 -1 0 grey\n", folder / "test").warnings.empty());
     const std::string point = "pointlight 2 3 1  9 9 9\n";
     CHECK(hidden(point + "sphere 2 3 1 .6 grey\n") == inside);
     const std::string missing =
