@@ -14,6 +14,7 @@
 inline ParsedScene load(const Options& o) {
     ParsedScene parsed = read_scene(o.scene);
     Scene& scene = parsed.scene;
+    for (const std::string& hidden : hidden_lights(scene)) parsed.warnings.push_back(hidden);
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
     if (o.view == View::occlusion) scene.depth = 1;    // for the numbers of one direction

@@ -52,7 +52,7 @@ private:
     std::string origin(uint32_t shape) const {
         if (scene_.line_of.empty()) return "";
         return ", material " + in_quotes(scene_.names[scene_.material_of[shape]]) + ", " +
-               place(scene_, shape) + ",";
+               where(scene_, shape) + ",";
     }
 
     void light(const DirectLight& d) const {

@@ -25,14 +25,25 @@ inline Cuts fan_of(const Corners& c) {
     return fan;
 }
 
-// True if all triangles have an area on the side of the polygon; `nearly`: if none has more than a
-// thousandth of the polygon's on the other side, which the rounding of a file to three digits
-// makes.
-inline bool face_one_way(const Corners& c, const Cuts& triangles, bool nearly) {
+inline vec3 area_vector(const Corners& c, const std::array<size_t, 3>& t) {
+    return cross(c[t[1]] - c[t[0]], c[t[2]] - c[t[0]]);
+}
+
+// True if all triangles have an area on the side of the polygon.
+inline bool face_one_way(const Corners& c, const Cuts& triangles) {
     const vec3 normal = area_vector(c);
-    return std::ranges::all_of(triangles, [&](const auto& t) {
-        const real area = dot(cross(c[t[1]] - c[t[0]], c[t[2]] - c[t[0]]), normal);
-        return nearly ? area >= -dot(normal, normal) / 1000 : area > 0;
+    return std::ranges::all_of(triangles,
+                               [&](const auto& t) { return dot(area_vector(c, t), normal) > 0; });
+}
+
+// True if a triangle has more than a thousandth of the polygon's area on its other side; less may
+// be the rounding of a file to three digits.
+inline bool is_folded(const Corners& c, const Cuts& triangles) {
+    const vec3 normal = area_vector(c);
+    return std::ranges::any_of(triangles, [&](const auto& t) {
+        const vec3 own = area_vector(c, t);
+        const real area = dot(own, normal);
+        return normal == vec3{} ? !(own == vec3{}) : area < -dot(normal, normal) / 1000;
     });
 }
 

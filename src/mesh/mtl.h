@@ -29,23 +29,30 @@ struct ObjLine {
     }
 };
 
-// Calls read(line, number) for every line that has words; a backslash joins it with the next.
+// Calls read(line, number) for every line that has words; a backslash joins it with the next,
+// unless it ends a comment.
 template <class Read>
 void read_obj_lines(const std::string& path, Read read) {
     std::string joined;
+    uint32_t first = 0;
     read_lines(read_file(path) + "\n\n", path, [&](std::string_view line, uint32_t number) {
-        const bool goes_on = line.ends_with('\\');
+        const size_t start = line.find_first_not_of(" \t"), end = line.find_last_not_of(" \t");
+        if (start == line.npos) line = "";
+        const bool goes_on = !line.empty() && line[end] == '\\' &&
+                             std::string_view("#go").find(line[start]) == line.npos;
+        if (joined.empty()) first = number;
         if (goes_on || !joined.empty()) joined += line;
-        if (goes_on) return void(joined.back() = ' ');
+        if (goes_on) return void(joined[joined.find_last_of('\\')] = ' ');
         const ObjLine whole(joined.empty() ? line : joined);
-        if (whole.size() > 0) read(whole, number);
+        if (whole.size() > 0) read(whole, first);
         joined.clear();
     });
 }
 
 // A material of an MTL file.  Glass has no colour, mirrors only that of Ks.
 struct Mtl {
-    rgb kd, ks, Le;
+    std::optional<rgb> kd;
+    rgb ks, Le;
     real exponent = 0;
     int illum = 2;
     std::optional<real> ior, opacity, transparency;
@@ -66,30 +73,36 @@ struct Mtl {
         else if (keyword == "Tr")
             transparency = number();
         else if (keyword == "Kd" || keyword == "Ks" || keyword == "Ke")
-            return read_colour(l, keyword == "Kd" ? kd : keyword == "Ks" ? ks : Le);
+            (keyword == "Kd" ? kd.emplace() : keyword == "Ks" ? ks : Le) = colour(l);
         else
             return false;
         return true;
     }
 
     // One number is grey.
-    static bool read_colour(const ObjLine& l, rgb& colour) {
-        if (l[1] == "spectral" || l[1] == "xyz") return false;
+    static rgb colour(const ObjLine& l) {
+        rgb c;
         for (size_t k = 0; k < 3; ++k)
-            if ((colour.*axis[k] = real(parse_number(l[std::min(k + 1, l.size() - 1)]))) < 0)
-                throw UserError("a colour must not be negative");
-        return true;
+            c.*axis[k] = std::max(real(0), real(parse_number(l[std::min(k + 1, l.size() - 1)])));
+        return c;
     }
 
+    bool is_clear() const { return opacity.value_or(1 - transparency.value_or(0)) < 1; }
     bool is_glass() const {
-        const bool clear = opacity.value_or(1 - transparency.value_or(0)) < 1;
-        return illum == 4 || illum == 6 || illum == 7 || illum == 9 || (clear && ior > 1);
+        return illum == 4 || illum == 6 || illum == 7 || illum == 9 || (is_clear() && ior > 1);
     }
     bool is_mirror() const { return (illum == 3 || illum == 5) && max_of(ks) > 0; }
 
+    // A material of which nothing is said is grey.
+    bool is_blank() const { return !kd && max_of(ks + Le) == 0 && !is_glass(); }
+    rgb diffuse() const { return is_blank() ? rgb{0.5, 0.5, 0.5} : kd.value_or(rgb{}); }
+
     // Reflects no more than it receives.
     real albedo() const {
-        return max_of(is_glass() ? rgb{} : is_mirror() ? ks : illum > 1 ? kd + ks : kd);
+        return max_of(is_glass()    ? rgb{}
+                      : is_mirror() ? ks
+                      : illum > 1   ? diffuse() + ks
+                                    : diffuse());
     }
     Material material() const {
         Material m;
@@ -102,7 +115,7 @@ struct Mtl {
             m.kind = Material::Kind::mirror;
             m.ks = ks * scale;
         } else {
-            m.kd = kd * scale;
+            m.kd = diffuse() * scale;
             if (illum > 1) m.ks = ks * scale, m.exponent = exponent;
         }
         return m;

@@ -34,8 +34,8 @@ public:
         scene_.mesh_of[line_] = std::filesystem::path(path).filename().string();
         scene_.line_in_mesh.resize(scene_.shapes.size());
         read_obj_lines(path, [&](const ObjLine& l, uint32_t line) { statement(l, line); });
-        // It is not shown: what is no mesh at all may be anything.
-        if (faces_.empty() && first_skipped_ > 0)
+        // The line is not shown: a file that is no mesh may be anything.
+        if (vertices_.empty() && first_skipped_ > 0)
             throw error_at(path, first_skipped_, "not a line of an OBJ file");
         if (faces_.empty()) throw UserError(path + ": no face in it");
         for (const Face& face : faces_) {
@@ -103,7 +103,7 @@ private:
             if (l.size() < 4) throw UserError("v needs three numbers");
             for (size_t i = 4; i < l.size(); ++i) coordinate(l[i]);  // a weight or a colour
             vertices_.push_back(place_({coordinate(l[1]), coordinate(l[2]), coordinate(l[3])}));
-        } else if (l[0] == "f") {
+        } else if (l[0] == "f" || l[0] == "fo") {
             face(l, line);
         } else if (l[0] == "usemtl") {
             const auto [use, fresh] = use_of_.try_emplace(l.name(), uint32_t(uses_.size()));
@@ -120,7 +120,7 @@ private:
     // Some programs write "nan", "-inf" or "1.#IND" where they had no number.
     static real coordinate(std::string_view word) {
         if (word.find_first_of("nN") != word.npos) return std::numeric_limits<real>::quiet_NaN();
-        return real(parse_number(word));
+        return real(parse_number(word, std::numeric_limits<double>::infinity()));
     }
 
     // Vertices may follow the faces that they belong to.
@@ -149,7 +149,9 @@ private:
     void libraries(const ObjLine& l, uint32_t line) {
         const auto path = [&](std::string name) {
             std::ranges::replace(name, '\\', '/');
-            return (std::filesystem::path(path_).parent_path() / name).string();
+            std::erase(name, '"');
+            const auto folder = std::filesystem::path(path_).parent_path();
+            return (folder / name).lexically_normal().string();
         };
         const auto is_there = [&](const std::string& name) {
             std::error_code unreachable;
@@ -175,10 +177,19 @@ private:
                 current = fresh ? &own->second : &second;
                 if (!fresh)
                     note({path, "material", "defined twice", ": the first counts"}, line, l.name());
-            } else if (!current || !current->read(l)) {
+            } else if (!current || !understood(*current, l)) {
                 unused(l[0], path, line);
             }
         });
+    }
+
+    // A property without a number is left as it was.
+    static bool understood(Mtl& material, const ObjLine& l) {
+        try {
+            return material.read(l);
+        } catch (const UserError&) {
+            return false;
+        }
     }
 
     // Words other than letters are not shown: what is no library at all may be anything.
@@ -194,10 +205,11 @@ private:
 
     uint32_t material(uint32_t use, uint32_t line) {
         Use& u = uses_[use];
+        if (use == 0 && !given_)
+            note({path_, "face", "without material", ": 'grey' is used"}, line);
+        if (u.material) return *u.material;
         const std::string instead =
             ": " + in_quotes(given_ ? scene_.names[*given_] : "grey") + " is used";
-        if (use == 0 && !given_) note({path_, "face", "without material", instead}, line);
-        if (u.material) return *u.material;
         const auto found = mtl_.find(u.name);
         if (found == mtl_.end()) {
             if (use > 0) note({path_, "material", "not defined", instead}, u.line, u.name);
@@ -206,10 +218,14 @@ private:
             grey.kd = {0.5, 0.5, 0.5};
             add_material(scene_, grey, "grey");
         } else {
-            if (found->second.albedo() > 1)
-                note({path_, "material", "too bright", ": scaled to an albedo of 1"}, u.line,
-                     u.name);
-            add_material(scene_, found->second.material(), u.name);
+            const Mtl& m = found->second;
+            auto tell = [&](bool so, const char* fact, const char* remedy) {
+                if (so) note({path_, "material", fact, remedy}, u.line, u.name);
+            };
+            tell(m.albedo() > 1, "too bright", ": scaled to an albedo of 1");
+            tell(m.is_blank(), "without Kd", ": grey of albedo 0.5");
+            tell(m.is_clear() && !m.is_glass(), "opaque", ": d or Tr without Ni above 1");
+            add_material(scene_, m.material(), u.name);
         }
         return *(u.material = uint32_t(scene_.materials.size() - 1));
     }
@@ -221,10 +237,10 @@ private:
         for (uint32_t k : std::span(corners_).subspan(face.first, face.count)) {
             if (k >= vertices_.size()) throw no_vertex(std::to_string(uint64_t(k) + 1));
             c.push_back(vertices_[k]);
-            if (double(max_abs(c.back())) > longest_length) throw UserError("too far away");
         }
-        if (c.size() < 3 || !std::ranges::all_of(c, is_finite))
-            return note({path_, "face", "left out", ": faces need three corners of numbers"},
+        auto is_near = [](vec3 p) { return is_finite(p) && double(max_abs(p)) <= longest_length; };
+        if (c.size() < 3 || !std::ranges::all_of(c, is_near))
+            return note({path_, "face", "left out", ": faces need three corners, near enough"},
                         face.line);
         polygon(c, material(face.use, face.line), face.line);
         if (scene_.shapes.size() > most_shapes) throw too_many();
@@ -233,13 +249,15 @@ private:
 
     // Parallelograms are lights in one piece.
     void polygon(const Corners& c, uint32_t material, uint32_t line) {
-        const bool plain = face_one_way(c, fan_of(c), false);
+        const bool plain = face_one_way(c, fan_of(c));
         if (plain && c.size() == 4 && c[0] + c[2] == c[1] + c[3])
             return add_face(scene_, c[0], c[1], c[2], c[3], material);
-        const Cuts triangles = plain ? fan_of(c) : Ears(c).cut(left_).value_or(fan_of(c));
-        if (!plain && c.size() > 3 &&
-            (area_vector(c) == vec3{} || !face_one_way(c, triangles, true)))
-            note({path_, "face", "folded, or too large", ": triangles may overlap"}, line);
+        const auto ears = plain ? std::nullopt : Ears(c).cut(left_);
+        const Cuts triangles = ears.value_or(fan_of(c));
+        if (!plain && !ears && left_ < int64_t(c.size() * c.size()))
+            note({path_, "face", "too large to cut up", ": triangles may overlap"}, line);
+        else if (is_folded(c, triangles))
+            note({path_, "face", "folded", ": triangles may overlap"}, line);
         for (auto [i, j, k] : triangles) add_triangle(scene_, c[i], c[j], c[k], material);
     }
 };

@@ -17,6 +17,7 @@ struct Material {
 
     bool is_delta() const { return kind != Kind::rough; }  // scatters into single directions
     bool transmits() const { return kind == Kind::glass; }
+    bool reflects() const { return is_delta() || max_of(kd + ks) > 0; }
     bool emits() const { return max_of(Le) > 0; }
     // True if a direction takes a third number: for reflection or refraction, for lobe or cosine.
     bool has_choice() const {

@@ -68,7 +68,7 @@ struct Scene {
 };
 
 // "line 3", or in a mesh "line 3 (m.obj:10)".
-inline std::string place(const Scene& s, uint32_t shape) {
+inline std::string where(const Scene& s, uint32_t shape) {
     const std::string line = "line " + std::to_string(s.line_of[shape]);
     if (shape >= s.line_in_mesh.size() || s.line_in_mesh[shape] == 0) return line;
     return line + " (" + s.mesh_of.at(s.line_of[shape]) + ":" +

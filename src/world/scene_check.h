@@ -2,7 +2,6 @@
 // rounding
 #pragma once
 #include <map>
-#include <numeric>
 #include <set>
 #include <span>
 
@@ -10,10 +9,13 @@
 
 // ---- Surfaces that lie in each other ------------------------------------------------------------
 
-// True if two shapes share more than an edge of one surface, within the distance e.
-inline bool share_surface(const Shape& s, const Shape& t, real e) {
+// True if two shapes share more than an edge of one surface, within rounding, or lie above each
+// other at no more than `room`.
+inline bool share_surface(const Shape& s, const Shape& t, real room) {
+    const real e = 2 * (rounding_error(s) + rounding_error(t));  // the bound of spawn
     if (s.is_sphere() || t.is_sphere())
-        return s.is_sphere() && t.is_sphere() && length(s.a - t.a) + std::abs(s.r - t.r) <= e;
+        return s.is_sphere() && t.is_sphere() &&
+               length(s.a - t.a) + std::abs(s.r - t.r) <= e + room;
     const vec3 corners[2][3] = {{s.a, s.b, s.c}, {t.a, t.b, t.c}};
     const vec3 normal[2] = {unit(area_vector(s)), unit(area_vector(t))};
     auto farthest = [&](size_t k, vec3 from, vec3 along) {
@@ -22,8 +24,8 @@ inline bool share_surface(const Shape& s, const Shape& t, real e) {
                          dot(others[2] - from, along)});
     };
     auto has_other_in_plane = [&](size_t k) {
-        return farthest(k, corners[k][0], normal[k]) <= e &&
-               farthest(k, corners[k][0], -normal[k]) <= e;
+        return farthest(k, corners[k][0], normal[k]) <= e + room &&
+               farthest(k, corners[k][0], -normal[k]) <= e + room;
     };
     if (!has_other_in_plane(0) && !has_other_in_plane(1)) return false;
     for (size_t k : {0, 1})
@@ -44,9 +46,10 @@ inline bool may_move(const Scene& s, uint32_t i) {
     return s.light_of[i] != no_light || s.material_at(i).transmits();
 }
 
-// Finds the pairs of shapes, but those of one light, that share a surface within `room` beyond
-// rounding, and of which one is a light or glass.  A set of boxes is halved again and again; only
-// halves whose boxes overlap have pairs.  Throws UserError "NAME: ..." if it would take seconds.
+// Finds the pairs of shapes, but those of one light or of one face of a mesh, that share a surface
+// or are as near as `room`, and of which one is a light or glass.  A set of boxes is halved again
+// and again; only halves whose boxes overlap have pairs.  Throws UserError "NAME: ..." if it would
+// take seconds.
 class Contacts {
 public:
     using Pair = std::array<uint32_t, 2>;
@@ -55,12 +58,15 @@ public:
     Contacts(const Scene& s, const std::string& name, real room = 0)
         : scene_(s), name_(name), room_(room), left_((1 << 28) + 1024 * int64_t(s.shapes.size())) {
         std::vector<Item> items;
+        Box movable;
         for (uint32_t i = 0; i < s.shapes.size(); ++i) {
             const Box b = bounds(s.shapes[i]);
             items.push_back({{b.lo - vec3{room, room, room}, b.hi + vec3{room, room, room}},
                              i,
                              may_move(s, i)});
+            if (items.back().moves) movable.add(items.back().box);
         }
+        std::erase_if(items, [&](const Item& item) { return !overlap(item.box, movable); });
         search(items);
         std::ranges::sort(pairs);
     }
@@ -75,11 +81,12 @@ private:
     const Scene& scene_;
     const std::string& name_;
     const real room_;
-    int64_t left_;  // boxes to look at; a test of shapes counts as 64
+    int64_t left_;  // boxes to look at; a test of shapes counts as 16
 
     void spend(size_t boxes) {
         left_ -= int64_t(boxes);
-        if (left_ < 0) throw UserError(name_ + ": too many shapes where lights or glass are");
+        if (left_ < 0 || pairs.size() > 1 << 21)
+            throw UserError(name_ + ": too many shapes where lights or glass are");
     }
     // The box about all, and whether one moves.
     static Item about(Items items) {
@@ -108,11 +115,13 @@ private:
         search(a.first(a.size() / 2), b), search(a.subspan(a.size() / 2), b);
     }
     void test(uint32_t i, uint32_t j) {
-        if (scene_.light_of[i] != no_light && scene_.light_of[i] == scene_.light_of[j]) return;
-        spend(64);
-        const Shape &s = scene_.shapes[i], &t = scene_.shapes[j];
-        if (share_surface(s, t, room_ + 2 * (rounding_error(s) + rounding_error(t))))
-            pairs.push_back({i, j});
+        const Scene& s = scene_;
+        if (s.light_of[i] != no_light && s.light_of[i] == s.light_of[j]) return;
+        const bool one_face = j < s.line_in_mesh.size() && s.line_in_mesh[i] > 0 &&
+                              s.line_in_mesh[i] == s.line_in_mesh[j];
+        if (one_face && s.line_of[i] == s.line_of[j]) return;
+        spend(16);
+        if (share_surface(scene_.shapes[i], scene_.shapes[j], room_)) pairs.push_back({i, j});
     }
 };
 
@@ -128,21 +137,28 @@ inline Shape lifted(Shape s, vec3 n, real by) {
     return s;
 }
 
+inline std::string too_coarse(const std::string& shape, const std::string& fact) {
+    const bool single = sizeof(real) == 4;
+    return shape + ": " + (single ? "float" : "double") + " precision is too low here: " + fact +
+           ", and light may be wrong; " + (single ? "use REAL=double, or " : "") +
+           "bring all shapes nearer to the origin";
+}
+
 // Surfaces in one place, in the order in which they are moved farther: what is opaque stays;
 // lights, the last first; glass by its index of refraction, so that the order of statements does
 // not matter, then by its corners from the least on: a triangle that one mesh has twice is one
 // surface.
-using Depth = std::array<real, 13>;
-inline Depth depth_of(const Scene& s, uint32_t i) {
+using Order = std::array<real, 13>;
+inline Order order_of(const Scene& s, uint32_t i) {
     const Shape& t = s.shapes[i];
     const Material& m = s.material_at(i);
     if (!m.transmits()) return {real(s.light_of[i] == no_light ? 0 : 1), -real(s.light_of[i])};
     std::array<std::array<real, 3>, 3> c{
         {{t.a.x, t.a.y, t.a.z}, {t.b.x, t.b.y, t.b.z}, {t.c.x, t.c.y, t.c.z}}};
     std::rotate(c.begin(), std::ranges::min_element(c), c.end());
-    Depth depth{2, m.ior, t.r, real(s.line_of[i])};
-    for (size_t k = 0; k < 9; ++k) depth[k + 4] = c[k / 3][k % 3];
-    return depth;
+    Order order{2, m.ior, t.r, real(s.line_of[i])};
+    for (size_t k = 0; k < 9; ++k) order[k + 4] = c[k / 3][k % 3];
+    return order;
 }
 
 // Moves surfaces apart that lie in each other, by more than the error of spawn_to: lights outwards,
@@ -178,16 +194,19 @@ private:
     }
     bool is_glass(uint32_t i) const { return scene_.material_at(i).transmits(); }
 
-    // Each is moved a step farther than what comes before it.
+    // Each is moved a step farther than what comes before it.  Rays come from the eye and from what
+    // reflects them.
     void decide() {
         real error = 16 * ulp * max_abs(scene_.camera.eye);
-        for (const Shape& shape : scene_.shapes) error = std::max(error, rounding_error(shape));
-        std::vector<std::pair<Depth, uint32_t>> order;
-        for (const auto& [i, others] : touching_) order.push_back({depth_of(scene_, i), i});
+        for (uint32_t i = 0; i < scene_.shapes.size(); ++i)
+            if (scene_.material_at(i).reflects() || touching_.contains(i))
+                error = std::max(error, rounding_error(scene_.shapes[i]));
+        std::vector<std::pair<Order, uint32_t>> order;
+        for (const auto& [i, others] : touching_) order.push_back({order_of(scene_, i), i});
         std::ranges::sort(order);
-        for (const auto& [depth, i] : order)
+        for (const auto& [own, i] : order)
             for (uint32_t j : touching_[i])
-                if (depth_of(scene_, j) < depth)
+                if (order_of(scene_, j) < own)
                     by(i) = (is_glass(i) ? -1 : 1) *
                             std::max(std::abs(by(i)), std::abs(by(j)) + 32 * error);
     }
@@ -202,20 +221,29 @@ private:
                     is_glass(i) && by(i) < 0 && !std::ranges::binary_search(pairs_, pair))
                     throw error_at(name, scene_.line_of[i],
                                    "this glass lies in the surface of " +
-                                       place(scene_, touching_[i][0]) +
-                                       " and has no room to be moved off: " + place(scene_, other) +
-                                       " is too near");
+                                       where(scene_, touching_[i][0]) +
+                                       " and has no room to be moved off: " +
+                                       (scene_.line_of[i] == scene_.line_of[other]
+                                            ? "it is too thin"
+                                            : where(scene_, other) + " is too near"));
     }
 
     void warn() {
+        for (uint32_t i = 0; i < scene_.shapes.size() && warnings.empty(); ++i) {
+            const Box box = bounds(scene_.shapes[i]);
+            if (100 * std::abs(by(i)) > max_abs(box.hi - box.lo))
+                warnings.push_back(
+                    too_coarse(where(scene_, i),
+                               "it is moved off another surface by more than 1 % of its size"));
+        }
         std::set<uint32_t> told;
         for (auto [other, i] : pairs_) {
-            if (depth_of(scene_, other) == depth_of(scene_, i)) continue;
-            if (depth_of(scene_, other)[0] > depth_of(scene_, i)[0]) std::swap(other, i);
+            if (order_of(scene_, other) == order_of(scene_, i)) continue;
+            if (order_of(scene_, other)[0] > order_of(scene_, i)[0]) std::swap(other, i);
             if (!told.insert(scene_.line_of[i]).second) continue;
-            const std::string in = " lies in the surface of " + place(scene_, other) + ": ";
+            const std::string in = " lies in the surface of " + where(scene_, other) + ": ";
             warnings.push_back(
-                place(scene_, i) +
+                where(scene_, i) +
                 (is_glass(i)
                      ? ": this glass" + in +
                            "it is moved a hair into its own body, with air between"
@@ -248,71 +276,6 @@ private:
         }
     }
 };
-
-// ---- Light that cannot be found -----------------------------------------------------------------
-
-// The line of the shapes at which 64 rays of a light end, if it is one; else 0.  Glass ends those
-// of a point, for light samples do not pass it.
-inline uint32_t enclosing_line(const Scene& s, const Light& l) {
-    uint32_t line = 0;
-    for (int i = 0; i < 64; ++i) {
-        const real turns = real(0.618) * real(i);
-        vec3 d = sample_uniform_sphere({(real(i) + real(0.5)) / 64, turns - std::floor(turns)});
-        if (!l.is_round() && !l.twosided && dot(d, l.n) < 0) d = -d;
-        Ray ray = spawn({l.centre + l.r * d, l.is_round() ? d : l.n, l.error}, d);
-        auto hit = s.bvh.closest(ray);
-        const bool passes = l.kind != Light::Kind::point;
-        for (int k = 0; k < 64 && passes && hit && s.material(*hit).transmits(); ++k) {
-            ray = spawn(s.surface(ray, *hit), d);
-            hit = s.bvh.closest(ray);
-        }
-        if (!hit || (i > 0 && s.line_of[hit->id] != line)) return 0;
-        line = s.line_of[hit->id];
-    }
-    return line;
-}
-
-// True if rays from p, there and back, pass the shapes of a line an odd number of times.
-inline bool is_inside(const Scene& s, vec3 p, uint32_t line) {
-    bool inside[2] = {};
-    for (size_t i = 0; i < s.shapes.size(); ++i) {
-        if (s.line_of[i] != line) continue;
-        const Shape& shape = s.shapes[i];
-        for (size_t k : {0, 1}) {
-            const vec3 d = vec3{real(0.36), real(0.48), real(0.8)} * real(k == 0 ? 1 : -1);
-            inside[k] ^= shape.is_sphere()
-                             ? length(p - shape.a) < shape.r
-                             : intersect_triangle(shape, {p, d}, shear(d), infinity).has_value();
-        }
-    }
-    return inside[0] && inside[1];
-}
-
-// Warnings: lights in bodies that do not let out their light, the first of each of 1000 lines;
-// light of points that only samples of directions could find.
-inline std::vector<std::string> hidden_lights(const Scene& s) {
-    std::vector<std::string> warnings;
-    auto warn = [&](size_t light, const std::string& what) {
-        warnings.push_back("line " + std::to_string(s.line_of_light[light]) + ": " + what);
-    };
-    std::set<uint32_t> told;
-    for (size_t k = 0; k < s.lights.size(); ++k) {
-        if (!told.insert(s.line_of_light[k]).second || told.size() > 1000) continue;
-        const uint32_t line = enclosing_line(s, s.lights[k]);
-        if (line != 0 && line != s.line_of_light[k] && is_inside(s, s.lights[k].centre, line) &&
-            !is_inside(s, s.camera.eye, line))
-            warn(k, "this light is inside line " + std::to_string(line) +
-                        ", and none of 64 rays came out");
-    }
-    const auto point = std::ranges::find(s.lights, Light::Kind::point, &Light::kind);
-    if (point != s.lights.end() &&
-        std::ranges::any_of(s.material_of, [&](auto m) { return s.materials[m].is_delta(); }))
-        warn(size_t(point - s.lights.begin()),
-             "a point light does not shine through glass or by mirrors, where no path finds it: "
-             "that light is missing; a sphere of radius r and radiance I / (pi r^2) shines there, "
-             "too");
-    return warnings;
-}
 
 // ---- Points on surfaces, rounding ---------------------------------------------------------------
 
@@ -347,7 +310,7 @@ inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t o
     return {};
 }
 
-// Lengths that are too short, one of each kind, with the line of a shape.  Pairs are searched at no
+// Lengths that are too short, one of each kind, with a shape.  Pairs are searched at no
 // more than 2048 shapes: the first of each line, and others; without lights and glass if some were
 // moved.
 inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool moved) {
@@ -355,18 +318,18 @@ inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool moved
     const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
     auto look_about = [&](vec3 p, const char* what) {
         if (const auto hit = near_hit(s, {p, p, p}, {}, UINT32_MAX, reach))
-            found.emplace(what, s.line_of[hit->id]);
+            found.emplace(what, hit->id);
     };
     look_about(s.camera.eye, "distance to the eye");
     for (const Light& l : s.lights)
         if (l.kind == Light::Kind::point) look_about(l.p, "distance to a point light");
     for (uint32_t i = 0, firsts = 0, pairs = 0; i < s.shapes.size(); ++i) {
-        if (is_coarse(s.shapes[i])) found.emplace("size", s.line_of[i]);
+        if (is_coarse(s.shapes[i])) found.emplace("size", i);
         const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];
         if (i % (1 + s.shapes.size() / 1024) > 0 && !(first && firsts++ < 1024)) continue;
         const auto hit = pairs ? std::nullopt : near_hit(s, s.shapes[i], s.facing[i], i, reach);
         if (!hit || (moved && (may_move(s, i) || may_move(s, hit->id)))) continue;
-        found.emplace("distance to line " + std::to_string(s.line_of[hit->id]), s.line_of[i]);
+        found.emplace("distance to " + where(s, hit->id), i);
         ++pairs;
     }
     return found;

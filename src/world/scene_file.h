@@ -49,16 +49,11 @@ public:
             for (size_t i = 0; s.lights[k].kind == Light::Kind::point && i < s.shapes.size(); ++i)
                 if (lies_on(s.shapes[i], s.facing[i], s.lights[k].p))
                     throw error_at(name, s.line_of_light[k],
-                                   "this point light lies on the surface of line " +
-                                       std::to_string(s.line_of[i]) + ": move it off");
-        for (const std::string& warning : hidden_lights(s)) warn(warning);
-        for (const auto& [length, line] : coarse_lengths(s, !moved.empty()))
-            warn("line " + std::to_string(line) + ": " + (sizeof(real) == 4 ? "float" : "double") +
-                 " precision is too low here: ray origins are offset by more than 1 % of this "
-                 "shape's " +
-                 length + ", and light may be wrong; " +
-                 (sizeof(real) == 4 ? "use REAL=double, or " : "") +
-                 "move the scene nearer to the origin");
+                                   "this point light lies on the surface of " +
+                                       where(s, uint32_t(i)) + ": move it off");
+        for (const auto& [length, shape] : coarse_lengths(s, !moved.empty()))
+            warn(too_coarse(where(s, shape),
+                            "ray origins are offset by more than 1 % of this shape's " + length));
         if (s.lights.empty()) warn("no light: the image will be black");
         return {std::move(scene_), std::move(warnings_), std::move(files_)};
     }
@@ -74,7 +69,7 @@ private:
     Words words_;
     size_t next_ = 0;  // word to read
     uint32_t line_ = 0;
-    int64_t left_ = 1 << 27;  // tests to cut up polygons: about a second
+    int64_t left_ = 1 << 29;  // tests to cut up polygons: about a second
 
     // ---- Statements ---------------------------------------------------------------------------
 
@@ -156,7 +151,10 @@ private:
             throw UserError(made + ": not made yet: make " + made);
         MeshPlacement place{length_of("scale")};
         place.move = point();
-        for (; next_ < words_.size() && (words_[next_] == "turn" || words_[next_] == "z_up");) {
+        auto says = [&](const char* word) {  // a material of this name comes first
+            return next_ < words_.size() && words_[next_] == word && !material_.contains(word);
+        };
+        while (says("turn") || says("z_up")) {
             if (words_[next_++] == "z_up")
                 place.z_up = true;
             else if (next_ == words_.size())

@@ -85,7 +85,7 @@ TEST_CASE(
     CHECK(all.scene.shapes.size() > 400 * 990);
     REQUIRE(all.warnings.size() == 2);
     CHECK(all.warnings[0].find(
-              "1 face is folded, or too large, first at line 1003: triangles may overlap") !=
+              "1 face is too large to cut up, first at line 1003: triangles may overlap") !=
           std::string::npos);
 }
 
@@ -134,11 +134,13 @@ TEST_CASE("hundreds of point lights beside ten thousand shapes: the first on one
     const std::string on = "pointlight .9 .2 0  1 1 1\n", off = "pointlight .2 .9 1  1 1 1\n";
     const std::string found = complaint(
         folder, before + off + "mesh m.obj 1 9 0 0 d\n" + on + on + grey_mesh + grey_mesh);
-    CHECK(found == "s.scene:6: this point light lies on the surface of line 8: move it off");
+    CHECK(found ==
+          "s.scene:6: this point light lies on the surface of line 8 (m.obj:5): move it off");
     const std::string later =
         complaint(folder, before + "pointlight 9.9 .2 0  1 1 1\nmesh m.obj 1 0 0 0 d\n" + on +
                               "mesh m.obj 1 9 0 0 d\n");
-    CHECK(later == "s.scene:4: this point light lies on the surface of line 7: move it off");
+    CHECK(later ==
+          "s.scene:4: this point light lies on the surface of line 7 (m.obj:5): move it off");
 }
 
 TEST_CASE("words and lines of 10 kB, numbers of 10 000 digits, a line of 5000 words") {
