@@ -76,13 +76,21 @@ $(shell for png in out/*.png; do [ ! "$$png" -nt "$${png%png}json" ] || echo "$$
 out/%.png out/%.pfm: out/%.json
 	@[ -e out/$*.png ] && [ -e out/$*.pfm ] || { rm $< && $(MAKE) --no-print-directory $<; }
 
-# A picture also depends on the meshes that its scene names, and on the materials that those name.
-PARTS := $(shell awk ' \
+# A picture also depends on the meshes that its scene names, and on the materials that those name: on files that are there,
+# or that are made here.  The renderer refuses what is not, or does without.  Make has no names with blanks, nor some others.
+PARTS := $(shell LC_ALL=C awk ' \
+    function there(file) { return file !~ /\047/ && system("test -f \047" file "\047") == 0 } \
+    function add(part) { if (picture part !~ /[][ \t()$$%:;=|*?~\\\043]/ && (part == "build/knot.obj" || there(part))) print picture ":" part } \
     $$1 == "mesh" { picture = FILENAME; sub(/^scenes/, "out", picture); sub(/scene$$/, "json", picture); \
-                    mesh = "scenes/" $$2; sub(/^scenes\/\.\.\//, "", mesh); print picture ":" mesh; \
-                    folder = mesh; sub(/[^\/]*$$/, "", folder); \
-                    while ((getline line < mesh) > 0) \
-                        if (split(line, word, " ") && word[1] == "mtllib") print picture ":" folder word[2] }' \
+                    mesh = $$2; sub(/[\043\r].*/, "", mesh); \
+                    if (match($$0, /^[ \t]*mesh[ \t]+"[^"]*"/)) { split($$0, quoted, "\""); mesh = quoted[2] } \
+                    if (mesh !~ /^\//) mesh = "scenes/" mesh; \
+                    sub(/^scenes\/\.\.\//, "", mesh); add(mesh); \
+                    folder = mesh; sub(/[^\/]*$$/, "", folder); libraries = ""; \
+                    if (there(mesh)) while ((getline line < mesh) > 0) \
+                        if (line ~ /^[ \t]*mtllib[ \t]/) { gsub(/\\/, "/", line); gsub(/\r/, " ", line); libraries = libraries " " line } \
+                    close(mesh); \
+                    n = split(libraries, library, " "); for (i = 1; i <= n; ++i) add(folder library[i]) }' \
     scenes/*.scene)
 $(foreach rule,$(PARTS),$(eval $(rule)))
 

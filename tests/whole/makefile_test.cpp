@@ -128,6 +128,44 @@ TEST_CASE("make renders again what is older than its parts, and what another com
     CHECK(shop.renders() == 6);
 }
 
+TEST_CASE(
+    "a picture depends on the meshes and libraries that are there, and on those that are made") {
+    const Workshop shop;
+    shop.write("scenes/a.obj",
+               "mtllib a.mtl sub\\b.mtl\r\n  mtllib none.mtl a.obj c.mtl # all\n"
+               "mtllib my stuff.mtl\nmtllib\n");
+    shop.write("scenes/room.scene",
+               "mesh a.obj#here\nmesh \"my # room.obj\" 1 0 0 0\nmesh \"q.obj\" 1 0 0 0\r\n"
+               "mesh none.obj 1 0 0 0\nmesh \"none\nmesh p%q:r.obj 1 0 0 0\nmesh\n"
+               "mesh " +
+                   (shop / "far.obj") + " 1 0 0 0\n");
+    shop.write("scenes/again.scene", "mesh a.obj 1 0 0 0\n");
+    shop.write("scenes/knot.scene", "mesh ../build/knot.obj 1 0 0 0\n");
+    const std::vector<std::string> parts = {"scenes/a.obj", "scenes/a.mtl", "scenes/sub/b.mtl",
+                                            "scenes/c.mtl", "scenes/q.obj", "far.obj"};
+    const std::vector<std::string> others = {"scenes/my # room.obj", "scenes/my stuff.mtl",
+                                             "scenes/p%q:r.obj"};
+    for (const auto& names : {parts, others})
+        for (const std::string& name : names)
+            if (name != "scenes/a.obj") shop.write(name, "");
+    const std::string all = "out/room.json out/again.json out/knot.json";
+    shop.make(all);
+    CHECK(shop.has("build/knot"));
+    long n = shop.renders();
+    for (const std::string& name : parts) {
+        INFO(name);
+        shop.make_newer(name, "out/room.json");
+        shop.make("out/room.json");
+        CHECK(shop.renders() == ++n);
+        shop.make("out/room.json -W " + name);
+        CHECK(shop.renders() == ++n);
+    }
+    shop.make("out/again.json");
+    n = shop.renders();
+    shop.make("out/again.json -W scenes/c.mtl");
+    CHECK(shop.renders() == n + 1);
+}
+
 TEST_CASE("make draws the gallery without any module, and without the course") {
     const Workshop shop;
     fs::remove_all(shop / "src/keep");
