@@ -38,7 +38,7 @@ def lamp(name, data, x, y, z, place):
         r = max(data.shadow_soft_size, 0.001)
         A, shape = (2 * math.pi * r) ** 2, f"sphere {at(place)}  {r:.9g}"
     if data.type == "SPOT": warn(f"the cone of {name}")
-    return f"light {name}  {numbers(c * data.energy / A for c in data.color)}\n{shape}  {name}\n"
+    return f'light "{name}"  {numbers(c * data.energy / A for c in data.color)}\n{shape} "{name}"\n'
 
 plain, render, camera = bpy.data.materials.new("no_material"), scene.render, scene.camera
 for it in bpy.data.objects:
@@ -55,6 +55,6 @@ fov = 2 * math.degrees(math.atan2((top - bottom) / 2, -near))
 size = [n * render.resolution_percentage // 100 for n in (render.resolution_x, render.resolution_y)]
 with open(out + ".scene", "w") as file:
     file.write(f"size {numbers(size)}\ncamera {at(eye)}  {at(target)}  {fov:.9g}\n"
-               f"mesh {os.path.basename(out)}.obj  1  0 0 0\n")
-    file.writelines(lamp(it.name.replace(" ", "_"), it.data, *columns(it)) for it in
+               f'mesh "{os.path.basename(out)}.obj"  1  0 0 0\n')
+    file.writelines(lamp(it.name.replace('"', ""), it.data, *columns(it)) for it in
                     bpy.context.view_layer.objects if it.type == "LIGHT" and not it.hide_render)

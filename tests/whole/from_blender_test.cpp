@@ -54,11 +54,11 @@ mesh.primitive_cube_add(size=1)
 shape("g hidden", None)
 bpy.context.object.hide_render = True
 
-lamp("a point", "POINT", (1, 2, 3), energy=100, color=(1, 0.5, 0.25), shadow_soft_size=0.25)
-lamp("an area", "AREA", (0, 1, 4), (0, math.pi / 2, 0), energy=80, shape="RECTANGLE", size=1,
+lamp("Lamp #1", "POINT", (1, 2, 3), energy=100, color=(1, 0.5, 0.25), shadow_soft_size=0.25)
+lamp("key light", "AREA", (0, 1, 4), (0, math.pi / 2, 0), energy=80, shape="RECTANGLE", size=1,
      size_y=2)
-lamp("a sun", "SUN", (5, 5, 5), (0, math.pi / 2, 0), energy=3, angle=0.1)
-lamp("a spot", "SPOT", (-1, 2, 3), energy=10, shadow_soft_size=0.5)
+lamp("key_light", "SUN", (5, 5, 5), (0, math.pi / 2, 0), energy=3, angle=0.1)
+lamp('a 5" spot', "SPOT", (-1, 2, 3), energy=10, shadow_soft_size=0.5)
 lamp("a dark lamp", "POINT", (0, 0, 9)).hide_render = True
 
 camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
@@ -83,14 +83,14 @@ diffuse red_paint .96 .24 0
 diffuse mirror 0 0 0
 diffuse no_material .8 .8 .8
 light glow 2 1 0
-light a_point  40.5284735 20.2642367 10.1321184
-light an_area  10 10 10
-light a_sun  382.2902 382.2902 382.2902
-light a_spot  1.01321184 1.01321184 1.01321184
-sphere 1 3 -2  .25  a_point
-quad 0 4.5 0  0 0 -2  0 -1 0  an_area
-sphere 10000 0 0  499.791693  a_sun
-sphere -1 3 -2  .5  a_spot
+light "Lamp #1"  40.5284735 20.2642367 10.1321184
+light "key light"  10 10 10
+light key_light  382.2902 382.2902 382.2902
+light "a 5 spot"  1.01321184 1.01321184 1.01321184
+sphere 1 3 -2  .25  "Lamp #1"
+quad 0 4.5 0  0 0 -2  0 -1 0  "key light"
+sphere 10000 0 0  499.791693  key_light
+sphere -1 3 -2  .5  "a 5 spot"
 box 2 2 2  0  -4 0 -1  red_paint
 box 2 2 2  0  -1 0 -5  mirror
 quad -10 0 -10  0 0 20  20 0 0  no_material
@@ -168,12 +168,12 @@ TEST_CASE("a Blender file as a scene: meshes, materials, camera and lamps") {
     const Printed printed =
         output_of("cd '" + folder.path.string() +
                   "' && blender -b --factory-startup --python-exit-code 1 --python room.py" +
-                  script + " --python high.py" + script + " -- wide");
+                  script + " --python high.py" + script + " -- 'wide room'");
     INFO(printed.text);
     REQUIRE(printed.status == 0);
-    CHECK(missing(printed.text, "from_blender: left out: the cone of a_spot") == "");
+    CHECK(missing(printed.text, "from_blender: left out: the cone of a 5 spot") == "");
 
-    CHECK(folder.read("wide.mtl") ==
+    CHECK(folder.read("wide room.mtl") ==
           "newmtl clear_glass\nNi 1.5\nKd 1 1 1\nKs 0 0 0\nNs 4999.5\nKe 0 0 0\nillum 7\n"
           "newmtl glow\nNi 1\nKd 0 0 0\nKs 0 0 0\nNs 0\nKe 2 1 0\nillum 2\n"
           "newmtl mirror\nNi 1.5\nKd 0 0 0\nKs 0.75 0.5 0.25\nNs 4999.5\nKe 0 0 0\nillum 3\n"
@@ -182,7 +182,7 @@ TEST_CASE("a Blender file as a scene: meshes, materials, camera and lamps") {
           "newmtl red_paint\nNi 1.5\nKd 0.96 0.24 0\nKs 0.04 0.04 0.04\nNs 7.5\nKe 0 0 0\n"
           "illum 2\n");
 
-    const Scene wide = read_scene(folder / "wide.scene").scene,
+    const Scene wide = read_scene(folder / "wide room.scene").scene,
                 hand = read_scene(folder / "hand.scene").scene;
     CHECK(wide.size.width == hand.size.width);
     CHECK(wide.size.height == hand.size.height);
@@ -204,7 +204,7 @@ TEST_CASE("a Blender file as a scene: meshes, materials, camera and lamps") {
         REQUIRE(lights.contains(name));
         if (name != "glow") check_same(lights.at(name), light);
     }
-    expect_success(folder, "penumbra --spp 2 -o wide.png wide.scene");
+    expect_success(folder, Words{"penumbra", "--spp", "2", "-o", "wide.png", "wide room.scene"});
 
     // The lens covers 36 mm of the longer side: 90 degrees.
     Camera high = hand.camera;
