@@ -40,7 +40,8 @@ inline Plan plan_of(const Options& o, const Scene& scene) {
     const uint64_t N = ends ? o.spp : scene.samples;
     // Two replications tell nothing of the noise of a picture of few pixels.
     const bool few = scene.size.width * scene.size.height < 16;
-    const uint32_t sets = o.sets ? o.sets : N == 1 ? 1 : few ? least_of_noisy : 0;
+    const uint32_t most = N > 0 && N < least_of_noisy ? uint32_t(N) : least_of_noisy;
+    const uint32_t sets = o.sets ? o.sets : N == 1 ? 1 : few ? most : 0;
     Plan plan{
         {samples_each(sets, N), o.seconds, error}, 1, o.threads, bytes_of_machine(), scene.size};
     plan.sets = sets;

@@ -110,8 +110,18 @@ TEST_CASE("a plan is what options and scene ask for") {
     CHECK(picture() == "4 1 1 0");
     scene.size = {3, 5}, o.sets = 2;
     CHECK(picture() == "3 1 1 2");
-    o.spp = 1, o.sets = 0;
-    CHECK(picture() == "3 1 1 1");
+    // No more replications than samples; as many as are needed where no number is asked for.
+    o.sets = 0;
+    for (uint64_t spp : {1u, 2u, 3u, 7u, 8u}) {
+        o.spp = spp;
+        CHECK(picture() == said(3, 1, 1, spp));
+        CHECK(target() == "1 0 0");
+    }
+    o.spp = 9;
+    CHECK(picture() == "3 1 1 8");
+    o.spp = 0, o.error = 0.1;
+    CHECK(picture() == "3 1 1 8");
+    CHECK(rendered(quick(SamplerKind::sobol, 2), small(unequal, {2, 2})).run.spp == 2);
 }
 
 TEST_CASE(
