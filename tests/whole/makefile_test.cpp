@@ -202,6 +202,27 @@ TEST_CASE("the gallery shows no picture without its statistics") {
                    "error not known: a lamp, &quot;small&quot; &amp; \\ bright</p>"));
 }
 
+TEST_CASE("the gallery's command takes the samples that the picture has") {
+    const Workshop shop;
+    auto command_of = [&](int width, int height, int samples, int replications) {
+        shop.write("out/room.json",
+                   "{\n  \"width\": " + std::to_string(width) +
+                       ",\n  \"height\": " + std::to_string(height) +
+                       ",\n  \"samples_per_pixel\": " + std::to_string(samples) +
+                       ",\n  \"seconds\": 1,\n  \"replications_per_pixel\": " +
+                       std::to_string(replications) +
+                       ",\n  \"d_rel_reason\": \"a lamp\",\n  \"d_rel\": null\n}\n");
+        CHECK(shop.run("scenes/gallery out room").status == 0);
+        const std::string page = shop.read("out/index.html"), from = "<code>build/penumbra ";
+        const size_t start = page.find(from) + from.size();
+        return page.substr(start, page.find(" -o", start) - start);
+    };
+    CHECK(command_of(4, 4, 64, 8) == "--size 4x4 --spp 16");
+    CHECK(command_of(3, 5, 64, 8) == "--size 3x5 --spp 64");
+    CHECK(command_of(3, 5, 3, 3) == "--size 3x5 --spp 3");
+    CHECK(command_of(4, 4, 1, 1) == "--size 4x4 --spp 1");
+}
+
 TEST_CASE("make says the name of a variant, and leaves the program without a suffix as it is") {
     const Workshop shop;
     shop.make("build/penumbra build/compare build/knot");
