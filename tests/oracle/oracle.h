@@ -2106,22 +2106,22 @@ struct Albedo {
 std::string albedo_hint(const std::vector<Albedo>& all);
 
 // What a sampler says of eval at a direction, beside what eval says.
-struct Stated {
+struct Returned {
     Triple wi;
     double said, wanted, pdf;
 };
-std::string stated_hint(const std::vector<Stated>& wrong, const std::string& what, double part);
+std::string returned_hint(const std::vector<Returned>& wrong, const std::string& what, double part);
 
 // The member f of what sample returns is eval's value; weight is f |cos| / pdf.  One value in a
 // hundred may round otherwise, where lobes are narrow or end.
 template <class From, class M>
-std::string judge_stated(Random& random, From& from_wo, const M& model,
-                         const std::function<double(const Triple&)>& f, const Options& o) {
+std::string judge_returned(Random& random, From& from_wo, const M& model,
+                           const std::function<double(const Triple&)>& f, const Options& o) {
     using Raw = decltype(oracle::call(from_wo, model.draw(random)));
     using R = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
     constexpr bool value = requires(const R& r) { r.f; }
     , weight = requires(const R& r) { r.weight; };
-    std::vector<Stated> wrong;
+    std::vector<Returned> wrong;
     double compared = 0;
     if constexpr (value || weight)
         for (int i = 0; i < 2048 && o.discrete == 0; ++i) {
@@ -2149,7 +2149,7 @@ std::string judge_stated(Random& random, From& from_wo, const M& model,
                 wrong.push_back({wi, said, wanted, p});
         }
     if (double(wrong.size()) <= 8 + 0.01 * compared) return "";
-    return stated_hint(wrong, value ? "f" : "weight", double(wrong.size()) / compared);
+    return returned_hint(wrong, value ? "f" : "weight", double(wrong.size()) / compared);
 }
 
 // A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
@@ -2196,7 +2196,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             if (!v.pass) return v;
             all.p = std::min(all.p, v.p);
             all.delta_min = std::max(all.delta_min, v.delta_min);
-            const std::string off = judge_stated(
+            const std::string off = judge_returned(
                 random, from_wo, erased, [&](const Triple& wi) { return f(out, wi); }, o);
             if (!off.empty()) return failure(off, here);
             Draws albedo, scaled;
@@ -3214,9 +3214,9 @@ inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close
                : "";
 }
 
-// `all` are directions wo from steep to grazing, each with its albedo and the relative error.
-inline std::string stated_hint(const std::vector<Stated>& wrong, const std::string& what,
-                               double part) {
+// `part` of what was compared is wrong.
+inline std::string returned_hint(const std::vector<Returned>& wrong, const std::string& what,
+                                 double part) {
     const std::string expected = what == "f" ? "eval's value" : "eval's value |cos| / pdf",
                       begin = "the " + what + " that sample returns is ",
                       often = part == 1 ? ", at every direction"
@@ -3224,7 +3224,7 @@ inline std::string stated_hint(const std::vector<Stated>& wrong, const std::stri
     for (const double a : {0.0, 1.0, -1.0})
         for (const double b : {0.0, -1.0, 1.0}) {
             std::vector<double> ratios;
-            for (const Stated& s : wrong)
+            for (const Returned& s : wrong)
                 ratios.push_back(s.said / s.wanted / std::pow(std::abs(s.wi[2]), a) /
                                  std::pow(s.pdf, b));
             const Law law = law_of(ratios, 0.01);
@@ -3240,6 +3240,7 @@ inline std::string stated_hint(const std::vector<Stated>& wrong, const std::stri
            say(" is %.4g, for wi = ", wrong[0].wanted) + say_point(wrong[0].wi) + often;
 }
 
+// `all` are directions wo from steep to grazing, each with its albedo and the relative error.
 inline std::string albedo_hint(const std::vector<Albedo>& all) {
     const Albedo* worst = nullptr;
     std::string list;
