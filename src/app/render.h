@@ -3,6 +3,7 @@
 #include "app/keep.h"
 #include "app/options.h"
 #include "app/outputs.h"
+#include "app/unseen.h"
 #include "app/views.h"
 #include "base/program.h"
 #include "path/start.h"
