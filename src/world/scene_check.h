@@ -138,9 +138,9 @@ inline Shape lifted(Shape s, vec3 n, real by) {
 }
 
 inline std::string too_coarse(const std::string& shape, const std::string& fact) {
-    const bool single = sizeof(real) == 4;
-    return shape + ": " + (single ? "float" : "double") + " precision is too low here: " + fact +
-           ", and light may be wrong; " + (single ? "use REAL=double, or " : "") +
+    const bool is_float = sizeof(real) == 4;
+    return shape + ": " + (is_float ? "float" : "double") + " precision is too low here: " + fact +
+           ", and light may be wrong; " + (is_float ? "use REAL=double, or " : "") +
            "bring all shapes nearer to the origin";
 }
 
