@@ -4,7 +4,6 @@
 #include "path/pathtracer.h"
 
 #if __has_include("unseen/unseen.h")
-#include "unseen/hidden.h"
 #include "unseen/unseen.h"
 #else
 inline std::vector<std::string> hidden_lights(const Scene&) { return {}; }

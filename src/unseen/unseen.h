@@ -1,4 +1,4 @@
-// unseen/unseen.h  1  estimates of light that no sample has met, from near misses of small lights
+// unseen/unseen.h  2  estimates of light that no sample has met, from near misses of small lights
 //
 // The variance of samples does not contain light that no sample has met.  A light scaled s times
 // about its centre and 1/s^2 as bright sends about the same light, but BSDF samples meet it s^2
@@ -11,6 +11,7 @@
 #include "film/passes.h"
 #include "path/halton.h"
 #include "path/pathtracer.h"
+#include "unseen/hidden.h"
 
 inline constexpr size_t growths = 11;            // s = 1, 2, 4 ... 1024
 inline constexpr size_t most_light_groups = 64;  // more lights share groups with neighbours
