@@ -62,6 +62,14 @@ TEST_CASE("a lamp that no path leaves is told; one in glass, or in the eye's roo
     CHECK(hidden_lights(
               parse_scene(head + "mesh tube.obj .5 .4 1.4 .28 grey\n", folder / "test").scene)
               .empty());
+    // A lamp that faces the bottom of a well: its light comes out after some bounces.
+    folder.write("well.obj",
+                 "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 4 -1\nv 1 4 -1\nv 1 4 1\nv -1 4 1\n"
+                 "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 1 2 3 4\n");
+    const std::string well =
+        "camera 0 1 9  0 1 0  40\ndiffuse grey .5 .5 .5\nlight lamp 2 2 2\n"
+        "quad -.2 2 -.2  .4 0 0  0 0 .4  lamp\nmesh well.obj 1 0 0 0 grey\n";
+    CHECK(hidden_lights(parse_scene(well, folder / "test").scene).empty());
     const std::string point = "pointlight 2 3 1  9 9 9\n";
     CHECK(hidden(point + "sphere 2 3 1 .6 grey\n") == by("10"));
     const std::string missing =
