@@ -145,9 +145,9 @@ inline std::string too_coarse(const std::string& shape, const std::string& fact)
 }
 
 // Surfaces in one place, in the order in which they are moved farther: what is opaque stays;
-// lights, the last first; glass by its index of refraction, so that the order of statements does
-// not matter, then by its corners from the least on: a triangle that one mesh has twice is one
-// surface.
+// lights, the last first; glass by its index of refraction.  Glass of one index, which may be
+// exchanged without changing a picture, by radius, line and corners: equal triangles of one line
+// are one surface.
 using Order = std::array<real, 13>;
 inline Order order_of(const Scene& s, uint32_t i) {
     const Shape& t = s.shapes[i];
