@@ -1,5 +1,7 @@
 // app/keep.h  2  films in files, if src/keep is there
 #pragma once
+#include "base/files.h"
+#include "base/program.h"
 #include "film/film.h"
 
 #if __has_include("keep/keep.h")

@@ -8,35 +8,35 @@
 enum class View { radiance, normal, depth, albedo, bvh, occlusion };
 inline constexpr Text view_names = "radiance|normal|depth|albedo|bvh|occlusion";
 
-struct Rows {
+struct RowRange {
     int first = 0, last = 0;  // row 0 is at the top of the picture
 
     int count() const { return last - first + 1; }
 };
 
 struct Options : CommonOptions {
-    uint64_t spp = 0;   // 0: the scene's, unless seconds or an error are given
-    double error = 0;   // d_rel to stop at; 0: none
-    uint32_t sets = 0;  // replications per pixel; 0: adaptive
+    uint64_t spp = 0;           // 0: the scene's, unless seconds or an error are given
+    double error = 0;           // d_rel to stop at; 0: none
+    uint32_t replications = 0;  // of each pixel; 0: adaptive
     SamplerKind sampler = SamplerKind::sobol;
     Technique technique;
     std::optional<int> depth;  // default: the scene's
     View view = View::radiance;
     std::string keep;                   // a film, or empty
-    std::optional<Rows> rows;           // default: all
+    std::optional<RowRange> rows;       // default: all
     std::optional<PixelSample> replay;  // instead of rendering, print its path
 };
 
-inline constexpr uint64_t most_samples = uint64_t(1) << 40, most_depth = 1000000;
+inline constexpr uint64_t most_depth = 1000000;
 
 // "10-19"
-inline Rows parse_rows(Text v) {
+inline RowRange parse_rows(Text v) {
     const auto [first, last] = parts_of(v, '-', "FIRST-LAST");
-    const Rows r{int(parse_count(first, 0, INT32_MAX)), int(parse_count(last, 0, INT32_MAX))};
+    const RowRange r{int(parse_count(first, 0, INT32_MAX)), int(parse_count(last, 0, INT32_MAX))};
     if (r.count() < 1) throw UserError(in_quotes(v) + " ends before it begins");
     return r;
 }
-inline std::string as_text(const Rows& r) {
+inline std::string as_text(const RowRange& r) {
     return std::to_string(r.first) + "-" + std::to_string(r.last);
 }
 
@@ -51,7 +51,8 @@ inline void set_sample(std::optional<PixelSample>& replay, Text v) {
     const size_t comma = v.find(',');
     if (!replay) replay.emplace();
     replay->i = parse_count(v.substr(0, comma), 0, most_samples);
-    if (comma != v.npos) replay->set = uint32_t(parse_count(v.substr(comma + 1), 0, most_sets));
+    if (comma != v.npos)
+        replay->set = uint32_t(parse_count(v.substr(comma + 1), 0, most_replications));
 }
 
 inline std::string parse_film(Text v) {
@@ -62,7 +63,8 @@ inline std::string parse_film(Text v) {
 inline OptionTable stop_rows(Options& o) {
     OptionTable rows = {
         {"--spp", "N",
-         "stop after N samples per pixel; noisy pixels take more (see --replications adaptive)",
+         "stop after N samples per pixel; with --replications adaptive, quiet pixels take half of "
+         "that, noisy ones up to 8 times",
          "the scene's, unless --time or --error is given",
          [&o](Text v) { o.spp = parse_count(v, 1, most_samples); }},
         {"--time", "S", "stop after S seconds; with --spp, whichever comes first", "",
@@ -80,13 +82,19 @@ inline OptionTable sampling_rows(Options& o) {
     return in_group(
         "Sampling",
         {{"--replications", "K|adaptive",
-          "number of independent replications per pixel; their sample variance gives the error "
-          "estimate; adaptive: 2, and up to 32 where the image is noisy",
+          "number of independent replications per pixel, whose differences give the error "
+          "estimate; "
+          "adaptive: two halves (more in a picture of less than 400 pixels), with up to 16 times "
+          "the samples where the image is noisy",
           "adaptive",
-          [&o](Text v) { o.sets = v == "adaptive" ? 0 : uint32_t(parse_count(v, 1, most_sets)); },
-          [&o] { return o.sets ? std::to_string(o.sets) : json::string("adaptive"); }},
+          [&o](Text v) {
+              o.replications = v == "adaptive" ? 0 : uint32_t(parse_count(v, 1, most_replications));
+          },
+          [&o] {
+              return o.replications ? std::to_string(o.replications) : json::string("adaptive");
+          }},
          one_of("--sampler", "independent|stratified|halton|sobol",
-                "sample points: pseudo-random, jittered grids, or low-discrepancy points",
+                "sample points: pseudo-random, jittered 4x4 grids, or low-discrepancy points",
                 o.sampler)});
 }
 
@@ -149,14 +157,8 @@ inline void parse_options(OptionTable& table, Options& o, const std::vector<std:
         throw UserError("--sample: needs --pixel X,Y (for samples per pixel use --spp N)");
     if (o.replay && !o.keep.empty()) throw UserError("--keep: cannot be combined with --pixel");
     if (o.error > 0 && o.view != View::radiance) throw UserError("--error: needs --view radiance");
-    if (o.error > 0 && o.sets == 1)
+    if (o.error > 0 && o.replications == 1)
         throw UserError("--error: needs --replications 2 or more, or adaptive");
     if (o.rows && o.keep.empty() && o.outputs.empty())
         throw UserError("--rows: needs --keep F.film, which build/merge takes, or -o");
-}
-
-// Samples of each replication, for N samples per pixel; 0: not known.
-inline uint64_t samples_each(uint32_t sets, uint64_t N) {
-    const uint64_t K = sets ? sets : 2;
-    return (N + K - 1) / K;
 }

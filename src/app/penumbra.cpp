@@ -42,22 +42,20 @@ Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& patter
 }
 
 // Facts that must agree when a film is resumed, or merged with others.
-FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, const Plan& plan,
-               const Pattern& p) {
+FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, const Plan& plan) {
     const Scene& scene = parsed.scene;
     auto pair = [](auto a, char between, auto b) {
         return std::to_string(a) + between + std::to_string(b);
     };
-    const Rows rows = o.rows.value_or(Rows{0, scene.size.height - 1});
+    const RowRange rows = rows_of(o, scene);
     FilmOf what{parsed.files, {}, {}};
     what.samples = {{"precision", sizeof(real) == 4 ? "float" : "double"},
                     {"size", pair(scene.size.width, 'x', scene.size.height)},
                     {"depth", std::to_string(scene.depth)}};
     for (const Text name : {"--sampler", "--direction", "--light", "--roulette", "--view"})
         what.samples.push_back({std::string(name.substr(2)), row(table, name).json()});
-    what.samples.push_back({"replications", plan.sets ? std::to_string(plan.sets) : "adaptive"});
-    if (o.sampler == SamplerKind::stratified)
-        what.samples.push_back({"grid", pair(p.columns, 'x', p.rows)});
+    what.samples.push_back(
+        {"replications", plan.is_adaptive ? "adaptive" : std::to_string(plan.replications)});
     what.samples.push_back({"seed", std::to_string(o.seed)});
     what.samples.push_back({"rows", pair(rows.first, '-', rows.last)});
     what.notes = {{"name", printable(o.scene)}, {"exposure", json::number(double(scene.exposure))}};
@@ -72,17 +70,16 @@ int penumbra(const std::vector<std::string>& words) {
     if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
-    Plan plan = plan_of(o, scene);
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples());
-    plan.period = pattern.period();
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
     if (o.replay) return replay(o, scene, pattern), 0;
-    const auto outputs = outputs_of(o, parsed, "", plan.size);
+    const auto outputs = outputs_of(o, parsed, "", scene.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
-    Witness witness(scene, o.technique);
-    if (o.view == View::radiance) witness.watch(plan);
+    const RowRange rows = rows_of(o, scene);
+    const Witness witness(scene, o.technique, rows.first, rows.count());
+    const Plan plan = plan_of(o, scene, o.view == View::radiance ? &witness : nullptr);
     const Radiance L = radiance_of(o, scene, pattern, witness);
-    const FilmOf what = film_of(table, o, parsed, plan, pattern);
+    const FilmOf what = film_of(table, o, parsed, plan);
     const Picture picture = render(o, plan, L, what);  // film and bar end here
     return write_picture(o, table, scene, outputs, picture);
 }

@@ -34,59 +34,87 @@ inline ParsedScene load(const Options& o) {
 
 // ---- A picture ----------------------------------------------------------------------------------
 
-// A scene without light is black, whatever error is asked for.
-inline Plan plan_of(const Options& o, const Scene& scene) {
-    const double error = scene.lights.empty() ? 0 : o.error;
-    const bool ends = o.spp > 0 || o.seconds > 0 || error > 0;
+inline RowRange rows_of(const Options& o, const Scene& scene) {
+    return o.rows.value_or(RowRange{0, scene.size.height - 1});
+}
+
+// Replications of each pixel, of a picture of so many: 2, and up to 8 in small pictures, whose
+// error may be that of one pixel.  A relative standard error of a quarter needs 7.
+inline uint32_t halves_of(Size size) {
+    return uint32_t(std::clamp(800 / (size.width * size.height), 2, 8));
+}
+
+// Samples of a pixel of mean noise, over those of a replication of weight 1.
+inline uint64_t samples_for_one(const Plan& plan) {
+    return plan.replications * (plan.is_adaptive ? typical_weight : 1);
+}
+
+// A scene without light is black, whatever error is asked for.  A witness observes the samples.
+inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness = nullptr) {
+    Plan plan;
+    plan.error = scene.lights.empty() ? 0 : o.error, plan.seconds = o.seconds;
+    const bool ends = o.spp > 0 || plan.seconds > 0 || plan.error > 0;
     const uint64_t N = ends ? o.spp : scene.samples;
-    // Two replications tell nothing of the noise of a picture of few pixels.
-    const bool few = scene.size.width * scene.size.height < 16;
-    const uint32_t most = N > 0 && N < least_of_noisy ? uint32_t(N) : least_of_noisy;
-    const uint32_t sets = o.sets ? o.sets : N == 1 ? 1 : few ? most : 0;
-    Plan plan{
-        {samples_each(sets, N), o.seconds, error}, 1, o.threads, bytes_of_machine(), scene.size};
-    plan.sets = sets;
-    if (o.rows) plan.size.height = o.rows->count(), plan.first_row = o.rows->first;
+    const uint32_t halves = halves_of(scene.size);
+    plan.replications = o.replications        ? o.replications
+                        : N > 0 && N < halves ? uint32_t(N)
+                                              : halves;
+    plan.is_adaptive = o.replications == 0 && N != 1;
+    plan.samples = (N + samples_for_one(plan) - 1) / samples_for_one(plan);
+    plan.threads = o.threads;
+    const RowRange rows = rows_of(o, scene);
+    plan.size = {scene.size.width, rows.count()}, plan.first_row = rows.first;
+    if (!witness) return plan;
+    plan.noisy = witness->noisy(), plan.why_unknown = Witness::why_unknown;
+    plan.near = witness->near_misses(plan.replications * (plan.is_adaptive ? least_of_noisy : 1));
+    return plan;
+}
+
+// The same where one sample of the film is the mean of all paths of a replication.
+inline Plan plan_at_once(const Options& o, const Scene& scene) {
+    Plan plan = plan_of(o, scene);
+    plan.paths = std::exchange(plan.samples, 1);
     return plan;
 }
 
 // Throws UserError if memory has no room for the film.
 inline Film film_for(const Plan& plan) {
-    if (bytes_of(plan.size, std::max(2u, plan.sets)) > plan.memory)
+    const double memory = bytes_of_machine();
+    if (bytes_of(plan.size, plan.replications) > memory)
         throw UserError(std::to_string(plan.size.width) + "x" + std::to_string(plan.size.height) +
-                        " pixels do not fit into the " + fixed(plan.memory * 1e-9, 0) +
+                        " pixels do not fit into the " + fixed(memory * 1e-9, 0) +
                         " GB of this machine: render fewer rows at a time (--rows)");
-    Film film = make_film(plan.size, plan.sets, plan.first_row);
-    film.evidence = plan.evidence;
+    Film film = make_film(plan.size, plan.replications, plan.is_adaptive, plan.first_row);
+    film.near = plan.near;
     return film;
 }
 
+// "pixel 3,4 sample 5,1", or as options have it.
+inline std::string in_words(const PixelSample& s, const char* pixel = "pixel ",
+                            const char* sample = " sample ") {
+    const std::string words =
+        pixel + std::to_string(s.x) + "," + std::to_string(s.y) + sample + std::to_string(s.i);
+    return s.set > 0 ? words + "," + std::to_string(s.set) : words;
+}
+
 // A NaN is an error and no black dot.
-inline void check_finite(const NonFinite& bad) {
-    if (bad.count == 0) return;
-    throw SystemError(counted(bad.count, "sample") + (bad.count == 1 ? " was" : " were") +
-                      " not finite, the first at " + in_words(bad.first) + " (replay it by " +
-                      in_words(bad.first, "--pixel ", " --sample ") + "); nothing was written");
+inline void check_finite(const Tally& t) {
+    if (t.bad == 0) return;
+    throw SystemError(counted(t.bad, "sample") + (t.bad == 1 ? " was" : " were") +
+                      " not finite, the first at " + in_words(t.first_bad) + " (replay it by " +
+                      in_words(t.first_bad, "--pixel ", " --sample ") + "); nothing was written");
 }
 
 // The results of a film.
-inline Run run_of(const Film& film, const Plan& plan, const Spent& spent,
-                  const ErrorChecks& checks) {
+inline Run run_of(const Film& film, const Plan& plan, const Spent& spent, Stop stop) {
     Run run;
     static_cast<Spent&>(run) = spent;
-    const bool all = film.pilot + film.least_taken() > 0;  // pixels have samples
-    run.spp = all ? film.total() / double(film.pixels()) * double(plan.at_once) : 0;
-    run.interrupted = interrupted;
-    const bool all_taken = plan.target.samples > 0 && film.least_taken() == plan.target.samples;
-    run.stopped_by = run.interrupted        ? "interrupt"
-                     : checks.is_enough()   ? "error"
-                     : checks.is_hopeless() ? "error not known"
-                     : all_taken            ? "samples"
-                                            : "time";
+    if (film.has_samples()) run.spp = film.samples_per_pixel() * double(plan.paths);
+    run.stopped_by = stop;
     run.error = error_of(film);
-    run.doubt = doubt_of(film, run.error, plan.judge);
-    run.sets = film.replications_per_pixel();
-    run.exponent_of_cost = 1 / checks.history().exponent();
+    run.doubt = doubt_of(film, run.error, plan.why_unknown);
+    run.replications = film.replications;
+    run.repeat_spp = double(film.least_taken() * plan.paths * samples_for_one(plan));
     return run;
 }
 
@@ -102,35 +130,31 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     Film film = film_for(plan);
     Keeper keeper(o.keep, what);
     const Spent before = keeper.restore(film);
-    if (film.total() > 0)
-        tell(o, "resuming " + o.keep + " at " +
-                    significant(film.total() / double(film.pixels()), 3) + " samples per pixel");
-    Progress progress(plan.target.seconds, o.quiet, before.seconds);
-    ErrorChecks checks(plan.target.error, plan.period, plan.judge);
-    Watch watch;
-    Loop loop(film, plan, L, watch);
-    auto spent = [&] {
+    if (film.samples_per_pixel() > 0)
+        tell(o, "resuming " + o.keep + " at " + significant(film.samples_per_pixel(), 3) +
+                    " samples per pixel");
+    Progress progress(plan.seconds, o.quiet, before.seconds);
+    auto spent = [&](const Tally& tally) {
         return Spent{progress.elapsed(), before.cpu_seconds + cpu_seconds(),
-                     before.rays + loop.rays()};
+                     before.rays + tally.rays};
     };
+    Watch watch;
     watch.elapsed = [&] { return progress.elapsed(); };
-    watch.between = [&](const Film& f) {
-        if (!interrupted) keeper.write_now_and_then(f, spent());
-        return checks.next(f);
+    watch.between = [&](const Film& f, const Tally& tally) {
+        keeper.write_now_and_then(f, spent(tally));
     };
-    watch.show = [&](double now, double all) {
-        if (all == 0) all = HUGE_VAL;
-        all = std::min(all, checks.expected() * film.replications_per_pixel());
-        progress.show(now / all, fixed(now * double(plan.at_once), 1) + " samples per pixel");
+    watch.show = [&](double now, double end) {
+        progress.show(now / end, fixed(now * double(plan.paths), 1) + " samples per pixel");
     };
-    loop.run();
-    check_finite(loop.non_finite());
-    if (loop.most_sets_chosen() < Allocation().most)
-        tell(o, "a pixel has at most " + std::to_string(loop.most_sets_chosen()) +
-                    " replications: more do not fit into memory");
-    Run run = run_of(film, plan, spent(), checks);  // once: a signal may come at any time
+    Loop loop(film, plan, L, watch);
+    const Stop stop = loop.run();
+    check_finite(loop.tally());
+    Run run = run_of(film, plan, spent(loop.tally()), stop);
+    run.exponent_of_cost = loop.checks().exponent_of_cost();
     run.is_radiance = o.view == View::radiance;
-    return {image_of(film), run, keeper.write(film, run, !run.interrupted)};
+    const std::string not_kept = keeper.write(film, run, !run.interrupted());
+    film.deviation = std::vector<float>();  // makes room for the image
+    return {image_of(film), run, not_kept};
 }
 
 // ---- A program that renders ---------------------------------------------------------------------
@@ -150,10 +174,10 @@ inline int write_picture(const Options& o, const OptionTable& table, const Scene
     std::vector<std::string> files = outputs;
     if (!o.keep.empty() && not_kept.empty()) files.push_back(o.keep);
     if (run.spp > 0) tell_written(o, files);
-    if (o.view == View::radiance && !o.rows && !scene.lights.empty() && run.error.norm == 0)
+    if (o.view == View::radiance && !o.rows && !scene.lights.empty() && run.error.norm() == 0)
         tell_black(o);
     if (!not_kept.empty()) throw SystemError(not_kept);
-    return run.interrupted ? 128 + interrupted : 0;
+    return run.interrupted() ? 128 + interrupted : 0;
 }
 
 // Images to write: none by default if it is a band, which is for build/merge.  A view has a file of

@@ -6,7 +6,7 @@
 #include <ctime>
 
 #include "base/option.h"
-#include "film/passes.h"
+#include "film/loop.h"
 
 inline void tell(const CommonOptions& o, const std::string& line) {
     if (!o.quiet) std::fprintf(stderr, "%s\n", printable(line).c_str());
@@ -62,17 +62,18 @@ private:
 // ---- Measurements of a run ----------------------------------------------------------------------
 
 struct Run : Spent {
-    double spp = 0;  // mean samples per pixel; 0: some pixel has none
-    bool interrupted = false;
-    std::string stopped_by;   // "samples", "time", "error", "error not known" or "interrupt"
-    bool is_radiance = true;  // false: a view; its error is not reported
+    double spp = 0;              // mean samples per pixel; 0: some pixel has none
+    Stop stopped_by = Stop::no;  // no: it was merged
+    bool is_radiance = true;     // false: a view; its error is not reported
     ImageError error;
     std::string doubt;              // why that may be far too small, or ""
-    double sets = 1;                // mean replications per pixel
+    double repeat_spp = NAN;        // --spp N that takes the same samples
+    double replications = 1;        // mean per pixel
     double exponent_of_cost = 2;    // seconds ~ d_rel^-this
     std::string bias = "unbiased";  // class of the estimator
     Facts more;                     // keys and JSON values of one program only
 
+    bool interrupted() const { return stopped_by == Stop::interrupt; }
     double mrays_per_second() const { return double(rays) / seconds * 1e-6; }
 };
 
@@ -89,15 +90,35 @@ inline int64_t peak_memory_bytes() {
 #endif
 }
 
+inline std::string word_of(Stop stop) {
+    switch (stop) {
+        case Stop::samples:
+            return "samples";
+        case Stop::time:
+            return "time";
+        case Stop::error:
+            return "error";
+        case Stop::error_unknown:
+            return "error not known";
+        case Stop::interrupt:
+            return "interrupt";
+        case Stop::not_finite:
+            return "not finite";
+        case Stop::no:
+            return "merge";
+    }
+    return "";
+}
+
 // ---- In words -----------------------------------------------------------------------------------
 
 // Why no error is reported; "": it is.
 inline std::string why_no_error(const Run& run) {
     if (!run.is_radiance) return "a view, not radiance";
     if (run.spp <= 1) return "one sample";
-    if (run.sets == 1) return run.interrupted ? "interrupted early" : "one replication";
-    if (run.error.d2() >= 0 || run.error.norm == 0) return run.doubt;
-    return run.interrupted ? "interrupted early" : "too little time";
+    if (run.replications == 1) return run.interrupted() ? "interrupted early" : "one replication";
+    if (run.error.d2() >= 0 || run.error.norm() == 0) return run.doubt;
+    return run.interrupted() ? "interrupted early" : "too little time";
 }
 
 // "estimated error 2.1 % ± 0.1 %; about 27 s more for 1 %": for `wanted`, or for half of the error
@@ -123,42 +144,45 @@ inline std::string error_words(const Run& run, double wanted = 0) {
 // Whether --error was met: "reached 3 % (ERROR)" or "did not reach 3 % (stopped by --time; ERROR)".
 // `by` is the option that ended the run; "": the reason is in the words about the error.
 inline std::string outcome_words(double wanted, const std::string& by, const std::string& error) {
-    const std::string goal = "reach" + std::string(by == "--error" ? "ed " : " ") +
-                             significant(100 * wanted, 3) + " % (";
-    if (by == "--error") return goal + error + ")";
-    return "did not " + goal + (by.empty() ? "" : "stopped by " + by + "; ") + error + ")";
+    const std::string goal = significant(100 * wanted, 3) + " % (";
+    if (by == "--error") return "reached " + goal + error + ")";
+    return "did not reach " + goal + (by.empty() ? "" : "stopped by " + by + "; ") + error + ")";
 }
 
 // The line that stays.  `wanted`: the error that was asked for, or 0.
 inline std::string summary(const std::string& scene, const Run& run, double wanted = 0) {
-    if (run.spp == 0 && run.interrupted)
+    if (run.spp == 0 && run.interrupted())
         return scene + ": interrupted before the first pass was complete: no image written";
     const std::string line = scene + ": " + counted(significant(run.spp, 3), "sample") +
                              " per pixel, " + fixed(run.seconds, 2) + " s, " +
                              fixed(run.mrays_per_second(), 2) + " Mrays/s";
-    if (!run.is_radiance) return line + (run.interrupted ? " (interrupted)" : "");
-    if (run.interrupted) return line + ", " + error_words(run, wanted) + " (interrupted)";
+    if (!run.is_radiance) return line + (run.interrupted() ? " (interrupted)" : "");
+    if (run.interrupted()) return line + ", " + error_words(run, wanted) + " (interrupted)";
     if (wanted == 0) return line + ", " + error_words(run);
-    const std::string by = run.stopped_by == "error not known" ? ""
-                           : run.stopped_by == "samples"       ? "--spp"
-                                                               : "--" + run.stopped_by;
+    const std::string by = run.stopped_by == Stop::samples ? "--spp"
+                           : run.stopped_by == Stop::time  ? "--time"
+                           : run.stopped_by == Stop::error ? "--error"
+                                                           : "";
     return line + ", " + outcome_words(wanted, by, error_words(run, wanted));
 }
 
 // Adds the measurements to the options.
 inline void add_run(json::Object& object, const Run& run, Size size) {
     object.add("precision", sizeof(real) == 4 ? "\"float\"" : "\"double\"");
-    object.add("interrupted", json::truth(run.interrupted));
+    object.add("interrupted", json::truth(run.interrupted()));
     object.add("samples_per_pixel", json::number(run.spp));
+    object.add("repeat_with_spp", json::number(run.repeat_spp));
     object.add("seconds", json::number(run.seconds));
     object.add("cpu_seconds", json::number(run.cpu_seconds));
     object.add("rays", std::to_string(run.rays));
     object.add("mrays_per_second", json::number(run.mrays_per_second()));
-    object.add("mean_radiance", json::numbers(run.error.mean));
-    std::array<double, 3> of_mean = run.error.square;
-    for (double& v : of_mean) v /= double(size.width) * double(size.height);
+    const double pixels = double(size.width) * double(size.height);
+    Sum mean = run.error.values, of_mean = run.error.variances;
+    for (double& v : mean) v /= pixels;
+    for (double& v : of_mean) v /= pixels * pixels;
+    object.add("mean_radiance", json::numbers(mean));
     object.add("variance_of_mean", json::numbers(of_mean));
-    object.add("replications_per_pixel", json::number(run.sets));
+    object.add("replications_per_pixel", json::number(run.replications));
     const std::string reason = why_no_error(run);
     auto if_known = [&](double x) { return json::number(reason.empty() ? x : double(NAN)); };
     object.add("d_rel", if_known(run.error.d_rel()));
@@ -169,7 +193,7 @@ inline void add_run(json::Object& object, const Run& run, Size size) {
     object.add("seconds_to_half_d_rel",
                if_known(falls ? run.seconds * std::pow(2, run.exponent_of_cost) : double(NAN)));
     object.add("bias", json::string(run.bias));
-    object.add("stopped_by", json::string(run.stopped_by));
+    object.add("stopped_by", json::string(word_of(run.stopped_by)));
     for (const auto& [key, value] : run.more) object.add(key, value);
     object.add("peak_memory_bytes", std::to_string(peak_memory_bytes()));
 }

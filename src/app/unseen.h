@@ -1,6 +1,6 @@
 // app/unseen.h  1  light that samples may have missed, if this program was built with src/unseen
 #pragma once
-#include "film/passes.h"
+#include "film/loop.h"
 #include "path/pathtracer.h"
 
 #if __has_include("unseen/unseen.h")
@@ -8,12 +8,14 @@
 #else
 inline std::vector<std::string> hidden_lights(const Scene&) { return {}; }
 struct Unseen {
-    void add(const std::vector<FixedPoint>&, double, double) {}
+    void add(const std::vector<NearMisses>&, double, double) {}
     std::string doubt(double, double, double) const { return ""; }
 };
 struct Witness {
-    Witness(const Scene&, const Technique&) {}
-    void watch(Plan&) {}
+    Witness(const Scene&, const Technique&, int, int) {}
+    std::vector<NearMisses> near_misses(double) const { return {}; }
+    std::vector<size_t> noisy() const { return {}; }
+    static std::string why_unknown(const Film&, const ImageError&) { return ""; }
     NoVisitor visitor(Tally&) const { return {}; }
 };
 #endif

@@ -17,6 +17,12 @@
 
 #include "base/words.h"
 
+// What a film is of, for the head of its file.
+struct FilmOf {
+    std::vector<std::string> files;  // that the scene was read from
+    Facts samples, notes;            // facts that samples depend on, and other facts
+};
+
 // ---- Reading ------------------------------------------------------------------------------------
 
 // Opens a regular file, or, `of_any_kind`, also a pipe, which may block, or a device, which may

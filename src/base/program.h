@@ -1,4 +1,4 @@
-// base/program.h  2  exit status, version, and the memory of the machine
+// base/program.h  2  exit status, version, memory of the machine, and what a run spends
 #pragma once
 #include <cerrno>
 #include <cstdio>
@@ -53,6 +53,12 @@ inline std::string version() {
     return std::string("Penumbra ") + commit() + ", " +
            (sizeof(real) == sizeof(double) ? "double" : "float") + " precision, " + compiler();
 }
+
+// Resources that a run has spent.
+struct Spent {
+    double seconds = 0, cpu_seconds = 0;
+    uint64_t rays = 0;
+};
 
 inline double bytes_of_machine() {
     return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));

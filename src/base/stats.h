@@ -9,6 +9,8 @@ __extension__ typedef unsigned __int128 FixedPoint;
 inline FixedPoint fixed_point(double x) { return FixedPoint(std::min(x, 0x1p40) * 0x1p60); }
 inline double value_of(FixedPoint sum) { return std::ldexp(double(sum), -60); }
 
+inline double square(double x) { return x * x; }  // double, also where the renderer uses float
+
 // Count, mean and sum of squared deviations, updated by one number (Welford 1962) or merged (Chan,
 // Golub, LeVeque 1983).  Always double, also where the renderer uses float.
 struct Moments {

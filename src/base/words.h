@@ -1,6 +1,7 @@
 // base/words.h  1  user errors, numbers from words, suggestions
 #pragma once
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +21,9 @@ struct UserError : std::runtime_error {
 struct SystemError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+// Keys and values, as a file or a report has them.
+using Facts = std::vector<std::array<std::string, 2>>;
 
 // A message for one line of a terminal: '?' replaces control characters, which might move the
 // cursor.  File names may contain them.  Other characters stay, ASCII or not.

@@ -8,8 +8,8 @@
 // Both are .pfm or .film.  Two films know the variances of their pixels, so that Welch's test
 // applies.  The images differ, with exit status 1, if d_rel is above the limit or p below alpha.
 #include "base/option.h"
-#include "keep/keep.h"
 #include "keep/p_of_z.h"
+#include "keep/read_film.h"
 #include "keep/read_pfm.h"
 
 namespace {
@@ -111,7 +111,8 @@ Known read_film(const std::string& path) {
     FilmPixels film(path, size);
     Image image(size.width, size.height), variance(size.width, size.height);
     for (size_t i = 0; i < image.pixels.size(); ++i) {
-        const Pixel p = film.next();
+        Pixel p;
+        film.add_next(p);
         for (size_t c = 0; c < 3; ++c) {
             image.pixels[i][c] = float(p.value(c));
             variance.pixels[i][c] = float(p.variance(c));

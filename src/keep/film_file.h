@@ -1,6 +1,6 @@
 // keep/film_file.h  1  .film files: a head that says what is in them, numbers, and a checksum
 //
-//     penumbra film 2                    what it is, and the version of this format
+//     penumbra film 3                    what it is, and the version of this format
 //     bytes 00000000000000001536         of numbers, after the head
 //     checksum 0f1e2d3c4b5a6978          of all that follows this line
 //     scene 7dc0f03976e8ec38             KEY VALUE: what the writer says of them
@@ -12,7 +12,6 @@
 
 #include "base/files.h"
 #include "base/rng.h"
-#include "film/film.h"
 
 static_assert(std::endian::native == std::endian::little,
               "numbers are written as memory holds them");
@@ -36,7 +35,7 @@ struct Checksum {
 // The three lines that come first; they have one length.
 inline std::string first_lines(uint64_t bytes, const Checksum& checksum) {
     const std::string digits = std::to_string(bytes);
-    return "penumbra film 2\nbytes " + std::string(20 - digits.size(), '0') + digits +
+    return "penumbra film 3\nbytes " + std::string(20 - digits.size(), '0') + digits +
            "\nchecksum " + checksum.text() + "\n";
 }
 
@@ -124,8 +123,8 @@ private:
         if (head.compare(0, magic, first, 0, magic) != 0 || end > magic + 20)
             refuse("is not a film");
         if (end != line - 1 || head[magic] != first[magic])
-            refuse("has format version " + head.substr(magic, end - magic) + ", not " +
-                   first[magic]);
+            refuse("is of another Penumbra: format version " + head.substr(magic, end - magic) +
+                   ", not " + first[magic]);
         return first.size();
     }
     Checksum checksum_from(uint64_t byte) {

@@ -12,9 +12,9 @@ constexpr const char* before_options =
     "usage: merge [options] PART.film...\n\nMerges films of `penumbra --keep PART.film` into "
     "one\npicture: bands (--rows A-B), and independent renders of them (--seed N).\n\n"
     "Bands with a fixed number of --replications make the picture of one render, bit for bit.\n"
-    "Bands with --replications adaptive choose replications by their own rows: the picture "
+    "Bands with --replications adaptive choose weights by their own rows: the picture "
     "is\nunbiased, "
-    "but not identical.  Seeds are averaged per pixel, weighted by samples.\n\n";
+    "but not identical.  Films of other seeds add replications to each pixel.\n\n";
 
 struct Part {
     std::string path, seed, rows;
@@ -45,7 +45,6 @@ void check_cover(const std::vector<Part>& parts, int height) {
 
 // Merges row by row; memory holds the picture, and a row of each film.
 Image merge(const std::vector<Part>& parts, Size size, Run& run) {
-    ErrorTerms terms;
     Unseen unseen;
     Image image(size.width, size.height);
     for (size_t k = 0; k < parts.size();) {
@@ -54,26 +53,22 @@ Image merge(const std::vector<Part>& parts, Size size, Run& run) {
         for (; k < parts.size() && parts[k].rows == rows; ++k)
             films.emplace_back(parts[k].path, Size{size.width, last - first + 1});
         double all = 0;
-        for (const FilmPixels& f : films) all += f.film().total();
-        for (size_t s = 0; s < films.size(); ++s) {
-            const Film& f = films[s].film();
-            unseen.add(f.evidence, double(f.least_taken()), f.total() / all);
-        }
-        std::vector<Pixel> pixel(films.size());
+        for (const FilmPixels& f : films) all += f.film().samples_per_pixel();
+        for (const FilmPixels& f : films)
+            unseen.add(f.film().near, double(f.film().least_taken()),
+                       f.film().samples_per_pixel() / all);
         for (int y = first; y <= last && !interrupted; ++y)
             for (int x = 0; x < size.width; ++x) {
-                for (size_t s = 0; s < films.size(); ++s) {
-                    pixel[s] = films[s].next();
-                    run.spp += pixel[s].samples(), run.sets += double(pixel[s].sum.size());
-                }
-                const auto mean = terms.add(pixel);
-                image.at(x, y) = {float(mean[0]), float(mean[1]), float(mean[2])};
+                Pixel p;
+                for (FilmPixels& f : films) f.add_next(p);
+                run.error.add(p);
+                run.spp += p.samples, run.replications += p.K;
+                image.at(x, y) = {float(p.value(0)), float(p.value(1)), float(p.value(2))};
             }
     }
-    run.spp /= double(terms.pixels), run.sets /= double(terms.pixels);
-    run.error = terms.error();
+    run.spp /= run.error.pixels, run.replications /= run.error.pixels;
     run.doubt = doubt_of({}, run.error, [&](const Film&, const ImageError& e) {
-        return unseen.doubt(e.d2(), e.norm, double(terms.pixels));
+        return unseen.doubt(e.d2(), e.norm(), e.pixels);
     });
     return image;
 }
@@ -94,7 +89,7 @@ int program(const std::vector<std::string>& words) {
     picture.erase(seed, picture.end());
     const Size size{int(any.number("size", 65536)), int(any.number("size", 65536, 'x'))};
     Run run;
-    run.sets = 0, run.stopped_by = "merge";
+    run.replications = 0;
     std::vector<Part> parts;
     for (const std::string& path : paths) {
         const FilmReader file(path);

@@ -22,11 +22,11 @@
 class EndlessNumbers {
 public:
     static constexpr int structured = 8;
-    static Pattern pattern(SamplerKind kind, uint64_t seed, uint64_t spp) {
-        return make_pattern(kind, seed, structured, spp);
+    static Pattern pattern(SamplerKind kind, uint64_t seed) {
+        return make_pattern(kind, seed, structured);
     }
     static Pattern independent(uint64_t seed) {
-        return make_pattern(SamplerKind::independent, seed, 0, 0);
+        return make_pattern(SamplerKind::independent, seed, 0);
     }
 
     EndlessNumbers(const Sampler& first, const Sampler& rest) : first_(first), rest_(rest) {}
@@ -83,11 +83,11 @@ inline Rendered by_control(const Scene& read, uint64_t spp, uint64_t seed) {
     scene.depth = std::numeric_limits<int>::max();
     const auto [width, height] = scene.size;
     const uint64_t n = spp * uint64_t(width) * uint64_t(height) / 64 + 1;
-    Particles p(scene, room.mesh, Particles::pattern(SamplerKind::halton, hash(seed, 1), n));
+    Particles p(scene, room.mesh, Particles::pattern(SamplerKind::halton, hash(seed, 1)));
     walk(p, n);
     const KnownLight known = known_light(scene, room.mesh, p.map());
     const Gather g{scene, {Direction::bsdf, LightMode::mis, 0}, known};
-    const Pattern pattern = EndlessNumbers::pattern(SamplerKind::sobol, seed, spp),
+    const Pattern pattern = EndlessNumbers::pattern(SamplerKind::sobol, seed),
                   rest = EndlessNumbers::independent(seed);
     Image image(width, height);
     auto row = [&](size_t y) {

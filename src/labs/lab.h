@@ -16,7 +16,7 @@
 
 #include "base/option.h"
 #include "base/stats.h"
-#include "film/passes.h"
+#include "film/loop.h"
 #include "keep/read_pfm.h"
 #include "labs/execute.h"
 #include "labs/svg.h"

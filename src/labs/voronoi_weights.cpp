@@ -9,7 +9,7 @@
 
 namespace {
 
-const std::string mc = "mc", cvor = "cvor", stratified = "stratified";
+const std::string mc = "mc", cvor = "cvor", sobol = "sobol";
 
 enum Region { light_border, plain, other };
 constexpr const char* region_names[] = {"border of the light", "one diffuse surface", "other"};
@@ -59,8 +59,7 @@ int study(const Scope& scope, uint64_t most) {
         settings.push_back(
             {weights, std::string("--replications 1 --light nee --roulette 0 --weights ") + weights,
              scope.beside("voronoi")});
-    settings.push_back(
-        {stratified, "--replications 1 --light nee --roulette 0 --sampler stratified"});
+    settings.push_back({sobol, "--replications 1 --light nee --roulette 0 --sampler sobol"});
     std::vector<uint64_t> counts;
     for (uint64_t n = 64; n <= most; n *= 4) counts.push_back(n);
     Rows rows;
@@ -77,7 +76,7 @@ int study(const Scope& scope, uint64_t most) {
         append(rows, grid.run({subject}, settings, counts, 4));
     }
     Lines lines, areas;
-    bool halves = true, at_border = true, strata = true;
+    bool halves = true, at_border = true, points = true;
     for (const auto& [scene, all] : grouped(rows, of_scene))
         for (const auto& [count, some] : grouped(all, of_count)) {
             lines.push_back({scene, count});
@@ -95,19 +94,17 @@ int study(const Scope& scope, uint64_t most) {
             halves = halves && less(some, cvor) > 1.5;
             at_border = at_border && less(some, cvor, region_names[light_border]) > 2 &&
                         less(some, cvor, region_names[plain]) < 1;
-            strata =
-                strata && square(by_setting(some, stratified)) < square(by_setting(some, cvor));
+            points = points && square(by_setting(some, sobol)) < square(by_setting(some, cvor));
         }
-    page.set("table",
-             table({"scene", "samples", "vor", "fvor", "cvor", "torus", stratified}, lines));
-    page.set("regions",
-             table({"scene", "region", "pixels", "mc", "vor", "fvor", "cvor", "torus", stratified},
-                   areas));
+    page.set("table", table({"scene", "samples", "vor", "fvor", "cvor", "torus", sobol}, lines));
+    page.set(
+        "regions",
+        table({"scene", "region", "pixels", "mc", "vor", "fvor", "cvor", "torus", sobol}, areas));
     page.plot("voronoi", plot(in_scene(rows, "cornell"), "samples per pixel", "error (d_rel)",
                               of_setting, count_of, relative_error, "cornell"));
     page.claim("halves", halves);
     page.claim("border", at_border);
-    page.claim("strata", strata);
+    page.claim("points", points);
     page.set("size", text("%d×%d", side, side));
     return page.finish();
 }
@@ -118,7 +115,7 @@ int main(int argc, char** argv) {
     uint64_t most = 256;
     const Lab lab{
         "voronoi_weights",
-        "Weights samples by Voronoi cells, as published, and compares with strata.",
+        "Weights samples by Voronoi cells, as published, and compares with Sobol' points.",
         {whole_number("--most", "samples per pixel; published: 4096", "256", most, 64, 1 << 16)}};
     return experiment(argc, argv, lab, [&](const Scope& scope) { return study(scope, most); });
 }

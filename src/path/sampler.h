@@ -9,7 +9,7 @@
 
 enum class SamplerKind {
     independent,  // pseudo-random numbers
-    stratified,   // jittered grids, shuffled
+    stratified,   // jittered 4 x 4 grids, shuffled
     halton,       // scrambled Halton points, with a randomisation per pixel
     sobol         // Sobol' points, with a randomisation per pixel and pair of dimensions
 };
@@ -25,52 +25,29 @@ inline constexpr uint32_t dimension(int vertex, Draw what) {
 struct Pattern {
     SamplerKind kind = SamplerKind::sobol;
     uint64_t seed = 0;
-    uint32_t columns = 1, rows = 1;    // stratified: cells of a grid
     std::vector<uint32_t> bases = {};  // halton: one prime per dimension
-
-    // Samples per pixel after which whole grids are complete.
-    uint64_t period() const { return uint64_t(columns) * rows; }
 };
 
-// The most square grid of n cells.
-inline uint32_t rows_of_grid(uint64_t n) {
-    uint32_t rows = uint32_t(std::sqrt(double(n)));
-    while (n % rows) --rows;
-    return rows;
-}
-
-// For paths of up to `depth` bounces.  A grid has at most 256 cells, a divisor of the number of
-// samples, and is at most twice as wide as high.  It has 16 cells if no grid fits, or if spp is 0
-// (unknown).  The cells of an incomplete grid are an unbiased random choice.
-inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth, uint64_t spp) {
+// For paths of up to `depth` bounces.
+inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
     Pattern p{kind, seed};
     if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
-    if (kind == SamplerKind::stratified) {
-        p.columns = p.rows = 4;
-        for (uint64_t cells = std::min<uint64_t>(spp, 256); cells > 1; --cells) {
-            const uint32_t rows = rows_of_grid(cells);
-            if (spp % cells || cells > 2 * uint64_t(rows) * rows) continue;
-            p.columns = uint32_t(cells / rows);
-            p.rows = rows;
-            break;
-        }
-    }
     return p;
 }
 
-// A random permutation of 0 ... n-1, at i: a keyed bijection of the next power of two, repeated
-// until the value is below n (Black, Rogaway 2002; Kensler 2013), then rotated, so that all values
-// are exactly equally likely.
-inline uint32_t permute(uint32_t i, uint32_t n, uint64_t key) {
-    const uint32_t mask = std::bit_ceil(n) - 1, half = uint32_t(std::bit_width(mask) + 1) / 2;
-    do {
-        uint64_t bits = key;
-        for (int round = 0; round < 4; ++round, bits = std::rotr(bits, 17)) {
-            i = (i * (uint32_t(bits) | 1) + uint32_t(bits >> 32)) & mask;
-            i ^= i >> half;
-        }
-    } while (i >= n);
-    return uint32_t((i + (mix(key) >> 32) * n / (uint64_t(1) << 32)) % n);
+// stratified: each 16 samples are one of each cell of a 4 x 4 grid.  Those of an incomplete grid
+// are an unbiased random choice.
+inline constexpr uint32_t grid_columns = 4, grid_cells = 16;
+
+// A random permutation of 0 ... 15, at i: a keyed bijection (Kensler 2013), then rotated, so that
+// all values are exactly equally likely.
+inline uint32_t permute(uint32_t i, uint64_t key) {
+    uint64_t bits = key;
+    for (int round = 0; round < 4; ++round, bits = std::rotr(bits, 17)) {
+        i = (i * (uint32_t(bits) | 1) + uint32_t(bits >> 32)) % grid_cells;
+        i ^= i >> 2;
+    }
+    return (i + uint32_t(mix(key) >> 60)) % grid_cells;
 }
 
 // Strata: a number in part `part` of [0,1), one of `parts` equal ones; and a point in cell `cell`
@@ -108,7 +85,7 @@ public:
                 return to_unit(random(dim));
             case SamplerKind::stratified: {
                 const auto [cell, jitter] = stratum(dim);
-                return in_part(cell, pattern_.columns * pattern_.rows, jitter);
+                return in_part(cell, grid_cells, jitter);
             }
             case SamplerKind::halton: {
                 // exercise 4.3
@@ -127,7 +104,7 @@ public:
             return sobol_pair(index_, random(dim), random(dim + 1));
         if (pattern_.kind == SamplerKind::stratified) {
             const auto [cell, jitter] = stratum(dim);
-            return in_cell(cell, pattern_.columns, pattern_.rows, jitter);
+            return in_cell(cell, grid_columns, grid_cells / grid_columns, jitter);
         }
         const real x = get(dim), y = get(dim + 1);
         return {x, y};
@@ -153,10 +130,9 @@ private:
         uint64_t jitter;
     };
     Stratum stratum(uint32_t dim) const {
-        const uint32_t cells = pattern_.columns * pattern_.rows;
         const uint64_t key = random(dim);
         const uint32_t cell =
-            permute(uint32_t(index_ % cells), cells, mix(key + index_ / cells * golden));
+            permute(uint32_t(index_ % grid_cells), mix(key + index_ / grid_cells * golden));
         return {cell, hash(key, index_)};
     }
 };

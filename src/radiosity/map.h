@@ -1,7 +1,7 @@
 // radiosity/map.h  3  illumination maps, and their images
 #pragma once
 #include "film/image.h"
-#include "film/passes.h"
+#include "film/loop.h"
 #include "path/pathtracer.h"
 #include "radiosity/mesh.h"
 

@@ -14,7 +14,7 @@ enum class MapView { luminance, illuminance, mesh };
 
 // An error is that of the maps; of the image, with final gathering.
 struct RadiosityOptions : Options {
-    bool final_gather = false;  // render paths, with spp, sets, technique and sampler
+    bool final_gather = false;  // render paths, with spp, replications, technique and sampler
     Method method = Method::hierarchy;
     std::optional<double> mesh;  // longest edge of an element
     double unshot = 0;           // fraction of all power; 0: no limit
@@ -75,7 +75,8 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
              {"--time", "S", "stop after S seconds; with other limits, whichever comes first", "",
               [&o](Text v) { o.seconds = parse_positive(v); }},
              taken("--spp",
-                   "stop after N paths per pixel; noisy pixels take more (see --replications)")}) +
+                   "stop after N paths per pixel; fewer in quiet pixels, more in noisy ones (see "
+                   "--replications)")}) +
         in_group("Sampling",
                  {{"--rays", "K", "K x K rays per pixel, on a grid, without --final-gather", "2",
                    [&o](Text v) { o.rays = int(parse_count(v, 1, 64)); }},
@@ -111,7 +112,7 @@ inline void parse_radiosity(OptionTable& table, RadiosityOptions& o,
          "needs --final-gather");
     need({"--rays", "--view"}, !o.final_gather, "cannot be combined with --final-gather");
     if (o.final_gather) {
-        need({"--error"}, o.sets != 1, "needs --replications 2 or more, or adaptive");
+        need({"--error"}, o.replications != 1, "needs --replications 2 or more, or adaptive");
         if (!is_given(table, "--sampler")) o.sampler = SamplerKind::sobol;
         o.technique.roulette = 0;
         return;

@@ -4,6 +4,7 @@
 // hits, and survives with probability albedo.  Unbiased for the maps of projection.h, with any
 // unbiased sampler.
 #pragma once
+#include "film/film.h"
 #include "radiosity/batches.h"
 #include "radiosity/projection.h"
 
@@ -108,16 +109,14 @@ public:
         : scene_(scene),
           mesh_(mesh),
           pattern_(pattern),
-          independent_(make_pattern(SamplerKind::independent, pattern.seed, 0, 0)),
+          independent_(make_pattern(SamplerKind::independent, pattern.seed, 0)),
           batch_(batches, Batch{std::vector<Sum>(number_of_sides(mesh)), {}, 0, 0}) {}
 
     // Every batch has as many.
     static uint64_t of_each(uint64_t samples) { return (samples + batches - 1) / batches; }
 
     // Pattern of as many dimensions as the numbers of a walk have.
-    static Pattern pattern(SamplerKind kind, uint64_t seed, uint64_t samples) {
-        return make_pattern(kind, seed, 5, of_each(samples));
-    }
+    static Pattern pattern(SamplerKind kind, uint64_t seed) { return make_pattern(kind, seed, 5); }
 
     // Traces n more particles of a batch, or fewer after Ctrl-C.
     void add(size_t batch, uint64_t n) {
@@ -226,7 +225,6 @@ public:
     }
 
 private:
-    using Sum = std::array<double, 3>;
     struct Batch {
         std::vector<Sum> sums;  // sums of power times hat, for the sides of all vertices
         std::array<Sum, 3> balance;
@@ -240,9 +238,6 @@ private:
     std::vector<Batch> batch_;
 
     static double sum_of(rgb x) { return double(x.x) + double(x.y) + double(x.z); }
-    static void add_to(Sum& sum, rgb x) {
-        for (size_t c = 0; c < 3; ++c) sum[c] += double(x.*axis[c]);
-    }
 
     // Adds a batch's sums on one side of a face, times a factor.
     static void add_sums(Sums& b, const Batch& batch, const Face& f, bool back, double factor) {

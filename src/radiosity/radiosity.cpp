@@ -65,7 +65,6 @@ int show_maps(const RadiosityOptions& o, const OptionTable& table, const Stage& 
 int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
            const std::vector<std::string>& outputs) {
     Scene& scene = stage.scene;
-    Plan plan = plan_of(o, scene);
     const Progress clock(0, true);
     Solution s = walk(o, stage, SamplerKind::halton, hash(o.seed, 1), walks_of(o, scene));
     Facts of_maps = {{"map_mesh", json::number(stage.H)},
@@ -77,12 +76,12 @@ int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
     const double seconds = clock.elapsed();
     of_maps.push_back({"map_seconds", json::number(seconds)});
     // If no time is left, a tiny limit: 0 would be no limit.
-    if (o.seconds > 0) plan.target.seconds = std::max(1e-9, o.seconds - seconds);
+    RadiosityOptions rest = o;
+    if (o.seconds > 0) rest.seconds = std::max(1e-9, o.seconds - seconds);
     scene.depth = 1;
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples());
-    plan.period = pattern.period();
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
     const Radiance L = final_gather(scene, o.technique, known, pattern);
-    Picture picture = render(o, plan, L);
+    Picture picture = render(rest, plan_of(rest, scene), L);
     picture.run.seconds += seconds, picture.run.rays += s.rays;
     picture.run.bias = "biased";
     picture.run.more = of_maps;

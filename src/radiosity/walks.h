@@ -68,20 +68,13 @@ public:
     // All arguments except the target must outlive it.
     Walks(const Scene& scene, const Mesh& mesh, const Pattern& pattern, const WalksTarget& target,
           const CommonOptions& o)
-        : target_(target),
-          o_(o),
-          least_(256 * pattern.period()),
-          particles_(scene, mesh, pattern),
-          bar_(target.seconds, o.quiet) {}
+        : target_(target), o_(o), particles_(scene, mesh, pattern), bar_(target.seconds, o.quiet) {}
 
-    // Until the target is met, or `interrupted`.  Whole grids, except at the limit.
-    void run(uint64_t grid) {
+    // Until the target is met, or `interrupted`.
+    void run() {
         const ErrorTarget enough(target_.error);
         const uint64_t limit = Particles::of_each(target_.particles);
-        auto reachable = [&](uint64_t n) {
-            const uint64_t whole = (n + grid - 1) / grid * grid;
-            return limit ? std::min(whole, limit) : whole;
-        };
+        auto reachable = [&](uint64_t n) { return limit ? std::min(n, limit) : n; };
         uint64_t to = target_.error > 0 ? reachable(ErrorTarget::least) : limit;
         while (walk_to(to) && to != limit && !enough.met(error_now())) {
             if (limit == 0 && target_.seconds == 0 && particles_.is_endless())
@@ -103,7 +96,7 @@ public:
 private:
     const WalksTarget target_;
     const CommonOptions& o_;
-    const uint64_t least_;  // particles of a pass: maps of fewer per batch are only noise
+    static constexpr uint64_t least = 256;  // particles of a pass: maps of fewer are only noise
     Particles particles_;
     Progress bar_;
     uint64_t of_ = 0;  // particles of each batch when error_ was estimated
@@ -120,9 +113,11 @@ private:
         for (;;) {
             const uint64_t n = particles_.of_each();
             const double elapsed = bar_.elapsed();
-            const double a_period = n > 0 ? elapsed / double(n) * double(least_) : 0;
-            const uint64_t next = end_of_pass({to, target_.seconds}, least_, n, elapsed, a_period);
-            if (next == n) return n == to;
+            const bool is_over = n > 0 && target_.seconds > 0 && elapsed >= target_.seconds;
+            if (is_over || (n > 0 && n == to)) return n == to;
+            const double each = n > 0 ? elapsed / double(n) * least : 0;
+            const uint64_t fit = least * end_of_pass(n / least, elapsed, each, target_.seconds),
+                           next = to ? std::min(fit, to) : fit;
             const bool complete = in_parallel(
                 Particles::batches, o_.threads,
                 [&](size_t batch) { particles_.add(batch, next - n); },
@@ -148,6 +143,6 @@ private:
 inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& pattern,
                        const WalksTarget& target, const CommonOptions& o) {
     Walks walks(scene, mesh, pattern, target, o);
-    if (!scene.lights.empty()) walks.run(pattern.period());
+    if (!scene.lights.empty()) walks.run();
     return walks.walked();
 }

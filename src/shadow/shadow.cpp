@@ -25,7 +25,7 @@ struct ShadowOptions : Options {
 };
 
 OptionTable shadow_table(ShadowOptions& o) {
-    o.sets = 2;
+    o.replications = 2;
     o.technique.light = LightMode::nee;
     OptionTable table =
         without(option_table(o), {"--replications", "--light", "--time", "--error", "--keep",
@@ -39,10 +39,10 @@ OptionTable shadow_table(ShadowOptions& o) {
         in_group("Sampling", {whole_number("--replications",
                                            "number of independent replications per pixel; their "
                                            "sample variance gives the error estimate",
-                                           "2", o.sets, 1, most_sets)});
+                                           "2", o.replications, 1, most_replications)});
     row(table, "-o").otherwise = "out/NAME-shadow.png, .pfm";
     row(table, "--replications").value = "K";
-    row(table, "--replications").json = [&o] { return std::to_string(o.sets); };
+    row(table, "--replications").json = [&o] { return std::to_string(o.replications); };
     row(table, "--spp").help = "samples per pixel, of all replications together";
     row(table, "--spp").otherwise = "the scene's";
     return table;
@@ -56,13 +56,12 @@ int shadow(const std::vector<std::string>& words) {
     if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
-    Plan plan = plan_of(o, scene);
-    plan.at_once = std::exchange(plan.target.samples, 1);
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.at_once);
+    const Plan plan = plan_at_once(o, scene);
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
     const auto outputs = outputs_of(o, parsed, "-shadow", plan.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
-    const Radiance L = shadow_estimate(scene, o.technique, pattern, o.estimator, plan.at_once);
+    const Radiance L = shadow_estimate(scene, o.technique, pattern, o.estimator, plan.paths);
     Picture picture = render(o, plan, L);
     if (interrupted) picture.run.spp = 0;
     if (estimates_pixels(o.estimator)) picture.run.bias = "consistent";

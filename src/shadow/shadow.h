@@ -5,7 +5,7 @@
 // all else as sampled: Phong lobes, later vertices of a path, point lights, the inside of spheres,
 // and lights nearer to their receiver than rounding.
 #pragma once
-#include "film/passes.h"
+#include "app/render.h"
 #include "path/pathtracer.h"
 #include "path/start.h"
 #include "shadow/estimators.h"
@@ -91,11 +91,11 @@ ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, 
 // Moments of n samples: ratio and regression need them, because the mean of ratios of single
 // samples would never converge.
 struct ShadowPixel {
-    Sum rest;
+    Sum rest{};
     ShadowMoments shadowed[3] = {};  // per channel
 
     void add(const ShadowSample& s) {
-        rest.add(s.rest);
+        add_to(rest, s.rest);
         for (size_t c = 0; c < 3; ++c)
             shadowed[c].add(double(s.first.U.*axis[c]), double(s.first.w.*axis[c]),
                             double(s.first.wV.*axis[c]));
@@ -104,7 +104,7 @@ struct ShadowPixel {
         rgb L;
         for (size_t c = 0; c < 3; ++c) {
             const ShadowMoments& m = shadowed[c];
-            L.*axis[c] = real(rest.L[c] / double(m.n) + estimate(e, m));
+            L.*axis[c] = real(rest[c] / double(m.n) + estimate(e, m));
         }
         return L;
     }

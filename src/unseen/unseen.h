@@ -4,49 +4,15 @@
 // about its centre and 1/s^2 as bright sends about the same light, but BSDF samples meet it s^2
 // times as often: near misses reveal rare light before a sample meets it.
 #pragma once
-#include <bit>
 #include <map>
 
 #include "base/json.h"
-#include "film/passes.h"
+#include "film/loop.h"
 #include "path/halton.h"
 #include "path/pathtracer.h"
 #include "unseen/hidden.h"
 
-inline constexpr size_t growths = 11;            // s = 1, 2, 4 ... 1024
 inline constexpr size_t most_light_groups = 64;  // more lights share groups with neighbours
-
-// ---- Evidence -----------------------------------------------------------------------------------
-
-// A group of lights, as the camera sees them.
-struct LightGroup {
-    double line = 0;  // line of its first light; 0: not known
-    double L2 = 0;    // greatest square of radiance, mean of the channels
-    double area = 0;  // visible area in pixels
-    double a = 0;     // sum over pixels of a (1 - a), for the covered part a of a pixel
-    double K = 1;     // replications of these pixels
-};
-
-// The evidence of a film: for each group its LightGroup, then c and c^2 of near misses (see below)
-// for each growth, first of paths by mirrors and glass only, then of other paths.
-inline constexpr size_t light_kinds = 2, of_group = 5 + light_kinds * growths * 2;
-inline size_t place(size_t group, size_t kind) { return group * of_group + 5 + kind * growths * 2; }
-
-inline LightGroup group_in(const std::vector<FixedPoint>& evidence, size_t group) {
-    auto number = [&](size_t i) {
-        return std::bit_cast<double>(uint64_t(evidence[group * of_group + i]));
-    };
-    return {number(0), number(1), number(2), number(3), number(4)};
-}
-inline std::vector<FixedPoint> no_evidence_yet(const std::vector<LightGroup>& groups) {
-    std::vector<FixedPoint> evidence(groups.size() * of_group);
-    for (size_t g = 0; g < groups.size(); ++g) {
-        const auto& [line, L2, area, a, K] = groups[g];
-        size_t i = g * of_group;
-        for (double x : {line, L2, area, a, K}) evidence[i++] = std::bit_cast<uint64_t>(x);
-    }
-    return evidence;
-}
 
 inline double mean_square(rgb L) {
     double sum = 0;
@@ -83,7 +49,7 @@ inline void add_view(std::map<size_t, double>& parts, const Scene& s, const Ligh
 }
 
 struct LightsInView {
-    std::vector<LightGroup> groups;
+    std::vector<NearMisses> groups;
     std::vector<size_t> noisy;  // pixels of groups that cover less than 16
 };
 
@@ -94,14 +60,14 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows) {
     std::vector<std::map<size_t, double>> parts(view.groups.size());
     for (size_t i = 0; i < s.lights.size(); ++i) {
         if (s.lights[i].kind == Light::Kind::point) continue;
-        LightGroup& g = view.groups[group_of(s, i)];
+        NearMisses& g = view.groups[group_of(s, i)];
         if (g.line == 0 && i < s.line_of_light.size()) g.line = s.line_of_light[i];
         g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
         const size_t points = 1024 * view.groups.size() / s.lights.size() + 1;
         add_view(parts[group_of(s, i)], s, s.lights[i], points, first_row, rows);
     }
     for (size_t g = 0; g < parts.size(); ++g) {
-        LightGroup& group = view.groups[g];
+        NearMisses& group = view.groups[g];
         for (const auto& [i, a] : parts[g]) {
             group.area += a;
             group.a += std::max(0.0, a * (1 - a));
@@ -140,10 +106,10 @@ inline uint32_t growths_met(const Light& l, const Ray& ray) {
 //     c = |beta L w|^2 / (3 L2 K^2)
 // for every growth that makes a ray meet the light.  It counts rays after mirrors and glass, where
 // there is no light sampling, and after narrow lobes, where it has a low weight.
-struct NearMisses {
+struct NearMissVisitor {
     const Scene& scene;
     const Technique& technique;
-    const std::vector<LightGroup>& groups;
+    const std::vector<NearMisses>& groups;
     Tally& tally;
     bool is_specular = true;
 
@@ -183,32 +149,34 @@ private:
         const double c = mean_square(s.beta * scene.lights[light].L) / groups[g].L2 * w * w;
         if (!(c > 0)) return;
         const FixedPoint c1 = fixed_point(c), c2 = fixed_point(c * c);
-        FixedPoint* sum = &tally.sums[place(g, is_specular ? 0 : 1)];
-        for (size_t k = 0; k < growths; ++k, sum += 2)
-            if (near >> k & 1) sum[0] += c1, sum[1] += c2;
+        auto& sums = tally.near[g].sum[is_specular ? 0 : 1];
+        for (size_t k = 0; k < growths; ++k)
+            if (near >> k & 1) sums[k][0] += c1, sums[k][1] += c2;
     }
 };
 
 // ---- Light that may be missing ------------------------------------------------------------------
 
-// The evidence of films of one picture.
+// The near misses of films of one picture.
 class Unseen {
 public:
-    // A film with t samples in each replication; its picture has a weight in the mean of several.
-    void add(const std::vector<FixedPoint>& evidence, double t, double weight = 1) {
-        lights_.resize(evidence.size() / of_group);
+    // Of a film with t samples in each replication of weight 1; its picture has a weight in the
+    // mean of several.
+    void add(const std::vector<NearMisses>& groups, double t, double weight = 1) {
+        lights_.resize(groups.size());
         for (size_t g = 0; g < lights_.size(); ++g) {
-            const LightGroup group = group_in(evidence, g);
-            const double v = weight * weight * group.L2, n = t * group.K;
-            lights_[g].line = group.line;
+            const NearMisses& group = groups[g];
+            const double v = weight * weight * group.L2, n = t * double(group.K);
+            lights_[g].line = double(group.line);
             lights_[g].met += group.area * n;
             lights_[g].variance += v * group.a / n;
-            for (size_t i = 0; i < light_kinds * growths; ++i) {
-                const FixedPoint* const sum = &evidence[place(g, 0) + 2 * i];
-                NearSum& of = lights_[g].near[i];
-                of.c += value_of(sum[0]), of.c2 += value_of(sum[1]);
-                of.variance += v * value_of(sum[0]) / (t * t);
-            }
+            for (size_t kind = 0; kind < 2; ++kind)
+                for (size_t k = 0; k < growths; ++k) {
+                    const auto& [c, c2] = group.sum[kind][k];
+                    NearSum& of = lights_[g].near[kind][k];
+                    of.c += value_of(c), of.c2 += value_of(c2);
+                    of.variance += v * value_of(c) / (t * t);
+                }
         }
     }
 
@@ -226,16 +194,16 @@ public:
         };
         for (const OneLight& l : lights_) {
             if (l.met < 10) consider(l.variance, l.line, ", smaller than a pixel,", l.met);
-            for (size_t kind = 0; kind < light_kinds; ++kind) {
-                const NearSum* const s = &l.near[kind * growths];
+            for (size_t kind = 0; kind < 2; ++kind) {
+                const auto& s = l.near[kind];
                 double greatest = 0;
                 for (size_t k = 0; k < growths; ++k)
                     if (s[k].count() >= 5)
                         greatest = std::max(greatest, std::ldexp(s[k].variance, -2 * int(k)));
-                if (s->count() < 10)
+                if (s[0].count() < 10)
                     consider(greatest, l.line,
                              kind == 0 ? " in mirrors or glass" : " by way of mirrors or glass",
-                             s->count());
+                             s[0].count());
             }
         }
         if (!(unseen > 3 * d2 * pixels)) return "";
@@ -250,7 +218,7 @@ private:
     };
     struct OneLight {
         double line = 0, met = 0, variance = 0;  // met: expected number of camera rays
-        std::array<NearSum, light_kinds * growths> near;
+        std::array<std::array<NearSum, growths>, 2> near;
     };
     std::vector<OneLight> lights_;
 };
@@ -258,24 +226,29 @@ private:
 // Observes the paths of a render, and judges its estimated error.
 class Witness {
 public:
-    Witness(const Scene& scene, const Technique& t) : scene_(scene), technique_(t) {}
+    // The rows that are rendered, from `first_row`.
+    Witness(const Scene& scene, const Technique& t, int first_row, int rows)
+        : scene_(scene), technique_(t), view_(lights_in_view(scene, first_row, rows)) {}
 
-    void watch(Plan& plan) {
-        LightsInView view = lights_in_view(scene_, plan.first_row, plan.size.height);
-        for (LightGroup& g : view.groups) g.K = plan.sets ? plan.sets : least_of_noisy;
-        groups_ = view.groups;
-        plan.noisy = view.noisy;
-        plan.evidence = no_evidence_yet(groups_);
-        plan.judge = [](const Film& f, const ImageError& e) {
-            Unseen unseen;
-            unseen.add(f.evidence, double(f.least_taken()));
-            return unseen.doubt(e.d2(), e.norm, double(f.pixels()));
-        };
+    // Lights, and pixels near them, of a film whose noisy pixels have K samples or more for each
+    // sample of a replication of weight 1.
+    std::vector<NearMisses> near_misses(double K) const {
+        std::vector<NearMisses> near = view_.groups;
+        for (NearMisses& g : near) g.K = float(K);
+        return near;
     }
-    NearMisses visitor(Tally& tally) const { return {scene_, technique_, groups_, tally}; }
+    const std::vector<size_t>& noisy() const { return view_.noisy; }
+    static std::string why_unknown(const Film& f, const ImageError& e) {
+        Unseen unseen;
+        unseen.add(f.near, double(f.least_taken()));
+        return unseen.doubt(e.d2(), e.norm(), e.pixels);
+    }
+    NearMissVisitor visitor(Tally& tally) const {
+        return {scene_, technique_, view_.groups, tally};
+    }
 
 private:
     const Scene& scene_;
     const Technique technique_;
-    std::vector<LightGroup> groups_;
+    const LightsInView view_;
 };

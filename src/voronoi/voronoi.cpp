@@ -23,7 +23,7 @@ struct VoronoiOptions : Options {
 };
 
 OptionTable voronoi_table(VoronoiOptions& o) {
-    o.sets = 2;
+    o.replications = 2;
     o.sampler = SamplerKind::independent;
     OptionTable table =
         without(option_table(o), {"--replications", "--sampler", "--time", "--error", "--keep",
@@ -38,10 +38,10 @@ OptionTable voronoi_table(VoronoiOptions& o) {
              whole_number("--replications",
                           "number of independent replications per pixel; their sample variance "
                           "gives the error estimate",
-                          "2", o.sets, 1, most_sets)});
+                          "2", o.replications, 1, most_replications)});
     row(table, "-o").otherwise = "out/NAME-voronoi.png, .pfm";
     row(table, "--replications").value = "K";
-    row(table, "--replications").json = [&o] { return std::to_string(o.sets); };
+    row(table, "--replications").json = [&o] { return std::to_string(o.replications); };
     row(table, "--spp").help = "samples per pixel, of all replications together";
     row(table, "--spp").otherwise = "the scene's";
     return table;
@@ -69,16 +69,15 @@ int voronoi_main(const std::vector<std::string>& words) {
     if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
-    Plan plan = plan_of(o, scene);
-    plan.at_once = std::exchange(plan.target.samples, 1);
-    if (plan.at_once > 1 << 20) throw UserError("--spp: at most 1048576 samples per replication");
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, plan.at_once);
+    const Plan plan = plan_at_once(o, scene);
+    if (plan.paths > 1 << 20) throw UserError("--spp: at most 1048576 samples per replication");
+    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
     const auto outputs = outputs_of(o, parsed, "-voronoi", plan.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     WeightTroubles troubles;
-    const Radiance L = weighted_mean(scene, pattern, o.weights, plan.at_once,
-                                     path_of(o, scene, pattern), troubles);
+    const Radiance L =
+        weighted_mean(scene, pattern, o.weights, plan.paths, path_of(o, scene, pattern), troubles);
     Picture picture = render(o, plan, L);
     Run& run = picture.run;
     if (interrupted) run.spp = 0;

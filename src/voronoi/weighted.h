@@ -1,6 +1,6 @@
 // voronoi/weighted.h  6  pixels from samples that are weighted by their Voronoi cells
 #pragma once
-#include "film/passes.h"
+#include "film/loop.h"
 #include "path/start.h"
 #include "voronoi/weights.h"
 
@@ -28,9 +28,9 @@ inline Radiance weighted_mean(const Scene& scene, const Pattern& pattern, Weight
         const uint64_t strip = hash(hash(hash(0, pattern.seed), pixel), UINT64_MAX - s.set);
         const std::vector<double>& weights = weigher(kind, places, strip);
         troubles.redraws += weigher.redraws, troubles.fallbacks += weigher.fallbacks;
-        Sum sum;
+        Sum sum{};
         for (size_t i = 0; i < n; ++i)
-            for (size_t c = 0; c < 3; ++c) sum.L[c] += weights[i] * double(values[i].*axis[c]);
-        return rgb{real(sum.L[0]), real(sum.L[1]), real(sum.L[2])};
+            for (size_t c = 0; c < 3; ++c) sum[c] += weights[i] * double(values[i].*axis[c]);
+        return rgb{real(sum[0]), real(sum[1]), real(sum[2])};
     };
 }

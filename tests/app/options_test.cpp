@@ -33,7 +33,7 @@ TEST_CASE("every option sets what it is named after") {
     CHECK(said(o.size->width, o.size->height, *o.exposure, o.stats) == "30 20 0.25 s.json");
     CHECK(said(o.replay->x, o.replay->y, o.replay->i, o.replay->set) == "6 8 9 4");
     CHECK(o.outputs == std::vector<std::string>{"a.pfm", "b.png"});
-    CHECK(said(o.sets, o.error, o.quiet, o.help) == "3 0.025 yes no");
+    CHECK(said(o.replications, o.error, o.quiet, o.help) == "3 0.025 yes no");
     CHECK(Parsed({"--help"}).o.help);
     CHECK(Parsed({"-h"}).o.help);
     CHECK(Parsed({"--version"}).o.version);
@@ -45,8 +45,8 @@ TEST_CASE("every option sets what it is named after") {
           std::string::npos);
     const Options band =
         parse("--rows 3-17 --keep a.film --replications 4 --replications adaptive");
-    CHECK(said(band.keep, band.rows->first, band.rows->last, band.rows->count(), band.sets) ==
-          "a.film 3 17 15 0");
+    CHECK(said(band.keep, band.rows->first, band.rows->last, band.rows->count(),
+               band.replications) == "a.film 3 17 15 0");
     const Options first = parse("--pixel 6,8"), set = parse("--sample 9 --pixel 6,8");
     CHECK(said(first.replay->i, set.replay->i, set.replay->set) == "0 9 0");
 }
@@ -77,21 +77,13 @@ TEST_CASE("words of choices mean what they say") {
 
 TEST_CASE("without options: Sobol' samples, importance-sampled, MIS, adaptive") {
     const Options o = parse("");
-    CHECK(said(o.spp, o.seconds, o.error, o.seed, o.sets) == "0 0 0 0 0");  // spp: the scene's
+    CHECK(said(o.spp, o.seconds, o.error, o.seed, o.replications) ==
+          "0 0 0 0 0");  // spp: the scene's
     CHECK(o.technique.roulette == real(0.25));
     CHECK(o.threads >= 1);
     CHECK_FALSE((o.depth || o.size || o.exposure || o.rows || o.replay));
     CHECK(o.keep.empty());
     CHECK(o.outputs.empty());
-}
-
-TEST_CASE("--spp is of all replications together, rounded up; two of them if they are chosen") {
-    auto each = [](const std::string& line, uint64_t N) {
-        return samples_each(parse(line).sets, N);
-    };
-    CHECK(said(each("", 64), each("", 7), each("", 1), each("", 0)) == "32 4 1 0");  // 0: unknown
-    CHECK(said(each("--replications 1", 7), each("--replications 3", 7),
-               each("--replications 1024", 7)) == "7 3 1");
 }
 
 TEST_CASE("a word that cannot be meant is refused, by its name") {

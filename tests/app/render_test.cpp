@@ -33,10 +33,7 @@ struct Work {
     Pattern pattern;
 
     Work(const Options& o, const Scene& scene)
-        : plan(plan_of(o, scene)),
-          pattern(make_pattern(o.sampler, o.seed, scene.depth, plan.known_samples())) {
-        plan.period = pattern.period();
-    }
+        : plan(plan_of(o, scene)), pattern(make_pattern(o.sampler, o.seed, scene.depth)) {}
     Radiance radiance(const Options& o, const Scene& scene) const {
         return [&, t = o.technique](const PixelSample& s, Tally& tally) {
             const Start at = start(scene, pattern, s);
@@ -71,57 +68,105 @@ const Scene& direct_picture() {
 TEST_CASE("a plan is what options and scene ask for") {
     Scene scene = unequal_picture();
     scene.samples = 7;
-    Options o = quick(SamplerKind::sobol, 0);
-    auto target = [&] {
-        const Plan plan = plan_of(o, scene);
-        return said(plan.target.samples, plan.target.seconds, plan.target.error);
+    // "K, samples of each": of a picture without and with --replications.
+    auto planned = [&](Size size, const std::string& words) {
+        Options o;
+        OptionTable table = option_table(o);
+        parse_options(table, o, split(words + " a.scene"));
+        scene.size = size;
+        const Plan p = plan_of(o, scene);
+        CHECK(said(p.seconds, p.error, p.threads) == said(o.seconds, o.error, o.threads));
+        CHECK((p.is_adaptive == (o.replications == 0 && p.replications > 1)));
+        CHECK(said(p.size.width, p.size.height, p.first_row) ==
+              said(size.width, o.rows ? o.rows->count() : size.height, o.rows ? o.rows->first : 0));
+        return said(p.replications, p.samples);
     };
-    auto picture = [&] {
-        const Plan plan = plan_of(o, scene);
-        return said(plan.size.width, plan.size.height, plan.first_row, plan.sets);
+    // Small pictures have up to 8 replications; no picture has more than samples.  A pixel of mean
+    // noise has weight 2.
+    const struct {
+        std::string words, large, middle, small;  // 64x32 and 20x20, 12x12, 10x10 and 1x1
+    } rows[] = {
+        {"", "2 2", "5 1", "7 1"},  // the scene's
+        {"--spp 1", "1 1", "1 1", "1 1"},
+        {"--spp 2", "2 1", "2 1", "2 1"},
+        {"--spp 3", "2 1", "3 1", "3 1"},
+        {"--spp 4", "2 1", "4 1", "4 1"},
+        {"--spp 5", "2 2", "5 1", "5 1"},
+        {"--spp 8", "2 2", "5 1", "8 1"},
+        {"--spp 17", "2 5", "5 2", "8 2"},
+        {"--spp 64", "2 16", "5 7", "8 4"},
+        {"--spp 65", "2 17", "5 7", "8 5"},
+        {"--time 3", "2 0", "5 0", "8 0"},
+        {"--error 10%", "2 0", "5 0", "8 0"},
+        {"--time 3 --error 10% --spp 64", "2 16", "5 7", "8 4"},
+        {"--time 3 --spp 1", "1 1", "1 1", "1 1"},
+        {"--rows 0-0 -o a.pfm --spp 64", "2 16", "5 7", "8 4"},
     };
-    CHECK(target() == "4 0 0");  // the scene's
-    CHECK(picture() == "24 12 0 0");
-    o.seconds = 3;
-    CHECK(target() == "0 3 0");
-    o.seconds = 0, o.error = 0.1;
-    CHECK(target() == "0 0 0.1");
-    o.spp = 9;
-    CHECK(target() == "5 0 0.1");
-    CHECK(plan_of(o, scene).known_samples() == 0);  // the error may end it earlier
-    o.error = 0;
-    CHECK(plan_of(o, scene).known_samples() == 5);
-    o.sets = 4, o.rows = {3, 6};
-    CHECK(target() == "3 0 0");
-    CHECK(picture() == "24 4 3 4");
-    for (uint32_t sets : {0u, 1u, 2u}) {
-        o.spp = 1, o.sets = sets;
-        CHECK(plan_of(o, scene).sets == std::max(1u, sets));  // one sample makes one replication
-        o.spp = 2;
-        CHECK(plan_of(o, scene).sets == sets);
+    for (const auto& row : rows) {
+        INFO(row.words);
+        CHECK(planned({64, 32}, row.words) == row.large);
+        CHECK(planned({20, 20}, row.words) == row.large);
+        CHECK(planned({12, 12}, row.words) == row.middle);
+        CHECK(planned({10, 10}, row.words) == row.small);
+        CHECK(planned({1, 1}, row.words) == row.small);
     }
-    // Few pixels have 8 replications, unless the user wants others; a band is as its picture.
-    o = quick(SamplerKind::sobol, 64);
-    o.rows = {1, 1};
-    scene.size = {3, 5};
-    CHECK(picture() == "3 1 1 8");
-    CHECK(target() == "8 0 0");
-    scene.size = {4, 4};
-    CHECK(picture() == "4 1 1 0");
-    scene.size = {3, 5}, o.sets = 2;
-    CHECK(picture() == "3 1 1 2");
-    // No more replications than samples; as many as are needed where no number is asked for.
-    o.sets = 0;
-    for (uint64_t spp : {1u, 2u, 3u, 7u, 8u}) {
-        o.spp = spp;
-        CHECK(picture() == said(3, 1, 1, spp));
-        CHECK(target() == "1 0 0");
+    CHECK(planned({19, 21}, "--spp 64") == "2 16");
+    CHECK(planned({19, 14}, "--spp 64") == "3 11");
+    CHECK(planned({100, 1}, "--rows 0-0 -o a.pfm") == "7 1");
+    CHECK(planned({64, 32}, "--rows 30-31 -o a.pfm") == "2 2");
+    // --replications K is what it says, whatever the picture.
+    for (const auto& row : {std::pair{"1", "1 7"},
+                            {"1 --spp 1", "1 1"},
+                            {"2 --spp 1", "2 1"},
+                            {"2 --spp 3", "2 2"},
+                            {"2 --spp 64", "2 32"},
+                            {"3 --spp 64", "3 22"},
+                            {"1024 --spp 64", "1024 1"},
+                            {"4 --time 1", "4 0"},
+                            {"4 --error 1%", "4 0"},
+                            {"3 --rows 0-0 -o a.pfm", "3 3"}})
+        for (const Size size : {Size{64, 32}, Size{10, 10}, Size{1, 1}}) {
+            INFO(row.first);
+            Options o;
+            OptionTable table = option_table(o);
+            parse_options(table, o, split(std::string("--replications ") + row.first + " a.scene"));
+            scene.size = size;
+            const Plan p = plan_of(o, scene), together = plan_at_once(o, scene);
+            CHECK(said(p.replications, p.samples) == row.second);
+            CHECK_FALSE(p.is_adaptive);
+            // One sample of the film stands for all paths of a replication.
+            CHECK(said(p.paths, together.samples, together.paths) == said(1, 1, p.samples));
+            CHECK(said(together.replications, together.is_adaptive) == said(p.replications, false));
+        }
+    // A scene of one sample has one replication, and a band that of its picture.
+    scene.samples = 1;
+    CHECK(planned({64, 32}, "") == "1 1");
+    CHECK(planned({64, 32}, "--time 1") == "2 0");
+}
+
+TEST_CASE("a film begins as its plan says; near misses belong to radiance only") {
+    // A lamp smaller than a pixel makes that pixel noisy.
+    const Scene scene =
+        small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nsphere 0.1 0.1 0  0.01  l\n", {30, 20});
+    const Witness witness(scene, {}, 0, 20);
+    REQUIRE(witness.noisy().size() == 1);
+    for (const uint32_t K : {0u, 1u, 2u, 5u}) {
+        Options o = quick(SamplerKind::sobol, 64);
+        o.replications = K;
+        const Plan view = plan_of(o, scene), plan = plan_of(o, scene, &witness);
+        CHECK((view.noisy.empty() && view.near.empty() && !view.why_unknown));
+        CHECK(film_for(view).near.empty());
+        CHECK(plan.noisy == witness.noisy());
+        CHECK(bool(plan.why_unknown));
+        CHECK(said(plan.replications, plan.samples) == said(view.replications, view.samples));
+        // The pixel has weight 4 or more, if weights are chosen.
+        const Film film = film_for(plan);
+        REQUIRE(film.near.size() == 1);
+        CHECK(film.near[0].K == (K ? float(K) : 2 * 4));
+        CHECK(film.near[0].area == witness.near_misses(1)[0].area);
+        CHECK(said(film.size.width, film.size.height, film.replications, film.is_pilot) ==
+              said(30, 20, K ? K : 2, K == 0));
     }
-    o.spp = 9;
-    CHECK(picture() == "3 1 1 8");
-    o.spp = 0, o.error = 0.1;
-    CHECK(picture() == "3 1 1 8");
-    CHECK(rendered(quick(SamplerKind::sobol, 2), small(unequal, {2, 2})).run.spp == 2);
 }
 
 TEST_CASE(
@@ -130,15 +175,15 @@ TEST_CASE(
         small("camera 0 0 5  0 0 0  40\ndiffuse m .5 .5 .5\nsphere 0 0 0 1 m\n", {9, 9});
     Options o = quick(SamplerKind::sobol, 0);
     o.error = 0.1;
-    CHECK(plan_of(o, dark).target.error == 0);
-    CHECK(plan_of(o, dark).target.samples == dark.samples / 2);
+    CHECK(plan_of(o, dark).error == 0);
+    CHECK(plan_of(o, dark).samples == (dark.samples + 15) / 16);  // 9x9 pixels
     const Scene turned =
         small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nquad -1 -1 0  0 2 0  2 0 0  l\n", {9, 9});
     o.spp = 40;
     for (const Scene& scene : {dark, turned}) {
         const Run run = rendered(o, scene).run;
-        CHECK(run.stopped_by == "samples");
-        CHECK(run.error.norm == 0);
+        CHECK(run.stopped_by == Stop::samples);
+        CHECK(run.error.norm() == 0);
         CHECK(std::isnan(run.error.d_rel()));
     }
 }
@@ -147,7 +192,7 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
     const Scene scene = small(shiny, {6, 4});
     for (SamplerKind kind : samplers) {
         Options o = quick(kind, 8);
-        o.sets = 2;
+        o.replications = 2;
         const Image image = rendered(o, scene).image;
         const Pattern pattern = Work(o, scene).pattern;
         std::FILE* out = std::tmpfile();
@@ -167,46 +212,61 @@ TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
     }
 }
 
-TEST_CASE("images of few samples: one has no error, two and three have two replications") {
+TEST_CASE("images of few samples: one has no error; others are those of a film as planned") {
     const Scene& scene = unequal_picture();
-    for (uint64_t spp : {1, 2, 3, 4}) {
-        const Picture p = rendered(quick(SamplerKind::sobol, spp), scene);
+    for (uint64_t spp : {1, 2, 3, 4, 5, 9, 64}) {
+        const Options o = quick(SamplerKind::sobol, spp);
+        const Picture p = rendered(o, scene);
+        const Work j(o, scene);
+        const Film film = filled(scene.size, spp == 1, (spp + 3) / 4, j.radiance(o, scene));
         CAPTURE(spp);
         CHECK(first_non_finite(p.image) == std::nullopt);
+        CHECK(p.image.pixels == image_of(film).pixels);
+        CHECK(p.run.spp == film.samples_per_pixel());
         CHECK(std::isnan(p.run.error.d_rel()) == (spp == 1));
-        if (spp < 3)
-            CHECK(said(p.run.spp, p.run.sets) == said(spp, spp));
-        else
-            CHECK(p.run.sets > 2);
-        CHECK((spp < 3 || p.run.spp == 2 * p.run.sets));
-        CHECK(p.run.stopped_by == "samples");
+        CHECK(said(p.run.replications, p.run.stopped_by) == said(spp == 1 ? 1 : 2, Stop::samples));
         CHECK(p.run.rays > 0);
     }
-    for (uint32_t sets : {1u, 2u, 5u}) {
+    for (uint32_t K : {1u, 2u, 5u}) {
         Options o = quick(SamplerKind::halton, 3);
-        o.sets = sets;
+        o.replications = K;
         const Picture p = rendered(o, scene);
-        CHECK(p.run.sets == sets);
-        CHECK(p.run.spp == (sets == 1 ? 3 : sets == 2 ? 4 : 5));
-        CHECK(std::isnan(p.run.error.d_rel()) == (sets == 1));
+        CHECK(p.run.replications == K);
+        CHECK(p.run.spp == (K == 1 ? 3 : K == 2 ? 4 : 5));
+        CHECK(std::isnan(p.run.error.d_rel()) == (K == 1));
     }
+    // Without noise, and without neighbours, pixels have weight 2.
+    for (const auto& [side, spp] : {std::pair{1, 8.0}, {2, 8.0}, {20, 2.0}})
+        for (uint64_t N = 2; N <= 9; ++N) {
+            const Picture p =
+                render(quick(SamplerKind::sobol, N),
+                       plan_of(quick(SamplerKind::sobol, N), small(unequal, {side, side})),
+                       [](const PixelSample&, Tally&) {
+                           return rgb{1, 1, 1};
+                       });
+            const double K = std::min(spp, double(N));
+            CHECK(p.run.replications == K);
+            CHECK(p.run.spp == 2 * K * std::ceil(double(N) / (2 * K)));
+            CHECK(p.run.error.d_rel() == 0);
+        }
 }
 
 TEST_CASE("the stated error is the spread from seed to seed; replications do not move the mean") {
     const Scene& scene = direct_picture();
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         Moments of_two;
+        constexpr double pixels = 16 * 8;
         for (uint32_t sets : {2u, 0u}) {
             const int runs = sets ? 300 : 150;
             Options o = quick(kind, sets ? 12 : 36);
-            o.sets = sets;
+            o.replications = sets;
             Spread spread;
             Moments means, stated;
             for (int run = 0; run < runs; ++run, ++o.seed) {
                 const Picture p = rendered(o, scene);
                 spread.add(p.image, p.run.error.d2());
-                means.add(p.run.error.mean[1]);
-                stated.add(p.run.error.square[1] / (16 * 8));
+                means.add(p.run.error.values[1] / pixels);
+                stated.add(p.run.error.variances[1] / (pixels * pixels));
             }
             const std::string name =
                 "sampler " + std::to_string(int(kind)) + ", sets " + std::to_string(sets);
@@ -230,14 +290,14 @@ TEST_CASE(
     for (SamplerKind kind : samplers)
         for (uint32_t sets : {0u, 1u, 3u}) {
             Options o = quick(kind, 36);
-            o.sets = sets;
+            o.replications = sets;
             const Picture one = rendered(o, scene);
             o.threads = 3;
             const Picture three = rendered(o, scene);
             CHECK(three.image.pixels == one.image.pixels);
             if (sets != 1) CHECK(three.run.error.d2() == one.run.error.d2());
-            if (sets != 1) CHECK(three.run.error.spread == one.run.error.spread);
-            CHECK(three.run.sets == one.run.sets);
+            if (sets != 1) CHECK(three.run.error.terms2 == one.run.error.terms2);
+            CHECK(three.run.replications == one.run.replications);
             CHECK(three.run.rays == one.run.rays);
             o.rows = {3, 6};
             const Picture band = rendered(o, scene);
@@ -247,7 +307,7 @@ TEST_CASE(
                                  one.image.pixels.begin() + 3 * 24));
             if (sets != 1) continue;
             o = quick(kind, 36);
-            o.sets = 1;
+            o.replications = 1;
             const Pattern pattern = Work(o, scene).pattern;
             for (int i : {0, 100, 287}) {
                 double sum = 0;
@@ -263,28 +323,27 @@ TEST_CASE(
 TEST_CASE("--error: an image ends at the first check that finds its error small enough") {
     const Scene& scene = unequal_picture();
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::sobol})
-        for (double E : {0.6, 0.1, 0.04}) {
+        for (double E : {0.6, 0.1, 0.02}) {
             Options o = quick(kind, 0);
             o.error = E;
             const Picture p = rendered(o, scene);
             INFO("sampler ", int(kind), ", E = ", E);
-            CHECK(p.run.stopped_by == "error");
+            CHECK(p.run.stopped_by == Stop::error);
             // The reference applies the rule to a film at every number of samples with a check.
             const Work j(o, scene);
-            const uint64_t period = j.pattern.period(), first = (8 + period - 1) / period * period;
             const Radiance L = j.radiance(o, scene);
-            Film film = make_film(scene.size, 0);
-            fill(film, Plan{j.plan.target, period}.pilot(), L);
-            choose_sets(film, INFINITY);
+            Film film = make_film(scene.size, 2, true);
+            fill_pilot(film, pilot_samples, L);
             uint64_t checks = 0;
             do {
-                fill(film, next_check(film.least_taken(), first, period), L);
+                fill(film, next_check(film.least_taken()), L);
                 ++checks;
-            } while (!is_small_enough(error_of(film), E));
-            CHECK(p.run.spp == film.total() / 288);
+            } while (!doubt_of(film, error_of(film), {}).empty() ||
+                     !is_small_enough(error_of(film), E));
+            CHECK(p.run.spp == film.samples_per_pixel());
             CHECK(p.image.pixels == image_of(film).pixels);
             CHECK(p.run.error.d_rel() == error_of(film).d_rel());
-            CHECK((checks > 3 || E > 0.05 || period > 1));
+            CHECK((checks > 3 || E > 0.05));
             // The number of samples depends on options and seed, not on time or threads.
             o.threads = 3;
             CHECK(rendered(o, scene).image.pixels == p.image.pixels);
@@ -305,44 +364,46 @@ TEST_CASE("--error: pictures of a few pixels reach theirs, with noise or without
             INFO(size.width, "x", size.height, ", seed ", o.seed);
             const Run run = rendered(o, small(noisy.c_str(), size)).run;
             CHECK(run.doubt == "");
-            CHECK(run.stopped_by == "error");
+            CHECK(run.stopped_by == Stop::error);
         }
     Scene point = small(smooth.c_str(), {1, 1});
     point.camera.tan_half = real(1e-3);
     for (const uint32_t sets : {0u, 2u}) {
         Options o = quick(SamplerKind::sobol, 4000);
-        o.sets = sets, o.error = 0.01;
+        o.replications = sets, o.error = 0.01;
         const Run run = rendered(o, point).run;
         CHECK(run.error.d2() > 0);
         CHECK(run.error.d_rel() < 1e-6);
-        CHECK(run.stopped_by == "error");
-        CHECK(run.spp == 8 * run.sets);  // by the first check
+        CHECK(run.stopped_by == Stop::error);
+        // By the first check; a pixel without neighbours has weight 2.
+        CHECK(run.spp == 8 * (sets ? sets : 2 * 8));
     }
 }
 
 TEST_CASE("--error with limits: whichever comes first ends the image, and is said") {
     const Scene& scene = unequal_picture();
     Options o = quick(SamplerKind::sobol, 40);
-    CHECK(rendered(o, scene).run.stopped_by == "samples");
+    CHECK(rendered(o, scene).run.stopped_by == Stop::samples);
     o.error = 1e-6;
     const Picture samples = rendered(o, scene);
-    CHECK(samples.run.stopped_by == "samples");
-    CHECK(samples.run.spp == doctest::Approx(20 * samples.run.sets));
+    CHECK(samples.run.stopped_by == Stop::samples);
+    CHECK(samples.run.spp ==
+          filled(scene.size, 0, 10, Work(o, scene).radiance(o, scene)).samples_per_pixel());
     CHECK(samples.run.error.d_rel() > 1e-6);
     o.spp = 8, o.error = 0.9;  // before the first check
-    CHECK(rendered(o, scene).run.stopped_by == "samples");
+    CHECK(rendered(o, scene).run.stopped_by == Stop::samples);
     o.spp = 1 << 20, o.error = 0.3, o.seconds = 1e6;
     const Picture error = rendered(o, scene);
-    CHECK(error.run.stopped_by == "error");
+    CHECK(error.run.stopped_by == Stop::error);
     CHECK(error.run.spp < 200);
     o.error = 1e-6, o.seconds = 0.05;
     const Picture time = rendered(o, scene);
-    CHECK(time.run.stopped_by == "time");
+    CHECK(time.run.stopped_by == Stop::time);
     CHECK(time.run.spp < 1 << 20);
     CHECK(time.run.seconds >= 0.05);
     CHECK(time.run.seconds < 5);
     o.spp = 0, o.seconds = 1e-9;
-    CHECK(rendered(o, scene).run.stopped_by == "time");  // in the pilot
+    CHECK(rendered(o, scene).run.stopped_by == Stop::time);  // in the pilot
 }
 
 TEST_CASE("what half the error costs follows from its course, of samples that end as they do") {
@@ -372,8 +433,8 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     const Picture p = rendered(o, scene);
     user.join();
     interrupted = 0;
-    CHECK(p.run.interrupted);
-    CHECK(p.run.stopped_by == "interrupt");
+    CHECK(p.run.interrupted());
+    CHECK(p.run.stopped_by == Stop::interrupt);
     CHECK(p.run.spp > 0);
     CHECK(first_non_finite(p.image) == std::nullopt);
     // Ctrl-C in the first pass leaves pixels without samples: no image can be written.
@@ -385,15 +446,17 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     const Picture none = render(o, plan_of(o, scene), L);
     interrupted = 0;
     CHECK(none.run.spp == 0);
-    CHECK(none.run.interrupted);
+    CHECK(none.run.interrupted());
     // Ctrl-C comes just after the pilot, when most pixels have only its samples.
     const Radiance others = [](const PixelSample& s, Tally&) {
-        if (s.set > 0) interrupted = SIGINT;
+        if (s.i >= pilot_samples) interrupted = SIGINT;
         return rgb{1, 1, 1};
     };
     const Picture pilot = render(o, plan_of(o, scene), others);
     interrupted = 0;
-    CHECK(pilot.run.spp >= double(pilot_samples));
+    CHECK(pilot.run.spp >= 2 * double(pilot_samples));
+    CHECK(pilot.run.spp < 2.1 * double(pilot_samples));
+    CHECK(pilot.run.stopped_by == Stop::interrupt);
     CHECK(first_non_finite(pilot.image) == std::nullopt);
 }
 
@@ -406,8 +469,13 @@ TEST_CASE("a sample that is not finite is an error that tells how to replay it")
             });
         });
     };
-    Plan plan{{3}, 1, 1, INFINITY, {8, 4}};
-    plan.sets = 2;
+    Plan plan{{8, 4}};
+    plan.samples = 3;
+    for (const bool is_adaptive : {true, false}) {
+        plan.is_adaptive = is_adaptive;
+        CHECK(why({0, 1, 0, 0}, plan)
+                  .starts_with("1 sample was not finite, the first at pixel 0,1 sample 0 ("));
+    }
     CHECK(why({7, 2, 1, 0}, plan)
               .starts_with("2 samples were not finite, the first at pixel 7,2 "
                            "sample 1 (replay it by --pixel 7,2 --sample 1)"));
@@ -420,18 +488,16 @@ TEST_CASE("a sample that is not finite is an error that tells how to replay it")
 
 TEST_CASE("a film that the machine does not hold is refused before it is made") {
     const Options o = quick(SamplerKind::sobol, 4);
-    // A thousand bytes per pixel suffice for two replications of each, not for 1024.
-    const Size size{1 << 14, int(bytes_of_machine() / 1000 / (1 << 14))};
-    Plan plan{{4}, 1, 1, bytes_of_machine(), size};
-    plan.sets = 1024;
     const Radiance L = [](const PixelSample&, Tally&) { return rgb{}; };
-    auto refused = [&] { return complaint<UserError>([&] { render(o, plan, L); }); };
-    const std::string why = refused();
-    CHECK(why.starts_with("16384x" + std::to_string(size.height) + " pixels do not fit into the "));
-    CHECK(why.ends_with(" GB of this machine: render fewer rows at a time (--rows)"));
-    // An adaptive film has at least two replications per pixel.
-    plan.size = {8, 4}, plan.sets = 0, plan.memory = bytes_of(plan.size, 1.9);
-    CHECK(refused().starts_with("8x4 pixels do not fit"));
-    plan.memory = bytes_of(plan.size, 2);
-    CHECK(refused() == "");
+    for (const uint32_t K : {2u, 1024u}) {
+        const double pixels = 1.001 * bytes_of_machine() / bytes_of({1, 1}, K);
+        const Size size{1 << 14, int(pixels / (1 << 14)) + 1};
+        CHECK(bytes_of(size, K) < 1.01 * bytes_of_machine());
+        Plan plan{size};
+        plan.replications = K, plan.samples = 4;
+        const std::string why = complaint<UserError>([&] { render(o, plan, L); });
+        CHECK(why.starts_with("16384x" + std::to_string(size.height) +
+                              " pixels do not fit into the "));
+        CHECK(why.ends_with(" GB of this machine: render fewer rows at a time (--rows)"));
+    }
 }

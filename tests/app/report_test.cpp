@@ -9,12 +9,14 @@ namespace {
 
 Run run_of(double d_rel, double standard_error) {
     Run run;
-    run.spp = 64, run.seconds = 8, run.rays = 16000000, run.sets = 2.5;
-    run.error.square.fill(std::pow(2 * d_rel, 2));
+    run.spp = 64, run.seconds = 8, run.rays = 16000000, run.replications = 2.5;
+    run.error.pixels = 1;
+    run.error.variances.fill(std::pow(2 * d_rel, 2));
     const double d2 = run.error.d2();
-    run.error.norm = std::sqrt(4 + d2);
-    run.error.spread = d_rel > 0 ? standard_error * 2 * d2 / d_rel / (1 + d_rel * d_rel) : 0;
-    run.stopped_by = "samples";
+    run.error.squares = 3 * (4 + d2);
+    const double spread = d_rel > 0 ? standard_error * 2 * d2 / d_rel / (1 + d_rel * d_rel) : 0;
+    run.error.terms2 = spread * spread;
+    run.stopped_by = Stop::samples;
     return run;
 }
 
@@ -105,9 +107,10 @@ TEST_CASE("an image's error in words: its standard error, and the time for half 
 }
 
 TEST_CASE("where no error is reported, the reason is") {
-    auto why = [](double spp, double sets, bool early) {
+    auto why = [](double spp, double K, bool early) {
         Run run;
-        run.spp = spp, run.sets = sets, run.interrupted = early;
+        run.spp = spp, run.replications = K;
+        run.stopped_by = early ? Stop::interrupt : Stop::time;
         return error_words(run);
     };
     CHECK(why(1, 1, false) == "error not known: one sample");
@@ -118,7 +121,7 @@ TEST_CASE("where no error is reported, the reason is") {
     Run run = run_of(0.02, 0.001);
     run.doubt = "a few pixels dominate it";
     CHECK(error_words(run) == "error not known: a few pixels dominate it");
-    run.error.norm = 0, run.doubt = "no sample found light";
+    run.error.squares = 0, run.doubt = "no sample found light";
     CHECK(error_words(run) == "error not known: no sample found light");
     run.spp = 1;
     CHECK(error_words(run) == "error not known: one sample");
@@ -132,37 +135,52 @@ TEST_CASE("the line that stays: the error, whether it was reached, interrupts") 
     const std::string line = "a.scene: 70.2 samples per pixel, 8.00 s, 2.00 Mrays/s",
                       error = "estimated error 2 % ± 0.1 %; about ";
     CHECK(summary("a.scene", run) == line + ", " + error + "24 s more for 1 %");
-    run.stopped_by = "error";
+    run.stopped_by = Stop::error;
     CHECK(summary("a.scene", run, 0.03) == line + ", reached 3 % (" + error + "24 s more for 1 %)");
-    for (const auto& [by, option] : {std::pair{"samples", "--spp"}, {"time", "--time"}}) {
+    for (const auto& [by, option] : {std::pair{Stop::samples, "--spp"}, {Stop::time, "--time"}}) {
         run.stopped_by = by;
         CHECK(summary("a.scene", run, 0.015) == line + ", did not reach 1.5 % (stopped by " +
                                                     option + "; " + error +
                                                     "6.2 s more for 1.5 %)");
     }
-    run.interrupted = true;
+    run.stopped_by = Stop::interrupt;
     CHECK(summary("a.scene", run, 0.01) == line + ", " + error + "24 s more for 1 % (interrupted)");
     run.is_radiance = false;
     CHECK(summary("a.scene", run) == line + " (interrupted)");
-    run.interrupted = false, run.spp = 1;
+    run.stopped_by = Stop::samples, run.spp = 1;
     CHECK(summary("a.scene", run) == "a.scene: 1 sample per pixel, 8.00 s, 2.00 Mrays/s");
     run = run_of(0.02, 0.001);
-    run.doubt = "no sample found light", run.stopped_by = "error not known";
+    run.doubt = "no sample found light", run.stopped_by = Stop::error_unknown;
     CHECK(summary("a.scene", run, 0.01)
               .ends_with(", did not reach 1 % (error not known: no sample found light)"));
     run = Run();
-    run.seconds = 8, run.interrupted = true;
+    run.seconds = 8, run.stopped_by = Stop::interrupt;
     CHECK(summary("a.scene", run) ==
           "a.scene: interrupted before the first pass was complete: no image written");
 }
 
+TEST_CASE("what ended a run, in JSON") {
+    for (const auto& [stop, word] : {std::pair{Stop::samples, "samples"},
+                                     {Stop::time, "time"},
+                                     {Stop::error, "error"},
+                                     {Stop::error_unknown, "error not known"},
+                                     {Stop::interrupt, "interrupt"},
+                                     {Stop::no, "merge"}}) {
+        Run run;
+        run.stopped_by = stop;
+        const std::string text = json_of(run, {1, 1});
+        CHECK(text.find("\"stopped_by\": \"" + std::string(word) + "\"") != text.npos);
+        const bool is_interrupt = stop == Stop::interrupt;
+        CHECK(text.find("\"interrupted\": " + json::truth(is_interrupt)) != text.npos);
+    }
+}
+
 TEST_CASE("the statistics of a run, all keys in their order, null where nothing is known") {
     Run run;
-    run.spp = 64.5, run.seconds = 2, run.cpu_seconds = 3.5, run.rays = 4000000, run.sets = 2.75;
-    run.error.mean = {2, 3, 4};
-    run.error.square = {4, 8, 12};             // two pixels
-    run.error.norm = 4, run.error.spread = 2;  // |F|^2 = 8
-    run.exponent_of_cost = 1.5, run.bias = "consistent", run.stopped_by = "time";
+    run.spp = 64.5, run.seconds = 2, run.cpu_seconds = 3.5, run.rays = 4000000;
+    run.replications = 2.75, run.repeat_spp = 48;
+    run.error = {2, {4, 6, 8}, {8, 16, 24}, 96, 16};  // two pixels: |f|^2 = 16, |F|^2 = 8
+    run.exponent_of_cost = 1.5, run.bias = "consistent", run.stopped_by = Stop::time;
     std::string text = json_of(run, {2, 1});
     const size_t peak = text.find("  \"peak_memory_bytes\": ");
     REQUIRE(peak != text.npos);
@@ -171,7 +189,8 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     CHECK(text == std::string("{\n  \"precision\": ") +
                       (sizeof(real) == 4 ? "\"float\"" : "\"double\"") +
                       ",\n  \"interrupted\": false,\n  \"samples_per_pixel\": 64.5,\n"
-                      "  \"seconds\": 2,\n  \"cpu_seconds\": 3.5,\n  \"rays\": 4000000,\n"
+                      "  \"repeat_with_spp\": 48,\n  \"seconds\": 2,\n  \"cpu_seconds\": 3.5,\n  "
+                      "\"rays\": 4000000,\n"
                       "  \"mrays_per_second\": 2,\n  \"mean_radiance\": [2, 3, 4],\n"
                       "  \"variance_of_mean\": [2, 4, 6],\n  \"replications_per_pixel\": 2.75,\n"
                       "  \"d_rel\": 1,\n  \"d_rel_standard_error\": 0.25,\n"
@@ -189,8 +208,10 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     run.is_radiance = false;
     CHECK(json_of(run, {2, 1}).find("\"d_rel_reason\": \"a view, not radiance\"") != text.npos);
     run = Run();
-    run.interrupted = true;
-    text = json_of(run, {2, 1});
+    Pixel pixel;  // of one replication
+    pixel.add({1, 2, 3}, 1);
+    run.error.add(pixel), run.stopped_by = Stop::interrupt;
+    text = json_of(run, {1, 1});
     CHECK(text.find("\"d_rel_reason\": \"one sample\"") != text.npos);
     for (const char* key : {"d_rel", "d_rel_standard_error", "seconds_to_half_d_rel"})
         CHECK(text.find("\"" + std::string(key) + "\": null") != text.npos);

@@ -40,7 +40,7 @@ TEST_CASE("views show normal, distance, albedo and work; glass is as white as it
 TEST_CASE("13/16 of the directions from inside a sphere are open") {
     const Scene scene =
         scene_of("camera 0 0 0  0 0 -1  40\ndiffuse d .5 .5 .5\nsphere 0 0 0  1  d\n");
-    const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1, 0);
+    const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1);
     Moments open;
     for (uint64_t i = 0; i < 40000; ++i)
         open.add(double(

@@ -17,7 +17,7 @@ real scrambled(In x) {
 // Seed, pixel, sample: all numbers that a path of so many vertices may draw, the film's first.
 constexpr int depth = 8;
 Out path(In x) {
-    static Pattern pattern = make_pattern(SamplerKind::halton, 0, depth, 64);
+    static Pattern pattern = make_pattern(SamplerKind::halton, 0, depth);
     pattern.seed = uint64_t(x[0]);
     const Sampler sampler(pattern, uint64_t(x[1]), uint64_t(x[2]));
     Out all{double(sampler.get(film_x)), double(sampler.get(film_y))};

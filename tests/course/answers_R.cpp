@@ -118,8 +118,8 @@ Out walked(In x) {
         scene = room(albedo, {1, 2, 4}, false);
     }
     const uint64_t seed = uint64_t(x[4]);
-    const Pattern pattern = Particles::pattern(SamplerKind::independent, seed, 16),
-                  more = make_pattern(SamplerKind::independent, seed, 0, 0);
+    const Pattern pattern = Particles::pattern(SamplerKind::independent, seed),
+                  more = make_pattern(SamplerKind::independent, seed, 0);
     Balance b;
     std::vector<rgb> power;
     std::vector<vec3> at;

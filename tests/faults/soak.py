@@ -170,9 +170,9 @@ class Picture:
         return [os.path.join(ROOT, 'scenes', self.scene), *self.options, *sets, '--spp', str(samples or self.spp)]
 
     def has_all(self, samples):
-        """Whether the average number of samples is the requested one; adaptive replications have more."""
+        """Whether the average number of samples is the requested one; with weights it is about that, of 1 or more each."""
         if not self.sets:
-            return samples >= self.spp
+            return samples >= self.spp / 2
         return samples == -(-self.spp // self.sets) * self.sets
 
 
@@ -186,9 +186,7 @@ def draw_picture(rng, spp=None, stops_anywhere=False):
                                           '--seed', str(rng.randrange(3))]
     spp = spp or rng.choice([1, 2, 4, 9, 16, 25, 64])
     kind = rng.random()
-    sampler = rng.choice(['sobol', 'sobol', 'halton', 'independent'] + ([] if stops_anywhere else ['stratified']))
-    if sampler == 'stratified':
-        spp = rng.choice([1, 4, 16, 64])
+    sampler = rng.choice(['sobol', 'sobol', 'halton', 'independent', 'stratified'])
     if kind < 0.2:
         has_point = b'pointlight' in read(os.path.join(ROOT, 'scenes', scene + '.scene'))
         options += ['--light', 'nee' if has_point else rng.choice(['none', 'nee']), '--sampler', sampler]
@@ -345,8 +343,9 @@ def clean_run(soak, picture, folder, names):
 
 def kept(soak, picture, folder):
     """Writes c.film with about half the samples."""
-    spp = picture.spp if '--sampler stratified' in ' '.join(picture.options) else -(-picture.spp // 2)
-    if not picture.sets and spp < 16:  # a shorter pilot leads to other replications
+    width, height = map(int, picture.options[1].split('x'))
+    spp, halves = -(-picture.spp // 2), max(2, min(8, 800 // (width * height)))
+    if not picture.sets and spp <= 6 * halves:  # a shorter pilot, of fewer than 4 samples, leads to other weights
         spp = picture.spp
     outcome = soak.run([*picture.words(spp), '-o', 'x.pfm', '--keep', 'c.film'], folder)
     if outcome.status != 0:

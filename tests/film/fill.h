@@ -2,27 +2,35 @@
 #pragma once
 #include <cstring>
 
-#include "film/film.h"
+#include "film/weights.h"
 
 // Brings the blocks from `first` up to `last` to n samples.
-inline NonFinite fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
-    const std::vector<size_t> at = offsets(f);
-    NonFinite bad;
-    Tally tally;
-    for (size_t b = first; b < last; ++b) bad.add(add_samples(f, b, at[b], n, L, tally));
-    return bad;
+inline Tally fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
+    Tally all;
+    for (size_t b = first; b < last; ++b) {
+        Tally tally;
+        tally.near.resize(f.near.size());
+        add_samples(f, b, n, L, tally);
+        all.rays += tally.rays, all.add_bad(tally.bad, tally.first_bad);
+        for (size_t g = 0; g < f.near.size(); ++g) f.near[g].add(tally.near[g]);
+    }
+    return all;
 }
-inline NonFinite fill(Film& f, uint64_t n, const Radiance& L) {
-    return fill_blocks(f, 0, f.taken.size(), n, L);
+inline Tally fill(Film& f, uint64_t n, const Radiance& L) {
+    return fill_blocks(f, 0, f.blocks(), n, L);
 }
 
-// A film with n samples per replication; 0 sets: adaptive.
-inline Film filled(Size size, uint32_t sets, uint64_t n, const Radiance& L) {
-    Film f = make_film(size, sets);
-    if (sets == 0) {
-        fill(f, std::min(n, pilot_samples), L);
-        choose_sets(f, INFINITY);
-    }
+// A pilot of at most n samples, and weights chosen by it.
+inline void fill_pilot(Film& f, uint64_t n, const Radiance& L) {
+    for (uint64_t end = 1; end < 2 * std::min(n, pilot_samples); end *= 2)
+        fill(f, std::min({end, n, pilot_samples}), L);
+    choose_weights(f);
+}
+
+// A film with n samples in each of K replications; K = 0: two, with weights.
+inline Film filled(Size size, uint32_t K, uint64_t n, const Radiance& L) {
+    Film f = make_film(size, K ? K : 2, K == 0);
+    if (K == 0) fill_pilot(f, n, L);
     fill(f, n, L);
     return f;
 }
@@ -43,7 +51,8 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
            (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 inline bool same(const Film& a, const Film& b) {
-    return a.pilot == b.pilot && a.first_row == b.first_row && same(a.sets, b.sets) &&
-           same(a.sum, b.sum) && same(a.taken, b.taken) && same(a.spread, b.spread) &&
-           same(a.evidence, b.evidence);
+    return a.size.width == b.size.width && a.first_row == b.first_row &&
+           a.replications == b.replications && a.is_pilot == b.is_pilot && a.pilot == b.pilot &&
+           same(a.sum, b.sum) && same(a.weight, b.weight) && same(a.deviation, b.deviation) &&
+           same(a.taken, b.taken) && same(a.near, b.near);
 }

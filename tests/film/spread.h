@@ -28,7 +28,6 @@ public:
     const Moments& stated() const { return stated_; }
 
 private:
-    static double square(double x) { return x * x; }
     Moments stated_, excess_;  // excess: measured minus estimated, per pair
     Image last_;
     double last_d2_ = 0;

@@ -114,9 +114,8 @@ inline void render_scene(Scene s, const Options& o, bool moderate) {
     s.size = *o.size;
     s.depth = *o.depth;
     try {
-        Plan plan = plan_of(o, s);
-        const Pattern p = make_pattern(o.sampler, o.seed, s.depth, plan.known_samples());
-        plan.period = p.period();
+        const Plan plan = plan_of(o, s);
+        const Pattern p = make_pattern(o.sampler, o.seed, s.depth);
         const Radiance L = radiance_of(s, o, p);
         check_image(render(o, plan, L).image, plan.size, true);
     } catch (const SystemError& e) {
@@ -148,25 +147,24 @@ public:
     static constexpr unsigned kinds = 4;
     static constexpr Size size{5, 3};
 
-    explicit SmallFilm(unsigned kind) : kind_(kind), p_(make_pattern(o_.sampler, 0, 2, 0)) {
+    explicit SmallFilm(unsigned kind) : kind_(kind), p_(make_pattern(o_.sampler, 0, 2)) {
         s_ = parse_scene(text, "s.scene").scene;
         s_.size = size;
         o_.quiet = true, o_.threads = 1;
-        o_.spp = is_adaptive() ? 10 : 4, o_.sets = is_adaptive() ? 0 : 2;
+        o_.spp = is_adaptive() ? 80 : 4, o_.replications = is_adaptive() ? 0 : 2;
     }
 
     // Resumes the file as penumbra does.
     void go_on(const std::string& name) {
         o_.keep = name;
-        const Plan plan = plan_of(o_, s_);
-        demand(render(o_, plan, L_, what()).not_kept.empty(), "a film that is not kept");
+        demand(render(o_, plan(), L_, what()).not_kept.empty(), "a film that is not kept");
     }
     void make(const std::string& name) {
         if (kind_ < 2) return go_on(name);
-        Film f = make_film(size, o_.sets);
+        Film f = film_for(plan());
         Tally tally;
-        for (size_t b = 0, at = 0; b < f.taken.size() / 2; at += f.sets_of(f.begin(b++)))
-            add_samples(f, b, at, 2, L_, tally);  // one pixel per block
+        tally.near.resize(f.near.size());
+        for (size_t b = 0; b < f.blocks() / 2; ++b) add_samples(f, b, 2, L_, tally);
         demand(Keeper(name, what()).write(f, {1, 1, tally.rays}, false).empty(),
                "no film is written");
     }
@@ -182,9 +180,15 @@ private:
     const Radiance L_ = radiance_of(s_, o_, p_);
 
     bool is_adaptive() const { return kind_ % 2 == 1; }
+    // With a group of lights.
+    Plan plan() const {
+        Plan p = plan_of(o_, s_);
+        p.near.resize(1);
+        return p;
+    }
     FilmOf what() const {
-        return {
-            {}, {{"size", "5x3"}, {"replications", std::to_string(o_.sets)}, {"rows", "0-2"}}, {}};
+        const std::string K = is_adaptive() ? "adaptive" : "2";
+        return {{}, {{"size", "5x3"}, {"replications", K}, {"rows", "0-2"}}, {}};
     }
 };
 inline const std::string& small_film(unsigned kind) {
@@ -232,11 +236,14 @@ inline void merge_alone(const std::string& name) {
     const Size size{int(file.number("size", 65536)), int(file.number("size", 65536, 'x'))};
     const double last = file.number("rows", size.height - 1, '-');
     FilmPixels film(name, {size.width, int(last - file.number("rows", last)) + 1});
-    ErrorTerms terms;
-    for (int i = 0; i < size.width * int(last + 1 - file.number("rows", last)); ++i)
-        terms.add(std::array{film.next()});
+    ImageError e;
+    for (int i = 0; i < size.width * int(last + 1 - file.number("rows", last)); ++i) {
+        Pixel p;
+        film.add_next(p);
+        e.add(p);
+    }
     spent_in(file);
-    terms.error();
+    doubt_of(film.film(), e, {});
 }
 
 // The first byte selects a film; the others edit it.  An edited film must be refused, except when a

@@ -23,7 +23,7 @@ Scene endless(Scene s) {
 // ---- Maps, good and bad -------------------------------------------------------------------------
 
 IlluminationMap by_particles(const Scene& s, const Mesh& mesh, uint64_t n) {
-    Particles p(s, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1000), n));
+    Particles p(s, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1000)));
     for (size_t batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
     return p.map();
 }
@@ -103,7 +103,7 @@ IlluminationMap of_glow(const Mesh& mesh) {
 template <class RayOf>
 rgb mean_of_paths(const Gather& g, SamplerKind kind, int r, uint64_t n, RayOf ray_of) {
     const uint64_t seed = hash(seed_here(), uint64_t(r));
-    const Pattern pattern = EndlessNumbers::pattern(kind, seed, n),
+    const Pattern pattern = EndlessNumbers::pattern(kind, seed),
                   rest = EndlessNumbers::independent(seed);
     rgb sum;
     for (uint64_t i = 0; i < n; ++i) {
@@ -232,7 +232,7 @@ TEST_CASE("an image by control has the path tracer's mean; facets of balls chang
             Scene deep = scene;
             deep.depth = 64;
             const Pattern pattern =
-                make_pattern(SamplerKind::sobol, hash(seed_here(), 100 + seed), 64, spp);
+                make_pattern(SamplerKind::sobol, hash(seed_here(), 100 + seed), 64);
             rgb sum;
             for (int pixel = 0; pixel < 32 * 16; ++pixel)
                 for (uint64_t i = 0; i < spp; ++i) {

@@ -268,7 +268,7 @@ quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
             (glossy ? "phong half 0.3 0.3 0.3  0.3 0.3 0.3  4\n" : "diffuse half 0.5 0.5 0.5\n") +
             room);
         const Technique t{bsdf, mis, real(glossy ? 0 : 1)};
-        const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), scene.depth + 1, 64);
+        const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), scene.depth + 1);
         for (uint32_t dim = dimension(0, Draw(0)); dim < pattern.bases.size(); ++dim) {
             const Draw what = Draw((dim - dimension(0, Draw(0))) % uint32_t(Draw::count));
             const size_t k = (dim - dimension(0, Draw(0))) / uint32_t(Draw::count);
@@ -464,7 +464,7 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
         // A replication is one randomisation of every pixel's whole point set.
         const auto replicate = [&, first = seed_here()](int k) {
-            const Pattern pattern = make_pattern(kind, first + uint64_t(k), scene.depth, 16);
+            const Pattern pattern = make_pattern(kind, first + uint64_t(k), scene.depth);
             double sum = 0;
             for (int y = 0; y < scene.size.height; ++y)
                 for (int x = 0; x < scene.size.width; ++x)

@@ -45,7 +45,7 @@ TEST_CASE("known light is rho E / pi on both sides of every face") {
 TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light found by hitting") {
     const Scene s = glowing();
     const KnownLight known = maps_of(s, grey(1));
-    const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1, 0);
+    const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1);
     const Radiance L = final_gather(s, by_hitting, known, pattern);
     for (uint64_t i = 0; i < 200; ++i) {
         Tally tally;
@@ -65,7 +65,7 @@ TEST_CASE("paths end on what the maps hold, whatever that is") {
                 std::vector<rgb> means;
                 for (int r = 0; r < replicates; ++r) {
                     const Pattern pattern =
-                        make_pattern(kind, hash(seed_here(), uint64_t(r)), 1, n);
+                        make_pattern(kind, hash(seed_here(), uint64_t(r)), 1);
                     const Radiance L = final_gather(s, t, known, pattern);
                     rgb sum;
                     Tally tally;

@@ -16,7 +16,7 @@ constexpr double Pi = std::numbers::pi;
 
 // A complete run of n particles; its seed depends on the test's name.
 Particles run(const Meshed& m, SamplerKind kind, uint64_t n, uint64_t seed) {
-    Particles p(m.scene, m.mesh, Particles::pattern(kind, hash(seed_here(), seed), n));
+    Particles p(m.scene, m.mesh, Particles::pattern(kind, hash(seed_here(), seed)));
     for (size_t batch = 0; batch < Particles::batches; ++batch)
         p.add(batch, n / Particles::batches);
     return p;
@@ -96,7 +96,7 @@ TEST_CASE("what is emitted is absorbed or escapes: coloured, open and closed, ev
 
 TEST_CASE("many particles are as exact as one: their sums do not lose what is small beside them") {
     const Meshed m(scene_of_quads({{{}, {1, 0, 0}, {0, 1, 0}, diffuse(grey(0), grey(1))}}), 9);
-    Particles p(m.scene, m.mesh, Particles::pattern(SamplerKind::independent, 1, 0));
+    Particles p(m.scene, m.mesh, Particles::pattern(SamplerKind::independent, 1));
     p.add(0, 100000);
     CHECK(double(p.balance().emitted.x) == approx(Pi, 1e-10, 1e-6));
     CHECK(p.balance().escaped == p.balance().emitted);
@@ -131,7 +131,7 @@ TEST_CASE("the sums are the same, bit for bit, for any number of threads and pas
         CHECK((one.particles() == 3200 && one.of_each() == 200));
         CHECK(one.rays() > one.particles());
         for (unsigned threads : {1u, 2u, 3u, 5u}) {
-            Particles p(m.scene, m.mesh, Particles::pattern(kind, hash(seed_here(), 1), 3200));
+            Particles p(m.scene, m.mesh, Particles::pattern(kind, hash(seed_here(), 1)));
             for (uint64_t n : {8, 64, 128})
                 in_parallel(
                     Particles::batches, threads, [&](size_t b) { p.add(b, n); }, [](double) {});
@@ -147,7 +147,7 @@ TEST_CASE("the sums are the same, bit for bit, for any number of threads and pas
 
 TEST_CASE("batches are randomisations of their own; without one there is no error to tell") {
     const Meshed m(study(true), 1);
-    const Pattern pattern = Particles::pattern(SamplerKind::halton, 1, 1600);
+    const Pattern pattern = Particles::pattern(SamplerKind::halton, 1);
     std::vector<IlluminationMap> maps;
     for (size_t batch : {0u, 1u, 15u}) {
         Particles p(m.scene, m.mesh, pattern);

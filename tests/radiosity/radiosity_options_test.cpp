@@ -119,13 +119,13 @@ TEST_CASE("radiosity: with --final-gather paths have the options of penumbra, ma
     const RadiosityOptions o = parse(
         "--final-gather --spp 12 --replications 4 --error 2% --time 3 --sampler stratified "
         "--direction uniform --light nee --seed 5 --particles 70");
-    CHECK(said(o.final_gather, o.method, o.spp, o.sets, o.error, o.sampler, o.particles) ==
+    CHECK(said(o.final_gather, o.method, o.spp, o.replications, o.error, o.sampler, o.particles) ==
           said(true, Method::particles, 12, 4, 0.02, SamplerKind::stratified, 70));
     CHECK(said(o.technique.direction, o.technique.light, o.technique.roulette) ==
           said(Direction::uniform, LightMode::nee, 0));
     CHECK(parse("--final-gather").sampler == SamplerKind::sobol);
     CHECK(parse("--final-gather").particles == 0);
-    CHECK(parse("--final-gather --method particles").sets == 0);
+    CHECK(parse("--final-gather --method particles").replications == 0);
     const Refusal rows[] = {
         {"--final-gather --method hierarchy", "--final-gather: needs --method particles"},
         {"--final-gather --shots 3", "--shots: needs --method shooting or hierarchy"},

@@ -18,7 +18,7 @@ CommonOptions quietly(unsigned threads = 1) {
 
 Walked walk_to(const Meshed& m, const WalksTarget& target, uint64_t seed,
                SamplerKind kind = SamplerKind::halton) {
-    const Pattern pattern = Particles::pattern(kind, hash(seed_here(), seed), target.particles);
+    const Pattern pattern = Particles::pattern(kind, hash(seed_here(), seed));
     return walk_all(m.scene, m.mesh, pattern, target, quietly());
 }
 
@@ -70,6 +70,38 @@ TEST_CASE("--error: particles, seconds and the first look are limits") {
     }
 }
 
+TEST_CASE("passes are of 256 particles of each batch, until a limit or the time ends them") {
+    const Meshed m(furnace(), 1);
+    constexpr uint64_t pass = 256 * Particles::batches;
+    for (SamplerKind kind : all_samplers) {
+        const struct {
+            WalksTarget target;
+            uint64_t particles;
+        } rows[] = {{{0, 1e-9, 0}, pass},
+                    {{0, 1e-9, 1e-9}, pass},
+                    {{0, 1e-9, 0.9}, pass},
+                    {{1600, 1e-9, 0}, 1600},
+                    {{pass - 1, 0, 0}, pass},
+                    {{pass + 1, 0, 0}, pass + 16},
+                    {{100000, 1e9, 0}, 100000},
+                    {{1, 0, 0}, 16},
+                    {{100000, 1e-9, 1e-9}, pass},
+                    {{100000, 1e9, 1e-9}, 100000},
+                    {{first_look, 0, 0.9}, first_look},
+                    {{first_look + 1, 0, 0.9}, first_look}};
+        for (const auto& row : rows) {
+            INFO(row.target.particles, " ", row.target.seconds, " ", row.target.error);
+            CHECK(walk_to(m, row.target, 1, kind).particles == row.particles);
+        }
+        // Time makes no other map than as many particles.
+        const Walked timed = walk_to(m, {0, 0.03, 0}, 1, kind);
+        CHECK(timed.particles % pass == 0);
+        CHECK(timed.seconds >= 0.03);
+        CHECK(timed.seconds < 3);
+        CHECK(walk_to(m, {timed.particles, 0, 0}, 1, kind).map == timed.map);
+    }
+}
+
 TEST_CASE("--error alone: where no particle loses light the run ends with a message") {
     const vec3 size{2, 3, 1};
     const rgb glow{1, 1, 1};
@@ -101,7 +133,7 @@ TEST_CASE("--error alone: where no particle loses light the run ends with a mess
 
 TEST_CASE("--error: the run is the same for any number of threads, and that of as many particles") {
     const Meshed m(furnace(), 1);
-    const Pattern pattern = Particles::pattern(SamplerKind::halton, 1, 0);
+    const Pattern pattern = Particles::pattern(SamplerKind::halton, 1);
     auto walk = [&](const WalksTarget& target, unsigned threads) {
         return walk_all(m.scene, m.mesh, pattern, target, quietly(threads));
     };

@@ -24,13 +24,12 @@ const std::string in_half = half_shadow + std::string("quad -3 1 -3  0 0 6  2.9 
 const Technique nee{Direction::bsdf, LightMode::nee, 0};
 
 // Renders as the program does, with n samples per replication.
-Picture render(const Scene& scene, Estimator e, uint64_t n, uint64_t seed, uint32_t sets,
+Picture render(const Scene& scene, Estimator e, uint64_t n, uint64_t seed, uint32_t K,
                unsigned threads = 1, SamplerKind kind = SamplerKind::independent) {
     Options o;
-    o.sets = sets, o.threads = threads, o.quiet = true;
-    Plan plan = plan_of(o, scene);
-    plan.target.samples = 1, plan.at_once = n;
-    const Pattern pattern = make_pattern(kind, seed, scene.depth, n);
+    o.replications = K, o.spp = n * K, o.threads = threads, o.quiet = true;
+    const Plan plan = plan_at_once(o, scene);
+    const Pattern pattern = make_pattern(kind, seed, scene.depth);
     const Radiance L = shadow_estimate(scene, nee, pattern, e, n);
     return render(o, plan, L);
 }
@@ -115,10 +114,10 @@ TEST_CASE("estimates do not depend on threads, and take the samples of each repl
             const Picture two = render(scene, e, n, 7, 2, 1, kind);
             CHECK(render(scene, e, n, 7, 2, 3, kind).image.pixels == two.image.pixels);
             CHECK(two.run.spp == 2 * n);
-            CHECK(two.run.sets == 2);
+            CHECK(two.run.replications == 2);
             // A path has a camera ray, a shadow ray and a scattered ray.
             CHECK(two.run.rays == 3 * n * 2 * two.image.pixels.size());
-            const Pattern pattern = make_pattern(kind, 7, scene.depth, n);
+            const Pattern pattern = make_pattern(kind, 7, scene.depth);
             double sum = 0;
             for (uint32_t set : {0u, 1u}) {
                 const ShadowMoments m = moments_of(n, [&, i = uint64_t(0)]() mutable {

@@ -3,6 +3,7 @@
 #include "unseen/unseen.h"
 
 #include "base/moments.h"
+#include "film/fill.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
 
@@ -40,23 +41,21 @@ Scene mirror_scene(real r, bool direct = false) {
     return s;
 }
 
-// The evidence of n samples per pixel, divided among K replications.
-struct Evidence {
-    std::vector<LightGroup> groups;
-    std::vector<FixedPoint> sums;
-    double c(size_t kind, size_t k, size_t power = 0) const {
-        return value_of(sums[place(0, kind) + 2 * k + power]);
-    }
-};
-Evidence evidence_of(const Scene& s, const Technique& t, uint64_t n, double K = 1) {
-    const Evidence e{lights_in_view(s, 0, s.size.height).groups, {}};
-    Tally tally{0, 1 / K, no_evidence_yet(e.groups)};
+// The near misses of n samples per pixel, divided among K replications.
+std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n, double K = 1) {
+    const Witness witness(s, t, 0, s.size.height);
+    Tally tally;
+    tally.share = 1 / K, tally.near = witness.near_misses(1);
     const Pattern pattern{SamplerKind::independent, seed_here()};
     for (int y = 0; y < s.size.height; ++y)
         for (int x = 0; x < s.size.width; ++x)
             for (uint64_t i = 0; i < n; ++i)
-                radiance(s, t, pattern, x, y, i, NearMisses{s, t, e.groups, tally});
-    return {e.groups, tally.sums};
+                radiance(s, t, pattern, x, y, i, witness.visitor(tally));
+    return tally.near;
+}
+// The sum of a power of c at a growth, for the first group.
+double c(const std::vector<NearMisses>& of, size_t kind, size_t k, size_t power = 0) {
+    return value_of(of[0].sum[kind][k][power]);
 }
 
 }  // namespace
@@ -142,24 +141,74 @@ TEST_CASE("the part of pixels that lights cover, in view of the eye") {
 
 TEST_CASE("near misses tell the light that is met, at every growth") {
     // The mean of c / s^2 does not depend on s while the light stays small.
-    const Evidence e = evidence_of(mirror_scene(real(0.08)), {}, 10000);
-    const double met = e.c(0, 0);
+    const auto e = misses_of(mirror_scene(real(0.08)), {}, 10000);
+    const double met = c(e, 0, 0);
     REQUIRE(met > 1000);  // hits: five standard deviations are less than a quarter
     for (size_t k = 1; k < 3; ++k) {
-        const double told = e.c(0, k) / std::pow(4.0, k);
+        const double told = c(e, 0, k) / std::pow(4.0, k);
         CHECK(told == doctest::Approx(met).epsilon(5 / std::sqrt(met)));
-        CHECK(e.c(0, k) > 2 * e.c(0, k - 1));
+        CHECK(c(e, 0, k) > 2 * c(e, 0, k - 1));
     }
-    // For a perfect mirror c and its square are 1; there is no evidence of the other kind.
-    CHECK(e.c(0, 0, 1) == doctest::Approx(met));
-    for (size_t k = 0; k < growths; ++k) CHECK(e.c(1, k) == 0);
-    // The replications of a pixel share its evidence.
-    const Evidence half = evidence_of(mirror_scene(real(0.08)), {}, 10000, 2);
-    CHECK(half.c(0, 0) == doctest::Approx(met / 4));
-    CHECK(half.c(0, 0, 1) == doctest::Approx(met / 16));
+    // For a perfect mirror c and its square are 1; there are none of the other kind.
+    CHECK(c(e, 0, 0, 1) == doctest::Approx(met));
+    for (size_t k = 0; k < growths; ++k) CHECK(c(e, 1, k) == 0);
+    // The replications of a pixel share its near misses.
+    const auto half = misses_of(mirror_scene(real(0.08)), {}, 10000, 2);
+    CHECK(c(half, 0, 0) == doctest::Approx(met / 4));
+    CHECK(c(half, 0, 0, 1) == doctest::Approx(met / 16));
     // Hits by eye rays do not count as chance hits.
-    const Evidence direct = evidence_of(mirror_scene(real(0.02), true), {}, 100);
-    CHECK(direct.c(0, 0) < direct.groups[0].area * 100);
+    const auto direct = misses_of(mirror_scene(real(0.02), true), {}, 100);
+    CHECK(c(direct, 0, 0) < direct[0].area * 100);
+}
+
+TEST_CASE("a film sums near misses by replications and weights, whatever the threads") {
+    const Scene s = mirror_scene(real(0.3), true);
+    const Witness witness(s, {}, 0, 8);
+    REQUIRE(!witness.noisy().empty());
+    const Pattern pattern{SamplerKind::independent, seed_here()};
+    // The other kind holds 1 / (K w) for each sample.
+    const Radiance L = [&](const PixelSample& p, Tally& tally) {
+        tally.near[0].sum[1][0][0] += fixed_point(tally.share);
+        return radiance(s, {}, pattern, p.x, p.y, p.i * 3 + p.set, witness.visitor(tally));
+    };
+    Plan plan{s.size};
+    plan.replications = 3, plan.samples = 8, plan.noisy = witness.noisy();
+    plan.near = witness.near_misses(3 * 4);
+    Watch watch;
+    watch.elapsed = [] { return 0; };
+    auto filled_by = [&](unsigned threads) {
+        Film f = make_film(s.size, 3, true);
+        f.near = plan.near, plan.threads = threads;
+        CHECK(Loop(f, plan, L, watch).run() == Stop::samples);
+        return f;
+    };
+    const Film f = filled_by(1);
+    CHECK(same(filled_by(3), f));
+    double shares = 0, squares = 0;
+    for (size_t i = 0; i < f.pixels(); ++i) shares += 4 + double(f.samples(i) - 4) / f.weight[i];
+    for (size_t i : witness.noisy()) CHECK(f.weight[i] >= 4);
+    CHECK(value_of(f.near[0].sum[1][0][0]) == doctest::Approx(shares));
+    CHECK((f.near[0].K == 12 && f.near[0].line == 7));
+    // A near miss by the mirror is worth the square of its share.
+    for (size_t i = 0; i < f.pixels(); ++i)
+        for (uint32_t k = 0; k < 3; ++k)
+            for (uint64_t n = 0; n < f.samples(i); ++n) {
+                const PixelSample p = f.sample_of(i, n, k);
+                Tally tally;
+                tally.near = witness.near_misses(1);
+                radiance(s, {}, pattern, p.x, p.y, n * 3 + k, witness.visitor(tally));
+                squares += c(tally.near, 0, 2) / sqr(n < 4 ? 3.0 : 3.0 * f.weight[i]);
+            }
+    CHECK(squares > 0);
+    CHECK(c(f.near, 0, 2) == doctest::Approx(squares));
+    // The verdict is that of n samples of each replication of weight 1.
+    Unseen unseen;
+    unseen.add(f.near, 8);
+    ImageError black = error_of(f);
+    CHECK(Witness::why_unknown(f, black) == unseen.doubt(black.d2(), black.norm(), 64));
+    black.variances = {};
+    CHECK(Witness::why_unknown(f, black) == unseen.doubt(0, black.norm(), 64));
+    CHECK(Witness::why_unknown(f, black) != "");
 }
 
 TEST_CASE("behind a rough surface it is another kind, and where light is aimed at it is none") {
@@ -170,21 +219,20 @@ TEST_CASE("behind a rough surface it is another kind, and where light is aimed a
     add_quad(s, {-9, 3, -9}, {18, 0, 0}, {0, 0, 18}, 2);
     s.depth = 3;
     prepare(s);
-    const Evidence e = evidence_of(s, {}, 2000);
-    CHECK(e.c(1, 4) > 0);
-    for (size_t k = 0; k < growths; ++k) CHECK(e.c(0, k) == 0);
+    const auto e = misses_of(s, {}, 2000);
+    CHECK(c(e, 1, 4) > 0);
+    for (size_t k = 0; k < growths; ++k) CHECK(c(e, 0, k) == 0);
 }
 
 TEST_CASE(
     "light is in doubt while few samples met it, and what is missing could double the error") {
-    std::vector<LightGroup> groups = {{12, 4, 100, 0, 8}};
+    NearMisses lamp{12, 8, 4, 100, 0};
     auto doubt = [&](double hits, int near, size_t kind, double d2, double t = 1) {
-        std::vector<FixedPoint> evidence = no_evidence_yet(groups);
-        FixedPoint* const sums = &evidence[place(0, kind)];
-        sums[0] = sums[1] = fixed_point(hits);
-        for (size_t i = 2; i < 2 * growths; ++i) sums[i] = fixed_point(near);
+        NearMisses of_film = lamp;
+        of_film.sum[kind].fill({fixed_point(near), fixed_point(near)});
+        of_film.sum[kind][0].fill(fixed_point(hits));
         Unseen u;
-        u.add(evidence, t);
+        u.add({of_film}, t);
         return u.doubt(d2, 2, 25);
     };
     // Six near misses at s = 2, each with c = 1, give 4 * 6 / 4 over 25 pixels.
@@ -204,7 +252,7 @@ TEST_CASE(
     CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 0.999 / 4, 2).size() > 0);
     CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 1.001 / 4, 2).empty());
     // Eye rays see a light that covers a part of a pixel.
-    groups = {{0, 4, 0.1, 0.09, 8}};
+    lamp = {0, 8, 4, 0.1, 0.09};
     CHECK(
         doubt(0, 0, 0, 0, 12) ==
         "a light, smaller than a pixel, was hit 10 times; light not yet found may amount to 0.6 %");
@@ -212,21 +260,23 @@ TEST_CASE(
 }
 
 TEST_CASE("films of one picture add up") {
-    const std::vector<LightGroup> groups = {{3, 1, 0.1, 0.09, 4}};
-    std::vector<FixedPoint> evidence = no_evidence_yet(groups);
-    for (size_t k = 0; k < growths; ++k)
-        for (size_t power : {0, 1})
-            evidence[place(0, 0) + 2 * k + power] = fixed_point(k == 0 ? 3 : 40);
+    NearMisses lamp{3, 4, 1, 0.1, 0.09};
+    lamp.sum[0].fill({fixed_point(40), fixed_point(40)});
+    lamp.sum[0][0].fill(fixed_point(3));
     for (const auto& [films, why] :
          {std::pair{1, "was hit 3 times; light not yet found may amount to 158 %"},
           {3, "was hit 9 times; light not yet found may amount to 91 %"},
           {4, "smaller than a pixel"}}) {
         Unseen u;
-        for (int i = 0; i < films; ++i) u.add(evidence, 2, 1.0 / films);
+        for (int i = 0; i < films; ++i) u.add({lamp}, 2, 1.0 / films);
         CHECK(u.doubt(0, 1, 1).c_str() == doctest::Contains(why));
     }
-    const LightGroup g = group_in(evidence, 0);
-    CHECK((g.line == 3 && g.L2 == 1 && g.area == 0.1 && g.a == 0.09 && g.K == 4));
+    // Films of more samples count for more: 6 hits of 8 samples of each replication, not of 2.
+    Unseen u;
+    u.add({lamp}, 2, 0.2), u.add({lamp}, 8, 0.8);
+    CHECK(u.doubt(0, 1, 1) ==
+          "the light of line 3 in mirrors or glass was hit 6 times; light not yet found may amount "
+          "to 45 %");
 }
 
 TEST_CASE("many lights share groups, and one near miss in many counts for all") {
@@ -235,9 +285,9 @@ TEST_CASE("many lights share groups, and one near miss in many counts for all") 
     many.line_of_light.resize(1000, 8);
     prepare(many);
     CHECK(lights_in_view(many, 0, 8).groups.size() == most_light_groups);
-    const Evidence one = evidence_of(few, {}, 2000), all = evidence_of(many, {}, 2000);
-    CHECK(all.c(0, 0) == one.c(0, 0));  // actual hits
-    const double expected = one.c(0, 6), sigma = std::sqrt(expected * 1000);
-    CHECK(std::abs(all.c(0, 6) - expected) < 4 * sigma);
-    CHECK(all.c(0, 6) > 0);
+    const auto one = misses_of(few, {}, 2000), all = misses_of(many, {}, 2000);
+    CHECK(c(all, 0, 0) == c(one, 0, 0));  // actual hits
+    const double expected = c(one, 0, 6), sigma = std::sqrt(expected * 1000);
+    CHECK(std::abs(c(all, 0, 6) - expected) < 4 * sigma);
+    CHECK(c(all, 0, 6) > 0);
 }

@@ -71,12 +71,10 @@ TEST_CASE("the stated d^2 of weighted means is that from seed to seed, on any nu
             };
             const Radiance L = weighted_mean(scene, pattern, kind, 6, sample, troubles);
             Options o;
-            o.sets = 2, o.quiet = true;
+            o.replications = 2, o.spp = 12, o.quiet = true;
             auto rendered = [&](unsigned threads) {
                 o.threads = threads;
-                Plan plan = plan_of(o, scene);
-                plan.target.samples = 1, plan.at_once = 6;
-                return render(o, plan, L);
+                return render(o, plan_at_once(o, scene), L);
             };
             const Picture p = rendered(1);
             if (r == 0) CHECK(rendered(3).image.pixels == p.image.pixels);

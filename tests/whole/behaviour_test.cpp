@@ -123,7 +123,7 @@ TEST_CASE("the summary is a line of samples, seconds, Mrays/s and the error, and
     for (const auto& [options, samples] :
          std::map<std::string, unsigned>{{"--replications 2", 64},
                                          {"--replications 1 --spp 7", 7},
-                                         {"--spp 9 --spp 2 --time 1e6", 2}}) {
+                                         {"--spp 9 --replications 2 --spp 2 --time 1e6", 2}}) {
         const Outcome o = place.render("--size 64x64 " + options);
         INFO(o.err);
         const Summary s = summary(o.err);
@@ -241,14 +241,14 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         }
         return values;
     };
-    const std::string line = "--seed 5 --size 16x8 --spp 24 ";
+    const std::string line = "--seed 5 --size 16x8 --spp 48 ";
     const auto one = stats(line + "--threads 1"), three = stats(line + "--threads 3"),
-               twice = stats(line + "--threads 1 --spp 48");
+               twice = stats(line + "--threads 1 --spp 96");
     const Words of_time = split(
                     "seconds cpu_seconds mrays_per_second seconds_to_half_d_rel "
                     "peak_memory_bytes"),
                 of_samples = split(
-                    "samples_per_pixel rays mean_radiance variance_of_mean "
+                    "samples_per_pixel repeat_with_spp rays mean_radiance variance_of_mean "
                     "replications_per_pixel d_rel d_rel_standard_error d_rel_by_spread");
     auto among = [](const Words& words, const std::string& word) {
         return std::find(words.begin(), words.end(), word) != words.end();
@@ -258,6 +258,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         const std::string& text = values.at(key);
         return std::strtod(text.c_str() + (text[0] == '['), nullptr);
     };
+    CHECK(number(one, "repeat_with_spp") == 48);
     for (const auto& stat : one) {
         const auto& [key, value] = stat;
         INFO(stat.first);
@@ -266,7 +267,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         } else if (among(of_samples, key)) {
             CHECK(three.at(key) == value);
             CHECK(number(one, key) > 0);
-            // The same pilot samples lead to the same replications.
+            // The same pilot samples lead to the same weights.
             CHECK((value == twice.at(key)) == (key == "replications_per_pixel"));
         } else {  // what was asked for, and how it ended
             CHECK((three.at(key) == value) == (key != "threads"));
@@ -274,9 +275,10 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
     }
     CHECK(said(one.at("scene"), one.at("width"), one.at("height"), one.at("depth"), one.at("rows"),
                one.at("stopped_by")) == R"("file.scene" 16 8 7 null "samples")");
-    const double K = number(one, "replications_per_pixel"), seconds = number(one, "seconds");
-    CHECK(number(one, "samples_per_pixel") == doctest::Approx(12 * K));
-    CHECK(number(twice, "samples_per_pixel") == doctest::Approx(24 * K));
+    const double seconds = number(one, "seconds"), samples = number(one, "samples_per_pixel");
+    CHECK(number(one, "replications_per_pixel") == 6);    // 800 / 128
+    CHECK(samples == doctest::Approx(48).epsilon(0.25));  // a pixel of mean noise has 48
+    CHECK(number(twice, "samples_per_pixel") == 2 * samples);
     CHECK(number(one, "mrays_per_second") == doctest::Approx(number(one, "rays") / seconds * 1e-6));
     CHECK(number(one, "seconds_to_half_d_rel") <= seconds * 4.001);
     CHECK(number(one, "seconds_to_half_d_rel") >= seconds * 1.999);
@@ -389,7 +391,7 @@ TEST_CASE("an image depends on the seed, and not on threads, passes or the run")
     }
     std::set<std::string> different{one};
     for (const std::string& options :
-         parts_of("--seed 1;--seed 2;--seed 18446744073709551615;--spp 8;--spp 4;--light nee;"
+         parts_of("--seed 1;--seed 2;--seed 18446744073709551615;--spp 9;--spp 4;--light nee;"
                   "--direction uniform;--depth 1;--replications 1;--replications 4;--sampler "
                   "halton;--roulette 1"))
         different.insert(image(options));

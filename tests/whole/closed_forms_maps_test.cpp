@@ -39,7 +39,7 @@ std::vector<Endless> endless_scenes(const std::vector<Known>& rows) {
 KnownLight maps_of(const Scene& scene, double scale) {
     Mesh mesh = make_mesh(scene, double(diagonal(scene)) / 8);
     constexpr uint64_t n = 4096;
-    Particles p(scene, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1), n));
+    Particles p(scene, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1)));
     for (size_t batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
     IlluminationMap map = p.map();
     for (rgb& E : map) E = E * real(scale);
@@ -76,7 +76,7 @@ TEST_CASE("paths that end on maps meet every closed form of diffuse triangles") 
                            [&](int r) {
                                const uint64_t n = 16 * uint64_t(e.known->aimed);
                                const uint64_t seed = hash(seed_here(), uint64_t(r));
-                               const Pattern pattern = EndlessNumbers::pattern(kind, seed, n),
+                               const Pattern pattern = EndlessNumbers::pattern(kind, seed),
                                              rest = EndlessNumbers::independent(seed);
                                double sum = 0;
                                for (uint64_t i = 0; i < n; ++i)

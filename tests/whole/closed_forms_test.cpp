@@ -69,7 +69,7 @@ Cell check(const Known& k, const Scene& scene, const Options& o, uint64_t n) {
     const bool independent = o.sampler == SamplerKind::independent;
     const int replicates = independent ? 1 : 64;
     const uint64_t points = n / uint64_t(replicates);
-    Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth, points);
+    Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
     Moments samples, means;
     oracle::Draws draws;
     for (int i = 0; i < replicates; ++i, ++pattern.seed) {

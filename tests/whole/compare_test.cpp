@@ -33,11 +33,11 @@ Comparison compare(const Folder& folder, const std::string& words) {
 void write_film(const Folder& folder, const std::string& name, const std::vector<float>& m,
                 const std::vector<float>& variance) {
     const int width = int(m.size() / 3);
-    Film f = make_film({width, 1}, 2);
+    Film f = make_film({width, 1}, 2, false);
     for (size_t i = 0; i < f.pixels(); ++i)
         for (size_t c = 0; c < 3; ++c) {
             const double mean = double(m[3 * i + c]), s = std::sqrt(double(variance[3 * i + c]));
-            f.sum[2 * i].L[c] = mean - s, f.sum[2 * i + 1].L[c] = mean + s;
+            f.sum[2 * i][c] = mean - s, f.sum[2 * i + 1][c] = mean + s;
         }
     f.taken.assign(f.taken.size(), 1);
     const std::string path = (folder.path / name).string();

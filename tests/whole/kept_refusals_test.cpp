@@ -38,15 +38,6 @@ TEST_CASE("a film of other samples is refused by what differs, and nothing is to
         "--error 50% --time 9");
 }
 
-TEST_CASE("where samples depend on how many there are, another grid is refused") {
-    const Kept folder;
-    folder.keep("a.film", "--replications 1 --spp 12 --sampler stratified");
-    folder.refuse("--replications 1 --spp 20 --sampler stratified --keep a.film",
-                  "a.film: was rendered with grid 4x3, not 5x4\n");
-    folder.keep("b.film", "--replications 1 --spp 256 --sampler stratified");
-    folder.keep("b.film", "--replications 1 --spp 512 --sampler stratified");
-}
-
 TEST_CASE("another scene, by one byte of any of its files; the same one elsewhere") {
     const Kept folder;
     folder.keep("a.film", "--spp 2");
@@ -62,12 +53,25 @@ TEST_CASE("another scene, by one byte of any of its files; the same one elsewher
     expect_success(folder, "penumbra --spp 2 --keep a.film -o z.pfm other/file.scene");
 }
 
-TEST_CASE("a film of one sample a pixel has one replication, and gets no other") {
-    const Kept folder;
+TEST_CASE("a film of fewer samples than replications has one of each, and gets no other") {
+    const Kept folder;  // a picture of few pixels has 8
     folder.keep("a.film", "--spp 1");
     folder.refuse("--spp 2 --keep a.film",
                   "a.film: was rendered with replications 1, not adaptive\n");
     folder.render("--spp 8 --replications 1 --keep a.film -o z.pfm");
+    folder.keep("b.film", "--spp 3");
+    folder.refuse("--spp 8 --keep b.film",
+                  "b.film: was rendered with replications-per-pixel 3, not 8\n");
+}
+
+TEST_CASE("a film of an earlier Penumbra is refused by its version") {
+    const Kept folder;
+    folder.keep("a.film", "--spp 17");
+    folder.write("b.film", "penumbra film 2" + folder.read("a.film").substr(15));
+    const std::string why = "b.film: is of another Penumbra: format version 2, not 3\n";
+    folder.refuse("--spp 17 --keep b.film", why);
+    for (const std::string program : {"merge -o y.pfm b.film", "compare b.film b.film"})
+        expect_refusal(folder, program, why);
 }
 
 TEST_CASE("a film that is torn, longer, empty, a folder or in none") {

@@ -48,7 +48,7 @@ TEST_CASE(
         folder.expect_whole(options, {"--rows 0-0", "--rows 1-4 --threads 1", "--rows 5-6"});
 }
 
-TEST_CASE("a film alone is its picture, whatever its sets") {
+TEST_CASE("a film alone is its picture, whatever its replications") {
     const Scenes folder;
     for (const std::string options : {"--spp 60", "--spp 1", "--spp 2", "--spp 17 --seed 5"})
         folder.expect_whole(options, {""});
@@ -77,43 +77,56 @@ TEST_CASE("adaptive bands choose by their own rows: each is what a band alone is
     CHECK(same);
 }
 
-TEST_CASE("seeds are independent pictures: their mean by samples, and the variance of that") {
+TEST_CASE("seeds are replications: their mean by samples, and its variance, as by hand") {
     const Scenes folder;
-    for (const std::string options : {"--replications 8", "--replications adaptive"}) {
-        INFO(options);
-        const Words words = folder.of(options);
-        // 16, 16 and 96 samples with fixed replications: weights 1/8, 1/8, 3/4.
-        const Words parts = {"--spp 16 --seed 1", "--spp 16 --seed 2", "--spp 96 --seed 3"};
-        std::array<Image, 3> images;
-        double d2 = 0, sum = 0, fourth = 0;
-        for (size_t k = 0; k < 3; ++k) {
-            expect_success(folder, words + outputs("one") + split(parts[k]));
-            images[k] = read_pfm(folder / "one.pfm");
-            const double w = k == 2 ? 0.75 : 0.125, d_rel = folder.number("one", "d_rel");
-            const double all = 1 + d_rel * d_rel;  // |f|^2 over |F|^2
-            const double its = d_rel * d_rel * mean_square(images[k]) / all,
-                         err = 2 * its * folder.number("one", "d_rel_standard_error") / d_rel / all;
-            d2 += w * w * its, fourth += std::pow(w, 4) * err * err;
-            sum += folder.number("one", "samples_per_pixel");
-        }
-        folder.merge_parts(words, parts, "all");
-        CHECK(folder.number("all", "samples_per_pixel") == doctest::Approx(sum));
-        if (contains(options, "adaptive")) continue;
-        const Image all = read_pfm(folder / "all.pfm");
-        double worst = 0;
-        for (size_t i = 0; i < all.pixels.size(); ++i)
-            for (size_t c = 0; c < 3; ++c) {
-                auto f = [&](size_t k) { return double(images[k].pixels[i][c]); };
-                const double mean = (f(0) + f(1) + 6 * f(2)) / 8, its = double(all.pixels[i][c]);
-                worst = std::max(worst, std::abs(mean - its) / std::max(1e-30, mean));
-            }
-        CHECK(worst < 1e-6);  // float rounding
-        const double d_rel = std::sqrt(d2 / (mean_square(all) - d2));
-        CHECK(folder.number("all", "d_rel") == doctest::Approx(d_rel).epsilon(1e-5));
-        CHECK(folder.number("all", "d_rel_standard_error") ==
-              doctest::Approx(d_rel * (1 + d_rel * d_rel) * std::sqrt(fourth) / d2 / 2)
-                  .epsilon(1e-5));
+    const Words words = folder.of("--replications 1");
+    const std::array<double, 8> n = {16, 16, 96, 32, 16, 64, 8, 8};
+    const double N = 256, K = 8;
+    std::vector<Image> images;
+    Words parts;
+    for (size_t k = 0; k < n.size(); ++k) {
+        parts.push_back("--spp " + std::to_string(int(n[k])) + " --seed " + std::to_string(k));
+        expect_success(folder, words + outputs("one") + split(parts[k]));
+        images.push_back(read_pfm(folder / "one.pfm"));
     }
+    folder.merge_parts(words, parts, "all");
+    const Image all = read_pfm(folder / "all.pfm");
+    const double pixels = double(all.pixels.size());
+    double worst = 0, d2 = 0, terms2 = 0;
+    for (size_t i = 0; i < all.pixels.size(); ++i) {
+        double term = 0;
+        for (size_t c = 0; c < 3; ++c) {
+            double mean = 0, squares = 0;
+            for (size_t k = 0; k < n.size(); ++k) mean += n[k] / N * double(images[k].pixels[i][c]);
+            for (size_t k = 0; k < n.size(); ++k)
+                squares += n[k] * sqr(double(images[k].pixels[i][c]) - mean);
+            const double its = double(all.pixels[i][c]);
+            worst = std::max(worst, std::abs(mean - its) / std::max(1e-30, mean));
+            term += squares / N / (K - 1) / 3;
+        }
+        d2 += term / pixels, terms2 += term * term * 2 / (K + 1);
+    }
+    CHECK(worst < 1e-6);  // float rounding
+    const double d_rel = std::sqrt(d2 / (mean_square(all) - d2));
+    CHECK(folder.number("all", "samples_per_pixel") == N);
+    CHECK(folder.number("all", "replications_per_pixel") == K);
+    CHECK(folder.number("all", "d_rel") == doctest::Approx(d_rel).epsilon(1e-5));
+    CHECK(folder.number("all", "d_rel_standard_error") ==
+          doctest::Approx(d_rel * (1 + d_rel * d_rel) * std::sqrt(terms2) / pixels / d2 / 2)
+              .epsilon(1e-5));
+}
+
+TEST_CASE("adaptive films of other seeds add their samples and replications") {
+    const Scenes folder;
+    const Words words = folder.of(""), parts = {"--spp 60 --seed 1", "--spp 100 --seed 2"};
+    double samples = 0;
+    for (const std::string& part : parts) {
+        expect_success(folder, words + outputs("one") + split(part));
+        samples += folder.number("one", "samples_per_pixel");
+    }
+    folder.merge_parts(words, parts, "all");
+    CHECK(folder.number("all", "samples_per_pixel") == doctest::Approx(samples));
+    CHECK(folder.number("all", "replications_per_pixel") == 2 * 8);
 }
 
 TEST_CASE("bands may have several seeds, each band its own") {
@@ -140,12 +153,12 @@ TEST_CASE("a part that is given more samples goes on, and is merged") {
     expect_same_run(folder, "whole", "parts", true);
 }
 
-TEST_CASE("memory of merging: the picture, and of each film a row and 2 bytes a pixel") {
+TEST_CASE("memory of merging: the picture, and of each film a row and a byte a pixel") {
     const Scenes folder;
     folder.write("unequal.scene", camera + "diffuse m .5 .5 .5\nsphere 0 0 90 1 m\n");
     folder.merge_parts(folder.of("--spp 2 --replications 2 --depth 0") + split("--size 1024x1024"),
                        {"--seed 0", "--seed 1", "--seed 2"}, "all");
     const double pixels = 1024.0 * 1024, memory = folder.number("all", "peak_memory_bytes");
     INFO(memory, " bytes of ", pixels, " pixels");
-    CHECK(memory < pixels * (12 + 2 * 3) * 1.1 + 8e6);  // the program takes 8 MB
+    CHECK(memory < pixels * (12 + 1 * 3) * 1.1 + 8e6);  // the program takes 8 MB
 }

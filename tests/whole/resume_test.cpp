@@ -23,7 +23,7 @@ private:
 }  // namespace
 
 TEST_CASE("with more samples than before: the same image as at once, by any number of threads") {
-    const Unequal folder("12x6");
+    const Unequal folder("30x15");
     for (const std::string& options : parts_of(";--sampler independent --replications 1;--sampler "
                                                "halton;--replications 3 --light nee;"
                                                "--replications 2 --direction uniform --roulette "
@@ -96,7 +96,7 @@ TEST_CASE("a smaller --error, after a greater one and after --spp") {
     const Unequal folder("12x6");
     const Words words = folder.of("--sampler independent");
     expect_success(folder, words + split("--error 4%") + outputs("whole"));
-    for (const std::string first : {"--error 12%", "--spp 38"}) {
+    for (const std::string first : {"--error 12%", "--spp 100"}) {
         expect_success(folder, words + split("--keep a.film -o x.pfm " + first));
         CHECK(std::stod(in_head(folder, "a.film", "rays")) < folder.number("whole", "rays"));
         expect_success(folder, words + split("--error 4% --keep a.film") + outputs("parts"));

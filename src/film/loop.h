@@ -1,0 +1,117 @@
+// film/loop.h  4  the loop that fills a film: passes, and reasons to stop
+#pragma once
+#include <mutex>
+
+#include "base/threads.h"
+#include "film/error.h"
+#include "film/weights.h"
+
+// What a run is to do, and when it stops: whichever comes first; 0: no limit.
+struct Plan {
+    Size size = {};
+    int first_row = 0;
+    uint32_t replications = 2;
+    bool is_adaptive = true;  // weights are chosen by a pilot
+    uint64_t samples = 0;     // of each replication of a pixel of weight 1
+    double seconds = 0, error = 0;
+    unsigned threads = 1;
+    uint64_t paths = 1;                 // that one sample of the film stands for
+    std::vector<NearMisses> near = {};  // of a film without samples
+    std::vector<size_t> noisy = {};     // pixels where few samples meet bright light
+    WhyUnknown why_unknown = {};        // judges the error by near misses
+};
+
+// Callbacks of the loop.
+struct Watch {
+    std::function<double()> elapsed;  // seconds, including those of earlier runs
+    std::function<void(const Film&, const Tally&)> between = [](auto&, auto&) {};  // passes
+    // Samples per pixel so far, and at the end; infinite: not known.
+    std::function<void(double now, double end)> show = [](double, double) {};
+};
+
+// Samples after the next pass, given n after `elapsed` seconds; one sample more of each pixel takes
+// `each` seconds (0: not known).  As many as fit into the time, at most n + 1; one at least.
+inline uint64_t end_of_pass(uint64_t n, double elapsed, double each, double seconds) {
+    constexpr double longest = 0.2;  // seconds: threads are rarely idle, Ctrl-C is quick
+    const double left = seconds > 0 ? seconds - elapsed : HUGE_VAL;
+    const double fit = each > 0 ? std::min(left, longest) / each : HUGE_VAL;
+    return n + uint64_t(std::clamp(fit, 1.0, double(n + 1)));
+}
+
+class Loop {
+public:
+    Loop(Film& film, const Plan& plan, const Radiance& L, const Watch& watch)
+        : film_(film),
+          plan_(plan),
+          L_(L),
+          watch_(watch),
+          limit_(plan.samples ? plan.samples : most_samples),
+          checks_(plan.error, plan.why_unknown) {}
+
+    Stop run() {
+        for (;;) {
+            if (is_pilot_done()) choose_weights(film_, plan_.noisy);
+            const Stop stop = reason_to_stop();
+            if (stop != Stop::no) return stop;
+            watch_.between(film_, tally_);
+            add_pass(next_end());
+        }
+    }
+
+    const Tally& tally() const { return tally_; }  // of this run, without near misses
+    const ErrorChecks& checks() const { return checks_; }
+
+private:
+    Film& film_;
+    const Plan& plan_;
+    const Radiance& L_;
+    const Watch& watch_;
+    const uint64_t limit_, pilot_ = std::min(pilot_samples, limit_);  // samples
+    ErrorChecks checks_;
+    Tally tally_;
+    std::mutex mutex_;
+
+    bool is_pilot_done() const {
+        const uint64_t n = film_.least_taken();
+        return film_.is_pilot && n >= pilot_ && n == film_.most_taken();
+    }
+
+    Stop reason_to_stop() {
+        if (interrupted) return Stop::interrupt;
+        if (tally_.bad > 0) return Stop::not_finite;
+        if (const Stop stop = checks_.check(film_); stop != Stop::no) return stop;
+        if (film_.least_taken() >= limit_) return Stop::samples;
+        const bool is_over = plan_.seconds > 0 && watch_.elapsed() >= plan_.seconds;
+        return is_over && film_.has_samples() ? Stop::time : Stop::no;
+    }
+
+    // Passes of the pilot have fixed ends: deviations are rounded.
+    uint64_t next_end() const {
+        const uint64_t n = film_.least_taken();
+        if (film_.is_pilot)
+            return std::max(film_.most_taken(), std::min(std::max<uint64_t>(1, 2 * n), pilot_));
+        const double elapsed = watch_.elapsed(), now = film_.samples_per_pixel();
+        const double each = now > 0 ? elapsed / now * (film_.samples_per_pixel(n + 1) - now) : 0;
+        const uint64_t to = end_of_pass(n, elapsed, each, plan_.seconds);
+        return std::min({to, limit_, plan_.error > 0 ? next_check(n) : limit_});
+    }
+
+    void add_pass(uint64_t to) {
+        const double before = film_.samples_per_pixel(), after = film_.samples_per_pixel(to);
+        const uint64_t last = uint64_t(std::min(checks_.expected(), double(limit_)));
+        const double end = last < most_samples ? film_.samples_per_pixel(last) *
+                                                     (film_.is_pilot ? typical_weight : 1)
+                                               : HUGE_VAL;
+        auto add_block = [&](size_t block) {
+            if (film_.taken[block] >= to) return;
+            Tally of_block;
+            of_block.near.resize(film_.near.size());
+            add_samples(film_, block, to, L_, of_block);
+            std::lock_guard lock(mutex_);
+            tally_.rays += of_block.rays, tally_.add_bad(of_block.bad, of_block.first_bad);
+            for (size_t g = 0; g < of_block.near.size(); ++g) film_.near[g].add(of_block.near[g]);
+        };
+        in_parallel(film_.taken.size(), plan_.threads, add_block,
+                    [&](double part) { watch_.show(before + part * (after - before), end); });
+    }
+};

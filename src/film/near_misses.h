@@ -1,0 +1,29 @@
+// film/near_misses.h  1  sums over paths that met a light, or nearly did
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "base/stats.h"
+
+inline constexpr size_t growths = 11;  // a light is scaled by s = 1, 2, 4 ... 1024
+
+// What a film knows of a group of lights: how the camera sees them, and near misses (src/unseen).
+struct NearMisses {
+    float line = 0;   // of the first light; 0: not known
+    float K = 1;      // samples of the pixels below, over n
+    double L2 = 0;    // greatest square of radiance, mean of the channels
+    double area = 0;  // visible area in pixels
+    double a = 0;     // sum over pixels of a (1 - a), for the covered part a of a pixel
+
+    // Sums of c and c^2 at each growth, of paths by mirrors and glass only, and of other paths.
+    std::array<std::array<std::array<FixedPoint, 2>, growths>, 2> sum{};
+
+    // Adds sums of more samples.
+    void add(const NearMisses& other) {
+        for (size_t kind = 0; kind < 2; ++kind)
+            for (size_t k = 0; k < growths; ++k)
+                for (size_t power = 0; power < 2; ++power)
+                    sum[kind][k][power] += other.sum[kind][k][power];
+    }
+};
+static_assert(sizeof(NearMisses) == 32 + 4 * growths * sizeof(FixedPoint), "a file holds no gaps");
