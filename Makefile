@@ -150,15 +150,17 @@ voronoi:                   ## weight samples of pixels by Voronoi cells (3 minut
 bench: build/knot.obj       ## rays per second, compared with Embree (libembree-dev)
 peers: $(PENUMBRA)         ## efficiency, compared with Cycles (blender; 5 minutes); SEEDS=5: more renders
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time for every setting, and a page to choose (30 minutes; FULL=1: 4 hours)
+halves: $(PENUMBRA)         ## efficiency of two halves with weights (30 minutes; FORMER=PROGRAM: compare with a former penumbra)
 calibration: $(PENUMBRA) build/knot.obj  ## calibration of the error estimate (3 hours; SEEDS=4: 1 hour)
 oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracle: 600 correct codes, 100 seeds (100 minutes); SEEDS=5, ONLY=GGX: into out/
 	@mkdir -p out
 	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
 	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
-EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers trade calibration
+EXPERIMENTS := techniques estimators1d shadows radiosity_error indirect voronoi2d bench peers trade halves calibration
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
 voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 trade: LAB_FLAGS := $(if $(FULL),--full)
+halves: LAB_FLAGS := $(if $(FORMER),--former $(FORMER))
 peers calibration: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
 $(EXPERIMENTS): %: build/%$(SUFFIX)
 	build/$@$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
