@@ -38,10 +38,10 @@ inline RowRange rows_of(const Options& o, const Scene& scene) {
     return o.rows.value_or(RowRange{0, scene.size.height - 1});
 }
 
-// Replications of each pixel, of a picture of so many: 2, and up to 8 in small pictures, whose
-// error may be that of one pixel.  A relative standard error of a quarter needs 7.
-inline uint32_t halves_of(Size size) {
-    return uint32_t(std::clamp(800 / (size.width * size.height), 2, 8));
+// Replications of each pixel, by default: 2, and up to 8 in pictures of less than 400 pixels, whose
+// error may be that of one pixel.  7 replications give its standard error as a quarter.
+inline uint32_t replications_of(Size size) {
+    return uint32_t(std::clamp(799 / (size.width * size.height) + 1, 2, 8));
 }
 
 // Samples of a pixel of mean noise, over those of a replication of weight 1.
@@ -55,11 +55,9 @@ inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness
     plan.error = scene.lights.empty() ? 0 : o.error, plan.seconds = o.seconds;
     const bool ends = o.spp > 0 || plan.seconds > 0 || plan.error > 0;
     const uint64_t N = ends ? o.spp : scene.samples;
-    const uint32_t halves = halves_of(scene.size);
-    plan.replications = o.replications        ? o.replications
-                        : N > 0 && N < halves ? uint32_t(N)
-                                              : halves;
-    plan.is_adaptive = o.replications == 0 && N != 1;
+    const uint32_t K = replications_of(scene.size);
+    plan.replications = o.replications ? o.replications : N > 0 && N < K ? uint32_t(N) : K;
+    plan.is_adaptive = o.replications == 0 && plan.replications == 2 && (N == 0 || N >= 4);
     plan.samples = (N + samples_for_one(plan) - 1) / samples_for_one(plan);
     plan.threads = o.threads;
     const RowRange rows = rows_of(o, scene);
@@ -114,7 +112,10 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent, Stop s
     run.error = error_of(film);
     run.doubt = doubt_of(film, run.error, plan.why_unknown);
     run.replications = film.replications;
-    run.repeat_spp = double(film.least_taken() * plan.paths * samples_for_one(plan));
+    const uint64_t n = film.least_taken();
+    if (n > 0 && n == film.most_taken() && !film.is_pilot &&
+        (!plan.is_adaptive || film.pilot == std::min(n, pilot_samples)))
+        run.repeat_spp = double(n * plan.paths * samples_for_one(plan));
     return run;
 }
 

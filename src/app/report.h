@@ -67,7 +67,7 @@ struct Run : Spent {
     bool is_radiance = true;     // false: a view; its error is not reported
     ImageError error;
     std::string doubt;              // why that may be far too small, or ""
-    double repeat_spp = NAN;        // --spp N that takes the same samples
+    double repeat_spp = NAN;        // --spp N that takes the same samples; NaN: none
     double replications = 1;        // mean per pixel
     double exponent_of_cost = 2;    // seconds ~ d_rel^-this
     std::string bias = "unbiased";  // class of the estimator

@@ -1,7 +1,8 @@
 // film/film.h  2  a film: sums of samples, in independent replications of each pixel
 //
 // A picture is the mean of two independent half-pictures, and half their difference is its error.
-// A half is one replication: pixel x has w(x) n samples in each, with a randomisation of its own.
+// A half is one replication, of which small pictures have more than two: pixel x has w(x) n samples
+// in each, with a randomisation of its own.
 // The weight w(x) is chosen once, by the noise of the neighbours in a pilot.
 #pragma once
 #include <cmath>
@@ -17,9 +18,9 @@
 // Results of samples other than their radiance.
 struct Tally {
     uint64_t rays = 0;
-    uint64_t bad = 0;                   // samples that an image file cannot hold
-    PixelSample first_bad;              // the first of them
-    double share = 1;                   // 1 / (K w) for K replications of a pixel of weight w
+    uint64_t bad = 0;       // samples that an image file cannot hold
+    PixelSample first_bad;  // the first of them
+    double share = 1;  // 1 / (K w) for K replications of a pixel of weight w, which is 1 in a pilot
     std::vector<NearMisses> near = {};  // sums for each group of lights of the film
 
     void add_bad(uint64_t count, const PixelSample& first) {

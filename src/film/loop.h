@@ -50,9 +50,9 @@ public:
 
     Stop run() {
         for (;;) {
-            if (is_pilot_done()) choose_weights(film_, plan_.noisy);
             const Stop stop = reason_to_stop();
             if (stop != Stop::no) return stop;
+            if (is_pilot_done()) choose_weights(film_, plan_.noisy);
             watch_.between(film_, tally_);
             add_pass(next_end());
         }
@@ -80,16 +80,15 @@ private:
         if (interrupted) return Stop::interrupt;
         if (tally_.bad > 0) return Stop::not_finite;
         if (const Stop stop = checks_.check(film_); stop != Stop::no) return stop;
-        if (film_.least_taken() >= limit_) return Stop::samples;
+        if (!film_.is_pilot && film_.least_taken() >= limit_) return Stop::samples;
         const bool is_over = plan_.seconds > 0 && watch_.elapsed() >= plan_.seconds;
         return is_over && film_.has_samples() ? Stop::time : Stop::no;
     }
 
-    // Passes of the pilot have fixed ends: deviations are rounded.
+    // Passes of the pilot have fixed ends, because deviations are rounded.
     uint64_t next_end() const {
         const uint64_t n = film_.least_taken();
-        if (film_.is_pilot)
-            return std::max(film_.most_taken(), std::min(std::max<uint64_t>(1, 2 * n), pilot_));
+        if (film_.is_pilot) return std::max(film_.most_taken(), std::min(n + 1, pilot_));
         const double elapsed = watch_.elapsed(), now = film_.samples_per_pixel();
         const double each = now > 0 ? elapsed / now * (film_.samples_per_pixel(n + 1) - now) : 0;
         const uint64_t to = end_of_pass(n, elapsed, each, plan_.seconds);

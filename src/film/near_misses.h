@@ -10,7 +10,7 @@ inline constexpr size_t growths = 11;  // a light is scaled by s = 1, 2, 4 ... 1
 // What a film knows of a group of lights: how the camera sees them, and near misses (src/unseen).
 struct NearMisses {
     float line = 0;   // of the first light; 0: not known
-    float K = 1;      // samples of the pixels below, over n
+    float K = 1;      // samples of a pixel of that area, over n
     double L2 = 0;    // greatest square of radiance, mean of the channels
     double area = 0;  // visible area in pixels
     double a = 0;     // sum over pixels of a (1 - a), for the covered part a of a pixel

@@ -43,7 +43,7 @@ void check_cover(const std::vector<Part>& parts, int height) {
     }
 }
 
-// Merges row by row; memory holds the picture, and a row of each film.
+// Merges row by row; memory holds the picture, and of each film a row and a weight per pixel.
 Image merge(const std::vector<Part>& parts, Size size, Run& run) {
     Unseen unseen;
     Image image(size.width, size.height);

@@ -160,9 +160,10 @@ private:
 // The near misses of films of one picture.
 class Unseen {
 public:
-    // Of a film with t samples in each replication of weight 1; its picture has a weight in the
-    // mean of several.
+    // Of a film with t samples in each replication of weight 1, 0 if it has only a pilot; its
+    // picture has a weight in the mean of several.
     void add(const std::vector<NearMisses>& groups, double t, double weight = 1) {
+        is_pilot_ = is_pilot_ || t == 0;
         lights_.resize(groups.size());
         for (size_t g = 0; g < lights_.size(); ++g) {
             const NearMisses& group = groups[g];
@@ -183,6 +184,7 @@ public:
     // Why the error of an image may be more than twice its estimate; "": no reason is known.  `d2`:
     // square of the estimate; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
+        if (is_pilot_) return "too few samples";
         double unseen = 0, most = 0;  // variances, summed over pixels
         std::string why;
         auto consider = [&](double variance, double line, const char* where, double met) {
@@ -221,6 +223,7 @@ private:
         std::array<std::array<NearSum, growths>, 2> near;
     };
     std::vector<OneLight> lights_;
+    bool is_pilot_ = false;
 };
 
 // Observes the paths of a render, and judges its estimated error.

@@ -22,8 +22,7 @@ inline Tally fill(Film& f, uint64_t n, const Radiance& L) {
 
 // A pilot of at most n samples, and weights chosen by it.
 inline void fill_pilot(Film& f, uint64_t n, const Radiance& L) {
-    for (uint64_t end = 1; end < 2 * std::min(n, pilot_samples); end *= 2)
-        fill(f, std::min({end, n, pilot_samples}), L);
+    for (uint64_t end = 1; end <= std::min(n, pilot_samples); ++end) fill(f, end, L);
     choose_weights(f);
 }
 

@@ -241,7 +241,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         }
         return values;
     };
-    const std::string line = "--seed 5 --size 16x8 --spp 48 ";
+    const std::string line = "--seed 5 --size 32x16 --spp 48 ";
     const auto one = stats(line + "--threads 1"), three = stats(line + "--threads 3"),
                twice = stats(line + "--threads 1 --spp 96");
     const Words of_time = split(
@@ -274,9 +274,9 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
         }
     }
     CHECK(said(one.at("scene"), one.at("width"), one.at("height"), one.at("depth"), one.at("rows"),
-               one.at("stopped_by")) == R"("file.scene" 16 8 7 null "samples")");
+               one.at("stopped_by")) == R"("file.scene" 32 16 7 null "samples")");
     const double seconds = number(one, "seconds"), samples = number(one, "samples_per_pixel");
-    CHECK(number(one, "replications_per_pixel") == 6);    // 800 / 128
+    CHECK(number(one, "replications_per_pixel") == 2);
     CHECK(samples == doctest::Approx(48).epsilon(0.25));  // a pixel of mean noise has 48
     CHECK(number(twice, "samples_per_pixel") == 2 * samples);
     CHECK(number(one, "mrays_per_second") == doctest::Approx(number(one, "rays") / seconds * 1e-6));
@@ -286,7 +286,7 @@ TEST_CASE("--stats: every key, and its relation to what was asked for and done")
     CHECK(band.at("rows") == "\"2-5\"");
     CHECK(band.at("height") == "4");
     const auto view = stats(line + "--view normal");  // one ray per sample
-    CHECK(number(view, "rays") == number(view, "samples_per_pixel") * 16 * 8);
+    CHECK(number(view, "rays") == number(view, "samples_per_pixel") * 32 * 16);
 }
 
 TEST_CASE("--exposure changes the PNG, by the command line before the scene, and never the PFM") {

@@ -22,7 +22,7 @@ TEST_CASE("a film of other samples is refused by what differs, and nothing is to
     for (const auto& [options, why] :
          {std::pair<std::string, std::string>{"--size 9x4", "size 8x4, not 9x4"},
           {"--sampler halton", "sampler sobol, not halton"},
-          {"--replications 2", "replications adaptive, not 2"},
+          {"--replications 2", "replications 8, not 2"},
           {"--direction uniform", "direction bsdf, not uniform"},
           {"--light nee", "light mis, not nee"},
           {"--depth 3", "depth 8, not 3"},
@@ -56,12 +56,11 @@ TEST_CASE("another scene, by one byte of any of its files; the same one elsewher
 TEST_CASE("a film of fewer samples than replications has one of each, and gets no other") {
     const Kept folder;  // a picture of few pixels has 8
     folder.keep("a.film", "--spp 1");
-    folder.refuse("--spp 2 --keep a.film",
-                  "a.film: was rendered with replications 1, not adaptive\n");
+    folder.refuse("--spp 2 --keep a.film", "a.film: was rendered with replications 1, not 2\n");
     folder.render("--spp 8 --replications 1 --keep a.film -o z.pfm");
     folder.keep("b.film", "--spp 3");
-    folder.refuse("--spp 8 --keep b.film",
-                  "b.film: was rendered with replications-per-pixel 3, not 8\n");
+    folder.refuse("--spp 8 --keep b.film", "b.film: was rendered with replications 3, not 8\n");
+    folder.render("--spp 8 --replications 3 --keep b.film -o z.pfm");
 }
 
 TEST_CASE("a film of an earlier Penumbra is refused by its version") {

@@ -39,8 +39,8 @@ const std::string statistics = R"sh({
   "width": 40,
   "height": 30,
   "samples_per_pixel": 1.25e+2,
+  "repeat_with_spp": 50,
   "seconds": 0.75,
-  "replications_per_pixel": 5,
   "d_rel": 0.0312,
   "d_rel_standard_error": 0.0021,
   "d_rel_reason": null
@@ -184,8 +184,8 @@ TEST_CASE("the gallery shows no picture without its statistics") {
         CHECK(!shop.has("out/index.html"));
     };
     refused("", " is not there");
-    refused(statistics.substr(0, 20), " has no number \"samples_per_pixel\"");
-    for (const std::string key : {"height", "samples_per_pixel", "d_rel"}) {
+    refused(statistics.substr(0, 50), " has no number \"repeat_with_spp\"");
+    for (const std::string key : {"height", "samples_per_pixel", "repeat_with_spp", "d_rel"}) {
         std::string json = statistics;
         json.replace(json.find(key) + key.size() + 3, 1, "x");
         refused(json, " has no number \"" + key + "\"");
@@ -201,25 +201,15 @@ TEST_CASE("the gallery shows no picture without its statistics") {
                    "error not known: a lamp, &quot;small&quot; &amp; \\ bright</p>"));
 }
 
-TEST_CASE("the gallery's command takes the samples that the picture has") {
+TEST_CASE("the gallery's command repeats the picture, or takes as many samples") {
     const Workshop shop;
-    auto command_of = [&](int width, int height, int samples, int replications) {
-        shop.write("out/room.json",
-                   "{\n  \"width\": " + std::to_string(width) +
-                       ",\n  \"height\": " + std::to_string(height) +
-                       ",\n  \"samples_per_pixel\": " + std::to_string(samples) +
-                       ",\n  \"seconds\": 1,\n  \"replications_per_pixel\": " +
-                       std::to_string(replications) +
-                       ",\n  \"d_rel_reason\": \"a lamp\",\n  \"d_rel\": null\n}\n");
+    for (const auto& [repeat, spp] : {std::pair("50", "50"), std::pair("null", "125")}) {
+        std::string json = statistics;
+        shop.write("out/room.json", json.replace(json.find("50,"), 2, repeat));
         CHECK(shop.run("scenes/gallery out room").status == 0);
-        const std::string page = shop.read("out/index.html"), from = "<code>build/penumbra ";
-        const size_t start = page.find(from) + from.size();
-        return page.substr(start, page.find(" -o", start) - start);
-    };
-    CHECK(command_of(4, 4, 64, 8) == "--size 4x4 --spp 16");
-    CHECK(command_of(3, 5, 64, 8) == "--size 3x5 --spp 64");
-    CHECK(command_of(3, 5, 3, 3) == "--size 3x5 --spp 3");
-    CHECK(command_of(4, 4, 1, 1) == "--size 4x4 --spp 1");
+        CHECK(contains(shop.read("out/index.html"),
+                       "<code>build/penumbra --size 40x30 --spp " + std::string(spp) + " -o"));
+    }
 }
 
 TEST_CASE("make says the name of a variant, and leaves the program without a suffix as it is") {

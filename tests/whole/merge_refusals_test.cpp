@@ -65,7 +65,7 @@ TEST_CASE("a part of another picture is told by what differs") {
     for (const auto& [options, why] :
          std::vector<Refusal>{{"--sampler halton", "sampler halton, not sobol"},
                               {"--sampler stratified", "sampler stratified, not sobol"},
-                              {"--replications 2", "replications 2, not adaptive"},
+                              {"--replications 2", "replications 2, not 8"},
                               {"--depth 2", "depth 2, not 8"},
                               {"--size 8x8", "size 8x8, not 8x7"}}) {
         render(options);
