@@ -57,7 +57,7 @@ inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness
     const uint64_t N = ends ? o.spp : scene.samples;
     const uint32_t K = replications_of(scene.size);
     plan.replications = o.replications ? o.replications : N > 0 && N < K ? uint32_t(N) : K;
-    plan.is_adaptive = o.replications == 0 && plan.replications == 2 && (N == 0 || N >= 4);
+    plan.is_adaptive = o.replications == 0 && plan.replications == 2 && N != 2;
     plan.samples = (N + samples_for_one(plan) - 1) / samples_for_one(plan);
     plan.threads = o.threads;
     const RowRange rows = rows_of(o, scene);
