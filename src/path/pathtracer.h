@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "path/sampler.h"
-#include "world/scene.h"
+#include "world/prepare.h"
 
 // The estimator of direct light.
 enum class LightMode {
@@ -80,9 +80,8 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     if (t.light == LightMode::none) return none("--light none");
     if (scene.lights.empty()) return none("the scene has no light");
     if (m.is_delta()) return none("the surface is a mirror or glass");
-    const bool one = scene.lights.size() == 1;
-    const real u_pick = one ? 0 : sampler.choice(vertex, Draw::pick);
-    const LightPick chosen = one ? LightPick{} : choose_light(scene, x.at.p, x.local.n, u_pick);
+    const real u_pick = scene.lights.size() > 1 ? sampler.choice(vertex, Draw::pick) : 0;
+    const auto chosen = scene.light_tree.choose(x.at.p, x.local.n, u_pick);
     const Light& light = scene.lights[chosen.light];
     const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
     if (!s) return none("the light does not emit towards the surface");
@@ -133,7 +132,7 @@ inline real weight_of_emission(const Scene& scene, const Technique& t, const Seg
     // exercise 3.4
     if (t.light == LightMode::none || std::isinf(s.pdf)) return 1;
     const size_t i = size_t(scene.light_of[x.hit.id]);
-    const real pick = pick_of(scene, i, s.from, s.n);
+    const real pick = scene.light_tree.pick_of(i, s.from, s.n);
     const real pdf = pick * pdf_light(scene.lights[i], s.from, x.at);
     // Light samples have pdf 0 inside a two-sided sphere light.
     if (t.light == LightMode::nee) return pdf > 0 ? 0 : 1;

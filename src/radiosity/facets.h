@@ -139,7 +139,7 @@ inline Faceted faceted(const Scene& from, double H) {
     Faceted result{from, {}};
     Scene& to = result.scene;
     to.shapes.clear(), to.material_of.clear(), to.light_of.clear(), to.line_of.clear();
-    to.lights.clear(), to.line_of_light.clear(), to.pick_cdf.clear();
+    to.lights.clear(), to.line_of_light.clear();
     std::vector<int32_t> light(from.lights.size(), no_light);  // new lights, except for spheres
     for (size_t k = 0; k < from.lights.size(); ++k) {
         if (from.lights[k].kind == Light::Kind::sphere) continue;

@@ -140,7 +140,8 @@ private:
         const Light& l = scene.lights[i];
         if (technique.light == LightMode::none || std::isinf(s.pdf)) return 1;
         if (technique.light == LightMode::nee) return 0;
-        const real pdf = pick_of(scene, i, s.from, s.n) * pdf_light(l, s.from, {l.centre, l.n, 0});
+        const real pdf =
+            scene.light_tree.pick_of(i, s.from, s.n) * pdf_light(l, s.from, {l.centre, l.n, 0});
         return double(power_heuristic(s.pdf, pdf));
     }
     void add(const Segment& s, size_t light, uint32_t near, double weight) {

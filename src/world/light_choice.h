@@ -1,12 +1,21 @@
-// world/light_choice.h  3  light selection by estimated contribution
+// world/light_choice.h  3  light selection by estimated contribution, in a tree of lights
+//
+// A sample chooses one light of many.  Lights that are near each other form groups, and groups
+// larger groups (Conty Estevez, Kulla 2018).  From the root, the choice descends from group to
+// member, each time with probabilities by the members' estimated contributions.
 #pragma once
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "world/lights.h"
 
-// With 5 lights (atelier) weights pay off; with 7 (furnace) they take more time than they save.
-inline constexpr size_t most_weighed = 6;
+inline constexpr size_t most_members = 8;
+
+// An estimate may be wrong by any factor, because it does not know what hides a light.  So a part
+// of all choices goes to all members alike that can contribute (a defensive mixture, Hesterberg
+// 1995): no light starves.
+inline constexpr real even_part = real(0.0625);
 
 // Seen from afar, a light of radiance L sends it L A cos_l cos_s / d^2: A is its area, or the disc
 // that a sphere shows, d the distance of its centre, and the cosines are those at both ends.
@@ -17,47 +26,220 @@ inline double strength(const Light& l) {
     return L * double(length(l.area_vector()));
 }
 
-// Computes what the weights of lights need.
-inline void prepare_weights(std::vector<Light>& lights) {
-    double strongest = 0;
-    for (const Light& l : lights) strongest = std::max(strongest, strength(l));
-    for (Light& l : lights) {
-        l.strength = std::max(real(strength(l) / strongest), std::numeric_limits<real>::min());
-        l.centre = l.p, l.reach = l.r;
-        if (l.is_round()) continue;
-        const bool quad = l.kind == Light::Kind::quad;
-        const vec3 diagonal = l.u + l.v, c = diagonal / (quad ? 2 : 3);
-        l.centre = l.p + c;
-        l.reach = quad ? std::max(length(diagonal), length(l.u - l.v)) / 2
-                       : std::max({length(c), length(l.u - c), length(l.v - c)});
-    }
-}
-
-// Estimated contribution of a light to a surface at p with normal m on the side of the eye.  It has
-// d^2 + r^2 for d^2, so that a near light keeps a finite weight, and the height of the sphere's top
-// above the surface's plane for that of its centre: a light has weight 0 only if all of it is below
-// the horizon or turned away.  Any weights are unbiased as long as lights of weight 0 contribute
-// nothing.
-inline real light_weight(const Light& l, vec3 p, vec3 m) {
-    // Divided by at least the square of the least distance nothing overflows, and nothing is 0/0.
-    constexpr real least = std::numeric_limits<real>::min() / ulp;
-    const vec3 f = l.centre - p;
-    const real d2 = dot(f, f) + std::max(sqr(l.reach), least), per_d2 = 1 / d2;
-    const real top = dot(m, f) + l.reach, front = -dot(l.n, f);
-    const real facing = l.is_round() ? std::sqrt(d2) : l.twosided ? std::abs(front) : front;
-    return l.strength * (std::max(top, real(0)) * per_d2) * (std::max(facing, real(0)) * per_d2);
-}
-
-// Nothing if there is one light or too many, if none contributes, or if the sum is out of range.
-struct LightWeights {
-    std::array<real, most_weighed> of;
-    real sum = 0;
+// A light, or a group of lights, as it looks from afar.
+struct LightNode {
+    vec3 centre = {};   // of a group: the mean of its lights', by strength
+    real reach = 0;     // radius of a sphere about the centre that holds all
+    real spread2 = 0;   // mean square of the distance from the centre
+    vec3 axis = {};     // normal of a polygon; of a group: the mean by strength
+    real round = 1;     // the part that shines in all directions
+    real behind = 0;    // a light may be so far behind the plane through the centre, or before it
+    real twosided = 0;  // 1: it shines against its axis, too
+    real strength = 0;
+    uint32_t light = 0;
 };
-inline std::optional<LightWeights> light_weights(const std::vector<Light>& lights, vec3 p, vec3 m) {
-    if (lights.size() < 2 || lights.size() > most_weighed) return {};
+inline LightNode node_of(const Light& l, real strength, uint32_t light) {
+    LightNode n{l.centre, l.reach, sqr(l.reach)};
+    // A polygon does not shine along its own plane, within rounding.
+    if (!l.is_round()) n.axis = l.n, n.round = 0, n.twosided = l.twosided, n.behind = -2 * l.error;
+    n.strength = strength, n.light = light;
+    return n;
+}
+
+// Up to eight members, in rows: a loop over a row becomes vector instructions.
+struct LightGroup {
+    template <class T>
+    using Row = std::array<T, most_members>;
+    Row<real> x{}, y{}, z{}, reach{}, spread2{}, axis_x{}, axis_y{}, axis_z{}, round{}, behind{},
+        twosided{}, strength{};
+    Row<uint32_t> child{};  // the number of a group or light
+    Row<bool> is_light{};
+    uint32_t members = 0, parent = 0, place = 0;  // place among the parent's members
+
+    // What is no member is below any horizon, and divides by no 0.
+    LightGroup() { reach.fill(std::numeric_limits<real>::lowest()), spread2.fill(1); }
+    void add(const LightNode& n) {
+        const size_t k = members++;
+        x[k] = n.centre.x, y[k] = n.centre.y, z[k] = n.centre.z;
+        reach[k] = n.reach, spread2[k] = n.spread2;
+        axis_x[k] = n.axis.x, axis_y[k] = n.axis.y, axis_z[k] = n.axis.z;
+        round[k] = n.round, behind[k] = n.behind;
+        twosided[k] = n.twosided, strength[k] = n.strength;
+    }
+};
+
+// Estimated contributions of members to a surface at p with normal m on the side of the eye.  They
+// have d^2 + r^2 for d^2, so that a near light keeps a finite weight, and the height of the
+// sphere's top above the surface's plane for that of its centre.
+struct LightWeights {
+    LightGroup::Row<real> of;
+    LightGroup::Row<real> can;  // 0: all of it is below the horizon or turned away; else 1
+};
+inline LightWeights weights(const LightGroup& g, vec3 p, vec3 m) {
     LightWeights w;
-    for (size_t i = 0; i < lights.size(); ++i) w.sum += w.of[i] = light_weight(lights[i], p, m);
-    // Part of a denormal sum could be rounded to all of it.
-    if (!(w.sum >= std::numeric_limits<real>::min() && w.sum < infinity)) return {};
+    for (size_t k = 0; k < most_members; ++k) {
+        const real x = g.x[k] - p.x, y = g.y[k] - p.y, z = g.z[k] - p.z;
+        const real d2 = x * x + y * y + z * z + g.spread2[k], d = std::sqrt(d2), per_d2 = 1 / d2;
+        const real height = m.x * x + m.y * y + m.z * z + g.reach[k];
+        const real top = height < d ? height : d;
+        const real front = g.behind[k] - (g.axis_x[k] * x + g.axis_y[k] * y + g.axis_z[k] * z);
+        const real back = -front * g.twosided[k];
+        const real facing = (front > back ? front : back) + g.round[k] * d;
+        w.can[k] = top > 0 && facing > 0 ? real(1) : real(0);
+        w.of[k] = w.can[k] * g.strength[k] * (top * per_d2) * (facing * per_d2);
+    }
     return w;
 }
+
+// A sum in pairs, as vector instructions add.
+inline real sum_of(const LightGroup::Row<real>& a) {
+    return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
+}
+
+// Probabilities of members.
+inline LightGroup::Row<real> shares(const LightGroup& g, vec3 p, vec3 m) {
+    const LightWeights w = weights(g, p, m);
+    const real sum = sum_of(w.of), number = sum_of(w.can);
+    // Part of a denormal sum could be rounded to all of it.
+    const bool is_sum = sum >= std::numeric_limits<real>::min() && sum < infinity;
+    const real by_weight = is_sum ? (1 - even_part) / sum : 0;
+    const real even = (is_sum ? even_part : 1) / number;
+    LightGroup::Row<real> of;
+    for (size_t k = 0; k < most_members; ++k)
+        of[k] = (is_sum ? w.of[k] * by_weight : 0) + w.can[k] * even;
+    if (number == 0) of = {1};  // none contributes, whichever is chosen
+    return of;
+}
+
+class LightTree {
+public:
+    LightTree() = default;
+    // Of lights whose strengths are relative to the greatest.
+    LightTree(const std::vector<Light>& lights, const std::vector<real>& strengths)
+        : places_(lights.size()) {
+        std::vector<LightNode> all;
+        for (size_t i = 0; i < lights.size(); ++i)
+            all.push_back(node_of(lights[i], strengths[i], uint32_t(i)));
+        if (lights.size() > 1) add_group(std::move(all), 0, 0);
+    }
+
+    // A light, and the probability that it is chosen.
+    struct Choice {
+        size_t light = 0;
+        real pick = 1;
+    };
+    // For a surface at p with normal m on the side of the eye, by u in [0,1).
+    Choice choose(vec3 p, vec3 m, real u) const {
+        Choice c;
+        for (size_t at = 0; at < groups_.size(); at = c.light) {
+            const LightGroup& g = groups_[at];
+            const LightGroup::Row<real> share = shares(g, p, m);
+            size_t k = 0;  // the last member whose part of [0,1) begins at u or before
+            real begin = 0, sum = 0;
+            for (size_t i = 0; i < most_members; sum += share[i++])
+                if (share[i] > 0 && sum <= u) k = i, begin = sum;
+            c = {g.child[k], c.pick * share[k]};
+            if (g.is_light[k]) break;
+            // What is left of u is a random number of its own.
+            u = std::clamp((u - begin) / share[k], real(0), below_one);
+        }
+        return c;
+    }
+    // The probability that it chooses this light.
+    real pick_of(size_t light, vec3 p, vec3 m) const {
+        return groups_.empty() ? 1 : pick_of(places_[light], p, m);
+    }
+
+    // Calls visit(light, weight) for all lights that can contribute.
+    template <class Visit>
+    void visit_weights(vec3 p, vec3 m, Visit visit) const {
+        for (const LightGroup& g : groups_) {
+            const LightWeights w = weights(g, p, m);
+            for (size_t k = 0; k < g.members; ++k)
+                if (g.is_light[k] && w.can[k] > 0) visit(size_t(g.child[k]), w.of[k]);
+        }
+    }
+
+private:
+    using Part = std::vector<LightNode>;
+    struct Place {
+        uint32_t group = 0, member = 0;
+    };
+    std::vector<LightGroup> groups_;  // the first holds all lights; none if there is one
+    std::vector<Place> places_;       // of lights
+
+    real pick_of(Place at, vec3 p, vec3 m) const {
+        const LightGroup& g = groups_[at.group];
+        const real above = at.group == 0 ? 1 : pick_of({g.parent, g.place}, p, m);
+        return above * shares(g, p, m)[at.member];
+    }
+
+    // ---- The tree -------------------------------------------------------------------------------
+
+    // Makes the group of two lights or more, and those below it; returns its number.
+    uint32_t add_group(Part lights, uint32_t parent, uint32_t place) {
+        const uint32_t at = uint32_t(groups_.size());
+        groups_.emplace_back();
+        groups_[at].parent = parent, groups_[at].place = place;
+        std::vector<Part> parts = parts_of(std::move(lights));
+        for (uint32_t k = 0; k < parts.size(); ++k) {
+            const bool is_light = parts[k].size() == 1;
+            const LightNode node = is_light ? parts[k][0] : group_of(parts[k]);
+            groups_[at].add(node), groups_[at].is_light[k] = is_light;
+            if (is_light) places_[node.light] = {at, k};
+            const uint32_t child = is_light ? node.light : add_group(std::move(parts[k]), at, k);
+            groups_[at].child[k] = child;
+        }
+        return at;
+    }
+
+    static LightNode group_of(const Part& lights) {
+        LightNode g;
+        for (const LightNode& n : lights) g.strength += n.strength;
+        auto part = [&](const LightNode& n) {
+            return g.strength > 0 ? n.strength / g.strength : 1 / real(lights.size());
+        };
+        bool is_flat = true;  // polygons of one side with the same normal: all may be turned away
+        for (const LightNode& n : lights) {
+            const bool one_side = n.round == 0 && n.twosided == 0;
+            g.centre += n.centre * part(n);
+            if (one_side) g.axis += n.axis * part(n);
+            is_flat &= one_side && n.axis == lights[0].axis;
+        }
+        for (const LightNode& n : lights) {
+            const vec3 off = n.centre - g.centre;
+            g.spread2 += (dot(off, off) + n.spread2) * part(n);
+            g.reach = std::max(g.reach, (length(off) + n.reach) * (1 + 8 * ulp));
+        }
+        if (is_flat) g.axis = lights[0].axis;
+        g.round = is_flat ? 0 : std::max(1 - length(g.axis), 8 * ulp);
+        g.behind = g.reach;
+        return g;
+    }
+
+    // Lights of more than an eighth of the strength are members of their own.  The others are cut
+    // at medians of the longest axis.
+    static std::vector<Part> parts_of(Part lights) {
+        real sum = 0;
+        for (const LightNode& n : lights) sum += n.strength;
+        std::ranges::stable_sort(lights, std::ranges::greater{}, &LightNode::strength);
+        std::vector<Part> parts;
+        const size_t most = std::min(most_members, lights.size());
+        while (parts.size() + 1 < most && lights[parts.size()].strength > sum / most_members)
+            parts.push_back({lights[parts.size()]});
+        lights.erase(lights.begin(), lights.begin() + ptrdiff_t(parts.size()));
+        cut(std::move(lights), most - parts.size(), parts);
+        return parts;
+    }
+    static void cut(Part lights, size_t number, std::vector<Part>& parts) {
+        if (number == 1) return parts.push_back(std::move(lights));
+        Box box;
+        for (const LightNode& n : lights) box.add(n.centre);
+        const vec3 e = box.hi - box.lo;
+        const auto a = axis[e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2];
+        std::ranges::stable_sort(lights, {}, [&](const LightNode& n) { return n.centre.*a; });
+        const auto middle = lights.begin() + ptrdiff_t(lights.size() * (number / 2) / number);
+        cut({lights.begin(), middle}, number / 2, parts);
+        cut({middle, lights.end()}, number - number / 2, parts);
+    }
+};

@@ -15,11 +15,10 @@ struct Light {
     real pdf_area = 0;    // density of uniform points of a polygon, 1 / its area
     rgb L = {};           // radiance; of a point: intensity, radiance x length^2
     bool twosided = false;
-    real error = 0;  // of surface points, see Surface
-    real pick = 0;   // probability that the scene chooses this light by its power
-    // To be weighed (light_choice.h): the sphere about it; L A over that of the strongest light.
-    vec3 centre = {};
-    real reach = 0, strength = 0;
+    real error = 0;    // of surface points, see Surface
+    real pick = 0;     // probability that the scene chooses this light by its power
+    vec3 centre = {};  // a sphere about it, of radius reach
+    real reach = 0;
 
     bool is_round() const { return kind == Kind::sphere || kind == Kind::point; }
     vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
@@ -27,15 +26,24 @@ struct Light {
 
 inline Light point_light(vec3 p, rgb intensity) {
     Light l{Light::Kind::point, p};
-    l.L = intensity;
+    l.L = intensity, l.centre = p;
     return l;
 }
-inline Light sphere_light(vec3 centre, real r) { return {Light::Kind::sphere, centre, {}, {}, r}; }
+inline Light sphere_light(vec3 centre, real r) {
+    Light l{Light::Kind::sphere, centre, {}, {}, r};
+    l.centre = centre, l.reach = r;
+    return l;
+}
 inline Light triangle_light(vec3 p, vec3 u, vec3 v) {
-    return {Light::Kind::triangle, p, u, v, 0, unit(cross(u, v)), pdf_triangle_area(u, v)};
+    Light l{Light::Kind::triangle, p, u, v, 0, unit(cross(u, v)), pdf_triangle_area(u, v)};
+    const vec3 c = (u + v) / 3;
+    l.centre = p + c, l.reach = std::max({length(c), length(u - c), length(v - c)});
+    return l;
 }
 inline Light quad_light(vec3 p, vec3 u, vec3 v) {
-    return {Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
+    Light l{Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
+    l.centre = p + (u + v) / 2, l.reach = std::max(length(u + v), length(u - v)) / 2;
+    return l;
 }
 
 // Emitted power in all directions, mean of the channels (watts).  A float might overflow.

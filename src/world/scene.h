@@ -59,6 +59,7 @@ struct Scene {
     Tree bvh;                      // from here on made by prepare
     std::vector<Facing> facing;    // of each shape
     std::vector<double> pick_cdf;  // running sum of lights[i].pick
+    LightTree light_tree;
 
     const Material& material_at(uint32_t shape) const { return materials[material_of[shape]]; }
     const Material& material(const Hit& hit) const { return material_at(hit.id); }
@@ -167,55 +168,4 @@ inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t mater
 
 inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
     if (max_of(intensity) > 0) s.lights.push_back(point_light(p, intensity));
-}
-
-// Builds the BVH and the probabilities of lights, in proportion to their power.  Random numbers are
-// multiples of ulp, and so are the probabilities, exactly; an even share keeps each above 0.  A
-// power that underflows counts as the least.
-inline void prepare(Scene& s) {
-    s.bvh = Tree(s.shapes);
-    s.facing.clear();
-    for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
-    const double n = double(s.lights.size()), even = std::min(0.5, 2 * n * double(ulp));
-    constexpr double least = std::numeric_limits<double>::min();
-    double total = 0, sum = 0, before = 0;
-    for (const Light& l : s.lights) total += power(l) + least;
-    for (Light& l : s.lights) {
-        sum += power(l) + least;
-        const double cdf = even * double(s.pick_cdf.size() + 1) / n + (1 - even) * (sum / total);
-        s.pick_cdf.push_back(std::round(cdf / double(ulp)) * double(ulp));
-        l.pick = real(s.pick_cdf.back() - before);
-        before = s.pick_cdf.back();
-    }
-    prepare_weights(s.lights);
-}
-
-// A light, with probability pick.  Only if there is one.
-inline const Light& choose_light(const Scene& s, real u) {
-    auto i = std::upper_bound(s.pick_cdf.begin(), s.pick_cdf.end(), double(u));
-    return s.lights[std::min(size_t(i - s.pick_cdf.begin()), s.lights.size() - 1)];
-}
-
-// A light, and the probability that it is chosen.
-struct LightPick {
-    size_t light = 0;
-    real pick = 1;
-};
-
-// The light to sample from a surface at p with normal m on the side of the eye: one of a few by its
-// estimated contribution, one of many by its power.
-inline LightPick choose_light(const Scene& s, vec3 p, vec3 m, real u) {
-    const auto w = light_weights(s.lights, p, m);
-    if (!w) {
-        const Light& light = choose_light(s, u);
-        return {size_t(&light - s.lights.data()), light.pick};
-    }
-    size_t chosen = 0;
-    for (real sum = w->of[0]; sum <= u * w->sum; sum += w->of[chosen]) ++chosen;
-    return {chosen, w->of[chosen] / w->sum};
-}
-// The probability that it is this one.
-inline real pick_of(const Scene& s, size_t light, vec3 p, vec3 m) {
-    const auto w = light_weights(s.lights, p, m);
-    return w ? w->of[light] / w->sum : s.lights[light].pick;
 }

@@ -6,6 +6,7 @@
 #include "base/files.h"
 #include "world/grammar.h"
 #include "world/mesh.h"
+#include "world/prepare.h"
 #include "world/scene_check.h"
 
 // A scene, warnings to its author, and the files that it was read from.

@@ -89,10 +89,8 @@ Out light_sample(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
     const auto at = meet(scene, {vec3_of(x, 4), vec3_of(x, 7)});
     if (!at) throw std::runtime_error("the ray meets nothing");
-    const bool one = scene.lights.size() == 1;
-    const LightPick chosen =
-        one ? LightPick{}
-            : choose_light(scene, at->at.p, at->local.n, numbers_of_path.choice(0, Draw::pick));
+    const auto chosen =
+        scene.light_tree.choose(at->at.p, at->local.n, numbers_of_path.choice(0, Draw::pick));
     const auto s = sample_light(scene.lights[chosen.light], at->at.p,
                                 numbers_of_path.get2(dimension(0, Draw::light_x)));
     if (!s) return Out(22);
@@ -129,7 +127,8 @@ Out likelihood(In x) {
     const Segment s = segment(x.subspan(3));
     const Vertex y = on_a_light(x.subspan(20));
     const size_t light = size_t(scene.light_of[y.hit.id]);
-    return row(pick_of(scene, light, s.from, s.n), pdf_light(scene.lights[light], s.from, y.at));
+    return row(scene.light_tree.pick_of(light, s.from, s.n),
+               pdf_light(scene.lights[light], s.from, y.at));
 }
 
 Out glass(In x) {

@@ -286,7 +286,7 @@ TEST_CASE("a point light: I cos / d^2 at every vertex that sees it, exactly 0 at
     add_quad(s, {0.5, 1, 0.5}, {0, 0, 1}, {1, 0, 0}, 0);  // a shelf, seen from above
     const vec3 p{1, 1.5, 1};
     add_point_light(s, p, {3, 1, 0});
-    s.pick_cdf.clear(), prepare(s);
+    prepare(s);
     const Meshed m(s, 0.5);
     for (Shooter shooter : shooters) {
         Shooting shooting = shooting_in(m, shooter);

@@ -12,7 +12,7 @@ namespace {
 Scene with_light(const Light& l) {
     Scene s;
     s.lights = {l};
-    prepare_weights(s.lights);
+    prepare(s);
     return s;
 }
 

@@ -1,6 +1,6 @@
 // whole/extremes_light_test.cpp  near, far, faint, clipped and edge-on lights
 #include "whole/extremes.h"
-#include "world/scene.h"
+#include "world/prepare.h"
 
 namespace {
 

@@ -1,10 +1,10 @@
 // world/light_choice_test.cpp  the choice of one light for a sample
-#include "world/light_choice.h"
+#include "world/prepare.h"
 
 #include "base/approx.h"
 #include "oracle/expect.h"
 #include "world/geometry.h"
-#include "world/scene.h"
+#include "world/scene_file.h"
 
 namespace {
 
@@ -40,54 +40,74 @@ real sends(const Light& l, vec3 p, vec3 m, vec2 u) {
     return s ? std::max(real(0), dot(s->wi, m)) * mean_of(s->L) / s->pdf : 0;
 }
 
+std::vector<Light> lights_of(Dice& dice, size_t n, real r) {
+    std::vector<Light> lights;
+    for (size_t i = 0; i < n; ++i) {
+        const vec3 move = dice.direction(dice(0, 3));
+        Light l = light_of(dice, r);
+        l.p += move, l.centre += move;
+        lights.push_back(l);
+    }
+    return lights;
+}
+
 }  // namespace
 
-TEST_CASE("one of a few lights is chosen as often as is said") {
+TEST_CASE("one of many lights is chosen as often as is said") {
     Dice dice;
-    for (size_t n : {2u, 4u, 5u, 6u})
+    for (size_t n : {2u, 5u, 8u, 9u, 30u})
         for (int place = 0; place < 4; ++place) {
-            std::vector<Light> lights;
-            for (size_t i = 0; i < n; ++i) lights.push_back(light_of(dice, real(0.5)));
-            const Scene s = scene_of(lights);
+            const Scene s = scene_of(lights_of(dice, n, real(0.5)));
+            const LightTree& tree = s.light_tree;
             const vec3 p = dice.direction(dice(0, 3)), m = dice.direction();
-            if (!light_weights(s.lights, p, m)) continue;
             for (real u : {real(0), dice(0, 1), below_one}) {
-                const LightPick chosen = choose_light(s, p, m, u);
+                const auto chosen = tree.choose(p, m, u);
                 REQUIRE(chosen.light < n);
                 CHECK(chosen.pick > 0);
-                CHECK(chosen.pick == pick_of(s, chosen.light, p, m));
+                CHECK(std::abs(chosen.pick / tree.pick_of(chosen.light, p, m) - 1) < 4 * ulp);
             }
             oracle::Random random(seed_here());
             EXPECT(oracle::expect_choice(
-                       random, [&](real u) { return choose_light(s, p, m, u).light; },
-                       [&](int i) { return pick_of(s, size_t(i), p, m); }, n),
+                       random, [&](real u) { return tree.choose(p, m, u).light; },
+                       [&](int i) { return tree.pick_of(size_t(i), p, m); }, n),
                    0.05);
         }
 }
 
-TEST_CASE("a light weighs nothing only where it sends nothing") {
+TEST_CASE("one light is chosen always") {
+    const Scene s = scene_of({shining(sphere_light({0, 5, 0}, 1), 1)});
+    CHECK(s.light_tree.choose({}, {0, 1, 0}, real(0.5)).light == 0);
+    CHECK(s.light_tree.choose({}, {0, 1, 0}, real(0.5)).pick == 1);
+    CHECK(s.light_tree.pick_of(0, {}, {0, -1, 0}) == 1);
+}
+
+TEST_CASE("a light is never chosen only where it sends nothing") {
     Dice dice;
     int sent = 0, lost = 0, below = 0, behind = 0, wasted = 0, beyond = 0;
     for (int i = 0; i < 40000; ++i) {
         const real r = dice.decades(-1, 1);
-        const std::vector<Light> lights{light_of(dice, r), shining(point_light({}, {}), 1)};
+        std::vector<Light> lights{light_of(dice, r)};
+        // Others, of which one always contributes; with seven or more there are groups of groups.
+        const size_t others = i % 4 ? 1 : 12;
         const vec3 p = dice.direction(dice(0, 4)), m = dice.direction();
-        const Light first = scene_of(lights).lights[0];
-        const real weighs = light_weight(first, p, m);
+        lights.push_back(shining(point_light(p + m, {}), 1));
+        while (lights.size() <= others) lights.push_back(light_of(dice, r));
+        const Light& first = lights[0];
+        const real pick = scene_of(lights).light_tree.pick_of(0, p, m);
         for (const vec3 corner : {first.p, first.p + first.u, first.p + first.v})
             beyond += length(corner - first.centre) > first.reach * (1 + 8 * ulp);
         real E = 0;
-        for (int k = 0; k < 8; ++k) E += sends(lights[0], p, m, dice.pair());
+        for (int k = 0; k < 8; ++k) E += sends(first, p, m, dice.pair());
         // The bound is the rounding error of a cosine near 0.
-        const bool sends_some = E > 64 * ulp * power(lights[0]);
+        const bool sends_some = E > 64 * ulp * power(first);
         sent += sends_some;
-        lost += sends_some && !(weighs > 0);
+        lost += sends_some && !(pick > 0);
         // The whole light lies below the horizon, or it faces away.
         const bool is_below = dot(m, first.centre - p) < -first.reach - 64 * ulp;
-        const bool is_behind = lights[0].n != vec3{} && !lights[0].twosided &&
-                               dot(lights[0].n, p - lights[0].p) < -64 * ulp * r;
+        const bool is_behind =
+            first.n != vec3{} && !first.twosided && dot(first.n, p - first.p) < -64 * ulp * r;
         below += is_below, behind += is_behind;
-        wasted += (is_below || is_behind) && weighs > 0;
+        wasted += others == 1 && (is_below || is_behind) && pick > 0;
     }
     CHECK(sent > 10000);
     CHECK(lost == 0);
@@ -97,7 +117,22 @@ TEST_CASE("a light weighs nothing only where it sends nothing") {
     CHECK(beyond == 0);
 }
 
-TEST_CASE("far away, lights weigh what they send") {
+TEST_CASE("a wall of lamps of one side is not chosen from behind") {
+    std::vector<Light> lights;
+    for (int i = 0; i < 40; ++i)
+        lights.push_back(shining(quad_light({real(i), 0, 5}, {0, 1, 0}, {1, 0, 0}), 1));  // -z
+    for (int i = 0; i < 40; ++i) lights.push_back(shining(point_light({real(i), 0, 200}, {}), 1));
+    const LightTree tree = scene_of(lights).light_tree;
+    auto of_wall = [&](vec3 p, vec3 m) {
+        real sum = 0;
+        for (size_t i = 0; i < 40; ++i) sum += tree.pick_of(i, p, m);
+        return sum;
+    };
+    CHECK(of_wall({20, -3, 20}, {0, 1, 0}) == 0);
+    CHECK(of_wall({20, -3, 3}, {0, 1, 0}) > real(0.8));
+}
+
+TEST_CASE("far away, lights are chosen by what they send, but for the even part") {
     Dice dice;
     constexpr real far = single ? 300 : 3000;
     Worst worst;
@@ -110,27 +145,57 @@ TEST_CASE("far away, lights weigh what they send") {
         for (size_t k : {0u, 1u}) {
             const vec3 to = dice.direction(far * dice(1, 10));
             Light l = light_of(dice, 1);
-            l.p = p + to + l.p;
+            l.p += p + to, l.centre += p + to;
             lights.push_back(l);
             E[k] = sends(l, p, m, {real(0.5), real(0.5)});
             grazing |= dot(m, unit(to)) < real(0.25);
             grazing |= l.n != vec3{} && std::abs(dot(l.n, unit(to))) < real(0.25);
         }
         if (grazing || !(E[0] > 0 && E[1] > 0)) continue;
-        const std::vector<Light> both = scene_of(lights).lights;
-        const real w = light_weight(both[0], p, m) / light_weight(both[1], p, m);
-        worst.see(std::abs(w * (E[1] / E[0]) - 1));
+        const LightTree tree = scene_of(lights).light_tree;
+        const real a = tree.pick_of(0, p, m), b = tree.pick_of(1, p, m);
+        CHECK(std::min(a, b) >= even_part / 2);
+        if (std::min(a, b) < real(0.1)) continue;  // rounding would count
+        worst.see(std::abs((a - even_part / 2) / (b - even_part / 2) * (E[1] / E[0]) - 1));
         ++seen;
     }
-    CHECK(seen > 2000);
-    CHECK(worst.value < 32 / far);  // cosines are 1/4 or more; radii of at most 1 move them
+    CHECK(seen > 1000);
+    CHECK(worst.value < 64 / far);  // cosines are 1/4 or more; radii of at most 1 move them
+}
+
+TEST_CASE("of many lamps, those that send most are chosen most") {
+    // Means of the relative variance of E_i / pick_i, over that of equal shares.  In the second
+    // scene lamps stand in rooms, a hundred metres apart.
+    Dice dice;
+    for (const bool in_rooms : {false, true}) {
+        double of_choice = 0, of_even = 0;
+        for (int i = 0; i < 40; ++i) {
+            const size_t n = 300;
+            std::vector<Light> lights = lights_of(dice, n, real(0.1));
+            for (size_t k = 0; in_rooms && k < n; ++k) {
+                const vec3 room{100 * real(k % 30), 0, 0};
+                lights[k].p += room, lights[k].centre += room;
+            }
+            const Scene s = scene_of(lights);
+            const vec3 p = dice.direction(dice(0, 3)), m = dice.direction();
+            double all = 0, of_this = 0, of_equal = 0;
+            for (size_t k = 0; k < n; ++k) {
+                const double E = double(sends(lights[k], p, m, {real(0.5), real(0.5)}));
+                all += E, of_equal += E * E * double(n);
+                if (E > 0) of_this += E * E / double(s.light_tree.pick_of(k, p, m));
+            }
+            if (all == 0) continue;
+            of_choice += of_this / (all * all) - 1, of_even += of_equal / (all * all) - 1;
+        }
+        CHECK(of_choice < of_even / 6);
+    }
 }
 
 TEST_CASE("the sphere about a polygon holds its corners, and touches two of a quad's") {
     Dice dice;
     for (int i = 0; i < 2000; ++i) {
         const Light::Kind kind = i % 2 ? Light::Kind::quad : Light::Kind::triangle;
-        const Light l = scene_of({light_of(dice, kind, 1)}).lights[0];
+        const Light l = light_of(dice, kind, 1);
         real most = 0;
         for (vec3 corner : {l.p, l.p + l.u, l.p + l.v, l.p + l.u + l.v})
             if (i % 2 || corner != l.p + l.u + l.v)
@@ -139,72 +204,99 @@ TEST_CASE("the sphere about a polygon holds its corners, and touches two of a qu
     }
 }
 
-TEST_CASE("near or far, strong or faint: probabilities add up to 1") {
+TEST_CASE("near or far, strong or faint, few or many: probabilities add up to 1") {
     Dice dice;
     constexpr real range = single ? 8 : 70;
     for (int i = 0; i < 20000; ++i) {
         std::vector<Light> lights;
-        for (int k = 0; k < 4; ++k) {
+        const size_t n = i % 16 ? 4 : 25;
+        for (size_t k = 0; k < n; ++k) {
             lights.push_back(light_of(dice, dice.decades(-range, range) / 8));
             lights.back().L = lights.back().L * dice.decades(-range / 4, range / 4);
         }
         const Scene s = scene_of(lights);
         const vec3 p = dice.below(8) ? dice.direction(dice.decades(-range, range)) : lights[0].p;
         const vec3 m = dice.direction();
-        if (!light_weights(s.lights, p, m)) continue;
         real sum = 0;
-        for (size_t k = 0; k < 4; ++k) sum += pick_of(s, k, p, m);
-        REQUIRE(std::abs(sum - 1) < 8 * ulp);
+        for (size_t k = 0; k < n; ++k) sum += s.light_tree.pick_of(k, p, m);
+        REQUIRE(std::abs(sum - 1) < 32 * ulp);
     }
     // The point coincides with a light, or the square of a distance is infinite.
     const Scene s =
         scene_of({shining(point_light({}, {}), 1), shining(sphere_light({1, 0, 0}, real(0.5)), 1)});
-    CHECK(light_weights(s.lights, {}, {1, 0, 0}));
     const real beyond = std::numeric_limits<real>::max() / 4;
-    CHECK(!light_weights(s.lights, {beyond, 0, 0}, {0, 1, 0}));
-}
-
-TEST_CASE("a scene chooses by place if lights are few and of use, otherwise by power") {
-    Scene s;
-    Material lamp;
-    lamp.Le = {1, 1, 1};
-    s.materials.push_back(lamp);
-    add_sphere(s, {0, 0, 0}, 1, 0);
-    prepare(s);
-    const vec3 p{1, 2, 3}, up{0, 1, 0}, down{0, -1, 0};
-    CHECK(pick_of(s, 0, p, up) == 1);
-    for (size_t n = 2; n <= most_weighed + 1; ++n) {
-        s.pick_cdf.clear();
-        add_sphere(s, {real(n) * 4, real(n), 0}, real(1) / real(n), 0);
-        prepare(s);
-        bool differs = false;
-        for (int i = 0; i < 100; ++i) {
-            const real u = (real(i) + real(0.5)) / 100;
-            const LightPick by_place = choose_light(s, p, down, u);
-            CHECK(by_place.pick == pick_of(s, by_place.light, p, down));
-            const Light& by_power = choose_light(s, u);
-            differs |= &s.lights[by_place.light] != &by_power;
-            // At this point all lights are below the horizon.
-            const LightPick blind = choose_light(s, {0, 99, 0}, up, u);
-            CHECK(&s.lights[blind.light] == &by_power);
-            CHECK(blind.pick == by_power.pick);
-            CHECK(blind.pick == pick_of(s, blind.light, {0, 99, 0}, up));
+    for (const vec3 p : {vec3{}, vec3{beyond, 0, 0}})
+        for (const vec3 m : {vec3{1, 0, 0}, vec3{-1, 0, 0}}) {
+            CHECK(s.light_tree.pick_of(0, p, m) + s.light_tree.pick_of(1, p, m) == 1);
+            for (real u : {real(0), below_one}) CHECK(s.light_tree.choose(p, m, u).pick > 0);
         }
-        CHECK(differs == (n <= most_weighed));
-    }
 }
 
-TEST_CASE("where what shines is so faint that sums of it are denormal, power decides") {
-    // The strong light is below the horizon.
-    Scene s =
-        scene_of({shining(sphere_light({0, -5, 0}, 1), 1), shining(sphere_light({0, 5, 0}, 1), 1)});
-    s.lights[1].strength = std::numeric_limits<real>::denorm_min() * 100;
-    CHECK_FALSE(light_weights(s.lights, {}, {0, 1, 0}));
-    s.lights[1].strength = std::numeric_limits<real>::min() * 1000;
-    REQUIRE(light_weights(s.lights, {}, {0, 1, 0}));
-    for (real u : {real(0), below_one}) CHECK(choose_light(s, {}, {0, 1, 0}, u).light == 1);
-    // A light keeps a weight even where its share of the sum underflows.
-    s = scene_of({shining(sphere_light({0, -5, 0}, 1), real(1e30)),
-                  shining(point_light({0, real(0.5), 0}, {}), std::numeric_limits<real>::min())});
-    for (real u : {real(0), below_one}) CHECK(choose_light(s, {}, {0, 1, 0}, u).light == 1);
+TEST_CASE("where weights are so faint that their sum is denormal, shares are even") {
+    const real faint = std::numeric_limits<real>::denorm_min() * 100;
+    const std::vector<Light> lights{shining(sphere_light({0, -5, 0}, 1), 1),  // below the horizon
+                                    shining(sphere_light({0, 5, 0}, 1), 1),
+                                    shining(sphere_light({9, 5, 0}, 1), 1)};
+    const LightTree dark(lights, {1, faint, faint / 4});
+    CHECK(dark.pick_of(0, {}, {0, 1, 0}) == 0);
+    CHECK(dark.pick_of(1, {}, {0, 1, 0}) == real(0.5));
+    CHECK(dark.pick_of(2, {}, {0, 1, 0}) == real(0.5));
+    const LightTree dim(lights, {1, std::numeric_limits<real>::min() * 4000,
+                                 std::numeric_limits<real>::min() * 1000});
+    CHECK(dim.pick_of(1, {}, {0, 1, 0}) > real(0.8));
+    // One that shines alone is chosen, however faint.
+    const Scene s = scene_of({shining(sphere_light({0, -5, 0}, 1), real(1e30)),
+                              shining(point_light({0, real(0.5), 0}, {}), faint)});
+    for (real u : {real(0), below_one}) CHECK(s.light_tree.choose({}, {0, 1, 0}, u).light == 1);
+}
+
+TEST_CASE("light that arrives: the square root of the visible part, if surfaces are many") {
+    Arrival a;
+    for (int i = 0; i < 15; ++i) a.add(2, false);
+    CHECK(a.factor() == 1);
+    a.add(2, false);
+    CHECK(a.factor() == 0);
+    for (int i = 0; i < 4; ++i) a.add(4, true);  // 16 of 48
+    CHECK(a.factor() == approx(std::sqrt(1. / 3)));
+    CHECK(Arrival{}.factor() == 1);
+}
+
+TEST_CASE("a sun that reaches nothing of a room leaves the samples to its candle") {
+    auto room = [](const char* more) {
+        return parse_scene(
+                   std::string("camera 0 1 1.9  0 1 0  60\ndiffuse wall .7 .7 .7\n"
+                               "light flame 300 200 90\nlight sun 5e6 5e6 5e6\n"
+                               "box 4 3 4  0  -2 0 -2  wall\nsphere 300 600 500  4  sun\n") +
+                       more,
+                   "room")
+            .scene;
+    };
+    const vec3 floor{1, 0, 1}, up{0, 1, 0};
+    const Scene one = room("sphere -.5 1 -.5  .05  flame\n");
+    CHECK(one.light_tree.pick_of(0, floor, up) == approx(double(even_part) / 2));
+    CHECK(one.light_tree.pick_of(1, floor, up) == approx(1 - double(even_part) / 2));
+    std::string candles;
+    for (int i = 0; i < 30; ++i)
+        candles += oracle::say("sphere -1 1 %.1f  .05  flame\n", -1.5 + 0.1 * i);
+    CHECK(room(candles.c_str()).light_tree.pick_of(0, floor, up) <= even_part);
+    // A size in the scene does not change the choice, nor does the one that is asked for.
+    const Scene wide =
+        room("size 300 20\nsphere -.5 1 -.5  .05  flame\nsphere 1 2 1  .05  flame\n");
+    const Scene tall =
+        room("size 20 300\nsphere -.5 1 -.5  .05  flame\nsphere 1 2 1  .05  flame\n");
+    for (size_t i = 0; i < 3; ++i)
+        CHECK(wide.light_tree.pick_of(i, floor, up) == tall.light_tree.pick_of(i, floor, up));
+}
+
+TEST_CASE("mirrors show the surfaces that judge what arrives") {
+    // The eye sees a mirror, which shows a floor; a lid hides the second lamp from it.
+    const Scene s =
+        parse_scene(
+            "camera 0 1 0  0 .6 -1  40\ndiffuse wall .7 .7 .7\nmirror m .9 .9 .9\n"
+            "light a 9 9 9\nquad -3 -3 -2  6 0 0  0 8 0  m\n"
+            "quad -9 0 1  0 0 18  18 0 0  wall\nquad -99 6 -99  198 0 0  0 0 198  wall\n"
+            "sphere 0 4 5  .2  a\nsphere 0 8 5  .2  a\n",
+            "mirror")
+            .scene;
+    CHECK(s.light_tree.pick_of(0, {0, 0, 3}, {0, 1, 0}) == approx(1 - double(even_part) / 2));
 }
