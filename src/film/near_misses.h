@@ -5,7 +5,11 @@
 
 #include "base/stats.h"
 
-inline constexpr size_t growths = 11;  // a light is scaled by s = 1, 2, 4 ... 1024
+inline constexpr size_t growths = 11;  // a light has s^2 times its area, for s = 1, 2, 4 ... 1024
+
+// How a path came to a light.  What it met by one kind says nothing of another.
+enum class Way { mirrors, by_mirror, by_lobe, count };
+inline constexpr size_t ways = size_t(Way::count);
 
 // What a film knows of a group of lights: how the camera sees them, and near misses (src/unseen).
 struct NearMisses {
@@ -15,15 +19,16 @@ struct NearMisses {
     double area = 0;  // visible area in pixels
     double a = 0;     // sum over pixels of a (1 - a), for the covered part a of a pixel
 
-    // Sums of c and c^2 at each growth, of paths by mirrors and glass only, and of other paths.
-    std::array<std::array<std::array<FixedPoint, 2>, growths>, 2> sum{};
+    // Sums of c and c^2 at each growth, of paths of each way.
+    std::array<std::array<std::array<FixedPoint, 2>, growths>, ways> sum{};
 
     // Adds sums of more samples.
     void add(const NearMisses& other) {
-        for (size_t kind = 0; kind < 2; ++kind)
+        for (size_t way = 0; way < ways; ++way)
             for (size_t k = 0; k < growths; ++k)
                 for (size_t power = 0; power < 2; ++power)
-                    sum[kind][k][power] += other.sum[kind][k][power];
+                    sum[way][k][power] += other.sum[way][k][power];
     }
 };
-static_assert(sizeof(NearMisses) == 32 + 4 * growths * sizeof(FixedPoint), "a file holds no gaps");
+static_assert(sizeof(NearMisses) == 32 + 2 * ways * growths * sizeof(FixedPoint),
+              "a file holds no gaps");

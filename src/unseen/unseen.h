@@ -1,7 +1,7 @@
 // unseen/unseen.h  2  estimates of light that no sample has met, from near misses of small lights
 //
-// The variance of samples does not contain light that no sample has met.  A light scaled s times
-// about its centre and 1/s^2 as bright sends about the same light, but BSDF samples meet it s^2
+// The variance of samples does not contain light that no sample has met.  A light of s^2
+// times its area and 1/s^2 its radiance sends about the same light, but BSDF samples meet it s^2
 // times as often: near misses reveal rare light before a sample meets it.
 #pragma once
 #include <map>
@@ -80,22 +80,39 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows) {
 
 // ---- Hits and near misses -----------------------------------------------------------------------
 
-// Bit k is set if the ray would meet the light scaled 2^k times, before its end and from the bright
-// side.  A sphere counts as a disc about its centre that faces the ray.
+inline vec3 longest_edge(const Light& l) {
+    const vec3 third = l.kind == Light::Kind::triangle ? l.u - l.v : vec3{};
+    const vec3 e = length(l.u) >= length(l.v) ? l.u : l.v;
+    return length(third) > length(e) ? third : e;
+}
+
+// Bit k is set if the ray would meet the light grown to 4^k times its area, from the bright side. A
+// sphere counts as a disc about its centre that faces the ray, a polygon as a rectangle of its area
+// along its longest edge.  This first grows in width, until it is a square: a thread is small in
+// one direction only.  Lamps stand recessed: the ray may end before the light by half the side of a
+// square of its area.
 inline uint32_t growths_met(const Light& l, const Ray& ray) {
+    if (l.kind == Light::Kind::point) return 0;
     const vec3 f = l.centre - ray.o;
     const bool is_ball = l.kind == Light::Kind::sphere;
     const real cosine = is_ball ? -1 : dot(l.n, ray.d);
     const real t = is_ball ? dot(f, ray.d) : dot(l.n, f) / cosine;
-    if (l.kind == Light::Kind::point || !(t > 0 && t < ray.tmax)) return 0;
+    const real recess = is_ball ? l.r : std::sqrt(1 / l.pdf_area) / 2;
+    if (!(t > 0 && t < ray.tmax + recess)) return 0;
     if (!(cosine < 0 || (l.twosided && cosine > 0))) return 0;
-    const vec3 y = t * ray.d - f, N = cross(l.u, l.v);
-    // The growth that is needed.  A polygon is scaled about its centre.
-    const real a = dot(cross(y, l.v), N) / dot(N, N), b = dot(cross(l.u, y), N) / dot(N, N);
-    const real least = is_ball                       ? length(y) / l.r
-                       : l.kind == Light::Kind::quad ? 2 * std::max(std::abs(a), std::abs(b))
-                                                     : 3 * std::max({-a, -b, a + b});
-    const real most = length(f) / l.reach;  // the light is then as large as its distance
+    const vec3 y = t * ray.d - f;
+    const real far = length(f) / l.reach;      // 1: the light is as large as its distance
+    real least = length(y) / l.r, most = far;  // growths
+    if (!is_ball) {
+        const vec3 e = longest_edge(l);
+        const real edge = length(e), slender = sqr(edge) * l.pdf_area;  // length over width
+        const real along = 2 * std::abs(dot(y, e)) / sqr(edge);
+        const real across = 2 * std::abs(dot(y, cross(l.n, e))) * l.pdf_area;
+        least = along <= 1 && across <= slender
+                    ? std::sqrt(across)
+                    : std::sqrt(slender) * std::max(along, across / slender);
+        most = std::sqrt(slender) * (far < 1 ? std::sqrt(far) : far);
+    }
     uint32_t met = 0;
     for (size_t k = 0; k < growths; ++k)
         met |= uint32_t(real(1 << k) >= least && real(1 << k) < most) << k;
@@ -150,7 +167,10 @@ private:
         const double c = mean_square(s.beta * scene.lights[light].L) / groups[g].L2 * w * w;
         if (!(c > 0)) return;
         const FixedPoint c1 = fixed_point(c), c2 = fixed_point(c * c);
-        auto& sums = tally.near[g].sum[is_specular ? 0 : 1];
+        const Way way = is_specular         ? Way::mirrors
+                        : std::isinf(s.pdf) ? Way::by_mirror
+                                            : Way::by_lobe;
+        auto& sums = tally.near[g].sum[size_t(way)];
         for (size_t k = 0; k < growths; ++k)
             if (near >> k & 1) sums[k][0] += c1, sums[k][1] += c2;
     }
@@ -172,10 +192,10 @@ public:
             lights_[g].line = double(group.line);
             lights_[g].met += group.area * n;
             lights_[g].variance += v * group.a / n;
-            for (size_t kind = 0; kind < 2; ++kind)
+            for (size_t way = 0; way < ways; ++way)
                 for (size_t k = 0; k < growths; ++k) {
-                    const auto& [c, c2] = group.sum[kind][k];
-                    NearSum& of = lights_[g].near[kind][k];
+                    const auto& [c, c2] = group.sum[way][k];
+                    NearSum& of = lights_[g].near[way][k];
                     of.c += value_of(c), of.c2 += value_of(c2);
                     of.variance += v * value_of(c) / (t * t);
                 }
@@ -186,6 +206,8 @@ public:
     // square of the estimate; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
         if (is_pilot_) return "too few samples";
+        constexpr const char* words[ways] = {" in mirrors or glass", " by way of mirrors or glass",
+                                             " by way of gloss"};
         double unseen = 0, most = 0;  // variances, summed over pixels
         std::string why;
         auto consider = [&](double variance, double line, const char* where, double met) {
@@ -197,16 +219,13 @@ public:
         };
         for (const OneLight& l : lights_) {
             if (l.met < 10) consider(l.variance, l.line, ", smaller than a pixel,", l.met);
-            for (size_t kind = 0; kind < 2; ++kind) {
-                const auto& s = l.near[kind];
+            for (size_t way = 0; way < ways; ++way) {
+                const auto& s = l.near[way];
                 double greatest = 0;
                 for (size_t k = 0; k < growths; ++k)
                     if (s[k].count() >= 5)
                         greatest = std::max(greatest, std::ldexp(s[k].variance, -2 * int(k)));
-                if (s[0].count() < 10)
-                    consider(greatest, l.line,
-                             kind == 0 ? " in mirrors or glass" : " by way of mirrors or glass",
-                             s[0].count());
+                if (s[0].count() < 10) consider(greatest, l.line, words[way], s[0].count());
             }
         }
         if (!(unseen > 3 * d2 * pixels)) return "";
@@ -221,7 +240,7 @@ private:
     };
     struct OneLight {
         double line = 0, met = 0, variance = 0;  // met: expected number of camera rays
-        std::array<std::array<NearSum, growths>, 2> near;
+        std::array<std::array<NearSum, growths>, ways> near;
     };
     std::vector<OneLight> lights_;
     bool is_pilot_ = false;
