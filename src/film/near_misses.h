@@ -7,7 +7,7 @@
 
 inline constexpr size_t growths = 11;  // a light has s^2 times its area, for s = 1, 2, 4 ... 1024
 
-// How a path came to a light.  What it met by one kind says nothing of another.
+// How a path came to a light.  What it met by one way says nothing of another.
 enum class Way { mirrors, by_mirror, by_lobe, count };
 inline constexpr size_t ways = size_t(Way::count);
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "path/sampler.h"
-#include "world/prepare.h"
+#include "world/scene.h"
 
 // The estimator of direct light.
 enum class LightMode {

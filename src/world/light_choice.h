@@ -14,7 +14,7 @@ inline constexpr size_t most_members = 8;
 
 // An estimate may be wrong by any factor, because it does not know what hides a light.  So a part
 // of all choices goes to all members alike that can contribute (a defensive mixture, Hesterberg
-// 1995): no light starves.
+// 1995): no member starves.
 inline constexpr real even_part = real(0.0625);
 
 // Seen from afar, a light of radiance L sends it L A cos_l cos_s / d^2: A is its area, or the disc
@@ -33,7 +33,7 @@ struct LightNode {
     real spread2 = 0;   // mean square of the distance from the centre
     vec3 axis = {};     // normal of a polygon; of a group: the mean by strength
     real round = 1;     // the part that shines in all directions
-    real behind = 0;    // a light may be so far behind the plane through the centre, or before it
+    real behind = 0;    // a surface is lit so far behind the plane through the centre
     real twosided = 0;  // 1: it shines against its axis, too
     real strength = 0;
     uint32_t light = 0;
@@ -69,8 +69,8 @@ struct LightGroup {
 };
 
 // Estimated contributions of members to a surface at p with normal m on the side of the eye.  They
-// have d^2 + r^2 for d^2, so that a near light keeps a finite weight, and the height of the
-// sphere's top above the surface's plane for that of its centre.
+// have d^2 + spread2 for d^2, so that a near light keeps a finite weight, unless it is a point, and
+// the height of the sphere's top above the surface's plane for that of its centre.
 struct LightWeights {
     LightGroup::Row<real> of;
     LightGroup::Row<real> can;  // 0: all of it is below the horizon or turned away; else 1
@@ -84,7 +84,9 @@ inline LightWeights weights(const LightGroup& g, vec3 p, vec3 m) {
         const real top = height < d ? height : d;
         const real front = g.behind[k] - (g.axis_x[k] * x + g.axis_y[k] * y + g.axis_z[k] * z);
         const real back = -front * g.twosided[k];
-        const real facing = (front > back ? front : back) + g.round[k] * d;
+        // At most d, though a group may reach far beyond its distance.
+        const real nearer = front > back ? front : back;
+        const real facing = (nearer < d ? nearer : d) + g.round[k] * d;
         w.can[k] = top > 0 && facing > 0 ? real(1) : real(0);
         w.of[k] = w.can[k] * g.strength[k] * (top * per_d2) * (facing * per_d2);
     }
