@@ -5,6 +5,7 @@
 
 #include "course/answers.h"
 #include "path/pathtracer.h"
+#include "world/prepare.h"
 
 using course::In, course::Out, course::row, course::vec3_of;
 
