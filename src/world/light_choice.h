@@ -133,7 +133,7 @@ public:
     // For a surface at p with normal m on the side of the eye, by u in [0,1).
     Choice choose(vec3 p, vec3 m, real u) const {
         Choice c;
-        for (size_t at = 0; at < groups_.size(); at = c.light) {
+        for (size_t at = 0; at < groups_.size(); at = c.light) {  // a group, until it is a light
             const LightGroup& g = groups_[at];
             const LightGroup::Row<real> share = shares(g, p, m);
             size_t k = 0;  // the last member whose part of [0,1) begins at u or before

@@ -14,16 +14,29 @@ struct Arrival {
     }
     // Where a light is visible with probability v, the variance is least if its share is in
     // proportion to w sqrt(v), for its contribution has the mean square v w^2.  Fewer than 16
-    // surfaces (Kish 1965) say nothing.
+    // surfaces (Kish 1965) say nothing: what an eighth of them sees, all of so few may miss, with
+    // a probability of (7/8)^16 = 12 %.
     double factor() const { return all * all / squares >= 16 ? std::sqrt(visible / all) : 1; }
 };
 
-// Adds the contributions of all lights to a surface, with its material and the direction wo from
-// which it is seen.  beta: throughput from there to the eye.
-inline void add_arrivals(std::vector<Arrival>& arrivals, const Scene& s, const Surface& x,
-                         const Frame& local, const Material& m, vec3 wo, double beta,
-                         uint64_t key) {
-    s.light_tree.visit_weights(x.p, local.n, [&](size_t i, real weight) {
+// Strengths are those of the lights, times the factor of what arrives.
+inline LightTree light_tree_of(const std::vector<Light>& lights,
+                               const std::vector<Arrival>& arrivals) {
+    std::vector<double> of(lights.size());
+    double most = std::numeric_limits<double>::min();
+    for (size_t i = 0; i < lights.size(); ++i)
+        most = std::max(most, of[i] = strength(lights[i]) * arrivals[i].factor());
+    std::vector<real> strengths;
+    for (double x : of) strengths.push_back(real(x / most));
+    return {lights, strengths};
+}
+
+// Adds the contributions of all lights of a tree to a surface, with its material and the direction
+// wo from which it is seen.  beta: throughput from there to the eye.
+inline void add_arrivals(std::vector<Arrival>& arrivals, const Scene& s, const LightTree& tree,
+                         const Surface& x, const Frame& local, const Material& m, vec3 wo,
+                         double beta, uint64_t key) {
+    tree.visit_weights(x.p, local.n, [&](size_t i, real weight) {
         const vec2 u{to_unit(hash(key, 2 * i)), to_unit(hash(key, 2 * i + 1))};
         const auto y = sample_light(s.lights[i], x.p, u);
         const real f = y ? max_of(eval(m, wo, local.to_local(y->wi))) : 0;
@@ -32,14 +45,16 @@ inline void add_arrivals(std::vector<Arrival>& arrivals, const Scene& s, const S
     });
 }
 
-// Of each light, along 512 paths from the eye, of three surfaces that are no mirrors or glass;
-// fewer in scenes of more than 170 lights, none where the tests could not suffice for a factor.  A
-// function of the scene alone, which samples of the picture do not influence: choices by it are
-// unbiased.
+// Of each light, along 512 paths from the eye (fewer gave a sun too few surfaces that it could
+// shine on), of three surfaces that are no mirrors or glass; fewer in scenes of more than 170
+// lights, none where the tests could not suffice for a factor.  A function of the scene alone,
+// which samples of the picture do not influence: choices by it are unbiased.
 inline std::vector<Arrival> arrivals_of(const Scene& s) {
-    constexpr uint64_t paths = 512, most_draws = 64, most_tests = 1 << 18;
+    constexpr uint64_t paths = 512, most_draws = 64;
+    constexpr uint64_t most_tests = 1 << 18;  // of visibility: a tenth of a second or so
     std::vector<Arrival> arrivals(s.lights.size());
-    if (s.lights.size() > most_tests / 16) return arrivals;
+    if (s.lights.size() < 2 || s.lights.size() > most_tests / 16) return arrivals;
+    const LightTree tree = light_tree_of(s.lights, arrivals);
     for (uint64_t path = 0, tests = 0; path < paths && tests < most_tests; ++path) {
         uint64_t draws = 0;
         auto u = [&] { return to_unit(hash(path, draws++)); };
@@ -59,7 +74,7 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
             const Frame local = frame(outside ? x.n : -x.n);
             const vec3 wo = local.to_local(-ray.d);
             if (!m.is_delta()) {
-                add_arrivals(arrivals, s, x, local, m, wo, double(max_of(beta)),
+                add_arrivals(arrivals, s, tree, x, local, m, wo, double(max_of(beta)),
                              hash(path, most_draws + draws));
                 ++surfaces, tests += s.lights.size();
             }
@@ -93,25 +108,12 @@ inline void prepare_powers(Scene& s) {
     }
 }
 
-// Strengths are those of the lights, times the factor of what arrives.
-inline LightTree light_tree_of(const std::vector<Light>& lights,
-                               const std::vector<Arrival>& arrivals) {
-    std::vector<double> of(lights.size());
-    double most = std::numeric_limits<double>::min();
-    for (size_t i = 0; i < lights.size(); ++i)
-        most = std::max(most, of[i] = strength(lights[i]) * arrivals[i].factor());
-    std::vector<real> strengths;
-    for (double x : of) strengths.push_back(real(x / most));
-    return {lights, strengths};
-}
-
 inline void prepare(Scene& s) {
     s.bvh = Tree(s.shapes);
     s.facing.clear();
     for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
     prepare_powers(s);
-    s.light_tree = light_tree_of(s.lights, std::vector<Arrival>(s.lights.size()));
-    if (s.lights.size() > 1) s.light_tree = light_tree_of(s.lights, arrivals_of(s));
+    s.light_tree = light_tree_of(s.lights, arrivals_of(s));
 }
 
 // A light, with probability pick by its power.  Only if there is one.

@@ -308,3 +308,47 @@ TEST_CASE("mirrors show the surfaces that judge what arrives") {
             .scene;
     CHECK(s.light_tree.pick_of(0, {0, 0, 3}, {0, 1, 0}) == approx(1 - double(even_part) / 2));
 }
+
+TEST_CASE("what arrives is looked at for few lights and many, and always the same") {
+    // Half of the lamps hang above a lid; a box of mirrors shows nothing else to some paths.
+    auto hall = [](int n) {
+        std::string s =
+            "camera 0 1 8  0 1 0  60\ndiffuse wall .7 .7 .7\nmirror m .9 .9 .9\n"
+            "light a 9 9 9\nquad -50 0 -50  0 0 100  100 0 0  wall\n"
+            "quad -99 6 -99  198 0 0  0 0 198  wall\nbox 1 1 1  20  -1 .01 0  m\n";
+        for (int i = 0; i < n; ++i)
+            s += oracle::say("sphere %.2f %d %.2f  .1  a\n", i % 20 * 0.4 - 4, i % 2 ? 8 : 4,
+                             i / 20 * 0.4 - 4);
+        return parse_scene(s, "hall").scene;
+    };
+    for (const int n : {20, 200}) {
+        Scene s = hall(n);
+        const std::vector<Arrival> arrivals = arrivals_of(s);
+        int above = 0, below = 0;
+        for (size_t i = 0; i < s.lights.size(); ++i)
+            (i % 2 ? above : below) += arrivals[i].factor() > real(0.5);
+        CHECK(above == 0);
+        CHECK(below == n / 2);
+        std::vector<real> picks;
+        for (size_t i = 0; i < s.lights.size(); ++i)
+            picks.push_back(s.light_tree.pick_of(i, {0, 0, 1}, {0, 1, 0}));
+        prepare(s);
+        for (size_t i = 0; i < s.lights.size(); ++i)
+            CHECK(picks[i] == s.light_tree.pick_of(i, {0, 0, 1}, {0, 1, 0}));
+    }
+    // So many that there is not even a look: all strengths are as they were.
+    std::vector<Light> many(20000, shining(point_light({0, 3, 0}, {}), 1));
+    Scene s = hall(20);
+    s.lights = many;
+    for (const Arrival& a : arrivals_of(s)) REQUIRE(a.all == 0);
+}
+
+TEST_CASE("paths in a box of mirrors end") {
+    const Scene s = parse_scene(
+                        "camera 0 1 0  0 1 -1  60\nmirror m 1 1 1\nlight a 9 9 9\n"
+                        "box 4 3 4  0  -2 0 -2  m\n"
+                        "sphere 0 5 0  .1  a\nsphere 1 5 0  .1  a\n",
+                        "mirrors")
+                        .scene;
+    for (const Arrival& a : arrivals_of(s)) CHECK(a.all == 0);
+}
