@@ -6,6 +6,7 @@
 #include "film/fill.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
+#include "world/prepare.h"
 
 namespace {
 
