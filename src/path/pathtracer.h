@@ -110,7 +110,8 @@ struct Segment {
     real pdf = infinity;
     rgb beta{1, 1, 1};
     int k = 0;
-    vec3 n = {};  // normal of the surface at `from`, on the side of the ray
+    vec3 n = {};    // normal of the surface at `from`, on the side of the ray
+    real eta2 = 1;  // factor of beta by refraction, which the path gives back where it leaves glass
 };
 
 // The events where that ray stopped.
@@ -171,16 +172,21 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     // The product of f |cos| / pdf over all bounces.
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
     // end
+    const real eta2 = s.eta2 * b.eta2;
     // exercise 3.5
-    // Arvo, Kirk 1990.  Surviving paths have a throughput of at least t.roulette.
-    if (max_of(beta) < t.roulette) {
-        const real survival = max_of(beta) / t.roulette;
+    // Arvo, Kirk 1990.  Surviving paths have a throughput of at least t.roulette, without eta2:
+    // what enters a diamond is as bright when it has left it (Pharr, Jakob, Humphreys 2023,
+    // sec. 14.5.4).
+    const real threshold = t.roulette * eta2;
+    if (max_of(beta) < threshold) {
+        const real survival = max_of(beta) / threshold;
         const real u_survival = sampler.get(dimension(s.k, Draw::roulette));
         if (ends(u_survival >= survival, "Russian roulette")) return e;
         beta /= survival;
     }
     // end
-    e.next = {spawn(x.at, e.wi), x.at.p, m.is_delta() ? infinity : b.pdf, beta, s.k + 1, x.local.n};
+    const real pdf = m.is_delta() ? infinity : b.pdf;
+    e.next = {spawn(x.at, e.wi), x.at.p, pdf, beta, s.k + 1, x.local.n, eta2};
     return e;
 }
 

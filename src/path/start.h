@@ -14,8 +14,12 @@ inline uint64_t pixel_number(const Scene& scene, const PixelSample& s) {
     return uint64_t(s.y) * uint64_t(scene.size.width) + uint64_t(s.x);
 }
 
+// The coordinate x + u of a point of pixel x.  Rounding never takes it to the next pixel.
+inline real in_pixel(int x, real u) { return std::min(real(x) + u, real(x + 1) * below_one); }
+
 inline Start start(const Scene& scene, const Pattern& pattern, const PixelSample& s) {
     const Sampler sampler(pattern, pixel_number(scene, s), s.i, s.set);
     const vec2 u = sampler.get2(film_x);
-    return {sampler, u, camera_ray(scene.camera, scene.size, real(s.x) + u.x, real(s.y) + u.y)};
+    return {sampler, u,
+            camera_ray(scene.camera, scene.size, in_pixel(s.x, u.x), in_pixel(s.y, u.y))};
 }

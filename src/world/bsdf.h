@@ -42,6 +42,7 @@ struct BsdfSample {
     vec3 wi;
     rgb f;
     real pdf = 0;
+    real eta2 = 1;  // factor of f by which refraction concentrates radiance
 };
 
 inline vec3 mirrored(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
@@ -96,7 +97,7 @@ inline BsdfSample sample_glass(const Material& m, vec3 wo, bool outside, real u)
         return {mirrored(wo), {f, f, f}, reflectance};
     }
     real f = (1 - reflectance) * sqr(eta) / cos_t;
-    return {{-eta * wo.x, -eta * wo.y, -cos_t}, {f, f, f}, 1 - reflectance};
+    return {{-eta * wo.x, -eta * wo.y, -cos_t}, {f, f, f}, 1 - reflectance, sqr(eta)};
 }
 // end
 

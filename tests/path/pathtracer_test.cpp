@@ -432,6 +432,23 @@ TEST_CASE("Russian roulette keeps paths at its threshold T: the rays that they h
     }
 }
 
+TEST_CASE("Russian roulette ends no path in clear glass, which takes nothing away") {
+    Scene scene = scene_of(
+        "size 8 4\ncamera 0 0 5  0 0 0  30\nglass diamond 2.4\nsphere 0 0 0  1  diamond\n");
+    scene.depth = 1000;
+    const Pattern pattern{SamplerKind::independent, seed_here()};
+    int within = 0;
+    for (uint64_t i = 0; i < 1000; ++i) {
+        const Start at = start(scene, pattern, {4, 2, i});
+        Li(scene, {bsdf, none, real(0.9)}, at.ray, at.sampler,
+           [&](const Segment& s, const Step& e) {
+               CHECK((!e.end || e.end != std::string_view("Russian roulette")));
+               within += e.met && s.k > 0;
+           });
+    }
+    CHECK(within > 1000);
+}
+
 TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^2))") {
     const Camera camera = look_at({3, -2, 5}, {-1, 4, 2}, 50);
     const Size size{96, 40};

@@ -1,0 +1,12 @@
+// path/start_test.cpp  the start of a path: where in the picture
+#include "path/start.h"
+
+#include "oracle/expect.h"
+
+TEST_CASE("a sample stays in its pixel, however wide the picture is") {
+    for (const int x : {0, 1, 255, 4095, 65535}) {
+        CHECK(in_pixel(x, 0) == real(x));
+        CHECK(in_pixel(x, below_one) < real(x + 1));
+        CHECK(in_pixel(x, real(0.5)) == real(x) + real(0.5));
+    }
+}
