@@ -5,6 +5,31 @@
 #include "app/views.h"
 #include "path/start.h"
 
+inline const char* in_words(Unlit why) {
+    switch (why) {
+        case Unlit::no: break;
+        case Unlit::by_technique: return "--light none";
+        case Unlit::without_lights: return "the scene has no light";
+        case Unlit::by_delta: return "the surface is a mirror or glass";
+        case Unlit::light_averted: return "the light does not emit towards the surface";
+        case Unlit::light_behind: return "the light is behind the surface";
+        case Unlit::reflects_nothing: return "the BSDF is 0";
+    }
+    return "";
+}
+
+inline const char* in_words(End why) {
+    switch (why) {
+        case End::no: break;
+        case End::leaves_scene: return "the ray leaves the scene";
+        case End::max_depth: return "the maximum number of bounces";
+        case End::in_surface: return "the ray lies in the surface";
+        case End::reflects_nothing: return "the sampled direction reflects nothing";
+        case End::roulette: return "Russian roulette";
+    }
+    return "";
+}
+
 // Prints the events of a path, one per line and with every digit: these numbers made the image.
 class PathLog {
 public:
@@ -30,7 +55,8 @@ public:
             print("  MIS weight", {e.weight});
         }
         if (e.direct.light) light(e.direct);
-        if (e.direct.none) std::fprintf(out_, "  no light sample: %s\n", e.direct.none);
+        if (e.direct.unlit != Unlit::no)
+            std::fprintf(out_, "  no light sample: %s\n", in_words(e.direct.unlit));
         if (e.scattered.pdf > 0) {
             print("  wi", e.wi);
             print("  f", e.scattered.f);
@@ -84,10 +110,10 @@ inline void replay(const Options& o, const Scene& scene, const Pattern& pattern)
     log.film(at);
     if (o.view != View::radiance)
         return log.end("a view, not radiance", view_along(scene, o.view, at, far_of(scene)));
-    const char* why = nullptr;
+    End why = End::no;
     const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
         log(s, e);
         why = e.end;
     });
-    log.end(why, L);
+    log.end(in_words(why), L);
 }

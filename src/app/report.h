@@ -92,20 +92,13 @@ inline int64_t peak_memory_bytes() {
 
 inline std::string word_of(Stop stop) {
     switch (stop) {
-        case Stop::samples:
-            return "samples";
-        case Stop::time:
-            return "time";
-        case Stop::error:
-            return "error";
-        case Stop::error_unknown:
-            return "error not known";
-        case Stop::interrupt:
-            return "interrupt";
-        case Stop::not_finite:
-            return "not finite";
-        case Stop::no:
-            return "merge";
+        case Stop::samples: return "samples";
+        case Stop::time: return "time";
+        case Stop::error: return "error";
+        case Stop::error_unknown: return "error not known";
+        case Stop::interrupt: return "interrupt";
+        case Stop::not_finite: return "not finite";
+        case Stop::no: return "merge";
     }
     return "";
 }

@@ -55,8 +55,20 @@ inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
 
 // ---- Light sampling -----------------------------------------------------------------------------
 
+// Why a vertex takes no light sample.
+enum class Unlit {
+    no,  // a shadow ray was traced
+    by_technique,
+    without_lights,
+    by_delta,         // a mirror or glass
+    light_averted,    // the light does not emit towards the surface
+    light_behind,     // the light is behind the surface
+    reflects_nothing  // the BSDF is 0
+};
+
 struct DirectLight {
     rgb L;  // radiance reflected towards wo
+    Unlit unlit = Unlit::no;
     // These are set only if a shadow ray was traced.
     const Light* light = nullptr;
     LightSample sample = {};
@@ -64,7 +76,6 @@ struct DirectLight {
     real pdf = 0;     // of the light and of the point on it (1/sr)
     real weight = 0;  // MIS weight against BSDF sampling
     bool occluded = false;
-    const char* none = nullptr;  // why no shadow ray was traced
 };
 
 // Samples one light, chosen at random.  Unbiased for the sum over all lights; with MIS, for its
@@ -72,22 +83,18 @@ struct DirectLight {
 PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
                               const Sampler& sampler, int vertex) {
     const Material& m = *x.material;
-    auto none = [](const char* why) {
-        DirectLight d;
-        d.none = why;
-        return d;
-    };
-    if (t.light == LightMode::none) return none("--light none");
-    if (scene.lights.empty()) return none("the scene has no light");
-    if (m.is_delta()) return none("the surface is a mirror or glass");
+    auto none = [](Unlit why) { return DirectLight{{}, why}; };
+    if (t.light == LightMode::none) return none(Unlit::by_technique);
+    if (scene.lights.empty()) return none(Unlit::without_lights);
+    if (m.is_delta()) return none(Unlit::by_delta);
     const real u_pick = scene.lights.size() > 1 ? sampler.choice(vertex, Draw::pick) : 0;
     const auto chosen = scene.light_tree.choose(x.at.p, x.local.n, u_pick);
     const Light& light = scene.lights[chosen.light];
     const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
-    if (!s) return none("the light does not emit towards the surface");
+    if (!s) return none(Unlit::light_averted);
     const vec3 wi = x.local.to_local(s->wi);
     const rgb f = eval(m, x.wo, wi);
-    if (max_of(f) <= 0) return none(wi.z > 0 ? "the BSDF is 0" : "the light is behind the surface");
+    if (max_of(f) <= 0) return none(wi.z > 0 ? Unlit::reflects_nothing : Unlit::light_behind);
     // exercise 3.3
     // f L cos / pdf where nothing is in the way; pdf is of the light and of the point on it.
     const real pdf_light = chosen.pick * s->pdf;
@@ -95,7 +102,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vert
     const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
     const bool occluded = scene.bvh.occluded(spawn_to(x.at, s->at));
     const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
-    return {L, &light, *s, wi.z, pdf_light, weight, occluded};
+    return {L, Unlit::no, &light, *s, wi.z, pdf_light, weight, occluded};
     // end
 }
 
@@ -114,6 +121,8 @@ struct Segment {
     real eta2 = 1;  // factor of beta by refraction, which the path gives back where it leaves glass
 };
 
+enum class End { no, leaves_scene, max_depth, in_surface, reflects_nothing, roulette };
+
 // The events where that ray stopped.
 struct Step {
     bool met = false;  // true if the ray met a surface, at x
@@ -123,7 +132,7 @@ struct Step {
     DirectLight direct = {};    // reflected towards wo
     BsdfSample scattered = {};  // its wi is local
     vec3 wi = {};               // the same in world space
-    const char* end = nullptr;  // reason for termination, or null
+    End end = End::no;          // reason for termination
     Segment next = {};          // the path so far, if it does not end here
 };
 
@@ -146,12 +155,12 @@ inline real weight_of_emission(const Scene& scene, const Technique& t, const Seg
 // One direction estimates the integral; one light sample also estimates the direct light.
 PART Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
     Step e;
-    auto ends = [&e](bool here, const char* why) {
+    auto ends = [&e](bool here, End why) {
         if (here) e.end = why;
         return here;
     };
     const auto hit = scene.bvh.closest(s.ray);
-    if (ends(!hit, "the ray leaves the scene")) return e;
+    if (ends(!hit, End::leaves_scene)) return e;
     e.met = true;
     const Vertex& x = e.x = vertex(scene, s.ray, *hit);
     const Material& m = *x.material;
@@ -159,15 +168,15 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
         e.Le = emitted(m, x.cos_o);
         e.weight = weight_of_emission(scene, t, s, x);
     }
-    if (ends(s.k == scene.depth, "the maximum number of bounces")) return e;
-    if (ends(x.cos_o == 0, "the ray lies in the surface")) return e;
+    if (ends(s.k == scene.depth, End::max_depth)) return e;
+    if (ends(x.cos_o == 0, End::in_surface)) return e;
     e.direct = direct_light(scene, t, x, sampler, s.k);
 
     const vec2 u = sampler.get2(dimension(s.k, Draw::wi_x));
     const real u_lobe = m.has_choice() ? sampler.choice(s.k, Draw::lobe) : 0;
     const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
     e.wi = x.local.to_world(b.wi);
-    if (ends(max_of(b.f) <= 0, "the sampled direction reflects nothing")) return e;
+    if (ends(max_of(b.f) <= 0, End::reflects_nothing)) return e;
     // exercise 3.2
     // The product of f |cos| / pdf over all bounces.
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
@@ -181,7 +190,7 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     if (max_of(beta) < threshold) {
         const real survival = max_of(beta) / threshold;
         const real u_survival = sampler.get(dimension(s.k, Draw::roulette));
-        if (ends(u_survival >= survival, "Russian roulette")) return e;
+        if (ends(u_survival >= survival, End::roulette)) return e;
         beta /= survival;
     }
     // end
@@ -208,7 +217,7 @@ rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sa
         L += s.beta * e.Le * e.weight;
         L += s.beta * e.direct.L;
         visit(s, e);
-        if (e.end) return L;
+        if (e.end != End::no) return L;
         s = e.next;
     }
     // end

@@ -81,8 +81,7 @@ public:
 
     real get(uint32_t dim) const {
         switch (pattern_.kind) {
-            case SamplerKind::independent:
-                return to_unit(random(dim));
+            case SamplerKind::independent: return to_unit(random(dim));
             case SamplerKind::stratified: {
                 const auto [cell, jitter] = stratum(dim);
                 return in_part(cell, grid_cells, jitter);
@@ -93,8 +92,7 @@ public:
                 return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
                 // end
             }
-            default:
-                return sobol_single(index_, random(dim));
+            default: return sobol_single(index_, random(dim));
         }
     }
 

@@ -114,13 +114,9 @@ inline double regression(const ShadowMoments& m) {
 
 inline double estimate(Estimator e, const ShadowMoments& m) {
     switch (e) {
-        case Estimator::stochastic:
-            return stochastic(m);
-        case Estimator::control:
-            return control(m);
-        case Estimator::ratio:
-            return ratio(m);
-        default:
-            return regression(m);
+        case Estimator::stochastic: return stochastic(m);
+        case Estimator::control: return control(m);
+        case Estimator::ratio: return ratio(m);
+        default: return regression(m);
     }
 }

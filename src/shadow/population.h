@@ -18,14 +18,10 @@ struct ShadowPopulation {
     double R() const { return S / W; }
     double beta(Estimator e) const {
         switch (e) {
-            case Estimator::stochastic:
-                return 0;
-            case Estimator::control:
-                return 1;
-            case Estimator::ratio:
-                return R();
-            default:
-                return (wwV - S * W) / (ww - W * W);
+            case Estimator::stochastic: return 0;
+            case Estimator::control: return 1;
+            case Estimator::ratio: return R();
+            default: return (wwV - S * W) / (ww - W * W);
         }
     }
     // N times the variance, which is that of w V - beta w; exactly 0 without noise.

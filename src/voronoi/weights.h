@@ -126,14 +126,10 @@ private:
         const uint64_t side = random.bits() >> 62;
         const double along = random.uniform() * (1 + width), away = -width * random.uniform();
         switch (side) {
-            case 0:
-                return {along, away};
-            case 1:
-                return {1 - away, along};
-            case 2:
-                return {1 - along, 1 - away};
-            default:
-                return {away, 1 - along};
+            case 0: return {along, away};
+            case 1: return {1 - away, along};
+            case 2: return {1 - along, 1 - away};
+            default: return {away, 1 - along};
         }
     }
 

@@ -62,7 +62,7 @@ Step asked_step(In x) {
 }
 Out take_step(In x) {
     const Step e = asked_step(x);
-    const bool goes_on = e.end == nullptr;
+    const bool goes_on = e.end == End::no;
     const Segment& s = e.next;
     return row(e.met, goes_on, e.weight, e.Le, e.direct.L, e.wi, e.x.local.n, s.ray.o, s.ray.d,
                s.from, s.pdf, goes_on ? s.beta : rgb{}, s.k, s.n, e.scattered.f, e.scattered.wi,
@@ -72,7 +72,7 @@ Out take_step(In x) {
 // Of the ray that goes on; 0 if none does.
 rgb throughput(In x) {
     const Step e = asked_step(x);
-    return e.end ? rgb{} : e.next.beta;
+    return e.end != End::no ? rgb{} : e.next.beta;
 }
 
 rgb found_by_aiming(In x) {

@@ -110,17 +110,10 @@ void triangles(Codes& codes) {
             const T abx = (ax + bx) / 2, aby = (ay + by) / 2, bcx = (bx + cx) / 2,
                     bcy = (by + cy) / 2, cax = (cx + ax) / 2, cay = (cy + ay) / 2;
             switch (bits >> i & 3) {
-                case 0:
-                    ax = bcx, ay = bcy, bx = cax, by = cay, cx = abx, cy = aby;
-                    break;
-                case 1:
-                    bx = abx, by = aby, cx = cax, cy = cay;
-                    break;
-                case 2:
-                    ax = abx, ay = aby, cx = bcx, cy = bcy;
-                    break;
-                default:
-                    ax = cax, ay = cay, bx = bcx, by = bcy;
+                case 0: ax = bcx, ay = bcy, bx = cax, by = cay, cx = abx, cy = aby; break;
+                case 1: bx = abx, by = aby, cx = cax, cy = cay; break;
+                case 2: ax = abx, ay = aby, cx = bcx, cy = bcy; break;
+                default: ax = cax, ay = cay, bx = bcx, by = bcy;
             }
         }
         return Pair<T>{(ax + bx + cx) / 3, (ay + by + cy) / 3};

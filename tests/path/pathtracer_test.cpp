@@ -63,7 +63,7 @@ std::vector<Decision> decisions(const Scene& scene, const Technique& t, const Pa
                                 int x) {
     std::vector<Decision> path;
     radiance(scene, t, pattern, x, 0, 5, [&](const Segment&, const Step& e) {
-        path.push_back({e.direct.light, e.direct.sample.at.p, e.wi, e.end == nullptr});
+        path.push_back({e.direct.light, e.direct.sample.at.p, e.wi, e.end == End::no});
     });
     return path;
 }
@@ -82,19 +82,15 @@ struct Purpose {
 };
 Purpose purpose(Draw what, bool glossy) {
     switch (what) {
-        case Draw::pick:
-            return {of_light | of_place, of_light};
+        case Draw::pick: return {of_light | of_place, of_light};
         case Draw::light_x:
-        case Draw::light_y:
-            return {of_place, of_place};
+        case Draw::light_y: return {of_place, of_place};
         case Draw::lobe:
             if (!glossy) return {0, 0};
             [[fallthrough]];
         case Draw::wi_x:
-        case Draw::wi_y:
-            return {of_direction | (glossy ? of_end : 0), of_direction};
-        default:
-            return glossy ? Purpose{0, 0} : Purpose{of_end, of_end};
+        case Draw::wi_y: return {of_direction | (glossy ? of_end : 0), of_direction};
+        default: return glossy ? Purpose{0, 0} : Purpose{of_end, of_end};
     }
 }
 
@@ -241,7 +237,7 @@ quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
 )");
     std::vector<real> cosines, on_the_lamp;
     radiance(scene, techniques[2], pattern, 0, 0, 0, [&](const Segment&, const Step& e) {
-        if (!e.end) cosines.push_back(e.scattered.wi.z);
+        if (e.end == End::no) cosines.push_back(e.scattered.wi.z);
         if (e.direct.light) on_the_lamp.push_back(e.direct.sample.at.p.x);
     });
     CHECK(cosines.size() == 60);
@@ -361,7 +357,7 @@ sphere 1 1 0  0.7  lamp
     for (int i = 0; i < 256; ++i)
         radiance(scene, {bsdf, mis, 0}, pattern, i % 16, i / 16, 0,
                  [&](const Segment&, const Step& e) {
-                     if (e.end) return;
+                     if (e.end != End::no) return;
                      const Surface& at = e.x.at;
                      ++steps;
                      wrong += !(dot(e.next.n, e.next.ray.d) > 0);
@@ -442,7 +438,7 @@ TEST_CASE("Russian roulette ends no path in clear glass, which takes nothing awa
         const Start at = start(scene, pattern, {4, 2, i});
         Li(scene, {bsdf, none, real(0.9)}, at.ray, at.sampler,
            [&](const Segment& s, const Step& e) {
-               CHECK((!e.end || e.end != std::string_view("Russian roulette")));
+               CHECK(e.end != End::roulette);
                within += e.met && s.k > 0;
            });
     }
