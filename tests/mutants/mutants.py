@@ -1,5 +1,6 @@
 # mutants/mutants.py  parses the mutants in this folder: mistakes that someone might make
-"""A file has the mutants of one source.  It begins with lines that apply to all of them:
+"""A file has the mutants of one folder: world.mutants those of src/world.  Lines that apply to all mutants of a source
+stand before them, the source first:
 
     file: src/world/bvh.h    the source, of src or tests, scripts among them
     test: bvh_test           the test file that must fail, without its folder
@@ -7,8 +8,8 @@
     program: penumbra        builds build/penumbra, too, for tests that run it; or several
     needs: bwrap             without this command the test skips, and the mutant is left out
 
-A mutant is a block.  Its first line has a unique name and describes the mistake.  The lines above may follow and override
-those of the file, and so may
+A mutant is a block.  Its first line has a unique name and describes the mistake.  All of these but file may follow and
+override those of the source, and so may
 
     equivalent: proof        no test can detect it, so all must pass
 
@@ -40,12 +41,12 @@ class Malformed(Exception):
 
 @dataclasses.dataclass
 class Mutant:
-    """head: {key: value in its block or in the first lines of its file}.  Its keys are attributes, too."""
-    path: str
+    """head: {key: value in its block or above those of its source}.  Its keys are attributes, too."""
     name: str
     head: dict
     old: str = ''  # right and unchanged lines
     new: str = ''  # the lines in their place
+    path: str = dataclasses.field(default='', compare=False)
 
     def __getattr__(self, key):
         if key not in ABOVE + KEYS + ('what',):
@@ -56,15 +57,19 @@ class Mutant:
 def parse(text, path=''):
     """The mutants of a file, in order."""
     shared, found = {}, []
+    head = shared  # of the source or of the mutant that the line belongs to
     for i, line in enumerate(text.split('\n'), 1):
         key, colon, value = line.partition(': ')
-        if line.startswith('@@ ') and colon:
-            found.append(Mutant(str(path), key[3:], {**shared, 'what': value.strip()}))
-        elif found and line[:1] in ('-', '+', ' '):
+        if line.startswith('file: '):
+            head = shared = {'file': value.strip()}
+        elif line.startswith('@@ ') and colon:
+            head = {**shared, 'what': value.strip()}
+            found.append(Mutant(key[3:], head, path=str(path)))
+        elif head is not shared and line[:1] in ('-', '+', ' '):
             found[-1].old += line[1:] + '\n' if line[0] != '+' else ''
             found[-1].new += line[1:] + '\n' if line[0] != '-' else ''
-        elif colon and key in (KEYS if found else ABOVE) and not (found and found[-1].old):
-            (found[-1].head if found else shared)[key] = value.strip()
+        elif colon and key in (ABOVE if head is shared else KEYS) and (head is shared or not found[-1].old):
+            head[key] = value.strip()
         elif line:
             raise Malformed(f'{path}:{i}: neither a key, a mutant nor a line of one: {line}')
     for m in found:

@@ -53,7 +53,7 @@ class House:
             self.write(name, '')
         self.write('tests/base/x_test.cpp', '#include "base/x.h"\n#include "base/y.h"\n')
         self.write('src/base/y.h', '')
-        self.write('tests/mutants/base/x.h.mutants', head + ''.join(blocks))
+        self.write('tests/mutants/base.mutants', head + ''.join(blocks))
         for name in ('run', 'bench.py', 'kept.py', 'mutants.py'):
             shutil.copy(ROOT / 'tests/mutants' / name, self.folder / 'tests/mutants')
         bench = (self.folder / 'tests/mutants/bench.py').read_text()
@@ -114,6 +114,38 @@ def test_lines_are_kept_as_they_are():
     expect(mutants.planted(m, 'x\n' + m.old) == 'x\n' + m.new)
 
 
+def test_what_stands_above_a_source_is_for_its_mutants_alone():
+    other = 'file: src/base/y.h\ntest: y_test\n'
+    first, second = mutants.parse(HEAD + 'case: one\n' + KILLED + other + block('other', 'a', 'b', 'case: two\n'))
+    expect((first.file, first.test, first.case) == ('src/base/x.h', 'x_test', 'one'), first)
+    expect((second.file, second.test, second.case) == ('src/base/y.h', 'y_test', 'two'), second)
+    [first, second] = mutants.parse(HEAD + 'case: one\n' + KILLED + other + SURVIVES)
+    expect(second.case == '', second)
+    for wrong in (HEAD + block('file', 'a', 'b', 'file: src/base/y.h\n'), HEAD + KILLED + 'case: one\n' + SURVIVES):
+        try:
+            expect(not mutants.parse(wrong), 'it is parsed')
+        except mutants.Malformed:
+            pass
+
+
+def test_mutants_that_moved_have_not_changed():
+    old = ''.join(block(f'old{i}', 'first=right', 'first=wrong') for i in range(8))
+    with House() as house:
+        def commit():
+            for words in (['init', '-q'], ['add', '-A', 'src', 'tests/base', 'tests/mutants/*mutants'],
+                          ['-c', 'user.name=x', '-c', 'user.email=x', 'commit', '-qm', 'x']):
+                subprocess.run(['git', *words], cwd=house.folder, check=True, env={
+                    **os.environ, 'GIT_AUTHOR_DATE': '1000000000 +0000', 'GIT_COMMITTER_DATE': '1000000000 +0000'})
+        house.write('tests/mutants/base.mutants', HEAD + old)
+        commit()
+        (house.folder / 'tests/mutants/base.mutants').unlink()
+        house.write('tests/mutants/whole.mutants', HEAD + old + block('changed', 'second=right', 'first=wrong'))
+        commit()
+        os.sched_setaffinity(0, list(os.sched_getaffinity(0))[:1])  # one after the other
+        status, said, last = house.run('--changed', '1')
+        expect(status == 0 and len(said) == 9 and ' changed ' in said[0], said, last)
+
+
 def test_verdicts_hold_until_something_is_touched():
     with House(KILLED, SURVIVES) as house:
         status, said, last = house.run()
@@ -123,7 +155,7 @@ def test_verdicts_hold_until_something_is_touched():
         expect(status == 1 and 'SURVIVED' in said[0] and '1/2' in last and '2 verdicts kept' in last, said, last)
         expect((house.folder / 'told').read_text() == told, 'it compiles')
         expect('0 verdicts kept' in house.run('--again')[2])
-        house.write('tests/mutants/base/x.h.mutants', HEAD + KILLED + SURVIVES.replace('second=wrong', 'first=wrong'))
+        house.write('tests/mutants/base.mutants', HEAD + KILLED + SURVIVES.replace('second=wrong', 'first=wrong'))
         status, said, last = house.run()
         expect(status == 0 and '2/2' in last and '1 verdicts kept' in last, last)
         for name in ('src/base/x.h', 'src/base/y.h', 'tests/base/x_test.cpp', 'tests/main.cpp'):
