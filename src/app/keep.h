@@ -1,8 +1,8 @@
 // app/keep.h  2  films in files, if src/keep is there
 #pragma once
-#include "base/files.h"
-#include "base/program.h"
 #include "film/film.h"
+#include "text/files.h"
+#include "text/program.h"
 
 #if __has_include("keep/keep.h")
 #include "keep/keep.h"

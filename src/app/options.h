@@ -1,8 +1,8 @@
 // app/options.h  1  the options of penumbra
 #pragma once
-#include "base/option.h"
 #include "film/film.h"
 #include "path/pathtracer.h"
+#include "text/option.h"
 
 // The quantity that the image shows.
 enum class View { radiance, normal, depth, albedo, bvh, occlusion };
@@ -26,8 +26,6 @@ struct Options : CommonOptions {
     std::optional<RowRange> rows;       // default: all
     std::optional<PixelSample> replay;  // instead of rendering, print its path
 };
-
-inline constexpr uint64_t most_depth = 1000000;
 
 // "10-19"
 inline RowRange parse_rows(Text v) {
@@ -110,7 +108,7 @@ inline OptionTable transport_rows(Options& o) {
                 "only, or by both with MIS",
                 o.technique.light),
          {"--depth", "N", "maximum number of bounces; 0: emission only", "the scene's",
-          [&o](Text v) { o.depth = int(parse_count(v, 0, most_depth)); }},
+          [&o](Text v) { o.depth = int(parse_count(v, 0, max_depth)); }},
          {"--roulette", "T",
           "Russian roulette: a path survives with probability throughput / T (largest component) "
           "where that is below 1; 0 disables Russian roulette",

@@ -4,7 +4,7 @@
 
 #include "app/report.h"
 #include "app/views.h"
-#include "film/image.h"
+#include "text/image_file.h"
 
 // Images to write: those that the user named, or `stem`.png and .pfm, with the scene's name for
 // NAME; none if `stem` is empty.  Throws UserError if one of these files, of `others` or of --stats

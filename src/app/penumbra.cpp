@@ -1,8 +1,9 @@
 // app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
 #include "app/replay.h"
+#include "app/threads.h"
 #include "app/unseen.h"
-#include "base/program.h"
+#include "text/program.h"
 
 namespace {
 
@@ -69,14 +70,14 @@ int penumbra(const std::vector<std::string>& words) {
     parse_options(table, o, words);
     if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
-    const Scene& scene = parsed.scene;
+    const NamedScene& scene = parsed.scene;
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
     if (o.replay) return replay(o, scene, pattern), 0;
     const auto outputs = outputs_of(o, parsed, "", scene.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     const RowRange rows = rows_of(o, scene);
-    const Witness witness(scene, o.technique, rows.first, rows.count());
+    const Witness witness(scene, o.technique, rows.first, rows.count(), scene.line_of_light);
     const Plan plan = plan_of(o, scene, o.view == View::radiance ? &witness : nullptr);
     const Radiance L = radiance_of(o, scene, pattern, witness);
     const FilmOf what = film_of(table, o, parsed, plan);

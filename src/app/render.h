@@ -3,18 +3,19 @@
 #include "app/keep.h"
 #include "app/options.h"
 #include "app/outputs.h"
+#include "app/threads.h"
 #include "app/unseen.h"
 #include "app/views.h"
-#include "base/program.h"
 #include "path/start.h"
-#include "world/scene_file.h"
+#include "text/program.h"
+#include "text/scene_file.h"
 
 // ---- The scene ----------------------------------------------------------------------------------
 
 // The scene with the user's options; throws UserError if it cannot be read or rendered.
 inline ParsedScene load(const Options& o) {
     ParsedScene parsed = read_scene(o.scene);
-    Scene& scene = parsed.scene;
+    NamedScene& scene = parsed.scene;
     for (const std::string& hidden : hidden_lights(scene)) parsed.warnings.push_back(hidden);
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
@@ -63,7 +64,7 @@ inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness
     const RowRange rows = rows_of(o, scene);
     plan.size = {scene.size.width, rows.count()}, plan.first_row = rows.first;
     if (!witness) return plan;
-    plan.noisy = witness->noisy(), plan.why_unknown = Witness::why_unknown;
+    plan.noisy = witness->noisy(), plan.may_miss_light = Witness::may_miss_light;
     plan.near = witness->near_misses(plan.replications * (plan.is_adaptive ? least_of_noisy : 1));
     return plan;
 }
@@ -110,7 +111,8 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent, Stop s
     if (film.has_samples()) run.spp = film.samples_per_pixel() * double(plan.paths);
     run.stopped_by = stop;
     run.error = error_of(film);
-    run.doubt = doubt_of(film, run.error, plan.why_unknown);
+    run.doubt = in_words(doubt_of(film, run.error, plan.may_miss_light),
+                         [&] { return Witness::why_unknown(film, run.error); });
     run.replications = film.replications;
     const uint64_t n = film.least_taken();
     if (n > 0 && n == film.most_taken() && !film.is_pilot &&
@@ -141,6 +143,8 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     };
     Watch watch;
     watch.elapsed = [&] { return progress.elapsed(); };
+    watch.for_each = by_workers;
+    watch.interrupted = [] { return interrupted != 0; };
     watch.between = [&](const Film& f, const Tally& tally) {
         keeper.write_now_and_then(f, spent(tally));
     };

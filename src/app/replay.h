@@ -22,7 +22,7 @@ inline const char* in_words(End why) {
     switch (why) {
         case End::no: break;
         case End::leaves_scene: return "the ray leaves the scene";
-        case End::max_depth: return "the maximum number of bounces";
+        case End::bounces: return "the maximum number of bounces";
         case End::in_surface: return "the ray lies in the surface";
         case End::reflects_nothing: return "the sampled direction reflects nothing";
         case End::roulette: return "Russian roulette";
@@ -33,7 +33,7 @@ inline const char* in_words(End why) {
 // Prints the events of a path, one per line and with every digit: these numbers made the image.
 class PathLog {
 public:
-    PathLog(const Scene& scene, std::FILE* out) : scene_(scene), out_(out) {}
+    PathLog(const NamedScene& scene, std::FILE* out) : scene_(scene), out_(out) {}
 
     void film(const Start& at) const {
         print("position in the pixel", {at.u.x, at.u.y});
@@ -71,7 +71,7 @@ public:
     }
 
 private:
-    const Scene& scene_;
+    const NamedScene& scene_;
     std::FILE* out_;
 
     // The material of this shape, and its line in the scene's file.
@@ -101,7 +101,7 @@ private:
 };
 
 // Prints one path of the image.
-inline void replay(const Options& o, const Scene& scene, const Pattern& pattern) {
+inline void replay(const Options& o, const NamedScene& scene, const Pattern& pattern) {
     const PathLog log(scene, stdout);
     const Start at = start(scene, pattern, *o.replay);
     const auto& [x, y, i, set] = *o.replay;

@@ -2,19 +2,21 @@
 #pragma once
 #include "film/loop.h"
 #include "path/pathtracer.h"
+#include "text/named_scene.h"
 
 #if __has_include("unseen/unseen.h")
 #include "unseen/unseen.h"
 #else
-inline std::vector<std::string> hidden_lights(const Scene&) { return {}; }
+inline std::vector<std::string> hidden_lights(const NamedScene&) { return {}; }
 struct Unseen {
     void add(const std::vector<NearMisses>&, double, double) {}
     std::string doubt(double, double, double) const { return ""; }
 };
 struct Witness {
-    Witness(const Scene&, const Technique&, int, int) {}
+    Witness(const Scene&, const Technique&, int, int, const std::vector<uint32_t>&) {}
     std::vector<NearMisses> near_misses(double) const { return {}; }
     std::vector<size_t> noisy() const { return {}; }
+    static bool may_miss_light(const Film&, const ImageError&) { return false; }
     static std::string why_unknown(const Film&, const ImageError&) { return ""; }
     NoVisitor visitor(Tally&) const { return {}; }
 };

@@ -29,6 +29,11 @@ struct vec2 {
     real x = 0, y = 0;
 };
 
+// Width and height of an image, in pixels.
+struct Size {
+    int width = 0, height = 0;
+};
+
 struct vec3 {
     real x = 0, y = 0, z = 0;
 };

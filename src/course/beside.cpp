@@ -3,8 +3,8 @@
 //   beside IMAGE.pfm EXPECTED.pfm SIDE-BY-SIDE.png
 //
 // Prints d_rel and the mean of each channel.
-#include "base/program.h"
 #include "keep/read_pfm.h"
+#include "text/program.h"
 
 namespace {
 

@@ -45,17 +45,19 @@ inline ImageError error_of(const Film& film) {
 
 // ---- Error checks -------------------------------------------------------------------------------
 
-// Why a film's error may be far above its estimate, by its near misses; "": no reason is known.
-using WhyUnknown = std::function<std::string(const Film&, const ImageError&)>;
+// True if a film's error may be far above its estimate, by its near misses.
+using MayMissLight = std::function<bool(const Film&, const ImageError&)>;
 
-// The same for any film.  A relative standard error of a quarter is that of 8 degrees of freedom.
-// One degree understates an error 10^4 times in 8 of 10^5 pictures: 1e-6 is small in any case.
-inline std::string doubt_of(const Film& film, const ImageError& e, const WhyUnknown& why_unknown) {
-    if (e.norm() == 0) return "no sample found light";
-    const std::string why = why_unknown && e.d2() >= 0 ? why_unknown(film, e) : "";
-    if (!why.empty()) return why;
-    if (!(e.spread_of_d_rel() > 0.25 && e.d_rel() > 1e-6)) return "";
-    return e.spread_of_d() > 0.25 ? "a few pixels dominate it" : "the picture is mostly noise";
+// Why an error may be far above its estimate.
+enum class Doubt { no, black, missed_light, few_pixels, noise };
+
+// A relative standard error of a quarter is that of 8 degrees of freedom.  One degree understates
+// an error 10^4 times in 8 of 10^5 pictures: 1e-6 is small in any case.
+inline Doubt doubt_of(const Film& film, const ImageError& e, const MayMissLight& may_miss_light) {
+    if (e.norm() == 0) return Doubt::black;
+    if (may_miss_light && e.d2() >= 0 && may_miss_light(film, e)) return Doubt::missed_light;
+    if (!(e.spread_of_d_rel() > 0.25 && e.d_rel() > 1e-6)) return Doubt::no;
+    return e.spread_of_d() > 0.25 ? Doubt::few_pixels : Doubt::noise;
 }
 
 // The rule of --error: d' + SE / 2 <= wanted.  d' counts the worst pixel twice, for light that no
@@ -79,8 +81,8 @@ enum class Stop { no, samples, time, error, error_unknown, interrupt, not_finite
 // Checks a film's error until it is at most `wanted`; 0: records only its history.
 class ErrorChecks {
 public:
-    explicit ErrorChecks(double wanted, const WhyUnknown& why_unknown = {})
-        : wanted_(wanted), why_unknown_(why_unknown) {}
+    explicit ErrorChecks(double wanted, const MayMissLight& may_miss_light = {})
+        : wanted_(wanted), may_miss_light_(may_miss_light) {}
 
     // Whether the film's error is a reason to stop, if a check is due.
     Stop check(const Film& film) {
@@ -92,7 +94,7 @@ public:
         const ImageError e = error_of(film);
         add(n, e.d_rel());
         if (!is_check) return Stop::no;
-        const bool is_known = doubt_of(film, e, why_unknown_).empty();
+        const bool is_known = doubt_of(film, e, may_miss_light_) == Doubt::no;
         if (is_known && is_small_enough(e, wanted_)) return Stop::error;
         return is_known || film.samples_per_pixel() < most_unknown ? Stop::no : Stop::error_unknown;
     }
@@ -118,6 +120,6 @@ private:
         double n = 0, d_rel = NAN;
     } before_, last_;
     const double wanted_;
-    const WhyUnknown why_unknown_;
+    const MayMissLight may_miss_light_;
     double expected_ = HUGE_VAL;
 };

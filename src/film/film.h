@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <span>
-#include <string>
 #include <tuple>
 
 #include "film/image.h"
@@ -28,6 +27,10 @@ struct Tally {
         if (count > 0 && (bad == 0 || order(first) < order(first_bad))) first_bad = first;
         bad += count;
     }
+    void add(const Tally& other) {
+        rays += other.rays, add_bad(other.bad, other.first_bad);
+        for (size_t g = 0; g < near.size(); ++g) near[g].add(other.near[g]);
+    }
 };
 
 inline bool fits_float(rgb L) {
@@ -44,7 +47,6 @@ inline void add_to(Sum& sum, rgb sample) {
 }
 
 inline constexpr uint32_t most_replications = 1024, most_weight = 16;
-inline constexpr uint64_t most_samples = uint64_t(1) << 40;
 
 // The file of a film holds these arrays.
 struct Film {

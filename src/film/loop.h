@@ -1,8 +1,5 @@
 // film/loop.h  4  the loop that fills a film: passes, and reasons to stop
 #pragma once
-#include <mutex>
-
-#include "base/threads.h"
 #include "film/error.h"
 #include "film/weights.h"
 
@@ -18,12 +15,25 @@ struct Plan {
     uint64_t paths = 1;                 // that one sample of the film stands for
     std::vector<NearMisses> near = {};  // of a film without samples
     std::vector<size_t> noisy = {};     // pixels where few samples meet bright light
-    WhyUnknown why_unknown = {};        // judges the error by near misses
+    MayMissLight may_miss_light = {};   // judges the error by near misses
 };
+
+// Calls work(k, worker) for every k < count, perhaps from several threads, each with a number below
+// `workers`, and meanwhile(fraction done) now and then.  Returns early after an interrupt.
+using BlockWork = std::function<void(size_t k, unsigned worker)>;
+using Meanwhile = std::function<void(double)>;
+using ForEach =
+    std::function<void(size_t count, unsigned workers, const BlockWork&, const Meanwhile&)>;
+
+inline void one_by_one(size_t count, unsigned, const BlockWork& work, const Meanwhile& meanwhile) {
+    for (size_t k = 0; k < count; ++k) work(k, 0), meanwhile(double(k + 1) / double(count));
+}
 
 // Callbacks of the loop.
 struct Watch {
     std::function<double()> elapsed;  // seconds, including those of earlier runs
+    ForEach for_each = one_by_one;
+    std::function<bool()> interrupted = [] { return false; };
     std::function<void(const Film&, const Tally&)> between = [](auto&, auto&) {};  // passes
     // Samples per pixel so far, and at the end; infinite: not known.
     std::function<void(double now, double end)> show = [](double, double) {};
@@ -46,7 +56,7 @@ public:
           L_(L),
           watch_(watch),
           limit_(plan.samples ? plan.samples : most_samples),
-          checks_(plan.error, plan.why_unknown) {}
+          checks_(plan.error, plan.may_miss_light) {}
 
     Stop run() {
         for (;;) {
@@ -69,7 +79,6 @@ private:
     const uint64_t limit_, pilot_ = std::min(pilot_samples, limit_);  // samples
     ErrorChecks checks_;
     Tally tally_;
-    std::mutex mutex_;
 
     bool is_pilot_done() const {
         const uint64_t n = film_.least_taken();
@@ -77,7 +86,7 @@ private:
     }
 
     Stop reason_to_stop() {
-        if (interrupted) return Stop::interrupt;
+        if (watch_.interrupted()) return Stop::interrupt;
         if (tally_.bad > 0) return Stop::not_finite;
         if (const Stop stop = checks_.check(film_); stop != Stop::no) return stop;
         if (!film_.is_pilot && film_.least_taken() >= limit_) return Stop::samples;
@@ -101,16 +110,20 @@ private:
         const double end = last < most_samples ? film_.samples_per_pixel(last) *
                                                      (film_.is_pilot ? typical_weight : 1)
                                                : HUGE_VAL;
-        auto add_block = [&](size_t block) {
+        Tally nothing;
+        nothing.near.resize(film_.near.size());
+        std::vector<Tally> of_worker(plan_.threads, nothing);
+        auto add_block = [&](size_t block, unsigned worker) {
             if (film_.taken[block] >= to) return;
-            Tally of_block;
-            of_block.near.resize(film_.near.size());
-            add_samples(film_, block, to, L_, of_block);
-            std::lock_guard lock(mutex_);
-            tally_.rays += of_block.rays, tally_.add_bad(of_block.bad, of_block.first_bad);
-            for (size_t g = 0; g < of_block.near.size(); ++g) film_.near[g].add(of_block.near[g]);
+            Tally tally = nothing;  // of whole blocks only
+            add_samples(film_, block, to, L_, tally);
+            of_worker[worker].add(tally);
         };
-        in_parallel(film_.taken.size(), plan_.threads, add_block,
-                    [&](double part) { watch_.show(before + part * (after - before), end); });
+        watch_.for_each(film_.taken.size(), plan_.threads, add_block,
+                        [&](double part) { watch_.show(before + part * (after - before), end); });
+        for (const Tally& tally : of_worker) {
+            tally_.add(tally);
+            for (size_t g = 0; g < tally.near.size(); ++g) film_.near[g].add(tally.near[g]);
+        }
     }
 };

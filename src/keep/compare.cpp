@@ -7,10 +7,10 @@
 //
 // Both are .pfm or .film.  Two films know the variances of their pixels, so that Welch's test
 // applies.  The images differ, with exit status 1, if d_rel is above the limit or p below alpha.
-#include "base/option.h"
 #include "keep/p_of_z.h"
 #include "keep/read_film.h"
 #include "keep/read_pfm.h"
+#include "text/option.h"
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include <bit>
 #include <sstream>
 
-#include "base/files.h"
 #include "base/rng.h"
+#include "text/files.h"
 
 static_assert(std::endian::native == std::endian::little,
               "numbers are written as memory holds them");

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <utility>
 
-#include "base/json.h"
 #include "keep/read_film.h"
+#include "text/json.h"
 
 // Checksum of the scene's source files.
 inline std::string sum_of_files(const std::vector<std::string>& files) {

@@ -2,9 +2,10 @@
 #include <deque>
 
 #include "app/outputs.h"
+#include "app/threads.h"
 #include "app/unseen.h"
-#include "base/program.h"
 #include "keep/keep.h"
+#include "text/program.h"
 
 namespace {
 
@@ -67,9 +68,9 @@ Image merge(const std::vector<Part>& parts, Size size, Run& run) {
             }
     }
     run.spp /= run.error.pixels, run.replications /= run.error.pixels;
-    run.doubt = doubt_of({}, run.error, [&](const Film&, const ImageError& e) {
-        return unseen.doubt(e.d2(), e.norm(), e.pixels);
-    });
+    auto missed = [&] { return unseen.doubt(run.error.d2(), run.error.norm(), run.error.pixels); };
+    run.doubt =
+        in_words(doubt_of({}, run.error, [&](auto&, auto&) { return !missed().empty(); }), missed);
     return image;
 }
 

@@ -1,8 +1,8 @@
 // keep/read_film.h  2  films come back from files
 #pragma once
-#include "base/program.h"
 #include "film/weights.h"
 #include "keep/film_file.h"
+#include "text/program.h"
 
 inline Spent spent_in(const FilmReader& file) {
     return {file.number("seconds"), file.number("cpu-seconds"), uint64_t(file.number("rays"))};

@@ -3,7 +3,7 @@
 #include <iomanip>
 
 #include "base/vec.h"
-#include "film/image.h"
+#include "text/image_file.h"
 
 // Throws UserError if it is not a PFM file as write_image makes them.
 inline Image read_pfm(const std::string& path) {

@@ -6,9 +6,9 @@
 // to float because Embree has no doubles.  The tracers take turns, so load slows them alike.
 #include "base/rng.h"
 #include "labs/rows.h"
+#include "text/scene_file.h"
 #include "wide/wide_bvh.h"
 #include "world/bvh.h"
-#include "world/scene_file.h"
 
 #if __has_include(<embree3/rtcore.h>)
 #include <embree3/rtcore.h>

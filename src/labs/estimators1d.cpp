@@ -7,11 +7,12 @@
 // are those of Heitz, Hill, McGuire 2018, supplement.
 #include <array>
 
-#include "base/json.h"
+#include "app/threads.h"
 #include "base/rng.h"
 #include "labs/cube.h"
 #include "labs/rows.h"
 #include "shadow/population.h"
+#include "text/json.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/words.h"
+#include "text/words.h"
 
 // Runs a program and waits for it.  Throws SystemError unless its exit status is 0.
 inline void execute(std::vector<std::string> words) {

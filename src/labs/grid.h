@@ -10,6 +10,7 @@
 #pragma once
 #include <mutex>
 
+#include "app/threads.h"
 #include "base/rng.h"
 #include "labs/rows.h"
 

@@ -1,10 +1,10 @@
 // labs/illumination_cube.cpp  6  maps of a cube of known illuminance by both methods
 //
 //   build/illumination_cube [--quick]
-#include "base/json.h"
 #include "labs/cube.h"
 #include "labs/room.h"
 #include "labs/rows.h"
+#include "text/json.h"
 
 namespace {
 

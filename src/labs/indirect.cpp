@@ -117,7 +117,7 @@ int study(const Scope& scope) {
 
 // Renders with paths that end on maps or continue there.
 Rendered render(const std::vector<std::string>& words) {
-    Scene scene = read_scene(words.at(0)).scene;
+    NamedScene scene = read_scene(words.at(0)).scene;
     const auto [width, height] = parts_of(value_of(words, "--size"), 'x', "WIDTHxHEIGHT");
     scene.size = parse_size(width, height);
     return by_control(scene, parse_count(value_of(words, "--spp"), 1, UINT32_MAX),

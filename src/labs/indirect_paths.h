@@ -14,6 +14,7 @@
 //
 // The number of bounces is unlimited, as in the maps: the scene's depth must be out of reach.
 #pragma once
+#include "app/threads.h"
 #include "labs/room.h"
 #include "radiosity/gather.h"
 
@@ -76,7 +77,7 @@ inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
 
 // Renders a scene's triangles.  Its maps have one particle per 64 paths, and edges of at most 1/16
 // of the scene's diagonal.  Particles and paths have different seeds.
-inline Rendered by_control(const Scene& read, uint64_t spp, uint64_t seed) {
+inline Rendered by_control(const NamedScene& read, uint64_t spp, uint64_t seed) {
     const double start_of_all = processor_seconds();
     const Room room = make_room("", read, double(diagonal(read)) / 16);
     Scene scene = room.scene;

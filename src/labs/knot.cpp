@@ -4,9 +4,9 @@
 //
 // The mesh is a tube of radius 0.42 about the (2,3) torus knot p(t) = ((2 + cos 3t) cos 2t,
 // (2 + cos 3t) sin 2t, sin 3t).  It has 600 rings of 20 corners, each normal to the tangent p'(t).
-#include "base/files.h"
-#include "base/program.h"
 #include "base/vec.h"
+#include "text/files.h"
+#include "text/program.h"
 
 namespace {
 

@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "base/option.h"
 #include "base/stats.h"
 #include "film/loop.h"
 #include "keep/read_pfm.h"
 #include "labs/execute.h"
 #include "labs/svg.h"
+#include "text/option.h"
 
 // ---- Statistics of many runs --------------------------------------------------------------------
 

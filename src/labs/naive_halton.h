@@ -3,6 +3,7 @@
 // All decisions of a path reuse bases 2 and 3, and all pixels have the same points, so images are
 // biased.  A decision by three numbers would add base 5, but there is none here.
 #pragma once
+#include "app/threads.h"
 #include "film/image.h"
 #include "labs/lab.h"
 #include "path/pathtracer.h"

@@ -1,9 +1,9 @@
 // labs/peers.cpp  6  efficiency compared with Cycles
 //
 //   build/peers [--seeds N] [--quick]
-#include "base/json.h"
 #include "labs/grid.h"
-#include "world/scene_file.h"
+#include "text/json.h"
+#include "text/scene_file.h"
 
 namespace {
 

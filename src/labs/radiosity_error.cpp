@@ -3,10 +3,10 @@
 //   build/radiosity_error [--quick]
 //
 // Errors of maps cover all surfaces, not only visible ones, so this program runs radiosity's parts.
-#include "base/json.h"
 #include "labs/room.h"
 #include "labs/rows.h"
 #include "radiosity/walks.h"
+#include "text/json.h"
 
 namespace {
 
@@ -128,7 +128,7 @@ int study(const Scope& scope) {
     Rows walked, shot;
     for (const auto& place : places) {
         // The longest edge is a fraction of the scene's diagonal.
-        const Scene read = scene_named(place.first);
+        const NamedScene read = scene_named(place.first);
         auto room = [&](int parts) {
             return make_room(place.first, read, double(diagonal(read)) / parts);
         };

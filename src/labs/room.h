@@ -1,5 +1,6 @@
 // labs/room.h  3  scenes cut into triangles, and illumination maps on them
 #pragma once
+#include "app/threads.h"
 #include "labs/lab.h"
 #include "radiosity/particles.h"
 #include "radiosity/shooting.h"
@@ -7,16 +8,16 @@
 // A scene cut into triangles, with its mesh.  No edge is longer than the H of make_room().
 struct Room {
     std::string name;
-    Scene scene;
+    NamedScene scene;
     Mesh mesh;
 };
 
-inline Room make_room(const std::string& name, const Scene& read, double H) {
+inline Room make_room(const std::string& name, const NamedScene& read, double H) {
     Room r{name, faceted(read, H).scene, {}};
     r.mesh = make_mesh(r.scene, H);
     return r;
 }
-inline Scene scene_named(const std::string& name) {
+inline NamedScene scene_named(const std::string& name) {
     return read_scene("scenes/" + name + ".scene").scene;
 }
 

@@ -3,9 +3,10 @@
 //   build/shadows [--quick]
 //
 // Measures noise in light, penumbra and umbra, and efficiency (Heitz, Hill, McGuire 2018).
+#include "app/threads.h"
 #include "labs/grid.h"
 #include "shadow/shadow.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace {
 

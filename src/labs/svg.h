@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "film/image.h"
+#include "text/image_file.h"
 
 // Formats like printf.  The argument of %s may be a std::string.
 inline const char* for_printf(const std::string& words) { return words.c_str(); }

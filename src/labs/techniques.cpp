@@ -4,7 +4,7 @@
 #include "keep/p_of_z.h"
 #include "labs/grid.h"
 #include "labs/naive_halton.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace {
 

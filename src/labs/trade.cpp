@@ -5,7 +5,7 @@
 // Renders every scene with all samplers and values of --light, and by default in float, at five
 // sample counts.  Writes a report and an interactive page, out/trade/trade.html.
 #include "labs/trade.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace {
 

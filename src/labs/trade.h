@@ -1,7 +1,7 @@
 // labs/trade.h  6  the fastest setting for an error; the data of trade.html
 #pragma once
-#include "base/json.h"
 #include "labs/grid.h"
+#include "text/json.h"
 
 namespace trade {
 

@@ -5,7 +5,7 @@
 // Repeats results of Vandewiele et al. 2025, "Voronoi integration of the rendering equation".
 #include "labs/grid.h"
 #include "path/pathtracer.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "base/files.h"
+#include "text/files.h"
 #include "world/bsdf.h"
 
 namespace mesh {

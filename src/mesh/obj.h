@@ -7,12 +7,9 @@
 
 #include "mesh/ears.h"
 #include "mesh/mtl.h"
-#include "world/mesh.h"
+#include "text/mesh.h"
 
 namespace mesh {
-
-// A scene of so many shapes takes 1 GB; a mesh that is placed again and again asks for any number.
-inline constexpr size_t most_shapes = 1 << 22;
 
 // Adds a mesh to a scene: its polygons, placed, and those of its materials that they name.  Reads
 // `v` and `f` (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative, from
@@ -21,7 +18,7 @@ class ObjReader {
 public:
     // Faces whose material is not known have the one that is given, or are grey.  `line`: of the
     // scene's file.  Cutting up polygons spends `left`, which all meshes of a scene share.
-    ObjReader(Scene& scene, const MeshPlacement& place, std::optional<uint32_t> given,
+    ObjReader(NamedScene& scene, const MeshPlacement& place, std::optional<uint32_t> given,
               uint32_t line, int64_t& left)
         : scene_(scene), place_(place), given_(given), line_(line), left_(left) {}
 
@@ -73,7 +70,7 @@ private:
         std::string name = {};
     };
 
-    Scene& scene_;
+    NamedScene& scene_;
     const MeshPlacement place_;
     const std::optional<uint32_t> given_;
     const uint32_t line_;
@@ -133,14 +130,14 @@ private:
             if (index != std::floor(index) || !(k >= 0 && k < UINT32_MAX)) throw no_vertex(text);
             corners_.push_back(uint32_t(k));
         }
-        if (faces_.size() > most_shapes) throw too_many();
+        if (faces_.size() > max_shapes) throw too_many();
     }
     UserError no_vertex(std::string_view text) const {
         return UserError("no vertex " + in_quotes(text) + " among " +
                          std::to_string(vertices_.size()));
     }
     static UserError too_many() {
-        return UserError("more than " + std::to_string(most_shapes) + " shapes");
+        return UserError("more than " + std::to_string(max_shapes) + " shapes");
     }
 
     // ---- Materials ------------------------------------------------------------------------------
@@ -243,7 +240,7 @@ private:
             return note({path_, "face", "left out", ": faces need three corners, near enough"},
                         face.line);
         polygon(c, material(face.use, face.line), face.line);
-        if (scene_.shapes.size() > most_shapes) throw too_many();
+        if (scene_.shapes.size() > max_shapes) throw too_many();
         scene_.line_in_mesh.resize(scene_.shapes.size(), face.line);
     }
 

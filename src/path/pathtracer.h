@@ -121,7 +121,7 @@ struct Segment {
     real eta2 = 1;  // factor of beta by refraction, which the path gives back where it leaves glass
 };
 
-enum class End { no, leaves_scene, max_depth, in_surface, reflects_nothing, roulette };
+enum class End { no, leaves_scene, bounces, in_surface, reflects_nothing, roulette };
 
 // The events where that ray stopped.
 struct Step {
@@ -168,7 +168,7 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
         e.Le = emitted(m, x.cos_o);
         e.weight = weight_of_emission(scene, t, s, x);
     }
-    if (ends(s.k == scene.depth, End::max_depth)) return e;
+    if (ends(s.k == scene.depth, End::bounces)) return e;
     if (ends(x.cos_o == 0, End::in_surface)) return e;
     e.direct = direct_light(scene, t, x, sampler, s.k);
 

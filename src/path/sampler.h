@@ -61,6 +61,8 @@ inline vec2 in_cell(uint32_t cell, uint32_t columns, uint32_t rows, uint64_t bit
 }
 // end
 
+inline constexpr uint64_t most_samples = uint64_t(1) << 40;  // of each replication
+
 // Sample i of replication `set` of pixel (x, y).
 struct PixelSample {
     int x = 0, y = 0;

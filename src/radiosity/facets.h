@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 // ---- Diffuse surfaces only ----------------------------------------------------------------------
 
@@ -13,7 +13,7 @@ inline const char* other_than_diffuse(const Material& m) {
 }
 
 // Throws UserError "NAME:LINE: ..." about the first shape that is not diffuse.
-inline void check_diffuse(const Scene& s, const std::string& name) {
+inline void check_diffuse(const NamedScene& s, const std::string& name) {
     for (size_t i = 0; i < s.shapes.size(); ++i)
         if (const char* what = other_than_diffuse(s.materials[s.material_of[i]]))
             throw UserError(name + ":" + std::to_string(s.line_of[i]) + ": " + "material " +
@@ -22,7 +22,7 @@ inline void check_diffuse(const Scene& s, const std::string& name) {
 }
 
 // The line of the first shape that absorbs nothing of a channel; 0: none.
-inline uint32_t line_of_white(const Scene& s) {
+inline uint32_t line_of_white(const NamedScene& s) {
     for (size_t i = 0; i < s.shapes.size(); ++i)
         if (max_of(s.materials[s.material_of[i]].kd) >= 1) return s.line_of[i];
     return 0;
@@ -79,13 +79,14 @@ inline std::vector<std::array<vec3, 3>> quartered(const std::vector<std::array<v
 // ---- The scene of facets ------------------------------------------------------------------------
 
 struct Faceted {
-    Scene scene;
+    NamedScene scene;
     std::vector<std::string> warnings;  // "LINE: what"
     bool has_balls = false;             // facets stand for spheres: no estimate is unbiased
 };
 
 // Copies a shape of `from`, and its light if it is one by itself, to `to`.
-inline void add_facet(Scene& to, const Scene& from, size_t i, const Shape& shape, int32_t light) {
+inline void add_facet(NamedScene& to, const NamedScene& from, size_t i, const Shape& shape,
+                      int32_t light) {
     add_shape(to, shape, from.material_of[i], light);
     to.line_of.push_back(from.line_of[i]);
 }
@@ -112,8 +113,8 @@ inline double part_of_area(const Shape& sphere, const std::vector<Shape>& facets
 
 // Adds facets of sphere i, with that part of the sphere's area.  The radiance of emitting facets is
 // increased, so that their power is the sphere's.
-inline void add_facets(Scene& to, const Scene& from, size_t i, const std::vector<Shape>& facets,
-                       double part) {
+inline void add_facets(NamedScene& to, const NamedScene& from, size_t i,
+                       const std::vector<Shape>& facets, double part) {
     const uint32_t material = from.material_of[i];
     if (from.light_of[i] == no_light) {
         for (const Shape& facet : facets) add_facet(to, from, i, facet, no_light);
@@ -135,9 +136,9 @@ inline void add_facets(Scene& to, const Scene& from, size_t i, const std::vector
 
 // The same scene, made of triangles only: a sphere becomes an inscribed icosphere with edges of at
 // most H.  Lights keep their power; an icosphere has less area, so its radiance is larger.
-inline Faceted faceted(const Scene& from, double H) {
+inline Faceted faceted(const NamedScene& from, double H) {
     Faceted result{from, {}};
-    Scene& to = result.scene;
+    NamedScene& to = result.scene;
     to.shapes.clear(), to.material_of.clear(), to.light_of.clear(), to.line_of.clear();
     to.lights.clear(), to.line_of_light.clear();
     std::vector<int32_t> light(from.lights.size(), no_light);  // new lights, except for spheres

@@ -4,6 +4,7 @@
 // After one bounce, a path ends on the map (Reichert 1992).  Its bias is the error of the maps,
 // averaged over the surfaces that one bounce reaches.
 #pragma once
+#include "app/threads.h"
 #include "path/start.h"
 #include "radiosity/map.h"
 

@@ -1,5 +1,6 @@
 // radiosity/map.h  3  illumination maps, and their images
 #pragma once
+#include "app/threads.h"
 #include "film/image.h"
 #include "film/loop.h"
 #include "path/pathtracer.h"

@@ -1,5 +1,6 @@
 // radiosity/mesh_view.h  4  the triangles of a mesh over what their map shows (--view mesh)
 #pragma once
+#include "app/threads.h"
 #include "radiosity/map.h"
 
 // The part of a pixel that is edge, 0 to 1.  A point is on an edge if an element ends between it

@@ -4,6 +4,7 @@
 // hits, and survives with probability albedo.  Unbiased for the maps of projection.h, with any
 // unbiased sampler.
 #pragma once
+#include "app/threads.h"
 #include "film/film.h"
 #include "radiosity/batches.h"
 #include "radiosity/projection.h"

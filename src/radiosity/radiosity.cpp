@@ -1,4 +1,5 @@
 // radiosity/radiosity.cpp  9  the program: illumination maps of a scene, and images of them
+#include "app/threads.h"
 #include "radiosity/gather.h"
 #include "radiosity/solution.h"
 
@@ -64,7 +65,7 @@ int show_maps(const RadiosityOptions& o, const OptionTable& table, const Stage& 
 // their own: they are independent.
 int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
            const std::vector<std::string>& outputs) {
-    Scene& scene = stage.scene;
+    NamedScene& scene = stage.scene;
     const Progress clock(0, true);
     Solution s = walk(o, stage, SamplerKind::halton, hash(o.seed, 1), walks_of(o, scene));
     Facts of_maps = {{"map_mesh", json::number(stage.H)},

@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/threads.h"
 #include "radiosity/missing.h"
 #include "radiosity/target.h"
 #include "radiosity/transfer.h"

@@ -1,6 +1,7 @@
 // radiosity/solution.h  8  from options to illumination maps, their summary and statistics
 #pragma once
 #include "app/render.h"
+#include "app/threads.h"
 #include "radiosity/mesh_view.h"
 #include "radiosity/options.h"
 #include "radiosity/shooting.h"
@@ -9,7 +10,7 @@
 // ---- The scene ----------------------------------------------------------------------------------
 
 struct Stage {
-    Scene scene;  // triangles only
+    NamedScene scene;  // triangles only
     Mesh mesh;
     double H = 0;      // longest edge
     double bytes = 0;  // memory of mesh and solution
@@ -17,7 +18,7 @@ struct Stage {
 
 // The longest edge: a part of the scene's diagonal unless --mesh is given.  Throws UserError if the
 // scene is not diffuse, its error is not bounded, or the mesh does not fit into memory.
-inline double edge_length(const RadiosityOptions& o, const Scene& scene, const Bytes& bytes) {
+inline double edge_length(const RadiosityOptions& o, const NamedScene& scene, const Bytes& bytes) {
     if (const uint32_t line = line_of_white(scene); line && o.error > 0 && !is_random(o))
         throw UserError("--error: " + o.scene + ":" + std::to_string(line) +
                         ": reflects all light, so that nothing bounds the unshot power: use "
@@ -36,7 +37,7 @@ inline Bytes bytes_of(const RadiosityOptions& o) {
     return is_random(o) ? Particles::bytes() : Shooting::bytes();
 }
 
-inline Stage stage_of(const RadiosityOptions& o, const Scene& scene, double H) {
+inline Stage stage_of(const RadiosityOptions& o, const NamedScene& scene, double H) {
     Faceted facets = faceted(scene, H);
     for (const std::string& w : facets.warnings) tell(o, o.scene + ":" + w);
     Stage stage{std::move(facets.scene), {}, H, bytes_of(o).of(sizes(scene, H))};
@@ -101,7 +102,7 @@ inline Solution solve(const RadiosityOptions& o, const Stage& stage) {
 // Maps for final gathering: unless --particles is given, one particle for 16 paths, or a sixteenth
 // of the time.  All pixels share the noise of the maps; it is then small against that of the paths
 // (by `make indirect`).  With --error the number of samples is not known: at most the scene's.
-inline WalksTarget walks_of(const RadiosityOptions& o, const Scene& scene) {
+inline WalksTarget walks_of(const RadiosityOptions& o, const NamedScene& scene) {
     if (o.particles > 0) return {o.particles, o.seconds};
     uint64_t N = o.spp > 0 || o.seconds > 0 ? o.spp : scene.samples;
     if (o.error > 0) N = o.spp > 0 ? std::min<uint64_t>(o.spp, scene.samples) : scene.samples;

@@ -1,6 +1,7 @@
 // radiosity/walks.h  7  particles walk until a target is met, with a bar
 #pragma once
 #include "app/report.h"
+#include "app/threads.h"
 #include "radiosity/particles.h"
 
 // "error 2.9 % ± 0.05 %"

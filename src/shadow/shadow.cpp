@@ -2,7 +2,8 @@
 #include "shadow/shadow.h"
 
 #include "app/render.h"
-#include "base/program.h"
+#include "app/threads.h"
+#include "text/program.h"
 
 namespace {
 

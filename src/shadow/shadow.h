@@ -6,6 +6,7 @@
 // and lights nearer to their receiver than rounding.
 #pragma once
 #include "app/render.h"
+#include "app/threads.h"
 #include "path/pathtracer.h"
 #include "path/start.h"
 #include "shadow/estimators.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/rng.h"
-#include "world/scene.h"
+#include "text/named_scene.h"
 
 // The first hit that is not glass.  The ray then starts behind the glass.
 inline std::optional<Hit> hit_through_glass(const Scene& s, Ray& ray) {
@@ -54,7 +54,7 @@ inline std::optional<uint32_t> hides(const Scene& s, const Light& l) {
 
 // Warnings: hidden lights, the first of each of 100 lines; light of points that only samples of
 // directions could find.
-inline std::vector<std::string> hidden_lights(const Scene& s) {
+inline std::vector<std::string> hidden_lights(const NamedScene& s) {
     std::vector<std::string> warnings;
     auto warn = [&](size_t light, const std::string& what) {
         warnings.push_back("line " + std::to_string(s.line_of_light[light]) + ": " + what);

@@ -6,10 +6,11 @@
 #pragma once
 #include <map>
 
-#include "base/json.h"
 #include "film/loop.h"
 #include "path/halton.h"
 #include "path/pathtracer.h"
+#include "text/json.h"
+#include "text/words.h"
 #include "unseen/hidden.h"
 
 inline constexpr size_t most_light_groups = 64;  // more lights share groups with neighbours
@@ -53,15 +54,16 @@ struct LightsInView {
     std::vector<size_t> noisy;  // pixels of groups that cover less than 16
 };
 
-// Samples 1024 points of each group.
-inline LightsInView lights_in_view(const Scene& s, int first_row, int rows) {
+// Samples 1024 points of each group.  Lines are those of the scene's file, or none.
+inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
+                                   const std::vector<uint32_t>& line_of_light = {}) {
     LightsInView view;
     view.groups.resize(std::min(s.lights.size(), most_light_groups));
     std::vector<std::map<size_t, double>> parts(view.groups.size());
     for (size_t i = 0; i < s.lights.size(); ++i) {
         if (s.lights[i].kind == Light::Kind::point) continue;
         NearMisses& g = view.groups[group_of(s, i)];
-        if (g.line == 0 && i < s.line_of_light.size()) g.line = s.line_of_light[i];
+        if (g.line == 0 && i < line_of_light.size()) g.line = float(line_of_light[i]);
         g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
         const size_t points = 1024 * view.groups.size() / s.lights.size() + 1;
         add_view(parts[group_of(s, i)], s, s.lights[i], points, first_row, rows);
@@ -250,8 +252,11 @@ private:
 class Witness {
 public:
     // The rows that are rendered, from `first_row`.
-    Witness(const Scene& scene, const Technique& t, int first_row, int rows)
-        : scene_(scene), technique_(t), view_(lights_in_view(scene, first_row, rows)) {}
+    Witness(const Scene& scene, const Technique& t, int first_row, int rows,
+            const std::vector<uint32_t>& line_of_light = {})
+        : scene_(scene),
+          technique_(t),
+          view_(lights_in_view(scene, first_row, rows, line_of_light)) {}
 
     // Lights, and pixels near them, of a film whose noisy pixels have K samples or more for each
     // sample of a replication of weight 1.
@@ -261,6 +266,9 @@ public:
         return near;
     }
     const std::vector<size_t>& noisy() const { return view_.noisy; }
+    static bool may_miss_light(const Film& f, const ImageError& e) {
+        return !why_unknown(f, e).empty();
+    }
     static std::string why_unknown(const Film& f, const ImageError& e) {
         Unseen unseen;
         unseen.add(f.near, double(f.least_taken()));

@@ -1,6 +1,7 @@
 // voronoi/voronoi.cpp  9  the program: samples of a pixel weighted by their Voronoi cells
 #include "app/render.h"
-#include "base/program.h"
+#include "app/threads.h"
+#include "text/program.h"
 #include "voronoi/weighted.h"
 
 namespace {

@@ -1,5 +1,7 @@
 // voronoi/weighted.h  6  pixels from samples that are weighted by their Voronoi cells
 #pragma once
+#include <atomic>
+
 #include "film/loop.h"
 #include "path/start.h"
 #include "voronoi/weights.h"

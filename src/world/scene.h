@@ -1,10 +1,7 @@
 // world/scene.h  6  the scene: camera, shapes, materials, lights
 #pragma once
-#include <map>
-#include <string>
 #include <vector>
 
-#include "base/words.h"
 #include "world/bsdf.h"
 #include "world/light_choice.h"
 #include "world/tree.h"
@@ -35,6 +32,7 @@ inline Ray camera_ray(const Camera& c, Size size, real x, real y) {
 }
 
 inline constexpr int32_t no_light = -1;
+inline constexpr int max_depth = 1000000;
 
 struct Scene {
     Size size{256, 128};
@@ -49,11 +47,6 @@ struct Scene {
     std::vector<int32_t> light_of;      // of each shape, or no_light
     std::vector<Light> lights;
 
-    // For messages: names of materials, and the lines of the file that made shapes and lights.
-    // Empty where no file is.  Of meshes, their files by line, and their own lines or 0.
-    std::vector<std::string> names;
-    std::vector<uint32_t> line_of, line_of_light, line_in_mesh;
-    std::map<uint32_t, std::string> mesh_of;
     int dropped = 0;  // triangles that have no area
 
     Tree bvh;                      // from here on made by prepare
@@ -68,24 +61,11 @@ struct Scene {
     }
 };
 
-// "line 3", or in a mesh "line 3 (m.obj:10)".
-inline std::string where(const Scene& s, uint32_t shape) {
-    const std::string line = "line " + std::to_string(s.line_of[shape]);
-    if (shape >= s.line_in_mesh.size() || s.line_in_mesh[shape] == 0) return line;
-    return line + " (" + s.mesh_of.at(s.line_of[shape]) + ":" +
-           std::to_string(s.line_in_mesh[shape]) + ")";
-}
-
 // Diagonal of the box about all shapes.
 inline real diagonal(const Scene& s) {
     Box box;
     for (const Shape& shape : s.shapes) box.add(bounds(shape));
     return length(box.hi - box.lo);
-}
-
-inline void add_material(Scene& s, const Material& m, const std::string& name) {
-    s.materials.push_back(m);
-    s.names.push_back(name);
 }
 
 inline void add_shape(Scene& s, const Shape& shape, uint32_t material, int32_t light) {

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "app/refused_words.h"
-#include "base/complaint.h"
+#include "text/complaint.h"
 
 namespace {
 

@@ -2,17 +2,18 @@
 #include "app/render.h"
 
 #include "app/replay.h"
+#include "app/threads.h"
 #include "base/cases.h"
-#include "base/complaint.h"
 #include "film/spread.h"
 #include "oracle/expect.h"
 #include "path/samplers.h"
 #include "path/scenes.h"
+#include "text/complaint.h"
 
 namespace {
 
-Scene small(const char* text, Size size) {
-    Scene scene = scene_of(text);
+NamedScene small(const char* text, Size size) {
+    NamedScene scene = scene_of(text);
     scene.size = size;
     return scene;
 }
@@ -154,10 +155,10 @@ TEST_CASE("a film begins as its plan says; near misses belong to radiance only")
         Options o = quick(SamplerKind::sobol, 64);
         o.replications = K;
         const Plan view = plan_of(o, scene), plan = plan_of(o, scene, &witness);
-        CHECK((view.noisy.empty() && view.near.empty() && !view.why_unknown));
+        CHECK((view.noisy.empty() && view.near.empty() && !view.may_miss_light));
         CHECK(film_for(view).near.empty());
         CHECK(plan.noisy == witness.noisy());
-        CHECK(bool(plan.why_unknown));
+        CHECK(bool(plan.may_miss_light));
         CHECK(said(plan.replications, plan.samples) == said(view.replications, view.samples));
         // The pixel has weight 4 or more, if weights are chosen.
         const Film film = film_for(plan);
@@ -189,7 +190,7 @@ TEST_CASE(
 }
 
 TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
-    const Scene scene = small(shiny, {6, 4});
+    const NamedScene scene = small(shiny, {6, 4});
     for (SamplerKind kind : samplers) {
         Options o = quick(kind, 8);
         o.replications = 2;
@@ -343,7 +344,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             do {
                 fill(film, next_check(film.least_taken()), L);
                 ++checks;
-            } while (!doubt_of(film, error_of(film), {}).empty() ||
+            } while (doubt_of(film, error_of(film), {}) != Doubt::no ||
                      !is_small_enough(error_of(film), E));
             CHECK(p.run.spp == film.samples_per_pixel());
             CHECK(p.image.pixels == image_of(film).pixels);

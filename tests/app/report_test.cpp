@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "base/folder.h"
+#include "text/folder.h"
 
 namespace {
 

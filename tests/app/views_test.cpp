@@ -4,7 +4,7 @@
 #include "base/cases.h"
 #include "base/moments.h"
 #include "oracle/expect.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace {
 

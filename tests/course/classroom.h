@@ -2,7 +2,7 @@
 //
 // 1.1 twice(x), 2 points; 1.2 square(x), 4 points; 1.3 cube(x), by square, 6 points.
 #pragma once
-#include "base/folder.h"
+#include "text/folder.h"
 
 namespace classroom {
 

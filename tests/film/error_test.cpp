@@ -343,41 +343,37 @@ TEST_CASE("d_rel is over the truth, not over an image that is mostly noise") {
 }
 
 TEST_CASE("an error is in doubt: black, by few pixels, lost in noise, or by its near misses") {
-    const WhyUnknown silent = [](const Film&, const ImageError&) { return std::string(); };
-    const WhyUnknown doubtful = [](const Film&, const ImageError&) {
-        return std::string("rare light");
-    };
+    const MayMissLight silent = [](const Film&, const ImageError&) { return false; };
+    const MayMissLight doubtful = [](const Film&, const ImageError&) { return true; };
     const Film film;
-    auto doubt = [&](double d2, double spread, double norm, const WhyUnknown& why) {
+    auto doubt = [&](double d2, double spread, double norm, const MayMissLight& why) {
         return doubt_of(film, error_with(d2, spread, norm), why);
     };
-    CHECK(doubt(4, 0, 30, {}).empty());
-    CHECK(doubt(0, 0, 30, silent).empty());
-    CHECK(doubt(0, 0, 0, doubtful) == "no sample found light");
-    CHECK(doubt(4, 0, 30, doubtful) == "rare light");
+    CHECK(doubt(4, 0, 30, {}) == Doubt::no);
+    CHECK(doubt(0, 0, 30, silent) == Doubt::no);
+    CHECK(doubt(0, 0, 0, doubtful) == Doubt::black);
+    CHECK(doubt(4, 0, 30, doubtful) == Doubt::missed_light);
     // d +- d / 4 corresponds to d^2 +- d^2 / 2.
-    CHECK(doubt(4, 1.97, 30, silent).empty());
-    CHECK(doubt(4, 2.01, 30, silent) == "a few pixels dominate it");
-    CHECK(doubt(4, 2.01, 3, silent) == "a few pixels dominate it");
-    CHECK(doubt(4, 2.01, 30, doubtful) == "rare light");
+    CHECK(doubt(4, 1.97, 30, silent) == Doubt::no);
+    CHECK(doubt(4, 2.01, 30, silent) == Doubt::few_pixels);
+    CHECK(doubt(4, 2.01, 3, silent) == Doubt::few_pixels);
+    CHECK(doubt(4, 2.01, 30, doubtful) == Doubt::missed_light);
     // Rounding is no noise: d_rel of 1e-6 is small, however poorly it is known.
-    CHECK(doubt(4, 3, 2.1e6, silent).empty());
-    CHECK(doubt(4, 3, 1.9e6, silent) == "a few pixels dominate it");
-    CHECK(doubt(4, 3, 2.1e6, doubtful) == "rare light");
+    CHECK(doubt(4, 3, 2.1e6, silent) == Doubt::no);
+    CHECK(doubt(4, 3, 1.9e6, silent) == Doubt::few_pixels);
+    CHECK(doubt(4, 3, 2.1e6, doubtful) == Doubt::missed_light);
     // |F|^2 = 9 - 4, so that d_rel has 9 / 5 of the relative spread; or |F|^2 would be negative.
-    CHECK(doubt(4, 1.1, 3, silent).empty());
-    CHECK(doubt(4, 1.12, 3, silent) == "the picture is mostly noise");
-    CHECK(doubt(4, 0.01, 1.9, silent) == "the picture is mostly noise");
-    CHECK(doubt(4, 0.01, 1.9, doubtful) == "rare light");
+    CHECK(doubt(4, 1.1, 3, silent) == Doubt::no);
+    CHECK(doubt(4, 1.12, 3, silent) == Doubt::noise);
+    CHECK(doubt(4, 0.01, 1.9, silent) == Doubt::noise);
+    CHECK(doubt(4, 0.01, 1.9, doubtful) == Doubt::missed_light);
     // One replication has no error to doubt.
-    CHECK(doubt(NAN, NAN, 3, doubtful).empty());
+    CHECK(doubt(NAN, NAN, 3, doubtful) == Doubt::no);
 }
 
 TEST_CASE("an error that is in doubt stops no render before 4096 samples per pixel") {
     bool is_known = false;
-    const WhyUnknown why = [&](const Film&, const ImageError&) {
-        return std::string(is_known ? "" : "rare light");
-    };
+    const MayMissLight why = [&](const Film&, const ImageError&) { return !is_known; };
     auto stop = [&](uint64_t n, double wanted) {
         return ErrorChecks(wanted, why).check(filled({12, 9}, 4, n, noisy));
     };

@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "film/fill.h"
 #include "oracle/expect.h"
+#include "text/image_file.h"
 
 namespace {
 

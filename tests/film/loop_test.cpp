@@ -1,6 +1,7 @@
 // film/loop_test.cpp  the loop over passes: pilots, threads, Ctrl-C, and reasons to stop
 #include "film/loop.h"
 
+#include "app/threads.h"
 #include "base/about.h"
 #include "base/cases.h"
 #include "film/spread.h"
@@ -37,6 +38,8 @@ Run run(Film& film, const Plan& plan, const Radiance& L = noisy, double tick = 0
     };
     Watch watch;
     watch.elapsed = [&] { return 1e-9 + tick * double(samples); };
+    watch.for_each = by_workers;
+    watch.interrupted = [] { return interrupted != 0; };
     watch.between = [&](const Film& f, const Tally& tally) {
         r.ends.push_back(f.least_taken());
         if (between) between(f, tally);
@@ -183,6 +186,7 @@ TEST_CASE("of reasons to stop the first counts: Ctrl-C, NaN, error, samples, tim
             plan.seconds = all & 1 ? 1 : 0, plan.error = all & 4 ? 0.1 : 0;
             Watch watch;
             watch.elapsed = [&] { return film.least_taken() < 8 ? 0.0 : 1.0; };
+            watch.interrupted = [] { return interrupted != 0; };
             const Radiance L = [&](const PixelSample&, Tally&) {
                 if (all & 16) interrupted = SIGINT;
                 return rgb{1, all & 8 ? real(NAN) : 1, 1};
@@ -256,7 +260,7 @@ TEST_CASE("an error ends a run at the first check where it is small enough, pass
     }
     // An error in doubt ends a run at its first check of 4096 samples per pixel.
     Plan plan;
-    plan.error = 100, plan.why_unknown = [](auto&, auto&) { return "rare light"; };
+    plan.error = 100, plan.may_miss_light = [](auto&, auto&) { return true; };
     Film film = film_of({2, 1}, 4);
     CHECK(run(film, plan).stop == Stop::error_unknown);
     uint64_t n = 8;

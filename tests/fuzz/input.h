@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/words.h"
+#include "text/words.h"
 
 namespace fuzz {
 

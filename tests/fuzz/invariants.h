@@ -1,7 +1,7 @@
 // fuzz/invariants.h  invariants of every scene, mesh and image that a program accepts
 #pragma once
-#include "film/image.h"
 #include "fuzz/input.h"
+#include "text/image_file.h"
 #include "world/nearest.h"
 #include "world/scene.h"
 
@@ -13,7 +13,7 @@ inline void check_shape(const Shape& s) {
     demand(s.is_sphere() || has_area(s), "a triangle without area");
 }
 
-inline void check_scene(const Scene& s) {
+inline void check_scene(const NamedScene& s) {
     const size_t n = s.shapes.size();
     demand(n > 0, "an empty scene");
     for (size_t other :

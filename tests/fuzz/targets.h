@@ -8,7 +8,7 @@
 #include "fuzz/invariants.h"
 #include "keep/keep.h"
 #include "keep/read_pfm.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace fuzz {
 
@@ -131,7 +131,7 @@ inline void render(std::string_view input) {
         Options o;
         OptionTable table = option_table(o);
         parse_options(table, o, d.options);
-        const Scene s = parse_scene(d.scene, "s.scene").scene;
+        const NamedScene s = parse_scene(d.scene, "s.scene").scene;
         check_scene(s);
         check_rays(s, Choices(input));
         render_scene(s, o, d.moderate);
@@ -281,7 +281,7 @@ inline Moments mean_radiance(const Scene& s, LightMode mode, uint64_t paths) {
 inline void lamps(std::string_view input) {
     Choices c(input);
     const std::string text = drawn_lamps(c);
-    Scene s = parse_scene(text, "s.scene").scene;
+    NamedScene s = parse_scene(text, "s.scene").scene;
     s.size = {8, 8};
     check_scene(s);
     const Moments hit = mean_radiance(s, LightMode::none, 4096);

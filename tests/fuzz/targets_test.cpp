@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "base/complaint.h"
+#include "text/complaint.h"
 
 using namespace fuzz;
 

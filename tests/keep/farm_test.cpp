@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "base/folder.h"
+#include "text/folder.h"
 
 namespace {
 

@@ -3,9 +3,9 @@
 
 #include <sys/stat.h>
 
-#include "base/complaint.h"
-#include "base/folder.h"
 #include "base/system_calls.h"
+#include "text/complaint.h"
+#include "text/folder.h"
 
 namespace {
 

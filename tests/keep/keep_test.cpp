@@ -3,12 +3,13 @@
 
 #include <thread>
 
-#include "base/complaint.h"
-#include "base/folder.h"
+#include "app/threads.h"
 #include "film/fill.h"
 #include "film/loop.h"
 #include "keep/change_head.h"
 #include "oracle/expect.h"
+#include "text/complaint.h"
+#include "text/folder.h"
 
 namespace {
 
@@ -47,6 +48,8 @@ Film fill(Film film, uint64_t n, unsigned threads = 2, int64_t stop_after = INT6
     plan.samples = n, plan.threads = threads;
     Watch watch;
     watch.elapsed = [] { return 1.0; };
+    watch.for_each = by_workers;
+    watch.interrupted = [] { return interrupted != 0; };
     if (passes) watch.between = [&](const Film& f, const Tally&) { passes->push_back(f); };
     Loop(film, plan, L, watch).run();
     interrupted = 0;

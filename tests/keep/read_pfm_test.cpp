@@ -2,9 +2,9 @@
 #include "keep/read_pfm.h"
 
 #include "base/cases.h"
-#include "base/complaint.h"
-#include "base/folder.h"
 #include "film/variegated.h"
+#include "text/complaint.h"
+#include "text/folder.h"
 
 namespace {
 

@@ -224,12 +224,12 @@ TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light fou
 TEST_CASE("an image by control has the path tracer's mean; facets of balls change it by little") {
     constexpr uint64_t spp = 64;
     for (const std::string name : {"cube", "cornell36", "penumbra", "lanterns"}) {
-        Scene scene = read_scene("scenes/" + name + ".scene").scene;
+        NamedScene scene = read_scene("scenes/" + name + ".scene").scene;
         scene.size = {32, 16};
         Moments found, truth;
         for (uint64_t seed = 1; seed <= 8; ++seed) {
             found.add(image_mean(by_control(scene, spp, hash(seed_here(), seed)).image));
-            Scene deep = scene;
+            NamedScene deep = scene;
             deep.depth = 64;
             const Pattern pattern =
                 make_pattern(SamplerKind::sobol, hash(seed_here(), 100 + seed), 64);

@@ -1,7 +1,7 @@
 // labs/lab_test.cpp  the kit of the experiments: options, statistics, reports
 #include "labs/lab.h"
 
-#include "base/folder.h"
+#include "text/folder.h"
 
 namespace {
 

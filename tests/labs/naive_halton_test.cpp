@@ -3,7 +3,7 @@
 
 #include "oracle/expect.h"
 #include "path/paths.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace {
 

@@ -4,9 +4,9 @@
 // attributes of the root; Chromium then prints the page.
 #include <cstdlib>
 
-#include "base/folder.h"
 #include "base/vec.h"
 #include "labs/trade.h"
+#include "text/folder.h"
 
 using namespace trade;
 

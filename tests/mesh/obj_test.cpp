@@ -2,9 +2,9 @@
 // to those of scenes written by hand
 #include "mesh/obj.h"
 
-#include "base/complaint.h"
-#include "base/folder.h"
-#include "world/scene_file.h"
+#include "text/complaint.h"
+#include "text/folder.h"
+#include "text/scene_file.h"
 
 namespace {
 
@@ -16,9 +16,9 @@ ParsedScene parsed_with(const Folder& folder, const std::string& obj,
                        folder / "s.scene");
 }
 // Without the sky.
-Scene scene_with(const Folder& folder, const std::string& obj,
-                 const std::string& placement = "1 0 0 0 grey") {
-    Scene s = parsed_with(folder, obj, placement).scene;
+NamedScene scene_with(const Folder& folder, const std::string& obj,
+                      const std::string& placement = "1 0 0 0 grey") {
+    NamedScene s = parsed_with(folder, obj, placement).scene;
     s.shapes.pop_back(), s.material_of.pop_back(), s.light_of.pop_back(), s.lights.pop_back();
     s.materials.pop_back(), s.names.pop_back();
     return s;
@@ -35,7 +35,7 @@ std::vector<std::string> warnings(const Folder& folder, const std::string& obj,
 using Told = std::vector<std::string>;
 
 // The material of each triangle.
-std::vector<std::string> names(const Scene& s) {
+std::vector<std::string> names(const NamedScene& s) {
     std::vector<std::string> all;
     for (uint32_t m : s.material_of) all.push_back(s.names[m]);
     return all;
@@ -173,7 +173,7 @@ TEST_CASE("faces whose material is missing have the mesh line's, or are grey") {
           Told{"m.obj: 3 materials are not defined, first 'Default' at line 6: 'grey' is used"});
     CHECK(scene_with(folder, faces).materials.size() == 1);
     // A library may follow.
-    const Scene later = scene_with(folder, faces + "mtllib m.mtl\n", "1 0 0 0");
+    const NamedScene later = scene_with(folder, faces + "mtllib m.mtl\n", "1 0 0 0");
     CHECK(names(later).back() == "red");
     CHECK(later.materials[later.material_of[0]].kd == rgb{0.5, 0.5, 0.5});
     CHECK(warnings(folder, faces + "mtllib m.mtl\n", "1 0 0 0") ==
@@ -186,9 +186,9 @@ TEST_CASE("names go to the end of the line, and '#' begins a comment only after 
     folder.write("my stuff.mtl",
                  "newmtl Wood dark\nKd .1 .1 .1\nnewmtl Wood  # light\nKd .2 .2 .2\n"
                  "newmtl Mat#1\nKd .3 .3 .3 # a comment\n");
-    const Scene s = scene_with(folder, "mtllib my stuff.mtl # all\n" + corners +
-                                           "usemtl Wood dark \t\nf 1 2 3\n"
-                                           "usemtl Wood\nf 1 2 3\nusemtl Mat#1\nf 1 2 3 #4\n");
+    const NamedScene s = scene_with(folder, "mtllib my stuff.mtl # all\n" + corners +
+                                                "usemtl Wood dark \t\nf 1 2 3\n"
+                                                "usemtl Wood\nf 1 2 3\nusemtl Mat#1\nf 1 2 3 #4\n");
     CHECK(names(s) == Names{"Wood dark", "Wood", "Mat#1"});
     folder.write("a.mtl", "newmtl a\nKd 1\n");
     folder.write("b.mtl", "newmtl b\nKd 1\n");
@@ -204,7 +204,7 @@ TEST_CASE(
     "lines end by \\n, \\r\\n or \\r, go on after a backslash, and begin after a byte order mark") {
     const Folder folder;
     for (const std::string end : {"\n", "\r\n", "\r"}) {
-        const Scene s =
+        const NamedScene s =
             scene_with(folder, "\xef\xbb\xbf# exported" + end + "v 0 0 0" + end + "v 1 0 0" + end +
                                    "v 1 1 0" + end + end + "f 1 2 \\" + end + " 3" + end);
         REQUIRE(s.shapes.size() == 1);
@@ -279,7 +279,7 @@ TEST_CASE("faces: any number of corners, indices from the end, texture and norma
          {"f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/2 3/3 4/4", "f 1//1 2//1 3//1 4//1",
           "f 1/9/9 2/9/9 3/9/9 4/9/9", "f 1 2 3 4 # 5", "f 1 2 3 4 #5"}) {
         CAPTURE(face);
-        const Scene s = scene_with(
+        const NamedScene s = scene_with(
             folder, "# comment\no thing\nvn 0 0 1\nvt 0 0\ng a\ns off\n" + corners + face + "\r\n");
         REQUIRE(s.shapes.size() == 2);
         CHECK(corners_of(s.shapes[0]) == Corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
@@ -291,7 +291,7 @@ TEST_CASE("faces: any number of corners, indices from the end, texture and norma
         ngon += at(std::cos(i * 0.0628318530718), std::sin(i * 0.0628318530718));
         (face += " ") += std::to_string(i + 1);
     }
-    const Scene scene = scene_with(folder, ngon + face + "\n");
+    const NamedScene scene = scene_with(folder, ngon + face + "\n");
     CHECK(scene.shapes.size() == 98);
     double area = 0;
     for (const Shape& s : scene.shapes) area += double(area_vector(s).z) / 2;
@@ -302,7 +302,7 @@ TEST_CASE("concave faces are cut up, folded ones are told") {
     const Folder folder;
     const std::string arrow = "v 0 2 0\nv -1 -1 0\nv 0 0 0\nv 1 -1 0\n";
     for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
-        const Scene scene = scene_with(folder, arrow + face + "\n");
+        const NamedScene scene = scene_with(folder, arrow + face + "\n");
         REQUIRE(scene.shapes.size() == 2);
         for (const Shape& s : scene.shapes) CHECK(double(area_vector(s).z) == doctest::Approx(2));
     }
@@ -311,7 +311,7 @@ TEST_CASE("concave faces are cut up, folded ones are told") {
         const double r = i % 2 ? 0.2 : 1, angle = i * 0.628318530718;
         star += at(r * std::cos(angle), r * std::sin(angle));
     }
-    const Scene scene = scene_with(folder, star + "f 1 2 3 4 5 6 7 8 9 10\n");
+    const NamedScene scene = scene_with(folder, star + "f 1 2 3 4 5 6 7 8 9 10\n");
     CHECK(scene.shapes.size() == 8);
     CHECK(area(scene) == doctest::Approx(10 * .2 * std::sin(.628318530718) / 2).epsilon(1e-5));
     // A saddle whose diagonals both fold it, and a bow tie.
@@ -327,7 +327,7 @@ TEST_CASE("concave faces are cut up, folded ones are told") {
 TEST_CASE("a mesh is scaled, then moved; a material of its own goes before the scene's") {
     const Folder folder;
     folder.write("m.mtl", "newmtl lamp\nKd 0.1 0.2 0.3\nKe 4 5 6\n");
-    const Scene scene =
+    const NamedScene scene =
         scene_with(folder, "mtllib m.mtl\n" + corners + "f 1 2 3\nusemtl lamp\nf 1 2 3 4\n",
                    "2 10 20 30 grey");
     REQUIRE(scene.shapes.size() == 3);
@@ -373,8 +373,8 @@ TEST_CASE("warnings about a mesh's faces name its own lines, and its file may ha
 }
 
 TEST_CASE("cornell36 by statements and as OBJ are the same shapes, materials and lights") {
-    const Scene a = read_scene("scenes/cornell36.scene").scene;
-    const Scene b = read_scene("scenes/cornell36obj.scene").scene;
+    const NamedScene a = read_scene("scenes/cornell36.scene").scene;
+    const NamedScene b = read_scene("scenes/cornell36obj.scene").scene;
     REQUIRE(a.shapes.size() == 36);
     REQUIRE(b.shapes.size() == 36);
     for (size_t i = 0; i < a.shapes.size(); ++i) {
@@ -388,7 +388,7 @@ TEST_CASE("cornell36 by statements and as OBJ are the same shapes, materials and
 }
 
 TEST_CASE("negative indices count from the last of those so far, not of the file") {
-    const Scene s = scene_with(
+    const NamedScene s = scene_with(
         Folder(), corners + "f -3 -2 -1\nv 2 0 0\nf -1 -2 -5\n" + corners + "f 1 -1 -8\n");
     REQUIRE(s.shapes.size() == 3);
     const vec3 a{0, 0, 0}, b{1, 0, 0}, c{1, 1, 0}, d{0, 1, 0}, far{2, 0, 0};

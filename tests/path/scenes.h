@@ -2,9 +2,9 @@
 #pragma once
 #include <string>
 
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
-inline Scene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
+inline NamedScene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
 
 inline const char* const glowing_room = R"(
 size 8 4

@@ -3,9 +3,9 @@
 
 #include <set>
 
-#include "base/complaint.h"
 #include "oracle/expect.h"
 #include "radiosity/rooms.h"
+#include "text/complaint.h"
 
 using namespace rooms;
 
@@ -30,7 +30,7 @@ double longest_edge(const std::vector<Facet>& faces) {
 Key key(vec3 p) { return {double(p.x), double(p.y), double(p.z)}; }
 
 const std::string camera = "camera 0 0 50  0 0 0  40\n";
-Scene parsed(const std::string& text) { return parse_scene(camera + text, "a.scene").scene; }
+NamedScene parsed(const std::string& text) { return parse_scene(camera + text, "a.scene").scene; }
 
 std::string complaint(const std::string& text) {
     return ::complaint([&] { check_diffuse(parsed(text), "a.scene"); });
@@ -89,7 +89,8 @@ TEST_CASE(
     const vec3 centre{1, 2, 3};
     for (double H : {0.34, 0.17, 0.084, 0.042}) {
         CAPTURE(H);
-        const Scene s = parsed("diffuse d .5 .5 .5\nsphere 1 2 3  2  d\npointlight 9 9 9  1 1 1\n");
+        const NamedScene s =
+            parsed("diffuse d .5 .5 .5\nsphere 1 2 3  2  d\npointlight 9 9 9  1 1 1\n");
         const Faceted f = faceted(s, 2 * H);
         const auto& facets = f.scene.shapes;
         const double less = 1 - area(f.scene) / (16 * std::numbers::pi);
@@ -111,7 +112,7 @@ TEST_CASE(
 }
 
 TEST_CASE("lights stay with their shapes and their power; facets of a ball are brighter") {
-    const Scene s = parsed(R"(
+    const NamedScene s = parsed(R"(
 diffuse d .5 .5 .5
 light a 1 2 3
 light b 5 5 5 twosided d
@@ -122,7 +123,7 @@ sphere 9 0 0  2  d
 triangle 0 4 0  1 4 0  0 5 0  a
 sphere 0 9 0  1  b
 )");
-    const Scene f = faceted(s, 0.6).scene;
+    const NamedScene f = faceted(s, 0.6).scene;
     const auto facets = size_t(facets_of_sphere(1, 0.6)), large = size_t(facets_of_sphere(2, 0.6));
     REQUIRE(f.shapes.size() == 2 * facets + 2 + large + 1);
     REQUIRE(f.lights.size() == 2 * facets + 3);
@@ -169,7 +170,7 @@ sphere 0 9 0  1  b
 }
 
 TEST_CASE("a scene without spheres is itself") {
-    const Scene s = parsed(
+    const NamedScene s = parsed(
         "diffuse d .5 .5 .5\nlight l 1 2 3\nbox 10 10 10  0  -5 -5 -5  d\n"
         "pointlight 0 0 0  1 1 1\nquad -1 4 -1  2 0 0  0 0 2  l\n");
     const Faceted f = faceted(s, 1);

@@ -4,11 +4,11 @@
 #include <bit>
 #include <map>
 
-#include "base/complaint.h"
-#include "base/program.h"
 #include "base/rng.h"
 #include "oracle/expect.h"
 #include "radiosity/rooms.h"
+#include "text/complaint.h"
+#include "text/program.h"
 
 using namespace rooms;
 
@@ -243,7 +243,7 @@ TEST_CASE("a hit is where its three vertices and weights say: every shape, insid
 
 TEST_CASE("sizes of spheres are those of their facets; at most, where facets are cut again") {
     const std::string before = "camera 0 0 50  0 0 0  40\ndiffuse d .5 .5 .5\nlight l 1 1 1\n";
-    const Scene s =
+    const NamedScene s =
         parse_scene(before +
                         "sphere 0 0 0  1  d\nsphere 5 0 0  2  l\n"
                         "quad 0 9 0  1 0 0  0 1 0  d\ntriangle 0 0 9  1 0 9  0 1 9  d\n",

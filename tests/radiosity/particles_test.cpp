@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "app/threads.h"
 #include "base/moments.h"
 #include "oracle/expect.h"
 #include "radiosity/exact.h"
@@ -235,12 +236,12 @@ TEST_CASE("the cube: sums over hats of 2 x 2 cells, against the exact solution")
 TEST_CASE("a sphere in a sphere, of facets: as the closed form of spheres of their areas") {
     // All light from the convex inner sphere arrives at the outer one, so that reciprocity needs
     // only areas.  The facets are lit evenly up to their size.
-    const Scene balls = parse_scene(
-                            "camera 0 0 50  0 0 0  40\ndiffuse d .8 .8 .8\n"
-                            "diffuse g .3 .3 .3\nlight l 1 1 1 g\n"
-                            "sphere 0 0 0  4  d\nsphere 0 0 0  2  l\n",
-                            "a.scene")
-                            .scene;
+    const NamedScene balls = parse_scene(
+                                 "camera 0 0 50  0 0 0  40\ndiffuse d .8 .8 .8\n"
+                                 "diffuse g .3 .3 .3\nlight l 1 1 1 g\n"
+                                 "sphere 0 0 0  4  d\nsphere 0 0 0  2  l\n",
+                                 "a.scene")
+                                 .scene;
     const Meshed m(faceted(balls, 1.5).scene, 1.5);
     const Mesh& mesh = m.mesh;
     auto is_inner = [&](size_t k) { return length(mesh.faces[k].a) < 3; };

@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "base/cases.h"
-#include "base/complaint.h"
 #include "radiosity/solution.h"
+#include "text/complaint.h"
 
 namespace {
 

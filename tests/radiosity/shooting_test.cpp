@@ -1,6 +1,7 @@
 // radiosity/shooting_test.cpp  furnaces, order, energy, shadows, threads; the cube
 #include "radiosity/shooting.h"
 
+#include "app/threads.h"
 #include "oracle/expect.h"
 #include "radiosity/exact.h"
 #include "radiosity/rooms.h"

@@ -1,10 +1,10 @@
 // radiosity/walks_test.cpp  particle runs end when their error is as requested, and no later
 #include "radiosity/walks.h"
 
-#include "base/complaint.h"
 #include "base/moments.h"
 #include "oracle/expect.h"
 #include "radiosity/rooms.h"
+#include "text/complaint.h"
 
 using namespace rooms;
 

@@ -5,7 +5,7 @@
 #include "base/closed_forms.h"
 #include "base/moments.h"
 #include "shadow/checks.h"
-#include "world/scene_file.h"
+#include "text/scene_file.h"
 
 namespace {
 

@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "base/folder.h"
-#include "world/scene_file.h"
+#include "text/folder.h"
+#include "text/scene_file.h"
 
 namespace {
 
@@ -12,7 +12,7 @@ const std::string room =
     "size 4 4\ncamera 0 1 4  0 0.5 0  50\ndepth 3\ndiffuse grey 0.5 0.5 0.5\n"
     "light lamp 2 2 2\nquad -4 0 -4  0 0 8  8 0 0  grey\n";
 
-Scene parsed(const std::string& text) { return parse_scene(text, "test").scene; }
+NamedScene parsed(const std::string& text) { return parse_scene(text, "test").scene; }
 
 }  // namespace
 

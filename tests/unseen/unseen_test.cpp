@@ -42,8 +42,8 @@ real slender(const Light& l) {
 Material perfect_mirror() { return {Material::Kind::mirror, {}, {1, 1, 1}, 0, 1, {}, false}; }
 
 // A mirror as the floor, a ball light above it outside the view, a black wall behind.
-Scene mirror_scene(real r, bool direct = false) {
-    Scene s;
+NamedScene mirror_scene(real r, bool direct = false) {
+    NamedScene s;
     s.size = {8, 8};
     s.depth = 2;
     s.camera = look_at({0, 1, 0}, direct ? vec3{-0.4, 0.8, 2} : vec3{0, 0, 1}, 60);
@@ -125,8 +125,8 @@ TEST_CASE("a ray meets a grown light where it would meet that shape, from its br
 
 TEST_CASE("the part of pixels that lights cover, in view of the eye") {
     for (real r : {real(0.001), real(0.01), real(0.1)}) {
-        const Scene s = mirror_scene(r, true);
-        const LightsInView view = lights_in_view(s, 0, s.size.height);
+        const NamedScene s = mirror_scene(r, true);
+        const LightsInView view = lights_in_view(s, 0, s.size.height, s.line_of_light);
         const vec3 f = s.lights[0].p - s.camera.eye;
         const double pixel = 2 * double(s.camera.tan_half) / s.size.height;
         const double cosine = double(dot(unit(f), s.camera.forward));
@@ -230,7 +230,7 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
 }
 
 TEST_CASE("behind a rough surface it is another kind, and where light is aimed at it is none") {
-    Scene s = mirror_scene(real(0.05));
+    NamedScene s = mirror_scene(real(0.05));
     s.materials[0] = {Material::Kind::rough, {0.5, 0.5, 0.5}, {}, 0, 1, {}, false};
     // With a mirror above, paths go from the floor by the mirror to the light.
     add_material(s, perfect_mirror(), "above");
@@ -249,7 +249,7 @@ TEST_CASE("behind a rough surface it is another kind, and where light is aimed a
 
 TEST_CASE("a thread told by its near misses: it is small in one direction only") {
     // Seen in a mirror, it is met s^2 times as often if it has s^2 times the width.
-    Scene s = mirror_scene(real(0.05));
+    NamedScene s = mirror_scene(real(0.05));
     s.lights.clear(), s.line_of_light = {7};
     s.shapes.pop_back(), s.material_of.pop_back(), s.light_of.pop_back();
     add_quad(s, {real(-0.3), real(0.4), 3}, {0, real(0.002), 0}, {real(0.6), 0, 0}, 1);
@@ -318,7 +318,7 @@ TEST_CASE("films of one picture add up") {
 }
 
 TEST_CASE("many lights share groups, and one near miss in many counts for all") {
-    Scene few = mirror_scene(real(0.02)), many = few;
+    NamedScene few = mirror_scene(real(0.02)), many = few;
     for (int i = 0; i < 999; ++i) add_sphere(many, {real(0.2), 50, 2}, real(1e-6), 1);
     many.line_of_light.resize(1000, 8);
     prepare(many);

@@ -3,7 +3,7 @@
 #include <valarray>
 
 #include "base/approx.h"
-#include "film/png.h"
+#include "text/png.h"
 #include "whole/process.h"
 
 namespace {

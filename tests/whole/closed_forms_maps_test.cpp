@@ -4,8 +4,8 @@
 #include "oracle/expect.h"
 #include "path/samplers.h"
 #include "radiosity/particles.h"
+#include "text/scene_file.h"
 #include "whole/known_scenes.h"
-#include "world/scene_file.h"
 
 using namespace closed_forms;
 
@@ -15,14 +15,14 @@ namespace {
 // scatters at most once.
 struct Endless {
     std::string name;
-    Scene scene;
+    NamedScene scene;
     double truth;
     const Known* known;
 };
 std::vector<Endless> endless_scenes(const std::vector<Known>& rows) {
     std::vector<Endless> list;
     for (const Known& k : rows) {
-        Scene s = parse_scene(k.text, k.name).scene;
+        NamedScene s = parse_scene(k.text, k.name).scene;
         const bool triangles =
             std::none_of(s.shapes.begin(), s.shapes.end(), [](const Shape& x) { return x.r > 0; });
         if (!triangles || s.depth == 0) continue;

@@ -4,8 +4,8 @@
 #include "base/moments.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
+#include "text/scene_file.h"
 #include "whole/known_scenes.h"
-#include "world/scene_file.h"
 
 using namespace closed_forms;
 

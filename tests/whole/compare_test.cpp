@@ -1,9 +1,9 @@
 // whole/compare_test.cpp  comparisons verified by hand, and how programs run other programs
-#include "base/complaint.h"
-#include "base/program.h"
-#include "film/png.h"
 #include "keep/keep.h"
 #include "labs/execute.h"
+#include "text/complaint.h"
+#include "text/png.h"
+#include "text/program.h"
 #include "whole/process.h"
 
 namespace {

@@ -1,8 +1,8 @@
 // whole/extremes_scene_test.cpp  a scene at any place, size and brightness
 #include "oracle/oracle.h"
 #include "path/paths.h"
+#include "text/scene_file.h"
 #include "whole/extremes.h"
-#include "world/scene_file.h"
 
 namespace {
 

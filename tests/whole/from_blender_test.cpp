@@ -1,7 +1,7 @@
 // whole/from_blender_test.cpp  scenes/from_blender.py: a Blender file and a scene written by hand
 #include "course/python.h"
+#include "text/scene_file.h"
 #include "whole/process.h"
-#include "world/scene_file.h"
 
 namespace {
 
@@ -111,7 +111,7 @@ struct Sum {
     double area = 0, volume = 0;
     vec3 mean;
 };
-Sum sum_of(const Scene& s, const std::string& material) {
+Sum sum_of(const NamedScene& s, const std::string& material) {
     Sum sum;
     for (size_t i = 0; i < s.shapes.size(); ++i) {
         const Shape& t = s.shapes[i];
@@ -127,7 +127,7 @@ Sum sum_of(const Scene& s, const std::string& material) {
 }
 
 // By the names of their materials.
-std::map<std::string, Light> lights_of(const Scene& s) {
+std::map<std::string, Light> lights_of(const NamedScene& s) {
     std::map<std::string, Light> lights;
     for (size_t i = 0; i < s.shapes.size(); ++i)
         if (s.light_of[i] != no_light)
@@ -182,8 +182,8 @@ TEST_CASE("a Blender file as a scene: meshes, materials, camera and lamps") {
           "newmtl red_paint\nNi 1.5\nKd 0.96 0.24 0\nKs 0.04 0.04 0.04\nNs 7.5\nKe 0 0 0\n"
           "illum 2\n");
 
-    const Scene wide = read_scene(folder / "wide room.scene").scene,
-                hand = read_scene(folder / "hand.scene").scene;
+    const NamedScene wide = read_scene(folder / "wide room.scene").scene,
+                     hand = read_scene(folder / "hand.scene").scene;
     CHECK(wide.size.width == hand.size.width);
     CHECK(wide.size.height == hand.size.height);
     check_same(wide.camera, hand.camera);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/closed_forms.h"
-#include "base/words.h"
+#include "text/words.h"
 #include "world/shapes.h"
 
 namespace closed_forms {

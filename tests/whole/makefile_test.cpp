@@ -6,8 +6,8 @@
 
 #include <regex>
 
-#include "base/folder.h"
 #include "course/python.h"
+#include "text/folder.h"
 
 namespace {
 

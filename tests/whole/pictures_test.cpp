@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "base/about.h"
-#include "film/png.h"
+#include "text/png.h"
 #include "whole/process.h"
 
 namespace {

@@ -15,8 +15,8 @@
 #include <cstdlib>
 
 #include "base/cases.h"
-#include "base/folder.h"
 #include "keep/read_pfm.h"
+#include "text/folder.h"
 
 using Words = std::vector<std::string>;
 inline Words operator+(Words a, const Words& b) {

@@ -1,7 +1,7 @@
 // whole/radiosity_program_test.cpp  build/radiosity as a user runs it
 #include "base/about.h"
 #include "base/vec.h"
-#include "film/png.h"
+#include "text/png.h"
 #include "whole/process.h"
 
 namespace {

@@ -5,8 +5,8 @@
 
 #include "app/options.h"
 #include "app/refused_words.h"
+#include "text/scene_file.h"
 #include "whole/process.h"
-#include "world/scene_file.h"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "base/folder.h"
 #include "course/python.h"
+#include "text/folder.h"
 
 TEST_CASE("passes" * doctest::skip()) { CHECK(true); }
 TEST_CASE("fails" * doctest::skip()) {

@@ -3,8 +3,8 @@
 
 #include "base/approx.h"
 #include "oracle/expect.h"
+#include "text/scene_file.h"
 #include "world/geometry.h"
-#include "world/scene_file.h"
 
 namespace {
 

@@ -1,8 +1,8 @@
-// world/mesh.h  7  meshes of other programs, if this program was built with src/mesh
+// text/mesh.h  7  meshes of other programs, if this program was built with src/mesh
 #pragma once
 #include <optional>
 
-#include "world/scene.h"
+#include "text/named_scene.h"
 
 // Coordinates are no larger: their fourth powers must neither overflow nor vanish.
 inline constexpr double longest_length = sizeof(real) == 4 ? 1e9 : 1e30;
@@ -27,7 +27,7 @@ struct MeshPlacement {
 namespace mesh {
 struct ObjReader {
     std::vector<std::string> files, warnings;
-    ObjReader(Scene&, const MeshPlacement&, std::optional<uint32_t>, uint32_t, int64_t&) {}
+    ObjReader(NamedScene&, const MeshPlacement&, std::optional<uint32_t>, uint32_t, int64_t&) {}
     void read(const std::string& path) {
         throw UserError(path + ": this program was built without src/mesh");
     }

@@ -1,4 +1,4 @@
-// base/json.h  1  numbers and words for people, and for JSON
+// text/json.h  1  numbers and words for people, and for JSON
 #pragma once
 #include <array>
 #include <cmath>

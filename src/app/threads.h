@@ -1,4 +1,4 @@
-// base/threads.h  1  threads, and signals that ask for an end
+// app/threads.h  1  threads, and signals that ask for an end
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -34,15 +34,18 @@ struct Interrupted {};
 
 // ---- Threads ------------------------------------------------------------------------------------
 
-// Calls work(k) for every k < count from several threads, and meanwhile(fraction done) from this
-// one ten times per second.  Once `interrupted`, it returns false early, with some k left out.
-// Passes on exceptions of work.
-inline bool in_parallel(size_t count, unsigned threads, const std::function<void(size_t)>& work,
-                        const std::function<void(double)>& meanwhile) {
+// Calls work(k, worker) for every k < count from several threads, numbered from 0, and
+// meanwhile(fraction done) from this one ten times per second.  Once `interrupted`, it returns
+// false early, with some k left out.  Passes on exceptions of work.  Where the system has no more
+// threads, those that it has do the work; if it has none, this one.
+inline bool by_workers(size_t count, unsigned threads,
+                       const std::function<void(size_t, unsigned)>& work,
+                       const std::function<void(double)>& meanwhile) {
     std::atomic<size_t> next = 0, done = 0;
-    auto run = [&] {
+    auto run = [&](unsigned worker) {
         try {  // an item that was cut short does not count
-            for (size_t k; !interrupted && (k = next++) < count; done += !interrupted) work(k);
+            for (size_t k; !interrupted && (k = next++) < count; done += !interrupted)
+                work(k, worker);
         } catch (const Interrupted&) {
         } catch (...) {
             next = count;
@@ -50,12 +53,23 @@ inline bool in_parallel(size_t count, unsigned threads, const std::function<void
         }
     };
     std::vector<std::future<void>> workers;
-    for (size_t i = std::min<size_t>(threads, count); i > 0; --i)
-        workers.push_back(std::async(std::launch::async, run));
+    try {
+        for (unsigned i = 0; i < std::min<size_t>(threads, count); ++i)
+            workers.push_back(std::async(std::launch::async, run, i));
+    } catch (const std::system_error&) {
+        if (workers.empty()) run(0);
+    }
     for (auto& worker : workers)
         while (worker.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready)
             meanwhile(double(done) / double(count));
     for (auto& worker : workers) worker.get();  // or throws what it has thrown
     meanwhile(double(done) / double(count));
     return done == count;
+}
+
+// The same for work that does not ask which thread it is in.
+inline bool in_parallel(size_t count, unsigned threads, const std::function<void(size_t)>& work,
+                        const std::function<void(double)>& meanwhile) {
+    return by_workers(
+        count, threads, [&](size_t k, unsigned) { work(k); }, meanwhile);
 }

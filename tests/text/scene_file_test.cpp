@@ -1,20 +1,20 @@
-// world/scene_file_test.cpp  statements of scene files: their effects, and the lines of errors
-#include "world/scene_file.h"
+// text/scene_file_test.cpp  statements of scene files: their effects, and the lines of errors
+#include "text/scene_file.h"
 
 #include <doctest/doctest.h>
 
-#include "base/complaint.h"
+#include "text/complaint.h"
 
 namespace {
 
 const std::string camera = "camera 0 0 5  0 0 0  40\n";
 
-Scene scene_of(const std::string& text) { return parse_scene(camera + text, "a.scene").scene; }
+NamedScene scene_of(const std::string& text) { return parse_scene(camera + text, "a.scene").scene; }
 
 }  // namespace
 
 TEST_CASE("materials are what their statements say") {
-    const Scene s = scene_of(R"(
+    const NamedScene s = scene_of(R"(
 diffuse d  .1 .2 .3       # comment
 phong   p  .1 .2 .3  .4 .5 .6  7
 mirror  m  .7 .8 .9
@@ -48,7 +48,7 @@ sphere 0 0 0  1  d
 }
 
 TEST_CASE("shapes, lights and the rest are what their statements say") {
-    const Scene s = scene_of(R"(
+    const NamedScene s = scene_of(R"(
 size 30 20
 depth 3
 exposure 2
@@ -91,11 +91,11 @@ TEST_CASE("what cannot be is refused, at its line") {
 }
 
 TEST_CASE("the defaults of the grammar are those of a scene that says nothing") {
-    const Scene silent = scene_of("diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
+    const NamedScene silent = scene_of("diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
     for (const Statement& s : grammar) {
         if (s.otherwise.empty()) continue;
         const std::string line = std::string(s.keyword) + " " + std::string(s.otherwise) + "\n";
-        const Scene scene = scene_of(line + "diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
+        const NamedScene scene = scene_of(line + "diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
         CHECK((scene.size.width == silent.size.width && scene.size.height == silent.size.height));
         CHECK(scene.depth == silent.depth);
         CHECK(scene.samples == silent.samples);
@@ -104,7 +104,7 @@ TEST_CASE("the defaults of the grammar are those of a scene that says nothing") 
 }
 
 TEST_CASE("a scene knows the names of its materials and the lines of its shapes and lights") {
-    const Scene s = scene_of(R"(diffuse d 1 1 1
+    const NamedScene s = scene_of(R"(diffuse d 1 1 1
 light l 1 1 1
 box 1 1 1  0  0 0 0  d
 

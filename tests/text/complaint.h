@@ -1,8 +1,8 @@
-// base/complaint.h  the messages of errors
+// text/complaint.h  the messages of errors
 #pragma once
 #include <string>
 
-#include "base/words.h"
+#include "text/words.h"
 
 // Returns the message of the error that `work` throws; "" if it throws none.
 template <class Error = UserError>

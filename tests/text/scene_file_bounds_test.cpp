@@ -1,9 +1,9 @@
-// world/scene_file_bounds_test.cpp  bounds on input: every attack with files of less than 10 kB is
+// text/scene_file_bounds_test.cpp  bounds on input: every attack with files of less than 10 kB is
 // refused, or ends soon
 #include "base/cases.h"
-#include "base/complaint.h"
-#include "base/folder.h"
-#include "world/scene_file.h"
+#include "text/complaint.h"
+#include "text/folder.h"
+#include "text/scene_file.h"
 
 namespace {
 
@@ -54,7 +54,7 @@ TEST_CASE("a mesh of 10 kB that a scene of 25 kB repeats: so many shapes are too
     folder.write("m.obj", many_cornered());
     const size_t once = parsed(folder, before + grey_mesh).scene.shapes.size();
     CHECK(once > 3500);
-    const size_t times = mesh::most_shapes / once + 1;
+    const size_t times = max_shapes / once + 1;
     const std::string why = complaint(folder, repeated(times, grey_mesh)),
                       line = std::to_string(3 + times);
     CHECK(why.starts_with("s.scene:" + line + ": "));

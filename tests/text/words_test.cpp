@@ -1,9 +1,9 @@
-// base/words_test.cpp  numbers, sizes and words in the notation of users
-#include "base/words.h"
+// text/words_test.cpp  numbers, sizes and words in the notation of users
+#include "text/words.h"
 
 #include <doctest/doctest.h>
 
-#include "base/complaint.h"
+#include "text/complaint.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// world/grammar.h  1  the statements of a scene's file: one table
+// text/grammar.h  2  the statements of a scene's file: one table
 //
 // Parsing, messages and the table of reference/scenes.md all follow from `grammar`.
 #pragma once
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/words.h"
+#include "text/words.h"
 
 // One statement a line, keyword first, material last; '#' starts a comment.
 struct Statement {

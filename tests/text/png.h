@@ -1,4 +1,4 @@
-// film/png.h  decodes PNG files
+// text/png.h  decodes PNG files
 #pragma once
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// base/threads_test.cpp  Ctrl-C and other signals, and work by several threads
-#include "base/threads.h"
+// app/threads_test.cpp  Ctrl-C and other signals, and work by several threads
+#include "app/threads.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// film/image_test.cpp  images keep their values and their orientation, in memory and in files
-#include "film/image.h"
+// text/image_file_test.cpp  images keep their values and their orientation, in memory and in files
+#include "text/image_file.h"
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
@@ -7,11 +7,11 @@
 #include <map>
 
 #include "base/cases.h"
-#include "base/complaint.h"
-#include "base/folder.h"
 #include "base/system_calls.h"
-#include "film/png.h"
 #include "film/variegated.h"
+#include "text/complaint.h"
+#include "text/folder.h"
+#include "text/png.h"
 
 TEST_CASE("a fresh image is NaN everywhere, and (x, y) counts from the top left, row by row") {
     Image image(3, 2);

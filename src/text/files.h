@@ -1,4 +1,4 @@
-// base/files.h  2  files: read whole, written whole or not at all
+// text/files.h  2  files: read whole, written whole or not at all
 #pragma once
 #include <fcntl.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/words.h"
+#include "text/words.h"
 
 // What a film is of, for the head of its file.
 struct FilmOf {

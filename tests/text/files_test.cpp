@@ -1,5 +1,5 @@
-// base/files_test.cpp  reading, atomic writing and naming of files
-#include "base/files.h"
+// text/files_test.cpp  reading, atomic writing and naming of files
+#include "text/files.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -8,9 +8,9 @@
 
 #include <csignal>
 
-#include "base/complaint.h"
-#include "base/folder.h"
 #include "base/system_calls.h"
+#include "text/complaint.h"
+#include "text/folder.h"
 
 namespace {
 

@@ -1,17 +1,18 @@
-// world/scene_file.h  9  reading scenes/NAME.scene
+// text/scene_file.h  9  reading scenes/NAME.scene
 #pragma once
 #include <map>
 #include <set>
 
-#include "base/files.h"
-#include "world/grammar.h"
-#include "world/mesh.h"
+#include "path/sampler.h"
+#include "text/files.h"
+#include "text/grammar.h"
+#include "text/mesh.h"
+#include "text/scene_check.h"
 #include "world/prepare.h"
-#include "world/scene_check.h"
 
 // A scene, warnings to its author, and the files that it was read from.
 struct ParsedScene {
-    Scene scene;
+    NamedScene scene;
     std::vector<std::string> warnings, files;
 };
 
@@ -29,13 +30,15 @@ public:
         if (statement.kind == Statement::setting) set(words[0]);
         if (statement.kind == Statement::material) define(words[0]);
         if (statement.kind == Statement::content) add(words[0]);
+        if (scene_.shapes.size() > max_shapes)
+            throw UserError("more than " + std::to_string(max_shapes) + " shapes");
         scene_.line_of.resize(scene_.shapes.size(), line);
         scene_.line_of_light.resize(scene_.lights.size(), line);
     }
 
     // Checks the whole scene.  `name` is the name of the scene's file.
     ParsedScene finish(const std::string& name) {
-        Scene& s = scene_;
+        NamedScene& s = scene_;
         if (!seen_.contains("camera")) throw UserError(name + ": no camera");
         const std::string dropped = "dropped " + counted(s.dropped, "triangle") + " without area";
         if (s.shapes.empty())
@@ -46,12 +49,10 @@ public:
         const std::vector<std::string> moved = Separation(s, name).warnings;
         warnings_.insert(warnings_.end(), moved.begin(), moved.end());
         prepare(s);
-        for (size_t k = 0; k < s.lights.size(); ++k)
-            for (size_t i = 0; s.lights[k].kind == Light::Kind::point && i < s.shapes.size(); ++i)
-                if (lies_on(s.shapes[i], s.facing[i], s.lights[k].p))
-                    throw error_at(name, s.line_of_light[k],
-                                   "this point light lies on the surface of " +
-                                       where(s, uint32_t(i)) + ": move it off");
+        if (const auto on = point_light_on_surface(s))
+            throw error_at(
+                name, s.line_of_light[on->light],
+                "this point light lies on the surface of " + where(s, on->shape) + ": move it off");
         for (const auto& [length, shape] : coarse_lengths(s, !moved.empty()))
             warn(too_coarse(where(s, shape),
                             "ray origins are offset by more than 1 % of this shape's " + length));
@@ -60,10 +61,8 @@ public:
     }
 
 private:
-    static constexpr uint64_t max_depth = 1000000, max_samples = 1 << 20;
-
     const std::filesystem::path folder_;
-    Scene scene_;
+    NamedScene scene_;
     std::vector<std::string> warnings_, files_;  // files: of meshes
     std::map<std::string, uint32_t> material_;   // by name
     std::set<std::string> seen_;                 // statements that stand only once
@@ -79,7 +78,7 @@ private:
         if (keyword == "size") scene_.size = parse_size(words_[1], words_[2]);
         if (keyword == "camera") camera();
         if (keyword == "depth") scene_.depth = int(parse_count(words_[1], 0, max_depth));
-        if (keyword == "samples") scene_.samples = parse_count(words_[1], 1, max_samples);
+        if (keyword == "samples") scene_.samples = parse_count(words_[1], 1, most_samples);
         if (keyword == "exposure") scene_.exposure = positive("exposure");
     }
 

@@ -1,4 +1,4 @@
-// base/words.h  1  user errors, numbers from words, suggestions
+// text/words.h  1  user errors, numbers from words, suggestions
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/vec.h"
 
 // The user's input cannot be used: message for stderr, exit status 2.
 struct UserError : std::runtime_error {
@@ -93,10 +95,7 @@ inline std::string counted(uint64_t n, const std::string& noun) {
     return counted(std::to_string(n), noun);
 }
 
-// Width and height of an image; parse_size rejects large ones before anything is allocated.
-struct Size {
-    int width = 0, height = 0;
-};
+// Rejects large images before anything is allocated.
 inline Size parse_size(std::string_view width, std::string_view height) {
     constexpr uint64_t longest = 1 << 16, most = 1 << 30;
     uint64_t w = parse_count(width, 1, longest), h = parse_count(height, 1, longest);

@@ -1,13 +1,13 @@
-// whole/scene_check_test.cpp  lights in other surfaces, point lights on them, coarse coordinates
-#include "world/scene_check.h"
+// text/scene_check_test.cpp  lights in other surfaces, point lights on them, coarse coordinates
+#include "text/scene_check.h"
 
 #include <doctest/doctest.h>
 
 #include "base/approx.h"
 #include "base/cases.h"
-#include "base/complaint.h"
 #include "path/paths.h"
-#include "world/scene_file.h"
+#include "text/complaint.h"
+#include "text/scene_file.h"
 
 namespace {
 

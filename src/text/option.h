@@ -1,4 +1,4 @@
-// base/option.h  3  a program's options: one table of rows
+// text/option.h  3  a program's options: one table of rows
 //
 // Parsing, --help, suggestions, the first lines of --stats and the tables in reference/ follow from
 // the rows.  A row holds functions that read and write the program's own variables.
@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "base/json.h"
-#include "base/program.h"
-#include "base/words.h"
+#include "text/json.h"
+#include "text/program.h"
+#include "text/words.h"
 
 using Text = std::string_view;
 

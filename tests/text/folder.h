@@ -1,4 +1,4 @@
-// base/folder.h  a temporary folder for a test's files
+// text/folder.h  a temporary folder for a test's files
 #pragma once
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "base/files.h"
+#include "text/files.h"
 
 namespace fs = std::filesystem;
 

@@ -1,4 +1,4 @@
-// base/program.h  2  exit status, version, memory of the machine, and what a run spends
+// text/program.h  2  exit status, version, memory of the machine, and what a run spends
 #pragma once
 #include <cerrno>
 #include <cstdio>
@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "base/vec.h"
-#include "base/words.h"
+#include "text/words.h"
 
 // The exit status of main, after all of stdout is written; throws SystemError if it cannot be.
 inline int finished(int status) {

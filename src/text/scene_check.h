@@ -1,11 +1,12 @@
-// world/scene_check.h  8  hidden problems of a scene: surfaces in one place, hidden lights,
+// text/scene_check.h  8  hidden problems of a scene: surfaces in one place, hidden lights,
 // rounding
 #pragma once
 #include <map>
 #include <set>
 #include <span>
 
-#include "world/scene.h"
+#include "text/named_scene.h"
+#include "text/words.h"
 
 // ---- Surfaces that lie in each other ------------------------------------------------------------
 
@@ -42,7 +43,7 @@ inline bool overlap(const Box& a, const Box& b) {
     return meets;
 }
 
-inline bool may_move(const Scene& s, uint32_t i) {
+inline bool may_move(const NamedScene& s, uint32_t i) {
     return s.light_of[i] != no_light || s.material_at(i).transmits();
 }
 
@@ -55,7 +56,7 @@ public:
     using Pair = std::array<uint32_t, 2>;
     std::vector<Pair> pairs;  // in order, the smaller index first
 
-    Contacts(const Scene& s, const std::string& name, real room = 0)
+    Contacts(const NamedScene& s, const std::string& name, real room = 0)
         : scene_(s), name_(name), room_(room), left_((1 << 28) + 1024 * int64_t(s.shapes.size())) {
         std::vector<Item> items;
         Box movable;
@@ -78,7 +79,7 @@ private:
         bool moves;
     };
     using Items = std::span<Item>;
-    const Scene& scene_;
+    const NamedScene& scene_;
     const std::string& name_;
     const real room_;
     int64_t left_;  // boxes to look at; a test of shapes counts as 16
@@ -115,7 +116,7 @@ private:
         search(a.first(a.size() / 2), b), search(a.subspan(a.size() / 2), b);
     }
     void test(uint32_t i, uint32_t j) {
-        const Scene& s = scene_;
+        const NamedScene& s = scene_;
         if (s.light_of[i] != no_light && s.light_of[i] == s.light_of[j]) return;
         const bool one_face = j < s.line_in_mesh.size() && s.line_in_mesh[i] > 0 &&
                               s.line_in_mesh[i] == s.line_in_mesh[j];
@@ -149,7 +150,7 @@ inline std::string too_coarse(const std::string& shape, const std::string& fact)
 // exchanged without changing a picture, by radius, line and corners: equal triangles of one line
 // are one surface.
 using Order = std::array<real, 13>;
-inline Order order_of(const Scene& s, uint32_t i) {
+inline Order order_of(const NamedScene& s, uint32_t i) {
     const Shape& t = s.shapes[i];
     const Material& m = s.material_at(i);
     if (!m.transmits()) return {real(s.light_of[i] == no_light ? 0 : 1), -real(s.light_of[i])};
@@ -168,7 +169,7 @@ public:
     std::vector<std::string> warnings;  // one for a line
 
     // Throws UserError "NAME:LINE: ..." where there is no room.
-    Separation(Scene& s, const std::string& name)
+    Separation(NamedScene& s, const std::string& name)
         : scene_(s),
           lights_(s.lights.size()),
           pairs_(Contacts(s, name).pairs),
@@ -182,7 +183,7 @@ public:
     }
 
 private:
-    Scene& scene_;
+    NamedScene& scene_;
     const size_t lights_;
     const std::vector<Contacts::Pair> pairs_;
     std::map<uint32_t, std::vector<uint32_t>> touching_;
@@ -254,7 +255,7 @@ private:
 
     // A two-sided light is doubled, with a copy on either side.
     void move() {
-        Scene& s = scene_;
+        NamedScene& s = scene_;
         std::vector<int32_t> back(lights_, no_light);
         for (size_t k = 0; k < lights_; ++k) {
             if (moved_[k] > 0 && s.lights[k].twosided) {
@@ -288,6 +289,29 @@ inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
     return intersect(s, through, shear(n), through.tmax).has_value();
 }
 
+// The first point light that lies on a shape, and the first such shape.  Only lights between the
+// bounds of a shape along the x axis are tested, for which they are sorted.
+struct LightOnShape {
+    size_t light;
+    uint32_t shape;
+};
+inline std::optional<LightOnShape> point_light_on_surface(const Scene& s) {
+    std::vector<size_t> points;
+    for (size_t k = 0; k < s.lights.size(); ++k)
+        if (s.lights[k].kind == Light::Kind::point) points.push_back(k);
+    auto x_of = [&](size_t k) { return s.lights[k].p.x; };
+    std::ranges::stable_sort(points, {}, x_of);
+    std::optional<LightOnShape> first;
+    for (uint32_t i = 0; i < s.shapes.size() && !points.empty(); ++i) {
+        const Box box = bounds(s.shapes[i]);
+        auto k = std::ranges::lower_bound(points, box.lo.x, {}, x_of);
+        for (; k != points.end() && x_of(*k) <= box.hi.x; ++k)
+            if ((!first || *k < first->light) && lies_on(s.shapes[i], s.facing[i], s.lights[*k].p))
+                first = LightOnShape{*k, i};
+    }
+    return first;
+}
+
 // Rays start two errors off a surface (see spawn).  If that is more than a hundredth of a shape, or
 // of its distance to the eye, a light or another shape, images are wrong by several percent.
 inline bool is_coarse(const Shape& s) {
@@ -297,7 +321,8 @@ inline bool is_coarse(const Shape& s) {
 
 // The first shape too near to the middle of x, which is shape `own` or a point: both ways along the
 // normal of a triangle, else along the axes.  A shape within four errors of a triangle touches it.
-inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t own, real reach) {
+inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint32_t own,
+                                   real reach) {
     const vec3 middle = x.is_sphere() ? x.a : (x.a + x.b + x.c) / 3;
     for (size_t k = 0; k < (f.n == vec3{} ? 12 : 2); ++k) {
         vec3 d = k & 1 ? -f.n : f.n;
@@ -313,7 +338,7 @@ inline std::optional<Hit> near_hit(const Scene& s, Shape x, Facing f, uint32_t o
 // Lengths that are too short, one of each kind, with a shape.  Pairs are searched at no
 // more than 2048 shapes: the first of each line, and others; without lights and glass if some were
 // moved.
-inline std::map<std::string, uint32_t> coarse_lengths(const Scene& s, bool moved) {
+inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool moved) {
     std::map<std::string, uint32_t> found;
     const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
     auto look_about = [&](vec3 p, const char* what) {
