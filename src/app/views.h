@@ -30,8 +30,7 @@ inline rgb view_along(const Scene& scene, View view, const Start& at, real far) 
     if (!x) return {};
     if (view == View::depth) return {x->hit.t, x->hit.t, x->hit.t};
     if (view == View::normal) return (x->at.n + vec3{1, 1, 1}) / 2;
-    const Material& m = *x->material;
-    return m.kind == Material::Kind::glass ? rgb{1, 1, 1} : m.kd + m.ks;
+    return x->material->albedo();
 }
 
 // The end of a file's name: "-depth"; "" for radiance.

@@ -14,7 +14,7 @@ std::string room_of(const Scene& s, uint64_t spp) {
     std::string materials, faces;
     for (const Material& m : s.materials)
         materials += text("%s{\"albedo\": %s, \"radiance\": %s}", materials.empty() ? "" : ",\n",
-                          json_of(m.kd), json_of(m.Le));
+                          json_of(m.diffuse()), json_of(m.Le));
     for (size_t i = 0; i < s.shapes.size(); ++i)
         faces += text("%s{\"corners\": [%s, %s, %s], \"material\": %zu}",
                       faces.empty() ? "" : ",\n", json_of(s.shapes[i].a), json_of(s.shapes[i].b),

@@ -6,7 +6,7 @@
 // the options of penumbra, and of reference/radiosity-options.md by those of radiosity.  The
 // statements of a scene's file go to reference/scenes.md.
 #include "labs/page.h"
-#include "text/grammar.h"
+#include "text/scene_file.h"
 
 namespace {
 

@@ -26,7 +26,7 @@ Region region_of(const Scene& scene, int px, int py) {
         if (k == 0) n = met->at.n;
         const Material& m = *met->material;
         lights += m.emits();
-        one += met->at.n == n && !m.is_delta() && !m.emits() && max_of(m.ks) == 0;
+        one += met->at.n == n && !m.is_delta() && !m.emits() && m.albedo() == m.diffuse();
     }
     return lights > 0 && lights < 64 ? light_border : one == 64 ? plain : other;
 }

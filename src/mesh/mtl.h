@@ -108,16 +108,14 @@ struct Mtl {
         Material m;
         m.Le = Le;
         const real scale = albedo() > 1 ? below_one / albedo() : 1;
-        if (is_glass()) {
-            m.kind = Material::Kind::glass;
-            m.ior = ior > 0 ? *ior : real(1.5);
-        } else if (is_mirror()) {
-            m.kind = Material::Kind::mirror;
-            m.ks = ks * scale;
-        } else {
-            m.kd = diffuse() * scale;
-            if (illum > 1) m.ks = ks * scale, m.exponent = exponent;
-        }
+        if (is_glass())
+            m.scattering = Glass(ior > 0 ? *ior : real(1.5));
+        else if (is_mirror())
+            m.scattering = Mirror(ks * scale);
+        else if (illum > 1)
+            m.scattering = Rough(diffuse() * scale, ks * scale, exponent);
+        else
+            m.scattering = Rough(diffuse() * scale);
         return m;
     }
 };

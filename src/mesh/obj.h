@@ -211,8 +211,7 @@ private:
         if (found == mtl_.end()) {
             if (use > 0) note({path_, "material", "not defined", instead}, u.line, u.name);
             if (given_) return *(u.material = given_);
-            Material grey;
-            grey.kd = {0.5, 0.5, 0.5};
+            const Material grey{Rough({0.5, 0.5, 0.5})};
             add_material(scene_, grey, "grey");
         } else {
             const Mtl& m = found->second;

@@ -6,16 +6,17 @@
 
 // ---- Diffuse surfaces only ----------------------------------------------------------------------
 
-inline const char* other_than_diffuse(const Material& m) {
-    if (m.kind == Material::Kind::mirror) return "a mirror";
-    if (m.kind == Material::Kind::glass) return "glass";
-    return max_of(m.ks) > 0 ? "glossy" : nullptr;
+// What a material that is not diffuse is; "": it is diffuse.
+inline std::string other_than_diffuse(const Material& m) {
+    const Rough* rough = m.as<Rough>();
+    if (!rough) return called(m.scattering);
+    return max_of(rough->ks) > 0 ? "glossy" : "";
 }
 
 // Throws UserError "NAME:LINE: ..." about the first shape that is not diffuse.
 inline void check_diffuse(const NamedScene& s, const std::string& name) {
     for (size_t i = 0; i < s.shapes.size(); ++i)
-        if (const char* what = other_than_diffuse(s.materials[s.material_of[i]]))
+        if (const std::string what = other_than_diffuse(s.material_at(uint32_t(i))); !what.empty())
             throw UserError(name + ":" + std::to_string(s.line_of[i]) + ": " + "material " +
                             in_quotes(s.names[s.material_of[i]]) + " is " + what +
                             "; radiosity supports diffuse surfaces only");
@@ -24,7 +25,7 @@ inline void check_diffuse(const NamedScene& s, const std::string& name) {
 // The line of the first shape that absorbs nothing of a channel; 0: none.
 inline uint32_t line_of_white(const NamedScene& s) {
     for (size_t i = 0; i < s.shapes.size(); ++i)
-        if (max_of(s.materials[s.material_of[i]].kd) >= 1) return s.line_of[i];
+        if (max_of(s.materials[s.material_of[i]].diffuse()) >= 1) return s.line_of[i];
     return 0;
 }
 

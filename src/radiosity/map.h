@@ -21,7 +21,9 @@ inline rgb irradiance(const Mesh& mesh, const IlluminationMap& map, const Hit& h
 }
 
 // Albedo of a face, and the radiance that a side of it emits.
-inline rgb albedo(const Scene& s, const Face& f) { return s.materials[s.material_of[f.shape]].kd; }
+inline rgb albedo(const Scene& s, const Face& f) {
+    return s.materials[s.material_of[f.shape]].diffuse();
+}
 inline rgb greatest_albedo(const Scene& s, const Mesh& mesh) {  // per channel
     rgb most;
     for (const Face& f : mesh.faces)
@@ -46,7 +48,7 @@ inline Seen seen_along(const Scene& scene, const Mesh& mesh, const IlluminationM
     const auto x = meet(scene, ray);
     if (!x || x->cos_o == 0) return {};
     const rgb E = irradiance(mesh, map, x->hit, x->cos_o < 0);
-    return {E, emitted(*x->material, x->cos_o) + x->material->kd * E / pi};
+    return {E, emitted(*x->material, x->cos_o) + x->material->diffuse() * E / pi};
 }
 
 // The mean over K x K rays per pixel, on a regular grid: no random numbers.

@@ -81,7 +81,7 @@ uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hi
         }
         // exercise R.2
         hit(*x, power);
-        const rgb rho = x->material->kd;
+        const rgb rho = x->material->diffuse();
         const real all = max_of(rho), survival = all < 1 ? all : white_survival;
         if (u.survival(k) >= survival) {
             balance.absorbed += power;
@@ -127,7 +127,7 @@ public:
             Balance one;
             rgb kept{1, 1, 1};  // part that the surfaces reflect
             b.rays += walk(scene_, u, one, [&](const Vertex& x, rgb power) {
-                kept *= x.material->kd;
+                kept *= x.material->diffuse();
                 const auto [vertex, weight] = between(mesh_, x.hit);
                 for (size_t k = 0; k < 3; ++k)
                     add_to(b.sums[2 * vertex[k] + (x.cos_o < 0)], power * weight[k]);

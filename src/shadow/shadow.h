@@ -46,10 +46,10 @@ inline rgb unshadowed_light(const Light& l, const Surface& x, const Frame& local
 
 inline rgb unshadowed(const Scene& scene, const Material& m, const Surface& x, const Frame& local) {
     rgb sum;
-    if (max_of(m.kd) <= 0) return sum;
+    if (max_of(m.diffuse()) <= 0) return sum;
     for (const Light& l : scene.lights)
         if (has_closed_form(l, x)) sum += unshadowed_light(l, x, local);
-    return m.kd * sum;
+    return m.diffuse() * sum;
 }
 
 // ---- One sample ---------------------------------------------------------------------------------
@@ -62,7 +62,7 @@ inline Shadowed shadowed(const Scene& scene, const Step& e) {
     Shadowed s;
     s.U = unshadowed(scene, *x.material, x.at, x.local);
     if (!d.light || !has_closed_form(*d.light, x.at)) return s;
-    s.w = x.material->kd / pi * d.sample.L * (d.cosine / d.pdf * d.weight);
+    s.w = x.material->diffuse() / pi * d.sample.L * (d.cosine / d.pdf * d.weight);
     if (!d.occluded) s.wV = s.w;
     return s;
 }

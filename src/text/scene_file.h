@@ -1,11 +1,13 @@
-// text/scene_file.h  9  reading scenes/NAME.scene
+// text/scene_file.h  9  reading scenes/NAME.scene: one table of statements, each with its reader
+//
+// Parsing, messages and the table of reference/scenes.md all follow from `grammar`.
 #pragma once
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "path/sampler.h"
 #include "text/files.h"
-#include "text/grammar.h"
 #include "text/mesh.h"
 #include "text/scene_check.h"
 #include "world/prepare.h"
@@ -16,29 +18,48 @@ struct ParsedScene {
     std::vector<std::string> warnings, files;
 };
 
+class SceneReader;
+
+// One statement a line, keyword first, material last; '#' starts a comment.
+struct Statement {
+    enum Kind { setting, material, content } kind;  // a setting stands once
+    std::string_view keyword, words, meaning;
+    void (*read)(SceneReader&);       // reads the words after the keyword, or after NAME
+    std::string_view otherwise = {};  // without it; "": nothing
+    size_t scattering = SIZE_MAX;     // of a material: which kind of Scattering it is
+    std::string_view called = {};     // such a surface is "a mirror"
+};
+inline const Statement& statement_of(const Words& words);
+
 // Reads statements one after the other; every error is a UserError without the line number.
 class SceneReader {
 public:
     // Files are named relative to `folder`.
     explicit SceneReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+    NamedScene scene;
+
     void statement(const Words& words, uint32_t line) {
         words_ = words;
         next_ = 1;
         line_ = line;
         const Statement& statement = statement_of(words);
-        if (statement.kind == Statement::setting) set(words[0]);
-        if (statement.kind == Statement::material) define(words[0]);
-        if (statement.kind == Statement::content) add(words[0]);
-        if (scene_.shapes.size() > max_shapes)
+        if (statement.kind == Statement::setting && !seen_.insert(words[0]).second)
+            throw UserError("a second " + words[0]);
+        if (statement.kind == Statement::material) {
+            name_ = words_[next_++];
+            if (material_.contains(name_)) throw UserError("a second material " + in_quotes(name_));
+        }
+        statement.read(*this);
+        if (scene.shapes.size() > max_shapes)
             throw UserError("more than " + std::to_string(max_shapes) + " shapes");
-        scene_.line_of.resize(scene_.shapes.size(), line);
-        scene_.line_of_light.resize(scene_.lights.size(), line);
+        scene.line_of.resize(scene.shapes.size(), line);
+        scene.line_of_light.resize(scene.lights.size(), line);
     }
 
     // Checks the whole scene.  `name` is the name of the scene's file.
     ParsedScene finish(const std::string& name) {
-        NamedScene& s = scene_;
+        NamedScene& s = scene;
         if (!seen_.contains("camera")) throw UserError(name + ": no camera");
         const std::string dropped = "dropped " + counted(s.dropped, "triangle") + " without area";
         if (s.shapes.empty())
@@ -57,57 +78,10 @@ public:
             warn(too_coarse(where(s, shape),
                             "ray origins are offset by more than 1 % of this shape's " + length));
         if (s.lights.empty()) warn("no light: the image will be black");
-        return {std::move(scene_), std::move(warnings_), std::move(files_)};
+        return {std::move(scene), std::move(warnings_), std::move(files_)};
     }
 
-private:
-    const std::filesystem::path folder_;
-    NamedScene scene_;
-    std::vector<std::string> warnings_, files_;  // files: of meshes
-    std::map<std::string, uint32_t> material_;   // by name
-    std::set<std::string> seen_;                 // statements that stand only once
-    Words words_;
-    size_t next_ = 0;  // word to read
-    uint32_t line_ = 0;
-    int64_t left_ = 1 << 29;  // tests to cut up polygons: about a second
-
-    // ---- Statements ---------------------------------------------------------------------------
-
-    void set(const std::string& keyword) {
-        if (!seen_.insert(keyword).second) throw UserError("a second " + keyword);
-        if (keyword == "size") scene_.size = parse_size(words_[1], words_[2]);
-        if (keyword == "camera") camera();
-        if (keyword == "depth") scene_.depth = int(parse_count(words_[1], 0, max_depth));
-        if (keyword == "samples") scene_.samples = parse_count(words_[1], 1, most_samples);
-        if (keyword == "exposure") scene_.exposure = positive("exposure");
-    }
-
-    void add(const std::string& keyword) {
-        Scene& s = scene_;
-        if (keyword == "pointlight") {
-            vec3 p = point();
-            add_point_light(s, p, colour());
-        } else if (keyword == "sphere") {
-            vec3 centre = point();
-            real r = length_of("radius");
-            add_sphere(s, centre, r, material());
-        } else if (keyword == "triangle") {
-            vec3 a = point(), b = point(), c = point();
-            add_triangle(s, a, b, c, material());
-        } else if (keyword == "quad") {
-            vec3 p = point(), u = point(), v = point();
-            add_quad(s, p, u, v, material());
-        } else if (keyword == "mesh") {
-            mesh();
-        } else {  // box
-            real w = length_of("width"), h = length_of("height"), d = length_of("depth");
-            real degrees = number();
-            vec3 move = point();
-            add_box(s, {w, h, d}, degrees, move, material());
-        }
-    }
-
-    // ---- Words ----------------------------------------------------------------------------------
+    // ---- Words, for the readers of statements ---------------------------------------------------
 
     std::string last() const { return in_quotes(words_[next_ - 1]); }  // word read
     real number(double most = largest_number) { return real(parse_number(words_[next_++], most)); }
@@ -133,14 +107,42 @@ private:
         }
         return c;
     }
+    uint64_t count(uint64_t least, uint64_t most) {
+        return parse_count(words_[next_++], least, most);
+    }
+    Size size() {
+        next_ += 2;
+        return parse_size(words_[next_ - 2], words_[next_ - 1]);
+    }
     uint32_t material() { return look_up(material_, words_[next_++], "material"); }
+
+    // ---- Statements of several steps
+    // --------------------------------------------------------------
+
+    // Gives the name that was read to a material.
+    void define(const Material& m) {
+        if (max_of(m.albedo()) > 1)
+            throw UserError("reflects more than it receives: a channel of the albedo exceeds 1");
+        material_[name_] = uint32_t(scene.materials.size());
+        add_material(scene, m, name_);
+    }
+    void define(const Scattering& scattering) { define(Material{scattering}); }
+
+    void light() {
+        Material m{Rough(), colour()};
+        m.twosided = next_ < words_.size() && words_[next_] == "twosided";
+        next_ += m.twosided;
+        if (next_ < words_.size()) m.scattering = scene.materials[material()].scattering;
+        if (next_ < words_.size()) throw UserError("unknown word " + in_quotes(words_[next_]));
+        define(m);
+    }
 
     void camera() {
         vec3 eye = point(), target = point();
         real fov = number();
         if (!(fov > 0 && fov < 180)) throw UserError("field of view must be between 0 and 180");
-        scene_.camera = look_at(eye, target, fov);
-        if (!is_finite(scene_.camera.right))
+        scene.camera = look_at(eye, target, fov);
+        if (!is_finite(scene.camera.right))
             throw UserError("the camera must look somewhere, and not along y, which is up");
     }
 
@@ -165,7 +167,7 @@ private:
         std::optional<uint32_t> given;
         if (next_ < words_.size()) given = material();
         if (next_ < words_.size()) throw UserError("unknown word " + in_quotes(words_[next_]));
-        mesh::ObjReader reader(scene_, place, given, line_, left_);
+        mesh::ObjReader reader(scene, place, given, line_, left_);
         reader.read(path.string());
         files_.insert(files_.end(), reader.files.begin(), reader.files.end());
         for (const std::string& warning : reader.warnings)
@@ -173,39 +175,125 @@ private:
                 warnings_.push_back(warning);
     }
 
-    // diffuse, phong, mirror, glass, light
-    void define(const std::string& keyword) {
-        const std::string name = words_[next_++];
-        if (material_.contains(name)) throw UserError("a second material " + in_quotes(name));
-        Material m;
-        if (keyword == "diffuse") {
-            m.kd = colour();
-        } else if (keyword == "phong") {
-            m.kd = colour();
-            m.ks = colour();
-            m.exponent = number(1e6);
-            if (m.exponent < 0) throw UserError("the exponent must not be negative");
-        } else if (keyword == "mirror") {
-            m.kind = Material::Kind::mirror;
-            m.ks = colour();
-        } else if (keyword == "glass") {
-            m.kind = Material::Kind::glass;
-            m.ior = positive("index of refraction");
-        } else {
-            const rgb Le = colour();
-            const bool twosided = next_ < words_.size() && words_[next_] == "twosided";
-            next_ += twosided;
-            if (next_ < words_.size()) m = scene_.materials[material()];
-            if (next_ < words_.size()) throw UserError("unknown word " + in_quotes(words_[next_]));
-            m.Le = Le;
-            m.twosided = twosided;
-        }
-        if (max_of(m.kd + m.ks) > 1)
-            throw UserError("reflects more than it receives: a channel of the albedo exceeds 1");
-        material_[name] = uint32_t(scene_.materials.size());
-        add_material(scene_, m, name);
-    }
+private:
+    const std::filesystem::path folder_;
+    std::vector<std::string> warnings_, files_;  // files: of meshes
+    std::map<std::string, uint32_t> material_;   // by name
+    std::set<std::string> seen_;                 // statements that stand only once
+    Words words_;
+    std::string name_;  // of the material that is defined
+    size_t next_ = 0;   // word to read
+    uint32_t line_ = 0;
+    int64_t left_ = 1 << 29;  // tests to cut up polygons: about a second
 };
+
+// ---- The grammar
+// ----------------------------------------------------------------------------------
+
+// The place of a kind among those of Scattering.
+template <class Kind, class... Kinds>
+constexpr size_t place_in(std::type_identity<std::variant<Kinds...>>) {
+    size_t place = 0;
+    (void)((std::is_same_v<Kind, Kinds> || (++place, false)) || ...);
+    return place;
+}
+template <class Kind>
+inline constexpr size_t place_of = place_in<Kind>(std::type_identity<Scattering>{});
+
+inline const Statement grammar[] = {
+    {Statement::setting, "size", "WIDTH HEIGHT", "width and height in pixels, which are square",
+     [](SceneReader& r) { r.scene.size = r.size(); }, "256 128"},
+    {Statement::setting, "camera", "EYE_X EYE_Y EYE_Z  TARGET_X TARGET_Y TARGET_Z  VERTICAL_FOV",
+     "pinhole camera; +y is up; field of view in degrees", [](SceneReader& r) { r.camera(); }},
+    {Statement::setting, "depth", "BOUNCES", "maximum number of bounces; 0: emission only",
+     [](SceneReader& r) { r.scene.depth = int(r.count(0, max_depth)); }, "8"},
+    {Statement::setting, "samples", "PER_PIXEL", "default samples per pixel",
+     [](SceneReader& r) { r.scene.samples = r.count(1, most_samples); }, "64"},
+    {Statement::setting, "exposure", "FACTOR", "factor from radiance to PNG",
+     [](SceneReader& r) { r.scene.exposure = r.positive("exposure"); }, "1"},
+    {Statement::material, "diffuse", "NAME  R G B", "albedo ρ: f = ρ/π",
+     [](SceneReader& r) { r.define(Rough(r.colour())); }},
+    {Statement::material, "phong",
+     "NAME  DIFFUSE_R DIFFUSE_G DIFFUSE_B  LOBE_R LOBE_G LOBE_B  EXPONENT",
+     "f = ρ/π + ρ' (n+2)/(2π) cosⁿ of the angle to the mirror direction",
+     [](SceneReader& r) {
+         const rgb diffuse = r.colour(), lobe = r.colour();
+         const real n = r.number(1e6);
+         if (n < 0) throw UserError("the exponent must not be negative");
+         r.define(Rough(diffuse, lobe, n));
+     }},
+    {Statement::material, "mirror", "NAME  R G B", "reflectance",
+     [](SceneReader& r) { r.define(Mirror(r.colour())); }, "", place_of<Mirror>, "a mirror"},
+    {Statement::material, "glass", "NAME  INDEX_OF_REFRACTION",
+     "smooth dielectric, Fresnel; 1 outside",
+     [](SceneReader& r) { r.define(Glass(r.positive("index of refraction"))); }, "",
+     place_of<Glass>, "glass"},
+    {Statement::material, "light", "NAME  R G B  [twosided] [MATERIAL]",
+     "emits this radiance; reflects like MATERIAL, or not at all",
+     [](SceneReader& r) { r.light(); }},
+    {Statement::content, "pointlight", "X Y Z  R G B", "intensity: radiance × length²",
+     [](SceneReader& r) {
+         const vec3 p = r.point();
+         add_point_light(r.scene, p, r.colour());
+     }},
+    {Statement::content, "sphere", "X Y Z  RADIUS  MATERIAL", "emits outwards",
+     [](SceneReader& r) {
+         const vec3 centre = r.point();
+         const real radius = r.length_of("radius");
+         add_sphere(r.scene, centre, radius, r.material());
+     }},
+    {Statement::content, "triangle", "AX AY AZ  BX BY BZ  CX CY CZ  MATERIAL",
+     "emits on the side of (B−A)×(C−A)",
+     [](SceneReader& r) {
+         const vec3 a = r.point(), b = r.point(), c = r.point();
+         add_triangle(r.scene, a, b, c, r.material());
+     }},
+    {Statement::content, "quad", "X Y Z  UX UY UZ  VX VY VZ  MATERIAL",
+     "a parallelogram: a corner and two edges; emits on the side of U×V",
+     [](SceneReader& r) {
+         const vec3 p = r.point(), u = r.point(), v = r.point();
+         add_quad(r.scene, p, u, v, r.material());
+     }},
+    {Statement::content, "mesh", "FILE.obj  SCALE  X Y Z  [turn DEGREES_ABOUT_Y] [z_up] [MATERIAL]",
+     "polygons, scaled, z made y by `z_up`, rotated about y, moved; MATERIAL is for faces whose "
+     "own "
+     "is missing; FILE is relative to the scene's folder, in quotes if it has blanks",
+     [](SceneReader& r) { r.mesh(); }},
+    {Statement::content, "box", "WIDTH HEIGHT DEPTH  DEGREES_ABOUT_Y  X Y Z  MATERIAL",
+     "axis-aligned with a corner at the origin, then rotated about y and moved; emits outwards",
+     [](SceneReader& r) {
+         const real w = r.length_of("width"), h = r.length_of("height"), d = r.length_of("depth");
+         const real degrees = r.number();
+         const vec3 move = r.point();
+         add_box(r.scene, {w, h, d}, degrees, move, r.material());
+     }},
+};
+
+// What a surface of another kind than Rough is called.
+inline std::string called(const Scattering& scattering) {
+    for (const Statement& s : grammar)
+        if (s.scattering == scattering.index()) return std::string(s.called);
+    return "rough";
+}
+
+// The statement that these words are; throws UserError if there is none, or if they are too few or
+// too many.
+inline const Statement& statement_of(const Words& words) {
+    std::vector<std::string_view> known;
+    for (const Statement& s : grammar) {
+        known.push_back(s.keyword);
+        if (s.keyword != words[0]) continue;
+        size_t least = 0, most = 0;
+        std::istringstream in{std::string(s.words)};
+        bool needed = true;  // those that are not come last
+        for (std::string word; in >> word; ++most) least += needed = needed && word[0] != '[';
+        const size_t found = words.size() - 1;
+        if (found >= least && found <= most) return s;
+        throw UserError("too " + std::string(found < least ? "few" : "many") + " words (" +
+                        std::to_string(found) + "): " + words[0] + " " + std::string(s.words));
+    }
+    throw UserError(unknown("keyword", words[0], known));
+}
 
 // Throws UserError "NAME:LINE: what is wrong".
 inline ParsedScene parse_scene(const std::string& text, const std::string& name) {

@@ -1,34 +1,21 @@
 // world/bsdf.h  2  how light scatters: diffuse, Phong, mirror, glass
 //
 // Local coordinates: z is the surface normal on wo's side, so wo.z > 0.  wo points to the eye, wi
-// to the light, both unit.  eval is f without the cosine (1/sr).
+// to the light, both unit.  A kind of scattering is a struct with
+//   eval      f without the cosine (1/sr); 0 for a delta direction
+//   pdf       density of wi per solid angle over the whole sphere; 0 for a delta direction
+//   sample    a direction wi from three numbers; `outside`: wo is on the side of the surface's own
+//             normal.  A direction below the horizon is kept, with f = 0: dropping it would bias
+//             the estimate.
+//   albedo    the greatest part of light that goes on, per channel
+//   diffuse   pi times the part of f that is the same for all directions
+//   is_delta  it scatters into single directions; transmits: also through the surface
+//   has_choice  a direction takes the third number: for reflection or refraction, lobe or cosine
+//   ior       index of refraction inside, 1 outside
 #pragma once
+#include <variant>
+
 #include "world/warp.h"
-
-// Scattering by a surface, on both of its sides, and its emission.
-struct Material {
-    enum class Kind { rough, mirror, glass } kind = Kind::rough;
-    rgb kd;             // rough: diffuse albedo
-    rgb ks;             // rough: scale of the Phong lobe; mirror: reflectance
-    real exponent = 0;  // of the Phong lobe
-    real ior = 1;       // glass: index of refraction inside, 1 outside
-    rgb Le;             // emitted radiance
-    bool twosided = false;
-
-    bool is_delta() const { return kind != Kind::rough; }  // scatters into single directions
-    bool transmits() const { return kind == Kind::glass; }
-    bool reflects() const { return is_delta() || max_of(kd + ks) > 0; }
-    bool emits() const { return max_of(Le) > 0; }
-    // True if a direction takes a third number: for reflection or refraction, for lobe or cosine.
-    bool has_choice() const {
-        return kind == Kind::glass || (kind == Kind::rough && !(ks == rgb{}));
-    }
-};
-
-// Radiance that a surface emits at an angle to its normal with this cosine.
-inline rgb emitted(const Material& m, real cosine) {
-    return cosine > 0 || m.twosided ? m.Le : rgb{};
-}
 
 // Sampling of directions at diffuse and glossy surfaces.
 enum class Direction {
@@ -47,34 +34,92 @@ struct BsdfSample {
 
 inline vec3 mirrored(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 
+// ---- Kinds of scattering ------------------------------------------------------------------------
+
+// Unless a kind says otherwise.
+struct Opaque {
+    static constexpr bool is_delta = false, transmits = false;
+    static constexpr real ior = 1;
+    bool has_choice() const { return false; }
+    rgb diffuse() const { return {}; }
+};
+
 // f = kd / pi + ks (n+2) / (2 pi) max(0, cos alpha)^n, alpha the angle between wi and the mirror
-// direction (Lafortune, Willems 1994).  Reflects at most kd + ks; reciprocal.  Mirrors and glass:
-// 0.
-inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
-    if (m.is_delta() || wi.z <= 0) return {};
-    if (m.ks == rgb{}) return m.kd * (1 / pi);
-    real cos_alpha = dot(mirrored(wo), wi);
-    real lobe =
-        cos_alpha > 0 ? (m.exponent + 2) / (2 * pi) * portable::pow(cos_alpha, m.exponent) : 0;
-    return m.kd * (1 / pi) + m.ks * lobe;
-}
+// direction (Lafortune, Willems 1994).  Reflects at most kd + ks; reciprocal.
+struct Rough : Opaque {
+    rgb kd;             // diffuse albedo
+    rgb ks;             // scale of the Phong lobe
+    real exponent = 0;  // of the Phong lobe
 
-// Fraction of the samples that follow the Phong lobe rather than the cosine.
-inline real lobe_probability(const Material& m) {
-    if (m.ks == rgb{}) return 0;
-    real d = mean_of(m.kd), s = mean_of(m.ks);
-    return s > 0 ? s / (d + s) : 0;
-}
+    explicit Rough(rgb diffuse_albedo = {}, rgb lobe = {}, real n = 0)
+        : kd(diffuse_albedo), ks(lobe), exponent(n) {}
 
-// Density of wi per solid angle over the whole sphere.  The Phong lobe may reach below the horizon,
-// where eval is 0.  Mirrors and glass: 0.
-inline real pdf(const Material& m, vec3 wo, vec3 wi, Direction direction) {
-    if (m.is_delta()) return 0;
-    if (direction == Direction::uniform) return pdf_uniform_hemisphere(wi.z);
-    real q = lobe_probability(m);
-    real lobe = q > 0 ? pdf_phong_lobe(dot(mirrored(wo), wi), m.exponent) : 0;
-    return (1 - q) * pdf_cosine_hemisphere(wi.z) + q * lobe;
-}
+    rgb albedo() const { return kd + ks; }
+    rgb diffuse() const { return kd; }
+    bool has_choice() const { return !(ks == rgb{}); }
+
+    rgb eval(vec3 wo, vec3 wi) const {
+        if (wi.z <= 0) return {};
+        if (ks == rgb{}) return kd * (1 / pi);
+        real cos_alpha = dot(mirrored(wo), wi);
+        real lobe =
+            cos_alpha > 0 ? (exponent + 2) / (2 * pi) * portable::pow(cos_alpha, exponent) : 0;
+        return kd * (1 / pi) + ks * lobe;
+    }
+
+    // Fraction of the samples that follow the Phong lobe rather than the cosine.
+    real lobe_probability() const {
+        if (ks == rgb{}) return 0;
+        real d = mean_of(kd), s = mean_of(ks);
+        return s > 0 ? s / (d + s) : 0;
+    }
+
+    // The Phong lobe may reach below the horizon, where eval is 0.
+    real pdf(vec3 wo, vec3 wi, Direction direction) const {
+        if (direction == Direction::uniform) return pdf_uniform_hemisphere(wi.z);
+        real q = lobe_probability();
+        real lobe = q > 0 ? pdf_phong_lobe(dot(mirrored(wo), wi), exponent) : 0;
+        return (1 - q) * pdf_cosine_hemisphere(wi.z) + q * lobe;
+    }
+
+    BsdfSample sample(vec3 wo, bool, real u_lobe, vec2 u, Direction direction) const {
+        vec3 wi;
+        if (direction == Direction::uniform)
+            wi = sample_uniform_hemisphere(u);
+        else if (u_lobe < lobe_probability())
+            wi = frame(mirrored(wo)).to_world(sample_phong_lobe(u, exponent));
+        else
+            wi = sample_cosine_hemisphere(u);
+        return {wi, eval(wo, wi), pdf(wo, wi, direction)};
+    }
+};
+
+// Scatters into single directions only.
+struct Delta : Opaque {
+    static constexpr bool is_delta = true;
+    rgb eval(vec3, vec3) const { return {}; }
+    real pdf(vec3, vec3, Direction) const { return 0; }
+};
+
+struct Mirror : Delta {
+    rgb reflectance;
+
+    explicit Mirror(rgb r) : reflectance(r) {}
+    rgb albedo() const { return reflectance; }
+    BsdfSample sample(vec3 wo, bool, real, vec2, Direction) const {
+        return {mirrored(wo), reflectance / wo.z, 1};
+    }
+};
+
+struct Glass : Delta {
+    static constexpr bool transmits = true;
+    real ior;
+
+    explicit Glass(real index) : ior(index) {}
+    rgb albedo() const { return {1, 1, 1}; }
+    bool has_choice() const { return true; }
+    BsdfSample sample(vec3 wo, bool outside, real u_lobe, vec2, Direction) const;
+};
 
 // exercise 3.6
 // Reflectance of a smooth dielectric for unpolarised light (Fresnel); eta = n_i / n_t, cosines of
@@ -87,7 +132,7 @@ inline real fresnel(real cos_i, real cos_t, real eta) {
 
 // Reflects with probability Fresnel, else refracts (Snell).  Radiance grows with the square of the
 // index: eta^2 when it leaves the medium of wi for that of wo (Veach 1997, sec. 5.2).
-inline BsdfSample sample_glass(const Material& m, vec3 wo, bool outside, real u) {
+inline BsdfSample sample_glass(const Glass& m, vec3 wo, bool outside, real u) {
     real eta = outside ? 1 / m.ior : m.ior;
     real cos2_t = (1 - eta) * (1 + eta) + sqr(eta * wo.z);  // 1 - eta^2 sin^2, grazing, too
     real cos_t = cos2_t > 0 ? std::sqrt(cos2_t) : 0;
@@ -101,18 +146,62 @@ inline BsdfSample sample_glass(const Material& m, vec3 wo, bool outside, real u)
 }
 // end
 
-// A direction wi from three numbers; `outside`: wo is on the side of the surface's own normal.  A
-// direction below the horizon is kept, with f = 0: dropping it would bias the estimate.
+inline BsdfSample Glass::sample(vec3 wo, bool outside, real u_lobe, vec2, Direction) const {
+    return sample_glass(*this, wo, outside, u_lobe);
+}
+
+using Scattering = std::variant<Rough, Mirror, Glass>;
+
+// ---- Materials ----------------------------------------------------------------------------------
+
+// Scattering by a surface, on both of its sides, and its emission.
+struct Material {
+    Scattering scattering = Rough();
+    rgb Le = {};            // emitted radiance
+    bool twosided = false;  // emits on both sides
+
+    // This kind of scattering, or null if it is another.
+    template <class Kind>
+    const Kind* as() const {
+        return std::get_if<Kind>(&scattering);
+    }
+    // What its kind of scattering answers.
+    decltype(auto) ask(auto question) const { return std::visit(question, scattering); }
+
+    bool is_delta() const {
+        return ask([](const auto& s) { return s.is_delta; });
+    }
+    bool transmits() const {
+        return ask([](const auto& s) { return s.transmits; });
+    }
+    bool has_choice() const {
+        return ask([](const auto& s) { return s.has_choice(); });
+    }
+    real ior() const {
+        return ask([](const auto& s) -> real { return s.ior; });
+    }
+    rgb albedo() const {
+        return ask([](const auto& s) { return s.albedo(); });
+    }
+    rgb diffuse() const {
+        return ask([](const auto& s) { return s.diffuse(); });
+    }
+    bool reflects() const { return is_delta() || max_of(albedo()) > 0; }
+    bool emits() const { return max_of(Le) > 0; }
+};
+
+// Radiance that a surface emits at an angle to its normal with this cosine.
+inline rgb emitted(const Material& m, real cosine) {
+    return cosine > 0 || m.twosided ? m.Le : rgb{};
+}
+
+inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
+    return m.ask([&](const auto& s) { return s.eval(wo, wi); });
+}
+inline real pdf(const Material& m, vec3 wo, vec3 wi, Direction direction) {
+    return m.ask([&](const auto& s) { return s.pdf(wo, wi, direction); });
+}
 inline BsdfSample sample(const Material& m, vec3 wo, bool outside, real u_lobe, vec2 u,
                          Direction direction) {
-    if (m.kind == Material::Kind::mirror) return {mirrored(wo), m.ks / wo.z, 1};
-    if (m.kind == Material::Kind::glass) return sample_glass(m, wo, outside, u_lobe);
-    vec3 wi;
-    if (direction == Direction::uniform)
-        wi = sample_uniform_hemisphere(u);
-    else if (u_lobe < lobe_probability(m))
-        wi = frame(mirrored(wo)).to_world(sample_phong_lobe(u, m.exponent));
-    else
-        wi = sample_cosine_hemisphere(u);
-    return {wi, eval(m, wo, wi), pdf(m, wo, wi, direction)};
+    return m.ask([&](const auto& s) { return s.sample(wo, outside, u_lobe, u, direction); });
 }

@@ -15,12 +15,9 @@ Scene scene;  // the one that was asked for last
 
 // 13 numbers: kind, kd, ks, exponent, ior, Le, whether two-sided.
 Material material_of(In x) {
-    Material m;
-    m.kind = Material::Kind(int(x[0]));
-    m.kd = vec3_of(x, 1), m.ks = vec3_of(x, 4);
-    m.exponent = real(x[7]), m.ior = real(x[8]);
-    m.Le = vec3_of(x, 9), m.twosided = x[12] != 0;
-    return m;
+    const Scattering kinds[] = {Rough(vec3_of(x, 1), vec3_of(x, 4), real(x[7])),
+                                Mirror(vec3_of(x, 4)), Glass(real(x[8]))};
+    return {kinds[size_t(x[0])], vec3_of(x, 9), x[12] != 0};
 }
 
 // 23 numbers: 0 and a centre and a radius, or 1 and a corner and two edges, or 2 and the place and
@@ -133,10 +130,7 @@ Out likelihood(In x) {
 }
 
 Out glass(In x) {
-    Material m;
-    m.kind = Material::Kind::glass;
-    m.ior = real(x[0]);
-    const BsdfSample b = sample_glass(m, vec3_of(x, 3), x[1] != 0, real(x[2]));
+    const BsdfSample b = sample_glass(Glass(real(x[0])), vec3_of(x, 3), x[1] != 0, real(x[2]));
     return row(b.wi, b.f, b.pdf);
 }
 

@@ -12,11 +12,7 @@ namespace {
 
 rgb colour_of(In x, size_t at) { return course::vec3_of(x, at); }
 
-Material diffuse(rgb albedo, rgb radiance) {
-    Material m;
-    m.kd = albedo, m.Le = radiance;
-    return m;
-}
+Material diffuse(rgb albedo, rgb radiance) { return {Rough(albedo), radiance}; }
 
 // The inside of a box of 2 x 3 x 1 whose walls are alike; with a lamp, only the ceiling y = 3
 // emits.  A triangle may hang in it.

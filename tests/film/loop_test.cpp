@@ -418,6 +418,8 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
 TEST_CASE("progress is shown in samples per pixel, now and at the end, if that is known") {
     Film film = film_of({5, 5}, 3);
     Watch watch;
+    watch.for_each = by_workers;
+    watch.interrupted = [] { return interrupted != 0; };
     std::vector<std::pair<double, double>> shown;
     watch.elapsed = [] { return 1.0; };
     watch.show = [&](double now, double end) { shown.push_back({now, end}); };

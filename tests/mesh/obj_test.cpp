@@ -106,7 +106,8 @@ TEST_CASE("what others write and Penumbra has not is told once, with its count a
           Told{"good.mtl: 1 material is defined twice, first 'red' at line 11: the first counts",
                "good.mtl: 5 statements are not used, first 'Kd' at line 1",
                "good.mtl: 2 textures are not used, first 'map_Kd' at line 5"});
-    CHECK(scene_with(folder, red + corners + "f 1 2 3\n").materials.back().kd == rgb{1, 0, 0});
+    CHECK(scene_with(folder, red + corners + "f 1 2 3\n").materials.back().diffuse() ==
+          rgb{1, 0, 0});
     folder.write("private.mtl", "root:x:0\n");  // what is no library is not shown
     CHECK(warnings(folder, "mtllib private.mtl\n" + corners + "f 1 2 3\n") ==
           Told{"private.mtl: 1 statement is not used, first at line 1"});
@@ -125,7 +126,7 @@ TEST_CASE("what others write and Penumbra has not is told once, with its count a
     // What is no number changes nothing.
     folder.write("bad.mtl", "newmtl a\nKd .1 .2 .3\nKd nan nan nan\nNs 1.#INF\nd x\nKd 1e39 0 0\n");
     const std::string bad = "mtllib bad.mtl\nusemtl a\n" + corners + "f 1 2 3\n";
-    CHECK(scene_with(folder, bad).materials.back().kd == rgb{real(.1), real(.2), real(.3)});
+    CHECK(scene_with(folder, bad).materials.back().diffuse() == rgb{real(.1), real(.2), real(.3)});
     CHECK(warnings(folder, bad) ==
           Told{"bad.mtl: 4 statements are not used, first 'Kd' at line 3"});
     // Materials that would be black or opaque in silence.
@@ -133,7 +134,7 @@ TEST_CASE("what others write and Penumbra has not is told once, with its count a
                  "newmtl a\nmap_Kd a.png\nnewmtl b\nKd .2\nd .1\nNi 1\nnewmtl c\nKe 1\n");
     const std::string odd =
         "mtllib odd.mtl\n" + corners + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n";
-    CHECK(scene_with(folder, odd).materials[1].kd == rgb{.5, .5, .5});
+    CHECK(scene_with(folder, odd).materials[1].diffuse() == rgb{.5, .5, .5});
     const std::vector<std::string> all = warnings(folder, odd);
     REQUIRE(all.size() > 2);
     CHECK(all[0] == "m.obj: 1 material is opaque, first 'b' at line 8: d or Tr without Ni above 1");
@@ -175,7 +176,7 @@ TEST_CASE("faces whose material is missing have the mesh line's, or are grey") {
     // A library may follow.
     const NamedScene later = scene_with(folder, faces + "mtllib m.mtl\n", "1 0 0 0");
     CHECK(names(later).back() == "red");
-    CHECK(later.materials[later.material_of[0]].kd == rgb{0.5, 0.5, 0.5});
+    CHECK(later.materials[later.material_of[0]].diffuse() == rgb{0.5, 0.5, 0.5});
     CHECK(warnings(folder, faces + "mtllib m.mtl\n", "1 0 0 0") ==
           Told{"m.obj: 2 faces are without material, first at line 5: 'grey' is used",
                "m.obj: 2 materials are not defined, first 'Default' at line 6: 'grey' is used"});
@@ -221,7 +222,10 @@ TEST_CASE(
 
 TEST_CASE("MTL: diffuse, Phong, mirror and glass, none of an albedo above 1") {
     const Folder folder;
-    using Kind = Material::Kind;
+    auto is_rough = [](const Material& m, rgb kd, rgb ks, real exponent) {
+        const Rough* r = m.as<Rough>();
+        return r && r->kd == kd && r->ks == ks && r->exponent == exponent;
+    };
     auto read = [&](const std::string& lines) {
         folder.write("m.mtl", "newmtl a\n" + lines);
         return scene_with(folder, "mtllib m.mtl\nusemtl a\n" + corners + "f 1 2 3\n")
@@ -231,44 +235,42 @@ TEST_CASE("MTL: diffuse, Phong, mirror and glass, none of an albedo above 1") {
         return warnings(folder, "mtllib m.mtl\nusemtl a\n" + corners + "f 1 2 3\n");
     };
     Material m = read("Kd .5\n");
-    CHECK((m.kind == Kind::rough && m.kd == rgb{.5, .5, .5} && m.ks == rgb{} && m.ior == 1));
+    CHECK(is_rough(m, {.5, .5, .5}, {}, 0));
     m = read("Kd .1 .2 .3\nKs .4 .5 .6\nNs 20\nillum 1\n");  // no highlight
-    CHECK((m.kd == rgb{real(.1), real(.2), real(.3)} && m.ks == rgb{}));
+    CHECK(is_rough(m, {real(.1), real(.2), real(.3)}, {}, 0));
     for (const char* illum : {"", "illum 2\n"}) {
         m = read("Kd .1 .2 .3\nKs .4 .5 .6\nNs 20\n" + std::string(illum));
-        CHECK((m.kind == Kind::rough && m.ks == rgb{real(.4), real(.5), real(.6)} &&
-               m.exponent == 20));
+        CHECK(is_rough(m, {real(.1), real(.2), real(.3)}, {real(.4), real(.5), real(.6)}, 20));
     }
     CHECK(told().empty());
-    CHECK(read("Ks .1\nNs -3\n").exponent == 0);
-    CHECK(read("Kd .1 -.001 .3\n").kd == rgb{real(.1), 0, real(.3)});
+    CHECK(read("Ks .1\nNs -3\n").as<Rough>()->exponent == 0);
+    CHECK(read("Kd .1 -.001 .3\n").diffuse() == rgb{real(.1), 0, real(.3)});
     for (const char* illum : {"3", "5"}) {
         m = read("Ks .95 .9 .8\nNs 1000\nillum " + std::string(illum) + "\n");
-        CHECK((m.kind == Kind::mirror && m.ks == rgb{real(.95), real(.9), real(.8)} &&
-               m.kd == rgb{}));
+        CHECK((m.as<Mirror>() && m.albedo() == rgb{real(.95), real(.9), real(.8)}));
         m = read("Kd .5\nillum " + std::string(illum) + "\n");  // a mirror that reflects nothing
-        CHECK((m.kind == Kind::rough && m.kd == rgb{.5, .5, .5}));
+        CHECK(is_rough(m, {.5, .5, .5}, {}, 0));
     }
     for (const char* glass : {"illum 4\n", "illum 6\n", "illum 7\n", "illum 9\n", "d .1\n",
                               "Tr .9\n", "d 0\nTr 1\n", "d .1\nillum 2\n"}) {
         m = read("Kd .5\nNi 1.3\n" + std::string(glass));
         INFO(glass);
-        CHECK((m.kind == Kind::glass && m.ior == real(1.3) && m.kd == rgb{}));
+        CHECK((m.as<Glass>() && m.ior() == real(1.3)));
     }
-    CHECK(read("illum 7\n").ior == 1.5);
+    CHECK(read("illum 7\n").ior() == 1.5);
     // d counts, not Tr, which some programs write for opacity; what only fades is opaque.
     for (const char* opaque :
          {"Ni 1.3\nd 1\nTr 1\n", "Ni 1.3\nTr 1\nd 1\n", "Ni 1.3\n", "d .5\n", "d .5\nNi 1\n"})
-        CHECK(read("Kd .5\n" + std::string(opaque)).kind == Kind::rough);
+        CHECK(read("Kd .5\n" + std::string(opaque)).as<Rough>());
     m = read("Kd 2 1 .5\n");
-    CHECK(max_of(m.kd) <= 1);
-    CHECK(double(m.kd.z) == doctest::Approx(.25));
+    CHECK(max_of(m.diffuse()) <= 1);
+    CHECK(double(m.diffuse().z) == doctest::Approx(.25));
     CHECK(told() ==
           Told{"m.obj: 1 material is too bright, first 'a' at line 2: scaled to an albedo of 1"});
     m = read("Kd .8\nKs .8 .4 .4\nNs 9\n");
-    CHECK(max_of(m.kd + m.ks) <= 1);
-    CHECK(double(m.ks.y) == doctest::Approx(.25));
-    CHECK(read("Ks 3\nillum 3\n").ks.x <= 1);
+    CHECK(max_of(m.albedo()) <= 1);
+    CHECK(double(m.as<Rough>()->ks.y) == doctest::Approx(.25));
+    CHECK(read("Ks 3\nillum 3\n").albedo().x <= 1);
     CHECK(read("Ke 3 4 5\nKd .5\n").Le == rgb{3, 4, 5});
     CHECK(told().empty());
 }
@@ -333,8 +335,8 @@ TEST_CASE("a mesh is scaled, then moved; a material of its own goes before the s
     REQUIRE(scene.shapes.size() == 3);
     REQUIRE(scene.material_of.size() == 3);
     CHECK(scene.shapes[0].c == vec3{12, 22, 30});
-    CHECK(scene.materials[scene.material_of[0]].kd == rgb{0.5, 0.5, 0.5});
-    CHECK(scene.materials[scene.material_of[1]].kd == rgb{real(0.1), real(0.2), real(0.3)});
+    CHECK(scene.materials[scene.material_of[0]].diffuse() == rgb{0.5, 0.5, 0.5});
+    CHECK(scene.materials[scene.material_of[1]].diffuse() == rgb{real(0.1), real(0.2), real(0.3)});
     REQUIRE(scene.lights.size() == 1);  // the square is one light
     CHECK(scene.lights[0].kind == Light::Kind::quad);
     CHECK(scene.lights[0].L == rgb{4, 5, 6});
@@ -380,7 +382,7 @@ TEST_CASE("cornell36 by statements and as OBJ are the same shapes, materials and
     for (size_t i = 0; i < a.shapes.size(); ++i) {
         CHECK((a.shapes[i].a == b.shapes[i].a && a.shapes[i].b == b.shapes[i].b &&
                a.shapes[i].c == b.shapes[i].c));
-        CHECK(a.materials[a.material_of[i]].kd == b.materials[b.material_of[i]].kd);
+        CHECK(a.materials[a.material_of[i]].diffuse() == b.materials[b.material_of[i]].diffuse());
         CHECK(a.light_of[i] == b.light_of[i]);
     }
     CHECK(b.lights.size() == 1);

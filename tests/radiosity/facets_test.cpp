@@ -141,7 +141,8 @@ sphere 0 9 0  1  b
         const Light& l = f.lights[size_t(k)];
         ++shapes_of[size_t(k)];
         CHECK(l.L == m.Le);
-        CHECK(m.kd == (f.line_of[i] == 6 || f.line_of[i] == 10 ? rgb{} : s.materials[0].kd));
+        CHECK(m.diffuse() ==
+              (f.line_of[i] == 6 || f.line_of[i] == 10 ? rgb{} : s.materials[0].diffuse()));
         CHECK(l.twosided == m.twosided);
         CHECK(f.line_of_light[size_t(k)] == f.line_of[i]);
         const bool quad = f.line_of[i] == 7;

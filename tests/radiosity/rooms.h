@@ -9,9 +9,7 @@ inline constexpr SamplerKind all_samplers[] = {SamplerKind::independent, Sampler
                                                SamplerKind::halton, SamplerKind::sobol};
 
 inline Material diffuse(rgb kd, rgb Le = {}, bool twosided = false) {
-    Material m;
-    m.kd = kd, m.Le = Le, m.twosided = twosided;
-    return m;
+    return {Rough(kd), Le, twosided};
 }
 inline rgb grey(double x) { return {real(x), real(x), real(x)}; }
 

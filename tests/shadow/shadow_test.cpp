@@ -49,7 +49,7 @@ Receiver receiver(const std::string& statements, vec3 n = {0, 1, 0}) {
     r.scene = parse_scene(before + statements, "test").scene;
     r.x = {{0, 0, 0}, unit(n), 0};
     r.local = frame(r.x.n);
-    r.material.kd = {0.5, 0.25, 0.125};
+    r.material.scattering = Rough({0.5, 0.25, 0.125});
     return r;
 }
 
@@ -172,8 +172,7 @@ TEST_CASE("direct: the knife edge by four estimators") {
 TEST_CASE("direct: parts add up to the plain sample, lobes and point lights among them") {
     Receiver r =
         receiver(std::string(many) + "quad -2 0.7 -2  2.1 0 0  0 0 4  black\n", {0, 1, 0.2});
-    r.material.ks = {real(0.25), real(0.5), real(0.125)};
-    r.material.exponent = 3;
+    r.material.scattering = Rough(r.material.diffuse(), {real(0.25), real(0.5), real(0.125)}, 3);
     int lobes = 0, shadows = 0;
     for (uint64_t i = 0; i < 500; ++i) {
         const DirectLight d = r.sample(i).direct;
@@ -184,7 +183,7 @@ TEST_CASE("direct: parts add up to the plain sample, lobes and point lights amon
         if (!d.light) continue;
         const bool known = has_closed_form(*d.light, r.x);
         const vec3 wi = r.local.to_local(d.sample.wi);
-        const rgb f = eval(r.material, {0, 0, 1}, wi) - (known ? r.material.kd / pi : rgb{});
+        const rgb f = eval(r.material, {0, 0, 1}, wi) - (known ? r.material.diffuse() / pi : rgb{});
         const rgb rest = d.occluded ? rgb{} : f * d.sample.L * (wi.z / d.pdf);
         CHECK(double(max_abs(d.L - s.wV - rest)) <= 8 * double(ulp) * double(max_abs(d.L)));
     }
@@ -209,11 +208,11 @@ TEST_CASE("direct: what has no closed form stays as sampled") {
     // The receiver sees the back of a light, or it has no diffuse part.
     CHECK(receiver("light lamp 1 1 1\nquad -1 1 -1  0 0 2  2 0 0  lamp\n").has_none());
     Receiver gloss = receiver(sphere_at(30)), mirror = gloss, dark = gloss;
-    gloss.material = {Material::Kind::rough, {}, {1, 1, 1}, 5, 1, {}, false};
+    gloss.material = {Rough({}, {1, 1, 1}, 5)};
     CHECK(gloss.has_none());
     CHECK(max_of(gloss.sample(0).direct.L) > 0);
     // Mirrors and paths without scattering have no unshadowed term.
-    mirror.material.kind = Material::Kind::mirror;
+    mirror.material.scattering = Mirror({1, 1, 1});
     CHECK(mirror.shadowed_sample(0).U == rgb{});
     CHECK(dark.shadowed_sample(0).U.x > 0);
     dark.scene.depth = 0;

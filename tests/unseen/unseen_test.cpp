@@ -39,7 +39,7 @@ real slender(const Light& l) {
     return l.kind == Light::Kind::sphere ? 1 : edge * edge * l.pdf_area;
 }
 
-Material perfect_mirror() { return {Material::Kind::mirror, {}, {1, 1, 1}, 0, 1, {}, false}; }
+Material perfect_mirror() { return {Mirror({1, 1, 1})}; }
 
 // A mirror as the floor, a ball light above it outside the view, a black wall behind.
 NamedScene mirror_scene(real r, bool direct = false) {
@@ -180,8 +180,8 @@ TEST_CASE("near misses tell the light that is met, at every growth") {
 }
 
 TEST_CASE("a film sums near misses by replications and weights, whatever the threads") {
-    const Scene s = mirror_scene(real(0.3), true);
-    const Witness witness(s, {}, 0, 8);
+    const NamedScene s = mirror_scene(real(0.3), true);
+    const Witness witness(s, {}, 0, 8, s.line_of_light);
     REQUIRE(!witness.noisy().empty());
     const Pattern pattern{SamplerKind::independent, seed_here()};
     // The other kind holds 1 / (K w) for each sample.
@@ -231,7 +231,7 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
 
 TEST_CASE("behind a rough surface it is another kind, and where light is aimed at it is none") {
     NamedScene s = mirror_scene(real(0.05));
-    s.materials[0] = {Material::Kind::rough, {0.5, 0.5, 0.5}, {}, 0, 1, {}, false};
+    s.materials[0] = {Rough({0.5, 0.5, 0.5})};
     // With a mirror above, paths go from the floor by the mirror to the light.
     add_material(s, perfect_mirror(), "above");
     add_quad(s, {-9, 3, -9}, {18, 0, 0}, {0, 0, 18}, 2);
@@ -241,7 +241,7 @@ TEST_CASE("behind a rough surface it is another kind, and where light is aimed a
     CHECK(c(e, 1, 4) > 0);
     for (size_t k = 0; k < growths; ++k) CHECK((c(e, 0, k) == 0 && c(e, 2, k) == 0));
     // A narrow lobe is a way of its own: it says nothing of what mirrors show.
-    s.materials[2] = {Material::Kind::rough, {}, {1, 1, 1}, 1000, 1, {}, false};
+    s.materials[2] = {Rough({}, {1, 1, 1}, 1000)};
     const auto gloss = misses_of(s, {}, 2000);
     CHECK(c(gloss, 2, 4) > 0);
     for (size_t k = 0; k < growths; ++k) CHECK((c(gloss, 0, k) == 0 && c(gloss, 1, k) == 0));

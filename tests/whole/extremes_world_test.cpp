@@ -264,14 +264,13 @@ struct Lobe {
     double density = 0, weight = 0;
 };
 Lobe grazing_lobe() {
-    Material m;
-    m.ks = {1, 1, 1}, m.exponent = real(1e5);
+    const Material m{Rough({}, {1, 1, 1}, real(1e5))};
     const real z = real(1e-6);
     const vec3 wo{std::sqrt(1 - z * z), 0, z};
     Worst density, weight;
     each_cell(64, [&](vec2 u) {
         const BsdfSample s = sample(m, wo, true, 0, u, Direction::bsdf);
-        const big n = m.exponent;
+        const big n = m.as<Rough>()->exponent;
         density.see(relative(s.pdf, (n + 1) / (2 * big_pi) * std::pow(1 - big(u.x), n / (n + 1))));
         if (s.wi.z > 0) weight.see(relative(s.f.x * (s.wi.z / s.pdf), (n + 2) / (n + 1) * s.wi.z));
     });
@@ -280,11 +279,7 @@ Lobe grazing_lobe() {
 
 // ---- Glass --------------------------------------------------------------------------------------
 
-Material glass(real ior) {
-    Material m;
-    m.kind = Material::Kind::glass, m.ior = ior;
-    return m;
-}
+Material glass(real ior) { return {Glass(ior)}; }
 vec3 at_cosine(real z) { return {std::sqrt((1 - z) * (1 + z)), 0, z}; }
 
 // The reflectance of sample_glass against Fresnel's in long double.

@@ -9,9 +9,9 @@ namespace {
 using std::numbers::pi_v;
 
 Material rough(real kd, real ks, real exponent) {
-    return {Material::Kind::rough, {kd, kd, kd}, {ks, ks, ks}, exponent, 1, {}, false};
+    return {Rough({kd, kd, kd}, {ks, ks, ks}, exponent)};
 }
-Material glass(real ior) { return {Material::Kind::glass, {}, {}, 0, ior, {}, false}; }
+Material glass(real ior) { return {Glass(ior)}; }
 
 // A direction at the given cosine; `cosines` has normal, oblique and grazing ones.
 vec3 at_cosine(real z) { return spherical(z, std::sqrt((1 - z) * (1 + z)), real(0.7)); }
@@ -22,7 +22,7 @@ constexpr real cosines[] = {1, real(0.6), real(0.05), real(1e-3)};
 double albedo(const Material& m, vec3 wo) {
     oracle::Sphere f;
     f.fit({}, oracle::point(mirrored(wo)));
-    const double precise = single ? std::max(1e-5, double(m.exponent * ulp)) : 1e-9;
+    const double precise = single ? std::max(1e-5, double(m.as<Rough>()->exponent * ulp)) : 1e-9;
     const int depth = single ? 13 : 24;
     auto ring = [&](double theta) {
         auto along = [&](double phi) {
@@ -105,21 +105,20 @@ TEST_CASE("rough surfaces are reciprocal: f(wo, wi) = f(wi, wo), and black from 
 }
 
 TEST_CASE("lobes are chosen in proportion to ks and kd") {
-    CHECK(lobe_probability(rough(real(0.25), real(0.75), 5)) == real(0.75));
-    CHECK(lobe_probability(rough(real(0.5), 0, 5)) == 0);
-    CHECK(lobe_probability(rough(0, real(0.1), 5)) == 1);
-    CHECK(lobe_probability(rough(0, 0, 5)) == 0);
+    CHECK(rough(real(0.25), real(0.75), 5).as<Rough>()->lobe_probability() == real(0.75));
+    CHECK(rough(real(0.5), 0, 5).as<Rough>()->lobe_probability() == 0);
+    CHECK(rough(0, real(0.1), 5).as<Rough>()->lobe_probability() == 1);
+    CHECK(rough(0, 0, 5).as<Rough>()->lobe_probability() == 0);
 }
 
 TEST_CASE("mirrors: wi = (-x, -y, z), f cos / pdf = the reflectance, eval and pdf are 0") {
-    Material m;
-    m.kind = Material::Kind::mirror;
-    m.ks = {real(0.25), real(0.5), real(0.75)};
+    const rgb reflectance{real(0.25), real(0.5), real(0.75)};
+    const Material m{Mirror(reflectance)};
     for (real z : cosines) {
         const vec3 wo = at_cosine(z);
         const BsdfSample s = sample(m, wo, true, 0, {}, Direction::bsdf);
         CHECK(s.wi == vec3{-wo.x, -wo.y, wo.z});
-        CHECK(max_abs(s.f * (s.wi.z / s.pdf) - m.ks) <= 2 * ulp);
+        CHECK(max_abs(s.f * (s.wi.z / s.pdf) - reflectance) <= 2 * ulp);
         CHECK(max_of(eval(m, wo, s.wi)) == 0);
         CHECK(pdf(m, wo, s.wi, Direction::bsdf) == 0);
     }
