@@ -1,4 +1,31 @@
-// bugs/ospray_quad.cpp  OSPRay: a quad light is sampled by cosine, and evaluated as if it was not
+// bugs/ospray.cpp  bugs of OSPRay
+#include "bug.h"
+
+#ifdef ospray_head_on
+// OSPRay: glass seen head on has no direction
+//
+// source: RenderKit/ospray 3be5b5d0ff3dbba015b33bbc96eb19284ea2628d modules/cpu/render/bsdfs/RobustDielectric.ih
+// cut: /^struct RefractionResult/,/^};/
+// cut: /^inline RefractionResult RefractionDirection(/,/^}/
+// repair: s/cos1_abs < 1\.f - 1e-6f\)/cos1_abs < 1.f + 1e-6f)/
+using vec3f = float3;
+inline float sqr(float x) { return x * x; }
+inline float clamp(float x) { return clamp(x, 0, 1); }
+inline vec3f make_vec3f(float x) { return x; }
+#include "excerpt.h"
+
+int main() {
+    oracle::Random random(oracle::seed_of("OSPRay, RefractionDirection"));
+    auto length_of = [&] {
+        const float ior = 1 + float(random.single());
+        return length(RefractionDirection({0, 0, -1}, {0, 0, 1}, ior).outgoingDirection);
+    };
+    return answer(oracle::expect_mean(1, 1000, length_of, {.name = "length of the refraction"}));
+}
+#endif
+
+#ifdef ospray_quad
+// OSPRay: a quad light is sampled by cosine, and evaluated as if it was not
 //
 // source: RenderKit/ospray 34af6ace0a0912a660ca6e012c6e15bb851128a9 modules/cpu/lights/SphericalQuadSampling.ih
 // cut: /^#define template_SphericalQuad_create/,/^#undef template_SphericalQuad_create/
@@ -9,8 +36,6 @@
 // cut: /^inline Light_SampleRes Sample(/,/^}/
 // cut: /^inline Light_EvalRes Eval(/,/^}/
 // repair: s/make_vec2f\(cosW\.x, cosW\.y\)/s/; s/cosW\.z \/ quad\.S/1.f \/ quad.S/
-#include "bug.h"
-
 #define OSPRAY_TARGET_SYCL
 #define uniform
 using vec2f = float2;
@@ -69,3 +94,4 @@ int main() {
     };
     return answer(oracle::expect_mean(1, 100000, ratio, {.name = "pdf of Sample / pdf of Eval"}));
 }
+#endif
