@@ -98,6 +98,12 @@ $(foreach rule,$(PARTS),$(eval $(rule)))
 build/knot.obj: build/knot$(SUFFIX)
 	build/knot$(SUFFIX) $@
 
+# In scenes/calibration/SET a line "@@ NAME" begins a scene.
+build/scenes: $(wildcard scenes/calibration/*)  ## files of the scenes of make calibration: build/scenes/hard/bulb.scene
+	@rm -rf $@ && mkdir -p $(^:scenes/calibration/%=$@/%)
+	@awk '$$1 == "@@" { close(file); file = FILENAME "/" $$2 ".scene"; sub(/^scenes.calibration/, "$@", file); next } \
+	    { print >file }' $^
+
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
 SUITE := $(OBJECTS)/all-tests
 # What a student does not wait for: tests of the course, of experiments, of the oracle's power, of this Makefile's tools,
@@ -121,7 +127,7 @@ soak: $(if $(FAULTS),$(PENUMBRA),$(SUITE))  ## run the random tests with fresh s
 	@CXX='$(CXX)' tests/soak $(if $(FAULTS),--faults $(PENUMBRA),$(SUITE)) $(SECONDS)
 
 .PHONY: fuzz
-fuzz: build/fuzz/fuzz$(SUFFIX)  ## fuzz files, options and small scenes with libFuzzer, for 10 minutes; SECONDS=60: shorter
+fuzz: build/fuzz/fuzz$(SUFFIX) build/scenes  ## fuzz files, options and small scenes with libFuzzer, for 10 minutes; SECONDS=60: shorter
 	@tests/fuzz/run $< $(SECONDS)
 
 # Whatever CXX is: no other compiler has it.
@@ -151,7 +157,7 @@ bench: build/knot.obj       ## rays per second, compared with Embree (libembree-
 peers: $(PENUMBRA)         ## efficiency, compared with Cycles (blender; 5 minutes); SEEDS=5: more renders
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time for every setting, and a page to choose (30 minutes; FULL=1: 4 hours)
 halves: $(PENUMBRA)         ## efficiency of two halves with weights (30 minutes; FORMER=PROGRAM: compare with a former penumbra)
-calibration: $(PENUMBRA) build/knot.obj  ## calibration of the error estimate (3 hours; SEEDS=4: 1 hour)
+calibration: $(PENUMBRA) build/knot.obj build/scenes  ## calibration of the error estimate (3 hours; SEEDS=4: 1 hour)
 oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracle: 600 correct codes, 100 seeds (100 minutes); SEEDS=5, ONLY=GGX: into out/
 	@mkdir -p out
 	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \

@@ -5,11 +5,11 @@
     the solution
     // end
 
-Its stub, in src/course/stubs/2.2:
+Its stub, among those of week 2 in src/course/stubs/2:
 
     // 2.2  title
     // instead: what it does instead
-    the stub, indented as in src
+    the stub, indented as in src; empty lines at its end are not of it
 
 In a starter, where it is open:
 
@@ -27,7 +27,7 @@ BEGIN = re.compile(r'^([ \t]*)// exercise (\w+\.\d+)$', re.M)
 END = re.compile(r'^[ \t]*// end$', re.M)
 MARK = re.compile(r'^[ \t]*// (?:BEGIN|END) \w+\.\d+')  # of a starter
 MARKLIKE = re.compile(r'//\s*(?:(?:exercise|begin|end)\s+\w+\.\d|(?:exercise|end)(?:\s+\w)?\s*$)', re.I)
-HEAD = re.compile(r'// (\S+)  (\S.*)\n// instead: \S.*\n')
+HEAD = re.compile(r'^// (\w+\.\d+)  (\S.*)\n// instead: \S.*\n', re.M)
 
 
 class Malformed(Exception):
@@ -41,18 +41,24 @@ class Region:
         self.number, self.indent, self.first = number, indent, first
         self.last = first
         self.solution = []
-        name = f'{STUBS}/{number}'
-        if not (root / name).is_file():
-            raise Malformed(f'there is no stub {name}')
-        text = (root / name).read_text()
-        head = HEAD.match(text)
-        if not head or head[1] != number:
-            raise Malformed(f'{name} must begin with "// {number}  title" and "// instead: what it does"')
-        self.title, self.stub = head[2], text[head.end():].removesuffix('\n').split('\n')
+        week = number.split('.')[0]
+        if number not in stubs(week, root):
+            raise Malformed(f'no stub in {STUBS}/{week} begins with "// {number}  title" and "// instead: what it does"')
+        self.title, self.stub = stubs(week, root)[number]
 
     def open(self, lines):
         """The region as a student gets it, or hands it in, around these lines."""
         return [f'{self.indent}// BEGIN {self.number}  {self.title}', *lines, f'{self.indent}// END {self.number}']
+
+
+def stubs(week, root=ROOT):
+    """Titles and lines of a week's stubs, by exercise: number -> (title, lines)."""
+    path = root / STUBS / week
+    above, *parts = HEAD.split(path.read_text() if path.is_file() else '')
+    numbers = parts[::3]
+    if above or len(set(numbers)) < len(numbers):
+        raise Malformed(f'{STUBS}/{week} must begin with a stub, and have one of each exercise')
+    return {n: (title, text.rstrip('\n').split('\n')) for n, title, text in zip(numbers, parts[1::3], parts[2::3])}
 
 
 def regions(text, name, root=ROOT):
@@ -128,6 +134,7 @@ def solution_files(root=ROOT):
                 raise Malformed(f'{name}: {r.number} is not in exercises.txt')
             found[r.number] = (name, r)
     for path in sorted((root / STUBS).iterdir()):
-        if path.name not in found:
-            raise Malformed(f'{STUBS}/{path.name} is the stub of no region')
+        for number in stubs(path.name, root):
+            if number not in found or number.split('.')[0] != path.name:
+                raise Malformed(f'{STUBS}/{path.name}: {number} is the stub of no region')
     return found

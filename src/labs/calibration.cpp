@@ -17,9 +17,8 @@ const Words counts = {"--spp 16", "--spp 32", "--spp 64", "--spp 256"},
 // The author of a blind scene assigns its set by the line "# class: hard".
 std::vector<Subject> all_subjects(uint64_t truth) {
     std::vector<Subject> all;
-    for (const std::string place :
-         {"scenes/", "scenes/calibration/ordinary/", "scenes/calibration/hard/",
-          "scenes/calibration/blind/", "scenes/calibration/aimed/"})
+    for (const std::string place : {"scenes/", "build/scenes/ordinary/", "build/scenes/hard/",
+                                    "build/scenes/blind/", "build/scenes/aimed/"})
         for (const std::string& name : scenes_in(place)) {
             const std::string file = place + name + ".scene";
             const bool blind = place.ends_with("blind/"), aimed = place.ends_with("aimed/"),

@@ -28,7 +28,7 @@ int before;
     // end
 int after;
 '''
-STUB = '// 2.1  add\n// instead: the first alone\n    // of two\n    return a;\n\n'
+STUB = '// 2.1  add\n// instead: the first alone\n    // of two\n    return a;\n'
 
 
 def refused(call, *part):
@@ -62,17 +62,23 @@ class Tree:
 
 
 def test_a_region_has_a_solution_and_a_stub():
-    with Tree({'course/stubs/2.1': STUB}) as root:
+    with Tree({'course/stubs/2': STUB}) as root:
         [r] = regions.regions(FILE, 'x.h', root)
     expect((r.number, r.title) == ('2.1', 'add'), r.number, r.title)
     expect(r.solution == ['    return a + b;'], r.solution)
-    expect(r.stub == ['    // of two', '    return a;', ''], r.stub)
+    expect(r.stub == ['    // of two', '    return a;'], r.stub)
+
+
+def test_a_week_has_stubs_one_after_another():
+    with Tree({'course/stubs/2': STUB + '\n\n' + STUB.replace('2.1', '2.2') + '\n    // 2.3\n'}) as root:
+        expect(regions.stubs('2', root) == {'2.1': ('add', ['    // of two', '    return a;']), '2.2': (
+            'add', ['    // of two', '    return a;', '', '    // 2.3'])}, regions.stubs('2', root))
 
 
 def test_an_open_region_is_its_stub_between_marks():
-    with Tree({'course/stubs/2.1': STUB}) as root:
+    with Tree({'course/stubs/2': STUB}) as root:
         text = regions.rewrite(FILE, 'x.h', lambda r: r.open(r.stub), root)
-    expect(text == '// x.h\nint before;\n    // BEGIN 2.1  add\n    // of two\n    return a;\n\n    // END 2.1\nint after;\n', text)
+    expect(text == '// x.h\nint before;\n    // BEGIN 2.1  add\n    // of two\n    return a;\n    // END 2.1\nint after;\n', text)
 
 
 def test_a_solved_region_has_no_marks():
@@ -89,7 +95,7 @@ def test_two_regions_keep_what_is_between_them():
 def test_what_is_not_well_formed_is_refused_with_its_line():
     begin, end = '// exercise 2.1\n', '// end\n'
     for text, line, part in ((begin + begin, 2, '2.1 begins within 2.1'), (end, 1, 'an end without an exercise'),
-                             (begin + end + end, 3, 'an end without'), ('// exercise 9.9\n', 1, 'no stub src/course/stubs/9.9'),
+                             (begin + end + end, 3, 'an end without'), ('// exercise 9.9\n', 1, 'no stub in src/course/stubs/9'),
                              *((begin + like, 2, 'no mark') for like in (
                                  '//end\n', '// END\n', '// end 2.1\n', 'return a;  // end\n', '// exercise\n', '// exercise 2\n',
                                  '// exercise 2.2  add\n', '//exercise 2.2\n', '// Exercise 2.2\n', '// BEGIN 2.1  add\n'))):
@@ -98,16 +104,19 @@ def test_what_is_not_well_formed_is_refused_with_its_line():
 
 
 def test_regions_and_stubs_belong_together():
-    good = {'x.h': FILE, 'course/stubs/2.1': STUB}
+    good = {'x.h': FILE, 'course/stubs/2': STUB}
     with Tree(good) as root:
         expect(list(regions.solution_files(root)) == ['2.1'], 'what is well-formed is refused')
     for change, part in (({'y.h': FILE}, 'src/y.h: 2.1 is in src/x.h, too'), ({'x.h': FILE + FILE}, 'src/x.h: 2.1 is in src/x.h, too'),
-                         ({'x.h': '// x.h\n'}, 'src/course/stubs/2.1 is the stub of no region'),
-                         ({'x.h': FILE.replace('2.1', '2.2')}, 'src/x.h:3: there is no stub src/course/stubs/2.2'),
-                         ({'y.h': FILE.replace('2.1', '2.2'), 'course/stubs/2.2': STUB.replace('2.1', '2.2')},
+                         ({'x.h': '// x.h\n'}, 'src/course/stubs/2: 2.1 is the stub of no region'),
+                         ({'course/stubs/3': STUB}, 'src/course/stubs/3: 2.1 is the stub of no region'),
+                         ({'x.h': FILE.replace('2.1', '2.2')}, 'src/x.h:3: no stub in src/course/stubs/2 begins with "// 2.2 '),
+                         ({'y.h': FILE.replace('2.1', '2.2'), 'course/stubs/2': STUB + STUB.replace('2.1', '2.2')},
                           'src/y.h: 2.2 is not in exercises.txt'),
-                         *(({'course/stubs/2.1': stub}, 'src/course/stubs/2.1 must begin with') for stub in (
-                             '', STUB.replace('2.1', '2.2'), STUB.replace('  add', ''), STUB.replace('// instead', '//')))):
+                         *(({'course/stubs/2': stub}, 'src/course/stubs/2 must begin with a stub') for stub in (
+                             STUB.replace('  add', ''), STUB.replace('// instead', '//'), 'int a;\n' + STUB, STUB + STUB)),
+                         *(({'course/stubs/2': stub}, 'no stub in src/course/stubs/2 begins with') for stub in (
+                             '', STUB.replace('2.1', '2.2')))):
         with Tree({**good, **change}) as root:
             refused(lambda: regions.solution_files(root), part)
 

@@ -1,4 +1,5 @@
-// fuzz/fuzz.cpp  the entry point for libFuzzer: --target=NAME selects a target of targets.h
+// fuzz/fuzz.cpp  the entry point for libFuzzer: --target=NAME selects a target of targets.h,
+// --seeds=FOLDER also writes its seeds there, and ends
 #include <cstdlib>
 
 #include "fuzz/targets.h"
@@ -13,14 +14,22 @@ const fuzz::Target* target = nullptr;
     std::exit(0);
 }
 
+[[noreturn]] void write_seeds(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    for (const auto& [name, bytes] : fuzz::seeds_of(target->name))
+        std::ofstream(folder / name, std::ios::binary) << bytes;
+    std::exit(0);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
-    constexpr std::string_view option = "--target=";
+    constexpr std::string_view option = "--target=", seeds = "--seeds=";
     for (int i = 1; i < *count; ++i) {
-        if (std::string_view((*words)[i]) == "--list") list();
-        if (const std::string_view word = (*words)[i]; word.starts_with(option))
-            target = fuzz::find(word.substr(option.size()));
+        const std::string_view word = (*words)[i];
+        if (word == "--list") list();
+        if (word.starts_with(option)) target = fuzz::find(word.substr(option.size()));
+        if (word.starts_with(seeds) && target) write_seeds(word.substr(seeds.size()));
     }
     if (target) return 0;
     std::fprintf(stderr, "fuzz: needs --target=NAME, one of those that --list tells\n");

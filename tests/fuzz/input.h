@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -79,6 +80,28 @@ inline void write_meshes(const Bundle& files) {
         const auto found = files.find(name);
         place().write(name, found == files.end() ? "" : found->second);
     }
+}
+
+// Inputs that fuzzers begin with, by their names.  In tests/fuzz/seeds/TARGET a line "@@ NAME"
+// begins one, \x41 is a byte, and a backslash at its end joins a line to the next.
+inline std::map<std::string, std::string> seeds_of(const std::string& target) {
+    std::map<std::string, std::string> seeds;
+    std::string* seed = nullptr;
+    std::ifstream file("tests/fuzz/seeds/" + target);
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("@@ ")) {
+            seed = &seeds[line.substr(3)];
+            continue;
+        }
+        line += '\n';
+        for (size_t i = 0; i < line.size(); ++i) {
+            if (line[i] != '\\')
+                *seed += line[i];
+            else if (line[++i] == 'x')
+                *seed += char(std::stoi(line.substr(i + 1, 2), nullptr, 16)), i += 2;
+        }
+    }
+    return seeds;
 }
 
 // ---- Choices ------------------------------------------------------------------------------------

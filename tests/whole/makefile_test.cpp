@@ -165,6 +165,22 @@ TEST_CASE(
     CHECK(shop.renders() == n);
 }
 
+TEST_CASE("make build/scenes has the scenes of each set as files") {
+    const Workshop shop;
+    shop.write("scenes/calibration/hard", "@@ bulb\n# A bulb.\n\n@@ hole\n# A hole.\n");
+    shop.write("scenes/calibration/ordinary", "@@ hole\n# Another.\n");
+    shop.make("build/scenes");
+    CHECK(shop.read("build/scenes/hard/bulb.scene") == "# A bulb.\n\n");
+    CHECK(shop.read("build/scenes/hard/hole.scene") == "# A hole.\n");
+    CHECK(shop.read("build/scenes/ordinary/hole.scene") == "# Another.\n");
+    shop.write("scenes/calibration/hard", "@@ bulb\n# Another bulb.\n");
+    shop.make_newer("scenes/calibration/hard", "build/scenes");
+    shop.make("build/scenes");
+    CHECK(shop.read("build/scenes/hard/bulb.scene") == "# Another bulb.\n");
+    CHECK(!shop.has("build/scenes/hard/hole.scene"));
+    CHECK(shop.has("build/scenes/ordinary/hole.scene"));
+}
+
 TEST_CASE("make draws the gallery without any module, and without the course") {
     const Workshop shop;
     fs::remove_all(shop / "src/keep");
