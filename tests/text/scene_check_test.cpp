@@ -296,7 +296,7 @@ TEST_CASE("no path gets into an opaque body by glass that touches it") {
                 radiance(scene, {Direction::bsdf, LightMode::none, 0},
                          {SamplerKind::independent, 3}, i % 8, i / 8, k,
                          [&](const Segment&, const Step& e) {
-                             if (!e.met || !(max_of(e.x.material->kd) > 0)) return;
+                             if (!e.met || !(max_of(e.x.material->diffuse()) > 0)) return;
                              ++met;
                              inside += e.x.cos_o < 0;
                          });

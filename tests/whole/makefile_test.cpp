@@ -49,7 +49,8 @@ const std::string statistics = R"sh({
 
 struct Workshop : Folder {
     Workshop() {
-        for (const std::string name : {"Makefile", "src/course/course.mk", "scenes/gallery"})
+        for (const std::string name : {"Makefile", "tests/tests.mk", "src/labs/labs.mk",
+                                       "src/course/classroom.mk", "src/course/course.mk"})
             write(name, read_file(name));
         write("tests/base/a_test.cpp", "");
         write("src/app/penumbra.cpp", "");
@@ -65,8 +66,10 @@ struct Workshop : Folder {
         write("bin/brew", "#!/bin/sh\necho /opt/brew\n");
         write("cc", compiler);
         write("program", program);
-        for (const std::string name :
-             {"scenes/gallery", "cc", "bin/apt-get", "bin/sudo", "bin/brew"})
+        for (const std::string name : {"scenes/gallery", "scenes/parts", "src/packages"})
+            write(name, read_file(name));
+        for (const std::string name : {"scenes/gallery", "scenes/parts", "src/packages", "cc",
+                                       "bin/apt-get", "bin/sudo", "bin/brew"})
             fs::permissions(path / name, fs::perms::owner_all);
     }
     Printed run(const std::string& command) const {

@@ -1,0 +1,165 @@
+# tests.mk  builds and runs the tests, and what checks them: mutants, fuzzers, other compilers, layers
+.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core layers programs-to-test
+
+RULES := Makefile tests/tests.mk
+TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
+SUITE := $(OBJECTS)/all-tests
+# What a student does not wait for: tests of the course, of experiments, of the oracle's power, of make and its tools,
+# and those that repeat runs, or read huge files, to see what is rare.
+space := $() $()
+LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% text/scene_file_bounds% \
+         $(foreach t,faults from_blender makefile memory mutants parts radiosity_program resume runner stopping,whole/$t_test)
+
+test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer
+	@exec env LAYERS='$(LAYERS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
+	    LATER='$(if $(filter test,$@),$(subst $(space),|,$(subst %,,$(strip $(LATER)))))' LIMIT=$(if $(SAN)$(DEBUG),10) tests/run $(ONLY)
+test-all:  ## also test course, experiments and oracle, as CI does
+
+test-everywhere: packages build/knot.obj  ## compare the bits of all compilers, C++ libraries and processors (15 minutes); ONLY='clang++ -O2'
+	@FLAGS="$(filter-out -M% -W% -march% -DREAL%,$(FLAGS))" tests/everywhere $(if $(ONLY),'$(ONLY)')
+
+mutants: packages  ## plant every mutant of tests/mutants/: a test must detect it; ONLY=bvh: those of bvh.h
+	@CXX="$(CXX)" FLAGS="$(filter-out -M% -W%,$(FLAGS)) -Itests -w -D_GLIBCXX_ASSERTIONS" tests/mutants/run $(if $(ONLY),--only "$(ONLY)") $(MUTANT_FLAGS)
+
+soak: $(if $(FAULTS),$(PENUMBRA),$(SUITE))  ## run the random tests with fresh seeds for 10 minutes; FAULTS=1: renders under faults, for an hour; SECONDS=60
+	@CXX='$(CXX)' tests/soak $(if $(FAULTS),--faults $(PENUMBRA),$(SUITE)) $(SECONDS)
+
+fuzz: build/fuzz/fuzz$(SUFFIX) build/scenes  ## fuzz files, options and small scenes with libFuzzer, for 10 minutes; SECONDS=60: shorter
+	@tests/fuzz/run $< $(SECONDS)
+
+# Whatever CXX is: no other compiler has it.
+FUZZ_CXX   ?= clang++
+FUZZ_FLAGS := $(SANITISE) -fsanitize=fuzzer
+build/fuzz/fuzz$(SUFFIX): tests/fuzz/fuzz.cpp $(RULES) | packages
+	@mkdir -p $(@D)
+	@echo 'extern "C" int LLVMFuzzerTestOneInput() { return 0; }' | \
+	    $(FUZZ_CXX) $(FUZZ_FLAGS) -x c++ -o $@ - 2>/dev/null || \
+	    { echo "penumbra: make fuzz needs clang++ and its libFuzzer; run: sudo apt-get install clang libclang-rt-14-dev" >&2; exit 1; }
+	$(FUZZ_CXX) $(FLAGS) $(FUZZ_FLAGS) -Itests -MF $@.d -o $@ $<
+-include $(wildcard build/fuzz/*.d)
+
+test-farm: build/penumbra build/merge build/compare  ## test farms on a real Slurm and GNU parallel, installed and removed (10 minutes); CASE=slurm_killed
+	@tests/farm/run $(CASE)
+
+oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracle: 600 correct codes, 100 seeds (100 minutes); SEEDS=5, ONLY=GGX: into out/
+	@mkdir -p out
+	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
+	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
+
+# It lies beside the oracle, and includes it alone.
+$(OBJECTS)/oracle-campaign.exe: OPTIMISE := $(OPTIMISE:-O3=-O2)
+$(OBJECTS)/oracle-campaign.exe: tests/oracle/campaign.cpp $(RULES)
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -MF $(@:.exe=.d) -MT $@ -o $@ $<
+
+extremes:  ## numerical robustness: errors at the extremes, double and float, into reference/extremes.md (2 minutes)
+	@for real in double float; do \
+	    $(MAKE) --no-print-directory REAL=$$real build/extremes-$$real.rows || exit 1; done
+	@paste build/extremes-double.rows build/extremes-float.rows | bash src/labs/extremes
+
+# In the order of the table; exit status 1: a row is red, which the table shows.
+EXTREMES := scene light world sums
+build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test.o) $(OBJECTS)/tests/main.o always
+	$(CXX) $(LINK) -o $(OBJECTS)/extremes $(filter %.o,$^)
+	@rm -f $@; for part in $(EXTREMES); do \
+	    EXTREMES=$@ $(OBJECTS)/extremes -sf="*extremes_$${part}_test.cpp" >$@.log || [ $$? = 1 ] || \
+	        { cat $@.log; exit 1; }; done
+
+# ---- Layers --------------------------------------------------------------------------------------
+
+# Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of
+# their folder and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
+LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 keep:5 unseen:5 app:6 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 \
+          oracle:10 whole:10 faults:10 fuzz:10
+# The core names no module, but in four headers: which tree, whether meshes are read, whether films are kept, whether light
+# may be unseen.  Nor do tests of the core.  A module's program stands above the app.
+LECTURE := base world path film
+CORE    := $(LECTURE) text app
+MODULES := wide mesh keep unseen shadow voronoi radiosity
+DOORS   := world/tree.h:wide text/mesh.h:mesh app/keep.h:keep app/unseen.h:unseen
+# Of a folder that is named here, a module includes these headers alone.
+NEEDS   := wide:world/shapes.h
+
+# In a folder that has nothing else: the core must not miss what it does not name.
+core: stb  ## the core alone: compile the renderer without any module, and count its lines
+	@rm -rf build/core && mkdir -p build/core/src && cp -r $(CORE:%=src/%) build/core/src
+	$(CXX) $(filter-out -M% -DTREE_WIDE -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
+	build/core/penumbra --size 32x16 --spp 4 --quiet -o build/core/cornell.png scenes/cornell.scene
+	@echo "$$(cat $(CORE:%=src/%/*) | wc -l) lines of core: $(CORE)"
+
+layers:  ## check that every file includes only from layers below
+	@LAYERS='$(LAYERS)' LECTURE='$(LECTURE)' CORE='$(CORE)' MODULES='$(MODULES)' DOORS='$(DOORS)' NEEDS='$(NEEDS)' tests/layers
+
+# ---- Building ------------------------------------------------------------------------------------
+
+# Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
+# vector is told so.
+HEAVY := app/render course/my_tests labs/cube labs/indirect_paths oracle/mistakes oracle/oracle path/pathtracer \
+         radiosity/mesh radiosity/particles radiosity/shooting radiosity/transfer radiosity/walks shadow/estimates \
+         shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms wide/wide_bvh world/bsdf world/bvh world/shapes
+HEAVY := $(HEAVY:%=%_test)
+$(OBJECTS)/tests/%: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
+$(HEAVY:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/%-heavy.exe $(OBJECTS)/programs.exe: OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
+$(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
+
+# By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
+# for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
+# those that others must not see.
+TOGETHER := world wide mesh path film text keep unseen app shadow voronoi radiosity whole
+ALONE    := oracle/hosts_test
+FOLDER   = $(patsubst %/,%,$(dir $1))
+SHARED   = $(if $(filter $(TOGETHER),$(FOLDER)),core,$(FOLDER))$(if $(filter $(LATER),$1),-later)$(if $(filter $(HEAVY),$1),-heavy)
+UNIT     = $(OBJECTS)/tests/$(if $(filter $(ALONE),$1),$1-alone,$(SHARED))
+IN_ORDER := $(foreach f,$(TOGETHER),$(filter $f/%,$(TESTS))) $(filter-out $(TOGETHER:%=%/%),$(TESTS))
+UNITS    := $(sort $(foreach t,$(TESTS),$(call UNIT,$t)))
+$(foreach t,$(IN_ORDER),$(eval IN_$(call UNIT,$t) += $t))
+$(foreach t,$(TESTS),$(eval $(OBJECTS)/tests/$t.run: $(if $(JOINED),$(call UNIT,$t),$(OBJECTS)/tests/$t).exe))
+
+# Tells tests/run, which listens at 9, what is built.  It does not wait until make has begun with all else, so a unit
+# that is compiled, or cannot be, tells it of its tests; but those that run programs wait for these.
+TELL = { echo $1 >&9; } 2>/dev/null || :
+$(TESTS:%=$(OBJECTS)/tests/%.run): always
+	@$(call TELL,$(@:$(OBJECTS)/tests/%.run=%) $(filter %.exe,$^))
+
+$(UNITS:%=%.exe): %.exe: $(OBJECTS)/tests/main.o tests/join.awk $(RULES)
+	@mkdir -p $(@D)
+	@awk -f tests/join.awk $(IN_$*:%=tests/%.cpp) >$*.cpp
+	@$(CXX) $(FLAGS) $(OPTIMISE) -I. -Itests -fmacro-prefix-map=./= -MT $@ -c -o $*.o $*.cpp && $(CXX) $(LINK) -o $@ $*.o $< || \
+	    { for test in $(IN_$*); do $(call TELL,$$test broken); done; exit 1; }
+	@for test in $(filter-out $(RUNNERS),$(IN_$*)); do $(call TELL,$$test $@); done
+$(foreach u,$(UNITS),$(eval $u.exe: $(IN_$u:%=tests/%.cpp)))
+
+$(TESTS:%=$(OBJECTS)/tests/%.exe): %.exe: %.o $(OBJECTS)/tests/main.o
+	$(CXX) $(LINK) -o $@ $^
+
+$(SUITE): $(UNITS:%=%.exe)
+	$(CXX) $(LINK) -o $@ $(^:.exe=.o) $(OBJECTS)/tests/main.o
+
+# The programs that tests run are one, which goes by its name.  Images are the same, bit for bit, however it is optimised.
+TESTED  := $(filter-out course/%,$(RENDERERS:src/%.cpp=%)) labs/knot
+RUNNERS = $(patsubst tests/%.cpp,%,$(shell grep -lE 'build/penumbra|whole/process.h' tests/*/*_test.cpp))
+ifneq ($(filter %.run,$(MAKECMDGOALS)),)
+$(RUNNERS:%=$(OBJECTS)/tests/%.run): | programs-to-test
+endif
+programs-to-test: $(OBJECTS)/programs.exe build/knot.obj
+	@for program in $(notdir $(TESTED)); do ln -f $< build/$$program$(SUFFIX)-test; done
+$(OBJECTS)/programs.exe: $(TESTED:%=src/%.cpp) tests/join.awk $(RULES)
+	@mkdir -p $(@D)
+	@awk -v programs=1 -f tests/join.awk $(filter %.cpp,$^) >$(OBJECTS)/programs.cpp
+	$(CXX) $(FLAGS) $(OPTIMISE) -I. -MF $(OBJECTS)/programs.d -MT $@ -o $@ $(OBJECTS)/programs.cpp
+
+$(OBJECTS)/tests/%.o: tests/%.cpp $(OBJECTS)/std.h.gch $(RULES) | packages
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -Itests -include $(OBJECTS)/std.h -c -o $@ $<
+
+# At once, for all wait for it.
+$(OBJECTS)/tests/main.o: tests/main.cpp $(RULES) | packages
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -Itests -c -o $@ $<
+
+# The compiler takes it for $(OBJECTS)/std.h, which need not be there.
+$(OBJECTS)/std.h.gch: tests/std.h $(RULES) | packages
+	@mkdir -p $(@D)
+	$(CXX) $(FLAGS) $(OPTIMISE) -x c++-header -o $@ $<
+
+-include $(wildcard $(OBJECTS)/tests/*/*.d)
