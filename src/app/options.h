@@ -6,7 +6,9 @@
 
 // The quantity that the image shows.
 enum class View { radiance, normal, depth, albedo, bvh, occlusion };
-inline constexpr Text view_names = "radiance|normal|depth|albedo|bvh|occlusion";
+inline const Alternatives<View> views = {
+    {"radiance", View::radiance}, {"normal", View::normal}, {"depth", View::depth},
+    {"albedo", View::albedo},     {"bvh", View::bvh},       {"occlusion", View::occlusion}};
 
 struct RowRange {
     int first = 0, last = 0;  // row 0 is at the top of the picture
@@ -91,7 +93,11 @@ inline OptionTable sampling_rows(Options& o) {
           [&o] {
               return o.replications ? std::to_string(o.replications) : json::string("adaptive");
           }},
-         one_of("--sampler", "independent|stratified|halton|sobol",
+         one_of("--sampler",
+                {{"independent", SamplerKind::independent},
+                 {"stratified", SamplerKind::stratified},
+                 {"halton", SamplerKind::halton},
+                 {"sobol", SamplerKind::sobol}},
                 "sample points: pseudo-random, jittered 4x4 grids, or low-discrepancy points",
                 o.sampler)});
 }
@@ -99,11 +105,12 @@ inline OptionTable sampling_rows(Options& o) {
 inline OptionTable transport_rows(Options& o) {
     return in_group(
         "Light transport",
-        {one_of("--direction", "uniform|bsdf",
+        {one_of("--direction", {{"uniform", Direction::uniform}, {"bsdf", Direction::bsdf}},
                 "scattering directions on diffuse and glossy surfaces: uniform over the "
                 "hemisphere, or BSDF sampling",
                 o.technique.direction),
-         one_of("--light", "none|nee|mis",
+         one_of("--light",
+                {{"none", LightMode::none}, {"nee", LightMode::nee}, {"mis", LightMode::mis}},
                 "direct light by BSDF sampling only, by light sampling (next-event estimation) "
                 "only, or by both with MIS",
                 o.technique.light),
@@ -120,7 +127,7 @@ inline OptionTable transport_rows(Options& o) {
 inline OptionTable view_rows(Options& o) {
     return in_group(
         "Views and debugging",
-        {one_of("--view", view_names,
+        {one_of("--view", views,
                 "the image shows radiance; (normal + 1) / 2; distance; albedo; the BVH nodes (red) "
                 "and shapes (green) that a ray visits; or ambient occlusion within "
                 "a quarter of the scene's diagonal",

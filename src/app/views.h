@@ -36,7 +36,7 @@ inline rgb view_along(const Scene& scene, View view, const Start& at, real far) 
 // The end of a file's name: "-depth"; "" for radiance.
 inline std::string suffix_of(View view) {
     std::string suffix;
-    if (view != View::radiance) suffix.append("-").append(words_of(view_names)[size_t(view)]);
+    if (view != View::radiance) suffix.append("-").append(word_of(views, view));
     return suffix;
 }
 

@@ -74,6 +74,15 @@ Image merge(const std::vector<Part>& parts, Size size, Run& run) {
     return image;
 }
 
+// A later version may know other views.
+View view_in(const FilmReader& file) {
+    try {
+        return value_of(views, "view", file.said("view"));
+    } catch (const UserError& e) {
+        file.refuse(e.what());
+    }
+}
+
 // The program; returns its exit status, throws UserError and SystemError.
 int program(const std::vector<std::string>& words) {
     CommonOptions o;
@@ -110,10 +119,7 @@ int program(const std::vector<std::string>& words) {
                              [](const Part& p) { return std::tie(p.first, p.last, p.seed); });
     check_cover(parts, size.height);
     o.scene = any.said("name");
-    const auto views = words_of(view_names);
-    const auto shown = std::ranges::find(views, any.said("view"));
-    if (shown == views.end()) any.refuse(unknown("view", any.said("view"), views));
-    const View view = View(shown - views.begin());
+    const View view = view_in(any);
     run.is_radiance = view == View::radiance;
     const auto outputs = outputs_of(o, "out/NAME" + suffix_of(view), paths, {}, size);
     catch_interrupt();

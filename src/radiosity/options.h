@@ -38,7 +38,10 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
         output_rows(o, "out/NAME-radiosity.png, .pfm") +
         in_group(
             "Radiosity",
-            {one_of("--method", "shooting|hierarchy|particles",
+            {one_of("--method",
+                    {{"shooting", Method::shooting},
+                     {"hierarchy", Method::hierarchy},
+                     {"particles", Method::particles}},
                     "shooting: the element with the most unshot power shoots first; hierarchy: "
                     "whole faces shoot, in parts as small as a receiver needs; particles: "
                     "random walks from the lights",
@@ -86,7 +89,10 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
         in_group("Light transport", {taken("--direction", ""), taken("--light", "")}) +
         in_group(
             "Views and debugging",
-            {one_of("--view", "luminance|illuminance|mesh",
+            {one_of("--view",
+                    {{"luminance", MapView::luminance},
+                     {"illuminance", MapView::illuminance},
+                     {"mesh", MapView::mesh}},
                     "the image shows radiance; illuminance (a .pfm in lux, if radiances are in "
                     "cd/m2; a .png as if all were white); or radiance and the edges of the "
                     "triangles",

@@ -32,7 +32,11 @@ OptionTable shadow_table(ShadowOptions& o) {
         without(option_table(o), {"--replications", "--light", "--time", "--error", "--keep",
                                   "--rows", "--view", "--pixel", "--sample"}) +
         in_group("Light transport",
-                 {one_of("--estimator", "stochastic|control|ratio|regression",
+                 {one_of("--estimator",
+                         {{"stochastic", Estimator::stochastic},
+                          {"control", Estimator::control},
+                          {"ratio", Estimator::ratio},
+                          {"regression", Estimator::regression}},
                          "direct light where the camera sees a diffuse surface: plain Monte Carlo; "
                          "or a control variate, "
                          "ratio or regression estimator on the analytic unshadowed radiance",

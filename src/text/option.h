@@ -18,7 +18,7 @@ using Text = std::string_view;
 
 struct Option {
     Text name;              // "--spp"
-    Text value;             // "N", or "none|nee|mis"; "": none
+    std::string value;      // "N", or "none|nee|mis"; "": none
     Text help;              // its meaning
     std::string otherwise;  // the default; "": nothing
     std::function<void(Text)> set;
@@ -59,26 +59,34 @@ inline OptionTable without(OptionTable table, const std::vector<Text>& names) {
 
 // ---- Values -------------------------------------------------------------------------------------
 
-// The words of "none|nee|mis".
-inline std::vector<Text> words_of(Text alternatives) {
-    std::vector<Text> words;
-    for (size_t from = 0, to = 0; to != alternatives.npos; from = to + 1) {
-        to = alternatives.find('|', from);
-        words.push_back(alternatives.substr(from, to - from));
+// Words and what they stand for.
+template <class Enum>
+using Alternatives = std::vector<std::pair<Text, Enum>>;
+
+template <class Enum>
+Text word_of(const Alternatives<Enum>& alternatives, Enum value) {
+    return std::ranges::find(alternatives, value, &std::pair<Text, Enum>::second)->first;
+}
+// Throws UserError "unknown WHAT 'word' (did you mean ...?)".
+template <class Enum>
+Enum value_of(const Alternatives<Enum>& alternatives, Text what, Text word) {
+    std::vector<Text> known;
+    for (const auto& [name, value] : alternatives) {
+        if (name == word) return value;
+        known.push_back(name);
     }
-    return words;
+    throw UserError(unknown(what, word, known));
 }
 
-// One of several words, in the order of their enumeration; `at` holds the default.
+// One of several words; `at` holds the default.
 template <class Enum>
-Option one_of(Text name, Text words, Text help, Enum& at) {
-    auto set = [words, &at](Text text) {
-        const auto known = words_of(words);
-        const auto found = std::find(known.begin(), known.end(), text);
-        if (found == known.end()) throw UserError(unknown("value", text, known));
-        at = Enum(found - known.begin());
-    };
-    auto word = [words, &at] { return std::string(words_of(words)[size_t(at)]); };
+Option one_of(Text name, const std::type_identity_t<Alternatives<Enum>>& alternatives, Text help,
+              Enum& at) {
+    std::string words;
+    for (const auto& [word, value] : alternatives)
+        words.append(words.empty() ? "" : "|").append(word);
+    auto set = [=, &at](Text text) { at = value_of(alternatives, "value", text); };
+    auto word = [=, &at] { return std::string(word_of(alternatives, at)); };
     return {name, words, help, word(), set, [word] { return json::string(word()); }};
 }
 
@@ -239,7 +247,7 @@ inline void wrap(std::string& page, const std::string& text, size_t indent) {
 // "-o, --output FILE"
 inline std::string usage_of(const Option& r) {
     return std::string(r.name) + (r.also.empty() ? "" : ", ") + std::string(r.also) +
-           (r.value.empty() ? "" : " ") + std::string(r.value);
+           (r.value.empty() ? "" : " ") + r.value;
 }
 
 // A line or two for every option, under the headings of groups; these come in the order of their

@@ -31,7 +31,12 @@ OptionTable voronoi_table(VoronoiOptions& o) {
                                   "--rows", "--view", "--pixel", "--sample"}) +
         in_group(
             "Sampling",
-            {one_of("--weights", "mc|vor|fvor|cvor|torus",
+            {one_of("--weights",
+                    {{"mc", Weighting::mc},
+                     {"vor", Weighting::vor},
+                     {"fvor", Weighting::fvor},
+                     {"cvor", Weighting::cvor},
+                     {"torus", Weighting::torus}},
                     "weights of a pixel's samples: equal; or areas of Voronoi cells, bounded by "
                     "random sites in a strip around the pixel, the same without cells that leave "
                     "the strip, clipped to the pixel, or on a torus",

@@ -1,6 +1,6 @@
 // wide/wide_bvh.h  5  where rays stop: a bounding volume hierarchy of triangles and spheres
 #pragma once
-#include <stdexcept>
+#include <new>
 #include "wide/collapse.h"
 #include "wide/leaf.h"
 #include "wide/node.h"
@@ -143,7 +143,7 @@ private:
     // ---- Construction ---------------------------------------------------------------------------
 
     static void demand_room(bool enough) {
-        if (!enough) throw std::length_error("so many shapes are too many for one scene");
+        if (!enough) throw std::bad_alloc();  // readers refuse so many
     }
 
     // Adds the node that a branch becomes and all below it.
