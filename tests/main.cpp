@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     if (ran == 0) std::puts("no test ran");
     if (oracle::statistical_checks > 0)
         std::printf("%d statistical checks; a false alarm has a probability of at most %.1e\n",
-                    oracle::statistical_checks, oracle::alpha_spent);
+                    oracle::statistical_checks.load(), oracle::alpha_spent.load());
     std::printf("%u passed, %u failed\n", ran - failed, failed);
     return ran == 0 || failed > 0 ? 1 : status;
 }

@@ -74,7 +74,7 @@ struct Reporter : doctest::ConsoleReporter {
         ran = stats.numTestCasesPassingFilters;
         failed = stats.numTestCasesFailed;
         if (report)
-            std::fprintf(report, "sum\t%d\t%g\n", oracle::statistical_checks, oracle::alpha_spent);
+            std::fprintf(report, "sum\t%d\t%g\n", oracle::statistical_checks.load(), oracle::alpha_spent.load());
         flush();
     }
 

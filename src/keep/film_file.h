@@ -88,9 +88,11 @@ public:
     // The number in [0, most] at the beginning of a value, or `after` a character of it.
     double number(std::string_view key, double most = 0x1p53, char after = '\0') const {
         const std::string value = said(key);
-        const char* const from = value.data() + (after ? value.find(after) + 1 : 0);
+        const size_t at = after ? value.find(after) : 0;
+        const char* const from =
+            value.data() + (at == value.npos ? value.size() : at + (after != 0));
         char* end = nullptr;
-        const double x = std::strtod(from, &end);
+        const double x = std::strtod(from, &end);  // of nothing: it ends where it begins
         if (end == from || !(x >= 0 && x <= most))
             refuse("invalid " + std::string(key) + " " + in_quotes(value));
         return x;

@@ -6,14 +6,15 @@
 #include "keep/read_film.h"
 #include "text/json.h"
 
-// Checksum of the scene's source files.
-inline std::string sum_of_files(const std::vector<std::string>& files) {
+// Checksum of the scene's meshes and its text.
+inline std::string sum_of_scene(const FilmOf& what) {
     Checksum sum;
-    for (const std::string& file : files) {
-        std::string bytes = read_file(file);
+    auto add = [&](std::string bytes) {
         bytes.append("\n").append(std::to_string(bytes.size()));  // where it ends
         sum.add(std::as_bytes(std::span(bytes)));
-    }
+    };
+    for (const std::string& file : what.files) add(read_file(file));
+    if (!what.scene.empty()) add(what.scene);
     return sum.text();
 }
 
@@ -38,7 +39,7 @@ public:
         : path_(path), interval_(interval), samples_(what.samples) {
         if (path.empty()) return;
         for (auto& [key, value] : samples_) std::erase(value, '"');
-        samples_.insert(samples_.begin(), {"scene", sum_of_files(what.files)});
+        samples_.insert(samples_.begin(), {"scene", sum_of_scene(what)});
         head_ = samples_;
         head_.insert(head_.end(), what.notes.begin(), what.notes.end());
     }

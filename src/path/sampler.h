@@ -80,6 +80,7 @@ public:
         if (pattern.kind == SamplerKind::independent) key_ = hash(key_, sample);
         if (pattern.kind == SamplerKind::sobol) index_ = mirrored(index_);
     }
+    Sampler(const Pattern&&, uint64_t, uint64_t, uint32_t = 0) = delete;  // it would be gone
 
     real get(uint32_t dim) const {
         switch (pattern_.kind) {

@@ -17,6 +17,7 @@ inline uint64_t pixel_number(const Scene& scene, const PixelSample& s) {
 // The coordinate x + u of a point of pixel x.  Rounding never takes it to the next pixel.
 inline real in_pixel(int x, real u) { return std::min(real(x) + u, real(x + 1) * below_one); }
 
+Start start(const Scene&, const Pattern&&, const PixelSample&) = delete;
 inline Start start(const Scene& scene, const Pattern& pattern, const PixelSample& s) {
     const Sampler sampler(pattern, pixel_number(scene, s), s.i, s.set);
     const vec2 u = sampler.get2(film_x);

@@ -19,8 +19,9 @@
 
 // What a film is of, for the head of its file.
 struct FilmOf {
-    std::vector<std::string> files;  // that the scene was read from
+    std::vector<std::string> files;  // of the scene's meshes
     Facts samples, notes;            // facts that samples depend on, and other facts
+    std::string scene = {};          // its text as it was read: a pipe has no second reading
 };
 
 // ---- Reading ------------------------------------------------------------------------------------

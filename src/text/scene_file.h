@@ -12,10 +12,11 @@
 #include "text/scene_check.h"
 #include "world/prepare.h"
 
-// A scene, warnings to its author, and the files that it was read from.
+// A scene, warnings to its author, the files of its meshes and its own, and its text.
 struct ParsedScene {
     NamedScene scene;
     std::vector<std::string> warnings, files;
+    std::string text = {};
 };
 
 class SceneReader;
@@ -307,7 +308,9 @@ inline ParsedScene parse_scene(const std::string& text, const std::string& name)
 
 // A scene may come through a pipe, too.
 inline ParsedScene read_scene(const std::string& path) {
-    ParsedScene parsed = parse_scene(read_file(path, path == "/dev/stdin"), path);
+    std::string text = read_file(path, path == "/dev/stdin");
+    ParsedScene parsed = parse_scene(text, path);
     parsed.files.push_back(path);
+    parsed.text = std::move(text);
     return parsed;
 }

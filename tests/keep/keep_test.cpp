@@ -236,6 +236,13 @@ TEST_CASE("a film of other samples is refused by the first thing that differs") 
          {std::pair{lit, "light-groups 2, not 3"}, {blank(3), "replications-per-pixel 2, not 3"}})
         CHECK(complaint([&, &f = into] { restored(path, f, what); }) ==
               path + ": was rendered with " + differs);
+    other = what, other.scene = "box";  // the scene's text, as it came through a pipe
+    CHECK(why(other) == "was rendered from another version of cube");
+    Keeper(path, other).write(film, {}, true);
+    CHECK(why(other) == "");
+    other.scene = "cube";
+    CHECK(why(other) == "was rendered from another version of cube");
+    Keeper(path, what).write(film, {}, true);
     folder.write("scene", "boxk"), folder.write("mesh", "not");
     CHECK(why(what) == "was rendered from another version of cube");
     what.notes = {{"name", "other"}};

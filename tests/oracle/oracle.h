@@ -17,6 +17,7 @@
 #endif
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cctype>
 #include <cmath>
@@ -98,8 +99,8 @@ inline std::string pictures = [] {
 
 // Checks that have used up their alpha, and the sum of it: a bound of the probability that any of
 // them raised a false alarm.
-inline int statistical_checks = 0;
-inline double alpha_spent = 0;
+inline std::atomic<int> statistical_checks = 0;  // threads may check at the same time
+inline std::atomic<double> alpha_spent = 0;
 
 // ---- Seeds --------------------------------------------------------------------------------------
 

@@ -558,3 +558,17 @@ TEST_CASE("p of t is not that of z at hundreds of degrees of freedom: in closed 
             CHECK(p_of_t(t, k) == doctest::Approx(closed(t, k)).epsilon(1e-6).scale(0));
         }
 }
+
+TEST_CASE("checks of several threads are all counted, with their alpha") {
+    const int before = oracle::statistical_checks;
+    const double spent = oracle::alpha_spent;
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([] {
+            for (int i = 0; i < 20000; ++i) oracle::verdict_of(1, 0, {.alpha = 0x1p-20});
+        });
+    for (std::thread& thread : threads) thread.join();
+    CHECK(oracle::statistical_checks - before == 80000);
+    CHECK(oracle::alpha_spent - spent == doctest::Approx(80000 * 0x1p-20));
+    oracle::statistical_checks = before, oracle::alpha_spent = spent;
+}
