@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <chrono>
+#include <thread>
 
 #include "oracle/expect.h"
 #include "oracle/textbook.h"

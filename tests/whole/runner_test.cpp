@@ -66,7 +66,8 @@ struct House {
     Folder folder;
 
     House() {
-        folder.write("tests/run", read_file("tests/run"));
+        for (const std::string name : {"tests/run", "tests/plan.py", "tests/tell.py"})
+            folder.write(name, read_file(name));
         folder.write("make", R"(for target; do
     case $target in *.run) ;; *) continue ;; esac
     name=${target#built/}
@@ -92,7 +93,7 @@ done
         return output_of("cd '" + folder.path.string() +
                          "' && env -i PATH=\"$PATH\" LAYERS='base:0 world:1 path:2 film:2 whole:3' "
                          "TESTS=built MAKE='bash ./make' " +
-                         variables + " bash tests/run " + names);
+                         variables + " python3 tests/run " + names);
     }
     std::string log(const std::string& name) const { return folder.read("build/logs/" + name); }
 };
