@@ -36,3 +36,6 @@ struct Moments {
     double variance() const { return n > 1 ? m2 / double(n - 1) : 0; }  // unbiased, for one x
     double standard_error() const { return n ? std::sqrt(variance() / double(n)) : 0; }
 };
+
+// The p-value, two-sided, of a standard normal z.
+inline double p_of_z(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }

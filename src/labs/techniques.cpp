@@ -1,7 +1,7 @@
 // labs/techniques.cpp  6  the gain of cosine sampling, Halton points and next-event estimation
 //
 //   build/techniques [--quick]
-#include "keep/p_of_z.h"
+#include "base/stats.h"
 #include "labs/grid.h"
 #include "labs/naive_halton.h"
 #include "text/scene_file.h"

@@ -1,4 +1,4 @@
-// base/approx.h  equality up to the rounding of the precision in use
+// base/approx.h  equality within relative errors, at any scale
 #pragma once
 #include <doctest/doctest.h>
 
@@ -6,7 +6,12 @@
 
 inline constexpr bool single = sizeof(real) == 4;
 
-// The tolerances are relative errors.
+// The tolerance of doctest::Approx is relative to 1 + the value, not to the value.
+inline doctest::Approx about(double value, double relative) {
+    return doctest::Approx(value).epsilon(relative).scale(0);
+}
+
+// Up to the rounding of the precision in use: relative errors.
 inline doctest::Approx approx(double x, double in_double = 1e-12, double in_float = 2e-5) {
-    return doctest::Approx(x).epsilon(single ? in_float : in_double).scale(0);
+    return about(x, single ? in_float : in_double);
 }

@@ -39,3 +39,8 @@ TEST_CASE("a constant has no variance, nothing has no error, two numbers have th
     two.add(3);
     CHECK(two.variance() == 2);
 }
+
+TEST_CASE("p-values: quantiles of the normal distribution") {
+    CHECK(p_of_z(1.959963984540054) == doctest::Approx(0.05).epsilon(1e-12));
+    CHECK(p_of_z(4.891638475698590) == doctest::Approx(1e-6).epsilon(1e-9));
+}

@@ -1,7 +1,7 @@
 // film/error_test.cpp  estimates of d^2 against the truth, the course of errors, stopping
 #include "film/error.h"
 
-#include "base/about.h"
+#include "base/approx.h"
 #include "base/cases.h"
 #include "film/spread.h"
 #include "oracle/expect.h"

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "base/about.h"
+#include "base/approx.h"
 #include "base/cases.h"
 #include "base/rng.h"
 #include "film/fill.h"

@@ -2,7 +2,7 @@
 #include "film/loop.h"
 
 #include "app/threads.h"
-#include "base/about.h"
+#include "base/approx.h"
 #include "base/cases.h"
 #include "film/spread.h"
 

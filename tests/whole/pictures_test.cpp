@@ -1,7 +1,7 @@
 // whole/pictures_test.cpp  up, right and round in a scene are the same in its picture
 #include <numbers>
 
-#include "base/about.h"
+#include "base/approx.h"
 #include "text/png.h"
 #include "whole/process.h"
 

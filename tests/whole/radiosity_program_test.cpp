@@ -1,5 +1,5 @@
 // whole/radiosity_program_test.cpp  build/radiosity as a user runs it
-#include "base/about.h"
+#include "base/approx.h"
 #include "base/vec.h"
 #include "text/png.h"
 #include "whole/process.h"
