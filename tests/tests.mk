@@ -8,7 +8,7 @@ SUITE := $(OBJECTS)/all-tests
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
 LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% text/scene_file_bounds% \
-         $(foreach t,faults from_blender makefile memory mutants parts radiosity_program resume runner stopping,whole/$t_test)
+         $(foreach t,faults from_blender makefile memory mutants parts radiosity_program resume runner stopping how_to_add,whole/$t_test)
 
 test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer
 	@exec env LAYERS='$(LAYERS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \

@@ -1,18 +1,12 @@
 // path/sampler.h  2  samplers: the random numbers of a path
 #pragma once
 #include <bit>
+#include <variant>
 #include <vector>
 
 #include "base/rng.h"
 #include "path/halton.h"
 #include "path/sobol.h"
-
-enum class SamplerKind {
-    independent,  // pseudo-random numbers
-    stratified,   // jittered 4 x 4 grids, shuffled
-    halton,       // scrambled Halton points, with a randomisation per pixel
-    sobol         // Sobol' points, with a randomisation per pixel and pair of dimensions
-};
 
 // Dimensions of the numbers of a path: dimension(k, what) at vertex k; the first surface has k = 0.
 enum class Draw { light_x, light_y, wi_x, wi_y, pick, lobe, roulette, count };
@@ -21,19 +15,7 @@ inline constexpr uint32_t dimension(int vertex, Draw what) {
     return 2 + uint32_t(vertex) * uint32_t(Draw::count) + uint32_t(what);
 }
 
-// Parameters that the samplers of all paths share.
-struct Pattern {
-    SamplerKind kind = SamplerKind::sobol;
-    uint64_t seed = 0;
-    std::vector<uint32_t> bases = {};  // halton: one prime per dimension
-};
-
-// For paths of up to `depth` bounces.
-inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
-    Pattern p{kind, seed};
-    if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
-    return p;
-}
+// ---- Strata -------------------------------------------------------------------------------------
 
 // stratified: each 16 samples are one of each cell of a 4 x 4 grid.  Those of an incomplete grid
 // are an unbiased random choice.
@@ -61,6 +43,96 @@ inline vec2 in_cell(uint32_t cell, uint32_t columns, uint32_t rows, uint64_t bit
 }
 // end
 
+// ---- Kinds of samplers --------------------------------------------------------------------------
+
+// A kind gives number `dim` of a path, in [0,1).  It may also give a pair of numbers, dim and
+// dim + 1, by get2, and by choice a number that chooses the light or the lobe which the pair
+// samples.
+
+// What they are made of: the index of the sample, and a random key for its pixel and replication.
+struct PathKey {
+    uint64_t index, key;
+    const std::vector<uint32_t>& bases;  // one prime per dimension, for Halton points
+    uint64_t random(uint32_t dim) const { return mix(key + (dim + 1) * golden); }
+};
+
+// Pseudo-random numbers.
+struct Independent : PathKey {
+    explicit Independent(const PathKey& k) : PathKey{k.index, hash(k.key, k.index), k.bases} {}
+    real get(uint32_t dim) const { return to_unit(random(dim)); }
+};
+
+// Jittered 4 x 4 grids, shuffled.
+struct Stratified : PathKey {
+    explicit Stratified(const PathKey& k) : PathKey(k) {}
+    real get(uint32_t dim) const {
+        const auto [cell, jitter] = stratum(dim);
+        return in_part(cell, grid_cells, jitter);
+    }
+    vec2 get2(uint32_t dim) const {
+        const auto [cell, jitter] = stratum(dim);
+        return in_cell(cell, grid_columns, grid_cells / grid_columns, jitter);
+    }
+    // The cell of this sample in its grid, and random bits for the position in it.
+    struct Stratum {
+        uint32_t cell;
+        uint64_t jitter;
+    };
+    Stratum stratum(uint32_t dim) const {
+        const uint64_t bits = random(dim);
+        const uint32_t cell =
+            permute(uint32_t(index % grid_cells), mix(bits + index / grid_cells * golden));
+        return {cell, hash(bits, index)};
+    }
+};
+
+// Scrambled Halton points, with a randomisation per pixel.
+struct Halton : PathKey {
+    explicit Halton(const PathKey& k) : PathKey(k) {}
+    real get(uint32_t dim) const {
+        // exercise 4.3
+        const uint64_t bits = random(dim);
+        return scrambled_radical_inverse(bases[dim], index, bits, mix(bits));
+        // end
+    }
+};
+
+// Sobol' points, with a randomisation per pixel and pair of dimensions.
+struct Sobol : PathKey {
+    explicit Sobol(const PathKey& k) : PathKey{mirrored(k.index), k.key, k.bases} {}
+    real get(uint32_t dim) const { return sobol_single(index, random(dim)); }
+    vec2 get2(uint32_t dim) const { return sobol_pair(index, random(dim), random(dim + 1)); }
+    real choice(uint32_t pair) const { return sobol_third(index, random(pair), random(pair + 1)); }
+};
+
+enum class SamplerKind { independent, stratified, halton, sobol };
+using SamplePoints = std::variant<Independent, Stratified, Halton, Sobol>;
+inline SamplePoints points_of(SamplerKind kind, const PathKey& k) {
+    switch (kind) {
+        case SamplerKind::independent: return Independent(k);
+        case SamplerKind::stratified: return Stratified(k);
+        case SamplerKind::halton: return Halton(k);
+        case SamplerKind::sobol: break;
+    }
+    return Sobol(k);
+}
+
+// ---- The sampler of a path ----------------------------------------------------------------------
+
+// Parameters that the samplers of all paths share.
+struct Pattern {
+    SamplerKind kind = SamplerKind::sobol;
+    uint64_t seed = 0;
+    std::vector<uint32_t> bases = {};  // halton: one prime per dimension
+};
+
+// For paths of up to `depth` bounces.
+inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
+    Pattern p{kind, seed};
+    if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
+    return p;
+}
+
 inline constexpr uint64_t most_samples = uint64_t(1) << 40;  // of each replication
 
 // Sample i of replication `set` of pixel (x, y).
@@ -75,65 +147,34 @@ struct PixelSample {
 // `set`, has a randomisation of its own.
 class Sampler {
 public:
-    Sampler(const Pattern& pattern, uint64_t pixel, uint64_t sample, uint32_t set = 0)
-        : pattern_(pattern), index_(sample), key_(hash(hash(hash(0, pattern.seed), pixel), set)) {
-        if (pattern.kind == SamplerKind::independent) key_ = hash(key_, sample);
-        if (pattern.kind == SamplerKind::sobol) index_ = mirrored(index_);
-    }
+    Sampler(const Pattern& p, uint64_t pixel, uint64_t sample, uint32_t set = 0)
+        : points_(points_of(p.kind, {sample, hash(hash(hash(0, p.seed), pixel), set), p.bases})) {}
     Sampler(const Pattern&&, uint64_t, uint64_t, uint32_t = 0) = delete;  // it would be gone
 
     real get(uint32_t dim) const {
-        switch (pattern_.kind) {
-            case SamplerKind::independent: return to_unit(random(dim));
-            case SamplerKind::stratified: {
-                const auto [cell, jitter] = stratum(dim);
-                return in_part(cell, grid_cells, jitter);
-            }
-            case SamplerKind::halton: {
-                // exercise 4.3
-                const uint64_t bits = random(dim);
-                return scrambled_radical_inverse(pattern_.bases[dim], index_, bits, mix(bits));
-                // end
-            }
-            default: return sobol_single(index_, random(dim));
-        }
+        return std::visit([&](const auto& points) { return points.get(dim); }, points_);
     }
 
     // Dimensions dim and dim + 1.
     vec2 get2(uint32_t dim) const {
-        if (pattern_.kind == SamplerKind::sobol)
-            return sobol_pair(index_, random(dim), random(dim + 1));
-        if (pattern_.kind == SamplerKind::stratified) {
-            const auto [cell, jitter] = stratum(dim);
-            return in_cell(cell, grid_columns, grid_cells / grid_columns, jitter);
-        }
-        const real x = get(dim), y = get(dim + 1);
-        return {x, y};
+        auto pair = [&](const auto& points) -> vec2 {
+            if constexpr (requires { points.get2(dim); }) return points.get2(dim);
+            const real x = points.get(dim), y = points.get(dim + 1);
+            return {x, y};
+        };
+        return std::visit(pair, points_);
     }
 
     // The number that chooses the light or the lobe; the pair of the same vertex samples it.
     real choice(int vertex, Draw what) const {
-        if (pattern_.kind != SamplerKind::sobol) return get(dimension(vertex, what));
         const uint32_t pair = dimension(vertex, what == Draw::pick ? Draw::light_x : Draw::wi_x);
-        return sobol_third(index_, random(pair), random(pair + 1));
+        auto third = [&](const auto& points) {
+            if constexpr (requires { points.choice(pair); }) return points.choice(pair);
+            return points.get(dimension(vertex, what));
+        };
+        return std::visit(third, points_);
     }
 
 private:
-    const Pattern& pattern_;
-    uint64_t index_;  // index of the sample; sobol: mirrored
-    uint64_t key_;    // hash of seed, pixel and replication; independent: also of the sample
-
-    uint64_t random(uint32_t dim) const { return mix(key_ + (dim + 1) * golden); }
-
-    // The cell of this sample in its grid, and random bits for the position in it.
-    struct Stratum {
-        uint32_t cell;
-        uint64_t jitter;
-    };
-    Stratum stratum(uint32_t dim) const {
-        const uint64_t key = random(dim);
-        const uint32_t cell =
-            permute(uint32_t(index_ % grid_cells), mix(key + index_ / grid_cells * golden));
-        return {cell, hash(key, index_)};
-    }
+    SamplePoints points_;
 };

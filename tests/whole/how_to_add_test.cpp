@@ -1,9 +1,11 @@
-// whole/how_to_add_test.cpp  a new material takes the places that reference/how-to-add.md says
+// whole/how_to_add_test.cpp  new kinds take the places that reference/how-to-add.md says
 #include <doctest/doctest.h>
 
 #include "whole/process.h"
 
-TEST_CASE("a material of 20 lines in two places renders, and radiosity refuses it by name") {
+TEST_CASE(
+    "a material and a sampler in two places each render, and radiosity refuses the material by "
+    "name") {
     const Folder folder;
     const std::string line = "python3 tests/how_to_add " + (folder / "copy") + " 2>&1";
     std::string told;
