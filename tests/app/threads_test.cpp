@@ -1,10 +1,27 @@
 // app/threads_test.cpp  Ctrl-C and other signals, and work by several threads
 #include "app/threads.h"
 
+#include <dlfcn.h>
+#include <pthread.h>
+
 #include <doctest/doctest.h>
 
 #include <new>
 #include <thread>
+
+namespace {
+std::atomic<int> threads_left = -1;  // -1: any number
+}
+
+// A program's own functions precede those of its libraries.
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
+                              void* (*run)(void*), void* argument) {
+    if (threads_left == 0) return EAGAIN;
+    if (threads_left > 0) --threads_left;
+    using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+    static const Create create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
+    return create(thread, attributes, run, argument);
+}
 
 TEST_CASE("the first signal to end asks for an end, a second Ctrl-C kills; what is ignored stays") {
     struct sigaction before[5], caught{};
@@ -99,4 +116,23 @@ TEST_CASE("every piece of work is done once, by any number of threads") {
             CHECK(part == 1);
             for (const auto& times : done) CHECK(times == 1);
         }
+}
+
+TEST_CASE("a system that has no more threads: those that there are do the work, or the caller") {
+    for (const int left : {0, 1, 2}) {
+        threads_left = left;
+        std::vector<std::atomic<int>> done(100);
+        std::atomic<unsigned> most = 0;
+        const bool complete = by_workers(
+            done.size(), 8,
+            [&](size_t k, unsigned worker) {
+                ++done[k];
+                if (worker > most) most = worker;
+            },
+            [](double) {});
+        threads_left = -1;
+        CHECK(complete);
+        CHECK(most <= unsigned(std::max(0, left - 1)));
+        for (const auto& times : done) CHECK(times == 1);
+    }
 }
