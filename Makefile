@@ -13,9 +13,12 @@ CLANG    := $(filter clang,$(shell $(CXX) --version 2>/dev/null))
 # Of -march=native clang 19 says on processors with AVX10 that it contradicts itself.
 QUIET    := $(if $(CLANG),-Wno-unknown-warning-option -Wno-invalid-feature-combination)
 HOMEBREW := $(addprefix -idirafter ,$(addsuffix /include,$(shell brew --prefix 2>/dev/null)))
+# Which modules the core includes, by four headers: tree.h, mesh.h, keep.h, unseen.h.  All others name what they need.
+WITH     := $(if $(filter wide,$(TREE)),-DTREE_WIDE) $(if $(wildcard src/mesh),-DWITH_MESH) \
+            $(if $(wildcard src/keep),-DWITH_KEEP) $(if $(wildcard src/unseen),-DWITH_UNSEEN)
 # Fused multiply-adds only where the code says std::fma: contraction makes edge functions leak.
 # Nobody asks errno about a root: loops that take roots run in vectors.
-FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) $(if $(filter wide,$(TREE)),-DTREE_WIDE) -Isrc -MMD -MP \
+FLAGS    := -std=c++20 -march=$(ARCH) -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) $(WITH) -Isrc -MMD -MP \
             -Wall -Wextra -Wpedantic -Wshadow -Werror $(UNUSED:%=-Wno-error=unused-%) $(QUIET) $(HOMEBREW)
 SANITISE := -O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all
 # A program is one file, and GCC stops inlining when a file has grown by 40 %: paths took 1.13 times as long.

@@ -1,5 +1,5 @@
 # tests.mk  builds and runs the tests, and what checks them: mutants, fuzzers, other compilers, layers
-.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core layers programs-to-test
+.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core layers read programs-to-test
 
 RULES := Makefile tests/tests.mk
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
@@ -8,7 +8,8 @@ SUITE := $(OBJECTS)/all-tests
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
 LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% text/scene_file_bounds% \
-         $(foreach t,faults from_blender makefile memory mutants parts radiosity_program resume runner stopping how_to_add,whole/$t_test)
+         $(foreach t,faults from_blender how_to_add makefile memory modules mutants parts radiosity_program resume runner stopping,\
+             whole/$t_test)
 
 test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer
 	@exec env LAYERS='$(LAYERS)' TESTS='$(OBJECTS)/tests' MAKE='$(MAKE)' LOGS=build/logs$(SUFFIX) PROGRAM_SUFFIX=$(SUFFIX)-test ALL=$(ALL) \
@@ -83,9 +84,13 @@ NEEDS   := wide:world/shapes.h
 # In a folder that has nothing else: the core must not miss what it does not name.
 core: stb  ## the core alone: compile the renderer without any module, and count its lines
 	@rm -rf build/core && mkdir -p build/core/src && cp -r $(CORE:%=src/%) build/core/src
-	$(CXX) $(filter-out -M% -DTREE_WIDE -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
+	$(CXX) $(filter-out -M% $(WITH) -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
 	build/core/penumbra --size 32x16 --spp 4 --quiet -o build/core/cornell.png scenes/cornell.scene
 	@echo "$$(cat $(CORE:%=src/%/*) | wc -l) lines of core: $(CORE)"
+
+# For tests/modules: compilers read all programs that there are, and write none.
+read: OPTIMISE := -fsyntax-only
+read: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(wildcard src/*/*.cpp))
 
 layers:  ## check that every file includes only from layers below
 	@LAYERS='$(LAYERS)' LECTURE='$(LECTURE)' CORE='$(CORE)' MODULES='$(MODULES)' DOORS='$(DOORS)' NEEDS='$(NEEDS)' tests/layers

@@ -1,10 +1,10 @@
-// app/keep.h  2  films in files, if src/keep is there
+// app/keep.h  2  films in files, if -DWITH_KEEP: with src/keep
 #pragma once
 #include "film/film.h"
 #include "text/files.h"
 #include "text/program.h"
 
-#if __has_include("keep/keep.h")
+#ifdef WITH_KEEP
 #include "keep/keep.h"
 #else
 struct Keeper {

@@ -1,10 +1,10 @@
-// app/unseen.h  1  light that samples may have missed, if this program was built with src/unseen
+// app/unseen.h  1  light that samples may have missed, if -DWITH_UNSEEN: with src/unseen
 #pragma once
 #include "film/loop.h"
 #include "path/pathtracer.h"
 #include "text/named_scene.h"
 
-#if __has_include("unseen/unseen.h")
+#ifdef WITH_UNSEEN
 #include "unseen/unseen.h"
 #else
 inline std::vector<std::string> hidden_lights(const NamedScene&) { return {}; }

@@ -89,6 +89,11 @@ def with_headers(folder, files):
     return found
 
 
+def decided(text, folders):
+    """A header of the core that includes a module if a macro says so: as if the macro had said what is in the folders."""
+    return re.sub(r'#ifdef WITH_(\w+)\n(.*?)#else\n(.*?)#endif\n', lambda m: m[2] if m[1].lower() in folders else m[3], text, flags=re.S)
+
+
 def write_sources(plan, to):
     """src: the core and the wings of these weeks, with the plain tree alone."""
     for folder in FOLDERS + plan.wings:
@@ -96,7 +101,7 @@ def write_sources(plan, to):
             name = f'src/{folder}/{path.name}'
             if name in UNTOLD:
                 continue
-            write(to / name, regions.rewrite(path.read_text(), name, plan.replacement))
+            write(to / name, decided(regions.rewrite(path.read_text(), name, plan.replacement), FOLDERS + plan.wings))
     for name in ALSO:
         write(to / name, (ROOT / name).read_text())
     names = COURSE + sorted({pathlib.Path(e.file).name for e in plan.open if e.file.startswith('course/')})

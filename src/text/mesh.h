@@ -1,4 +1,4 @@
-// text/mesh.h  7  meshes of other programs, if this program was built with src/mesh
+// text/mesh.h  7  meshes of other programs, if -DWITH_MESH: with src/mesh
 #pragma once
 #include <optional>
 
@@ -21,7 +21,7 @@ struct MeshPlacement {
     }
 };
 
-#if __has_include("mesh/obj.h")
+#ifdef WITH_MESH
 #include "mesh/obj.h"
 #else
 namespace mesh {
