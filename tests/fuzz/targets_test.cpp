@@ -33,7 +33,7 @@ std::vector<std::string> files_in(const fs::path& folder) {
     return files;
 }
 
-Scene scene_of(const std::string& text) {
+NamedScene scene_of(const std::string& text) {
     return parse_scene("camera 0 0 5  0 0 0  40\ndiffuse d .5 .5 .5\nlight l 1 1 1\n" + text,
                        "s.scene")
         .scene;
@@ -130,25 +130,25 @@ TEST_CASE("light modes agree wherever lamps lie") {
 }
 
 TEST_CASE("broken scenes are told") {
-    const Scene good = scene_of("sphere 0 0 0  1  d\nquad 3 0 0  1 0 0  0 1 0  l\n");
+    const NamedScene good = scene_of("sphere 0 0 0  1  d\nquad 3 0 0  1 0 0  0 1 0  l\n");
     CHECK_NOTHROW(check_scene(good));
     auto broken = [&](auto change) {
-        Scene s = good;
+        NamedScene s = good;
         change(s);
         CHECK_THROWS_AS(check_scene(s), Broken);
     };
-    broken([](Scene& s) { s.shapes[0].r = infinity; });
-    broken([](Scene& s) { s.shapes[1].c = s.shapes[1].a; });
-    broken([](Scene& s) { s.material_of[0] = 2; });
-    broken([](Scene& s) { s.light_of[1] = 1; });
-    broken([](Scene& s) { s.line_of.pop_back(); });
-    broken([](Scene& s) { s.line_of_light.push_back(1); });
-    broken([](Scene& s) { s.pick_cdf[0] = 0.5; });
-    broken([](Scene& s) { s.camera.right.x = NAN; });
+    broken([](NamedScene& s) { s.shapes[0].r = infinity; });
+    broken([](NamedScene& s) { s.shapes[1].c = s.shapes[1].a; });
+    broken([](NamedScene& s) { s.material_of[0] = 2; });
+    broken([](NamedScene& s) { s.light_of[1] = 1; });
+    broken([](NamedScene& s) { s.line_of.pop_back(); });
+    broken([](NamedScene& s) { s.line_of_light.push_back(1); });
+    broken([](NamedScene& s) { s.pick_cdf[0] = 0.5; });
+    broken([](NamedScene& s) { s.camera.right.x = NAN; });
 }
 
 TEST_CASE("a tree that errs is told") {
-    const Scene good = scene_of("sphere 0 0 0  1  d\nsphere 3 0 0  1  d\nsphere 0 3 0  1  d\n");
+    const NamedScene good = scene_of("sphere 0 0 0  1  d\nsphere 3 0 0  1  d\nsphere 0 3 0  1  d\n");
     const Ray rays[] = {{{5, 0, 0}, {-1, 0, 0}}, {{0, 0, 5}, {0, 0, -1}}, {{5, 5, 5}, {1, 0, 0}}};
     for (const Ray& ray : rays) CHECK_NOTHROW(check_ray(good, ray));
     Scene other = good;  // its BVH has other shapes
