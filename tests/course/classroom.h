@@ -114,6 +114,7 @@ struct House {
         folder.write("src/film/nothing.h", "// film/nothing.h  1  nothing\n");
         folder.write("src/app/nothing.h", "// app/nothing.h  1  nothing\n");
         folder.write("src/mesh/nothing.h", "// mesh/nothing.h  1  nothing\n");
+        folder.write("src/text/nothing.h", "// text/nothing.h  1  nothing\n");
         folder.write("src/keep/read_pfm.h", "// nothing\n");
         folder.write("src/world/numbers.h",
                      numbers_h(solved("1.1", twice_right), solved("1.2", square_right)));
