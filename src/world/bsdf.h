@@ -2,7 +2,7 @@
 //
 // Local coordinates: z is the surface normal on wo's side, so wo.z > 0.  wo points to the eye, wi
 // to the light, both unit.  A kind of scattering is a struct with
-//   eval      f without the cosine (1/sr); 0 for a delta direction
+//   eval      f without the cosine (1/sr); 0 for wi.z <= 0 and for a delta direction
 //   pdf       density of wi per solid angle over the whole sphere; 0 for a delta direction
 //   sample    a direction wi from three numbers; `outside`: wo is on the side of the surface's own
 //             normal.  A direction below the horizon is kept, with f = 0: dropping it would bias
@@ -36,12 +36,10 @@ inline vec3 mirrored(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 
 // ---- Kinds of scattering ------------------------------------------------------------------------
 
-// Unless a kind says otherwise.
+// Scatters into all directions of its side.
 struct Opaque {
     static constexpr bool is_delta = false, transmits = false;
     static constexpr real ior = 1;
-    bool has_choice() const { return false; }
-    rgb diffuse() const { return {}; }
 };
 
 // f = kd / pi + ks (n+2) / (2 pi) max(0, cos alpha)^n, alpha the angle between wi and the mirror
@@ -106,6 +104,8 @@ struct Mirror : Delta {
 
     explicit Mirror(rgb r) : reflectance(r) {}
     rgb albedo() const { return reflectance; }
+    rgb diffuse() const { return {}; }
+    bool has_choice() const { return false; }
     BsdfSample sample(vec3 wo, bool, real, vec2, Direction) const {
         return {mirrored(wo), reflectance / wo.z, 1};
     }
@@ -117,6 +117,7 @@ struct Glass : Delta {
 
     explicit Glass(real index) : ior(index) {}
     rgb albedo() const { return {1, 1, 1}; }
+    rgb diffuse() const { return {}; }
     bool has_choice() const { return true; }
     BsdfSample sample(vec3 wo, bool outside, real u_lobe, vec2, Direction) const;
 };
