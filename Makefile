@@ -83,6 +83,13 @@ out/%.png out/%.pfm: out/%.json
 build/knot.obj: build/knot$(SUFFIX)
 	build/knot$(SUFFIX) $@
 
+# In scenes/calibration/SET a line "@@ NAME" begins a scene.
+build/scenes: $(wildcard scenes/calibration/*)  ## files of the scenes of make calibration: build/scenes/hard/bulb.scene
+	@rm -rf $@ $@.new && mkdir -p $(^:scenes/calibration/%=$@.new/%)
+	@awk '$$1 == "@@" { close(file); file = FILENAME "/" $$2 ".scene"; sub(/^scenes.calibration/, "$@.new", file); next } \
+	    { print >file }' $^
+	@mv $@.new $@
+
 clean:  ## remove build/ and out/
 	rm -rf build out
 

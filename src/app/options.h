@@ -117,8 +117,8 @@ inline OptionTable transport_rows(Options& o) {
          {"--depth", "N", "maximum number of bounces; 0: emission only", "the scene's",
           [&o](Text v) { o.depth = int(parse_count(v, 0, max_depth)); }},
          {"--roulette", "T",
-          "Russian roulette: a path survives with probability throughput / T (largest component) "
-          "where that is below 1; 0 disables Russian roulette",
+          "Russian roulette: a path survives with probability throughput / T (largest component, "
+          "without the factor of refraction) where that is below 1; 0 disables Russian roulette",
           significant(double(o.technique.roulette), 3),
           [&o](Text v) { o.technique.roulette = real(parse_fraction(v)); },
           [&o] { return json::number(double(o.technique.roulette)); }}});

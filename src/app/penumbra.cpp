@@ -49,7 +49,8 @@ FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, 
         return std::to_string(a) + between + std::to_string(b);
     };
     const RowRange rows = rows_of(o, scene);
-    FilmOf what{{parsed.files.begin(), parsed.files.end() - 1}, {}, {}, parsed.text};
+    FilmOf what{{parsed.files.begin(), parsed.files.end() - 1}, {}, {}};
+    if (!o.keep.empty()) what.scene = parsed.text;
     what.samples = {{"precision", sizeof(real) == 4 ? "float" : "double"},
                     {"size", pair(scene.size.width, 'x', scene.size.height)},
                     {"depth", std::to_string(scene.depth)}};

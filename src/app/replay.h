@@ -50,6 +50,7 @@ public:
         print("  p", x.at.p);
         print("  n", x.at.n);
         print("  throughput", s.beta);
+        if (s.eta2 != 1) print("  its factor of refraction", {s.eta2});
         if (x.material->emits()) {
             print("  emission", e.Le);
             print("  MIS weight", {e.weight});

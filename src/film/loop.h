@@ -19,14 +19,15 @@ struct Plan {
 };
 
 // Calls work(k, worker) for every k < count, perhaps from several threads, each with a number below
-// `workers`, and meanwhile(fraction done) now and then.  Returns early after an interrupt.
+// `workers`, and meanwhile(fraction done) now and then.  False: it was interrupted.
 using BlockWork = std::function<void(size_t k, unsigned worker)>;
 using Meanwhile = std::function<void(double)>;
 using ForEach =
-    std::function<void(size_t count, unsigned workers, const BlockWork&, const Meanwhile&)>;
+    std::function<bool(size_t count, unsigned workers, const BlockWork&, const Meanwhile&)>;
 
-inline void one_by_one(size_t count, unsigned, const BlockWork& work, const Meanwhile& meanwhile) {
+inline bool one_by_one(size_t count, unsigned, const BlockWork& work, const Meanwhile& meanwhile) {
     for (size_t k = 0; k < count; ++k) work(k, 0), meanwhile(double(k + 1) / double(count));
+    return true;
 }
 
 // Callbacks of the loop.
@@ -64,7 +65,7 @@ public:
             if (stop != Stop::no) return stop;
             if (is_pilot_done()) choose_weights(film_, plan_.noisy);
             watch_.between(film_, tally_);
-            add_pass(next_end());
+            if (!add_pass(next_end())) return Stop::interrupt;
         }
     }
 
@@ -104,7 +105,7 @@ private:
         return std::min({to, limit_, plan_.error > 0 ? next_check(n) : limit_});
     }
 
-    void add_pass(uint64_t to) {
+    bool add_pass(uint64_t to) {
         const double before = film_.samples_per_pixel(), after = film_.samples_per_pixel(to);
         const uint64_t last = uint64_t(std::min(checks_.expected(), double(limit_)));
         const double end = last < most_samples ? film_.samples_per_pixel(last) *
@@ -112,18 +113,21 @@ private:
                                                : HUGE_VAL;
         Tally nothing;
         nothing.near.resize(film_.near.size());
-        std::vector<Tally> of_worker(plan_.threads, nothing);
+        const unsigned workers = std::max(1u, plan_.threads);
+        std::vector<Tally> of_worker(workers, nothing);
         auto add_block = [&](size_t block, unsigned worker) {
             if (film_.taken[block] >= to) return;
             Tally tally = nothing;  // of whole blocks only
             add_samples(film_, block, to, L_, tally);
             of_worker[worker].add(tally);
         };
-        watch_.for_each(film_.taken.size(), plan_.threads, add_block,
-                        [&](double part) { watch_.show(before + part * (after - before), end); });
+        const bool is_whole = watch_.for_each(
+            film_.taken.size(), workers, add_block,
+            [&](double part) { watch_.show(before + part * (after - before), end); });
         for (const Tally& tally : of_worker) {
             tally_.add(tally);
             for (size_t g = 0; g < tally.near.size(); ++g) film_.near[g].add(tally.near[g]);
         }
+        return is_whole;
     }
 };

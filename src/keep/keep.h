@@ -9,9 +9,11 @@
 // Checksum of the scene's meshes and its text.
 inline std::string sum_of_scene(const FilmOf& what) {
     Checksum sum;
-    auto add = [&](std::string bytes) {
-        bytes.append("\n").append(std::to_string(bytes.size()));  // where it ends
+    auto add = [&](const std::string& bytes) {
+        const std::string end =
+            std::to_string(bytes.size() + 1).insert(0, 1, '\n');  // where it ends
         sum.add(std::as_bytes(std::span(bytes)));
+        sum.add(std::as_bytes(std::span(end)));
     };
     for (const std::string& file : what.files) add(read_file(file));
     if (!what.scene.empty()) add(what.scene);

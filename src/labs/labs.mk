@@ -45,9 +45,3 @@ readme: $(PENUMBRA) build/radiosity$(SUFFIX) build/readme$(SUFFIX)  ## write the
 # bench.cpp asks for the same header in the same way.
 $(OBJECTS)/bench.exe: LIBRARIES = $(shell printf '\043include <embree3/rtcore.h>\n' | \
                                           $(CXX) -x c++ -fsyntax-only - 2>/dev/null && echo -lembree3)
-
-# In scenes/calibration/SET a line "@@ NAME" begins a scene.
-build/scenes: $(wildcard scenes/calibration/*)  ## files of the scenes of make calibration: build/scenes/hard/bulb.scene
-	@rm -rf $@ && mkdir -p $(^:scenes/calibration/%=$@/%)
-	@awk '$$1 == "@@" { close(file); file = FILENAME "/" $$2 ".scene"; sub(/^scenes.calibration/, "$@", file); next } \
-	    { print >file }' $^

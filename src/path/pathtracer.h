@@ -57,7 +57,7 @@ inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
 
 // Why a vertex takes no light sample.
 enum class Unlit {
-    no,  // a shadow ray was traced
+    no,  // a shadow ray was traced, or the path ended before
     by_technique,
     without_lights,
     by_delta,         // a mirror or glass
@@ -181,12 +181,11 @@ PART Step step(const Scene& scene, const Technique& t, const Segment& s, const S
     // The product of f |cos| / pdf over all bounces.
     rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
     // end
-    const real eta2 = s.eta2 * b.eta2;
+    // What enters a diamond is as bright when it has left it (Pharr, Jakob, Humphreys 2023, sec.
+    // 14.5.4).
+    const real eta2 = s.eta2 * b.eta2, threshold = t.roulette * eta2;
     // exercise 3.5
-    // Arvo, Kirk 1990.  Surviving paths have a throughput of at least t.roulette, without eta2:
-    // what enters a diamond is as bright when it has left it (Pharr, Jakob, Humphreys 2023,
-    // sec. 14.5.4).
-    const real threshold = t.roulette * eta2;
+    // Arvo, Kirk 1990.  Surviving paths have a throughput of at least the threshold.
     if (max_of(beta) < threshold) {
         const real survival = max_of(beta) / threshold;
         const real u_survival = sampler.get(dimension(s.k, Draw::roulette));

@@ -107,7 +107,7 @@ inline WalksTarget walks_of(const RadiosityOptions& o, const NamedScene& scene) 
     uint64_t N = o.spp > 0 || o.seconds > 0 ? o.spp : scene.samples;
     if (o.error > 0) N = o.spp > 0 ? std::min<uint64_t>(o.spp, scene.samples) : scene.samples;
     const double pixels = double(scene.size.width) * double(scene.size.height);
-    return {uint64_t(std::ceil(pixels * double(N) / 16)), o.seconds / 16};
+    return {uint64_t(std::min(0x1p62, std::ceil(pixels * double(N) / 16))), o.seconds / 16};
 }
 
 // ---- Summary and statistics ---------------------------------------------------------------------

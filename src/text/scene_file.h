@@ -82,7 +82,7 @@ public:
         return {std::move(scene), std::move(warnings_), std::move(files_)};
     }
 
-    // ---- Words, for the readers of statements ---------------------------------------------------
+    // ---- Words, for the readers of statements --------------------------------------------------
 
     std::string last() const { return in_quotes(words_[next_ - 1]); }  // word read
     real number(double most = largest_number) { return real(parse_number(words_[next_++], most)); }
@@ -117,8 +117,7 @@ public:
     }
     uint32_t material() { return look_up(material_, words_[next_++], "material"); }
 
-    // ---- Statements of several steps
-    // --------------------------------------------------------------
+    // ---- Statements of several steps -----------------------------------------------------------
 
     // Gives the name that was read to a material.
     void define(const Material& m) {
@@ -188,8 +187,7 @@ private:
     int64_t left_ = 1 << 29;  // tests to cut up polygons: about a second
 };
 
-// ---- The grammar
-// ----------------------------------------------------------------------------------
+// ---- The grammar -------------------------------------------------------------------------------
 
 // The place of a kind among those of Scattering.
 template <class Kind, class... Kinds>
@@ -201,7 +199,7 @@ constexpr size_t place_in(std::type_identity<std::variant<Kinds...>>) {
 template <class Kind>
 inline constexpr size_t place_of = place_in<Kind>(std::type_identity<Scattering>{});
 
-inline const Statement grammar[] = {
+inline constexpr Statement grammar[] = {
     {Statement::setting, "size", "WIDTH HEIGHT", "width and height in pixels, which are square",
      [](SceneReader& r) { r.scene.size = r.size(); }, "256 128"},
     {Statement::setting, "camera", "EYE_X EYE_Y EYE_Z  TARGET_X TARGET_Y TARGET_Z  VERTICAL_FOV",
@@ -269,6 +267,17 @@ inline const Statement grammar[] = {
          add_box(r.scene, {w, h, d}, degrees, move, r.material());
      }},
 };
+
+constexpr bool is_called(size_t scattering) {
+    return std::ranges::any_of(grammar, [=](auto& s) { return s.scattering == scattering; });
+}
+static_assert(
+    [] {
+        size_t called = 0;
+        for (size_t k = 0; k < std::variant_size_v<Scattering>; ++k) called += is_called(k);
+        return called == std::variant_size_v<Scattering> - 1;
+    }(),
+    "every kind of Scattering but Rough has a row with its place");
 
 // What a surface of another kind than Rough is called.
 inline std::string called(const Scattering& scattering) {

@@ -76,7 +76,9 @@ int voronoi_main(const std::vector<std::string>& words) {
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
     const Plan plan = plan_at_once(o, scene);
-    if (plan.paths > 1 << 20) throw UserError("--spp: at most 1048576 samples per replication");
+    if (plan.paths > 1 << 20)
+        throw UserError((o.spp > 0 ? "--spp" : o.scene + ": samples") +
+                        std::string(": at most 1048576 samples per replication"));
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
     const auto outputs = outputs_of(o, parsed, "-voronoi", plan.size);
     catch_interrupt();

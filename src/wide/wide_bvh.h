@@ -143,7 +143,7 @@ private:
     // ---- Construction ---------------------------------------------------------------------------
 
     static void demand_room(bool enough) {
-        if (!enough) throw std::bad_alloc();  // readers refuse so many
+        if (!enough) throw std::bad_alloc();  // 2^27 shapes; a scene has at most 2^22
     }
 
     // Adds the node that a branch becomes and all below it.

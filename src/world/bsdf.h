@@ -143,12 +143,14 @@ inline BsdfSample sample_glass(const Glass& m, vec3 wo, bool outside, real u) {
         return {mirrored(wo), {f, f, f}, reflectance};
     }
     real f = (1 - reflectance) * sqr(eta) / cos_t;
-    return {{-eta * wo.x, -eta * wo.y, -cos_t}, {f, f, f}, 1 - reflectance, sqr(eta)};
+    return {{-eta * wo.x, -eta * wo.y, -cos_t}, {f, f, f}, 1 - reflectance};
 }
 // end
 
 inline BsdfSample Glass::sample(vec3 wo, bool outside, real u_lobe, vec2, Direction) const {
-    return sample_glass(*this, wo, outside, u_lobe);
+    BsdfSample s = sample_glass(*this, wo, outside, u_lobe);
+    if (s.wi.z < 0) s.eta2 = sqr(outside ? 1 / ior : ior);
+    return s;
 }
 
 using Scattering = std::variant<Rough, Mirror, Glass>;
