@@ -92,6 +92,8 @@ TEST_CASE("numbers of a head: at the start of a value, or after a character of i
     CHECK(film.number("rows", 100, '-') == 15);
     CHECK(film.number("rows", 15, '-') == 15);
     CHECK(film.number("time") == 0.25);
+    // The character after which a number stands is not there: 3-15 is no 3x3.
+    CHECK_THROWS_AS(film.number("rows", 100, 'x'), UserError);
     CHECK_THROWS_WITH_AS(film.number("rows", 14, '-'),
                          (folder / "a.film" + ": invalid rows '3-15'").c_str(), UserError);
     for (const char* key : {"no", "less", "much", "nan", "missing"})

@@ -61,6 +61,13 @@ TEST_CASE("a mesh of 10 kB that a scene of 25 kB repeats: so many shapes are too
     CHECK(why.ends_with("m.obj:10: more than 4194304 shapes"));
 }
 
+TEST_CASE("boxes, like meshes, are at most 2^22 shapes") {
+    const size_t times = max_shapes / 12 + 1;
+    const Folder folder;
+    CHECK(complaint(folder, repeated(times, "box 1 1 1 0 0 0 0 d\n")) ==
+          "s.scene:" + std::to_string(3 + times) + ": more than 4194304 shapes");
+}
+
 TEST_CASE("of a library that a scene repeats, the materials that faces name count") {
     const Folder folder;
     folder.write("m.obj", "mtllib m.mtl\nusemtl 7\n" + square + "f 1 2 3 4\nf 1 2 3\n");
