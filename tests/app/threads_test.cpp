@@ -136,3 +136,16 @@ TEST_CASE("a system that has no more threads: those that there are do the work, 
         for (const auto& times : done) CHECK(times == 1);
     }
 }
+
+TEST_CASE("threads that work at the same time have different numbers") {
+    std::atomic<int> begun = 0;
+    unsigned by[2] = {};
+    by_workers(
+        2, 2,
+        [&](size_t k, unsigned worker) {
+            by[k] = worker;
+            for (++begun; begun < 2;) std::this_thread::yield();
+        },
+        [](double) {});
+    CHECK(by[0] + by[1] == 1);
+}
