@@ -255,8 +255,7 @@ inline constexpr Statement grammar[] = {
      }},
     {Statement::content, "mesh", "FILE.obj  SCALE  X Y Z  [turn DEGREES_ABOUT_Y] [z_up] [MATERIAL]",
      "polygons, scaled, z made y by `z_up`, rotated about y, moved; MATERIAL is for faces whose "
-     "own "
-     "is missing; FILE is relative to the scene's folder, in quotes if it has blanks",
+     "own is missing; FILE is relative to the scene's folder, in quotes if it has blanks",
      [](SceneReader& r) { r.mesh(); }},
     {Statement::content, "box", "WIDTH HEIGHT DEPTH  DEGREES_ABOUT_Y  X Y Z  MATERIAL",
      "axis-aligned with a corner at the origin, then rotated about y and moved; emits outwards",

@@ -1,17 +1,10 @@
 // whole/how_to_add_test.cpp  new kinds take the places that reference/how-to-add.md says
-#include <doctest/doctest.h>
+#include "course/python.h"
+#include "text/folder.h"
 
-#include "whole/process.h"
-
-TEST_CASE(
-    "a material and a sampler in two places each render, and radiosity refuses the material by "
-    "name") {
+TEST_CASE("a material and a sampler take two places each, and radiosity refuses the material") {
     const Folder folder;
-    const std::string line = "python3 tests/how_to_add " + (folder / "copy") + " 2>&1";
-    std::string told;
-    std::FILE* pipe = ::popen(line.c_str(), "r");
-    REQUIRE(pipe);
-    for (int c; (c = std::fgetc(pipe)) != EOF;) told += char(c);
-    CAPTURE(told);
-    CHECK(::pclose(pipe) == 0);
+    const Printed printed = output_of("python3 tests/how_to_add " + (folder / "copy"));
+    INFO(printed.text);
+    CHECK(printed.status == 0);
 }
