@@ -23,7 +23,7 @@ inline ParsedScene load(const Options& o) {
     if (o.view != View::radiance) scene.exposure = 1;  // a scene's own is meant for radiance
     if (o.exposure) scene.exposure = real(*o.exposure);
     for (size_t i = 0; i < scene.lights.size(); ++i)
-        if (scene.lights[i].kind == Light::Kind::point && o.technique.light == LightMode::none)
+        if (scene.lights[i].is_delta() && o.technique.light == LightMode::none)
             throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
                             ": --light none: rays never hit a point light");
     if (o.rows && o.rows->last >= scene.size.height)

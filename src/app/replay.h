@@ -83,10 +83,9 @@ private:
     }
 
     void light(const DirectLight& d) const {
-        constexpr const char* kinds[] = {"sphere", "triangle", "quad", "point"};
         std::fprintf(out_, "  light sample: %s light, chosen with probability %.17g, %s\n",
-                     kinds[int(d.light->kind)], double(d.pdf / d.sample.pdf),
-                     d.occluded ? "occluded" : "visible");
+                     d.light->ask([](const auto& kind) { return kind.name; }),
+                     double(d.pdf / d.sample.pdf), d.occluded ? "occluded" : "visible");
         print("    at", d.sample.at.p);
         print("    wi", d.sample.wi);
         print("    pdf", {d.pdf});

@@ -82,7 +82,8 @@ Case with_rays(Case c, int width) {
 Case scene_of(const std::string& name, int width) {
     const Scene s = read_scene("scenes/" + name + ".scene").scene;
     const Light& lamp = s.lights.at(0);
-    Case c{name, s.shapes, s.camera, lamp.p, lamp.u, lamp.v};
+    const auto& [e, f] = *lamp.as<QuadLight>();
+    Case c{name, s.shapes, s.camera, lamp.p, e, f};
     std::erase_if(c.shapes, [](const Shape& x) { return x.is_sphere(); });
     return with_rays(std::move(c), width);
 }

@@ -22,8 +22,8 @@ const std::string own = "build/penumbra", in_float = "build/penumbra-float", fol
 
 Choices all_choices(const Scene& scene, const std::string& float_program) {
     Choices all;
-    const bool points = std::any_of(scene.lights.begin(), scene.lights.end(),
-                                    [](auto& l) { return l.kind == Light::Kind::point; });
+    const bool points =
+        std::any_of(scene.lights.begin(), scene.lights.end(), [](auto& l) { return l.is_delta(); });
     for (const std::string light : {"", " --light nee", " --light none"})
         for (const std::string sampler :
              {"", " --sampler halton", " --sampler stratified", " --sampler independent"})

@@ -13,13 +13,19 @@ inline std::string other_than_diffuse(const Material& m) {
     return max_of(rough->ks) > 0 ? "glossy" : "";
 }
 
-// Throws UserError "NAME:LINE: ..." about the first shape that is not diffuse.
+// Throws UserError "NAME:LINE: ..." about the first shape that is not diffuse, or the first light
+// without a surface that is no point.
 inline void check_diffuse(const NamedScene& s, const std::string& name) {
     for (size_t i = 0; i < s.shapes.size(); ++i)
         if (const std::string what = other_than_diffuse(s.material_at(uint32_t(i))); !what.empty())
             throw UserError(name + ":" + std::to_string(s.line_of[i]) + ": " + "material " +
                             in_quotes(s.names[s.material_of[i]]) + " is " + what +
                             "; radiosity supports diffuse surfaces only");
+    for (size_t k = 0; k < s.lights.size(); ++k)
+        if (const Light& l = s.lights[k]; l.is_delta() && !l.as<PointLight>())
+            throw UserError(name + ":" + std::to_string(s.line_of_light[k]) +
+                            ": radiosity supports no " +
+                            l.ask([](const auto& kind) { return kind.name; }) + " light");
 }
 
 // The line of the first shape that absorbs nothing of a channel; 0: none.
@@ -126,8 +132,8 @@ inline void add_facets(NamedScene& to, const NamedScene& from, size_t i,
     bright.Le = ball.L / real(part);
     add_material(to, bright, from.names[material]);
     for (const Shape& facet : facets) {
-        Light l = triangle_light(facet.a, facet.b - facet.a, facet.c - facet.a);
-        l.L = bright.Le, l.twosided = ball.twosided, l.error = ball.error;
+        Light l{facet.a, TriangleLight{facet.b - facet.a, facet.c - facet.a}, bright.Le};
+        l.twosided = ball.twosided, l.error = ball.error;
         add_facet(to, from, i, facet, int32_t(to.lights.size()));
         to.material_of.back() = uint32_t(to.materials.size()) - 1;
         to.lights.push_back(l);
@@ -144,7 +150,7 @@ inline Faceted faceted(const NamedScene& from, double H) {
     to.lights.clear(), to.line_of_light.clear();
     std::vector<int32_t> light(from.lights.size(), no_light);  // new lights, except for spheres
     for (size_t k = 0; k < from.lights.size(); ++k) {
-        if (from.lights[k].kind == Light::Kind::sphere) continue;
+        if (from.lights[k].as<SphereLight>()) continue;
         light[k] = int32_t(to.lights.size());
         to.lights.push_back(from.lights[k]);
         to.line_of_light.push_back(from.line_of_light[k]);

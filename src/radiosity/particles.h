@@ -50,18 +50,14 @@ struct Particle {
 inline Particle emit(const Scene& scene, const WalkNumbers& u) {
     const Light& l = choose_light(scene, u.start(WalkNumbers::pick));
     const vec2 at = u.start2(WalkNumbers::point), d = u.start2(WalkNumbers::direction);
-    if (l.kind == Light::Kind::point) {
+    if (l.is_delta()) {
         const vec3 w = sample_uniform_sphere(d);
         return {{l.p, w}, l.L / (pdf_uniform_sphere() * l.pick)};
     }
-    const vec3 area = l.area_vector();
-    const vec3 on =
-        l.kind == Light::Kind::quad ? sample_quad(at, l.u, l.v) : sample_triangle(at, l.u, l.v);
-    const bool back = l.twosided && u.start(WalkNumbers::side) >= real(0.5);
-    const vec3 n = back ? -unit(area) : unit(area);
-    const vec3 w = frame(n).to_world(sample_cosine_hemisphere(d));
-    return {spawn({l.p + on, n, l.error}, w),
-            pi * length(area) * (l.twosided ? 2 : 1) * l.L / l.pick};
+    Surface y = point_of(l, at);
+    if (l.twosided && u.start(WalkNumbers::side) >= real(0.5)) y.n = -y.n;
+    const vec3 w = frame(y.n).to_world(sample_cosine_hemisphere(d));
+    return {spawn(y, w), pi * area_of(l) * (l.twosided ? 2 : 1) * l.L / l.pick};
 }
 
 // White walls absorb nothing, but walks have to end: one in fifty does, and the others weigh more.

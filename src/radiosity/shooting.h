@@ -38,7 +38,7 @@ public:
             return mesh.faces[a].vertices() > mesh.faces[b].vertices();
         });
         for (const Light& l : scene.lights)
-            if (l.kind == Light::Kind::point) points_.push_back(&l);
+            if (l.is_delta()) points_.push_back(&l);
         emitted_ = unsent();
         for (const Face& f : mesh.faces) area_ += 2 * double(f.area());
     }

@@ -24,24 +24,32 @@ inline bool is_finite(const Shadowed& s) { return is_finite(s.U) && is_finite(s.
 // True if U contains this light at x.
 inline bool has_closed_form(const Light& l, const Surface& x) {
     const real error = 2 * (x.error + l.error);
-    if (l.kind == Light::Kind::point) return false;
     const vec3 p = x.p - l.p;
-    if (l.kind == Light::Kind::sphere) return dot(p, p) > sqr(l.r + error);
-    const vec3 n = cross(l.u, l.v);
-    return std::abs(dot(n, p)) > error * length(n);
+    if (l.is_delta()) return false;
+    return l.is_round() ? dot(p, p) > sqr(l.reach + error) : std::abs(dot(l.n, p)) > error;
+}
+
+// Irradiance by a light at p from a surface, at radiance 1.
+template <class Kind>
+requires Kind::is_delta real irradiance(const Kind&, vec3, const Frame&) {
+    return 0;  // never asked: it has no closed form
+}
+inline real irradiance(const SphereLight& l, vec3 p, const Frame& local) {
+    const real d2 = dot(p, p);
+    return irradiance_sphere(dot(local.n, p) / std::sqrt(d2), sqr(l.r) / d2);
+}
+inline real irradiance(const TriangleLight& l, vec3 p, const Frame& local) {
+    return irradiance_triangle(local.to_local(p), local.to_local(l.e), local.to_local(l.f));
+}
+inline real irradiance(const QuadLight& l, vec3 p, const Frame& local) {
+    return irradiance_quad(local.to_local(p), local.to_local(l.e), local.to_local(l.f));
 }
 
 // Irradiance / pi of a diffuse surface by one light that has a closed form.
 inline rgb unshadowed_light(const Light& l, const Surface& x, const Frame& local) {
     const vec3 p = l.p - x.p;
-    if (l.kind == Light::Kind::sphere) {
-        const real d2 = dot(p, p);
-        return l.L * (irradiance_sphere(dot(local.n, p) / std::sqrt(d2), sqr(l.r) / d2) / pi);
-    }
-    if (!l.twosided && dot(cross(l.u, l.v), p) >= 0) return {};  // its dark side
-    const vec3 a = local.to_local(p), u = local.to_local(l.u), v = local.to_local(l.v);
-    const bool quad = l.kind == Light::Kind::quad;
-    return l.L * ((quad ? irradiance_quad(a, u, v) : irradiance_triangle(a, u, v)) / pi);
+    if (!l.is_round() && !l.twosided && dot(l.n, p) >= 0) return {};  // its dark side
+    return l.L * (l.ask([&](const auto& kind) { return irradiance(kind, p, local); }) / pi);
 }
 
 inline rgb unshadowed(const Scene& scene, const Material& m, const Surface& x, const Frame& local) {

@@ -129,7 +129,8 @@ private:
 // Moved along a normal; a sphere, which has none, grows.
 inline Light lifted(Light l, real by) {
     l.p += by * l.n;
-    if (l.r > 0) l.r = std::max(l.r / 2, l.r + by);
+    if (auto* ball = std::get_if<SphereLight>(&l.kind))
+        ball->r = std::max(ball->r / 2, ball->r + by);
     return l;
 }
 inline Shape lifted(Shape s, vec3 n, real by) {
@@ -298,7 +299,7 @@ struct LightOnShape {
 inline std::optional<LightOnShape> point_light_on_surface(const Scene& s) {
     std::vector<size_t> points;
     for (size_t k = 0; k < s.lights.size(); ++k)
-        if (s.lights[k].kind == Light::Kind::point) points.push_back(k);
+        if (s.lights[k].is_delta()) points.push_back(k);
     auto x_of = [&](size_t k) { return s.lights[k].p.x; };
     std::ranges::stable_sort(points, {}, x_of);
     std::optional<LightOnShape> first;
@@ -347,7 +348,7 @@ inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool 
     };
     look_about(s.camera.eye, "distance to the eye");
     for (const Light& l : s.lights)
-        if (l.kind == Light::Kind::point) look_about(l.p, "distance to a point light");
+        if (l.is_delta()) look_about(l.p, "distance to a point light");
     for (uint32_t i = 0, firsts = 0, pairs = 0; i < s.shapes.size(); ++i) {
         if (is_coarse(s.shapes[i])) found.emplace("size", i);
         const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];

@@ -233,7 +233,7 @@ inline constexpr Statement grammar[] = {
     {Statement::content, "pointlight", "X Y Z  R G B", "intensity: radiance × length²",
      [](SceneReader& r) {
          const vec3 p = r.point();
-         add_point_light(r.scene, p, r.colour());
+         add_light(r.scene, {p, PointLight(), r.colour()});
      }},
     {Statement::content, "sphere", "X Y Z  RADIUS  MATERIAL", "emits outwards",
      [](SceneReader& r) {

@@ -28,14 +28,10 @@ inline std::optional<uint32_t> hides(const Scene& s, const Light& l) {
             return vec2{to_unit(hash(i, 2 * k)), to_unit(hash(i, 2 * k + 1))};
         };
         vec3 d = sample_uniform_sphere(u(0));
-        if (!l.is_round() && !l.twosided && dot(d, l.n) < 0) d = -d;
-        const vec3 on = l.is_round()                  ? l.r * d
-                        : l.kind == Light::Kind::quad ? sample_quad(u(33), l.u, l.v)
-                                                      : sample_triangle(u(33), l.u, l.v);
-        const vec3 side = l.is_round() ? d : l.n;
-        if (l.twosided && i % 2 == 1) d = -d;
-        Ray ray = spawn({l.p + on, side, l.error}, d);
-        const bool point = l.kind == Light::Kind::point;
+        const Surface from = point_of(l, u(33));
+        if (!l.twosided && dot(d, from.n) < 0) d = -d;
+        Ray ray = spawn(from, d);
+        const bool point = l.is_delta();
         auto hit = point ? s.bvh.closest(ray) : hit_through_glass(s, ray);
         if (hit) first = hit->id;
         for (uint64_t k = 1; k <= 32; ++k) {
@@ -66,7 +62,7 @@ inline std::vector<std::string> hidden_lights(const NamedScene& s) {
             warn(k, "this light is hidden by " + where(s, *shape) +
                         ": none of 512 paths from it comes out or in view of the eye");
     }
-    const auto point = std::ranges::find(s.lights, Light::Kind::point, &Light::kind);
+    const auto point = std::ranges::find_if(s.lights, &Light::is_delta);
     if (point != s.lights.end() &&
         std::ranges::any_of(s.material_of, [&](auto m) { return s.materials[m].is_delta(); }))
         warn(size_t(point - s.lights.begin()),

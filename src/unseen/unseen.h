@@ -61,7 +61,7 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
     view.groups.resize(std::min(s.lights.size(), most_light_groups));
     std::vector<std::map<size_t, double>> parts(view.groups.size());
     for (size_t i = 0; i < s.lights.size(); ++i) {
-        if (s.lights[i].kind == Light::Kind::point) continue;
+        if (s.lights[i].is_delta()) continue;
         NearMisses& g = view.groups[group_of(s, i)];
         if (g.line == 0 && i < line_of_light.size()) g.line = float(line_of_light[i]);
         g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
@@ -82,31 +82,25 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
 
 // ---- Hits and near misses -----------------------------------------------------------------------
 
-inline vec3 longest_edge(const Light& l) {
-    const vec3 third = l.kind == Light::Kind::triangle ? l.u - l.v : vec3{};
-    const vec3 e = length(l.u) >= length(l.v) ? l.u : l.v;
-    return length(third) > length(e) ? third : e;
-}
-
 // Bit k is set if the ray would meet the light grown to 4^k times its area, from the bright side. A
 // sphere counts as a disc about its centre that faces the ray, a polygon as a rectangle of its area
 // along its longest edge.  This first grows in width, until it is a square: a thread is small in
 // one direction only.  Lamps stand recessed: the ray may end before the light by half the side of a
 // square of its area.
 inline uint32_t growths_met(const Light& l, const Ray& ray) {
-    if (l.kind == Light::Kind::point) return 0;
+    if (l.is_delta()) return 0;
     const vec3 f = l.centre - ray.o;
-    const bool is_ball = l.kind == Light::Kind::sphere;
+    const bool is_ball = l.is_round();
     const real cosine = is_ball ? -1 : dot(l.n, ray.d);
     const real t = is_ball ? dot(f, ray.d) : dot(l.n, f) / cosine;
-    const real recess = is_ball ? l.r : std::sqrt(1 / l.pdf_area) / 2;
+    const real recess = is_ball ? l.reach : std::sqrt(1 / l.pdf_area) / 2;
     if (!(t > 0 && t < ray.tmax + recess)) return 0;
     if (!(cosine < 0 || (l.twosided && cosine > 0))) return 0;
     const vec3 y = t * ray.d - f;
-    const real far = length(f) / l.reach;      // 1: the light is as large as its distance
-    real least = length(y) / l.r, most = far;  // growths
+    const real far = length(f) / l.reach;          // 1: the light is as large as its distance
+    real least = length(y) / l.reach, most = far;  // growths
     if (!is_ball) {
-        const vec3 e = longest_edge(l);
+        const vec3 e = l.edge;
         const real edge = length(e), slender = sqr(edge) * l.pdf_area;  // length over width
         const real along = 2 * std::abs(dot(y, e)) / sqr(edge);
         const real across = 2 * std::abs(dot(y, cross(l.n, e))) * l.pdf_area;

@@ -17,16 +17,9 @@ inline constexpr size_t most_members = 8;
 // 1995): no member starves.
 inline constexpr real even_part = real(0.0625);
 
-// Seen from afar, a light of radiance L sends it L A cos_l cos_s / d^2: A is its area, or the disc
-// that a sphere shows, d the distance of its centre, and the cosines are those at both ends.
-inline double strength(const Light& l) {
-    const double L = double(mean_of(l.L)), r = double(l.r);
-    if (l.kind == Light::Kind::point) return L;
-    if (l.kind == Light::Kind::sphere) return L * std::numbers::pi * r * r;
-    return L * double(length(l.area_vector()));
-}
-
-// A light, or a group of lights, as it looks from afar.
+// A light, or a group of lights, as it looks from afar: it sends L A cos_l cos_s / d^2 to a
+// surface. L A is its strength, d the distance of its centre, and the cosines are those at both
+// ends.
 struct LightNode {
     vec3 centre = {};   // of a group: the mean of its lights', by strength
     real reach = 0;     // radius of a sphere about the centre that holds all

@@ -1,59 +1,35 @@
-// world/lights.h  2  light sampling: spheres, polygons, points
+// world/lights.h  2  light sampling: points, spheres, polygons
+//
+// A kind of light is a struct with these functions; `Light` calls them, and holds the rest.
+//     name            in what is told of a path
+//     is_delta        true if it has no surface that a ray could meet
+//     place(l)        sets what depends on l.p: see Emitter
+//     strength(L)     L times the area that it shows from afar; of a point, its intensity
+//     point(l, u)     a point of its surface, uniformly distributed, by u in [0,1)^2
+//     sample(l, p, u) a point that shines on p; none if the point that u chooses does not
+//     pdf(l, p, y)    density (1/sr) with which sample from p chooses the point y
 #pragma once
 #include <optional>
+#include <variant>
 
 #include "world/shapes.h"
 #include "world/warp.h"
 
-// To be made by the functions below, which compute n and pdf_area.
-struct Light {
-    enum class Kind { sphere, triangle, quad, point } kind = Kind::point;
-    vec3 p = {};          // centre of a sphere, corner of a polygon, the point
-    vec3 u = {}, v = {};  // edges of a polygon; it emits on the side of u x v
-    real r = 0;           // radius of a sphere; it emits outwards
-    vec3 n = {};          // unit normal of a polygon
-    real pdf_area = 0;    // density of uniform points of a polygon, 1 / its area
-    rgb L = {};           // radiance; of a point: intensity, radiance x length^2
-    bool twosided = false;
+// What a light of any kind has.
+struct Emitter {
+    vec3 p = {};       // centre of a sphere, corner of a polygon, the point
+    rgb L = {};        // radiance; of a point: intensity, radiance x length^2
     real error = 0;    // of surface points, see Surface
     real pick = 0;     // probability that the scene chooses this light by its power
     vec3 centre = {};  // a sphere about it, of radius reach
     real reach = 0;
+    vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
+    vec3 edge = {};     // its longest edge
+    real pdf_area = 0;  // density of uniform points of its surface, 1 / its area
+    bool twosided = false;
 
-    bool is_round() const { return kind == Kind::sphere || kind == Kind::point; }
-    vec3 area_vector() const { return cross(u, v) * real(kind == Kind::quad ? 1 : 0.5); }
+    bool is_round() const { return n == vec3{}; }
 };
-
-inline Light point_light(vec3 p, rgb intensity) {
-    Light l{Light::Kind::point, p};
-    l.L = intensity, l.centre = p;
-    return l;
-}
-inline Light sphere_light(vec3 centre, real r) {
-    Light l{Light::Kind::sphere, centre, {}, {}, r};
-    l.centre = centre, l.reach = r;
-    return l;
-}
-inline Light triangle_light(vec3 p, vec3 u, vec3 v) {
-    Light l{Light::Kind::triangle, p, u, v, 0, unit(cross(u, v)), pdf_triangle_area(u, v)};
-    const vec3 c = (u + v) / 3;
-    l.centre = p + c, l.reach = std::max({length(c), length(u - c), length(v - c)});
-    return l;
-}
-inline Light quad_light(vec3 p, vec3 u, vec3 v) {
-    Light l{Light::Kind::quad, p, u, v, 0, unit(cross(u, v)), pdf_quad_area(u, v)};
-    l.centre = p + (u + v) / 2, l.reach = std::max(length(u + v), length(u - v)) / 2;
-    return l;
-}
-
-// Emitted power in all directions, mean of the channels (watts).  A float might overflow.
-inline double power(const Light& l) {
-    double L = double(mean_of(l.L)), r = double(l.r);
-    constexpr double pi_ = std::numbers::pi;
-    if (l.kind == Light::Kind::point) return 4 * pi_ * L;
-    if (l.kind == Light::Kind::sphere) return pi_ * L * 4 * pi_ * r * r;
-    return pi_ * L * double(length(l.area_vector())) * (l.twosided ? 2 : 1);
-}
 
 // A point of the light seen from p: the unit direction to it, the radiance from there and the
 // density of wi (1/sr).  A point light has pdf 1 and L = I / d^2.
@@ -65,17 +41,66 @@ struct LightSample {
     bool delta = false;
 };
 
-// sin^2 of the half-angle of the cone that a sphere subtends; nothing from its inside, nor from
-// where rounding leaves open whether p is on its inner side or on its outer.
-inline std::optional<real> sin2_subtended(const Light& l, vec3 p) {
-    vec3 f = l.p - p;
-    real d2 = dot(f, f);
-    if (!(d2 > sqr(l.r + l.error))) return {};
-    return sqr(l.r) / d2;
-}
+// ---- Kinds of lights ----------------------------------------------------------------------------
 
-// Density per solid angle of the direction from p to the point y, for uniform points of a polygon.
-inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
+struct PointLight {
+    static constexpr auto name = "point";
+    static constexpr bool is_delta = true;
+
+    void place(Emitter&) const {}
+    double strength(double I) const { return I; }
+    Surface point(const Emitter& l, vec2) const { return {l.p, {}, l.error}; }
+    std::optional<LightSample> sample(const Emitter& l, vec3 p, vec2) const {
+        vec3 w = l.p - p;
+        real d2 = dot(w, w);
+        if (!(d2 > 0)) return {};
+        return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1, true};
+    }
+    real pdf(const Emitter&, vec3, const Surface&) const { return 0; }
+};
+
+// Emits outwards.
+struct SphereLight {
+    static constexpr auto name = "sphere";
+    static constexpr bool is_delta = false;
+    real r = 0;  // radius
+
+    void place(Emitter& l) const { l.reach = r, l.pdf_area = 1 / (4 * pi * sqr(r)); }
+    double strength(double L) const { return L * std::numbers::pi * double(r) * double(r); }
+    Surface point(const Emitter& l, vec2 u) const {
+        const vec3 n = sample_uniform_sphere(u);
+        return {l.p + r * n, n, l.error};
+    }
+    // sin^2 of the half-angle of the cone that it subtends; nothing from its inside, nor from
+    // where rounding leaves open whether p is on its inner side or on its outer.
+    std::optional<real> sin2_subtended(const Emitter& l, vec3 p) const {
+        vec3 f = l.p - p;
+        real d2 = dot(f, f);
+        if (!(d2 > sqr(r + l.error))) return {};
+        return sqr(r) / d2;
+    }
+    // Uniform over the cone (Shirley, Wang, Zimmerman 1996).  In radii, the ray passes the centre
+    // at a distance of sin(beta) = sin(theta) / sin(sigma) and meets the sphere cos(beta) before.
+    std::optional<LightSample> sample(const Emitter& l, vec3 p, vec2 u) const {
+        auto sin2_max = sin2_subtended(l, p);
+        if (!sin2_max) return {};
+        vec3 local = sample_cone(u, *sin2_max);
+        real sin_max = std::sqrt(*sin2_max), sin2 = sqr(local.x) + sqr(local.y);
+        vec3 foot = vec3{local.z * local.x, local.z * local.y, -sin2} / sin_max;
+        real before = std::sqrt(std::max(real(0), 1 - sin2 / *sin2_max));
+        const Frame f = frame(unit(l.p - p));
+        vec3 wi = f.to_world(local);
+        vec3 n = unit(f.to_world(foot - before * local));
+        return LightSample{wi, {l.p + r * n, n, l.error}, l.L, pdf_cone(*sin2_max)};
+    }
+    real pdf(const Emitter& l, vec3 p, const Surface&) const {
+        auto sin2_max = sin2_subtended(l, p);
+        return sin2_max ? pdf_cone(*sin2_max) : 0;
+    }
+};
+
+// Density per solid angle of the direction from p to the point y, for uniform points of an area.
+inline real pdf_polygon_by_area(const Emitter& l, vec3 p, const Surface& y) {
     // exercise 2.6
     vec3 w = y.p - p;
     real d2 = dot(w, w);
@@ -84,48 +109,91 @@ inline real pdf_polygon_by_area(const Light& l, vec3 p, const Surface& y) {
     // end
 }
 
-// Uniform over the cone that the sphere subtends (Shirley, Wang, Zimmerman 1996).  In radii, the
-// ray passes the centre at a distance of sin(beta) = sin(theta) / sin(sigma) and meets the sphere
-// cos(beta) before.
-inline std::optional<LightSample> sample_sphere_light(const Light& l, vec3 p, vec2 u) {
-    auto sin2_max = sin2_subtended(l, p);
-    if (!sin2_max) return {};
-    vec3 local = sample_cone(u, *sin2_max);
-    real sin_max = std::sqrt(*sin2_max), sin2 = sqr(local.x) + sqr(local.y);
-    vec3 foot = vec3{local.z * local.x, local.z * local.y, -sin2} / sin_max;
-    real before = std::sqrt(std::max(real(0), 1 - sin2 / *sin2_max));
-    const Frame f = frame(unit(l.p - p));
-    vec3 wi = f.to_world(local);
-    vec3 n = unit(f.to_world(foot - before * local));
-    return LightSample{wi, {l.p + l.r * n, n, l.error}, l.L, pdf_cone(*sin2_max)};
-}
+// Corner p and two edges, which span a triangle or a parallelogram.  Emits on the side of e x f.
+template <int corners>
+struct PolygonLight {
+    static constexpr bool is_delta = false, is_quad = corners == 4;
+    static constexpr auto name = is_quad ? "quad" : "triangle";
+    vec3 e, f;
 
-// Uniform over the area; nothing from the side that does not emit.
-inline std::optional<LightSample> sample_polygon_light(const Light& l, vec3 p, vec2 u) {
-    vec3 on = l.kind == Light::Kind::quad ? sample_quad(u, l.u, l.v) : sample_triangle(u, l.u, l.v);
-    Surface y{l.p + on, l.n, l.error};
-    vec3 wi = unit(y.p - p);
-    real cos_y = -dot(y.n, wi);
-    if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
-    const real pdf = pdf_polygon_by_area(l, p, y);
-    if (!(pdf > 0)) return {};  // edge-on, except for the rounding of wi
-    return LightSample{wi, y, l.L, pdf};
-}
+    void place(Emitter& l) const {
+        const vec3 third = is_quad ? vec3{} : e - f, to_centre = (e + f) / real(is_quad ? 2 : 3);
+        l.n = unit(cross(e, f));
+        l.pdf_area = is_quad ? pdf_quad_area(e, f) : pdf_triangle_area(e, f);
+        l.edge = length(e) >= length(f) ? e : f;
+        if (length(third) > length(l.edge)) l.edge = third;
+        l.centre = l.p + to_centre;
+        l.reach = is_quad
+                      ? std::max(length(e + f), length(e - f)) / 2
+                      : std::max({length(to_centre), length(e - to_centre), length(f - to_centre)});
+    }
+    double strength(double L) const {
+        return L * double(length(cross(e, f) * real(is_quad ? 1 : 0.5)));
+    }
+    Surface point(const Emitter& l, vec2 u) const {
+        return {l.p + (is_quad ? sample_quad(u, e, f) : sample_triangle(u, e, f)), l.n, l.error};
+    }
+    // Uniform over the area; nothing from the side that does not emit.
+    std::optional<LightSample> sample(const Emitter& l, vec3 p, vec2 u) const {
+        const Surface y = point(l, u);
+        vec3 wi = unit(y.p - p);
+        real cos_y = -dot(y.n, wi);
+        if (!(cos_y > 0 || (l.twosided && cos_y < 0))) return {};
+        const real pdf = pdf_polygon_by_area(l, p, y);
+        if (!(pdf > 0)) return {};  // edge-on, except for the rounding of wi
+        return LightSample{wi, y, l.L, pdf};
+    }
+    real pdf(const Emitter& l, vec3 p, const Surface& y) const {
+        return pdf_polygon_by_area(l, p, y);
+    }
+};
+using TriangleLight = PolygonLight<3>;
+using QuadLight = PolygonLight<4>;
 
-// Nothing if the light emits nothing from the sampled point to p.
+using LightKind = std::variant<PointLight, SphereLight, TriangleLight, QuadLight>;
+
+// ---- Lights -------------------------------------------------------------------------------------
+
+struct Light : Emitter {
+    LightKind kind;
+
+    Light(vec3 at, LightKind k, rgb radiance = {}) : kind(k) {
+        p = centre = at, L = radiance;
+        std::visit([&](const auto& light) { light.place(*this); }, kind);
+    }
+    // This kind of light, or null if it is another.
+    template <class Kind>
+    const Kind* as() const {
+        return std::get_if<Kind>(&kind);
+    }
+    // What its kind answers.
+    decltype(auto) ask(auto question) const { return std::visit(question, kind); }
+    bool is_delta() const {
+        return ask([](const auto& light) { return light.is_delta; });
+    }
+};
+
+// Of the mean of the channels.  A float might overflow.
+inline double strength(const Light& l, double factor = 1) {
+    const double L = factor * double(mean_of(l.L));
+    return l.ask([&](const auto& light) { return light.strength(L); });
+}
+// Emitted power in all directions (watts).  A convex body has four times the area that it shows,
+// in the mean of all directions (Cauchy 1841).
+inline double power(const Light& l) {
+    const int sides = l.is_round() ? 4 : l.twosided ? 2 : 1;
+    return sides * strength(l, std::numbers::pi);
+}
 inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
-    if (l.kind == Light::Kind::sphere) return sample_sphere_light(l, p, u);
-    if (l.kind != Light::Kind::point) return sample_polygon_light(l, p, u);
-    vec3 w = l.p - p;
-    real d2 = dot(w, w);
-    if (!(d2 > 0)) return {};
-    return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1, true};
+    return l.ask([&](const auto& light) { return light.sample(l, p, u); });
 }
-
-// Density (1/sr) with which sample_light from p chooses the point y of the light.
 inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
-    if (l.kind == Light::Kind::point) return 0;
-    if (l.kind != Light::Kind::sphere) return pdf_polygon_by_area(l, p, y);
-    auto sin2_max = sin2_subtended(l, p);
-    return sin2_max ? pdf_cone(*sin2_max) : 0;
+    return l.ask([&](const auto& light) { return light.pdf(l, p, y); });
+}
+inline Surface point_of(const Light& l, vec2 u) {
+    return l.ask([&](const auto& light) { return light.point(l, u); });
+}
+// That it shows from afar; of a point 1.
+inline real area_of(const Light& l) {
+    return real(l.ask([](const auto& light) { return light.strength(1); }));
 }

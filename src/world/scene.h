@@ -87,7 +87,7 @@ inline int32_t add_light(Scene& s, Light light, uint32_t material, real error) {
 
 inline void add_sphere(Scene& s, vec3 centre, real r, uint32_t material) {
     Shape sphere{centre, {}, {}, r};
-    const int32_t light = add_light(s, sphere_light(centre, r), material, rounding_error(sphere));
+    const int32_t light = add_light(s, {centre, SphereLight{r}}, material, rounding_error(sphere));
     add_shape(s, sphere, material, light);
 }
 
@@ -102,7 +102,7 @@ inline void add_triangle(Scene& s, vec3 a, vec3 b, vec3 c, uint32_t material) {
     Shape t{a, b, c};
     if (!has_area(t)) return void(++s.dropped);
     const int32_t light =
-        add_light(s, triangle_light(a, b - a, c - a), material, rounding_error(t));
+        add_light(s, {a, TriangleLight{b - a, c - a}}, material, rounding_error(t));
     add_shape(s, t, material, light);
 }
 
@@ -112,7 +112,7 @@ inline void add_face(Scene& s, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material
     Shape first{a, b, c}, second{a, c, d};
     if (!has_area(first) || !has_area(second)) return void(s.dropped += 2);
     real error = std::max(rounding_error(first), rounding_error(second));
-    int32_t light = add_light(s, quad_light(a, b - a, d - a), material, error);
+    int32_t light = add_light(s, {a, QuadLight{b - a, d - a}}, material, error);
     add_shape(s, first, material, light);
     add_shape(s, second, material, light);
 }
@@ -146,6 +146,7 @@ inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t mater
         add_face(s, corner[a], corner[b], corner[c], corner[d], material);
 }
 
-inline void add_point_light(Scene& s, vec3 p, rgb intensity) {
-    if (max_of(intensity) > 0) s.lights.push_back(point_light(p, intensity));
+// A light that has no surface; dark, it is none.
+inline void add_light(Scene& s, const Light& light) {
+    if (max_of(light.L) > 0) s.lights.push_back(light);
 }

@@ -11,8 +11,8 @@ vec2 u_of(In x) { return {real(x[0]), real(x[1])}; }
 
 // Corner and edges of a quad, the point that sees it, the place on it along its edges.
 real polygon_density(In x) {
-    const Light l = quad_light(vec3_of(x, 0), vec3_of(x, 3), vec3_of(x, 6));
-    const vec3 y = l.p + real(x[12]) * l.u + real(x[13]) * l.v;
+    const Light l(vec3_of(x, 0), QuadLight{vec3_of(x, 3), vec3_of(x, 6)});
+    const vec3 y = l.p + real(x[12]) * vec3_of(x, 3) + real(x[13]) * vec3_of(x, 6);
     return pdf_polygon_by_area(l, vec3_of(x, 9), {y, l.n, 0});
 }
 

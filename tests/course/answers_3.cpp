@@ -27,7 +27,7 @@ void add(In x) {
     scene.materials.push_back(material_of(x.subspan(10)));
     if (x[0] == 0) add_sphere(scene, vec3_of(x, 1), real(x[4]), material);
     if (x[0] == 1) add_quad(scene, vec3_of(x, 1), vec3_of(x, 4), vec3_of(x, 7), material);
-    if (x[0] == 2) add_point_light(scene, vec3_of(x, 1), vec3_of(x, 4));
+    if (x[0] == 2) add_light(scene, {vec3_of(x, 1), PointLight(), vec3_of(x, 4)});
 }
 
 Out build(In x) {

@@ -42,7 +42,7 @@ constexpr double rho[] = {0.7, 0.5, 0.2}, intensity[] = {2, 3, 5};
 Scene coloured() {
     Scene s;
     add_room(s, {3, 2, real(2.5)}, add(s, diffuse({real(0.7), real(0.5), real(0.2)})));
-    add_point_light(s, {real(1.2), real(1.1), 1}, {2, 3, 5});
+    add_light(s, {{real(1.2), real(1.1), 1}, PointLight(), {2, 3, 5}});
     prepare(s);
     return endless(std::move(s));
 }

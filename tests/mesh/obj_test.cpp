@@ -338,7 +338,7 @@ TEST_CASE("a mesh is scaled, then moved; a material of its own goes before the s
     CHECK(scene.materials[scene.material_of[0]].diffuse() == rgb{0.5, 0.5, 0.5});
     CHECK(scene.materials[scene.material_of[1]].diffuse() == rgb{real(0.1), real(0.2), real(0.3)});
     REQUIRE(scene.lights.size() == 1);  // the square is one light
-    CHECK(scene.lights[0].kind == Light::Kind::quad);
+    CHECK(scene.lights[0].as<QuadLight>());
     CHECK(scene.lights[0].L == rgb{4, 5, 6});
     CHECK(scene.light_of == std::vector<int32_t>{no_light, 0, 0});
     // Turned as boxes are, after z has been made y.

@@ -146,17 +146,18 @@ sphere 0 9 0  1  b
         CHECK(l.twosided == m.twosided);
         CHECK(f.line_of_light[size_t(k)] == f.line_of[i]);
         const bool quad = f.line_of[i] == 7;
-        CHECK(l.kind == (quad ? Light::Kind::quad : Light::Kind::triangle));
-        if (!quad) {
+        if (quad) {
+            CHECK(l.as<QuadLight>());
+        } else {
+            REQUIRE(l.as<TriangleLight>());
+            const auto& [e, g] = *l.as<TriangleLight>();
             CHECK(l.p == f.shapes[i].a);
-            CHECK(length(l.p + l.u - f.shapes[i].b) <= 8 * ulp * 20);
-            CHECK(length(l.p + l.v - f.shapes[i].c) <= 8 * ulp * 20);
+            CHECK(length(l.p + e - f.shapes[i].b) <= 8 * ulp * 20);
+            CHECK(length(l.p + g - f.shapes[i].c) <= 8 * ulp * 20);
         }
     }
     for (size_t k = 0; k < f.lights.size(); ++k)
-        CHECK(shapes_of[k] == (f.lights[k].kind == Light::Kind::point  ? 0
-                               : f.lights[k].kind == Light::Kind::quad ? 2
-                                                                       : 1));
+        CHECK(shapes_of[k] == (f.lights[k].is_delta() ? 0 : f.lights[k].as<QuadLight>() ? 2 : 1));
     const double Pi = std::numbers::pi;
     CHECK(small < 4 * Pi);
     CHECK(double(f.lights[size_t(f.light_of[0])].L.z) == approx(3 * 4 * Pi / small));

@@ -34,7 +34,7 @@ inline void add_room(Scene& s, vec3 size, uint32_t first, uint32_t several = 1) 
 inline Scene room(vec3 size, const Material& m, vec3 light = {}, rgb intensity = {}) {
     Scene s;
     add_room(s, size, add(s, m));
-    add_point_light(s, light, intensity);  // none if it is dark
+    add_light(s, {light, PointLight(), intensity});  // none if it is dark
     prepare(s);
     return s;
 }
@@ -55,7 +55,7 @@ inline Scene study(bool open = false) {
     add_quad(s, {2, 0, 1}, {0, 1.2, 0}, {0.3, 0, 0.8}, add(s, diffuse(grey(0.8))));
     add_triangle(s, {0.3, 0.4, 2}, {1, 0.4, 2}, {0.3, 1, 2.2},
                  add(s, diffuse(grey(0.4), grey(1), true)));
-    add_point_light(s, {0.7, 1.1, 0.6}, {1, 1, 2});
+    add_light(s, {{0.7, 1.1, 0.6}, PointLight(), {1, 1, 2}});
     prepare(s);
     return s;
 }
@@ -80,7 +80,7 @@ inline Scene cubic_room() {
     Scene s;
     const uint32_t wall = add(s, diffuse(grey(2.0 / 3)));
     add_box(s, {10, 10, 10}, 0, {-5, -5, -5}, wall);
-    add_point_light(s, {}, grey(50000));
+    add_light(s, {{}, PointLight(), grey(50000)});
     prepare(s);
     return s;
 }
@@ -94,7 +94,7 @@ struct Quad {
 inline Scene scene_of_quads(const std::vector<Quad>& quads, vec3 light = {}, rgb intensity = {}) {
     Scene s;
     for (const Quad& q : quads) add_quad(s, q.a, q.u, q.v, add(s, q.material));
-    add_point_light(s, light, intensity);
+    add_light(s, {light, PointLight(), intensity});
     prepare(s);
     return s;
 }
@@ -150,9 +150,7 @@ inline std::vector<uint32_t> face_of_element(const Mesh& mesh) {
 inline rgb emitted_power(const Scene& s) {
     rgb power;
     for (const Light& l : s.lights)
-        power += l.kind == Light::Kind::point
-                     ? 4 * pi * l.L
-                     : pi * length(l.area_vector()) * (l.twosided ? 2 : 1) * l.L;
+        power += (l.is_delta() ? 4 * pi : pi / l.pdf_area * (l.twosided ? 2 : 1)) * l.L;
     return power;
 }
 

@@ -286,7 +286,7 @@ TEST_CASE("a point light: I cos / d^2 at every vertex that sees it, exactly 0 at
     Scene s = room({2, 2, 2}, diffuse(grey(0)));
     add_quad(s, {0.5, 1, 0.5}, {0, 0, 1}, {1, 0, 0}, 0);  // a shelf, seen from above
     const vec3 p{1, 1.5, 1};
-    add_point_light(s, p, {3, 1, 0});
+    add_light(s, {p, PointLight(), {3, 1, 0}});
     prepare(s);
     const Meshed m(s, 0.5);
     for (Shooter shooter : shooters) {

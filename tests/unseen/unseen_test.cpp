@@ -6,6 +6,7 @@
 #include "film/fill.h"
 #include "oracle/expect.h"
 #include "path/paths.h"
+#include "world/geometry.h"
 #include "world/prepare.h"
 
 namespace {
@@ -17,12 +18,20 @@ Scene with_light(const Light& l) {
     return s;
 }
 
+vec3 longest_edge(const Light& l) {
+    const auto corners = corners_of(l);
+    vec3 longest;
+    for (size_t k = 0; k < corners.size(); ++k) {
+        const vec3 edge = corners[k] - corners[(k + 1) % corners.size()];
+        if (length(edge) > length(longest)) longest = edge;
+    }
+    return longest;
+}
+
 // A rectangle of s^2 times the area, along the longest edge; of its halves one.  It grows in width
 // until it is a square.
 Shape grown(const Light& l, real s, bool other = false) {
-    vec3 e = l.u;
-    if (length(l.v) > length(e)) e = l.v;
-    if (l.kind == Light::Kind::triangle && length(l.v - l.u) > length(e)) e = l.v - l.u;
+    const vec3 e = longest_edge(l);
     const real area = 1 / l.pdf_area, edge = length(e), width = area / edge;
     real of_edge = 1, of_width = s * s;
     if (of_width * width > edge)
@@ -34,9 +43,7 @@ Shape grown(const Light& l, real s, bool other = false) {
 
 // Length over width.
 real slender(const Light& l) {
-    real edge = std::max(length(l.u), length(l.v));
-    if (l.kind == Light::Kind::triangle) edge = std::max(edge, length(l.v - l.u));
-    return l.kind == Light::Kind::sphere ? 1 : edge * edge * l.pdf_area;
+    return l.is_round() ? 1 : dot(longest_edge(l), longest_edge(l)) * l.pdf_area;
 }
 
 Material perfect_mirror() { return {Mirror({1, 1, 1})}; }
@@ -85,25 +92,25 @@ TEST_CASE("a ray meets a grown light where it would meet that shape, from its br
     for (int i = 0; i < 30000; ++i) {
         const real thin = i % 2 ? 1 : real(0.01);
         const vec3 p = vector(), u = real(0.02) * vector(), v = real(0.02) * thin * vector();
-        Light l = i % 3 == 0   ? sphere_light(p, in(0.001, 0.01))
-                  : i % 3 == 1 ? triangle_light(p, u, v)
-                               : quad_light(p, u, v);
+        Light l = i % 3 == 0   ? Light(p, SphereLight{in(0.001, 0.01)})
+                  : i % 3 == 1 ? Light(p, TriangleLight{u, v})
+                               : Light(p, QuadLight{u, v});
         l.twosided = i % 2 != 0;
         l = with_light(l).lights[0];
         const vec3 o = 3 * vector();
         const Ray ray{o, unit(l.centre + in(0, 1) * vector() - o), in(1, 5)};
         const uint32_t mask = growths_met(l, ray);
         // It may end before the light, for lamps stand recessed.
-        const bool is_sphere = l.kind == Light::Kind::sphere;
-        const real end = ray.tmax + (is_sphere ? l.r : std::sqrt(1 / l.pdf_area) / 2);
+        const real r = l.as<SphereLight>() ? l.as<SphereLight>()->r : 0;
+        const real end = ray.tmax + (r > 0 ? r : std::sqrt(1 / l.pdf_area) / 2);
         const real far = length(l.centre - o) / l.reach;
         auto meets = [&](real s) {
             if (s >= (far < 1 ? std::sqrt(slender(l) * far) : std::sqrt(slender(l)) * far))
                 return false;
-            if (l.kind == Light::Kind::sphere) {
+            if (r > 0) {
                 // The light is represented by the disc about its centre that faces the ray.
                 const vec3 d = ray.d, f = l.p - ray.o;
-                return length(cross(f, d)) <= s * l.r && dot(f, d) > 0 && dot(f, d) < end;
+                return length(cross(f, d)) <= s * r && dot(f, d) > 0 && dot(f, d) < end;
             }
             const bool is_met = intersect(grown(l, s), ray, shear(ray.d), end) ||
                                 intersect(grown(l, s, true), ray, shear(ray.d), end);
@@ -120,7 +127,7 @@ TEST_CASE("a ray meets a grown light where it would meet that shape, from its br
     }
     CHECK(met > 20000);
     CHECK(missed > 30000);
-    CHECK(growths_met(point_light({}, {1, 1, 1}), {{0, 0, 1}, {0, 0, -1}}) == 0);
+    CHECK(growths_met(Light({}, PointLight(), {1, 1, 1}), {{0, 0, 1}, {0, 0, -1}}) == 0);
 }
 
 TEST_CASE("the part of pixels that lights cover, in view of the eye") {

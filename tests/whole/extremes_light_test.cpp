@@ -5,7 +5,7 @@
 namespace {
 
 Light bright_sphere(vec3 centre, real r) {
-    Light l = sphere_light(centre, r);
+    Light l(centre, SphereLight{r});
     l.L = {1, 1, 1};
     l.error = rounding_error(Shape{centre, {}, {}, r});
     l.pick = 1;
@@ -60,11 +60,11 @@ double sphere_light_pdf(real d) {
 double sphere_light_normal(real d) {
     return worst_of("normal of a sphere light", 20000, [&](Dice& random, Worst& worst) {
         const Light l = bright_sphere({}, real(0.01));
-        const vec3 p = d * l.r * random.direction();
+        const vec3 p = d * l.reach * random.direction();
         const vec2 u = random.pair();
         const auto s = sample_light(l, p, u);
         if (!s) return worst.see(HUGE_VAL);
-        const big sin2_max = big(l.r) * l.r / dot(big3(p), big3(p));
+        const big sin2_max = big(l.reach) * l.reach / dot(big3(p), big3(p));
         const big x = u.x * sin2_max / (1 + std::sqrt(1 - sin2_max)), phi = 2 * big_pi * u.y;
         const big theta = std::atan2(std::sqrt(x * (2 - x)), 1 - x);
         const big sin_beta = std::sqrt(x * (2 - x) / sin2_max);
@@ -103,8 +103,8 @@ bool sane(const std::optional<LightSample>& s) {
 double insane_on_a_light() {
     return count_of("on a light", 20000, [](Dice& random, int i) {
         const Light l = bright_sphere(random.direction(), random.decades(-3, 3));
-        const real at[] = {l.r, std::nextafter(l.r, real(0)), std::nextafter(l.r, infinity),
-                           l.r * random(0, 1), 0};
+        const real r = l.reach, at[] = {r, std::nextafter(r, real(0)), std::nextafter(r, infinity),
+                                        r * random(0, 1), 0};
         const vec3 p = l.p + at[i % 5] * random.direction();
         const vec2 corners[] = {{0, 0}, {below_one, below_one}, random.pair()};
         int insane = !std::isfinite(pdf_light(l, p, {l.p, {0, 0, 1}, 0}));
@@ -116,23 +116,24 @@ double insane_on_a_light() {
 // Receivers at corners, on edges, in the plane of a quad and next to it.
 double insane_beside_a_light() {
     return count_of("beside a light", 20000, [](Dice& random, int i) {
-        Light l = quad_light({1, 2, 3}, {2, 0, 0}, {0, 0, 4});
+        const vec3 e{2, 0, 0}, f{0, 0, 4};
+        Light l({1, 2, 3}, QuadLight{e, f});
         l.L = {1, 1, 1}, l.twosided = i % 2 == 0;
         const real heights[] = {0, std::numeric_limits<real>::denorm_min(), real(1e-30), -0.0};
-        const vec3 p = l.p + random(0, 1) * l.u + vec3{0, heights[i / 2 % 4], 0};
+        const vec3 p = l.p + random(0, 1) * e + vec3{0, heights[i / 2 % 4], 0};
         const vec2 u = random.pair();
         l.p.y = 0;
         return !sane(sample_light(l, {p.x, heights[i / 2 % 4], p.z}, u)) +
                !sane(sample_light(l, l.p, {0, 0})) +
-               !sane(sample_light(l, l.p + u.x * l.u + u.y * l.v, u)) +
-               (pdf_light(l, {p.x, 0, p.z}, {l.p + l.u, {0, 1, 0}, 0}) != 0);
+               !sane(sample_light(l, l.p + u.x * e + u.y * f, u)) +
+               (pdf_light(l, {p.x, 0, p.z}, {l.p + e, {0, 1, 0}, 0}) != 0);
     });
 }
 
 // A quad seen at a grazing angle from h above its plane, point by point: cos / pdf is x h A / d^4
 // for the normal +x.
 double edge_on(real h) {
-    const Light l = quad_light({1, real(-0.5), h}, {0, 1, 0}, {1, 0, 0});
+    const Light l({1, real(-0.5), h}, QuadLight{{0, 1, 0}, {1, 0, 0}});
     return worst_of_cells(32, [&](Worst& worst, vec2 u) {
         const auto s = sample_light(l, {}, u);
         const big x = 1 + big(u.y), y = big(u.x) - 0.5L, d2 = x * x + y * y + big(h) * h;
@@ -159,8 +160,7 @@ double sliver_light(int narrow) {
 
 // A point light at a distance of 1e-9 to 1e9: L d^2 = I.
 double light_of_a_point() {
-    Light l;
-    l.L = {1, 1, 1};
+    const Light l({}, PointLight(), {1, 1, 1});
     return worst_of("point light", 1000, [&](Dice& random, Worst& worst) {
         const vec3 p = random.decades(-9, 9) * random.direction();
         const auto s = sample_light(l, p, {});

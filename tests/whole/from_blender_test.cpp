@@ -2,6 +2,7 @@
 #include "course/python.h"
 #include "text/scene_file.h"
 #include "whole/process.h"
+#include "world/geometry.h"
 
 namespace {
 
@@ -146,12 +147,12 @@ void check_same(const Camera& a, const Camera& b) {
 }
 
 void check_same(const Light& a, const Light& b) {
-    CHECK(a.kind == b.kind);
-    CHECK(double(a.r) == doctest::Approx(double(b.r)).epsilon(1e-6));
+    CHECK(a.kind.index() == b.kind.index());
+    CHECK(double(a.reach) == doctest::Approx(double(b.reach)).epsilon(1e-6));
     CHECK(a.twosided == b.twosided);
-    check_near(a.p, b.p);
-    check_near(a.u, b.u);
-    check_near(a.v, b.v);
+    REQUIRE(corners_of(a).size() == corners_of(b).size());
+    for (size_t k = 0; k < corners_of(a).size(); ++k)
+        check_near(corners_of(a)[k], corners_of(b)[k]);
     check_near(a.L, b.L);
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/rng.h"
 #include "oracle/expect.h"
+#include "world/lights.h"
 #include "world/shapes.h"
 #include "world/warp.h"
 
@@ -23,6 +24,15 @@ struct Dice {
         return {std::sqrt(u.x) * (1 - u.y), std::sqrt(u.x) * u.y};
     }
 };
+
+// Of a polygon light; the point or centre of another.
+inline std::vector<vec3> corners_of(const Light& l) {
+    if (const auto* quad = l.as<QuadLight>())
+        return {l.p, l.p + quad->e, l.p + quad->e + quad->f, l.p + quad->f};
+    if (const auto* triangle = l.as<TriangleLight>())
+        return {l.p, l.p + triangle->e, l.p + triangle->f};
+    return {l.p};
+}
 
 // ---- Long double --------------------------------------------------------------------------------
 

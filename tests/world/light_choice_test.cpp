@@ -14,17 +14,17 @@ Light shining(Light l, real L, bool twosided = false) {
     return l;
 }
 
-// A light of the given kind near the origin, of size r.
-Light light_of(Dice& dice, Light::Kind kind, real r) {
+// A light near the origin, of size r: a point, a sphere, a quad, a triangle.
+Light light_of(Dice& dice, size_t kind, real r) {
     const vec3 p = dice.direction(r), u = dice.direction(r), v = dice.direction(r * dice(0.5, 2));
     const real L = dice.decades(-2, 2);
     const bool twosided = dice.below(2);
-    if (kind == Light::Kind::point) return shining(point_light(p, {}), L);
-    if (kind == Light::Kind::sphere) return shining(sphere_light(p, r), L);
-    if (kind == Light::Kind::quad) return shining(quad_light(p, u, v), L, twosided);
-    return shining(triangle_light(p, u, v), L, twosided);
+    if (kind == 0) return shining(Light(p, PointLight()), L);
+    if (kind == 1) return shining(Light(p, SphereLight{r}), L);
+    if (kind == 2) return shining(Light(p, QuadLight{u, v}), L, twosided);
+    return shining(Light(p, TriangleLight{u, v}), L, twosided);
 }
-Light light_of(Dice& dice, real r) { return light_of(dice, Light::Kind(dice.below(4)), r); }
+Light light_of(Dice& dice, real r) { return light_of(dice, dice.below(4), r); }
 
 // A scene with only these lights.
 Scene scene_of(const std::vector<Light>& lights) {
@@ -75,7 +75,7 @@ TEST_CASE("one of many lights is chosen as often as is said") {
 }
 
 TEST_CASE("one light is chosen always") {
-    const Scene s = scene_of({shining(sphere_light({0, 5, 0}, 1), 1)});
+    const Scene s = scene_of({shining(Light({0, 5, 0}, SphereLight{1}), 1)});
     CHECK(s.light_tree.choose({}, {0, 1, 0}, real(0.5)).light == 0);
     CHECK(s.light_tree.choose({}, {0, 1, 0}, real(0.5)).pick == 1);
     CHECK(s.light_tree.pick_of(0, {}, {0, -1, 0}) == 1);
@@ -90,11 +90,11 @@ TEST_CASE("a light is never chosen only where it sends nothing") {
         // Others, of which one always contributes; with seven or more there are groups of groups.
         const size_t others = i % 4 ? 1 : 12;
         const vec3 p = dice.direction(dice(0, 4)), m = dice.direction();
-        lights.push_back(shining(point_light(p + m, {}), 1));
+        lights.push_back(shining(Light(p + m, PointLight()), 1));
         while (lights.size() <= others) lights.push_back(light_of(dice, r));
         const Light& first = lights[0];
         const real pick = scene_of(lights).light_tree.pick_of(0, p, m);
-        for (const vec3 corner : {first.p, first.p + first.u, first.p + first.v})
+        for (const vec3 corner : corners_of(first))
             beyond += length(corner - first.centre) > first.reach * (1 + 8 * ulp);
         real E = 0;
         for (int k = 0; k < 8; ++k) E += sends(first, p, m, dice.pair());
@@ -120,8 +120,10 @@ TEST_CASE("a light is never chosen only where it sends nothing") {
 TEST_CASE("a wall of lamps of one side is not chosen from behind") {
     std::vector<Light> lights;
     for (int i = 0; i < 40; ++i)
-        lights.push_back(shining(quad_light({real(i), 0, 5}, {0, 1, 0}, {1, 0, 0}), 1));  // -z
-    for (int i = 0; i < 40; ++i) lights.push_back(shining(point_light({real(i), 0, 200}, {}), 1));
+        lights.push_back(
+            shining(Light({real(i), 0, 5}, QuadLight{{0, 1, 0}, {1, 0, 0}}), 1));  // -z
+    for (int i = 0; i < 40; ++i)
+        lights.push_back(shining(Light({real(i), 0, 200}, PointLight()), 1));
     const LightTree tree = scene_of(lights).light_tree;
     auto of_wall = [&](vec3 p, vec3 m) {
         real sum = 0;
@@ -193,13 +195,10 @@ TEST_CASE("of many lamps, those that send most are chosen most") {
 
 TEST_CASE("the sphere about a polygon holds its corners, and touches two of a quad's") {
     Dice dice;
-    for (int i = 0; i < 2000; ++i) {
-        const Light::Kind kind = i % 2 ? Light::Kind::quad : Light::Kind::triangle;
-        const Light l = light_of(dice, kind, 1);
+    for (size_t i = 0; i < 2000; ++i) {
+        const Light l = light_of(dice, 2 + i % 2, 1);
         real most = 0;
-        for (vec3 corner : {l.p, l.p + l.u, l.p + l.v, l.p + l.u + l.v})
-            if (i % 2 || corner != l.p + l.u + l.v)
-                most = std::max(most, length(corner - l.centre));
+        for (vec3 corner : corners_of(l)) most = std::max(most, length(corner - l.centre));
         CHECK(std::abs(most - l.reach) < 16 * ulp);
     }
 }
@@ -222,8 +221,8 @@ TEST_CASE("near or far, strong or faint, few or many: probabilities add up to 1"
         REQUIRE(std::abs(sum - 1) < 32 * ulp);
     }
     // The point coincides with a light, or the square of a distance is infinite.
-    const Scene s =
-        scene_of({shining(point_light({}, {}), 1), shining(sphere_light({1, 0, 0}, real(0.5)), 1)});
+    const Scene s = scene_of({shining(Light({}, PointLight()), 1),
+                              shining(Light({1, 0, 0}, SphereLight{real(0.5)}), 1)});
     const real beyond = std::numeric_limits<real>::max() / 4;
     for (const vec3 p : {vec3{}, vec3{beyond, 0, 0}})
         for (const vec3 m : {vec3{1, 0, 0}, vec3{-1, 0, 0}}) {
@@ -234,9 +233,9 @@ TEST_CASE("near or far, strong or faint, few or many: probabilities add up to 1"
 
 TEST_CASE("where weights are so faint that their sum is denormal, shares are even") {
     const real faint = std::numeric_limits<real>::denorm_min() * 100;
-    const std::vector<Light> lights{shining(sphere_light({0, -5, 0}, 1), 1),  // below the horizon
-                                    shining(sphere_light({0, 5, 0}, 1), 1),
-                                    shining(sphere_light({9, 5, 0}, 1), 1)};
+    const std::vector<Light> lights{
+        shining(Light({0, -5, 0}, SphereLight{1}), 1),  // below the horizon
+        shining(Light({0, 5, 0}, SphereLight{1}), 1), shining(Light({9, 5, 0}, SphereLight{1}), 1)};
     const LightTree dark(lights, {1, faint, faint / 4});
     CHECK(dark.pick_of(0, {}, {0, 1, 0}) == 0);
     CHECK(dark.pick_of(1, {}, {0, 1, 0}) == real(0.5));
@@ -245,8 +244,8 @@ TEST_CASE("where weights are so faint that their sum is denormal, shares are eve
                                  std::numeric_limits<real>::min() * 1000});
     CHECK(dim.pick_of(1, {}, {0, 1, 0}) > real(0.8));
     // One that shines alone is chosen, however faint.
-    const Scene s = scene_of({shining(sphere_light({0, -5, 0}, 1), real(1e30)),
-                              shining(point_light({0, real(0.5), 0}, {}), faint)});
+    const Scene s = scene_of({shining(Light({0, -5, 0}, SphereLight{1}), real(1e30)),
+                              shining(Light({0, real(0.5), 0}, PointLight()), faint)});
     for (real u : {real(0), below_one}) CHECK(s.light_tree.choose({}, {0, 1, 0}, u).light == 1);
 }
 
@@ -337,7 +336,7 @@ TEST_CASE("what arrives is looked at for few lights and many, and always the sam
             CHECK(picks[i] == s.light_tree.pick_of(i, {0, 0, 1}, {0, 1, 0}));
     }
     // So many that there is not even a look: all strengths are as they were.
-    std::vector<Light> many(20000, shining(point_light({0, 3, 0}, {}), 1));
+    std::vector<Light> many(20000, shining(Light({0, 3, 0}, PointLight()), 1));
     Scene s = hall(20);
     s.lights = many;
     for (const Arrival& a : arrivals_of(s)) REQUIRE(a.all == 0);

@@ -4,13 +4,11 @@
 
 #include "base/approx.h"
 #include "oracle/expect.h"
+#include "world/geometry.h"
 
 namespace {
 
 Light shining(Light l) { return l.L = {1, 2, 3}, l; }
-Light polygon_light(Light::Kind kind, vec3 p, vec3 u, vec3 v) {
-    return shining(kind == Light::Kind::quad ? quad_light(p, u, v) : triangle_light(p, u, v));
-}
 
 auto directions(const Light& l, vec3 p) {
     return [=](double u, double v) {
@@ -20,8 +18,9 @@ auto directions(const Light& l, vec3 p) {
 }
 
 vec3 middle(const Light& l) {
-    if (l.kind == Light::Kind::sphere) return l.p;
-    return l.p + (l.u + l.v) * real(l.kind == Light::Kind::quad ? 0.5 : 1 / 3.0);
+    vec3 sum;
+    for (vec3 corner : corners_of(l)) sum += corner;
+    return sum / real(corners_of(l).size());
 }
 
 // Solid angle of the triangle a, b, c from the origin (van Oosterom, Strackee 1983).
@@ -32,8 +31,9 @@ double solid_angle(vec3 a, vec3 b, vec3 c) {
                                                                      double(dot(c, a)) * B);
 }
 double solid_angle(const Light& l, vec3 p) {
-    const vec3 a = l.p - p, b = a + l.u, c = a + l.v;
-    return solid_angle(a, b, c) + (l.kind == Light::Kind::quad ? solid_angle(b, b + l.v, c) : 0.0);
+    const auto c = corners_of(l);
+    return solid_angle(c[0] - p, c[1] - p, c[2] - p) +
+           (c.size() == 4 ? solid_angle(c[0] - p, c[2] - p, c[3] - p) : 0.0);
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
         if (single && (gap < 1e-5 || gap > 100)) continue;  // rounding of p or wi exceeds this
         const double d = double(r) * (1 + gap), sigma = double(r) / d;
         const double rounding = 64 * double(ulp) / std::min(sigma, std::sqrt(gap));
-        const Light l = sphere_light(centre, r);
+        const Light l(centre, SphereLight{r});
         const vec3 p = centre + real(d) * away;
         oracle::Options o;
         o.axis = oracle::point(-away);
@@ -65,7 +65,8 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
 
 TEST_CASE("sphere light: points lie on the sphere and on the ray, on the near side") {
     oracle::Random random(seed_here());
-    Light l = shining(sphere_light({1, 2, 3}, 0.5));
+    const real r = real(0.5);
+    Light l = shining(Light({1, 2, 3}, SphereLight{r}));
     l.error = 64 * ulp;
     for (real d : {real(0.5005), real(0.6), real(2), real(100)})
         for (int i = 0; i < 2000; ++i) {
@@ -74,20 +75,20 @@ TEST_CASE("sphere light: points lie on the sphere and on the ray, on the near si
             const auto s = sample_light(l, p, u);
             REQUIRE(s);
             const real rounding = 32 * ulp * (d + length(l.p));
-            CHECK(std::abs(length(s->at.p - l.p) - l.r) < rounding);
+            CHECK(std::abs(length(s->at.p - l.p) - r) < rounding);
             CHECK(std::abs(length(s->at.n) - 1) < 8 * ulp);
             CHECK(s->at.error == l.error);
             // Rounding moves the point off the ray, more so at grazing angles.
             const vec3 off = cross(s->at.p - p, s->wi);
             CHECK(length(off) < 4 * rounding);
-            CHECK(dot(s->at.n, s->wi) < 8 * ulp * (1 + d / l.r));
+            CHECK(dot(s->at.n, s->wi) < 8 * ulp * (1 + d / r));
             CHECK(s->L == l.L);
             CHECK(s->pdf == pdf_light(l, p, s->at));
         }
 }
 
 TEST_CASE("no sample from the inside of a sphere light, from its surface, nor within its error") {
-    Light l = shining(sphere_light({0, 0, 0}, 1));
+    Light l = shining(Light({0, 0, 0}, SphereLight{1}));
     for (const auto& [d, error, sampled] : {std::tuple{0.0, 0.0, false},
                                             {0.5, 0.0, false},
                                             {1.0, 0.0, false},
@@ -105,10 +106,9 @@ TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slante
     oracle::Random random(seed_here());
     const vec3 corner{-1, 2, 3}, u{2, real(0.3), 0}, v{real(0.1), real(-0.4), real(1.5)};
     const vec3 n = unit(cross(u, v));
-    for (Light::Kind kind : {Light::Kind::triangle, Light::Kind::quad})
+    for (const Light& l : {Light(corner, TriangleLight{u, v}), Light(corner, QuadLight{u, v})})
         for (real height : {real(0.3), real(2), real(30)})
             for (vec3 beside : {vec3{}, 2 * unit(u), 8 * unit(v)}) {
-                const Light l = polygon_light(kind, corner, u, v);
                 const vec3 p = middle(l) + height * n + beside;
                 const std::string where =
                     oracle::say("height %g, %g beside", double(height), double(length(beside)));
@@ -130,7 +130,7 @@ TEST_CASE("triangle and quad lights: density r^2 / (A cos), near, far and slante
 }
 
 TEST_CASE("polygon lights: the side that emits, both sides, edge-on") {
-    Light l = polygon_light(Light::Kind::quad, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    Light l({0, 0, 0}, QuadLight{{1, 0, 0}, {0, 1, 0}});
     const vec2 u{real(0.3), real(0.6)};
     CHECK(sample_light(l, {0, 0, 1}, u));
     CHECK(!sample_light(l, {0, 0, -1}, u));
@@ -144,7 +144,7 @@ TEST_CASE("polygon lights: the side that emits, both sides, edge-on") {
 }
 
 TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
-    const Light l = point_light({1, 2, 3}, {18, 9, 0});
+    const Light l({1, 2, 3}, PointLight(), {18, 9, 0});
     const auto s = sample_light(l, {1, 2, 0}, {});
     REQUIRE(s);
     CHECK(s->wi == vec3{0, 0, 1});
@@ -156,14 +156,14 @@ TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
 }
 
 TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels") {
-    const Light quad = polygon_light(Light::Kind::quad, {}, {3, 0, 0}, {1, 2, 0});
+    const Light quad({}, QuadLight{{3, 0, 0}, {1, 2, 0}}, {1, 2, 3});
     Light both = quad;
     both.twosided = true;
     for (const auto& [l, over_pi] :
-         {std::pair{shining(sphere_light({}, 0.5)), 2 * std::numbers::pi},
+         {std::pair{shining(Light({}, SphereLight{0.5})), 2 * std::numbers::pi},
           {quad, 2.0 * 6},
           {both, 2.0 * 12},
-          {polygon_light(Light::Kind::triangle, {}, {3, 0, 0}, {1, 2, 0}), 2.0 * 3},
-          {point_light({}, {1, 2, 3}), 8.0}})
+          {Light({}, TriangleLight{{3, 0, 0}, {1, 2, 0}}, {1, 2, 3}), 2.0 * 3},
+          {Light({}, PointLight(), {1, 2, 3}), 8.0}})
         CHECK(power(l) == doctest::Approx(std::numbers::pi * over_pi).epsilon(1e-6));
 }

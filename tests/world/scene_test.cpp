@@ -60,22 +60,22 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
     add_quad(s, {5, 0, 0}, {2, 0, 0}, {0, 3, 0}, panel);
     add_triangle(s, {0, 0, 7}, {1, 0, 7}, {0, 1, 7}, lamp);
-    add_point_light(s, {1, 1, 1}, {2, 2, 2});
-    add_point_light(s, {1, 1, 1}, {0, 0, 0});  // dark: not a light
+    add_light(s, {{1, 1, 1}, PointLight(), {2, 2, 2}});
+    add_light(s, {{1, 1, 1}, PointLight(), {0, 0, 0}});  // dark: not a light
     CHECK(s.light_of == std::vector<int32_t>{0, no_light, 1, 1, 2});
     CHECK(s.material_of == std::vector<uint32_t>{lamp, grey, panel, panel, lamp});
     REQUIRE(s.lights.size() == 4);
     const Light &ball = s.lights[0], &quad = s.lights[1], &point = s.lights[3];
-    CHECK((ball.kind == Light::Kind::sphere && ball.r == 4));
+    CHECK((ball.as<SphereLight>() && ball.reach == 4));
     CHECK((ball.L == rgb{1, 2, 3} && !ball.twosided));
-    CHECK((quad.kind == Light::Kind::quad && quad.twosided));
-    CHECK(quad.area_vector() == vec3{0, 0, 6});  // faces +z like its shapes
+    CHECK((quad.as<QuadLight>() && quad.twosided));
+    CHECK((quad.n == vec3{0, 0, 1} && area_of(quad) == 6));  // faces +z like its shapes
     for (size_t i : {2, 3}) CHECK(area_vector(s.shapes[i]) == vec3{0, 0, 6});
     // The two triangles share a diagonal and nothing else.
     CHECK((s.shapes[2].a == vec3{5, 0, 0} && s.shapes[2].c == vec3{7, 3, 0}));
     CHECK((s.shapes[3].a == vec3{5, 0, 0} && s.shapes[3].b == vec3{7, 3, 0}));
-    CHECK(s.lights[2].area_vector() == vec3{0, 0, 0.5});
-    CHECK((point.kind == Light::Kind::point && point.L == rgb{2, 2, 2}));
+    CHECK((s.lights[2].n == vec3{0, 0, 1} && area_of(s.lights[2]) == real(0.5)));
+    CHECK((point.as<PointLight>() && point.L == rgb{2, 2, 2}));
     for (size_t i : {0, 2, 3, 4})
         CHECK(s.lights[size_t(s.light_of[i])].error >= rounding_error(s.shapes[i]));
 }
@@ -147,7 +147,8 @@ TEST_CASE("a box faces outwards and turns about y: x' = c x + s z, z' = c z - s 
 
 TEST_CASE("a light is chosen as often as its power says, and says so") {
     Scene s = empty_scene();
-    for (real intensity : {1, 5, 2}) add_point_light(s, {}, {intensity, intensity, intensity});
+    for (real intensity : {1, 5, 2})
+        add_light(s, {{}, PointLight(), {intensity, intensity, intensity}});
     add_sphere(s, {}, 1, grey);
     prepare(s);
     // The shares of 8000 equidistant numbers are [0, 1/8), [1/8, 6/8) and [6/8, 1).
@@ -163,7 +164,7 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     CHECK(&choose_light(s, 0) == &s.lights[0]);
     CHECK(&choose_light(s, real(s.pick_cdf[0])) == &s.lights[1]);  // the first has what is below
     CHECK(&choose_light(s, below_one) == &s.lights[2]);
-    add_point_light(s, {}, {1e-30, 0, 0});  // weak: its share rounds to 0
+    add_light(s, {{}, PointLight(), {1e-30, 0, 0}});  // weak: its share rounds to 0
     prepare(s);
     REQUIRE(s.lights.size() == 4);
     REQUIRE(s.pick_cdf.size() == 4);
@@ -172,7 +173,7 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     // Powers that underflow are alike.
     for (const real faint : {std::numeric_limits<real>::denorm_min(), real(0)}) {
         Scene dim = empty_scene();
-        for (int i = 0; i < 4; ++i) add_point_light(dim, {}, {1, 0, 0});
+        for (int i = 0; i < 4; ++i) add_light(dim, {{}, PointLight(), {1, 0, 0}});
         for (Light& l : dim.lights) l.L.x = faint;
         prepare(dim);
         for (const Light& l : dim.lights) CHECK(l.pick == real(0.25));

@@ -158,7 +158,8 @@ TEST_CASE("no light stands in its own way, near or far") {
     int blocked = 0, samples = 0;
     for (int i = 0; i < 100000; ++i) {
         const Shape t = random_triangle(random, 1), ball{{}, {}, {}, real(0.5)};
-        Light lights[] = {triangle_light(t.a, t.b - t.a, t.c - t.a), sphere_light(ball.a, ball.r)};
+        Light lights[] = {Light(t.a, TriangleLight{t.b - t.a, t.c - t.a}),
+                          Light(ball.a, SphereLight{ball.r})};
         lights[0].error = rounding_error(t), lights[1].error = rounding_error(ball);
         lights[0].twosided = true;
         const Shape floor = placed(random_triangle(random, 1), {1, random.decades(1, 5)}, random);
@@ -167,7 +168,7 @@ TEST_CASE("no light stands in its own way, near or far") {
             const auto y = sample_light(light, x.p, random.pair(0, 1));
             if (!y) continue;
             // Rounding may put points of the limb behind the sphere, where it shadows them.
-            const bool sphere = light.kind == Light::Kind::sphere;
+            const bool sphere = light.is_round();
             const real cosine = -dot(y->at.n, y->wi);
             if ((sphere ? cosine : std::abs(cosine)) < real(1e-6)) continue;
             ++samples;
