@@ -9,6 +9,8 @@
 #include "radiosity/batches.h"
 #include "radiosity/projection.h"
 
+namespace penumbra {
+
 // ---- One walk -----------------------------------------------------------------------------------
 
 // Balance of the power: emitted = absorbed + escaped, except for rounding.
@@ -264,3 +266,5 @@ private:
         return false;
     }
 };
+
+}  // namespace penumbra

@@ -5,6 +5,8 @@
 #include "world/shapes.h"
 #include "world/warp.h"
 
+namespace penumbra {
+
 // To be made by the functions below, which compute n and pdf_area.
 struct Light {
     enum class Kind { sphere, triangle, quad, point } kind = Kind::point;
@@ -129,3 +131,5 @@ inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
     auto sin2_max = sin2_subtended(l, p);
     return sin2_max ? pdf_cone(*sin2_max) : 0;
 }
+
+}  // namespace penumbra
