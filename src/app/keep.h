@@ -7,6 +7,7 @@
 #ifdef WITH_KEEP
 #include "keep/keep.h"
 #else
+namespace penumbra {
 struct Keeper {
     Keeper(const std::string& path, const FilmOf&) {
         if (!path.empty()) throw UserError("--keep: this program was built without src/keep");
@@ -15,4 +16,5 @@ struct Keeper {
     void write_now_and_then(const Film&, const Spent&) {}
     std::string write(const Film&, const Spent&, bool) { return ""; }
 };
+}  // namespace penumbra
 #endif

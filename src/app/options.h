@@ -4,6 +4,8 @@
 #include "path/pathtracer.h"
 #include "text/option.h"
 
+namespace penumbra {
+
 // The quantity that the image shows.
 enum class View { radiance, normal, depth, albedo, bvh, occlusion };
 inline const Alternatives<View> views = {
@@ -167,3 +169,5 @@ inline void parse_options(OptionTable& table, Options& o, const std::vector<std:
     if (o.rows && o.keep.empty() && o.outputs.empty())
         throw UserError("--rows: needs --keep F.film, which build/merge takes, or -o");
 }
+
+}  // namespace penumbra

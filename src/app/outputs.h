@@ -6,6 +6,8 @@
 #include "app/views.h"
 #include "text/image_file.h"
 
+namespace penumbra {
+
 // Images to write: those that the user named, or `stem`.png and .pfm, with the scene's name for
 // NAME; none if `stem` is empty.  Throws UserError if one of these files, of `others` or of --stats
 // cannot be written, is one that is `used`, comes twice, or cannot hold so many pixels.
@@ -61,3 +63,5 @@ inline void tell_black(const CommonOptions& o) {
                 ": the image is black: no light reaches the camera (lights emit on one side "
                 "only, unless they are twosided)");
 }
+
+}  // namespace penumbra

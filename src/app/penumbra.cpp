@@ -6,6 +6,7 @@
 #include "text/program.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr const char* before_options =
     "usage: penumbra [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) "
@@ -65,7 +66,7 @@ FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, 
 }
 
 // The program; returns its exit status, throws UserError and SystemError.
-int penumbra(const std::vector<std::string>& words) {
+int penumbra_main(const std::vector<std::string>& words) {
     Options o;
     OptionTable table = option_table(o);
     parse_options(table, o, words);
@@ -89,7 +90,7 @@ int penumbra(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    return finished(penumbra({argv + 1, argv + argc}));
+    return finished(penumbra_main({argv + 1, argv + argc}));
 } catch (...) {
     return failed();
 }

@@ -10,6 +10,8 @@
 #include "text/program.h"
 #include "text/scene_file.h"
 
+namespace penumbra {
+
 // ---- The scene ----------------------------------------------------------------------------------
 
 // The scene with the user's options; throws UserError if it cannot be read or rendered.
@@ -194,3 +196,5 @@ inline std::vector<std::string> outputs_of(const Options& o, const ParsedScene& 
     const std::string stem = o.rows ? "" : "out/NAME" + suffix + suffix_of(o.view);
     return outputs_of(o, stem, parsed.files, kept, size);
 }
+
+}  // namespace penumbra

@@ -5,6 +5,8 @@
 #include "app/views.h"
 #include "path/start.h"
 
+namespace penumbra {
+
 inline const char* in_words(Unlit why) {
     switch (why) {
         case Unlit::no: break;
@@ -117,3 +119,5 @@ inline void replay(const Options& o, const NamedScene& scene, const Pattern& pat
     });
     log.end(in_words(why), L);
 }
+
+}  // namespace penumbra

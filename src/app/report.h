@@ -8,6 +8,8 @@
 #include "film/loop.h"
 #include "text/option.h"
 
+namespace penumbra {
+
 inline void tell(const CommonOptions& o, const std::string& line) {
     if (!o.quiet) std::fprintf(stderr, "%s\n", printable(line).c_str());
 }
@@ -202,3 +204,5 @@ inline void add_run(json::Object& object, const Run& run, Size size) {
     for (const auto& [key, value] : run.more) object.add(key, value);
     object.add("peak_memory_bytes", std::to_string(peak_memory_bytes()));
 }
+
+}  // namespace penumbra

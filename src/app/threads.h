@@ -8,6 +8,8 @@
 #include <future>
 #include <vector>
 
+namespace penumbra {
+
 // ---- Ctrl-C -------------------------------------------------------------------------------------
 
 // The signal that asks for an end, or 0.
@@ -73,3 +75,5 @@ inline bool in_parallel(size_t count, unsigned threads, const std::function<void
     return by_workers(
         count, threads, [&](size_t k, unsigned) { work(k); }, meanwhile);
 }
+
+}  // namespace penumbra

@@ -7,6 +7,7 @@
 #ifdef WITH_UNSEEN
 #include "unseen/unseen.h"
 #else
+namespace penumbra {
 inline std::vector<std::string> hidden_lights(const NamedScene&) { return {}; }
 struct Unseen {
     void add(const std::vector<NearMisses>&, double, double) {}
@@ -20,4 +21,5 @@ struct Witness {
     static std::string why_unknown(const Film&, const ImageError&) { return ""; }
     NoVisitor visitor(Tally&) const { return {}; }
 };
+}  // namespace penumbra
 #endif

@@ -5,6 +5,8 @@
 #include "path/start.h"
 #include "world/warp.h"
 
+namespace penumbra {
+
 // Ambient occlusion (Landis 2002): 1 where nothing is met, or where a ray from there, in a
 // direction of density cos / pi, meets nothing within `far`.
 inline rgb occlusion_along(const Scene& scene, const Start& at, real far) {
@@ -58,3 +60,5 @@ inline Image scaled(Image image, View view) {
         for (float& x : pixel) x = range > 0 ? std::max(0.f, (x - least) / range) : float(x > 0);
     return image;
 }
+
+}  // namespace penumbra

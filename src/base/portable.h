@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace portable {
+namespace penumbra::portable {
 
 inline constexpr double ln2_high = 0x1.62e42feep-1, ln2_low = 0x1.a39ef35793c76p-33;
 
@@ -47,4 +47,4 @@ inline double expm1(double x) { return exp_less(x, 1); }
 // x^n for 0 < x <= 1 and n >= 0.
 inline double pow(double x, double n) { return exp(n * log(x)); }
 
-}  // namespace portable
+}  // namespace penumbra::portable

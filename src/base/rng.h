@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 
+namespace penumbra {
+
 // Stafford's mix 13, a bijection of 64 bits: every input bit flips every output bit with
 // probability about 1/2 (the finaliser of SplitMix64; Steele, Lea, Flood 2014).
 inline uint64_t mix(uint64_t x) {
@@ -21,3 +23,5 @@ struct Rng {
     uint64_t bits() { return mix(state += golden); }
     double uniform() { return double(bits() >> 11) * 0x1p-53; }  // in [0,1)
 };
+
+}  // namespace penumbra

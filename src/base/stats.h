@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+namespace penumbra {
+
 // A sum of numbers >= 0, in multiples of 2^-60: it does not depend on their order.
 __extension__ typedef unsigned __int128 FixedPoint;
 inline FixedPoint fixed_point(double x) { return FixedPoint(std::min(x, 0x1p40) * 0x1p60); }
@@ -39,3 +41,5 @@ struct Moments {
 
 // The p-value, two-sided, of a standard normal z.
 inline double p_of_z(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
+
+}  // namespace penumbra

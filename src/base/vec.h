@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+namespace penumbra {
+
 #ifndef REAL
 #define REAL double
 #endif
@@ -114,3 +116,5 @@ inline Frame frame(vec3 n) {
     real b = n.x * n.y * a;
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }
+
+}  // namespace penumbra

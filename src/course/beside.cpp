@@ -7,6 +7,7 @@
 #include "text/program.h"
 
 namespace {
+using namespace penumbra;
 
 using Channels = std::array<double, 3>;
 

@@ -6,7 +6,7 @@
 #include "course/subject.h"
 #include "oracle/oracle.h"
 
-namespace course {
+namespace penumbra::course {
 
 // Whether directions and density may belong together.  Lengths count as 1 within 1e-4, far above
 // what float loses.
@@ -84,4 +84,4 @@ inline bool intersector_passes(const Intersector& subject, uint64_t seed) {
     // end
 }
 
-}  // namespace course
+}  // namespace penumbra::course

@@ -109,7 +109,7 @@ def write_sources(plan, to):
         name = f'src/course/{file}'
         write(to / name, regions.rewrite((ROOT / name).read_text(), name, plan.replacement))
     write(to / 'src/world/tree.h', '// world/tree.h  5  the tree of a scene\n#pragma once\n'
-          '#include "world/bvh.h"\n\nusing Tree = Bvh;\n')
+          '#include "world/bvh.h"\n\nnamespace penumbra {\nusing Tree = Bvh;\n}\n')
 
 
 def rows(text, keep):

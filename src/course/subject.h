@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace course {
+namespace penumbra::course {
 
 // Directions about +z from two numbers of [0,1), one direction (of length 1) for each pair, or
 // nothing where the pair is rejected; and their density per solid angle.  It is 0 below the
@@ -44,4 +44,4 @@ struct Intersector {
     std::function<std::optional<double>(const Body&, const Beam&)> meet;
 };
 
-}  // namespace course
+}  // namespace penumbra::course

@@ -4,6 +4,8 @@
 
 #include "film/film.h"
 
+namespace penumbra {
+
 // The error of an image f, with the limit F: d^2 is the expected mean of (f - F)^2 over pixels and
 // channels, without the bias of f; d_rel = d / |F|.  Sums over pixels.  NaN: not known.
 struct ImageError {
@@ -123,3 +125,5 @@ private:
     const MayMissLight may_miss_light_;
     double expected_ = HUGE_VAL;
 };
+
+}  // namespace penumbra

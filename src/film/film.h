@@ -14,6 +14,8 @@
 #include "film/near_misses.h"
 #include "path/sampler.h"
 
+namespace penumbra {
+
 // Results of samples other than their radiance.
 struct Tally {
     uint64_t rays = 0;
@@ -183,3 +185,5 @@ inline void add_samples(Film& f, size_t block, uint64_t n, const Radiance& L, Ta
     std::ranges::copy(deviation, f.deviation.begin() + ptrdiff_t(f.is_pilot ? from : 0));
     f.taken[block] = std::max(f.taken[block], n);
 }
+
+}  // namespace penumbra

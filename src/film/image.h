@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+namespace penumbra {
+
 // Row by row from the top left pixel (0,0); linear values.  Starts as NaN, so that an unwritten
 // pixel is an error and not a black dot.
 struct Image {
@@ -17,3 +19,5 @@ struct Image {
         return pixels[size_t(y) * size_t(width) + size_t(x)];
     }
 };
+
+}  // namespace penumbra

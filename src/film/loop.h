@@ -3,6 +3,8 @@
 #include "film/error.h"
 #include "film/weights.h"
 
+namespace penumbra {
+
 // What a run is to do, and when it stops: whichever comes first; 0: no limit.
 struct Plan {
     Size size = {};
@@ -131,3 +133,5 @@ private:
         return is_whole;
     }
 };
+
+}  // namespace penumbra

@@ -5,6 +5,8 @@
 
 #include "base/stats.h"
 
+namespace penumbra {
+
 inline constexpr size_t growths = 11;  // a light has s^2 times its area, for s = 1, 2, 4 ... 1024
 
 // How a path came to a light.  What it met by one way says nothing of another.
@@ -32,3 +34,5 @@ struct NearMisses {
 };
 static_assert(sizeof(NearMisses) == 32 + 2 * ways * growths * sizeof(FixedPoint),
               "a file holds no gaps");
+
+}  // namespace penumbra

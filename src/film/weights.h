@@ -2,6 +2,8 @@
 #pragma once
 #include "film/film.h"
 
+namespace penumbra {
+
 // The mean of a pixel's neighbours; NaN: it has none.
 inline double mean_around(const std::vector<float>& of, Size size, int x, int y) {
     double sum = 0, count = 0;
@@ -63,3 +65,5 @@ inline void choose_weights(Film& f, const std::vector<size_t>& noisy = {}) {
     f.pilot = f.taken[0];
     f.taken.assign(f.taken.size(), 0);
 }
+
+}  // namespace penumbra

@@ -13,6 +13,7 @@
 #include "text/option.h"
 
 namespace {
+using namespace penumbra;
 
 struct Difference {
     double d = 0, d_rel = 0;

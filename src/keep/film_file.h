@@ -13,6 +13,8 @@
 #include "base/rng.h"
 #include "text/files.h"
 
+namespace penumbra {
+
 static_assert(std::endian::native == std::endian::little,
               "numbers are written as memory holds them");
 
@@ -137,3 +139,5 @@ private:
         return sum;
     }
 };
+
+}  // namespace penumbra

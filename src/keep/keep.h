@@ -6,6 +6,8 @@
 #include "keep/read_film.h"
 #include "text/json.h"
 
+namespace penumbra {
+
 // Checksum of the scene's meshes and its text.
 inline std::string sum_of_scene(const FilmOf& what) {
     Checksum sum;
@@ -109,3 +111,5 @@ private:
     Facts samples_, head_;  // facts that must agree, and all facts
     clock::time_point next_ = clock::now() + interval_;
 };
+
+}  // namespace penumbra

@@ -8,6 +8,7 @@
 #include "text/program.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr const char* before_options =
     "usage: merge [options] PART.film...\n\nMerges films of `penumbra --keep PART.film` into "

@@ -4,6 +4,8 @@
 #include "keep/film_file.h"
 #include "text/program.h"
 
+namespace penumbra {
+
 inline Spent spent_in(const FilmReader& file) {
     return {file.number("seconds"), file.number("cpu-seconds"), uint64_t(file.number("rays"))};
 }
@@ -55,3 +57,5 @@ private:
     std::vector<Sum> row_;  // those of a row
     size_t i_ = 0;
 };
+
+}  // namespace penumbra

@@ -5,6 +5,8 @@
 #include "base/vec.h"
 #include "text/image_file.h"
 
+namespace penumbra {
+
 // Throws UserError if it is not a PFM file as write_image makes them.
 inline Image read_pfm(const std::string& path) {
     std::ifstream in = open_file(path);
@@ -43,3 +45,5 @@ inline double d_rel(const Image& truth, const Image& image) {
         }
     return std::sqrt(off / all);
 }
+
+}  // namespace penumbra

@@ -18,6 +18,7 @@
 #endif
 
 namespace {
+using namespace penumbra;
 
 // ---- Scenes and their rays ----------------------------------------------------------------------
 

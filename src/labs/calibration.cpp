@@ -6,6 +6,7 @@
 
 namespace {
 
+using namespace penumbra;
 using namespace calibration;
 
 using Words = std::vector<std::string>;

@@ -2,7 +2,7 @@
 #pragma once
 #include "labs/rows.h"
 
-namespace calibration {
+namespace penumbra::calibration {
 
 inline double true_d(const Row& r) { return std::sqrt(std::max(0.0, r["d2"])); }
 
@@ -42,4 +42,4 @@ double share(const Rows& rows, Which which) {
     return double(where(known, which).size()) / double(known.size());
 }
 
-}  // namespace calibration
+}  // namespace penumbra::calibration

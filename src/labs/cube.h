@@ -21,7 +21,7 @@
 #include <numbers>
 #include <vector>
 
-namespace cube {
+namespace penumbra::cube {
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double albedo = 2.0 / 3;
@@ -269,4 +269,4 @@ auto integral(const Solution& room, const std::array<Point, 3>& corners, F f, in
     return sum * twice_area;
 }
 
-}  // namespace cube
+}  // namespace penumbra::cube

@@ -15,6 +15,7 @@
 #include "text/json.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr const char* names[4] = {"stochastic", "control variate", "ratio", "regression"};
 constexpr size_t steps = 17;  // N = 1, 2, 4, ... 65536

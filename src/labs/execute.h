@@ -11,6 +11,8 @@
 
 #include "text/words.h"
 
+namespace penumbra {
+
 // Runs a program and waits for it.  Throws SystemError unless its exit status is 0.
 inline void execute(std::vector<std::string> words) {
     std::vector<char*> argv;
@@ -28,3 +30,5 @@ inline void execute(std::vector<std::string> words) {
         throw SystemError(words[0] + " failed: " + (killed ? "killed by signal " : "exit status ") +
                           std::to_string(killed ? WTERMSIG(status) : WEXITSTATUS(status)));
 }
+
+}  // namespace penumbra

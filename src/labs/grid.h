@@ -14,6 +14,8 @@
 #include "base/rng.h"
 #include "labs/rows.h"
 
+namespace penumbra {
+
 // ---- Scenes, settings and references ------------------------------------------------------------
 
 // Options that name a scene and its size, and the samples per pixel of its reference.
@@ -183,3 +185,5 @@ private:
         std::filesystem::rename(stem + ".new.pfm", stem + ".pfm");
     }
 };
+
+}  // namespace penumbra

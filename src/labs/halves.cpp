@@ -5,6 +5,7 @@
 #include "labs/grid.h"
 
 namespace {
+using namespace penumbra;
 
 const std::string weighted = "halves with weights", equal = "equal halves", one = "one replication",
                   former = "the former default";

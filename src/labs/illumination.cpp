@@ -10,6 +10,7 @@
 
 namespace {
 
+using namespace penumbra;
 using namespace illumination;
 // A scene, its longest edge, the most particles, and the final unshot powers (shooting, hierarchy).
 struct Course {

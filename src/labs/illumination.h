@@ -2,7 +2,7 @@
 #pragma once
 #include "labs/rows.h"
 
-namespace illumination {
+namespace penumbra::illumination {
 
 struct Curve {
     std::vector<double> seconds, error;
@@ -44,4 +44,4 @@ inline Ahead ahead(const Curve& particles, const Curve& deterministic) {
     return a;
 }
 
-}  // namespace illumination
+}  // namespace penumbra::illumination

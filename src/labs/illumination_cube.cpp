@@ -7,6 +7,7 @@
 #include "text/json.h"
 
 namespace {
+using namespace penumbra;
 
 struct NamedPoint {
     const char* name;

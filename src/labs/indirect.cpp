@@ -5,6 +5,7 @@
 #include "labs/indirect_paths.h"
 
 namespace {
+using namespace penumbra;
 
 const std::vector<std::string> scenes = {"cornell36", "cube", "atelier"};
 

@@ -18,6 +18,8 @@
 #include "labs/room.h"
 #include "radiosity/gather.h"
 
+namespace penumbra {
+
 // Sample values of a path of any length.  From vertex `structured` on they are independent, like
 // those of particles.
 class EndlessNumbers {
@@ -105,3 +107,5 @@ inline Rendered by_control(const NamedScene& read, uint64_t spp, uint64_t seed) 
     in_parallel(size_t(height), all_cores(), row, [](double) {});
     return {std::move(image), {{"cpu_seconds", processor_seconds() - start_of_all}}};
 }
+
+}  // namespace penumbra

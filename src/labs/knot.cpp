@@ -9,6 +9,7 @@
 #include "text/program.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr int rings = 600, corners = 20;
 constexpr double radius = 0.42;

@@ -21,6 +21,8 @@
 #include "labs/svg.h"
 #include "text/option.h"
 
+namespace penumbra {
+
 // ---- Statistics of many runs --------------------------------------------------------------------
 
 // Element q (n - 1) of the n sorted numbers, linearly interpolated.  NaN if there are none.
@@ -213,3 +215,5 @@ int experiment(int argc, char** argv, const Lab& lab, Study study) try {
 } catch (...) {
     return failed();
 }
+
+}  // namespace penumbra

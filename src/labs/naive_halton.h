@@ -8,7 +8,7 @@
 #include "labs/lab.h"
 #include "path/pathtracer.h"
 
-namespace naive_halton {
+namespace penumbra::naive_halton {
 
 // Radiance along a ray from the single point u: by NEE if t.light is nee, else by BSDF sampling.
 inline rgb radiance(const Scene& scene, const Technique& t, Ray ray, vec2 u) {
@@ -61,4 +61,4 @@ inline Image render(const Scene& scene, const Technique& t, uint64_t spp) {
     return image;
 }
 
-}  // namespace naive_halton
+}  // namespace penumbra::naive_halton

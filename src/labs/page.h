@@ -5,6 +5,8 @@
 
 #include "labs/lab.h"
 
+namespace penumbra {
+
 using Lines = std::vector<std::vector<std::string>>;  // the cells of each line of a table
 
 // A table in Markdown.
@@ -91,3 +93,5 @@ private:
         return at->second;
     }
 };
+
+}  // namespace penumbra

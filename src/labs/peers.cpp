@@ -6,6 +6,7 @@
 #include "text/scene_file.h"
 
 namespace {
+using namespace penumbra;
 
 std::string json_of(vec3 v) { return json::numbers({double(v.x), double(v.y), double(v.z)}); }
 

@@ -9,6 +9,7 @@
 #include "text/json.h"
 
 namespace {
+using namespace penumbra;
 
 // A map, with its requested and its estimated error.  add_true() adds the true error.
 struct Run {

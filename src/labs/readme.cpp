@@ -9,6 +9,7 @@
 #include "text/scene_file.h"
 
 namespace {
+using namespace penumbra;
 
 // Replaces the text between the two marks of a table.
 void write_table(const std::string& file, const std::string& name, const std::string& table) {

@@ -5,6 +5,8 @@
 #include "radiosity/particles.h"
 #include "radiosity/shooting.h"
 
+namespace penumbra {
+
 // A scene cut into triangles, with its mesh.  No edge is longer than the H of make_room().
 struct Room {
     std::string name;
@@ -50,3 +52,5 @@ inline IlluminationMap difference(IlluminationMap a, const IlluminationMap& b) {
     for (size_t i = 0; i < a.size(); ++i) a[i] += -b[i];
     return a;
 }
+
+}  // namespace penumbra

@@ -6,6 +6,8 @@
 
 #include "labs/page.h"
 
+namespace penumbra {
+
 // ---- A row --------------------------------------------------------------------------------------
 
 // One render: its position in the grid and its numbers.  These are its statistics and
@@ -209,3 +211,5 @@ Svg plot(const Rows& rows, const std::string& x, const std::string& y, Word seri
     }
     return plot(all, x, y, title);
 }
+
+}  // namespace penumbra

@@ -9,6 +9,7 @@
 #include "text/scene_file.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr const char* names[] = {"stochastic", "control", "ratio", "regression"};
 

@@ -13,6 +13,8 @@
 
 #include "text/image_file.h"
 
+namespace penumbra {
+
 // Formats like printf.  The argument of %s may be a std::string.
 inline const char* for_printf(const std::string& words) { return words.c_str(); }
 inline auto for_printf(auto number) { return number; }
@@ -225,3 +227,5 @@ inline Svg plot(const std::vector<Series>& all, std::string_view x_label, std::s
                     {.colour = svg::colours[i % std::size(svg::colours)]});
     return sheet;
 }
+
+}  // namespace penumbra

@@ -7,6 +7,7 @@
 #include "text/scene_file.h"
 
 namespace {
+using namespace penumbra;
 
 const std::string scene = "scenes/coursework.scene", uniform = "uniform", cosine = "+ cosine",
                   halton = "+ Halton", nee = "+ NEE", cosine_halton = "cosine + Halton",

@@ -9,6 +9,7 @@
 
 namespace {
 
+using namespace penumbra;
 using namespace trade;
 
 struct Effort {

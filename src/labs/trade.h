@@ -3,7 +3,7 @@
 #include "labs/grid.h"
 #include "text/json.h"
 
-namespace trade {
+namespace penumbra::trade {
 
 // ---- Measurements -------------------------------------------------------------------------------
 
@@ -187,4 +187,4 @@ inline void write_page(const std::vector<Study>& studies, const std::string& com
     }
 }
 
-}  // namespace trade
+}  // namespace penumbra::trade

@@ -11,6 +11,7 @@
 #include "voronoi/weights.h"
 
 namespace {
+using namespace penumbra;
 
 const std::vector<Function> list = functions::all();
 using Values = std::vector<double>;  // of a function at points

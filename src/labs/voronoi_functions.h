@@ -11,6 +11,8 @@
 
 #include "voronoi/plane.h"
 
+namespace penumbra {
+
 // A function on [-1/2, 1/2]^2 with its integral.
 struct Function {
     std::string name;
@@ -67,3 +69,5 @@ inline std::vector<Function> all() {
 }
 
 }  // namespace functions
+
+}  // namespace penumbra

@@ -8,6 +8,7 @@
 #include "text/scene_file.h"
 
 namespace {
+using namespace penumbra;
 
 const std::string mc = "mc", cvor = "cvor", sobol = "sobol";
 

@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace mesh {
+namespace penumbra::mesh {
 
 using Corners = std::vector<vec3>;                // corners of a polygon
 using Cuts = std::vector<std::array<size_t, 3>>;  // of a polygon: indices of its corners
@@ -127,4 +127,4 @@ private:
     }
 };
 
-}  // namespace mesh
+}  // namespace penumbra::mesh

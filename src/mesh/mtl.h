@@ -5,7 +5,7 @@
 #include "text/files.h"
 #include "world/bsdf.h"
 
-namespace mesh {
+namespace penumbra::mesh {
 
 // The words of a line of an OBJ or MTL file.  '#' begins a comment at the start or after a blank.
 struct ObjLine {
@@ -120,4 +120,4 @@ struct Mtl {
     }
 };
 
-}  // namespace mesh
+}  // namespace penumbra::mesh

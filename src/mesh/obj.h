@@ -9,7 +9,7 @@
 #include "mesh/mtl.h"
 #include "text/mesh.h"
 
-namespace mesh {
+namespace penumbra::mesh {
 
 // Adds a mesh to a scene: its polygons, placed, and those of its materials that they name.  Reads
 // `v` and `f` (any number of corners, v, v/vt, v//vn or v/vt/vn, indices from 1 or, negative, from
@@ -258,4 +258,4 @@ private:
     }
 };
 
-}  // namespace mesh
+}  // namespace penumbra::mesh

@@ -5,6 +5,8 @@
 
 #include "base/vec.h"
 
+namespace penumbra {
+
 // The first n primes, by the sieve of Eratosthenes.  p_n < n (ln n + ln ln n) for n >= 6 (Rosser
 // 1941).
 inline std::vector<uint32_t> first_primes(size_t n) {
@@ -65,3 +67,5 @@ inline real scrambled_radical_inverse(uint32_t base, uint64_t i, uint64_t shift_
     return std::min(below_one, real((double(digits) + zeros) / double(power)));
     // end
 }
+
+}  // namespace penumbra

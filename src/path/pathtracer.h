@@ -8,6 +8,8 @@
 #include "path/sampler.h"
 #include "world/scene.h"
 
+namespace penumbra {
+
 // The estimator of direct light.
 enum class LightMode {
     none,  // BSDF sampling only
@@ -223,3 +225,5 @@ rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sa
 }
 
 #undef PART
+
+}  // namespace penumbra

@@ -8,6 +8,8 @@
 #include "path/halton.h"
 #include "path/sobol.h"
 
+namespace penumbra {
+
 // Dimensions of the numbers of a path: dimension(k, what) at vertex k; the first surface has k = 0.
 enum class Draw { light_x, light_y, wi_x, wi_y, pick, lobe, roulette, count };
 inline constexpr uint32_t film_x = 0, film_y = 1;
@@ -178,3 +180,5 @@ public:
 private:
     SamplePoints points_;
 };
+
+}  // namespace penumbra

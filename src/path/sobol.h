@@ -6,6 +6,8 @@
 #include "base/rng.h"
 #include "base/vec.h"
 
+namespace penumbra {
+
 // Words are binary fractions of [0,1): digit 0 is the highest bit.
 
 // The radical inverse of i in base 2 (van der Corput 1935): its bits in reverse order.
@@ -77,3 +79,5 @@ inline real sobol_third(uint64_t t, uint64_t a, uint64_t b) {
 inline real sobol_single(uint64_t t, uint64_t bits) {
     return to_unit(shuffled(t, bits, mix(bits)));
 }
+
+}  // namespace penumbra

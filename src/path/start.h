@@ -3,6 +3,8 @@
 #include "path/sampler.h"
 #include "world/scene.h"
 
+namespace penumbra {
+
 // The sampler of the path, its position in the pixel, and its ray.
 struct Start {
     Sampler sampler;
@@ -24,3 +26,5 @@ inline Start start(const Scene& scene, const Pattern& pattern, const PixelSample
     return {sampler, u,
             camera_ray(scene.camera, scene.size, in_pixel(s.x, u.x), in_pixel(s.y, u.y))};
 }
+
+}  // namespace penumbra

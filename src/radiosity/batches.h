@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+namespace penumbra {
+
 // The error of a map: the RMSE over surfaces and channels, relative to the RMS of E.
 struct MapError {
     double error = NAN;
@@ -45,3 +47,5 @@ private:
         return light > 0 ? std::sqrt(variance / batches / light) : double(INFINITY);
     }
 };
+
+}  // namespace penumbra

@@ -4,6 +4,8 @@
 
 #include "text/scene_file.h"
 
+namespace penumbra {
+
 // ---- Diffuse surfaces only ----------------------------------------------------------------------
 
 // What a material that is not diffuse is; "": it is diffuse.
@@ -178,3 +180,5 @@ inline Faceted faceted(const NamedScene& from, double H) {
     prepare(to);
     return result;
 }
+
+}  // namespace penumbra

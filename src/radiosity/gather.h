@@ -8,6 +8,8 @@
 #include "path/start.h"
 #include "radiosity/map.h"
 
+namespace penumbra {
+
 // R_map on both sides of every vertex, numbered as an illumination map.
 struct KnownLight {
     Mesh mesh;
@@ -38,3 +40,5 @@ inline Radiance final_gather(const Scene& scene, const Technique& t, const Known
         return L + R;
     };
 }
+
+}  // namespace penumbra

@@ -6,6 +6,8 @@
 #include "path/pathtracer.h"
 #include "radiosity/mesh.h"
 
+namespace penumbra {
+
 // Irradiance E (W / m^2; lux, if radiance is in nit) on both sides of every vertex: number 2 v on
 // the side of the shape's own normal, 2 v + 1 on its back.  Linear between the vertices of a
 // triangle.
@@ -95,3 +97,5 @@ inline std::array<double, 3> mean_of_pixels(const Image& image) {
     for (double& s : sum) s /= double(image.pixels.size());
     return sum;
 }
+
+}  // namespace penumbra

@@ -4,6 +4,8 @@
 
 #include "radiosity/facets.h"
 
+namespace penumbra {
+
 // ---- Faces --------------------------------------------------------------------------------------
 
 // A parallelogram a b c d, which two triangles (a, b, c) and (a, c, d) of the scene are, or one
@@ -240,3 +242,5 @@ inline Mesh make_mesh(const Scene& s, double H) {
     }
     return mesh;
 }
+
+}  // namespace penumbra

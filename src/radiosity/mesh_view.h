@@ -3,6 +3,8 @@
 #include "app/threads.h"
 #include "radiosity/map.h"
 
+namespace penumbra {
+
 // The part of a pixel that is edge, 0 to 1.  A point is on an edge if an element ends between it
 // and the point a pixel to the right, or below.  Lines are a pixel wide in an image of any size.
 inline real edges_in(const Scene& scene, const Mesh& mesh, int x, int y, int K) {
@@ -39,3 +41,5 @@ inline void draw_mesh(Image& image, const Scene& scene, const Mesh& mesh, int K,
     };
     in_parallel(size_t(image.height), threads, row, [](double) {});
 }
+
+}  // namespace penumbra

@@ -9,6 +9,8 @@
 
 #include "base/vec.h"
 
+namespace penumbra {
+
 // Integrals over surfaces: of the square of E, all channels together, and of the square of U.
 struct Missing {
     double light = 0;
@@ -52,3 +54,5 @@ struct Missing {
         return b2 == 0 ? 0 : std::isinf(b2) ? 1 : std::sqrt(b2 / (light + b2));
     }
 };
+
+}  // namespace penumbra

@@ -2,6 +2,8 @@
 #pragma once
 #include "app/options.h"
 
+namespace penumbra {
+
 // The method that fills the illumination maps.
 enum class Method {
     shooting,   // the element with the most unshot power shoots it, then the next
@@ -127,3 +129,5 @@ inline void parse_radiosity(OptionTable& table, RadiosityOptions& o,
     if (is_random(o) && !o.particles) o.particles = 1000000;
     if (!is_random(o) && !o.unshot && !o.shots) o.unshot = 0.01;
 }
+
+}  // namespace penumbra

@@ -9,6 +9,8 @@
 #include "radiosity/batches.h"
 #include "radiosity/projection.h"
 
+namespace penumbra {
+
 // ---- One walk -----------------------------------------------------------------------------------
 
 // Balance of the power: emitted = absorbed + escaped, except for rounding.
@@ -260,3 +262,5 @@ private:
         return false;
     }
 };
+
+}  // namespace penumbra

@@ -11,6 +11,8 @@
 #pragma once
 #include "radiosity/map.h"
 
+namespace penumbra {
+
 enum class Functional { projection, mean };
 
 // Sums of b on one side of every vertex of a face.
@@ -99,3 +101,5 @@ private:
         return x;
     }
 };
+
+}  // namespace penumbra

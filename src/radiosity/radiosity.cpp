@@ -4,6 +4,7 @@
 #include "radiosity/solution.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr const char* before_options =
     "usage: radiosity [options] SCENE\n\nComputes illumination maps of SCENE (a file in the format "

@@ -16,6 +16,8 @@
 #include "radiosity/target.h"
 #include "radiosity/transfer.h"
 
+namespace penumbra {
+
 class Shooting {
 public:
     // Both must outlive it.
@@ -183,7 +185,7 @@ private:
     // Power of points that have not shot, and of all sides.
     double unsent() const {
         double power = 0;
-        for (size_t k = next_point_; k < points_.size(); ++k) power += ::power(*points_[k]);
+        for (size_t k = next_point_; k < points_.size(); ++k) power += penumbra::power(*points_[k]);
         for (const Candidate& c : best_) power += c.all;
         return power;
     }
@@ -289,3 +291,5 @@ private:
 
     bool cut_short() const { return interrupted || std::chrono::steady_clock::now() > deadline_; }
 };
+
+}  // namespace penumbra

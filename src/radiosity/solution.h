@@ -7,6 +7,8 @@
 #include "radiosity/shooting.h"
 #include "radiosity/walks.h"
 
+namespace penumbra {
+
 // ---- The scene ----------------------------------------------------------------------------------
 
 struct Stage {
@@ -174,3 +176,5 @@ inline std::string encode_stats(const RadiosityOptions& o, const OptionTable& ta
         object.add(key, value);
     return object.text();
 }
+
+}  // namespace penumbra

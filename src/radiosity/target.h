@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 
+namespace penumbra {
+
 // Whichever comes first; 0: no limit.
 struct ShootingTarget {
     double unshot = 0;   // fraction of the emitted power
@@ -16,3 +18,5 @@ enum class Shooter {
     face      // a whole face, in parts that are small as a vertex sees them, after the links of
               // Hanrahan, Salzman, Aupperle (1991)
 };
+
+}  // namespace penumbra

@@ -4,6 +4,8 @@
 #include "radiosity/tree.h"
 #include "shadow/irradiance.h"
 
+namespace penumbra {
+
 // A receiving point of a face, and the frame of one of its sides.
 struct Receiver {
     Surface x;
@@ -121,3 +123,5 @@ private:
         return to.x.p + to.local.to_world(sum);
     }
 };
+
+}  // namespace penumbra

@@ -2,6 +2,8 @@
 #pragma once
 #include "radiosity/mesh.h"
 
+namespace penumbra {
+
 // A triangle or parallelogram of a face: one element, or all that its children are.
 struct Node {
     std::array<vec3, 4> corner;
@@ -107,3 +109,5 @@ private:
         leaf_[element] = index;
     }
 };
+
+}  // namespace penumbra

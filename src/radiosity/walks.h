@@ -4,6 +4,8 @@
 #include "app/threads.h"
 #include "radiosity/particles.h"
 
+namespace penumbra {
+
 // "error 2.9 % ± 0.05 %"
 inline std::string error_words(const MapError& e) {
     return "error " + percent(e.error) +
@@ -136,7 +138,8 @@ private:
         if (target_.error > 0 && of_ > 0)
             done = std::max(done, ErrorTarget(target_.error).done(error_) / since);
         const double falls = std::sqrt(since);
-        bar_.show(done, ::walked(uint64_t(n), {error_.error * falls, error_.uncertainty * falls}));
+        bar_.show(done, penumbra::walked(uint64_t(n),
+                                         {error_.error * falls, error_.uncertainty * falls}));
     }
 };
 
@@ -147,3 +150,5 @@ inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& patt
     if (!scene.lights.empty()) walks.run();
     return walks.walked();
 }
+
+}  // namespace penumbra

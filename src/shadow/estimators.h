@@ -14,6 +14,8 @@
 #pragma once
 #include <cstdint>
 
+namespace penumbra {
+
 enum class Estimator { stochastic, control, ratio, regression };
 
 // True if it needs all samples of a pixel together and is not a mean of samples.
@@ -120,3 +122,5 @@ inline double estimate(Estimator e, const ShadowMoments& m) {
         default: return regression(m);
     }
 }
+
+}  // namespace penumbra

@@ -10,6 +10,8 @@
 
 #include "base/vec.h"
 
+namespace penumbra {
+
 // ---- Spheres ----------------------------------------------------------------------------------
 
 // t - atan(t) for t >= 0 without cancellation.
@@ -178,3 +180,5 @@ inline real irradiance_quad(vec3 a, vec3 u, vec3 v) {
     for (vec3 corner : {a, a + u, a + u + v, a + v}) p.add(corner);
     return irradiance_polygon(p);
 }
+
+}  // namespace penumbra

@@ -9,6 +9,8 @@
 #pragma once
 #include "shadow/estimators.h"
 
+namespace penumbra {
+
 // Moments of the population, for visibility that is 0 or 1.
 struct ShadowPopulation {
     double W, S;     // E[w], E[w V]
@@ -39,3 +41,5 @@ struct ShadowPopulation {
         return -(with_wV - beta(e) * third) / var;
     }
 };
+
+}  // namespace penumbra

@@ -6,6 +6,7 @@
 #include "text/program.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr const char* before_options =
     "usage: shadow [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) with "

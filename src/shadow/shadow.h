@@ -12,6 +12,8 @@
 #include "shadow/estimators.h"
 #include "shadow/irradiance.h"
 
+namespace penumbra {
+
 // Radiance to the eye, for one sample: U is exact and unshadowed; w is its estimate by one light
 // sample, E[w] = U; wV is the estimate with its shadow.
 struct Shadowed {
@@ -139,3 +141,5 @@ inline Radiance shadow_estimate(const Scene& scene, const Technique& t, const Pa
         return pixel.value(e);
     };
 }
+
+}  // namespace penumbra

@@ -17,6 +17,8 @@
 
 #include "text/words.h"
 
+namespace penumbra {
+
 // What a film is of, for the head of its file.
 struct FilmOf {
     std::vector<std::string> files;  // of the scene's meshes
@@ -162,3 +164,5 @@ inline void write_file(const std::string& path, const Pieces& pieces) {
 inline void write_file(const std::string& path, std::string_view bytes) {
     write_file(path, Pieces{std::as_bytes(std::span(bytes))});
 }
+
+}  // namespace penumbra

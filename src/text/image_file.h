@@ -18,6 +18,8 @@
 #include "film/image.h"
 #include "text/files.h"
 
+namespace penumbra {
+
 // The first pixel, "x,y", that is not finite.
 inline std::optional<std::string> first_non_finite(const Image& image) {
     for (int y = 0; y < image.height; ++y)
@@ -93,3 +95,5 @@ inline void write_image(const std::string& path, const Image& image, double expo
         pieces.push_back(std::as_bytes(std::span(&image.at(0, y), size_t(image.width))));
     write_file(path, pieces);
 }
+
+}  // namespace penumbra

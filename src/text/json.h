@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+namespace penumbra {
+
 // "0.982 %"
 inline std::string percent(double x) {
     char text[40];
@@ -93,3 +95,5 @@ private:
 };
 
 }  // namespace json
+
+}  // namespace penumbra

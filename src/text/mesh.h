@@ -4,6 +4,8 @@
 
 #include "text/named_scene.h"
 
+namespace penumbra {
+
 // Coordinates are no larger: their fourth powers must neither overflow nor vanish.
 inline constexpr double longest_length = sizeof(real) == 4 ? 1e9 : 1e30;
 
@@ -21,10 +23,12 @@ struct MeshPlacement {
     }
 };
 
+}  // namespace penumbra
+
 #ifdef WITH_MESH
 #include "mesh/obj.h"
 #else
-namespace mesh {
+namespace penumbra::mesh {
 struct ObjReader {
     std::vector<std::string> files, warnings;
     ObjReader(NamedScene&, const MeshPlacement&, std::optional<uint32_t>, uint32_t, int64_t&) {}
@@ -32,5 +36,5 @@ struct ObjReader {
         throw UserError(path + ": this program was built without src/mesh");
     }
 };
-}  // namespace mesh
+}  // namespace penumbra::mesh
 #endif

@@ -5,6 +5,8 @@
 
 #include "world/scene.h"
 
+namespace penumbra {
+
 // A scene of so many shapes takes 1 GB.
 inline constexpr size_t max_shapes = 1 << 22;
 
@@ -28,3 +30,5 @@ inline void add_material(NamedScene& s, const Material& m, const std::string& na
     s.materials.push_back(m);
     s.names.push_back(name);
 }
+
+}  // namespace penumbra

@@ -14,6 +14,8 @@
 #include "text/program.h"
 #include "text/words.h"
 
+namespace penumbra {
+
 using Text = std::string_view;
 
 struct Option {
@@ -282,3 +284,5 @@ inline bool print_manual(const CommonOptions& o, const OptionTable& table, const
     if (o.version && !o.help) std::printf("%s\n", version().c_str());
     return o.help || o.version;
 }
+
+}  // namespace penumbra

@@ -12,6 +12,8 @@
 #include "base/vec.h"
 #include "text/words.h"
 
+namespace penumbra {
+
 // The exit status of main, after all of stdout is written; throws SystemError if it cannot be.
 inline int finished(int status) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
@@ -63,3 +65,5 @@ struct Spent {
 inline double bytes_of_machine() {
     return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
 }
+
+}  // namespace penumbra

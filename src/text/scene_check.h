@@ -8,6 +8,8 @@
 #include "text/named_scene.h"
 #include "text/words.h"
 
+namespace penumbra {
+
 // ---- Surfaces that lie in each other ------------------------------------------------------------
 
 // True if two shapes share more than an edge of one surface, within rounding, or lie above each
@@ -360,3 +362,5 @@ inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool 
     }
     return found;
 }
+
+}  // namespace penumbra

@@ -12,6 +12,8 @@
 #include "text/scene_check.h"
 #include "world/prepare.h"
 
+namespace penumbra {
+
 // A scene, warnings to its author, the files of its meshes and its own, and its text.
 struct ParsedScene {
     NamedScene scene;
@@ -322,3 +324,5 @@ inline ParsedScene read_scene(const std::string& path) {
     parsed.text = std::move(text);
     return parsed;
 }
+
+}  // namespace penumbra

@@ -14,6 +14,8 @@
 
 #include "base/vec.h"
 
+namespace penumbra {
+
 // The user's input cannot be used: message for stderr, exit status 2.
 struct UserError : std::runtime_error {
     using std::runtime_error::runtime_error;
@@ -187,3 +189,5 @@ const Value& look_up(const std::map<std::string, Value>& defined, const std::str
     for (const auto& [other, value] : defined) known.push_back(other);
     throw UserError(unknown(what, name, known));
 }
+
+}  // namespace penumbra

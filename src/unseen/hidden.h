@@ -8,6 +8,8 @@
 #include "base/rng.h"
 #include "text/named_scene.h"
 
+namespace penumbra {
+
 // The first hit that is not glass.  The ray then starts behind the glass.
 inline std::optional<Hit> hit_through_glass(const Scene& s, Ray& ray) {
     auto hit = s.bvh.closest(ray);
@@ -71,3 +73,5 @@ inline std::vector<std::string> hidden_lights(const NamedScene& s) {
              "too");
     return warnings;
 }
+
+}  // namespace penumbra

@@ -13,6 +13,8 @@
 #include "text/words.h"
 #include "unseen/hidden.h"
 
+namespace penumbra {
+
 inline constexpr size_t most_light_groups = 64;  // more lights share groups with neighbours
 
 inline double mean_square(rgb L) {
@@ -277,3 +279,5 @@ private:
     const Technique technique_;
     const LightsInView view_;
 };
+
+}  // namespace penumbra

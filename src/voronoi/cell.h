@@ -7,6 +7,8 @@
 
 #include "voronoi/polygon.h"
 
+namespace penumbra {
+
 // A box around the cell's flower: the discs about its corners through the site.  No site outside
 // the flower can cut the cell (Calka 2002).
 inline Rectangle flower_box(Outline cell) {
@@ -223,3 +225,5 @@ private:
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
+
+}  // namespace penumbra

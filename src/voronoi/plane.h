@@ -2,6 +2,8 @@
 #pragma once
 #include <algorithm>
 
+namespace penumbra {
+
 // Areas of cells are to add up to that of the window, to 1e-12 n of it: float could not.
 struct Site {
     double x = 0, y = 0;
@@ -30,3 +32,5 @@ inline double distance2(const Rectangle& r, Site p) {
                  y = std::max({r.lo.y - p.y, p.y - r.hi.y, 0.0});
     return x * x + y * y;
 }
+
+}  // namespace penumbra

@@ -8,6 +8,8 @@
 
 #include "voronoi/plane.h"
 
+namespace penumbra {
+
 // A corner of a cell, from its site; the edge from there to the next corner, counterclockwise, is
 // due to that neighbour (-1: the window).
 struct Corner {
@@ -126,3 +128,5 @@ inline VoronoiCell measured(Outline corners) {
 }
 
 }  // namespace voronoi
+
+}  // namespace penumbra

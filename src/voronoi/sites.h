@@ -12,6 +12,8 @@
 
 #include "voronoi/plane.h"
 
+namespace penumbra {
+
 // Sites sorted by the buckets of a grid, row by row.  Keeps its memory for the next sites.
 struct Buckets {
     static constexpr double per_bucket = 3;  // sites, on average
@@ -163,3 +165,5 @@ private:
         }
     }
 };
+
+}  // namespace penumbra

@@ -5,6 +5,7 @@
 #include "voronoi/weighted.h"
 
 namespace {
+using namespace penumbra;
 
 constexpr const char* before_options =
     "usage: voronoi [options] SCENE\n\nRenders SCENE (a file in the format of scenes/*.scene) by "

@@ -12,6 +12,8 @@
 #include "voronoi/sites.h"
 #include "voronoi/window.h"
 
+namespace penumbra {
+
 // Cells of sites in a window, one by one.  The border of a cell is wrapped from the bisectors with
 // the sites around it, ring by ring of a grid of buckets, until no other site can reach it.  A cell
 // of crowded sites is cut from the window instead, by sites that a tree finds.  Sites are rounded
@@ -260,3 +262,5 @@ private:
         }
     }
 };
+
+}  // namespace penumbra

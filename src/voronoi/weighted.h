@@ -6,6 +6,8 @@
 #include "path/start.h"
 #include "voronoi/weights.h"
 
+namespace penumbra {
+
 // Number of redraws and fallbacks of weights, see Weigher.
 struct WeightTroubles {
     std::atomic<uint64_t> redraws = 0, fallbacks = 0;
@@ -36,3 +38,5 @@ inline Radiance weighted_mean(const Scene& scene, const Pattern& pattern, Weight
         return rgb{real(sum[0]), real(sum[1]), real(sum[2])};
     };
 }
+
+}  // namespace penumbra

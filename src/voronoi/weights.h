@@ -10,6 +10,8 @@
 #include "base/rng.h"
 #include "voronoi/voronoi.h"
 
+namespace penumbra {
+
 // The mean of samples x_1 ... x_n, independent and uniform in the unit square: the sum of
 // w_i f(x_i), with weights that add up to 1.  A_i is the area of the cell of x_i.
 enum class Weighting {
@@ -165,3 +167,5 @@ private:
         return weights_;
     }
 };
+
+}  // namespace penumbra

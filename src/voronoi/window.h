@@ -12,6 +12,8 @@
 
 #include "voronoi/plane.h"
 
+namespace penumbra {
+
 // Sites as cells see them: from the window's lower left corner, in units of its greater side, and
 // rounded.  Keeps its memory for the next sites.
 class WindowSites {
@@ -105,3 +107,5 @@ private:
         return {((p.x - origin_.x) / unit_ + 4) - 4, ((p.y - origin_.y) / unit_ + 4) - 4};
     }
 };
+
+}  // namespace penumbra

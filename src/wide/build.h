@@ -7,7 +7,7 @@
 
 #include "wide/node.h"
 
-namespace wide {
+namespace penumbra::wide {
 
 // ---- Boxes in float -----------------------------------------------------------------------------
 
@@ -260,4 +260,4 @@ private:
 // For at least one shape.  Time O(n log n).
 inline BinaryTree build(const std::vector<Shape>& shapes) { return Builder(shapes).tree(); }
 
-}  // namespace wide
+}  // namespace penumbra::wide

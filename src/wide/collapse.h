@@ -2,7 +2,7 @@
 #pragma once
 #include "wide/build.h"
 
-namespace wide {
+namespace penumbra::wide {
 
 // Of a node.
 struct Children {
@@ -105,4 +105,4 @@ private:
     }
 };
 
-}  // namespace wide
+}  // namespace penumbra::wide

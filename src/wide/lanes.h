@@ -7,6 +7,8 @@
 
 #include "base/vec.h"
 
+namespace penumbra {
+
 // GCC warns that such types are passed otherwise where registers are narrower.  No library of ours
 // is affected: there is none.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -90,3 +92,5 @@ inline int32_t least(const Keys& k) {
 }
 
 }  // namespace wide
+
+}  // namespace penumbra

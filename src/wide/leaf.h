@@ -6,7 +6,7 @@
 
 #include "wide/node.h"
 
-namespace wide {
+namespace penumbra::wide {
 
 // Hits of a ray with some triangles: t and, times det, v and w, in the lanes of hit.
 struct Meeting {
@@ -141,4 +141,4 @@ private:
     }
 };
 
-}  // namespace wide
+}  // namespace penumbra::wide

@@ -5,7 +5,7 @@
 #include "wide/lanes.h"
 #include "world/shapes.h"
 
-namespace wide {
+namespace penumbra::wide {
 
 // Planes beyond count as infinitely far; areas of what is nearer are finite numbers in double.
 inline constexpr float far_away = 0x1p120f;
@@ -120,4 +120,4 @@ private:
 };
 static_assert(sizeof(Node) % 32 == 0);
 
-}  // namespace wide
+}  // namespace penumbra::wide

@@ -5,6 +5,8 @@
 #include "wide/leaf.h"
 #include "wide/node.h"
 
+namespace penumbra {
+
 // A tree of boxes, up to eight children a node.  Its answers equal those of a loop over all shapes,
 // bit for bit; of shapes hit at the same distance the one with the smallest index wins.
 class WideBvh {
@@ -165,3 +167,5 @@ private:
         return {uint32_t(offset)};
     }
 };
+
+}  // namespace penumbra

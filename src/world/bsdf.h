@@ -17,6 +17,8 @@
 
 #include "world/warp.h"
 
+namespace penumbra {
+
 // Sampling of directions at diffuse and glossy surfaces.
 enum class Direction {
     uniform,  // over the hemisphere
@@ -208,3 +210,5 @@ inline BsdfSample sample(const Material& m, vec3 wo, bool outside, real u_lobe, 
                          Direction direction) {
     return m.ask([&](const auto& s) { return s.sample(wo, outside, u_lobe, u, direction); });
 }
+
+}  // namespace penumbra

@@ -6,6 +6,8 @@
 
 #include "world/shapes.h"
 
+namespace penumbra {
+
 // A ray as boxes see it; inverse is 1 / d, component by component.
 struct Probe {
     Ray ray;
@@ -226,3 +228,5 @@ private:
         return best;
     }
 };
+
+}  // namespace penumbra

@@ -10,6 +10,8 @@
 
 #include "world/lights.h"
 
+namespace penumbra {
+
 inline constexpr size_t most_members = 8;
 
 // An estimate may be wrong by any factor, because it does not know what hides a light.  So a part
@@ -238,3 +240,5 @@ private:
         cut({middle, lights.end()}, number - number / 2, parts);
     }
 };
+
+}  // namespace penumbra

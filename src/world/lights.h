@@ -15,6 +15,8 @@
 #include "world/shapes.h"
 #include "world/warp.h"
 
+namespace penumbra {
+
 // What a light of any kind has.
 struct Emitter {
     vec3 p = {};       // centre of a sphere, corner of a polygon, the point
@@ -197,3 +199,5 @@ inline Surface point_of(const Light& l, vec2 u) {
 inline real area_of(const Light& l) {
     return real(l.ask([](const auto& light) { return light.strength(1); }));
 }
+
+}  // namespace penumbra

@@ -3,6 +3,8 @@
 #include "base/rng.h"
 #include "world/scene.h"
 
+namespace penumbra {
+
 // ---- Light that arrives -------------------------------------------------------------------------
 
 // Sums over surfaces of a light's estimated contributions, and of those that nothing hides.
@@ -121,3 +123,5 @@ inline const Light& choose_light(const Scene& s, real u) {
     auto i = std::upper_bound(s.pick_cdf.begin(), s.pick_cdf.end(), double(u));
     return s.lights[std::min(size_t(i - s.pick_cdf.begin()), s.lights.size() - 1)];
 }
+
+}  // namespace penumbra

@@ -6,6 +6,8 @@
 #include "world/light_choice.h"
 #include "world/tree.h"
 
+namespace penumbra {
+
 // A pinhole; the axes are unit, tan_half is the tangent of half the vertical field of view.
 struct Camera {
     vec3 eye, right, up, forward;
@@ -57,7 +59,7 @@ struct Scene {
     const Material& material_at(uint32_t shape) const { return materials[material_of[shape]]; }
     const Material& material(const Hit& hit) const { return material_at(hit.id); }
     Surface surface(const Ray& ray, const Hit& hit) const {
-        return ::surface(shapes[hit.id], facing[hit.id], ray, hit);
+        return penumbra::surface(shapes[hit.id], facing[hit.id], ray, hit);
     }
 };
 
@@ -150,3 +152,5 @@ inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t mater
 inline void add_light(Scene& s, const Light& light) {
     if (max_of(light.L) > 0) s.lights.push_back(light);
 }
+
+}  // namespace penumbra

@@ -6,6 +6,8 @@
 
 #include "base/vec.h"
 
+namespace penumbra {
+
 // The points o + t d with 0 < t <= tmax.  d is unit, so t is a distance.
 struct Ray {
     vec3 o, d;
@@ -217,3 +219,5 @@ inline Ray spawn_to(const Surface& x, Surface y) {
     const real distance = length(to);
     return {o, to * (1 / distance), distance};
 }
+
+}  // namespace penumbra

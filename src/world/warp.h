@@ -6,6 +6,8 @@
 #include "base/portable.h"
 #include "base/vec.h"
 
+namespace penumbra {
+
 // The point at u turns of the unit circle, 0 <= u <= 1.  The nearest quarter of a turn is split off
 // exactly.  For the remainder, |x| <= pi / 4, Taylor polynomials are exact to rounding.
 inline vec2 turned(real u) {
@@ -112,3 +114,5 @@ inline real power_heuristic(real p, real q) {
     real ratio = q / p;
     return 1 / (1 + ratio * ratio);
 }
+
+}  // namespace penumbra

@@ -10,8 +10,9 @@
 #include <thread>
 
 namespace {
+using namespace penumbra;
 std::atomic<int> threads_left = -1;  // -1: any number
-}
+}  // namespace
 
 // A program's own functions precede those of its libraries.
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,

@@ -4,6 +4,8 @@
 
 #include "base/vec.h"
 
+using namespace penumbra;
+
 inline constexpr bool single = sizeof(real) == 4;
 
 // The tolerance of doctest::Approx is relative to 1 + the value, not to the value.

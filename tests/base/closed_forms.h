@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace closed_forms {
+namespace penumbra::closed_forms {
 
 inline constexpr double Pi = std::numbers::pi;
 
@@ -99,4 +99,4 @@ inline double rectangle_solid_angle(double p, double q) {
     return 4 * std::atan(p * q / std::sqrt(1 + p * p + q * q));
 }
 
-}  // namespace closed_forms
+}  // namespace penumbra::closed_forms

@@ -3,6 +3,8 @@
 #include "base/stats.h"
 #include "oracle/oracle.h"
 
+using namespace penumbra;
+
 inline oracle::Estimate estimate(const Moments& m, double unit = 0x1p-53) {
     return {m.mean, m.standard_error(), double(m.n) - 1, unit};
 }

@@ -6,6 +6,7 @@
 #include "oracle/expect.h"
 
 namespace {
+using namespace penumbra;
 
 // The largest relative error of f over [low, high], in 2^-53; infinite where f is not a number.
 double worst_error(double low, double high, double (*f)(double),

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <set>
 
+using namespace penumbra;
+
 TEST_CASE("the stream is SplitMix64: its first numbers from seed 1234567") {
     // These are published values of SplitMix64 (Steele, Lea, Flood 2014).
     Rng rng{1234567};

@@ -4,6 +4,8 @@
 #include "base/rng.h"
 #include "oracle/expect.h"
 
+using namespace penumbra;
+
 TEST_CASE("moments are those of the numbers, also far from zero and merged in any parts") {
     Rng rng{seed_here()};
     Moments all, parts[4];

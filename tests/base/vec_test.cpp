@@ -5,6 +5,7 @@
 #include "oracle/expect.h"
 
 namespace {
+using namespace penumbra;
 
 // The larger of the two numbers; infinite if either is NaN.
 real worse(real a, real b) { return a <= b ? b : b <= a ? a : infinity; }

@@ -15,7 +15,7 @@
 #include "base/vec.h"
 #include "course/rows.h"
 
-namespace course {
+namespace penumbra::course {
 
 inline vec3 vec3_of(In x, size_t at = 0) { return {real(x[at]), real(x[at + 1]), real(x[at + 2])}; }
 
@@ -72,4 +72,4 @@ inline int answer_all(const std::vector<Question>& questions) {
     return 0;
 }
 
-}  // namespace course
+}  // namespace penumbra::course

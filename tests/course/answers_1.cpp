@@ -3,6 +3,7 @@
 #include "world/bvh.h"
 #include "world/scene.h"
 
+using namespace penumbra;
 using course::In, course::row, course::Out, course::vec3_of;
 
 namespace {

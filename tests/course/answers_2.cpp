@@ -3,6 +3,7 @@
 #include "world/lights.h"
 #include "world/warp.h"
 
+using namespace penumbra;
 using course::In, course::vec3_of;
 
 namespace {

@@ -7,6 +7,7 @@
 #include "path/pathtracer.h"
 #include "world/prepare.h"
 
+using namespace penumbra;
 using course::In, course::Out, course::row, course::vec3_of;
 
 namespace {

@@ -2,6 +2,7 @@
 #include "course/answers.h"
 #include "path/sampler.h"
 
+using namespace penumbra;
 using course::In, course::Out;
 
 namespace {

@@ -3,6 +3,7 @@
 #include "shadow/estimators.h"
 #include "shadow/irradiance.h"
 
+using namespace penumbra;
 using course::In, course::Out;
 
 namespace {

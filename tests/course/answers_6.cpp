@@ -1,6 +1,8 @@
 // course/answers_6.cpp  answers of week 6: the student's tests, on the published subjects
 #include "course/trial.h"
 
+using namespace penumbra;
+
 int main(int argc, char** argv) {
     oracle::pictures = "";
     using namespace course;

@@ -5,6 +5,8 @@
 
 #include "course/hidden_subjects.h"
 
+using namespace penumbra;
+
 int main() {
     oracle::pictures = "";
     using namespace course;

@@ -6,6 +6,7 @@
 #include "radiosity/particles.h"
 #include "radiosity/shooting.h"
 
+using namespace penumbra;
 using course::In, course::Out;
 
 namespace {

@@ -2,6 +2,7 @@
 #include "course/answers.h"
 #include "voronoi/polygon.h"
 
+using namespace penumbra;
 using course::In, course::Out;
 
 namespace {

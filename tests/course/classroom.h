@@ -40,6 +40,7 @@ inline const char* answers = R"(
 
  #include "course/answers.h"
  #include "path/cube.h"
+using namespace penumbra;
 
 int main() {
     return course::answer_all({
@@ -51,6 +52,7 @@ int main() {
 )";
 inline const char* judge = R"(
  #include "course/judge.h"
+using namespace penumbra;
 
 // Of a function's answers: at 0, at 1, at -3, and at numbers that the seed draws.
 course::Judging answers_like(const std::string& name, double (*truth)(double)) {

@@ -5,7 +5,7 @@
 #pragma once
 #include "course/practice.h"
 
-namespace course {
+namespace penumbra::course {
 namespace {
 
 using Pair = std::function<std::optional<vec3>(double, double)>;
@@ -454,4 +454,4 @@ Lineup<Intersector> hidden_intersectors() {
 }
 
 }  // namespace
-}  // namespace course
+}  // namespace penumbra::course

@@ -4,6 +4,8 @@
 #include "base/rng.h"
 #include "oracle/oracle.h"
 
+using namespace penumbra;
+
 int main() {
     oracle::pictures = "";
     // As an example: random numbers of [0,1) have the mean 1/2.

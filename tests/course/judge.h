@@ -17,7 +17,7 @@
 #include "course/program.h"
 #include "oracle/oracle.h"
 
-namespace course {
+namespace penumbra::course {
 
 // ---- Numbers ------------------------------------------------------------------------------------
 
@@ -506,4 +506,4 @@ inline int judge(int argc, char** argv, const std::map<std::string, Judging>& ex
     return 2;
 }
 
-}  // namespace course
+}  // namespace penumbra::course

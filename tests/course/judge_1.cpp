@@ -2,6 +2,7 @@
 #include "course/judge_1_shapes.h"
 #include "course/judge_1_tree.h"
 
+using namespace penumbra;
 using namespace course;
 
 int main(int argc, char** argv) {

@@ -3,7 +3,7 @@
 #pragma once
 #include "course/judge.h"
 
-namespace course {
+namespace penumbra::course {
 namespace {
 
 using oracle::say;
@@ -449,4 +449,4 @@ void box(Judge& j) {
 }
 
 }  // namespace
-}  // namespace course
+}  // namespace penumbra::course

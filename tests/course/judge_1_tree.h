@@ -4,7 +4,7 @@
 
 #include "course/judge_1_shapes.h"
 
-namespace course {
+namespace penumbra::course {
 namespace {
 
 // ---- 1.5  The tree ------------------------------------------------------------------------------
@@ -336,4 +336,4 @@ void division(Judge& j) {
 }
 
 }  // namespace
-}  // namespace course
+}  // namespace penumbra::course

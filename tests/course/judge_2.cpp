@@ -1,6 +1,7 @@
 // course/judge_2.cpp  judges week 2: warps and densities
 #include "course/judge.h"
 
+using namespace penumbra;
 using namespace course;
 using oracle::pi;
 

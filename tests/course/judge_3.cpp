@@ -2,6 +2,7 @@
 #include "course/judge_3_light.h"
 #include "course/judge_3_scenes.h"
 
+using namespace penumbra;
 using namespace course;
 
 namespace {

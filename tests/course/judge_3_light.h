@@ -2,7 +2,7 @@
 #pragma once
 #include "course/judge_3_scenes.h"
 
-namespace course {
+namespace penumbra::course {
 namespace {
 
 // ---- 3.3 Light by aiming at it ------------------------------------------------------------------
@@ -358,4 +358,4 @@ void both_weighted(Judge& j) {
 }
 
 }  // namespace
-}  // namespace course
+}  // namespace penumbra::course

@@ -4,7 +4,7 @@
 #pragma once
 #include "course/judge.h"
 
-namespace course {
+namespace penumbra::course {
 namespace {
 
 // ---- Scenes -------------------------------------------------------------------------------------
@@ -118,4 +118,4 @@ Step take_step(Judge& j, const Technique& t, uint64_t seed, const Out& from) {
 }
 
 }  // namespace
-}  // namespace course
+}  // namespace penumbra::course

@@ -3,6 +3,7 @@
 
 #include "course/judge.h"
 
+using namespace penumbra;
 using namespace course;
 
 namespace {

@@ -4,6 +4,7 @@
 #include "course/kinds.h"
 #include "course/tally.h"
 
+using namespace penumbra;
 using course::Judge, course::Out, course::Rows, course::Tally;
 
 namespace {

@@ -1,6 +1,7 @@
 // course/judge_R.cpp  judges the radiosity project: shooting, and a particle's walk
 #include "course/judge.h"
 
+using namespace penumbra;
 using namespace course;
 
 namespace {

@@ -1,6 +1,7 @@
 // course/judge_V.cpp  judges the Voronoi project: a cell is cut, and measured
 #include "course/judge.h"
 
+using namespace penumbra;
 using namespace course;
 
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace course {
+namespace penumbra::course {
 
 inline const std::vector<std::string> kinds = {
     // wrong samplers
@@ -29,4 +29,4 @@ inline int kind_of(const std::string& name) {
     return -1;
 }
 
-}  // namespace course
+}  // namespace penumbra::course

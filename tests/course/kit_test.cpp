@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+using namespace penumbra;
 using namespace course;
 
 namespace {

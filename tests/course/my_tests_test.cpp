@@ -5,6 +5,7 @@
 #include "course/hidden_subjects.h"
 #include "oracle/expect.h"
 
+using namespace penumbra;
 using namespace course;
 
 namespace {

@@ -181,7 +181,7 @@ def test_make_check_runs_the_students_test():
             done = subprocess.run(['make', '-s', 'check'], cwd=copy.folder, capture_output=True, text=True)
             return done.stdout + done.stderr
         expect('green: it finds nothing' in check(hunt.read_text()), 'the example is not green')
-        expect('red: is that the bug' in check('#include "world/warp.h"\n#include <cmath>\nint main() '
+        expect('red: is that the bug' in check('#include "world/warp.h"\n#include <cmath>\nusing namespace penumbra;\nint main() '
                '{ return std::abs(pdf_cosine_hemisphere(1) * pi - 1) > 1e-6; }\n'), 'the bug is not found')
         expect('does not compile' in check('int main() { return }\n'), 'an error is not told')
         expect('crashes' in check('#include <cstdlib>\nint main() { std::abort(); }\n'), 'a crash is not told')
@@ -190,6 +190,7 @@ def test_make_check_runs_the_students_test():
 GOOD = '''// FOUND src/world/warp.h:%d
 #include <cmath>
 #include "world/warp.h"
+using namespace penumbra;
 int main() { return std::abs(pdf_cosine_hemisphere(1) * pi - 1) > 1e-6; }
 '''
 

@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "course/subject.h"
 
-namespace course {
+namespace penumbra::course {
 
 template <class Subject>
 struct Named {
@@ -175,4 +175,4 @@ inline Lineup<Intersector> practice_intersectors() {
               }}}}};
 }
 
-}  // namespace course
+}  // namespace penumbra::course

@@ -22,7 +22,7 @@
 
 #include "course/rows.h"
 
-namespace course {
+namespace penumbra::course {
 
 // Rows of as many numbers each.
 struct Rows {
@@ -210,4 +210,4 @@ private:
     }
 };
 
-}  // namespace course
+}  // namespace penumbra::course

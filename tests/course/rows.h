@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-namespace course {
+namespace penumbra::course {
 
 using In = std::span<const double>;
 using Out = std::vector<double>;
@@ -26,4 +26,4 @@ Out row(const Parts&... parts) {
     return all;
 }
 
-}  // namespace course
+}  // namespace penumbra::course

@@ -7,7 +7,7 @@
 
 #include "oracle/oracle.h"
 
-namespace course {
+namespace penumbra::course {
 
 // The indices below `count`, in an order that follows from the key.
 inline std::vector<size_t> shuffled(double key, size_t count) {
@@ -18,4 +18,4 @@ inline std::vector<size_t> shuffled(double key, size_t count) {
     return order;
 }
 
-}  // namespace course
+}  // namespace penumbra::course

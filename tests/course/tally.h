@@ -5,7 +5,7 @@
 #include "course/program.h"
 #include "course/shuffle.h"
 
-namespace course {
+namespace penumbra::course {
 
 // Seconds of CPU that a run may take on average: the oracle's check of a density takes 0.03 on an
 // idle machine.
@@ -70,4 +70,4 @@ Tally tally(Judge& judge, double exercise) {
     return t;
 }
 
-}  // namespace course
+}  // namespace penumbra::course

@@ -6,6 +6,7 @@
 
 #include "oracle/expect.h"
 
+using namespace penumbra;
 using namespace course;
 
 namespace {

@@ -11,7 +11,7 @@
 #include "course/practice.h"
 #include "course/shuffle.h"
 
-namespace course {
+namespace penumbra::course {
 
 inline Sampler sealed(const Sampler& s) {
     return {[s](double u, double v) { return s.sample(u, v); }, [s](vec3 w) { return s.pdf(w); }};
@@ -176,4 +176,4 @@ inline int show(const std::vector<Trial>& practice, const std::string& exercise,
     return passes == is_wrong;
 }
 
-}  // namespace course
+}  // namespace penumbra::course

@@ -4,6 +4,8 @@
 
 #include "film/weights.h"
 
+using namespace penumbra;
+
 // Brings the blocks from `first` up to `last` to n samples.
 inline Tally fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
     Tally all;

@@ -8,6 +8,7 @@
 #include "world/prepare.h"
 
 namespace {
+using namespace penumbra;
 
 // A sphere of albedo 1/2 about the eye, whose inside emits 1/2: 1 arrives from everywhere.
 Scene furnace() {

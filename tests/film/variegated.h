@@ -2,6 +2,8 @@
 #pragma once
 #include "film/image.h"
 
+using namespace penumbra;
+
 using Colour = std::array<float, 3>;
 
 // All values differ in every pixel and channel, with signs, zeros and subnormal numbers.

@@ -6,7 +6,7 @@
 #include "base/vec.h"
 #include "fuzz/input.h"
 
-namespace fuzz {
+namespace penumbra::fuzz {
 
 // A scene, and the options to render it.
 struct Drawn {
@@ -173,4 +173,4 @@ inline std::string drawn_lamps(Choices& c) {
     return text + "quad 2 3 -3  1 0 0  0 0 1  l\n";
 }
 
-}  // namespace fuzz
+}  // namespace penumbra::fuzz

@@ -12,7 +12,7 @@
 
 #include "text/words.h"
 
-namespace fuzz {
+namespace penumbra::fuzz {
 
 // A violated invariant.  Nothing catches it: a fuzzer reports a crash, a test fails.
 struct Broken : std::logic_error {
@@ -128,4 +128,4 @@ private:
     std::string_view rest_;
 };
 
-}  // namespace fuzz
+}  // namespace penumbra::fuzz

@@ -5,7 +5,7 @@
 #include "world/nearest.h"
 #include "world/scene.h"
 
-namespace fuzz {
+namespace penumbra::fuzz {
 
 inline void check_shape(const Shape& s) {
     demand(is_finite(s.a) && is_finite(s.b) && is_finite(s.c) && std::isfinite(s.r),
@@ -54,4 +54,4 @@ inline void check_image(const Image& image, Size size, bool positive) {
         for (float channel : pixel) demand(!positive || channel >= 0, "negative light");
 }
 
-}  // namespace fuzz
+}  // namespace penumbra::fuzz

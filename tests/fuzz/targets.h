@@ -10,7 +10,7 @@
 #include "keep/read_pfm.h"
 #include "text/scene_file.h"
 
-namespace fuzz {
+namespace penumbra::fuzz {
 
 // Whether work() completed; a user's mistake may end it.
 template <class Work>
@@ -311,4 +311,4 @@ inline const Target* find(std::string_view name) {
     return nullptr;
 }
 
-}  // namespace fuzz
+}  // namespace penumbra::fuzz

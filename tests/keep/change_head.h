@@ -2,6 +2,8 @@
 #pragma once
 #include "keep/film_file.h"
 
+using namespace penumbra;
+
 // Copies a film with the same numbers and some other facts.
 inline void change_head(const std::string& from, const std::string& to, const Facts& changed) {
     FilmReader file(from);

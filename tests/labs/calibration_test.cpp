@@ -5,6 +5,7 @@
 
 namespace {
 
+using namespace penumbra;
 using namespace calibration;
 
 // A row with a true error of .5; its reference has an error of .3.

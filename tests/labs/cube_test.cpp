@@ -7,6 +7,7 @@
 
 namespace {
 
+using namespace penumbra;
 using cube::Solution;
 
 const Solution& room() {

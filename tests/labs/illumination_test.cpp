@@ -5,6 +5,7 @@
 
 #include "labs/grid.h"
 
+using namespace penumbra;
 using namespace illumination;
 
 namespace {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 namespace {
+using namespace penumbra;
 
 Row row(const std::string& scene, const std::string& setting, uint64_t seed, double d2,
         double seconds = 1) {

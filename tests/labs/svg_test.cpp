@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 namespace {
+using namespace penumbra;
 
 // Returns the first error of an XML file, if any: mismatched tags, attributes without quotes, a
 // second root, characters that must be escaped.

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+using namespace penumbra;
 using namespace trade;
 
 namespace {

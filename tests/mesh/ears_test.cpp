@@ -7,6 +7,7 @@
 
 namespace {
 
+using namespace penumbra;
 using mesh::area_vector, mesh::Corners, mesh::Cuts, mesh::Ears, mesh::face_one_way, mesh::fan_of,
     mesh::is_folded;
 

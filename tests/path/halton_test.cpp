@@ -7,6 +7,7 @@
 #include "oracle/expect.h"
 
 namespace {
+using namespace penumbra;
 
 // The radical inverse as an exact fraction of 128-bit integers: digits / power.
 __extension__ typedef unsigned __int128 uint128;

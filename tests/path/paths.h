@@ -8,6 +8,8 @@
 #include "path/pathtracer.h"
 #include "path/start.h"
 
+using namespace penumbra;
+
 // Radiance of sample i of pixel (x, y).
 template <class Visitor = NoVisitor>
 rgb radiance(const Scene& scene, const Technique& t, const Pattern& pattern, int x, int y,

@@ -3,6 +3,8 @@
 #include "oracle/expect.h"
 #include "path/sampler.h"
 
+using namespace penumbra;
+
 inline constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
                                            SamplerKind::halton, SamplerKind::sobol};
 inline constexpr const char* sampler_names[] = {"independent", "stratified", "halton", "sobol"};

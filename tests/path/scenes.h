@@ -4,6 +4,8 @@
 
 #include "text/scene_file.h"
 
+using namespace penumbra;
+
 inline NamedScene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
 
 inline const char* const glowing_room = R"(

@@ -3,6 +3,8 @@
 
 #include "oracle/expect.h"
 
+using namespace penumbra;
+
 TEST_CASE("a sample stays in its pixel, however wide the picture is") {
     for (const int x : {0, 1, 255, 4095, 65535}) {
         CHECK(in_pixel(x, 0) == real(x));

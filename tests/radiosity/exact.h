@@ -4,7 +4,7 @@
 
 #include "base/closed_forms.h"
 
-namespace exact {
+namespace penumbra::exact {
 
 // ---- The cube -----------------------------------------------------------------------------------
 
@@ -61,4 +61,4 @@ inline OfSpheres illuminances(const Spheres& s) {
     return {s.M_outer + s.rho_outer * outer, outer};
 }
 
-}  // namespace exact
+}  // namespace penumbra::exact

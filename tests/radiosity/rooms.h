@@ -3,7 +3,7 @@
 #include "base/approx.h"
 #include "radiosity/projection.h"
 
-namespace rooms {
+namespace penumbra::rooms {
 
 inline constexpr SamplerKind all_samplers[] = {SamplerKind::independent, SamplerKind::stratified,
                                                SamplerKind::halton, SamplerKind::sobol};
@@ -190,4 +190,4 @@ inline vec3 point_of(const Scene& s, const Hit& hit) {
     return (1 - hit.v - hit.w) * t.a + hit.v * t.b + hit.w * t.c;
 }
 
-}  // namespace rooms
+}  // namespace penumbra::rooms

@@ -4,6 +4,8 @@
 
 #include "text/words.h"
 
+using namespace penumbra;
+
 // Returns the message of the error that `work` throws; "" if it throws none.
 template <class Error = UserError>
 std::string complaint(const auto& work) {

@@ -10,6 +10,8 @@
 
 #include "text/files.h"
 
+using namespace penumbra;
+
 namespace fs = std::filesystem;
 
 // A temporary folder; the destructor removes it.

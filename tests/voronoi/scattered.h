@@ -3,6 +3,8 @@
 #include "oracle/expect.h"
 #include "voronoi/plane.h"
 
+using namespace penumbra;
+
 inline constexpr Rectangle unit_square = {{0, 0}, {1, 1}};
 
 inline std::vector<Site> scattered(uint64_t n, oracle::Random& random,

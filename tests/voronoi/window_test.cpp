@@ -5,6 +5,7 @@
 
 namespace {
 
+using namespace penumbra;
 using Points = std::vector<Site>;
 
 }  // namespace

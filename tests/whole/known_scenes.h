@@ -9,7 +9,7 @@
 #include "text/words.h"
 #include "world/shapes.h"
 
-namespace closed_forms {
+namespace penumbra::closed_forms {
 
 inline std::string words(std::initializer_list<double> numbers) {
     std::string text;
@@ -314,4 +314,4 @@ diffuse up 0.8 0.8 0.8
     return rows;
 }
 
-}  // namespace closed_forms
+}  // namespace penumbra::closed_forms

@@ -8,6 +8,8 @@
 #include "world/shapes.h"
 #include "world/warp.h"
 
+using namespace penumbra;
+
 struct Dice {
     Rng rng{seed_here()};
     real operator()(real lo, real hi) { return lo + (hi - lo) * to_unit(rng.bits()); }

@@ -5,6 +5,8 @@
 
 #include "world/shapes.h"
 
+using namespace penumbra;
+
 // Of equally near hits it returns the first.
 inline std::optional<Hit> nearest(const std::vector<Shape>& shapes, const Ray& ray) {
     const Shear k = shear(ray.d);

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 namespace {
+using namespace penumbra;
 
 constexpr uint32_t grey = 0, lamp = 1, panel = 2;
 

@@ -5,6 +5,7 @@
 #include "oracle/expect.h"
 
 namespace {
+using namespace penumbra;
 
 // The sampler rotated so that its axis is n, as a map of (u, v).
 auto about(vec3 n, auto sample) {
