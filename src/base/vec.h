@@ -59,7 +59,7 @@ inline real length(vec3 a) { return std::sqrt(dot(a, a)); }
 inline real max_of(vec3 a) { return std::max({a.x, a.y, a.z}); }
 inline real max_abs(vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
-// The square of this vector is denormal or infinite; scaling by a power of two, exactly, helps.
+// For vectors whose square is denormal or infinite: a power of two scales them first, exactly.
 [[gnu::noinline]] inline vec3 unit_of_extreme(vec3 a) {
     constexpr int exponent = std::numeric_limits<real>::max_exponent / 4 * 3;
     a = a * std::ldexp(real(1), max_abs(a) < 1 ? exponent : -exponent);

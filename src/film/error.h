@@ -86,9 +86,9 @@ public:
 
     // Whether the film's error is a reason to stop, if a check is due.
     Stop check(const Film& film) {
-        constexpr double most_unknown = 4096;  // samples per pixel
-        const uint64_t n = film.least_taken();
-        const bool is_whole = n > 0 && n == film.most_taken() && !film.is_pilot;
+        constexpr double max_unknown = 4096;  // samples per pixel
+        const uint64_t n = film.min_taken();
+        const bool is_whole = n > 0 && n == film.max_taken() && !film.is_pilot;
         const bool is_check = wanted_ > 0 && is_whole && next_check(n - 1) == n;
         if (!is_check && !(is_whole && double(n) >= 2 * last_.n)) return Stop::no;
         const ImageError e = error_of(film);
@@ -96,7 +96,7 @@ public:
         if (!is_check) return Stop::no;
         const bool is_known = doubt_of(film, e, may_miss_light_) == Doubt::no;
         if (is_known && is_small_enough(e, wanted_)) return Stop::error;
-        return is_known || film.samples_per_pixel() < most_unknown ? Stop::no : Stop::error_unknown;
+        return is_known || film.samples_per_pixel() < max_unknown ? Stop::no : Stop::error_unknown;
     }
 
     void add(uint64_t n, double d_rel) {

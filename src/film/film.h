@@ -46,7 +46,7 @@ inline void add_to(Sum& sum, rgb sample) {
     for (size_t c = 0; c < 3; ++c) sum[c] += double(sample.*axis[c]);
 }
 
-inline constexpr uint32_t most_replications = 1024, most_weight = 16;
+inline constexpr uint32_t max_replications = 1024, max_weight = 16;
 
 // The file of a film holds these arrays.
 struct Film {
@@ -73,9 +73,9 @@ struct Film {
     uint64_t samples(size_t pixel, uint64_t n = 0) const {
         return std::max(pilot, weight[pixel] * std::max(n, taken[pixel / block_size()]));
     }
-    uint64_t least_taken() const { return *std::min_element(taken.begin(), taken.end()); }
-    uint64_t most_taken() const { return *std::max_element(taken.begin(), taken.end()); }
-    bool has_samples() const { return pilot + least_taken() > 0; }  // in all pixels
+    uint64_t min_taken() const { return *std::min_element(taken.begin(), taken.end()); }
+    uint64_t max_taken() const { return *std::max_element(taken.begin(), taken.end()); }
+    bool has_samples() const { return pilot + min_taken() > 0; }  // in all pixels
     PixelSample sample_of(size_t pixel, uint64_t s, uint32_t replication) const {
         const size_t width = size_t(size.width);
         return {int(pixel % width), first_row + int(pixel / width), s, replication};

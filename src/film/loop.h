@@ -56,7 +56,7 @@ public:
           plan_(plan),
           L_(L),
           watch_(watch),
-          limit_(plan.samples ? plan.samples : most_samples),
+          limit_(plan.samples ? plan.samples : max_samples),
           checks_(plan.error, plan.may_miss_light) {}
 
     Stop run() {
@@ -82,23 +82,23 @@ private:
     Tally tally_;
 
     bool is_pilot_done() const {
-        const uint64_t n = film_.least_taken();
-        return film_.is_pilot && n >= pilot_ && n == film_.most_taken();
+        const uint64_t n = film_.min_taken();
+        return film_.is_pilot && n >= pilot_ && n == film_.max_taken();
     }
 
     Stop reason_to_stop() {
         if (watch_.interrupted()) return Stop::interrupt;
         if (tally_.bad > 0) return Stop::not_finite;
         if (const Stop stop = checks_.check(film_); stop != Stop::no) return stop;
-        if (!film_.is_pilot && film_.least_taken() >= limit_) return Stop::samples;
+        if (!film_.is_pilot && film_.min_taken() >= limit_) return Stop::samples;
         const bool is_over = plan_.seconds > 0 && watch_.elapsed() >= plan_.seconds;
         return is_over && film_.has_samples() ? Stop::time : Stop::no;
     }
 
     // Passes of the pilot have fixed ends, because deviations are rounded.
     uint64_t next_end() const {
-        const uint64_t n = film_.least_taken();
-        if (film_.is_pilot) return std::max(film_.most_taken(), n + 1);
+        const uint64_t n = film_.min_taken();
+        if (film_.is_pilot) return std::max(film_.max_taken(), n + 1);
         const double elapsed = watch_.elapsed(), now = film_.samples_per_pixel();
         const double each = now > 0 ? elapsed / now * (film_.samples_per_pixel(n + 1) - now) : 0;
         const uint64_t to = end_of_pass(n, elapsed, each, plan_.seconds);
@@ -108,9 +108,9 @@ private:
     bool add_pass(uint64_t to) {
         const double before = film_.samples_per_pixel(), after = film_.samples_per_pixel(to);
         const uint64_t last = uint64_t(std::min(checks_.expected(), double(limit_)));
-        const double end = last < most_samples ? film_.samples_per_pixel(last) *
-                                                     (film_.is_pilot ? typical_weight : 1)
-                                               : HUGE_VAL;
+        const double end = last < max_samples ? film_.samples_per_pixel(last) *
+                                                    (film_.is_pilot ? typical_weight : 1)
+                                              : HUGE_VAL;
         Tally nothing;
         nothing.near.resize(film_.near.size());
         const unsigned workers = std::max(1u, plan_.threads);

@@ -99,7 +99,7 @@ struct Halton : PathKey {
 
 // Sobol' points, with a randomisation per pixel and pair of dimensions.
 struct Sobol : PathKey {
-    explicit Sobol(const PathKey& k) : PathKey{mirrored(k.index), k.key, k.bases} {}
+    explicit Sobol(const PathKey& k) : PathKey{reverse_bits(k.index), k.key, k.bases} {}
     real get(uint32_t dim) const { return sobol_single(index, random(dim)); }
     vec2 get2(uint32_t dim) const { return sobol_pair(index, random(dim), random(dim + 1)); }
     real choice(uint32_t pair) const { return sobol_third(index, random(pair), random(pair + 1)); }
@@ -133,7 +133,7 @@ inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
     return p;
 }
 
-inline constexpr uint64_t most_samples = uint64_t(1) << 40;  // of each replication
+inline constexpr uint64_t max_samples = uint64_t(1) << 40;  // of each replication
 
 // Sample i of replication `set` of pixel (x, y).
 struct PixelSample {

@@ -13,7 +13,7 @@
 #include "text/words.h"
 #include "unseen/hidden.h"
 
-inline constexpr size_t most_light_groups = 64;  // more lights share groups with neighbours
+inline constexpr size_t max_light_groups = 64;  // more lights share groups with neighbours
 
 inline double mean_square(rgb L) {
     double sum = 0;
@@ -22,7 +22,7 @@ inline double mean_square(rgb L) {
 }
 
 inline size_t group_of(const Scene& s, size_t light) {
-    return light * std::min(s.lights.size(), most_light_groups) / s.lights.size();
+    return light * std::min(s.lights.size(), max_light_groups) / s.lights.size();
 }
 
 // ---- Lights in view of the camera ---------------------------------------------------------------
@@ -58,7 +58,7 @@ struct LightsInView {
 inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
                                    const std::vector<uint32_t>& line_of_light = {}) {
     LightsInView view;
-    view.groups.resize(std::min(s.lights.size(), most_light_groups));
+    view.groups.resize(std::min(s.lights.size(), max_light_groups));
     std::vector<std::map<size_t, double>> parts(view.groups.size());
     for (size_t i = 0; i < s.lights.size(); ++i) {
         if (s.lights[i].kind == Light::Kind::point) continue;
@@ -149,7 +149,7 @@ private:
         ray.tmax = e.met ? e.x.hit.t : infinity;
         // Of many lights one represents all, drawn by bits of the ray.
         const size_t drawn =
-            n > most_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
+            n > max_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
         for (size_t l = drawn % n; l < (drawn < n ? drawn + 1 : n); ++l)
             if (const uint32_t near = growths_met(scene.lights[l], ray) & ~1u; near && l != met)
                 add(s, l, near, weight_of(s, l) * (drawn < n ? std::sqrt(double(n)) : 1));
@@ -271,7 +271,7 @@ public:
     }
     static std::string why_unknown(const Film& f, const ImageError& e) {
         Unseen unseen;
-        unseen.add(f.near, double(f.least_taken()));
+        unseen.add(f.near, double(f.min_taken()));
         return unseen.doubt(e.d2(), e.norm(), e.pixels);
     }
     NearMissVisitor visitor(Tally& tally) const {
