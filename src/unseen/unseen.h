@@ -143,10 +143,10 @@ private:
     [[gnu::noinline]] void add_near_misses(const Segment& s, const Step& e) {
         const size_t n = scene.lights.size();
         const bool met_one = e.met && max_of(e.Le) > 0;
-        const size_t met = met_one ? size_t(scene.light_of[e.x.hit.id]) : n;
+        const size_t met = met_one ? size_t(scene.light_of[e.vertex.hit.id]) : n;
         if (met_one) add(s, met, ~0u, double(e.weight));
         Ray ray = s.ray;
-        ray.tmax = e.met ? e.x.hit.t : infinity;
+        ray.tmax = e.met ? e.vertex.hit.t : infinity;
         // Of many lights one represents all, drawn by bits of the ray.
         const size_t drawn =
             n > max_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
