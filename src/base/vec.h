@@ -16,8 +16,7 @@ inline constexpr real infinity = std::numeric_limits<real>::infinity();
 inline constexpr real ulp = std::numeric_limits<real>::epsilon() / 2;  // rounding error of one op
 inline constexpr real below_one = 1 - ulp;                             // largest real < 1
 
-// The top bits of a random word as a number in [0,1): 53 of them in double, 24 in float, so that
-// rounding never makes a 1.
+// The top bits of a random word, 53 in double, 24 in float, as a number in [0,1): none becomes 1.
 inline real to_unit(uint64_t bits) {
     constexpr int digits = std::numeric_limits<real>::digits;
     return real(bits >> (64 - digits)) * (1 / real(uint64_t(1) << digits));

@@ -51,10 +51,10 @@ inline uint64_t end_of_pass(uint64_t n, double elapsed, double each, double seco
 
 class Loop {
 public:
-    Loop(Film& film, const Plan& plan, const Radiance& L, const Watch& watch)
+    Loop(Film& film, const Plan& plan, const Radiance& radiance, const Watch& watch)
         : film_(film),
           plan_(plan),
-          L_(L),
+          radiance_(radiance),
           watch_(watch),
           limit_(plan.samples ? plan.samples : max_samples),
           checks_(plan.error, plan.may_miss_light) {}
@@ -75,7 +75,7 @@ public:
 private:
     Film& film_;
     const Plan& plan_;
-    const Radiance& L_;
+    const Radiance& radiance_;
     const Watch& watch_;
     const uint64_t limit_, pilot_ = std::min(pilot_samples, limit_);  // samples
     ErrorChecks checks_;
@@ -118,7 +118,7 @@ private:
         auto add_block = [&](size_t block, unsigned worker) {
             if (film_.taken[block] >= to) return;
             Tally tally = nothing;  // of whole blocks only
-            add_samples(film_, block, to, L_, tally);
+            add_samples(film_, block, to, radiance_, tally);
             of_worker[worker].add(tally);
         };
         const bool is_whole = watch_.for_each(

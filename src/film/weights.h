@@ -47,19 +47,18 @@ inline std::vector<uint8_t> weights_of(const std::vector<float>& deviation, Size
     return weights;
 }
 
-// Samples of each replication in the pilot, and the least weight of a pixel where few samples meet
-// bright light.
+// Samples of each replication in the pilot; least weight of a pixel that rarely meets bright light.
 inline constexpr uint64_t pilot_samples = 4;
 inline constexpr uint8_t min_of_noisy = 4;
 
 // Chooses weights by the pilot, which all blocks have; those of `noisy` pixels are 4 or more.  Near
 // misses count from then on, because those of the pilot do not have the pixel's share.
-inline void choose_weights(Film& f, const std::vector<size_t>& noisy = {}) {
-    f.weight = weights_of(f.deviation, f.size);
-    for (size_t i : noisy) f.weight[i] = std::max(f.weight[i], min_of_noisy);
-    f.deviation = std::vector<float>();  // with its memory
-    for (NearMisses& group : f.near) group.sum = {};
-    f.is_pilot = false;
-    f.pilot = f.taken[0];
-    f.taken.assign(f.taken.size(), 0);
+inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
+    film.weight = weights_of(film.deviation, film.size);
+    for (size_t i : noisy) film.weight[i] = std::max(film.weight[i], min_of_noisy);
+    film.deviation = std::vector<float>();  // with its memory
+    for (NearMisses& group : film.near) group.sum = {};
+    film.is_pilot = false;
+    film.pilot = film.taken[0];
+    film.taken.assign(film.taken.size(), 0);
 }

@@ -78,8 +78,7 @@ struct DirectLight {
     bool occluded = false;
 };
 
-// Samples one light, chosen at random.  Unbiased for the sum over all lights; with MIS, for its
-// weighted share.
+// Samples one light, chosen at random.  Unbiased for the sum over lights; with MIS, for its share.
 PART DirectLight direct_light(const Scene& scene, const Technique& technique, const Vertex& vertex,
                               const Sampler& sampler, int k) {
     const Material& material = *vertex.material;
@@ -110,8 +109,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& technique, co
 // ---- One vertex ---------------------------------------------------------------------------------
 
 // The path so far, after k bounces.  Its last ray was sampled at the point `from` with density pdf
-// (infinite: by the camera, a mirror or glass).  Radiance L along this ray contributes beta L to
-// the eye.
+// (infinite: by the camera, a mirror or glass).  Its radiance L contributes beta L to the eye.
 struct Segment {
     Ray ray;
     vec3 from;

@@ -21,9 +21,8 @@ inline uint64_t reverse_bits(uint64_t i) {
 // upwards: bit j of the result depends on bits 0 ... j of r.  So the 2^k indices from a multiple of
 // 2^k on, whose r have the same 64 - k low bits, become another such block.  Let the reversals of
 // two indices first differ in bit j.  Then a makes one image uniform, and b makes the difference of
-// both uniform among the odd multiples of 2^j.  Pairs of indices have the same distribution in a
-// nested uniform shuffle (Owen 1995; Burley 2020, JCGT 9(4)), and only pairs matter for the
-// variance of a mean.
+// both uniform among the odd multiples of 2^j.  Pairs of indices, which alone matter for the
+// variance of a mean, have the law of a nested uniform shuffle (Owen 1995; Burley 2020, JCGT 9(4)).
 inline uint64_t shuffled(uint64_t r, uint64_t a, uint64_t b) { return (r + a) * (b | 1); }
 
 // The second coordinate of the Sobol' point (1967) with first coordinate x: its digit j is the sum
