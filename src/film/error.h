@@ -5,7 +5,7 @@
 #include "film/film.h"
 
 // The error of an image f, with the limit F: d^2 is the expected mean of (f - F)^2 over pixels and
-// channels, without the bias of f; d_rel = d / |F|.  Sums over pixels.  NaN: not known.
+// channels, without the bias of f; d_rel = d / |F|.  Sums over pixels.  An unknown number is NaN.
 struct ImageError {
     double pixels = 0;
     Sum values{}, variances{};  // per channel
@@ -112,7 +112,7 @@ public:
         const double gamma = std::log(before_.d_rel / last_.d_rel) / std::log(last_.n / before_.n);
         return gamma > 0.5 ? 1 / std::min(gamma, 1.0) : 2;
     }
-    // Samples of each replication at the end, by the last check; infinite: not known.
+    // Samples of each replication at the end, by the last check; infinite while unknown.
     double expected() const { return expected_; }
 
 private:

@@ -3,7 +3,7 @@
 #include "film/error.h"
 #include "film/weights.h"
 
-// What a run is to do, and when it stops: whichever comes first; 0: no limit.
+// Work of a run, and its limits: the first that is reached ends it; a limit of 0 does not exist.
 struct Plan {
     Size size = {};
     int first_row = 0;
@@ -36,12 +36,12 @@ struct Watch {
     ForEach for_each = one_by_one;
     std::function<bool()> interrupted = [] { return false; };
     std::function<void(const Film&, const Tally&)> between = [](auto&, auto&) {};  // passes
-    // Samples per pixel so far, and at the end; infinite: not known.
+    // Samples per pixel so far, and at the end (infinite while unknown).
     std::function<void(double now, double end)> show = [](double, double) {};
 };
 
 // Samples after the next pass, given n after `elapsed` seconds; one sample more of each pixel takes
-// `each` seconds (0: not known).  As many as fit into the time, at most n + 1; one at least.
+// `each` seconds (0 if unknown).  As many as fit into the time, at most n + 1; one at least.
 inline uint64_t end_of_pass(uint64_t n, double elapsed, double each, double seconds) {
     constexpr double longest = 0.2;  // seconds: threads are rarely idle, Ctrl-C is quick
     const double left = seconds > 0 ? seconds - elapsed : HUGE_VAL;

@@ -19,7 +19,7 @@ enum class LightMode {
 struct Technique {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
-    real roulette = real(0.25);  // Russian roulette for paths of a throughput below this; 0: never
+    real roulette = real(0.25);  // Russian roulette for paths of a throughput below this
 };
 
 // A path's numbers stay in registers only if its loop is compiled as one function.  Its parts are

@@ -204,7 +204,7 @@ public:
         }
     }
 
-    // Why the error of an image may be more than twice its estimate; "": no reason is known.  `d2`:
+    // Why the error of an image may be more than twice its estimate; empty if none is known.  `d2`:
     // square of the estimate; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
         if (is_pilot_) return "too few samples";

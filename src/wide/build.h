@@ -103,7 +103,7 @@ struct Bins {
     }
 };
 
-// Items in bins below `bin` go left.  No axis: no plane has items on both sides.
+// Items in bins below `bin` go left.  Axis 3 means that no plane has items on both sides.
 struct Plane {
     double cost = HUGE_VAL;
     size_t axis = 3, bin = 0;

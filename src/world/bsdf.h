@@ -68,8 +68,8 @@ struct Rough : Opaque {
     // Fraction of the samples that follow the Phong lobe rather than the cosine.
     real lobe_probability() const {
         if (ks == rgb{}) return 0;
-        real d = mean_of(kd), s = mean_of(ks);
-        return s > 0 ? s / (d + s) : 0;
+        real cosine = mean_of(kd), lobe = mean_of(ks);
+        return lobe > 0 ? lobe / (cosine + lobe) : 0;
     }
 
     // The Phong lobe may reach below the horizon, where eval is 0.
@@ -131,8 +131,8 @@ inline real fresnel(real cos_i, real cos_t, real eta) {
     return (sqr(parallel) + sqr(perpendicular)) / 2;
 }
 
-// Reflects with probability Fresnel, else refracts (Snell).  Radiance grows with the square of the
-// index: eta^2 when it leaves the medium of wi for that of wo (Veach 1997, sec. 5.2).
+// Reflects with probability Fresnel, else refracts (Snell).  Refraction multiplies radiance by the
+// square of (index on the side of wo) / (index on the side of wi), eta^2 (Veach 1997, sec. 5.2).
 inline BsdfSample sample_glass(const Glass& m, vec3 wo, bool outside, real u) {
     real eta = outside ? 1 / m.ior : m.ior;
     real cos2_t = (1 - eta) * (1 + eta) + sqr(eta * wo.z);  // 1 - eta^2 sin^2, grazing, too

@@ -16,12 +16,12 @@ struct Probe {
 // Distance at which the ray enters a box, 0 if it starts inside; nothing if it misses the box up to
 // tmax.  The boxes of the BVH are wider than their contents by more than rounding, so that rays
 // within a face do not matter.
-inline std::optional<real> enter_box(const Box& b, const Probe& p) {
+inline std::optional<real> enter_box(const Box& box, const Probe& probe) {
     // exercise 1.4
-    real enter = 0, leave = p.ray.tmax;
+    real enter = 0, leave = probe.ray.tmax;
     for (auto k : axis) {
-        const real lo = (b.lo.*k - p.ray.o.*k) * p.inverse.*k;
-        const real hi = (b.hi.*k - p.ray.o.*k) * p.inverse.*k;
+        const real lo = (box.lo.*k - probe.ray.o.*k) * probe.inverse.*k;
+        const real hi = (box.hi.*k - probe.ray.o.*k) * probe.inverse.*k;
         enter = std::max(enter, std::min(lo, hi));
         leave = std::min(leave, std::max(lo, hi));
     }
