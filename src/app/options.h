@@ -52,9 +52,9 @@ inline void set_pixel(std::optional<PixelSample>& replay, Text v) {
 inline void set_sample(std::optional<PixelSample>& replay, Text v) {
     const size_t comma = v.find(',');
     if (!replay) replay.emplace();
-    replay->i = parse_count(v.substr(0, comma), 0, most_samples);
+    replay->i = parse_count(v.substr(0, comma), 0, max_samples);
     if (comma != v.npos)
-        replay->set = uint32_t(parse_count(v.substr(comma + 1), 0, most_replications));
+        replay->set = uint32_t(parse_count(v.substr(comma + 1), 0, max_replications));
 }
 
 inline std::string parse_film(Text v) {
@@ -68,7 +68,7 @@ inline OptionTable stop_rows(Options& o) {
          "stop after N samples per pixel; with --replications adaptive, quiet pixels take half of "
          "that, noisy ones up to 8 times",
          "the scene's, unless --time or --error is given",
-         [&o](Text v) { o.spp = parse_count(v, 1, most_samples); }},
+         [&o](Text v) { o.spp = parse_count(v, 1, max_samples); }},
         {"--time", "S", "stop after S seconds; with --spp, whichever comes first", "",
          [&o](Text v) { o.seconds = parse_positive(v); }},
         {"--error", "E",
@@ -90,7 +90,7 @@ inline OptionTable sampling_rows(Options& o) {
           "the samples where the image is noisy",
           "adaptive",
           [&o](Text v) {
-              o.replications = v == "adaptive" ? 0 : uint32_t(parse_count(v, 1, most_replications));
+              o.replications = v == "adaptive" ? 0 : uint32_t(parse_count(v, 1, max_replications));
           },
           [&o] {
               return o.replications ? std::to_string(o.replications) : json::string("adaptive");

@@ -67,7 +67,7 @@ inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness
     plan.size = {scene.size.width, rows.count()}, plan.first_row = rows.first;
     if (!witness) return plan;
     plan.noisy = witness->noisy(), plan.may_miss_light = Witness::may_miss_light;
-    plan.near = witness->near_misses(plan.replications * (plan.is_adaptive ? least_of_noisy : 1));
+    plan.near = witness->near_misses(plan.replications * (plan.is_adaptive ? min_of_noisy : 1));
     return plan;
 }
 
@@ -116,8 +116,8 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent, Stop s
     run.doubt = in_words(doubt_of(film, run.error, plan.may_miss_light),
                          [&] { return Witness::why_unknown(film, run.error); });
     run.replications = film.replications;
-    const uint64_t n = film.least_taken();
-    if (n > 0 && n == film.most_taken() && !film.is_pilot &&
+    const uint64_t n = film.min_taken();
+    if (n > 0 && n == film.max_taken() && !film.is_pilot &&
         (!plan.is_adaptive || film.pilot == std::min(n, pilot_samples)))
         run.repeat_spp = double(n * plan.paths * samples_for_one(plan));
     return run;

@@ -46,7 +46,7 @@ public:
     // A vertex, as a visitor of Li.
     void operator()(const Segment& s, const Step& e) const {
         if (!e.met) return;
-        const Vertex& x = e.x;
+        const Vertex& x = e.vertex;
         std::fprintf(out_, "vertex %d: shape %u%s at distance %.17g\n", s.k, x.hit.id,
                      origin(x.hit.id).c_str(), double(x.hit.t));
         print("  p", x.at.p);

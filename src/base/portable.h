@@ -1,7 +1,7 @@
 // base/portable.h  1  exponentials and logarithms with the same bits everywhere
 //
 // Each C library rounds exp, log and pow in its own way, and glibc even by the processor: one
-// result in a thousand differs.  Images use only these functions, `turned` of world/warp.h, and
+// result in a thousand differs.  Images use only these functions, unit_circle of world/warp.h, and
 // what IEEE 754 rounds: + - * / sqrt fma.  Powers of two are split off exactly.  The remainder goes
 // to Taylor polynomials that are exact to rounding.  Errors are below 3 * 2^-53.  Always double.
 #pragma once
@@ -19,7 +19,10 @@ inline double log(double x) {
     const double m = std::bit_cast<double>(bits - k * (int64_t(1) << 52)), s = (m - 1) / (m + 1);
     const double s2 = s * s, s4 = s2 * s2;
     double even = 0, odd = 0;  // the powers 2, 6, ... and 4, 8, ... of artanh(s) / s
-    for (int n = 19; n > 2; n -= 4) even = even * s4 + 1. / n, odd = odd * s4 + 1. / (n + 2);
+    for (int n = 19; n > 2; n -= 4) {
+        even = even * s4 + 1. / n;
+        odd = odd * s4 + 1. / (n + 2);
+    }
     const double rest = 2 * s * (s2 * (even + s2 * odd));
     return double(k) * ln2_high + (2 * s + (rest + double(k) * ln2_low));
 }

@@ -18,8 +18,7 @@ inline constexpr real infinity = std::numeric_limits<real>::infinity();
 inline constexpr real ulp = std::numeric_limits<real>::epsilon() / 2;  // rounding error of one op
 inline constexpr real below_one = 1 - ulp;                             // largest real < 1
 
-// The top bits of a random word as a number in [0,1): 53 of them in double, 24 in float, so that
-// rounding never makes a 1.
+// The top bits of a random word, 53 in double, 24 in float, as a number in [0,1): none becomes 1.
 inline real to_unit(uint64_t bits) {
     constexpr int digits = std::numeric_limits<real>::digits;
     return real(bits >> (64 - digits)) * (1 / real(uint64_t(1) << digits));
@@ -61,7 +60,7 @@ inline real length(vec3 a) { return std::sqrt(dot(a, a)); }
 inline real max_of(vec3 a) { return std::max({a.x, a.y, a.z}); }
 inline real max_abs(vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
-// The square of this vector is denormal or infinite; scaling by a power of two, exactly, helps.
+// For vectors whose square is denormal or infinite: a power of two scales them first, exactly.
 [[gnu::noinline]] inline vec3 unit_of_extreme(vec3 a) {
     constexpr int exponent = std::numeric_limits<real>::max_exponent / 4 * 3;
     a = a * std::ldexp(real(1), max_abs(a) < 1 ? exponent : -exponent);

@@ -7,7 +7,7 @@
 namespace penumbra {
 
 // The error of an image f, with the limit F: d^2 is the expected mean of (f - F)^2 over pixels and
-// channels, without the bias of f; d_rel = d / |F|.  Sums over pixels.  NaN: not known.
+// channels, without the bias of f; d_rel = d / |F|.  Sums over pixels.  An unknown number is NaN.
 struct ImageError {
     double pixels = 0;
     Sum values{}, variances{};  // per channel
@@ -16,14 +16,14 @@ struct ImageError {
     // A pixel's term T is the mean variance of its channels.  The variance of T is
     // E[T^2] - E[T]^2 = 2 / (K + 1) E[T^2] if its K replications are normally distributed and the
     // channels are fully correlated.
-    void add(const Pixel& p) {
+    void add(const Pixel& pixel) {
         double term = 0;
         for (size_t c = 0; c < 3; ++c) {
-            values[c] += p.value(c), squares += square(p.value(c));
-            variances[c] += p.variance(c), term += p.variance(c) / 3;
+            values[c] += pixel.value(c), squares += square(pixel.value(c));
+            variances[c] += pixel.variance(c), term += pixel.variance(c) / 3;
         }
         ++pixels;
-        terms2 += term * term * 2 / (p.K + 1);
+        terms2 += term * term * 2 / (pixel.K + 1);
         worst = std::fmax(worst, term);
     }
 
@@ -40,9 +40,9 @@ struct ImageError {
 };
 
 inline ImageError error_of(const Film& film) {
-    ImageError e;
-    for (size_t i = 0; i < film.pixels(); ++i) e.add(pixel_of(film, i));
-    return e;
+    ImageError error;
+    for (size_t i = 0; i < film.pixels(); ++i) error.add(pixel_of(film, i));
+    return error;
 }
 
 // ---- Error checks -------------------------------------------------------------------------------
@@ -55,19 +55,19 @@ enum class Doubt { no, black, missed_light, few_pixels, noise };
 
 // A relative standard error of a quarter is that of 8 degrees of freedom.  One degree understates
 // an error 10^4 times in 8 of 10^5 pictures: 1e-6 is small in any case.
-inline Doubt doubt_of(const Film& film, const ImageError& e, const MayMissLight& may_miss_light) {
-    if (e.norm() == 0) return Doubt::black;
-    if (may_miss_light && e.d2() >= 0 && may_miss_light(film, e)) return Doubt::missed_light;
-    if (!(e.spread_of_d_rel() > 0.25 && e.d_rel() > 1e-6)) return Doubt::no;
-    return e.spread_of_d() > 0.25 ? Doubt::few_pixels : Doubt::noise;
+inline Doubt doubt_of(const Film& film, const ImageError& error, const MayMissLight& may_miss) {
+    if (error.norm() == 0) return Doubt::black;
+    if (may_miss && error.d2() >= 0 && may_miss(film, error)) return Doubt::missed_light;
+    if (!(error.spread_of_d_rel() > 0.25 && error.d_rel() > 1e-6)) return Doubt::no;
+    return error.spread_of_d() > 0.25 ? Doubt::few_pixels : Doubt::noise;
 }
 
 // The rule of --error: d' + SE / 2 <= wanted.  d' counts the worst pixel twice, for light that no
 // sample has met; half a standard error corrects the bias of optional stopping (both by `make
 // calibration`).  An unknown error is not small.
-inline bool is_small_enough(const ImageError& e, double wanted) {
-    const double twice = e.d2() > 0 ? std::sqrt(1 + e.worst / e.pixels / e.d2()) : 1;
-    return e.d_rel() * twice + e.standard_error() / 2 <= wanted;
+inline bool is_small_enough(const ImageError& error, double wanted) {
+    const double rise = error.d2() > 0 ? std::sqrt(1 + error.worst / error.pixels / error.d2()) : 1;
+    return error.d_rel() * rise + error.standard_error() / 2 <= wanted;
 }
 
 // Samples of the first check after n.  They do not depend on the error wanted: a resumed run stops
@@ -88,17 +88,17 @@ public:
 
     // Whether the film's error is a reason to stop, if a check is due.
     Stop check(const Film& film) {
-        constexpr double most_unknown = 4096;  // samples per pixel
-        const uint64_t n = film.least_taken();
-        const bool is_whole = n > 0 && n == film.most_taken() && !film.is_pilot;
+        constexpr double max_unknown = 4096;  // samples per pixel
+        const uint64_t n = film.min_taken();
+        const bool is_whole = n > 0 && n == film.max_taken() && !film.is_pilot;
         const bool is_check = wanted_ > 0 && is_whole && next_check(n - 1) == n;
         if (!is_check && !(is_whole && double(n) >= 2 * last_.n)) return Stop::no;
-        const ImageError e = error_of(film);
-        add(n, e.d_rel());
+        const ImageError error = error_of(film);
+        add(n, error.d_rel());
         if (!is_check) return Stop::no;
-        const bool is_known = doubt_of(film, e, may_miss_light_) == Doubt::no;
-        if (is_known && is_small_enough(e, wanted_)) return Stop::error;
-        return is_known || film.samples_per_pixel() < most_unknown ? Stop::no : Stop::error_unknown;
+        const bool is_known = doubt_of(film, error, may_miss_light_) == Doubt::no;
+        if (is_known && is_small_enough(error, wanted_)) return Stop::error;
+        return is_known || film.samples_per_pixel() < max_unknown ? Stop::no : Stop::error_unknown;
     }
 
     void add(uint64_t n, double d_rel) {
@@ -114,7 +114,7 @@ public:
         const double gamma = std::log(before_.d_rel / last_.d_rel) / std::log(last_.n / before_.n);
         return gamma > 0.5 ? 1 / std::min(gamma, 1.0) : 2;
     }
-    // Samples of each replication at the end, by the last check; infinite: not known.
+    // Samples of each replication at the end, by the last check; infinite while unknown.
     double expected() const { return expected_; }
 
 private:

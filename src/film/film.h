@@ -25,7 +25,7 @@ struct Tally {
     std::vector<NearMisses> near = {};  // sums for each group of lights of the film
 
     void add_bad(uint64_t count, const PixelSample& first) {
-        auto order = [](const PixelSample& s) { return std::tuple(s.i, s.set, s.y, s.x); };
+        auto order = [](const PixelSample& a) { return std::tuple(a.i, a.set, a.y, a.x); };
         if (count > 0 && (bad == 0 || order(first) < order(first_bad))) first_bad = first;
         bad += count;
     }
@@ -48,7 +48,7 @@ inline void add_to(Sum& sum, rgb sample) {
     for (size_t c = 0; c < 3; ++c) sum[c] += double(sample.*axis[c]);
 }
 
-inline constexpr uint32_t most_replications = 1024, most_weight = 16;
+inline constexpr uint32_t max_replications = 1024, max_weight = 16;
 
 // The file of a film holds these arrays.
 struct Film {
@@ -75,9 +75,9 @@ struct Film {
     uint64_t samples(size_t pixel, uint64_t n = 0) const {
         return std::max(pilot, weight[pixel] * std::max(n, taken[pixel / block_size()]));
     }
-    uint64_t least_taken() const { return *std::min_element(taken.begin(), taken.end()); }
-    uint64_t most_taken() const { return *std::max_element(taken.begin(), taken.end()); }
-    bool has_samples() const { return pilot + least_taken() > 0; }  // in all pixels
+    uint64_t min_taken() const { return *std::min_element(taken.begin(), taken.end()); }
+    uint64_t max_taken() const { return *std::max_element(taken.begin(), taken.end()); }
+    bool has_samples() const { return pilot + min_taken() > 0; }  // in all pixels
     PixelSample sample_of(size_t pixel, uint64_t s, uint32_t replication) const {
         const size_t width = size_t(size.width);
         return {int(pixel % width), first_row + int(pixel / width), s, replication};
@@ -92,12 +92,12 @@ struct Film {
 
 // A film with K replications of each pixel; is_pilot: with weights.
 inline Film make_film(Size size, uint32_t K, bool is_pilot, int first_row = 0) {
-    Film f{size, first_row, K, is_pilot};
-    f.sum.resize(f.pixels() * K);
-    f.weight.assign(f.pixels(), 1);
-    f.deviation.resize(is_pilot ? f.pixels() : 0);
-    f.taken.resize(f.blocks());
-    return f;
+    Film film{size, first_row, K, is_pilot};
+    film.sum.resize(film.pixels() * K);
+    film.weight.assign(film.pixels(), 1);
+    film.deviation.resize(is_pilot ? film.pixels() : 0);
+    film.taken.resize(film.blocks());
+    return film;
 }
 
 // Bytes of a film, later with its image: sums, and weight, deviation or image, and n of a block.
@@ -129,18 +129,19 @@ struct Pixel {
     double variance(size_t c) const { return squares[c] / (samples * (K - 1)); }
 };
 
-inline Pixel pixel_of(const Film& f, size_t i) {
-    Pixel p;
-    for (size_t k = 0; k < f.replications; ++k) p.add(f.sum[i * f.replications + k], f.samples(i));
-    return p;
+inline Pixel pixel_of(const Film& film, size_t i) {
+    Pixel pixel;
+    for (size_t k = 0; k < film.replications; ++k)
+        pixel.add(film.sum[i * film.replications + k], film.samples(i));
+    return pixel;
 }
 
 // NaN where a pixel has no sample.
-inline Image image_of(const Film& f) {
-    Image image(f.size.width, f.size.height);
-    for (size_t i = 0; i < f.pixels(); ++i) {
-        const Pixel p = pixel_of(f, i);
-        for (size_t c = 0; c < 3; ++c) image.pixels[i][c] = float(p.value(c));
+inline Image image_of(const Film& film) {
+    Image image(film.size.width, film.size.height);
+    for (size_t i = 0; i < film.pixels(); ++i) {
+        const Pixel pixel = pixel_of(film, i);
+        for (size_t c = 0; c < 3; ++c) image.pixels[i][c] = float(pixel.value(c));
     }
     return image;
 }
@@ -160,30 +161,31 @@ inline float with_deviation(float root, std::span<const Sum> sums, double count,
 }
 
 // Adds samples, in order, to all replications of a block until it has n.  The image does not depend
-// on passes and threads.  If L throws, the block stays as it was.
-inline void add_samples(Film& f, size_t block, uint64_t n, const Radiance& L, Tally& tally) {
-    const size_t from = f.begin(block), to = f.end(block), K = f.replications;
-    std::vector<Sum> sums(&f.sum[from * K], &f.sum[from * K] + (to - from) * K);
-    std::vector<float> deviation(f.is_pilot ? to - from : 0);
+// on passes and threads.  If `radiance` throws, the block stays as it was.
+inline void add_samples(Film& film, size_t block, uint64_t n, const Radiance& radiance,
+                        Tally& tally) {
+    const size_t from = film.begin(block), to = film.end(block), K = film.replications;
+    std::vector<Sum> sums(&film.sum[from * K], &film.sum[from * K] + (to - from) * K);
+    std::vector<float> deviation(film.is_pilot ? to - from : 0);
     for (size_t i = from; i < to; ++i) {
         const std::span<Sum> sum(&sums[(i - from) * K], K);
-        const uint64_t first = f.samples(i), last = f.samples(i, n);
+        const uint64_t first = film.samples(i), last = film.samples(i, n);
         double count = double(K * first);
-        if (f.is_pilot) deviation[i - from] = f.deviation[i];
-        tally.share = 1.0 / double(K * f.weight[i]);
+        if (film.is_pilot) deviation[i - from] = film.deviation[i];
+        tally.share = 1.0 / double(K * film.weight[i]);
         for (uint32_t k = 0; k < K; ++k)
             for (uint64_t s = first; s < last; ++s, ++count) {
-                const PixelSample which = f.sample_of(i, s, k);
-                const rgb sample = L(which, tally);
+                const PixelSample which = film.sample_of(i, s, k);
+                const rgb sample = radiance(which, tally);
                 if (!fits_float(sample)) tally.add_bad(1, which);
-                if (f.is_pilot)
+                if (film.is_pilot)
                     deviation[i - from] = with_deviation(deviation[i - from], sum, count, sample);
                 add_to(sum[k], sample);
             }
     }
-    std::ranges::copy(sums, f.sum.begin() + ptrdiff_t(from * K));
-    std::ranges::copy(deviation, f.deviation.begin() + ptrdiff_t(f.is_pilot ? from : 0));
-    f.taken[block] = std::max(f.taken[block], n);
+    std::ranges::copy(sums, film.sum.begin() + ptrdiff_t(from * K));
+    std::ranges::copy(deviation, film.deviation.begin() + ptrdiff_t(film.is_pilot ? from : 0));
+    film.taken[block] = std::max(film.taken[block], n);
 }
 
 }  // namespace penumbra

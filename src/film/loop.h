@@ -5,7 +5,7 @@
 
 namespace penumbra {
 
-// What a run is to do, and when it stops: whichever comes first; 0: no limit.
+// Work of a run, and its limits: the first that is reached ends it; a limit of 0 does not exist.
 struct Plan {
     Size size = {};
     int first_row = 0;
@@ -38,12 +38,12 @@ struct Watch {
     ForEach for_each = one_by_one;
     std::function<bool()> interrupted = [] { return false; };
     std::function<void(const Film&, const Tally&)> between = [](auto&, auto&) {};  // passes
-    // Samples per pixel so far, and at the end; infinite: not known.
+    // Samples per pixel so far, and at the end (infinite while unknown).
     std::function<void(double now, double end)> show = [](double, double) {};
 };
 
 // Samples after the next pass, given n after `elapsed` seconds; one sample more of each pixel takes
-// `each` seconds (0: not known).  As many as fit into the time, at most n + 1; one at least.
+// `each` seconds (0 if unknown).  As many as fit into the time, at most n + 1; one at least.
 inline uint64_t end_of_pass(uint64_t n, double elapsed, double each, double seconds) {
     constexpr double longest = 0.2;  // seconds: threads are rarely idle, Ctrl-C is quick
     const double left = seconds > 0 ? seconds - elapsed : HUGE_VAL;
@@ -53,12 +53,12 @@ inline uint64_t end_of_pass(uint64_t n, double elapsed, double each, double seco
 
 class Loop {
 public:
-    Loop(Film& film, const Plan& plan, const Radiance& L, const Watch& watch)
+    Loop(Film& film, const Plan& plan, const Radiance& radiance, const Watch& watch)
         : film_(film),
           plan_(plan),
-          L_(L),
+          radiance_(radiance),
           watch_(watch),
-          limit_(plan.samples ? plan.samples : most_samples),
+          limit_(plan.samples ? plan.samples : max_samples),
           checks_(plan.error, plan.may_miss_light) {}
 
     Stop run() {
@@ -77,30 +77,30 @@ public:
 private:
     Film& film_;
     const Plan& plan_;
-    const Radiance& L_;
+    const Radiance& radiance_;
     const Watch& watch_;
     const uint64_t limit_, pilot_ = std::min(pilot_samples, limit_);  // samples
     ErrorChecks checks_;
     Tally tally_;
 
     bool is_pilot_done() const {
-        const uint64_t n = film_.least_taken();
-        return film_.is_pilot && n >= pilot_ && n == film_.most_taken();
+        const uint64_t n = film_.min_taken();
+        return film_.is_pilot && n >= pilot_ && n == film_.max_taken();
     }
 
     Stop reason_to_stop() {
         if (watch_.interrupted()) return Stop::interrupt;
         if (tally_.bad > 0) return Stop::not_finite;
         if (const Stop stop = checks_.check(film_); stop != Stop::no) return stop;
-        if (!film_.is_pilot && film_.least_taken() >= limit_) return Stop::samples;
+        if (!film_.is_pilot && film_.min_taken() >= limit_) return Stop::samples;
         const bool is_over = plan_.seconds > 0 && watch_.elapsed() >= plan_.seconds;
         return is_over && film_.has_samples() ? Stop::time : Stop::no;
     }
 
     // Passes of the pilot have fixed ends, because deviations are rounded.
     uint64_t next_end() const {
-        const uint64_t n = film_.least_taken();
-        if (film_.is_pilot) return std::max(film_.most_taken(), n + 1);
+        const uint64_t n = film_.min_taken();
+        if (film_.is_pilot) return std::max(film_.max_taken(), n + 1);
         const double elapsed = watch_.elapsed(), now = film_.samples_per_pixel();
         const double each = now > 0 ? elapsed / now * (film_.samples_per_pixel(n + 1) - now) : 0;
         const uint64_t to = end_of_pass(n, elapsed, each, plan_.seconds);
@@ -110,9 +110,9 @@ private:
     bool add_pass(uint64_t to) {
         const double before = film_.samples_per_pixel(), after = film_.samples_per_pixel(to);
         const uint64_t last = uint64_t(std::min(checks_.expected(), double(limit_)));
-        const double end = last < most_samples ? film_.samples_per_pixel(last) *
-                                                     (film_.is_pilot ? typical_weight : 1)
-                                               : HUGE_VAL;
+        const double end = last < max_samples ? film_.samples_per_pixel(last) *
+                                                    (film_.is_pilot ? typical_weight : 1)
+                                              : HUGE_VAL;
         Tally nothing;
         nothing.near.resize(film_.near.size());
         const unsigned workers = std::max(1u, plan_.threads);
@@ -120,7 +120,7 @@ private:
         auto add_block = [&](size_t block, unsigned worker) {
             if (film_.taken[block] >= to) return;
             Tally tally = nothing;  // of whole blocks only
-            add_samples(film_, block, to, L_, tally);
+            add_samples(film_, block, to, radiance_, tally);
             of_worker[worker].add(tally);
         };
         const bool is_whole = watch_.for_each(

@@ -15,7 +15,7 @@ inline constexpr size_t ways = size_t(Way::count);
 
 // What a film knows of a group of lights: how the camera sees them, and near misses (src/unseen).
 struct NearMisses {
-    float line = 0;   // of the first light; 0: not known
+    float line = 0;   // of the first light, from 1 on; 0 if unknown
     float K = 1;      // samples of a pixel of that area, over n
     double L2 = 0;    // greatest square of radiance, mean of the channels
     double area = 0;  // visible area in pixels

@@ -16,14 +16,14 @@ inline double mean_around(const std::vector<float>& of, Size size, int x, int y)
 
 inline constexpr uint32_t typical_weight = 2;  // of a pixel of mean noise
 
-// The power of two in 1 ... most_weight that is next to 2 r^(4/5), in ratio.  NaN, for a pixel
+// The power of two in 1 ... max_weight that is next to 2 r^(4/5), in ratio.  NaN, for a pixel
 // without neighbours or a picture without noise, counts as r = 1.
 inline uint8_t weight_of(double r) {
     if (std::isnan(r)) return typical_weight;
     const double r4 = r * r * r * r;
     uint32_t w = 1;
     // 2 r^(4/5) > sqrt(2) w  <=>  r^4 > w^5 / sqrt(32)
-    while (w < most_weight && r4 > double(w * w * w * w * w) / std::sqrt(32.0)) w *= 2;
+    while (w < max_weight && r4 > double(w * w * w * w * w) / std::sqrt(32.0)) w *= 2;
     return uint8_t(w);
 }
 
@@ -49,21 +49,20 @@ inline std::vector<uint8_t> weights_of(const std::vector<float>& deviation, Size
     return weights;
 }
 
-// Samples of each replication in the pilot, and the least weight of a pixel where few samples meet
-// bright light.
+// Samples of each replication in the pilot; least weight of a pixel that rarely meets bright light.
 inline constexpr uint64_t pilot_samples = 4;
-inline constexpr uint8_t least_of_noisy = 4;
+inline constexpr uint8_t min_of_noisy = 4;
 
 // Chooses weights by the pilot, which all blocks have; those of `noisy` pixels are 4 or more.  Near
 // misses count from then on, because those of the pilot do not have the pixel's share.
-inline void choose_weights(Film& f, const std::vector<size_t>& noisy = {}) {
-    f.weight = weights_of(f.deviation, f.size);
-    for (size_t i : noisy) f.weight[i] = std::max(f.weight[i], least_of_noisy);
-    f.deviation = std::vector<float>();  // with its memory
-    for (NearMisses& group : f.near) group.sum = {};
-    f.is_pilot = false;
-    f.pilot = f.taken[0];
-    f.taken.assign(f.taken.size(), 0);
+inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
+    film.weight = weights_of(film.deviation, film.size);
+    for (size_t i : noisy) film.weight[i] = std::max(film.weight[i], min_of_noisy);
+    film.deviation = std::vector<float>();  // with its memory
+    for (NearMisses& group : film.near) group.sum = {};
+    film.is_pilot = false;
+    film.pilot = film.taken[0];
+    film.taken.assign(film.taken.size(), 0);
 }
 
 }  // namespace penumbra

@@ -83,7 +83,7 @@ public:
     // film without samples replaces no file.
     std::string write(const Film& f, const Spent& spent, bool complete) const {
         if (path_.empty()) return "";
-        if (f.most_taken() + f.pilot == 0 && std::filesystem::exists(path_)) return "";
+        if (f.max_taken() + f.pilot == 0 && std::filesystem::exists(path_)) return "";
         try {
             Facts head = head_;
             head.insert(head.end(), {{"complete", complete ? "yes" : "no"},

@@ -13,7 +13,7 @@ inline Spent spent_in(const FilmReader& file) {
 // Reads a film but its sums, which come last in the file; throws UserError if it holds no possible
 // film of this size.
 inline Film film_but_sums(FilmReader& file, Size size) {
-    Film f{size, 0, uint32_t(file.number("replications-per-pixel", most_replications))};
+    Film f{size, 0, uint32_t(file.number("replications-per-pixel", max_replications))};
     const uint64_t n = f.pixels(), bytes_of_sums = n * f.replications * sizeof(Sum);
     if (bytes_of_sums == 0 || file.left() < bytes_of_sums) file.refuse("is too short for its size");
     f.is_pilot = file.said("weights-chosen") == "no";
@@ -24,11 +24,11 @@ inline Film film_but_sums(FilmReader& file, Size size) {
     file.read(std::as_writable_bytes(std::span(f.weight)));
     file.read(std::as_writable_bytes(std::span(f.deviation)));
     file.read(std::as_writable_bytes(std::span(f.near)));
-    auto impossible = [most = f.is_pilot ? 1 : most_weight](uint8_t w) {
+    auto impossible = [most = f.is_pilot ? 1 : max_weight](uint8_t w) {
         return !std::has_single_bit(w) || w > most;
     };
     if (std::ranges::any_of(f.weight, impossible) ||
-        f.most_taken() > (f.is_pilot ? pilot_samples : most_samples))
+        f.max_taken() > (f.is_pilot ? pilot_samples : max_samples))
         file.refuse("has a pixel with an impossible number of samples");
     if (file.left() != bytes_of_sums) file.refuse("its replications do not match its length");
     return f;

@@ -71,7 +71,7 @@ inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
             now.k = g.scene.depth;
         const Step e = step(g.scene, g.technique, now, u[s.k]);
         L += s.beta * e.Le * e.weight + now.beta * e.direct.L;
-        if (e.met && weight != 0) L += s.beta * g.known.at(e.x) * weight;
+        if (e.met && weight != 0) L += s.beta * g.known.at(e.vertex) * weight;
         if (e.end != End::no) return L;
         s = e.next;
     }

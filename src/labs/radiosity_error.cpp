@@ -12,19 +12,19 @@ namespace {
 using namespace penumbra;
 
 // A map, with its requested and its estimated error.  add_true() adds the true error.
-struct Run {
+struct MethodRun {
     Row row;
     IlluminationMap map;
 };
-using Runs = std::vector<Run>;
+using Runs = std::vector<MethodRun>;
 
-Run run_of(const Room& room, const char* method, double asked, double stated,
-           std::map<std::string, double> of, IlluminationMap map) {
+MethodRun run_of(const Room& room, const char* method, double asked, double stated,
+                 std::map<std::string, double> of, IlluminationMap map) {
     of.insert({{"asked", asked}, {"stated", stated}});
     const std::string scene = text("%s, %zu triangles", room.name, room.mesh.elements());
     return {{scene, method, 0, 0, of}, std::move(map)};
 }
-void add_true(Run& run, double error) {
+void add_true(MethodRun& run, double error) {
     Row& r = run.row;
     r.of["true"] = error, r.of["over asked"] = error / r["asked"];
 }
@@ -35,7 +35,7 @@ double mean_square(const Rows& rows, const char* name) {
 }
 Rows rows_of(const Runs& runs) {
     Rows rows;
-    for (const Run& run : runs) rows.push_back(run.row);
+    for (const MethodRun& run : runs) rows.push_back(run.row);
     return rows;
 }
 std::string of_asked(const Row& r) { return percent(r["asked"]); }
@@ -59,11 +59,11 @@ Runs walks(const Room& room, double asked, uint64_t n) {
 void add_true_errors(const Mesh& mesh, Runs& runs, const Runs& reference, bool is_own) {
     const double all = double(reference.size()), n = all - is_own;
     IlluminationMap sum(number_of_sides(mesh));
-    for (const Run& run : reference)
+    for (const MethodRun& run : reference)
         for (size_t v = 0; v < sum.size(); ++v) sum[v] += run.map[v];
     const double square = square_of(mesh, sum) / (all * all),
                  own = mean_square(rows_of(reference), "stated") / n;
-    for (Run& run : runs) {
+    for (MethodRun& run : runs) {
         IlluminationMap off = is_own ? difference(sum, run.map) : sum;
         for (size_t v = 0; v < off.size(); ++v) off[v] = off[v] / real(n) - run.map[v];
         add_true(run, std::sqrt(std::max(0.0, square_of(mesh, off) / square - own)));
@@ -77,7 +77,7 @@ void add_walks(Rows& rows, const Room& room, double least, uint64_t seeds) {
         if (asked < least) continue;
         Runs runs = walks(room, asked, seeds);
         add_true_errors(room.mesh, runs, reference.empty() ? runs : reference, reference.empty());
-        for (const Run& run : runs) rows.push_back(run.row);
+        for (const MethodRun& run : runs) rows.push_back(run.row);
         if (reference.empty()) reference = std::move(runs);
     }
 }
@@ -103,7 +103,7 @@ void add_shots(Rows& rows, const Room& room, Shooter shooter, double patience) {
         if (run.error() > asked) break;
     }
     const double left = runs.back().row["stated"], whole = square_of(room.mesh, runs.back().map);
-    for (Run& r : runs) {
+    for (MethodRun& r : runs) {
         const double d2 = square_of(room.mesh, difference(runs.back().map, r.map)) / whole;
         // Close to the reference the distance from it is no error.
         if (r.row["asked"] >= 10 * left) add_true(r, std::sqrt(d2) + left);

@@ -17,14 +17,14 @@ const std::vector<Function> list = functions::all();
 using Values = std::vector<double>;  // of a function at points
 
 enum class Points { independent, jittered, halton, poisson };  // poisson: N on average
-enum class Sum { weighted, corrected, linear };
+enum class Summation { weighted, corrected, linear };
 
 struct Estimator {
     std::string name;
     Points points;
     Weighting weighting = Weighting::mc;
     bool divide = true;
-    Sum sum = Sum::weighted;
+    Summation sum = Summation::weighted;
 };
 const std::vector<Estimator> estimators = {
     {"mc", Points::independent},
@@ -32,8 +32,8 @@ const std::vector<Estimator> estimators = {
     {"vor, undivided", Points::independent, Weighting::vor, false},
     {"fvor", Points::independent, Weighting::fvor},
     {"cvor", Points::independent, Weighting::cvor},
-    {"cvor, corrected", Points::independent, Weighting::cvor, true, Sum::corrected},
-    {"cvor, linear", Points::independent, Weighting::cvor, true, Sum::linear},
+    {"cvor, corrected", Points::independent, Weighting::cvor, true, Summation::corrected},
+    {"cvor, linear", Points::independent, Weighting::cvor, true, Summation::linear},
     {"torus", Points::independent, Weighting::torus},
     {"stratified", Points::jittered},
     {"Halton", Points::halton},
@@ -77,17 +77,18 @@ Estimates estimated(const Estimator& e, std::span<const Site> places, const std:
     std::vector<VoronoiCell> cells;
     Values w;
     weigher.divide = e.divide;
-    weigher.cells.with_neighbours = e.sum != Sum::weighted;
+    weigher.cells.with_neighbours = e.sum != Summation::weighted;
     if (places.empty()) return {Values(f.size())};
-    if (e.sum == Sum::weighted)
+    if (e.sum == Summation::weighted)
         w = weigher(e.weighting, places, key);
     else
         for (cells = weigher.cells.clipped(places, {{0, 0}, {1, 1}}); const VoronoiCell& c : cells)
             w.push_back(c.area);
     for (const Values& g : f) {
-        double x = e.sum == Sum::linear ? linear_reconstruction(weigher.cells, cells, places, g)
-                                        : std::inner_product(w.begin(), w.end(), g.begin(), 0.0);
-        if (e.sum == Sum::corrected) x += border_correction(weigher.cells, cells, places, g);
+        double x = e.sum == Summation::linear
+                       ? linear_reconstruction(weigher.cells, cells, places, g)
+                       : std::inner_product(w.begin(), w.end(), g.begin(), 0.0);
+        if (e.sum == Summation::corrected) x += border_correction(weigher.cells, cells, places, g);
         all.values.push_back(x);
         if (all.values.size() == 1) all.seconds = processor_seconds() - start;
     }

@@ -7,8 +7,7 @@
 
 namespace penumbra {
 
-// The first n primes, by the sieve of Eratosthenes.  p_n < n (ln n + ln ln n) for n >= 6 (Rosser
-// 1941).
+// The first n primes (sieve of Eratosthenes).  p_n < n (ln n + ln ln n) for n >= 6 (Rosser 1941).
 inline std::vector<uint32_t> first_primes(size_t n) {
     const double x = double(std::max<size_t>(n, 6));
     const size_t limit = size_t(x * (std::log(x) + std::log(std::log(x)))) + 1;
@@ -26,8 +25,7 @@ inline std::vector<uint32_t> first_primes(size_t n) {
 // sum d_k b^(-k-1), which is never 1.
 inline real radical_inverse(uint32_t base, uint64_t i) {
     // exercise 4.1
-    // digits / power are both exact.  Digits after the 64th bit are below any rounding and are left
-    // out.
+    // digits / power are both exact.  Digits after the 64th bit, below any rounding, are left out.
     uint64_t digits = 0, power = 1;
     while (i > 0 && power <= UINT64_MAX / base) {
         const uint64_t rest = i / base;

@@ -21,7 +21,7 @@ enum class LightMode {
 struct Technique {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
-    real roulette = real(0.25);  // Russian roulette for paths of a throughput below this; 0: never
+    real roulette = real(0.25);  // Russian roulette for paths of a throughput below this
 };
 
 // A path's numbers stay in registers only if its loop is compiled as one function.  Its parts are
@@ -39,20 +39,20 @@ struct Vertex {
     vec3 wo;         // to where the ray came from, local
 };
 
-PART Vertex vertex(const Scene& scene, const Ray& ray, const Hit& hit) {
-    Vertex x;
-    x.hit = hit;
-    x.at = scene.surface(ray, hit);
-    x.material = &scene.material(hit);
-    x.cos_o = -dot(x.at.n, ray.d);
-    x.local = frame(x.cos_o > 0 ? x.at.n : -x.at.n);
-    x.wo = x.local.to_local(-ray.d);
-    return x;
+PART Vertex vertex_of(const Scene& scene, const Ray& ray, const Hit& hit) {
+    Vertex vertex;
+    vertex.hit = hit;
+    vertex.at = scene.surface(ray, hit);
+    vertex.material = &scene.material(hit);
+    vertex.cos_o = -dot(vertex.at.n, ray.d);
+    vertex.local = frame(vertex.cos_o > 0 ? vertex.at.n : -vertex.at.n);
+    vertex.wo = vertex.local.to_local(-ray.d);
+    return vertex;
 }
 
 inline std::optional<Vertex> meet(const Scene& scene, const Ray& ray) {
     const auto hit = scene.bvh.closest(ray);
-    return hit ? std::optional(vertex(scene, ray, *hit)) : std::nullopt;
+    return hit ? std::optional(vertex_of(scene, ray, *hit)) : std::nullopt;
 }
 
 // ---- Light sampling -----------------------------------------------------------------------------
@@ -80,39 +80,38 @@ struct DirectLight {
     bool occluded = false;
 };
 
-// Samples one light, chosen at random.  Unbiased for the sum over all lights; with MIS, for its
-// weighted share.
-PART DirectLight direct_light(const Scene& scene, const Technique& t, const Vertex& x,
-                              const Sampler& sampler, int vertex) {
-    const Material& m = *x.material;
+// Samples one light, chosen at random.  Unbiased for the sum over lights; with MIS, for its share.
+PART DirectLight direct_light(const Scene& scene, const Technique& technique, const Vertex& vertex,
+                              const Sampler& sampler, int k) {
+    const Material& material = *vertex.material;
     auto none = [](Unlit why) { return DirectLight{{}, why}; };
-    if (t.light == LightMode::none) return none(Unlit::by_technique);
+    if (technique.light == LightMode::none) return none(Unlit::by_technique);
     if (scene.lights.empty()) return none(Unlit::without_lights);
-    if (m.is_delta()) return none(Unlit::by_delta);
-    const real u_pick = scene.lights.size() > 1 ? sampler.choice(vertex, Draw::pick) : 0;
-    const auto chosen = scene.light_tree.choose(x.at.p, x.local.n, u_pick);
+    if (material.is_delta()) return none(Unlit::by_delta);
+    const real u_pick = scene.lights.size() > 1 ? sampler.choice(k, Draw::pick) : 0;
+    const auto chosen = scene.light_tree.choose(vertex.at.p, vertex.local.n, u_pick);
     const Light& light = scene.lights[chosen.light];
-    const auto s = sample_light(light, x.at.p, sampler.get2(dimension(vertex, Draw::light_x)));
-    if (!s) return none(Unlit::light_averted);
-    const vec3 wi = x.local.to_local(s->wi);
-    const rgb f = eval(m, x.wo, wi);
+    const auto sample = sample_light(light, vertex.at.p, sampler.get2(dimension(k, Draw::light_x)));
+    if (!sample) return none(Unlit::light_averted);
+    const vec3 wi = vertex.local.to_local(sample->wi);
+    const rgb f = eval(material, vertex.wo, wi);
     if (max_of(f) <= 0) return none(wi.z > 0 ? Unlit::reflects_nothing : Unlit::light_behind);
     // exercise 3.3
     // f L cos / pdf where nothing is in the way; pdf is of the light and of the point on it.
-    const real pdf_light = chosen.pick * s->pdf;
-    const bool share = t.light == LightMode::mis && !s->delta;
-    const real weight = share ? power_heuristic(pdf_light, pdf(m, x.wo, wi, t.direction)) : 1;
-    const bool occluded = scene.bvh.occluded(spawn_to(x.at, s->at));
-    const rgb L = occluded ? rgb{} : f * s->L * (wi.z / pdf_light * weight);
-    return {L, Unlit::no, &light, *s, wi.z, pdf_light, weight, occluded};
+    const real pdf_light = chosen.pick * sample->pdf;
+    const bool by_mis = technique.light == LightMode::mis && !sample->delta;
+    const real weight =
+        by_mis ? power_heuristic(pdf_light, pdf(material, vertex.wo, wi, technique.direction)) : 1;
+    const bool occluded = scene.bvh.occluded(spawn_to(vertex.at, sample->at));
+    const rgb L = occluded ? rgb{} : f * sample->L * (wi.z / pdf_light * weight);
+    return {L, Unlit::no, &light, *sample, wi.z, pdf_light, weight, occluded};
     // end
 }
 
 // ---- One vertex ---------------------------------------------------------------------------------
 
 // The path so far, after k bounces.  Its last ray was sampled at the point `from` with density pdf
-// (infinite: by the camera, a mirror or glass).  Radiance L along this ray contributes beta L to
-// the eye.
+// (infinite: by the camera, a mirror or glass).  Its radiance L contributes beta L to the eye.
 struct Segment {
     Ray ray;
     vec3 from;
@@ -128,7 +127,7 @@ enum class End { no, leaves_scene, bounces, in_surface, reflects_nothing, roulet
 // The events where that ray stopped.
 struct Step {
     bool met = false;  // true if the ray met a surface, at x
-    Vertex x = {};
+    Vertex vertex = {};
     rgb Le = {};                // emitted towards wo
     real weight = 0;            // MIS weight of Le against light sampling
     DirectLight direct = {};    // reflected towards wo
@@ -139,65 +138,67 @@ struct Step {
 };
 
 // MIS weight of emission that a BSDF sample has met, against light sampling.
-inline real weight_of_emission(const Scene& scene, const Technique& t, const Segment& s,
-                               const Vertex& x) {
+inline real weight_of_emission(const Scene& scene, const Technique& technique,
+                               const Segment& segment, const Vertex& vertex) {
     // exercise 3.4
-    if (t.light == LightMode::none || std::isinf(s.pdf)) return 1;
-    const size_t i = size_t(scene.light_of[x.hit.id]);
-    const real pick = scene.light_tree.pick_of(i, s.from, s.n);
-    const real pdf = pick * pdf_light(scene.lights[i], s.from, x.at);
+    if (technique.light == LightMode::none || std::isinf(segment.pdf)) return 1;
+    const size_t i = size_t(scene.light_of[vertex.hit.id]);
+    const real pick = scene.light_tree.pick_of(i, segment.from, segment.n);
+    const real pdf = pick * pdf_light(scene.lights[i], segment.from, vertex.at);
     // Light samples have pdf 0 inside a two-sided sphere light.
-    if (t.light == LightMode::nee) return pdf > 0 ? 0 : 1;
-    return power_heuristic(s.pdf, pdf);
+    if (technique.light == LightMode::nee) return pdf > 0 ? 0 : 1;
+    return power_heuristic(segment.pdf, pdf);
     // end
 }
 
 // The rendering equation (Kajiya 1986) at one vertex x:
 //   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi.
 // One direction estimates the integral; one light sample also estimates the direct light.
-PART Step step(const Scene& scene, const Technique& t, const Segment& s, const Sampler& sampler) {
-    Step e;
-    auto ends = [&e](bool here, End why) {
-        if (here) e.end = why;
-        return here;
+PART Step step(const Scene& scene, const Technique& technique, const Segment& segment,
+               const Sampler& sampler) {
+    Step here;
+    auto ends = [&here](bool reached, End why) {
+        if (reached) here.end = why;
+        return reached;
     };
-    const auto hit = scene.bvh.closest(s.ray);
-    if (ends(!hit, End::leaves_scene)) return e;
-    e.met = true;
-    const Vertex& x = e.x = vertex(scene, s.ray, *hit);
-    const Material& m = *x.material;
-    if (m.emits()) {
-        e.Le = emitted(m, x.cos_o);
-        e.weight = weight_of_emission(scene, t, s, x);
+    const auto hit = scene.bvh.closest(segment.ray);
+    if (ends(!hit, End::leaves_scene)) return here;
+    here.met = true;
+    const Vertex& vertex = here.vertex = vertex_of(scene, segment.ray, *hit);
+    const Material& material = *vertex.material;
+    if (material.emits()) {
+        here.Le = emitted(material, vertex.cos_o);
+        here.weight = weight_of_emission(scene, technique, segment, vertex);
     }
-    if (ends(s.k == scene.depth, End::bounces)) return e;
-    if (ends(x.cos_o == 0, End::in_surface)) return e;
-    e.direct = direct_light(scene, t, x, sampler, s.k);
+    if (ends(segment.k == scene.depth, End::bounces)) return here;
+    if (ends(vertex.cos_o == 0, End::in_surface)) return here;
+    here.direct = direct_light(scene, technique, vertex, sampler, segment.k);
 
-    const vec2 u = sampler.get2(dimension(s.k, Draw::wi_x));
-    const real u_lobe = m.has_choice() ? sampler.choice(s.k, Draw::lobe) : 0;
-    const BsdfSample& b = e.scattered = sample(m, x.wo, x.cos_o > 0, u_lobe, u, t.direction);
-    e.wi = x.local.to_world(b.wi);
-    if (ends(max_of(b.f) <= 0, End::reflects_nothing)) return e;
+    const vec2 u = sampler.get2(dimension(segment.k, Draw::wi_x));
+    const real u_lobe = material.has_choice() ? sampler.choice(segment.k, Draw::lobe) : 0;
+    const BsdfSample& scattered = here.scattered =
+        sample(material, vertex.wo, vertex.cos_o > 0, u_lobe, u, technique.direction);
+    here.wi = vertex.local.to_world(scattered.wi);
+    if (ends(max_of(scattered.f) <= 0, End::reflects_nothing)) return here;
     // exercise 3.2
     // The product of f |cos| / pdf over all bounces.
-    rgb beta = s.beta * (b.f * (std::abs(b.wi.z) / b.pdf));
+    rgb beta = segment.beta * (scattered.f * (std::abs(scattered.wi.z) / scattered.pdf));
     // end
-    // What enters a diamond is as bright when it has left it (Pharr, Jakob, Humphreys 2023, sec.
-    // 14.5.4).
-    const real eta2 = s.eta2 * b.eta2, threshold = t.roulette * eta2;
+    // Light that enters and leaves a diamond keeps its radiance (Pharr et al. 2023, sec. 14.5.4).
+    const real eta2 = segment.eta2 * scattered.eta2, threshold = technique.roulette * eta2;
     // exercise 3.5
     // Arvo, Kirk 1990.  Surviving paths have a throughput of at least the threshold.
     if (max_of(beta) < threshold) {
         const real survival = max_of(beta) / threshold;
-        const real u_survival = sampler.get(dimension(s.k, Draw::roulette));
-        if (ends(u_survival >= survival, End::roulette)) return e;
+        const real u_survival = sampler.get(dimension(segment.k, Draw::roulette));
+        if (ends(u_survival >= survival, End::roulette)) return here;
         beta /= survival;
     }
     // end
-    const real pdf = m.is_delta() ? infinity : b.pdf;
-    e.next = {spawn(x.at, e.wi), x.at.p, pdf, beta, s.k + 1, x.local.n, eta2};
-    return e;
+    const real pdf = material.is_delta() ? infinity : scattered.pdf;
+    here.next = {
+        spawn(vertex.at, here.wi), vertex.at.p, pdf, beta, segment.k + 1, vertex.local.n, eta2};
+    return here;
 }
 
 // ---- The path -----------------------------------------------------------------------------------
@@ -209,17 +210,17 @@ struct NoVisitor {
 // Radiance that arrives along a ray, against its direction.  Unbiased, except for the scene's
 // depth.  Calls visit(segment, step) at every vertex.
 template <class Visitor = NoVisitor>
-rgb Li(const Scene& scene, const Technique& t, const Ray& ray, const Sampler& sampler,
+rgb Li(const Scene& scene, const Technique& technique, const Ray& ray, const Sampler& sampler,
        Visitor visit = {}) {
     // exercise 3.1
     rgb L;
-    for (Segment s{ray, ray.o};;) {
-        const Step e = step(scene, t, s, sampler);
-        L += s.beta * e.Le * e.weight;
-        L += s.beta * e.direct.L;
-        visit(s, e);
-        if (e.end != End::no) return L;
-        s = e.next;
+    for (Segment segment{ray, ray.o};;) {
+        const Step here = step(scene, technique, segment, sampler);
+        L += segment.beta * here.Le * here.weight;
+        L += segment.beta * here.direct.L;
+        visit(segment, here);
+        if (here.end != End::no) return L;
+        segment = here.next;
     }
     // end
 }

@@ -13,8 +13,8 @@ namespace penumbra {
 // Dimensions of the numbers of a path: dimension(k, what) at vertex k; the first surface has k = 0.
 enum class Draw { light_x, light_y, wi_x, wi_y, pick, lobe, roulette, count };
 inline constexpr uint32_t film_x = 0, film_y = 1;
-inline constexpr uint32_t dimension(int vertex, Draw what) {
-    return 2 + uint32_t(vertex) * uint32_t(Draw::count) + uint32_t(what);
+inline constexpr uint32_t dimension(int k, Draw what) {
+    return 2 + uint32_t(k) * uint32_t(Draw::count) + uint32_t(what);
 }
 
 // ---- Strata -------------------------------------------------------------------------------------
@@ -48,10 +48,9 @@ inline vec2 in_cell(uint32_t cell, uint32_t columns, uint32_t rows, uint64_t bit
 // ---- Kinds of samplers --------------------------------------------------------------------------
 
 // A kind gives number `dim` of a path, in [0,1).  It may also give a pair of numbers, dim and
-// dim + 1, by get2, and by choice a number that chooses the light or the lobe which the pair
-// samples.
+// dim + 1, by get2, and by choice the number that chooses the light or the lobe for this pair.
 
-// What they are made of: the index of the sample, and a random key for its pixel and replication.
+// Each kind is made of the sample's index and a random key for its pixel and replication.
 struct PathKey {
     uint64_t index, key;
     const std::vector<uint32_t>& bases;  // one prime per dimension, for Halton points
@@ -101,7 +100,7 @@ struct Halton : PathKey {
 
 // Sobol' points, with a randomisation per pixel and pair of dimensions.
 struct Sobol : PathKey {
-    explicit Sobol(const PathKey& k) : PathKey{mirrored(k.index), k.key, k.bases} {}
+    explicit Sobol(const PathKey& k) : PathKey{reverse_bits(k.index), k.key, k.bases} {}
     real get(uint32_t dim) const { return sobol_single(index, random(dim)); }
     vec2 get2(uint32_t dim) const { return sobol_pair(index, random(dim), random(dim + 1)); }
     real choice(uint32_t pair) const { return sobol_third(index, random(pair), random(pair + 1)); }
@@ -135,7 +134,7 @@ inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
     return p;
 }
 
-inline constexpr uint64_t most_samples = uint64_t(1) << 40;  // of each replication
+inline constexpr uint64_t max_samples = uint64_t(1) << 40;  // of each replication
 
 // Sample i of replication `set` of pixel (x, y).
 struct PixelSample {
@@ -168,11 +167,11 @@ public:
     }
 
     // The number that chooses the light or the lobe; the pair of the same vertex samples it.
-    real choice(int vertex, Draw what) const {
-        const uint32_t pair = dimension(vertex, what == Draw::pick ? Draw::light_x : Draw::wi_x);
+    real choice(int k, Draw what) const {
+        const uint32_t pair = dimension(k, what == Draw::pick ? Draw::light_x : Draw::wi_x);
         auto third = [&](const auto& points) {
             if constexpr (requires { points.choice(pair); }) return points.choice(pair);
-            return points.get(dimension(vertex, what));
+            return points.get(dimension(k, what));
         };
         return std::visit(third, points_);
     }

@@ -11,7 +11,7 @@ namespace penumbra {
 // Words are binary fractions of [0,1): digit 0 is the highest bit.
 
 // The radical inverse of i in base 2 (van der Corput 1935): its bits in reverse order.
-inline uint64_t mirrored(uint64_t i) {
+inline uint64_t reverse_bits(uint64_t i) {
     auto swap = [&i](int by, uint64_t low) { i = (i >> by & low) | (i & low) << by; };
     swap(1, 0x5555555555555555);
     swap(2, 0x3333333333333333);
@@ -19,14 +19,13 @@ inline uint64_t mirrored(uint64_t i) {
     return __builtin_bswap64(i);
 }
 
-// A mirrored index, shuffled: (t + a) b modulo 2^64, for random a and random, odd b.  The 2^k
-// indices from a multiple of 2^k on become another such block, because carries run from the last
-// digit of t, the first of the index, to its first.  Let two indices have their first j digits in
-// common.  Then a makes one uniform, and b makes their difference uniform among the odd multiples
-// of 2^j: all later digits are independent.  Pairs of indices have the same distribution in a
-// nested uniform shuffle (Owen 1995; Burley 2020, JCGT 9(4)), and only pairs matter for the
-// variance of a mean.
-inline uint64_t shuffled(uint64_t t, uint64_t a, uint64_t b) { return (t + a) * (b | 1); }
+// The reversed index r becomes (r + a)(b | 1) modulo 2^64, for random a and b.  Carries only run
+// upwards: bit j of the result depends on bits 0 ... j of r.  So the 2^k indices from a multiple of
+// 2^k on, whose r have the same 64 - k low bits, become another such block.  Let the reversals of
+// two indices first differ in bit j.  Then a makes one image uniform, and b makes the difference of
+// both uniform among the odd multiples of 2^j.  Pairs of indices, which alone matter for the
+// variance of a mean, have the law of a nested uniform shuffle (Owen 1995; Burley 2020, JCGT 9(4)).
+inline uint64_t shuffled(uint64_t r, uint64_t a, uint64_t b) { return (r + a) * (b | 1); }
 
 // The second coordinate of the Sobol' point (1967) with first coordinate x: its digit j is the sum
 // of C(k, j) times digit k of x modulo 2.  C(k, j) is odd if k has all the bits of j (Lucas 1878):
@@ -41,14 +40,13 @@ inline uint64_t sobol_y(uint64_t x) {
     return x ^ x << 32;
 }
 
-// The point of the index mirrored in t, after its shuffle.  Each of the first 2^64 points is
-// equally likely: it is uniform, and pairs with other a and b are independent of it.  A random bit
-// decides if the digit before it is added to a digit of x or y.  Of a random linear scrambling
-// (Matousek 1998, J. Complexity 14) this diagonal matters most for edges at an angle to the axes.
-// b is in both without harm: the bits of the first digits are b's digits from 31 up, and the
-// shuffle of fewer than 2^31 samples uses the lower ones.
-inline vec2 sobol_pair(uint64_t t, uint64_t a, uint64_t b) {
-    const uint64_t x = shuffled(t, a, b), y = sobol_y(x);
+// The point of the reversed index, after its shuffle.  Each of the first 2^64 points is equally
+// likely: it is uniform, and pairs with other a and b are independent of it.  A random bit decides
+// if the digit before it is added to a digit of x or y.  Of a random linear scrambling (Matousek
+// 1998, J. Complexity 14) this diagonal matters most for edges at an angle to the axes.  Digit d of
+// x takes bit 63 - d of b, that of y bit 31 - d; the shuffle of 2^k samples takes bits below k.
+inline vec2 sobol_pair(uint64_t reversed, uint64_t a, uint64_t b) {
+    const uint64_t x = shuffled(reversed, a, b), y = sobol_y(x);
     return {to_unit(x ^ (x >> 1 & b)), to_unit(y ^ (y >> 1 & std::rotl(b, 32)))};
 }
 
@@ -71,13 +69,13 @@ inline uint64_t sobol_z(uint64_t x) {
 
 // A third number for the pair of the same words.  2^k consecutive points are a (1,3)-sequence: each
 // box of volume 2^(1-k) that halving cuts from the unit cube holds two of them.
-inline real sobol_third(uint64_t t, uint64_t a, uint64_t b) {
-    return to_unit(sobol_z(shuffled(t, a, b)));
+inline real sobol_third(uint64_t reversed, uint64_t a, uint64_t b) {
+    return to_unit(sobol_z(shuffled(reversed, a, b)));
 }
 
 // A single number, from one random word: the points of 2^k indices form a shifted grid.
-inline real sobol_single(uint64_t t, uint64_t bits) {
-    return to_unit(shuffled(t, bits, mix(bits)));
+inline real sobol_single(uint64_t reversed, uint64_t bits) {
+    return to_unit(shuffled(reversed, bits, mix(bits)));
 }
 
 }  // namespace penumbra

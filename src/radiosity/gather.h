@@ -35,7 +35,7 @@ inline Radiance final_gather(const Scene& scene, const Technique& t, const Known
         const rgb L = Li(scene, t, at.ray, at.sampler, [&](const Segment& segment, const Step& e) {
             if (interrupted) throw Interrupted();
             tally.rays += 1 + (e.direct.light != nullptr);
-            if (segment.k == 1 && e.met) R = segment.beta * known.at(e.x);
+            if (segment.k == 1 && e.met) R = segment.beta * known.at(e.vertex);
         });
         return L + R;
     };

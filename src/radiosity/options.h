@@ -63,13 +63,13 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
               "1%, unless --error, --shots or --time is given",
               [&o](Text v) { o.unshot = parse_error(v); }},
              whole_number("--shots", "stop after N shots; needs --method shooting or hierarchy", "",
-                          o.shots, 1, most_samples),
+                          o.shots, 1, max_samples),
              whole_number("--particles",
                           "stop after N particles, rounded up to 16 equal batches; needs --method "
                           "particles",
                           "1000000, unless --error or --time is given; with --final-gather one "
                           "per 16 paths, or a 16th of the time",
-                          o.particles, 1, most_samples),
+                          o.particles, 1, max_samples),
              {"--error", "E",
               "stop once the error of the illumination maps is at most E, e.g. 5%.  It is the "
               "relative RMSE over all surfaces, without the error of the mesh: an estimate from "

@@ -45,7 +45,7 @@ OptionTable shadow_table(ShadowOptions& o) {
         in_group("Sampling", {whole_number("--replications",
                                            "number of independent replications per pixel; their "
                                            "sample variance gives the error estimate",
-                                           "2", o.replications, 1, most_replications)});
+                                           "2", o.replications, 1, max_replications)});
     row(table, "-o").otherwise = "out/NAME-shadow.png, .pfm";
     row(table, "--replications").value = "K";
     row(table, "--replications").json = [&o] { return std::to_string(o.replications); };

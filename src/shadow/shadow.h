@@ -66,8 +66,9 @@ inline rgb unshadowed(const Scene& scene, const Material& m, const Surface& x, c
 
 // For the first vertex of a path, without BSDF sampling of direct light: LightMode::nee.
 inline Shadowed shadowed(const Scene& scene, const Step& e) {
-    if (!e.met || scene.depth == 0 || e.x.cos_o == 0 || e.x.material->is_delta()) return {};
-    const Vertex& x = e.x;
+    if (!e.met || scene.depth == 0 || e.vertex.cos_o == 0 || e.vertex.material->is_delta())
+        return {};
+    const Vertex& x = e.vertex;
     const DirectLight& d = e.direct;
     Shadowed s;
     s.U = unshadowed(scene, *x.material, x.at, x.local);

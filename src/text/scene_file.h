@@ -209,7 +209,7 @@ inline constexpr Statement grammar[] = {
     {Statement::setting, "depth", "BOUNCES", "maximum number of bounces; 0: emission only",
      [](SceneReader& r) { r.scene.depth = int(r.count(0, max_depth)); }, "8"},
     {Statement::setting, "samples", "PER_PIXEL", "default samples per pixel",
-     [](SceneReader& r) { r.scene.samples = r.count(1, most_samples); }, "64"},
+     [](SceneReader& r) { r.scene.samples = r.count(1, max_samples); }, "64"},
     {Statement::setting, "exposure", "FACTOR", "factor from radiance to PNG",
      [](SceneReader& r) { r.scene.exposure = r.positive("exposure"); }, "1"},
     {Statement::material, "diffuse", "NAME  R G B", "albedo ρ: f = ρ/π",

@@ -15,7 +15,7 @@
 
 namespace penumbra {
 
-inline constexpr size_t most_light_groups = 64;  // more lights share groups with neighbours
+inline constexpr size_t max_light_groups = 64;  // more lights share groups with neighbours
 
 inline double mean_square(rgb L) {
     double sum = 0;
@@ -24,7 +24,7 @@ inline double mean_square(rgb L) {
 }
 
 inline size_t group_of(const Scene& s, size_t light) {
-    return light * std::min(s.lights.size(), most_light_groups) / s.lights.size();
+    return light * std::min(s.lights.size(), max_light_groups) / s.lights.size();
 }
 
 // ---- Lights in view of the camera ---------------------------------------------------------------
@@ -60,7 +60,7 @@ struct LightsInView {
 inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
                                    const std::vector<uint32_t>& line_of_light = {}) {
     LightsInView view;
-    view.groups.resize(std::min(s.lights.size(), most_light_groups));
+    view.groups.resize(std::min(s.lights.size(), max_light_groups));
     std::vector<std::map<size_t, double>> parts(view.groups.size());
     for (size_t i = 0; i < s.lights.size(); ++i) {
         if (s.lights[i].is_delta()) continue;
@@ -89,23 +89,23 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
 // along its longest edge.  This first grows in width, until it is a square: a thread is small in
 // one direction only.  Lamps stand recessed: the ray may end before the light by half the side of a
 // square of its area.
-inline uint32_t growths_met(const Light& l, const Ray& ray) {
-    if (l.is_delta()) return 0;
-    const vec3 f = l.centre - ray.o;
-    const bool is_ball = l.is_round();
-    const real cosine = is_ball ? -1 : dot(l.n, ray.d);
-    const real t = is_ball ? dot(f, ray.d) : dot(l.n, f) / cosine;
-    const real recess = is_ball ? l.reach : std::sqrt(1 / l.pdf_area) / 2;
+inline uint32_t growths_met(const Light& light, const Ray& ray) {
+    if (light.is_delta()) return 0;
+    const vec3 to_centre = light.centre - ray.o;
+    const bool is_ball = light.is_round();
+    const real cosine = is_ball ? -1 : dot(light.n, ray.d);
+    const real t = is_ball ? dot(to_centre, ray.d) : dot(light.n, to_centre) / cosine;
+    const real recess = is_ball ? light.reach : std::sqrt(1 / light.pdf_area) / 2;
     if (!(t > 0 && t < ray.tmax + recess)) return 0;
-    if (!(cosine < 0 || (l.twosided && cosine > 0))) return 0;
-    const vec3 y = t * ray.d - f;
-    const real far = length(f) / l.reach;          // 1: the light is as large as its distance
-    real least = length(y) / l.reach, most = far;  // growths
+    if (!(cosine < 0 || (light.twosided && cosine > 0))) return 0;
+    const vec3 y = t * ray.d - to_centre;
+    const real far = length(to_centre) / light.reach;  // 1: the light is as large as its distance
+    real least = length(y) / light.reach, most = far;  // growths
     if (!is_ball) {
-        const vec3 e = l.edge;
-        const real edge = length(e), slender = sqr(edge) * l.pdf_area;  // length over width
+        const vec3 e = light.edge;
+        const real edge = length(e), slender = sqr(edge) * light.pdf_area;  // length over width
         const real along = 2 * std::abs(dot(y, e)) / sqr(edge);
-        const real across = 2 * std::abs(dot(y, cross(l.n, e))) * l.pdf_area;
+        const real across = 2 * std::abs(dot(y, cross(light.n, e))) * light.pdf_area;
         least = along <= 1 && across <= slender
                     ? std::sqrt(across)
                     : std::sqrt(slender) * std::max(along, across / slender);
@@ -128,46 +128,48 @@ struct NearMissVisitor {
     Tally& tally;
     bool is_specular = true;
 
-    void operator()(const Segment& s, const Step& e) {
+    void operator()(const Segment& segment, const Step& here) {
         constexpr real narrow = 10;  // 1/sr
-        is_specular = is_specular && std::isinf(s.pdf);
-        if (s.k > 0 && s.pdf > narrow && !groups.empty()) add_near_misses(s, e);
+        is_specular = is_specular && std::isinf(segment.pdf);
+        if (segment.k > 0 && segment.pdf > narrow && !groups.empty())
+            add_near_misses(segment, here);
     }
 
 private:
     // Rarely called, so not inlined into the path's loop.
-    [[gnu::noinline]] void add_near_misses(const Segment& s, const Step& e) {
+    [[gnu::noinline]] void add_near_misses(const Segment& segment, const Step& here) {
         const size_t n = scene.lights.size();
-        const bool met_one = e.met && max_of(e.Le) > 0;
-        const size_t met = met_one ? size_t(scene.light_of[e.x.hit.id]) : n;
-        if (met_one) add(s, met, ~0u, double(e.weight));
-        Ray ray = s.ray;
-        ray.tmax = e.met ? e.x.hit.t : infinity;
+        const bool met_one = here.met && max_of(here.Le) > 0;
+        const size_t met = met_one ? size_t(scene.light_of[here.vertex.hit.id]) : n;
+        if (met_one) add(segment, met, ~0u, double(here.weight));
+        Ray ray = segment.ray;
+        ray.tmax = here.met ? here.vertex.hit.t : infinity;
         // Of many lights one represents all, drawn by bits of the ray.
         const size_t drawn =
-            n > most_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
+            n > max_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
         for (size_t l = drawn % n; l < (drawn < n ? drawn + 1 : n); ++l)
             if (const uint32_t near = growths_met(scene.lights[l], ray) & ~1u; near && l != met)
-                add(s, l, near, weight_of(s, l) * (drawn < n ? std::sqrt(double(n)) : 1));
+                add(segment, l, near,
+                    weight_of(segment, l) * (drawn < n ? std::sqrt(double(n)) : 1));
     }
     // MIS weight of a light that is met in its centre.
-    double weight_of(const Segment& s, size_t i) const {
-        const Light& l = scene.lights[i];
-        if (technique.light == LightMode::none || std::isinf(s.pdf)) return 1;
+    double weight_of(const Segment& segment, size_t i) const {
+        const Light& light = scene.lights[i];
+        if (technique.light == LightMode::none || std::isinf(segment.pdf)) return 1;
         if (technique.light == LightMode::nee) return 0;
-        const real pdf =
-            scene.light_tree.pick_of(i, s.from, s.n) * pdf_light(l, s.from, {l.centre, l.n, 0});
-        return double(power_heuristic(s.pdf, pdf));
+        const real pdf = scene.light_tree.pick_of(i, segment.from, segment.n) *
+                         pdf_light(light, segment.from, {light.centre, light.n, 0});
+        return double(power_heuristic(segment.pdf, pdf));
     }
-    void add(const Segment& s, size_t light, uint32_t near, double weight) {
+    void add(const Segment& segment, size_t light, uint32_t near, double weight) {
         const size_t g = group_of(scene, light);
         const double w = weight * tally.share;
-        const double c = mean_square(s.beta * scene.lights[light].L) / groups[g].L2 * w * w;
+        const double c = mean_square(segment.beta * scene.lights[light].L) / groups[g].L2 * w * w;
         if (!(c > 0)) return;
         const FixedPoint c1 = fixed_point(c), c2 = fixed_point(c * c);
-        const Way way = is_specular         ? Way::mirrors
-                        : std::isinf(s.pdf) ? Way::by_mirror
-                                            : Way::by_lobe;
+        const Way way = is_specular               ? Way::mirrors
+                        : std::isinf(segment.pdf) ? Way::by_mirror
+                                                  : Way::by_lobe;
         auto& sums = tally.near[g].sum[size_t(way)];
         for (size_t k = 0; k < growths; ++k)
             if (near >> k & 1) sums[k][0] += c1, sums[k][1] += c2;
@@ -200,7 +202,7 @@ public:
         }
     }
 
-    // Why the error of an image may be more than twice its estimate; "": no reason is known.  `d2`:
+    // Why the error of an image may be more than twice its estimate; empty if none is known.  `d2`:
     // square of the estimate; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
         if (is_pilot_) return "too few samples";
@@ -262,13 +264,13 @@ public:
         return near;
     }
     const std::vector<size_t>& noisy() const { return view_.noisy; }
-    static bool may_miss_light(const Film& f, const ImageError& e) {
-        return !why_unknown(f, e).empty();
+    static bool may_miss_light(const Film& film, const ImageError& error) {
+        return !why_unknown(film, error).empty();
     }
-    static std::string why_unknown(const Film& f, const ImageError& e) {
+    static std::string why_unknown(const Film& film, const ImageError& error) {
         Unseen unseen;
-        unseen.add(f.near, double(f.least_taken()));
-        return unseen.doubt(e.d2(), e.norm(), e.pixels);
+        unseen.add(film.near, double(film.min_taken()));
+        return unseen.doubt(error.d2(), error.norm(), error.pixels);
     }
     NearMissVisitor visitor(Tally& tally) const {
         return {scene_, technique_, view_.groups, tally};

@@ -65,14 +65,14 @@ struct Extent {
 // The surface area heuristic, binned (Wald 2007, "On fast construction of SAH-based BVHs"): a ray
 // that meets a node meets a child's box with a probability in proportion to its area, and then all
 // its shapes.
-inline constexpr size_t most_bins = 32;  // an axis
+inline constexpr size_t max_bins = 32;  // an axis
 
 // Where bins lie: as many as pay for so many items.
 struct Grid {
     size_t bins;
     float low[3], scale[3];  // 0: too short an axis
 
-    Grid(const Bounds& places, size_t items) : bins(std::min(most_bins, 4 + items / 16)) {
+    Grid(const Bounds& places, size_t items) : bins(std::min(max_bins, 4 + items / 16)) {
         for (size_t a = 0; a < 3; ++a) {
             const float extent = places[4 + a] + places[a];
             low[a] = -places[a];
@@ -86,8 +86,8 @@ struct Grid {
 };
 
 struct Bins {
-    Bounds box[3][most_bins];
-    uint32_t items[3][most_bins];
+    Bounds box[3][max_bins];
+    uint32_t items[3][max_bins];
 
     Bins(std::span<const Item> all_items, const Grid& grid) {
         for (size_t a = 0; a < 3; ++a) {
@@ -103,7 +103,7 @@ struct Bins {
     }
 };
 
-// Items in bins below `bin` go left.  No axis: no plane has items on both sides.
+// Items in bins below `bin` go left.  Axis 3 means that no plane has items on both sides.
 struct Plane {
     double cost = HUGE_VAL;
     size_t axis = 3, bin = 0;
@@ -111,7 +111,7 @@ struct Plane {
 
 // Takes the plane between bins of an axis with the least sum of both sides' costs, if it is better.
 inline void sweep(const Bins& bins, size_t a, size_t count, Plane& best) {
-    double above[most_bins];  // the cost of bins k and up
+    double above[max_bins];  // the cost of bins k and up
     Bounds box = no_bounds();
     uint32_t n = 0;
     for (size_t k = count - 1; k > 0; --k) {

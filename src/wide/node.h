@@ -46,7 +46,7 @@ struct Probe {
 struct Child {
     uint32_t bits = 16;  // a leaf of no spheres
 
-    static constexpr size_t most_shapes = size_t(1) << 27;
+    static constexpr size_t max_shapes = size_t(1) << 27;
     static Child leaf(uint32_t first, uint32_t count, bool spheres) {
         return {first << 5 | (spheres ? 16 : 0) | count};
     }

@@ -16,7 +16,7 @@ public:
     // Time O(n log n).  Shape i keeps the index i in every answer.
     explicit WideBvh(const std::vector<Shape>& shapes) {
         if (shapes.empty()) return;
-        demand_room(shapes.size() < wide::Child::most_shapes);
+        demand_room(shapes.size() < wide::Child::max_shapes);
         const wide::BinaryTree tree = wide::build(shapes);
         const wide::Collapse collapse(tree, wide::Leaves::largest);
         leaves_.reserve(shapes.size());

@@ -34,7 +34,7 @@ struct BsdfSample {
     real eta2 = 1;  // factor of f by which refraction concentrates radiance
 };
 
-inline vec3 mirrored(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
+inline vec3 reflect(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 
 // ---- Kinds of scattering ------------------------------------------------------------------------
 
@@ -61,7 +61,7 @@ struct Rough : Opaque {
     rgb eval(vec3 wo, vec3 wi) const {
         if (wi.z <= 0) return {};
         if (ks == rgb{}) return kd * (1 / pi);
-        real cos_alpha = dot(mirrored(wo), wi);
+        real cos_alpha = dot(reflect(wo), wi);
         real lobe =
             cos_alpha > 0 ? (exponent + 2) / (2 * pi) * portable::pow(cos_alpha, exponent) : 0;
         return kd * (1 / pi) + ks * lobe;
@@ -70,15 +70,15 @@ struct Rough : Opaque {
     // Fraction of the samples that follow the Phong lobe rather than the cosine.
     real lobe_probability() const {
         if (ks == rgb{}) return 0;
-        real d = mean_of(kd), s = mean_of(ks);
-        return s > 0 ? s / (d + s) : 0;
+        real cosine = mean_of(kd), lobe = mean_of(ks);
+        return lobe > 0 ? lobe / (cosine + lobe) : 0;
     }
 
     // The Phong lobe may reach below the horizon, where eval is 0.
     real pdf(vec3 wo, vec3 wi, Direction direction) const {
         if (direction == Direction::uniform) return pdf_uniform_hemisphere(wi.z);
         real q = lobe_probability();
-        real lobe = q > 0 ? pdf_phong_lobe(dot(mirrored(wo), wi), exponent) : 0;
+        real lobe = q > 0 ? pdf_phong_lobe(dot(reflect(wo), wi), exponent) : 0;
         return (1 - q) * pdf_cosine_hemisphere(wi.z) + q * lobe;
     }
 
@@ -87,7 +87,7 @@ struct Rough : Opaque {
         if (direction == Direction::uniform)
             wi = sample_uniform_hemisphere(u);
         else if (u_lobe < lobe_probability())
-            wi = frame(mirrored(wo)).to_world(sample_phong_lobe(u, exponent));
+            wi = frame(reflect(wo)).to_world(sample_phong_lobe(u, exponent));
         else
             wi = sample_cosine_hemisphere(u);
         return {wi, eval(wo, wi), pdf(wo, wi, direction)};
@@ -109,7 +109,7 @@ struct Mirror : Delta {
     rgb diffuse() const { return {}; }
     bool has_choice() const { return false; }
     BsdfSample sample(vec3 wo, bool, real, vec2, Direction) const {
-        return {mirrored(wo), reflectance / wo.z, 1};
+        return {reflect(wo), reflectance / wo.z, 1};
     }
 };
 
@@ -133,8 +133,8 @@ inline real fresnel(real cos_i, real cos_t, real eta) {
     return (sqr(parallel) + sqr(perpendicular)) / 2;
 }
 
-// Reflects with probability Fresnel, else refracts (Snell).  Radiance grows with the square of the
-// index: eta^2 when it leaves the medium of wi for that of wo (Veach 1997, sec. 5.2).
+// Reflects with probability Fresnel, else refracts (Snell).  Refraction multiplies radiance by the
+// square of (index on the side of wo) / (index on the side of wi), eta^2 (Veach 1997, sec. 5.2).
 inline BsdfSample sample_glass(const Glass& m, vec3 wo, bool outside, real u) {
     real eta = outside ? 1 / m.ior : m.ior;
     real cos2_t = (1 - eta) * (1 + eta) + sqr(eta * wo.z);  // 1 - eta^2 sin^2, grazing, too
@@ -142,7 +142,7 @@ inline BsdfSample sample_glass(const Glass& m, vec3 wo, bool outside, real u) {
     real reflectance = cos2_t > 0 ? fresnel(wo.z, cos_t, eta) : 1;
     if (u < reflectance) {
         real f = reflectance / wo.z;
-        return {mirrored(wo), {f, f, f}, reflectance};
+        return {reflect(wo), {f, f, f}, reflectance};
     }
     real f = (1 - reflectance) * sqr(eta) / cos_t;
     return {{-eta * wo.x, -eta * wo.y, -cos_t}, {f, f, f}, 1 - reflectance};

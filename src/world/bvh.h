@@ -18,12 +18,12 @@ struct Probe {
 // Distance at which the ray enters a box, 0 if it starts inside; nothing if it misses the box up to
 // tmax.  The boxes of the BVH are wider than their contents by more than rounding, so that rays
 // within a face do not matter.
-inline std::optional<real> enter_box(const Box& b, const Probe& p) {
+inline std::optional<real> enter_box(const Box& box, const Probe& probe) {
     // exercise 1.4
-    real enter = 0, leave = p.ray.tmax;
+    real enter = 0, leave = probe.ray.tmax;
     for (auto k : axis) {
-        const real lo = (b.lo.*k - p.ray.o.*k) * p.inverse.*k;
-        const real hi = (b.hi.*k - p.ray.o.*k) * p.inverse.*k;
+        const real lo = (box.lo.*k - probe.ray.o.*k) * probe.inverse.*k;
+        const real hi = (box.hi.*k - probe.ray.o.*k) * probe.inverse.*k;
         enter = std::max(enter, std::min(lo, hi));
         leave = std::min(leave, std::max(lo, hi));
     }
@@ -39,7 +39,7 @@ struct TreeNode {
     bool is_leaf() const { return count > 0; }
 };
 
-inline constexpr int tree_depth = 64;  // at most; so many nodes never wait at once
+inline constexpr int tree_depth = 64;  // an upper bound; at most depth + 1 nodes wait at once
 
 // The nearest of `best` and all hits in the leaves.  enter(box) is the distance at which the ray
 // enters it, or nothing.  look(leaf, best) is the nearest of best and the leaf's own hits.
@@ -74,14 +74,14 @@ inline Hit nearest_hit(std::span<const TreeNode> nodes, Hit best, Enter enter, L
 
 // A row of boxes is split before number `left`.  The cost is the expected number of shapes that a
 // ray through all of them tests, times half the area of their bounding box.
-struct Division {
+struct Split {
     real cost = infinity;
     size_t left = 0;
 };
 
-// The cheapest division of two or more boxes that leaves some on both sides (the surface area
+// The cheapest split of two or more boxes that leaves some on both sides (the surface area
 // heuristic; Goldsmith, Salmon 1987, IEEE CG&A 7(5)).  Time O(n).
-inline Division best_division(std::span<const Box> boxes) {
+inline Split best_split(std::span<const Box> boxes) {
     // exercise 1.6
     std::vector<real> right(boxes.size());  // half the area about the boxes from i on
     Box box;
@@ -90,7 +90,7 @@ inline Division best_division(std::span<const Box> boxes) {
         right[i] = box.half_area();
     }
     box = {};
-    Division best;
+    Split best;
     for (size_t i = 1; i < boxes.size(); ++i) {
         box.add(boxes[i - 1]);
         const real cost = box.half_area() * real(i) + right[i] * real(boxes.size() - i);
@@ -131,10 +131,10 @@ public:
         if (nodes_.empty()) return {};
         const Probe probe(ray);
         const Shear k = shear(ray.d);
-        const real room = rounding(ray);
+        const real padding = rounding(ray);
         auto enter = [&](const Box& box) {
             if (work) ++work->nodes;
-            return enter_box(wider(box, room), probe);
+            return enter_box(padded(box, padding), probe);
         };
         auto look = [&](const TreeNode& leaf, Hit best) {
             if (work) work->shapes += int(leaf.count);
@@ -155,11 +155,11 @@ public:
         if (nodes_.empty()) return false;
         const Probe probe(ray);
         const Shear k = shear(ray.d);
-        const real room = rounding(ray);
+        const real padding = rounding(ray);
         std::array<uint32_t, tree_depth + 2> stack{0};
         for (size_t waiting = 1; waiting > 0;) {
             const TreeNode& node = nodes_[stack[--waiting]];
-            if (!enter_box(wider(node.box, room), probe)) continue;
+            if (!enter_box(padded(node.box, padding), probe)) continue;
             for (uint32_t i = node.first; i < node.first + node.count; ++i)
                 if (intersect(shapes_[i], ray, k, ray.tmax)) return true;
             if (node.is_leaf()) continue;
@@ -176,7 +176,7 @@ private:
 
     // Error of a hit and of a box's plane for a ray from far away.
     static real rounding(const Ray& ray) { return 32 * ulp * max_abs(ray.o); }
-    static Box wider(const Box& b, real e) { return {b.lo - vec3{e, e, e}, b.hi + vec3{e, e, e}}; }
+    static Box padded(const Box& b, real e) { return {b.lo - vec3{e, e, e}, b.hi + vec3{e, e, e}}; }
 
     // ---- Construction ---------------------------------------------------------------------------
 
@@ -192,7 +192,7 @@ private:
     void grow(size_t index, std::span<Item> items, int depth) {
         Box box;
         for (const Item& item : items) box.add(item.box);
-        const Division d = divide(items, depth);
+        const Split d = split(items, depth);
         // A leaf costs a ray about as much as a node and one of its shapes.
         if (items.size() <= leaf_size && !(d.cost < box.half_area() * real(items.size() - 1))) {
             nodes_[index] = {box, uint32_t(ids_.size()), uint32_t(items.size())};
@@ -206,9 +206,9 @@ private:
         grow(left + 1, items.subspan(d.left), depth + 1);
     }
 
-    // Sorts the items along the axis that is divided best.
-    static Division divide(std::span<Item> items, int depth) {
-        Division best{infinity, items.size() / 2};
+    // Sorts the items along the axis of the cheapest split.
+    static Split split(std::span<Item> items, int depth) {
+        Split best{infinity, items.size() / 2};
         if (items.size() < 2 || depth >= halved_from) return best;
         auto best_axis = axis[0];
         auto sort = [&](real vec3::*k) {
@@ -219,7 +219,7 @@ private:
             if (items.front().centre(k) == items.back().centre(k)) continue;
             std::vector<Box> boxes;
             for (const Item& item : items) boxes.push_back(item.box);
-            const Division d = best_division(boxes);
+            const Split d = best_split(boxes);
             if (d.left == 0 || d.left >= items.size() || !(d.cost < best.cost)) continue;
             best = d;
             best_axis = k;

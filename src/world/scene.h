@@ -18,7 +18,7 @@ struct Camera {
 inline Camera look_at(vec3 eye, vec3 target, real fov) {
     vec3 forward = unit(target - eye);
     vec3 right = unit(cross(forward, {0, 1, 0}));
-    const vec2 half = turned(fov / 720);
+    const vec2 half = unit_circle(fov / 720);
     return {eye, right, cross(right, forward), forward, half.y / half.x};
 }
 
@@ -127,7 +127,7 @@ inline void add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
 // Cosine and sine of an angle in degrees.
 inline vec2 turned_about_y(real degrees) {
     const real turns = degrees / 360;
-    return turned(turns - std::floor(turns));
+    return unit_circle(turns - std::floor(turns));
 }
 
 // Size along x, y, z from the origin, then rotated about y (x' = c x + s z, z' = c z - s x), then

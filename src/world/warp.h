@@ -10,7 +10,7 @@ namespace penumbra {
 
 // The point at u turns of the unit circle, 0 <= u <= 1.  The nearest quarter of a turn is split off
 // exactly.  For the remainder, |x| <= pi / 4, Taylor polynomials are exact to rounding.
-inline vec2 turned(real u) {
+inline vec2 unit_circle(real u) {
     const int quarter = int(4 * u + real(0.5));
     const real x = 2 * pi * (u - real(quarter) / 4), y = x * x;
     constexpr auto over = [](int n) constexpr {
@@ -34,7 +34,7 @@ inline vec2 turned(real u) {
 
 // At u turns about z.
 inline vec3 spherical(real cos_theta, real sin_theta, real u) {
-    const vec2 at = turned(u);
+    const vec2 at = unit_circle(u);
     return {sin_theta * at.x, sin_theta * at.y, cos_theta};
 }
 

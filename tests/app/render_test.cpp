@@ -342,7 +342,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             fill_pilot(film, pilot_samples, L);
             uint64_t checks = 0;
             do {
-                fill(film, next_check(film.least_taken()), L);
+                fill(film, next_check(film.min_taken()), L);
                 ++checks;
             } while (doubt_of(film, error_of(film), {}) != Doubt::no ||
                      !is_small_enough(error_of(film), E));

@@ -4,7 +4,7 @@
 
 #include "base/vec.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 inline constexpr bool single = sizeof(real) == 4;
 
@@ -17,3 +17,7 @@ inline doctest::Approx about(double value, double relative) {
 inline doctest::Approx approx(double x, double in_double = 1e-12, double in_float = 2e-5) {
     return about(x, single ? in_float : in_double);
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

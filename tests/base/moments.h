@@ -3,8 +3,12 @@
 #include "base/stats.h"
 #include "oracle/oracle.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 inline oracle::Estimate estimate(const Moments& m, double unit = 0x1p-53) {
     return {m.mean, m.standard_error(), double(m.n) - 1, unit};
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

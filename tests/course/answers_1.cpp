@@ -44,11 +44,11 @@ Out ask_box(In x) {
 }
 
 // Lower and upper corners of boxes: the cost of the best division, and how many are on the left.
-Out ask_division(In x) {
+Out ask_split(In x) {
     std::vector<Box> boxes;
     for (size_t i = 0; i + 6 <= x.size(); i += 6)
         boxes.push_back({vec3_of(x, i), vec3_of(x, i + 3)});
-    const Division d = best_division(boxes);
+    const Split d = best_split(boxes);
     return row(d.cost, d.left);
 }
 
@@ -87,6 +87,6 @@ int main() {
                                {"intersect_sphere", 11, ask_sphere},
                                {"intersect_triangle", 16, ask_triangle},
                                {"enter_box", 13, ask_box},
-                               {"best_division", 0, ask_division},
+                               {"best_split", 0, ask_split},
                                {"nearest_hit", 0, ask_tree}});
 }

@@ -62,7 +62,7 @@ Out take_step(In x) {
     const Step e = asked_step(x);
     const bool goes_on = e.end == End::no;
     const Segment& s = e.next;
-    return row(e.met, goes_on, e.weight, e.Le, e.direct.L, e.wi, e.x.local.n, s.ray.o, s.ray.d,
+    return row(e.met, goes_on, e.weight, e.Le, e.direct.L, e.wi, e.vertex.local.n, s.ray.o, s.ray.d,
                s.from, s.pdf, goes_on ? s.beta : rgb{}, s.k, s.n, e.scattered.f, e.scattered.wi,
                e.scattered.pdf);
 }

@@ -238,7 +238,7 @@ void clusters(Judge& j) {
             for (size_t m = 0; m < n[k]; ++m) add_box(boxes, lo, size);
             cost += double(n[k]) * half_area(size);
         }
-        const Out d = j.ask("best_division", boxes);
+        const Out d = j.ask("best_split", boxes);
         heaps.see(d[1] == double(n[0]) && std::abs(d[0] - cost) < 1024 * j.epsilon * cost,
                   say("%zu boxes here and %zu far away: cost %.6g after %zu expected, %.6g after "
                       "%.0f came",
@@ -262,7 +262,7 @@ void any_boxes(Judge& j) {
         }
         double best = endless;
         for (size_t left = 1; left < n; ++left) best = std::min(best, cost_of(boxes, left));
-        const Out d = j.ask("best_division", boxes);
+        const Out d = j.ask("best_split", boxes);
         const double off = 4096 * j.epsilon * best;
         const bool parts = d[1] >= 1 && d[1] < double(n);
         none += !parts;
@@ -285,7 +285,7 @@ void two_sweeps(Judge& j) {
         for (size_t i = 0; i < n; ++i)
             add_box(boxes, {double(i), j.random(), j.random()}, {1, j.random(), j.random()});
         const auto start = std::chrono::steady_clock::now();
-        j.ask("best_division", boxes);
+        j.ask("best_split", boxes);
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
     double least = endless;
@@ -322,7 +322,7 @@ void division(Judge& j) {
         Out boxes;
         std::istringstream words(w.boxes);
         for (double x; words >> x;) boxes.push_back(x);
-        const Rows d = j.probe("best_division", Rows(boxes));
+        const Rows d = j.probe("best_split", Rows(boxes));
         j.exact(w.what, std::abs(d[0][0] - w.cost) < 64 * j.epsilon * w.cost && d[0][1] == w.left,
                 say("a cost of %g after %g boxes expected, %g after %g came", w.cost, w.left,
                     d[0][0], d[0][1]));

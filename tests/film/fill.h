@@ -4,7 +4,7 @@
 
 #include "film/weights.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 // Brings the blocks from `first` up to `last` to n samples.
 inline Tally fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
@@ -57,3 +57,7 @@ inline bool same(const Film& a, const Film& b) {
            same(a.sum, b.sum) && same(a.weight, b.weight) && same(a.deviation, b.deviation) &&
            same(a.taken, b.taken) && same(a.near, b.near);
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

@@ -2,7 +2,7 @@
 #pragma once
 #include "film/image.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 using Colour = std::array<float, 3>;
 
@@ -18,3 +18,7 @@ inline Image variegated(int width, int height) {
     image.at(0, 0) = {0, -0.0f, 1e-42f};
     return image;
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

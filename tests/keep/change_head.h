@@ -2,7 +2,7 @@
 #pragma once
 #include "keep/film_file.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 // Copies a film with the same numbers and some other facts.
 inline void change_head(const std::string& from, const std::string& to, const Facts& changed) {
@@ -15,3 +15,7 @@ inline void change_head(const std::string& from, const std::string& to, const Fa
     file.read(numbers);
     write_film_file(to, head, {numbers});
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

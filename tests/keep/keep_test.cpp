@@ -92,8 +92,8 @@ TEST_CASE("a film that was stopped anywhere, and kept, becomes what one run make
             const auto stop = int64_t(all * to_unit(hash(seed, k)));
             const Film film = fill(blank(K), 40, 3, stop);
             Keeper(folder / "a.film", of).write(film, {}, false);
-            if (film.most_taken() + film.pilot == 0) continue;
-            amid += film.least_taken() != film.most_taken(), in_pilot += film.is_pilot;
+            if (film.max_taken() + film.pilot == 0) continue;
+            amid += film.min_taken() != film.max_taken(), in_pilot += film.is_pilot;
             const Film on = fill(restored(folder / "a.film", blank(K)), 40);
             CAPTURE(stop);
             CHECK(same(on, whole));
@@ -284,7 +284,7 @@ TEST_CASE("a film that could be none is refused, by what is wrong") {
     Film wrong = pilot;  // no weight is chosen yet
     wrong.weight[2] = 2;
     CHECK(why({}, wrong, pilot) == impossible);
-    for (const auto& [f, most] : {std::pair{pilot, pilot_samples}, {film, most_samples}}) {
+    for (const auto& [f, most] : {std::pair{pilot, pilot_samples}, {film, max_samples}}) {
         wrong = f;
         wrong.taken.back() = most;
         CHECK(why({}, wrong, f) == "");

@@ -8,7 +8,7 @@
 #include "path/pathtracer.h"
 #include "path/start.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 // Radiance of sample i of pixel (x, y).
 template <class Visitor = NoVisitor>
@@ -40,3 +40,7 @@ auto side_by_side(int n, F f) {
     for (std::thread& worker : workers) worker.join();
     return results;
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

@@ -358,7 +358,7 @@ sphere 1 1 0  0.7  lamp
         radiance(scene, {bsdf, mis, 0}, pattern, i % 16, i / 16, 0,
                  [&](const Segment&, const Step& e) {
                      if (e.end != End::no) return;
-                     const Surface& at = e.x.at;
+                     const Surface& at = e.vertex.at;
                      ++steps;
                      wrong += !(dot(e.next.n, e.next.ray.d) > 0);
                      wrong += e.next.n != at.n && e.next.n != -at.n;

@@ -3,7 +3,7 @@
 #include "oracle/expect.h"
 #include "path/sampler.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 inline constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
                                            SamplerKind::halton, SamplerKind::sobol};
@@ -20,3 +20,7 @@ inline oracle::Verdict expect_alike(const std::vector<uint64_t>& counts) {
     return oracle::expect_counts(counts,
                                  std::vector<double>(counts.size(), 1 / double(counts.size())));
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

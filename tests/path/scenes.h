@@ -4,7 +4,7 @@
 
 #include "text/scene_file.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 inline NamedScene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
 
@@ -58,3 +58,7 @@ sphere -1.6 0.7 0  0.7   gloss
 sphere 0 0.7 0.5  0.6   mirror
 sphere 1.5 0.6 0.2  0.6   glass
 )";
+
+}  // namespace penumbra
+
+using namespace penumbra;

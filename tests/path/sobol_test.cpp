@@ -16,8 +16,8 @@ namespace {
 // The pairs of one randomisation in the order of the sampler.
 struct Points {
     uint64_t a = 0, b = 0;
-    vec2 operator()(uint64_t i) const { return sobol_pair(mirrored(i), a, b); }
-    real third(uint64_t i) const { return sobol_third(mirrored(i), a, b); }
+    vec2 operator()(uint64_t i) const { return sobol_pair(reverse_bits(i), a, b); }
+    real third(uint64_t i) const { return sobol_third(reverse_bits(i), a, b); }
 };
 Points random_points(Rng& rng) {
     const uint64_t a = rng.bits(), b = rng.bits();
@@ -59,11 +59,11 @@ TEST_CASE("the first points are Sobol's, where nothing is shuffled and shifted")
 }
 
 TEST_CASE("an index is mirrored bit by bit") {
-    CHECK(mirrored(1) == uint64_t(1) << 63);
-    CHECK(mirrored(6) == uint64_t(3) << 61);
+    CHECK(reverse_bits(1) == uint64_t(1) << 63);
+    CHECK(reverse_bits(6) == uint64_t(3) << 61);
     Rng rng{seed_here()};
     for (int n = 0; n < 100; ++n) {
-        const uint64_t i = rng.bits(), m = mirrored(i);
+        const uint64_t i = rng.bits(), m = reverse_bits(i);
         for (int k = 0; k < 64; ++k) REQUIRE((m >> k & 1) == (i >> (63 - k) & 1));
     }
 }
@@ -95,7 +95,7 @@ TEST_CASE("the digits of z are those of the index, a polynomial modulo 2, in bas
             z |= rest << k;
             rest = quotient;
         }
-        REQUIRE(sobol_z(mirrored(i)) == mirrored(z));
+        REQUIRE(sobol_z(reverse_bits(i)) == reverse_bits(z));
     }
 }
 
@@ -153,7 +153,7 @@ TEST_CASE("single numbers: one in each of 2^k parts, for 2^k indices in a row") 
             const uint64_t bits = rng.bits();
             std::vector<int> held(64);
             for (uint64_t i = 64 * block; i < 64 * (block + 1); ++i)
-                ++held[part(64, sobol_single(mirrored(i), bits))];
+                ++held[part(64, sobol_single(reverse_bits(i), bits))];
             for (int h : held) REQUIRE(h == 1);
         }
 }
@@ -171,7 +171,7 @@ TEST_CASE("points are uniform over the square, in their first digits and in thei
             ++cubes[part(8, u.x) * 64 + part(8, u.y) * 8 + part(8, points.third(i))];
             ++first_digits[part(16, u.x) * 16 + part(16, u.y)];
             ++last_digits[part(16, fraction(u.x)) * 16 + part(16, fraction(u.y))];
-            const real v = sobol_single(mirrored(i), rng.bits());
+            const real v = sobol_single(reverse_bits(i), rng.bits());
             ++single[part(16, v) * 16 + part(16, fraction(v))];
         }
         EXPECT(expect_alike(single).of("single"), 0.2);
@@ -190,7 +190,9 @@ TEST_CASE("two indices are shuffled as by a coin for every block") {
         std::vector<double> expected(256);
         for (int n = 0; n < 200000; ++n) {
             const uint64_t a = rng.bits(), b = rng.bits();
-            auto place = [&](uint64_t at) { return mirrored(shuffled(mirrored(at), a, b)) & 15; };
+            auto place = [&](uint64_t at) {
+                return reverse_bits(shuffled(reverse_bits(at), a, b)) & 15;
+            };
             ++counts[place(i) * 16 + place(k)];
         }
         // Places first differ at the highest bit where the indices do; lower bits are independent.

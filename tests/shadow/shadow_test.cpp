@@ -20,8 +20,8 @@ struct Receiver {
     Step sample(uint64_t i, uint64_t seed = 1) const {
         const Pattern pattern{SamplerKind::independent, seed};
         Step e;
-        e.met = true, e.x = Vertex{{}, x, &material, 1, local, {0, 0, 1}};
-        e.direct = direct_light(scene, {Direction::bsdf, LightMode::nee, 0}, e.x,
+        e.met = true, e.vertex = Vertex{{}, x, &material, 1, local, {0, 0, 1}};
+        e.direct = direct_light(scene, {Direction::bsdf, LightMode::nee, 0}, e.vertex,
                                 Sampler(pattern, 0, i), 0);
         return e;
     }

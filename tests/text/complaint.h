@@ -4,7 +4,7 @@
 
 #include "text/words.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 // Returns the message of the error that `work` throws; "" if it throws none.
 template <class Error = UserError>
@@ -16,3 +16,7 @@ std::string complaint(const auto& work) {
         return e.what();
     }
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

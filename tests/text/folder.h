@@ -10,7 +10,7 @@
 
 #include "text/files.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 namespace fs = std::filesystem;
 
@@ -50,3 +50,7 @@ struct Folder {
     }
     size_t files() const { return all().size(); }
 };
+
+}  // namespace penumbra
+
+using namespace penumbra;

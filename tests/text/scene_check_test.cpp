@@ -296,9 +296,9 @@ TEST_CASE("no path gets into an opaque body by glass that touches it") {
                 radiance(scene, {Direction::bsdf, LightMode::none, 0},
                          {SamplerKind::independent, 3}, i % 8, i / 8, k,
                          [&](const Segment&, const Step& e) {
-                             if (!e.met || !(max_of(e.x.material->diffuse()) > 0)) return;
+                             if (!e.met || !(max_of(e.vertex.material->diffuse()) > 0)) return;
                              ++met;
-                             inside += e.x.cos_o < 0;
+                             inside += e.vertex.cos_o < 0;
                          });
     }
     CHECK(met > 10000);
@@ -464,7 +464,7 @@ TEST_CASE("the house of atelier is closed, and only the fronts of its faces are 
                      y, 0, [&](const Segment&, const Step& e) {
                          if (!e.met)
                              ++escapes;
-                         else if (e.x.cos_o < 0)
+                         else if (e.vertex.cos_o < 0)
                              ++backs;
                      });
     if (!single) {

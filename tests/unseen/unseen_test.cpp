@@ -329,7 +329,7 @@ TEST_CASE("many lights share groups, and one near miss in many counts for all") 
     for (int i = 0; i < 999; ++i) add_sphere(many, {real(0.2), 50, 2}, real(1e-6), 1);
     many.line_of_light.resize(1000, 8);
     prepare(many);
-    CHECK(lights_in_view(many, 0, 8).groups.size() == most_light_groups);
+    CHECK(lights_in_view(many, 0, 8).groups.size() == max_light_groups);
     const auto one = misses_of(few, {}, 2000), all = misses_of(many, {}, 2000);
     CHECK(c(all, 0, 0) == c(one, 0, 0));  // actual hits
     const double expected = c(one, 0, 6), sigma = std::sqrt(expected * 1000);

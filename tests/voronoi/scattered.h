@@ -3,7 +3,7 @@
 #include "oracle/expect.h"
 #include "voronoi/plane.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 inline constexpr Rectangle unit_square = {{0, 0}, {1, 1}};
 
@@ -16,3 +16,7 @@ inline std::vector<Site> scattered(uint64_t n, oracle::Random& random,
     }
     return sites;
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

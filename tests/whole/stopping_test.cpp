@@ -36,12 +36,12 @@ Stopped stop_of(SamplerKind kind, uint64_t seed, double asked) {
     };
     Film film = filled(size, 0, pilot_samples, sample);
     while (!is_small_enough(error_of(film), asked))
-        fill(film, next_check(film.least_taken()), sample);
+        fill(film, next_check(film.min_taken()), sample);
     Image expected(size.width, size.height);
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
             for (size_t c = 0; c < 3; ++c) expected.at(x, y)[c] = float(truth(x, y).*axis[c]);
-    return {d_rel(expected, image_of(film)) / asked, film.least_taken()};
+    return {d_rel(expected, image_of(film)) / asked, film.min_taken()};
 }
 
 // Expects at most a part p of all runs to have a property that `count` of n runs had.

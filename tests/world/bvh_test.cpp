@@ -93,7 +93,7 @@ TEST_CASE("boxes are divided where areas times numbers are least, in any order o
             return double(halves[0].half_area()) * double(left) +
                    double(halves[1].half_area()) * double(boxes.size() - left);
         };
-        const Division d = best_division(boxes);
+        const Split d = best_split(boxes);
         double least = HUGE_VAL;
         for (size_t k = 1; k < boxes.size(); ++k) least = std::min(least, cost(k));
         wrong += !(d.left > 0 && d.left < boxes.size() && cost(d.left) <= least * (1 + 1e-5) &&

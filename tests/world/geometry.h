@@ -8,7 +8,7 @@
 #include "world/shapes.h"
 #include "world/warp.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 struct Dice {
     Rng rng{seed_here()};
@@ -143,3 +143,7 @@ inline Triangles ball(int levels) {
     }
     return mesh;
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

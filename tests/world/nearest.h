@@ -5,7 +5,7 @@
 
 #include "world/shapes.h"
 
-using namespace penumbra;
+namespace penumbra {
 
 // Of equally near hits it returns the first.
 inline std::optional<Hit> nearest(const std::vector<Shape>& shapes, const Ray& ray) {
@@ -24,3 +24,7 @@ inline bool same(const std::optional<Hit>& a, const std::optional<Hit>& b) {
     if (!a || !b) return !a && !b;
     return a->t == b->t && a->id == b->id && a->v == b->v && a->w == b->w;
 }
+
+}  // namespace penumbra
+
+using namespace penumbra;

@@ -27,8 +27,8 @@ const vec3 skew = unit({1, -2, real(-0.3)});
 TEST_CASE("u turns: within 2 ulp of 1 of cosine and sine, at quarters of a turn exactly") {
     const vec2 quarters[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 0}};
     for (int i = 0; i < 5; ++i) {
-        CHECK(turned(real(i) / 4).x == quarters[i].x);
-        CHECK(turned(real(i) / 4).y == quarters[i].y);
+        CHECK(unit_circle(real(i) / 4).x == quarters[i].x);
+        CHECK(unit_circle(real(i) / 4).y == quarters[i].y);
     }
     std::vector<real> turns{ulp, sqr(ulp), std::numeric_limits<real>::denorm_min(), below_one};
     for (int i = 0; i <= 8; ++i)  // ends and middles of the polynomials' ranges
@@ -40,7 +40,7 @@ TEST_CASE("u turns: within 2 ulp of 1 of cosine and sine, at quarters of a turn 
     double worst = 0;
     for (real u : turns) {
         const long double angle = 2 * std::numbers::pi_v<long double> * (long double)(u);
-        const vec2 at = turned(u);
+        const vec2 at = unit_circle(u);
         worst = std::max({worst, double(std::abs((long double)(at.x) - std::cos(angle))),
                           double(std::abs((long double)(at.y) - std::sin(angle)))});
     }
