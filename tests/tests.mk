@@ -1,5 +1,5 @@
 # tests.mk  builds and runs the tests, and what checks them: mutants, fuzzers, other compilers, layers
-.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core layers read programs-to-test
+.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core freestanding layers read programs-to-test
 
 RULES := Makefile tests/tests.mk
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
@@ -87,6 +87,20 @@ core: stb  ## the core alone: compile the renderer without any module, and count
 	$(CXX) $(filter-out -M% $(WITH) -Isrc,$(FLAGS)) -Ibuild/core/src -O1 -o build/core/penumbra build/core/src/app/penumbra.cpp
 	build/core/penumbra --size 32x16 --spp 4 --quiet -o build/core/cornell.png scenes/cornell.scene
 	@echo "$$(cat $(CORE:%=src/%/*) | wc -l) lines of core: $(CORE)"
+
+# Debian's clang compiles it for wasm32-wasi, as for a browser; Node.js runs it.
+WASI_PACKAGES := clang-19 lld-19 libclang-rt-19-dev-wasm32 libc++-19-dev-wasm32 nodejs
+WASI_FLAGS     = $(filter-out -M% -march% -pthread $(WITH) $(QUIET),$(FLAGS)) --target=wasm32-wasi -fno-exceptions -fno-rtti
+RUN_WASI      := const {WASI} = require("wasi"), wasi = new WASI({version: "preview1"}); \
+    WebAssembly.instantiate(require("fs").readFileSync(process.argv[1]), {wasi_snapshot_preview1: wasi.wasiImport}) \
+        .then(made => wasi.start(made.instance))
+freestanding:  ## the lecture without modules, threads, files, exceptions: compile it for wasm32-wasi, compare its bits
+	@missing=$$(dpkg -s $(WASI_PACKAGES) 2>&1 >/dev/null | grep -E 'not (installed|found)'); \
+	    [ -z "$$missing" ] || { echo "make freestanding: skipped:" $$missing; exit; }; set -e; mkdir -p build; \
+	    clang++-19 $(WASI_FLAGS) -O1 -DFREESTANDING -o build/lecture.wasm tests/film/lecture_test.cpp; \
+	    $(CXX) $(filter-out -M%,$(FLAGS)) -O1 -DFREESTANDING -o build/lecture tests/film/lecture_test.cpp; \
+	    build/lecture >build/lecture.here; node --no-warnings -e '$(RUN_WASI)' build/lecture.wasm >build/lecture.there; \
+	    cmp build/lecture.here build/lecture.there; echo "the lecture draws the same bits without threads, files and exceptions"
 
 # For tests/modules: compilers read all programs that there are, and write none.
 read: OPTIMISE := -fsyntax-only

@@ -1,4 +1,4 @@
-# whole/modules_test.py  tests of tests/modules: python3 tests/whole/modules_test.py [NAME...]
+# whole/modules_test.py  tests of tests/modules and make layers: python3 tests/whole/modules_test.py [NAME...]
 """Each function test_... is a test; modules_test.cpp runs them one by one."""
 import os
 import pathlib
@@ -26,17 +26,21 @@ FILES = {
 
 
 def run(files, *words):
+    return said_by(['tests/modules', *words], {**FILES, **files})
+
+
+def said_by(command, files):
     """(exit status, what is said)"""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        for name in ('Makefile', 'src/packages', 'tests/tests.mk', 'tests/modules'):
+        for name in ('Makefile', 'src/packages', 'tests/tests.mk', 'tests/modules', 'tests/layers'):
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, folder / name)
-        for name, text in {**FILES, **files}.items():
+        for name, text in files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_text(text)
         environment = {key: value for key, value in os.environ.items() if not key.startswith('MAKE')}
-        done = subprocess.run([str(folder / 'tests/modules'), *words], capture_output=True, text=True, env=environment)
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment)
         return done.returncode, done.stdout + done.stderr
 
 
@@ -63,6 +67,45 @@ def test_a_mistyped_path_is_no_other_program():
 def test_a_module_that_is_none_is_refused():
     status, said = run({}, 'sahdow')
     expect(status == 1 and 'wide keep shadow labs' in said, said)
+
+
+# Three headers in a row, of which the last may include the others; one of a module, a test's and a program.
+NUMBERED = {f'{top}/{name}': f'// {name}  {number}  what it is\n{lines}' for top, name, number, lines in (
+    ('src', 'world/shapes.h', 1, '#include <vector>\n'), ('src', 'world/tree.h', 2, '#include "wide/bvh.h"\n'),
+    ('src', 'world/scene.h', 3, '#include "shapes.h"\n#include "world/tree.h"\n'), ('src', 'path/li.h', 1, '#include "world/scene.h"\n'),
+    ('src', 'wide/bvh.h', 1, '#include "world/shapes.h"\n'), ('src', 'keep/keep.h', 1, '#include <string>\n'),
+    ('src', 'app/penumbra.cpp', 9, '#include "path/li.h"\n'), ('tests', 'world/near.h', '', '#include "world/scene.h"\n'))}
+
+
+def test_includes_go_downwards():
+    expect(said_by(['make', '-s', 'layers'], NUMBERED) == (0, '7 includes, all downwards\n'), said_by(['make', '-s', 'layers'], NUMBERED))
+
+
+def test_an_include_that_does_not_is_refused():
+    for name, line, why in (
+            ('src/world/scene.h', '#include <string>', 'the lecture knows no text, file or thread'),
+            ('src/path/li.h', '#include <thread>', 'the lecture knows no text, file or thread'),
+            ('src/world/scene.h', '#include "path/li.h"', 'world/scene.h is not above path/li.h'),
+            ('src/world/shapes.h', '#include "scene.h"', 'world/shapes.h is not above world/scene.h'),  # a cycle
+            ('src/world/scene.h', '#include "world/scene.h"', 'world/scene.h is not above world/scene.h'),
+            ('src/world/scene.h', '#include "world/none.h"', 'world/scene.h is not above world/none.h'),
+            ('src/world/scene.h', '#include "world/near.h"', 'world/scene.h is not above world/near.h'),
+            ('src/world/scene.h', '#include "wide/bvh.h"', 'world/scene.h is not above wide/bvh.h'),  # tree.h is the door
+            ('src/app/penumbra.cpp', '#include "keep/keep.h"', 'app/penumbra.cpp is not above keep/keep.h'),
+            ('src/wide/bvh.h', '#include "world/tree.h"', 'wide/bvh.h is not above world/tree.h'),
+            ('tests/world/near.h', '#include "path/li.h"', 'world/near.h is not above path/li.h')):
+        at = NUMBERED[name].count('\n') + 1
+        status, said = said_by(['make', '-s', 'layers'], {**NUMBERED, name: f'{NUMBERED[name]}{line}\n'})
+        expect(status == 2 and said.startswith(f'{name}:{at}: {why}\nmake: '), name, line, said)
+
+
+def test_a_header_has_a_name_and_a_number_in_a_folder_of_a_layer():
+    for name, text, why in (
+            ('src/path/li.h', '// path/li.h  what it is and does\n', 'line 1 must say: // path/li.h  NUMBER  what it is'),
+            ('src/path/li.h', '// path/step.h  1  what it is\n', 'line 1 must say: // path/li.h  NUMBER  what it is'),
+            ('src/paths/li.h', '// paths/li.h  1  what it is\n', 'no such folder in LAYERS')):
+        status, said = said_by(['make', '-s', 'layers'], {**NUMBERED, name: text})
+        expect(status == 2 and said.startswith(f'{name}: {why}\n'), name, said)
 
 
 if __name__ == '__main__':
