@@ -23,7 +23,7 @@ Scene furnace(rgb lamp = {}) {
     scene.materials = {{Rough({0.5, 0.5, 0.5}), {0.5, 0.5, 0.5}, true}, {Glass{1.5}}};
     add_sphere(scene, {0, 0, 0}, 2, 0);
     add_sphere(scene, {0.25, 0, -1}, 0.5, 1);
-    add_point_light(scene, {-0.5, 0.5, -1}, lamp);
+    add_light(scene, {{-0.5, 0.5, -1}, PointLight(), lamp});
     prepare(scene);
     return scene;
 }
