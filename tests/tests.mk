@@ -70,14 +70,14 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 
 # Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of
 # their folder and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 keep:5 unseen:5 app:6 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 \
+LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 app:6 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 \
           oracle:10 whole:10 faults:10 fuzz:10
-# The core names no module, but in four headers: which tree, whether meshes are read, whether films are kept, whether light
-# may be unseen.  Nor do tests of the core.  A module's program stands above the app.
+# The core names no module, but in five headers: which tree, whether meshes are read, scenes checked, films kept, and
+# whether light may be unseen.  Nor do tests of the core.  A module's program stands above the app.
 LECTURE := base world path film
 CORE    := $(LECTURE) text app
-MODULES := wide mesh keep unseen shadow voronoi radiosity
-DOORS   := world/tree.h:wide text/mesh.h:mesh app/keep.h:keep app/unseen.h:unseen
+MODULES := wide mesh check keep unseen shadow voronoi radiosity
+DOORS   := world/tree.h:wide text/mesh.h:mesh text/scene_file.h:check app/render.h:keep app/unseen.h:unseen
 # Of a folder that is named here, a module includes these headers alone.
 NEEDS   := wide:world/shapes.h
 
@@ -124,7 +124,7 @@ $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 # By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
 # for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
 # those that others must not see.
-TOGETHER := world wide mesh path film text keep unseen app shadow voronoi radiosity whole
+TOGETHER := world wide mesh path film text check keep unseen app shadow voronoi radiosity whole
 ALONE    := oracle/hosts_test
 FOLDER   = $(patsubst %/,%,$(dir $1))
 SHARED   = $(if $(filter $(TOGETHER),$(FOLDER)),core,$(FOLDER))$(if $(filter $(LATER),$1),-later)$(if $(filter $(HEAVY),$1),-heavy)

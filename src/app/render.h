@@ -1,6 +1,7 @@
 // app/render.h  4  from options to an image: a film, its target, its error, its file
+//
+// Films are kept in files if -DWITH_KEEP: with src/keep.
 #pragma once
-#include "app/keep.h"
 #include "app/options.h"
 #include "app/outputs.h"
 #include "app/threads.h"
@@ -9,6 +10,21 @@
 #include "path/start.h"
 #include "text/program.h"
 #include "text/scene_file.h"
+
+#ifdef WITH_KEEP
+#include "keep/keep.h"
+#else
+namespace penumbra {
+struct Keeper {
+    Keeper(const std::string& path, const FilmOf&) {
+        if (!path.empty()) throw UserError("--keep: this program was built without src/keep");
+    }
+    Spent restore(Film&) const { return {}; }
+    void write_now_and_then(const Film&, const Spent&) {}
+    std::string write(const Film&, const Spent&, bool) { return ""; }
+};
+}  // namespace penumbra
+#endif
 
 namespace penumbra {
 

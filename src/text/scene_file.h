@@ -1,6 +1,7 @@
-// text/scene_file.h  9  reading scenes/NAME.scene: one table of statements, each with its reader
+// text/scene_file.h  8  reading scenes/NAME.scene: one table of statements, each with its reader
 //
-// Parsing, messages and the table of reference/scenes.md all follow from `grammar`.
+// Parsing, messages and the table of reference/scenes.md all follow from `grammar`.  Scenes are
+// checked if -DWITH_CHECK: with src/check.
 #pragma once
 #include <map>
 #include <set>
@@ -9,8 +10,17 @@
 #include "path/sampler.h"
 #include "text/files.h"
 #include "text/mesh.h"
-#include "text/scene_check.h"
 #include "world/prepare.h"
+
+#ifdef WITH_CHECK
+#include "check/scene_check.h"
+#else
+namespace penumbra {
+inline std::vector<std::string> check_and_prepare(NamedScene& s, const std::string&) {
+    return prepare(s), std::vector<std::string>();
+}
+}  // namespace penumbra
+#endif
 
 namespace penumbra {
 
@@ -70,16 +80,7 @@ public:
                             ": empty scene: " + (s.dropped > 0 ? dropped : "it has no shape"));
         auto warn = [&](const std::string& what) { warnings_.push_back(what); };
         if (s.dropped > 0) warn(dropped);
-        const std::vector<std::string> moved = Separation(s, name).warnings;
-        warnings_.insert(warnings_.end(), moved.begin(), moved.end());
-        prepare(s);
-        if (const auto on = point_light_on_surface(s))
-            throw error_at(
-                name, s.line_of_light[on->light],
-                "this point light lies on the surface of " + where(s, on->shape) + ": move it off");
-        for (const auto& [length, shape] : coarse_lengths(s, !moved.empty()))
-            warn(too_coarse(where(s, shape),
-                            "ray origins are offset by more than 1 % of this shape's " + length));
+        for (const std::string& warning : check_and_prepare(s, name)) warn(warning);
         if (s.lights.empty()) warn("no light: the image will be black");
         return {std::move(scene), std::move(warnings_), std::move(files_)};
     }

@@ -1,5 +1,5 @@
-// text/scene_check_test.cpp  lights in other surfaces, point lights on them, coarse coordinates
-#include "text/scene_check.h"
+// check/scene_check_test.cpp  lights in other surfaces, point lights on them, coarse coordinates
+#include "check/scene_check.h"
 
 #include <doctest/doctest.h>
 

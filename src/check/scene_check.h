@@ -1,5 +1,5 @@
-// text/scene_check.h  8  hidden problems of a scene: surfaces in one place, hidden lights,
-// rounding
+// check/scene_check.h  1  problems of a scene that its text hides: surfaces in one place, point
+// lights on surfaces, coordinates too coarse for their precision
 #pragma once
 #include <map>
 #include <set>
@@ -7,6 +7,7 @@
 
 #include "text/named_scene.h"
 #include "text/words.h"
+#include "world/prepare.h"
 
 namespace penumbra {
 
@@ -361,6 +362,24 @@ inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool 
         ++pairs;
     }
     return found;
+}
+
+// ---- All of these -------------------------------------------------------------------------------
+
+// Moves surfaces apart, prepares the scene, and returns warnings to its author.  Throws UserError
+// "NAME:LINE: ..." about a scene that cannot be rendered.
+inline std::vector<std::string> check_and_prepare(NamedScene& s, const std::string& name) {
+    std::vector<std::string> warnings = Separation(s, name).warnings;
+    const bool moved = !warnings.empty();
+    prepare(s);
+    if (const auto on = point_light_on_surface(s))
+        throw error_at(
+            name, s.line_of_light[on->light],
+            "this point light lies on the surface of " + where(s, on->shape) + ": move it off");
+    for (const auto& [length, shape] : coarse_lengths(s, moved))
+        warnings.push_back(too_coarse(
+            where(s, shape), "ray origins are offset by more than 1 % of this shape's " + length));
+    return warnings;
 }
 
 }  // namespace penumbra
