@@ -132,7 +132,7 @@ std::map<std::string, Light> lights_of(const NamedScene& s) {
     std::map<std::string, Light> lights;
     for (size_t i = 0; i < s.shapes.size(); ++i)
         if (s.light_of[i] != no_light)
-            lights[s.names[s.material_of[i]]] = s.lights[size_t(s.light_of[i])];
+            lights.insert_or_assign(s.names[s.material_of[i]], s.lights[size_t(s.light_of[i])]);
     return lights;
 }
 
