@@ -113,10 +113,8 @@ struct House {
                              read_file(entry.path().string()));
         for (const char* name : {"beside.cpp", "course.mk"})
             folder.write(std::string("src/course/") + name, "// nothing\n");
-        folder.write("src/film/nothing.h", "// film/nothing.h  1  nothing\n");
-        folder.write("src/app/nothing.h", "// app/nothing.h  1  nothing\n");
-        folder.write("src/mesh/nothing.h", "// mesh/nothing.h  1  nothing\n");
-        folder.write("src/text/nothing.h", "// text/nothing.h  1  nothing\n");
+        for (const std::string name : {"film", "app", "mesh", "check", "text"})
+            folder.write("src/" + name + "/nothing.h", "// " + name + "/nothing.h  1  nothing\n");
         folder.write("src/keep/read_pfm.h", "// nothing\n");
         folder.write("src/world/numbers.h",
                      numbers_h(solved("1.1", twice_right), solved("1.2", square_right)));
