@@ -16,19 +16,19 @@ using Bounds = Floats;
 inline Bounds no_bounds() { return all(-HUGE_VALF); }
 
 // To a float, outwards by at least two ulp; origins of rays use up one of them.
-inline Bounds outwards(const Box& b) {
-    const Floats x{float(-b.lo.x), float(-b.lo.y), float(-b.lo.z), 0,
-                   float(b.hi.x),  float(b.hi.y),  float(b.hi.z),  0};
-    const Floats further = x + (larger(x, -x) * 0x1p-22f + std::numeric_limits<float>::min());
+inline Bounds outwards(const Box& exact) {
+    const Floats box{float(-exact.lo.x), float(-exact.lo.y), float(-exact.lo.z), 0,
+                     float(exact.hi.x),  float(exact.hi.y),  float(exact.hi.z),  0};
+    const Floats further = box + (larger(box, -box) * 0x1p-22f + std::numeric_limits<float>::min());
     return larger(smaller(further, all(far_away)), all(-far_away));
 }
 
 // The same without the lanes left.
 using Planes = std::array<float, 6>;
-inline Planes planes(const Bounds& b) { return {b[0], b[1], b[2], b[4], b[5], b[6]}; }
+inline Planes planes(const Bounds& box) { return {box[0], box[1], box[2], box[4], box[5], box[6]}; }
 
-inline double half_area(const Planes& p) {
-    const double x = double(p[3]) + p[0], y = double(p[4]) + p[1], z = double(p[5]) + p[2];
+inline double half_area(const Planes& of) {
+    const double x = double(of[3]) + of[0], y = double(of[4]) + of[1], z = double(of[5]) + of[2];
     return x * y + y * z + z * x;
 }
 
@@ -36,15 +36,15 @@ inline double half_area(const Planes& p) {
 struct Item {
     std::array<float, lane_count> lanes;
 
-    static Item of(const Shape& s, uint32_t id) {
-        Item item{std::bit_cast<std::array<float, lane_count>>(outwards(bounds(s)))};
+    static Item of(const Shape& shape, uint32_t id) {
+        Item item{std::bit_cast<std::array<float, lane_count>>(outwards(bounds(shape)))};
         item.lanes[3] = float(id & 0xffff), item.lanes[7] = float(id >> 16);
         return item;
     }
     Bounds box() const { return std::bit_cast<Bounds>(lanes); }
     uint32_t id() const { return uint32_t(lanes[3]) | uint32_t(lanes[7]) << 16; }
     // The centroid, twice.
-    float place(size_t a) const { return lanes[4 + a] - lanes[a]; }
+    float place(size_t k) const { return lanes[4 + k] - lanes[k]; }
     Bounds places() const {
         const float x = place(0), y = place(1), z = place(2);
         return Bounds{-x, -y, -z, 0, x, y, z, 0};
@@ -73,14 +73,14 @@ struct Grid {
     float low[3], scale[3];  // 0: too short an axis
 
     Grid(const Bounds& places, size_t items) : bins(std::min(max_bins, 4 + items / 16)) {
-        for (size_t a = 0; a < 3; ++a) {
-            const float extent = places[4 + a] + places[a];
-            low[a] = -places[a];
-            scale[a] = extent > 0x1p-100f ? below_one_float * float(bins) / extent : 0;
+        for (size_t k = 0; k < 3; ++k) {
+            const float extent = places[4 + k] + places[k];
+            low[k] = -places[k];
+            scale[k] = extent > 0x1p-100f ? below_one_float * float(bins) / extent : 0;
         }
     }
-    size_t bin(const Item& item, size_t a) const {
-        return size_t(int((item.place(a) - low[a]) * scale[a]));
+    size_t bin(const Item& item, size_t k) const {
+        return size_t(int((item.place(k) - low[k]) * scale[k]));
     }
     static constexpr float below_one_float = 0.99999f;  // the last place falls into the last bin
 };
@@ -90,15 +90,15 @@ struct Bins {
     uint32_t items[3][max_bins];
 
     Bins(std::span<const Item> all_items, const Grid& grid) {
-        for (size_t a = 0; a < 3; ++a) {
-            std::fill_n(box[a], grid.bins, no_bounds());
-            std::fill_n(items[a], grid.bins, 0);
+        for (size_t k = 0; k < 3; ++k) {
+            std::fill_n(box[k], grid.bins, no_bounds());
+            std::fill_n(items[k], grid.bins, 0);
         }
         for (const Item& item : all_items)
-            for (size_t a = 0; a < 3; ++a) {
-                const size_t k = grid.bin(item, a);
-                box[a][k] = larger(box[a][k], item.box());
-                ++items[a][k];
+            for (size_t k = 0; k < 3; ++k) {
+                const size_t bin = grid.bin(item, k);
+                box[k][bin] = larger(box[k][bin], item.box());
+                ++items[k][bin];
             }
     }
 };
@@ -110,31 +110,31 @@ struct Plane {
 };
 
 // Takes the plane between bins of an axis with the least sum of both sides' costs, if it is better.
-inline void sweep(const Bins& bins, size_t a, size_t count, Plane& best) {
-    double above[max_bins];  // the cost of bins k and up
+inline void sweep(const Bins& bins, size_t k, size_t count, Plane& best) {
+    double above[max_bins];  // the cost of this bin and up
     Bounds box = no_bounds();
     uint32_t n = 0;
-    for (size_t k = count - 1; k > 0; --k) {
-        box = larger(box, bins.box[a][k]);
-        n += bins.items[a][k];
-        above[k] = n > 0 ? half_area(planes(box)) * n : HUGE_VAL;
+    for (size_t bin = count - 1; bin > 0; --bin) {
+        box = larger(box, bins.box[k][bin]);
+        n += bins.items[k][bin];
+        above[bin] = n > 0 ? half_area(planes(box)) * n : HUGE_VAL;
     }
     box = no_bounds();
     n = 0;
-    for (size_t k = 1; k < count; ++k) {
-        box = larger(box, bins.box[a][k - 1]);
-        n += bins.items[a][k - 1];
+    for (size_t bin = 1; bin < count; ++bin) {
+        box = larger(box, bins.box[k][bin - 1]);
+        n += bins.items[k][bin - 1];
         if (n == 0) continue;
-        const double cost = half_area(planes(box)) * n + above[k];
-        if (cost < best.cost) best = {cost, a, k};
+        const double cost = half_area(planes(box)) * n + above[bin];
+        if (cost < best.cost) best = {cost, k, bin};
     }
 }
 
 inline Plane best_plane(std::span<const Item> items, const Grid& grid) {
     const Bins bins(items, grid);
     Plane best;
-    for (size_t a = 0; a < 3; ++a)
-        if (grid.scale[a] > 0) sweep(bins, a, grid.bins, best);
+    for (size_t k = 0; k < 3; ++k)
+        if (grid.scale[k] > 0) sweep(bins, k, grid.bins, best);
     return best;
 }
 
@@ -191,8 +191,8 @@ private:
     BinaryTree tree_;
     std::unique_ptr<Item[]> from_, to_;  // dividing a branch moves its items from one to the other
 
-    void add(const Bounds& b, uint32_t first, uint32_t count) {
-        tree_.branches.push_back({planes(b), first, count});
+    void add(const Bounds& box, uint32_t first, uint32_t count) {
+        tree_.branches.push_back({planes(box), first, count});
     }
     void add_children(uint32_t branch, const Extent* halves, uint32_t left) {
         Branch& parent = tree_.branches[branch];
@@ -246,12 +246,12 @@ private:
 
     // For places all alike, or a tree too deep.
     static uint32_t halve(std::span<Item> items, const Bounds& places, Extent* halves) {
-        auto extent = [&](size_t a) { return places[4 + a] + places[a]; };
+        auto extent = [&](size_t k) { return places[4 + k] + places[k]; };
         const size_t longer = extent(0) > extent(1) ? 0 : 1;
-        const size_t a = extent(longer) > extent(2) ? longer : 2;
+        const size_t k = extent(longer) > extent(2) ? longer : 2;
         const size_t half = items.size() / 2;
         std::nth_element(items.begin(), items.begin() + ptrdiff_t(half), items.end(),
-                         [&](const Item& i, const Item& j) { return i.place(a) < j.place(a); });
+                         [&](const Item& a, const Item& b) { return a.place(k) < b.place(k); });
         for (size_t i = 0; i < items.size(); ++i) halves[i >= half].add(items[i]);
         return uint32_t(half);
     }

@@ -8,12 +8,12 @@ namespace penumbra::wide {
 struct Children {
     std::array<uint32_t, lane_count> branch;
     size_t count = 0;
-    void add(uint32_t b) { branch[count++] = b; }
+    void add(uint32_t index) { branch[count++] = index; }
 };
 
 // The wide BVH of least surface-area cost that a binary one contains (Ylitie, Karras, Laine 2017,
 // "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", section 4.1): the cost
-// of a branch with up to j children of a node is the minimum over the number of them on the left.
+// of a branch with up to n children of a node is the minimum over the number of them on the left.
 // Time and memory O(n).
 class Collapse {
 public:
@@ -36,9 +36,9 @@ public:
             return list;
         }
         const uint32_t left = tree_.branches[i].left;
-        const size_t k = share(left, lane_count);
-        collect(left, k, list);
-        collect(left + 1, lane_count - k, list);
+        const size_t in_left = share(left, lane_count);
+        collect(left, in_left, list);
+        collect(left + 1, lane_count - in_left, list);
         const auto first = list.branch.begin(), end = first + ptrdiff_t(list.count);
         std::sort(first, end, [&](uint32_t a, uint32_t b) {
             return area(a) != area(b) ? area(a) > area(b) : a < b;
@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    // As up to j + 1 children: costs in units of a visit to the root's node.
+    // As up to n + 1 children: costs in units of a visit to the root's node.
     struct Costs {
         std::array<float, lane_count - 1> as;
         bool leaf;
@@ -62,46 +62,46 @@ private:
 
     double area(uint32_t i) const { return half_area(tree_.branches[i].box); }
 
-    float as(uint32_t i, size_t j) const { return cost_[i].as[j - 1]; }
+    float as(uint32_t i, size_t n) const { return cost_[i].as[n - 1]; }
 
-    // Number of the j children that belong to the left of two branches.
-    size_t share(uint32_t left, size_t j) const {
+    // Number of the n children that belong to the left of two branches.
+    size_t share(uint32_t left, size_t n) const {
         size_t best = 1;
-        for (size_t k = 2; k < j; ++k)
-            if (as(left, k) + as(left + 1, j - k) < as(left, best) + as(left + 1, j - best))
+        for (size_t k = 2; k < n; ++k)
+            if (as(left, k) + as(left + 1, n - k) < as(left, best) + as(left + 1, n - best))
                 best = k;
         return best;
     }
 
-    Costs costs(uint32_t i, float relative_area) const {
-        const Branch& b = tree_.branches[i];
-        const bool may_be_leaf = b.count <= largest_leaf_ && !(i == 0 && tree_.mixed);
+    Costs costs(uint32_t i, float visits) const {
+        const Branch& branch = tree_.branches[i];
+        const bool may_be_leaf = branch.count <= largest_leaf_ && !(i == 0 && tree_.mixed);
         const float leaf =
-            may_be_leaf ? relative_area * (leaf_cost + shape_cost * float(b.count)) : HUGE_VALF;
-        Costs c;
-        if (b.leaf()) {
-            c.as.fill(leaf);
-            c.leaf = true;
-            return c;
+            may_be_leaf ? visits * (leaf_cost + shape_cost * float(branch.count)) : HUGE_VALF;
+        Costs own;
+        if (branch.leaf()) {
+            own.as.fill(leaf);
+            own.leaf = true;
+            return own;
         }
-        auto shared = [&](size_t j) {
-            const size_t k = share(b.left, j);
-            return as(b.left, k) + as(b.left + 1, j - k);
+        auto shared = [&](size_t n) {
+            const size_t in_left = share(branch.left, n);
+            return as(branch.left, in_left) + as(branch.left + 1, n - in_left);
         };
-        const float node = relative_area + shared(lane_count);
-        c.leaf = leaf <= node;
-        c.as[0] = std::min(leaf, node);
-        for (size_t j = 2; j < lane_count; ++j) c.as[j - 1] = std::min(c.as[j - 2], shared(j));
-        return c;
+        const float node = visits + shared(lane_count);
+        own.leaf = leaf <= node;
+        own.as[0] = std::min(leaf, node);
+        for (size_t n = 2; n < lane_count; ++n) own.as[n - 1] = std::min(own.as[n - 2], shared(n));
+        return own;
     }
 
-    void collect(uint32_t i, size_t j, Children& list) const {
-        while (j > 1 && as(i, j) == as(i, j - 1)) --j;
-        if (j == 1) return list.add(i);
+    void collect(uint32_t i, size_t n, Children& list) const {
+        while (n > 1 && as(i, n) == as(i, n - 1)) --n;
+        if (n == 1) return list.add(i);
         const uint32_t left = tree_.branches[i].left;
-        const size_t k = share(left, j);
-        collect(left, k, list);
-        collect(left + 1, j - k, list);
+        const size_t in_left = share(left, n);
+        collect(left, in_left, list);
+        collect(left + 1, n - in_left, list);
     }
 };
 

@@ -30,7 +30,7 @@ inline constexpr size_t real_lanes = 32 / sizeof(real);
 #endif
 typedef real Reals __attribute__((vector_size(real_lanes * sizeof(real))));
 
-inline Floats all(float x) { return Floats{} + x; }
+inline Floats all(float number) { return Floats{} + number; }
 
 template <class Vector>
 Vector smaller(const Vector& a, const Vector& b) {
@@ -63,16 +63,16 @@ private:
     uint64_t bytes_;
 };
 
-inline Reals load(const real* x) {
-    Reals y;
-    std::memcpy(&y, x, sizeof y);
-    return y;
+inline Reals load(const real* from) {
+    Reals result;
+    std::memcpy(&result, from, sizeof result);
+    return result;
 }
 
 inline Reals fused(const Reals& a, const Reals& b, const Reals& c) {
-    Reals y;
-    for (size_t i = 0; i < real_lanes; ++i) y[i] = std::fma(a[i], b[i], c[i]);
-    return y;
+    Reals result;
+    for (size_t i = 0; i < real_lanes; ++i) result[i] = std::fma(a[i], b[i], c[i]);
+    return result;
 }
 
 // As of single numbers.
@@ -83,10 +83,10 @@ inline Reals difference_of_products(const Reals& a, const Reals& b, const Reals&
 }
 
 // The least of eight: halves, quarters, and the last two.
-inline int32_t least(const Keys& k) {
+inline int32_t least(const Keys& keys) {
     typedef int32_t Half __attribute__((vector_size(sizeof(Keys) / 2)));
-    const Half four = smaller<Half>(__builtin_shufflevector(k, k, 0, 1, 2, 3),
-                                    __builtin_shufflevector(k, k, 4, 5, 6, 7));
+    const Half four = smaller<Half>(__builtin_shufflevector(keys, keys, 0, 1, 2, 3),
+                                    __builtin_shufflevector(keys, keys, 4, 5, 6, 7));
     const Half two = smaller<Half>(four, __builtin_shufflevector(four, four, 2, 3, 0, 1));
     return smaller<Half>(two, __builtin_shufflevector(two, two, 1, 0, 3, 2))[0];
 }

@@ -28,24 +28,24 @@ inline Meeting intersect_triangles(const Rows& rows, const Ray& ray, const Shear
     const size_t count = rows.count;
     const real* first = rows.numbers + rows.at;
     const real *x = first + k.x * count, *y = first + k.y * count, *z = first + k.z * count;
-    const size_t b = 3 * count, c = 6 * count;
-    const Reals az = load(z) - oz, bz = load(z + b) - oz, cz = load(z + c) - oz;
+    const size_t to_b = 3 * count, to_c = 6 * count;
+    const Reals az = load(z) - oz, bz = load(z + to_b) - oz, cz = load(z + to_c) - oz;
     const Reals ax = (load(x) - ox) - k.sx * az, ay = (load(y) - oy) - k.sy * az;
-    const Reals bx = (load(x + b) - ox) - k.sx * bz, by = (load(y + b) - oy) - k.sy * bz;
-    const Reals cx = (load(x + c) - ox) - k.sx * cz, cy = (load(y + c) - oy) - k.sy * cz;
+    const Reals bx = (load(x + to_b) - ox) - k.sx * bz, by = (load(y + to_b) - oy) - k.sy * bz;
+    const Reals cx = (load(x + to_c) - ox) - k.sx * cz, cy = (load(y + to_c) - oy) - k.sy * cz;
     const Reals u = difference_of_products(cx, by, cy, bx);
     const Reals v = difference_of_products(ax, cy, ay, cx);
     const Reals w = difference_of_products(bx, ay, by, ax);
     const Reals det = u + v + w;
     // Where det is 0 or a NaN is about, t is NaN.
     const auto inside = (smaller(smaller(u, v), w) >= 0) | (larger(larger(u, v), w) <= 0);
-    Meeting m{Lanes(inside), {}, v, w, det};
-    m.hit.keep(count - rows.at);
-    if (!m.hit.any()) return m;
-    m.t = (u * az + v * bz + w * cz) * k.sz / det;
-    m.hit = Lanes(inside & (m.t > 0) & (m.t <= tmax));
-    m.hit.keep(count - rows.at);
-    return m;
+    Meeting met{Lanes(inside), {}, v, w, det};
+    met.hit.keep(count - rows.at);
+    if (!met.hit.any()) return met;
+    met.t = (u * az + v * bz + w * cz) * k.sz / det;
+    met.hit = Lanes(inside & (met.t > 0) & (met.t <= tmax));
+    met.hit.keep(count - rows.at);
+    return met;
 }
 
 class Leaves {
@@ -65,14 +65,14 @@ public:
         ids_.insert(ids_.end(), ids.begin(), ids.end());
         std::array<real, numbers * largest> rows{};
         for (size_t i = 0; i < n; ++i) {
-            const Shape& s = shapes[ids[i]];
+            const Shape& shape = shapes[ids[i]];
             real* row = &rows[spheres ? numbers * i : i];
             if (spheres) {
-                for (real x : {s.a.x, s.a.y, s.a.z, s.r}) *row++ = x;
+                for (real number : {shape.a.x, shape.a.y, shape.a.z, shape.r}) *row++ = number;
                 continue;
             }
-            for (vec3 p : {s.a, s.b, s.c})
-                for (auto a : axis) *row = p.*a, row += n;
+            for (vec3 p : {shape.a, shape.b, shape.c})
+                for (auto k : axis) *row = p.*k, row += n;
         }
         numbers_.insert(numbers_.end(), rows.begin(), rows.begin() + ptrdiff_t(numbers * n));
         return leaf;
@@ -86,12 +86,12 @@ public:
             return nearest_sphere(leaf, ray, best);
         Rows rows{&numbers_[leaf.first() * numbers], leaf.count(), 0};
         do {
-            Meeting m = intersect_triangles(rows, ray, k, best.t);
-            for (; m.hit.any(); m.hit.drop_first()) {
-                const size_t i = m.hit.first();
+            Meeting met = intersect_triangles(rows, ray, k, best.t);
+            for (; met.hit.any(); met.hit.drop_first()) {
+                const size_t i = met.hit.first();
                 const uint32_t id = ids_[leaf.first() + rows.at + i];
-                if (m.t[i] < best.t || (m.t[i] == best.t && id < best.id))
-                    best = {m.t[i], id, m.v[i] / m.det[i], m.w[i] / m.det[i]};
+                if (met.t[i] < best.t || (met.t[i] == best.t && id < best.id))
+                    best = {met.t[i], id, met.v[i] / met.det[i], met.w[i] / met.det[i]};
             }
         } while (has_more(rows));
         return best;
@@ -121,8 +121,8 @@ private:
         return real_lanes < largest && (rows.at += real_lanes) < rows.count;
     }
     Shape sphere(uint32_t i) const {
-        const real* x = &numbers_[i * numbers];
-        return {{x[0], x[1], x[2]}, {}, {}, x[3]};
+        const real* row = &numbers_[i * numbers];
+        return {{row[0], row[1], row[2]}, {}, {}, row[3]};
     }
     // Apart, so that a scene of triangles pays nothing for them.
     [[gnu::noinline]] Hit nearest_sphere(Child leaf, const Ray& ray, Hit best) const {

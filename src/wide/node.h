@@ -29,13 +29,13 @@ struct Probe {
         const Floats outer{float(x * more), float(y * more), float(z * more)};
         // 1/d beyond float: the near plane is met at least there, the far one is not.
         const Floats inner = larger(smaller(inside, most), -most);
-        for (size_t a = 0; a < 3; ++a) {
-            o[a] = all(float(ray.o.*axis[a]));
-            near_inverse[a] = all(inner[a]);
-            far_inverse[a] = all(outer[a]);
-            const bool down = std::signbit(ray.d.*axis[a]);
-            near[a] = lane_count * (down ? a + 3 : a);
-            far[a] = lane_count * (down ? a : a + 3);
+        for (size_t k = 0; k < 3; ++k) {
+            o[k] = all(float(ray.o.*axis[k]));
+            near_inverse[k] = all(inner[k]);
+            far_inverse[k] = all(outer[k]);
+            const bool down = std::signbit(ray.d.*axis[k]);
+            near[k] = lane_count * (down ? k + 3 : k);
+            far[k] = lane_count * (down ? k : k + 3);
         }
     }
 };
@@ -66,8 +66,8 @@ struct Crossing {
     // three bits: one number holds the distance and the child.
     static constexpr int32_t none = INT32_MAX;
     Keys keys() const {
-        const Keys k = (std::bit_cast<Keys>(enter) & ~7) | Keys{0, 1, 2, 3, 4, 5, 6, 7};
-        return k | (~(enter <= leave) & none);
+        const Keys keys = (std::bit_cast<Keys>(enter) & ~7) | Keys{0, 1, 2, 3, 4, 5, 6, 7};
+        return keys | (~(enter <= leave) & none);
     }
     // The last key of a box that may hold a hit at t <= end.
     static int32_t last_key(float end) { return std::bit_cast<int32_t>(end) | 7; }
@@ -92,9 +92,9 @@ struct Node {
 
     // The box of child i, as -lo and hi.
     void set(size_t i, const std::array<float, 6>& box) {
-        for (size_t a = 0; a < 6; ++a) {
-            const float x = box[a] >= far_away ? HUGE_VALF : box[a];
-            plane[lane_count * a + i] = a < 3 ? -x : x;
+        for (size_t k = 0; k < 6; ++k) {
+            const float x = box[k] >= far_away ? HUGE_VALF : box[k];
+            plane[lane_count * k + i] = k < 3 ? -x : x;
         }
     }
 
@@ -102,20 +102,20 @@ struct Node {
     // which a comparison fails and takes the second number: the interval is never too short, and
     // where the ray enters is never NaN, nor -0.
     Crossing meet(const Probe& ray, float end) const {
-        Floats n[3], f[3];
-        for (size_t a = 0; a < 3; ++a) {
-            n[a] = (planes(ray.near[a]) - ray.o[a]) * ray.near_inverse[a];
-            f[a] = (planes(ray.far[a]) - ray.o[a]) * ray.far_inverse[a];
+        Floats near[3], far[3];
+        for (size_t k = 0; k < 3; ++k) {
+            near[k] = (planes(ray.near[k]) - ray.o[k]) * ray.near_inverse[k];
+            far[k] = (planes(ray.far[k]) - ray.o[k]) * ray.far_inverse[k];
         }
-        return {larger(larger(n[0], n[1]), larger(n[2], Floats{})),
-                smaller(smaller(f[0], f[1]), smaller(f[2], all(end)))};
+        return {larger(larger(near[0], near[1]), larger(near[2], Floats{})),
+                smaller(smaller(far[0], far[1]), smaller(far[2], all(end)))};
     }
 
 private:
     Floats planes(size_t at) const {
-        Floats x;
-        std::memcpy(&x, plane + at, sizeof x);
-        return x;
+        Floats result;
+        std::memcpy(&result, plane + at, sizeof result);
+        return result;
     }
 };
 static_assert(sizeof(Node) % 32 == 0);

@@ -97,9 +97,9 @@ private:
         int32_t key;
     };
 
-    const wide::Node* at(wide::Child c) const {
+    const wide::Node* at(wide::Child child) const {
         const auto* first = reinterpret_cast<const std::byte*>(nodes_.data());
-        return reinterpret_cast<const wide::Node*>(first + c.bits);
+        return reinterpret_cast<const wide::Node*>(first + child.bits);
     }
 
     // Makes best the nearest hit of it and of all shapes.  Of a node's children the nearest comes
@@ -156,10 +156,10 @@ private:
         nodes_.emplace_back();
         const wide::Children children = collapse.children(root);
         for (size_t i = 0; i < children.count; ++i) {
-            const wide::Branch& b = tree.branches[children.branch[i]];
-            nodes_[index].set(i, b.box);
+            const wide::Branch& from = tree.branches[children.branch[i]];
+            nodes_[index].set(i, from.box);
             if (collapse.is_leaf(children.branch[i]))
-                nodes_[index].child[i] = leaves_.add(shapes, {&tree.ids[b.first], b.count});
+                nodes_[index].child[i] = leaves_.add(shapes, {&tree.ids[from.first], from.count});
         }
         for (size_t i = 0; i < children.count; ++i)
             if (!collapse.is_leaf(children.branch[i]))
