@@ -95,7 +95,7 @@ RUN_WASI      := const {WASI} = require("wasi"), wasi = new WASI({version: "prev
     WebAssembly.instantiate(require("fs").readFileSync(process.argv[1]), {wasi_snapshot_preview1: wasi.wasiImport}) \
         .then(made => wasi.start(made.instance))
 freestanding:  ## the lecture without modules, threads, files, exceptions: compile it for wasm32-wasi, compare its bits
-	@missing=$$(dpkg -s $(WASI_PACKAGES) 2>&1 >/dev/null | grep -E 'not (installed|found)'); \
+	@missing=$$(LC_ALL=C dpkg -s $(WASI_PACKAGES) 2>&1 >/dev/null | grep -E 'not (installed|found)'); \
 	    [ -z "$$missing" ] || { echo "make freestanding: skipped:" $$missing; exit; }; set -e; mkdir -p build; \
 	    clang++-19 $(WASI_FLAGS) -O1 -DFREESTANDING -o build/lecture.wasm tests/film/lecture_test.cpp; \
 	    $(CXX) $(filter-out -M%,$(FLAGS)) -O1 -DFREESTANDING -o build/lecture tests/film/lecture_test.cpp; \

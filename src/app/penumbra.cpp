@@ -59,6 +59,7 @@ FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, 
         what.samples.push_back({std::string(name.substr(2)), row(table, name).json()});
     what.samples.push_back(
         {"replications", plan.is_adaptive ? "adaptive" : std::to_string(plan.replications)});
+    if (!moves_surfaces) what.samples.push_back({"check", "none"});
     what.samples.push_back({"seed", std::to_string(o.seed)});
     what.samples.push_back({"rows", pair(rows.first, '-', rows.last)});
     what.notes = {{"name", printable(o.scene)}, {"exposure", json::number(double(scene.exposure))}};

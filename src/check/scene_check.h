@@ -11,6 +11,8 @@
 
 namespace penumbra {
 
+inline constexpr bool moves_surfaces = true;  // of programs that are built with this module
+
 // ---- Surfaces that lie in each other ------------------------------------------------------------
 
 // True if two shapes share more than an edge of one surface, within rounding, or lie above each
@@ -134,6 +136,7 @@ inline Light lifted(Light l, real by) {
     l.p += by * l.n;
     if (auto* ball = std::get_if<SphereLight>(&l.kind))
         ball->r = std::max(ball->r / 2, ball->r + by);
+    l.ask([&](const auto& kind) { kind.place(l); });
     return l;
 }
 inline Shape lifted(Shape s, vec3 n, real by) {

@@ -126,7 +126,7 @@ enum class End { no, leaves_scene, bounces, in_surface, reflects_nothing, roulet
 
 // The events where that ray stopped.
 struct Step {
-    bool met = false;  // true if the ray met a surface, at x
+    bool met = false;  // true if the ray met a surface, at the vertex
     Vertex vertex = {};
     rgb Le = {};                // emitted towards wo
     real weight = 0;            // MIS weight of Le against light sampling

@@ -48,7 +48,8 @@ struct Particle {
     rgb power;
 };
 
-// From a light chosen by its power, uniformly from its area, as Lambert's cosine law has it.
+// From a light chosen by its power, uniformly from its area, as Lambert's cosine law has it.  A
+// polygon or a point: spheres have become facets.
 inline Particle emit(const Scene& scene, const WalkNumbers& u) {
     const Light& l = choose_light(scene, u.start(WalkNumbers::pick));
     const vec2 at = u.start2(WalkNumbers::point), d = u.start2(WalkNumbers::direction);

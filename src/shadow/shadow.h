@@ -31,19 +31,20 @@ inline bool has_closed_form(const Light& l, const Surface& x) {
     return l.is_round() ? dot(p, p) > sqr(l.reach + error) : std::abs(dot(l.n, p)) > error;
 }
 
-// Irradiance by a light at p from a surface, at radiance 1.
+// Irradiance by a light at p from a surface, at radiance 1.  Of these kinds alone, not of
+// those that derive from them.
 template <class Kind>
 requires Kind::is_delta real irradiance(const Kind&, vec3, const Frame&) {
     return 0;  // never asked: it has no closed form
 }
-inline real irradiance(const SphereLight& l, vec3 p, const Frame& local) {
+inline real irradiance(const std::same_as<SphereLight> auto& l, vec3 p, const Frame& local) {
     const real d2 = dot(p, p);
     return irradiance_sphere(dot(local.n, p) / std::sqrt(d2), sqr(l.r) / d2);
 }
-inline real irradiance(const TriangleLight& l, vec3 p, const Frame& local) {
+inline real irradiance(const std::same_as<TriangleLight> auto& l, vec3 p, const Frame& local) {
     return irradiance_triangle(local.to_local(p), local.to_local(l.e), local.to_local(l.f));
 }
-inline real irradiance(const QuadLight& l, vec3 p, const Frame& local) {
+inline real irradiance(const std::same_as<QuadLight> auto& l, vec3 p, const Frame& local) {
     return irradiance_quad(local.to_local(p), local.to_local(l.e), local.to_local(l.f));
 }
 

@@ -12,7 +12,7 @@
 
 namespace penumbra {
 
-inline constexpr size_t most_members = 8;
+inline constexpr size_t max_members = 8;
 
 // An estimate may be wrong by any factor, because it does not know what hides a light.  So a part
 // of all choices goes to all members alike that can contribute (a defensive mixture, Hesterberg
@@ -44,7 +44,7 @@ inline LightNode node_of(const Light& l, real strength, uint32_t light) {
 // Up to eight members, in rows: a loop over a row becomes vector instructions.
 struct LightGroup {
     template <class T>
-    using Row = std::array<T, most_members>;
+    using Row = std::array<T, max_members>;
     Row<real> x{}, y{}, z{}, reach{}, spread2{}, axis_x{}, axis_y{}, axis_z{}, round{}, behind{},
         twosided{}, strength{};
     Row<uint32_t> child{};  // the number of a group or light
@@ -72,7 +72,7 @@ struct LightWeights {
 };
 inline LightWeights weights(const LightGroup& g, vec3 p, vec3 m) {
     LightWeights w;
-    for (size_t k = 0; k < most_members; ++k) {
+    for (size_t k = 0; k < max_members; ++k) {
         const real x = g.x[k] - p.x, y = g.y[k] - p.y, z = g.z[k] - p.z;
         const real d2 = x * x + y * y + z * z + g.spread2[k], d = std::sqrt(d2), per_d2 = 1 / d2;
         const real height = m.x * x + m.y * y + m.z * z + g.reach[k];
@@ -102,7 +102,7 @@ inline LightGroup::Row<real> shares(const LightGroup& g, vec3 p, vec3 m) {
     const real by_weight = is_sum ? (1 - even_part) / sum : 0;
     const real even = (is_sum ? even_part : 1) / number;
     LightGroup::Row<real> of;
-    for (size_t k = 0; k < most_members; ++k)
+    for (size_t k = 0; k < max_members; ++k)
         of[k] = (is_sum ? w.of[k] * by_weight : 0) + w.can[k] * even;
     if (number == 0) of = {1};  // none contributes, whichever is chosen
     return of;
@@ -133,7 +133,7 @@ public:
             const LightGroup::Row<real> share = shares(g, p, m);
             size_t k = 0;  // the last member whose part of [0,1) begins at u or before
             real begin = 0, sum = 0;
-            for (size_t i = 0; i < most_members; sum += share[i++])
+            for (size_t i = 0; i < max_members; sum += share[i++])
                 if (share[i] > 0 && sum <= u) k = i, begin = sum;
             c = {g.child[k], c.pick * share[k]};
             if (g.is_light[k]) break;
@@ -221,8 +221,8 @@ private:
         for (const LightNode& n : lights) sum += n.strength;
         std::ranges::stable_sort(lights, std::ranges::greater{}, &LightNode::strength);
         std::vector<Part> parts;
-        const size_t most = std::min(most_members, lights.size());
-        while (parts.size() + 1 < most && lights[parts.size()].strength > sum / most_members)
+        const size_t most = std::min(max_members, lights.size());
+        while (parts.size() + 1 < most && lights[parts.size()].strength > sum / max_members)
             parts.push_back({lights[parts.size()]});
         lights.erase(lights.begin(), lights.begin() + ptrdiff_t(parts.size()));
         cut(std::move(lights), most - parts.size(), parts);

@@ -3,7 +3,7 @@
 // A kind of light is a struct with these functions; `Light` calls them, and holds the rest.
 //     name            in what is told of a path
 //     is_delta        true if it has no surface that a ray could meet
-//     place(l)        sets what depends on l.p: see Emitter
+//     place(l)        sets what of Emitter follows from its shape, and the centre from l.p
 //     strength(L)     L times the area that it shows from afar; of a point, its intensity
 //     point(l, u)     a point of its surface, uniformly distributed, by u in [0,1)^2
 //     sample(l, p, u) a point that shines on p; none if the point that u chooses does not
@@ -27,7 +27,7 @@ struct Emitter {
     real reach = 0;
     vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
     vec3 edge = {};     // its longest edge
-    real pdf_area = 0;  // density of uniform points of its surface, 1 / its area
+    real pdf_area = 0;  // of a polygon: density of uniform points, 1 / its area
     bool twosided = false;
 
     bool is_round() const { return n == vec3{}; }
@@ -67,7 +67,7 @@ struct SphereLight {
     static constexpr bool is_delta = false;
     real r = 0;  // radius
 
-    void place(Emitter& l) const { l.reach = r, l.pdf_area = 1 / (4 * pi * sqr(r)); }
+    void place(Emitter& l) const { l.reach = r; }
     double strength(double L) const { return L * std::numbers::pi * double(r) * double(r); }
     Surface point(const Emitter& l, vec2 u) const {
         const vec3 n = sample_uniform_sphere(u);

@@ -52,12 +52,12 @@ inline void add_arrivals(std::vector<Arrival>& arrivals, const Scene& s, const L
 // lights, none where the tests could not suffice for a factor.  A function of the scene alone,
 // which samples of the picture do not influence: choices by it are unbiased.
 inline std::vector<Arrival> arrivals_of(const Scene& s) {
-    constexpr uint64_t paths = 512, most_draws = 64;
-    constexpr uint64_t most_tests = 1 << 18;  // of visibility: a tenth of a second or so
+    constexpr uint64_t paths = 512, max_draws = 64;
+    constexpr uint64_t max_tests = 1 << 18;  // of visibility: a tenth of a second or so
     std::vector<Arrival> arrivals(s.lights.size());
-    if (s.lights.size() < 2 || s.lights.size() > most_tests / 16) return arrivals;
+    if (s.lights.size() < 2 || s.lights.size() > max_tests / 16) return arrivals;
     const LightTree tree = light_tree_of(s.lights, arrivals);
-    for (uint64_t path = 0, tests = 0; path < paths && tests < most_tests; ++path) {
+    for (uint64_t path = 0, tests = 0; path < paths && tests < max_tests; ++path) {
         uint64_t draws = 0;
         auto u = [&] { return to_unit(hash(path, draws++)); };
         auto u2 = [&] {
@@ -67,7 +67,7 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
         const vec2 at = u2();  // of a view twice as wide as high, whatever the size of the picture
         Ray ray = camera_ray(s.camera, {2, 1}, 2 * at.x, at.y);
         rgb beta{1, 1, 1};
-        for (int surfaces = 0; surfaces < 3 && draws < most_draws;) {
+        for (int surfaces = 0; surfaces < 3 && draws < max_draws;) {
             const auto hit = s.bvh.closest(ray);
             if (!hit) break;
             const Surface x = s.surface(ray, *hit);
@@ -77,7 +77,7 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
             const vec3 wo = local.to_local(-ray.d);
             if (!m.is_delta()) {
                 add_arrivals(arrivals, s, tree, x, local, m, wo, double(max_of(beta)),
-                             hash(path, most_draws + draws));
+                             hash(path, max_draws + draws));
                 ++surfaces, tests += s.lights.size();
             }
             const real u_lobe = u();

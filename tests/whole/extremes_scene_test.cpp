@@ -104,7 +104,7 @@ double faint_and_bright(bool balls) {
     for (const double a : {faintest, 1e3 * faintest, least, 1.0, 1e30})
         for (const double b : {faintest, least, 1.0, 1e30})
             for (const double size : {smallest, 1e-6, 1.0, 1e6})
-                for (const int others : {0, 1, int(most_members)}) {
+                for (const int others : {0, 1, int(max_members)}) {
                     std::string s = "size 8 4\ndepth 3\ncamera 0 1 6  0 1 0  60\n";
                     s += oracle::say("light a %.17g 0 0\nlight b %.17g %.17g 0\n", a, b, b / 3);
                     s += "diffuse m .5 .5 .5\nquad -5 0 -5  0 0 10  10 0 0  m\n";

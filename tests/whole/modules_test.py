@@ -15,9 +15,9 @@ from testing import expect
 FILES = {
     'src/world/tree.h': '#ifdef TREE_WIDE\n#include "wide/tree.h"\n#else\nstruct Tree {};\n#endif\n',
     'src/wide/tree.h': 'struct Tree {};\n',
-    'src/app/keep.h': '#ifdef WITH_KEEP\n#include "keep/keep.h"\n#else\nstruct Keeper {};\n#endif\n',
+    'src/app/render.h': '#ifdef WITH_KEEP\n#include "keep/keep.h"\n#else\nstruct Keeper {};\n#endif\n',
     'src/keep/keep.h': 'struct Keeper {};\n',
-    'src/app/penumbra.cpp': '#include "app/keep.h"\n#include "world/tree.h"\nint main() { Keeper(), Tree(); }\n',
+    'src/app/penumbra.cpp': '#include "app/render.h"\n#include "world/tree.h"\nint main() { Keeper(), Tree(); }\n',
     'src/shadow/shadow.cpp': '#include "keep/keep.h"\nint main() { Keeper(); }\n',
     'src/labs/lab.cpp': 'int main() {}\n',
     'reference/how-it-works.md': '| core 4 | `app` | programs |\n| module | `wide` | a tree |\n| module | `keep` | films; `--keep` |\n'
@@ -53,14 +53,14 @@ def test_what_is_left_compiles():
 
 def test_what_names_a_module_must_say_so():
     for name, text in (('src/app/penumbra.cpp', '#include "keep/keep.h"\nint main() {}\n'),
-                       ('src/app/keep.h', '#include "keep/keep.h"\n'),
+                       ('src/app/render.h', '#include "keep/keep.h"\n'),
                        ('reference/how-it-works.md', FILES['reference/how-it-works.md'].replace('; needs `keep`', ''))):
         status, said = run({name: text}, 'keep')
         expect(status == 1 and 'it does not compile\n' in said and 'keep/keep.h: No such file' in said, name, said)
 
 
 def test_a_mistyped_path_is_no_other_program():
-    status, said = run({'src/app/keep.h': FILES['src/app/keep.h'].replace('keep/keep.h', 'keep/kept.h')}, 'labs')
+    status, said = run({'src/app/render.h': FILES['src/app/render.h'].replace('keep/keep.h', 'keep/kept.h')}, 'labs')
     expect(status == 1 and 'keep/kept.h: No such file' in said, said)
 
 
