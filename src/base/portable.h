@@ -19,9 +19,9 @@ inline double log(double x) {
     const double m = std::bit_cast<double>(bits - k * (int64_t(1) << 52)), s = (m - 1) / (m + 1);
     const double s2 = s * s, s4 = s2 * s2;
     double even = 0, odd = 0;  // the powers 2, 6, ... and 4, 8, ... of artanh(s) / s
-    for (int n = 19; n > 2; n -= 4) {
-        even = even * s4 + 1. / n;
-        odd = odd * s4 + 1. / (n + 2);
+    for (int degree = 19; degree > 2; degree -= 4) {
+        even = even * s4 + 1. / degree;
+        odd = odd * s4 + 1. / (degree + 2);
     }
     const double rest = 2 * s * (s2 * (even + s2 * odd));
     return double(k) * ln2_high + (2 * s + (rest + double(k) * ln2_low));
@@ -31,23 +31,23 @@ inline double log1p(double x) {
     return log(sum) + ((1 - sum) + x) / sum;
 }
 
-// e^x - c for c = 0 or 1, without cancellation, x <= 1; it ends at x = -708.
-inline double exp_less(double x, double c) {
+// e^x - less for less = 0 or 1, without cancellation, x <= 1; it ends at x = -708.
+inline double exp_less(double x, double less) {
     x = x < -708 ? -708 : x;
     const double k = std::floor(x * 0x1.71547652b82fep0 + 0.5);
-    const double r = (x - k * ln2_high) - k * ln2_low, r2 = r * r;
-    double even = 0, odd = 0;  // cosh(r) - 1 and sinh(r) / r - 1
-    for (int n = 12; n > 1; n -= 2) {
-        even = (even + 1) * (r2 * (1. / (n * (n - 1))));
-        odd = (odd + 1) * (r2 * (1. / (n * (n + 1))));
+    const double rest = (x - k * ln2_high) - k * ln2_low, rest2 = rest * rest;
+    double even = 0, odd = 0;  // cosh(rest) - 1 and sinh(rest) / rest - 1
+    for (int degree = 12; degree > 1; degree -= 2) {
+        even = (even + 1) * (rest2 * (1. / (degree * (degree - 1))));
+        odd = (odd + 1) * (rest2 * (1. / (degree * (degree + 1))));
     }
     const double scale = std::bit_cast<double>((int64_t(k) + 1023) << 52);
-    return scale * (even + (r + r * odd)) + (scale - c);
+    return scale * (even + (rest + rest * odd)) + (scale - less);
 }
 inline double exp(double x) { return exp_less(x, 0); }
 inline double expm1(double x) { return exp_less(x, 1); }
 
-// x^n for 0 < x <= 1 and n >= 0.
-inline double pow(double x, double n) { return exp(n * log(x)); }
+// For 0 < base <= 1 and exponent >= 0.
+inline double pow(double base, double exponent) { return exp(exponent * log(base)); }
 
 }  // namespace penumbra::portable

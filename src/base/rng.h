@@ -6,10 +6,10 @@ namespace penumbra {
 
 // Stafford's mix 13, a bijection of 64 bits: every input bit flips every output bit with
 // probability about 1/2 (the finaliser of SplitMix64; Steele, Lea, Flood 2014).
-inline uint64_t mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
+inline uint64_t mix(uint64_t bits) {
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+    return bits ^ (bits >> 31);
 }
 
 inline constexpr uint64_t golden = 0x9e3779b97f4a7c15u;  // 2^64 / golden ratio, odd

@@ -8,7 +8,7 @@ namespace penumbra {
 
 // A sum of numbers >= 0, in multiples of 2^-60: it does not depend on their order.
 __extension__ typedef unsigned __int128 FixedPoint;
-inline FixedPoint fixed_point(double x) { return FixedPoint(std::min(x, 0x1p40) * 0x1p60); }
+inline FixedPoint fixed_point(double value) { return FixedPoint(std::min(value, 0x1p40) * 0x1p60); }
 inline double value_of(FixedPoint sum) { return std::ldexp(double(sum), -60); }
 
 inline double square(double x) { return x * x; }  // double, also where the renderer uses float
@@ -18,10 +18,10 @@ inline double square(double x) { return x * x; }  // double, also where the rend
 struct Moments {
     uint64_t n = 0;
     double mean = 0;
-    double m2 = 0;  // sum of (x - mean)^2
+    double m2 = 0;  // sum of (value - mean)^2
 
-    void add(double x) {
-        const double before = double(n), delta = x - mean, step = delta / double(++n);
+    void add(double value) {
+        const double before = double(n), delta = value - mean, step = delta / double(++n);
         mean += step;
         m2 += delta * step * before;
     }
@@ -35,7 +35,7 @@ struct Moments {
         n += other.n;
     }
 
-    double variance() const { return n > 1 ? m2 / double(n - 1) : 0; }  // unbiased, for one x
+    double variance() const { return n > 1 ? m2 / double(n - 1) : 0; }  // unbiased, for one value
     double standard_error() const { return n ? std::sqrt(variance() / double(n)) : 0; }
 };
 

@@ -46,13 +46,13 @@ inline constexpr real vec3::*axis[3] = {&vec3::x, &vec3::y, &vec3::z};
 inline vec3 operator+(vec3 a, vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline vec3 operator-(vec3 a, vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline vec3 operator*(vec3 a, vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-inline vec3 operator*(vec3 a, real s) { return {a.x * s, a.y * s, a.z * s}; }
-inline vec3 operator*(real s, vec3 a) { return a * s; }
-inline vec3 operator/(vec3 a, real s) { return {a.x / s, a.y / s, a.z / s}; }
+inline vec3 operator*(vec3 a, real b) { return {a.x * b, a.y * b, a.z * b}; }
+inline vec3 operator*(real a, vec3 b) { return b * a; }
+inline vec3 operator/(vec3 a, real b) { return {a.x / b, a.y / b, a.z / b}; }
 inline vec3 operator-(vec3 a) { return {-a.x, -a.y, -a.z}; }
 inline vec3& operator+=(vec3& a, vec3 b) { return a = a + b; }
 inline vec3& operator*=(vec3& a, vec3 b) { return a = a * b; }
-inline vec3& operator/=(vec3& a, real s) { return a = a / s; }
+inline vec3& operator/=(vec3& a, real b) { return a = a / b; }
 inline bool operator==(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 inline real dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -100,11 +100,11 @@ inline vec3 cross(vec3 a, vec3 b) {
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-// Right-handed orthonormal frame (s, t, n); local z is n.
+// Right-handed orthonormal frame (x, y, n); local z is n.
 struct Frame {
-    vec3 s, t, n;
-    vec3 to_world(vec3 v) const { return s * v.x + t * v.y + n * v.z; }
-    vec3 to_local(vec3 v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
+    vec3 x, y, n;
+    vec3 to_world(vec3 local) const { return x * local.x + y * local.y + n * local.z; }
+    vec3 to_local(vec3 world) const { return {dot(world, x), dot(world, y), dot(world, n)}; }
 };
 
 // Frame about the unit vector n, continuous except at the plane n.z = 0, stable at both poles

@@ -11,10 +11,10 @@ using namespace penumbra;
 real worse(real a, real b) { return a <= b ? b : b <= a ? a : infinity; }
 
 real largest_flaw(const Frame& f) {
-    if (!is_finite(f.s) || !is_finite(f.t) || !is_finite(f.n)) return infinity;
-    return std::max({std::abs(dot(f.s, f.t)), std::abs(dot(f.t, f.n)), std::abs(dot(f.n, f.s)),
-                     std::abs(dot(f.s, f.s) - 1), std::abs(dot(f.t, f.t) - 1),
-                     length(cross(f.s, f.t) - f.n)});
+    if (!is_finite(f.x) || !is_finite(f.y) || !is_finite(f.n)) return infinity;
+    return std::max({std::abs(dot(f.x, f.y)), std::abs(dot(f.y, f.n)), std::abs(dot(f.n, f.x)),
+                     std::abs(dot(f.x, f.x) - 1), std::abs(dot(f.y, f.y) - 1),
+                     length(cross(f.x, f.y) - f.n)});
 }
 
 }  // namespace

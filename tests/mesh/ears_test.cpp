@@ -51,7 +51,7 @@ Corners placed(const std::vector<vec2>& flat, uint64_t seed, double digits = 0) 
         unit({number(seed, 1) - real(.5), number(seed, 2) - real(.5), number(seed, 3) - real(.5)}));
     Corners c;
     for (vec2 p : flat) {
-        vec3 at = p.x * f.s + p.y * f.t;
+        vec3 at = p.x * f.x + p.y * f.y;
         if (digits > 0)
             for (auto k : axis) at.*k = real(std::round(double(at.*k) * digits) / digits);
         c.push_back(at);

@@ -87,7 +87,7 @@ TEST_CASE("a ray starts 2 errors off its surface, and meets what lies 6 errors a
             off.see(length(big3(ray.o) - x.p - 2 * x.error * big3(up)) / x.error);
             const vec3 centre = x.p + 6 * x.error * up;
             const Frame f = frame(x.n);
-            const vec3 e = 100 * x.error * f.s, g = 100 * x.error * f.t;
+            const vec3 e = 100 * x.error * f.x, g = 100 * x.error * f.y;
             jumped += !meets({centre - e - g, centre + e, centre + g}, ray);
         }
     CHECK(jumped == 0);
