@@ -59,13 +59,13 @@ struct PathKey {
 
 // Pseudo-random numbers.
 struct Independent : PathKey {
-    explicit Independent(const PathKey& k) : PathKey{k.index, hash(k.key, k.index), k.bases} {}
+    explicit Independent(const PathKey& of) : PathKey{of.index, hash(of.key, of.index), of.bases} {}
     real get(uint32_t dim) const { return to_unit(random(dim)); }
 };
 
 // Jittered 4 x 4 grids, shuffled.
 struct Stratified : PathKey {
-    explicit Stratified(const PathKey& k) : PathKey(k) {}
+    explicit Stratified(const PathKey& of) : PathKey(of) {}
     real get(uint32_t dim) const {
         const auto [cell, jitter] = stratum(dim);
         return in_part(cell, grid_cells, jitter);
@@ -89,7 +89,7 @@ struct Stratified : PathKey {
 
 // Scrambled Halton points, with a randomisation per pixel.
 struct Halton : PathKey {
-    explicit Halton(const PathKey& k) : PathKey(k) {}
+    explicit Halton(const PathKey& of) : PathKey(of) {}
     real get(uint32_t dim) const {
         // exercise 4.3
         const uint64_t bits = random(dim);
@@ -100,7 +100,7 @@ struct Halton : PathKey {
 
 // Sobol' points, with a randomisation per pixel and pair of dimensions.
 struct Sobol : PathKey {
-    explicit Sobol(const PathKey& k) : PathKey{reverse_bits(k.index), k.key, k.bases} {}
+    explicit Sobol(const PathKey& of) : PathKey{reverse_bits(of.index), of.key, of.bases} {}
     real get(uint32_t dim) const { return sobol_single(index, random(dim)); }
     vec2 get2(uint32_t dim) const { return sobol_pair(index, random(dim), random(dim + 1)); }
     real choice(uint32_t pair) const { return sobol_third(index, random(pair), random(pair + 1)); }
@@ -108,14 +108,14 @@ struct Sobol : PathKey {
 
 enum class SamplerKind { independent, stratified, halton, sobol };
 using SamplePoints = std::variant<Independent, Stratified, Halton, Sobol>;
-inline SamplePoints points_of(SamplerKind kind, const PathKey& k) {
+inline SamplePoints points_of(SamplerKind kind, const PathKey& path) {
     switch (kind) {
-        case SamplerKind::independent: return Independent(k);
-        case SamplerKind::stratified: return Stratified(k);
-        case SamplerKind::halton: return Halton(k);
+        case SamplerKind::independent: return Independent(path);
+        case SamplerKind::stratified: return Stratified(path);
+        case SamplerKind::halton: return Halton(path);
         case SamplerKind::sobol: break;
     }
-    return Sobol(k);
+    return Sobol(path);
 }
 
 // ---- The sampler of a path ----------------------------------------------------------------------
@@ -129,9 +129,9 @@ struct Pattern {
 
 // For paths of up to `depth` bounces.
 inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
-    Pattern p{kind, seed};
-    if (kind == SamplerKind::halton) p.bases = first_primes(dimension(depth, Draw::light_x));
-    return p;
+    Pattern pattern{kind, seed};
+    if (kind == SamplerKind::halton) pattern.bases = first_primes(dimension(depth, Draw::light_x));
+    return pattern;
 }
 
 inline constexpr uint64_t max_samples = uint64_t(1) << 40;  // of each replication

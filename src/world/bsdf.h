@@ -51,8 +51,8 @@ struct Rough : Opaque {
     rgb ks;             // scale of the Phong lobe
     real exponent = 0;  // of the Phong lobe
 
-    explicit Rough(rgb diffuse_albedo = {}, rgb lobe = {}, real n = 0)
-        : kd(diffuse_albedo), ks(lobe), exponent(n) {}
+    explicit Rough(rgb diffuse_albedo = {}, rgb lobe = {}, real power = 0)
+        : kd(diffuse_albedo), ks(lobe), exponent(power) {}
 
     rgb albedo() const { return kd + ks; }
     rgb diffuse() const { return kd; }
@@ -77,9 +77,9 @@ struct Rough : Opaque {
     // The Phong lobe may reach below the horizon, where eval is 0.
     real pdf(vec3 wo, vec3 wi, Direction direction) const {
         if (direction == Direction::uniform) return pdf_uniform_hemisphere(wi.z);
-        real q = lobe_probability();
-        real lobe = q > 0 ? pdf_phong_lobe(dot(reflect(wo), wi), exponent) : 0;
-        return (1 - q) * pdf_cosine_hemisphere(wi.z) + q * lobe;
+        real share = lobe_probability();
+        real lobe = share > 0 ? pdf_phong_lobe(dot(reflect(wo), wi), exponent) : 0;
+        return (1 - share) * pdf_cosine_hemisphere(wi.z) + share * lobe;
     }
 
     BsdfSample sample(vec3 wo, bool, real u_lobe, vec2 u, Direction direction) const {
@@ -104,7 +104,7 @@ struct Delta : Opaque {
 struct Mirror : Delta {
     rgb reflectance;
 
-    explicit Mirror(rgb r) : reflectance(r) {}
+    explicit Mirror(rgb tint) : reflectance(tint) {}
     rgb albedo() const { return reflectance; }
     rgb diffuse() const { return {}; }
     bool has_choice() const { return false; }
@@ -150,9 +150,9 @@ inline BsdfSample sample_glass(const Glass& m, vec3 wo, bool outside, real u) {
 // end
 
 inline BsdfSample Glass::sample(vec3 wo, bool outside, real u_lobe, vec2, Direction) const {
-    BsdfSample s = sample_glass(*this, wo, outside, u_lobe);
-    if (s.wi.z < 0) s.eta2 = sqr(outside ? 1 / ior : ior);
-    return s;
+    BsdfSample drawn = sample_glass(*this, wo, outside, u_lobe);
+    if (drawn.wi.z < 0) drawn.eta2 = sqr(outside ? 1 / ior : ior);
+    return drawn;
 }
 
 using Scattering = std::variant<Rough, Mirror, Glass>;
@@ -174,41 +174,41 @@ struct Material {
     decltype(auto) ask(auto question) const { return std::visit(question, scattering); }
 
     bool is_delta() const {
-        return ask([](const auto& s) { return s.is_delta; });
+        return ask([](const auto& kind) { return kind.is_delta; });
     }
     bool transmits() const {
-        return ask([](const auto& s) { return s.transmits; });
+        return ask([](const auto& kind) { return kind.transmits; });
     }
     bool has_choice() const {
-        return ask([](const auto& s) { return s.has_choice(); });
+        return ask([](const auto& kind) { return kind.has_choice(); });
     }
     real ior() const {
-        return ask([](const auto& s) -> real { return s.ior; });
+        return ask([](const auto& kind) -> real { return kind.ior; });
     }
     rgb albedo() const {
-        return ask([](const auto& s) { return s.albedo(); });
+        return ask([](const auto& kind) { return kind.albedo(); });
     }
     rgb diffuse() const {
-        return ask([](const auto& s) { return s.diffuse(); });
+        return ask([](const auto& kind) { return kind.diffuse(); });
     }
     bool reflects() const { return is_delta() || max_of(albedo()) > 0; }
     bool emits() const { return max_of(Le) > 0; }
 };
 
 // Radiance that a surface emits at an angle to its normal with this cosine.
-inline rgb emitted(const Material& m, real cosine) {
-    return cosine > 0 || m.twosided ? m.Le : rgb{};
+inline rgb emitted(const Material& material, real cosine) {
+    return cosine > 0 || material.twosided ? material.Le : rgb{};
 }
 
-inline rgb eval(const Material& m, vec3 wo, vec3 wi) {
-    return m.ask([&](const auto& s) { return s.eval(wo, wi); });
+inline rgb eval(const Material& material, vec3 wo, vec3 wi) {
+    return material.ask([&](const auto& kind) { return kind.eval(wo, wi); });
 }
-inline real pdf(const Material& m, vec3 wo, vec3 wi, Direction direction) {
-    return m.ask([&](const auto& s) { return s.pdf(wo, wi, direction); });
+inline real pdf(const Material& material, vec3 wo, vec3 wi, Direction direction) {
+    return material.ask([&](const auto& kind) { return kind.pdf(wo, wi, direction); });
 }
-inline BsdfSample sample(const Material& m, vec3 wo, bool outside, real u_lobe, vec2 u,
+inline BsdfSample sample(const Material& material, vec3 wo, bool outside, real u_lobe, vec2 u,
                          Direction direction) {
-    return m.ask([&](const auto& s) { return s.sample(wo, outside, u_lobe, u, direction); });
+    return material.ask([&](auto& kind) { return kind.sample(wo, outside, u_lobe, u, direction); });
 }
 
 }  // namespace penumbra

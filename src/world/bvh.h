@@ -12,7 +12,7 @@ namespace penumbra {
 struct Probe {
     Ray ray;
     vec3 inverse;
-    explicit Probe(const Ray& r) : ray(r), inverse{1 / r.d.x, 1 / r.d.y, 1 / r.d.z} {}
+    explicit Probe(const Ray& seen) : ray(seen), inverse{1 / ray.d.x, 1 / ray.d.y, 1 / ray.d.z} {}
 };
 
 // Distance at which the ray enters a box, 0 if it starts inside; nothing if it misses the box up to
@@ -192,9 +192,9 @@ private:
     void grow(size_t index, std::span<Item> items, int depth) {
         Box box;
         for (const Item& item : items) box.add(item.box);
-        const Split d = split(items, depth);
+        const Split cut = split(items, depth);
         // A leaf costs a ray about as much as a node and one of its shapes.
-        if (items.size() <= leaf_size && !(d.cost < box.half_area() * real(items.size() - 1))) {
+        if (items.size() <= leaf_size && !(cut.cost < box.half_area() * real(items.size() - 1))) {
             nodes_[index] = {box, uint32_t(ids_.size()), uint32_t(items.size())};
             for (const Item& item : items) ids_.push_back(item.id);
             return;
@@ -202,8 +202,8 @@ private:
         const size_t left = nodes_.size();
         nodes_[index] = {box, uint32_t(left)};
         nodes_.resize(left + 2);
-        grow(left, items.first(d.left), depth + 1);
-        grow(left + 1, items.subspan(d.left), depth + 1);
+        grow(left, items.first(cut.left), depth + 1);
+        grow(left + 1, items.subspan(cut.left), depth + 1);
     }
 
     // Sorts the items along the axis of the cheapest split.
@@ -212,16 +212,16 @@ private:
         if (items.size() < 2 || depth >= halved_from) return best;
         auto best_axis = axis[0];
         auto sort = [&](real vec3::*k) {
-            std::ranges::sort(items, {}, [k](const Item& i) { return i.centre(k); });
+            std::ranges::sort(items, {}, [k](const Item& item) { return item.centre(k); });
         };
         for (auto k : axis) {
             sort(k);
             if (items.front().centre(k) == items.back().centre(k)) continue;
             std::vector<Box> boxes;
             for (const Item& item : items) boxes.push_back(item.box);
-            const Split d = best_split(boxes);
-            if (d.left == 0 || d.left >= items.size() || !(d.cost < best.cost)) continue;
-            best = d;
+            const Split cut = best_split(boxes);
+            if (cut.left == 0 || cut.left >= items.size() || !(cut.cost < best.cost)) continue;
+            best = cut;
             best_axis = k;
         }
         sort(best_axis);

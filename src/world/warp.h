@@ -12,24 +12,24 @@ namespace penumbra {
 // exactly.  For the remainder, |x| <= pi / 4, Taylor polynomials are exact to rounding.
 inline vec2 unit_circle(real u) {
     const int quarter = int(4 * u + real(0.5));
-    const real x = 2 * pi * (u - real(quarter) / 4), y = x * x;
+    const real x = 2 * pi * (u - real(quarter) / 4), x2 = x * x;
     constexpr auto over = [](int n) constexpr {
         double product = 1;
         for (int i = 2; i <= n; ++i) product *= i;
         return real(1 / product);
     };
-    real c = over(16), s = over(15);
-    c = c * y - over(14), s = s * y - over(13);
-    c = c * y + over(12), s = s * y + over(11);
-    c = c * y - over(10), s = s * y - over(9);
-    c = c * y + over(8), s = s * y + over(7);
-    c = c * y - over(6), s = s * y - over(5);
-    c = c * y + over(4), s = s * y + over(3);
-    c = c * y - over(2), s = s * y - 1;
-    c = c * y + 1, s = -x * s;
+    real cosine = over(16), sine = over(15);
+    cosine = cosine * x2 - over(14), sine = sine * x2 - over(13);
+    cosine = cosine * x2 + over(12), sine = sine * x2 + over(11);
+    cosine = cosine * x2 - over(10), sine = sine * x2 - over(9);
+    cosine = cosine * x2 + over(8), sine = sine * x2 + over(7);
+    cosine = cosine * x2 - over(6), sine = sine * x2 - over(5);
+    cosine = cosine * x2 + over(4), sine = sine * x2 + over(3);
+    cosine = cosine * x2 - over(2), sine = sine * x2 - 1;
+    cosine = cosine * x2 + 1, sine = -x * sine;
     const bool odd = quarter & 1;
     const real sign_c = quarter == 1 || quarter == 2 ? -1 : 1, sign_s = quarter & 2 ? -1 : 1;
-    return {sign_c * (odd ? s : c), sign_s * (odd ? c : s)};
+    return {sign_c * (odd ? sine : cosine), sign_s * (odd ? cosine : sine)};
 }
 
 // At u turns about z.
@@ -107,11 +107,11 @@ inline real pdf_triangle_area(vec3 e, vec3 f) { return 2 / length(cross(e, f)); 
 inline vec3 sample_quad(vec2 u, vec3 e, vec3 f) { return u.x * e + u.y * f; }
 inline real pdf_quad_area(vec3 e, vec3 f) { return 1 / length(cross(e, f)); }
 
-// Weight of the technique with density p beside one with density q, for one sample of each
-// (power heuristic, Veach 1997, eq. 9.14), without overflow.  Infinite p (a delta) weighs 1.
-inline real power_heuristic(real p, real q) {
-    if (p == 0) return 0;
-    real ratio = q / p;
+// Weight of the technique with density pdf beside one with density other, for one sample of each
+// (power heuristic, Veach 1997, eq. 9.14), without overflow.  Infinite pdf (a delta) weighs 1.
+inline real power_heuristic(real pdf, real other) {
+    if (pdf == 0) return 0;
+    real ratio = other / pdf;
     return 1 / (1 + ratio * ratio);
 }
 

@@ -71,8 +71,8 @@ double sphere_light_normal(real d) {
         const big cos_beta = std::sqrt(1 - sin_beta * sin_beta);
         const big alpha = std::atan2(sin_beta, cos_beta) - theta;
         const Frame f = frame(-p / length(p));
-        const big3 n = std::sin(alpha) * std::cos(phi) * big3(f.s) +
-                       std::sin(alpha) * std::sin(phi) * big3(f.t) - std::cos(alpha) * big3(f.n);
+        const big3 n = std::sin(alpha) * std::cos(phi) * big3(f.x) +
+                       std::sin(alpha) * std::sin(phi) * big3(f.y) - std::cos(alpha) * big3(f.n);
         worst.see(length(big3(s->at.n) - n) * cos_beta);
     });
 }

@@ -201,8 +201,8 @@ double few_shapes() {
 
 // The largest scalar product of two axes.
 double skewness(const Frame& f) {
-    return double(std::max({std::abs(dot(big3(f.s), f.t)), std::abs(dot(big3(f.t), f.n)),
-                            std::abs(dot(big3(f.n), f.s))}));
+    return double(std::max({std::abs(dot(big3(f.x), f.y)), std::abs(dot(big3(f.y), f.n)),
+                            std::abs(dot(big3(f.n), f.x))}));
 }
 
 double frames_anywhere() {

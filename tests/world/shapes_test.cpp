@@ -393,7 +393,7 @@ TEST_CASE("tiny triangles are hit") {
     for (int i = 0; i < 100000; ++i) {
         const real edge = random.decades(sizeof(real) == 8 ? -12 : -8, -6);
         const Frame f = frame(random.direction());
-        const Shape s{-edge * f.s - edge * f.t, edge * f.s, edge * f.t};
+        const Shape s{-edge * f.x - edge * f.y, edge * f.x, edge * f.y};
         misses += !meets(s, {real(1e3) * edge * f.n, -f.n});
     }
     CHECK(misses == 0);
