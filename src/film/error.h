@@ -33,7 +33,7 @@ struct ImageError {
     double norm_of_truth() const { return std::sqrt(std::max(0.0, square(norm()) - d2())); }
     // NaN for a black image: all samples may have missed the light.  Infinite if all is noise.
     double d_rel() const { return norm() > 0 ? std::sqrt(d2()) / norm_of_truth() : double(NAN); }
-    // Standard errors: of d over d; of d_rel over d_rel, by the slope of d / |F|; of d_rel.
+    // Standard errors: of d, relative; of d_rel, relative (by the slope of d / |F|) and absolute.
     double spread_of_d() const { return d2() == 0 ? 0 : std::sqrt(terms2) / pixels / d2() / 2; }
     double spread_of_d_rel() const { return spread_of_d() * (1 + square(d_rel())); }
     double standard_error() const { return d_rel() * spread_of_d_rel(); }
@@ -53,8 +53,8 @@ using MayMissLight = std::function<bool(const Film&, const ImageError&)>;
 // Why an error may be far above its estimate.
 enum class Doubt { no, black, missed_light, few_pixels, noise };
 
-// A relative standard error of a quarter is that of 8 degrees of freedom.  One degree understates
-// an error 10^4 times in 8 of 10^5 pictures: 1e-6 is small in any case.
+// A relative standard error of a quarter is that of 8 degrees of freedom.  With one degree,
+// 8 of 10^5 estimates are below 10^-4 of the error: below 1e-6 it is small in any case.
 inline Doubt doubt_of(const Film& film, const ImageError& error, const MayMissLight& may_miss) {
     if (error.norm() == 0) return Doubt::black;
     if (may_miss && error.d2() >= 0 && may_miss(film, error)) return Doubt::missed_light;

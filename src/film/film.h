@@ -1,8 +1,8 @@
 // film/film.h  2  a film: sums of samples, in independent replications of each pixel
 //
 // A picture is the mean of two independent half-pictures, and half their difference is its error.
-// A half is one replication, of which small pictures have more than two: pixel x has w(x) n samples
-// in each, with a randomisation of its own.
+// A half is one of K = 2 replications (small pictures have more): pixel x has w(x) n samples in
+// each, with a randomisation of its own.
 // The weight w(x) is chosen once, by the noise of the neighbours in a pilot.
 #pragma once
 #include <cmath>
@@ -90,7 +90,7 @@ struct Film {
     }
 };
 
-// A film with K replications of each pixel; is_pilot: with weights.
+// A film with K replications of each pixel; is_pilot: weights are chosen later.
 inline Film make_film(Size size, uint32_t K, bool is_pilot, int first_row = 0) {
     Film film{size, first_row, K, is_pilot};
     film.sum.resize(film.pixels() * K);
@@ -111,7 +111,7 @@ inline double bytes_of(Size size, uint32_t K) {
 // The variance of a replication is taken to be in proportion to 1 / (number of its samples).
 struct Pixel {
     double K = 0, samples = 0;
-    Sum sum{}, squares{};  // squares: sum over replications of samples (mean - value)^2
+    Sum sum{}, squares{};  // squares: sum over replications of n (mean - value)^2
 
     // Adds a replication of n samples (Chan, Golub, LeVeque 1983).
     void add(const Sum& other, uint64_t n) {

@@ -5,7 +5,7 @@
 
 namespace penumbra {
 
-// Work of a run, and its limits: the first that is reached ends it; a limit of 0 does not exist.
+// Work of a run, and its limits: the first that is reached ends it; 0: no limit.
 struct Plan {
     Size size = {};
     int first_row = 0;

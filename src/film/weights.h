@@ -16,7 +16,7 @@ inline double mean_around(const std::vector<float>& of, Size size, int x, int y)
 
 inline constexpr uint32_t typical_weight = 2;  // of a pixel of mean noise
 
-// The power of two in 1 ... max_weight that is next to 2 r^(4/5), in ratio.  NaN, for a pixel
+// The power of two in 1 ... max_weight nearest to 2 r^(4/5), in ratio.  NaN, for a pixel
 // without neighbours or a picture without noise, counts as r = 1.
 inline uint8_t weight_of(double r) {
     if (std::isnan(r)) return typical_weight;

@@ -21,11 +21,11 @@ enum class LightMode {
 struct Technique {
     Direction direction = Direction::bsdf;
     LightMode light = LightMode::mis;
-    real roulette = real(0.25);  // Russian roulette for paths of a throughput below this
+    real roulette = real(0.25);  // Russian roulette below this throughput / eta2
 };
 
 // A path's numbers stay in registers only if its loop is compiled as one function.  Its parts are
-// called in two or three places, so that the compiler does not inline them by itself.
+// called in two or three places, so the compiler would not inline them by itself.
 #define PART [[gnu::always_inline]] inline
 
 // ---- Where a ray stops --------------------------------------------------------------------------
@@ -80,7 +80,7 @@ struct DirectLight {
     bool occluded = false;
 };
 
-// Samples one light, chosen at random.  Unbiased for the sum over lights; with MIS, for its share.
+// Samples one light, chosen at random.  Unbiased for the sum over lights; with MIS, for its part.
 PART DirectLight direct_light(const Scene& scene, const Technique& technique, const Vertex& vertex,
                               const Sampler& sampler, int k) {
     const Material& material = *vertex.material;
@@ -184,7 +184,7 @@ PART Step step(const Scene& scene, const Technique& technique, const Segment& se
     // The product of f |cos| / pdf over all bounces.
     rgb beta = segment.beta * (scattered.f * (std::abs(scattered.wi.z) / scattered.pdf));
     // end
-    // Light that enters and leaves a diamond keeps its radiance (Pharr et al. 2023, sec. 14.5.4).
+    // Light that leaves glass gives eta2 back: beta / eta2 counts (Pharr et al. 2023, sec. 14.5.4).
     const real eta2 = segment.eta2 * scattered.eta2, threshold = technique.roulette * eta2;
     // exercise 3.5
     // Arvo, Kirk 1990.  Surviving paths have a throughput of at least the threshold.

@@ -28,7 +28,7 @@ struct LightNode {
     real spread2 = 0;   // mean square of the distance from the centre
     vec3 axis = {};     // normal of a polygon; of a group: the mean by strength
     real round = 1;     // the part that shines in all directions
-    real behind = 0;    // a surface is lit so far behind the plane through the centre
+    real behind = 0;    // distance behind the plane through the centre that is still lit
     real twosided = 0;  // 1: it shines against its axis, too
     real strength = 0;
     uint32_t light = 0;
@@ -51,7 +51,7 @@ struct LightGroup {
     Row<bool> is_light{};
     uint32_t members = 0, parent = 0, place = 0;  // place among the parent's members
 
-    // What is no member is below any horizon, and divides by no 0.
+    // Unused places are below any horizon, and their d^2 is not 0.
     LightGroup() { reach.fill(std::numeric_limits<real>::lowest()), spread2.fill(1); }
     void add(const LightNode& n) {
         const size_t k = members++;
@@ -63,9 +63,9 @@ struct LightGroup {
     }
 };
 
-// Estimated contributions of members to a surface at p with normal m on the side of the eye.  They
-// have d^2 + spread2 for d^2, so that a near light keeps a finite weight, unless it is a point, and
-// the height of the sphere's top above the surface's plane for that of its centre.
+// Estimated contributions of members to a surface at p with normal m on the side of the eye.  For
+// d^2 stands d^2 + spread2: only a near point has no finite weight.  For the height of the centre
+// above the surface's plane stands that of the sphere's top.
 struct LightWeights {
     LightGroup::Row<real> of;
     LightGroup::Row<real> can;  // 0: all of it is below the horizon or turned away; else 1
@@ -80,8 +80,8 @@ inline LightWeights weights(const LightGroup& g, vec3 p, vec3 m) {
         const real front = g.behind[k] - (g.axis_x[k] * x + g.axis_y[k] * y + g.axis_z[k] * z);
         const real back = -front * g.twosided[k];
         // At most d, though a group may reach far beyond its distance.
-        const real nearer = front > back ? front : back;
-        const real facing = (nearer < d ? nearer : d) + g.round[k] * d;
+        const real lit = front > back ? front : back;
+        const real facing = (lit < d ? lit : d) + g.round[k] * d;
         w.can[k] = top > 0 && facing > 0 ? real(1) : real(0);
         w.of[k] = w.can[k] * g.strength[k] * (top * per_d2) * (facing * per_d2);
     }

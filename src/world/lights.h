@@ -22,8 +22,8 @@ struct Emitter {
     vec3 p = {};       // centre of a sphere, corner of a polygon, the point
     rgb L = {};        // radiance; of a point: intensity, radiance x length^2
     real error = 0;    // of surface points, see Surface
-    real pick = 0;     // probability that the scene chooses this light by its power
-    vec3 centre = {};  // a sphere about it, of radius reach
+    real pick = 0;     // probability of its choice by power, for paths that start at lights
+    vec3 centre = {};  // of a sphere about it, of radius reach
     real reach = 0;
     vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
     vec3 edge = {};     // its longest edge
@@ -195,7 +195,7 @@ inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
 inline Surface point_of(const Light& l, vec2 u) {
     return l.ask([&](const auto& light) { return light.point(l, u); });
 }
-// That it shows from afar; of a point 1.
+// The area that it shows from afar; of a point 1.
 inline real area_of(const Light& l) {
     return real(l.ask([](const auto& light) { return light.strength(1); }));
 }

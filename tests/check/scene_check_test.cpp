@@ -144,7 +144,9 @@ TEST_CASE("a lamp of two sides in a wall shines on both; two of one side, back t
     const Scene two = parsed(room + wall + both).scene;
     for (size_t i = 0; i < two.shapes.size(); ++i)
         if (two.light_of[i] != no_light)
-            CHECK(two.shapes[i].a.z == two.lights[size_t(two.light_of[i])].p.z);
+            for (vec3 at : {two.lights[size_t(two.light_of[i])].p,
+                            two.lights[size_t(two.light_of[i])].centre})
+                CHECK(two.shapes[i].a.z == at.z);
 }
 
 TEST_CASE("a lamp in a ball of its size shines, and the first of two") {
