@@ -6,9 +6,7 @@
 // receive light slightly inside of it; by the fixed pattern of shadow rays; and, if whole faces
 // shoot, by parts that are replaced by their mean.
 #pragma once
-#include <barrier>
 #include <numeric>
-#include <thread>
 #include <utility>
 
 #include "app/threads.h"
@@ -72,33 +70,18 @@ public:
         const std::chrono::duration<double> left(target.seconds > 0 ? target.seconds - before
                                                                     : lifetime);
         deadline_ = start + std::chrono::duration_cast<std::chrono::nanoseconds>(left);
-        bool enough = false;
-        std::atomic<size_t> next = 0;
-        std::atomic<uint64_t> rays = 0;
-        auto between_shots = [&]() noexcept {
+        for (;;) {
             if (const Missing shot = std::exchange(flying_, {}); cut_short()) lost_.lose(shot);
             const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
             seconds_ = before + took.count();
-            rays_ += rays.exchange(0);
-            next = 0;
-            enough = interrupted || met(target) || !choose();
+            const bool enough = interrupted || met(target) || !choose();
             show(*this);
-        };
-        std::barrier sync(std::ptrdiff_t(threads_), between_shots);
-        auto work = [&] {
-            while (sync.arrive_and_wait(), !enough)
-                for (size_t k; (k = next++) < order_.size();) rays += receive(order_[k]);
-        };
-        std::vector<std::thread> others;
-        for (unsigned k = 1; k < threads_; ++k) {
-            try {
-                others.emplace_back(work);
-            } catch (const std::system_error&) {  // do not wait for this thread
-                sync.arrive_and_drop();
-            }
+            if (enough) return;
+            std::atomic<uint64_t> rays = 0;
+            auto work = [&](size_t k) { rays += receive(order_[k]); };
+            in_parallel(order_.size(), threads_, work, [](double) {});
+            rays_ += rays;
         }
-        work();
-        for (std::thread& other : others) other.join();
     }
 
     static Bytes bytes() {

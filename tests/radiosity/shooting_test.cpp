@@ -172,6 +172,13 @@ TEST_CASE("bit for bit the same for 1, 2, 3 and 5 threads, and in several runs")
     }
 }
 
+TEST_CASE("what fails while shooting reaches the caller") {
+    const Meshed m(study(), 1.5);
+    Shooting shooting = shooting_in(m, shooters[0], 2);
+    auto full = [](const Shooting&) { throw std::bad_alloc(); };
+    CHECK_THROWS_AS(shooting.run({0, 0, 20}, full), std::bad_alloc);
+}
+
 TEST_CASE("shooting stops: at a part that is unshot, a number of shots, a time, Ctrl-C, the end") {
     const Meshed m(study(), 1.5);
     for (Shooter shooter : shooters) {
