@@ -52,9 +52,9 @@ private:
         std::array<float, lane_count - 1> as;
         bool leaf;
     };
-    // Measured: a visit to a leaf takes half as long as to a node, and a little more for each
-    // shape.
-    static constexpr float leaf_cost = 0.5f, shape_cost = 0.05f;
+    // Measured: a visit to a leaf takes half as long as to a node, a little more for each shape,
+    // and more for a second vector of shapes.
+    static constexpr float leaf_cost = 0.5f, shape_cost = 0.05f, second_cost = 0.2f;
 
     const BinaryTree& tree_;
     size_t largest_leaf_;
@@ -76,8 +76,9 @@ private:
     Costs costs(uint32_t i, float visits) const {
         const Branch& branch = tree_.branches[i];
         const bool may_be_leaf = branch.count <= largest_leaf_ && !(i == 0 && tree_.mixed);
-        const float leaf =
-            may_be_leaf ? visits * (leaf_cost + shape_cost * float(branch.count)) : HUGE_VALF;
+        float leaf = leaf_cost + shape_cost * float(branch.count);
+        if (branch.count > real_lanes) leaf += second_cost;
+        leaf = may_be_leaf ? visits * leaf : HUGE_VALF;
         Costs own;
         if (branch.leaf()) {
             own.as.fill(leaf);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "base/vec.h"
 
@@ -21,13 +22,10 @@ inline constexpr size_t lane_count = 8;
 typedef float Floats __attribute__((vector_size(lane_count * sizeof(float))));
 typedef int32_t Keys __attribute__((vector_size(lane_count * sizeof(int32_t))));
 
-// As many reals as a register of AVX-512 or AVX2 holds (SSE2: two registers): GCC keeps wider
-// vectors in memory.
-#ifdef __AVX512F__
-inline constexpr size_t real_lanes = 8;
-#else
+// As many reals as a register of AVX2 holds (SSE2, NEON: two or four registers), with AVX-512, too:
+// tuned for Intel's processors GCC splits the fma of wider vectors into halves, and passes these
+// through memory.
 inline constexpr size_t real_lanes = 32 / sizeof(real);
-#endif
 typedef real Reals __attribute__((vector_size(real_lanes * sizeof(real))));
 
 inline Floats all(float number) { return Floats{} + number; }
@@ -47,10 +45,9 @@ public:
     Lanes() = default;
     template <class Comparison>
     explicit Lanes(const Comparison& holds) {
-        constexpr size_t n = sizeof(holds) / sizeof(holds[0]);
-        typedef int8_t Bytes __attribute__((vector_size(n)));
-        using Word = std::conditional_t<n == 8, uint64_t, uint32_t>;
-        bytes_ = std::bit_cast<Word>(__builtin_convertvector(holds, Bytes)) & ones;
+        typedef int8_t Bytes __attribute__((vector_size(sizeof holds)));
+        constexpr size_t size = sizeof(holds[0]), n = sizeof(holds) / size;
+        bytes_ = first_bytes<size>(std::bit_cast<Bytes>(holds), std::make_index_sequence<n>());
     }
     bool any() const { return bytes_ != 0; }
     size_t first() const { return size_t(std::countr_zero(bytes_)) / 8; }
@@ -61,6 +58,13 @@ public:
 private:
     static constexpr uint64_t ones = 0x0101010101010101;
     uint64_t bytes_;
+
+    // Of each lane of so many bytes, which are all alike.  (GCC 12 converts lanes one by one.)
+    template <size_t size, class Bytes, size_t... lane>
+    static uint64_t first_bytes(const Bytes& bytes, std::index_sequence<lane...>) {
+        using Word = std::conditional_t<sizeof...(lane) == 8, uint64_t, uint32_t>;
+        return std::bit_cast<Word>(__builtin_shufflevector(bytes, bytes, (lane * size)...)) & ones;
+    }
 };
 
 inline Reals load(const real* from) {

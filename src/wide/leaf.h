@@ -23,7 +23,9 @@ struct Rows {
 
 // intersect_triangle, line by line, for several triangles.  Lanes beyond the last triangle hold
 // whatever follows the row, and are ignored.
-inline Meeting intersect_triangles(const Rows& rows, const Ray& ray, const Shear& k, real tmax) {
+// Inlined: a call passes the vectors through memory.
+[[gnu::always_inline]] inline Meeting intersect_triangles(const Rows& rows, const Ray& ray,
+                                                          const Shear& k, real tmax) {
     const real ox = ray.o.*axis[k.x], oy = ray.o.*axis[k.y], oz = ray.o.*axis[k.z];
     const size_t count = rows.count;
     const real* first = rows.numbers + rows.at;
