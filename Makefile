@@ -27,7 +27,7 @@ OPTIMISE := $(if $(SAN),$(SANITISE),$(if $(DEBUG),-Og -g -D_GLIBCXX_ASSERTIONS,-
 VARIANT  := $(if $(SAN),-san,$(if $(DEBUG),-debug))
 PLAIN    := $(if $(filter plain,$(TREE)),-plain)
 SUFFIX   := $(if $(filter float,$(REAL)),-float)$(PLAIN)$(VARIANT)
-OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(PLAIN)$(VARIANT)
+OBJECTS  := build/$(notdir $(lastword $(CXX)))-$(REAL)$(PLAIN)$(VARIANT)$(if $(filter-out native,$(ARCH)),-$(ARCH))
 LINK     := -pthread $(if $(SAN),$(SANITISE))
 
 ifeq ($(filter double float,$(REAL)),)

@@ -108,19 +108,42 @@ inline std::string said_by(const std::string& command) {
     return words.substr(0, words.find_last_not_of('\n') + 1);
 }
 
+// Its name without commas, and what tells processors of that name apart.
+inline std::string processor() {
+    return said_by(
+        "{ sysctl -n machdep.cpu.brand_string 2>/dev/null || LC_ALL=C lscpu | awk -F': +' "
+        "'/^Model name/ {n = $2} /^CPU family/ {f = $2} /^Model:/ {m = $2} "
+        "END {print n \" (family \" f \" model \" m \")\"}'; } | tr -d ,");
+}
+// The widest vectors that this program was compiled for.
+inline std::string instructions() {
+#if defined(__AVX512F__)
+    return "AVX-512";
+#elif defined(__AVX2__)
+    return "AVX2";
+#elif defined(__SSE2__)
+    return "SSE2";
+#elif defined(__ARM_NEON)
+    return "NEON";
+#else
+    return "none";
+#endif
+}
+
+inline std::string git_commit() {
+    return said_by("git rev-parse --short HEAD 2>/dev/null || echo unknown");
+}
+
 // The last sentence of a report.  `pictures` is a checksum of the renderer's pictures.  By it
 // tests/reports finds reports of a renderer that drew other pictures.
 inline std::string made_by(const std::string& command) {
-    const std::string day = said_by("date +%F"), pictures = said_by("tests/reports --pictures"),
-                      commit = said_by("git rev-parse --short HEAD 2>/dev/null || echo unknown"),
-                      processor = said_by(
-                          "{ sed -n 's/^model name.*: //p' /proc/cpuinfo || "
-                          "sysctl -n machdep.cpu.brand_string; } 2>/dev/null | head -1");
+    const std::string day = said_by("date +%F"), pictures = said_by("tests/reports --pictures");
     return text(
         "Written on %s by `%s`: commit %s, pictures %s, %u threads of %s, numbers in %s, "
         "compiled by %s.",
-        day.c_str(), command.c_str(), commit.c_str(), pictures.c_str(), all_cores(),
-        processor.c_str(), sizeof(real) == sizeof(double) ? "double" : "float", compiler().c_str());
+        day.c_str(), command.c_str(), git_commit().c_str(), pictures.c_str(), all_cores(),
+        processor().c_str(), sizeof(real) == sizeof(double) ? "double" : "float",
+        compiler().c_str());
 }
 
 // ---- Renders ------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ radiosity:                 ## illumination maps by shooting and by particle trac
 radiosity_error:           ## true errors of illumination maps over those asked for (10 minutes)
 indirect: $(PENUMBRA) build/radiosity$(SUFFIX)  ## final gathering, compared with whole paths (20 minutes)
 voronoi:                   ## weight samples of pixels by Voronoi cells (3 minutes; FULL=1: 4096 samples, 45)
-bench: build/knot.obj       ## rays per second, compared with Embree (libembree-dev)
+bench: build/knot.obj       ## rays per second, compared with Embree (libembree-dev); ARCHS="x86-64 native": by each set of instructions
 peers: $(PENUMBRA)         ## efficiency, compared with Cycles (blender; 5 minutes); SEEDS=5: more renders
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time for every setting, and a page to choose (30 minutes; FULL=1: 4 hours)
 halves: $(PENUMBRA)         ## efficiency of two halves with weights (30 minutes; FORMER=PROGRAM: compare with a former penumbra)
@@ -23,7 +23,11 @@ voronoi: LAB_FLAGS := $(if $(FULL),--most 4096)
 trade: LAB_FLAGS := $(if $(FULL),--full)
 halves: LAB_FLAGS := $(if $(FORMER),--former $(FORMER))
 peers calibration: LAB_FLAGS := $(if $(SEEDS),--seeds $(SEEDS))
-$(EXPERIMENTS): %: build/%$(SUFFIX)
+ifneq ($(ARCHS),)
+bench:
+	@for arch in $(ARCHS); do $(MAKE) --no-print-directory ARCHS= ARCH=$$arch bench || exit 1; done
+endif
+$(filter-out $(if $(ARCHS),bench),$(EXPERIMENTS)): %: build/%$(SUFFIX)
 	build/$@$(SUFFIX) $(if $(QUICK),--quick) $(LAB_FLAGS)
 
 # Both precisions are measured side by side.

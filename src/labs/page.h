@@ -24,6 +24,27 @@ inline std::string table(const std::vector<std::string>& head, const Lines& line
     return words;
 }
 
+// The numbers that lines end with, from `first` on; more is better: of every processor those of its
+// best line (by their product), and of these the least of each.
+inline std::vector<double> least_of(const Lines& lines, size_t first) {
+    struct Best {
+        double product = 0;
+        std::vector<double> numbers;
+    };
+    std::map<std::string, Best> of;
+    for (const auto& cells : lines) {
+        Best now{1, {}};
+        for (size_t i = first; i < cells.size(); ++i)
+            now.numbers.push_back(std::strtod(cells[i].c_str(), nullptr)),
+                now.product *= now.numbers.back();
+        if (Best& best = of[cells[0]]; best.product < now.product) best = now;
+    }
+    std::vector<double> least = of.begin()->second.numbers;
+    for (const auto& [processor, best] : of)
+        for (size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], best.numbers[i]);
+    return least;
+}
+
 // The template reference/NAME.md.in has {{word}} for a table, a number or a verdict, and
 // {{plot FILE The caption}} for a picture.
 class Page {
@@ -75,6 +96,33 @@ public:
     }
 
     std::string file(const std::string& name) const { return folder_ + "/" + name; }
+
+    // What this program ever measured, in data/processors.csv: processor, instructions, compiler,
+    // commit, numbers.  Those of now take the place of former ones of the same first three.
+    Lines measured(const std::vector<double>& numbers) const {
+        std::vector<std::string> now = {name_, processor(), instructions(), compiler(), git_commit()};
+        for (double x : numbers) now.push_back(text("%.2f", x));
+        Lines all;
+        const std::string kept = file("data/processors.csv");
+        std::istringstream in(std::filesystem::exists(kept) ? read_file(kept) : "");
+        for (std::string line; std::getline(in, line);) {
+            std::istringstream words(line);
+            auto& cells = all.emplace_back();
+            for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
+            if (cells.size() > 4 && std::equal(cells.begin(), cells.begin() + 4, now.begin()))
+                all.pop_back();
+        }
+        all.push_back(now);
+        std::string lines;
+        for (const auto& cells : all) {
+            for (const std::string& cell : cells) lines += cell + ",";
+            lines.back() = '\n';
+        }
+        write_file(kept, lines);
+        std::erase_if(all, [&](const auto& cells) { return cells[0] != name_; });
+        for (auto& cells : all) cells.erase(cells.begin());
+        return all;
+    }
 
 private:
     std::string folder_, name_, prose_;

@@ -53,6 +53,32 @@ TEST_CASE("a place that nothing fills, and a word without a place, are refused")
     }
 }
 
+TEST_CASE("what was measured on a processor stands until it is measured there again") {
+    const Studio studio("");
+    std::filesystem::create_directories("out/data");
+    const std::string others =
+        "program,processor,instructions,compiler,commit,numbers\n"
+        "other,P,SSE2,g++,abc,7.00\nstudy,P,SSE2,g++,abc,1.00,2.00\n";
+    write_file("out/data/processors.csv", others);
+    const Page page("out", "study");
+    for (const auto& [numbers, line] :
+         {std::pair{std::vector<double>{3, 0.5}, "3.00,0.50\n"}, {{4, 0.25}, "4.00,0.25\n"}}) {
+        const Lines all = page.measured(numbers);
+        REQUIRE(all.size() == 2);
+        CHECK(all[0] == std::vector<std::string>{"P", "SSE2", "g++", "abc", "1.00", "2.00"});
+        CHECK(all[1][1] == instructions());
+        const std::string kept = read_file("out/data/processors.csv");
+        CHECK(kept.starts_with(others + "study,"));
+        CHECK(kept.ends_with(line));
+        CHECK(std::count(kept.begin(), kept.end(), '\n') == 4);
+    }
+}
+
+TEST_CASE("the least is over processors, of each by the instructions that suit it best") {
+    const Lines lines = {{"P", "0.2", "0.3"}, {"P", "0.9", "0.8"}, {"Q", "1.5", "0.7"}};
+    CHECK(least_of(lines, 1) == std::vector<double>{0.9, 0.7});
+}
+
 TEST_CASE("a table in Markdown has no line's end") {
     CHECK(table({"a", ""}, {{"1", "2"}}) == "| a | |\n|---|---|\n| 1 | 2 |");
 }
