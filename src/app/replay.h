@@ -86,8 +86,8 @@ private:
 
     void light(const DirectLight& d) const {
         std::fprintf(out_, "  light sample: %s light, chosen with probability %.17g, %s\n",
-                     d.light->ask([](const auto& kind) { return kind.name; }),
-                     double(d.pdf / d.sample.pdf), d.occluded ? "occluded" : "visible");
+                     name_of(*d.light), double(d.pdf / d.sample.pdf),
+                     d.occluded ? "occluded" : "visible");
         print("    at", d.sample.at.p);
         print("    wi", d.sample.wi);
         print("    pdf", {d.pdf});

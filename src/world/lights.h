@@ -175,6 +175,9 @@ struct Light : Emitter {
     }
 };
 
+inline const char* name_of(const Light& l) {
+    return l.ask([](const auto& light) { return light.name; });
+}
 // Of the mean of the channels.  A float might overflow.
 inline double strength(const Light& l, double factor = 1) {
     const double L = factor * double(mean_of(l.L));
