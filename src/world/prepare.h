@@ -110,6 +110,7 @@ inline void prepare_powers(Scene& s) {
     }
 }
 
+// Scene files are checked first, and surfaces that lie in each other moved apart: see src/check.
 inline void prepare(Scene& s) {
     s.bvh = Tree(s.shapes);
     s.facing.clear();
