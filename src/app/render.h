@@ -43,7 +43,8 @@ inline ParsedScene load(const Options& o) {
     for (size_t i = 0; i < scene.lights.size(); ++i)
         if (scene.lights[i].is_delta() && o.technique.light == LightMode::none)
             throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
-                            ": --light none: rays never hit a point light");
+                            ": --light none: rays never hit a " + name_of(scene.lights[i]) +
+                            " light");
     if (o.rows && o.rows->last >= scene.size.height)
         throw UserError("--rows: the picture has rows 0-" + std::to_string(scene.size.height - 1));
     if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))

@@ -367,13 +367,13 @@ inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint3
 inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool moved) {
     std::map<std::string, uint32_t> found;
     const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
-    auto look_about = [&](vec3 p, const char* what) {
+    auto look_about = [&](vec3 p, const std::string& what) {
         if (const auto hit = near_hit(s, {p, p, p}, {}, UINT32_MAX, reach))
             found.emplace(what, hit->id);
     };
     look_about(s.camera.eye, "distance to the eye");
     for (const Light& l : s.lights)
-        if (l.is_delta()) look_about(l.p, "distance to a point light");
+        if (l.is_delta()) look_about(l.p, std::string("distance to a ") + name_of(l) + " light");
     for (uint32_t i = 0, firsts = 0, pairs = 0; i < s.shapes.size(); ++i) {
         if (is_coarse(s.shapes[i])) found.emplace("size", i);
         const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];
@@ -395,9 +395,10 @@ inline std::vector<std::string> check_and_prepare(NamedScene& s, const std::stri
     const bool moved = !warnings.empty();
     prepare(s);
     if (const auto on = point_light_on_surface(s))
-        throw error_at(
-            name, s.line_of_light[on->light],
-            "this point light lies on the surface of " + where(s, on->shape) + ": move it off");
+        throw error_at(name, s.line_of_light[on->light],
+                       std::string("this ") + name_of(s.lights[on->light]) +
+                           " light lies on the surface of " + where(s, on->shape) +
+                           ": move it off");
     for (const auto& [length, shape] : coarse_lengths(s, moved))
         warnings.push_back(too_coarse(
             where(s, shape), "ray origins are offset by more than 1 % of this shape's " + length));

@@ -60,7 +60,8 @@ inline Particle emit(const Scene& scene, const WalkNumbers& u) {
     Surface y = point_of(l, at);
     if (l.twosided && u.start(WalkNumbers::side) >= real(0.5)) y.n = -y.n;
     const vec3 w = frame(y.n).to_world(sample_cosine_hemisphere(d));
-    return {spawn(y, w), pi * area_of(l) * (l.twosided ? 2 : 1) * l.L / l.pick};
+    const real area = real(l.ask([](const auto& kind) { return kind.strength(1); }));
+    return {spawn(y, w), pi * area * (l.twosided ? 2 : 1) * l.L / l.pick};
 }
 
 // White walls absorb nothing, but walks have to end: one in fifty does, and the others weigh more.

@@ -40,7 +40,6 @@ struct LightSample {
     Surface at;
     rgb L;
     real pdf = 0;
-    bool delta = false;
 };
 
 // ---- Kinds of lights ----------------------------------------------------------------------------
@@ -56,7 +55,7 @@ struct PointLight {
         vec3 w = l.p - p;
         real d2 = dot(w, w);
         if (!(d2 > 0)) return {};
-        return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1, true};
+        return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1};
     }
     real pdf(const Emitter&, vec3, const Surface&) const { return 0; }
 };
@@ -197,10 +196,6 @@ inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
 }
 inline Surface point_of(const Light& l, vec2 u) {
     return l.ask([&](const auto& light) { return light.point(l, u); });
-}
-// The area that it shows from afar; of a point 1.
-inline real area_of(const Light& l) {
-    return real(l.ask([](const auto& light) { return light.strength(1); }));
 }
 
 }  // namespace penumbra

@@ -70,12 +70,12 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     CHECK((ball.as<SphereLight>() && ball.reach == 4));
     CHECK((ball.L == rgb{1, 2, 3} && !ball.twosided));
     CHECK((quad.as<QuadLight>() && quad.twosided));
-    CHECK((quad.n == vec3{0, 0, 1} && area_of(quad) == 6));  // faces +z like its shapes
+    CHECK((quad.n == vec3{0, 0, 1} && quad.pdf_area == real(1) / 6));  // faces +z like its shapes
     for (size_t i : {2, 3}) CHECK(area_vector(s.shapes[i]) == vec3{0, 0, 6});
     // The two triangles share a diagonal and nothing else.
     CHECK((s.shapes[2].a == vec3{5, 0, 0} && s.shapes[2].c == vec3{7, 3, 0}));
     CHECK((s.shapes[3].a == vec3{5, 0, 0} && s.shapes[3].b == vec3{7, 3, 0}));
-    CHECK((s.lights[2].n == vec3{0, 0, 1} && area_of(s.lights[2]) == real(0.5)));
+    CHECK((s.lights[2].n == vec3{0, 0, 1} && s.lights[2].pdf_area == 2));
     CHECK((point.as<PointLight>() && point.L == rgb{2, 2, 2}));
     for (size_t i : {0, 2, 3, 4})
         CHECK(s.lights[size_t(s.light_of[i])].error >= rounding_error(s.shapes[i]));
