@@ -47,11 +47,10 @@ inline bool share_surface(const Shape& s, const Shape& t, real room) {
         return ask(t, [&](auto other) {
             const auto corners = kind.corners(s);
             const auto others = other.corners(t);
-            if constexpr (corners.size() > 0 && others.size() > 0)
+            if (corners.size() > 0 && others.size() > 0)
                 return share_plane(corners, others, e, room);
-            else
-                return std::is_same_v<decltype(kind), decltype(other)> &&
-                       length(s.a - t.a) + std::abs(s.r - t.r) <= e + room;
+            const real apart = length(s.a - t.a) + length(s.b - t.b) + length(s.c - t.c);
+            return corners.size() == others.size() && apart + std::abs(s.r - t.r) <= e + room;
         });
     });
 }
