@@ -310,24 +310,30 @@ inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
 }
 
 // The first point light that lies on a shape, and the first such shape.  Only lights between the
-// bounds of a shape along the x axis are tested, for which they are sorted.
+// bounds of a shape along the x axis are looked at, for which they are sorted.  Throws UserError
+// "NAME: ..." if it would take seconds.
 struct LightOnShape {
     size_t light;
     uint32_t shape;
 };
-inline std::optional<LightOnShape> point_light_on_surface(const Scene& s) {
+inline std::optional<LightOnShape> point_light_on_surface(const Scene& s, const std::string& name) {
     std::vector<size_t> points;
     for (size_t k = 0; k < s.lights.size(); ++k)
         if (s.lights[k].is_delta()) points.push_back(k);
     auto x_of = [&](size_t k) { return s.lights[k].p.x; };
     std::ranges::stable_sort(points, {}, x_of);
     std::optional<LightOnShape> first;
+    int64_t left = 1 << 30;  // lights to look at; a test counts as 16
     for (uint32_t i = 0; i < s.shapes.size() && !points.empty(); ++i) {
         const Box box = bounds(s.shapes[i]);
         auto k = std::ranges::lower_bound(points, box.lo.x, {}, x_of);
-        for (; k != points.end() && x_of(*k) <= box.hi.x; ++k)
-            if ((!first || *k < first->light) && lies_on(s.shapes[i], s.facing[i], s.lights[*k].p))
-                first = LightOnShape{*k, i};
+        for (; k != points.end() && x_of(*k) <= box.hi.x; ++k) {
+            const vec3 p = s.lights[*k].p;
+            const bool may = overlap(box, {p, p}) && (!first || *k < first->light);
+            left -= may ? 16 : 1;
+            if (left < 0) throw UserError(name + ": too many point lights where shapes are");
+            if (may && lies_on(s.shapes[i], s.facing[i], p)) first = LightOnShape{*k, i};
+        }
     }
     return first;
 }
@@ -393,7 +399,7 @@ inline std::vector<std::string> check_and_prepare(NamedScene& s, const std::stri
     std::vector<std::string> warnings = Separation(s, name).warnings;
     const bool moved = !warnings.empty();
     prepare(s);
-    if (const auto on = point_light_on_surface(s))
+    if (const auto on = point_light_on_surface(s, name))
         throw error_at(name, s.line_of_light[on->light],
                        std::string("this ") + name_of(s.lights[on->light]) +
                            " light lies on the surface of " + where(s, on->shape) +

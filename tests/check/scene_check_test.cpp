@@ -548,6 +548,8 @@ TEST_CASE("hundreds of point lights beside ten thousand shapes: the first on one
                                  "mesh m.obj 1 9 0 0 d\n");
     CHECK(later ==
           "s.scene:4: this point light lies on the surface of line 7 (m.obj:5): move it off");
+    const std::string crowd = before + repeated(10, grey_mesh) + repeated(6000, beside);
+    CHECK(complaint_in(folder, crowd) == "s.scene: too many point lights where shapes are");
 }
 
 TEST_CASE("warnings about a mesh's faces name its own lines") {
