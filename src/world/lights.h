@@ -22,7 +22,6 @@ struct Emitter {
     vec3 p = {};       // centre of a sphere, corner of a polygon, the point
     rgb L = {};        // radiance; of a point: intensity, radiance x length^2
     real error = 0;    // of surface points, see Surface
-    real pick = 0;     // probability of its choice by power, for paths that start at lights
     vec3 centre = {};  // of a sphere about it, of radius reach
     real reach = 0;
     vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
