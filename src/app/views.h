@@ -18,6 +18,7 @@ struct Sight {
     std::optional<Vertex> x;  // what the ray meets
     real far;                 // a quarter of the scene's diagonal
 };
+inline rgb alike(real x) { return {x, x, x}; }
 inline real far_of(const Scene& scene) { return diagonal(scene) / 4; }
 
 struct View {
@@ -32,11 +33,11 @@ struct View {
 // Ambient occlusion (Landis 2002): 1 where nothing is met, or where a ray from there, in a
 // direction of density cos / pi, meets nothing within `far`.
 inline rgb occlusion(const Sight& s) {
-    if (!s.x) return {1, 1, 1};
+    if (!s.x) return alike(1);
     const vec2 u = s.at.sampler.get2(dimension(0, Draw::wi_x));
     Ray ray = spawn(s.x->at, s.x->local.to_world(sample_cosine_hemisphere(u)));
     ray.tmax = s.far;
-    return s.scene.bvh.occluded(ray) ? rgb{} : rgb{1, 1, 1};
+    return s.scene.bvh.occluded(ray) ? rgb{} : alike(1);
 }
 inline rgb work(const Sight& s) {
     const Tree::Work done = s.scene.bvh.work(s.at.ray);
@@ -46,17 +47,10 @@ inline rgb work(const Sight& s) {
 inline const Alternatives<View> views = {
     {"radiance", {"radiance"}},
     {"normal",
-     {"(normal + 1) / 2",
-      [](const Sight& s) {
-          return s.x ? (s.x->at.n + vec3{1, 1, 1}) / 2 : rgb{};
-      }}},
+     {"(normal + 1) / 2", [](auto& s) { return s.x ? (s.x->at.n + alike(1)) / 2 : rgb{}; }}},
     {"depth",
-     {"distance",
-      [](const Sight& s) {
-          return s.x ? vec3{1, 1, 1} * s.x->hit.t : rgb{};
-      },
-      Shades::from_least}},
-    {"albedo", {"albedo", [](const Sight& s) { return s.x ? s.x->material->albedo() : rgb{}; }}},
+     {"distance", [](auto& s) { return s.x ? alike(s.x->hit.t) : rgb{}; }, Shades::from_least}},
+    {"albedo", {"albedo", [](auto& s) { return s.x ? s.x->material->albedo() : rgb{}; }}},
     {"bvh", {"the BVH nodes (red) and shapes (green) that a ray visits", work, Shades::from_zero}},
     {"occlusion",
      {"ambient occlusion within a quarter of the scene's diagonal", occlusion, Shades::as_they_are,

@@ -109,12 +109,8 @@ inline LightGroup::Row<real> shares(const LightGroup& g, vec3 p, vec3 m) {
 }
 
 // Members share [0,1): the one whose part holds u, and where that part begins.
-struct MemberAt {
-    size_t k = 0;
-    real begin = 0;
-};
-inline MemberAt member_at(const LightGroup::Row<real>& share, real u) {
-    MemberAt found;
+inline std::pair<size_t, real> member_at(const LightGroup::Row<real>& share, real u) {
+    std::pair<size_t, real> found;
     real begin = 0;
     for (size_t k = 0; k < max_members; begin += share[k++])
         if (share[k] > 0 && begin <= u) found = {k, begin};  // rounding may leave a gap below 1

@@ -148,14 +148,13 @@ inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real 
 
 // ---- Kinds of shapes --------------------------------------------------------------------------
 //
-// A kind is a struct with these functions; `ask` chooses it, and below stands what calls them.
-//     name             in messages
-//     corners(s)       points about a flat shape, counterclockwise from its front; else none
-//     box(s)           the bounds, not padded
-//     normal(s)        the unit normal of a flat shape; else 0
+// A kind is a struct with these functions; `ask` chooses it.
+//     name                         in messages
+//     corners(s)                   points about a flat shape, counterclockwise from its front
+//     box(s)                       its bounds, not padded
+//     normal(s)                    the unit normal of a flat shape; else 0
 //     intersect(s, ray, k, tmax)   where a ray meets it first, at 0 < t <= tmax; k is shear(ray.d)
-//     surface(s, f, ray, hit)      the point hit, moved onto the shape itself: it is as exact far
-//                                  from the eye as near it
+//     surface(s, f, ray, hit)      the point hit, moved onto the shape: exact also far from the eye
 
 // Properties of all points of a shape: the unit normal, if it is flat, and Surface::error.
 struct Facing {
@@ -168,7 +167,6 @@ inline vec3 area_vector(const Shape& s) { return cross(s.b - s.a, s.c - s.a); }
 
 struct TriangleShape {
     static constexpr auto name = "triangle";
-
     static std::array<vec3, 3> corners(const Shape& s) { return {s.a, s.b, s.c}; }
     static Box box(const Shape& s) {
         Box box;
@@ -176,9 +174,7 @@ struct TriangleShape {
         return box;
     }
     static vec3 normal(const Shape& s) { return unit(area_vector(s)); }
-    static auto intersect(const Shape& s, const Ray& ray, const Shear& k, real tmax) {
-        return intersect_triangle(s, ray, k, tmax);
-    }
+    static constexpr auto intersect = intersect_triangle;
     static Surface surface(const Shape& s, const Facing& f, const Ray&, const Hit& hit) {
         return {(1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c, f.n, f.error};
     }
@@ -186,7 +182,6 @@ struct TriangleShape {
 
 struct SphereShape {
     static constexpr auto name = "sphere";
-
     static std::array<vec3, 0> corners(const Shape&) { return {}; }
     static Box box(const Shape& s) {
         const vec3 r{s.r, s.r, s.r};
