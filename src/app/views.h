@@ -65,7 +65,7 @@ inline const std::string view_help = [] {
 
 // The end of a file's name: "-depth"; "" for radiance.
 inline std::string suffix_of(const View& view) {
-    return view.of ? "-" + std::string(word_of(views, view)) : "";
+    return view.of ? std::string("-").append(word_of(views, view)) : "";
 }
 
 // A view as a PNG shows it: depth from black (nearest) to white (farthest), work relative to that
