@@ -74,7 +74,7 @@ std::string off(const std::string& text, double offsets) {
 const std::string from_above = "0 9 20  0 0 0  50", panel = "quad -9 9 -9  18 0 0  0 0 18  l\n";
 
 // A scene s.scene in a folder, with meshes.
-const std::string before = "camera 0 0 5  0 0 0  40\ndiffuse d .5 .5 .5\nlight l 1 1 1\n";
+const std::string grey_scene = "camera 0 0 5  0 0 0  40\ndiffuse d .5 .5 .5\nlight l 1 1 1\n";
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 const std::string shining = "mtllib m.mtl\nusemtl a\n", placed = "mesh m.obj 1 0 0 0\n",
                   grey_mesh = "mesh m.obj 1 0 0 0 d\n";
@@ -499,14 +499,14 @@ TEST_CASE("a hundred lights in one place have a warning each; thousands are refu
     const Folder folder;
     folder.write("m.mtl", "newmtl a\nKe 1 1 1\n");
     folder.write("m.obj", shining + square + "f 1 2 3\nf 3 4 1\n");
-    const ParsedScene all = parsed_in(folder, before + repeated(100, placed));
+    const ParsedScene all = parsed_in(folder, grey_scene + repeated(100, placed));
     CHECK(all.scene.lights.size() == 200);
     REQUIRE(all.warnings.size() == 99);
     CHECK(all.warnings[0].starts_with(
         "line 5 (m.obj:7): this light lies in the surface of line 4 (m.obj:7): "));
     CHECK(all.warnings[98].starts_with(
         "line 103 (m.obj:7): this light lies in the surface of line "));
-    CHECK(complaint_in(folder, before + repeated(4200, "sphere 0 0 0 1 l\n")) ==
+    CHECK(complaint_in(folder, grey_scene + repeated(4200, "sphere 0 0 0 1 l\n")) ==
           "s.scene: too many shapes where lights or glass are");
 }
 
@@ -525,7 +525,7 @@ TEST_CASE("a wall of so many lights that none may be in one place, across any ax
         const Folder folder;
         folder.write("m.mtl", "newmtl a\nKe 1 1 1\n");
         folder.write("m.obj", obj);
-        const ParsedScene wall = parsed_in(folder, before + placed);
+        const ParsedScene wall = parsed_in(folder, grey_scene + placed);
         CHECK(wall.scene.lights.size() == n * n);
         CHECK(wall.warnings.empty());
     }
@@ -535,20 +535,20 @@ TEST_CASE("hundreds of point lights beside ten thousand shapes: the first on one
     const Folder folder;
     folder.write("m.obj", square + repeated(1200, "f 1 2 3\n"));
     const std::string beside = "pointlight .2 .9 0  1 1 1\n";  // in the plane and in the box
-    CHECK(parsed_in(folder, before + repeated(10, grey_mesh) + repeated(300, beside))
+    CHECK(parsed_in(folder, grey_scene + repeated(10, grey_mesh) + repeated(300, beside))
               .scene.lights.size() > 250);
     // The message names the first of two lights on shapes, and the first shape below it.
     const std::string on = "pointlight .9 .2 0  1 1 1\n", off = "pointlight .2 .9 1  1 1 1\n";
     const std::string found = complaint_in(
-        folder, before + off + "mesh m.obj 1 9 0 0 d\n" + on + on + grey_mesh + grey_mesh);
+        folder, grey_scene + off + "mesh m.obj 1 9 0 0 d\n" + on + on + grey_mesh + grey_mesh);
     CHECK(found ==
           "s.scene:6: this point light lies on the surface of line 8 (m.obj:5): move it off");
     const std::string later =
-        complaint_in(folder, before + "pointlight 9.9 .2 0  1 1 1\nmesh m.obj 1 0 0 0 d\n" + on +
-                                 "mesh m.obj 1 9 0 0 d\n");
+        complaint_in(folder, grey_scene + "pointlight 9.9 .2 0  1 1 1\nmesh m.obj 1 0 0 0 d\n" +
+                                 on + "mesh m.obj 1 9 0 0 d\n");
     CHECK(later ==
           "s.scene:4: this point light lies on the surface of line 7 (m.obj:5): move it off");
-    const std::string crowd = before + repeated(10, grey_mesh) + repeated(6000, beside);
+    const std::string crowd = grey_scene + repeated(10, grey_mesh) + repeated(6000, beside);
     CHECK(complaint_in(folder, crowd) == "s.scene: too many point lights where shapes are");
 }
 
