@@ -452,7 +452,7 @@ TEST_CASE("a reflectance that is not a number reaches the film, whichever its ch
         rho.*channel = std::numeric_limits<real>::quiet_NaN();
         for (Material& m : room.materials) m.scattering = Rough(rho);
         for (const Named& t : techniques) {
-            INFO(t.name);
+            INFO(std::string(t.name));
             int finite = 0;
             for (uint64_t i = 0; i < 100; ++i)
                 finite += is_finite(radiance(room, t, {SamplerKind::independent, 1}, 4, 2, i));
