@@ -1,16 +1,9 @@
-// app/options.h  1  the options of penumbra
+// app/options.h  2  the options of penumbra
 #pragma once
+#include "app/views.h"
 #include "film/film.h"
-#include "path/pathtracer.h"
-#include "text/option.h"
 
 namespace penumbra {
-
-// The quantity that the image shows.
-enum class View { radiance, normal, depth, albedo, bvh, occlusion };
-inline const Alternatives<View> views = {
-    {"radiance", View::radiance}, {"normal", View::normal}, {"depth", View::depth},
-    {"albedo", View::albedo},     {"bvh", View::bvh},       {"occlusion", View::occlusion}};
 
 struct RowRange {
     int first = 0, last = 0;  // row 0 is at the top of the picture
@@ -24,8 +17,8 @@ struct Options : CommonOptions {
     uint32_t replications = 0;  // of each pixel; 0: adaptive
     SamplerKind sampler = SamplerKind::sobol;
     Technique technique;
-    std::optional<int> depth;  // default: the scene's
-    View view = View::radiance;
+    std::optional<int> depth;           // default: the scene's
+    View view = views.front().second;   // radiance
     std::string keep;                   // a film, or empty
     std::optional<RowRange> rows;       // default: all
     std::optional<PixelSample> replay;  // instead of rendering, print its path
@@ -129,11 +122,7 @@ inline OptionTable transport_rows(Options& o) {
 inline OptionTable view_rows(Options& o) {
     return in_group(
         "Views and debugging",
-        {one_of("--view", views,
-                "the image shows radiance; (normal + 1) / 2; distance; albedo; the BVH nodes (red) "
-                "and shapes (green) that a ray visits; or ambient occlusion within "
-                "a quarter of the scene's diagonal",
-                o.view),
+        {one_of("--view", views, view_help, o.view),
          {"--pixel", "X,Y", "print every event of one path of pixel X,Y instead of rendering", "",
           [&o](Text v) { set_pixel(o.replay, v); }},
          {"--sample", "I[,K]", "index of the sample, and of its replication, for --pixel", "0,0",
@@ -163,7 +152,7 @@ inline void parse_options(OptionTable& table, Options& o, const std::vector<std:
     if (is_given(table, "--sample") && !is_given(table, "--pixel"))
         throw UserError("--sample: needs --pixel X,Y (for samples per pixel use --spp N)");
     if (o.replay && !o.keep.empty()) throw UserError("--keep: cannot be combined with --pixel");
-    if (o.error > 0 && o.view != View::radiance) throw UserError("--error: needs --view radiance");
+    if (o.error > 0 && o.view.of) throw UserError("--error: needs --view radiance");
     if (o.error > 0 && o.replications == 1)
         throw UserError("--error: needs --replications 2 or more, or adaptive");
     if (o.rows && o.keep.empty() && o.outputs.empty())

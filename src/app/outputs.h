@@ -36,15 +36,15 @@ inline std::vector<std::string> outputs_of(const CommonOptions& o, std::string s
     return outputs;
 }
 
-// Writes one picture to every file; a PNG gets a view scaled.  Throws SystemError, before it writes
+// Writes one picture to every file; a PNG gets these shades.  Throws SystemError, before it writes
 // any, if a pixel is too bright for a file.
 inline void write_images(const std::vector<std::string>& paths, const Image& picture,
-                         double exposure, View view = View::radiance) {
+                         double exposure, Shades shades = Shades::as_they_are) {
     if (const auto at = first_non_finite(picture))
         throw SystemError("pixel " + *at + " is more than a file can hold; nothing was written");
     for (const std::string& path : paths)
-        if (path.ends_with(".png") && view != View::radiance)
-            write_image(path, scaled(picture, view), exposure);
+        if (path.ends_with(".png") && shades != Shades::as_they_are)
+            write_image(path, scaled(picture, shades), exposure);
         else
             write_image(path, picture, exposure);
 }

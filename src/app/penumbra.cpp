@@ -32,7 +32,7 @@ Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& patter
                      const Witness& witness) {
     return [&, far = far_of(scene)](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
-        if (o.view != View::radiance) return ++tally.rays, view_along(scene, o.view, at, far);
+        if (o.view.of) return ++tally.rays, o.view.of({scene, at, meet(scene, at.ray), far});
         auto misses = witness.visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {
@@ -81,7 +81,7 @@ int penumbra_main(const std::vector<std::string>& words) {
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     const RowRange rows = rows_of(o, scene);
     const Witness witness(scene, o.technique, rows.first, rows.count(), scene.line_of_light);
-    const Plan plan = plan_of(o, scene, o.view == View::radiance ? &witness : nullptr);
+    const Plan plan = plan_of(o, scene, o.view.of ? nullptr : &witness);
     const Radiance L = radiance_of(o, scene, pattern, witness);
     const FilmOf what = film_of(table, o, parsed, plan);
     const Picture picture = render(o, plan, L, what);  // film and bar end here

@@ -37,13 +37,14 @@ inline ParsedScene load(const Options& o) {
     for (const std::string& hidden : hidden_lights(scene)) parsed.warnings.push_back(hidden);
     scene.size = o.size.value_or(scene.size);
     scene.depth = o.depth.value_or(scene.depth);
-    if (o.view == View::occlusion) scene.depth = 1;    // for the numbers of one direction
-    if (o.view != View::radiance) scene.exposure = 1;  // a scene's own is meant for radiance
+    if (o.view.scatters) scene.depth = 1;  // for the numbers of one direction
+    if (o.view.of) scene.exposure = 1;     // a scene's own is meant for radiance
     if (o.exposure) scene.exposure = real(*o.exposure);
     for (size_t i = 0; i < scene.lights.size(); ++i)
         if (scene.lights[i].is_delta() && o.technique.light == LightMode::none)
             throw UserError(o.scene + ":" + std::to_string(scene.line_of_light[i]) +
-                            ": --light none: rays never hit a point light");
+                            ": --light none: rays never hit a " + name_of(scene.lights[i]) +
+                            " light");
     if (o.rows && o.rows->last >= scene.size.height)
         throw UserError("--rows: the picture has rows 0-" + std::to_string(scene.size.height - 1));
     if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))
@@ -174,7 +175,7 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     check_finite(loop.tally());
     Run run = run_of(film, plan, spent(loop.tally()), stop);
     run.exponent_of_cost = loop.checks().exponent_of_cost();
-    run.is_radiance = o.view == View::radiance;
+    run.is_radiance = !o.view.of;
     const std::string not_kept = keeper.write(film, run, !run.interrupted());
     film.deviation = std::vector<float>();  // makes room for the image
     return {image_of(film), run, not_kept};
@@ -187,7 +188,8 @@ inline int write_picture(const Options& o, const OptionTable& table, const Scene
                          const std::vector<std::string>& outputs, const Picture& picture) {
     const auto& [image, run, not_kept] = picture;
     if (run.spp > 0) {
-        write_images(outputs, image, double(scene.exposure), o.exposure ? View::radiance : o.view);
+        write_images(outputs, image, double(scene.exposure),
+                     o.exposure ? Shades::as_they_are : o.view.shades);
         json::Object stats = asked_for(table, o.scene, {image.width, image.height});
         stats.add("depth", std::to_string(scene.depth));
         add_run(stats, run, {image.width, image.height});
@@ -197,8 +199,7 @@ inline int write_picture(const Options& o, const OptionTable& table, const Scene
     std::vector<std::string> files = outputs;
     if (!o.keep.empty() && not_kept.empty()) files.push_back(o.keep);
     if (run.spp > 0) tell_written(o, files);
-    if (o.view == View::radiance && !o.rows && !scene.lights.empty() && run.error.norm() == 0)
-        tell_black(o);
+    if (run.is_radiance && !o.rows && !scene.lights.empty() && run.error.norm() == 0) tell_black(o);
     if (!not_kept.empty()) throw SystemError(not_kept);
     return run.interrupted() ? 128 + interrupted : 0;
 }

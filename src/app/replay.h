@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdio>
 
-#include "app/views.h"
+#include "app/options.h"
 #include "path/start.h"
 
 namespace penumbra {
@@ -86,8 +86,8 @@ private:
 
     void light(const DirectLight& d) const {
         std::fprintf(out_, "  light sample: %s light, chosen with probability %.17g, %s\n",
-                     d.light->ask([](const auto& kind) { return kind.name; }),
-                     double(d.pdf / d.sample.pdf), d.occluded ? "occluded" : "visible");
+                     name_of(*d.light), double(d.pdf / d.sample.pdf),
+                     d.occluded ? "occluded" : "visible");
         print("    at", d.sample.at.p);
         print("    wi", d.sample.wi);
         print("    pdf", {d.pdf});
@@ -110,8 +110,9 @@ inline void replay(const Options& o, const NamedScene& scene, const Pattern& pat
     std::printf("pixel %d,%d, sample %llu of replication %u, seed %llu\n", x, y,
                 static_cast<unsigned long long>(i), set, static_cast<unsigned long long>(o.seed));
     log.film(at);
-    if (o.view != View::radiance)
-        return log.end("a view, not radiance", view_along(scene, o.view, at, far_of(scene)));
+    if (o.view.of)
+        return log.end("a view, not radiance",
+                       o.view.of({scene, at, meet(scene, at.ray), far_of(scene)}));
     End why = End::no;
     const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
         log(s, e);

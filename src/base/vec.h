@@ -57,7 +57,11 @@ inline bool operator==(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z 
 
 inline real dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline real length(vec3 a) { return std::sqrt(dot(a, a)); }
-inline real max_of(vec3 a) { return std::max({a.x, a.y, a.z}); }
+// NaN if a component is: std::max would lose one of y or z.
+inline real max_of(vec3 a) {
+    const real sum = a.x + a.y + a.z;
+    return std::isnan(sum) ? sum : std::max({a.x, a.y, a.z});
+}
 inline real max_abs(vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 inline real mean_of(vec3 a) { return (a.x + a.y + a.z) / 3; }
 // For vectors whose square is denormal or infinite: a power of two scales them first, exactly.

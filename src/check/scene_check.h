@@ -15,19 +15,16 @@ inline constexpr bool moves_surfaces = true;  // of programs that are built with
 
 // ---- Surfaces that lie in each other ------------------------------------------------------------
 
-// True if two shapes share more than an edge of one surface, within rounding, or lie above each
-// other at no more than `room`.
-inline bool share_surface(const Shape& s, const Shape& t, real room) {
-    const real e = 2 * (rounding_error(s) + rounding_error(t));  // the bound of spawn
-    if (s.is_sphere() || t.is_sphere())
-        return s.is_sphere() && t.is_sphere() &&
-               length(s.a - t.a) + std::abs(s.r - t.r) <= e + room;
-    const vec3 corners[2][3] = {{s.a, s.b, s.c}, {t.a, t.b, t.c}};
-    const vec3 normal[2] = {unit(area_vector(s)), unit(area_vector(t))};
+// The same of two flat shapes with these corners.  Each lies within its edges: another one that is
+// beyond an edge of it touches it at most.
+inline bool share_plane(std::span<const vec3> s, std::span<const vec3> t, real e, real room) {
+    const std::span<const vec3> corners[2] = {s, t};
+    const vec3 normal[2] = {unit(cross(s[1] - s[0], s[2] - s[0])),
+                            unit(cross(t[1] - t[0], t[2] - t[0]))};
     auto farthest = [&](size_t k, vec3 from, vec3 along) {
-        const auto& others = corners[1 - k];
-        return std::max({dot(others[0] - from, along), dot(others[1] - from, along),
-                         dot(others[2] - from, along)});
+        real far = -infinity;
+        for (vec3 p : corners[1 - k]) far = std::max(far, dot(p - from, along));
+        return far;
     };
     auto has_other_in_plane = [&](size_t k) {
         return farthest(k, corners[k][0], normal[k]) <= e + room &&
@@ -35,11 +32,27 @@ inline bool share_surface(const Shape& s, const Shape& t, real room) {
     };
     if (!has_other_in_plane(0) && !has_other_in_plane(1)) return false;
     for (size_t k : {0, 1})
-        for (size_t i = 0; i < 3; ++i) {
-            const vec3 edge = corners[k][(i + 1) % 3] - corners[k][i];
+        for (size_t i = 0, n = corners[k].size(); i < n; ++i) {
+            const vec3 edge = corners[k][(i + 1) % n] - corners[k][i];
             if (farthest(k, corners[k][i], unit(cross(normal[k], edge))) <= e) return false;
         }
     return true;
+}
+
+// True if two shapes share more than an edge of one surface, within rounding, or lie above each
+// other at no more than `room`.
+inline bool share_surface(const Shape& s, const Shape& t, real room) {
+    const real e = 2 * (rounding_error(s) + rounding_error(t));  // the bound of spawn
+    return ask(s, [&](auto kind) {
+        return ask(t, [&](auto other) {
+            const auto corners = kind.corners(s);
+            const auto others = other.corners(t);
+            if (corners.size() > 0 && others.size() > 0)
+                return share_plane(corners, others, e, room);
+            const real apart = length(s.a - t.a) + length(s.b - t.b) + length(s.c - t.c);
+            return corners.size() == others.size() && apart + std::abs(s.r - t.r) <= e + room;
+        });
+    });
 }
 
 inline bool overlap(const Box& a, const Box& b) {
@@ -131,7 +144,7 @@ private:
     }
 };
 
-// Moved along a normal; a sphere, which has none, grows.
+// Moved along a normal; a round one, which has none, grows.
 inline Light lifted(Light l, real by) {
     l.p += by * l.n;
     if (auto* ball = std::get_if<SphereLight>(&l.kind))
@@ -141,7 +154,7 @@ inline Light lifted(Light l, real by) {
 }
 inline Shape lifted(Shape s, vec3 n, real by) {
     s.a += by * n, s.b += by * n, s.c += by * n;
-    if (s.r > 0) s.r = std::max(s.r / 2, s.r + by);
+    if (n == vec3{}) s.r = std::max(s.r / 2, s.r + by);
     return s;
 }
 
@@ -291,30 +304,36 @@ private:
 // quarter of rounding_error, the error that the intersectors actually make.
 inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
     const real error = f.error / 4 + 4 * ulp * max_abs(p);
-    const vec3 n = s.is_sphere() ? unit(p - s.a) : f.n;
+    const vec3 n = f.n == vec3{} ? unit(p - s.a) : f.n;
     const Ray through{p - error * n, n, 2 * error};
     return intersect(s, through, shear(n), through.tmax).has_value();
 }
 
 // The first point light that lies on a shape, and the first such shape.  Only lights between the
-// bounds of a shape along the x axis are tested, for which they are sorted.
+// bounds of a shape along the x axis are looked at, for which they are sorted.  Throws UserError
+// "NAME: ..." if it would take seconds.
 struct LightOnShape {
     size_t light;
     uint32_t shape;
 };
-inline std::optional<LightOnShape> point_light_on_surface(const Scene& s) {
+inline std::optional<LightOnShape> point_light_on_surface(const Scene& s, const std::string& name) {
     std::vector<size_t> points;
     for (size_t k = 0; k < s.lights.size(); ++k)
         if (s.lights[k].is_delta()) points.push_back(k);
     auto x_of = [&](size_t k) { return s.lights[k].p.x; };
     std::ranges::stable_sort(points, {}, x_of);
     std::optional<LightOnShape> first;
+    int64_t left = 1 << 30;  // lights to look at; a test counts as 16
     for (uint32_t i = 0; i < s.shapes.size() && !points.empty(); ++i) {
         const Box box = bounds(s.shapes[i]);
         auto k = std::ranges::lower_bound(points, box.lo.x, {}, x_of);
-        for (; k != points.end() && x_of(*k) <= box.hi.x; ++k)
-            if ((!first || *k < first->light) && lies_on(s.shapes[i], s.facing[i], s.lights[*k].p))
-                first = LightOnShape{*k, i};
+        for (; k != points.end() && x_of(*k) <= box.hi.x; ++k) {
+            const vec3 p = s.lights[*k].p;
+            const bool may = overlap(box, {p, p}) && (!first || *k < first->light);
+            left -= may ? 16 : 1;
+            if (left < 0) throw UserError(name + ": too many point lights where shapes are");
+            if (may && lies_on(s.shapes[i], s.facing[i], p)) first = LightOnShape{*k, i};
+        }
     }
     return first;
 }
@@ -327,10 +346,15 @@ inline bool is_coarse(const Shape& s) {
 }
 
 // The first shape too near to the middle of x, which is shape `own` or a point: both ways along the
-// normal of a triangle, else along the axes.  A shape within four errors of a triangle touches it.
+// normal of a flat shape, else along the axes.  A shape within four errors of a flat one touches
+// it.
 inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint32_t own,
                                    real reach) {
-    const vec3 middle = x.is_sphere() ? x.a : (x.a + x.b + x.c) / 3;
+    const vec3 middle = ask(x, [&](auto kind) {
+        vec3 sum;
+        for (vec3 p : kind.corners(x)) sum += p;
+        return f.n == vec3{} ? x.a : sum / real(kind.corners(x).size());
+    });
     for (size_t k = 0; k < (f.n == vec3{} ? 12 : 2); ++k) {
         vec3 d = k & 1 ? -f.n : f.n;
         if (f.n == vec3{}) d.*axis[k / 4] = k & 1 ? -1 : 1;
@@ -348,13 +372,13 @@ inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint3
 inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool moved) {
     std::map<std::string, uint32_t> found;
     const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
-    auto look_about = [&](vec3 p, const char* what) {
+    auto look_about = [&](vec3 p, const std::string& what) {
         if (const auto hit = near_hit(s, {p, p, p}, {}, UINT32_MAX, reach))
             found.emplace(what, hit->id);
     };
     look_about(s.camera.eye, "distance to the eye");
     for (const Light& l : s.lights)
-        if (l.is_delta()) look_about(l.p, "distance to a point light");
+        if (l.is_delta()) look_about(l.p, std::string("distance to a ") + name_of(l) + " light");
     for (uint32_t i = 0, firsts = 0, pairs = 0; i < s.shapes.size(); ++i) {
         if (is_coarse(s.shapes[i])) found.emplace("size", i);
         const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];
@@ -375,10 +399,11 @@ inline std::vector<std::string> check_and_prepare(NamedScene& s, const std::stri
     std::vector<std::string> warnings = Separation(s, name).warnings;
     const bool moved = !warnings.empty();
     prepare(s);
-    if (const auto on = point_light_on_surface(s))
-        throw error_at(
-            name, s.line_of_light[on->light],
-            "this point light lies on the surface of " + where(s, on->shape) + ": move it off");
+    if (const auto on = point_light_on_surface(s, name))
+        throw error_at(name, s.line_of_light[on->light],
+                       std::string("this ") + name_of(s.lights[on->light]) +
+                           " light lies on the surface of " + where(s, on->shape) +
+                           ": move it off");
     for (const auto& [length, shape] : coarse_lengths(s, moved))
         warnings.push_back(too_coarse(
             where(s, shape), "ray origins are offset by more than 1 % of this shape's " + length));

@@ -121,13 +121,13 @@ int program(const std::vector<std::string>& words) {
     check_cover(parts, size.height);
     o.scene = any.said("name");
     const View view = view_in(any);
-    run.is_radiance = view == View::radiance;
+    run.is_radiance = !view.of;
     const auto outputs = outputs_of(o, "out/NAME" + suffix_of(view), paths, {}, size);
     catch_interrupt();
     const Image image = merge(parts, size, run);
     if (interrupted) return 128 + interrupted;  // and no file is written
     write_images(outputs, image, o.exposure ? *o.exposure : any.number("exposure"),
-                 o.exposure ? View::radiance : view);
+                 o.exposure ? Shades::as_they_are : view.shades);
     json::Object stats = asked_for(table, o.scene, size);
     add_run(stats, run, size);
     if (!o.stats.empty()) write_file(o.stats, stats.text());

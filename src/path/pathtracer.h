@@ -99,7 +99,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& technique, co
     // exercise 3.3
     // f L cos / pdf where nothing is in the way; pdf is of the light and of the point on it.
     const real pdf_light = chosen.pick * sample->pdf;
-    const bool by_mis = technique.light == LightMode::mis && !sample->delta;
+    const bool by_mis = technique.light == LightMode::mis && !light.is_delta();
     const real weight =
         by_mis ? power_heuristic(pdf_light, pdf(material, vertex.wo, wi, technique.direction)) : 1;
     const bool occluded = scene.bvh.occluded(spawn_to(vertex.at, sample->at));

@@ -15,19 +15,22 @@ inline std::string other_than_diffuse(const Material& m) {
     return max_of(rough->ks) > 0 ? "glossy" : "";
 }
 
-// Throws UserError "NAME:LINE: ..." about the first shape that is not diffuse, or the first light
-// without a surface that is no point.
+// Throws UserError "NAME:LINE: ..." about the first shape that is not diffuse, or neither a
+// triangle nor a sphere, or the first light without a surface that is no point.
 inline void check_diffuse(const NamedScene& s, const std::string& name) {
-    for (size_t i = 0; i < s.shapes.size(); ++i)
+    for (size_t i = 0; i < s.shapes.size(); ++i) {
         if (const std::string what = other_than_diffuse(s.material_at(uint32_t(i))); !what.empty())
-            throw UserError(name + ":" + std::to_string(s.line_of[i]) + ": " + "material " +
-                            in_quotes(s.names[s.material_of[i]]) + " is " + what +
-                            "; radiosity supports diffuse surfaces only");
+            throw error_at(name, s.line_of[i],
+                           "material " + in_quotes(s.names[s.material_of[i]]) + " is " + what +
+                               "; radiosity supports diffuse surfaces only");
+        const std::string shape = ask(s.shapes[i], [](auto kind) { return kind.name; });
+        if (shape != TriangleShape::name && shape != SphereShape::name)
+            throw error_at(name, s.line_of[i], "radiosity supports no " + shape);
+    }
     for (size_t k = 0; k < s.lights.size(); ++k)
         if (const Light& l = s.lights[k]; l.is_delta() && !l.as<PointLight>())
-            throw UserError(name + ":" + std::to_string(s.line_of_light[k]) +
-                            ": radiosity supports no " +
-                            l.ask([](const auto& kind) { return kind.name; }) + " light");
+            throw error_at(name, s.line_of_light[k],
+                           "radiosity supports no " + std::string(name_of(l)) + " light");
 }
 
 // The line of the first shape that absorbs nothing of a channel; 0: none.
@@ -159,7 +162,7 @@ inline Faceted faceted(const NamedScene& from, double H) {
     }
     for (size_t i = 0; i < from.shapes.size(); ++i) {
         const int32_t own = from.light_of[i];
-        if (!from.shapes[i].is_sphere()) {
+        if (from.shapes[i].is_triangle()) {
             add_facet(to, from, i, from.shapes[i], own == no_light ? own : light[size_t(own)]);
             continue;
         }

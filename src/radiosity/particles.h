@@ -48,19 +48,49 @@ struct Particle {
     rgb power;
 };
 
+// Lights, at least one, are chosen with probabilities in proportion to their power.  Random numbers
+// are multiples of ulp, and so are the probabilities, exactly; an even share keeps each above 0.  A
+// power that underflows counts as the least.
+class LightsByPower {
+public:
+    explicit LightsByPower(const std::vector<Light>& lights) {
+        const double n = double(lights.size()), even = std::min(0.5, 2 * n * double(ulp));
+        constexpr double least = std::numeric_limits<double>::min();
+        double total = 0, sum = 0;
+        for (const Light& l : lights) total += power(l) + least;
+        for (const Light& l : lights) {
+            sum += power(l) + least;
+            const double cdf = even * double(cdf_.size() + 1) / n + (1 - even) * (sum / total);
+            cdf_.push_back(std::round(cdf / double(ulp)) * double(ulp));
+        }
+    }
+    size_t choose(real u) const {
+        const auto i = std::upper_bound(cdf_.begin(), cdf_.end(), double(u));
+        return std::min(size_t(i - cdf_.begin()), cdf_.size() - 1);
+    }
+    // The probability of a light's choice.
+    real pick_of(size_t light) const { return real(cdf_[light] - (light ? cdf_[light - 1] : 0)); }
+
+private:
+    std::vector<double> cdf_;
+};
+
 // From a light chosen by its power, uniformly from its area, as Lambert's cosine law has it.  A
 // polygon or a point: spheres have become facets.
-inline Particle emit(const Scene& scene, const WalkNumbers& u) {
-    const Light& l = choose_light(scene, u.start(WalkNumbers::pick));
+inline Particle emit(const Scene& scene, const LightsByPower& lights, const WalkNumbers& u) {
+    const size_t chosen = lights.choose(u.start(WalkNumbers::pick));
+    const real pick = lights.pick_of(chosen);
+    const Light& l = scene.lights[chosen];
     const vec2 at = u.start2(WalkNumbers::point), d = u.start2(WalkNumbers::direction);
     if (l.is_delta()) {
         const vec3 w = sample_uniform_sphere(d);
-        return {{l.p, w}, l.L / (pdf_uniform_sphere() * l.pick)};
+        return {{l.p, w}, l.L / (pdf_uniform_sphere() * pick)};
     }
     Surface y = point_of(l, at);
     if (l.twosided && u.start(WalkNumbers::side) >= real(0.5)) y.n = -y.n;
     const vec3 w = frame(y.n).to_world(sample_cosine_hemisphere(d));
-    return {spawn(y, w), pi * area_of(l) * (l.twosided ? 2 : 1) * l.L / l.pick};
+    const real area = real(l.ask([](const auto& kind) { return kind.strength(1); }));
+    return {spawn(y, w), pi * area * (l.twosided ? 2 : 1) * l.L / pick};
 }
 
 // White walls absorb nothing, but walks have to end: one in fifty does, and the others weigh more.
@@ -69,8 +99,9 @@ inline constexpr real white_survival = real(0.98);
 // Calls hit(vertex, power) wherever the particle stops; returns the number of rays.  Random numbers
 // of stop k are u.survival(k) and u.scattered(k).
 template <class Hit>
-uint32_t walk(const Scene& scene, const WalkNumbers& u, Balance& balance, Hit hit) {
-    auto [ray, power] = emit(scene, u);
+uint32_t walk(const Scene& scene, const LightsByPower& lights, const WalkNumbers& u,
+              Balance& balance, Hit hit) {
+    auto [ray, power] = emit(scene, lights, u);
     balance.emitted += power;
     for (uint32_t k = 0;; ++k) {
         const auto x = meet(scene, ray);
@@ -107,6 +138,7 @@ public:
     // Both must outlive it.
     Particles(const Scene& scene, const Mesh& mesh, const Pattern& pattern)
         : scene_(scene),
+          lights_(scene.lights),
           mesh_(mesh),
           pattern_(pattern),
           independent_(make_pattern(SamplerKind::independent, pattern.seed, 0)),
@@ -125,7 +157,7 @@ public:
             const WalkNumbers u(pattern_, independent_, uint64_t(batch), b.n);
             Balance one;
             rgb kept{1, 1, 1};  // part that the surfaces reflect
-            b.rays += walk(scene_, u, one, [&](const Vertex& x, rgb power) {
+            b.rays += walk(scene_, lights_, u, one, [&](const Vertex& x, rgb power) {
                 kept *= x.material->diffuse();
                 const auto [vertex, weight] = between(mesh_, x.hit);
                 for (size_t k = 0; k < 3; ++k)
@@ -233,6 +265,7 @@ private:
     };
 
     const Scene& scene_;
+    const LightsByPower lights_;
     const Mesh& mesh_;
     const Pattern pattern_, independent_;
     std::vector<Batch> batch_;

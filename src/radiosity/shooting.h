@@ -232,7 +232,7 @@ private:
                 to.x.p = mesh_.at[v];
                 to.E = mean_of(map_[2 * v + back]);
                 const rgb E = point_ ? transfer.from_point(to, *point_) : from_side(to, transfer);
-                if (max_of(E) > 0) map_[2 * v + back] += E, changed = true;
+                if (!(max_of(E) <= 0)) map_[2 * v + back] += E, changed = true;
             }
             if (changed) best_[2 * face + back] = candidate(2 * face + back);
         }

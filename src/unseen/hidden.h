@@ -68,9 +68,10 @@ inline std::vector<std::string> hidden_lights(const NamedScene& s) {
     if (point != s.lights.end() &&
         std::ranges::any_of(s.material_of, [&](auto m) { return s.materials[m].is_delta(); }))
         warn(size_t(point - s.lights.begin()),
-             "a point light does not shine through glass or by mirrors, where no path finds it: "
-             "that light is missing; a sphere of radius r and radiance I / (pi r^2) shines there, "
-             "too");
+             std::string("a ") + name_of(*point) +
+                 " light does not shine through glass or by mirrors, where no path finds it: "
+                 "that light is missing; a sphere of radius r and radiance I / (pi r^2) shines "
+                 "there, too");
     return warnings;
 }
 

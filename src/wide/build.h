@@ -151,7 +151,7 @@ struct Branch {
 struct BinaryTree {
     std::vector<Branch> branches;
     std::vector<uint32_t> ids;  // ids of the shapes, in the order of the leaves
-    bool mixed;                 // the root has both triangles and spheres
+    bool mixed;                 // the root has triangles and other shapes
 
     static constexpr uint32_t leaf_size = 4;      // shapes a leaf holds at most
     static constexpr int sah_depth = 32;          // below, split at the median: 32 levels more
@@ -166,13 +166,13 @@ public:
         // Triangles first.
         Extent extent[2];
         uint32_t n[2] = {};
-        for (bool spheres : {false, true})
+        for (bool others : {false, true})
             for (uint32_t i = 0; i < shapes.size(); ++i) {
-                if (shapes[i].is_sphere() != spheres) continue;
+                if (shapes[i].is_triangle() == others) continue;
                 const Item item = Item::of(shapes[i], i);
-                extent[spheres].add(item);
+                extent[others].add(item);
                 from_[n[0] + n[1]] = item;
-                ++n[spheres];
+                ++n[others];
             }
         tree_.ids.resize(shapes.size());
         tree_.branches.reserve(2 * shapes.size());

@@ -1,4 +1,7 @@
 // wide/leaf.h  3  shapes in the order of the leaves; a ray is intersected with a leaf at a time
+//
+// Triangles lie in rows, and several are intersected at once.  Shapes of other kinds lie one by
+// one.
 #pragma once
 #include <array>
 #include <span>
@@ -62,17 +65,16 @@ public:
     // Adds a leaf of these shapes, 1 to 8.
     Child add(const std::vector<Shape>& shapes, std::span<const uint32_t> ids) {
         const size_t n = ids.size();
-        const bool spheres = shapes[ids[0]].is_sphere();
-        const Child leaf = Child::leaf(uint32_t(ids_.size()), uint32_t(n), spheres);
+        if (!shapes[ids[0]].is_triangle()) {
+            for (uint32_t id : ids) others_.push_back({shapes[id], id});
+            return Child::leaf(uint32_t(others_.size() - n), uint32_t(n), true);
+        }
+        const Child leaf = Child::leaf(uint32_t(ids_.size()), uint32_t(n), false);
         ids_.insert(ids_.end(), ids.begin(), ids.end());
         std::array<real, numbers * largest> rows{};
         for (size_t i = 0; i < n; ++i) {
             const Shape& shape = shapes[ids[i]];
-            real* row = &rows[spheres ? numbers * i : i];
-            if (spheres) {
-                for (real number : {shape.a.x, shape.a.y, shape.a.z, shape.r}) *row++ = number;
-                continue;
-            }
+            real* row = &rows[i];
             for (vec3 p : {shape.a, shape.b, shape.c})
                 for (auto k : axis) *row = p.*k, row += n;
         }
@@ -84,8 +86,8 @@ public:
 
     // The nearest hit of best and of a leaf's; of equals the one with the smallest index.
     [[gnu::always_inline]] Hit nearest(Child leaf, const Ray& ray, const Shear& k, Hit best) const {
-        if (leaf.spheres()) [[unlikely]]
-            return nearest_sphere(leaf, ray, best);
+        if (leaf.others()) [[unlikely]]
+            return nearest_other(leaf, ray, best);
         Rows rows{&numbers_[leaf.first() * numbers], leaf.count(), 0};
         do {
             Meeting met = intersect_triangles(rows, ray, k, best.t);
@@ -100,8 +102,8 @@ public:
     }
 
     bool any(Child leaf, const Ray& ray, const Shear& k) const {
-        if (leaf.spheres()) [[unlikely]]
-            return any_sphere(leaf, ray);
+        if (leaf.others()) [[unlikely]]
+            return any_other(leaf, ray);
         Rows rows{&numbers_[leaf.first() * numbers], leaf.count(), 0};
         do {
             if (intersect_triangles(rows, ray, k, ray.tmax).hit.any()) return true;
@@ -110,35 +112,41 @@ public:
     }
 
     size_t bytes() const {
-        return numbers_.capacity() * sizeof(real) + ids_.capacity() * sizeof(uint32_t);
+        return numbers_.capacity() * sizeof(real) + ids_.capacity() * sizeof(uint32_t) +
+               others_.capacity() * sizeof(Other);
     }
 
 private:
-    static constexpr size_t numbers = 9;  // numbers per shape; a sphere needs four
+    struct Other {
+        Shape shape;
+        uint32_t id;
+    };
+    static constexpr size_t numbers = 9;  // of a triangle
     std::vector<real> numbers_;
-    std::vector<uint32_t> ids_;  // their indices
+    std::vector<uint32_t> ids_;  // indices of triangles
+    std::vector<Other> others_;
 
     // Moves on to the next lanes.
     static bool has_more(Rows& rows) {
         return real_lanes < largest && (rows.at += real_lanes) < rows.count;
     }
-    Shape sphere(uint32_t i) const {
-        const real* row = &numbers_[i * numbers];
-        return {{row[0], row[1], row[2]}, {}, {}, row[3]};
+    static std::optional<Hit> met(const Shape& s, const Ray& ray, real tmax) {
+        return ask(s, [&](auto kind) { return kind.intersect(s, ray, shear(ray.d), tmax); });
     }
     // Apart, so that a scene of triangles pays nothing for them.
-    [[gnu::noinline]] Hit nearest_sphere(Child leaf, const Ray& ray, Hit best) const {
+    [[gnu::noinline]] Hit nearest_other(Child leaf, const Ray& ray, Hit best) const {
         for (uint32_t i = leaf.first(); i < leaf.first() + leaf.count(); ++i) {
-            const auto hit = intersect_sphere(sphere(i), ray, best.t);
-            if (!hit || (hit->t == best.t && ids_[i] >= best.id)) continue;
+            const auto& [shape, id] = others_[i];
+            const auto hit = met(shape, ray, best.t);
+            if (!hit || (hit->t == best.t && id >= best.id)) continue;
             best = *hit;
-            best.id = ids_[i];
+            best.id = id;
         }
         return best;
     }
-    [[gnu::noinline]] bool any_sphere(Child leaf, const Ray& ray) const {
+    [[gnu::noinline]] bool any_other(Child leaf, const Ray& ray) const {
         for (uint32_t i = leaf.first(); i < leaf.first() + leaf.count(); ++i)
-            if (intersect_sphere(sphere(i), ray, ray.tmax)) return true;
+            if (met(others_[i].shape, ray, ray.tmax)) return true;
         return false;
     }
 };

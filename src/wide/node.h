@@ -41,19 +41,19 @@ struct Probe {
 };
 
 // A child in 32 bits.  The last five hold the number of a leaf's triangles, or 16 plus that of its
-// spheres; the bits above them hold the index of its first shape.  The last five bits of a node are
+// other shapes; the bits above them hold the index of the first.  The last five bits of a node are
 // 0: the number is its offset in bytes.
 struct Child {
-    uint32_t bits = 16;  // a leaf of no spheres
+    uint32_t bits = 16;  // a leaf of no shapes
 
     static constexpr size_t max_shapes = size_t(1) << 27;
-    static Child leaf(uint32_t first, uint32_t count, bool spheres) {
-        return {first << 5 | (spheres ? 16 : 0) | count};
+    static Child leaf(uint32_t first, uint32_t count, bool others) {
+        return {first << 5 | (others ? 16 : 0) | count};
     }
     bool is_leaf() const { return bits & 31; }
     uint32_t first() const { return bits >> 5; }
     uint32_t count() const { return bits & 15; }
-    bool spheres() const { return bits & 16; }
+    bool others() const { return bits & 16; }
 };
 
 // Where a ray enters and leaves eight boxes.

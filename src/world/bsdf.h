@@ -192,7 +192,7 @@ struct Material {
         return ask([](const auto& kind) { return kind.diffuse(); });
     }
     bool reflects() const { return is_delta() || max_of(albedo()) > 0; }
-    bool emits() const { return max_of(Le) > 0; }
+    bool emits() const { return !(max_of(Le) <= 0); }
 };
 
 // Radiance that a surface emits at an angle to its normal with this cosine.

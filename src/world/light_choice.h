@@ -108,6 +108,15 @@ inline LightGroup::Row<real> shares(const LightGroup& g, vec3 p, vec3 m) {
     return of;
 }
 
+// Members share [0,1): the one whose part holds u, and where that part begins.
+inline std::pair<size_t, real> member_at(const LightGroup::Row<real>& share, real u) {
+    std::pair<size_t, real> found;
+    real begin = 0;
+    for (size_t k = 0; k < max_members; begin += share[k++])
+        if (share[k] > 0 && begin <= u) found = {k, begin};  // rounding may leave a gap below 1
+    return found;
+}
+
 class LightTree {
 public:
     LightTree() = default;
@@ -125,22 +134,20 @@ public:
         size_t light = 0;
         real pick = 1;
     };
-    // For a surface at p with normal m on the side of the eye, by u in [0,1).
+    // For a surface at p with normal m on the side of the eye, by u in [0,1): down from the group
+    // of all lights, in each to the member that u chooses, until that is a light.
     Choice choose(vec3 p, vec3 m, real u) const {
-        Choice c;
-        for (size_t at = 0; at < groups_.size(); at = c.light) {  // a group, until it is a light
-            const LightGroup& g = groups_[at];
-            const LightGroup::Row<real> share = shares(g, p, m);
-            size_t k = 0;  // the last member whose part of [0,1) begins at u or before
-            real begin = 0, sum = 0;
-            for (size_t i = 0; i < max_members; sum += share[i++])
-                if (share[i] > 0 && sum <= u) k = i, begin = sum;
-            c = {g.child[k], c.pick * share[k]};
-            if (g.is_light[k]) break;
-            // What is left of u is a random number of its own.
+        if (groups_.empty()) return {};
+        real pick = 1;
+        for (const LightGroup* group = &groups_[0];;) {
+            const LightGroup::Row<real> share = shares(*group, p, m);
+            const auto [k, begin] = member_at(share, u);
+            pick *= share[k];
+            if (group->is_light[k]) return {group->child[k], pick};
+            // Where u lies in the part of that member is a random number of its own.
             u = std::clamp((u - begin) / share[k], real(0), below_one);
+            group = &groups_[group->child[k]];
         }
-        return c;
     }
     // The probability that it chooses this light.
     real pick_of(size_t light, vec3 p, vec3 m) const {

@@ -22,7 +22,6 @@ struct Emitter {
     vec3 p = {};       // centre of a sphere, corner of a polygon, the point
     rgb L = {};        // radiance; of a point: intensity, radiance x length^2
     real error = 0;    // of surface points, see Surface
-    real pick = 0;     // probability of its choice by power, for paths that start at lights
     vec3 centre = {};  // of a sphere about it, of radius reach
     real reach = 0;
     vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
@@ -40,7 +39,6 @@ struct LightSample {
     Surface at;
     rgb L;
     real pdf = 0;
-    bool delta = false;
 };
 
 // ---- Kinds of lights ----------------------------------------------------------------------------
@@ -56,7 +54,7 @@ struct PointLight {
         vec3 w = l.p - p;
         real d2 = dot(w, w);
         if (!(d2 > 0)) return {};
-        return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1, true};
+        return LightSample{w / std::sqrt(d2), {l.p, {}, 0}, l.L / d2, 1};
     }
     real pdf(const Emitter&, vec3, const Surface&) const { return 0; }
 };
@@ -175,6 +173,9 @@ struct Light : Emitter {
     }
 };
 
+inline const char* name_of(const Light& l) {
+    return l.ask([](const auto& light) { return light.name; });
+}
 // Of the mean of the channels.  A float might overflow.
 inline double strength(const Light& l, double factor = 1) {
     const double L = factor * double(mean_of(l.L));
@@ -194,10 +195,6 @@ inline real pdf_light(const Light& l, vec3 p, const Surface& y) {
 }
 inline Surface point_of(const Light& l, vec2 u) {
     return l.ask([&](const auto& light) { return light.point(l, u); });
-}
-// The area that it shows from afar; of a point 1.
-inline real area_of(const Light& l) {
-    return real(l.ask([](const auto& light) { return light.strength(1); }));
 }
 
 }  // namespace penumbra

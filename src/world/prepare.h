@@ -92,36 +92,12 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
 
 // ---- Preparation --------------------------------------------------------------------------------
 
-// Probabilities of lights in proportion to their power, for paths that start at lights.  Random
-// numbers are multiples of ulp, and so are the probabilities, exactly; an even share keeps each
-// above 0.  A power that underflows counts as the least.
-inline void prepare_powers(Scene& s) {
-    const double n = double(s.lights.size()), even = std::min(0.5, 2 * n * double(ulp));
-    constexpr double least = std::numeric_limits<double>::min();
-    double total = 0, sum = 0, before = 0;
-    s.pick_cdf.clear();
-    for (const Light& l : s.lights) total += power(l) + least;
-    for (Light& l : s.lights) {
-        sum += power(l) + least;
-        const double cdf = even * double(s.pick_cdf.size() + 1) / n + (1 - even) * (sum / total);
-        s.pick_cdf.push_back(std::round(cdf / double(ulp)) * double(ulp));
-        l.pick = real(s.pick_cdf.back() - before);
-        before = s.pick_cdf.back();
-    }
-}
-
+// Scene files are checked first, and surfaces that lie in each other moved apart: see src/check.
 inline void prepare(Scene& s) {
     s.bvh = Tree(s.shapes);
     s.facing.clear();
     for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
-    prepare_powers(s);
     s.light_tree = light_tree_of(s.lights, arrivals_of(s));
-}
-
-// A light, with probability pick by its power.  Only if there is one.
-inline const Light& choose_light(const Scene& s, real u) {
-    auto i = std::upper_bound(s.pick_cdf.begin(), s.pick_cdf.end(), double(u));
-    return s.lights[std::min(size_t(i - s.pick_cdf.begin()), s.lights.size() - 1)];
 }
 
 }  // namespace penumbra

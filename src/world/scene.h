@@ -53,7 +53,6 @@ struct Scene {
 
     Tree bvh;                      // from here on made by prepare
     std::vector<Facing> facing;    // of each shape
-    std::vector<double> pick_cdf;  // running sum of lights[i].pick
     LightTree light_tree;
 
     const Material& material_at(uint32_t shape) const { return materials[material_of[shape]]; }

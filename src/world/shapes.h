@@ -1,5 +1,6 @@
 // world/shapes.h  1  rays, boxes, triangles, spheres, and where the next ray starts
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -18,7 +19,8 @@ struct Ray {
 struct Shape {
     vec3 a, b, c;
     real r = 0;
-    bool is_sphere() const { return r > 0; }
+
+    bool is_triangle() const { return r == 0; }
 };
 
 // Where a ray meets a shape: at distance t, in a triangle at p = (1-v-w) a + v b + w c.
@@ -55,31 +57,6 @@ struct Box {
         return e.x < 0 ? 0 : e.x * e.y + e.y * e.z + e.z * e.x;
     }
 };
-
-// Bound of the rounding error of a shape's geometry, as a length: intersectors lose a few ulp of
-// the largest coordinate, for a hit anywhere on the shape.  It is proportional to the scene: a
-// scene scaled by a power of two gives the same image, bit for bit.
-inline real rounding_error(const Shape& s) {
-    real size =
-        s.is_sphere() ? max_abs(s.a) + s.r : std::max({max_abs(s.a), max_abs(s.b), max_abs(s.c)});
-    return 16 * ulp * size;
-}
-
-// Bounds of a shape, padded so that no box starts behind a hit that its shape computes.
-inline Box bounds(const Shape& s) {
-    Box box;
-    if (s.is_sphere()) {
-        vec3 r{s.r, s.r, s.r};
-        box.add(s.a - r);
-        box.add(s.a + r);
-    } else {
-        box.add(s.a);
-        box.add(s.b);
-        box.add(s.c);
-    }
-    real e = rounding_error(s);
-    return {box.lo - vec3{e, e, e}, box.hi + vec3{e, e, e}};
-}
 
 // ---- Triangles --------------------------------------------------------------------------------
 
@@ -169,37 +146,95 @@ inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real 
     // end
 }
 
-// ---- Any shape --------------------------------------------------------------------------------
+// ---- Kinds of shapes --------------------------------------------------------------------------
+//
+// A kind is a struct with these functions; `ask` chooses it.
+//     name                         in messages
+//     corners(s)                   points about a flat shape, counterclockwise from its front; else
+//     none box(s)                       its bounds, not padded normal(s)                    the
+//     unit normal of a flat shape; else 0 intersect(s, ray, k, tmax)   where a ray meets it first,
+//     at 0 < t <= tmax; k is shear(ray.d) surface(s, f, ray, hit)      the point hit, moved onto
+//     the shape: exact also far from the eye
 
-inline std::optional<Hit> intersect(const Shape& s, const Ray& ray, const Shear& k, real tmax) {
-    return s.is_sphere() ? intersect_sphere(s, ray, tmax) : intersect_triangle(s, ray, k, tmax);
-}
-
-// Twice the area of a triangle, along its normal.
-inline vec3 area_vector(const Shape& s) { return cross(s.b - s.a, s.c - s.a); }
-
-// Properties of all points of a shape: the unit normal, if it is a triangle, and Surface::error.
+// Properties of all points of a shape: the unit normal, if it is flat, and Surface::error.
 struct Facing {
     vec3 n;
     real error = 0;
 };
-inline Facing facing(const Shape& s) {
-    return {s.is_sphere() ? vec3{} : unit(area_vector(s)), rounding_error(s)};
-}
 
-// The point hit, moved onto the shape itself: it is as exact far from the eye as near it.  So far
-// away that rounding leaves only a sphere's centre, it is the point towards the eye.
-inline Surface surface(const Shape& s, const Facing& f, const Ray& ray, const Hit& hit) {
-    if (s.is_sphere()) {
+// Twice the area of a triangle, along its normal.
+inline vec3 area_vector(const Shape& s) { return cross(s.b - s.a, s.c - s.a); }
+
+struct TriangleShape {
+    static constexpr auto name = "triangle";
+    static std::array<vec3, 3> corners(const Shape& s) { return {s.a, s.b, s.c}; }
+    static Box box(const Shape& s) {
+        Box box;
+        for (vec3 p : corners(s)) box.add(p);
+        return box;
+    }
+    static vec3 normal(const Shape& s) { return unit(area_vector(s)); }
+    static constexpr auto intersect = intersect_triangle;
+    static Surface surface(const Shape& s, const Facing& f, const Ray&, const Hit& hit) {
+        return {(1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c, f.n, f.error};
+    }
+};
+
+struct SphereShape {
+    static constexpr auto name = "sphere";
+    static std::array<vec3, 0> corners(const Shape&) { return {}; }
+    static Box box(const Shape& s) {
+        const vec3 r{s.r, s.r, s.r};
+        return {s.a - r, s.a + r};
+    }
+    static vec3 normal(const Shape&) { return {}; }
+    static auto intersect(const Shape& s, const Ray& ray, const Shear&, real tmax) {
+        return intersect_sphere(s, ray, tmax);
+    }
+    // So far away that rounding leaves only the centre, it is the point towards the eye.
+    static Surface surface(const Shape& s, const Facing& f, const Ray& ray, const Hit& hit) {
         vec3 out = ray.o + hit.t * ray.d - s.a;
         vec3 n = out == vec3{} ? -ray.d : unit(out);
         return {s.a + s.r * n, n, f.error};
     }
-    return {(1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c, f.n, f.error};
+};
+
+// What a shape's kind answers.
+decltype(auto) ask(const Shape& s, auto question) {
+    return s.r > 0 ? question(SphereShape()) : question(TriangleShape());
+}
+
+// ---- Any shape --------------------------------------------------------------------------------
+
+// Bound of the rounding error of a shape's geometry, as a length: intersectors lose a few ulp of
+// the largest coordinate, for a hit anywhere on the shape.  It is proportional to the scene: a
+// scene scaled by a power of two gives the same image, bit for bit.
+inline real rounding_error(const Shape& s) {
+    const Box box = ask(s, [&](auto kind) { return kind.box(s); });
+    return 16 * ulp * std::max(max_abs(box.lo), max_abs(box.hi));
+}
+
+// Bounds of a shape, padded so that no box starts behind a hit that its shape computes.
+inline Box bounds(const Shape& s) {
+    const Box box = ask(s, [&](auto kind) { return kind.box(s); });
+    const real e = rounding_error(s);
+    return {box.lo - vec3{e, e, e}, box.hi + vec3{e, e, e}};
+}
+
+inline std::optional<Hit> intersect(const Shape& s, const Ray& ray, const Shear& k, real tmax) {
+    return ask(s, [&](auto kind) { return kind.intersect(s, ray, k, tmax); });
+}
+inline Facing facing(const Shape& s) {
+    return {ask(s, [&](auto kind) { return kind.normal(s); }), rounding_error(s)};
+}
+inline Surface surface(const Shape& s, const Facing& f, const Ray& ray, const Hit& hit) {
+    return ask(s, [&](auto kind) { return kind.surface(s, f, ray, hit); });
 }
 inline Surface surface(const Shape& s, const Ray& ray, const Hit& hit) {
     return surface(s, facing(s), ray, hit);
 }
+
+// ---- Where the next ray starts ------------------------------------------------------------------
 
 // The one place that owns the ray offset.  A ray leaves a surface from a point 2 errors off it,
 // on the side that d points to; one error is p's, the other the intersector's.

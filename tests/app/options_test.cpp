@@ -54,21 +54,21 @@ TEST_CASE("every option sets what it is named after") {
 TEST_CASE("words of choices mean what they say") {
     auto chosen = [](const std::string& line) {
         const Options o = parse(line);
-        return std::tuple(o.sampler, o.technique.direction, o.technique.light, o.view);
+        return std::tuple(o.sampler, o.technique.direction, o.technique.light,
+                          word_of(views, o.view));
     };
     using S = SamplerKind;
     using D = Direction;
     using L = LightMode;
-    using V = View;
-    const std::pair<std::string, std::tuple<S, D, L, V>> rows[] = {
-        {"", {S::sobol, D::bsdf, L::mis, V::radiance}},
-        {"--sampler independent --view radiance", {S::independent, D::bsdf, L::mis, V::radiance}},
-        {"--sampler stratified", {S::stratified, D::bsdf, L::mis, V::radiance}},
-        {"--sampler halton --light none --view normal", {S::halton, D::bsdf, L::none, V::normal}},
-        {"--direction uniform --light nee --view depth", {S::sobol, D::uniform, L::nee, V::depth}},
-        {"--sampler sobol --view albedo", {S::sobol, D::bsdf, L::mis, V::albedo}},
-        {"--direction bsdf --view bvh", {S::sobol, D::bsdf, L::mis, V::bvh}},
-        {"--light mis --view occlusion", {S::sobol, D::bsdf, L::mis, V::occlusion}}};
+    const std::pair<std::string, std::tuple<S, D, L, Text>> rows[] = {
+        {"", {S::sobol, D::bsdf, L::mis, "radiance"}},
+        {"--sampler independent --view radiance", {S::independent, D::bsdf, L::mis, "radiance"}},
+        {"--sampler stratified", {S::stratified, D::bsdf, L::mis, "radiance"}},
+        {"--sampler halton --light none --view normal", {S::halton, D::bsdf, L::none, "normal"}},
+        {"--direction uniform --light nee --view depth", {S::sobol, D::uniform, L::nee, "depth"}},
+        {"--sampler sobol --view albedo", {S::sobol, D::bsdf, L::mis, "albedo"}},
+        {"--direction bsdf --view bvh", {S::sobol, D::bsdf, L::mis, "bvh"}},
+        {"--light mis --view occlusion", {S::sobol, D::bsdf, L::mis, "occlusion"}}};
     for (const auto& row : rows) {
         INFO(row.first);
         CHECK((chosen(row.first) == row.second));

@@ -10,9 +10,14 @@ namespace {
 
 Scene scene_of(const std::string& text) { return parse_scene(text, "test").scene; }
 
-rgb seen(const Scene& scene, View view, const Ray& ray) {
+View named(Text name) { return value_of(views, "view", name); }
+
+rgb seen(const Scene& scene, Text view, const Start& at) {
+    return named(view).of({scene, at, meet(scene, at.ray), far_of(scene)});
+}
+rgb seen(const Scene& scene, Text view, const Ray& ray) {
     const Pattern pattern;
-    return view_along(scene, view, {Sampler(pattern, 0, 0), {}, ray}, far_of(scene));
+    return seen(scene, view, {Sampler(pattern, 0, 0), {}, ray});
 }
 
 }  // namespace
@@ -21,17 +26,15 @@ TEST_CASE("views show normal, distance, albedo and work; glass is as white as it
     const Scene scene =
         scene_of("camera 0 0 5  0 0 0  40\nphong p .1 .2 .3  .5 .25 .125  9\nsphere 0 0 0  1  p\n");
     const Ray hit{{0, 0, 5}, {0, 0, -1}}, miss{{0, 0, 5}, {0, 0, 1}};
-    CHECK(seen(scene, View::normal, hit) == rgb{0.5, 0.5, 1});
-    CHECK(seen(scene, View::depth, hit) == rgb{4, 4, 4});
-    CHECK(max_abs(seen(scene, View::albedo, hit) - rgb{real(0.6), real(0.45), real(0.425)}) <
-          2 * ulp);
-    CHECK(seen(scene, View::bvh, hit) == rgb{1, 1, 0});
-    CHECK(seen(scene, View::bvh, miss) == rgb{1, 0, 0});
-    for (View v : {View::normal, View::depth, View::albedo})
-        CHECK(seen(scene, v, miss) == rgb{0, 0, 0});
-    CHECK(seen(scene, View::occlusion, miss) == rgb{1, 1, 1});
+    CHECK(seen(scene, "normal", hit) == rgb{0.5, 0.5, 1});
+    CHECK(seen(scene, "depth", hit) == rgb{4, 4, 4});
+    CHECK(max_abs(seen(scene, "albedo", hit) - rgb{real(0.6), real(0.45), real(0.425)}) < 2 * ulp);
+    CHECK(seen(scene, "bvh", hit) == rgb{1, 1, 0});
+    CHECK(seen(scene, "bvh", miss) == rgb{1, 0, 0});
+    for (Text v : {"normal", "depth", "albedo"}) CHECK(seen(scene, v, miss) == rgb{0, 0, 0});
+    CHECK(seen(scene, "occlusion", miss) == rgb{1, 1, 1});
     const Scene glass = scene_of("camera 0 0 5  0 0 0  40\nglass g 1.5\nsphere 0 0 0  1  g\n");
-    CHECK(seen(glass, View::albedo, hit) == rgb{1, 1, 1});
+    CHECK(seen(glass, "albedo", hit) == rgb{1, 1, 1});
 }
 
 // From inside a sphere of radius r, a direction of cosine c meets it after 2 r c.  The box of the
@@ -43,29 +46,30 @@ TEST_CASE("13/16 of the directions from inside a sphere are open") {
     const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1);
     Moments open;
     for (uint64_t i = 0; i < 40000; ++i)
-        open.add(double(
-            view_along(scene, View::occlusion, start(scene, pattern, {0, 0, i}), far_of(scene)).x));
+        open.add(double(seen(scene, "occlusion", start(scene, pattern, {0, 0, i})).x));
     EXPECT(oracle::expect_mean(13.0 / 16, estimate(open)), 0.02);
 }
 
 TEST_CASE("a PNG shows depth from the nearest to the farthest, and work relative to the most") {
     Image image(3, 1);
     image.pixels = {{0, 0, 0}, {4, 4, 4}, {8, 8, 8}};
-    auto shown = [&](View view) {
+    auto shown = [&](Text view) {
         std::string words;
-        for (const auto& pixel : scaled(image, view).pixels) words += said(pixel[0]) + " ";
+        for (const auto& pixel : scaled(image, named(view).shades).pixels)
+            words += said(pixel[0]) + " ";
         return words;
     };
-    CHECK(shown(View::depth) == "0 0 1 ");
-    CHECK(shown(View::bvh) == "0 0.5 1 ");
-    CHECK(shown(View::normal) == "0 4 8 ");
+    CHECK(shown("depth") == "0 0 1 ");
+    CHECK(shown("bvh") == "0 0.5 1 ");
+    CHECK(shown("normal") == "0 4 8 ");
     image.pixels[1] = {2, 2, 2};
     image.pixels.resize(300, {3, 3, 3});
     image.width = 300;
-    CHECK(scaled(image, View::depth).pixels[3][0] == 0);  // the one at 2 is less than a percent
+    // The one at 2 is less than a percent.
+    CHECK(scaled(image, Shades::from_least).pixels[3][0] == 0);
     image.pixels.assign(300, {3, 3, 3});
-    CHECK(scaled(image, View::depth).pixels[0][0] == 1);
+    CHECK(scaled(image, Shades::from_least).pixels[0][0] == 1);
     image.pixels.assign(300, {0, 0, 0});
-    CHECK(scaled(image, View::depth).pixels[0][0] == 0);
-    CHECK(suffix_of(View::radiance) + suffix_of(View::bvh) == "-bvh");
+    CHECK(scaled(image, Shades::from_least).pixels[0][0] == 0);
+    CHECK(suffix_of(named("radiance")) + suffix_of(named("bvh")) == "-bvh");
 }

@@ -92,6 +92,7 @@ TEST_CASE("every channel counts: largest, mean, finite") {
         for (real bad : {nan, infinity, -infinity}) {
             v.*channel = bad;
             CHECK(!is_finite(v));
+            CHECK(std::isnan(max_of(v)) == std::isnan(bad));
         }
     }
 }

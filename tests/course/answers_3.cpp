@@ -90,13 +90,14 @@ Out light_sample(In x) {
     if (!at) throw std::runtime_error("the ray meets nothing");
     const auto chosen =
         scene.light_tree.choose(at->at.p, at->local.n, numbers_of_path.choice(0, Draw::pick));
-    const auto s = sample_light(scene.lights[chosen.light], at->at.p,
-                                numbers_of_path.get2(dimension(0, Draw::light_x)));
+    const Light& light = scene.lights[chosen.light];
+    const auto s = sample_light(light, at->at.p, numbers_of_path.get2(dimension(0, Draw::light_x)));
     if (!s) return Out(22);
     const vec3 wi = at->local.to_local(s->wi);
     const DirectLight d = direct_light(scene, t, *at, numbers_of_path, 0);
-    return row(chosen.pick, s->pdf, s->delta, wi.z, pdf(*at->material, at->wo, wi, t.direction),
-               eval(*at->material, at->wo, wi), s->L, at->at.p, s->at.p, d.L, d.pdf, d.weight);
+    return row(chosen.pick, s->pdf, light.is_delta(), wi.z,
+               pdf(*at->material, at->wo, wi, t.direction), eval(*at->material, at->wo, wi), s->L,
+               at->at.p, s->at.p, d.L, d.pdf, d.weight);
 }
 
 // How often visit is called, and how often with the segment whose turn it is.

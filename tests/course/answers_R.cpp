@@ -122,9 +122,10 @@ Out walked(In x) {
     std::vector<vec3> at;
     std::vector<vec3> n;
     const uint32_t rays =
-        walk(scene, WalkNumbers(pattern, more, 0, uint64_t(x[3])), b, [&](const Vertex& v, rgb p) {
-            power.push_back(p), at.push_back(v.at.p), n.push_back(v.local.n);
-        });
+        walk(scene, LightsByPower(scene.lights), WalkNumbers(pattern, more, 0, uint64_t(x[3])), b,
+             [&](const Vertex& v, rgb p) {
+                 power.push_back(p), at.push_back(v.at.p), n.push_back(v.local.n);
+             });
     rgb sum, greatest;
     for (rgb p : power)
         for (auto c : axis) sum.*c += p.*c, greatest.*c = std::max(greatest.*c, p.*c);

@@ -10,7 +10,7 @@ namespace penumbra::fuzz {
 inline void check_shape(const Shape& s) {
     demand(is_finite(s.a) && is_finite(s.b) && is_finite(s.c) && std::isfinite(s.r),
            "a shape that is not finite");
-    demand(s.is_sphere() || has_area(s), "a triangle without area");
+    demand(s.r > 0 || has_area(s), "a triangle without area");
 }
 
 inline void check_scene(const NamedScene& s) {
@@ -20,7 +20,6 @@ inline void check_scene(const NamedScene& s) {
          {s.material_of.size(), s.light_of.size(), s.line_of.size(), s.facing.size()})
         demand(other == n, "lists of other lengths than shapes");
     demand(s.line_of_light.size() == s.lights.size(), "lights without lines");
-    demand(s.pick_cdf.size() == s.lights.size(), "lights without probabilities");
     demand(s.names.size() == s.materials.size(), "materials without names");
     demand(is_finite(s.camera.eye) && is_finite(s.camera.right) && is_finite(s.camera.up) &&
                is_finite(s.camera.forward) && s.camera.tan_half > 0,
@@ -31,12 +30,6 @@ inline void check_scene(const NamedScene& s) {
         const int32_t k = s.light_of[i];
         demand(k == no_light || size_t(k) < s.lights.size(), "a shape that is no light");
     }
-    double before = 0;
-    for (size_t k = 0; k < s.lights.size(); ++k) {
-        demand(s.lights[k].pick >= 0 && s.pick_cdf[k] >= before, "a light of no probability");
-        before = s.pick_cdf[k];
-    }
-    demand(s.lights.empty() || before == 1, "probabilities of lights do not add up");
 }
 
 // The BVH gives the answers of a loop over all shapes, bit for bit.

@@ -104,7 +104,7 @@ inline void check_rays(const Scene& s, Choices c) {
 inline Radiance radiance_of(const Scene& s, const Options& o, const Pattern& p) {
     return [&, far = far_of(s)](const PixelSample& at, Tally& tally) {
         const Start begin = start(s, p, at);
-        if (o.view != View::radiance) return ++tally.rays, view_along(s, o.view, begin, far);
+        if (o.view.of) return ++tally.rays, o.view.of({s, begin, meet(s, begin.ray), far});
         return Li(s, o.technique, begin.ray, begin.sampler);
     };
 }

@@ -143,7 +143,6 @@ TEST_CASE("broken scenes are told") {
     broken([](NamedScene& s) { s.light_of[1] = 1; });
     broken([](NamedScene& s) { s.line_of.pop_back(); });
     broken([](NamedScene& s) { s.line_of_light.push_back(1); });
-    broken([](NamedScene& s) { s.pick_cdf[0] = 0.5; });
     broken([](NamedScene& s) { s.camera.right.x = NAN; });
 }
 

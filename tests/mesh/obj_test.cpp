@@ -360,18 +360,15 @@ TEST_CASE("a mesh is scaled, then moved; a material of its own goes before the s
                          doctest::Contains("s.scene:3: scale must be positive"), UserError);
 }
 
-TEST_CASE("warnings about a mesh's faces name its own lines, and its file may have blanks") {
+TEST_CASE("the name of a mesh's file may have blanks, in quotes") {
     const Folder folder;
-    folder.write("m.mtl", "newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKe 5 5 5\n");
-    folder.write("a # mesh.obj",
-                 "mtllib m.mtl\n" + corners + "usemtl floor\nf 4 3 2 1\nusemtl lamp\nf 4 3 2\n");
-    const ParsedScene scene =
-        parse_scene("camera 0 2 3  0 0 0  40\nmesh \"a # mesh.obj\" 1 0 0 0  # in quotes\n",
-                    folder / "s.scene");
-    CHECK(scene.files.size() == 2);
-    CHECK(scene.warnings ==
-          Told{"line 2 (a # mesh.obj:9): this light lies in the surface of line 2 (a # "
-               "mesh.obj:7): it is moved in front of it (of two lights in one place, the first)"});
+    folder.write("a # mesh.obj", corners + "f 1 2 3\n");
+    const ParsedScene scene = parse_scene(
+        "camera 0 2 3  0 0 0  40\ndiffuse d .5 .5 .5\n"
+        "mesh \"a # mesh.obj\" 1 0 0 0 d  # in quotes\n",
+        folder / "s.scene");
+    CHECK(scene.files.size() == 1);
+    CHECK(scene.scene.shapes.size() == 1);
 }
 
 TEST_CASE("cornell36 by statements and as OBJ are the same shapes, materials and lights") {

@@ -445,6 +445,22 @@ TEST_CASE("Russian roulette ends no path in clear glass, which takes nothing awa
     CHECK(within > 1000);
 }
 
+TEST_CASE("a reflectance that is not a number reaches the film, whichever its channel") {
+    Scene room = scene_of(glowing_room);
+    for (auto channel : axis) {
+        rgb rho;
+        rho.*channel = std::numeric_limits<real>::quiet_NaN();
+        for (Material& m : room.materials) m.scattering = Rough(rho);
+        for (const Named& t : techniques) {
+            INFO(std::string(t.name));
+            int finite = 0;
+            for (uint64_t i = 0; i < 100; ++i)
+                finite += is_finite(radiance(room, t, {SamplerKind::independent, 1}, 4, 2, i));
+            CHECK(finite == 0);
+        }
+    }
+}
+
 TEST_CASE("the camera's rays fill the solid angle 4 atan(p q / sqrt(1 + p^2 + q^2))") {
     const Camera camera = look_at({3, -2, 5}, {-1, 4, 2}, 50);
     const Size size{96, 40};

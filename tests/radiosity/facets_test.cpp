@@ -164,11 +164,6 @@ sphere 0 9 0  1  b
     const rgb power = emitted_power(f);  // a, b on both sides, the point, a
     CHECK(double(power.x) == approx(Pi * (4 * Pi + 10 + 2 * 5 * 4 * Pi + 4 * 7 + 0.5)));
     CHECK(double(power.z) == approx(Pi * (3 * 4 * Pi + 10 + 2 * 5 * 4 * Pi + 4 * 7 + 1.5)));
-    // The choice of lights is again proportional to power.
-    double total = 0, picks = 0;
-    for (const Light& l : f.lights) total += ::power(l), picks += double(l.pick);
-    CHECK(picks == approx(1, 1e-13, 1e-4));
-    for (const Light& l : f.lights) CHECK(double(l.pick) == approx(::power(l) / total, 1e-9, 2e-2));
 }
 
 TEST_CASE("a scene without spheres is itself") {
@@ -184,7 +179,6 @@ TEST_CASE("a scene without spheres is itself") {
     }
     CHECK(f.scene.light_of == s.light_of);
     CHECK(f.scene.lights.size() == 2);
-    CHECK(f.scene.pick_cdf == s.pick_cdf);
     const Ray ray{{}, unit({1, 2, 3})};
     CHECK(f.scene.bvh.closest(ray)->t == s.bvh.closest(ray)->t);
 }

@@ -44,8 +44,7 @@ std::string many_cornered() {
 }
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-const std::string shining = "mtllib m.mtl\nusemtl a\n", placed = "mesh m.obj 1 0 0 0\n",
-                  grey_mesh = "mesh m.obj 1 0 0 0 d\n";
+const std::string placed = "mesh m.obj 1 0 0 0\n", grey_mesh = "mesh m.obj 1 0 0 0 d\n";
 
 }  // namespace
 
@@ -94,60 +93,6 @@ TEST_CASE(
     CHECK(all.warnings[0].find(
               "1 face is too large to cut up, first at line 1003: triangles may overlap") !=
           std::string::npos);
-}
-
-TEST_CASE("a hundred lights in one place have a warning each; thousands are refused") {
-    const Folder folder;
-    folder.write("m.mtl", "newmtl a\nKe 1 1 1\n");
-    folder.write("m.obj", shining + square + "f 1 2 3\nf 3 4 1\n");
-    const ParsedScene all = parsed(folder, repeated(100, placed));
-    CHECK(all.scene.lights.size() == 200);
-    REQUIRE(all.warnings.size() == 99);
-    CHECK(all.warnings[0].starts_with(
-        "line 5 (m.obj:7): this light lies in the surface of line 4 (m.obj:7): "));
-    CHECK(all.warnings[98].starts_with(
-        "line 103 (m.obj:7): this light lies in the surface of line "));
-    CHECK(complaint(folder, repeated(4200, "sphere 0 0 0 1 l\n")) ==
-          "s.scene: too many shapes where lights or glass are");
-}
-
-TEST_CASE("a wall of so many lights that none may be in one place, across any axis, is no crowd") {
-    const int n = 160;  // all 3e8 pairs are too many to test
-    for (const char* place : {"v 0 %d %d\n", "v %d 0 %d\n", "v %d %d 0\n"}) {
-        std::string obj = shining;
-        for (int i = 0; i <= n; ++i)
-            for (int k = 0; k <= n; ++k) {
-                char at[40];
-                std::snprintf(at, sizeof at, place, i, k);
-                obj += at;
-            }
-        for (int i = 0; i < n * (n + 1); ++i)
-            if (i % (n + 1) < n) obj += "f " + said(i + 1, i + 2, i + n + 2) + "\n";
-        const Folder folder;
-        folder.write("m.mtl", "newmtl a\nKe 1 1 1\n");
-        folder.write("m.obj", obj);
-        const ParsedScene wall = parsed(folder, before + placed);
-        CHECK(wall.scene.lights.size() == n * n);
-        CHECK(wall.warnings.empty());
-    }
-}
-
-TEST_CASE("hundreds of point lights beside ten thousand shapes: the first on one is told") {
-    const Folder folder;
-    folder.write("m.obj", filled(square, "f 1 2 3\n"));
-    const std::string beside = "pointlight .2 .9 0  1 1 1\n";  // in the plane and in the box
-    CHECK(parsed(folder, filled(repeated(10, grey_mesh), beside)).scene.lights.size() > 250);
-    // The message names the first of two lights on shapes, and the first shape below it.
-    const std::string on = "pointlight .9 .2 0  1 1 1\n", off = "pointlight .2 .9 1  1 1 1\n";
-    const std::string found = complaint(
-        folder, before + off + "mesh m.obj 1 9 0 0 d\n" + on + on + grey_mesh + grey_mesh);
-    CHECK(found ==
-          "s.scene:6: this point light lies on the surface of line 8 (m.obj:5): move it off");
-    const std::string later =
-        complaint(folder, before + "pointlight 9.9 .2 0  1 1 1\nmesh m.obj 1 0 0 0 d\n" + on +
-                              "mesh m.obj 1 9 0 0 d\n");
-    CHECK(later ==
-          "s.scene:4: this point light lies on the surface of line 7 (m.obj:5): move it off");
 }
 
 TEST_CASE("words and lines of 10 kB, numbers of 10 000 digits, a line of 5000 words") {

@@ -1,4 +1,5 @@
 // whole/extremes_light_test.cpp  near, far, faint, clipped and edge-on lights
+#include "radiosity/particles.h"
 #include "whole/extremes.h"
 #include "world/prepare.h"
 
@@ -8,7 +9,6 @@ Light bright_sphere(vec3 centre, real r) {
     Light l(centre, SphereLight{r});
     l.L = {1, 1, 1};
     l.error = rounding_error(Shape{centre, {}, {}, r});
-    l.pick = 1;
     return l;
 }
 
@@ -176,7 +176,7 @@ double choice_of_lights(double ratio) {
     faint.Le = {1, 1, 1}, bright.Le = rgb{1, 1, 1} * real(ratio);
     s.materials = {faint, bright};
     for (uint32_t m : {0u, 1u, 0u}) add_sphere(s, {real(m), 0, 0}, 1, m);
-    prepare(s);
+    const LightsByPower lights(s.lights);
     constexpr int digits = std::numeric_limits<real>::digits;
     const uint64_t all = uint64_t(1) << digits;
     auto first_of = [&](size_t light) {  // the first number for this light or a later one
@@ -184,7 +184,7 @@ double choice_of_lights(double ratio) {
         while (low < high) {
             const uint64_t middle = (low + high) / 2;
             const real u = to_unit(middle << (64 - digits));
-            const bool reached = &choose_light(s, u) >= &s.lights[light];
+            const bool reached = lights.choose(u) >= light;
             (reached ? high : low) = reached ? middle : middle + 1;
         }
         return low;
@@ -192,7 +192,7 @@ double choice_of_lights(double ratio) {
     Worst worst;
     for (size_t i = 0; i < 3; ++i) {
         const big part = big((i < 2 ? first_of(i + 1) : all) - first_of(i)) / all;
-        worst.see(relative(s.lights[i].pick, part));
+        worst.see(relative(lights.pick_of(i), part));
     }
     return worst.value;
 }

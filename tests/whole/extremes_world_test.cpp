@@ -55,8 +55,8 @@ double met_again() {
         Shape s{at, {}, {}, size};
         if (i % 5 == 0) s = {at, at + size * random.direction(), at + size * random.direction()};
         int again = 0;
-        if (!s.is_sphere() && s.a == s.b) return again;
-        const vec3 target = s.is_sphere() ? s.a : (s.a + s.b + s.c) / 3;
+        if (s.r == 0 && s.a == s.b) return again;
+        const vec3 target = s.r > 0 ? s.a : (s.a + s.b + s.c) / 3;
         const vec3 o = target + 4 * size * random.direction();
         if (o == target) return again;
         const Ray ray{o, unit(target - o)};

@@ -94,7 +94,7 @@ inline Shape random_sliver(Dice& random, real narrowest) {
 
 inline Shape scaled(const Shape& s, real k) { return {s.a * k, s.b * k, s.c * k, s.r * k}; }
 inline Shape moved(const Shape& s, vec3 v) {
-    return s.is_sphere() ? Shape{s.a + v, {}, {}, s.r} : Shape{s.a + v, s.b + v, s.c + v};
+    return s.r > 0 ? Shape{s.a + v, {}, {}, s.r} : Shape{s.a + v, s.b + v, s.c + v};
 }
 
 // Placements: unit size, small, huge, and far from the origin compared with the size.

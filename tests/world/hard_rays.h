@@ -41,7 +41,7 @@ struct ComparisonOf {
 // Returns a corner of a triangle, or a pole of a sphere.
 inline vec3 corner(const Shape& s, Dice& random) {
     const size_t i = random.below(3);
-    if (!s.is_sphere()) return i == 0 ? s.a : i == 1 ? s.b : s.c;
+    if (s.r == 0) return i == 0 ? s.a : i == 1 ? s.b : s.c;
     vec3 p = s.a;
     p.*axis[i] += random.sign() * s.r;
     return p;
@@ -71,7 +71,7 @@ Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
     if (aim == anywhere) return {distance * random.direction(), anyhow};
     vec3 target = corner(s, random), d = anyhow;
     const vec3 e = s.b - s.a, f = s.c - s.a;
-    if (aim == at_edge && s.is_sphere()) {  // the ray is tangent
+    if (aim == at_edge && s.r > 0) {  // the ray is tangent
         const vec3 n = random.direction();
         target = s.a + s.r * n, d = unit(cross(n, d));
     } else if (aim == at_edge) {
@@ -79,7 +79,7 @@ Ray aimed(const Shape& s, int aim, real reach, Dice& random) {
         target += random(0, 1) * (next - target);
     } else if (aim == beside) {
         target = s.a + random(-1, 2) * e + random(-1, 2) * f;
-    } else if (aim == in_plane && !s.is_sphere()) {
+    } else if (aim == in_plane && s.r == 0) {
         target = s.a + random(0, real(0.5)) * e + random(0, real(0.5)) * f;
         d = unit(random(-1, 1) * e + random(-1, 1) * f);
     } else if (aim == near_axis) {

@@ -150,7 +150,7 @@ TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
     CHECK(s->wi == vec3{0, 0, 1});
     CHECK(s->L == rgb{2, 1, 0});
     CHECK(s->pdf == 1);
-    CHECK(s->delta);
+    CHECK(l.is_delta());
     CHECK(pdf_light(l, {1, 2, 0}, s->at) == 0);
     CHECK(!sample_light(l, {1, 2, 3}, {}));
 }

@@ -49,7 +49,7 @@ TEST_CASE_TEMPLATE_DEFINE("a tree of one shape is hit exactly when the shape is,
         if (i % 4 > 0) s.a = {}, s.b.x = s.b.y = s.c.y = 0;
         const Shapes scene{s};
         ComparisonOf<Tree> c{scene};
-        const Shape tip = s.is_sphere() ? s : Shape{s.a, s.a, s.a};
+        const Shape tip = s.r > 0 ? s : Shape{s.a, s.a, s.a};
         const real reach = random.decades(0, 7);
         for (int k = 0; k < 2; ++k) c.judge(aimed<Tree>(s, at_edge, reach, random));
         for (int k = 0; k < 8; ++k) c.judge(aimed<Tree>(tip, near_axis, reach, random));
