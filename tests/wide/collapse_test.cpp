@@ -9,7 +9,7 @@ namespace {
 
 using wide::BinaryTree, wide::Branch;
 
-constexpr double leaf_cost = 0.5, shape_cost = 0.05;  // measured values
+constexpr double leaf_cost = 0.5, shape_cost = 0.05, second_cost = 0.2;  // measured values
 constexpr uint32_t largest_leaf = 8;
 
 // A random tree with `leaves` leaves of 1 to 4 shapes each; the boxes grow upwards.
@@ -39,7 +39,9 @@ BinaryTree random_tree(int leaves, Dice& random) {
 double area(const BinaryTree& tree, uint32_t i) { return wide::half_area(tree.branches[i].box); }
 
 double cost_of_leaf(const BinaryTree& tree, uint32_t i) {
-    return area(tree, i) * (leaf_cost + shape_cost * tree.branches[i].count);
+    const uint32_t shapes = tree.branches[i].count;
+    return area(tree, i) *
+           (leaf_cost + shape_cost * shapes + (shapes > wide::real_lanes ? second_cost : 0));
 }
 
 // The cost of a branch below a node with `room` more children, by trying all ways.

@@ -36,18 +36,21 @@ TEST_CASE("shapes beyond the 65536th keep their numbers") {
     CHECK(c.hits > 100);
 }
 
-TEST_CASE("a ray opens 7.8 nodes among 20000 triangles, 35.6 among 2000 large ones, no more") {
-    // Traversal is nearest first and skips boxes behind the hit: 7.80 nodes and 11.9 shapes.  In
-    // node order they are 9.0 and 15.1, with boxes behind the hit 8.1 and 12.3.
+TEST_CASE("a ray opens 8.3 nodes among 20000 triangles, 36.1 among 2000 large ones, no more") {
+    // In double, which has 4 triangles in a vector, and in float, which has 8: traversal is nearest
+    // first and skips boxes behind the hit, 8.28 nodes and 7.58 shapes (float: 7.80, 11.93).  In
+    // node order they are 9.56 and 9.80, with boxes behind the hit 8.57 and 7.81 (float: 8.1
+    // and 12.3).
+    constexpr bool eight = wide::real_lanes == 8;
     Dice random{{8}}, again{{8}};
     const MeanWork small = work_of_rays<WideBvh>(many(20000, real(0.03), random), random);
-    CHECK(small.nodes < 7.9);
-    CHECK(small.shapes < 12.1);
-    // Most boxes that begin before a hit contain only later hits: 35.6 nodes and 410.5 shapes.  In
-    // node order they are 37.9 and 435.
+    CHECK(small.nodes < (eight ? 7.9 : 8.4));
+    CHECK(small.shapes < (eight ? 12.1 : 7.7));
+    // Most boxes that begin before a hit contain only later hits: 36.1 nodes and 364.7 shapes
+    // (float: 35.6, 410.5).  In node order they are 38.6 and 388.5.
     const MeanWork large = work_of_rays<WideBvh>(many(2000, 1, again), again);
-    CHECK(large.nodes < 35.75);
-    CHECK(large.shapes < 414);
+    CHECK(large.nodes < (eight ? 35.75 : 36.25));
+    CHECK(large.shapes < (eight ? 414 : 367));
 }
 
 TEST_CASE("a tree takes up 90 bytes a triangle at most in double, 54 in float") {
