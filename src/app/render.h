@@ -83,7 +83,10 @@ inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness
     const RowRange rows = rows_of(o, scene);
     plan.size = {scene.size.width, rows.count()}, plan.first_row = rows.first;
     if (!witness) return plan;
-    plan.noisy = witness->noisy(), plan.may_miss_light = Witness::may_miss_light;
+    plan.noisy = witness->noisy();
+    plan.may_miss_light = [](const Film& film, const ImageError& error) {
+        return !Witness::why_unknown(film, error).empty();
+    };
     plan.near = witness->near_misses(plan.replications * (plan.is_adaptive ? min_of_noisy : 1));
     return plan;
 }

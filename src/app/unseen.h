@@ -17,7 +17,6 @@ struct Witness {
     Witness(const Scene&, const Technique&, int, int, const std::vector<uint32_t>&) {}
     std::vector<NearMisses> near_misses(double) const { return {}; }
     std::vector<size_t> noisy() const { return {}; }
-    static bool may_miss_light(const Film&, const ImageError&) { return false; }
     static std::string why_unknown(const Film&, const ImageError&) { return ""; }
     NoVisitor visitor(Tally&) const { return {}; }
 };

@@ -53,13 +53,15 @@ using MayMissLight = std::function<bool(const Film&, const ImageError&)>;
 // Why an error may be far above its estimate.
 enum class Doubt { no, black, missed_light, few_pixels, noise };
 
-// A relative standard error of a quarter is that of 8 degrees of freedom.  With one degree,
-// 8 of 10^5 estimates are below 10^-4 of the error: below 1e-6 it is small in any case.
+// A relative standard error of 0.35 is that of 4 degrees of freedom, which are enough: of errors
+// that 8 would doubt besides, hardly one is twice the estimate.  With one degree, 8 of 10^5
+// estimates are below 10^-4 of the error: below 1e-6 it is small in any case.
 inline Doubt doubt_of(const Film& film, const ImageError& error, const MayMissLight& may_miss) {
     if (error.norm() == 0) return Doubt::black;
     if (may_miss && error.d2() >= 0 && may_miss(film, error)) return Doubt::missed_light;
-    if (!(error.spread_of_d_rel() > 0.25 && error.d_rel() > 1e-6)) return Doubt::no;
-    return error.spread_of_d() > 0.25 ? Doubt::few_pixels : Doubt::noise;
+    if (!(error.d_rel() > 1e-6)) return Doubt::no;
+    if (error.spread_of_d() > 0.35) return Doubt::few_pixels;
+    return error.spread_of_d_rel() > 0.5 ? Doubt::noise : Doubt::no;
 }
 
 // The rule of --error: d' + SE / 2 <= wanted.  d' counts the worst pixel twice, for light that no

@@ -1,7 +1,9 @@
 // film/near_misses.h  1  sums over paths that met a light, or nearly did
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "base/stats.h"
 
@@ -23,16 +25,20 @@ struct NearMisses {
 
     // Sums of c and c^2 at each growth, of paths of each way.
     std::array<std::array<std::array<FixedPoint, 2>, growths>, ways> sum{};
+    // Light samples that reached the light, and the greatest |beta L w|^2 / (3 K^2) of them.
+    uint64_t hits = 0;
+    double most = 0;
 
     // Adds sums of more samples.
     void add(const NearMisses& other) {
+        hits += other.hits, most = std::max(most, other.most);
         for (size_t way = 0; way < ways; ++way)
             for (size_t k = 0; k < growths; ++k)
                 for (size_t power = 0; power < 2; ++power)
                     sum[way][k][power] += other.sum[way][k][power];
     }
 };
-static_assert(sizeof(NearMisses) == 32 + 2 * ways * growths * sizeof(FixedPoint),
+static_assert(sizeof(NearMisses) == 48 + 2 * ways * growths * sizeof(FixedPoint),
               "a file holds no gaps");
 
 }  // namespace penumbra

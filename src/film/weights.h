@@ -59,7 +59,7 @@ inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
     film.weight = weights_of(film.deviation, film.size);
     for (size_t i : noisy) film.weight[i] = std::max(film.weight[i], min_of_noisy);
     film.deviation = std::vector<float>();  // with its memory
-    for (NearMisses& group : film.near) group.sum = {};
+    for (NearMisses& group : film.near) group.sum = {}, group.hits = 0, group.most = 0;
     film.is_pilot = false;
     film.pilot = film.taken[0];
     film.taken.assign(film.taken.size(), 0);

@@ -18,13 +18,11 @@ namespace penumbra {
 inline constexpr size_t max_light_groups = 64;  // more lights share groups with neighbours
 
 inline double mean_square(rgb L) {
-    double sum = 0;
-    for (auto c : axis) sum += double(L.*c) * double(L.*c);
-    return sum / 3;
+    return (sqr(double(L.x)) + sqr(double(L.y)) + sqr(double(L.z))) / 3;
 }
 
 inline size_t group_of(const Scene& s, size_t light) {
-    return light * std::min(s.lights.size(), max_light_groups) / s.lights.size();
+    return s.lights.size() <= max_light_groups ? light : light * max_light_groups / s.lights.size();
 }
 
 // ---- Lights in view of the camera ---------------------------------------------------------------
@@ -63,9 +61,9 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
     view.groups.resize(std::min(s.lights.size(), max_light_groups));
     std::vector<std::map<size_t, double>> parts(view.groups.size());
     for (size_t i = 0; i < s.lights.size(); ++i) {
-        if (s.lights[i].is_delta()) continue;
         NearMisses& g = view.groups[group_of(s, i)];
         if (g.line == 0 && i < line_of_light.size()) g.line = float(line_of_light[i]);
+        if (s.lights[i].is_delta()) continue;
         g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
         const size_t points = 1024 * view.groups.size() / s.lights.size() + 1;
         add_view(parts[group_of(s, i)], s, s.lights[i], points, first_row, rows);
@@ -133,6 +131,10 @@ struct NearMissVisitor {
         is_specular = is_specular && std::isinf(segment.pdf);
         if (segment.k > 0 && segment.pdf > narrow && !groups.empty())
             add_near_misses(segment, here);
+        if (!here.direct.light || here.direct.occluded) return;
+        auto& g = tally.near[group_of(scene, size_t(here.direct.light - scene.lights.data()))];
+        const double c = mean_square(segment.beta * here.direct.L) * sqr(tally.share);
+        ++g.hits, g.most = std::max(g.most, c);
     }
 
 private:
@@ -190,8 +192,9 @@ public:
             const NearMisses& group = groups[g];
             const double v = weight * weight * group.L2, n = t * double(group.K);
             lights_[g].line = double(group.line);
-            lights_[g].met += group.area * n;
-            lights_[g].variance += v * group.a / n;
+            lights_[g].hits += double(group.hits);
+            lights_[g].most = std::max(lights_[g].most, sqr(weight / t) * group.most);
+            lights_[g].met += group.area * n, lights_[g].variance += v * group.a / n;
             for (size_t way = 0; way < ways; ++way)
                 for (size_t k = 0; k < growths; ++k) {
                     const auto& [c, c2] = group.sum[way][k];
@@ -219,6 +222,7 @@ public:
         };
         for (const OneLight& l : lights_) {
             if (l.met < 10) consider(l.variance, l.line, ", smaller than a pixel,", l.met);
+            if (l.hits < 10) consider(1000 * l.most, l.line, " by light samples", l.hits);
             for (size_t way = 0; way < ways; ++way) {
                 const auto& s = l.near[way];
                 double greatest = 0;
@@ -239,17 +243,16 @@ private:
         double count() const { return c > 0 ? c * c / c2 : 0; }  // (Kish 1965)
     };
     struct OneLight {
-        double line = 0, met = 0, variance = 0;  // met: expected number of camera rays
+        double line = 0, hits = 0, most = 0, variance = 0, met = 0;  // met: expected camera rays
         std::array<std::array<NearSum, growths>, ways> near;
     };
     std::vector<OneLight> lights_;
     bool is_pilot_ = false;
 };
 
-// Observes the paths of a render, and judges its estimated error.
+// Observes the paths of a render, of rows from `first_row`, and judges its estimated error.
 class Witness {
 public:
-    // The rows that are rendered, from `first_row`.
     Witness(const Scene& scene, const Technique& t, int first_row, int rows,
             const std::vector<uint32_t>& line_of_light = {})
         : scene_(scene),
@@ -264,9 +267,6 @@ public:
         return near;
     }
     const std::vector<size_t>& noisy() const { return view_.noisy; }
-    static bool may_miss_light(const Film& film, const ImageError& error) {
-        return !why_unknown(film, error).empty();
-    }
     static std::string why_unknown(const Film& film, const ImageError& error) {
         Unseen unseen;
         unseen.add(film.near, double(film.min_taken()));

@@ -353,18 +353,18 @@ TEST_CASE("an error is in doubt: black, by few pixels, lost in noise, or by its 
     CHECK(doubt(0, 0, 30, silent) == Doubt::no);
     CHECK(doubt(0, 0, 0, doubtful) == Doubt::black);
     CHECK(doubt(4, 0, 30, doubtful) == Doubt::missed_light);
-    // d +- d / 4 corresponds to d^2 +- d^2 / 2.
-    CHECK(doubt(4, 1.97, 30, silent) == Doubt::no);
-    CHECK(doubt(4, 2.01, 30, silent) == Doubt::few_pixels);
-    CHECK(doubt(4, 2.01, 3, silent) == Doubt::few_pixels);
-    CHECK(doubt(4, 2.01, 30, doubtful) == Doubt::missed_light);
+    // d +- 0.35 d corresponds to d^2 +- 0.7 d^2.
+    CHECK(doubt(4, 2.79, 30, silent) == Doubt::no);
+    CHECK(doubt(4, 2.81, 30, silent) == Doubt::few_pixels);
+    CHECK(doubt(4, 2.81, 3, silent) == Doubt::few_pixels);
+    CHECK(doubt(4, 2.81, 30, doubtful) == Doubt::missed_light);
     // Rounding is no noise: d_rel of 1e-6 is small, however poorly it is known.
     CHECK(doubt(4, 3, 2.1e6, silent) == Doubt::no);
     CHECK(doubt(4, 3, 1.9e6, silent) == Doubt::few_pixels);
     CHECK(doubt(4, 3, 2.1e6, doubtful) == Doubt::missed_light);
     // |F|^2 = 9 - 4, so that d_rel has 9 / 5 of the relative spread; or |F|^2 would be negative.
-    CHECK(doubt(4, 1.1, 3, silent) == Doubt::no);
-    CHECK(doubt(4, 1.12, 3, silent) == Doubt::noise);
+    CHECK(doubt(4, 2.2, 3, silent) == Doubt::no);
+    CHECK(doubt(4, 2.24, 3, silent) == Doubt::noise);
     CHECK(doubt(4, 0.01, 1.9, silent) == Doubt::noise);
     CHECK(doubt(4, 0.01, 1.9, doubtful) == Doubt::missed_light);
     // One replication has no error to doubt.

@@ -375,8 +375,9 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
     const Radiance leaving = [](const PixelSample& s, Tally& tally) {
         if (s.x == 5 && s.i == 17 && interrupted == SIGTERM) throw Interrupted();
         const size_t k = size_t(s.y) % growths;
-        tally.near.at(size_t(s.x) % 3).sum[s.set][k][1] +=
-            fixed_point(tally.share / (1.0 + double(s.i)));
+        NearMisses& near = tally.near.at(size_t(s.x) % 3);
+        near.sum[s.set][k][1] += fixed_point(tally.share / (1.0 + double(s.i)));
+        ++near.hits, near.most = std::max(near.most, s.i < 4 ? 9 : 1 / double(s.i));
         return noisy(s, tally);
     };
     auto film_by = [&](unsigned threads, int signal) {
@@ -392,9 +393,12 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
     };
     const Film one = film_by(1, 0);
     double expected = 0, found = 0;
+    uint64_t samples = 0;
     for (size_t p = 0; p < one.pixels(); ++p)
-        for (uint64_t i = 4; i < one.samples(p); ++i)  // after the pilot
-            expected += 1.0 / one.weight[p] / double(1 + i);
+        for (uint64_t i = 4; i < one.samples(p); ++i, samples += one.replications)
+            expected += 1.0 / one.weight[p] / double(1 + i);  // after the pilot
+    CHECK(one.near[0].hits + one.near[1].hits + one.near[2].hits == samples);
+    for (const NearMisses& g : one.near) CHECK(g.most == 0.25);
     for (const NearMisses& g : one.near)
         for (const auto& kind : g.sum)
             for (const auto& sums : kind) {

@@ -268,6 +268,63 @@ TEST_CASE("a thread told by its near misses: it is small in one direction only")
               doctest::Approx(c(e, 0, 0)).epsilon(5 / std::sqrt(c(e, 0, 0))));
 }
 
+TEST_CASE("light samples that reach a light are counted, and the greatest is known") {
+    // The eye sees the ceiling in a grey mirror; a shield hides one of two lamps from most of it.
+    NamedScene s = mirror_scene(real(0.05));
+    s.materials[0] = {Mirror({0.5, 0.5, 0.5})}, s.depth = 3;
+    add_material(s, {Rough({0.5, 0.5, 0.5})}, "rough");
+    add_quad(s, {-9, 3, -9}, {18, 0, 0}, {0, 0, 18}, 2);
+    add_sphere(s, {-1, 1.1, 2}, real(0.05), 1);
+    add_quad(s, {-3, real(1.3), 0}, {real(2.7), 0, 0}, {0, 0, 4}, 2);
+    prepare(s);
+    const Witness witness(s, {}, 0, s.size.height);
+    Tally tally;
+    tally.share = 0.25, tally.near = witness.near_misses(1);
+    const Pattern pattern{SamplerKind::independent, seed_here()};
+    std::array<uint64_t, 2> hits{};
+    std::array<double, 2> most{};
+    int blocked = 0;
+    auto visit = [&, misses = witness.visitor(tally)](const Segment& path, const Step& e) mutable {
+        misses(path, e);
+        blocked += e.direct.occluded;
+        if (!e.direct.light || e.direct.occluded) return;
+        const size_t i = size_t(e.direct.light - s.lights.data());
+        ++hits[i], most[i] = std::max(most[i], mean_square(path.beta * e.direct.L) / 16);
+    };
+    for (uint64_t i = 0; i < 6400; ++i)
+        radiance(s, {}, pattern, int(i % 8), int(i / 8 % 8), i, visit);
+    CHECK(blocked > 100);
+    CHECK((hits[0] > 100 && hits[1] > 100));
+    Tally both = tally;
+    both.near[0].most = 0, both.add(tally);
+    for (size_t g = 0; g < 2; ++g) {
+        CHECK(most[g] > 0);
+        CHECK((tally.near[g].hits == hits[g] && tally.near[g].most == most[g]));
+        CHECK((both.near[g].hits == 2 * hits[g] && both.near[g].most == most[g]));
+    }
+}
+
+TEST_CASE("a light that few of its samples reached is in doubt") {
+    // The variance may be 1000 times the greatest contribution, of t = 4 samples: 1000 (0.1 / 4)^2.
+    auto doubt = [](unsigned hits, double d2, int films = 1) {
+        NearMisses lamp{12, 1, 4, 0, 0};
+        lamp.hits = hits, lamp.most = 0.01;
+        Unseen u;
+        for (int i = 0; i < films; ++i) u.add({lamp}, 4, 1.0 / films);
+        return u.doubt(d2, 2, 25);
+    };
+    CHECK(doubt(3, 0.625 / 25 / 3 * 0.999) ==
+          "the light of line 12 by light samples was hit 3 times; light not yet found may amount "
+          "to 8 %");
+    CHECK(doubt(3, 0.625 / 25 / 3 * 1.001).empty());
+    CHECK(doubt(9, 0) != "");
+    CHECK(doubt(10, 0).empty());
+    // Two films have twice the hits, each with half the contribution to the mean.
+    CHECK(doubt(4, 0.625 / 25 / 3 * 0.999 / 4, 2).starts_with("the light of line 12 by"));
+    CHECK(doubt(4, 0.625 / 25 / 3 * 1.001 / 4, 2).empty());
+    CHECK(doubt(5, 0, 2).empty());
+}
+
 TEST_CASE(
     "light is in doubt while few samples met it, and what is missing could double the error") {
     NearMisses lamp{12, 8, 4, 100, 0};
