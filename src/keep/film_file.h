@@ -1,6 +1,6 @@
 // keep/film_file.h  1  .film files: a head that says what is in them, numbers, and a checksum
 //
-//     penumbra film 4                    what it is, and the version of this format
+//     penumbra film 5                    what it is, and the version of this format
 //     bytes 00000000000000001536         of numbers, after the head
 //     checksum 0f1e2d3c4b5a6978          of all that follows this line
 //     scene 7dc0f03976e8ec38             KEY VALUE: what the writer says of them
@@ -37,7 +37,7 @@ struct Checksum {
 // The three lines that come first; they have one length.
 inline std::string first_lines(uint64_t bytes, const Checksum& checksum) {
     const std::string digits = std::to_string(bytes);
-    return "penumbra film 4\nbytes " + std::string(20 - digits.size(), '0') + digits +
+    return "penumbra film 5\nbytes " + std::string(20 - digits.size(), '0') + digits +
            "\nchecksum " + checksum.text() + "\n";
 }
 
