@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "oracle/expect.h"
@@ -146,14 +147,21 @@ TEST_CASE("images: each of the 24 values of 4x2 pixels in RGB is looked at, in i
         values[i] += 0.2;
         const char* const channel[] = {"red", "green", "blue"};
         const std::string pixel = say(": pixel (%zu, %zu) is ", i / 3 % 4, i / 12);
-        for (const Verdict& v : {expect_image(4, 2, values, errors, truth),
-                                 expect_image(4, 2, values.data(), errors.data(), truth)}) {
+        // The same behind a pointer, and as colours.
+        struct Colour {
+            float r, g, b;
+        };
+        std::vector<Colour> colours;
+        for (size_t k = 0; k < 24; k += 3)
+            colours.push_back({float(values[k]), float(values[k + 1]), float(values[k + 2])});
+        for (const Verdict& v :
+             {expect_image(4, 2, values, errors, truth),
+              expect_image(4, 2, std::span(values.data(), 24), std::span(errors.data(), 24), truth),
+              expect_image(4, 2, colours, errors, truth)}) {
             INFO(v.text);
             CHECK(!v.pass);
             CHECK(v.text.starts_with(channel[i % 3] + pixel));
         }
-        // Without a size an array is gray.
-        CHECK(expect_image(4, 2, values.data(), errors.data(), truth.data()).pass == (i >= 8));
     }
     // 5.6 sigma in one of 8 pixels of one of 3 channels, by one of 3 checks: not rare enough.
     std::vector<double> rare = truth;
@@ -271,7 +279,7 @@ TEST_CASE("what cannot be judged is refused: by the name that it was given, once
     const uint64_t none[] = {0, 0}, few[] = {3, 4}, off[] = {500, 1}, one[] = {1000};
     const double halves[] = {0.5, 0.5}, all[] = {1, 0};
     const std::vector<double> nothing, value{nan}, error{nan}, number{1};
-    const std::vector<double> three(3, 1), seven(7, 1), eight(8, 1);
+    const std::vector<double> three(3, 1), seven(7, 1), eight(8, 1), lines(20000, 1);
     const Estimate low{1, 0.1, 99}, high{2, 0.1, 99};
     const std::pair<Verdict, const char*> refused[] = {
         {expect_mean(1, 1000, broken, o), "sample 0 is nan"},
@@ -291,14 +299,21 @@ TEST_CASE("what cannot be judged is refused: by the name that it was given, once
         {expect_counts(none, halves, o), "no sample at all"},
         {expect_counts(few, halves, o), "take 200"},
         {expect_counts(off, all, o), "where the density is 0"},
-        {expect_counts(one, all, o), "fewer than two cells"},
+        {expect_counts(one, all, o), "2 probabilities for 1 counts"},
+        {expect_counts(off, number, o), "1 probabilities for 2 counts"},
+        {expect_counts(off, halves, o, number), "1 variances for 2 counts"},
+        {expect_counts(one, number, o), "fewer than two cells"},
+        {expect_samples(lines, lines, eight, Line{}, o), "20000 points, 8 values of the pdf"},
+        {expect_samples(lines, lines, lines, Line{}, {.n = 10000, .name = "mine"}),
+         "20000 samples, of 10000 drawn (.n)"},
         {expect_image(0, 0, nothing, nothing, nothing, o), "no pixel"},
         {expect_image(4, 2, seven, seven, seven, o), "7 values for 4x2 pixels, expected 8 or 24"},
         {expect_image(4, 2, eight, eight, seven, o), "7 reference values for 4x2 pixels, expected"},
         {expect_image(4, 2, eight, all, eight, o), "2 errors for 4x2 pixels, expected 8 or 24"},
         {expect_image(1, 1, three, three, number, o), "1 reference values, but 3 values"},
         {expect_image(1, 1, three, number, three, o), "1 errors, but 3 values"},
-        {expect_image(1, 1, three.data(), number, three, o), "3 reference values, but 1 errors"},
+        {expect_image(1, 1, number, number, three, o), "3 reference values, but 1 values"},
+        {expect_image(4, 2, std::span(eight.data(), 7), eight, eight, o), "7 values for 4x2"},
         {expect_image(1, 1, value, number, number, o), ""},
         {expect_image(1, 1, number, error, number, o), ""},
         {expect_density(random, always, everywhere, rough), "samples are all the same"},

@@ -1,6 +1,6 @@
 // oracle/oracle.h  verdicts about random numbers, each with its significance and its power
 //
-// Part of Penumbra, version 2, MIT licence (the text of LICENSE, if you copy this file alone).
+// Part of Penumbra, version 2.1, MIT licence (the text of LICENSE, if you copy this file alone).
 // Needs C++20 and the standard library:  g++ -std=c++20 -O1 my_tests.cpp
 //
 //   oracle::Random random(oracle::seed_of("cosine hemisphere"));
@@ -12,6 +12,7 @@
 // and nothing else.  Part one of the file has the checks in the order of reading, part two the
 // hints and pictures.  README.md beside this file has every check with an example.
 #pragma once
+#define ORACLE_VERSION 20100  // README.md says what changed since 2.0
 #if __cplusplus < 202002L
 #error "oracle.h needs C++20: compile with -std=c++20"
 #endif
@@ -536,12 +537,21 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
 
 // ---- Counts and choices -------------------------------------------------------------------------
 
+// The numbers of the host's array.
+template <class Array>
+std::vector<double> numbers_in(const Array& array);
+
 // Counts follow the probabilities: chi-squared, on cells where 100 or more are expected, so that
 // its p-value is good down to 1e-6.  `variances`: of the probabilities, where they are estimates.
 // Probabilities that are off by o.tolerance of themselves give a noncentral chi-squared.
 inline Verdict judge_counts(const std::vector<double>& counts,
                             const std::vector<double>& probabilities, const Options& o,
                             const std::vector<double>& variances) {
+    if (probabilities.size() != counts.size())
+        return failure(say("%zu probabilities for %zu counts", probabilities.size(), counts.size()),
+                       o);
+    if (!variances.empty() && variances.size() != counts.size())
+        return failure(say("%zu variances for %zu counts", variances.size(), counts.size()), o);
     const double n = sum_of(counts);
     double chi2 = 0, fewest = infinity;
     int cells = 0;
@@ -575,12 +585,7 @@ inline Verdict judge_counts(const std::vector<double>& counts,
 template <class Counts, class Probabilities>
 Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
                       const Options& o = {}, const std::vector<double>& variances = {}) {
-    std::vector<double> seen, expected;
-    for (size_t i = 0; i < std::size(counts); ++i) {
-        seen.push_back(double(counts[i]));
-        expected.push_back(double(probabilities[i]));
-    }
-    return judge_counts(seen, expected, o, variances);
+    return judge_counts(numbers_in(counts), numbers_in(probabilities), o, variances);
 }
 
 // ---- Quadrature ---------------------------------------------------------------------------------
@@ -735,6 +740,21 @@ std::string say_point(const Point<N>& c) {
     std::string text;
     for (double x : c) text += (text.empty() ? "" : ", ") + say("%.4g", x);
     return N == 1 ? text : "(" + text + ")";
+}
+
+// The numbers of an array; of colours, their channels, one after the other.
+template <class Array>
+std::vector<double> numbers_in(const Array& array) {
+    static_assert(
+        requires { std::size(array); },
+        "a check does not know where this array ends: pass std::span(pointer, length)");
+    std::vector<double> numbers;
+    for (size_t i = 0; i < std::size(array); ++i)
+        if constexpr (requires { double(array[i]); })
+            numbers.push_back(double(array[i]));
+        else
+            for (double x : oracle::point(array[i])) numbers.push_back(x);
+    return numbers;
 }
 
 // f takes numbers of type A as they are, or one argument that {them} initialises.  Braces do not
@@ -1971,21 +1991,23 @@ template <class Samples, class Points, class Pdfs, class Domain>
 Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs& pdfs,
                        const Domain& domain, const Options& o = {}) {
     constexpr size_t D = Domain::dimensions;
+    const std::vector<double> heights = numbers_in(pdfs);
     const size_t n = std::size(samples), first = n / 4;
-    const double m = double(std::size(points)), arriving = o.n ? double(n) / double(o.n) : 1;
-    if (n < 20000 || m < 20000 || std::size(points) != std::size(pdfs))
+    const double m = double(heights.size()), arriving = o.n ? double(n) / double(o.n) : 1;
+    if (n < 20000 || m < 20000 || std::size(points) != heights.size())
         return failure(
             say("%zu samples, %zu points, %zu values of the pdf: take 20000 or more of each, and "
                 "as many values as points",
-                n, std::size(points), std::size(pdfs)),
+                n, std::size(points), heights.size()),
             o);
+    if (arriving > 1) return failure(say("%zu samples, of %.0f drawn (.n)", n, double(o.n)), o);
     std::vector<Point<D>> places;
     for (size_t i = 0; i < n; ++i) places.push_back(domain.coordinates(oracle::point(samples[i])));
     const Cells<D> cells({places.begin(), places.begin() + long(first)});
     std::vector<double> counts(32), sum(32), squares(32), expected, variances;
     for (size_t i = first; i < n; ++i) ++counts[cells.of(places[i])];
-    for (size_t i = 0; i < std::size(points); ++i) {
-        const double p = double(pdfs[i]);
+    for (size_t i = 0; i < heights.size(); ++i) {
+        const double p = heights[i];
         const auto x = oracle::point(points[i]);
         if (!(p >= 0 && std::isfinite(p)))
             return failure(say("the pdf is %g at ", p) + say_point(x), o);
@@ -2319,47 +2341,31 @@ struct Image {
     }
 };
 
-// An image with the standard errors of its values against a reference: all pixels together, 16
-// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
-// normal, means of 256 samples or more; options.n says how many, for Student's t.  Anything with []
-// will do for values, errors and reference, row by row from the top: one number per pixel, or
-// three, red, green and blue.  A pointer has as many as the others.  The noise of channels may be
-// correlated: each is judged by itself, at a third of alpha.
-template <class Values, class Errors, class Reference>
-Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
-                     const Reference& reference, const Options& o = {}) {
-    auto size_of = [](const auto& array) {
-        if constexpr (requires { std::size(array); })
-            return size_t(std::size(array));
-        else
-            return size_t(-1);
-    };
-    const size_t n = width * height,
-                 sizes[] = {size_of(values), size_of(errors), size_of(reference)};
-    const char* const names[] = {"values", "errors", "reference values"};
+inline Verdict judge_image(size_t width, size_t height, const std::vector<double>& values,
+                           const std::vector<double>& errors, const std::vector<double>& reference,
+                           const Options& o) {
+    const std::pair<const char*, const std::vector<double>&> arrays[] = {
+        {"values", values}, {"errors", errors}, {"reference values", reference}};
+    const size_t n = width * height, channels = n > 0 ? values.size() / n : 0;
     if (n == 0) return failure("no pixel", o);
-    size_t known = 3;
-    for (size_t k = 0; k < 3; ++k) {
-        if (sizes[k] == size_t(-1)) continue;
-        const std::string has = say("%zu %s", sizes[k], names[k]);
-        if (sizes[k] != n && sizes[k] != 3 * n)
+    for (const auto& [name, array] : arrays) {
+        const std::string has = say("%zu %s", array.size(), name);
+        if (array.size() != n && array.size() != 3 * n)
             return failure(has + say(" for %zux%zu pixels, expected %zu or %zu (RGB)", width,
                                      height, n, 3 * n),
                            o);
-        if (known == 3) known = k;
-        if (sizes[k] != sizes[known])
-            return failure(has + say(", but %zu %s", sizes[known], names[known]), o);
+        if (array.size() != values.size())
+            return failure(has + say(", but %zu values", values.size()), o);
     }
-    const size_t channels = known < 3 ? sizes[known] / n : 1;
     auto channel = [&](size_t c, const std::string& name) {
         Options of_channel = o;
         of_channel.alpha /= double(channels);
         if (!o.name.empty()) of_channel.name += name;
         Image image{width, height, {}, {}, {}, of_channel};
         for (size_t i = c; i < n * channels; i += channels) {
-            image.f.push_back(double(values[i]));
-            image.s.push_back(double(errors[i]));
-            image.truth.push_back(double(reference[i]));
+            image.f.push_back(values[i]);
+            image.s.push_back(errors[i]);
+            image.truth.push_back(reference[i]);
         }
         return image.judge();
     };
@@ -2376,6 +2382,19 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
     }
     worst.p = std::min(1.0, 3 * worst.p), worst.delta_min = delta_min;
     return named(worst.of(wrong.empty() ? of_worst : wrong), o);
+}
+
+// An image with the standard errors of its values against a reference: all pixels together, 16
+// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
+// normal, means of 256 samples or more; options.n says how many, for Student's t.  Values, errors
+// and reference are arrays of known size, row by row from the top: one number per pixel, or three,
+// red, green and blue.  The noise of channels may be correlated: each is judged by itself, at a
+// third of alpha.
+template <class Values, class Errors, class Reference>
+Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
+                     const Reference& reference, const Options& o = {}) {
+    return judge_image(width, height, numbers_in(values), numbers_in(errors), numbers_in(reference),
+                       o);
 }
 
 // =================================================================================================
