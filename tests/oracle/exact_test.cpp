@@ -4,6 +4,8 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "oracle/expect.h"
@@ -185,6 +187,15 @@ struct WithWeight {
     std::array<float, 3> wi;
     float pdf, weight;
 };
+struct WithBoth {
+    Triple dir;
+    double prob, value;
+    Triple throughput;
+};
+struct WithPdf {
+    Triple wo;
+    double pdf;
+};
 
 }  // namespace
 
@@ -203,20 +214,48 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
         return (0.2 + 0.5 * std::max(0.0, c)) / pi;
     };
     auto pdf = [](const auto& wi) { return wi[2] > 0 ? 0.5 / pi : 0; };
-    auto values = [&](auto change) {
-        auto sample = [&](Triple wo, double u, double v) {
-            const Triple w = uniform(u, v);
-            const double f = lobe(wo, w) * change(w);
-            return WithValue{w, pdf(w), {f, 2 * f, 0}};
+    // made(w, f, weight) is what sample returns, in colours of which blue is 0.
+    auto judged = [&](auto made) {
+        auto colour = [&](Triple wo, Triple wi) {
+            const double f = lobe(wo, wi);
+            return Triple{f, 2 * f, 0};
+        };
+        auto sample = [=](Triple wo, double u, double v) {
+            const Triple w = uniform(u, v), f = colour(wo, w);
+            const double c = 2 * pi * w[2];
+            return made(w, f, Triple{f[0] * c, f[1] * c, 0});
         };
         return expect_bsdf(
-            random, sample, [&](Triple, Triple w) { return pdf(w); },
-            [&](Triple wo, Triple wi) {
-                const double f = lobe(wo, wi);
-                return Triple{f, 2 * f, 0};
-            },
-            quick);
+            random, sample, [&](Triple, Triple w) { return pdf(w); }, colour, quick);
     };
+    auto scaled = [](Triple f, double by) { return Triple{f[0] * by, f[1] * by, f[2] * by}; };
+    auto values = [&](auto change) {
+        return judged([=](Triple w, Triple f, Triple) {
+            return WithValue{w, 0.5 / pi, scaled(f, change(w))};
+        });
+    };
+    auto both = [&](double value, double weight) {
+        return judged([=](Triple w, Triple f, Triple throughput) {
+            return WithBoth{w, 0.5 / pi, value * (f[0] + f[1]) / 3, scaled(throughput, weight)};
+        });
+    };
+    auto tuples = [&](double value, double weight) {
+        return judged([=](Triple w, Triple f, Triple throughput) {
+            return std::tuple{w, 0.5 / pi, scaled(value == 0 ? throughput : f, value + weight)};
+        });
+    };
+    auto pairs = [&](double by) {
+        return judged([=](Triple w, Triple, Triple weight) {
+            return std::pair{WithPdf{w, 0.5 / pi}, scaled(weight, by)};
+        });
+    };
+    auto exchanged = [](Triple w, Triple f, Triple) {
+        return WithValue{w, 0.5 / pi, {f[1], f[0], f[2]}};
+    };
+    auto clamped = [](Triple w, Triple f, Triple) {
+        return WithValue{w, 0.5 / pi, {std::min(f[0], 0.1), std::min(f[1], 0.1), f[2]}};
+    };
+    auto other_pdf = [](Triple w, Triple f, Triple) { return std::tuple{w, f, 1 / pi}; };
     using floats = std::array<float, 3>;
     auto weights = [&](auto change) {
         auto sample = [&](floats wo, float u, float v) -> std::optional<WithWeight> {
@@ -231,25 +270,68 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
     };
     CHECK(values([](Triple) { return 1; }).pass);
     CHECK(weights([](Triple w) { return 2 * pi * w[2]; }).pass);
+    CHECK(both(1, 1).pass);
+    CHECK(tuples(1, 0).pass);
+    CHECK(tuples(0, 1).pass);
+    CHECK(pairs(1).pass);
     const std::pair<Verdict, const char*> refused[] = {
         {values([](Triple) { return 0.5; }),
          "the f that sample returns is 0.5 (1/2, half) times eval's value, at every direction"},
         {values([](Triple w) { return w[2]; }),
          "the f that sample returns is |cos| times eval's value, at every direction"},
         {values([](Triple w) { return w[2] * 2 * pi; }), "(2 pi) |cos| times eval's value"},
+        {values([](Triple w) { return w[0] > 0 ? 2 : 1; }), " % of directions, where x > 0\n"},
+        {values([](Triple w) { return w[2] < 0.3 ? 0 : 1; }), "where cos(theta) < 0.3\n"},
         {values([](Triple w) { return w[0] > 0   ? 1
                                       : w[1] > 0 ? 2
                                                  : 3; }), " % of directions"},
         {values([](Triple) { return NAN; }),
          "the f that sample returns is nan, but eval's value is "},
+        {judged(clamped), " % of directions, where eval's value > 0.1\n"},
+        {judged(exchanged), "for wi = "},
+        {judged(other_pdf), "the pdf that sample returns is 2 (2, twice) times what pdf says"},
+        {both(0.5, 1), "the f that sample returns is 0.5 (1/2, half) times eval's value, at every"},
+        {both(1, 2), "the weight that sample returns is 2 (2, twice) times eval's value |cos| / p"},
+        {tuples(3, 0), "the value that sample returns is 3 times eval's value, at every direction"},
+        {tuples(0, 0.5), "the value that sample returns is "},
+        {pairs(0.5), "0.5 (1/2, half) times eval's value |cos| / pdf, at every direction"},
         {weights([](Triple w) { return w[2]; }),
          "the weight that sample returns is 0.1592 (1/(2 pi)) times eval's value |cos| / pdf, at "},
         {weights([](Triple) { return 2 * pi; }),
          "the weight that sample returns is |cos|^-1 times eval's value |cos| / pdf, at 99"}};
     for (const auto& [v, why] : refused) {
-        says(v, why);
+        says({false, 0, 0, v.text + "\n"}, why);
         CHECK(!v.pass);
     }
+}
+
+TEST_CASE("the density or probability that comes with a point or an index is told from another") {
+    const Aside aside;
+    Random random(seed_here());
+    auto beside = [](double part) {
+        return [=](double u, double v) { return std::pair{Triple{u, v, u + v}, part}; };
+    };
+    auto density = [](Triple) { return 1 / std::sqrt(3.0); };
+    CHECK(expect_jacobian(random, beside(1 / std::sqrt(3.0)), density).pass);
+    says(expect_jacobian(random, beside(1), density),
+         "the pdf that sample returns is 1.732 times what pdf says, in every sample");
+    struct Index {
+        int index;
+        float pdf;
+    };
+    auto chance = [](int i) { return i == 0 ? 0.25 : 0.75; };
+    auto choice = [](double part) {
+        return [=](double u) { return std::pair{u < 0.25 ? 0 : 1, u < 0.25 ? 0.25 : part}; };
+    };
+    auto named = [](float part) {
+        return [=](float u) { return u < 0.25f ? Index{0, 0.25f * part} : Index{1, 0.75f * part}; };
+    };
+    CHECK(expect_choice(random, choice(0.75), chance, 2).pass);
+    CHECK(expect_choice(random, named(1), chance, 2).pass);
+    says(expect_choice(random, choice(0.25), chance, 2),
+         "the probability that choose returns is 0.3333 (1/3) times what probability says, in 7");
+    says(expect_choice(random, named(2), chance, 2),
+         "is 2 (2, twice) times what probability says, in every choice");
 }
 
 TEST_CASE("what cannot be judged is refused: by the name that it was given, once, and why") {

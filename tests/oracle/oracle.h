@@ -27,6 +27,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -811,34 +812,113 @@ const auto& arrived(const R& r) {
         return r;
 }
 
-// The point in what a sampler returns: all of it; or, beside a density, its member w, wi, direction
-// or point, or the first of a pair.
+// What a sampler returns may have parts: a point or direction, a density, a value.  They are
+// members of these names, or elements of a tuple or pair: its first that is no number has the
+// point, its first number is the density.  A tuple of numbers alone is a point.
+template <class R, class Get, class... More>
+constexpr auto member_of(const R& r, Get get, More... more) {
+    if constexpr (requires { get(r); })
+        return &get(r);
+    else if constexpr (sizeof...(More) > 0)
+        return oracle::member_of(r, more...);
+    else
+        return nullptr;
+}
+#define ORACLE_MEMBER(name)                                        \
+    [](const auto& r) -> const auto& requires requires { r.name; } \
+    { return r.name; }
 template <class R>
-const auto& point_in(const R& r) {
-    constexpr bool beside = requires { r.pdf; };
-    if constexpr (beside && requires { r.w; })
-        return r.w;
-    else if constexpr (beside && requires { r.wi; })
-        return r.wi;
-    else if constexpr (beside && requires { r.direction; })
-        return r.direction;
-    else if constexpr (beside && requires { r.point; })
-        return r.point;
-    else if constexpr (
-        requires { r.first[0] + r.second; } || requires { r.first.x + r.second; })
-        return r.first;
+constexpr auto direction_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(wi), ORACLE_MEMBER(w), ORACLE_MEMBER(wo),
+                             ORACLE_MEMBER(direction), ORACLE_MEMBER(dir), ORACLE_MEMBER(point));
+}
+template <class R>
+constexpr auto density_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(pdf), ORACLE_MEMBER(prob), ORACLE_MEMBER(density),
+                             ORACLE_MEMBER(probability));
+}
+template <class R>
+constexpr auto f_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(f), ORACLE_MEMBER(value), ORACLE_MEMBER(eval),
+                             ORACLE_MEMBER(bsdf), ORACLE_MEMBER(brdf));
+}
+template <class R>
+constexpr auto weight_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(weight), ORACLE_MEMBER(throughput),
+                             ORACLE_MEMBER(attenuation));
+}
+#undef ORACLE_MEMBER
+template <class Pointer>
+constexpr bool found = !std::is_null_pointer_v<Pointer>;
+
+// The k-th element of a tuple that is a number, or none; the tuple's size if there is no such.
+template <class R, bool number>
+constexpr size_t element(size_t k) {
+    return []<size_t... I>(std::index_sequence<I...>, size_t k) {
+        const bool is[] = {std::is_arithmetic_v<std::decay_t<std::tuple_element_t<I, R>>>...};
+        size_t i = 0;
+        while (i < sizeof...(I) && (is[i] != number || k-- > 0)) ++i;
+        return i;
+    }
+    (std::make_index_sequence<std::tuple_size_v<R>>(), k);
+}
+template <class R>
+constexpr bool is_tuple() {
+    if constexpr (requires(const R& r) { std::tuple_size<R>::value, r[0]; })
+        return false;  // an array
+    else if constexpr (requires { std::tuple_size<R>::value; })
+        return element<R, false>(0) < std::tuple_size_v<R>;
+    else
+        return false;
+}
+template <size_t I, class R>
+constexpr auto at_index(const R& r) {
+    if constexpr (I < std::tuple_size_v<R>)
+        return &std::get<I>(r);
+    else
+        return nullptr;
+}
+
+// A structure with a direction, or a point and its density.
+template <class R>
+constexpr bool has_parts = requires(const R& r) {
+    oracle::point(*direction_of(r));
+    requires !std::is_arithmetic_v<std::decay_t<decltype(*direction_of(r))>> ||
+        found<decltype(density_of(r))>;
+};
+template <class R>
+const auto& beside(const R& r) {
+    if constexpr (is_tuple<R>())
+        return std::get<element<R, false>(0)>(r);
     else
         return r;
 }
-// The density beside it, or NaN.
 template <class R>
-double pdf_in(const R& r) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(oracle::point_in(r))>, R>)
-        return std::numeric_limits<double>::quiet_NaN();
-    else if constexpr (requires { r.pdf; })
-        return double(r.pdf);
+const auto& point_in(const R& r) {
+    const auto& parts = oracle::beside(r);
+    if constexpr (has_parts<std::decay_t<decltype(parts)>>)
+        return *direction_of(parts);
     else
-        return double(r.second);
+        return parts;
+}
+template <class R>
+auto pdf_in(const R& r) {
+    if constexpr (requires { requires found<decltype(density_of(oracle::beside(r)))>; })
+        return density_of(oracle::beside(r));
+    else if constexpr (is_tuple<R>())
+        return at_index<element<R, true>(0)>(r);
+    else
+        return nullptr;
+}
+// A value without a name: the second that is no number, or else the number after the density.
+template <class R>
+auto unnamed_in(const R& r) {
+    if constexpr (!is_tuple<R>())
+        return nullptr;
+    else if constexpr (element<R, false>(1) < std::tuple_size_v<R>)
+        return at_index<element<R, false>(1)>(r);
+    else
+        return at_index<element<R, true>(found<decltype(density_of(beside(r)))> ? 0 : 1)>(r);
 }
 
 // A point, and the density that the sampler returned with it, or NaN.
@@ -876,22 +956,25 @@ auto model(Sample& sample, Pdf& pdf) {
     using Raw = decltype(oracle::call(sample, Point<M>{}));
     using Arrived = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
     using V = std::decay_t<decltype(oracle::point_in(std::declval<const Arrived&>()))>;
+    constexpr bool says_pdf = found<decltype(oracle::pdf_in(std::declval<const Arrived&>()))>;
     constexpr size_t N = coordinates_of<V>();
     using T = Coordinate<V>;
-    return Model<M, N>{
-        [&sample](const Point<M>& u) -> std::optional<Drawn<N>> {
-            const Raw r = oracle::call(sample, u);
-            if constexpr (may_fail<Raw>)
-                if (!r) return {};
-            const auto& here = oracle::arrived(r);
-            return Drawn<N>{oracle::point(oracle::point_in(here)), oracle::pdf_in(here)};
-        },
-        [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
-        !std::is_same_v<V, Arrived>,
-        std::is_same_v<T, float>,
-        takes_floats<Sample, M>,
-        unit_of(T{}),
-        unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
+    return Model<M, N>{[&sample](const Point<M>& u) -> std::optional<Drawn<N>> {
+                           const Raw r = oracle::call(sample, u);
+                           if constexpr (may_fail<Raw>)
+                               if (!r) return {};
+                           const auto& here = oracle::arrived(r);
+                           Drawn<N> drawn{oracle::point(oracle::point_in(here)),
+                                          std::numeric_limits<double>::quiet_NaN()};
+                           if constexpr (says_pdf) drawn.pdf = double(*oracle::pdf_in(here));
+                           return drawn;
+                       },
+                       [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
+                       says_pdf,
+                       std::is_same_v<T, float>,
+                       takes_floats<Sample, M>,
+                       unit_of(T{}),
+                       unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
 }
 
 // Part two says what is wrong with a choice.
@@ -948,16 +1031,36 @@ inline Verdict judge_choices(const std::vector<double>& expected, const std::vec
     return named(v, o);
 }
 
+// An index, alone or with its probability: a pair, a tuple, or a structure.
+template <class R>
+long long index_in(const R& r) {
+    if constexpr (requires { static_cast<long long>(r); })
+        return static_cast<long long>(r);
+    else if constexpr (requires { std::get<0>(r); })
+        return static_cast<long long>(std::get<0>(r));
+    else
+        return static_cast<long long>(r.index);
+}
+template <class R>
+auto probability_in(const R& r) {
+    if constexpr (requires { std::get<1>(r); })
+        return &std::get<1>(r);
+    else
+        return density_of(r);
+}
+std::string of_what_is_said(const std::vector<double>& ratios);
+
 // choose(u), or choose(u, v), is an index below count, or a negative one for none, as often as
-// probability(index) says: they sum to 1 less the part that fails.  Chi-squared over the indices,
+// probability(index) says: they sum to 1 less the part that fails; so does what choose returns
+// beside the index.  Chi-squared over the indices,
 // rare ones together.
 template <class Choose, class Probability>
 Verdict expect_choice(Random& random, Choose choose, Probability probability, size_t count,
                       const Options& o = {}) {
     constexpr size_t M = numbers_of<Choose>();
     const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
-    std::vector<double> expected(count), seen(count);
-    double total = 0, none = 0;
+    std::vector<double> expected(count), seen(count), ratios;  // said / expected, where they differ
+    double total = 0, none = 0, compared = 0;
     for (size_t i = 0; i < count; ++i) {
         total += expected[i] = double(probability(int(i)));
         if (!(expected[i] >= 0 && std::isfinite(expected[i])))
@@ -966,13 +1069,28 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
     for (uint64_t k = 0, n = o.n ? o.n : uint64_t(needed); k < n; ++k) {
         Point<M> u;
         for (double& x : u) x = takes_floats<Choose, M> ? random.single() : random();
-        const auto index = static_cast<long long>(oracle::call(choose, u));
+        const auto chosen = oracle::call(choose, u);
+        const auto index = oracle::index_in(chosen);
         if (index >= static_cast<long long>(count))
             return failure(say("index %lld of %zu chosen, beyond the last, at u = ", index, count) +
                                say_point(u),
                            o);
         ++(index < 0 ? none : seen[size_t(index)]);
+        if constexpr (found<decltype(oracle::probability_in(chosen))>)
+            if (index >= 0) {
+                const double said = double(*oracle::probability_in(chosen)),
+                             wanted = expected[size_t(index)];
+                ++compared;
+                if (!(std::abs(said - wanted) <= 0x1p-20 + (1e-4 + o.tolerance) * wanted))
+                    ratios.push_back(said / wanted);
+            }
     }
+    if (!ratios.empty())
+        return failure("the probability that choose returns is " + of_what_is_said(ratios) +
+                           (double(ratios.size()) == compared
+                                ? ", in every choice"
+                                : ", in " + percent(double(ratios.size()) / compared) + " of them"),
+                       o);
     // Floats may have been returned as doubles.
     const double rounding = std::max(64 * unit_of(probability(0)), 0x1p-24) * double(count);
     if (none == 0 && std::abs(total - 1) > rounding + o.tolerance)
@@ -1325,8 +1443,60 @@ struct Scene {
     Point<N> centre{};  // of a box or of the samples
 };
 
+// Four units of rounding away, or less.
+template <size_t N>
+Point<N> jittered(Point<N> x, double unit, Random& random) {
+    double length = 0;
+    for (double k : x) length = std::max(length, std::abs(k));
+    for (double& k : x) k += (random() - 0.5) * 8 * length * unit;
+    return x;
+}
+
+// The pdf that sample returns against that of pdf(), of which this part of the samples lies at a
+// jump; but at mirrors.  "" if the two agree.
+template <size_t M, size_t N>
+std::string other_pdf(Random& random, const Model<M, N>& model, const Scene<N>& scene,
+                      const Options& o, double jumps = 0,
+                      const std::vector<Point<N>>& mirrors = {}) {
+    if (!model.says_pdf) return "";
+    auto at = [&](const Point<N>& x) {
+        return (scene.directions ? ", at direction " : ", at point ") + say_point(x);
+    };
+    std::vector<double> ratios;
+    std::vector<Point<N>> where;
+    std::string first;
+    double compared = 0;
+    for (int i = 0; i < 2048; ++i) {
+        const auto x = model.sample(model.draw(random));
+        if (!x || std::find(mirrors.begin(), mirrors.end(), *x) != mirrors.end()) continue;
+        const double p = model.pdf(*x), said = x->pdf;
+        if (std::isnan(said)) return "the pdf that sample returns is nan" + at(*x);
+        if (p == 0 && said <= 0) continue;
+        ++compared;
+        double close = 64 * model.pdf_unit;
+        for (int j = 0; j < 4; ++j) {
+            const Point<N> near = jittered<N>(*x, model.unit, random);
+            close = std::max(close, std::abs(model.pdf(near) / p - 1));
+        }
+        if (std::abs(said / p - 1) <= 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance)
+            continue;
+        if (ratios.empty()) first = say("%.4g, but pdf says %.4g", said, p) + at(*x);
+        ratios.push_back(said / p);
+        where.push_back(*x);
+    }
+    const double off = double(ratios.size());
+    if (off <= 8 + 16 * jumps * compared) return "";
+    const std::string often =
+        off == compared ? ", in every sample" : ", in " + percent(off / compared) + " of them";
+    if (const std::string law = law_of_pdfs(scene, o, ratios, where); !law.empty())
+        return "the pdf that sample returns is " + law + " times what pdf says" + often;
+    return "the pdf that sample returns is " + first + often;
+}
+
 template <size_t D, size_t N>
 Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
+    if (const std::string off = other_pdf(random, model, Scene<N>{}, o); !off.empty())
+        return failure(off, o);
     const double least = model.single ? 1e-3 : 1e-6, tolerance = least + o.tolerance;
     const Sheets<N, D> s = sheets_of(model, random, least, o.tolerance, true);
     Verdict v;
@@ -1581,45 +1751,7 @@ struct DensityCheck {
         }
     }
 
-    // The pdf that sample returns against that of pdf().
-    std::string other_pdf() {
-        if (!model.says_pdf) return "";
-        std::vector<double> ratios;
-        std::vector<Point<N>> where;
-        std::string first;
-        double compared = 0;
-        for (int i = 0; i < 2048; ++i) {
-            const auto x = model.sample(model.draw(random));
-            if (!x || is_mirror(*x)) continue;
-            const double p = model.pdf(*x), said = x->pdf;
-            if (std::isnan(said)) return "the pdf that sample returns is nan, at " + at(*x);
-            if (p == 0 && said <= 0) continue;
-            ++compared;
-            double close = 64 * model.pdf_unit;
-            for (int j = 0; j < 4; ++j)
-                close = std::max(close, std::abs(model.pdf(jittered(*x)) / p - 1));
-            if (std::abs(said / p - 1) <= 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance)
-                continue;
-            if (ratios.empty()) first = say("%.4g, but pdf says %.4g, at ", said, p) + at(*x);
-            ratios.push_back(said / p);
-            where.push_back(*x);
-        }
-        const double off = double(ratios.size());
-        if (off <= 8 + 16 * jumps * compared) return "";
-        const std::string often =
-            off == compared ? ", in every sample" : ", in " + percent(off / compared) + " of them";
-        if (const std::string law = law_of_pdfs(*this, ratios, where); !law.empty())
-            return "the pdf that sample returns is " + law + " times what pdf says" + often;
-        return "the pdf that sample returns is " + first + often;
-    }
-
-    // Four units of rounding away, or less.
-    Point<N> jittered(Point<N> x) {
-        double length = 0;
-        for (double k : x) length = std::max(length, std::abs(k));
-        for (double& k : x) k += (random() - 0.5) * 8 * length * model.unit;
-        return x;
-    }
+    Point<N> jittered(const Point<N>& x) { return oracle::jittered(x, model.unit, random); }
 
     void fly_pilot() {
         std::vector<Point<N>> points;
@@ -1884,7 +2016,7 @@ Verdict DensityCheck<M, N, Domain>::run() {
                        " samples hardly any comes where the pdf is positive: " + first_none +
                        symmetry_of(*this));
     if (wrong.empty()) try_rims();
-    if (wrong.empty()) wrong = other_pdf();
+    if (wrong.empty()) wrong = other_pdf(random, model, scene(), o, jumps, mirrors);
     if (!wrong.empty()) return failure(wrong);
     samples = none = mirrored = 0;
     cells = Cells<D>(pilot);
@@ -2128,51 +2260,74 @@ struct Albedo {
 };
 std::string albedo_hint(const std::vector<Albedo>& all);
 
-// What a sampler says of eval at a direction, beside what eval says.
+// What a sampler returns beside a direction, and what it should be by eval.
 struct Returned {
     Triple wi;
     double said, wanted, pdf;
+    bool wrong;
 };
-std::string returned_hint(const std::vector<Returned>& wrong, const std::string& what, double part);
+std::string returned_hint(const std::vector<Returned>& all, const std::string& what,
+                          const std::string& expected);
 
-// The member f of what sample returns is eval's value; weight is f |cos| / pdf.  One value in a
-// hundred may round otherwise, where lobes are narrow or end.
-template <class From, class M>
-std::string judge_returned(Random& random, From& from_wo, const M& model,
-                           const std::function<double(const Triple&)>& f, const Options& o) {
+// The value f that sample returns is eval's; a weight is f |cos| / pdf; a value without a name is
+// one of the two, everywhere.  One value in a hundred may round otherwise, where lobes are narrow
+// or end.
+template <class From, class M, class EvalAt>
+std::string judge_returned(Random& random, From& from_wo, const M& model, const EvalAt& eval_at,
+                           const Options& o) {
     using Raw = decltype(oracle::call(from_wo, model.draw(random)));
     using R = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
-    constexpr bool value = requires(const R& r) { r.f; }
-    , weight = requires(const R& r) { r.weight; };
-    std::vector<Returned> wrong;
-    double compared = 0;
-    if constexpr (value || weight)
-        for (int i = 0; i < 2048 && o.discrete == 0; ++i) {
-            const Raw raw = oracle::call(from_wo, model.draw(random));
-            if constexpr (may_fail<Raw>)
-                if (!raw) continue;
-            const R& r = oracle::arrived(raw);
-            const Triple wi = oracle::point(oracle::point_in(r));
-            const double p = model.pdf(wi), light = f(wi);
-            if (!(p > 0)) continue;
-            double said, wanted = light, close = 64 * std::max(model.unit, model.pdf_unit);
-            if constexpr (value)
-                said = brightness(r.f);
-            else
-                said = brightness(r.weight), wanted *= std::abs(wi[2]) / p;
-            ++compared;
-            for (int k = 0; k < 4; ++k) {
-                Triple near = wi;
-                for (double& x : near) x += (random() - 0.5) * 8 * model.unit;
-                close = std::max(
-                    {close, std::abs(f(near) / light - 1), std::abs(model.pdf(near) / p - 1)});
-            }
-            const double tolerance = 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance;
-            if (said != wanted && !(std::abs(said / wanted - 1) <= tolerance))
-                wrong.push_back({wi, said, wanted, p});
+    std::vector<Returned> f, weight, unnamed, unnamed_weight;
+    for (int i = 0; i < 2048 && o.discrete == 0; ++i) {
+        const Raw raw = oracle::call(from_wo, model.draw(random));
+        if constexpr (may_fail<Raw>)
+            if (!raw) continue;
+        const R& r = oracle::arrived(raw);
+        const Triple wi = oracle::point(oracle::point_in(r));
+        const double p = model.pdf(wi);
+        if (!(p > 0)) continue;
+        const auto light = eval_at(wi);
+        double close = 64 * std::max(model.unit, model.pdf_unit);
+        for (int k = 0; k < 4; ++k) {
+            Triple near = wi;
+            for (double& x : near) x += (random() - 0.5) * 8 * model.unit;
+            close = std::max({close, std::abs(brightness(eval_at(near)) / brightness(light) - 1),
+                              std::abs(model.pdf(near) / p - 1)});
         }
-    if (double(wrong.size()) <= 8 + 0.01 * compared) return "";
-    return returned_hint(wrong, value ? "f" : "weight", double(wrong.size()) / compared);
+        const double tolerance = 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance;
+        auto compare = [&](std::vector<Returned>& all, const auto* value, double times) {
+            auto add = [&](double said, double wanted) {
+                if (said == 0 && wanted == 0) return;
+                const bool wrong = said != wanted && !(std::abs(said / wanted - 1) <= tolerance);
+                all.push_back({wi, said, wanted, p, wrong});
+            };
+            const auto said = oracle::point(*value);
+            if (said.size() == light.size())
+                for (size_t k = 0; k < said.size(); ++k) add(said[k], light[k] * times);
+            else
+                add(brightness(said), brightness(light) * times);
+        };
+        const double cosine = std::abs(wi[2]) / p;
+        const auto& parts = oracle::beside(r);
+        if constexpr (has_parts<std::decay_t<decltype(parts)>>) {
+            if constexpr (found<decltype(f_of(parts))>) compare(f, f_of(parts), 1);
+            if constexpr (found<decltype(weight_of(parts))>)
+                compare(weight, weight_of(parts), cosine);
+        }
+        if constexpr (found<decltype(unnamed_in(r))>) {
+            compare(unnamed, unnamed_in(r), 1);
+            compare(unnamed_weight, unnamed_in(r), cosine);
+        }
+    }
+    const std::string by_f = "eval's value", by_weight = by_f + " |cos| / pdf";
+    for (const std::string& off :
+         {returned_hint(f, "f", by_f), returned_hint(weight, "weight", by_weight)})
+        if (!off.empty()) return off;
+    const std::string off = returned_hint(unnamed, "value", by_f),
+                      also = returned_hint(unnamed_weight, "value", by_weight);
+    // Of two explanations, the one by a constant.
+    auto plain = [](const std::string& hint) { return hint.find("|cos|") > hint.find(" times "); };
+    return off.empty() || also.empty() ? "" : plain(also) && !plain(off) ? also : off;
 }
 
 // A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
@@ -2219,8 +2374,10 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             if (!v.pass) return v;
             all.p = std::min(all.p, v.p);
             all.delta_min = std::max(all.delta_min, v.delta_min);
-            const std::string off = judge_returned(
-                random, from_wo, erased, [&](const Triple& wi) { return f(out, wi); }, o);
+            auto eval_at = [&](const Triple& wi) {
+                return oracle::point(eval(wo, of_host<V>(wi)));
+            };
+            const std::string off = judge_returned(random, from_wo, erased, eval_at, o);
             if (!off.empty()) return failure(off, here);
             Draws albedo, scaled;
             for (int i = 0; i < 100000; ++i) {
@@ -3074,11 +3231,11 @@ std::string compared(const auto& check) {
 
 // The ratio of two pdfs at these points: a constant, or one and a power of a base.
 template <size_t N>
-std::string law_of_pdfs(const auto& check, const std::vector<double>& ratios,
+std::string law_of_pdfs(const Scene<N>& scene, const Options& o, const std::vector<double>& ratios,
                         const std::vector<Point<N>>& where) {
     if (const Law law = law_of(ratios, 0.01); law.holds) return times(law.factor, 0.003);
     for (const double k : {1.0, -1.0})
-        for (const Base<N>& b : bases_of(check.o, check.scene())) {
+        for (const Base<N>& b : bases_of(o, scene)) {
             std::vector<double> rest;
             for (size_t i = 0; i < where.size(); ++i)
                 rest.push_back(ratios[i] / std::pow(b.at(where[i]), k));
@@ -3234,13 +3391,41 @@ inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close
                : "";
 }
 
-// `part` of what was compared is wrong.
-inline std::string returned_hint(const std::vector<Returned>& wrong, const std::string& what,
-                                 double part) {
-    const std::string expected = what == "f" ? "eval's value" : "eval's value |cos| / pdf",
-                      begin = "the " + what + " that sample returns is ",
-                      often = part == 1 ? ", at every direction"
-                                        : ", at " + percent(part) + " of directions";
+// In words, where these are wrong, if a quantity tells all of them from the right ones.
+inline std::string where_wrong(const std::vector<Returned>& all) {
+    const std::pair<const char*, std::function<double(const Returned&)>> quantities[] = {
+        {"cos(theta)", [](const Returned& r) { return r.wi[2]; }},
+        {"x", [](const Returned& r) { return r.wi[0]; }},
+        {"y", [](const Returned& r) { return r.wi[1]; }},
+        {"eval's value", [](const Returned& r) { return r.wanted; }},
+        {"the pdf", [](const Returned& r) { return r.pdf; }}};
+    for (const auto& [name, of] : quantities)
+        for (const double sign : {1.0, -1.0}) {
+            double least_wrong = infinity, most_right = -infinity;
+            for (const Returned& r : all) {
+                double& bound = r.wrong ? least_wrong : most_right;
+                bound = r.wrong ? std::min(bound, sign * of(r)) : std::max(bound, sign * of(r));
+            }
+            if (least_wrong <= most_right) continue;
+            const bool at_0 = least_wrong >= 0 && most_right <= 0;
+            return std::string(", where ") + name + (sign > 0 ? " > " : " < ") +
+                   say("%.3g", at_0 ? 0 : sign * (least_wrong + most_right) / 2);
+        }
+    return "";
+}
+
+// What is wrong with a value that sample returns beside the direction; "" if nothing is.
+inline std::string returned_hint(const std::vector<Returned>& all, const std::string& what,
+                                 const std::string& expected) {
+    std::vector<Returned> wrong;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(wrong),
+                 [](auto& r) { return r.wrong; });
+    if (double(wrong.size()) <= 8 + 0.01 * double(all.size())) return "";
+    const std::string begin = "the " + what + " that sample returns is ",
+                      often = wrong.size() == all.size()
+                                  ? ", at every direction"
+                                  : ", at " + percent(double(wrong.size()) / double(all.size())) +
+                                        " of directions" + where_wrong(all);
     for (const double a : {0.0, 1.0, -1.0})
         for (const double b : {0.0, -1.0, 1.0}) {
             std::vector<double> ratios;
@@ -3283,6 +3468,12 @@ inline std::string albedo_hint(const std::vector<Albedo>& all) {
 }
 
 // ---- What is wrong with a choice ----------------------------------------------------------------
+
+inline std::string of_what_is_said(const std::vector<double>& ratios) {
+    const Law law = law_of(ratios, 1e-3);
+    return (law.holds ? times(law.factor, 1e-3) : say("%.4g", ratios[0])) +
+           " times what probability says";
+}
 
 inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
                                double none, double tolerance) {
