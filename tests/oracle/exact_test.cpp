@@ -298,11 +298,50 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
         {weights([](Triple w) { return w[2]; }),
          "the weight that sample returns is 0.1592 (1/(2 pi)) times eval's value |cos| / pdf, at "},
         {weights([](Triple) { return 2 * pi; }),
-         "the weight that sample returns is |cos|^-1 times eval's value |cos| / pdf, at 99"}};
+         "the weight that sample returns is |cos|^-1 times eval's value |cos| / pdf, at "}};
     for (const auto& [v, why] : refused) {
         says({false, 0, 0, v.text + "\n"}, why);
         CHECK(!v.pass);
     }
+}
+
+TEST_CASE("BSDFs: albedos take their part of alpha, and need samples enough for their skewness") {
+    const Aside aside;
+    Random random(seed_here());
+    auto uniform = [](Triple, double u, double v) {
+        const double r = std::sqrt(1 - u * u), phi = 2 * pi * v;
+        return Triple{r * std::cos(phi), r * std::sin(phi), u};
+    };
+    auto even = [](Triple, Triple wi) { return wi[2] > 0 ? 0.5 / pi : 0; };
+    auto judged = [&](auto f, const Options& o) {
+        return expect_bsdf(
+            random, uniform, even,
+            [=](Triple wo, Triple wi) { return wo[2] > 0 && wi[2] > 0 ? f(wo, wi) : 0.0; }, o);
+    };
+    // Weights 2 albedo u have the standard error albedo / sqrt(3 n) = 1.8e-3.
+    auto grey = [](double albedo) { return [=](Triple, Triple) { return albedo / pi; }; };
+    const double before = oracle::alpha_spent;
+    const int checks = oracle::statistical_checks;
+    CHECK(judged(grey(1), quick).pass);
+    CHECK(oracle::alpha_spent - before == doctest::Approx(quick.alpha).epsilon(1e-9));
+    CHECK(oracle::statistical_checks - checks == 8);
+    // Off by 1e-3 + 5.2 standard errors: of 1e-3 / 8 the bound is at 3.7, of 1e-12 / 8 at 7.3.
+    int refused = 0, strict = 0;
+    for (int i = 0; i < 20; ++i) {
+        refused += !judged(grey(1.0105), {.alpha = 1e-3, .sees = 0.1}).pass;
+        strict += !judged(grey(1.0105), {.alpha = 1e-12, .sees = 0.1}).pass;
+    }
+    CHECK(refused >= 19);
+    CHECK(strict <= 10);
+    // Of uniform directions one in 400 meets a lobe, or one in 10 000.
+    auto lobe = [](double part) {
+        return [=](Triple wo, Triple wi) {
+            const double c = wo[2] * wi[2] - wo[0] * wi[0] - wo[1] * wi[1];
+            return 0.2 / pi + (c > 1 - part ? 0.1 / part : 0);
+        };
+    };
+    CHECK(judged(lobe(1 / 400.0), quick).pass);
+    says(judged(lobe(1e-4), quick), "eval cos / pdf: n = 1600000 is too small for a skewness of");
 }
 
 TEST_CASE("the density or probability that comes with a point or an index is told from another") {

@@ -2257,8 +2257,9 @@ inline Exchange exchange(Random& random, const Eval& f, double close) {
 struct Albedo {
     Triple wo;
     double mean, error;  // relative
+    double p;            // that it is 1, or a thousandth more by rounding
 };
-std::string albedo_hint(const std::vector<Albedo>& all);
+std::string albedo_hint(const std::vector<Albedo>& all, double alpha);
 
 // What a sampler returns beside a direction, and what it should be by eval.
 struct Returned {
@@ -2348,6 +2349,8 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     const Exchange e = exchange(random, f, single ? 0.02 : 1e-6);
     if (!e.wrong.empty()) return failure(e.wrong, o);
 
+    // Half of alpha for the densities, half for the albedos.
+    const double share = o.alpha / (e.transmits ? 16 : 8);
     Verdict all{true, 1, 0, ""};
     // eval may be for importance or for radiance, which transmission scales by eta^2: albedos of
     // both, as it is not known which of the two it is.
@@ -2361,7 +2364,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                 return normalized({w[0] + out[0], w[1] + out[1], w[2] + out[2]});
             };
             Options here = o;
-            here.alpha = o.alpha / (e.transmits ? 8 : 4);
+            here.alpha = share;
             here.name += (o.name.empty() ? "" : " ") + ("wo = " + say_point(out));
             here.factors.emplace_back("4 wo.h",
                                       [=](const Triple& w) { return 4 * dot(out, half(w)); });
@@ -2379,18 +2382,26 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             };
             const std::string off = judge_returned(random, from_wo, erased, eval_at, o);
             if (!off.empty()) return failure(off, here);
+            // As many as their skewness asks for: a lobe that few samples meet needs more.
             Draws albedo, scaled;
-            for (int i = 0; i < 100000; ++i) {
-                const auto wi = erased.sample(erased.draw(random));
-                double weight = 0;
-                if (const double p = wi ? erased.pdf(*wi) : 0; p > 0)
-                    weight = f(out, *wi) * std::abs((*wi)[2]) / p;
-                if (!std::isfinite(weight))
-                    return failure("eval cos / pdf is not finite for " + between(out, *wi), o);
-                albedo.add(weight);
-                const bool through = weight > 0 && (*wi)[2] * side < 0;
-                scaled.add(weight * (through ? std::pow(e.scale, -side) : 1));
+            std::string problem = "none";
+            for (double n = std::max(1e5, double(o.n)), most = 16 * n;
+                 n <= most && !problem.empty(); n *= 4) {
+                while (albedo.n() < n) {
+                    const auto wi = erased.sample(erased.draw(random));
+                    double weight = 0;
+                    if (const double p = wi ? erased.pdf(*wi) : 0; p > 0)
+                        weight = f(out, *wi) * std::abs((*wi)[2]) / p;
+                    if (!std::isfinite(weight))
+                        return failure("eval cos / pdf is not finite for " + between(out, *wi), o);
+                    albedo.add(weight);
+                    const bool through = weight > 0 && (*wi)[2] * side < 0;
+                    scaled.add(weight * (through ? std::pow(e.scale, -side) : 1));
+                }
+                problem = albedo.problem();
+                if (problem.empty()) problem = scaled.problem();
             }
+            if (!problem.empty()) return failure("eval cos / pdf: " + problem, here);
             // Light that eval sends where no sample comes.
             double lost = 0, often = 0;
             Triple where{};
@@ -2410,12 +2421,20 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                                o);
             for (const bool radiance : {false, true}) {
                 const Estimate mean = (radiance ? scaled : albedo).estimate();
-                albedos[radiance].push_back(
-                    {out, mean.mean, mean.standard_error / std::max(1e-300, mean.mean)});
+                const double error = std::max(1e-300, mean.standard_error),
+                             t = (mean.mean - 1 - 1e-3) / error;
+                albedos[radiance].push_back({out, mean.mean, error / std::max(1e-300, mean.mean),
+                                             t > 0 ? p_of_t(t, mean.df) / 2 : 1});
             }
         }
-    const std::string why = albedo_hint(albedos[1]);
-    if (!why.empty() && !albedo_hint(albedos[0]).empty()) return failure(why, o);
+    alpha_spent += o.alpha / 2;
+    statistical_checks += int(albedos[0].size());
+    const std::string why = albedo_hint(albedos[1], share);
+    if (!why.empty() && !albedo_hint(albedos[0], share).empty()) return failure(why, o);
+    std::array<double, 2> p{1, 1};
+    for (size_t radiance : {0, 1})
+        for (const Albedo& a : albedos[radiance]) p[radiance] = std::min(p[radiance], a.p);
+    all.p = std::min(1.0, std::min(all.p, std::max(p[0], p[1])) * o.alpha / share);
     all.text = std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
                (e.transmits ? say(", below and through it (scaled by %.4g)", e.scale) : "");
     return named(all, o);
@@ -3446,13 +3465,12 @@ inline std::string returned_hint(const std::vector<Returned>& all, const std::st
 }
 
 // `all` are directions wo from steep to grazing, each with its albedo and the relative error.
-inline std::string albedo_hint(const std::vector<Albedo>& all) {
+inline std::string albedo_hint(const std::vector<Albedo>& all, double alpha) {
     const Albedo* worst = nullptr;
     std::string list;
     for (const Albedo& a : all) {
         list += (list.empty() ? "" : ", ") + say("%.3g at cos %.2g", a.mean, a.wo[2]);
-        if (a.mean > 1 + 1e-3 + 5 * a.error * a.mean && (!worst || a.mean > worst->mean))
-            worst = &a;
+        if (a.p <= alpha && (!worst || a.mean > worst->mean)) worst = &a;
     }
     if (!worst) return "";
     const bool rises = worst->mean > 2 * all[0].mean;
