@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "oracle/expect.h"
+#include "oracle/textbook.h"
 
 TEST_CASE("Poisson: k or more, by the sum of the terms below k") {
     for (double mean : {0.01, 1.0, 7.5}) {
@@ -128,6 +129,34 @@ TEST_CASE("densities in float: two rules agreed by chance at a kink, in one of 6
     auto sample = [&](float u, float v) { return std::make_pair(tent(u), tent(v)); };
     auto pdf = [&](std::pair<float, float> p) { return height(p.first) * height(p.second); };
     EXPECT(oracle::expect_density(random, sample, pdf, {.sees = 0.05}), 0.06);
+}
+
+// Arvo 1995; the density is 1 / area where all three planes through edges say inside.
+TEST_CASE("densities in float: a triangle of the sphere, whose borders rules of quadrature miss") {
+    using V = textbook::Vec<float>;
+    const V a = unit(V{1, 0.2f, 1}), b = unit(V{-0.5f, 1, 1.5f}), c = unit(V{-0.3f, -0.8f, 1});
+    const V ab = cross(a, b), bc = cross(b, c), ca = cross(c, a);
+    auto angle = [](V n, V m) { return std::acos(-dot(unit(n), unit(m))); };
+    const float alpha = angle(ab, ca), cosine = dot(a, b),
+                area = alpha + angle(ab, bc) + angle(bc, ca) - textbook::pi<float>;
+    const V side = unit(c + -dot(c, a) * a);
+    auto sample = [&](float u, float v) {
+        const float s = std::sin(u * area - alpha), t = std::cos(u * area - alpha),
+                    x = t - std::cos(alpha), y = s + std::sin(alpha) * cosine;
+        const float q = std::clamp(
+            ((y * t - x * s) * std::cos(alpha) - y) / ((y * s + x * t) * std::sin(alpha)), -1.0f,
+            1.0f);
+        const V edge = q * a + std::sqrt(1 - q * q) * side;
+        const float z = 1 - v * (1 - dot(edge, b));
+        return z * b + std::sqrt(1 - z * z) * unit(edge + -dot(edge, b) * b);
+    };
+    auto pdf = [&](V w) {
+        return dot(w, ab) >= 0 && dot(w, bc) >= 0 && dot(w, ca) >= 0 ? 1 / area : 0;
+    };
+    for (uint64_t seed : {77000, 77019, 77022}) {
+        Random random(seed);
+        EXPECT(expect_density(random, sample, pdf), 0.011);
+    }
 }
 
 TEST_CASE("images: one pixel of eight is named, and no further ones") {

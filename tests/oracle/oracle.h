@@ -1924,7 +1924,12 @@ struct DensityCheck {
             other = std::abs(again.total - parts.total);
             parts = again;
         }
-        doubtful = doubtful && D == 2 && model.single && left > 0 && off < 0.01;
+        // In float rules stop where they still miss slivers between a border and their nodes, a
+        // thousandth of all; and the part that fails is known from 4096 samples.
+        const double lost = std::abs(parts.total - arriving),
+                     unknown = 5 * std::sqrt(arriving * (1 - arriving) / 4096);
+        doubtful =
+            D == 2 && model.single && left > 0 && !claim && lost > 1e-4 && lost < 0.01 + unknown;
         if (D > 2 || enough() || doubtful) parts = scatter(f, ranges, of_cell);
         parts.total = 0;
         for (size_t cell = 0; cell < 32; ++cell) {
@@ -2351,7 +2356,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
 
     // Half of alpha for the densities, half for the albedos.
     const double share = o.alpha / (e.transmits ? 16 : 8);
-    Verdict all{true, 1, 0, ""};
+    Verdict all{true, 1, 0, ""}, unknown = all;
     // eval may be for importance or for radiance, which transmission scales by eta^2: albedos of
     // both, as it is not known which of the two it is.
     std::array<std::vector<Albedo>, 2> albedos;
@@ -2384,24 +2389,41 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             if (!off.empty()) return failure(off, here);
             // As many as their skewness asks for: a lobe that few samples meet needs more.
             Draws albedo, scaled;
+            std::array<double, 2> come{}, lit{};  // samples that reflect, and that transmit
+            double lowest = infinity, highest = 0;
             std::string problem = "none";
             for (double n = std::max(1e5, double(o.n)), most = 16 * n;
                  n <= most && !problem.empty(); n *= 4) {
                 while (albedo.n() < n) {
                     const auto wi = erased.sample(erased.draw(random));
                     double weight = 0;
-                    if (const double p = wi ? erased.pdf(*wi) : 0; p > 0)
-                        weight = f(out, *wi) * std::abs((*wi)[2]) / p;
+                    const double p = wi ? erased.pdf(*wi) : 0;
+                    if (p > 0) weight = f(out, *wi) * std::abs((*wi)[2]) / p;
                     if (!std::isfinite(weight))
                         return failure("eval cos / pdf is not finite for " + between(out, *wi), o);
                     albedo.add(weight);
-                    const bool through = weight > 0 && (*wi)[2] * side < 0;
+                    const bool through = p > 0 && (*wi)[2] * side < 0;
                     scaled.add(weight * (through ? std::pow(e.scale, -side) : 1));
+                    if (!(p > 0)) continue;
+                    ++come[through], lit[through] += weight > 0;
+                    lowest = std::min(lowest, p), highest = std::max(highest, p);
                 }
                 problem = albedo.problem();
                 if (problem.empty()) problem = scaled.problem();
             }
-            if (!problem.empty()) return failure("eval cos / pdf: " + problem, here);
+            if (!problem.empty() && unknown.pass)
+                unknown = failure("eval cos / pdf: " + problem, here);
+            // Of lobes about steep directions few samples cross the surface; uniform ones may.
+            for (size_t through : {0, 1})
+                if (z > 0.9 && lit[through] == 0 && come[through] > 0.1 * albedo.n() &&
+                    highest > 1.01 * lowest)
+                    return failure(
+                        "eval is 0 wherever samples " +
+                            std::string(through ? "cross the surface" : "are reflected") + ", " +
+                            percent(come[through] / albedo.n()) + " of them: looks like " +
+                            (through ? "transmission" : "reflection") +
+                            " forgotten in eval (if not, let the pdf be 0 there)",
+                        here);
             // Light that eval sends where no sample comes.
             double lost = 0, often = 0;
             Triple where{};
@@ -2431,6 +2453,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     statistical_checks += int(albedos[0].size());
     const std::string why = albedo_hint(albedos[1], share);
     if (!why.empty() && !albedo_hint(albedos[0], share).empty()) return failure(why, o);
+    if (!unknown.pass) return unknown;
     std::array<double, 2> p{1, 1};
     for (size_t radiance : {0, 1})
         for (const Albedo& a : albedos[radiance]) p[radiance] = std::min(p[radiance], a.p);
@@ -2895,9 +2918,10 @@ struct Mistake {
         if (std::abs(c - 1) <= tolerance)
             return total + share > 1 + close() &&
                            *std::max_element(ratios.begin(), ratios.end()) <= c + 3 * tolerance
-                       ? "the pdf is right for nearly all samples, but also positive where none "
-                         "comes" +
-                             where_none() + ": it integrates to " + times(total, tolerance)
+                       ? "the pdf is right for nearly all samples, but also positive where " +
+                             (where_none().empty() ? "hardly any comes, or too large there"
+                                                   : "none comes" + where_none()) +
+                             ": it integrates to " + times(total, tolerance)
                        : "";
         if (c > 1 && share > 0.02 && std::abs(1 / c + share - 1) < close() &&
             std::abs(total - 1) < close())
@@ -3356,16 +3380,25 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
                                     : "";
     if (const std::string why = explained(check, sheets.all, total); !why.empty())
         return why + rounded;
-    const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
+    const std::string integral_is =
+        "the pdf integrates to " +
+        (std::abs(total - 1) < 1e-3 ? say("%.7g", total) : times(total, 0.003));
     const bool mapless = sheets.all.size() < 100,
                by_cells = !check.counted && check.samples >= 50000;
     // By counts the shape is right.
-    if (!check.balanced && check.counted && mapless && std::abs(total / (1 - share) - 1) > 0.1 &&
-        std::abs(total - 1) > check.close)
+    if (!check.balanced && check.counted && std::abs(total / (1 - share) - 1) > 0.1 &&
+        std::abs(total - 1) > check.close) {
+        std::vector<double> products;
+        for (const auto& l : sheets.all) products.push_back(l.product());
+        const bool pieces = !mapless && law_of(products, 0.01).plain(0.01);
         return "the pdf is " + times(total / (1 - share), 0.003) +
-               " times the density of the samples, as far as counts tell: a constant factor; " +
-               integral_is + (share > 0 ? ", " + percent(share) + " of the samples fail" : "") +
-               rounded;
+               " times the density of the samples, as far as counts tell: " +
+               (pieces ? "every piece of the map has it, and others lie upon it: looks like a map "
+                         "that is not one to one (folded), or a choice of one of several"
+                       : "a constant factor") +
+               "; " + integral_is +
+               (share > 0 ? ", " + percent(share) + " of the samples fail" : "") + rounded;
+    }
     if (by_cells && (check.balanced ? !sheets.off : mapless))
         if (const std::string why = law_of_cells(check); !why.empty())
             return why + (check.balanced ? "" : "; " + integral_is) + rounded;
@@ -3636,6 +3669,19 @@ inline std::string Image::hint(const ImageResult& r) const {
         explains(shifted(0, 1), "the reference one pixel further up");
         explains(shifted(0, -1), "the reference one pixel further down");
     }
+    // Larger errors explain it.
+    Image wider = *this;
+    double squares = 0;
+    for (size_t i = 0; i < n(); ++i)
+        squares += s[i] > 0 ? std::pow((f[i] - truth[i]) / s[i], 2) / double(n()) : 0;
+    const double more = std::sqrt(squares);
+    for (double& x : wider.s) x *= more;
+    if (first.empty() && n() >= 16 && more > 1 && wider.against(truth).p > 1e-3)
+        return "the differences are " + times(more, 1.5 / std::sqrt(double(n()))) +
+               " times the standard errors, everywhere: are these too small?" +
+               (o.n > 1 && std::abs(more / std::sqrt(double(o.n)) - 1) < 2 / std::sqrt(double(n()))
+                    ? " (divided by the root of n twice)"
+                    : "");
     if (first.empty()) first = all_others_right();
     if (!first.empty()) return first;
     // By 16 blocks: those in the middle, at the edges, in the corners.
