@@ -334,7 +334,7 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
     }
 }
 
-TEST_CASE("BSDFs: albedos take their part of alpha, and need samples enough for their skewness") {
+TEST_CASE("BSDFs: albedos take their part of alpha, and those of skewed weights are told") {
     const Aside aside;
     Random random(seed_here());
     auto uniform = [](Triple, double u, double v) {
@@ -362,15 +362,21 @@ TEST_CASE("BSDFs: albedos take their part of alpha, and need samples enough for 
     }
     CHECK(refused >= 19);
     CHECK(strict <= 10);
-    // Of uniform directions one in 400 meets a lobe, or one in 10 000.
+    // Of uniform directions one in 50 meets a lobe, or one in 10 000.
     auto lobe = [](double part) {
         return [=](Triple wo, Triple wi) {
             const double c = wo[2] * wi[2] - wo[0] * wi[0] - wo[1] * wi[1];
             return 0.2 / pi + (c > 1 - part ? 0.1 / part : 0);
         };
     };
-    CHECK(judged(lobe(1 / 400.0), quick).pass);
-    says(judged(lobe(1e-4), quick), "eval cos / pdf: n = 1600000 is too small for a skewness of");
+    auto bright = [=](Triple wo, Triple wi) { return 5 * lobe(1e-3)(wo, wi); };
+    const Verdict met = judged(lobe(1 / 50.0), quick), seldom = judged(lobe(1e-4), quick);
+    CHECK(met.pass);
+    CHECK(met.text.ends_with("above the surface"));
+    CHECK(seldom.pass);
+    says(seldom,
+         "; the albedo for wo = (0.1687, 0.2627, 0.95) is not sure: n = 100000 is too small");
+    says(judged(bright, quick), "more leaves than comes");
 }
 
 TEST_CASE("the density or probability that comes with a point or an index is told from another") {
