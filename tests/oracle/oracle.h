@@ -1928,8 +1928,8 @@ struct DensityCheck {
         // thousandth of all; and the part that fails is known from 4096 samples.
         const double lost = std::abs(parts.total - arriving),
                      unknown = 5 * std::sqrt(arriving * (1 - arriving) / 4096);
-        doubtful =
-            D == 2 && model.single && left > 0 && !claim && lost > 1e-4 && lost < 0.01 + unknown;
+        doubtful = D == 2 && model.single && left > 0 && !claim && lost < 0.01 + unknown &&
+                   (unknown > 0 || lost > std::min(1e-4, allowed()));
         if (D > 2 || enough() || doubtful) parts = scatter(f, ranges, of_cell);
         parts.total = 0;
         for (size_t cell = 0; cell < 32; ++cell) {
@@ -2407,7 +2407,8 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             // Skewness raises no false alarm: rare large weights make t too small, and rare small
             // ones, which are not below 0, the mean too large by less than the thousandth that is
             // forgiven.  But lights that hardly any sample meets are not seen.
-            if (const std::string why = albedo.problem(); unsure.empty() && !why.empty())
+            if (const std::string why = albedo.problem();
+                unsure.empty() && !why.empty() && albedo.skewness() > 0)
                 unsure = "; the albedo for wo = " + say_point(out) + " is not sure: " + why;
             // Of lobes about steep directions few samples cross the surface; uniform ones may.
             for (size_t through : {0, 1})
