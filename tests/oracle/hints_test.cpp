@@ -157,6 +157,17 @@ TEST_CASE("hints: directions") {
           "the pdf is 2 (2, twice) times the density of the samples, as far as counts tell"}});
 }
 
+TEST_CASE("hints: the guesses behind one are no checks") {
+    const Aside aside;
+    Random random(seed_here());
+    auto cube = [&] { return unit({2 * random() - 1, 2 * random() - 1, 2 * random() - 1}); };
+    const int checks = statistical_checks;
+    const double spent = alpha_spent;
+    says(expect_density(random, cube, [](Triple) { return 1 / (4 * pi); }), "points of a cube");
+    CHECK(statistical_checks - checks == 1);
+    CHECK(alpha_spent - spent == doctest::Approx(1e-6).epsilon(1e-6));
+}
+
 TEST_CASE("hints: points") {
     const Aside aside;
     Random random(seed_here());

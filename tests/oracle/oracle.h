@@ -13,9 +13,20 @@
 // hints and pictures.  README.md beside this file has every check with an example.
 #pragma once
 #define ORACLE_VERSION 20100  // README.md says what changed since 2.0
-#if __cplusplus < 202002L
+#if __cplusplus < 202002L && !(defined(_MSVC_LANG) && _MSVC_LANG >= 202002L)
 #error "oracle.h needs C++20: compile with -std=c++20"
 #endif
+// A host may have macros of these names; windows.h has the last four.
+#pragma push_macro("pi")
+#pragma push_macro("min")
+#pragma push_macro("max")
+#pragma push_macro("near")
+#pragma push_macro("far")
+#undef pi
+#undef min
+#undef max
+#undef near
+#undef far
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -43,8 +54,13 @@
 #endif
 
 // A host may have variables called n or alpha.
+#ifdef __GNUC__
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
+#define ORACLE_PRINTF [[gnu::format(printf, 1, 2)]]
+#else
+#define ORACLE_PRINTF
+#endif
 
 namespace oracle {
 
@@ -252,7 +268,7 @@ inline double smallest_distortion(int df, double n, double significance = 1e-6) 
 
 // ---- Words --------------------------------------------------------------------------------------
 
-[[gnu::format(printf, 1, 2)]] inline std::string say(const char* format, ...) {
+ORACLE_PRINTF inline std::string say(const char* format, ...) {
     char text[512];
     va_list values;
     va_start(values, format);
@@ -542,9 +558,35 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
 template <class Array>
 std::vector<double> numbers_in(const Array& array);
 
+// Chi-squared of counts, and its p-value.  `variances`: of the probabilities, where they are
+// estimates.  Probabilities that are off by `tolerance` of themselves give a noncentral one.
+struct CountsFit {
+    double n, p = 0, chi2 = 0, fewest = infinity;  // expected in a cell
+    int cells = 0;
+    size_t impossible = 0;  // 1 + a cell where the density is 0, but counts are not
+};
+inline CountsFit fit_counts(const std::vector<double>& counts,
+                            const std::vector<double>& probabilities,
+                            const std::vector<double>& variances, double tolerance) {
+    CountsFit fit{sum_of(counts)};
+    for (size_t i = 0; i < counts.size(); ++i) {
+        const double expected = fit.n * probabilities[i], seen = counts[i];
+        if (expected <= 1e-6) {
+            if (seen > 0) fit.impossible = i + 1;
+            continue;
+        }
+        fit.fewest = std::min(fit.fewest, expected);
+        const double known = variances.empty() ? 0 : fit.n * fit.n * variances[i];
+        fit.chi2 += (seen - expected) * (seen - expected) / (expected + known);
+        ++fit.cells;
+    }
+    if (fit.cells > 1 && fit.impossible == 0)
+        fit.p = p_of_chi2(fit.chi2, fit.cells - 1, forgiven(fit.n, tolerance));
+    return fit;
+}
+
 // Counts follow the probabilities: chi-squared, on cells where 100 or more are expected, so that
-// its p-value is good down to 1e-6.  `variances`: of the probabilities, where they are estimates.
-// Probabilities that are off by o.tolerance of themselves give a noncentral chi-squared.
+// its p-value is good down to 1e-6.
 inline Verdict judge_counts(const std::vector<double>& counts,
                             const std::vector<double>& probabilities, const Options& o,
                             const std::vector<double>& variances) {
@@ -553,33 +595,22 @@ inline Verdict judge_counts(const std::vector<double>& counts,
                        o);
     if (!variances.empty() && variances.size() != counts.size())
         return failure(say("%zu variances for %zu counts", variances.size(), counts.size()), o);
-    const double n = sum_of(counts);
-    double chi2 = 0, fewest = infinity;
-    int cells = 0;
-    if (n == 0) return failure("no sample at all", o);
-    for (size_t i = 0; i < counts.size(); ++i) {
-        const double expected = n * probabilities[i], seen = counts[i];
-        if (expected <= 1e-6) {
-            if (seen > 0)
-                return failure(
-                    say("%.0f samples of %.0f in cell %zu, where the density is 0", seen, n, i), o);
-            continue;
-        }
-        fewest = std::min(fewest, expected);
-        const double known = variances.empty() ? 0 : n * n * variances[i];
-        chi2 += (seen - expected) * (seen - expected) / (expected + known);
-        ++cells;
-    }
-    if (cells < 2) return failure("fewer than two cells", o);
-    const double p = p_of_chi2(chi2, cells - 1, forgiven(n, o.tolerance));
-    if (p > o.alpha && fewest < 100)
-        return failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n, fewest,
-                           std::ceil(100 * n / fewest)),
+    const CountsFit fit = fit_counts(counts, probabilities, variances, o.tolerance);
+    if (fit.n == 0) return failure("no sample at all", o);
+    if (const size_t cell = fit.impossible; cell > 0)
+        return failure(say("%.0f samples of %.0f in cell %zu, where the density is 0",
+                           counts[cell - 1], fit.n, cell - 1),
                        o);
-    Verdict v = verdict_of(p, smallest_distortion(cells - 1, n, o.alpha) + o.tolerance, o);
+    if (fit.cells < 2) return failure("fewer than two cells", o);
+    if (fit.p > o.alpha && fit.fewest < 100)
+        return failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", fit.n,
+                           fit.fewest, std::ceil(100 * fit.n / fit.fewest)),
+                       o);
+    Verdict v =
+        verdict_of(fit.p, smallest_distortion(fit.cells - 1, fit.n, o.alpha) + o.tolerance, o);
     v.text = say("chi2 = %.1f on %d cells (n = %.0f), %s; smallest distortion seen with "
                  "99.9 %% power: ",
-                 chi2, cells, n, say_p(v.p).c_str()) +
+                 fit.chi2, fit.cells, fit.n, say_p(v.p).c_str()) +
              percent(v.delta_min);
     return named(v, o);
 }
@@ -668,32 +699,53 @@ double integral(
 
 // ---- The host's types ---------------------------------------------------------------------------
 
-template <size_t N, class V>
-auto elements(const V& v) {
-    return [&]<size_t... I>(std::index_sequence<I...>) { return std::array{v[I]...}; }
+template <size_t N>
+auto elements(const auto& at) {
+    return [&]<size_t... I>(std::index_sequence<I...>) { return std::array{at(I)...}; }
     (std::make_index_sequence<N>());
 }
+// A vector may be smaller than three of its elements.
+template <class V, class Element>
+constexpr size_t size_of = std::min<size_t>(3, sizeof(V) / sizeof(Element));
+
 // The coordinates of a number, pair, array, vector or colour, in its own type.
 template <class V>
 auto coordinates(const V& v) {
     if constexpr (std::is_arithmetic_v<V>)
         return std::array{v};
     else if constexpr (requires { V::SizeAtCompileTime; })
-        return elements<size_t(V::SizeAtCompileTime)>(v);
+        return elements<size_t(V::SizeAtCompileTime)>([&](size_t i) { return v[long(i)]; });
     else if constexpr (requires { v.x() + v.y() + v.z(); })
         return std::array{v.x(), v.y(), v.z()};
     else if constexpr (requires { v.x + v.y + v.z; })
         return std::array{v.x, v.y, v.z};
+    else if constexpr (requires { v.X + v.Y + v.Z; })
+        return std::array{v.X, v.Y, v.Z};
+    else if constexpr (requires { v.getX() + v.getY() + v.getZ(); })
+        return std::array{v.getX(), v.getY(), v.getZ()};
     else if constexpr (requires { v.r + v.g + v.b; })
         return std::array{v.r, v.g, v.b};
     else if constexpr (requires { v.x() + v.y(); })
         return std::array{v.x(), v.y()};
     else if constexpr (requires { v.x + v.y; })
         return std::array{v.x, v.y};
+    else if constexpr (requires { v.X + v.Y; })
+        return std::array{v.X, v.Y};
+    else if constexpr (requires { v.real() + v.imag(); })
+        return std::array{v.real(), v.imag()};
     else if constexpr (requires { std::tuple_size<V>::value; })
         return std::apply([](auto... c) { return std::array{c...}; }, v);
-    else
-        return elements<3>(v);
+    else if constexpr (requires { v[size_t()] + v[size_t()]; })
+        return elements<size_of<V, std::decay_t<decltype(v[size_t()])>>>(
+            [&](size_t i) { return v[i]; });
+    else if constexpr (requires { v(0) + v(0); })
+        return elements<size_of<V, std::decay_t<decltype(v(0))>>>([&](int i) { return v(i); });
+    else {
+        static_assert(
+            !sizeof(V),
+            "the oracle cannot read the coordinates of this vector: give it x, y, z, or []");
+        return std::array{0.0};
+    }
 }
 template <class V>
 using Coordinates = decltype(oracle::coordinates(std::declval<const V&>()));
@@ -721,7 +773,14 @@ V of_host(const auto& c, std::index_sequence<I...>) {
         return V(T(c[I])...);
     else {
         V v{};
-        ((v[I] = T(c[I])), ...);
+        if constexpr (requires { v[size_t()] = T(); })
+            ((v[I] = T(c[I])), ...);
+        else if constexpr (requires { v(int()) = T(); })
+            ((v(int(I)) = T(c[I])), ...);
+        else
+            static_assert(!sizeof(V),
+                          "the oracle cannot make this vector from its coordinates: give it a "
+                          "constructor of them");
         return v;
     }
 }
@@ -952,13 +1011,19 @@ auto model(Sample& sample, Pdf& pdf) {
     constexpr size_t M = numbers_of<Sample>();
     static_assert(
         M > 0 || requires { sample(); },
-        "sample takes numbers u, v, ..., one argument made from {u, v, ...}, or nothing");
+        "sample takes numbers u, v, ... (in expect_bsdf after wo), one argument made from {u, v, "
+        "...}, or nothing; "
+        "after random come sample, then pdf");
     using Raw = decltype(oracle::call(sample, Point<M>{}));
     using Arrived = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
     using V = std::decay_t<decltype(oracle::point_in(std::declval<const Arrived&>()))>;
     constexpr bool says_pdf = found<decltype(oracle::pdf_in(std::declval<const Arrived&>()))>;
     constexpr size_t N = coordinates_of<V>();
     using T = Coordinate<V>;
+    static_assert(
+        requires { double(pdf(of_host<V>(Point<N>{}))); },
+        "pdf takes the point or direction that sample returns, and returns a number; after random "
+        "come sample, then pdf");
     return Model<M, N>{[&sample](const Point<M>& u) -> std::optional<Drawn<N>> {
                            const Raw r = oracle::call(sample, u);
                            if constexpr (may_fail<Raw>)
@@ -2411,7 +2476,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                 unsure.empty() && !why.empty() && albedo.skewness() > 0)
                 unsure = "; the albedo for wo = " + say_point(out) + " is not sure: " + why;
             // Of lobes about steep directions few samples cross the surface; uniform ones may.
-            for (size_t through : {0, 1})
+            for (size_t through = 0; through < 2; ++through)
                 if (z > 0.9 && lit[through] == 0 && come[through] > 0.1 * albedo.n() &&
                     highest > 1.01 * lowest)
                     return failure(
@@ -2451,7 +2516,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     const std::string why = albedo_hint(albedos[1], share);
     if (!why.empty() && !albedo_hint(albedos[0], share).empty()) return failure(why, o);
     std::array<double, 2> p{1, 1};
-    for (size_t radiance : {0, 1})
+    for (size_t radiance = 0; radiance < 2; ++radiance)
         for (const Albedo& a : albedos[radiance]) p[radiance] = std::min(p[radiance], a.p);
     all.p = std::min(1.0, std::min(all.p, std::max(p[0], p[1])) * o.alpha / share);
     all.text = std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
@@ -2595,7 +2660,7 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
 
 // =================================================================================================
 // Part two: hints and pictures.  Nothing of it decides whether a check passes.
-#ifndef __clang__
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC push_options
 #pragma GCC optimize("O0")  // compiles an eighth faster; it runs only where a check fails
 #endif
@@ -3295,12 +3360,8 @@ std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
         const Parts parts = check.integrate();
         check.claim = {};
         if (!(parts.total > 0 && std::isfinite(parts.total))) return false;
-        const int checks = statistical_checks;  // a guess is none
-        const double spent = alpha_spent;
-        const bool pass =
-            judge_counts(check.counts, parts.shares(), {.alpha = 1e-3}, parts.variances()).pass;
-        statistical_checks = checks, alpha_spent = spent;
-        return pass;
+        const CountsFit fit = fit_counts(check.counts, parts.shares(), parts.variances(), 0);
+        return fit.p > 1e-3 && fit.fewest >= 100;
     };
     const auto& pdf = check.model.pdf;
     for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
@@ -3686,7 +3747,7 @@ inline std::string Image::hint(const ImageResult& r) const {
     std::array<double, 3> low{infinity, infinity, infinity}, high{};
     for (size_t i = 0; i < n(); ++i) seen[block_of(i)] += f[i], wanted[block_of(i)] += truth[i];
     for (size_t b = 0; b < 16; ++b) {
-        const size_t group = (b % 4 % 3 == 0) + (b / 4 % 3 == 0);
+        const size_t group = size_t(b % 4 % 3 == 0) + size_t(b / 4 % 3 == 0);
         low[group] = std::min(low[group], seen[b] / wanted[b]);
         high[group] = std::max(high[group], seen[b] / wanted[b]);
     }
@@ -3753,7 +3814,7 @@ struct Drawing {
     // Into the folder of pictures; "" or "\nsee PATH".
     std::string written(const std::string& name) const {
         if (pictures.empty()) return "";
-        static int unnamed = 0;
+        static std::atomic<int> unnamed = 0;
         std::string file;
         for (char c : name.empty() ? say("check-%d", ++unnamed) : name)
             file += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
@@ -3918,7 +3979,7 @@ inline std::string Image::picture() const {
         most_off = std::max(most_off, std::abs(values[2][b]));
     }
     for (size_t b = 0; b < weight.size(); ++b) {
-        for (size_t k : {0, 1})
+        for (size_t k = 0; k < 2; ++k)
             values[k][b] = 1 - std::pow(std::max(0.0, values[k][b] / most), 1 / 2.2);
         values[2][b] /= most_off;
     }
@@ -3930,7 +3991,7 @@ inline std::string Image::picture() const {
     return d.written(o.name);
 }
 
-#ifndef __clang__
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC pop_options
 #endif
 
@@ -3945,4 +4006,12 @@ ORACLE_CHECKS template Verdict DensityCheck<1, 1, Line>::run();
 
 }  // namespace oracle
 
+#undef ORACLE_PRINTF
+#ifdef __GNUC__
 #pragma GCC diagnostic pop
+#endif
+#pragma pop_macro("pi")
+#pragma pop_macro("min")
+#pragma pop_macro("max")
+#pragma pop_macro("near")
+#pragma pop_macro("far")
