@@ -231,7 +231,7 @@ TEST_CASE("0 and the number next to 1 are always tried") {
     const oracle::Aside aside;
     oracle::Random random(seed_here());
     for (double edge : {0.0, 1 - 0x1p-53})
-        for (size_t k : {0, 1}) {
+        for (size_t k : {size_t(0), size_t(1)}) {
             auto broken_there = [=](const array<double, 2>& u) {
                 auto w = cosine(u[0], u[1]);
                 if (u[k] == edge) w[1] = NAN;

@@ -893,7 +893,7 @@ constexpr auto direction_of(const R& r) {
 }
 template <class R>
 constexpr auto density_of(const R& r) {
-    return oracle::member_of(r, ORACLE_MEMBER(pdf), ORACLE_MEMBER(prob), ORACLE_MEMBER(density),
+    return oracle::member_of(r, ORACLE_MEMBER(pdf), ORACLE_MEMBER(prob),
                              ORACLE_MEMBER(probability));
 }
 template <class R>
@@ -962,7 +962,8 @@ const auto& point_in(const R& r) {
 }
 template <class R>
 auto pdf_in(const R& r) {
-    if constexpr (requires { requires found<decltype(density_of(oracle::beside(r)))>; })
+    using Parts = std::decay_t<decltype(oracle::beside(r))>;
+    if constexpr (has_parts<Parts> && found<decltype(density_of(std::declval<const Parts&>()))>)
         return density_of(oracle::beside(r));
     else if constexpr (is_tuple<R>())
         return at_index<element<R, true>(0)>(r);
