@@ -376,7 +376,7 @@ TEST_CASE("BSDFs: albedos take their part of alpha, and those of skewed weights 
     CHECK(met.text.ends_with("above the surface"));
     CHECK(seldom.pass);
     says(seldom,
-         "; the albedo for wo = (0.1687, 0.2627, 0.95) is not sure: n = 100000 is too small");
+         "; the albedo for wo = (0.1687, 0.2627, 0.95) is not sure: n = 110000 is too small");
     says(judged(bright, quick), "more leaves than comes");
 }
 

@@ -2457,7 +2457,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             Draws albedo, scaled;
             std::array<double, 2> come{}, lit{};  // samples that reflect, and that transmit
             double lowest = infinity, highest = 0;
-            while (albedo.n() < std::max(1e5, double(o.n))) {
+            while (albedo.n() < std::max(1.1e5, double(o.n))) {
                 const auto wi = erased.sample(erased.draw(random));
                 const double p = wi ? erased.pdf(*wi) : 0,
                              weight = p > 0 ? f(out, *wi) * std::abs((*wi)[2]) / p : 0;
