@@ -28,13 +28,13 @@ void write(const std::string& name, const std::string& text) {
     REQUIRE(run("true").well);
     std::ofstream(folder + "/" + name) << text;
 }
-const std::string compile = "c++ -std=c++20 -I../../tests/oracle ";
+const std::string compile = "c++ -std=c++20 -I../../tests -I../../tests/oracle ";
 
 }  // namespace
 
 TEST_CASE("two files: one has the checks, the other links to them") {
     write("check.cpp", R"(
-#include "oracle.h"
+#include "oracle/oracle.h"
 bool FUNCTION(double factor) {
     oracle::Random random(1);
     auto sample = [](double u) { return -std::log1p(-u); };
@@ -108,7 +108,7 @@ float pdf_cosine(Vec w) { return w.z > 0 ? w.z / (std::getenv("WRONG") ? 1 : 3.1
 
 TEST_CASE("types that the oracle cannot use are refused in one sentence, before all else") {
     const std::string begin = R"(
-#include "oracle.h"
+#include "oracle/oracle.h"
 struct Vec { float x, y, z; };
 struct Odd { float a, b, c; };
 class Closed { double v[3] = {}; public: double operator[](size_t i) const { return v[i]; } };
@@ -146,7 +146,7 @@ TEST_CASE("no warning by any compiler that is here, and macros of the host stay 
 #define max(a, b) ((a) > (b) ? (a) : (b))
 #define near
 #define far
-#include "oracle.h"
+#include "oracle/oracle.h"
 #if !defined(pi) || !defined(min) || !defined(max) || !defined(near) || !defined(far)
 #error a macro is gone
 #endif
@@ -157,7 +157,7 @@ static_assert(max(pi, 2) == 3 && ORACLE_VERSION >= 20100);
         "-Wsign-conversion -Werror -DREAL=double ";
     for (const std::string compiler : {"g++", "clang++-14", "clang++-19"}) {
         if (!run(compiler + " --version").well) continue;
-        for (const std::string file : {"-I../../tests/oracle macros.cpp",
+        for (const std::string file : {"-I../../tests macros.cpp",
                                        "-I../../tests ../../tests/oracle/examples_test.cpp"}) {
             const Ran ran = run(compiler + every + file);
             INFO(compiler, " ", file, "\n", ran.log);
