@@ -119,6 +119,11 @@ inline std::string pictures = [] {
 // them raised a false alarm.
 inline std::atomic<int> statistical_checks = 0;  // threads may check at the same time
 inline std::atomic<double> alpha_spent = 0;
+inline void spend(double alpha) {  // += of libc++ 17 and older has no doubles
+    double before = alpha_spent;
+    while (!alpha_spent.compare_exchange_weak(before, before + alpha)) {
+    }
+}
 
 // ---- Seeds --------------------------------------------------------------------------------------
 
@@ -307,7 +312,7 @@ inline Verdict failure(const std::string& why, const Options& o = {}) {
 // By a p-value, which uses up alpha.
 inline Verdict verdict_of(double p, double delta_min, const Options& o) {
     ++statistical_checks;
-    alpha_spent += o.alpha;
+    spend(o.alpha);
     return {p > o.alpha, p, delta_min, ""};
 }
 
@@ -2127,7 +2132,7 @@ Verdict DensityCheck<M, N, Domain>::run() {
     Verdict v = judge_counts(counts, expected,
                              {.alpha = o.alpha / part, .tolerance = o.tolerance + moved()},
                              parts.variances());
-    alpha_spent += o.alpha - o.alpha / part;
+    spend(o.alpha - o.alpha / part);
     if (o.discrete > 0 && (p_at_least(mirrored, samples, o.discrete) < o.alpha / 8 ||
                            1 - p_at_least(mirrored + 1, samples, o.discrete) < o.alpha / 8))
         return failure(percent(mirrored / samples) + " of the samples are mirrors', " +
@@ -2512,7 +2517,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                                              t > 0 ? p_of_t(t, mean.df) / 2 : 1});
             }
         }
-    alpha_spent += o.alpha / 2;
+    spend(o.alpha / 2);
     statistical_checks += int(albedos[0].size());
     const std::string why = albedo_hint(albedos[1], share);
     if (!why.empty() && !albedo_hint(albedos[0], share).empty()) return failure(why, o);
