@@ -3,9 +3,13 @@
 
 #include <limits>
 #include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "oracle/expect.h"
+#include "oracle/textbook.h"
 
 TEST_CASE("Poisson: k or more, by the sum of the terms below k") {
     for (double mean : {0.01, 1.0, 7.5}) {
@@ -127,6 +131,34 @@ TEST_CASE("densities in float: two rules agreed by chance at a kink, in one of 6
     EXPECT(oracle::expect_density(random, sample, pdf, {.sees = 0.05}), 0.06);
 }
 
+// Arvo 1995; the density is 1 / area where all three planes through edges say inside.
+TEST_CASE("densities in float: a triangle of the sphere, whose borders rules of quadrature miss") {
+    using V = textbook::Vec<float>;
+    const V a = unit(V{1, 0.2f, 1}), b = unit(V{-0.5f, 1, 1.5f}), c = unit(V{-0.3f, -0.8f, 1});
+    const V ab = cross(a, b), bc = cross(b, c), ca = cross(c, a);
+    auto angle = [](V n, V m) { return std::acos(-dot(unit(n), unit(m))); };
+    const float alpha = angle(ab, ca), cosine = dot(a, b),
+                area = alpha + angle(ab, bc) + angle(bc, ca) - textbook::pi<float>;
+    const V side = unit(c + -dot(c, a) * a);
+    auto sample = [&](float u, float v) {
+        const float s = std::sin(u * area - alpha), t = std::cos(u * area - alpha),
+                    x = t - std::cos(alpha), y = s + std::sin(alpha) * cosine;
+        const float q = std::clamp(
+            ((y * t - x * s) * std::cos(alpha) - y) / ((y * s + x * t) * std::sin(alpha)), -1.0f,
+            1.0f);
+        const V edge = q * a + std::sqrt(1 - q * q) * side;
+        const float z = 1 - v * (1 - dot(edge, b));
+        return z * b + std::sqrt(1 - z * z) * unit(edge + -dot(edge, b) * b);
+    };
+    auto pdf = [&](V w) {
+        return dot(w, ab) >= 0 && dot(w, bc) >= 0 && dot(w, ca) >= 0 ? 1 / area : 0;
+    };
+    for (uint64_t seed : {77000, 77019, 77022}) {
+        Random random(seed);
+        EXPECT(expect_density(random, sample, pdf), 0.011);
+    }
+}
+
 TEST_CASE("images: one pixel of eight is named, and no further ones") {
     const Aside aside;
     const std::vector<double> values = {1, 1, 1, 1, 1, 1, 1, 2}, errors(8, 0.01), ones(8, 1);
@@ -146,14 +178,21 @@ TEST_CASE("images: each of the 24 values of 4x2 pixels in RGB is looked at, in i
         values[i] += 0.2;
         const char* const channel[] = {"red", "green", "blue"};
         const std::string pixel = say(": pixel (%zu, %zu) is ", i / 3 % 4, i / 12);
-        for (const Verdict& v : {expect_image(4, 2, values, errors, truth),
-                                 expect_image(4, 2, values.data(), errors.data(), truth)}) {
+        // The same behind a pointer, and as colours.
+        struct Colour {
+            float r, g, b;
+        };
+        std::vector<Colour> colours;
+        for (size_t k = 0; k < 24; k += 3)
+            colours.push_back({float(values[k]), float(values[k + 1]), float(values[k + 2])});
+        for (const Verdict& v :
+             {expect_image(4, 2, values, errors, truth),
+              expect_image(4, 2, std::span(values.data(), 24), std::span(errors.data(), 24), truth),
+              expect_image(4, 2, colours, errors, truth)}) {
             INFO(v.text);
             CHECK(!v.pass);
             CHECK(v.text.starts_with(channel[i % 3] + pixel));
         }
-        // Without a size an array is gray.
-        CHECK(expect_image(4, 2, values.data(), errors.data(), truth.data()).pass == (i >= 8));
     }
     // 5.6 sigma in one of 8 pixels of one of 3 channels, by one of 3 checks: not rare enough.
     std::vector<double> rare = truth;
@@ -177,6 +216,15 @@ struct WithWeight {
     std::array<float, 3> wi;
     float pdf, weight;
 };
+struct WithBoth {
+    Triple dir;
+    double prob, value;
+    Triple throughput;
+};
+struct WithPdf {
+    Triple wo;
+    double pdf;
+};
 
 }  // namespace
 
@@ -195,20 +243,48 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
         return (0.2 + 0.5 * std::max(0.0, c)) / pi;
     };
     auto pdf = [](const auto& wi) { return wi[2] > 0 ? 0.5 / pi : 0; };
-    auto values = [&](auto change) {
-        auto sample = [&](Triple wo, double u, double v) {
-            const Triple w = uniform(u, v);
-            const double f = lobe(wo, w) * change(w);
-            return WithValue{w, pdf(w), {f, 2 * f, 0}};
+    // made(w, f, weight) is what sample returns, in colours of which blue is 0.
+    auto judged = [&](auto made) {
+        auto colour = [&](Triple wo, Triple wi) {
+            const double f = lobe(wo, wi);
+            return Triple{f, 2 * f, 0};
+        };
+        auto sample = [=](Triple wo, double u, double v) {
+            const Triple w = uniform(u, v), f = colour(wo, w);
+            const double c = 2 * pi * w[2];
+            return made(w, f, Triple{f[0] * c, f[1] * c, 0});
         };
         return expect_bsdf(
-            random, sample, [&](Triple, Triple w) { return pdf(w); },
-            [&](Triple wo, Triple wi) {
-                const double f = lobe(wo, wi);
-                return Triple{f, 2 * f, 0};
-            },
-            quick);
+            random, sample, [&](Triple, Triple w) { return pdf(w); }, colour, quick);
     };
+    auto scaled = [](Triple f, double by) { return Triple{f[0] * by, f[1] * by, f[2] * by}; };
+    auto values = [&](auto change) {
+        return judged([=](Triple w, Triple f, Triple) {
+            return WithValue{w, 0.5 / pi, scaled(f, change(w))};
+        });
+    };
+    auto both = [&](double value, double weight) {
+        return judged([=](Triple w, Triple f, Triple throughput) {
+            return WithBoth{w, 0.5 / pi, value * (f[0] + f[1]) / 3, scaled(throughput, weight)};
+        });
+    };
+    auto tuples = [&](double value, double weight) {
+        return judged([=](Triple w, Triple f, Triple throughput) {
+            return std::tuple{w, 0.5 / pi, scaled(value == 0 ? throughput : f, value + weight)};
+        });
+    };
+    auto pairs = [&](double by) {
+        return judged([=](Triple w, Triple, Triple weight) {
+            return std::pair{WithPdf{w, 0.5 / pi}, scaled(weight, by)};
+        });
+    };
+    auto exchanged = [](Triple w, Triple f, Triple) {
+        return WithValue{w, 0.5 / pi, {f[1], f[0], f[2]}};
+    };
+    auto clamped = [](Triple w, Triple f, Triple) {
+        return WithValue{w, 0.5 / pi, {std::min(f[0], 0.1), std::min(f[1], 0.1), f[2]}};
+    };
+    auto other_pdf = [](Triple w, Triple f, Triple) { return std::tuple{w, f, 1 / pi}; };
     using floats = std::array<float, 3>;
     auto weights = [&](auto change) {
         auto sample = [&](floats wo, float u, float v) -> std::optional<WithWeight> {
@@ -223,25 +299,114 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
     };
     CHECK(values([](Triple) { return 1; }).pass);
     CHECK(weights([](Triple w) { return 2 * pi * w[2]; }).pass);
+    CHECK(both(1, 1).pass);
+    CHECK(tuples(1, 0).pass);
+    CHECK(tuples(0, 1).pass);
+    CHECK(pairs(1).pass);
     const std::pair<Verdict, const char*> refused[] = {
         {values([](Triple) { return 0.5; }),
          "the f that sample returns is 0.5 (1/2, half) times eval's value, at every direction"},
         {values([](Triple w) { return w[2]; }),
          "the f that sample returns is |cos| times eval's value, at every direction"},
         {values([](Triple w) { return w[2] * 2 * pi; }), "(2 pi) |cos| times eval's value"},
+        {values([](Triple w) { return w[0] > 0 ? 2 : 1; }), " % of directions, where x > 0\n"},
+        {values([](Triple w) { return w[2] < 0.3 ? 0 : 1; }), "where cos(theta) < 0.3\n"},
         {values([](Triple w) { return w[0] > 0   ? 1
                                       : w[1] > 0 ? 2
                                                  : 3; }), " % of directions"},
         {values([](Triple) { return NAN; }),
          "the f that sample returns is nan, but eval's value is "},
+        {judged(clamped), " % of directions, where eval's value > 0.1\n"},
+        {judged(exchanged), "for wi = "},
+        {judged(other_pdf), "the pdf that sample returns is 2 (2, twice) times what pdf says"},
+        {both(0.5, 1), "the f that sample returns is 0.5 (1/2, half) times eval's value, at every"},
+        {both(1, 2), "the weight that sample returns is 2 (2, twice) times eval's value |cos| / p"},
+        {tuples(3, 0), "the value that sample returns is 3 times eval's value, at every direction"},
+        {tuples(0, 0.5), "the value that sample returns is "},
+        {pairs(0.5), "0.5 (1/2, half) times eval's value |cos| / pdf, at every direction"},
         {weights([](Triple w) { return w[2]; }),
          "the weight that sample returns is 0.1592 (1/(2 pi)) times eval's value |cos| / pdf, at "},
         {weights([](Triple) { return 2 * pi; }),
-         "the weight that sample returns is |cos|^-1 times eval's value |cos| / pdf, at 99"}};
+         "the weight that sample returns is |cos|^-1 times eval's value |cos| / pdf, at "}};
     for (const auto& [v, why] : refused) {
-        says(v, why);
+        says({false, 0, 0, v.text + "\n"}, why);
         CHECK(!v.pass);
     }
+}
+
+TEST_CASE("BSDFs: albedos take their part of alpha, and those of skewed weights are told") {
+    const Aside aside;
+    Random random(seed_here());
+    auto uniform = [](Triple, double u, double v) {
+        const double r = std::sqrt(1 - u * u), phi = 2 * pi * v;
+        return Triple{r * std::cos(phi), r * std::sin(phi), u};
+    };
+    auto even = [](Triple, Triple wi) { return wi[2] > 0 ? 0.5 / pi : 0; };
+    auto judged = [&](auto f, const Options& o) {
+        return expect_bsdf(
+            random, uniform, even,
+            [=](Triple wo, Triple wi) { return wo[2] > 0 && wi[2] > 0 ? f(wo, wi) : 0.0; }, o);
+    };
+    // Weights 2 albedo u have the standard error albedo / sqrt(3 n) = 1.8e-3.
+    auto grey = [](double albedo) { return [=](Triple, Triple) { return albedo / pi; }; };
+    const double before = oracle::alpha_spent;
+    const int checks = oracle::statistical_checks;
+    CHECK(judged(grey(1), quick).pass);
+    CHECK(oracle::alpha_spent - before == doctest::Approx(quick.alpha).epsilon(1e-9));
+    CHECK(oracle::statistical_checks - checks == 8);
+    // Off by 1e-3 + 5.2 standard errors: of 1e-3 / 8 the bound is at 3.7, of 1e-12 / 8 at 7.3.
+    int refused = 0, strict = 0;
+    for (int i = 0; i < 20; ++i) {
+        refused += !judged(grey(1.0105), {.alpha = 1e-3, .sees = 0.1}).pass;
+        strict += !judged(grey(1.0105), {.alpha = 1e-12, .sees = 0.1}).pass;
+    }
+    CHECK(refused >= 19);
+    CHECK(strict <= 10);
+    // Of uniform directions one in 20 meets a lobe, or one in 10 000.
+    auto lobe = [](double part) {
+        return [=](Triple wo, Triple wi) {
+            const double c = wo[2] * wi[2] - wo[0] * wi[0] - wo[1] * wi[1];
+            return 0.2 / pi + (c > 1 - part ? 0.1 / part : 0);
+        };
+    };
+    auto bright = [=](Triple wo, Triple wi) { return 5 * lobe(1e-3)(wo, wi); };
+    const Verdict met = judged(lobe(1 / 20.0), quick), seldom = judged(lobe(1e-4), quick);
+    CHECK(met.pass);
+    INFO(met.text);
+    CHECK(met.text.ends_with("above the surface"));
+    CHECK(seldom.pass);
+    says(seldom,
+         "; the albedo for wo = (0.1687, 0.2627, 0.95) is not sure: n = 110000 is too small");
+    says(judged(bright, quick), "more leaves than comes");
+}
+
+TEST_CASE("the density or probability that comes with a point or an index is told from another") {
+    const Aside aside;
+    Random random(seed_here());
+    auto beside = [](double part) {
+        return [=](double u, double v) { return std::pair{Triple{u, v, u + v}, part}; };
+    };
+    auto density = [](Triple) { return 1 / std::sqrt(3.0); };
+    CHECK(expect_jacobian(random, beside(1 / std::sqrt(3.0)), density).pass);
+    says(expect_jacobian(random, beside(1), density),
+         "the pdf that sample returns is 1.732 times what pdf says, in every sample");
+    struct Index {
+        int index;
+        float pdf;
+    };
+    auto chance = [](int i) { return i == 0 ? 0.25 : 0.75; };
+    auto choice = [](double part) {
+        return [=](double u) { return std::pair{u < 0.25 ? 0 : 1, u < 0.25 ? 0.25 : part}; };
+    };
+    auto named = [](float part) {
+        return [=](float u) { return u < 0.25f ? Index{0, 0.25f * part} : Index{1, 0.75f * part}; };
+    };
+    CHECK(expect_choice(random, choice(0.75), chance, 2).pass);
+    CHECK(expect_choice(random, named(1), chance, 2).pass);
+    says(expect_choice(random, choice(0.25), chance, 2),
+         "the probability that choose returns is 0.3333 (1/3) times what probability says, in 7");
+    says(expect_choice(random, named(2), chance, 2),
+         "is 2 (2, twice) times what probability says, in every choice");
 }
 
 TEST_CASE("what cannot be judged is refused: by the name that it was given, once, and why") {
@@ -271,7 +436,7 @@ TEST_CASE("what cannot be judged is refused: by the name that it was given, once
     const uint64_t none[] = {0, 0}, few[] = {3, 4}, off[] = {500, 1}, one[] = {1000};
     const double halves[] = {0.5, 0.5}, all[] = {1, 0};
     const std::vector<double> nothing, value{nan}, error{nan}, number{1};
-    const std::vector<double> three(3, 1), seven(7, 1), eight(8, 1);
+    const std::vector<double> three(3, 1), seven(7, 1), eight(8, 1), lines(20000, 1);
     const Estimate low{1, 0.1, 99}, high{2, 0.1, 99};
     const std::pair<Verdict, const char*> refused[] = {
         {expect_mean(1, 1000, broken, o), "sample 0 is nan"},
@@ -291,14 +456,21 @@ TEST_CASE("what cannot be judged is refused: by the name that it was given, once
         {expect_counts(none, halves, o), "no sample at all"},
         {expect_counts(few, halves, o), "take 200"},
         {expect_counts(off, all, o), "where the density is 0"},
-        {expect_counts(one, all, o), "fewer than two cells"},
+        {expect_counts(one, all, o), "2 probabilities for 1 counts"},
+        {expect_counts(off, number, o), "1 probabilities for 2 counts"},
+        {expect_counts(off, halves, o, number), "1 variances for 2 counts"},
+        {expect_counts(one, number, o), "fewer than two cells"},
+        {expect_samples(lines, lines, eight, Line{}, o), "20000 points, 8 values of the pdf"},
+        {expect_samples(lines, lines, lines, Line{}, {.n = 10000, .name = "mine"}),
+         "20000 samples, of 10000 drawn (.n)"},
         {expect_image(0, 0, nothing, nothing, nothing, o), "no pixel"},
         {expect_image(4, 2, seven, seven, seven, o), "7 values for 4x2 pixels, expected 8 or 24"},
         {expect_image(4, 2, eight, eight, seven, o), "7 reference values for 4x2 pixels, expected"},
         {expect_image(4, 2, eight, all, eight, o), "2 errors for 4x2 pixels, expected 8 or 24"},
         {expect_image(1, 1, three, three, number, o), "1 reference values, but 3 values"},
         {expect_image(1, 1, three, number, three, o), "1 errors, but 3 values"},
-        {expect_image(1, 1, three.data(), number, three, o), "3 reference values, but 1 errors"},
+        {expect_image(1, 1, number, number, three, o), "3 reference values, but 1 values"},
+        {expect_image(4, 2, std::span(eight.data(), 7), eight, eight, o), "7 values for 4x2"},
         {expect_image(1, 1, value, number, number, o), ""},
         {expect_image(1, 1, number, error, number, o), ""},
         {expect_density(random, always, everywhere, rough), "samples are all the same"},

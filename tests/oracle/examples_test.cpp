@@ -52,25 +52,6 @@ TEST_CASE("a mistake") {
     CHECK(picture.good());
 }
 
-TEST_CASE("doctest") {
-    // [doctest
-    oracle::Random random(seed_here());
-    EXPECT(oracle::expect_density(random, sample_cosine, pdf_cosine), 0.011);
-    // ]
-}
-
-TEST_CASE("another framework") {
-    int failures = 0;
-    auto my_check = [&](bool passed, const std::string&) { failures += !passed; };
-    oracle::Random random(1);
-    // [framework
-    #define MY_EXPECT(verdict) \
-        do { const oracle::Verdict v_ = (verdict); my_check(v_.pass, v_.text); } while (false)
-    MY_EXPECT(oracle::expect_density(random, sample_cosine, pdf_cosine));
-    // ]
-    CHECK(failures == 0);
-}
-
 TEST_CASE("failing samples and lobes") {
     oracle::Random random(oracle::seed_of("upper half of a sphere"));
     // [failing

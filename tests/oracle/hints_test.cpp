@@ -116,8 +116,27 @@ TEST_CASE("hints: directions") {
     auto weighted = [](double choice, double u, double v) {
         return about_z(std::pow(u, choice < 0.7 ? 1 / 2.0 : 1 / 21.0), 2 * pi * v);
     };
+    // The lower half of the sphere lies on the upper one.
+    auto folded = [](double u, double v) {
+        const Triple w = about_z(1 - 2 * u, 2 * pi * v);
+        return w[2] < 0 ? Triple{-w[0], -w[1], -w[2]} : w;
+    };
+    auto of_sphere = [](Triple w) { return w[2] > 0 ? 1 / (4 * pi) : 0; };
+    // Two lobes by one number; and the sum of their densities.
+    auto either = [](double u, double v) {
+        return u < 0.5 ? about_z(std::sqrt(2 * u), 2 * pi * v) : about_z(2 * u - 1, 2 * pi * v);
+    };
+    auto both = [=](Triple w) { return cosine_pdf(w) + even(w); };
+    auto poles = [](Triple w) { return (std::abs(w[2]) > 0.98 ? 2 : 1) / (4 * pi); };
     all_say(
         {{expect_density(random, wedges, cosine_pdf), "branches that overlap and leave a gap"},
+         {expect_density(random, folded, of_sphere),
+          "the pdf is 0.5 (1/2, half) times the density of the samples, as far as counts tell: "
+          "every piece of the map has it, and others lie upon it: looks like a map that is not"},
+         {expect_density(random, either, both),
+          "the pdf is 2 (2, twice) times the density of the samples, as far as counts tell"},
+         {expect_density(random, sphere, poles), "hardly any comes, or too large there"},
+         {expect_density(random, sphere, [](Triple) { return (1 + 1e-5) / (4 * pi); }), "1.00001"},
          {expect_density(random, cosine, even), "the pdf is uniform, samples are not"},
          {expect_density(random, normals, narrow), "narrower than the samples"},
          {expect_density(random, disc, per_area), "the cosine to (-0.5145"},
@@ -136,6 +155,17 @@ TEST_CASE("hints: directions") {
          {expect_density(random, lobe, ninth), "cos(theta): looks like an exponent in one of"},
          {expect_density(random, weighted, sum),
           "the pdf is 2 (2, twice) times the density of the samples, as far as counts tell"}});
+}
+
+TEST_CASE("hints: the guesses behind one are no checks") {
+    const Aside aside;
+    Random random(seed_here());
+    auto cube = [&] { return unit({2 * random() - 1, 2 * random() - 1, 2 * random() - 1}); };
+    const int checks = statistical_checks;
+    const double spent = alpha_spent;
+    says(expect_density(random, cube, [](Triple) { return 1 / (4 * pi); }), "points of a cube");
+    CHECK(statistical_checks - checks == 1);
+    CHECK(alpha_spent - spent == doctest::Approx(1e-6).epsilon(1e-6));
 }
 
 TEST_CASE("hints: points") {
@@ -195,6 +225,37 @@ TEST_CASE("hints: points") {
          {expect_density(random, cells, table, Interval{0, 1}), "0.1 at"}});
 }
 
+TEST_CASE("points of a sequence: their density tells what a mean over scrambles cannot") {
+    const Aside aside;
+    Random random(seed_here());
+    // Sobol's second dimension (Kollig, Keller 2002); with v >>= 1 for v ^= v >> 1 it is the first.
+    auto sequence = [&](bool right) {
+        return [=, i = uint32_t(0), a = uint32_t(random.bits()),
+                b = uint32_t(random.bits())]() mutable {
+            uint32_t x = a, y = b, v = 1u << 31, w = v;
+            for (uint32_t n = i++; n > 0; n >>= 1, w >>= 1, v = right ? v ^ (v >> 1) : v >> 1)
+                if (n & 1) x ^= w, y ^= v;
+            return Pair{x * 0x1p-32, y * 0x1p-32};
+        };
+    };
+    auto one = [](Pair) { return 1.0; };
+    auto product = [&](bool right) {
+        return expect_replicates(0.25, 64, [&](int) {
+            auto next = sequence(right);
+            double sum = 0;
+            for (int i = 0; i < 256; ++i) {
+                const auto [x, y] = next();
+                sum += x * y / 256;
+            }
+            return sum;
+        });
+    };
+    CHECK(expect_density(random, sequence(true), one, Square{}).pass);
+    CHECK(!expect_density(random, sequence(false), one, Square{}).pass);
+    CHECK(product(false).pass);
+    CHECK(product(false).delta_min > 10 * product(true).delta_min);
+}
+
 TEST_CASE("hints: BSDFs") {
     const Aside aside;
     Random random(seed_here());
@@ -211,6 +272,21 @@ TEST_CASE("hints: BSDFs") {
         const double c = wo[2] * wi[2] - wo[0] * wi[0] - wo[1] * wi[1];
         return std::pow(std::max(0.0, c), 4) / pi;
     };
+    // Half of a wide lobe's samples cross an opaque surface, where its pdf goes on.
+    auto wide = [](Triple wo, double u, double v) {
+        const Triple h = facet(u, v, 1);
+        const double c = 2 * dot(wo, h);
+        return Triple{c * h[0] - wo[0], c * h[1] - wo[1], c * h[2] - wo[2]};
+    };
+    auto goes_on = [](Triple wo, Triple wi) {
+        const Triple h = half_of(wo, wi);
+        return facets(h[2], 1) * std::abs(h[2] / (4 * dot(wo, h)));
+    };
+    auto opaque = [](Triple wo, Triple wi) { return wo[2] > 0 && wi[2] > 0 ? 0.5 / pi : 0; };
+    const Verdict crossing = expect_bsdf(random, wide, goes_on, opaque, {.sees = 0.03});
+    CHECK(crossing.pass);
+    says(crossing, "samples that cross the surface, 50");
+    says(crossing, "is transmission forgotten?");
     all_say(
         {{judged([&](Triple wo, Triple wi) { return lobe(wo, wi) / wo[2]; }),
           "eval divided by that of wo"},
@@ -266,6 +342,16 @@ TEST_CASE("hints: choices and images") {
         }
         return expect_image(16, 12, values, errors, truth);
     };
+    // Noise of 16 standard errors, and in one pixel more.
+    auto noisy = [&](uint64_t n, double more) {
+        std::vector<double> values, errors(32 * 32, 0.01), truth(32 * 32, 3);
+        for (size_t i = 0; i < 32 * 32; ++i) {
+            double normal = -6;
+            for (int k = 0; k < 12; ++k) normal += random();
+            values.push_back(3 + 0.16 * (normal + (i == 64 ? more : 0)));
+        }
+        return expect_image(32, 32, values, errors, truth, {.n = n});
+    };
     // The reference's pixels at other places.
     auto elsewhere = [](auto from) {
         std::vector<double> values, errors(15 * 12, 0.01), truth;
@@ -293,6 +379,9 @@ TEST_CASE("hints: choices and images") {
           }),
           "times in the corners: a weight of the camera"},
          {elsewhere([](size_t x, size_t y) { return x * 12 + y; }), "rows and columns exchanged"},
+         {noisy(0, 0), "standard errors, everywhere: are these too small?\n"},
+         {noisy(256, 0), "too small? (divided by the root of n twice)\n"},
+         {noisy(256, 30), "pixel (0, 2) is"},
          {image([](size_t x, size_t y) { return x < 4 && y > 7 ? 1.5 : 1.0; }),
           "pixels (0, 8) to (3, 11) are 1.5 times"},
          {image([](size_t x, size_t y) { return x == 7 && y == 9 ? 0.5 : 1.0; }),

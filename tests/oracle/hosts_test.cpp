@@ -3,6 +3,7 @@
 // What a host may do before the oracle is included: say whose names it uses, and have the same.
 #include <array>
 #include <cmath>
+#include <complex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -60,6 +61,31 @@ struct Wide {
     float& operator[](size_t i) { return values[i]; }
 };
 
+struct Capitals {
+    float X, Y, Z;
+};
+class Getters {
+    float a, b, c;
+
+public:
+    Getters(float x, float y, float z) : a(x), b(y), c(z) {}
+    float getX() const { return a; }
+    float getY() const { return b; }
+    float getZ() const { return c; }
+};
+// Functions of an index alone, and two floats with [].
+class Called {
+    float values[3] = {};
+
+public:
+    float operator()(int i) const { return values[i]; }
+    float& operator()(int i) { return values[i]; }
+};
+struct Two {
+    float values[2];
+    float operator[](size_t i) const { return values[i]; }
+};
+
 template <class Sample, class Pdf>
 void check(Sample sample, Pdf pdf) {
     oracle::Random random(seed_here());
@@ -74,7 +100,11 @@ template <class V>
 V made(const array<float, 3>& w) {
     if constexpr (is_same_v<V, Wide>)
         return {{w[0], w[1], w[2], 0}};
-    else
+    else if constexpr (is_same_v<V, Called>) {
+        V v;
+        for (int i = 0; i < 3; ++i) v(i) = w[size_t(i)];
+        return v;
+    } else
         return {w[0], w[1], w[2]};
 }
 template <class V, class Z>
@@ -89,6 +119,16 @@ TEST_CASE("directions by members, by functions, by brackets, as arrays") {
     check_vectors<Vec>([](auto& w) { return w.z; });
     check_vectors<Functions>([](auto& w) { return w.z(); });
     check_vectors<Wide>([](auto& w) { return w[2]; });
+    check_vectors<Capitals>([](auto& w) { return w.Z; });
+    check_vectors<Getters>([](auto& w) { return w.getZ(); });
+    check_vectors<Called>([](auto& w) { return w(2); });
+    check([](double u, double v) { return polar(sqrt(u), 2 * oracle::pi * v); },
+          [](complex<double> z) { return norm(z) < 1 ? 1 / oracle::pi : 0; });
+    check(
+        [](float u, float v) {
+            return Two{{sqrt(u), v}};
+        },
+        [](Two x) { return x[0] > 0 && x[0] < 1 && x[1] >= 0 && x[1] < 1 ? 2 * x[0] : 0; });
     check([](double u, double v) { return cosine(u, v); },
           [](const array<double, 3>& w) { return cosine_pdf(w[2]); });
 }
@@ -191,7 +231,7 @@ TEST_CASE("0 and the number next to 1 are always tried") {
     const oracle::Aside aside;
     oracle::Random random(seed_here());
     for (double edge : {0.0, 1 - 0x1p-53})
-        for (size_t k : {0, 1}) {
+        for (size_t k : {size_t(0), size_t(1)}) {
             auto broken_there = [=](const array<double, 2>& u) {
                 auto w = cosine(u[0], u[1]);
                 if (u[k] == edge) w[1] = NAN;

@@ -1,6 +1,6 @@
 // oracle/oracle.h  verdicts about random numbers, each with its significance and its power
 //
-// Part of Penumbra, version 2, MIT licence (the text of LICENSE, if you copy this file alone).
+// Part of Penumbra, version 2.1, MIT licence (the text of LICENSE, if you copy this file alone).
 // Needs C++20 and the standard library:  g++ -std=c++20 -O1 my_tests.cpp
 //
 //   oracle::Random random(oracle::seed_of("cosine hemisphere"));
@@ -12,9 +12,21 @@
 // and nothing else.  Part one of the file has the checks in the order of reading, part two the
 // hints and pictures.  README.md beside this file has every check with an example.
 #pragma once
-#if __cplusplus < 202002L
+#define ORACLE_VERSION 20100  // README.md says what changed since 2.0
+#if __cplusplus < 202002L && !(defined(_MSVC_LANG) && _MSVC_LANG >= 202002L)
 #error "oracle.h needs C++20: compile with -std=c++20"
 #endif
+// A host may have macros of these names; windows.h has the last four.
+#pragma push_macro("pi")
+#pragma push_macro("min")
+#pragma push_macro("max")
+#pragma push_macro("near")
+#pragma push_macro("far")
+#undef pi
+#undef min
+#undef max
+#undef near
+#undef far
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -26,6 +38,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -41,8 +54,13 @@
 #endif
 
 // A host may have variables called n or alpha.
+#ifdef __GNUC__
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
+#define ORACLE_PRINTF [[gnu::format(printf, 1, 2)]]
+#else
+#define ORACLE_PRINTF
+#endif
 
 namespace oracle {
 
@@ -101,6 +119,11 @@ inline std::string pictures = [] {
 // them raised a false alarm.
 inline std::atomic<int> statistical_checks = 0;  // threads may check at the same time
 inline std::atomic<double> alpha_spent = 0;
+inline void spend(double alpha) {  // += of libc++ 17 and older has no doubles
+    double before = alpha_spent;
+    while (!alpha_spent.compare_exchange_weak(before, before + alpha)) {
+    }
+}
 
 // ---- Seeds --------------------------------------------------------------------------------------
 
@@ -250,7 +273,7 @@ inline double smallest_distortion(int df, double n, double significance = 1e-6) 
 
 // ---- Words --------------------------------------------------------------------------------------
 
-[[gnu::format(printf, 1, 2)]] inline std::string say(const char* format, ...) {
+ORACLE_PRINTF inline std::string say(const char* format, ...) {
     char text[512];
     va_list values;
     va_start(values, format);
@@ -289,7 +312,7 @@ inline Verdict failure(const std::string& why, const Options& o = {}) {
 // By a p-value, which uses up alpha.
 inline Verdict verdict_of(double p, double delta_min, const Options& o) {
     ++statistical_checks;
-    alpha_spent += o.alpha;
+    spend(o.alpha);
     return {p > o.alpha, p, delta_min, ""};
 }
 
@@ -536,51 +559,70 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
 
 // ---- Counts and choices -------------------------------------------------------------------------
 
+// The numbers of the host's array.
+template <class Array>
+std::vector<double> numbers_in(const Array& array);
+
+// Chi-squared of counts, and its p-value.  `variances`: of the probabilities, where they are
+// estimates.  Probabilities that are off by `tolerance` of themselves give a noncentral one.
+struct CountsFit {
+    double n, p = 0, chi2 = 0, fewest = infinity;  // expected in a cell
+    int cells = 0;
+    size_t impossible = 0;  // 1 + a cell where the density is 0, but counts are not
+};
+inline CountsFit fit_counts(const std::vector<double>& counts,
+                            const std::vector<double>& probabilities,
+                            const std::vector<double>& variances, double tolerance) {
+    CountsFit fit{sum_of(counts)};
+    for (size_t i = 0; i < counts.size(); ++i) {
+        const double expected = fit.n * probabilities[i], seen = counts[i];
+        if (expected <= 1e-6) {
+            if (seen > 0) fit.impossible = i + 1;
+            continue;
+        }
+        fit.fewest = std::min(fit.fewest, expected);
+        const double known = variances.empty() ? 0 : fit.n * fit.n * variances[i];
+        fit.chi2 += (seen - expected) * (seen - expected) / (expected + known);
+        ++fit.cells;
+    }
+    if (fit.cells > 1 && fit.impossible == 0)
+        fit.p = p_of_chi2(fit.chi2, fit.cells - 1, forgiven(fit.n, tolerance));
+    return fit;
+}
+
 // Counts follow the probabilities: chi-squared, on cells where 100 or more are expected, so that
-// its p-value is good down to 1e-6.  `variances`: of the probabilities, where they are estimates.
-// Probabilities that are off by o.tolerance of themselves give a noncentral chi-squared.
+// its p-value is good down to 1e-6.
 inline Verdict judge_counts(const std::vector<double>& counts,
                             const std::vector<double>& probabilities, const Options& o,
                             const std::vector<double>& variances) {
-    const double n = sum_of(counts);
-    double chi2 = 0, fewest = infinity;
-    int cells = 0;
-    if (n == 0) return failure("no sample at all", o);
-    for (size_t i = 0; i < counts.size(); ++i) {
-        const double expected = n * probabilities[i], seen = counts[i];
-        if (expected <= 1e-6) {
-            if (seen > 0)
-                return failure(
-                    say("%.0f samples of %.0f in cell %zu, where the density is 0", seen, n, i), o);
-            continue;
-        }
-        fewest = std::min(fewest, expected);
-        const double known = variances.empty() ? 0 : n * n * variances[i];
-        chi2 += (seen - expected) * (seen - expected) / (expected + known);
-        ++cells;
-    }
-    if (cells < 2) return failure("fewer than two cells", o);
-    const double p = p_of_chi2(chi2, cells - 1, forgiven(n, o.tolerance));
-    if (p > o.alpha && fewest < 100)
-        return failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", n, fewest,
-                           std::ceil(100 * n / fewest)),
+    if (probabilities.size() != counts.size())
+        return failure(say("%zu probabilities for %zu counts", probabilities.size(), counts.size()),
                        o);
-    Verdict v = verdict_of(p, smallest_distortion(cells - 1, n, o.alpha) + o.tolerance, o);
+    if (!variances.empty() && variances.size() != counts.size())
+        return failure(say("%zu variances for %zu counts", variances.size(), counts.size()), o);
+    const CountsFit fit = fit_counts(counts, probabilities, variances, o.tolerance);
+    if (fit.n == 0) return failure("no sample at all", o);
+    if (const size_t cell = fit.impossible; cell > 0)
+        return failure(say("%.0f samples of %.0f in cell %zu, where the density is 0",
+                           counts[cell - 1], fit.n, cell - 1),
+                       o);
+    if (fit.cells < 2) return failure("fewer than two cells", o);
+    if (fit.p > o.alpha && fit.fewest < 100)
+        return failure(say("n = %.0f is too small: %.1f expected in a cell, take %.0f", fit.n,
+                           fit.fewest, std::ceil(100 * fit.n / fit.fewest)),
+                       o);
+    Verdict v =
+        verdict_of(fit.p, smallest_distortion(fit.cells - 1, fit.n, o.alpha) + o.tolerance, o);
     v.text = say("chi2 = %.1f on %d cells (n = %.0f), %s; smallest distortion seen with "
                  "99.9 %% power: ",
-                 chi2, cells, n, say_p(v.p).c_str()) +
+                 fit.chi2, fit.cells, fit.n, say_p(v.p).c_str()) +
              percent(v.delta_min);
     return named(v, o);
 }
 template <class Counts, class Probabilities>
 Verdict expect_counts(const Counts& counts, const Probabilities& probabilities,
                       const Options& o = {}, const std::vector<double>& variances = {}) {
-    std::vector<double> seen, expected;
-    for (size_t i = 0; i < std::size(counts); ++i) {
-        seen.push_back(double(counts[i]));
-        expected.push_back(double(probabilities[i]));
-    }
-    return judge_counts(seen, expected, o, variances);
+    return judge_counts(numbers_in(counts), numbers_in(probabilities), o, variances);
 }
 
 // ---- Quadrature ---------------------------------------------------------------------------------
@@ -662,32 +704,53 @@ double integral(
 
 // ---- The host's types ---------------------------------------------------------------------------
 
-template <size_t N, class V>
-auto elements(const V& v) {
-    return [&]<size_t... I>(std::index_sequence<I...>) { return std::array{v[I]...}; }
+template <size_t N>
+auto elements(const auto& at) {
+    return [&]<size_t... I>(std::index_sequence<I...>) { return std::array{at(I)...}; }
     (std::make_index_sequence<N>());
 }
+// A vector may be smaller than three of its elements.
+template <class V, class Element>
+constexpr size_t size_of = std::min<size_t>(3, sizeof(V) / sizeof(Element));
+
 // The coordinates of a number, pair, array, vector or colour, in its own type.
 template <class V>
 auto coordinates(const V& v) {
     if constexpr (std::is_arithmetic_v<V>)
         return std::array{v};
     else if constexpr (requires { V::SizeAtCompileTime; })
-        return elements<size_t(V::SizeAtCompileTime)>(v);
+        return elements<size_t(V::SizeAtCompileTime)>([&](size_t i) { return v[long(i)]; });
     else if constexpr (requires { v.x() + v.y() + v.z(); })
         return std::array{v.x(), v.y(), v.z()};
     else if constexpr (requires { v.x + v.y + v.z; })
         return std::array{v.x, v.y, v.z};
+    else if constexpr (requires { v.X + v.Y + v.Z; })
+        return std::array{v.X, v.Y, v.Z};
+    else if constexpr (requires { v.getX() + v.getY() + v.getZ(); })
+        return std::array{v.getX(), v.getY(), v.getZ()};
     else if constexpr (requires { v.r + v.g + v.b; })
         return std::array{v.r, v.g, v.b};
     else if constexpr (requires { v.x() + v.y(); })
         return std::array{v.x(), v.y()};
     else if constexpr (requires { v.x + v.y; })
         return std::array{v.x, v.y};
+    else if constexpr (requires { v.X + v.Y; })
+        return std::array{v.X, v.Y};
+    else if constexpr (requires { v.real() + v.imag(); })
+        return std::array{v.real(), v.imag()};
     else if constexpr (requires { std::tuple_size<V>::value; })
         return std::apply([](auto... c) { return std::array{c...}; }, v);
-    else
-        return elements<3>(v);
+    else if constexpr (requires { v[size_t()] + v[size_t()]; })
+        return elements<size_of<V, std::decay_t<decltype(v[size_t()])>>>(
+            [&](size_t i) { return v[i]; });
+    else if constexpr (requires { v(0) + v(0); })
+        return elements<size_of<V, std::decay_t<decltype(v(0))>>>([&](int i) { return v(i); });
+    else {
+        static_assert(
+            !sizeof(V),
+            "the oracle cannot read the coordinates of this vector: give it x, y, z, or []");
+        return std::array{0.0};
+    }
 }
 template <class V>
 using Coordinates = decltype(oracle::coordinates(std::declval<const V&>()));
@@ -715,7 +778,14 @@ V of_host(const auto& c, std::index_sequence<I...>) {
         return V(T(c[I])...);
     else {
         V v{};
-        ((v[I] = T(c[I])), ...);
+        if constexpr (requires { v[size_t()] = T(); })
+            ((v[I] = T(c[I])), ...);
+        else if constexpr (requires { v(int()) = T(); })
+            ((v(int(I)) = T(c[I])), ...);
+        else
+            static_assert(!sizeof(V),
+                          "the oracle cannot make this vector from its coordinates: give it a "
+                          "constructor of them");
         return v;
     }
 }
@@ -735,6 +805,21 @@ std::string say_point(const Point<N>& c) {
     std::string text;
     for (double x : c) text += (text.empty() ? "" : ", ") + say("%.4g", x);
     return N == 1 ? text : "(" + text + ")";
+}
+
+// The numbers of an array; of colours, their channels, one after the other.
+template <class Array>
+std::vector<double> numbers_in(const Array& array) {
+    static_assert(
+        requires { std::size(array); },
+        "a check does not know where this array ends: pass std::span(pointer, length)");
+    std::vector<double> numbers;
+    for (size_t i = 0; i < std::size(array); ++i)
+        if constexpr (requires { double(array[i]); })
+            numbers.push_back(double(array[i]));
+        else
+            for (double x : oracle::point(array[i])) numbers.push_back(x);
+    return numbers;
 }
 
 // f takes numbers of type A as they are, or one argument that {them} initialises.  Braces do not
@@ -791,34 +876,114 @@ const auto& arrived(const R& r) {
         return r;
 }
 
-// The point in what a sampler returns: all of it; or, beside a density, its member w, wi, direction
-// or point, or the first of a pair.
+// What a sampler returns may have parts: a point or direction, a density, a value.  They are
+// members of these names, or elements of a tuple or pair: its first that is no number has the
+// point, its first number is the density.  A tuple of numbers alone is a point.
+template <class R, class Get, class... More>
+constexpr auto member_of(const R& r, Get get, More... more) {
+    if constexpr (requires { get(r); })
+        return &get(r);
+    else if constexpr (sizeof...(More) > 0)
+        return oracle::member_of(r, more...);
+    else
+        return nullptr;
+}
+#define ORACLE_MEMBER(name)                                        \
+    [](const auto& r) -> const auto& requires requires { r.name; } \
+    { return r.name; }
 template <class R>
-const auto& point_in(const R& r) {
-    constexpr bool beside = requires { r.pdf; };
-    if constexpr (beside && requires { r.w; })
-        return r.w;
-    else if constexpr (beside && requires { r.wi; })
-        return r.wi;
-    else if constexpr (beside && requires { r.direction; })
-        return r.direction;
-    else if constexpr (beside && requires { r.point; })
-        return r.point;
-    else if constexpr (
-        requires { r.first[0] + r.second; } || requires { r.first.x + r.second; })
-        return r.first;
+constexpr auto direction_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(wi), ORACLE_MEMBER(w), ORACLE_MEMBER(wo),
+                             ORACLE_MEMBER(direction), ORACLE_MEMBER(dir), ORACLE_MEMBER(point));
+}
+template <class R>
+constexpr auto density_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(pdf), ORACLE_MEMBER(prob),
+                             ORACLE_MEMBER(probability));
+}
+template <class R>
+constexpr auto f_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(f), ORACLE_MEMBER(value), ORACLE_MEMBER(eval),
+                             ORACLE_MEMBER(bsdf), ORACLE_MEMBER(brdf));
+}
+template <class R>
+constexpr auto weight_of(const R& r) {
+    return oracle::member_of(r, ORACLE_MEMBER(weight), ORACLE_MEMBER(throughput),
+                             ORACLE_MEMBER(attenuation));
+}
+#undef ORACLE_MEMBER
+template <class Pointer>
+constexpr bool found = !std::is_null_pointer_v<Pointer>;
+
+// The k-th element of a tuple that is a number, or none; the tuple's size if there is no such.
+template <class R, bool number>
+constexpr size_t element(size_t k) {
+    return []<size_t... I>(std::index_sequence<I...>, size_t k) {
+        const bool is[] = {std::is_arithmetic_v<std::decay_t<std::tuple_element_t<I, R>>>...};
+        size_t i = 0;
+        while (i < sizeof...(I) && (is[i] != number || k-- > 0)) ++i;
+        return i;
+    }
+    (std::make_index_sequence<std::tuple_size_v<R>>(), k);
+}
+template <class R>
+constexpr bool is_tuple() {
+    if constexpr (requires(const R& r) { std::tuple_size<R>::value, r[0]; })
+        return false;  // an array
+    else if constexpr (requires { std::tuple_size<R>::value; })
+        return element<R, false>(0) < std::tuple_size_v<R>;
+    else
+        return false;
+}
+template <size_t I, class R>
+constexpr auto at_index(const R& r) {
+    if constexpr (I < std::tuple_size_v<R>)
+        return &std::get<I>(r);
+    else
+        return nullptr;
+}
+
+// A structure with a direction, or a point and its density.
+template <class R>
+constexpr bool has_parts = requires(const R& r) {
+    oracle::point(*direction_of(r));
+    requires !std::is_arithmetic_v<std::decay_t<decltype(*direction_of(r))>> ||
+        found<decltype(density_of(r))>;
+};
+template <class R>
+const auto& beside(const R& r) {
+    if constexpr (is_tuple<R>())
+        return std::get<element<R, false>(0)>(r);
     else
         return r;
 }
-// The density beside it, or NaN.
 template <class R>
-double pdf_in(const R& r) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(oracle::point_in(r))>, R>)
-        return std::numeric_limits<double>::quiet_NaN();
-    else if constexpr (requires { r.pdf; })
-        return double(r.pdf);
+const auto& point_in(const R& r) {
+    const auto& parts = oracle::beside(r);
+    if constexpr (has_parts<std::decay_t<decltype(parts)>>)
+        return *direction_of(parts);
     else
-        return double(r.second);
+        return parts;
+}
+template <class R>
+auto pdf_in(const R& r) {
+    using Parts = std::decay_t<decltype(oracle::beside(r))>;
+    if constexpr (has_parts<Parts> && found<decltype(density_of(std::declval<const Parts&>()))>)
+        return density_of(oracle::beside(r));
+    else if constexpr (is_tuple<R>())
+        return at_index<element<R, true>(0)>(r);
+    else
+        return nullptr;
+}
+// A value without a name: the second that is no number, or else the number after the density.
+template <class R>
+auto unnamed_in(const R& r) {
+    if constexpr (!is_tuple<R>())
+        return nullptr;
+    else if constexpr (element<R, false>(1) < std::tuple_size_v<R>)
+        return at_index<element<R, false>(1)>(r);
+    else
+        return at_index<element<R, true>(found<decltype(density_of(beside(r)))> ? 0 : 1)>(r);
 }
 
 // A point, and the density that the sampler returned with it, or NaN.
@@ -852,26 +1017,35 @@ auto model(Sample& sample, Pdf& pdf) {
     constexpr size_t M = numbers_of<Sample>();
     static_assert(
         M > 0 || requires { sample(); },
-        "sample takes numbers u, v, ..., one argument made from {u, v, ...}, or nothing");
+        "sample takes numbers u, v, ... (in expect_bsdf after wo), one argument made from {u, v, "
+        "...}, or nothing; "
+        "after random come sample, then pdf");
     using Raw = decltype(oracle::call(sample, Point<M>{}));
     using Arrived = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
     using V = std::decay_t<decltype(oracle::point_in(std::declval<const Arrived&>()))>;
+    constexpr bool says_pdf = found<decltype(oracle::pdf_in(std::declval<const Arrived&>()))>;
     constexpr size_t N = coordinates_of<V>();
     using T = Coordinate<V>;
-    return Model<M, N>{
-        [&sample](const Point<M>& u) -> std::optional<Drawn<N>> {
-            const Raw r = oracle::call(sample, u);
-            if constexpr (may_fail<Raw>)
-                if (!r) return {};
-            const auto& here = oracle::arrived(r);
-            return Drawn<N>{oracle::point(oracle::point_in(here)), oracle::pdf_in(here)};
-        },
-        [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
-        !std::is_same_v<V, Arrived>,
-        std::is_same_v<T, float>,
-        takes_floats<Sample, M>,
-        unit_of(T{}),
-        unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
+    static_assert(
+        requires { double(pdf(of_host<V>(Point<N>{}))); },
+        "pdf takes the point or direction that sample returns, and returns a number; after random "
+        "come sample, then pdf");
+    return Model<M, N>{[&sample](const Point<M>& u) -> std::optional<Drawn<N>> {
+                           const Raw r = oracle::call(sample, u);
+                           if constexpr (may_fail<Raw>)
+                               if (!r) return {};
+                           const auto& here = oracle::arrived(r);
+                           Drawn<N> drawn{oracle::point(oracle::point_in(here)),
+                                          std::numeric_limits<double>::quiet_NaN()};
+                           if constexpr (says_pdf) drawn.pdf = double(*oracle::pdf_in(here));
+                           return drawn;
+                       },
+                       [&pdf](const Point<N>& x) { return double(pdf(of_host<V>(x))); },
+                       says_pdf,
+                       std::is_same_v<T, float>,
+                       takes_floats<Sample, M>,
+                       unit_of(T{}),
+                       unit_of(decltype(pdf(of_host<V>(Point<N>{}))){})};
 }
 
 // Part two says what is wrong with a choice.
@@ -928,16 +1102,36 @@ inline Verdict judge_choices(const std::vector<double>& expected, const std::vec
     return named(v, o);
 }
 
+// An index, alone or with its probability: a pair, a tuple, or a structure.
+template <class R>
+long long index_in(const R& r) {
+    if constexpr (requires { static_cast<long long>(r); })
+        return static_cast<long long>(r);
+    else if constexpr (requires { std::get<0>(r); })
+        return static_cast<long long>(std::get<0>(r));
+    else
+        return static_cast<long long>(r.index);
+}
+template <class R>
+auto probability_in(const R& r) {
+    if constexpr (requires { std::get<1>(r); })
+        return &std::get<1>(r);
+    else
+        return density_of(r);
+}
+std::string of_what_is_said(const std::vector<double>& ratios);
+
 // choose(u), or choose(u, v), is an index below count, or a negative one for none, as often as
-// probability(index) says: they sum to 1 less the part that fails.  Chi-squared over the indices,
+// probability(index) says: they sum to 1 less the part that fails; so does what choose returns
+// beside the index.  Chi-squared over the indices,
 // rare ones together.
 template <class Choose, class Probability>
 Verdict expect_choice(Random& random, Choose choose, Probability probability, size_t count,
                       const Options& o = {}) {
     constexpr size_t M = numbers_of<Choose>();
     const double needed = std::pow(smallest_distortion(31, 1, o.alpha) / o.sees, 2);
-    std::vector<double> expected(count), seen(count);
-    double total = 0, none = 0;
+    std::vector<double> expected(count), seen(count), ratios;  // said / expected, where they differ
+    double total = 0, none = 0, compared = 0;
     for (size_t i = 0; i < count; ++i) {
         total += expected[i] = double(probability(int(i)));
         if (!(expected[i] >= 0 && std::isfinite(expected[i])))
@@ -946,13 +1140,28 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
     for (uint64_t k = 0, n = o.n ? o.n : uint64_t(needed); k < n; ++k) {
         Point<M> u;
         for (double& x : u) x = takes_floats<Choose, M> ? random.single() : random();
-        const auto index = static_cast<long long>(oracle::call(choose, u));
+        const auto chosen = oracle::call(choose, u);
+        const auto index = oracle::index_in(chosen);
         if (index >= static_cast<long long>(count))
             return failure(say("index %lld of %zu chosen, beyond the last, at u = ", index, count) +
                                say_point(u),
                            o);
         ++(index < 0 ? none : seen[size_t(index)]);
+        if constexpr (found<decltype(oracle::probability_in(chosen))>)
+            if (index >= 0) {
+                const double said = double(*oracle::probability_in(chosen)),
+                             wanted = expected[size_t(index)];
+                ++compared;
+                if (!(std::abs(said - wanted) <= 0x1p-20 + (1e-4 + o.tolerance) * wanted))
+                    ratios.push_back(said / wanted);
+            }
     }
+    if (!ratios.empty())
+        return failure("the probability that choose returns is " + of_what_is_said(ratios) +
+                           (double(ratios.size()) == compared
+                                ? ", in every choice"
+                                : ", in " + percent(double(ratios.size()) / compared) + " of them"),
+                       o);
     // Floats may have been returned as doubles.
     const double rounding = std::max(64 * unit_of(probability(0)), 0x1p-24) * double(count);
     if (none == 0 && std::abs(total - 1) > rounding + o.tolerance)
@@ -1305,8 +1514,60 @@ struct Scene {
     Point<N> centre{};  // of a box or of the samples
 };
 
+// Four units of rounding away, or less.
+template <size_t N>
+Point<N> jittered(Point<N> x, double unit, Random& random) {
+    double length = 0;
+    for (double k : x) length = std::max(length, std::abs(k));
+    for (double& k : x) k += (random() - 0.5) * 8 * length * unit;
+    return x;
+}
+
+// The pdf that sample returns against that of pdf(), of which this part of the samples lies at a
+// jump; but at mirrors.  "" if the two agree.
+template <size_t M, size_t N>
+std::string other_pdf(Random& random, const Model<M, N>& model, const Scene<N>& scene,
+                      const Options& o, double jumps = 0,
+                      const std::vector<Point<N>>& mirrors = {}) {
+    if (!model.says_pdf) return "";
+    auto at = [&](const Point<N>& x) {
+        return (scene.directions ? ", at direction " : ", at point ") + say_point(x);
+    };
+    std::vector<double> ratios;
+    std::vector<Point<N>> where;
+    std::string first;
+    double compared = 0;
+    for (int i = 0; i < 2048; ++i) {
+        const auto x = model.sample(model.draw(random));
+        if (!x || std::find(mirrors.begin(), mirrors.end(), *x) != mirrors.end()) continue;
+        const double p = model.pdf(*x), said = x->pdf;
+        if (std::isnan(said)) return "the pdf that sample returns is nan" + at(*x);
+        if (p == 0 && said <= 0) continue;
+        ++compared;
+        double close = 64 * model.pdf_unit;
+        for (int j = 0; j < 4; ++j) {
+            const Point<N> near = jittered<N>(*x, model.unit, random);
+            close = std::max(close, std::abs(model.pdf(near) / p - 1));
+        }
+        if (std::abs(said / p - 1) <= 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance)
+            continue;
+        if (ratios.empty()) first = say("%.4g, but pdf says %.4g", said, p) + at(*x);
+        ratios.push_back(said / p);
+        where.push_back(*x);
+    }
+    const double off = double(ratios.size());
+    if (off <= 8 + 16 * jumps * compared) return "";
+    const std::string often =
+        off == compared ? ", in every sample" : ", in " + percent(off / compared) + " of them";
+    if (const std::string law = law_of_pdfs(scene, o, ratios, where); !law.empty())
+        return "the pdf that sample returns is " + law + " times what pdf says" + often;
+    return "the pdf that sample returns is " + first + often;
+}
+
 template <size_t D, size_t N>
 Verdict judge_jacobian(Random& random, const Model<D, N>& model, const Options& o) {
+    if (const std::string off = other_pdf(random, model, Scene<N>{}, o); !off.empty())
+        return failure(off, o);
     const double least = model.single ? 1e-3 : 1e-6, tolerance = least + o.tolerance;
     const Sheets<N, D> s = sheets_of(model, random, least, o.tolerance, true);
     Verdict v;
@@ -1561,45 +1822,7 @@ struct DensityCheck {
         }
     }
 
-    // The pdf that sample returns against that of pdf().
-    std::string other_pdf() {
-        if (!model.says_pdf) return "";
-        std::vector<double> ratios;
-        std::vector<Point<N>> where;
-        std::string first;
-        double compared = 0;
-        for (int i = 0; i < 2048; ++i) {
-            const auto x = model.sample(model.draw(random));
-            if (!x || is_mirror(*x)) continue;
-            const double p = model.pdf(*x), said = x->pdf;
-            if (std::isnan(said)) return "the pdf that sample returns is nan, at " + at(*x);
-            if (p == 0 && said <= 0) continue;
-            ++compared;
-            double close = 64 * model.pdf_unit;
-            for (int j = 0; j < 4; ++j)
-                close = std::max(close, std::abs(model.pdf(jittered(*x)) / p - 1));
-            if (std::abs(said / p - 1) <= 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance)
-                continue;
-            if (ratios.empty()) first = say("%.4g, but pdf says %.4g, at ", said, p) + at(*x);
-            ratios.push_back(said / p);
-            where.push_back(*x);
-        }
-        const double off = double(ratios.size());
-        if (off <= 8 + 16 * jumps * compared) return "";
-        const std::string often =
-            off == compared ? ", in every sample" : ", in " + percent(off / compared) + " of them";
-        if (const std::string law = law_of_pdfs(*this, ratios, where); !law.empty())
-            return "the pdf that sample returns is " + law + " times what pdf says" + often;
-        return "the pdf that sample returns is " + first + often;
-    }
-
-    // Four units of rounding away, or less.
-    Point<N> jittered(Point<N> x) {
-        double length = 0;
-        for (double k : x) length = std::max(length, std::abs(k));
-        for (double& k : x) k += (random() - 0.5) * 8 * length * model.unit;
-        return x;
-    }
+    Point<N> jittered(const Point<N>& x) { return oracle::jittered(x, model.unit, random); }
 
     void fly_pilot() {
         std::vector<Point<N>> points;
@@ -1772,7 +1995,12 @@ struct DensityCheck {
             other = std::abs(again.total - parts.total);
             parts = again;
         }
-        doubtful = doubtful && D == 2 && model.single && left > 0 && off < 0.01;
+        // In float rules stop where they still miss slivers between a border and their nodes, a
+        // thousandth of all; and the part that fails is known from 4096 samples.
+        const double lost = std::abs(parts.total - arriving),
+                     unknown = 5 * std::sqrt(arriving * (1 - arriving) / 4096);
+        doubtful = D == 2 && model.single && left > 0 && !claim && lost < 0.01 + unknown &&
+                   (unknown > 0 || lost > std::min(1e-4, allowed()));
         if (D > 2 || enough() || doubtful) parts = scatter(f, ranges, of_cell);
         parts.total = 0;
         for (size_t cell = 0; cell < 32; ++cell) {
@@ -1864,7 +2092,7 @@ Verdict DensityCheck<M, N, Domain>::run() {
                        " samples hardly any comes where the pdf is positive: " + first_none +
                        symmetry_of(*this));
     if (wrong.empty()) try_rims();
-    if (wrong.empty()) wrong = other_pdf();
+    if (wrong.empty()) wrong = other_pdf(random, model, scene(), o, jumps, mirrors);
     if (!wrong.empty()) return failure(wrong);
     samples = none = mirrored = 0;
     cells = Cells<D>(pilot);
@@ -1904,7 +2132,7 @@ Verdict DensityCheck<M, N, Domain>::run() {
     Verdict v = judge_counts(counts, expected,
                              {.alpha = o.alpha / part, .tolerance = o.tolerance + moved()},
                              parts.variances());
-    alpha_spent += o.alpha - o.alpha / part;
+    spend(o.alpha - o.alpha / part);
     if (o.discrete > 0 && (p_at_least(mirrored, samples, o.discrete) < o.alpha / 8 ||
                            1 - p_at_least(mirrored + 1, samples, o.discrete) < o.alpha / 8))
         return failure(percent(mirrored / samples) + " of the samples are mirrors', " +
@@ -1971,21 +2199,23 @@ template <class Samples, class Points, class Pdfs, class Domain>
 Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs& pdfs,
                        const Domain& domain, const Options& o = {}) {
     constexpr size_t D = Domain::dimensions;
+    const std::vector<double> heights = numbers_in(pdfs);
     const size_t n = std::size(samples), first = n / 4;
-    const double m = double(std::size(points)), arriving = o.n ? double(n) / double(o.n) : 1;
-    if (n < 20000 || m < 20000 || std::size(points) != std::size(pdfs))
+    const double m = double(heights.size()), arriving = o.n ? double(n) / double(o.n) : 1;
+    if (n < 20000 || m < 20000 || std::size(points) != heights.size())
         return failure(
             say("%zu samples, %zu points, %zu values of the pdf: take 20000 or more of each, and "
                 "as many values as points",
-                n, std::size(points), std::size(pdfs)),
+                n, std::size(points), heights.size()),
             o);
+    if (arriving > 1) return failure(say("%zu samples, of %.0f drawn (.n)", n, double(o.n)), o);
     std::vector<Point<D>> places;
     for (size_t i = 0; i < n; ++i) places.push_back(domain.coordinates(oracle::point(samples[i])));
     const Cells<D> cells({places.begin(), places.begin() + long(first)});
     std::vector<double> counts(32), sum(32), squares(32), expected, variances;
     for (size_t i = first; i < n; ++i) ++counts[cells.of(places[i])];
-    for (size_t i = 0; i < std::size(points); ++i) {
-        const double p = double(pdfs[i]);
+    for (size_t i = 0; i < heights.size(); ++i) {
+        const double p = heights[i];
         const auto x = oracle::point(points[i]);
         if (!(p >= 0 && std::isfinite(p)))
             return failure(say("the pdf is %g at ", p) + say_point(x), o);
@@ -2103,54 +2333,78 @@ inline Exchange exchange(Random& random, const Eval& f, double close) {
 struct Albedo {
     Triple wo;
     double mean, error;  // relative
+    double p;            // that it is 1, or a thousandth more by rounding
 };
-std::string albedo_hint(const std::vector<Albedo>& all);
+std::string albedo_hint(const std::vector<Albedo>& all, double alpha);
 
-// What a sampler says of eval at a direction, beside what eval says.
+// What a sampler returns beside a direction, and what it should be by eval.
 struct Returned {
     Triple wi;
     double said, wanted, pdf;
+    bool wrong;
 };
-std::string returned_hint(const std::vector<Returned>& wrong, const std::string& what, double part);
+std::string returned_hint(const std::vector<Returned>& all, const std::string& what,
+                          const std::string& expected);
 
-// The member f of what sample returns is eval's value; weight is f |cos| / pdf.  One value in a
-// hundred may round otherwise, where lobes are narrow or end.
-template <class From, class M>
-std::string judge_returned(Random& random, From& from_wo, const M& model,
-                           const std::function<double(const Triple&)>& f, const Options& o) {
+// The value f that sample returns is eval's; a weight is f |cos| / pdf; a value without a name is
+// one of the two, everywhere.  One value in a hundred may round otherwise, where lobes are narrow
+// or end.
+template <class From, class M, class EvalAt>
+std::string judge_returned(Random& random, From& from_wo, const M& model, const EvalAt& eval_at,
+                           const Options& o) {
     using Raw = decltype(oracle::call(from_wo, model.draw(random)));
     using R = std::decay_t<decltype(oracle::arrived(std::declval<const Raw&>()))>;
-    constexpr bool value = requires(const R& r) { r.f; }
-    , weight = requires(const R& r) { r.weight; };
-    std::vector<Returned> wrong;
-    double compared = 0;
-    if constexpr (value || weight)
-        for (int i = 0; i < 2048 && o.discrete == 0; ++i) {
-            const Raw raw = oracle::call(from_wo, model.draw(random));
-            if constexpr (may_fail<Raw>)
-                if (!raw) continue;
-            const R& r = oracle::arrived(raw);
-            const Triple wi = oracle::point(oracle::point_in(r));
-            const double p = model.pdf(wi), light = f(wi);
-            if (!(p > 0)) continue;
-            double said, wanted = light, close = 64 * std::max(model.unit, model.pdf_unit);
-            if constexpr (value)
-                said = brightness(r.f);
-            else
-                said = brightness(r.weight), wanted *= std::abs(wi[2]) / p;
-            ++compared;
-            for (int k = 0; k < 4; ++k) {
-                Triple near = wi;
-                for (double& x : near) x += (random() - 0.5) * 8 * model.unit;
-                close = std::max(
-                    {close, std::abs(f(near) / light - 1), std::abs(model.pdf(near) / p - 1)});
-            }
-            const double tolerance = 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance;
-            if (said != wanted && !(std::abs(said / wanted - 1) <= tolerance))
-                wrong.push_back({wi, said, wanted, p});
+    std::vector<Returned> f, weight, unnamed, unnamed_weight;
+    for (int i = 0; i < 2048 && o.discrete == 0; ++i) {
+        const Raw raw = oracle::call(from_wo, model.draw(random));
+        if constexpr (may_fail<Raw>)
+            if (!raw) continue;
+        const R& r = oracle::arrived(raw);
+        const Triple wi = oracle::point(oracle::point_in(r));
+        const double p = model.pdf(wi);
+        if (!(p > 0)) continue;
+        const auto light = eval_at(wi);
+        double close = 64 * std::max(model.unit, model.pdf_unit);
+        for (int k = 0; k < 4; ++k) {
+            Triple near = wi;
+            for (double& x : near) x += (random() - 0.5) * 8 * model.unit;
+            close = std::max({close, std::abs(brightness(eval_at(near)) / brightness(light) - 1),
+                              std::abs(model.pdf(near) / p - 1)});
         }
-    if (double(wrong.size()) <= 8 + 0.01 * compared) return "";
-    return returned_hint(wrong, value ? "f" : "weight", double(wrong.size()) / compared);
+        const double tolerance = 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance;
+        auto compare = [&](std::vector<Returned>& all, const auto* value, double times) {
+            auto add = [&](double said, double wanted) {
+                if (said == 0 && wanted == 0) return;
+                const bool wrong = said != wanted && !(std::abs(said / wanted - 1) <= tolerance);
+                all.push_back({wi, said, wanted, p, wrong});
+            };
+            const auto said = oracle::point(*value);
+            if (said.size() == light.size())
+                for (size_t k = 0; k < said.size(); ++k) add(said[k], light[k] * times);
+            else
+                add(brightness(said), brightness(light) * times);
+        };
+        const double cosine = std::abs(wi[2]) / p;
+        const auto& parts = oracle::beside(r);
+        if constexpr (has_parts<std::decay_t<decltype(parts)>>) {
+            if constexpr (found<decltype(f_of(parts))>) compare(f, f_of(parts), 1);
+            if constexpr (found<decltype(weight_of(parts))>)
+                compare(weight, weight_of(parts), cosine);
+        }
+        if constexpr (found<decltype(unnamed_in(r))>) {
+            compare(unnamed, unnamed_in(r), 1);
+            compare(unnamed_weight, unnamed_in(r), cosine);
+        }
+    }
+    const std::string by_f = "eval's value", by_weight = by_f + " |cos| / pdf";
+    for (const std::string& off :
+         {returned_hint(f, "f", by_f), returned_hint(weight, "weight", by_weight)})
+        if (!off.empty()) return off;
+    const std::string off = returned_hint(unnamed, "value", by_f),
+                      also = returned_hint(unnamed_weight, "value", by_weight);
+    // Of two explanations, the one by a constant.
+    auto plain = [](const std::string& hint) { return hint.find("|cos|") > hint.find(" times "); };
+    return off.empty() || also.empty() ? "" : plain(also) && !plain(off) ? also : off;
 }
 
 // A BSDF in the frame where z is the normal, for four directions wo, the last of them grazing, and
@@ -2171,7 +2425,10 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     const Exchange e = exchange(random, f, single ? 0.02 : 1e-6);
     if (!e.wrong.empty()) return failure(e.wrong, o);
 
+    // Half of alpha for the densities, half for the albedos.
+    const double share = o.alpha / (e.transmits ? 16 : 8);
     Verdict all{true, 1, 0, ""};
+    std::string unsure;
     // eval may be for importance or for radiance, which transmission scales by eta^2: albedos of
     // both, as it is not known which of the two it is.
     std::array<std::vector<Albedo>, 2> albedos;
@@ -2184,7 +2441,7 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                 return normalized({w[0] + out[0], w[1] + out[1], w[2] + out[2]});
             };
             Options here = o;
-            here.alpha = o.alpha / (e.transmits ? 8 : 4);
+            here.alpha = share;
             here.name += (o.name.empty() ? "" : " ") + ("wo = " + say_point(out));
             here.factors.emplace_back("4 wo.h",
                                       [=](const Triple& w) { return 4 * dot(out, half(w)); });
@@ -2197,21 +2454,37 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
             if (!v.pass) return v;
             all.p = std::min(all.p, v.p);
             all.delta_min = std::max(all.delta_min, v.delta_min);
-            const std::string off = judge_returned(
-                random, from_wo, erased, [&](const Triple& wi) { return f(out, wi); }, o);
+            auto eval_at = [&](const Triple& wi) {
+                return oracle::point(eval(wo, of_host<V>(wi)));
+            };
+            const std::string off = judge_returned(random, from_wo, erased, eval_at, o);
             if (!off.empty()) return failure(off, here);
             Draws albedo, scaled;
-            for (int i = 0; i < 100000; ++i) {
+            std::array<double, 2> come{}, lit{};  // samples that reflect, and that transmit
+            while (albedo.n() < std::max(1.1e5, double(o.n))) {
                 const auto wi = erased.sample(erased.draw(random));
-                double weight = 0;
-                if (const double p = wi ? erased.pdf(*wi) : 0; p > 0)
-                    weight = f(out, *wi) * std::abs((*wi)[2]) / p;
+                const double p = wi ? erased.pdf(*wi) : 0,
+                             weight = p > 0 ? f(out, *wi) * std::abs((*wi)[2]) / p : 0;
                 if (!std::isfinite(weight))
                     return failure("eval cos / pdf is not finite for " + between(out, *wi), o);
                 albedo.add(weight);
-                const bool through = weight > 0 && (*wi)[2] * side < 0;
+                const bool through = p > 0 && (*wi)[2] * side < 0;
                 scaled.add(weight * (through ? std::pow(e.scale, -side) : 1));
+                come[through] += p > 0, lit[through] += weight > 0;
             }
+            // Skewness raises no false alarm: rare large weights make t too small, and rare small
+            // ones, which are not below 0, the mean too large by less than the thousandth that is
+            // forgiven.  But lights that hardly any sample meets are not seen.
+            if (const std::string why = albedo.problem();
+                unsure.empty() && !why.empty() && albedo.skewness() > 0)
+                unsure = "; the albedo for wo = " + say_point(out) + " is not sure: " + why;
+            // No mistake for sure: the tail of a lobe crosses the surface, too.
+            for (size_t through = 0; through < 2; ++through)
+                if (z > 0.9 && lit[through] == 0 && come[through] > 0.1 * albedo.n())
+                    unsure += "; eval is 0 for all samples that " +
+                              std::string(through ? "cross the surface" : "are reflected") + ", " +
+                              percent(come[through] / albedo.n()) + " of them: is " +
+                              (through ? "transmission" : "reflection") + " forgotten?";
             // Light that eval sends where no sample comes.
             double lost = 0, often = 0;
             Triple where{};
@@ -2231,14 +2504,23 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
                                o);
             for (const bool radiance : {false, true}) {
                 const Estimate mean = (radiance ? scaled : albedo).estimate();
-                albedos[radiance].push_back(
-                    {out, mean.mean, mean.standard_error / std::max(1e-300, mean.mean)});
+                const double error = std::max(1e-300, mean.standard_error),
+                             t = (mean.mean - 1 - 1e-3) / error;
+                albedos[radiance].push_back({out, mean.mean, error / std::max(1e-300, mean.mean),
+                                             t > 0 ? p_of_t(t, mean.df) / 2 : 1});
             }
         }
-    const std::string why = albedo_hint(albedos[1]);
-    if (!why.empty() && !albedo_hint(albedos[0]).empty()) return failure(why, o);
+    spend(o.alpha / 2);
+    statistical_checks += int(albedos[0].size());
+    const std::string why = albedo_hint(albedos[1], share);
+    if (!why.empty() && !albedo_hint(albedos[0], share).empty()) return failure(why, o);
+    std::array<double, 2> p{1, 1};
+    for (size_t radiance = 0; radiance < 2; ++radiance)
+        for (const Albedo& a : albedos[radiance]) p[radiance] = std::min(p[radiance], a.p);
+    all.p = std::min(1.0, std::min(all.p, std::max(p[0], p[1])) * o.alpha / share);
     all.text = std::string("density, albedo <= 1 and reciprocity as expected, above the surface") +
-               (e.transmits ? say(", below and through it (scaled by %.4g)", e.scale) : "");
+               (e.transmits ? say(", below and through it (scaled by %.4g)", e.scale) : "") +
+               unsure;
     return named(all, o);
 }
 
@@ -2319,47 +2601,31 @@ struct Image {
     }
 };
 
-// An image with the standard errors of its values against a reference: all pixels together, 16
-// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
-// normal, means of 256 samples or more; options.n says how many, for Student's t.  Anything with []
-// will do for values, errors and reference, row by row from the top: one number per pixel, or
-// three, red, green and blue.  A pointer has as many as the others.  The noise of channels may be
-// correlated: each is judged by itself, at a third of alpha.
-template <class Values, class Errors, class Reference>
-Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
-                     const Reference& reference, const Options& o = {}) {
-    auto size_of = [](const auto& array) {
-        if constexpr (requires { std::size(array); })
-            return size_t(std::size(array));
-        else
-            return size_t(-1);
-    };
-    const size_t n = width * height,
-                 sizes[] = {size_of(values), size_of(errors), size_of(reference)};
-    const char* const names[] = {"values", "errors", "reference values"};
+inline Verdict judge_image(size_t width, size_t height, const std::vector<double>& values,
+                           const std::vector<double>& errors, const std::vector<double>& reference,
+                           const Options& o) {
+    const std::pair<const char*, const std::vector<double>&> arrays[] = {
+        {"values", values}, {"errors", errors}, {"reference values", reference}};
+    const size_t n = width * height, channels = n > 0 ? values.size() / n : 0;
     if (n == 0) return failure("no pixel", o);
-    size_t known = 3;
-    for (size_t k = 0; k < 3; ++k) {
-        if (sizes[k] == size_t(-1)) continue;
-        const std::string has = say("%zu %s", sizes[k], names[k]);
-        if (sizes[k] != n && sizes[k] != 3 * n)
+    for (const auto& [name, array] : arrays) {
+        const std::string has = say("%zu %s", array.size(), name);
+        if (array.size() != n && array.size() != 3 * n)
             return failure(has + say(" for %zux%zu pixels, expected %zu or %zu (RGB)", width,
                                      height, n, 3 * n),
                            o);
-        if (known == 3) known = k;
-        if (sizes[k] != sizes[known])
-            return failure(has + say(", but %zu %s", sizes[known], names[known]), o);
+        if (array.size() != values.size())
+            return failure(has + say(", but %zu values", values.size()), o);
     }
-    const size_t channels = known < 3 ? sizes[known] / n : 1;
     auto channel = [&](size_t c, const std::string& name) {
         Options of_channel = o;
         of_channel.alpha /= double(channels);
         if (!o.name.empty()) of_channel.name += name;
         Image image{width, height, {}, {}, {}, of_channel};
         for (size_t i = c; i < n * channels; i += channels) {
-            image.f.push_back(double(values[i]));
-            image.s.push_back(double(errors[i]));
-            image.truth.push_back(double(reference[i]));
+            image.f.push_back(values[i]);
+            image.s.push_back(errors[i]);
+            image.truth.push_back(reference[i]);
         }
         return image.judge();
     };
@@ -2378,9 +2644,22 @@ Verdict expect_image(size_t width, size_t height, const Values& values, const Er
     return named(worst.of(wrong.empty() ? of_worst : wrong), o);
 }
 
+// An image with the standard errors of its values against a reference: all pixels together, 16
+// blocks, and each pixel; the largest of each by Sidak's correction (1967).  Pixels are taken as
+// normal, means of 256 samples or more; options.n says how many, for Student's t.  Values, errors
+// and reference are arrays of known size, row by row from the top: one number per pixel, or three,
+// red, green and blue.  The noise of channels may be correlated: each is judged by itself, at a
+// third of alpha.
+template <class Values, class Errors, class Reference>
+Verdict expect_image(size_t width, size_t height, const Values& values, const Errors& errors,
+                     const Reference& reference, const Options& o = {}) {
+    return judge_image(width, height, numbers_in(values), numbers_in(errors), numbers_in(reference),
+                       o);
+}
+
 // =================================================================================================
 // Part two: hints and pictures.  Nothing of it decides whether a check passes.
-#ifndef __clang__
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC push_options
 #pragma GCC optimize("O0")  // compiles an eighth faster; it runs only where a check fails
 #endif
@@ -2700,9 +2979,10 @@ struct Mistake {
         if (std::abs(c - 1) <= tolerance)
             return total + share > 1 + close() &&
                            *std::max_element(ratios.begin(), ratios.end()) <= c + 3 * tolerance
-                       ? "the pdf is right for nearly all samples, but also positive where none "
-                         "comes" +
-                             where_none() + ": it integrates to " + times(total, tolerance)
+                       ? "the pdf is right for nearly all samples, but also positive where " +
+                             (where_none().empty() ? "hardly any comes, or too large there"
+                                                   : "none comes" + where_none()) +
+                             ": it integrates to " + times(total, tolerance)
                        : "";
         if (c > 1 && share > 0.02 && std::abs(1 / c + share - 1) < close() &&
             std::abs(total - 1) < close())
@@ -3055,11 +3335,11 @@ std::string compared(const auto& check) {
 
 // The ratio of two pdfs at these points: a constant, or one and a power of a base.
 template <size_t N>
-std::string law_of_pdfs(const auto& check, const std::vector<double>& ratios,
+std::string law_of_pdfs(const Scene<N>& scene, const Options& o, const std::vector<double>& ratios,
                         const std::vector<Point<N>>& where) {
     if (const Law law = law_of(ratios, 0.01); law.holds) return times(law.factor, 0.003);
     for (const double k : {1.0, -1.0})
-        for (const Base<N>& b : bases_of(check.o, check.scene())) {
+        for (const Base<N>& b : bases_of(o, scene)) {
             std::vector<double> rest;
             for (size_t i = 0; i < where.size(); ++i)
                 rest.push_back(ratios[i] / std::pow(b.at(where[i]), k));
@@ -3079,12 +3359,8 @@ std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
         const Parts parts = check.integrate();
         check.claim = {};
         if (!(parts.total > 0 && std::isfinite(parts.total))) return false;
-        const int checks = statistical_checks;  // a guess is none
-        const double spent = alpha_spent;
-        const bool pass =
-            judge_counts(check.counts, parts.shares(), {.alpha = 1e-3}, parts.variances()).pass;
-        statistical_checks = checks, alpha_spent = spent;
-        return pass;
+        const CountsFit fit = fit_counts(check.counts, parts.shares(), parts.variances(), 0);
+        return fit.p > 1e-3 && fit.fewest >= 100;
     };
     const auto& pdf = check.model.pdf;
     for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
@@ -3161,16 +3437,25 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
                                     : "";
     if (const std::string why = explained(check, sheets.all, total); !why.empty())
         return why + rounded;
-    const std::string integral_is = "the pdf integrates to " + times(total, 0.003);
+    const std::string integral_is =
+        "the pdf integrates to " +
+        (std::abs(total - 1) < 1e-3 ? say("%.7g", total) : times(total, 0.003));
     const bool mapless = sheets.all.size() < 100,
                by_cells = !check.counted && check.samples >= 50000;
     // By counts the shape is right.
-    if (!check.balanced && check.counted && mapless && std::abs(total / (1 - share) - 1) > 0.1 &&
-        std::abs(total - 1) > check.close)
+    if (!check.balanced && check.counted && std::abs(total / (1 - share) - 1) > 0.1 &&
+        std::abs(total - 1) > check.close) {
+        std::vector<double> products;
+        for (const auto& l : sheets.all) products.push_back(l.product());
+        const bool pieces = !mapless && law_of(products, 0.01).plain(0.01);
         return "the pdf is " + times(total / (1 - share), 0.003) +
-               " times the density of the samples, as far as counts tell: a constant factor; " +
-               integral_is + (share > 0 ? ", " + percent(share) + " of the samples fail" : "") +
-               rounded;
+               " times the density of the samples, as far as counts tell: " +
+               (pieces ? "every piece of the map has it, and others lie upon it: looks like a map "
+                         "that is not one to one (folded), or a choice of one of several"
+                       : "a constant factor") +
+               "; " + integral_is +
+               (share > 0 ? ", " + percent(share) + " of the samples fail" : "") + rounded;
+    }
     if (by_cells && (check.balanced ? !sheets.off : mapless))
         if (const std::string why = law_of_cells(check); !why.empty())
             return why + (check.balanced ? "" : "; " + integral_is) + rounded;
@@ -3215,13 +3500,41 @@ inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close
                : "";
 }
 
-// `part` of what was compared is wrong.
-inline std::string returned_hint(const std::vector<Returned>& wrong, const std::string& what,
-                                 double part) {
-    const std::string expected = what == "f" ? "eval's value" : "eval's value |cos| / pdf",
-                      begin = "the " + what + " that sample returns is ",
-                      often = part == 1 ? ", at every direction"
-                                        : ", at " + percent(part) + " of directions";
+// In words, where these are wrong, if a quantity tells all of them from the right ones.
+inline std::string where_wrong(const std::vector<Returned>& all) {
+    const std::pair<const char*, std::function<double(const Returned&)>> quantities[] = {
+        {"cos(theta)", [](const Returned& r) { return r.wi[2]; }},
+        {"x", [](const Returned& r) { return r.wi[0]; }},
+        {"y", [](const Returned& r) { return r.wi[1]; }},
+        {"eval's value", [](const Returned& r) { return r.wanted; }},
+        {"the pdf", [](const Returned& r) { return r.pdf; }}};
+    for (const auto& [name, of] : quantities)
+        for (const double sign : {1.0, -1.0}) {
+            double least_wrong = infinity, most_right = -infinity;
+            for (const Returned& r : all) {
+                double& bound = r.wrong ? least_wrong : most_right;
+                bound = r.wrong ? std::min(bound, sign * of(r)) : std::max(bound, sign * of(r));
+            }
+            if (least_wrong <= most_right) continue;
+            const bool at_0 = least_wrong >= 0 && most_right <= 0;
+            return std::string(", where ") + name + (sign > 0 ? " > " : " < ") +
+                   say("%.3g", at_0 ? 0 : sign * (least_wrong + most_right) / 2);
+        }
+    return "";
+}
+
+// What is wrong with a value that sample returns beside the direction; "" if nothing is.
+inline std::string returned_hint(const std::vector<Returned>& all, const std::string& what,
+                                 const std::string& expected) {
+    std::vector<Returned> wrong;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(wrong),
+                 [](auto& r) { return r.wrong; });
+    if (double(wrong.size()) <= 8 + 0.01 * double(all.size())) return "";
+    const std::string begin = "the " + what + " that sample returns is ",
+                      often = wrong.size() == all.size()
+                                  ? ", at every direction"
+                                  : ", at " + percent(double(wrong.size()) / double(all.size())) +
+                                        " of directions" + where_wrong(all);
     for (const double a : {0.0, 1.0, -1.0})
         for (const double b : {0.0, -1.0, 1.0}) {
             std::vector<double> ratios;
@@ -3242,13 +3555,12 @@ inline std::string returned_hint(const std::vector<Returned>& wrong, const std::
 }
 
 // `all` are directions wo from steep to grazing, each with its albedo and the relative error.
-inline std::string albedo_hint(const std::vector<Albedo>& all) {
+inline std::string albedo_hint(const std::vector<Albedo>& all, double alpha) {
     const Albedo* worst = nullptr;
     std::string list;
     for (const Albedo& a : all) {
         list += (list.empty() ? "" : ", ") + say("%.3g at cos %.2g", a.mean, a.wo[2]);
-        if (a.mean > 1 + 1e-3 + 5 * a.error * a.mean && (!worst || a.mean > worst->mean))
-            worst = &a;
+        if (a.p <= alpha && (!worst || a.mean > worst->mean)) worst = &a;
     }
     if (!worst) return "";
     const bool rises = worst->mean > 2 * all[0].mean;
@@ -3264,6 +3576,12 @@ inline std::string albedo_hint(const std::vector<Albedo>& all) {
 }
 
 // ---- What is wrong with a choice ----------------------------------------------------------------
+
+inline std::string of_what_is_said(const std::vector<double>& ratios) {
+    const Law law = law_of(ratios, 1e-3);
+    return (law.holds ? times(law.factor, 1e-3) : say("%.4g", ratios[0])) +
+           " times what probability says";
+}
 
 inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
                                double none, double tolerance) {
@@ -3408,6 +3726,19 @@ inline std::string Image::hint(const ImageResult& r) const {
         explains(shifted(0, 1), "the reference one pixel further up");
         explains(shifted(0, -1), "the reference one pixel further down");
     }
+    // Larger errors explain it.
+    Image wider = *this;
+    double squares = 0;
+    for (size_t i = 0; i < n(); ++i)
+        squares += s[i] > 0 ? std::pow((f[i] - truth[i]) / s[i], 2) / double(n()) : 0;
+    const double more = std::sqrt(squares);
+    for (double& x : wider.s) x *= more;
+    if (first.empty() && n() >= 16 && more > 1 && wider.against(truth).p > 1e-3)
+        return "the differences are " + times(more, 1.5 / std::sqrt(double(n()))) +
+               " times the standard errors, everywhere: are these too small?" +
+               (o.n > 1 && std::abs(more / std::sqrt(double(o.n)) - 1) < 2 / std::sqrt(double(n()))
+                    ? " (divided by the root of n twice)"
+                    : "");
     if (first.empty()) first = all_others_right();
     if (!first.empty()) return first;
     // By 16 blocks: those in the middle, at the edges, in the corners.
@@ -3415,7 +3746,7 @@ inline std::string Image::hint(const ImageResult& r) const {
     std::array<double, 3> low{infinity, infinity, infinity}, high{};
     for (size_t i = 0; i < n(); ++i) seen[block_of(i)] += f[i], wanted[block_of(i)] += truth[i];
     for (size_t b = 0; b < 16; ++b) {
-        const size_t group = (b % 4 % 3 == 0) + (b / 4 % 3 == 0);
+        const size_t group = size_t(b % 4 % 3 == 0) + size_t(b / 4 % 3 == 0);
         low[group] = std::min(low[group], seen[b] / wanted[b]);
         high[group] = std::max(high[group], seen[b] / wanted[b]);
     }
@@ -3482,7 +3813,7 @@ struct Drawing {
     // Into the folder of pictures; "" or "\nsee PATH".
     std::string written(const std::string& name) const {
         if (pictures.empty()) return "";
-        static int unnamed = 0;
+        static std::atomic<int> unnamed = 0;
         std::string file;
         for (char c : name.empty() ? say("check-%d", ++unnamed) : name)
             file += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
@@ -3647,7 +3978,7 @@ inline std::string Image::picture() const {
         most_off = std::max(most_off, std::abs(values[2][b]));
     }
     for (size_t b = 0; b < weight.size(); ++b) {
-        for (size_t k : {0, 1})
+        for (size_t k = 0; k < 2; ++k)
             values[k][b] = 1 - std::pow(std::max(0.0, values[k][b] / most), 1 / 2.2);
         values[2][b] /= most_off;
     }
@@ -3659,7 +3990,7 @@ inline std::string Image::picture() const {
     return d.written(o.name);
 }
 
-#ifndef __clang__
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC pop_options
 #endif
 
@@ -3674,4 +4005,12 @@ ORACLE_CHECKS template Verdict DensityCheck<1, 1, Line>::run();
 
 }  // namespace oracle
 
+#undef ORACLE_PRINTF
+#ifdef __GNUC__
 #pragma GCC diagnostic pop
+#endif
+#pragma pop_macro("pi")
+#pragma pop_macro("min")
+#pragma pop_macro("max")
+#pragma pop_macro("near")
+#pragma pop_macro("far")
