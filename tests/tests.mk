@@ -8,7 +8,7 @@ SUITE := $(OBJECTS)/all-tests
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
 LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% text/scene_file_bounds% \
-         $(foreach t,faults from_blender how_to_add makefile memory modules mutants parts radiosity_program resume runner stopping,\
+         $(foreach t,crowds faults from_blender how_to_add makefile memory parts radiosity_program resume runner scripts stopping,\
              whole/$t_test)
 
 test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer

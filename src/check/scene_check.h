@@ -15,8 +15,9 @@ inline constexpr bool moves_surfaces = true;  // of programs that are built with
 
 // ---- Surfaces that lie in each other ------------------------------------------------------------
 
-// The same of two flat shapes with these corners.  Each lies within its edges: another one that is
-// beyond an edge of it touches it at most.
+// True if two flat shapes with these corners share more than an edge of a plane, within e, or lie
+// above each other at no more than `room`.  Each lies within its edges: another one that is beyond
+// an edge of it touches it at most.
 inline bool share_plane(std::span<const vec3> s, std::span<const vec3> t, real e, real room) {
     const std::span<const vec3> corners[2] = {s, t};
     const vec3 normal[2] = {unit(cross(s[1] - s[0], s[2] - s[0])),
@@ -39,8 +40,7 @@ inline bool share_plane(std::span<const vec3> s, std::span<const vec3> t, real e
     return true;
 }
 
-// True if two shapes share more than an edge of one surface, within rounding, or lie above each
-// other at no more than `room`.
+// The same of two shapes of any kind, within rounding.
 inline bool share_surface(const Shape& s, const Shape& t, real room) {
     const real e = 2 * (rounding_error(s) + rounding_error(t));  // the bound of spawn
     return ask(s, [&](auto kind) {
@@ -331,7 +331,8 @@ inline std::optional<LightOnShape> point_light_on_surface(const Scene& s, const 
             const vec3 p = s.lights[*k].p;
             const bool may = overlap(box, {p, p}) && (!first || *k < first->light);
             left -= may ? 16 : 1;
-            if (left < 0) throw UserError(name + ": too many point lights where shapes are");
+            if (left < 0)
+                throw UserError(name + ": too many lights without a surface where shapes are");
             if (may && lies_on(s.shapes[i], s.facing[i], p)) first = LightOnShape{*k, i};
         }
     }

@@ -37,7 +37,8 @@ inline std::vector<double> least_of(const Lines& lines, size_t first) {
         for (size_t i = first; i < cells.size(); ++i)
             now.numbers.push_back(std::strtod(cells[i].c_str(), nullptr)),
                 now.product *= now.numbers.back();
-        if (Best& best = of[cells[0]]; best.product < now.product) best = now;
+        if (Best& best = of[cells[0]]; best.numbers.empty() || best.product < now.product)
+            best = now;
     }
     std::vector<double> least = of.begin()->second.numbers;
     for (const auto& [processor, best] : of)
@@ -98,9 +99,11 @@ public:
     std::string file(const std::string& name) const { return folder_ + "/" + name; }
 
     // What this program ever measured, in data/processors.csv: processor, instructions, compiler,
-    // commit, numbers.  Those of now take the place of former ones of the same first three.
+    // commit, numbers.  Those of now take the place of former ones of the same first
+    // three.
     Lines measured(const std::vector<double>& numbers) const {
-        std::vector<std::string> now = {name_, processor(), instructions(), compiler(), git_commit()};
+        std::vector<std::string> now = {name_, processor(), instructions(), compiler(),
+                                        git_commit()};
         for (double x : numbers) now.push_back(text("%.2f", x));
         Lines all;
         const std::string kept = file("data/processors.csv");
@@ -109,7 +112,7 @@ public:
             std::istringstream words(line);
             auto& cells = all.emplace_back();
             for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
-            if (cells.size() > 4 && std::equal(cells.begin(), cells.begin() + 4, now.begin()))
+            if (cells.size() < 5 || std::equal(cells.begin(), cells.begin() + 4, now.begin()))
                 all.pop_back();
         }
         all.push_back(now);

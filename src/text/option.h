@@ -62,16 +62,16 @@ inline OptionTable without(OptionTable table, const std::vector<Text>& names) {
 // ---- Values -------------------------------------------------------------------------------------
 
 // Words and what they stand for.
-template <class Enum>
-using Alternatives = std::vector<std::pair<Text, Enum>>;
+template <class Value>
+using Alternatives = std::vector<std::pair<Text, Value>>;
 
-template <class Enum>
-Text word_of(const Alternatives<Enum>& alternatives, Enum value) {
-    return std::ranges::find(alternatives, value, &std::pair<Text, Enum>::second)->first;
+template <class Value>
+Text word_of(const Alternatives<Value>& alternatives, Value value) {
+    return std::ranges::find(alternatives, value, &std::pair<Text, Value>::second)->first;
 }
 // Throws UserError "unknown WHAT 'word' (did you mean ...?)".
-template <class Enum>
-Enum value_of(const Alternatives<Enum>& alternatives, Text what, Text word) {
+template <class Value>
+Value value_of(const Alternatives<Value>& alternatives, Text what, Text word) {
     std::vector<Text> known;
     for (const auto& [name, value] : alternatives) {
         if (name == word) return value;
@@ -81,9 +81,9 @@ Enum value_of(const Alternatives<Enum>& alternatives, Text what, Text word) {
 }
 
 // One of several words; `at` holds the default.
-template <class Enum>
-Option one_of(Text name, const std::type_identity_t<Alternatives<Enum>>& alternatives, Text help,
-              Enum& at) {
+template <class Value>
+Option one_of(Text name, const std::type_identity_t<Alternatives<Value>>& alternatives, Text help,
+              Value& at) {
     std::string words;
     for (const auto& [word, value] : alternatives)
         words.append(words.empty() ? "" : "|").append(word);

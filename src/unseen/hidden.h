@@ -64,14 +64,16 @@ inline std::vector<std::string> hidden_lights(const NamedScene& s) {
             warn(k, "this light is hidden by " + where(s, *shape) +
                         ": none of 512 paths from it comes out or in view of the eye");
     }
-    const auto point = std::ranges::find_if(s.lights, &Light::is_delta);
-    if (point != s.lights.end() &&
+    const auto bare = std::ranges::find_if(s.lights, &Light::is_delta);
+    if (bare != s.lights.end() &&
         std::ranges::any_of(s.material_of, [&](auto m) { return s.materials[m].is_delta(); }))
-        warn(size_t(point - s.lights.begin()),
-             std::string("a ") + name_of(*point) +
+        warn(size_t(bare - s.lights.begin()),
+             std::string("a ") + name_of(*bare) +
                  " light does not shine through glass or by mirrors, where no path finds it: "
-                 "that light is missing; a sphere of radius r and radiance I / (pi r^2) shines "
-                 "there, too");
+                 "that light is missing" +
+                 (bare->as<PointLight>() ? "; a sphere of radius r and radiance I / (pi r^2) "
+                                           "shines there, too"
+                                         : ""));
     return warnings;
 }
 

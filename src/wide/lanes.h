@@ -22,9 +22,9 @@ inline constexpr size_t lane_count = 8;
 typedef float Floats __attribute__((vector_size(lane_count * sizeof(float))));
 typedef int32_t Keys __attribute__((vector_size(lane_count * sizeof(int32_t))));
 
-// As many reals as a register of AVX2 holds (SSE2, NEON: two or four registers), with AVX-512, too:
-// tuned for Intel's processors GCC splits the fma of wider vectors into halves, and passes these
-// through memory.
+// As many reals as a register of AVX2 holds (SSE2, NEON: two registers), with AVX-512, too: tuned
+// for Intel's processors GCC splits the fma of wider vectors into halves, and passes these through
+// memory.
 inline constexpr size_t real_lanes = 32 / sizeof(real);
 typedef real Reals __attribute__((vector_size(real_lanes * sizeof(real))));
 

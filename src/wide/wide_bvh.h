@@ -1,4 +1,4 @@
-// wide/wide_bvh.h  5  where rays stop: a bounding volume hierarchy of triangles and spheres
+// wide/wide_bvh.h  5  where rays stop: a bounding volume hierarchy of triangles and other shapes
 #pragma once
 #include <new>
 #include "wide/collapse.h"

@@ -191,7 +191,7 @@ struct Material {
     rgb diffuse() const {
         return ask([](const auto& kind) { return kind.diffuse(); });
     }
-    bool reflects() const { return is_delta() || max_of(albedo()) > 0; }
+    bool reflects() const { return is_delta() || !(max_of(albedo()) <= 0); }
     bool emits() const { return !(max_of(Le) <= 0); }
 };
 

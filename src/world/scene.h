@@ -51,8 +51,8 @@ struct Scene {
 
     int dropped = 0;  // triangles that have no area
 
-    Tree bvh;                      // from here on made by prepare
-    std::vector<Facing> facing;    // of each shape
+    Tree bvh;                    // from here on made by prepare
+    std::vector<Facing> facing;  // of each shape
     LightTree light_tree;
 
     const Material& material_at(uint32_t shape) const { return materials[material_of[shape]]; }
@@ -149,7 +149,7 @@ inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t mater
 
 // A light that has no surface; dark, it is none.
 inline void add_light(Scene& s, const Light& light) {
-    if (max_of(light.L) > 0) s.lights.push_back(light);
+    if (!(max_of(light.L) <= 0)) s.lights.push_back(light);
 }
 
 }  // namespace penumbra

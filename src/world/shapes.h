@@ -149,12 +149,12 @@ inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real 
 // ---- Kinds of shapes --------------------------------------------------------------------------
 //
 // A kind is a struct with these functions; `ask` chooses it.
-//     name                         in messages
-//     corners(s)                   points about a flat shape, counterclockwise from its front; else
-//     none box(s)                       its bounds, not padded normal(s)                    the
-//     unit normal of a flat shape; else 0 intersect(s, ray, k, tmax)   where a ray meets it first,
-//     at 0 < t <= tmax; k is shear(ray.d) surface(s, f, ray, hit)      the point hit, moved onto
-//     the shape: exact also far from the eye
+//     name                  in messages
+//     corners(s)            points about a flat shape, counterclockwise from its front; else none
+//     box(s)                its bounds, not padded
+//     normal(s)             the unit normal of a flat shape; else 0
+//     intersect(s, ray, k, tmax)  where a ray meets it first, 0 < t <= tmax; k is shear(ray.d)
+//     surface(s, f, ray, hit)     the point hit, moved onto the shape: exact also far from the eye
 
 // Properties of all points of a shape: the unit normal, if it is flat, and Surface::error.
 struct Facing {

@@ -1,8 +1,12 @@
-// course/starter_test.cpp  the generator of starters: tests written in Python, a case each
+// course/starter_test.cpp  starters, and later ones in a student's folder: tests written in Python
 #include <doctest/doctest.h>
 
 #include "course/python.h"
 
 TEST_CASE("the generator: regions, weeks, what a starter holds, leaks, known mistakes") {
     run_python_tests("tests/course/starter_test.py");
+}
+
+TEST_CASE("make update: a later starter in copies that students modified keeps their solutions") {
+    run_python_tests("tests/course/update_test.py");
 }

@@ -1,5 +1,5 @@
 # course/update_test.py  a later starter taken into ten modified copies: python3 tests/course/update_test.py [NAME...]
-"""Each function test_... is a test; update_test.cpp runs them one by one."""
+"""Each function test_... is a test; starter_test.cpp runs them one by one."""
 import functools
 import pathlib
 import re

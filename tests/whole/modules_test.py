@@ -1,5 +1,5 @@
 # whole/modules_test.py  tests of tests/modules and make layers: python3 tests/whole/modules_test.py [NAME...]
-"""Each function test_... is a test; modules_test.cpp runs them one by one."""
+"""Each function test_... is a test; scripts_test.cpp runs them one by one."""
 import os
 import pathlib
 import shutil

@@ -1,5 +1,5 @@
 # whole/mutants_test.py  tests of tests/mutants/run: python3 tests/whole/mutants_test.py [NAME...]
-"""Each function test_... is a test; mutants_test.cpp runs them one by one.
+"""Each function test_... is a test; scripts_test.cpp runs them one by one.
 
 The compiler of their project is a script: it turns src/base/x.h, which is shell, into every test.
 """

@@ -63,9 +63,10 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     add_triangle(s, {0, 0, 7}, {1, 0, 7}, {0, 1, 7}, lamp);
     add_light(s, {{1, 1, 1}, PointLight(), {2, 2, 2}});
     add_light(s, {{1, 1, 1}, PointLight(), {0, 0, 0}});  // dark: not a light
+    add_light(s, {{1, 1, 1}, PointLight(), {1, real(NAN), 1}});
     CHECK(s.light_of == std::vector<int32_t>{0, no_light, 1, 1, 2});
     CHECK(s.material_of == std::vector<uint32_t>{lamp, grey, panel, panel, lamp});
-    REQUIRE(s.lights.size() == 4);
+    REQUIRE(s.lights.size() == 5);
     const Light &ball = s.lights[0], &quad = s.lights[1], &point = s.lights[3];
     CHECK((ball.as<SphereLight>() && ball.reach == 4));
     CHECK((ball.L == rgb{1, 2, 3} && !ball.twosided));
@@ -77,6 +78,7 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     CHECK((s.shapes[3].a == vec3{5, 0, 0} && s.shapes[3].b == vec3{7, 3, 0}));
     CHECK((s.lights[2].n == vec3{0, 0, 1} && s.lights[2].pdf_area == 2));
     CHECK((point.as<PointLight>() && point.L == rgb{2, 2, 2}));
+    CHECK(std::isnan(max_of(s.lights[4].L)));  // nor is what is no number dark
     for (size_t i : {0, 2, 3, 4})
         CHECK(s.lights[size_t(s.light_of[i])].error >= rounding_error(s.shapes[i]));
 }

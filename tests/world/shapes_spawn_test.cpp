@@ -11,8 +11,8 @@ bool meets(const Shape& s, const Ray& ray) { return meet(s, ray).has_value(); }
 std::optional<Surface> seen(const Shape& s, Dice& random) {
     const real size = s.r > 0 ? s.r : max_abs(s.b - s.a);
     for (int attempt = 0; attempt < 100; ++attempt) {
-        const vec3 target = s.r > 0 ? s.a + random.direction(random(0, s.r))
-                                          : point(s, random.barycentrics());
+        const vec3 target =
+            s.r > 0 ? s.a + random.direction(random(0, s.r)) : point(s, random.barycentrics());
         const vec3 o = target + random.direction(4 * size);
         const Ray ray{o, unit(target - o)};
         if (const auto hit = meet(s, ray)) return surface(s, ray, *hit);
