@@ -284,6 +284,13 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
     auto clamped = [](Triple w, Triple f, Triple) {
         return WithValue{w, 0.5 / pi, {std::min(f[0], 0.1), std::min(f[1], 0.1), f[2]}};
     };
+    auto half_green = [](Triple w, Triple f, Triple) {
+        return WithValue{w, 0.5 / pi, {f[0], w[0] > 0 ? f[1] / 2 : f[1], f[2]}};
+    };
+    enum class Lobe { diffuse };
+    auto flagged = [](Triple w, Triple, Triple) {
+        return std::tuple{w, 0.5 / pi, false, 1, Lobe::diffuse};
+    };
     auto other_pdf = [](Triple w, Triple f, Triple) { return std::tuple{w, f, 1 / pi}; };
     using floats = std::array<float, 3>;
     auto weights = [&](auto change) {
@@ -303,6 +310,7 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
     CHECK(tuples(1, 0).pass);
     CHECK(tuples(0, 1).pass);
     CHECK(pairs(1).pass);
+    CHECK(judged(flagged).pass);
     const std::pair<Verdict, const char*> refused[] = {
         {values([](Triple) { return 0.5; }),
          "the f that sample returns is 0.5 (1/2, half) times eval's value, at every direction"},
@@ -316,7 +324,8 @@ TEST_CASE("BSDFs: the value or the weight that sample returns is that of eval") 
                                                  : 3; }), " % of directions"},
         {values([](Triple) { return NAN; }),
          "the f that sample returns is nan, but eval's value is "},
-        {judged(clamped), " % of directions, where eval's value > 0.1\n"},
+        {judged(clamped), "at every direction, where eval's value > 0.1\n"},
+        {judged(half_green), " % of directions, where x > 0\n"},
         {judged(exchanged), "for wi = "},
         {judged(other_pdf), "the pdf that sample returns is 2 (2, twice) times what pdf says"},
         {both(0.5, 1), "the f that sample returns is 0.5 (1/2, half) times eval's value, at every"},
@@ -403,6 +412,13 @@ TEST_CASE("the density or probability that comes with a point or an index is tol
     };
     CHECK(expect_choice(random, choice(0.75), chance, 2).pass);
     CHECK(expect_choice(random, named(1), chance, 2).pass);
+    auto said_to_be = [](double p) {
+        return [p](double u) { return std::pair{size_t(u * 2000), p}; };
+    };
+    auto even = [](size_t) { return 1.0 / 2000; };
+    CHECK(expect_choice(random, said_to_be(1.0 / 2000), even, 2000).pass);
+    for (double p : {0.0, 1.002 / 2000})
+        CHECK(!expect_choice(random, said_to_be(p), even, 2000).pass);
     says(expect_choice(random, choice(0.25), chance, 2),
          "the probability that choose returns is 0.3333 (1/3) times what probability says, in 7");
     says(expect_choice(random, named(2), chance, 2),

@@ -706,12 +706,14 @@ double integral(
 
 template <size_t N>
 auto elements(const auto& at) {
-    return [&]<size_t... I>(std::index_sequence<I...>) { return std::array{at(I)...}; }
+    return [&]<size_t... I>(std::index_sequence<I...>) {
+        return std::array{at(std::integral_constant<size_t, I>())...};
+    }
     (std::make_index_sequence<N>());
 }
 // A vector may be smaller than three of its elements.
 template <class V, class Element>
-constexpr size_t size_of = std::min<size_t>(3, sizeof(V) / sizeof(Element));
+constexpr size_t size_of = sizeof(V) == 2 * sizeof(Element) ? 2 : 3;
 
 // The coordinates of a number, pair, array, vector or colour, in its own type.
 template <class V>
@@ -719,7 +721,7 @@ auto coordinates(const V& v) {
     if constexpr (std::is_arithmetic_v<V>)
         return std::array{v};
     else if constexpr (requires { V::SizeAtCompileTime; })
-        return elements<size_t(V::SizeAtCompileTime)>([&](size_t i) { return v[long(i)]; });
+        return elements<size_t(V::SizeAtCompileTime)>([&](auto i) { return v[long(i())]; });
     else if constexpr (requires { v.x() + v.y() + v.z(); })
         return std::array{v.x(), v.y(), v.z()};
     else if constexpr (requires { v.x + v.y + v.z; })
@@ -742,9 +744,10 @@ auto coordinates(const V& v) {
         return std::apply([](auto... c) { return std::array{c...}; }, v);
     else if constexpr (requires { v[size_t()] + v[size_t()]; })
         return elements<size_of<V, std::decay_t<decltype(v[size_t()])>>>(
-            [&](size_t i) { return v[i]; });
+            [&](auto i) { return v[decltype(i)::value]; });
     else if constexpr (requires { v(0) + v(0); })
-        return elements<size_of<V, std::decay_t<decltype(v(0))>>>([&](int i) { return v(i); });
+        return elements<size_of<V, std::decay_t<decltype(v(0))>>>(
+            [&](auto i) { return v(int(i())); });
     else {
         static_assert(
             !sizeof(V),
@@ -817,6 +820,8 @@ std::vector<double> numbers_in(const Array& array) {
     for (size_t i = 0; i < std::size(array); ++i)
         if constexpr (requires { double(array[i]); })
             numbers.push_back(double(array[i]));
+        else if constexpr (requires { double(array[i][i]) + double(std::size(array[i])); })
+            for (double x : oracle::numbers_in(array[i])) numbers.push_back(x);
         else
             for (double x : oracle::point(array[i])) numbers.push_back(x);
     return numbers;
@@ -888,13 +893,16 @@ constexpr auto member_of(const R& r, Get get, More... more) {
     else
         return nullptr;
 }
-#define ORACLE_MEMBER(name)                                        \
-    [](const auto& r) -> const auto& requires requires { r.name; } \
+#define ORACLE_MEMBER(name)                                                 \
+    [](const auto& r) -> const auto& requires requires {                    \
+        r.name;                                                             \
+        requires !std::is_pointer_v<std::remove_cvref_t<decltype(r.name)>>; \
+    }                                                                       \
     { return r.name; }
 template <class R>
 constexpr auto direction_of(const R& r) {
-    return oracle::member_of(r, ORACLE_MEMBER(wi), ORACLE_MEMBER(w), ORACLE_MEMBER(wo),
-                             ORACLE_MEMBER(direction), ORACLE_MEMBER(dir), ORACLE_MEMBER(point));
+    return oracle::member_of(r, ORACLE_MEMBER(wi), ORACLE_MEMBER(wo), ORACLE_MEMBER(direction),
+                             ORACLE_MEMBER(dir), ORACLE_MEMBER(w), ORACLE_MEMBER(point));
 }
 template <class R>
 constexpr auto density_of(const R& r) {
@@ -915,13 +923,17 @@ constexpr auto weight_of(const R& r) {
 template <class Pointer>
 constexpr bool found = !std::is_null_pointer_v<Pointer>;
 
-// The k-th element of a tuple that is a number, or none; the tuple's size if there is no such.
+// The k-th element of a tuple that is a number with a point, or that is none: flags, indices and
+// enumerators are neither.  The tuple's size if there is no such.
+template <class T, bool number>
+constexpr bool is_kind =
+    number ? std::is_floating_point_v<T> : !std::is_arithmetic_v<T> && !std::is_enum_v<T>;
 template <class R, bool number>
 constexpr size_t element(size_t k) {
     return []<size_t... I>(std::index_sequence<I...>, size_t k) {
-        const bool is[] = {std::is_arithmetic_v<std::decay_t<std::tuple_element_t<I, R>>>...};
+        const bool is[] = {is_kind<std::decay_t<std::tuple_element_t<I, R>>, number>...};
         size_t i = 0;
-        while (i < sizeof...(I) && (is[i] != number || k-- > 0)) ++i;
+        while (i < sizeof...(I) && (!is[i] || k-- > 0)) ++i;
         return i;
     }
     (std::make_index_sequence<std::tuple_size_v<R>>(), k);
@@ -946,9 +958,9 @@ constexpr auto at_index(const R& r) {
 // A structure with a direction, or a point and its density.
 template <class R>
 constexpr bool has_parts = requires(const R& r) {
-    oracle::point(*direction_of(r));
-    requires !std::is_arithmetic_v<std::decay_t<decltype(*direction_of(r))>> ||
-        found<decltype(density_of(r))>;
+    oracle::point(*oracle::direction_of(r));
+    requires !std::is_arithmetic_v<std::decay_t<decltype(*oracle::direction_of(r))>> ||
+        found<decltype(oracle::density_of(r))>;
 };
 template <class R>
 const auto& beside(const R& r) {
@@ -961,15 +973,16 @@ template <class R>
 const auto& point_in(const R& r) {
     const auto& parts = oracle::beside(r);
     if constexpr (has_parts<std::decay_t<decltype(parts)>>)
-        return *direction_of(parts);
+        return *oracle::direction_of(parts);
     else
         return parts;
 }
 template <class R>
 auto pdf_in(const R& r) {
     using Parts = std::decay_t<decltype(oracle::beside(r))>;
-    if constexpr (has_parts<Parts> && found<decltype(density_of(std::declval<const Parts&>()))>)
-        return density_of(oracle::beside(r));
+    if constexpr (has_parts<Parts> &&
+                  found<decltype(oracle::density_of(std::declval<const Parts&>()))>)
+        return oracle::density_of(oracle::beside(r));
     else if constexpr (is_tuple<R>())
         return at_index<element<R, true>(0)>(r);
     else
@@ -983,7 +996,8 @@ auto unnamed_in(const R& r) {
     else if constexpr (element<R, false>(1) < std::tuple_size_v<R>)
         return at_index<element<R, false>(1)>(r);
     else
-        return at_index<element<R, true>(found<decltype(density_of(beside(r)))> ? 0 : 1)>(r);
+        return at_index<element<R, true>(
+            found<decltype(oracle::density_of(oracle::beside(r)))> ? 0 : 1)>(r);
 }
 
 // A point, and the density that the sampler returned with it, or NaN.
@@ -1109,15 +1123,20 @@ long long index_in(const R& r) {
         return static_cast<long long>(r);
     else if constexpr (requires { std::get<0>(r); })
         return static_cast<long long>(std::get<0>(r));
-    else
+    else {
+        static_assert(
+            requires { static_cast<long long>(r.index); },
+            "choose returns an index, a pair or tuple of it and its probability, or a structure "
+            "with index and pdf");
         return static_cast<long long>(r.index);
+    }
 }
 template <class R>
 auto probability_in(const R& r) {
     if constexpr (requires { std::get<1>(r); })
         return &std::get<1>(r);
     else
-        return density_of(r);
+        return oracle::density_of(r);
 }
 std::string of_what_is_said(const std::vector<double>& ratios);
 
@@ -1152,7 +1171,9 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
                 const double said = double(*oracle::probability_in(chosen)),
                              wanted = expected[size_t(index)];
                 ++compared;
-                if (!(std::abs(said - wanted) <= 0x1p-20 + (1e-4 + o.tolerance) * wanted))
+                const double unit =
+                    std::max(unit_of(*oracle::probability_in(chosen)), unit_of(probability(0)));
+                if (!(std::abs(said - wanted) <= 16 * unit + (1e3 * unit + o.tolerance) * wanted))
                     ratios.push_back(said / wanted);
             }
     }
@@ -2341,13 +2362,14 @@ std::string albedo_hint(const std::vector<Albedo>& all, double alpha);
 struct Returned {
     Triple wi;
     double said, wanted, pdf;
-    bool wrong;
+    bool wrong;        // in this channel,
+    bool off = false;  // or in another
 };
 std::string returned_hint(const std::vector<Returned>& all, const std::string& what,
                           const std::string& expected);
 
 // The value f that sample returns is eval's; a weight is f |cos| / pdf; a value without a name is
-// one of the two, everywhere.  One value in a hundred may round otherwise, where lobes are narrow
+// one of the two, for each wo.  One value in a hundred may round otherwise, where lobes are narrow
 // or end.
 template <class From, class M, class EvalAt>
 std::string judge_returned(Random& random, From& from_wo, const M& model, const EvalAt& eval_at,
@@ -2373,6 +2395,7 @@ std::string judge_returned(Random& random, From& from_wo, const M& model, const 
         }
         const double tolerance = 32 * close + (model.single ? 1e-3 : 1e-8) + o.tolerance;
         auto compare = [&](std::vector<Returned>& all, const auto* value, double times) {
+            const auto first = long(all.size());
             auto add = [&](double said, double wanted) {
                 if (said == 0 && wanted == 0) return;
                 const bool wrong = said != wanted && !(std::abs(said / wanted - 1) <= tolerance);
@@ -2383,17 +2406,20 @@ std::string judge_returned(Random& random, From& from_wo, const M& model, const 
                 for (size_t k = 0; k < said.size(); ++k) add(said[k], light[k] * times);
             else
                 add(brightness(said), brightness(light) * times);
+            const bool off =
+                std::any_of(all.begin() + first, all.end(), [](auto& r) { return r.wrong; });
+            std::for_each(all.begin() + first, all.end(), [=](auto& r) { r.off = off; });
         };
         const double cosine = std::abs(wi[2]) / p;
         const auto& parts = oracle::beside(r);
         if constexpr (has_parts<std::decay_t<decltype(parts)>>) {
-            if constexpr (found<decltype(f_of(parts))>) compare(f, f_of(parts), 1);
-            if constexpr (found<decltype(weight_of(parts))>)
-                compare(weight, weight_of(parts), cosine);
+            if constexpr (found<decltype(oracle::f_of(parts))>) compare(f, oracle::f_of(parts), 1);
+            if constexpr (found<decltype(oracle::weight_of(parts))>)
+                compare(weight, oracle::weight_of(parts), cosine);
         }
-        if constexpr (found<decltype(unnamed_in(r))>) {
-            compare(unnamed, unnamed_in(r), 1);
-            compare(unnamed_weight, unnamed_in(r), cosine);
+        if constexpr (found<decltype(oracle::unnamed_in(r))>) {
+            compare(unnamed, oracle::unnamed_in(r), 1);
+            compare(unnamed_weight, oracle::unnamed_in(r), cosine);
         }
     }
     const std::string by_f = "eval's value", by_weight = by_f + " |cos| / pdf";
@@ -3501,23 +3527,24 @@ inline std::string exchange_hint(const Eval& f, const Pairs& pairs, double close
 }
 
 // In words, where these are wrong, if a quantity tells all of them from the right ones.
-inline std::string where_wrong(const std::vector<Returned>& all) {
-    const std::pair<const char*, std::function<double(const Returned&)>> quantities[] = {
+inline std::string where_wrong(const std::vector<Returned>& all, const std::string& expected) {
+    const std::pair<std::string, std::function<double(const Returned&)>> quantities[] = {
         {"cos(theta)", [](const Returned& r) { return r.wi[2]; }},
         {"x", [](const Returned& r) { return r.wi[0]; }},
         {"y", [](const Returned& r) { return r.wi[1]; }},
-        {"eval's value", [](const Returned& r) { return r.wanted; }},
+        {expected, [](const Returned& r) { return r.wanted; }},
         {"the pdf", [](const Returned& r) { return r.pdf; }}};
     for (const auto& [name, of] : quantities)
         for (const double sign : {1.0, -1.0}) {
             double least_wrong = infinity, most_right = -infinity;
             for (const Returned& r : all) {
-                double& bound = r.wrong ? least_wrong : most_right;
-                bound = r.wrong ? std::min(bound, sign * of(r)) : std::max(bound, sign * of(r));
+                const bool is_wrong = name == expected ? r.wrong : r.off;
+                double& bound = is_wrong ? least_wrong : most_right;
+                bound = is_wrong ? std::min(bound, sign * of(r)) : std::max(bound, sign * of(r));
             }
-            if (least_wrong <= most_right) continue;
+            if (least_wrong <= most_right || most_right == -infinity) continue;
             const bool at_0 = least_wrong >= 0 && most_right <= 0;
-            return std::string(", where ") + name + (sign > 0 ? " > " : " < ") +
+            return ", where " + name + (sign > 0 ? " > " : " < ") +
                    say("%.3g", at_0 ? 0 : sign * (least_wrong + most_right) / 2);
         }
     return "";
@@ -3529,12 +3556,13 @@ inline std::string returned_hint(const std::vector<Returned>& all, const std::st
     std::vector<Returned> wrong;
     std::copy_if(all.begin(), all.end(), std::back_inserter(wrong),
                  [](auto& r) { return r.wrong; });
-    if (double(wrong.size()) <= 8 + 0.01 * double(all.size())) return "";
+    const double off = double(std::count_if(all.begin(), all.end(), [](auto&r) { return r.off; })),
+                 part = off / double(all.size());
+    if (off <= 8 + 0.01 * double(all.size())) return "";
     const std::string begin = "the " + what + " that sample returns is ",
-                      often = wrong.size() == all.size()
-                                  ? ", at every direction"
-                                  : ", at " + percent(double(wrong.size()) / double(all.size())) +
-                                        " of directions" + where_wrong(all);
+                      often = (part == 1 ? ", at every direction"
+                                         : ", at " + percent(part) + " of directions") +
+                              (wrong.size() == all.size() ? "" : where_wrong(all, expected));
     for (const double a : {0.0, 1.0, -1.0})
         for (const double b : {0.0, -1.0, 1.0}) {
             std::vector<double> ratios;
