@@ -55,7 +55,8 @@ enum class Doubt { no, black, missed_light, few_pixels, noise };
 
 // A relative standard error of 0.35 is that of 4 degrees of freedom, which are enough: of errors
 // that 8 would doubt besides, hardly one is twice the estimate.  With one degree, 8 of 10^5
-// estimates are below 10^-4 of the error: below 1e-6 it is small in any case.
+// estimates are below 10^-4 of the error: below 1e-6 it is small in any case.  Noise of half the
+// estimate still leaves it right within 2 (chosen by the hard scenes of calibration).
 inline Doubt doubt_of(const Film& film, const ImageError& error, const MayMissLight& may_miss) {
     if (error.norm() == 0) return Doubt::black;
     if (may_miss && error.d2() >= 0 && may_miss(film, error)) return Doubt::missed_light;

@@ -2388,8 +2388,7 @@ std::string judge_returned(Random& random, From& from_wo, const M& model, const 
         const auto light = eval_at(wi);
         double close = 64 * std::max(model.unit, model.pdf_unit);
         for (int k = 0; k < 4; ++k) {
-            Triple near = wi;
-            for (double& x : near) x += (random() - 0.5) * 8 * model.unit;
+            const Triple near = jittered<3>(wi, model.unit, random);
             close = std::max({close, std::abs(brightness(eval_at(near)) / brightness(light) - 1),
                               std::abs(model.pdf(near) / p - 1)});
         }
