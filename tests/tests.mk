@@ -47,6 +47,13 @@ oracle-campaign: build/oracle-campaign$(SUFFIX)  ## false positives of the oracl
 	build/$@$(SUFFIX) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only '$(ONLY)') \
 	    --report $(if $(SEEDS)$(ONLY),out,reference)/oracle-campaign.md
 
+# One file to copy, from sources that read downwards; it is written only if it changes.
+ORACLE := $(patsubst %,tests/oracle/%.h,checks numbers host hints pictures)
+%/oracle.h: $(ORACLE)
+	@{ echo '// oracle/oracle.h  the oracle in one file to copy: make writes it, from $(notdir $(ORACLE))' && \
+	    awk '/^#pragma once/ && n++ || /^#include "/ { next } 1' $(ORACLE); } >$@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+
 # It lies beside the oracle, and includes it alone.
 $(OBJECTS)/oracle-campaign.exe: OPTIMISE := $(OPTIMISE:-O3=-O2)
 $(OBJECTS)/oracle-campaign.exe: tests/oracle/campaign.cpp $(RULES)

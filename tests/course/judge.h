@@ -21,7 +21,7 @@ namespace penumbra::course {
 
 // ---- Numbers ------------------------------------------------------------------------------------
 
-using oracle::Triple, oracle::dot;
+using oracle::Triple, oracle::detail::dot;
 
 inline Triple operator+(const Triple& a, const Triple& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};

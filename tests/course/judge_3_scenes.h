@@ -80,8 +80,8 @@ std::string off_by(In came, In expected, const std::vector<oracle::Factor>& fact
         if (!(std::abs(came[i] - factor * expected[i]) <= 1e-6 * std::abs(came[i]) + 1e-12))
             return "";
     if (factor == 0 || !std::isfinite(factor)) return "";
-    return ", " + oracle::times(factor, 1e-5) + " times as much" +
-           oracle::cause_of(factor, 1e-5, factors);
+    return ", " + oracle::detail::times(factor, 1e-5) + " times as much" +
+           oracle::detail::cause_of(factor, 1e-5, factors);
 }
 // A colour.
 void colour(Judge& j, const std::string& what, const Triple& came, const Triple& expected,

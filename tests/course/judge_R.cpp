@@ -250,7 +250,7 @@ void walking(Judge& j) {
     const auto mean_if_many = [&](const std::string& what, double truth, const Rows& rows,
                                   auto of) {
         if (rows.size() < 1000)
-            j.statistical(what, oracle::failure("hardly any goes on"));
+            j.statistical(what, oracle::detail::failure("hardly any goes on"));
         else
             j.mean(what, truth, rows, of);
     };

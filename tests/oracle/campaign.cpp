@@ -89,7 +89,7 @@ Tally run(const Code& code, int seeds) {
         if (v.pass) continue;
         if (tally.refused++ == 0)
             tally.first_refusal = say("seed %d: ", seed) + v.text.substr(0, v.text.find('\n')) +
-                                  " [" + oracle::say_p(v.p) + "]";
+                                  " [" + oracle::detail::say_p(v.p) + "]";
         tally.at_default += !verdict(code, seed, 1e-6).pass;
     }
     tally.codes_refused_often = tally.refused > bound_of_code(seeds);

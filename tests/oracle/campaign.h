@@ -66,8 +66,8 @@ struct Family {
         // Samples are points, or nothing; on the domain, or on the usual one.
         template <class Pdf, class... Domain>
         void pdf(const Pdf& density, const Domain&... domain) const {
-            constexpr size_t numbers = oracle::numbers_of<Sample>();
-            using Result = decltype(oracle::call(sample, oracle::Point<numbers>{}));
+            constexpr size_t numbers = oracle::detail::numbers_of<Sample>();
+            using Result = decltype(oracle::detail::call(sample, oracle::Point<numbers>{}));
             const auto sampler =
                 function_of<Result, T>(sample, std::make_index_sequence<numbers>());
             const std::function<T(const typename PlaceOf<Result>::type&)> p = density;

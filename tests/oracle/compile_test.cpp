@@ -32,6 +32,24 @@ const std::string compile = "c++ -std=c++20 -I../../tests -I../../tests/oracle "
 
 }  // namespace
 
+TEST_CASE("oracle.h is what make puts together now") {
+    const Ran made =
+        run("mkdir -p single && rm -f single/oracle.h && env -u MAKEFLAGS -u MAKELEVEL "
+            "make -s -C ../.. " +
+            folder + "/single/oracle.h");
+    INFO(made.log);
+    REQUIRE(made.well);
+    CHECK(run("cmp single/oracle.h ../../tests/oracle/oracle.h").well);
+}
+
+TEST_CASE("what is no part of the interface is found in detail alone") {
+    for (const auto& [name, found] : {std::pair{"oracle::", false}, {"oracle::detail::", true}}) {
+        write("inside.cpp", std::string("#include \"oracle/oracle.h\"\n") +
+                                "const double p = " + name + "gamma_q(1, 1);\n");
+        CHECK(run(compile + "-fsyntax-only inside.cpp").well == found);
+    }
+}
+
 TEST_CASE("two files: one has the checks, the other links to them") {
     write("check.cpp", R"(
 #include "oracle/oracle.h"

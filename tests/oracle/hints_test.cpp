@@ -5,6 +5,7 @@
 #include "oracle/textbook.h"
 
 using namespace oracle;
+using oracle::detail::dot;
 
 namespace {
 

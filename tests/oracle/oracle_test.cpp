@@ -12,6 +12,7 @@
 namespace {
 
 using namespace oracle;
+using oracle::detail::median, oracle::detail::p_of_chi2, oracle::detail::smallest_shift;
 
 struct Direction {
     double x, y, z;
@@ -566,7 +567,8 @@ TEST_CASE("checks of several threads are all counted, with their alpha") {
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t)
         threads.emplace_back([] {
-            for (int i = 0; i < 20000; ++i) (void)oracle::verdict_of(1, 0, {.alpha = 0x1p-20});
+            for (int i = 0; i < 20000; ++i)
+                (void)oracle::detail::verdict_of(1, 0, {.alpha = 0x1p-20});
         });
     for (std::thread& thread : threads) thread.join();
     CHECK(oracle::statistical_checks - before == 80000);

@@ -59,7 +59,7 @@ struct Cell {
 
 // The standard normal number with the p-value of t with df degrees of freedom.
 double normal_score(double t, double df) {
-    return std::copysign(oracle::where_equal(oracle::p_of_z, oracle::p_of_t(t, df)), t);
+    return std::copysign(oracle::detail::where_equal(oracle::p_of_z, oracle::p_of_t(t, df)), t);
 }
 
 // n independent samples, or n in 64 randomisations if samples are dependent.  Samples are bounded
@@ -87,10 +87,10 @@ Cell check(const Known& k, const Scene& scene, const Options& o, uint64_t n) {
     cell.exact = e.standard_error < rounding;
     e.standard_error = std::hypot(e.standard_error, rounding);
     const double needed = cell.exact ? 0 : 1000 * std::pow(draws.skewness(), 2);
-    cell.verdict =
-        needed <= double(samples.n)
-            ? oracle::expect_mean(k.truth, e)
-            : oracle::failure(oracle::say("%.0f samples needed for their skewness", needed));
+    cell.verdict = needed <= double(samples.n)
+                       ? oracle::expect_mean(k.truth, e)
+                       : oracle::detail::failure(
+                             oracle::say("%.0f samples needed for their skewness", needed));
     cell.score = normal_score((e.mean - k.truth) / e.standard_error, e.df);
     cell.error = e.standard_error / k.truth;
     return cell;
@@ -202,7 +202,8 @@ TEST_CASE("every technique finds every closed form") {
     }
     print_matrix(rows, matrix, all);
     // If the standard errors are right, the scores are standard normal.
-    const double above = oracle::p_of_chi2(chi2, scores), p = 2 * std::min(above, 1 - above);
+    const double above = oracle::detail::p_of_chi2(chi2, scores),
+                 p = 2 * std::min(above, 1 - above);
     ++oracle::statistical_checks;
     oracle::alpha_spent += 1e-6;
     INFO("chi-squared of all sigmas: ", chi2, " of ", scores, " degrees of freedom, p = ", p);

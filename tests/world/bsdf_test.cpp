@@ -21,7 +21,7 @@ constexpr real cosines[] = {1, real(0.6), real(0.05), real(1e-3)};
 // doubling width.
 double albedo(const Material& m, vec3 wo) {
     oracle::Sphere f;
-    f.fit({}, oracle::point(reflect(wo)));
+    f.fit({}, oracle::detail::point(reflect(wo)));
     const double precise = single ? std::max(1e-5, double(m.as<Rough>()->exponent * ulp)) : 1e-9;
     const int depth = single ? 13 : 24;
     auto ring = [&](double theta) {
@@ -49,7 +49,7 @@ TEST_CASE("directions follow pdf: diffuse, lobe and mixture, exponents 0 to 10^5
     oracle::Random random(seed_here());
     auto expect = [&](const Material& m, vec3 wo, Direction direction, const std::string& name) {
         oracle::Options o;
-        o.axis = oracle::point(direction == Direction::bsdf ? reflect(wo) : vec3{0, 0, 1});
+        o.axis = oracle::detail::point(direction == Direction::bsdf ? reflect(wo) : vec3{0, 0, 1});
         o.n = 8000;
         o.name = name;
         auto draw_one = [&](double u, double v) {

@@ -49,7 +49,7 @@ TEST_CASE("sphere light: uniform over the cone it subtends, from 10^-7 above it 
         const Light l(centre, SphereLight{r});
         const vec3 p = centre + real(d) * away;
         oracle::Options o;
-        o.axis = oracle::point(-away);
+        o.axis = oracle::detail::point(-away);
         o.tolerance = std::max(single ? 2e-3 : 1e-6, 100 * rounding);
         o.n = single ? 40000 : 32000;  // rounding hides some of what is seen
         auto density = [&](vec3 w) {
