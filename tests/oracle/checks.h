@@ -1,6 +1,6 @@
 // oracle/checks.h  verdicts about random numbers, each with its significance and its power
 //
-// Part of Penumbra, version 2.1, MIT licence (the text of LICENSE, if you copy this file alone).
+// Part of Penumbra, version 2.2, MIT licence (the text of LICENSE, if you copy this file alone).
 // Needs C++20 and the standard library:  g++ -std=c++20 -O1 my_tests.cpp
 //
 //   oracle::Random random(oracle::seed_of("cosine hemisphere"));
@@ -12,7 +12,7 @@
 // and nothing else.  This chapter has the checks in the order of reading; numbers.h and host.h are
 // its tools, hints.h and pictures.h explain a refusal.  README.md has every check with an example.
 #pragma once
-#define ORACLE_VERSION 20100  // README.md says what changed since 2.0
+#define ORACLE_VERSION 20200  // README.md says what changed since 2.0
 #if __cplusplus < 202002L && !(defined(_MSVC_LANG) && _MSVC_LANG >= 202002L)
 #error "oracle.h needs C++20: compile with -std=c++20"
 #endif
@@ -607,47 +607,18 @@ auto chooser(Choose& choose, Probability& probability);  // a Model of indices; 
 
 // Of hints.h: what is wrong with a choice.
 std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
-                        double none, double tolerance);
+                        double none, double tolerance, size_t unused = 0);
 
 // Counts follow these probabilities, less a part that fails; rare ones by Poisson.
 struct ChoiceFit {
     double p = 1, chi2 = 0, cells = 0;
 };
-inline ChoiceFit fit_choices(const std::vector<double>& probabilities,
-                             const std::vector<double>& seen, double none, double tolerance) {
-    ChoiceFit fit;
-    const double n = none + sum_of(seen);
-    double rare = 0, rare_seen = 0;
-    auto cell = [&](double mean, double number) {
-        ++fit.cells;
-        fit.chi2 += (number - mean) * (number - mean) / mean;
-    };
-    double failing = n;
-    for (size_t i = 0; i < seen.size(); ++i) {
-        const double mean = probabilities[i] * n;
-        failing -= mean;
-        if (mean == 0 && seen[i] > 0) fit.p = 0;
-        if (mean >= fewest_in_cell)
-            cell(mean, seen[i]);
-        else
-            rare += mean, rare_seen += seen[i];
-    }
-    // Less than a part of 1e-6 is rounding of the probabilities' sum.
-    if (none > 0 || failing > 1e-6 * n) rare += std::max(0.0, failing), rare_seen += none;
-    double chance = 1;
-    if (rare >= fewest_in_cell)
-        cell(rare, rare_seen);
-    else if (rare_seen > 0)
-        chance = 2 * p_at_least(rare_seen, rare * (1 + tolerance));
-    if (fit.cells > 1)
-        fit.p *= (rare > 0 && rare < fewest_in_cell ? 2 : 1) *
-                 p_of_chi2(fit.chi2, fit.cells - 1, forgiven(n, tolerance));
-    fit.p = std::min({1.0, fit.p, chance});
-    return fit;
-}
+ChoiceFit fit_choices(const std::vector<double>& probabilities, const std::vector<double>& seen,
+                      double none, double tolerance);  // of numbers.h
 
+// unused: 1 + the number that changes no choice.
 inline Verdict judge_choices(const std::vector<double>& expected, const std::vector<double>& seen,
-                             double none, const Options& o) {
+                             double none, const Options& o, size_t unused = 0) {
     const double n = none + sum_of(seen);
     const ChoiceFit fit = fit_choices(expected, seen, none, o.tolerance);
     const double cells = std::max(1.0, fit.cells - 1);
@@ -656,11 +627,13 @@ inline Verdict judge_choices(const std::vector<double>& expected, const std::vec
                  "with 99.9 %% power: ",
                  n, seen.size(), fit.chi2, fit.cells, say_p(v.p).c_str()) +
              percent(v.delta_min);
-    if (!v.pass) v.text = choice_hint(expected, seen, none, o.tolerance) + "\n" + v.text;
+    if (!v.pass) v.text = choice_hint(expected, seen, none, o.tolerance, unused) + "\n" + v.text;
     return named(v, o);
 }
 
 std::string of_what_is_said(const std::vector<double>& ratios);
+template <size_t M>
+size_t unused_number(Random& random, const Model<M, 1>& model);
 
 template <size_t M>
 Verdict judge_choice(Random& random, const Model<M, 1>& model, size_t count, const Options& o) {
@@ -701,7 +674,7 @@ Verdict judge_choice(Random& random, const Model<M, 1>& model, size_t count, con
                            (std::abs(total - 1) < 1e-3 ? say("%.9g", total) : times(total, 1e-4)) +
                            ", expected 1",
                        o);
-    return judge_choices(expected, seen, none, o);
+    return judge_choices(expected, seen, none, o, unused_number(random, model));
 }
 
 // choose(u), or choose(u, v), is an index below count, or a negative one for none, as often as
@@ -752,6 +725,13 @@ struct Scene {
     bool directions = false;
     Triple lobe{0, 0, 1}, normal{0, 0, 1};
     Point<N> centre{};  // of a box or of the samples
+    Point<N> middle{};  // of the samples
+
+    double distance(const Point<N>& x) const {  // from there, squared
+        double square = 0;
+        for (size_t k = 0; k < N; ++k) square += std::pow(x[k] - middle[k], 2);
+        return square;
+    }
 };
 
 // Of hints.h: the mistake that explains all sheets, and the ratio of two pdfs at these points.
@@ -881,6 +861,8 @@ auto usual_domain();  // Sphere for three coordinates, else Space
 template <size_t D>
 struct Range;  // of coordinates, from lower to upper
 template <size_t D>
+void for_parts(const Range<D>& range, size_t n, size_t k, const auto& use);  // each of n equal ones
+template <size_t D>
 struct Cells;  // cell_count ranges that a few points fill alike
 
 // The part of a density in each cell, and the variance of what is not known exactly.
@@ -901,6 +883,19 @@ struct Parts {
     }
 };
 
+template <class Domain>
+constexpr bool is_sphere = std::is_same_v<Domain, Sphere>;
+
+// Of numbers.h.  Why a sample w, of the coordinates c, is no point of the domain; "" if it is.
+// extent: median of the squared distances of samples from one of them.
+template <class Domain, size_t N, size_t D>
+std::string stray(const Domain& domain, const Point<N>& w, const Point<D>& c, double unit,
+                  double extent);
+template <size_t N>
+double extent_of(const std::vector<Point<N>>& points);
+template <size_t N, class Domain>
+Scene<N> scene_of(const Domain& domain, const Options& o, const Point<N>& middle);
+
 // The pilot: 128 samples for each cell, if one in a hundred arrives; of 32 for each the integral
 // can still be divided.
 inline constexpr size_t pilot_size = 4096, fewest_of_pilot = 1024;
@@ -912,7 +907,7 @@ struct DensityCheck {
     Verdict run();
 
     static constexpr size_t D = Domain::dimensions;
-    static constexpr bool directions = std::is_same_v<Domain, Sphere>;
+    static constexpr bool directions = is_sphere<Domain>;
 
     Random& random;
     const Model<M, N>& model;
@@ -997,16 +992,7 @@ struct DensityCheck {
         return std::string(Domain::place) + " " + say_point(x);
     }
     Range<D> range(size_t cell) const { return cells.range(cell, {domain.lower, domain.upper}); }
-    Scene<N> scene() const {
-        Scene<N> scene{directions};
-        if constexpr (directions) {
-            scene.lobe = domain.z;
-            if (dot(o.axis, o.axis) > 0) scene.normal = normalized(o.axis);
-        } else if constexpr (std::is_base_of_v<Box<N>, Domain>) {
-            scene.centre = Range<N>{domain.lower, domain.upper}.middle();
-        }
-        return scene;
-    }
+    Scene<N> scene() const { return scene_of<N>(domain, o, middle); }
 };
 
 // Of hints.h: why samples come where the pdf is 0 alone, and the first line of a refusal.
@@ -1115,22 +1101,8 @@ auto DensityCheck<M, N, Domain>::at_numbers(const Point<M>& u, bool rim)
     }
     if (rim) return c;
     if constexpr (requires { domain.width; }) return c;  // all of space
-    // A thousandth of a length or of the spread is outside for sure; less is rounding, which other
-    // parts of the check judge.
-    const Point<N> back = domain.at(c);
-    double off = 0, size = 1e-300;
-    for (size_t k = 0; k < N; ++k) off += std::pow(back[k] - w[k], 2), size += w[k] * w[k];
-    const double ulps = roundings * model.unit * std::sqrt(size);
-    bool inside = off <= (directions ? 1e-6 : 1e-6 * extent + ulps * ulps);
-    for (size_t k = 0; k < D; ++k) {
-        const double slack = 1e-5 * (domain.upper[k] - domain.lower[k]) + (directions ? 0 : ulps);
-        inside = inside && c[k] >= domain.lower[k] - slack && c[k] <= domain.upper[k] + slack;
-    }
-    if (!inside)
-        return broken(directions
-                          ? say("a sample is no direction: its length is %.6g, ", std::sqrt(size)) +
-                                say_point(w)
-                          : "a sample lies outside of the domain, " + say_point(w));
+    if (const std::string why = stray(domain, w, c, model.unit, extent); !why.empty())
+        return broken(why);
     return c;
 }
 
@@ -1176,80 +1148,120 @@ Verdict expect_density(Random& random, Sample sample, Pdf pdf, const Options& o 
 
 // ---- Arrays of samples and densities ------------------------------------------------------------
 
-// Points of a domain at which calling code is to evaluate its density, for expect_samples.
+// n points of a domain (an odd number's next) at which calling code is to evaluate its density, for
+// expect_samples: two in each of n / 2 equal parts, whose difference tells the error of a sum.
 template <class Domain>
 auto points_in(Random& random, const Domain& domain, size_t n) {
+    constexpr size_t D = Domain::dimensions;
     std::vector<decltype(domain.at({}))> points;
-    for (size_t i = 0; i < n; ++i) {
-        auto c = domain.lower;
-        for (size_t k = 0; k < c.size(); ++k)
-            c[k] += random() * (domain.upper[k] - domain.lower[k]);
-        points.push_back(domain.at(c));
-    }
+    detail::for_parts(Range<D>{domain.lower, domain.upper}, (n + 1) / 2, 0,
+                      [&](const Range<D>& part) {
+                          for (int i = 0; i < 2; ++i) {
+                              Point<D> c = part.lower;
+                              for (size_t k = 0; k < D; ++k)
+                                  c[k] += random() * (part.upper[k] - part.lower[k]);
+                              points.push_back(domain.at(c));
+                          }
+                      });
     return points;
 }
 
+// Samples and values of a pdf at points of the domain: a quarter of the samples makes cells, the
+// others are counted there.
+template <size_t N, class Domain>
+struct ArrayCheck {
+    Verdict run();
+
+    static constexpr size_t D = Domain::dimensions;
+    static constexpr bool directions = is_sphere<Domain>;
+    const Domain& domain;
+    const std::vector<Point<N>>&samples, &points;
+    const std::vector<double>& pdf;
+    double arriving;  // part of the samples that did not fail
+    const Options& o;
+
+    std::vector<Point<D>> pilot = {};  // samples that make the cells
+    Cells<D> cells = {};
+    std::vector<size_t> cell_of = {};  // of each point
+    std::vector<double> part_of = {};  // of the pdf's integral, of each point
+    std::vector<double> counts = std::vector<double>(cell_count), expected = {};
+
+    // Of numbers.h.
+    std::string wrong();           // what no right sampler or pdf does; else it fills the cells
+    double fewest_points() const;  // that tell the pdf in a cell
+    Parts parts(const auto& factor) const;  // the pdf times factor(x)
+    Scene<N> scene() const;
+
+    static std::string at(const Point<N>& x) {
+        return std::string(Domain::place) + " " + say_point(x);
+    }
+    Range<D> range(size_t cell) const { return cells.range(cell, {domain.lower, domain.upper}); }
+};
+
+// Of hints.h and pictures.h.
+template <size_t N, class Domain>
+std::string first_line_of(const ArrayCheck<N, Domain>& check, const Parts& claimed, bool balanced,
+                          bool counted);
+template <size_t N, class Domain>
+std::string picture_of(const ArrayCheck<N, Domain>& check);
+
+template <size_t N, class Domain>
+Verdict ArrayCheck<N, Domain>::run() {
+    if (const std::string why = wrong(); !why.empty()) return failure(why);
+    // Of fewer the variance is not known well enough: with 25 a right cos^30 was refused once
+    // in 200 runs at alpha = 1e-6.
+    const double fewest = fewest_points(), needed = 100;
+    if (fewest < needed)
+        return failure(
+            say("%zu points are too few: %.0f tell the pdf in a cell of the samples, "
+                "%.0f must; take %.0f",
+                pdf.size(), fewest, needed,
+                std::ceil(1.5 * needed / std::max(1.0, fewest)) * double(pdf.size())));
+    const Parts claimed = parts([](const Point<N>&) { return 1; });
+    if (!(claimed.total > 0)) return failure("the pdf is 0 at all points");
+    spend(o.alpha / 2);  // for the integral
+    const Options half{.alpha = o.alpha / 2, .tolerance = o.tolerance};
+    const bool balanced =
+        std::abs(claimed.total - arriving) <= smallest_shift(infinity, half.alpha) * claimed.error +
+                                                  512 * 0x1p-24;  // as of floats in expect_density
+    expected = claimed.shares();
+    Verdict v = judge_counts(counts, expected, half, claimed.variances());
+    double blind = 0;  // by so few points
+    for (size_t i = 0; i < cell_count; ++i)
+        blind += claimed.variances()[i] / std::max(1e-300, expected[i]) / double(cell_count);
+    v.delta_min = std::hypot(v.delta_min, half.sees * std::sqrt(samples_for(half) * blind));
+    const bool counted = v.pass;
+    v.pass = counted && balanced;
+    v.text += say("; the pdf integrates to %.5g +- %.1g", claimed.total, claimed.error);
+    if (v.pass) return v;
+    if (!balanced) v.p = 0;
+    v.text = first_line_of(*this, claimed, balanced, counted) + "\n" + v.text + picture_of(*this);
+    return v;
+}
+
 // Samples from elsewhere (a GPU, Python) have the density whose value at points[i] is pdfs[i], with
-// points = points_in(random, domain, n): chi-squared.  o.n: the number of samples drawn, if some
-// failed and are not in the array.
+// points = points_in(random, domain, n), or independent ones that are uniform in its coordinates:
+// chi-squared, and the integral.  o.n: the number of samples
+// drawn, if some failed and are not in the array.
 template <class Samples, class Points, class Pdfs, class Domain>
 Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs& pdfs,
                        const Domain& domain, const Options& o = {}) {
-    constexpr size_t D = Domain::dimensions;
+    using P = decltype(domain.at({}));
     const std::vector<double> heights = numbers_in(pdfs);
-    const size_t n = std::size(samples), first = n / 4;
-    const double m = double(heights.size()), arriving = o.n ? double(n) / double(o.n) : 1;
-    // Of 20000 a quarter makes the cells, and 470 are expected in each.
-    if (n < 20000 || m < 20000 || std::size(points) != heights.size())
+    const size_t n = std::size(samples);
+    if (n < 20000 || heights.size() < 20000 || std::size(points) != heights.size())
         return failure(
             say("%zu samples, %zu points, %zu values of the pdf: take 20000 or more of each, and "
                 "as many values as points",
                 n, std::size(points), heights.size()),
             o);
+    const double arriving = o.n ? double(n) / double(o.n) : 1;
     if (arriving > 1) return failure(say("%zu samples, of %.0f drawn (.n)", n, double(o.n)), o);
-    std::vector<Point<D>> places;
-    for (size_t i = 0; i < n; ++i) places.push_back(domain.coordinates(detail::point(samples[i])));
-    const Cells<D> cells({places.begin(), places.begin() + long(first)});
-    std::vector<double> counts(cell_count), sum(cell_count), squares(cell_count), expected,
-        variances;
-    for (size_t i = first; i < n; ++i) ++counts[cells.of(places[i])];
-    for (size_t i = 0; i < heights.size(); ++i) {
-        const double p = heights[i];
-        const auto x = detail::point(points[i]);
-        if (!(p >= 0 && std::isfinite(p)))
-            return failure(say("the pdf is %g at ", p) + say_point(x), o);
-        const auto c = domain.coordinates(x);
-        double value = p * domain.weight(c);
-        for (size_t k = 0; k < D; ++k) value *= domain.upper[k] - domain.lower[k];
-        sum[cells.of(c)] += value, squares[cells.of(c)] += value * value;
-    }
-    const double integral = sum_of(sum) / m,
-                 error = std::sqrt((sum_of(squares) / m - integral * integral) / m);
-    if (std::abs(integral - arriving) >
-        smallest_shift(infinity, o.alpha / 2) * error + 1e-6)  // a constant pdf has no error
-        return failure(
-            say("the pdf integrates to %.5g +- %.1g, expected %.5g", integral, error, arriving), o);
-    double blind = 0;  // by so few points
-    for (size_t i = 0; i < cell_count; ++i) {
-        const double mean = sum[i] / m;
-        expected.push_back(mean / integral);
-        variances.push_back((squares[i] / m - mean * mean) / m / (integral * integral));
-        blind += variances[i] / std::max(1e-300, expected[i]) / double(cell_count);
-    }
-    const Options half{.alpha = o.alpha / 2, .tolerance = o.tolerance};
-    Verdict v = judge_counts(counts, expected, half, variances);
-    v.delta_min = std::hypot(v.delta_min, half.sees * std::sqrt(samples_for(half) * blind));
-    if (v.pass) return named(v, o);
-    const double counted = double(n - first);
-    const size_t worst = worst_of(cell_count, [&](size_t i) {
-        return std::abs(counts[i] / counted - expected[i]) /
-               std::sqrt(expected[i] / counted + variances[i]);
-    });
-    v.text = say("samples are %.4g times as dense as the pdf says, around %s ",
-                 counts[worst] / counted / expected[worst], Domain::place) +
-             say_point(domain.at(cells.range(worst, {domain.lower, domain.upper}).middle())) +
-             "\n" + v.text;
-    return named(v, o);
+    std::vector<P> drawn, where;
+    for (size_t i = 0; i < n; ++i) drawn.push_back(detail::point(samples[i]));
+    for (size_t i = 0; i < heights.size(); ++i) where.push_back(detail::point(points[i]));
+    ArrayCheck<std::tuple_size_v<P>, Domain> check{domain, drawn, where, heights, arriving, o};
+    return named(check.run(), o);
 }
 
 // ---- BSDFs --------------------------------------------------------------------------------------

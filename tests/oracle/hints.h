@@ -86,6 +86,29 @@ inline std::string cause_of(double ratio, double tolerance, const std::vector<Fa
     return text;
 }
 
+// Products of two factors that explain a ratio; if none or many do, the experiment that would.
+inline std::string combined(double ratio, double tolerance, const std::vector<Factor>& factors) {
+    std::string cause;
+    size_t causes = 0;
+    for (size_t i = 0; i < factors.size(); ++i)
+        for (size_t j = i + 1; j < factors.size(); ++j)
+            for (const double k : {1.0, -1.0})
+                for (const double l : {1.0, -1.0}) {
+                    const double x =
+                        std::pow(factors[i].at({}), k) * std::pow(factors[j].at({}), l);
+                    if (std::abs(ratio / x - 1) > std::min(tolerance, 0.02)) continue;
+                    ++causes;
+                    cause = "; looks like " + factors[i].name +
+                            (k > 0 ? " too many" : " forgotten") + ", and " + factors[j].name +
+                            (l > 0 ? " too many" : " forgotten");
+                }
+    if (causes == 1) return cause;
+    return factors.empty()
+               ? "; name the formula's factors (.factors), or change an input: a ratio that stays "
+                 "is a constant"
+               : "; no factor alone, nor two: repeat it where one of them is 1";
+}
+
 inline std::string mean_hint(const Estimate& e, double truth, const std::vector<Factor>& factors) {
     const double ratio = e.mean / truth, within = 5 * e.standard_error / std::abs(e.mean);
     if (within >= 1) return "; 0 within its error";
@@ -94,9 +117,9 @@ inline std::string mean_hint(const Estimate& e, double truth, const std::vector<
     // n / (n + 1), or its inverse.
     const double less = std::min(ratio, 1 / ratio), count = less / (1 - less),
                  n = std::round(count), known = within * count / (1 - less);
-    if (!cause.empty() || name.back() == ')' || n < 5 || known >= 0.25 ||
-        std::abs(count - n) >= known)
-        return text;
+    if (!cause.empty() || name.back() == ')') return text;
+    if (n < 5 || known >= 0.25 || std::abs(count - n) >= known)
+        return text + combined(ratio, within, factors);
     return text + say(", %.0f/%.0f: a count that is off by one?", ratio < 1 ? n : n + 1,
                       ratio < 1 ? n + 1 : n);
 }
@@ -196,6 +219,8 @@ inline std::string factor_and(double factor, double tolerance, const std::string
 template <size_t N>
 std::string cause_of_base(const Base<N>& b, double k, bool normalised) {
     if (b.of_host) return cause_of_power(b.name, k, " in the pdf");
+    if (normalised && b.cosine && k == -2)
+        return "the normal plus a point in the ball, for one on the sphere (or an exponent)";
     if (normalised || b.power != 1) return k == b.power ? b.drawn : "";
     return b.name == "sin(theta)" && k == 1
                ? "a density per (theta, phi), not per solid angle"
@@ -257,6 +282,13 @@ std::string mirror_that(const Point<N>& centre, const auto& fits) {
     return "";
 }
 
+// Why a pdf may be a constant of this name times the density.
+inline std::string normalisation_hint(const std::string& name) {
+    if (name == "pi" || name == "2 pi" || name == "4 pi")
+        return "; looks like 1/" + (name == "pi" ? name : "(" + name + ")") + " forgotten";
+    return ": a constant factor, its normalisation";
+}
+
 // The mistake, by the sheets of a map, the integral of the pdf and its symmetries: a fact, then
 // "looks like" and a cause where one explains all of it.
 template <size_t N>
@@ -291,9 +323,9 @@ struct Mistake {
         const bool many = good.size() >= fewest_points;
         if (const Law law = law_of(ratios, tolerance); many && law.holds)
             return constant(law.factor);
-        for (auto step :
-             {&Mistake::power_law, &Mistake::two_powers, &Mistake::symmetry, &Mistake::linear,
-              &Mistake::moved, &Mistake::steps, &Mistake::which_is_uniform})
+        for (auto step : {&Mistake::power_law, &Mistake::exponent, &Mistake::two_powers,
+                          &Mistake::symmetry, &Mistake::linear, &Mistake::moved, &Mistake::slopes,
+                          &Mistake::steps, &Mistake::which_is_uniform})
             if (many || step == &Mistake::symmetry || step == &Mistake::moved)
                 if (const std::string why = (this->*step)(); !why.empty()) return why;
         return "";
@@ -324,6 +356,9 @@ struct Mistake {
 
     // p = c q wherever samples come.
     std::string constant(double c) const {
+        if (std::abs(c - 1) <= tolerance && share > 0.02 && std::abs(total - 1) < close())
+            return "the pdf is right where samples come, but " + percent(share) +
+                   " of them fail, and it integrates to 1 as if none did";
         if (std::abs(c - 1) <= tolerance)
             return total + share > 1 + close() &&
                            *std::max_element(ratios.begin(), ratios.end()) <= c + 3 * tolerance
@@ -354,10 +389,7 @@ struct Mistake {
                     cause += (cause.empty() ? "; looks like " : " or ") +
                              cause_of_power(b.name, k, " in the pdf");
         }
-        const std::string name = constant_named(c, to_name);
-        if (cause.empty() && (name == "pi" || name == "2 pi" || name == "4 pi"))
-            cause = "; looks like 1/" + (name == "pi" ? name : "(" + name + ")") + " forgotten";
-        if (cause.empty()) cause = ": a constant factor, its normalisation";
+        if (cause.empty()) cause = normalisation_hint(constant_named(c, to_name));
         // The cosine of a cone so narrow has no more digits.
         std::vector<double> heights;
         for (const Local<N>& l : good) heights.push_back(l.p);
@@ -420,6 +452,23 @@ struct Mistake {
                                             : cause_of_base(*b, k, normalised);
         return over(factor, power(b->name, k)) + (cause.empty() ? "" : ": looks like " + cause) +
                (uniform.empty() ? "" : "; " + uniform);
+    }
+    // Any other power, of a cosine: by least squares of the logarithms.
+    std::string exponent() const {
+        for (const Base<N>& b : bases) {
+            if (!b.cosine) continue;
+            double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+            for (size_t i = 0; i < good.size(); ++i) {
+                const double s = std::log(b.at(good[i].x)), t = std::log(ratios[i]);
+                ++n, x += s, y += t, xx += s * s, xy += s * t;
+            }
+            const double k = (n * xy - x * y) / (n * xx - x * x);
+            const Law law = law_over([&](X w) { return std::pow(b.at(w), k); });
+            if (law.holds && std::abs(k) > 0.01)
+                return over(law.factor, power(b.name, k)) +
+                       (normalised ? ": looks like an exponent in one of the two" : "");
+        }
+        return "";
     }
     // Either may be the wrong one of two.
     std::string which_is_uniform() const {
@@ -500,7 +549,8 @@ struct Mistake {
                        : over(std::pow(2 * length, 1 / k) / std::pow(4, 2 / k),
                               power("(4 wo.h)", k / 2)) +
                              " with wo = " + say_point(n) +
-                             ": looks like 4 wo.h of the half vector" + fate;
+                             ": looks like 4 wo.h of the half vector" + fate +
+                             (k < 0 ? ", or divided by twice" : "");
         if (scene.directions)
             return over(std::pow(length, k), power("(" + cosine + ")", k)) +
                    (j == 0 ? "" : " " + power("cos(theta)", -j)) + ": looks like " + cosine + fate +
@@ -595,6 +645,44 @@ struct Mistake {
         return plain && std::abs(best) > least ? best : 0;
     }
 
+    // Samples have the density of the pdf whose slopes tan(theta) about the normal, or the lobe's
+    // axis, are stretched: another roughness.
+    std::string slopes() const {
+        if constexpr (N == 3)
+            for (const Triple& n : {scene.normal, scene.lobe}) {
+                // w' = normalized(c n + t / s), dw' / dw = (c' / c)^3 / s^2
+                auto off = [&](const Local<N>& l, double s) {
+                    const double c = dot(l.x, n);
+                    Triple w;
+                    for (size_t k = 0; k < 3; ++k) w[k] = c * n[k] + (l.x[k] - c * n[k]) / s;
+                    w = normalized(w);
+                    return c > 0 ? pdf(w) * std::pow(dot(w, n) / c, 3) / (s * s * l.q) : 0;
+                };
+                auto apart = [&](double s) {
+                    double sum = 0;
+                    for (const Local<N>& l : good)
+                        sum += std::min(0.3, std::abs(std::log(off(l, s))));
+                    return sum;
+                };
+                double best = 0, nearest = infinity;
+                for (double step = 0.05; step > 1e-6; step /= 2) {
+                    const int reach = nearest == infinity ? 60 : 1;
+                    const double middle = best;
+                    for (int i = -reach; i <= reach; ++i)
+                        if (const double b = middle + i * step, d = apart(std::exp(b)); d < nearest)
+                            nearest = d, best = b;
+                }
+                std::vector<double> rest;
+                for (const Local<N>& l : good) rest.push_back(off(l, std::exp(best)));
+                if (scene.directions && std::abs(best) > 0.01 &&
+                    law_of(rest, tolerance).plain(tolerance))
+                    return "samples have the density of the pdf with slopes tan(theta) " +
+                           times(std::exp(best), 0.004) +
+                           " times as large: looks like another roughness, or its square or root";
+            }
+        return "";
+    }
+
     // Few constant factors, each at many points.
     std::string steps() const {
         std::vector<double> sorted = ratios;
@@ -642,17 +730,6 @@ std::string symmetry_of(DensityCheck<M, N, Domain>& check) {
     return "";
 }
 
-// The distance of x from the middle of the samples, squared.
-template <size_t M, size_t N, class Domain>
-double distance(const DensityCheck<M, N, Domain>& check, const Point<N>& x) {
-    double square = 0;
-    for (size_t k = 0; k < N; ++k)
-        if constexpr (DensityCheck<M, N, Domain>::directions)
-            square += std::pow(x[k] - check.domain.z[k], 2);
-        else
-            square += std::pow(x[k] - check.middle[k], 2);
-    return square;
-}
 // The cell whose count is off by most standard errors.
 size_t worst_cell(const auto& check) {
     const double n = sum_of(check.counts);
@@ -681,24 +758,72 @@ inline std::string width_of(std::vector<std::pair<double, double>> distance_and_
     return std::string(rises ? "wider" : "narrower") + " than the samples";
 }
 
+// In words, what alone a ratio at these points depends on: a function of the place, if neighbours
+// by it have nearly the same ratios; else the direction in which it grows, if that explains most of
+// it.
+template <size_t N>
+std::string dependence_of(const std::vector<Point<N>>& where, const std::vector<double>& ratios,
+                          const Scene<N>& scene, const Options& o) {
+    const size_t n = where.size();
+    std::vector<std::pair<double, double>> by(n);  // a function's values, and ratios
+    const double spread = median(ratios, 0.95) - median(ratios, 0.05);
+    for (const Base<N>& b : bases_of(o, scene)) {
+        for (size_t i = 0; i < n; ++i) by[i] = {b.at(where[i]), ratios[i]};
+        std::sort(by.begin(), by.end());
+        std::vector<double> steps;
+        for (size_t i = 1; i < n; ++i) steps.push_back(std::abs(by[i].second - by[i - 1].second));
+        if (median(steps, 0.75) < 0.04 * spread)
+            return ", by a function of " + b.name +
+                   say(" alone: %.3g at %.3g, %.3g at %.3g, %.3g at %.3g", by[n / 20].second,
+                       by[n / 20].first, by[n / 2].second, by[n / 2].first,
+                       by[n - 1 - n / 20].second, by[n - 1 - n / 20].first);
+    }
+    std::array<std::array<double, N + 2>, N + 1> rows{};  // least squares: a x + b
+    double mean = 0, square = 0, left = 0;
+    for (size_t i = 0; i < n; ++i) {
+        std::array<double, N + 2> row;
+        std::copy(where[i].begin(), where[i].end(), row.begin());
+        row[N] = 1, row[N + 1] = ratios[i];
+        mean += ratios[i] / double(n);
+        for (size_t r = 0; r <= N; ++r)
+            for (size_t c = 0; c <= N + 1; ++c) rows[r][c] += row[r] * row[c];
+    }
+    const auto a = solved(rows);
+    double length = 0;
+    for (size_t i = 0; i < n; ++i) {
+        double fit = a[N];
+        for (size_t k = 0; k < N; ++k) fit += a[k] * where[i][k];
+        square += std::pow(ratios[i] - mean, 2), left += std::pow(ratios[i] - fit, 2);
+    }
+    Point<N> towards{};
+    for (size_t k = 0; k < N; ++k) length += a[k] * a[k];
+    for (size_t k = 0; k < N; ++k) towards[k] = a[k] / std::sqrt(length);
+    if (N == 1 || !(left < 0.5 * square)) return "";
+    return ", larger towards " + say_point(towards) + " and smaller on the other side";
+}
+
 // The pdf beside the density of the samples, where their map tells it.
 std::string compared(const auto& check) {
+    const auto scene = check.scene();
     std::vector<double> ratios;
+    std::vector<decltype(scene.middle)> where;
     std::vector<std::pair<double, double>> by_distance;
     for (const auto& l : check.sheets.all)
         if (l.p > 0 && l.q < infinity && l.error < 0.05) {
             ratios.push_back(l.product());
-            by_distance.emplace_back(distance(check, l.x), l.product());
+            where.push_back(l.x);
+            by_distance.emplace_back(scene.distance(l.x), l.product());
         }
     if (ratios.size() < fewest_points) return "";
     const double low = median(ratios, 0.05), high = median(ratios, 0.95);
     if (high - low < 0.02)
         return "the pdf is " + times(median(ratios), 0.01) +
                " times the density of nearly all samples, but ";
-    const std::string width = width_of(by_distance);
+    const std::string law = dependence_of(where, ratios, scene, check.o),
+                      width = width_of(by_distance);
     return say("the pdf is %.3g to %.3g times the density of the samples (median %.3g)", low, high,
                median(ratios)) +
-           (width.empty() ? "" : ", " + width) + "; ";
+           (width.empty() ? "" : ", " + width) + law + "; ";
 }
 
 // The ratio of two pdfs at these points: a constant, or one and a power of a base.
@@ -717,8 +842,25 @@ std::string law_of_pdfs(const Scene<N>& scene, const Options& o, const std::vect
     return "";
 }
 
-// The counts follow the pdf times a power of a base, or one of its mirror images: for samplers
-// without a smooth map.
+// The counts follow the pdf times a power of a base, or one of its mirror images.
+template <size_t N>
+std::string law_that(const Scene<N>& scene, const Options& o, bool normalised,
+                     const auto& fits_times, const auto& fits_image) {
+    for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
+        for (const Base<N>& b : bases_of(o, scene))
+            if (fits_times([&](const Point<N>& x) { return std::pow(b.at(x), k); })) {
+                const std::string cause = cause_of_base(b, -k, normalised);
+                return "samples have the density of the pdf times " + power(b.name, k) +
+                       (cause.empty() ? "" : ": looks like " + cause);
+            }
+    return mirror_that(scene.centre, fits_image);
+}
+inline bool follow(const std::vector<double>& counts, const auto& parts) {
+    if (!(parts.total > 0 && std::isfinite(parts.total))) return false;
+    const CountsFit fit = fit_counts(counts, parts.shares(), parts.variances(), 0);
+    return fit.p > 1e-3 && fit.fewest >= fewest_in_cell;
+}
+// For samplers without a smooth map.
 template <size_t M, size_t N, class Domain>
 std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
     using X = const Point<N>&;
@@ -726,28 +868,35 @@ std::string law_of_cells(DensityCheck<M, N, Domain>& check) {
         check.claim = guess;
         const Parts parts = check.integrate();
         check.claim = {};
-        if (!(parts.total > 0 && std::isfinite(parts.total))) return false;
-        const CountsFit fit = fit_counts(check.counts, parts.shares(), parts.variances(), 0);
-        return fit.p > 1e-3 && fit.fewest >= fewest_in_cell;
+        return follow(check.counts, parts);
     };
     const auto& pdf = check.model.pdf;
-    for (const double k : {1.0, -1.0, 2.0, -2.0, -3.0})
-        for (const Base<N>& b : bases_of(check.o, check.scene()))
-            if (fits([&](X x) { return pdf(x) * std::pow(b.at(x), k); })) {
-                const std::string cause = cause_of_base(b, -k, check.balanced);
-                return "samples have the density of the pdf times " + power(b.name, k) +
-                       (cause.empty() ? "" : ": looks like " + cause);
-            }
-    return mirror_that(check.scene().centre, [&](const Map<N>& image) {
-        return fits([&](X x) { return pdf(image(x)); });
-    });
+    return law_that(
+        check.scene(), check.o, check.balanced,
+        [&](const auto& factor) { return fits([&](X x) { return pdf(x) * factor(x); }); },
+        [&](const Map<N>& image) { return fits([&](X x) { return pdf(image(x)); }); });
+}
+template <size_t N, class Domain>
+std::string law_of_cells(const ArrayCheck<N, Domain>& check, bool normalised) {
+    return law_that(
+        check.scene(), check.o, normalised,
+        [&](const auto& factor) { return follow(check.counts, check.parts(factor)); },
+        [&](const Map<N>& image) {
+            std::vector<Point<N>> images;
+            for (const Point<N>& w : check.samples) images.push_back(image(w));
+            ArrayCheck<N, Domain> turned{check.domain, images,         check.points,
+                                         check.pdf,    check.arriving, check.o};
+            return turned.wrong().empty() &&
+                   follow(turned.counts, turned.parts([](const Point<N>&) { return 1; }));
+        });
 }
 
-// Where counts differ most, by their cells: every other hint was silent.
-template <size_t M, size_t N, class Domain>
-std::string worst_cells_of(const DensityCheck<M, N, Domain>& check) {
+// Where counts differ most, by their cells: every other hint was silent.  products: p / q where a
+// map tells the density q of the samples.
+std::string worst_cells_of(const auto& check, std::vector<double> products = {}) {
+    const auto scene = check.scene();
     // In the middle of those that the pilot found there: the range's may be where nothing is.
-    std::array<std::vector<Point<N>>, cell_count> inside;
+    std::array<std::vector<decltype(scene.middle)>, cell_count> inside;
     for (const auto& c : check.pilot) inside[check.cells.of(c)].push_back(check.domain.at(c));
     auto middle_of = [&](size_t cell) {
         const auto& here = inside[cell];
@@ -763,14 +912,12 @@ std::string worst_cells_of(const DensityCheck<M, N, Domain>& check) {
     for (size_t i = 0; i < cell_count; ++i) {
         const double expected = n * check.expected[i];
         dense.push_back(expected > 0 ? check.counts[i] / expected : 1);
-        for (const Point<N>& x : inside[i])
-            by_distance.emplace_back(distance(check, x), 1 / dense[i]);
+        for (const auto& x : inside[i]) by_distance.emplace_back(scene.distance(x), 1 / dense[i]);
     }
     const auto [least, most] = std::minmax_element(dense.begin(), dense.end());
     const size_t other = size_t((dense[worst] > 1 ? least : most) - dense.begin());
     const std::string width = width_of(by_distance);
-    std::vector<double> products{infinity};
-    for (const auto& l : check.sheets.all) products.push_back(l.product());
+    products.push_back(infinity);
     const bool pieces = median(products, 0.1) > 0.98 && median(products, 0.9) < 1.02;
     return (pieces ? "every piece of the map has the density of the pdf, but " : "") +
            ("samples are " + say("%.4g", dense[worst]) +
@@ -842,7 +989,26 @@ std::string first_line_of(DensityCheck<M, N, Domain>& check) {
         return compared(check) + "samples are " + say("%.4g", 1 / sheets.off->product()) +
                " times as dense as the pdf says, at " + check.at(sheets.off->x) +
                ", u = " + say_point(sheets.u) + rounded;
-    return worst_cells_of(check);
+    std::vector<double> products;
+    for (const auto& l : sheets.all) products.push_back(l.product());
+    return worst_cells_of(check, products);
+}
+
+// The first line of a refusal of arrays.
+template <size_t N, class Domain>
+std::string first_line_of(const ArrayCheck<N, Domain>& check, const Parts& claimed, bool balanced,
+                          bool counted) {
+    const double factor = claimed.total / check.arriving,
+                 known = 1e-4 + 5 * claimed.error / claimed.total;
+    if (counted)
+        return "the pdf is " + times(factor, known) + " times the density of the samples" +
+               (check.arriving < 1 ? ", " + percent(1 - check.arriving) + " of which fail" : "") +
+               ", as far as counts tell" + normalisation_hint(constant_named(factor, known));
+    const std::string law = law_of_cells(check, balanced);
+    return (law.empty() ? worst_cells_of(check) : law) +
+           (balanced ? ""
+                     : say("; the pdf integrates to %.5g +- %.1g, expected %.5g", claimed.total,
+                           claimed.error, check.arriving));
 }
 
 // ---- What is wrong with a BSDF ------------------------------------------------------------------
@@ -948,6 +1114,23 @@ inline std::string albedo_hint(const std::vector<Albedo>& all, double alpha) {
 
 // ---- What is wrong with a choice ----------------------------------------------------------------
 
+// 1 + the number that changes no choice in 4096 tries: 0.2 % of all pairs.
+template <size_t M>
+size_t unused_number(Random& random, const Model<M, 1>& model) {
+    for (size_t k = 0; k < M && M > 1; ++k) {
+        auto differ = [&] {
+            Point<M> u = model.draw(random);
+            const double before = (*model.sample(u))[0];
+            u[k] = model.draw(random)[k];
+            return (*model.sample(u))[0] != before;
+        };
+        int tries = 0;
+        while (tries < 4096 && !differ()) ++tries;
+        if (tries == 4096) return k + 1;
+    }
+    return 0;
+}
+
 inline std::string of_what_is_said(const std::vector<double>& ratios) {
     const Law law = law_of(ratios, 1e-3);
     return (law.holds ? times(law.factor, 1e-3) : say("%.4g", ratios[0])) +
@@ -955,13 +1138,18 @@ inline std::string of_what_is_said(const std::vector<double>& ratios) {
 }
 
 inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
-                               double none, double tolerance) {
+                               double none, double tolerance, size_t unused) {
     const size_t count = expected.size();
     const double total = sum_of(expected), samples = none + sum_of(seen);
     if (none > 0 && std::abs(total - 1) < 1e-6)
         return percent(none / samples) +
                " of the choices are none, though the probabilities sum to 1";
     std::string cause;
+    if (unused > 0)
+        cause =
+            say("; choices do not depend on number %zu: looks like one number used for both, "
+                "or one ignored",
+                unused);
     // Other probabilities, if there are so many that it is not by chance.
     auto other = [&](size_t fewest, const std::string& words, const std::vector<double>& p) {
         if (cause.empty() && count >= fewest && fit_choices(p, seen, none, tolerance).p > 1e-4)
@@ -982,6 +1170,38 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
     shorter.back() = 0;
     for (double& p : shorter) p *= total / (total - expected.back());
     other(2, "a range too short", shorter);
+    std::vector<double> beyond(count);  // the next greater one gets what is left
+    double most = 0;
+    for (size_t i = 0; i < count; ++i) {
+        beyond[i] = std::max(0.0, expected[i] - most);
+        most = std::max(most, expected[i]);
+    }
+    for (const bool rest : {false, true}) {
+        if (rest) beyond.back() += total - most;
+        other(3, "a number compared with each probability, not with their sum", beyond);
+    }
+    for (const double k : {2.0, 0.5, -1.0}) {
+        std::vector<double> powers;
+        for (double p : expected) powers.push_back(std::pow(p, k));
+        const double sum = sum_of(powers);
+        for (double& p : powers) p *= total / sum;
+        if (std::isfinite(sum))
+            other(3, power("the probability", k) + " in place of the probability", powers);
+    }
+    // As many times 1 / count; the standard deviation of a frequency is below 1 / 2 sqrt(n).
+    auto whole = [&](const std::vector<double>& p, double of, double close) {
+        return std::all_of(p.begin(), p.end(), [&](double x) {
+            const double cells = x / of * double(count);
+            return std::abs(cells - std::round(cells)) < close;
+        });
+    };
+    const double close = 2.5 * double(count) / std::sqrt(samples);
+    if (cause.empty() && count >= 3 && close < 0.1 && whole(seen, samples, close) &&
+        !whole(expected, 1, 2 * close))
+        cause =
+            say("; all frequencies are multiples of 1/%zu: looks like a coin and an index from "
+                "one number, or a coin never thrown",
+                count);
     if (const auto [low, high] = std::minmax_element(expected.begin(), expected.end());
         *high < *low * (1 + 1e-6)) {
         // round(u n) and round(u (n - 1)).

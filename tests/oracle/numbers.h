@@ -108,6 +108,39 @@ inline bool Draws::heavy() const {
     return true;
 }
 
+inline ChoiceFit fit_choices(const std::vector<double>& probabilities,
+                             const std::vector<double>& seen, double none, double tolerance) {
+    ChoiceFit fit;
+    const double n = none + sum_of(seen);
+    double rare = 0, rare_seen = 0;
+    auto cell = [&](double mean, double number) {
+        ++fit.cells;
+        fit.chi2 += (number - mean) * (number - mean) / mean;
+    };
+    double failing = n;
+    for (size_t i = 0; i < seen.size(); ++i) {
+        const double mean = probabilities[i] * n;
+        failing -= mean;
+        if (mean == 0 && seen[i] > 0) fit.p = 0;
+        if (mean >= fewest_in_cell)
+            cell(mean, seen[i]);
+        else
+            rare += mean, rare_seen += seen[i];
+    }
+    // Less than a part of 1e-6 is rounding of the probabilities' sum.
+    if (none > 0 || failing > 1e-6 * n) rare += std::max(0.0, failing), rare_seen += none;
+    double chance = 1;
+    if (rare >= fewest_in_cell)
+        cell(rare, rare_seen);
+    else if (rare_seen > 0)
+        chance = 2 * p_at_least(rare_seen, rare * (1 + tolerance));
+    if (fit.cells > 1)
+        fit.p *= (rare > 0 && rare < fewest_in_cell ? 2 : 1) *
+                 p_of_chi2(fit.chi2, fit.cells - 1, forgiven(n, tolerance));
+    fit.p = std::min({1.0, fit.p, chance});
+    return fit;
+}
+
 // ---- Quadrature ---------------------------------------------------------------------------------
 
 // Gauss and Kronrod's rules of 7 and 15 points over [a,b].
@@ -731,6 +764,50 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
 
 // ---- What rounding does -------------------------------------------------------------------------
 
+// A thousandth of a length or of the spread is outside for sure; less is rounding, which other
+// parts of a check judge.
+template <class Domain, size_t N, size_t D>
+std::string stray(const Domain& domain, const Point<N>& w, const Point<D>& c, double unit,
+                  double extent) {
+    constexpr bool directions = is_sphere<Domain>;
+    const Point<N> back = domain.at(c);
+    double off = 0, size = 1e-300;
+    for (size_t k = 0; k < N; ++k) off += std::pow(back[k] - w[k], 2), size += w[k] * w[k];
+    const double ulps = roundings * unit * std::sqrt(size);
+    bool inside = off <= (directions ? 1e-6 : 1e-6 * extent + ulps * ulps);
+    for (size_t k = 0; k < D; ++k) {
+        const double slack = 1e-5 * (domain.upper[k] - domain.lower[k]) + (directions ? 0 : ulps);
+        inside = inside && c[k] >= domain.lower[k] - slack && c[k] <= domain.upper[k] + slack;
+    }
+    return inside       ? ""
+           : directions ? say("a sample is no direction: its length is %.6g, ", std::sqrt(size)) +
+                              say_point(w)
+                        : "a sample lies outside of the domain, " + say_point(w);
+}
+
+// Median of squared distances from the first point.
+template <size_t N>
+double extent_of(const std::vector<Point<N>>& points) {
+    std::vector<double> squares(points.size());
+    for (size_t i = 0; i < points.size(); ++i)
+        for (size_t k = 0; k < N; ++k) squares[i] += std::pow(points[i][k] - points[0][k], 2);
+    return median(squares);
+}
+
+// Where samples lie, whose medians are `middle`.
+template <size_t N, class Domain>
+Scene<N> scene_of(const Domain& domain, const Options& o, const Point<N>& middle) {
+    Scene<N> scene{is_sphere<Domain>};
+    scene.middle = middle;
+    if constexpr (is_sphere<Domain>) {
+        scene.lobe = scene.middle = domain.z;
+        if (dot(o.axis, o.axis) > 0) scene.normal = normalized(o.axis);
+    } else if constexpr (std::is_base_of_v<Box<N>, Domain>) {
+        scene.centre = Range<N>{domain.lower, domain.upper}.middle();
+    }
+    return scene;
+}
+
 // Points that one in a hundred samples repeats: a mirror's.  But 0, which many samplers return for
 // nothing; a sampler that ignores its numbers, which hints name; and a cap that rounding takes to
 // one point, of an angle whose cosine is less than 32 units from 1, so of 2 pi 32 units.
@@ -764,10 +841,7 @@ void DensityCheck<M, N, Domain>::fly_pilot() {
     if (points.size() < fewest_of_pilot) return;
     arriving = double(points.size()) / drawn;
     domain.fit(points, o.axis);
-    std::vector<double> squares(points.size());
-    for (size_t i = 0; i < points.size(); ++i)
-        for (size_t k = 0; k < N; ++k) squares[i] += std::pow(points[i][k] - points[0][k], 2);
-    extent = median(squares);
+    extent = extent_of(points);
     const int jitters = model.single ? 8 : 1;  // doubles meet no jump
     for (size_t i = 0; i < points.size(); ++i) {
         const auto c = domain.coordinates(points[i]);
@@ -846,6 +920,106 @@ double DensityCheck<M, N, Domain>::moved() {
     for (size_t i = 0; i < cell_count; ++i)
         if (all[i] > 0) sum += others[i] * others[i] / all[i], n += all[i];
     return n > 0 ? std::sqrt(sum / n) : 0;
+}
+
+// ---- Arrays of samples and densities ------------------------------------------------------------
+
+// A point for each of n equal parts of a range: cut into slabs along coordinate k, each of these
+// along the next.
+template <size_t D>
+void for_parts(const Range<D>& range, size_t n, size_t k, const auto& use) {
+    if (k == D) return use(range);
+    const size_t slabs = size_t(std::lround(std::pow(double(n), 1 / double(D - k))));
+    for (size_t i = 0; i < slabs; ++i) {
+        const size_t begin = n * i / slabs, end = n * (i + 1) / slabs;
+        const double width = (range.upper[k] - range.lower[k]) / double(n);
+        Range<D> slab = range;
+        slab.lower[k] += width * double(begin);
+        slab.upper[k] = range.lower[k] + width * double(end);
+        detail::for_parts(slab, end - begin, k + 1, use);
+    }
+}
+
+template <size_t N, class Domain>
+std::string ArrayCheck<N, Domain>::wrong() {
+    const double extent = extent_of(samples);
+    std::vector<Point<D>> places;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const Point<N>& w = samples[i];
+        for (double x : w)
+            if (!std::isfinite(x)) return say("sample %zu is not finite, ", i) + say_point(w);
+        places.push_back(domain.coordinates(w));
+        if (const std::string why = stray(domain, w, places[i], 0x1p-24, extent); !why.empty())
+            return why + say(", sample %zu", i);
+    }
+    Random random(0);  // samples may be sorted, or of a sequence
+    std::vector<Point<D>> others;
+    for (const Point<D>& c : places) (random() < 0.25 ? pilot : others).push_back(c);
+    cells = Cells<D>(pilot);
+    for (const Point<D>& c : others) ++counts[cells.of(c)];
+    double volume = 1;
+    for (size_t k = 0; k < D; ++k) volume *= domain.upper[k] - domain.lower[k];
+    for (size_t i = 0; i < pdf.size(); ++i) {
+        if (!(pdf[i] >= 0 && std::isfinite(pdf[i])))
+            return say("the pdf is %g at ", pdf[i]) + say_point(points[i]);
+        const Point<D> c = domain.coordinates(points[i]);
+        cell_of.push_back(cells.of(c));
+        part_of.push_back(pdf[i] * domain.weight(c) * volume / double(pdf.size()));
+    }
+    return "";
+}
+
+// Points that tell the pdf of a cell, of the one that has the fewest: (sum x)^2 / sum x^2 (Kish
+// 1965); where the pdf has less than half of a cell's share, which is wrong already, all.
+template <size_t N, class Domain>
+double ArrayCheck<N, Domain>::fewest_points() const {
+    std::array<double, cell_count> points{}, sum{}, squares{};
+    for (size_t i = 0; i < pdf.size(); ++i) {
+        const double x = part_of[i];
+        ++points[cell_of[i]], sum[cell_of[i]] += x, squares[cell_of[i]] += x * x;
+    }
+    for (size_t i = 0; i < cell_count; ++i)
+        if (sum[i] > 0.5 / double(cell_count) * sum_of(part_of))
+            points[i] = sum[i] * sum[i] / squares[i];
+    return *std::min_element(points.begin(), points.end());
+}
+
+// The pdf times factor(x).  Of a sum over pairs the variance is that of their differences.
+template <size_t N, class Domain>
+Parts ArrayCheck<N, Domain>::parts(const auto& factor) const {
+    Parts p;
+    auto at = [&](size_t i) {
+        const double x = i < pdf.size() && pdf[i] > 0 ? part_of[i] * factor(points[i]) : 0;
+        if (x > 0) p.value[cell_of[i]] += x, p.total += x;
+        return x;
+    };
+    double square = 0;
+    for (size_t i = 0; i < pdf.size(); i += 2) {
+        const double a = at(i), b = at(i + 1);
+        if (a == 0 && b == 0) continue;
+        square += (a - b) * (a - b);
+        if (a > 0 && b > 0 && cell_of[i] == cell_of[i + 1])
+            p.variance[cell_of[i]] += (a - b) * (a - b);
+        else {
+            if (a > 0) p.variance[cell_of[i]] += a * a;
+            if (b > 0) p.variance[cell_of[i + 1]] += b * b;
+        }
+    }
+    p.error = std::sqrt(square);
+    return p;
+}
+
+template <size_t N, class Domain>
+Scene<N> ArrayCheck<N, Domain>::scene() const {
+    Domain fitted = domain;
+    fitted.fit(samples, o.axis);
+    Point<N> middle{};
+    for (size_t k = 0; k < N; ++k) {
+        std::vector<double> x;
+        for (const Point<N>& w : samples) x.push_back(w[k]);
+        middle[k] = median(x);
+    }
+    return scene_of<N>(fitted, o, middle);
 }
 
 }  // namespace oracle::detail

@@ -106,92 +106,126 @@ inline std::string picture_of(const Draws& draws, double truth, const Options& o
     return d.written(o.name);
 }
 
-// 100 000 samples more and the pdf: on a line bars and a curve, else two maps and that of their
-// difference.
+// Samples and pdf in bins of a part of the domain: phi (or the first coordinate) runs to the right,
+// theta downwards.
+template <class Check>
+struct Bins {
+    static constexpr size_t D = Check::D, across = 48, down = D == 1 ? 1 : 32,
+                            right = D == 1 ? 0 : 1;
+    const Check& check;
+    Range<D> shown{check.domain.lower, check.domain.upper};
+    double area = 1;  // of a bin
+    std::vector<double> seen = std::vector<double>(across * down), claimed = seen;
+
+    explicit Bins(const Check& check_) : check(check_) {
+        for (size_t k = 0; k < D; ++k) {
+            const auto [low, high] =
+                std::minmax_element(check.pilot.begin(), check.pilot.end(),
+                                    [k](const auto& a, const auto& b) { return a[k] < b[k]; });
+            const double margin = 0.05 * ((*high)[k] - (*low)[k]) + 1e-12;
+            shown.lower[k] = std::max(shown.lower[k], (*low)[k] - margin);
+            shown.upper[k] = std::min(shown.upper[k], (*high)[k] + margin);
+            area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
+        }
+    }
+    double part(const Point<D>& c, size_t k) const {
+        return (c[k] - shown.lower[k]) / (shown.upper[k] - shown.lower[k]);
+    }
+    void add(std::vector<double>& bins, const Point<D>& c, double what) const {
+        const double x = part(c, right), y = D == 1 ? 0 : part(c, 0);
+        if (x >= 0 && x < 1 && y >= 0 && y < 1)
+            bins[size_t(y * double(down)) * across + size_t(x * double(across))] += what;
+    }
+    // The s-th of nine points within bin i.
+    Point<D> point(size_t i, int s) const {
+        Point<D> c;
+        for (size_t k = 0; k < D; ++k) {
+            const bool here = k == right;
+            const double bin =
+                double(here ? i % across : i / across) + ((here ? s % 3 : s / 3) + 0.5) / 3;
+            c[k] = std::clamp(shown.lower[k] + bin / double(here ? across : down) *
+                                                   (shown.upper[k] - shown.lower[k]),
+                              check.domain.lower[k], check.domain.upper[k]);
+        }
+        return c;
+    }
+
+    // On a line bars and a curve, else two maps and that of their difference.
+    std::string picture() const {
+        const double most = std::max({1.0, *std::max_element(seen.begin(), seen.end()),
+                                      *std::max_element(claimed.begin(), claimed.end())});
+        // The worst cell, in parts of what is shown.
+        Range<D> worst = check.range(worst_cell(check));
+        for (Point<D>* end : {&worst.lower, &worst.upper}) {
+            const Point<D> c = *end;
+            for (size_t k = 0; k < D; ++k) (*end)[k] = std::clamp(part(c, k), 0.0, 1.0);
+        }
+        Drawing d{D == 1 ? 620.0 : 1100.0, 330};
+        const std::string ends = "from " + say_point(check.domain.at(shown.lower)) + " to " +
+                                 say_point(check.domain.at(shown.upper));
+        if (D == 1) {
+            std::vector<std::pair<double, double>> line;
+            for (size_t i = 0; i < across; ++i) {
+                const double x = 40 + 11.5 * double(i), height = 240 * seen[i] / most;
+                d.rectangle(x, 290 - height, 10, height, "fill:rgb(170,170,170)");
+                line.emplace_back(x + 5, 290 - 240 * claimed[i] / most);
+            }
+            d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
+            d.text(40, 20, "samples (grey) and pdf (red), " + ends + "; worst cell below");
+            d.rectangle(40 + 552 * worst.lower[0], 300, 552 * (worst.upper[0] - worst.lower[0]), 6,
+                        "fill:black");
+            return d.written(check.o.name);
+        }
+        std::array<std::vector<double>, 3> values;
+        for (size_t i = 0; i < seen.size(); ++i) {
+            values[0].push_back(std::sqrt(seen[i] / most));
+            values[1].push_back(std::sqrt(claimed[i] / most));
+            values[2].push_back((seen[i] - claimed[i]) / (std::sqrt(claimed[i] + seen[i] + 1) * 6));
+        }
+        d.maps(values, across, 8, {"samples", "pdf", "samples - pdf: red too many, blue too few"});
+        for (double left : {10, 372, 734}) {
+            d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
+            d.rectangle(left + 350 * worst.lower[right], 30 + 256 * worst.lower[0],
+                        350 * (worst.upper[right] - worst.lower[right]),
+                        256 * (worst.upper[0] - worst.lower[0]),
+                        "fill:none;stroke:rgb(0,140,0);stroke-width:3");
+        }
+        d.text(10, 304,
+               (Check::directions ? "phi to the right, theta down, "
+                                  : "the second coordinate to the right, the first down, ") +
+                   ends + "; worst cell in green");
+        return d.written(check.o.name);
+    }
+};
+
+// 100 000 samples more, and the pdf at nine points of each bin.
 template <size_t M, size_t N, class Domain>
 std::string picture_of(DensityCheck<M, N, Domain>& check) {
-    constexpr size_t D = Domain::dimensions, across = 48, down = D == 1 ? 1 : 32;
-    if (D > 2 || pictures.empty()) return "";
-    // phi (or the first coordinate) runs to the right, theta downwards.
-    constexpr size_t right = D == 1 ? 0 : 1;
-    Range<D> shown{check.domain.lower, check.domain.upper};
-    double area = 1, total = 0, most = 1;
-    for (size_t k = 0; k < D; ++k) {
-        const auto [low, high] =
-            std::minmax_element(check.pilot.begin(), check.pilot.end(),
-                                [k](const auto& a, const auto& b) { return a[k] < b[k]; });
-        const double margin = 0.05 * ((*high)[k] - (*low)[k]) + 1e-12;
-        shown.lower[k] = std::max(shown.lower[k], (*low)[k] - margin);
-        shown.upper[k] = std::min(shown.upper[k], (*high)[k] + margin);
-        area *= (shown.upper[k] - shown.lower[k]) / double(k == right ? across : down);
-    }
-    auto part = [&](const Point<D>& c, size_t k) {
-        return (c[k] - shown.lower[k]) / (shown.upper[k] - shown.lower[k]);
-    };
-    std::vector<double> seen(across * down), claimed(across * down);
+    if (Domain::dimensions > 2 || pictures.empty()) return "";
+    Bins bins(check);
+    double total = 0;
     for (int i = 0; i < 100000; ++i)
         if (const auto c = check.one()) {
             ++total;
-            const double x = part(*c, right), y = D == 1 ? 0 : part(*c, 0);
-            if (x >= 0 && x < 1 && y >= 0 && y < 1)
-                ++seen[size_t(y * double(down)) * across + size_t(x * double(across))];
+            bins.add(bins.seen, *c, 1);
         }
-    for (size_t i = 0; i < seen.size(); ++i) {
-        for (int s = 0; s < 9; ++s) {
-            Point<D> c;
-            for (size_t k = 0; k < D; ++k) {
-                const bool here = k == right;
-                const double bin =
-                    double(here ? i % across : i / across) + ((here ? s % 3 : s / 3) + 0.5) / 3;
-                c[k] = std::clamp(shown.lower[k] + bin / double(here ? across : down) *
-                                                       (shown.upper[k] - shown.lower[k]),
-                                  check.domain.lower[k], check.domain.upper[k]);
-            }
-            claimed[i] += check.density_at(c) / 9 * area * total / check.parts.total;
-        }
-        most = std::max({most, seen[i], claimed[i]});
-    }
-    // The worst cell, in parts of what is shown.
-    Range<D> worst = check.range(worst_cell(check));
-    for (Point<D>* end : {&worst.lower, &worst.upper}) {
-        const Point<D> c = *end;
-        for (size_t k = 0; k < D; ++k) (*end)[k] = std::clamp(part(c, k), 0.0, 1.0);
-    }
-    Drawing d{D == 1 ? 620.0 : 1100.0, 330};
-    const std::string ends = "from " + say_point(check.domain.at(shown.lower)) + " to " +
-                             say_point(check.domain.at(shown.upper));
-    if (D == 1) {
-        std::vector<std::pair<double, double>> line;
-        for (size_t i = 0; i < across; ++i) {
-            const double x = 40 + 11.5 * double(i), height = 240 * seen[i] / most;
-            d.rectangle(x, 290 - height, 10, height, "fill:rgb(170,170,170)");
-            line.emplace_back(x + 5, 290 - 240 * claimed[i] / most);
-        }
-        d.curve(line, "stroke:rgb(200,0,0);stroke-width:2");
-        d.text(40, 20, "samples (grey) and pdf (red), " + ends + "; worst cell below");
-        d.rectangle(40 + 552 * worst.lower[0], 300, 552 * (worst.upper[0] - worst.lower[0]), 6,
-                    "fill:black");
-        return d.written(check.o.name);
-    }
-    std::array<std::vector<double>, 3> values;
-    for (size_t i = 0; i < seen.size(); ++i) {
-        values[0].push_back(std::sqrt(seen[i] / most));
-        values[1].push_back(std::sqrt(claimed[i] / most));
-        values[2].push_back((seen[i] - claimed[i]) / (std::sqrt(claimed[i] + seen[i] + 1) * 6));
-    }
-    d.maps(values, across, 8, {"samples", "pdf", "samples - pdf: red too many, blue too few"});
-    for (double left : {10, 372, 734}) {
-        d.rectangle(left, 30, 350, 256, "fill:none;stroke:black");
-        d.rectangle(left + 350 * worst.lower[right], 30 + 256 * worst.lower[0],
-                    350 * (worst.upper[right] - worst.lower[right]),
-                    256 * (worst.upper[0] - worst.lower[0]),
-                    "fill:none;stroke:rgb(0,140,0);stroke-width:3");
-    }
-    d.text(10, 304,
-           (check.directions ? "phi to the right, theta down, "
-                             : "the second coordinate to the right, the first down, ") +
-               ends + "; worst cell in green");
-    return d.written(check.o.name);
+    for (size_t i = 0; i < bins.seen.size(); ++i)
+        for (int s = 0; s < 9; ++s)
+            bins.claimed[i] +=
+                check.density_at(bins.point(i, s)) / 9 * bins.area * total / check.parts.total;
+    return bins.picture();
+}
+// All samples, and the pdf at all points.
+template <size_t N, class Domain>
+std::string picture_of(const ArrayCheck<N, Domain>& check) {
+    if (Domain::dimensions > 2 || pictures.empty()) return "";
+    Bins bins(check);
+    const auto& parts = check.part_of;
+    const double each = double(check.samples.size()) / sum_of(parts);
+    for (size_t i = 0; i < parts.size(); ++i)
+        bins.add(bins.claimed, check.domain.coordinates(check.points[i]), parts[i] * each);
+    for (const Point<N>& w : check.samples) bins.add(bins.seen, check.domain.coordinates(w), 1);
+    return bins.picture();
 }
 
 inline std::string Image::picture() const {
