@@ -1064,7 +1064,7 @@ auto model(Sample& sample, Pdf& pdf) {
 
 // Part two says what is wrong with a choice.
 std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
-                        double none, double tolerance);
+                        double none, double tolerance, size_t unused = 0);
 
 // Counts follow these probabilities, less a part that fails; rare ones by Poisson.
 struct ChoiceFit {
@@ -1102,8 +1102,9 @@ inline ChoiceFit fit_choices(const std::vector<double>& probabilities,
     return fit;
 }
 
+// unused: 1 + the number that changes no choice.
 inline Verdict judge_choices(const std::vector<double>& expected, const std::vector<double>& seen,
-                             double none, const Options& o) {
+                             double none, const Options& o, size_t unused = 0) {
     const double n = none + sum_of(seen);
     const ChoiceFit fit = fit_choices(expected, seen, none, o.tolerance);
     const double cells = std::max(1.0, fit.cells - 1);
@@ -1112,7 +1113,7 @@ inline Verdict judge_choices(const std::vector<double>& expected, const std::vec
                  "with 99.9 %% power: ",
                  n, seen.size(), fit.chi2, fit.cells, say_p(v.p).c_str()) +
              percent(v.delta_min);
-    if (!v.pass) v.text = choice_hint(expected, seen, none, o.tolerance) + "\n" + v.text;
+    if (!v.pass) v.text = choice_hint(expected, seen, none, o.tolerance, unused) + "\n" + v.text;
     return named(v, o);
 }
 
@@ -1190,7 +1191,20 @@ Verdict expect_choice(Random& random, Choose choose, Probability probability, si
                            (std::abs(total - 1) < 1e-3 ? say("%.9g", total) : times(total, 1e-4)) +
                            ", expected 1",
                        o);
-    return judge_choices(expected, seen, none, o);
+    size_t unused = 0;
+    for (size_t k = 0; k < M && M > 1; ++k) {
+        auto differ = [&] {
+            Point<M> u;
+            for (double& x : u) x = random.single();
+            const auto before = oracle::index_in(oracle::call(choose, u));
+            u[k] = random.single();
+            return oracle::index_in(oracle::call(choose, u)) != before;
+        };
+        int tries = 0;
+        while (tries < 4096 && !differ()) ++tries;
+        if (tries == 4096) unused = k + 1;
+    }
+    return judge_choices(expected, seen, none, o, unused);
 }
 
 // ---- Domains ------------------------------------------------------------------------------------
@@ -2912,6 +2926,29 @@ inline std::string cause_of(double ratio, double tolerance, const std::vector<Fa
     return text;
 }
 
+// Products of two factors that explain a ratio; if none or many do, the experiment that would.
+inline std::string combined(double ratio, double tolerance, const std::vector<Factor>& factors) {
+    std::string cause;
+    size_t causes = 0;
+    for (size_t i = 0; i < factors.size(); ++i)
+        for (size_t j = i + 1; j < factors.size(); ++j)
+            for (const double k : {1.0, -1.0})
+                for (const double l : {1.0, -1.0}) {
+                    const double x =
+                        std::pow(factors[i].at({}), k) * std::pow(factors[j].at({}), l);
+                    if (std::abs(ratio / x - 1) > std::min(tolerance, 0.02)) continue;
+                    ++causes;
+                    cause = "; looks like " + factors[i].name +
+                            (k > 0 ? " too many" : " forgotten") + ", and " + factors[j].name +
+                            (l > 0 ? " too many" : " forgotten");
+                }
+    if (causes == 1) return cause;
+    return factors.empty()
+               ? "; name the formula's factors (.factors), or change an input: a ratio that stays "
+                 "is a constant"
+               : "; no factor alone, nor two: repeat it where one of them is 1";
+}
+
 inline std::string mean_hint(const Estimate& e, double truth, const std::vector<Factor>& factors) {
     const double ratio = e.mean / truth, within = 5 * e.standard_error / std::abs(e.mean);
     if (within >= 1) return "; 0 within its error";
@@ -2920,9 +2957,9 @@ inline std::string mean_hint(const Estimate& e, double truth, const std::vector<
     // n / (n + 1), or its inverse.
     const double less = std::min(ratio, 1 / ratio), count = less / (1 - less),
                  n = std::round(count), known = within * count / (1 - less);
-    if (!cause.empty() || name.back() == ')' || n < 5 || known >= 0.25 ||
-        std::abs(count - n) >= known)
-        return text;
+    if (!cause.empty() || name.back() == ')') return text;
+    if (n < 5 || known >= 0.25 || std::abs(count - n) >= known)
+        return text + combined(ratio, within, factors);
     return text + say(", %.0f/%.0f: a count that is off by one?", ratio < 1 ? n : n + 1,
                       ratio < 1 ? n + 1 : n);
 }
@@ -3022,6 +3059,8 @@ inline std::string factor_and(double factor, double tolerance, const std::string
 template <size_t N>
 std::string cause_of_base(const Base<N>& b, double k, bool normalised) {
     if (b.of_host) return cause_of_power(b.name, k, " in the pdf");
+    if (normalised && b.cosine && k == -2)
+        return "the normal plus a point in the ball, for one on the sphere (or an exponent)";
     if (normalised || b.power != 1) return k == b.power ? b.drawn : "";
     return b.name == "sin(theta)" && k == 1
                ? "a density per (theta, phi), not per solid angle"
@@ -3124,9 +3163,9 @@ struct Mistake {
         const bool many = good.size() >= 50;
         if (const Law law = law_of(ratios, tolerance); many && law.holds)
             return constant(law.factor);
-        for (auto step :
-             {&Mistake::power_law, &Mistake::two_powers, &Mistake::symmetry, &Mistake::linear,
-              &Mistake::moved, &Mistake::steps, &Mistake::which_is_uniform})
+        for (auto step : {&Mistake::power_law, &Mistake::exponent, &Mistake::two_powers,
+                          &Mistake::symmetry, &Mistake::linear, &Mistake::moved, &Mistake::slopes,
+                          &Mistake::steps, &Mistake::which_is_uniform})
             if (many || step == &Mistake::symmetry || step == &Mistake::moved)
                 if (const std::string why = (this->*step)(); !why.empty()) return why;
         return "";
@@ -3157,6 +3196,9 @@ struct Mistake {
 
     // p = c q wherever samples come.
     std::string constant(double c) const {
+        if (std::abs(c - 1) <= tolerance && share > 0.02 && std::abs(total - 1) < close())
+            return "the pdf is right where samples come, but " + percent(share) +
+                   " of them fail, and it integrates to 1 as if none did";
         if (std::abs(c - 1) <= tolerance)
             return total + share > 1 + close() &&
                            *std::max_element(ratios.begin(), ratios.end()) <= c + 3 * tolerance
@@ -3251,6 +3293,23 @@ struct Mistake {
         return over(factor, power(b->name, k)) + (cause.empty() ? "" : ": looks like " + cause) +
                (uniform.empty() ? "" : "; " + uniform);
     }
+    // Any other power, of a cosine: by least squares of the logarithms.
+    std::string exponent() const {
+        for (const Base<N>& b : bases) {
+            if (!b.cosine) continue;
+            double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+            for (size_t i = 0; i < good.size(); ++i) {
+                const double s = std::log(b.at(good[i].x)), t = std::log(ratios[i]);
+                ++n, x += s, y += t, xx += s * s, xy += s * t;
+            }
+            const double k = (n * xy - x * y) / (n * xx - x * x);
+            const Law law = law_over([&](X w) { return std::pow(b.at(w), k); });
+            if (law.holds && std::abs(k) > 0.01)
+                return over(law.factor, power(b.name, k)) +
+                       (normalised ? ": looks like an exponent in one of the two" : "");
+        }
+        return "";
+    }
     // Either may be the wrong one of two.
     std::string which_is_uniform() const {
         std::vector<double> p, q;
@@ -3330,7 +3389,8 @@ struct Mistake {
                        : over(std::pow(2 * length, 1 / k) / std::pow(4, 2 / k),
                               power("(4 wo.h)", k / 2)) +
                              " with wo = " + say_point(n) +
-                             ": looks like 4 wo.h of the half vector" + fate;
+                             ": looks like 4 wo.h of the half vector" + fate +
+                             (k < 0 ? ", or divided by twice" : "");
         if (scene.directions)
             return over(std::pow(length, k), power("(" + cosine + ")", k)) +
                    (j == 0 ? "" : " " + power("cos(theta)", -j)) + ": looks like " + cosine + fate +
@@ -3425,6 +3485,44 @@ struct Mistake {
         return plain && std::abs(best) > least ? best : 0;
     }
 
+    // Samples have the density of the pdf whose slopes tan(theta) about the normal, or the lobe's
+    // axis, are stretched: another roughness.
+    std::string slopes() const {
+        if constexpr (N == 3)
+            for (const Triple& n : {scene.normal, scene.lobe}) {
+                // w' = normalized(c n + t / s), dw' / dw = (c' / c)^3 / s^2
+                auto off = [&](const Local<N>& l, double s) {
+                    const double c = dot(l.x, n);
+                    Triple w;
+                    for (size_t k = 0; k < 3; ++k) w[k] = c * n[k] + (l.x[k] - c * n[k]) / s;
+                    w = normalized(w);
+                    return c > 0 ? pdf(w) * std::pow(dot(w, n) / c, 3) / (s * s * l.q) : 0;
+                };
+                auto apart = [&](double s) {
+                    double sum = 0;
+                    for (const Local<N>& l : good)
+                        sum += std::min(0.3, std::abs(std::log(off(l, s))));
+                    return sum;
+                };
+                double best = 0, nearest = infinity;
+                for (double step = 0.05; step > 1e-6; step /= 2) {
+                    const int reach = nearest == infinity ? 60 : 1;
+                    const double middle = best;
+                    for (int i = -reach; i <= reach; ++i)
+                        if (const double b = middle + i * step, d = apart(std::exp(b)); d < nearest)
+                            nearest = d, best = b;
+                }
+                std::vector<double> rest;
+                for (const Local<N>& l : good) rest.push_back(off(l, std::exp(best)));
+                if (scene.directions && std::abs(best) > 0.01 &&
+                    law_of(rest, tolerance).plain(tolerance))
+                    return "samples have the density of the pdf with slopes tan(theta) " +
+                           times(std::exp(best), 0.004) +
+                           " times as large: looks like another roughness, or its square or root";
+            }
+        return "";
+    }
+
     // Few constant factors, each at many points.
     std::string steps() const {
         std::vector<double> sorted = ratios;
@@ -3491,14 +3589,60 @@ inline std::string width_of(std::vector<std::pair<double, double>> distance_and_
     return std::string(rises ? "wider" : "narrower") + " than the samples";
 }
 
+// In words, what alone a ratio at these points depends on: a function of the place, if neighbours
+// by it have nearly the same ratios; else the direction in which it grows, if that explains most of
+// it.
+template <size_t N>
+std::string dependence_of(const std::vector<Point<N>>& where, const std::vector<double>& ratios,
+                          const Scene<N>& scene, const Options& o) {
+    const size_t n = where.size();
+    std::vector<std::pair<double, double>> by(n);  // a function's values, and ratios
+    const double spread = median(ratios, 0.95) - median(ratios, 0.05);
+    for (const Base<N>& b : bases_of(o, scene)) {
+        for (size_t i = 0; i < n; ++i) by[i] = {b.at(where[i]), ratios[i]};
+        std::sort(by.begin(), by.end());
+        std::vector<double> steps;
+        for (size_t i = 1; i < n; ++i) steps.push_back(std::abs(by[i].second - by[i - 1].second));
+        if (median(steps, 0.75) < 0.04 * spread)
+            return ", by a function of " + b.name +
+                   say(" alone: %.3g at %.3g, %.3g at %.3g, %.3g at %.3g", by[n / 20].second,
+                       by[n / 20].first, by[n / 2].second, by[n / 2].first,
+                       by[n - 1 - n / 20].second, by[n - 1 - n / 20].first);
+    }
+    std::array<std::array<double, N + 2>, N + 1> rows{};  // least squares: a x + b
+    double mean = 0, square = 0, left = 0;
+    for (size_t i = 0; i < n; ++i) {
+        std::array<double, N + 2> row;
+        std::copy(where[i].begin(), where[i].end(), row.begin());
+        row[N] = 1, row[N + 1] = ratios[i];
+        mean += ratios[i] / double(n);
+        for (size_t r = 0; r <= N; ++r)
+            for (size_t c = 0; c <= N + 1; ++c) rows[r][c] += row[r] * row[c];
+    }
+    const auto a = solved(rows);
+    double length = 0;
+    for (size_t i = 0; i < n; ++i) {
+        double fit = a[N];
+        for (size_t k = 0; k < N; ++k) fit += a[k] * where[i][k];
+        square += std::pow(ratios[i] - mean, 2), left += std::pow(ratios[i] - fit, 2);
+    }
+    Point<N> towards{};
+    for (size_t k = 0; k < N; ++k) length += a[k] * a[k];
+    for (size_t k = 0; k < N; ++k) towards[k] = a[k] / std::sqrt(length);
+    if (N == 1 || !(left < 0.5 * square)) return "";
+    return ", larger towards " + say_point(towards) + " and smaller on the other side";
+}
+
 // The pdf beside the density of the samples, where their map tells it.
 std::string compared(const auto& check) {
     const auto scene = check.scene();
     std::vector<double> ratios;
+    std::vector<decltype(scene.middle)> where;
     std::vector<std::pair<double, double>> by_distance;
     for (const auto& l : check.sheets.all)
         if (l.p > 0 && l.q < infinity && l.error < 0.05) {
             ratios.push_back(l.product());
+            where.push_back(l.x);
             by_distance.emplace_back(scene.distance(l.x), l.product());
         }
     if (ratios.size() < 50) return "";
@@ -3506,10 +3650,11 @@ std::string compared(const auto& check) {
     if (high - low < 0.02)
         return "the pdf is " + times(median(ratios), 0.01) +
                " times the density of nearly all samples, but ";
-    const std::string width = width_of(by_distance);
+    const std::string law = dependence_of(where, ratios, scene, check.o),
+                      width = width_of(by_distance);
     return say("the pdf is %.3g to %.3g times the density of the samples (median %.3g)", low, high,
                median(ratios)) +
-           (width.empty() ? "" : ", " + width) + "; ";
+           (width.empty() ? "" : ", " + width) + law + "; ";
 }
 
 // The ratio of two pdfs at these points: a constant, or one and a power of a base.
@@ -3808,13 +3953,18 @@ inline std::string of_what_is_said(const std::vector<double>& ratios) {
 }
 
 inline std::string choice_hint(const std::vector<double>& expected, const std::vector<double>& seen,
-                               double none, double tolerance) {
+                               double none, double tolerance, size_t unused) {
     const size_t count = expected.size();
     const double total = sum_of(expected), samples = none + sum_of(seen);
     if (none > 0 && std::abs(total - 1) < 1e-6)
         return percent(none / samples) +
                " of the choices are none, though the probabilities sum to 1";
     std::string cause;
+    if (unused > 0)
+        cause =
+            say("; choices do not depend on number %zu: looks like one number used for both, "
+                "or one ignored",
+                unused);
     // Other probabilities, if there are so many that it is not by chance.
     auto other = [&](size_t fewest, const std::string& words, const std::vector<double>& p) {
         if (cause.empty() && count >= fewest && fit_choices(p, seen, none, tolerance).p > 1e-4)
@@ -3835,6 +3985,38 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
     shorter.back() = 0;
     for (double& p : shorter) p *= total / (total - expected.back());
     other(2, "a range too short", shorter);
+    std::vector<double> beyond(count);  // the next greater one gets what is left
+    double most = 0;
+    for (size_t i = 0; i < count; ++i) {
+        beyond[i] = std::max(0.0, expected[i] - most);
+        most = std::max(most, expected[i]);
+    }
+    for (const bool rest : {false, true}) {
+        if (rest) beyond.back() += total - most;
+        other(3, "a number compared with each probability, not with their sum", beyond);
+    }
+    for (const double k : {2.0, 0.5, -1.0}) {
+        std::vector<double> powers;
+        for (double p : expected) powers.push_back(std::pow(p, k));
+        const double sum = sum_of(powers);
+        for (double& p : powers) p *= total / sum;
+        if (std::isfinite(sum))
+            other(3, power("the probability", k) + " in place of the probability", powers);
+    }
+    // As many times 1 / count; the standard deviation of a frequency is below 1 / 2 sqrt(n).
+    auto whole = [&](const std::vector<double>& p, double of, double close) {
+        return std::all_of(p.begin(), p.end(), [&](double x) {
+            const double cells = x / of * double(count);
+            return std::abs(cells - std::round(cells)) < close;
+        });
+    };
+    const double close = 2.5 * double(count) / std::sqrt(samples);
+    if (cause.empty() && count >= 3 && close < 0.1 && whole(seen, samples, close) &&
+        !whole(expected, 1, 2 * close))
+        cause =
+            say("; all frequencies are multiples of 1/%zu: looks like a coin and an index from "
+                "one number, or a coin never thrown",
+                count);
     if (const auto [low, high] = std::minmax_element(expected.begin(), expected.end());
         *high < *low * (1 + 1e-6)) {
         // round(u n) and round(u (n - 1)).
