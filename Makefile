@@ -106,7 +106,7 @@ build/%$(SUFFIX): $(OBJECTS)/%.exe always
 
 # Who asks for build/penumbra with DEBUG=1 gets build/penumbra-debug, and is told.
 ifneq ($(SUFFIX),)
-PLAIN_NAMES := $(patsubst %,build/%,$(APPS) $(LABS) oracle-campaign)
+PLAIN_NAMES := $(patsubst %,build/%,$(APPS) $(LABS) oracle-campaign oracle)
 .PHONY: $(PLAIN_NAMES)
 $(PLAIN_NAMES): %: %$(SUFFIX)
 	@echo "this variant is $<; $@ is as it was"

@@ -54,11 +54,12 @@ ORACLE := $(patsubst %,tests/oracle/%.h,checks numbers host hints pictures)
 	    awk '/^#pragma once/ && n++ || /^#include "/ { next } 1' $(ORACLE); } >$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
-# It lies beside the oracle, and includes it alone.
-$(OBJECTS)/oracle-campaign.exe: OPTIMISE := $(OPTIMISE:-O3=-O2)
-$(OBJECTS)/oracle-campaign.exe: tests/oracle/campaign.cpp $(RULES)
+# They lie beside the oracle, and include it alone.  build/oracle checks arrays in files.
+$(OBJECTS)/oracle-campaign.exe: tests/oracle/campaign.cpp
+$(OBJECTS)/oracle.exe: tests/oracle/arrays.cpp
+$(OBJECTS)/oracle-campaign.exe $(OBJECTS)/oracle.exe: $(RULES)
 	@mkdir -p $(@D)
-	$(CXX) $(FLAGS) $(OPTIMISE) -MF $(@:.exe=.d) -MT $@ -o $@ $<
+	$(CXX) $(FLAGS) -Itests $(OPTIMISE:-O3=-O2) -MF $(@:.exe=.d) -MT $@ -o $@ $(filter %.cpp,$^)
 
 extremes:  ## numerical robustness: errors at the extremes, double and float, into reference/extremes.md (2 minutes)
 	@for real in double float; do \
@@ -120,7 +121,7 @@ layers:  ## check that every file includes only from layers below
 
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
 # vector is told so.
-HEAVY := app/render course/my_tests labs/cube labs/indirect_paths oracle/mistakes oracle/oracle path/pathtracer \
+HEAVY := app/render course/my_tests labs/cube labs/indirect_paths oracle/arrays oracle/mistakes oracle/oracle path/pathtracer \
          radiosity/mesh radiosity/particles radiosity/shooting radiosity/transfer radiosity/walks shadow/estimates \
          shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms wide/wide_bvh world/bsdf world/bvh world/shapes
 HEAVY := $(HEAVY:%=%_test)

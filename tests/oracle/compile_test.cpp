@@ -168,7 +168,7 @@ TEST_CASE("no warning by any compiler that is here, and macros of the host stay 
 #if !defined(pi) || !defined(min) || !defined(max) || !defined(near) || !defined(far)
 #error a macro is gone
 #endif
-static_assert(max(pi, 2) == 3 && ORACLE_VERSION >= 20100);
+static_assert(max(pi, 2) == 3 && ORACLE_VERSION >= 20200);
 )");
     const std::string every =
         " -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow -Wconversion "

@@ -1,6 +1,8 @@
 // oracle/hints_test.cpp  the first line of a refusal leads to the mistake
 #include <doctest/doctest.h>
 
+#include <optional>
+
 #include "oracle/expect.h"
 #include "oracle/textbook.h"
 
@@ -128,6 +130,28 @@ TEST_CASE("hints: directions") {
         return u < 0.5 ? about_z(std::sqrt(2 * u), 2 * pi * v) : about_z(2 * u - 1, 2 * pi * v);
     };
     auto both = [=](Triple w) { return cosine_pdf(w) + even(w); };
+    auto ball = [&] {
+        Triple p;
+        do
+            for (double& x : p) x = 2 * random() - 1;
+        while (dot(p, p) > 1);
+        return unit({p[0], p[1], p[2] + 1});
+    };
+    auto lobe_of_20 = [](Triple w) { return w[2] > 0 ? 21 / (2 * pi) * std::pow(w[2], 20) : 0; };
+    auto sheared = [](double u, double v) {
+        const Triple w = cosine(u, v);
+        return unit({w[0] + 0.1 * w[2], w[1], w[2]});
+    };
+    auto sheen = [](Triple w) { return w[2] > 0 ? 1.3 * (1 - w[2]) * (1 + w[2]) : 0; };
+    auto half_of_all = [](double u, double v) -> std::optional<Triple> {
+        if (u > 0.5) return {};
+        return about_z(1 - 2 * u, 2 * pi * v);
+    };
+    auto even_sphere = [](Triple) { return 1 / (4 * pi); };
+    auto twice = [=](Triple w) {
+        const Triple h = half_of(w, wo);
+        return h[2] > 0 ? facets(h[2], 0.4) * h[2] / (16 * dot(wo, h) * dot(wo, h)) : 0;
+    };
     auto poles = [](Triple w) { return (std::abs(w[2]) > 0.98 ? 2 : 1) / (4 * pi); };
     all_say(
         {{expect_density(random, wedges, cosine_pdf), "branches that overlap and leave a gap"},
@@ -139,7 +163,17 @@ TEST_CASE("hints: directions") {
          {expect_density(random, sphere, poles), "hardly any comes, or too large there"},
          {expect_density(random, sphere, [](Triple) { return (1 + 1e-5) / (4 * pi); }), "1.00001"},
          {expect_density(random, cosine, even), "the pdf is uniform, samples are not"},
-         {expect_density(random, normals, narrow), "narrower than the samples"},
+         {expect_density(random, normals, narrow),
+          "with slopes tan(theta) 2 (2, twice) times as large"},
+         {expect_density(random, ball, cosine_pdf),
+          "cos(theta)^2: looks like the normal plus a point in the ball"},
+         {expect_density(random, lobe, lobe_of_20), "cos(theta)^13: looks like an exponent"},
+         {expect_density(random, sheared, cosine_pdf), "larger towards (-0.9"},
+         {expect_density(random, cosine, sheen), "by a function of cos(theta) alone: "},
+         {expect_density(random, half_of_all, even_sphere),
+          " % of them fail, and it integrates to 1 as if none did"},
+         {expect_density(random, reflected, twice),
+          "4 wo.h of the half vector forgotten in the pdf, or divided by twice"},
          {expect_density(random, disc, per_area), "the cosine to (-0.5145"},
          {expect_density(random, texels, no_sine), "a density per (theta, phi)"},
          {expect_density(random, cube, [](Triple) { return 1 / (4 * pi); }), "points of a cube"},
@@ -286,7 +320,7 @@ TEST_CASE("hints: BSDFs") {
     auto opaque = [](Triple wo, Triple wi) { return wo[2] > 0 && wi[2] > 0 ? 0.5 / pi : 0; };
     const Verdict crossing = expect_bsdf(random, wide, goes_on, opaque, {.sees = 0.03});
     CHECK(crossing.pass);
-    says(crossing, "samples that cross the surface, 50");
+    says(crossing, "samples that cross the surface, ");
     says(crossing, "is transmission forgotten?");
     all_say(
         {{judged([&](Triple wo, Triple wi) { return lobe(wo, wi) / wo[2]; }),
@@ -316,10 +350,18 @@ TEST_CASE("hints: means") {
     auto mean = [&](double truth, double least, double most) {
         return expect_mean(truth, 200000, [&] { return least + (most - least) * random(); });
     };
-    all_say({{mean(0.6, 0, 1), ", 5/6: a count that is off by one?"},
-             {mean(1, 1, 2), " (3/2)\n"},
-             {mean(-1, 0, 2 * pi), "of the wrong sign"},
-             {mean(1, -1, 1), "; 0 within its error"}});
+    auto of_factors = [&](double ratio) {
+        return expect_mean(0.5, 100000, [&] { return ratio * random(); },
+                           {.factors = {{"albedo", 0.8}, {"r^2", 1.7}, {"cos", 0.3}}});
+    };
+    all_say(
+        {{of_factors(0.8 / 1.7), "; looks like albedo too many, and r^2 forgotten"},
+         {of_factors(0.83 / 1.7), "; no factor alone, nor two: repeat it where one of them is 1"},
+         {mean(0.53, 0, 1), "; name the formula's factors (.factors), or change an input"},
+         {mean(0.6, 0, 1), ", 5/6: a count that is off by one?"},
+         {mean(1, 1, 2), " (3/2)\n"},
+         {mean(-1, 0, 2 * pi), "of the wrong sign"},
+         {mean(1, -1, 1), "; 0 within its error"}});
 }
 
 TEST_CASE("hints: choices and images") {
@@ -362,6 +404,17 @@ TEST_CASE("hints: choices and images") {
     };
     all_say(
         {{chosen({0.1, 0.2, 0.7}, {0.1, 0.2, 0.3, 0.4}), "index 3 is never chosen"},
+         {chosen({0.1, 0.2, 0, 0.7}, {0.1, 0.3, 0.2, 0.4}),
+          "compared with each probability, not with their sum"},
+         {chosen({0.1, 0.2, 0, 0.1}, {0.1, 0.3, 0.2, 0.4}), "are none"},
+         {chosen({0.01 / 0.3, 0.09 / 0.3, 0.04 / 0.3, 0.16 / 0.3}, {0.1, 0.3, 0.2, 0.4}),
+          "the probability^2 in place of the probability"},
+         {chosen({0.2, 0.4, 0.2, 0.2, 0}, {0.05, 0.1, 0.15, 0.3, 0.4}),
+          "all frequencies are multiples of 1/5: looks like a coin and an index from one number"},
+         {expect_choice(
+              random, [](double u, double) { return int(3 * u); },
+              [](int i) { return i == 1 ? 0.5 : 0.25; }, 3),
+          "choices do not depend on number 2: looks like one number used for both"},
          {chosen({0.25, 0.25, 0.5}, {0.2, 0.2, 0.4, 0.2}), "looks like a range too short"},
          {chosen({0, 0.2, 0.1, 0.7}, {0.2, 0.1, 0.4, 0.3}), "looks like an index off by one"},
          {chosen({0.2}, {0.8}), "a comparison turned round"},
