@@ -2199,7 +2199,7 @@ Parts DensityCheck<M, N, Domain>::integrate() {
     const double near = !model.single ? 1e-4 : left > 0 ? 0 : 1e-3;  // left: scatter tells
     if (doubtful && D <= 2 && off < near) {
         const Parts again = by_rules(true);
-        other = std::abs(again.total - parts.total);
+        if (!enough()) other = std::abs(again.total - parts.total);  // else it has not come to all
         parts = again;
     }
     // In float rules stop where they still miss slivers between a border and their nodes, a
