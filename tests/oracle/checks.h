@@ -132,6 +132,7 @@ inline void spend(double alpha) {  // += of libc++ 17 and older has no doubles
     while (!alpha_spent.compare_exchange_weak(before, before + alpha)) {
     }
 }
+
 // ---- Seeds --------------------------------------------------------------------------------------
 
 // A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one.
@@ -409,6 +410,7 @@ struct Draws {
 
 // Of pictures.h: draws the running mean, and says where.
 std::string picture_of(const Draws& d, double truth, const Options& o);
+
 template <class F>
 Draws draw(uint64_t n, F f) {
     Draws draws;
@@ -1265,6 +1267,7 @@ double brightness(const auto& channels) {
     for (double x : channels) sum += x / double(channels.size());
     return sum;
 }
+
 // A direction by the cosine of its angle from z and by phi.
 inline Triple about_z_axis(double z, double phi) {
     const double s = std::sqrt(1 - z * z);

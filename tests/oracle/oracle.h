@@ -133,6 +133,7 @@ inline void spend(double alpha) {  // += of libc++ 17 and older has no doubles
     while (!alpha_spent.compare_exchange_weak(before, before + alpha)) {
     }
 }
+
 // ---- Seeds --------------------------------------------------------------------------------------
 
 // A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one.
@@ -410,6 +411,7 @@ struct Draws {
 
 // Of pictures.h: draws the running mean, and says where.
 std::string picture_of(const Draws& d, double truth, const Options& o);
+
 template <class F>
 Draws draw(uint64_t n, F f) {
     Draws draws;
@@ -1266,6 +1268,7 @@ double brightness(const auto& channels) {
     for (double x : channels) sum += x / double(channels.size());
     return sum;
 }
+
 // A direction by the cosine of its angle from z and by phi.
 inline Triple about_z_axis(double z, double phi) {
     const double s = std::sqrt(1 - z * z);
@@ -1764,6 +1767,7 @@ inline double p_at_least(double k, double mean) {
 inline double p_at_least(double k, double n, double p) {
     return k <= 0 ? 1 : k > n ? 0 : beta_i(k, n - k + 1, p);
 }
+
 // Index xi of the tail, P(|x - mean| > t) ~ t^(-1/xi), from the k farthest numbers (Hill 1975);
 // its standard error is xi / sqrt(k).  Variance is infinite from 1/2 on.
 inline double Draws::tail_index(size_t k) const {
@@ -1875,6 +1879,7 @@ inline Triple normalized(const Triple& a) {
     const double length = std::sqrt(dot(a, a));
     return {a[0] / length, a[1] / length, a[2] / length};
 }
+
 // Each has coordinates c between lower and upper, at(c) in it, coordinates(x) back, and weight(c),
 // the measure of dc.  Before, fit(points) sees where samples lie.
 
@@ -2103,6 +2108,7 @@ double nested(const F& f, Point<D>& c, const Range<D>& range, const Agreement& g
         return detail::integral(along, range.lower[K], range.upper[K], here, enough);
     }
 }
+
 // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
 // rule: none longer than 0.3 of the domain (on a line, where many cost little, 0.001), none of
 // which points fill a corner alone (a fifth of its length), none in which the density differs more
@@ -2625,6 +2631,7 @@ template <class V, size_t N>
 V of_host(const Point<N>& c) {
     return detail::of_host<V>(c, std::make_index_sequence<N>());
 }
+
 // The numbers of an array; of colours, their channels, one after the other.
 template <class Array>
 std::vector<double> numbers_in(const Array& array) {
@@ -2837,6 +2844,7 @@ auto probability_in(const R& r) {
     else
         return detail::density_of(r);
 }
+
 template <class Choose, class Probability>
 auto chooser(Choose& choose, Probability& probability) {
     constexpr size_t M = numbers_of<Choose>();
