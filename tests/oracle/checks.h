@@ -488,7 +488,7 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
     return named(judge("limit of n * bias", limit, constant, o), o);
 }
 
-// ---- Counts and choices -------------------------------------------------------------------------
+// ---- Counts -------------------------------------------------------------------------------------
 
 // Of host.h: the numbers of any array.
 template <class Array>

@@ -732,7 +732,7 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
     return s;
 }
 
-// ---- What rounding does -------------------------------------------------------------------------
+// ---- What a few samples tell a check: mirrors, borders, rims, rounding --------------------------
 
 // Points that one in a hundred samples repeats: a mirror's.  But 0, which many samplers return for
 // nothing; a sampler that ignores its numbers, which hints name; and a cap that rounding takes to

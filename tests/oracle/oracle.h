@@ -489,7 +489,7 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
     return named(judge("limit of n * bias", limit, constant, o), o);
 }
 
-// ---- Counts and choices -------------------------------------------------------------------------
+// ---- Counts -------------------------------------------------------------------------------------
 
 // Of host.h: the numbers of any array.
 template <class Array>
@@ -2413,7 +2413,7 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
     return s;
 }
 
-// ---- What rounding does -------------------------------------------------------------------------
+// ---- What a few samples tell a check: mirrors, borders, rims, rounding --------------------------
 
 // Points that one in a hundred samples repeats: a mirror's.  But 0, which many samplers return for
 // nothing; a sampler that ignores its numbers, which hints name; and a cap that rounding takes to
