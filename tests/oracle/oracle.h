@@ -778,8 +778,9 @@ Point<N> jittered(Point<N> x, double unit, Random& random) {
 // What sample returns beside a point is compared for so many samples.  It may be computed in
 // another way than what pdf or eval returns, with other roundings: the two agree within 32 times
 // the change to jittered neighbours, and a part of 1e-8, or of 1e-3 in float, where cosines near 1
-// have few digits (chosen; the bugs of bugs-found.md are larger).  So many samples more may
-// disagree.
+// have few digits (chosen; the bugs of bugs-found.md are larger).  Samples that 32 units move
+// across a jump may disagree (`jumps` are those of a jitter, of 2 units on average), and
+// `chance_few` more.
 inline constexpr int compared_samples = 2048, neighbours = 4;
 inline constexpr double chance_few = 8;
 inline double agreement(double change, bool single, const Options& o) {
@@ -1422,7 +1423,8 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     auto f = [&](const Triple& a, const Triple& b) {
         return brightness(detail::point(eval(of_host<V>(a), of_host<V>(b))));
     };
-    // Half vectors of exchanged directions are rounded, or what eval computes of them.
+    // Half vectors of exchanged directions are rounded, or what eval computes of them: in float up
+    // to 2 % (chosen).
     using Colour = decltype(eval(of_host<V>(Triple{}), of_host<V>(Triple{})));
     constexpr bool single = std::is_same_v<T, float> || std::is_same_v<Coordinate<Colour>, float>;
     const Exchange e = exchange(random, f, single ? 0.02 : 1e-6);
