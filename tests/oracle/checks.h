@@ -132,6 +132,7 @@ inline void spend(double alpha) {  // += of libc++ 17 and older has no doubles
     while (!alpha_spent.compare_exchange_weak(before, before + alpha)) {
     }
 }
+
 // ---- Seeds --------------------------------------------------------------------------------------
 
 // A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one.
@@ -409,6 +410,7 @@ struct Draws {
 
 // Of pictures.h: draws the running mean, and says where.
 std::string picture_of(const Draws& d, double truth, const Options& o);
+
 template <class F>
 Draws draw(uint64_t n, F f) {
     Draws draws;
@@ -486,7 +488,7 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
     return named(judge("limit of n * bias", limit, constant, o), o);
 }
 
-// ---- Counts and choices -------------------------------------------------------------------------
+// ---- Counts -------------------------------------------------------------------------------------
 
 // Of host.h: the numbers of any array.
 template <class Array>
@@ -755,8 +757,9 @@ Point<N> jittered(Point<N> x, double unit, Random& random) {
 // What sample returns beside a point is compared for so many samples.  It may be computed in
 // another way than what pdf or eval returns, with other roundings: the two agree within 32 times
 // the change to jittered neighbours, and a part of 1e-8, or of 1e-3 in float, where cosines near 1
-// have few digits (chosen; the bugs of bugs-found.md are larger).  So many samples more may
-// disagree.
+// have few digits (chosen; the bugs of bugs-found.md are larger).  Samples that 32 units move
+// across a jump may disagree (`jumps` are those of a jitter, of 2 units on average), and
+// `chance_few` more.
 inline constexpr int compared_samples = 2048, neighbours = 4;
 inline constexpr double chance_few = 8;
 inline double agreement(double change, bool single, const Options& o) {
@@ -1277,6 +1280,7 @@ double brightness(const auto& channels) {
     for (double x : channels) sum += x / double(channels.size());
     return sum;
 }
+
 // A direction by the cosine of its angle from z and by phi.
 inline Triple about_z_axis(double z, double phi) {
     const double s = std::sqrt(1 - z * z);
@@ -1430,7 +1434,8 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     auto f = [&](const Triple& a, const Triple& b) {
         return brightness(detail::point(eval(of_host<V>(a), of_host<V>(b))));
     };
-    // Half vectors of exchanged directions are rounded, or what eval computes of them.
+    // Half vectors of exchanged directions are rounded, or what eval computes of them: in float up
+    // to 2 % (chosen).
     using Colour = decltype(eval(of_host<V>(Triple{}), of_host<V>(Triple{})));
     constexpr bool single = std::is_same_v<T, float> || std::is_same_v<Coordinate<Colour>, float>;
     const Exchange e = exchange(random, f, single ? 0.02 : 1e-6);

@@ -159,6 +159,19 @@ TEST_CASE("densities in float: a triangle of the sphere, whose borders rules of 
     }
 }
 
+TEST_CASE("densities: a second integral that ran out of evaluations does not blind the check") {
+    auto sample = [](double u, double v) {
+        return std::pair(std::sqrt(u) * std::cos(2 * pi * v), std::sqrt(u) * std::sin(2 * pi * v));
+    };
+    auto disc = [](std::pair<double, double> p) {
+        return p.first * p.first + p.second * p.second <= 1 ? 1 / pi : 0;
+    };
+    for (uint64_t seed : {0, 5, 12}) {  // it did, in one of five: delta_min was 600 %
+        Random random(seed);
+        EXPECT(expect_density(random, sample, disc, {.alpha = 1e-3, .sees = 0.03}), 0.032);
+    }
+}
+
 TEST_CASE("images: one pixel of eight is named, and no further ones") {
     const Aside aside;
     const std::vector<double> values = {1, 1, 1, 1, 1, 1, 1, 2}, errors(8, 0.01), ones(8, 1);

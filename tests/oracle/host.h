@@ -94,6 +94,7 @@ template <class V, size_t N>
 V of_host(const Point<N>& c) {
     return detail::of_host<V>(c, std::make_index_sequence<N>());
 }
+
 // The numbers of an array; of colours, their channels, one after the other.
 template <class Array>
 std::vector<double> numbers_in(const Array& array) {
@@ -306,6 +307,7 @@ auto probability_in(const R& r) {
     else
         return detail::density_of(r);
 }
+
 template <class Choose, class Probability>
 auto chooser(Choose& choose, Probability& probability) {
     constexpr size_t M = numbers_of<Choose>();

@@ -86,6 +86,7 @@ inline double p_at_least(double k, double mean) {
 inline double p_at_least(double k, double n, double p) {
     return k <= 0 ? 1 : k > n ? 0 : beta_i(k, n - k + 1, p);
 }
+
 // Index xi of the tail, P(|x - mean| > t) ~ t^(-1/xi), from the k farthest numbers (Hill 1975);
 // its standard error is xi / sqrt(k).  Variance is infinite from 1/2 on.
 inline double Draws::tail_index(size_t k) const {
@@ -230,6 +231,7 @@ inline Triple normalized(const Triple& a) {
     const double length = std::sqrt(dot(a, a));
     return {a[0] / length, a[1] / length, a[2] / length};
 }
+
 // Each has coordinates c between lower and upper, at(c) in it, coordinates(x) back, and weight(c),
 // the measure of dc.  Before, fit(points) sees where samples lie.
 
@@ -458,6 +460,7 @@ double nested(const F& f, Point<D>& c, const Range<D>& range, const Agreement& g
         return detail::integral(along, range.lower[K], range.upper[K], here, enough);
     }
 }
+
 // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
 // rule: none longer than 0.3 of the domain (on a line, where many cost little, 0.001), none of
 // which points fill a corner alone (a fifth of its length), none in which the density differs more
@@ -554,7 +557,7 @@ Parts DensityCheck<M, N, Domain>::integrate() {
     const double near = !model.single ? 1e-4 : left > 0 ? 0 : 1e-3;  // left: scatter tells
     if (doubtful && D <= 2 && off < near) {
         const Parts again = by_rules(true);
-        other = std::abs(again.total - parts.total);
+        if (!enough()) other = std::abs(again.total - parts.total);  // else it has not come to all
         parts = again;
     }
     // In float rules stop where they still miss slivers between a border and their nodes, a
@@ -762,7 +765,7 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
     return s;
 }
 
-// ---- What rounding does -------------------------------------------------------------------------
+// ---- What a few samples tell a check: mirrors, borders, rims, rounding --------------------------
 
 // A thousandth of a length or of the spread is outside for sure; less is rounding, which other
 // parts of a check judge.

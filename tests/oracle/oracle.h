@@ -133,6 +133,7 @@ inline void spend(double alpha) {  // += of libc++ 17 and older has no doubles
     while (!alpha_spent.compare_exchange_weak(before, before + alpha)) {
     }
 }
+
 // ---- Seeds --------------------------------------------------------------------------------------
 
 // A function of the test's name (FNV-1a), so that nobody chooses it; TEST_SEED=n changes every one.
@@ -410,6 +411,7 @@ struct Draws {
 
 // Of pictures.h: draws the running mean, and says where.
 std::string picture_of(const Draws& d, double truth, const Options& o);
+
 template <class F>
 Draws draw(uint64_t n, F f) {
     Draws draws;
@@ -487,7 +489,7 @@ Verdict expect_bias_decay(double constant, uint64_t n, uint64_t trials, F f,
     return named(judge("limit of n * bias", limit, constant, o), o);
 }
 
-// ---- Counts and choices -------------------------------------------------------------------------
+// ---- Counts -------------------------------------------------------------------------------------
 
 // Of host.h: the numbers of any array.
 template <class Array>
@@ -756,8 +758,9 @@ Point<N> jittered(Point<N> x, double unit, Random& random) {
 // What sample returns beside a point is compared for so many samples.  It may be computed in
 // another way than what pdf or eval returns, with other roundings: the two agree within 32 times
 // the change to jittered neighbours, and a part of 1e-8, or of 1e-3 in float, where cosines near 1
-// have few digits (chosen; the bugs of bugs-found.md are larger).  So many samples more may
-// disagree.
+// have few digits (chosen; the bugs of bugs-found.md are larger).  Samples that 32 units move
+// across a jump may disagree (`jumps` are those of a jitter, of 2 units on average), and
+// `chance_few` more.
 inline constexpr int compared_samples = 2048, neighbours = 4;
 inline constexpr double chance_few = 8;
 inline double agreement(double change, bool single, const Options& o) {
@@ -1278,6 +1281,7 @@ double brightness(const auto& channels) {
     for (double x : channels) sum += x / double(channels.size());
     return sum;
 }
+
 // A direction by the cosine of its angle from z and by phi.
 inline Triple about_z_axis(double z, double phi) {
     const double s = std::sqrt(1 - z * z);
@@ -1431,7 +1435,8 @@ Verdict expect_bsdf(Random& random, Sample sample, Pdf pdf, EvalOf eval, const O
     auto f = [&](const Triple& a, const Triple& b) {
         return brightness(detail::point(eval(of_host<V>(a), of_host<V>(b))));
     };
-    // Half vectors of exchanged directions are rounded, or what eval computes of them.
+    // Half vectors of exchanged directions are rounded, or what eval computes of them: in float up
+    // to 2 % (chosen).
     using Colour = decltype(eval(of_host<V>(Triple{}), of_host<V>(Triple{})));
     constexpr bool single = std::is_same_v<T, float> || std::is_same_v<Coordinate<Colour>, float>;
     const Exchange e = exchange(random, f, single ? 0.02 : 1e-6);
@@ -1776,6 +1781,7 @@ inline double p_at_least(double k, double mean) {
 inline double p_at_least(double k, double n, double p) {
     return k <= 0 ? 1 : k > n ? 0 : beta_i(k, n - k + 1, p);
 }
+
 // Index xi of the tail, P(|x - mean| > t) ~ t^(-1/xi), from the k farthest numbers (Hill 1975);
 // its standard error is xi / sqrt(k).  Variance is infinite from 1/2 on.
 inline double Draws::tail_index(size_t k) const {
@@ -1920,6 +1926,7 @@ inline Triple normalized(const Triple& a) {
     const double length = std::sqrt(dot(a, a));
     return {a[0] / length, a[1] / length, a[2] / length};
 }
+
 // Each has coordinates c between lower and upper, at(c) in it, coordinates(x) back, and weight(c),
 // the measure of dc.  Before, fit(points) sees where samples lie.
 
@@ -2148,6 +2155,7 @@ double nested(const F& f, Point<D>& c, const Range<D>& range, const Agreement& g
         return detail::integral(along, range.lower[K], range.upper[K], here, enough);
     }
 }
+
 // Ranges so small that no peak and no border that the pilot found hides between the nodes of a
 // rule: none longer than 0.3 of the domain (on a line, where many cost little, 0.001), none of
 // which points fill a corner alone (a fifth of its length), none in which the density differs more
@@ -2244,7 +2252,7 @@ Parts DensityCheck<M, N, Domain>::integrate() {
     const double near = !model.single ? 1e-4 : left > 0 ? 0 : 1e-3;  // left: scatter tells
     if (doubtful && D <= 2 && off < near) {
         const Parts again = by_rules(true);
-        other = std::abs(again.total - parts.total);
+        if (!enough()) other = std::abs(again.total - parts.total);  // else it has not come to all
         parts = again;
     }
     // In float rules stop where they still miss slivers between a border and their nodes, a
@@ -2452,7 +2460,7 @@ Sheets<N, D> sheets_of(const Model<D, N>& model, Random& random, double toleranc
     return s;
 }
 
-// ---- What rounding does -------------------------------------------------------------------------
+// ---- What a few samples tell a check: mirrors, borders, rims, rounding --------------------------
 
 // A thousandth of a length or of the spread is outside for sure; less is rounding, which other
 // parts of a check judge.
@@ -2811,6 +2819,7 @@ template <class V, size_t N>
 V of_host(const Point<N>& c) {
     return detail::of_host<V>(c, std::make_index_sequence<N>());
 }
+
 // The numbers of an array; of colours, their channels, one after the other.
 template <class Array>
 std::vector<double> numbers_in(const Array& array) {
@@ -3023,6 +3032,7 @@ auto probability_in(const R& r) {
     else
         return detail::density_of(r);
 }
+
 template <class Choose, class Probability>
 auto chooser(Choose& choose, Probability& probability) {
     constexpr size_t M = numbers_of<Choose>();

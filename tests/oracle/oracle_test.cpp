@@ -408,29 +408,33 @@ void check_textbooks() {
 
 }  // namespace
 
-// Seconds in which a check sees an error of 1 % at alpha = 1e-6, and one of 3 % at 1e-3: the table
-// of README.md.  build/.../oracle_test.exe -ns -tc="what checks cost"
+// The smallest error that each check sees of so many samples, and its seconds, by default and at
+// {.alpha = 1e-3, .sees = 0.03}: the table of README.md.
+// build/.../oracle_test.exe -ns -tc="what checks cost"
 TEST_CASE("what checks cost" * doctest::skip()) {
     using clock = std::chrono::steady_clock;
-    auto row = [](const char* what, auto check) {
+    auto row = [](const char* what, auto samples, auto check) {
         std::printf("| %s |", what);
         for (const Options& o : {Options{}, Options{.alpha = 1e-3, .sees = 0.03}}) {
+            const uint64_t n = uint64_t(samples(o));
             std::vector<double> seconds;
             double seen = 0;
             for (int i = 0; i < 5; ++i) {
                 const auto begin = clock::now();
-                const Verdict v = check(o);
+                const Verdict v = check(o, n);
                 seconds.push_back(std::chrono::duration<double>(clock::now() - begin).count());
                 CHECK(v.pass);
                 seen = v.delta_min;
             }
-            std::printf(" %.2g %% in %.2f s |", 100 * seen, median(seconds));
+            std::printf(" %.2g %% at n = %g, %.2g s |", 100 * seen, double(n), median(seconds));
         }
         std::printf("\n");
     };
+    auto fixed = [](double n) { return [=](const Options&) { return n; }; };
     Random random(seed_here());
     auto density = [&](const char* what, auto sample, auto pdf) {
-        row(what, [&](const Options& o) { return expect_density(random, sample, pdf, o); });
+        row(what, oracle::detail::samples_for,
+            [&](const Options& o, uint64_t) { return expect_density(random, sample, pdf, o); });
     };
     using V = textbook::Vec<double>;
     const V wo{0.8, 0, 0.6};
@@ -440,7 +444,7 @@ TEST_CASE("what checks cost" * doctest::skip()) {
     auto visible_pdf = [&](double a) {
         return [=](V w) { return textbook::ggx_visible_pdf(wo, w, a); };
     };
-    density("cosine hemisphere", cosine_direction, cosine_pdf);
+    density("expect_density, cosine hemisphere", cosine_direction, cosine_pdf);
     density("GGX by visible normals, alpha = 0.3", visible(0.3), visible_pdf(0.3));
     density("GGX by visible normals, alpha = 0.02", visible(0.02), visible_pdf(0.02));
     density(
@@ -450,20 +454,64 @@ TEST_CASE("what checks cost" * doctest::skip()) {
     density("mixture of cosine and uniform hemisphere", mixed_direction, mixed_pdf(0.3));
     density("exponential, on the line", exponential, exponential_pdf);
     density("disc, in the plane", disc, disc_pdf);
-    row("box of three dimensions", [&](const Options& o) {
+    row("box of three dimensions", oracle::detail::samples_for, [&](const Options& o, uint64_t) {
         auto sample = [](double a, double b, double c) { return Triple{a, b, std::cbrt(c)}; };
         auto pdf = [](Triple x) { return 3 * x[2] * x[2]; };
         return expect_density(random, sample, pdf, Box<3>{{0, 0, 0}, {1, 1, 1}}, o);
     });
-    row("choice among 16", [&](const Options& o) {
+    row("expect_jacobian", fixed(300), [&](const Options& o, uint64_t) {
+        return expect_jacobian(random, cosine_direction, cosine_pdf, o);
+    });
+    row("expect_samples", fixed(1e6), [&](const Options& o, uint64_t n) {
+        const auto points = oracle::points_in(random, oracle::Sphere{}, n);
+        std::vector<Direction> samples;
+        std::vector<double> pdfs;
+        for (uint64_t i = 0; i < n; ++i) samples.push_back(cosine_direction(random(), random()));
+        for (const Triple& w : points) pdfs.push_back(cosine_pdf({w[0], w[1], w[2]}));
+        return expect_samples(samples, points, pdfs, oracle::Sphere{}, o);
+    });
+    row("expect_choice, among 16", oracle::detail::samples_for, [&](const Options& o, uint64_t) {
         auto choose = [](double u) { return int(16 * u); };
         return expect_choice(
             random, choose, [](int) { return 1 / 16.0; }, 16, o);
     });
-    row("mean of numbers that spread as much as they are large", [&](const Options& o) {
-        const uint64_t n = uint64_t(std::pow(smallest_shift(infinity, o.alpha) / o.sees, 2));
-        return expect_mean(
-            1, n, [&] { return exponential(random()); }, o);
+    row("expect_counts, 32 cells", oracle::detail::samples_for, [&](const Options& o, uint64_t n) {
+        std::vector<double> counts(32);
+        for (uint64_t i = 0; i < n; ++i) ++counts[size_t(32 * random())];
+        return expect_counts(counts, std::vector<double>(32, 1 / 32.0), o);
+    });
+    // Numbers that spread as much as they are large.
+    auto number = [&] { return exponential(random()); };
+    auto uniform = [&] { return random(); };
+    auto by_t = [](const Options& o) {
+        return std::pow(smallest_shift(infinity, o.alpha) / o.sees, 2);
+    };
+    row("expect_mean", by_t,
+        [&](const Options& o, uint64_t n) { return expect_mean(1, n, number, o); });
+    row("expect_equal", by_t,
+        [&](const Options& o, uint64_t n) { return expect_equal(number, number, n, o); });
+    row("expect_replicates, of 1000 numbers", fixed(64), [&](const Options& o, uint64_t n) {
+        auto replicate = [&](int) { return draw(1000, number).mean(); };
+        return expect_replicates(1, int(n), replicate, o);
+    });
+    row("expect_bias_decay, of 8 and 16 numbers", fixed(1e5), [&](const Options& o, uint64_t n) {
+        auto error = [&](uint64_t k) { return std::pow(draw(k, uniform).mean(), 2) - 0.25; };
+        return expect_bias_decay(1 / 12.0, 8, n, error, o);
+    });
+    row("expect_bsdf, diffuse", fixed(4), [&](const Options& o, uint64_t) {
+        auto sample = [](Direction, double u, double v) { return cosine_direction(u, v); };
+        auto pdf = [](Direction, Direction wi) { return cosine_pdf(wi); };
+        auto eval = [](Direction out, Direction wi) {
+            return out.z > 0 && wi.z > 0 ? 0.5 / oracle::pi : 0;
+        };
+        return expect_bsdf(random, sample, pdf, eval, o);
+    });
+    row("expect_image, errors of 10 %", fixed(64 * 64), [&](const Options& o, uint64_t n) {
+        std::vector<double> values;
+        for (uint64_t i = 0; i < n; ++i)
+            values.push_back(1 + 0.1 * std::sqrt(12 * 256.0) * (draw(256, uniform).mean() - 0.5));
+        const std::vector<double> errors(n, 0.1), ones(n, 1);
+        return expect_image(64, 64, values, errors, ones, o);
     });
 }
 
