@@ -170,6 +170,11 @@ TEST_CASE("arrays: first lines") {
     CHECK(first_line(cosine_pdf, {.n = 400000}) ==
           "the pdf is 2 (2, twice) times the density of the samples, 50 % of which fail, as far as "
           "counts tell: a constant factor, its normalisation");
+    // A side that hardly has a part of the pdf, but no sample.
+    auto below = [](auto& w) {
+        return 0.999 * cosine_pdf(w) + (w[2] < 0) * 0.001 / (2 * oracle::pi);
+    };
+    CHECK(first_line(below) == "no sample has z < 0, where the pdf has 0.1 % of its integral");
     // In the words of an option: the factor that the host named.
     oracle::Options named;
     named.factors = {{"1 + x", [](const oracle::Triple& w) { return 1 + w[0]; }}};

@@ -674,7 +674,7 @@ Verdict judge_choice(Random& random, const Model<M, 1>& model, size_t count, con
     if (none == 0 && std::abs(total - 1) > rounding + o.tolerance)
         return failure("the probabilities sum to " +
                            (std::abs(total - 1) < 1e-3 ? say("%.9g", total) : times(total, 1e-4)) +
-                           ", expected 1",
+                           ", expected 1; " + choice_hint(expected, seen, none, o.tolerance),
                        o);
     return judge_choices(expected, seen, none, o, unused_number(random, model));
 }
@@ -1190,8 +1190,9 @@ struct ArrayCheck {
     std::vector<double> counts = std::vector<double>(cell_count), expected = {};
 
     // Of numbers.h.
-    std::string wrong();           // what no right sampler or pdf does; else it fills the cells
-    double fewest_points() const;  // that tell the pdf in a cell
+    std::string wrong();  // what no right sampler or pdf does; else it fills the cells
+    std::string without_samples() const;    // a side of a coordinate that has the pdf alone
+    double fewest_points() const;           // that tell the pdf in a cell
     Parts parts(const auto& factor) const;  // the pdf times factor(x)
     Scene<N> scene() const;
 
@@ -1224,9 +1225,9 @@ Verdict ArrayCheck<N, Domain>::run() {
     if (!(claimed.total > 0)) return failure("the pdf is 0 at all points");
     spend(o.alpha / 2);  // for the integral
     const Options half{.alpha = o.alpha / 2, .tolerance = o.tolerance};
-    const bool balanced =
-        std::abs(claimed.total - arriving) <= smallest_shift(infinity, half.alpha) * claimed.error +
-                                                  512 * 0x1p-24;  // as of floats in expect_density
+    const bool balanced = std::abs(claimed.total - arriving) <=
+                          smallest_shift(infinity, 0.4 * o.alpha) * claimed.error +
+                              512 * 0x1p-24;  // as of floats in expect_density
     expected = claimed.shares();
     Verdict v = judge_counts(counts, expected, half, claimed.variances());
     double blind = 0;  // by so few points
@@ -1234,18 +1235,18 @@ Verdict ArrayCheck<N, Domain>::run() {
         blind += claimed.variances()[i] / std::max(1e-300, expected[i]) / double(cell_count);
     v.delta_min = std::hypot(v.delta_min, half.sees * std::sqrt(samples_for(half) * blind));
     const bool counted = v.pass;
-    v.pass = counted && balanced;
+    v.pass = counted && balanced && without_samples().empty();
     v.text += say("; the pdf integrates to %.5g +- %.1g", claimed.total, claimed.error);
     if (v.pass) return v;
-    if (!balanced) v.p = 0;
+    if (!balanced || counted) v.p = 0;
     v.text = first_line_of(*this, claimed, balanced, counted) + "\n" + v.text + picture_of(*this);
     return v;
 }
 
 // Samples from elsewhere (a GPU, Python) have the density whose value at points[i] is pdfs[i], with
 // points = points_in(random, domain, n), or independent ones that are uniform in its coordinates:
-// chi-squared, and the integral.  o.n: the number of samples
-// drawn, if some failed and are not in the array.
+// chi-squared, the integral, and sides of a coordinate that have no sample.  o.n: the number of
+// samples drawn, if some failed and are not in the array.
 template <class Samples, class Points, class Pdfs, class Domain>
 Verdict expect_samples(const Samples& samples, const Points& points, const Pdfs& pdfs,
                        const Domain& domain, const Options& o = {}) {

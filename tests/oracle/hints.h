@@ -82,7 +82,7 @@ inline std::string cause_of(double ratio, double tolerance, const std::vector<Fa
     may_be(-1, "the sign reversed");
     if (causes.empty() || causes.size() > 3) return "";
     std::string text = "; looks like " + causes[0];
-    for (size_t i = 1; i < causes.size(); ++i) text += " or " + causes[i];
+    for (size_t i = 1; i < causes.size(); ++i) text += "; or " + causes[i];
     return text;
 }
 
@@ -103,17 +103,21 @@ inline std::string combined(double ratio, double tolerance, const std::vector<Fa
                             (l > 0 ? " too many" : " forgotten");
                 }
     if (causes == 1) return cause;
-    return factors.empty()
-               ? "; name the formula's factors (.factors), or change an input: a ratio that stays "
-                 "is a constant"
-               : "; no factor alone, nor two: repeat it where one of them is 1";
+    return std::string(factors.empty() ? "; name the formula's factors (.factors), or make"
+                                       : "; no factor alone, nor two: make") +
+           " the integrand constant: a ratio that stays is a constant";
 }
 
 inline std::string mean_hint(const Estimate& e, double truth, const std::vector<Factor>& factors) {
     const double ratio = e.mean / truth, within = 5 * e.standard_error / std::abs(e.mean);
     if (within >= 1) return "; 0 within its error";
     const std::string name = times(ratio, within), cause = cause_of(ratio, within, factors);
-    const std::string text = "; ratio " + name + (ratio < 0 ? ", of the wrong sign" : "") + cause;
+    std::string text = "; ratio " + name + (ratio < 0 ? ", of the wrong sign" : "") + cause;
+    const double off = e.mean - truth;
+    for (const Factor& f : factors)
+        if (const double x = f.at({}); cause.empty() && std::abs(std::abs(off / x) - 1) < to_agree)
+            return text + say("; off by %.4g: looks like ", off) + f.name +
+                   (off * x < 0 ? " not added, or taken off twice" : " added twice");
     // n / (n + 1), or its inverse.
     const double less = std::min(ratio, 1 / ratio), count = less / (1 - less),
                  n = std::round(count), known = within * count / (1 - less);
@@ -325,7 +329,7 @@ struct Mistake {
             return constant(law.factor);
         for (auto step : {&Mistake::power_law, &Mistake::exponent, &Mistake::two_powers,
                           &Mistake::symmetry, &Mistake::linear, &Mistake::moved, &Mistake::slopes,
-                          &Mistake::steps, &Mistake::which_is_uniform})
+                          &Mistake::power_of_density, &Mistake::steps, &Mistake::which_is_uniform})
             if (many || step == &Mistake::symmetry || step == &Mistake::moved)
                 if (const std::string why = (this->*step)(); !why.empty()) return why;
         return "";
@@ -376,7 +380,12 @@ struct Mistake {
         if (c < 1 && std::abs(total + share - 1) < (1 - c) / 3)
             return "samples are " + times(1 / c, to_name) +
                    " times as dense as the pdf says wherever they come" + where_none() +
-                   "; looks like a gap: part of the domain (half of it? of phi?) never sampled";
+                   (angle_of_none() > 0
+                        ? say("; none is beyond %.4g degrees from their axis, where the pdf is "
+                              "positive: looks like the angle of a cone",
+                              angle_of_none() * 180 / pi)
+                        : "; looks like a gap: part of the domain (half of it? of phi?) "
+                          "never sampled");
         if (std::abs(total / c + share - 1) > close()) return "";
         std::string cause;
         for (const Base<N>& b : bases) {
@@ -414,6 +423,28 @@ struct Mistake {
                            (std::abs(scene.normal[k % 3]) > 0.99 ? ", below the horizon" : "");
             }
         return "";
+    }
+
+    // The angle from the lobe's axis beyond which no sample comes, though the pdf is positive a
+    // tenth further all around; 0 if there is none.
+    double angle_of_none() const {
+        if constexpr (N == 3) {
+            double most = 0;
+            for (const Local<N>& l : good)
+                most = std::max(most, std::acos(std::min(1.0, dot(l.x, scene.lobe))));
+            size_t positive = 0;
+            for (const Local<N>& l : good) {
+                const double c = dot(l.x, scene.lobe), s = std::sqrt(std::max(1e-12, 1 - c * c));
+                Triple w;
+                for (size_t k = 0; k < 3; ++k)
+                    w[k] = std::cos(1.1 * most) * scene.lobe[k] +
+                           std::sin(1.1 * most) * (l.x[k] - c * scene.lobe[k]) / s;
+                positive += pdf(w) > 0;
+            }
+            if (scene.directions && most < 0.9 * pi && positive > 0.99 * double(good.size()))
+                return most;
+        }
+        return 0;
     }
 
     std::string over(double factor, const std::string& what) const {
@@ -467,6 +498,19 @@ struct Mistake {
             if (law.holds && std::abs(k) > 0.01)
                 return over(law.factor, power(b.name, k)) +
                        (normalised ? ": looks like an exponent in one of the two" : "");
+        }
+        return "";
+    }
+    // p = c q^k
+    std::string power_of_density() const {
+        for (const double k : {0.5, 2.0, -1.0}) {
+            std::vector<double> rest;
+            for (const Local<N>& l : good) rest.push_back(l.p / std::pow(l.q, k));
+            if (const Law law = law_of(rest, tolerance); law.holds)
+                return say("the pdf is %.4g times the density of the samples", law.factor) +
+                       (k == 0.5 ? " to the power 1/2: looks like a square forgotten in the pdf"
+                        : k == 2 ? " squared: looks like a square too many in the pdf"
+                                 : " inverted: looks like a Jacobian upside down");
         }
         return "";
     }
@@ -592,7 +636,24 @@ struct Mistake {
 
     // Samples have the density of the pdf stretched about 0, or moved along a coordinate.
     std::string moved() const {
-        if (scene.directions || sheets.empty()) return "";
+        if (sheets.empty()) return "";
+        if constexpr (N == 3)
+            for (size_t k = 0; k < 3 && scene.directions; ++k) {
+                auto turned = [k](double by) {
+                    return [=, c = std::cos(by), s = std::sin(by)](Point<N> x) {
+                        double &a = x[(k + 1) % 3], &b = x[(k + 2) % 3];
+                        const double turned_a = c * a + s * b;
+                        b = c * b - s * a, a = turned_a;
+                        return x;
+                    };
+                };
+                if (const double by = fitted(pi, 0.002, 0, turned); by != 0)
+                    return say(
+                        "samples have the density of the pdf turned by %.4g degrees about "
+                        "%c: looks like an offset of phi, or an index that is off",
+                        by * 180 / pi, "xyz"[k]);
+            }
+        if (scene.directions) return "";
         auto stretched = [](double by) {
             return [by](Point<N> x) {
                 for (double& c : x) c /= std::exp(by);
@@ -674,11 +735,14 @@ struct Mistake {
                 }
                 std::vector<double> rest;
                 for (const Local<N>& l : good) rest.push_back(off(l, std::exp(best)));
-                if (scene.directions && std::abs(best) > 0.01 &&
-                    law_of(rest, tolerance).plain(tolerance))
+                // The lobe's axis is the mean of samples.
+                const double known = n == scene.normal ? tolerance : std::max(tolerance, 0.03);
+                if (scene.directions && std::abs(best) > 0.5 * known + 0.01 &&
+                    law_of(rest, known).plain(known))
                     return "samples have the density of the pdf with slopes tan(theta) " +
                            times(std::exp(best), 0.004) +
-                           " times as large: looks like another roughness, or its square or root";
+                           " times as large: looks like another roughness, its square or root, or "
+                           "tangents that are not of length 1";
             }
         return "";
     }
@@ -797,7 +861,8 @@ std::string dependence_of(const std::vector<Point<N>>& where, const std::vector<
     }
     Point<N> towards{};
     for (size_t k = 0; k < N; ++k) length += a[k] * a[k];
-    for (size_t k = 0; k < N; ++k) towards[k] = a[k] / std::sqrt(length);
+    for (size_t k = 0; k < N; ++k)
+        towards[k] = std::round(1e4 * a[k] / std::sqrt(length)) / 1e4 + 0.0;
     if (N == 1 || !(left < 0.5 * square)) return "";
     return ", larger towards " + say_point(towards) + " and smaller on the other side";
 }
@@ -823,7 +888,8 @@ std::string compared(const auto& check) {
                       width = width_of(by_distance);
     return say("the pdf is %.3g to %.3g times the density of the samples (median %.3g)", low, high,
                median(ratios)) +
-           (width.empty() ? "" : ", " + width) + law + "; ";
+           (width.empty() ? "" : ", " + width) +
+           (width.empty() || law.find(" alone") < law.size() ? law : "") + "; ";
 }
 
 // The ratio of two pdfs at these points: a constant, or one and a power of a base.
@@ -1000,12 +1066,16 @@ std::string first_line_of(const ArrayCheck<N, Domain>& check, const Parts& claim
                           bool counted) {
     const double factor = claimed.total / check.arriving,
                  known = 1e-4 + 5 * claimed.error / claimed.total;
+    const std::string side = check.without_samples();
+    if (counted && balanced) return side;
     if (counted)
         return "the pdf is " + times(factor, known) + " times the density of the samples" +
                (check.arriving < 1 ? ", " + percent(1 - check.arriving) + " of which fail" : "") +
                ", as far as counts tell" + normalisation_hint(constant_named(factor, known));
     const std::string law = law_of_cells(check, balanced);
-    return (law.empty() ? worst_cells_of(check) : law) +
+    return (!law.empty()    ? law
+            : !side.empty() ? side
+                            : worst_cells_of(check)) +
            (balanced ? ""
                      : say("; the pdf integrates to %.5g +- %.1g, expected %.5g", claimed.total,
                            claimed.error, check.arriving));
@@ -1195,6 +1265,22 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
             return std::abs(cells - std::round(cells)) < close;
         });
     };
+    // The same probabilities, at other indices.
+    std::vector<size_t> wanted_order(count), seen_order(count);
+    for (size_t i = 0; i < count; ++i) wanted_order[i] = seen_order[i] = i;
+    std::sort(wanted_order.begin(), wanted_order.end(),
+              [&](size_t a, size_t b) { return expected[a] < expected[b]; });
+    std::sort(seen_order.begin(), seen_order.end(),
+              [&](size_t a, size_t b) { return seen[a] < seen[b]; });
+    std::vector<double> permuted(count);
+    std::string moves;
+    for (size_t i = 0; i < count; ++i) {
+        const size_t from = wanted_order[i], to = seen_order[i];
+        permuted[to] = expected[from];
+        if (std::abs(expected[from] - expected[to]) > 0.02 * expected[to])
+            moves += (moves.empty() ? "" : ", ") + say("%zu's at %zu", from, to);
+    }
+    other(4, "the same probabilities at other indices (" + moves + ")", permuted);
     const double close = 2.5 * double(count) / std::sqrt(samples);
     if (cause.empty() && count >= 3 && close < 0.1 && whole(seen, samples, close) &&
         !whole(expected, 1, 2 * close))
@@ -1214,7 +1300,7 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
         if (cause.empty()) cause = "; the probabilities are uniform, the choice is not";
     }
     std::string list, wanted;  // few are all listed
-    for (size_t i = 0; i < count && count <= 8; ++i) {
+    for (size_t i = 0; i < count && count <= 16; ++i) {
         list += (i == 0 ? "; chosen are " : ", ") + say("%.3g", seen[i] / samples);
         wanted += (i == 0 ? ", expected " : ", ") + say("%.3g", expected[i]);
     }
@@ -1224,12 +1310,18 @@ inline std::string choice_hint(const std::vector<double>& expected, const std::v
         const double mean = expected[k] * samples;
         return seen[k] == mean ? 0 : std::abs(seen[k] - mean) / std::sqrt(mean);
     });
+    bool alone = count > 2;
+    for (size_t k = 0; k < count; ++k) {
+        const double mean = expected[k] * samples;
+        if (k != worst && std::abs(seen[k] - mean) > 5 * std::sqrt(mean)) alone = false;
+    }
     return (i < count
                 ? say("index %zu is never chosen, though its probability is %.4g", i, expected[i])
             : expected[worst] == 0
                 ? say("index %zu is chosen, though its probability is 0", worst)
                 : say("index %zu is chosen %.4g times as often as its probability %.4g says", worst,
-                      seen[worst] / (expected[worst] * samples), expected[worst])) +
+                      seen[worst] / (expected[worst] * samples), expected[worst]) +
+                      (alone ? ", all others are right" : "")) +
            cause + list + wanted;
 }
 

@@ -152,6 +152,30 @@ TEST_CASE("hints: directions") {
         const Triple h = half_of(w, wo);
         return h[2] > 0 ? facets(h[2], 0.4) * h[2] / (16 * dot(wo, h) * dot(wo, h)) : 0;
     };
+    // About (0, 0.6, 0.8), whose tangents are of length 0.6.
+    auto tangents = [](double u, double v) {
+        const Triple w = cosine(u, v);
+        const double y = 0.6 * w[1];
+        return unit({0.6 * w[0], 0.6 * w[2] + 0.8 * y, 0.8 * w[2] - 0.6 * y});
+    };
+    auto tilted = [](Triple w) { return std::max(0.0, 0.6 * w[1] + 0.8 * w[2]) / pi; };
+    auto rooted = [](Triple w) { return w[2] > 0 ? std::sqrt(facets(w[2], 0.4) * w[2]) / 2 : 0; };
+    auto cone = [](double u, double v) {
+        return about_z(1 - u * (1 - std::cos(pi / 6)), 2 * pi * v);
+    };
+    auto wider_cone = [](Triple w) { return w[2] > 0.5 ? 1 / pi : 0; };
+    // Density 1 + cos(phi) / 2, by bisection; the pdf's is turned.
+    auto table = [](double u, double v) {
+        double low = 0, high = 2 * pi;
+        for (int i = 0; i < 50; ++i) {
+            const double phi = (low + high) / 2;
+            ((phi + std::sin(phi) / 2) / (2 * pi) > v ? high : low) = phi;
+        }
+        return about_z(1 - 2 * u, low);
+    };
+    auto turned_table = [](Triple w) {
+        return (1 + std::cos(std::atan2(w[1], w[0]) + pi / 8) / 2) / (4 * pi);
+    };
     auto poles = [](Triple w) { return (std::abs(w[2]) > 0.98 ? 2 : 1) / (4 * pi); };
     all_say(
         {{expect_density(random, wedges, cosine_pdf), "branches that overlap and leave a gap"},
@@ -178,6 +202,11 @@ TEST_CASE("hints: directions") {
          {expect_density(random, texels, no_sine), "a density per (theta, phi)"},
          {expect_density(random, cube, [](Triple) { return 1 / (4 * pi); }), "points of a cube"},
          {expect_density(random, mixture, exchanged), "the pdf is wider than the samples"},
+         {expect_density(random, tangents, tilted), "tangents that are not of length 1"},
+         {expect_density(random, normals, rooted),
+          "to the power 1/2: looks like a square forgotten"},
+         {expect_density(random, cone, wider_cone), "degrees from their axis, where the pdf is"},
+         {expect_density(random, table, turned_table), "turned by 22.5 degrees about z"},
          {expect_density(random, sphere, more_above),
           "of the points; looks like the probability of a choice"},
          {expect_density(random, clamped, lobe_of_8),
@@ -354,14 +383,15 @@ TEST_CASE("hints: means") {
         return expect_mean(0.5, 100000, [&] { return ratio * random(); },
                            {.factors = {{"albedo", 0.8}, {"r^2", 1.7}, {"cos", 0.3}}});
     };
-    all_say(
-        {{of_factors(0.8 / 1.7), "; looks like albedo too many, and r^2 forgotten"},
-         {of_factors(0.83 / 1.7), "; no factor alone, nor two: repeat it where one of them is 1"},
-         {mean(0.53, 0, 1), "; name the formula's factors (.factors), or change an input"},
-         {mean(0.6, 0, 1), ", 5/6: a count that is off by one?"},
-         {mean(1, 1, 2), " (3/2)\n"},
-         {mean(-1, 0, 2 * pi), "of the wrong sign"},
-         {mean(1, -1, 1), "; 0 within its error"}});
+    all_say({{of_factors(0.8 / 1.7), "; looks like albedo too many, and r^2 forgotten"},
+             {of_factors(0.83 / 1.7), "; no factor alone, nor two: make the integrand constant"},
+             {mean(0.53, 0, 1),
+              "; name the formula's factors (.factors), or make the integrand constant"},
+             {of_factors(0.4), ": looks like cos not added, or taken off twice"},
+             {mean(0.6, 0, 1), ", 5/6: a count that is off by one?"},
+             {mean(1, 1, 2), " (3/2)\n"},
+             {mean(-1, 0, 2 * pi), "of the wrong sign"},
+             {mean(1, -1, 1), "; 0 within its error"}});
 }
 
 TEST_CASE("hints: choices and images") {
@@ -404,6 +434,10 @@ TEST_CASE("hints: choices and images") {
     };
     all_say(
         {{chosen({0.1, 0.2, 0.7}, {0.1, 0.2, 0.3, 0.4}), "index 3 is never chosen"},
+         {chosen({0.4, 0.2, 0.3, 0.1}, {0.1, 0.2, 0.3, 0.4}),
+          "looks like the same probabilities at other indices (0's at 3, 3's at 0)"},
+         {chosen({0.2, 0.25, 0.55}, {0.2, 0.5, 0.55}),
+          "sum to 1.25, expected 1; index 1 is chosen 0."},
          {chosen({0.1, 0.2, 0, 0.7}, {0.1, 0.3, 0.2, 0.4}),
           "compared with each probability, not with their sum"},
          {chosen({0.1, 0.2, 0, 0.1}, {0.1, 0.3, 0.2, 0.4}), "are none"},

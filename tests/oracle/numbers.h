@@ -972,6 +972,25 @@ std::string ArrayCheck<N, Domain>::wrong() {
     return "";
 }
 
+// None of n samples comes where the pdf has the share s with the probability e^(-n s): all six
+// sides together have a tenth of alpha.
+template <size_t N, class Domain>
+std::string ArrayCheck<N, Domain>::without_samples() const {
+    const double total = sum_of(part_of), n = double(samples.size());
+    for (size_t k = 0; k < N; ++k)
+        for (const double side : {-1.0, 1.0}) {
+            double share = 0, come = 0;
+            for (size_t i = 0; i < points.size(); ++i)
+                if (points[i][k] * side > 0) share += part_of[i] / total;
+            for (const Point<N>& w : samples) come += w[k] * side > 0;
+            if (come == 0 && n * share > -std::log(o.alpha / 60))
+                return say("no sample has %c %c 0, where the pdf has ", "xyz"[k % 3],
+                           side < 0 ? '<' : '>') +
+                       percent(share) + " of its integral";
+        }
+    return "";
+}
+
 // Points that tell the pdf of a cell, of the one that has the fewest: (sum x)^2 / sum x^2 (Kish
 // 1965); where the pdf has less than half of a cell's share, which is wrong already, all.
 template <size_t N, class Domain>
