@@ -1,8 +1,6 @@
 // app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
-#include "app/replay.h"
 #include "app/threads.h"
-#include "app/unseen.h"
 #include "text/program.h"
 
 namespace {
@@ -27,12 +25,20 @@ Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 129 SIGHUP), after writing the image of the samples so far.
 )";
 
+// What --view shows of a sample instead of its radiance; none: radiance.
+std::function<rgb(const Start&)> view_of(const Options& o, const Scene& scene) {
+    if (!o.view.of) return {};
+    return [&, far = far_of(scene)](const Start& at) {
+        return o.view.of({scene, at, meet(scene, at.ray), far});
+    };
+}
+
 // The function that renders a sample.  It abandons a path after an interrupt.
 Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
                      const Witness& witness) {
-    return [&, far = far_of(scene)](const PixelSample& s, Tally& tally) {
+    return [&, view = view_of(o, scene)](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
-        if (o.view.of) return ++tally.rays, o.view.of({scene, at, meet(scene, at.ray), far});
+        if (view) return ++tally.rays, view(at);
         auto misses = witness.visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {
@@ -75,7 +81,10 @@ int penumbra_main(const std::vector<std::string>& words) {
     const ParsedScene parsed = load(o);
     const NamedScene& scene = parsed.scene;
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
-    if (o.replay) return replay(o, scene, pattern), 0;
+    if (o.replay) {
+        replay(scene, o.technique, pattern, *o.replay, view_of(o, scene));
+        return 0;
+    }
     const auto outputs = outputs_of(o, parsed, "", scene.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
