@@ -3,6 +3,8 @@
 // Films are kept in files if -DWITH_KEEP: with src/keep.  Light that samples may have missed is
 // looked for if -DWITH_UNSEEN: with src/unseen.
 #pragma once
+#include <utility>
+
 #include "app/options.h"
 #include "app/outputs.h"
 #include "app/threads.h"
@@ -194,7 +196,6 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     const Stop stop = loop.run();
     check_finite(loop.tally());
     Run run = run_of(film, plan, spent(loop.tally()), stop);
-    run.exponent_of_cost = loop.checks().exponent_of_cost();
     run.is_radiance = !o.view.of;
     const std::string not_kept = keeper.write(film, run, !run.interrupted());
     film.deviation = std::vector<float>();  // makes room for the image

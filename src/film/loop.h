@@ -72,7 +72,6 @@ public:
     }
 
     const Tally& tally() const { return tally_; }  // of this run, without near misses
-    const ErrorChecks& checks() const { return checks_; }
 
 private:
     Film& film_;

@@ -386,22 +386,6 @@ TEST_CASE("--error with limits: whichever comes first ends the image, and is sai
     CHECK(rendered(o, scene).run.stopped_by == Stop::time);  // in the pilot
 }
 
-TEST_CASE("what half the error costs follows from its course, of samples that end as they do") {
-    const Scene& scene = direct_picture();
-    auto exponent = [&](SamplerKind kind) {
-        Moments exponents;
-        Options o = quick(kind, 256);
-        for (int run = 0; run < 16; ++run, ++o.seed) {
-            exponents.add(rendered(o, scene).run.exponent_of_cost);
-            CHECK(exponents.mean >= 1);
-            CHECK(exponents.mean <= 2);
-        }
-        return exponents.mean;
-    };
-    CHECK(exponent(SamplerKind::independent) > 1.5);
-    CHECK(exponent(SamplerKind::sobol) < 1.65);
-}
-
 TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     const Scene& scene = unequal_picture();
     Options o = quick(SamplerKind::sobol, 1 << 20);

@@ -24,7 +24,6 @@ struct Run {
     Stop stop;
     uint64_t rays, bad;
     std::vector<uint64_t> ends;  // least samples before each pass
-    double exponent;
 };
 
 // Continues a film.  The clock ticks once per sample of a pixel, or stands still.
@@ -47,7 +46,6 @@ Run run(Film& film, const Plan& plan, const Radiance& L = noisy, double tick = 0
     Loop loop(film, plan, counting, watch);
     r.stop = loop.run();
     r.rays = loop.tally().rays, r.bad = loop.tally().bad;
-    r.exponent = loop.checks().exponent_of_cost();
     return r;
 }
 
@@ -236,7 +234,6 @@ TEST_CASE("an error ends a run at the first check where it is small enough, pass
             const Run r = run(film, plan, noisy, tick);
             CHECK(r.stop == Stop::error);
             CHECK(same(film, by_hand));
-            CHECK(r.exponent >= 1);
             for (uint64_t check = 8; check < n; check = next_check(check))
                 CHECK(std::count(r.ends.begin(), r.ends.end(), check) == 1);
         }
