@@ -241,38 +241,33 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     // A pilot has no check, whatever its samples; the first check after it is at 8.
     Film film = make_film(size, 2, true);
     fill(film, 8, one);
-    ErrorChecks checks(0.1);
-    CHECK(checks.check(film) == Stop::no);
+    CHECK_FALSE(is_check_due(film));
     choose_weights(film);
-    CHECK(checks.check(film) == Stop::no);
-    for (uint64_t n = 1; n < 8; ++n) {
+    for (uint64_t n = 0; n < 8; ++n) {
         fill(film, n, one);
-        CHECK(checks.check(film) == Stop::no);  // although the error is 0
+        CHECK_FALSE(is_check_due(film));
     }
     fill(film, 8, one);
-    CHECK(checks.check(film) == Stop::error);
+    CHECK(is_check_due(film));
+    CHECK(check_error(film, 0.1, {}).stop == Stop::error);
     fill_blocks(film, 0, 1, 9, one);  // an interrupted film is completed first
-    CHECK(checks.check(film) == Stop::no);
+    CHECK_FALSE(is_check_due(film));
     fill(film, 33, one);
-    CHECK(checks.check(film) == Stop::no);  // checks are at 32 and 34
+    CHECK_FALSE(is_check_due(film));  // checks are at 32 and 34
     fill(film, 34, one);
-    CHECK(checks.check(film) == Stop::error);
+    CHECK(is_check_due(film));
     // If the error is too large, the samples grow with the square of the ratio of the errors.
     const Film rough = filled(size, 2, 8, noisy);
-    ErrorChecks strict(error_of(rough).d_rel() / 5);
-    CHECK(strict.check(rough) == Stop::no);
-    CHECK(strict.expected() == about(8 * 25, 1e-12));
+    const ErrorCheck strict = check_error(rough, error_of(rough).d_rel() / 5, {});
+    CHECK(strict.stop == Stop::no);
+    CHECK(strict.expected == about(8 * 25, 1e-12));
     // The cost of a black film is unknown.
     const Film black = filled(size, 2, 8, [](const PixelSample&, Tally&) { return rgb{}; });
-    ErrorChecks dark(0.1);
-    CHECK(dark.check(black) == Stop::no);
-    CHECK(dark.expected() == HUGE_VAL);
-    // What has an error that is small enough needs no more; nothing is expected unasked.
-    ErrorChecks loose(0.9), none(0);
-    CHECK(loose.check(rough) == Stop::error);
-    CHECK(loose.expected() == 8);
-    CHECK(none.check(film) == Stop::no);  // although its error is 0
-    CHECK(none.expected() == HUGE_VAL);
+    CHECK(check_error(black, 0.1, {}).stop == Stop::no);
+    CHECK(check_error(black, 0.1, {}).expected == HUGE_VAL);
+    // What has an error that is small enough needs no more.
+    CHECK(check_error(rough, 0.9, {}).stop == Stop::error);
+    CHECK(check_error(rough, 0.9, {}).expected == 8);
 }
 
 TEST_CASE("d_rel is over the truth, not over an image that is mostly noise") {
@@ -324,7 +319,7 @@ TEST_CASE("an error that is in doubt stops no render before 4096 samples per pix
     bool is_known = false;
     const MayMissLight why = [&](const Film&, const ImageError&) { return !is_known; };
     auto stop = [&](uint64_t n, double wanted) {
-        return ErrorChecks(wanted, why).check(filled({12, 9}, 4, n, noisy));
+        return check_error(filled({12, 9}, 4, n, noisy), wanted, why).stop;
     };
     uint64_t n = 8;  // the last check before 1024
     while (next_check(n) < 1024) n = next_check(n);
@@ -332,7 +327,6 @@ TEST_CASE("an error that is in doubt stops no render before 4096 samples per pix
     REQUIRE(beyond >= 1024);
     CHECK(stop(n, 0.5) == Stop::no);
     CHECK(stop(beyond, 0.5) == Stop::error_unknown);
-    CHECK(stop(beyond, 0) == Stop::no);  // without a requested error, doubts have no effect
     is_known = true;
     CHECK(stop(n, 0.5) == Stop::error);
     CHECK(stop(beyond, 0.5) == Stop::error);
