@@ -52,22 +52,19 @@ Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& patter
 // Facts that must agree when a film is resumed, or merged with others.
 FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, const Plan& plan) {
     const Scene& scene = parsed.scene;
-    auto pair = [](auto a, char between, auto b) {
-        return std::to_string(a) + between + std::to_string(b);
-    };
-    const RowRange rows = rows_of(o, scene);
     FilmOf what{{parsed.files.begin(), parsed.files.end() - 1}, {}, {}};
     if (!o.keep.empty()) what.scene = parsed.text;
-    what.samples = {{"precision", sizeof(real) == 4 ? "float" : "double"},
-                    {"size", pair(scene.size.width, 'x', scene.size.height)},
-                    {"depth", std::to_string(scene.depth)}};
+    what.samples = {
+        {"precision", sizeof(real) == 4 ? "float" : "double"},
+        {"size", std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height)},
+        {"depth", std::to_string(scene.depth)}};
     for (const Text name : {"--sampler", "--direction", "--light", "--roulette", "--view"})
         what.samples.push_back({std::string(name.substr(2)), row(table, name).json()});
     what.samples.push_back(
         {"replications", plan.is_adaptive ? "adaptive" : std::to_string(plan.replications)});
     if (!moves_surfaces) what.samples.push_back({"check", "none"});
     what.samples.push_back({"seed", std::to_string(o.seed)});
-    what.samples.push_back({"rows", pair(rows.first, '-', rows.last)});
+    what.samples.push_back({"rows", as_text(rows_of(o, scene))});
     what.notes = {{"name", printable(o.scene)}, {"exposure", json::number(double(scene.exposure))}};
     return what;
 }
