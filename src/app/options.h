@@ -1,7 +1,22 @@
 // app/options.h  2  the options of penumbra
+//
+// A path is replayed if -DWITH_REPLAY: with src/replay.
 #pragma once
 #include "app/views.h"
 #include "film/film.h"
+
+#ifdef WITH_REPLAY
+#include "replay/replay.h"
+#else
+namespace penumbra {
+inline OptionTable replay_rows(std::optional<PixelSample>&) {
+    constexpr const char* why = "this program was built without src/replay";
+    auto refuse = [why](Text) { throw UserError(why); };
+    return {{"--pixel", "X,Y", why, "", refuse}, {"--sample", "I[,K]", why, "", refuse}};
+}
+inline void replay(auto&&...) {}
+}  // namespace penumbra
+#endif
 
 namespace penumbra {
 
@@ -33,21 +48,6 @@ inline RowRange parse_rows(Text v) {
 }
 inline std::string as_text(const RowRange& r) {
     return std::to_string(r.first) + "-" + std::to_string(r.last);
-}
-
-// The path to replay: its pixel, "X,Y", and its sample, "I" or "I,K".
-inline void set_pixel(std::optional<PixelSample>& replay, Text v) {
-    const auto [x, y] = parts_of(v, ',', "X,Y");
-    if (!replay) replay.emplace();
-    replay->x = int(parse_count(x, 0, INT32_MAX));
-    replay->y = int(parse_count(y, 0, INT32_MAX));
-}
-inline void set_sample(std::optional<PixelSample>& replay, Text v) {
-    const size_t comma = v.find(',');
-    if (!replay) replay.emplace();
-    replay->i = parse_count(v.substr(0, comma), 0, max_samples);
-    if (comma != v.npos)
-        replay->set = uint32_t(parse_count(v.substr(comma + 1), 0, max_replications));
 }
 
 inline std::string parse_film(Text v) {
@@ -120,13 +120,8 @@ inline OptionTable transport_rows(Options& o) {
 }
 
 inline OptionTable view_rows(Options& o) {
-    return in_group(
-        "Views and debugging",
-        {one_of("--view", views, view_help, o.view),
-         {"--pixel", "X,Y", "print every event of one path of pixel X,Y instead of rendering", "",
-          [&o](Text v) { set_pixel(o.replay, v); }},
-         {"--sample", "I[,K]", "index of the sample, and of its replication, for --pixel", "0,0",
-          [&o](Text v) { set_sample(o.replay, v); }}});
+    return in_group("Views and debugging", OptionTable{one_of("--view", views, view_help, o.view)} +
+                                               replay_rows(o.replay));
 }
 
 inline OptionTable part_rows(Options& o) {

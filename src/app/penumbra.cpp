@@ -1,8 +1,6 @@
 // app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
-#include "app/replay.h"
 #include "app/threads.h"
-#include "app/unseen.h"
 #include "text/program.h"
 
 namespace {
@@ -27,12 +25,20 @@ Exit status: 0 done; 1 a sample was not finite, or a file could not be written;
 129 SIGHUP), after writing the image of the samples so far.
 )";
 
+// What --view shows of a sample instead of its radiance; none: radiance.
+std::function<rgb(const Start&)> view_of(const Options& o, const Scene& scene) {
+    if (!o.view.of) return {};
+    return [&, far = far_of(scene)](const Start& at) {
+        return o.view.of({scene, at, meet(scene, at.ray), far});
+    };
+}
+
 // The function that renders a sample.  It abandons a path after an interrupt.
 Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
                      const Witness& witness) {
-    return [&, far = far_of(scene)](const PixelSample& s, Tally& tally) {
+    return [&, view = view_of(o, scene)](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
-        if (o.view.of) return ++tally.rays, o.view.of({scene, at, meet(scene, at.ray), far});
+        if (view) return ++tally.rays, view(at);
         auto misses = witness.visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {
@@ -46,22 +52,19 @@ Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& patter
 // Facts that must agree when a film is resumed, or merged with others.
 FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, const Plan& plan) {
     const Scene& scene = parsed.scene;
-    auto pair = [](auto a, char between, auto b) {
-        return std::to_string(a) + between + std::to_string(b);
-    };
-    const RowRange rows = rows_of(o, scene);
     FilmOf what{{parsed.files.begin(), parsed.files.end() - 1}, {}, {}};
     if (!o.keep.empty()) what.scene = parsed.text;
-    what.samples = {{"precision", sizeof(real) == 4 ? "float" : "double"},
-                    {"size", pair(scene.size.width, 'x', scene.size.height)},
-                    {"depth", std::to_string(scene.depth)}};
+    what.samples = {
+        {"precision", sizeof(real) == 4 ? "float" : "double"},
+        {"size", std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height)},
+        {"depth", std::to_string(scene.depth)}};
     for (const Text name : {"--sampler", "--direction", "--light", "--roulette", "--view"})
         what.samples.push_back({std::string(name.substr(2)), row(table, name).json()});
     what.samples.push_back(
         {"replications", plan.is_adaptive ? "adaptive" : std::to_string(plan.replications)});
     if (!moves_surfaces) what.samples.push_back({"check", "none"});
     what.samples.push_back({"seed", std::to_string(o.seed)});
-    what.samples.push_back({"rows", pair(rows.first, '-', rows.last)});
+    what.samples.push_back({"rows", as_text(rows_of(o, scene))});
     what.notes = {{"name", printable(o.scene)}, {"exposure", json::number(double(scene.exposure))}};
     return what;
 }
@@ -75,7 +78,10 @@ int penumbra_main(const std::vector<std::string>& words) {
     const ParsedScene parsed = load(o);
     const NamedScene& scene = parsed.scene;
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
-    if (o.replay) return replay(o, scene, pattern), 0;
+    if (o.replay) {
+        replay(scene, o.technique, pattern, *o.replay, view_of(o, scene));
+        return 0;
+    }
     const auto outputs = outputs_of(o, parsed, "", scene.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);

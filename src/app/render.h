@@ -1,11 +1,13 @@
 // app/render.h  4  from options to an image: a film, its target, its error, its file
 //
-// Films are kept in files if -DWITH_KEEP: with src/keep.
+// Films are kept in files if -DWITH_KEEP: with src/keep.  Light that samples may have missed is
+// looked for if -DWITH_UNSEEN: with src/unseen.
 #pragma once
+#include <utility>
+
 #include "app/options.h"
 #include "app/outputs.h"
 #include "app/threads.h"
-#include "app/unseen.h"
 #include "app/views.h"
 #include "path/start.h"
 #include "text/program.h"
@@ -22,6 +24,25 @@ struct Keeper {
     Spent restore(Film&) const { return {}; }
     void write_now_and_then(const Film&, const Spent&) {}
     std::string write(const Film&, const Spent&, bool) { return ""; }
+};
+}  // namespace penumbra
+#endif
+
+#ifdef WITH_UNSEEN
+#include "unseen/unseen.h"
+#else
+namespace penumbra {
+inline std::vector<std::string> hidden_lights(const NamedScene&) { return {}; }
+struct Unseen {
+    void add(const std::vector<NearMisses>&, double, double) {}
+    std::string doubt(double, double, double) const { return ""; }
+};
+struct Witness {
+    Witness(const Scene&, const Technique&, int, int, const std::vector<uint32_t>&) {}
+    std::vector<NearMisses> near_misses(double) const { return {}; }
+    std::vector<size_t> noisy() const { return {}; }
+    static std::string why_unknown(const Film&, const ImageError&) { return ""; }
+    NoVisitor visitor(Tally&) const { return {}; }
 };
 }  // namespace penumbra
 #endif
@@ -47,8 +68,6 @@ inline ParsedScene load(const Options& o) {
                             " light");
     if (o.rows && o.rows->last >= scene.size.height)
         throw UserError("--rows: the picture has rows 0-" + std::to_string(scene.size.height - 1));
-    if (o.replay && (o.replay->x >= scene.size.width || o.replay->y >= scene.size.height))
-        throw UserError("--pixel: outside the image");
     return parsed;
 }
 
@@ -177,7 +196,6 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     const Stop stop = loop.run();
     check_finite(loop.tally());
     Run run = run_of(film, plan, spent(loop.tally()), stop);
-    run.exponent_of_cost = loop.checks().exponent_of_cost();
     run.is_radiance = !o.view.of;
     const std::string not_kept = keeper.write(film, run, !run.interrupted());
     film.deviation = std::vector<float>();  // makes room for the image

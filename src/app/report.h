@@ -83,7 +83,6 @@ struct Run : Spent {
     std::string doubt;              // why that may be far too small, or ""
     double repeat_spp = NAN;        // --spp N that takes the same samples; NaN: none
     double replications = 1;        // mean per pixel
-    double exponent_of_cost = 2;    // seconds ~ d_rel^-this
     std::string bias = "unbiased";  // class of the estimator
     Facts more;                     // keys and JSON values of one program only
 
@@ -129,7 +128,7 @@ inline std::string why_no_error(const Run& run) {
 }
 
 // "estimated error 2.1 % ± 0.1 %; about 27 s more for 1 %": for `wanted`, or for half of the error
-// if that is not less.
+// if that is not less.  Errors fall as n^-1/2, or faster.
 inline std::string error_words(const Run& run, double wanted = 0) {
     if (const std::string why = why_no_error(run); !why.empty()) return "error not known: " + why;
     const double d = run.error.d_rel();
@@ -143,7 +142,7 @@ inline std::string error_words(const Run& run, double wanted = 0) {
     const double unit = std::pow(10, std::floor(std::log10(d / 2)));
     const bool is_less = wanted > 0 && wanted < d;
     const double goal = is_less ? wanted : std::round(d / 2 / unit) * unit;
-    const double more = run.seconds * (std::pow(d / goal, run.exponent_of_cost) - 1);
+    const double more = run.seconds * (square(d / goal) - 1);
     return words + "; about " + significant(more, 2) + " s more for " +
            significant(100 * goal, is_less ? 3 : 1) + " %";
 }
@@ -197,8 +196,7 @@ inline void add_run(json::Object& object, const Run& run, Size size) {
     object.add("d_rel_by_spread", json::number(run.error.d_rel()));  // also if it is not reported
     object.add("d_rel_reason", reason.empty() ? "null" : json::string(reason));
     const bool falls = run.error.d2() > 0;  // or is 0
-    object.add("seconds_to_half_d_rel",
-               if_known(falls ? run.seconds * std::pow(2, run.exponent_of_cost) : double(NAN)));
+    object.add("seconds_to_half_d_rel", if_known(falls ? 4 * run.seconds : double(NAN)));
     object.add("bias", json::string(run.bias));
     object.add("stopped_by", json::string(word_of(run.stopped_by)));
     for (const auto& [key, value] : run.more) object.add(key, value);

@@ -21,7 +21,7 @@ import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
-FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'app']
+FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app']
 ALSO = ['src/keep/read_pfm.h']  # build/beside compares pictures
 UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
 COURSE = ['beside.cpp', 'course.mk']  # of src/course

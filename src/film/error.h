@@ -1,7 +1,5 @@
 // film/error.h  3  the error of an image, estimated from the spread of its replications
 #pragma once
-#include <utility>
-
 #include "film/film.h"
 
 namespace penumbra {
@@ -83,50 +81,28 @@ inline uint64_t next_check(uint64_t n) {
 
 enum class Stop { no, samples, time, error, error_unknown, interrupt, not_finite };
 
-// Checks a film's error until it is at most `wanted`; 0: records only its history.
-class ErrorChecks {
-public:
-    explicit ErrorChecks(double wanted, const MayMissLight& may_miss_light = {})
-        : wanted_(wanted), may_miss_light_(may_miss_light) {}
+// A film whose blocks have all come to a check.
+inline bool is_check_due(const Film& film) {
+    const uint64_t n = film.min_taken();
+    return n > 0 && n == film.max_taken() && !film.is_pilot && next_check(n - 1) == n;
+}
 
-    // Whether the film's error is a reason to stop, if a check is due.
-    Stop check(const Film& film) {
-        constexpr double max_unknown = 4096;  // samples per pixel
-        const uint64_t n = film.min_taken();
-        const bool is_whole = n > 0 && n == film.max_taken() && !film.is_pilot;
-        const bool is_check = wanted_ > 0 && is_whole && next_check(n - 1) == n;
-        if (!is_check && !(is_whole && double(n) >= 2 * last_.n)) return Stop::no;
-        const ImageError error = error_of(film);
-        add(n, error.d_rel());
-        if (!is_check) return Stop::no;
-        const bool is_known = doubt_of(film, error, may_miss_light_) == Doubt::no;
-        if (is_known && is_small_enough(error, wanted_)) return Stop::error;
-        return is_known || film.samples_per_pixel() < max_unknown ? Stop::no : Stop::error_unknown;
-    }
-
-    void add(uint64_t n, double d_rel) {
-        if (double(n) >= 2 * last_.n) before_ = std::exchange(last_, {double(n), d_rel});
-        const double too_much = std::isfinite(d_rel) ? std::max(1.0, d_rel / wanted_) : HUGE_VAL;
-        if (wanted_ > 0) expected_ = double(n) * std::pow(too_much, exponent_of_cost());
-    }
-
-    // Samples grow by x to this power where the error is divided by x.  It is 1 / gamma of the
-    // fitted rate d_rel = c n^-gamma of two errors, the later one at twice the samples or more.
-    // gamma is from 1/2, as for independent samples, to 1; not known: 1/2.
-    double exponent_of_cost() const {
-        const double gamma = std::log(before_.d_rel / last_.d_rel) / std::log(last_.n / before_.n);
-        return gamma > 0.5 ? 1 / std::min(gamma, 1.0) : 2;
-    }
-    // Samples of each replication at the end, by the last check; infinite while unknown.
-    double expected() const { return expected_; }
-
-private:
-    struct {
-        double n = 0, d_rel = NAN;
-    } before_, last_;
-    const double wanted_;
-    const MayMissLight may_miss_light_;
-    double expected_ = HUGE_VAL;
+struct ErrorCheck {
+    Stop stop = Stop::no;  // whether the error is a reason to stop
+    // Samples of each replication at the end, if the error falls as for independent samples, as
+    // n^-1/2; infinite while unknown.
+    double expected = HUGE_VAL;
 };
+inline ErrorCheck check_error(const Film& film, double wanted, const MayMissLight& may_miss_light) {
+    constexpr double max_unknown = 4096;  // samples per pixel
+    const ImageError error = error_of(film);
+    ErrorCheck check;
+    if (std::isfinite(error.d_rel()))
+        check.expected = double(film.min_taken()) * square(std::max(1.0, error.d_rel() / wanted));
+    const bool is_known = doubt_of(film, error, may_miss_light) == Doubt::no;
+    if (is_known && is_small_enough(error, wanted)) check.stop = Stop::error;
+    if (!is_known && film.samples_per_pixel() >= max_unknown) check.stop = Stop::error_unknown;
+    return check;
+}
 
 }  // namespace penumbra

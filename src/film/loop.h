@@ -58,8 +58,7 @@ public:
           plan_(plan),
           radiance_(radiance),
           watch_(watch),
-          limit_(plan.samples ? plan.samples : max_samples),
-          checks_(plan.error, plan.may_miss_light) {}
+          limit_(plan.samples ? plan.samples : max_samples) {}
 
     Stop run() {
         for (;;) {
@@ -72,7 +71,6 @@ public:
     }
 
     const Tally& tally() const { return tally_; }  // of this run, without near misses
-    const ErrorChecks& checks() const { return checks_; }
 
 private:
     Film& film_;
@@ -80,7 +78,7 @@ private:
     const Radiance& radiance_;
     const Watch& watch_;
     const uint64_t limit_, pilot_ = std::min(pilot_samples, limit_);  // samples
-    ErrorChecks checks_;
+    ErrorCheck last_check_;
     Tally tally_;
 
     bool is_pilot_done() const {
@@ -91,7 +89,10 @@ private:
     Stop reason_to_stop() {
         if (watch_.interrupted()) return Stop::interrupt;
         if (tally_.bad > 0) return Stop::not_finite;
-        if (const Stop stop = checks_.check(film_); stop != Stop::no) return stop;
+        if (plan_.error > 0 && is_check_due(film_)) {
+            last_check_ = check_error(film_, plan_.error, plan_.may_miss_light);
+            if (last_check_.stop != Stop::no) return last_check_.stop;
+        }
         if (!film_.is_pilot && film_.min_taken() >= limit_) return Stop::samples;
         const bool is_over = plan_.seconds > 0 && watch_.elapsed() >= plan_.seconds;
         return is_over && film_.has_samples() ? Stop::time : Stop::no;
@@ -109,7 +110,7 @@ private:
 
     bool add_pass(uint64_t to) {
         const double before = film_.samples_per_pixel(), after = film_.samples_per_pixel(to);
-        const uint64_t last = uint64_t(std::min(checks_.expected(), double(limit_)));
+        const uint64_t last = uint64_t(std::min(last_check_.expected, double(limit_)));
         const double end = last < max_samples ? film_.samples_per_pixel(last) *
                                                     (film_.is_pilot ? typical_weight : 1)
                                               : HUGE_VAL;

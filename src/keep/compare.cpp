@@ -8,7 +8,7 @@
 // Both are .pfm or .film.  Two films know the variances of their pixels, so that Welch's test
 // applies.  The images differ, with exit status 1, if d_rel is above the limit or p below alpha.
 #include "base/stats.h"
-#include "keep/read_film.h"
+#include "keep/film_file.h"
 #include "keep/read_pfm.h"
 #include "text/option.h"
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "keep/read_film.h"
+#include "keep/film_file.h"
 #include "text/json.h"
 
 namespace penumbra {

@@ -1,9 +1,8 @@
 // keep/merge.cpp  4  build/merge: merges films of bands and of other seeds into one picture
 #include <deque>
 
-#include "app/outputs.h"
+#include "app/render.h"
 #include "app/threads.h"
-#include "app/unseen.h"
 #include "keep/keep.h"
 #include "text/program.h"
 

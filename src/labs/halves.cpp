@@ -1,7 +1,7 @@
 // labs/halves.cpp  6  the efficiency of a picture of two halves, with weights and without
 //
 //   build/halves [--quick] [--former PROGRAM]
-#include "keep/read_film.h"
+#include "keep/film_file.h"
 #include "labs/grid.h"
 
 namespace {

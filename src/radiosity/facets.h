@@ -11,7 +11,7 @@ namespace penumbra {
 // What a material that is not diffuse is; "": it is diffuse.
 inline std::string other_than_diffuse(const Material& m) {
     const Rough* rough = m.as<Rough>();
-    if (!rough) return called(m.scattering);
+    if (!rough) return m.ask([](const auto& kind) { return kind.name; });
     return max_of(rough->ks) > 0 ? "glossy" : "";
 }
 

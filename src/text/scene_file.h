@@ -41,8 +41,6 @@ struct Statement {
     std::string_view keyword, words, meaning;
     void (*read)(SceneReader&);       // reads the words after the keyword, or after NAME
     std::string_view otherwise = {};  // without it; "": nothing
-    size_t scattering = SIZE_MAX;     // of a material: which kind of Scattering it is
-    std::string_view called = {};     // such a surface is "a mirror"
 };
 inline const Statement& statement_of(const Words& words);
 
@@ -194,16 +192,6 @@ private:
 
 // ---- The grammar -------------------------------------------------------------------------------
 
-// The place of a kind among those of Scattering.
-template <class Kind, class... Kinds>
-constexpr size_t place_in(std::type_identity<std::variant<Kinds...>>) {
-    size_t place = 0;
-    (void)((std::is_same_v<Kind, Kinds> || (++place, false)) || ...);
-    return place;
-}
-template <class Kind>
-inline constexpr size_t place_of = place_in<Kind>(std::type_identity<Scattering>{});
-
 inline constexpr Statement grammar[] = {
     {Statement::setting, "size", "WIDTH HEIGHT", "width and height in pixels, which are square",
      [](SceneReader& r) { r.scene.size = r.size(); }, "256 128"},
@@ -227,11 +215,10 @@ inline constexpr Statement grammar[] = {
          r.define(Rough(diffuse, lobe, n));
      }},
     {Statement::material, "mirror", "NAME  R G B", "reflectance",
-     [](SceneReader& r) { r.define(Mirror(r.colour())); }, "", place_of<Mirror>, "a mirror"},
+     [](SceneReader& r) { r.define(Mirror(r.colour())); }},
     {Statement::material, "glass", "NAME  INDEX_OF_REFRACTION",
      "smooth dielectric, Fresnel; 1 outside",
-     [](SceneReader& r) { r.define(Glass(r.positive("index of refraction"))); }, "",
-     place_of<Glass>, "glass"},
+     [](SceneReader& r) { r.define(Glass(r.positive("index of refraction"))); }},
     {Statement::material, "light", "NAME  R G B  [twosided] [MATERIAL]",
      "emits this radiance; reflects like MATERIAL, or not at all",
      [](SceneReader& r) { r.light(); }},
@@ -271,24 +258,6 @@ inline constexpr Statement grammar[] = {
          add_box(r.scene, {w, h, d}, degrees, move, r.material());
      }},
 };
-
-constexpr bool is_called(size_t scattering) {
-    return std::ranges::any_of(grammar, [=](auto& s) { return s.scattering == scattering; });
-}
-static_assert(
-    [] {
-        size_t called = 0;
-        for (size_t k = 0; k < std::variant_size_v<Scattering>; ++k) called += is_called(k);
-        return called == std::variant_size_v<Scattering> - 1;
-    }(),
-    "every kind of Scattering but Rough has a row with its place");
-
-// What a surface of another kind than Rough is called.
-inline std::string called(const Scattering& scattering) {
-    for (const Statement& s : grammar)
-        if (s.scattering == scattering.index()) return std::string(s.called);
-    return "rough";
-}
 
 // The statement that these words are; throws UserError if there is none, or if they are too few or
 // too many.

@@ -2,6 +2,7 @@
 //
 // Local coordinates: z is the surface normal on wo's side, so wo.z > 0.  wo points to the eye, wi
 // to the light, both unit.  A kind of scattering is a struct with
+//   name      what messages call such a surface
 //   eval      f without the cosine (1/sr); 0 for wi.z <= 0 and for a delta direction
 //   pdf       density of wi per solid angle over the whole sphere; 0 for a delta direction
 //   sample    a direction wi from three numbers; `outside`: wo is on the side of the surface's own
@@ -47,6 +48,7 @@ struct Opaque {
 // f = kd / pi + ks (n+2) / (2 pi) max(0, cos alpha)^n, alpha the angle between wi and the mirror
 // direction (Lafortune, Willems 1994).  Reflects at most kd + ks; reciprocal.
 struct Rough : Opaque {
+    static constexpr auto name = "rough";
     rgb kd;             // diffuse albedo
     rgb ks;             // scale of the Phong lobe
     real exponent = 0;  // of the Phong lobe
@@ -102,6 +104,7 @@ struct Delta : Opaque {
 };
 
 struct Mirror : Delta {
+    static constexpr auto name = "a mirror";
     rgb reflectance;
 
     explicit Mirror(rgb tint) : reflectance(tint) {}
@@ -114,6 +117,7 @@ struct Mirror : Delta {
 };
 
 struct Glass : Delta {
+    static constexpr auto name = "glass";
     static constexpr bool transmits = true;
     real ior;
 

@@ -1,7 +1,6 @@
-// app/render_test.cpp  images as requested by options: samples, error, time, rows, replay
+// app/render_test.cpp  images as requested by options: samples, error, time, rows
 #include "app/render.h"
 
-#include "app/replay.h"
 #include "app/threads.h"
 #include "base/cases.h"
 #include "film/spread.h"
@@ -186,30 +185,6 @@ TEST_CASE(
         CHECK(run.stopped_by == Stop::samples);
         CHECK(run.error.norm() == 0);
         CHECK(std::isnan(run.error.d_rel()));
-    }
-}
-
-TEST_CASE("what --pixel replays is what the image is made of, bit for bit") {
-    const NamedScene scene = small(shiny, {6, 4});
-    for (SamplerKind kind : samplers) {
-        Options o = quick(kind, 8);
-        o.replications = 2;
-        const Image image = rendered(o, scene).image;
-        const Pattern pattern = Work(o, scene).pattern;
-        std::FILE* out = std::tmpfile();
-        const PathLog log(scene, out);
-        for (int y = 0; y < 4; ++y)
-            for (int x = 0; x < 6; ++x) {
-                double sum[2] = {};  // in the film's order of addition
-                for (uint32_t set : {0u, 1u})
-                    for (uint64_t i = 0; i < 4; ++i) {
-                        const Start at = start(scene, pattern, {x, y, i, set});
-                        sum[set] += double(Li(scene, o.technique, at.ray, at.sampler, log).y);
-                    }
-                CHECK(image.at(x, y)[1] == float((sum[0] / 4 + sum[1] / 4) / 2));
-            }
-        CHECK(std::ftell(out) > 10000);
-        std::fclose(out);
     }
 }
 
@@ -409,22 +384,6 @@ TEST_CASE("--error with limits: whichever comes first ends the image, and is sai
     CHECK(time.run.seconds < 5);
     o.spp = 0, o.seconds = 1e-9;
     CHECK(rendered(o, scene).run.stopped_by == Stop::time);  // in the pilot
-}
-
-TEST_CASE("what half the error costs follows from its course, of samples that end as they do") {
-    const Scene& scene = direct_picture();
-    auto exponent = [&](SamplerKind kind) {
-        Moments exponents;
-        Options o = quick(kind, 256);
-        for (int run = 0; run < 16; ++run, ++o.seed) {
-            exponents.add(rendered(o, scene).run.exponent_of_cost);
-            CHECK(exponents.mean >= 1);
-            CHECK(exponents.mean <= 2);
-        }
-        return exponents.mean;
-    };
-    CHECK(exponent(SamplerKind::independent) > 1.5);
-    CHECK(exponent(SamplerKind::sobol) < 1.65);
 }
 
 TEST_CASE("an interrupted image says so, and is of the samples that it has") {

@@ -87,10 +87,8 @@ TEST_CASE("an image's error in words: its standard error, and the time for half 
     const std::string some = "estimated error 2.1 % ± 0.1 %; about ";
     CHECK(error_words(run_of(0.021, 0.0011)) == some + "27 s more for 1 %");
     Run run = run_of(0.021, 0.0011);
-    run.exponent_of_cost = 1;
-    CHECK(error_words(run) == some + "8.8 s more for 1 %");
-    CHECK(error_words(run, 0.007) == some + "16 s more for 0.7 %");
-    CHECK(error_words(run, 0.03) == some + "8.8 s more for 1 %");
+    CHECK(error_words(run, 0.007) == some + "64 s more for 0.7 %");
+    CHECK(error_words(run, 0.03) == some + "27 s more for 1 %");
     auto words = [](double d_rel, double standard_error) {
         return error_words(run_of(d_rel, standard_error));
     };
@@ -180,7 +178,7 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
     run.spp = 64.5, run.seconds = 2, run.cpu_seconds = 3.5, run.rays = 4000000;
     run.replications = 2.75, run.repeat_spp = 48;
     run.error = {2, {4, 6, 8}, {8, 16, 24}, 96, 16};  // two pixels: |f|^2 = 16, |F|^2 = 8
-    run.exponent_of_cost = 1.5, run.bias = "consistent", run.stopped_by = Stop::time;
+    run.bias = "consistent", run.stopped_by = Stop::time;
     std::string text = json_of(run, {2, 1});
     const size_t peak = text.find("  \"peak_memory_bytes\": ");
     REQUIRE(peak != text.npos);
@@ -196,7 +194,7 @@ TEST_CASE("the statistics of a run, all keys in their order, null where nothing 
                       "  \"d_rel\": 1,\n  \"d_rel_standard_error\": 0.25,\n"
                       "  \"d_rel_by_spread\": 1,\n  \"d_rel_reason\": null,\n"
                       "  \"seconds_to_half_d_rel\": " +
-                      json::number(2 * std::pow(2, 1.5)) +
+                      json::number(8) +
                       ",\n  \"bias\": \"consistent\",\n  \"stopped_by\": \"time\",\n");
     // The memory of this process exceeds a megabyte; its unit is the byte.
     CHECK(bytes > 2e6);

@@ -113,7 +113,7 @@ struct House {
                              read_file(entry.path().string()));
         for (const char* name : {"beside.cpp", "course.mk"})
             folder.write(std::string("src/course/") + name, "// nothing\n");
-        for (const std::string name : {"film", "app", "mesh", "check", "text"})
+        for (const std::string name : {"film", "app", "mesh", "check", "replay", "text"})
             folder.write("src/" + name + "/nothing.h", "// " + name + "/nothing.h  1  nothing\n");
         folder.write("src/keep/read_pfm.h", "// nothing\n");
         folder.write("src/world/numbers.h",

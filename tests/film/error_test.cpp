@@ -189,51 +189,6 @@ TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, wei
         }
 }
 
-TEST_CASE("the exponent of the cost is 1 / gamma of the last two errors whose n has doubled") {
-    CHECK(ErrorChecks(0).exponent_of_cost() == 2);
-    CHECK(ErrorChecks(1).expected() == HUGE_VAL);
-    struct Law {
-        double gamma, exponent;
-    };
-    for (const Law& law :
-         {Law{0.5, 2}, Law{0.75, 4 / 3.0}, Law{1, 1}, Law{1.5, 1}, Law{0.2, 2}, Law{-1, 2}}) {
-        ErrorChecks checks(0.01);
-        double d = 0;
-        for (uint64_t n : {16, 40, 90, 200}) {
-            d = 3 * std::pow(double(n), -law.gamma);
-            checks.add(n, d);
-        }
-        CAPTURE(law.gamma);
-        CHECK(checks.exponent_of_cost() == about(law.exponent, 1e-12));
-        CHECK(checks.expected() ==
-              about(200 * std::pow(std::max(1.0, d / 0.01), law.exponent), 1e-11));
-    }
-    ErrorChecks checks(0);
-    checks.add(16, 8);
-    CHECK(checks.exponent_of_cost() == 2);
-    checks.add(31, 1);  // less than twice as many
-    CHECK(checks.exponent_of_cost() == 2);
-    checks.add(32, 8 * std::pow(2, -0.75));  // compared with 16
-    CHECK(checks.exponent_of_cost() == about(1 / 0.75, 1e-12));
-    checks.add(64, 8 * std::pow(2, -0.75) / std::pow(2, 0.6));  // compared with 32, not 16
-    CHECK(checks.exponent_of_cost() == about(1 / 0.6, 1e-12));
-    checks.add(128, 0);
-    CHECK(checks.expected() == HUGE_VAL);  // no error was asked for
-    // An error that vanishes, grows or is not known leaves an exponent that can be used.
-    for (double before : {0.0, 1.0, double(NAN), HUGE_VAL})
-        for (double after : {0.0, 1.0, double(NAN), HUGE_VAL}) {
-            ErrorChecks odd(0.5);
-            odd.add(16, before);
-            odd.add(32, after);
-            CAPTURE(before);
-            CAPTURE(after);
-            CHECK(odd.exponent_of_cost() >= 1);
-            CHECK(odd.exponent_of_cost() <= 2);
-            CHECK(odd.expected() >= 32);
-            CHECK(std::isfinite(odd.expected()) == std::isfinite(after));
-        }
-}
-
 TEST_CASE(
     "the rule of --error: raised by half its standard error and another pixel like the worst") {
     auto error = [](double d_rel, double standard_error) {
@@ -286,44 +241,33 @@ TEST_CASE("checks look at whole films when they are due, and tell what they expe
     // A pilot has no check, whatever its samples; the first check after it is at 8.
     Film film = make_film(size, 2, true);
     fill(film, 8, one);
-    ErrorChecks checks(0.1);
-    CHECK(checks.check(film) == Stop::no);
+    CHECK_FALSE(is_check_due(film));
     choose_weights(film);
-    CHECK(checks.check(film) == Stop::no);
-    for (uint64_t n = 1; n < 8; ++n) {
+    for (uint64_t n = 0; n < 8; ++n) {
         fill(film, n, one);
-        CHECK(checks.check(film) == Stop::no);  // although the error is 0
+        CHECK_FALSE(is_check_due(film));
     }
     fill(film, 8, one);
-    CHECK(checks.check(film) == Stop::error);
+    CHECK(is_check_due(film));
+    CHECK(check_error(film, 0.1, {}).stop == Stop::error);
     fill_blocks(film, 0, 1, 9, one);  // an interrupted film is completed first
-    CHECK(checks.check(film) == Stop::no);
+    CHECK_FALSE(is_check_due(film));
     fill(film, 33, one);
-    CHECK(checks.check(film) == Stop::no);  // checks are at 32 and 34
+    CHECK_FALSE(is_check_due(film));  // checks are at 32 and 34
     fill(film, 34, one);
-    CHECK(checks.check(film) == Stop::error);
+    CHECK(is_check_due(film));
     // If the error is too large, the samples grow with the square of the ratio of the errors.
     const Film rough = filled(size, 2, 8, noisy);
-    ErrorChecks strict(error_of(rough).d_rel() / 5);
-    CHECK(strict.check(rough) == Stop::no);
-    CHECK(strict.expected() == about(8 * 25, 1e-12));
+    const ErrorCheck strict = check_error(rough, error_of(rough).d_rel() / 5, {});
+    CHECK(strict.stop == Stop::no);
+    CHECK(strict.expected == about(8 * 25, 1e-12));
     // The cost of a black film is unknown.
     const Film black = filled(size, 2, 8, [](const PixelSample&, Tally&) { return rgb{}; });
-    ErrorChecks dark(0.1);
-    CHECK(dark.check(black) == Stop::no);
-    CHECK(dark.expected() == HUGE_VAL);
-    // Without a requested error the checks only record the course of the error, where n doubles:
-    // here it falls as 1 / n, then not at all.
-    ErrorChecks none(0);
-    film = make_film(size, 2, false);
-    for (uint64_t n : {4, 8, 15}) {
-        fill(film, n, [](const PixelSample& s, Tally&) {
-            return (s.i == 0 ? real(9 + 2 * s.set) : s.i < 8 ? 10 : real(s.set)) * rgb{1, 1, 1};
-        });
-        CHECK(none.check(film) == Stop::no);
-        CHECK(none.exponent_of_cost() == about(n == 4 ? 2 : 1, 0.01));
-    }
-    CHECK(none.expected() == HUGE_VAL);
+    CHECK(check_error(black, 0.1, {}).stop == Stop::no);
+    CHECK(check_error(black, 0.1, {}).expected == HUGE_VAL);
+    // What has an error that is small enough needs no more.
+    CHECK(check_error(rough, 0.9, {}).stop == Stop::error);
+    CHECK(check_error(rough, 0.9, {}).expected == 8);
 }
 
 TEST_CASE("d_rel is over the truth, not over an image that is mostly noise") {
@@ -375,7 +319,7 @@ TEST_CASE("an error that is in doubt stops no render before 4096 samples per pix
     bool is_known = false;
     const MayMissLight why = [&](const Film&, const ImageError&) { return !is_known; };
     auto stop = [&](uint64_t n, double wanted) {
-        return ErrorChecks(wanted, why).check(filled({12, 9}, 4, n, noisy));
+        return check_error(filled({12, 9}, 4, n, noisy), wanted, why).stop;
     };
     uint64_t n = 8;  // the last check before 1024
     while (next_check(n) < 1024) n = next_check(n);
@@ -383,7 +327,6 @@ TEST_CASE("an error that is in doubt stops no render before 4096 samples per pix
     REQUIRE(beyond >= 1024);
     CHECK(stop(n, 0.5) == Stop::no);
     CHECK(stop(beyond, 0.5) == Stop::error_unknown);
-    CHECK(stop(beyond, 0) == Stop::no);  // without a requested error, doubts have no effect
     is_known = true;
     CHECK(stop(n, 0.5) == Stop::error);
     CHECK(stop(beyond, 0.5) == Stop::error);

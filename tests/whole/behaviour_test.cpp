@@ -355,9 +355,10 @@ TEST_CASE("the summary states the error, or why it is not known") {
     CHECK(told("--view normal") == "");
 }
 
-TEST_CASE("--pixel replays a sample of any set: the mean of two is the pixel") {
+TEST_CASE("--pixel replays any sample of any set: their mean is the pixel, bit for bit") {
     const Place place(diffuse_scene);
-    for (const std::string more : {"", "--light nee "}) {
+    for (const std::string more : {"", "--light nee ", "--sampler independent ",
+                                   "--sampler stratified ", "--sampler halton "}) {
         const std::string line = more + "--size 6x6 --seed 4 ";
         auto L = [&](const std::string& set) {
             const std::string told = replayed(place, "--pixel 1,5 " + line + set);
@@ -365,10 +366,12 @@ TEST_CASE("--pixel replays a sample of any set: the mean of two is the pixel") {
             REQUIRE(at != told.npos);
             return std::strtod(told.c_str() + at + 4, nullptr);
         };
-        const double first = L("--sample 0,0"), second = L("--sample 0,1");
-        CHECK(L("") == first);
+        const double first = L("--sample 0,0") + L("--sample 1"),
+                     second = L("--sample 0,1") + L("--sample 1,1");
+        CHECK(L("") == L("--sample 0,0"));
         CHECK(first != second);
-        CHECK(place.image(line + "--spp 2").at(1, 5)[0] == float((first + second) / 2));
+        const Image image = place.image(line + "--spp 4 --replications 2");
+        CHECK(image.at(1, 5)[0] == float((first + second) / 4));
     }
 }
 

@@ -1,11 +1,40 @@
-// app/replay.h  4  prints the events of one path (--pixel)
+// replay/replay.h  1  prints the events of one path instead of rendering (--pixel)
 #pragma once
 #include <cstdio>
 
-#include "app/options.h"
+#include "film/film.h"
+#include "path/pathtracer.h"
 #include "path/start.h"
+#include "text/named_scene.h"
+#include "text/option.h"
 
 namespace penumbra {
+
+// ---- Options ------------------------------------------------------------------------------------
+
+// The path to replay: its pixel, "X,Y", and its sample, "I" or "I,K".
+inline void set_pixel(std::optional<PixelSample>& replay, Text v) {
+    const auto [x, y] = parts_of(v, ',', "X,Y");
+    if (!replay) replay.emplace();
+    replay->x = int(parse_count(x, 0, INT32_MAX));
+    replay->y = int(parse_count(y, 0, INT32_MAX));
+}
+inline void set_sample(std::optional<PixelSample>& replay, Text v) {
+    const size_t comma = v.find(',');
+    if (!replay) replay.emplace();
+    replay->i = parse_count(v.substr(0, comma), 0, max_samples);
+    if (comma != v.npos)
+        replay->set = uint32_t(parse_count(v.substr(comma + 1), 0, max_replications));
+}
+
+inline OptionTable replay_rows(std::optional<PixelSample>& replay) {
+    return {{"--pixel", "X,Y", "print every event of one path of pixel X,Y instead of rendering",
+             "", [&replay](Text v) { set_pixel(replay, v); }},
+            {"--sample", "I[,K]", "index of the sample, and of its replication, for --pixel", "0,0",
+             [&replay](Text v) { set_sample(replay, v); }}};
+}
+
+// ---- Events of a path ---------------------------------------------------------------------------
 
 inline const char* in_words(Unlit why) {
     switch (why) {
@@ -102,19 +131,21 @@ private:
     void print(const char* what, vec3 v) const { print(what, {v.x, v.y, v.z}); }
 };
 
-// Prints one path of the image.
-inline void replay(const Options& o, const NamedScene& scene, const Pattern& pattern) {
+// Prints one path of the image, and what a view shows of it, if there is one; throws UserError if
+// its pixel is outside.
+inline void replay(const NamedScene& scene, const Technique& technique, const Pattern& pattern,
+                   const PixelSample& which, const std::function<rgb(const Start&)>& view) {
+    if (which.x >= scene.size.width || which.y >= scene.size.height)
+        throw UserError("--pixel: outside the image");
     const PathLog log(scene, stdout);
-    const Start at = start(scene, pattern, *o.replay);
-    const auto& [x, y, i, set] = *o.replay;
-    std::printf("pixel %d,%d, sample %llu of replication %u, seed %llu\n", x, y,
-                static_cast<unsigned long long>(i), set, static_cast<unsigned long long>(o.seed));
+    const Start at = start(scene, pattern, which);
+    std::printf("pixel %d,%d, sample %llu of replication %u, seed %llu\n", which.x, which.y,
+                static_cast<unsigned long long>(which.i), which.set,
+                static_cast<unsigned long long>(pattern.seed));
     log.film(at);
-    if (o.view.of)
-        return log.end("a view, not radiance",
-                       o.view.of({scene, at, meet(scene, at.ray), far_of(scene)}));
+    if (view) return log.end("a view, not radiance", view(at));
     End why = End::no;
-    const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
+    const rgb L = Li(scene, technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
         log(s, e);
         why = e.end;
     });
