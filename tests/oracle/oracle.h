@@ -3872,7 +3872,7 @@ struct Mistake {
                 std::vector<double> rest;
                 for (const Local<N>& l : good) rest.push_back(off(l, std::exp(best)));
                 // The lobe's axis is the mean of samples.
-                const double known = n == scene.normal ? tolerance : std::max(tolerance, 0.03);
+                const double known = n == scene.normal ? tolerance : std::max(tolerance, 0.06);
                 if (scene.directions && std::abs(best) > 0.5 * known + 0.01 &&
                     law_of(rest, known).plain(known))
                     return "samples have the density of the pdf with slopes tan(theta) " +
