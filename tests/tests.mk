@@ -7,7 +7,7 @@ SUITE := $(OBJECTS)/all-tests
 # What a student does not wait for: tests of the course, of experiments, of the oracle's power, of make and its tools,
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
-LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% text/scene_file_bounds% \
+LATER := course/% labs/% oracle/% fuzz/% web/% radiosity/walks% text/scene_file_bounds% \
          $(foreach t,crowds faults from_blender how_to_add makefile memory parts radiosity_program resume runner scripts stopping,\
              whole/$t_test)
 

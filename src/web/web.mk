@@ -8,7 +8,7 @@ WEB_FLAGS    := $(filter-out -M% -march% -pthread -DWITH_KEEP $(QUIET) $(HOMEBRE
 FUSED        := -mrelaxed-simd -fno-builtin-fma -fno-builtin-fmaf
 MODULES_OF_WEB := $(patsubst %,build/web/%$(SUFFIX).wasm,fused software)
 
-web: $(MODULES_OF_WEB)  ## the renderer in a browser: two WebAssembly modules in build/web/
+web: $(MODULES_OF_WEB) build/web/figure.js build/web/scenes.js build/web/playground.html  ## the renderer in a browser: build/web/playground.html
 
 build/web/fused$(SUFFIX).wasm: WEB_FLAGS += $(FUSED)
 web-packages:
@@ -18,3 +18,18 @@ $(MODULES_OF_WEB): src/web/web.cpp src/web/files.h src/web/web.mk Makefile | web
 	@mkdir -p build/web/instead/text && cp src/web/files.h build/web/instead/text/
 	clang++-19 $(WEB_FLAGS) -MMD -MP -MF $@.d -MT $@ -o $@ $<
 -include $(wildcard build/web/*.d)
+
+# Pages open from a disk, where they may load no module: it is inlined.
+build/web/figure.js: $(MODULES_OF_WEB) src/web/renderer.js src/web/figure.js
+	@{ echo 'var penumbra = globalThis.penumbra ?? {}; penumbra.modules = {'; \
+	    for module in $(MODULES_OF_WEB); do name=$${module##*/}; \
+	        echo "'$${name%%[.-]*}': '$$(gzip -9nc $$module | base64 | tr -d '\n')',"; done; \
+	    echo '};'; cat src/web/renderer.js src/web/figure.js; } >$@
+
+build/web/scenes.js: $(wildcard scenes/*.scene scenes/*.obj scenes/*.mtl) build/knot.obj
+	@python3 -c 'import json, os, sys; read = lambda path: open(path).read(); \
+	    print("var penumbra = globalThis.penumbra ?? {}; penumbra.scenes =", json.dumps({os.path.basename(p)[:-6]: read(p) for p in sys.argv[1:] if p.endswith(".scene")}), \
+	        "; penumbra.files =", json.dumps({p: read(p) for p in sys.argv[1:] if not p.endswith(".scene")}), ";")' $^ >$@
+
+build/web/playground.html: src/web/playground.html
+	@cp $< $@
