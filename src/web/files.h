@@ -4,7 +4,6 @@
 #pragma once
 #include <filesystem>
 #include <map>
-#include <span>
 #include <string>
 #include <system_error>
 #include <vector>

@@ -79,7 +79,8 @@ class Renderer {
     packed(first, step) {
         const sums = this.sums, deviations = this.deviations, size = 3 * this.scene.replications;
         const pixels = this.blocks(first, step, () => 0);
-        const taken = { first, step, sums: new Float64Array(size * pixels), deviations: new Float32Array(deviations.length && pixels) };
+        const taken = { first, step, sums: new Float64Array(size * pixels),
+            deviations: new Float32Array(deviations.length && pixels) };
         this.blocks(first, step, (place, from, to) => {
             taken.sums.set(sums.subarray(size * from, size * to), size * place);
             if (deviations.length) taken.deviations.set(deviations.subarray(from, to), place);

@@ -34,17 +34,13 @@ using namespace penumbra;
 IMPORT(fail) void page_fail(const char* text, size_t size);      // the instance ends
 IMPORT(answer) void page_answer(const char* text, size_t size);  // a text that a function returns
 
-namespace {
-
 // What is read: it comes before an error's message.
-std::string reading;
+static std::string reading;
 
-[[noreturn]] void end_instance(const std::string& why) {
+[[noreturn]] static void end_instance(const std::string& why) {
     page_fail(why.data(), why.size());
     __builtin_trap();
 }
-
-}  // namespace
 
 // -fignore-exceptions leaves out every `catch`, and calls these for a `throw`: all that is thrown
 // is a runtime_error.
@@ -77,7 +73,9 @@ ParsedScene read_text(const std::string& text, const std::string& name) {
             reader.statement(words, number);
     });
     reading.clear();
-    return reader.finish(name);
+    ParsedScene read = reader.finish(name);
+    for (const std::string& hidden : hidden_lights(read.scene)) read.warnings.push_back(hidden);
+    return read;
 }
 
 // Options in the words of the command line: those that change samples.
@@ -108,13 +106,18 @@ void apply_options(const std::string& name) {
                             ": --light none: rays never hit a " + name_of(s.lights[i]) + " light");
 }
 
-rgb radiance(const PixelSample& which, Tally& tally) {
+rgb radiance(const PixelSample& which, Tally&) {
     const Start at = start(scene(), pattern, which);
     const auto& of = options.view.of;
     if (of) return of({scene(), at, meet(scene(), at.ray), far_of(scene())});
-    return Li(scene(), options.technique, at.ray, at.sampler, [&](const Segment&, const Step& e) {
-        tally.rays += 1 + (e.direct.light != nullptr);
-    });
+    return Li(scene(), options.technique, at.ray, at.sampler);
+}
+
+// A text that the page has put into `room`.
+std::string taken_from(char* text, size_t size) {
+    const std::string copy(text, size);
+    std::free(text);
+    return copy;
 }
 
 // ---- JSON ---------------------------------------------------------------------------------------
@@ -122,6 +125,16 @@ rgb radiance(const PixelSample& which, Tally& tally) {
 void answer(const std::string& text) { page_answer(text.data(), text.size()); }
 
 std::string numbers(vec3 v) { return json::numbers({double(v.x), double(v.y), double(v.z)}); }
+
+// An object whose members may be numbers and vectors.
+struct Object : json::Object {
+    void vectors(std::initializer_list<std::pair<const char*, vec3>> members) {
+        for (const auto& [key, v] : members) add(key, numbers(v));
+    }
+    void scalars(std::initializer_list<std::pair<const char*, double>> members) {
+        for (const auto& [key, x] : members) add(key, json::number(x));
+    }
+};
 
 template <class Item, class Text>
 std::string list(const std::vector<Item>& items, Text text) {
@@ -141,50 +154,40 @@ std::string outline(const Shape& shape) {
 }
 
 std::string light_sample(const Vertex& x, const DirectLight& d) {
-    json::Object o;
+    Object o;
     o.add("kind", json::string(name_of(*d.light)));
-    o.add("chosen", json::number(double(d.pdf / d.sample.pdf)));
     o.add("occluded", json::truth(d.occluded));
-    o.add("at", numbers(d.sample.at.p));
-    o.add("wi", numbers(d.sample.wi));
-    o.add("Le", numbers(d.sample.L));
-    o.add("f", numbers(eval(*x.material, x.wo, x.local.to_local(d.sample.wi))));
-    o.add("cosine", json::number(double(d.cosine)));
-    o.add("pdf", json::number(double(d.pdf)));
-    o.add("weight", json::number(double(d.weight)));
-    o.add("L", numbers(d.L));
+    o.vectors({{"at", d.sample.at.p}, {"wi", d.sample.wi}, {"Le", d.sample.L}, {"L", d.L}});
+    o.vectors({{"f", eval(*x.material, x.wo, x.local.to_local(d.sample.wi))}});
+    o.scalars({{"chosen", d.pdf / d.sample.pdf},
+               {"cosine", d.cosine},
+               {"pdf", d.pdf},
+               {"weight", d.weight}});
     return o.text();
 }
 
 // One vertex: every number of the rendering equation there, and L of the path so far.
 std::string vertex(const Segment& s, const Step& e, rgb L) {
-    json::Object o;
-    o.add("k", std::to_string(s.k));
-    o.add("from", numbers(s.from));
-    o.add("direction", numbers(s.ray.d));
-    o.add("throughput", numbers(s.beta));
-    o.add("L", numbers(L));
+    Object o;
+    o.scalars({{"k", s.k}});
+    o.vectors({{"from", s.from}, {"direction", s.ray.d}, {"throughput", s.beta}, {"L", L}});
     if (e.end != End::no) o.add("end", json::string(in_words(e.end)));
     if (!e.met) return o.text();
     const uint32_t shape = e.vertex.hit.id;
-    o.add("shape", std::to_string(shape));
     o.add("material", json::string(scene().names[scene().material_of[shape]]));
     o.add("line", json::string(where(scene(), shape)));
-    o.add("distance", json::number(double(e.vertex.hit.t)));
-    o.add("p", numbers(e.vertex.at.p));
-    o.add("n", numbers(e.vertex.at.n));
+    o.scalars({{"distance", e.vertex.hit.t}});
+    o.vectors({{"p", e.vertex.at.p}, {"n", e.vertex.at.n}});
     if (e.vertex.material->emits()) {
-        o.add("emission", numbers(e.Le));
-        o.add("weight", json::number(double(e.weight)));
+        o.vectors({{"emission", e.Le}});
+        o.scalars({{"weight", e.weight}});
     }
     if (e.direct.light) o.add("light", light_sample(e.vertex, e.direct));
     if (e.direct.unlit != Unlit::no) o.add("unlit", json::string(in_words(e.direct.unlit)));
     if (!(e.scattered.pdf > 0)) return o.text();
-    o.add("wi", numbers(e.wi));
-    o.add("f", numbers(e.scattered.f));
-    o.add("cosine", json::number(double(std::abs(e.scattered.wi.z))));
-    o.add("pdf", json::number(double(e.scattered.pdf)));
-    if (e.end == End::no) o.add("next", numbers(e.next.beta));
+    o.vectors({{"wi", e.wi}, {"f", e.scattered.f}});
+    o.scalars({{"cosine", std::abs(e.scattered.wi.z)}, {"pdf", e.scattered.pdf}});
+    if (e.end == End::no) o.vectors({{"next", e.next.beta}});
     return o.text();
 }
 
@@ -200,13 +203,6 @@ EXPORT(rounds_once) int rounds_once() {
 
 // Memory for a text; who takes the text frees it.
 EXPORT(room) char* room(size_t size) { return static_cast<char*>(std::malloc(size)); }
-namespace {
-std::string taken_from(char* text, size_t size) {
-    const std::string copy(text, size);
-    std::free(text);
-    return copy;
-}
-}  // namespace
 
 // A file that the scene may name.
 EXPORT(give) void give(char* name, size_t name_size, char* bytes, size_t size) {
@@ -230,23 +226,17 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
     const uint32_t K = options.replications ? options.replications : 2;
     film = make_film(s.size, K, options.replications == 0 && N != 2);
     const uint64_t of_one = K * (film.is_pilot ? typical_weight : 1);
-    json::Object o;
-    o.add("width", std::to_string(s.size.width));
-    o.add("height", std::to_string(s.size.height));
-    o.add("depth", std::to_string(s.depth));
-    o.add("samples", std::to_string((N + of_one - 1) / of_one));  // of a replication of weight 1
-    o.add("exposure", json::number(double(s.exposure)));
-    o.add("replications", std::to_string(film.replications));
-    o.add("block", std::to_string(film.block_size()));
-    o.add("blocks", std::to_string(film.blocks()));
+    Object o;
+    o.scalars({{"width", s.size.width}, {"height", s.size.height}, {"exposure", s.exposure}});
+    o.scalars({{"replications", K}, {"samples", (N + of_one - 1) / of_one}});  // of weight 1
+    o.scalars({{"block", film.block_size()}, {"blocks", film.blocks()}});
     o.add("warnings", list(parsed.warnings, json::string));
     const Camera& c = s.camera;
-    o.add("camera", list(std::vector{c.eye, c.right, c.up, c.forward}, numbers));
-    o.add("tan_half", json::number(double(c.tan_half)));
+    o.vectors({{"eye", c.eye}, {"right", c.right}, {"up", c.up}, {"forward", c.forward}});
+    o.scalars({{"tan_half", c.tan_half}});
     constexpr size_t most_outlines = 4000;
-    const size_t outlines = s.shapes.size() > most_outlines ? 0 : s.shapes.size();
     o.add("shapes",
-          list(std::vector(s.shapes.begin(), s.shapes.begin() + ptrdiff_t(outlines)), outline));
+          list(s.shapes.size() > most_outlines ? std::vector<Shape>() : s.shapes, outline));
     answer(o.text());
 }
 
@@ -265,11 +255,9 @@ EXPORT(add) void add(size_t first, size_t step, double n) {
 // All blocks have n: workers have added them, the page has copied their sums here.
 EXPORT(took) void took(double n) { film.taken.assign(film.blocks(), uint64_t(n)); }
 
-// Where the page reads and writes a film: sums of all replications, deviations of the pilot,
-// weights.
+// Where the page reads and writes a film: sums of all replications, deviations of the pilot.
 EXPORT(sums) double* sums() { return film.sum[0].data(); }
 EXPORT(deviations) float* deviations() { return film.deviation.data(); }
-EXPORT(weights) uint8_t* weights() { return film.weight.data(); }
 
 // Samples of the pilot, after which weights are chosen; 0: they are, or need not be.
 EXPORT(pilot) double pilot() { return film.is_pilot ? double(pilot_samples) : 0; }
@@ -313,11 +301,8 @@ EXPORT(path) void path(int x, int y, double i, uint32_t set) {
         });
     log.end(in_words(why), L);
     std::fclose(out);
-    json::Object o;
-    o.add("u", numbers({at.u.x, at.u.y, 0}));
-    o.add("roulette", json::number(double(options.technique.roulette)));
-    o.add("end", json::string(in_words(why)));
-    o.add("L", numbers(L));
+    Object o;
+    o.vectors({{"L", L}});
     o.add("vertices", list(vertices, [](const std::string& text) { return text; }));
     o.add("printed", json::string(taken_from(printed, size)));
     answer(o.text());

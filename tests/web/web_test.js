@@ -98,6 +98,33 @@ const tests = {
         expect("equal time", await browser.run("figure.sides[1].seconds >= figure.sides[0].seconds"), true);
         expect("curves", await browser.run("figure.shadowRoot.querySelectorAll('.plot polyline').length"), 4);
     },
+    async "the true error is that of the picture against its reference"(browser) {
+        const floats = text => new Float32Array(new Uint8Array(Buffer.from(text, "base64")).buffer);
+        const reference = floats(drawn("scenes/cornell.scene", "--size 40x20 --spp 4096 --seed 1"));
+        await browser.go(address({ scene: "cornell", size: "40x20", samples: 32 }));
+        await browser.run(`figure.reference = new Float32Array(${JSON.stringify([...reference])}); figure.reload()`);
+        await browser.run(finished);
+        let off = 0, norm = 0;
+        floats(drawn("scenes/cornell.scene", "--size 40x20 --spp 32")).forEach((x, i) => { off += (x - reference[i]) ** 2; norm += reference[i] ** 2; });
+        expect("the last true error", await browser.run("figure.sides[0].curve.at(-1)[2]"), Math.sqrt(off / norm));
+        expect("the table", await browser.run("figure.numbers.querySelectorAll('td')[3].textContent"), `${+(100 * Math.sqrt(off / norm)).toPrecision(3)} %`);
+    },
+    async "buttons go from vertex to vertex, and from sample to sample"(browser) {
+        await browser.go(address({ scene: "cornell", size: "40x20", samples: 4, pixel: "20,12" }));
+        await browser.run(finished);
+        const press = act => browser.run(`figure.path_box.querySelector('[data-act="${act}"]').click()`);
+        for (const act of ["sample 1", "sample 1", "sample -1", "half 1", "vertex 1"]) await press(act);
+        expect("the state", await browser.run("[figure.sample, figure.half, figure.vertex].join()"), "1,1,1");
+        expect("the text", await browser.run("figure.path_box.querySelector('pre').textContent"), printed("scenes/cornell.scene", "--size 40x20 --pixel 20,12 --sample 1,1"));
+        expect("the number under the mouse", await browser.run("figure.path_box.querySelector('.number').title"), await browser.run("figure.path.vertices[1].throughput.join(' ')"));
+        for (const act of ["vertex -1", "vertex 1"]) {
+            await press(act);
+            expect("the point in the picture", await browser.run("figure.overlay.querySelectorAll('.here').length"), 1);
+        }
+        expect("views", await browser.run("[...figure.path_box.querySelectorAll('.views svg')].map(svg => svg.querySelectorAll('.here').length).join()"), "1,1");
+        await press("close");
+        expect("closed", await browser.run("figure.cursor"), null);
+    },
     async "keys and clicks open paths; the address keeps the state"(browser) {
         await browser.size(1000, 900);
         await browser.go(address({ scene: "cornell", size: "40x20", samples: 4 }));
