@@ -24,7 +24,7 @@ extern "C" inline float fmaf(float a, float b, float c) {
 #include "text/files.h"
 #include "text/scene_file.h"
 
-#include "app/replay.h"  // after the header of NamedScene
+#include "app/replay.h"
 
 #define EXPORT(name) extern "C" [[clang::export_name(#name)]]
 #define IMPORT(name) extern "C" [[clang::import_module("page"), clang::import_name(#name)]]

@@ -48,6 +48,12 @@ async function open() {
         },
         async press(key) { for (const type of ["keyDown", "keyUp"]) await send("Input.dispatchKeyEvent", { type, key, code: key }); },
         async click(x, y) { for (const type of ["mousePressed", "mouseReleased"]) await send("Input.dispatchMouseEvent", { type, x, y, button: "left", clickCount: 1 }); },
+        async tap(x, y) {
+            await send("Emulation.setTouchEmulationEnabled", { enabled: true });
+            await send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [{ x, y }] });
+            await send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+            await send("Emulation.setTouchEmulationEnabled", { enabled: false });
+        },
         async shoot(file, is_whole = true) {
             const { data } = await send("Page.captureScreenshot", { captureBeyondViewport: is_whole });
             fs.writeFileSync(file, Buffer.from(data, "base64"));

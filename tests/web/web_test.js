@@ -21,7 +21,7 @@ const bits = side => `(() => { const b = new Uint8Array(figure.sides[${side}].im
 const finished = "figure.finished()", problem = "$('problem').textContent";
 const until = async (browser, condition) => {
     for (let k = 0; !await browser.run(condition); ++k) {
-        if (k > 600) throw Error(`never: ${condition}`);
+        if (k > 200) throw Error(`never: ${condition}`);
         await new Promise(soon => setTimeout(soon, 50));
     }
 };
@@ -132,6 +132,9 @@ const tests = {
         const box = await browser.run("figure.stage.scrollIntoView(), (({ x, y, width, height }) => ({ x, y, width, height }))(figure.stage.getBoundingClientRect())");
         await browser.click(box.x + box.width * 10.5 / 40, box.y + box.height * 5.5 / 20);
         expect("clicked", await browser.run("figure.cursor.join()"), "10,5");
+        await browser.tap(box.x + box.width * 10.5 / 40, box.y + box.height * 6.5 / 20);
+        await until(browser, "figure.cursor.join() === '10,6'");
+        await browser.click(box.x + box.width * 10.5 / 40, box.y + box.height * 5.5 / 20);
         await browser.run("figure.stage.focus()");
         for (const key of ["ArrowRight", "ArrowDown", "ArrowDown"]) await browser.press(key);
         expect("moved", await browser.run("figure.cursor.join()"), "11,7");
