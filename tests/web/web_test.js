@@ -4,7 +4,8 @@ const { execFileSync, spawnSync } = require("child_process"), fs = require("fs")
 const { open } = require("./browser.js");
 
 const penumbra = process.argv[2], page = "build/web/playground.html", folder = fs.mkdtempSync(path.join(os.tmpdir(), "penumbra-web-"));
-const expect = (what, is, wanted) => { if (is !== wanted) throw Error(`${what}: ${String(is).slice(0, 300)}, expected ${String(wanted).slice(0, 300)}`); };
+const short = value => String(value).slice(0, 300);
+function expect(what, is, wanted) { if (is !== wanted) throw Error(`${what}: ${short(is)}, expected ${short(wanted)}`); }
 
 // What the program draws, as rows from the top, and what it prints.
 function drawn(scene, options) {
@@ -12,12 +13,13 @@ function drawn(scene, options) {
     execFileSync(penumbra, ["--quiet", ...options.split(" ").filter(Boolean), "-o", file, scene]);
     const bytes = fs.readFileSync(file), [, width, height] = bytes.toString("latin1", 0, 40).match(/^PF\n(\d+) (\d+)/).map(Number);
     const rows = bytes.subarray(bytes.length - 12 * width * height);
-    return Buffer.concat(Array.from({ length: height }, (_, y) => rows.subarray(12 * width * (height - 1 - y), 12 * width * (height - y)))).toString("base64");
+    const from_bottom = y => rows.subarray(12 * width * y, 12 * width * (y + 1));
+    return Buffer.concat(Array.from({ length: height }, (_, y) => from_bottom(height - 1 - y))).toString("base64");
 }
 const printed = (scene, options) => execFileSync(penumbra, [...options.split(" "), scene]).toString().replace(/^.*\n/, "");
 
 const address = state => `${page}#${new URLSearchParams(state)}`;
-const bits = side => `(() => { const b = new Uint8Array(figure.sides[${side}].image.buffer); let s = ""; for (const x of b) s += String.fromCharCode(x); return btoa(s); })()`;
+const bits = side => `btoa(Array.from(new Uint8Array(figure.sides[${side}].image.buffer), x => String.fromCharCode(x)).join(""))`;
 const finished = "figure.finished()", problem = "$('problem').textContent";
 const until = async (browser, condition) => {
     for (let k = 0; !await browser.run(condition); ++k) {
@@ -28,20 +30,23 @@ const until = async (browser, condition) => {
 
 const tests = {
     async "pictures have the program's bits, whatever the number of workers"(browser) {
-        for (const [scene, options] of [["cornell", ""], ["materials", "--sampler halton --light nee"], ["mesh", "--light none --direction uniform"],
-            ["cornell36obj", "--sampler independent --seed 7"], ["atelier", "--view normal"], ["lanterns", "--sampler stratified --replications 4 --depth 3"]])
+        for (const [scene, options] of [["cornell", ""], ["materials", "--sampler halton --light nee"],
+            ["mesh", "--light none --direction uniform"], ["cornell36obj", "--sampler independent --seed 7"],
+            ["atelier", "--view normal"], ["lanterns", "--sampler stratified --replications 4 --depth 3"]])
             for (const workers of [1, 3]) {
                 await browser.go(address({ scene, a: options, size: "40x20", samples: 24 }));
-                await browser.run(`Object.defineProperty(navigator, "hardwareConcurrency", { value: ${workers}, configurable: true }); workers.all.splice(0).forEach(w => w.terminate()); figure.reload(); ${finished}`);
-                await browser.run(finished);
+                await browser.run(`Object.defineProperty(navigator, "hardwareConcurrency", { value: ${workers} });
+                    workers.all.splice(0).forEach(worker => worker.terminate()); figure.reload(); ${finished}`);
                 expect(`${scene} ${options}, workers`, await browser.run("workers.all.length"), workers);
-                expect(`${scene} ${options}, ${workers} workers`, await browser.run(bits(0)), drawn(`scenes/${scene}.scene`, `--size 40x20 --spp 24 ${options}`));
+                expect(`${scene} ${options}, ${workers} workers`, await browser.run(bits(0)),
+                    drawn(`scenes/${scene}.scene`, `--size 40x20 --spp 24 ${options}`));
             }
     },
     async "the module with fma in software has the same bits"(browser) {
         await browser.go(address({ scene: "cornell", size: "40x20", samples: 8 }));
         await browser.run(finished);
-        const software = await browser.run(`(async () => { const packed = penumbra.modules.software, bytes = Uint8Array.from(atob(packed), c => c.charCodeAt(0));
+        const software = await browser.run(`(async () => {
+            const bytes = Uint8Array.from(atob(penumbra.modules.software), letter => letter.charCodeAt(0));
             const code = await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
             const r = await Renderer.of(await WebAssembly.compile(code)); r.load({ ...figure.sides[0].scene });
             while (!r.is_pilot_done) r.add(r.n + 1); r.choose(); r.add(r.scene.samples);
@@ -49,7 +54,8 @@ const tests = {
         expect("software", software, "1 true");
     },
     async "a path has the numbers of --pixel, and its own sum"(browser) {
-        for (const [scene, x, y, options] of [["cornell", 20, 12, ""], ["materials", 9, 15, "--light nee --roulette 0.9"], ["panel", 30, 11, "--sampler halton"]]) {
+        for (const [scene, x, y, options] of [["cornell", 20, 12, ""], ["materials", 9, 15, "--light nee --roulette 0.9"],
+            ["panel", 30, 11, "--sampler halton"]]) {
             await browser.go(address({ scene, size: "40x20", samples: 8, a: options, pixel: `${x},${y}` }));
             await browser.run(finished);
             for (const [i, half] of [[0, 0], [5, 1]]) {
@@ -57,9 +63,9 @@ const tests = {
                 const text = printed(`scenes/${scene}.scene`, `--size 40x20 --pixel ${x},${y} --sample ${i},${half} ${options}`.trim());
                 expect(`${scene} ${i},${half}`, await browser.run("figure.path.printed"), text);
                 // Each line of numbers is a member of a vertex, in order.
-                const told = await browser.run("figure.path"), of = { "throughput": v => v.throughput, "p": v => v.p, "n": v => v.n, "emission": v => v.emission, "f": v => v.f, "wi": v => v.wi };
-                for (const [name, member] of Object.entries(of))
-                    expect(`${scene} ${i},${half}: ${name}`, JSON.stringify(told.vertices.filter(v => v.p && member(v)).map(member)),
+                const told = await browser.run("figure.path");
+                for (const name of ["throughput", "p", "n", "emission", "f", "wi"])
+                    expect(`${scene} ${i},${half}: ${name}`, JSON.stringify(told.vertices.filter(v => v.p && v[name]).map(v => v[name])),
                         JSON.stringify([...text.matchAll(new RegExp(`^  ${name}: (.*)`, "gm"))].map(m => m[1].split(" ").map(Number))));
                 expect("light samples", told.vertices.filter(v => v.light?.occluded).length, text.match(/, occluded$/gm)?.length ?? 0);
                 expect("the sum", JSON.stringify(told.vertices.at(-1).L), JSON.stringify(told.L));
@@ -68,13 +74,15 @@ const tests = {
         }
     },
     async "an error in a scene is shown at its line, in the program's words"(browser) {
-        const text = "camera 0 0 5  0 0 0  40\ndiffuse grey 0.5 0.5 0.5\nlight lamp 1 1 1\nsphere 0 0 0  1  gray\n", file = path.join(folder, "bad.scene");
+        const text = "camera 0 0 5  0 0 0  40\ndiffuse grey 0.5 0.5 0.5\nlight lamp 1 1 1\nsphere 0 0 0  1  gray\n";
+        const file = path.join(folder, "bad.scene");
         fs.writeFileSync(file, text);
         const words = spawnSync(penumbra, [file]).stderr.toString().trim().replace(/^.*bad.scene:(\d+): /, "Line $1: ");
         await browser.go(address({ scene: "cornell", text, size: "40x20", samples: 4 }));
         await until(browser, problem);
         expect("the message", await browser.run(problem), words);
-        expect("the line that is marked", await browser.run("[...document.querySelectorAll('#gutter .bad')].map(line => line.textContent).join()"), "4");
+        const marked = "[...document.querySelectorAll('#gutter .bad')].map(line => line.textContent).join()";
+        expect("the line that is marked", await browser.run(marked), "4");
         await browser.run("$('text').value = $('text').value.replace('gray', 'lamp'); $('text').dispatchEvent(new Event('input'))");
         await until(browser, `!${problem} && figure.sides[0]?.image`);
         await browser.run(finished);
@@ -88,7 +96,8 @@ const tests = {
     async "A and B stop at equal samples, or at equal time; the slider divides them"(browser) {
         await browser.go(address({ scene: "cornell", size: "40x20", samples: 32, b: "--light none" }));
         await browser.run(finished);
-        for (const [side, options] of [[0, ""], [1, "--light none"]]) expect(`side ${side}`, await browser.run(bits(side)), drawn("scenes/cornell.scene", `--size 40x20 --spp 32 ${options}`));
+        for (const [side, options] of [[0, ""], [1, "--light none"]])
+            expect(`side ${side}`, await browser.run(bits(side)), drawn("scenes/cornell.scene", `--size 40x20 --spp 32 ${options}`));
         await browser.run("figure.divide.value = 250; figure.divide.dispatchEvent(new Event('input'))");
         expect("divided", await browser.run("figure.canvases[1].style.clipPath"), "inset(0px 0px 0px 25%)");
         expect("the path left of it", await browser.run("figure.open_path(9, 3), figure.side_of_path === figure.sides[0]"), true);
@@ -105,9 +114,13 @@ const tests = {
         await browser.run(`figure.reference = new Float32Array(${JSON.stringify([...reference])}); figure.reload()`);
         await browser.run(finished);
         let off = 0, norm = 0;
-        floats(drawn("scenes/cornell.scene", "--size 40x20 --spp 32")).forEach((x, i) => { off += (x - reference[i]) ** 2; norm += reference[i] ** 2; });
+        floats(drawn("scenes/cornell.scene", "--size 40x20 --spp 32")).forEach((x, i) => {
+            off += (x - reference[i]) ** 2;
+            norm += reference[i] ** 2;
+        });
         expect("the last true error", await browser.run("figure.sides[0].curve.at(-1)[2]"), Math.sqrt(off / norm));
-        expect("the table", await browser.run("figure.numbers.querySelectorAll('td')[3].textContent"), `${+(100 * Math.sqrt(off / norm)).toPrecision(3)} %`);
+        const shown = await browser.run("figure.numbers.querySelectorAll('td')[3].textContent");
+        expect("the table", shown, `${+(100 * Math.sqrt(off / norm)).toPrecision(3)} %`);
     },
     async "buttons go from vertex to vertex, and from sample to sample"(browser) {
         await browser.go(address({ scene: "cornell", size: "40x20", samples: 4, pixel: "20,12" }));
@@ -115,13 +128,15 @@ const tests = {
         const press = act => browser.run(`figure.path_box.querySelector('[data-act="${act}"]').click()`);
         for (const act of ["sample 1", "sample 1", "sample -1", "half 1", "vertex 1"]) await press(act);
         expect("the state", await browser.run("[figure.sample, figure.half, figure.vertex].join()"), "1,1,1");
-        expect("the text", await browser.run("figure.path_box.querySelector('pre').textContent"), printed("scenes/cornell.scene", "--size 40x20 --pixel 20,12 --sample 1,1"));
-        expect("the number under the mouse", await browser.run("figure.path_box.querySelector('.number').title"), await browser.run("figure.path.vertices[1].throughput.join(' ')"));
+        expect("the text", await browser.run("figure.path_box.querySelector('pre').textContent"),
+            printed("scenes/cornell.scene", "--size 40x20 --pixel 20,12 --sample 1,1"));
+        expect("the number under the mouse", await browser.run("figure.path_box.querySelector('.number').title"),
+            await browser.run("figure.path.vertices[1].throughput.join(' ')"));
         for (const act of ["vertex -1", "vertex 1"]) {
             await press(act);
             expect("the point in the picture", await browser.run("figure.overlay.querySelectorAll('.here').length"), 1);
         }
-        expect("views", await browser.run("[...figure.path_box.querySelectorAll('.views svg')].map(svg => svg.querySelectorAll('.here').length).join()"), "1,1");
+        expect("views", await browser.run("figure.path_box.querySelectorAll('.views svg:has(.here)').length"), 2);
         await press("close");
         expect("closed", await browser.run("figure.cursor"), null);
     },
@@ -129,7 +144,7 @@ const tests = {
         await browser.size(1000, 900);
         await browser.go(address({ scene: "cornell", size: "40x20", samples: 4 }));
         await browser.run(finished);
-        const box = await browser.run("figure.stage.scrollIntoView(), (({ x, y, width, height }) => ({ x, y, width, height }))(figure.stage.getBoundingClientRect())");
+        const box = await browser.run("figure.stage.scrollIntoView(), figure.stage.getBoundingClientRect().toJSON()");
         await browser.click(box.x + box.width * 10.5 / 40, box.y + box.height * 5.5 / 20);
         expect("clicked", await browser.run("figure.cursor.join()"), "10,5");
         await browser.tap(box.x + box.width * 10.5 / 40, box.y + box.height * 6.5 / 20);
@@ -149,8 +164,9 @@ const tests = {
     },
     async "a figure that is not seen costs nothing; without scripts its still picture stays"(browser) {
         const file = path.resolve("build/web/test.html");
-        fs.writeFileSync(file, `<!doctype html><html lang="en"><title>test</title><link rel="icon" href="data:,"><div style="height:5000px"></div>
-            <live-figure scene="cornell" size="40x20" samples="4">still</live-figure><script src="scenes.js"></script><script src="figure.js"></script>`);
+        fs.writeFileSync(file, `<!doctype html><html lang="en"><title>test</title><link rel="icon" href="data:,">
+            <div style="height:5000px"></div><live-figure scene="cornell" size="40x20" samples="4">still</live-figure>
+            <script src="scenes.js"></script><script src="figure.js"></script>`);
         await browser.go(file);
         await new Promise(soon => setTimeout(soon, 300));
         const figure = "document.querySelector('live-figure')";
