@@ -144,4 +144,5 @@ stb packages:
 
 -include tests/tests.mk
 -include src/labs/labs.mk
+-include src/web/web.mk
 -include src/course/classroom.mk

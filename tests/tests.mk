@@ -7,7 +7,7 @@ SUITE := $(OBJECTS)/all-tests
 # What a student does not wait for: tests of the course, of experiments, of the oracle's power, of make and its tools,
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
-LATER := course/% labs/% oracle/% fuzz/% radiosity/walks% text/scene_file_bounds% \
+LATER := course/% labs/% oracle/% fuzz/% web/% radiosity/walks% text/scene_file_bounds% \
          $(foreach t,crowds faults from_blender how_to_add makefile memory parts radiosity_program resume runner scripts stopping,\
              whole/$t_test)
 
@@ -78,13 +78,13 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 
 # Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of
 # their folder and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 replay:5 app:6 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 \
+LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 replay:5 app:6 web:7 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 \
           oracle:10 whole:10 faults:10 fuzz:10
 # The core names no module, but in six headers: which tree, whether files are durable, meshes read, scenes checked, paths
 # replayed, films kept, and whether light may be unseen.  Nor do tests of the core.  A module's program stands above the app.
 LECTURE := base world path film
 CORE    := $(LECTURE) text app
-MODULES := wide mesh check keep unseen replay shadow voronoi radiosity
+MODULES := wide mesh check keep unseen replay web shadow voronoi radiosity
 DOORS   := world/tree.h:wide text/files.h:keep text/mesh.h:mesh text/scene_file.h:check app/options.h:replay app/render.h:keep app/render.h:unseen
 # Of a folder that is named here, a module includes these headers alone.
 NEEDS   := wide:world/shapes.h
@@ -110,9 +110,9 @@ freestanding:  ## the lecture without modules, threads, files, exceptions: compi
 	    build/lecture >build/lecture.here; node --no-warnings -e '$(RUN_WASI)' build/lecture.wasm >build/lecture.there; \
 	    cmp build/lecture.here build/lecture.there; echo "the lecture draws the same bits without threads, files and exceptions"
 
-# For tests/modules: compilers read all programs that there are, and write none.
+# For tests/modules: compilers read all programs of this machine that there are, and write none.
 read: OPTIMISE := -fsyntax-only
-read: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(wildcard src/*/*.cpp))
+read: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(filter-out src/web/%,$(wildcard src/*/*.cpp)))
 
 layers:  ## check that every file includes only from layers below
 	@LAYERS='$(LAYERS)' LECTURE='$(LECTURE)' CORE='$(CORE)' MODULES='$(MODULES)' DOORS='$(DOORS)' NEEDS='$(NEEDS)' tests/layers

@@ -1,0 +1,87 @@
+// web/web_test.cpp  the renderer in a browser: build/penumbra's bits and messages in Node.js, pages
+// in Chromium
+#include <cstdlib>
+#include <vector>
+
+#include "text/folder.h"
+
+namespace {
+
+std::string program() {
+    const char* suffix = std::getenv("PROGRAM_SUFFIX");
+    return std::string("build/penumbra") + (suffix ? suffix : "");
+}
+
+// The exit status of a command of the shell.
+int status_of(const std::string& command) { return std::system(command.c_str()); }
+
+// Makes the pages; false, with a word, where this machine has not what they need.
+bool has_pages() {
+    for (const char* needed : {"command -v node", "make -s web-packages"})
+        if (status_of(std::string(needed) + " >/dev/null 2>&1") != 0) {
+            MESSAGE("make web needs packages that this machine has not (", needed, "): not tested");
+            return false;
+        }
+    REQUIRE(status_of("env -u MAKEFLAGS -u MAKELEVEL make web >/dev/null") == 0);
+    return true;
+}
+
+// Node.js before 21 asks for the flag.
+std::string in_node(const std::string& module) {
+    const char* flag = "--experimental-wasm-relaxed-simd";
+    const bool has_flag = status_of(std::string("node ") + flag + " -e 0 2>/dev/null") == 0;
+    return std::string("node --no-warnings ") + (has_flag ? flag : "") + " src/web/render.js " +
+           module + " ";
+}
+
+}  // namespace
+
+TEST_CASE("modules for browsers print paths and messages as the program does") {
+    if (!has_pages()) return;
+    const Folder folder;
+    folder.write("bad.scene",
+                 "camera 0 0 5 0 0 0 40\ndiffuse grey .5 .5 .5\nsphere 0 0 0 1 gray\n");
+    folder.write("dark.scene", "camera 0 0 5 0 0 0 40\nlight lamp 1 1\n");
+    folder.write("empty.scene", "camera 0 0 5 0 0 0 40\n");
+    const std::string bad = folder / "bad.scene";
+    for (const std::string module : {"build/web/fused.wasm", "build/web/software.wasm"})
+        for (const std::string words :
+             {"--pixel 100,60 scenes/cornell.scene", "--pixel 9,30 --sample 5,1 scenes/mesh.scene",
+              "--pixel 9,3 --sampler halton --light nee scenes/cornell36obj.scene"}) {
+            INFO(module << " " << words);
+            CHECK(status_of(in_node(module) + words + " >" + (folder / "web")) == 0);
+            CHECK(status_of(program() + " " + words + " | tail -n +2 >" + (folder / "here")) == 0);
+            CHECK(folder.read("here").size() > 100);
+            CHECK(folder.same("web", "here"));
+        }
+    const std::vector<std::string> refused = {bad,
+                                              folder / "dark.scene",
+                                              folder / "empty.scene",
+                                              "--light nne " + bad,
+                                              "--lihgt mis " + bad,
+                                              "--seed -1 " + bad,
+                                              "--light none scenes/cube.scene"};
+    for (const std::string& words : refused) {
+        INFO(words);
+        CHECK(status_of(in_node("build/web/fused.wasm") + words + " 2>" + (folder / "web")) ==
+              status_of(program() + " " + words + " 2>" + (folder / "here") + " -o " +
+                        (folder / "x.pfm")));
+        CHECK(folder.same("web", "here"));
+    }
+}
+
+TEST_CASE("pages in a browser: bits, paths, errors at their line, A and B, keys") {
+    if (!has_pages()) return;
+    const Folder folder;
+    const int status =
+        status_of("node tests/web/web_test.js " + program() + " >" + (folder / "out") + " 2>&1");
+    const std::string told = folder.read("out");
+    if (told.starts_with("no Chromium")) {
+        MESSAGE(told);
+        return;
+    }
+    INFO(told);
+    CHECK(status == 0);
+    CHECK(told.find("FAILED") == told.npos);
+    CHECK(told.find("passed: a figure that is not seen costs nothing") != told.npos);
+}
