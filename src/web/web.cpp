@@ -17,14 +17,11 @@ extern "C" inline float fmaf(float a, float b, float c) {
 }
 #endif
 
-#include <cstdlib>
-
-#include "text/files.h"  // that of this folder: first, as it declares what the system lacks
+// That of this folder comes first: it declares what the system lacks.
+#include "text/files.h"
 
 #include "app/options.h"
-#include "app/views.h"
 #include "film/loop.h"
-#include "path/start.h"
 #include "replay/replay.h"
 #include "text/scene_file.h"
 #include "unseen/unseen.h"
