@@ -144,3 +144,4 @@ stb packages:
 -include tests/tests.mk
 -include src/labs/labs.mk
 -include src/course/classroom.mk
+-include src/book/book.mk
