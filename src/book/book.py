@@ -305,7 +305,9 @@ def report(more, file, begin):
     i = found[0]
     block = '\n\n'.join(blocks[i:i + (2 if more or blocks[i].rstrip().endswith(':') else 1)])
     block = re.sub(r'\]\((?!http|\.\.)([^)]+)\)', r'](../../reference/\1)', block)
-    return '\n'.join(f'> {line}' for line in block.split('\n')) + f'\n>\n> *From [reference/{file}](../../reference/{file}).*'
+    said = ' '.join(b.strip().replace('\n', ' ') for b in blocks if re.match('Written (on|by)|Not current', b))
+    said = re.sub(r'\]\((?!http)([^)]+)\)', r'](../../reference/\1)', said)
+    return '\n'.join(f'> {line}' for line in block.split('\n')) + f'\n>\n> [reference/{file}](../../reference/{file}). {said}'
 
 
 def with_sources(chapter):
@@ -439,6 +441,8 @@ def by_pandoc(text, key):
     if done.returncode or done.stderr:
         raise Malformed(f'chapter {key}: {done.stderr.strip()}')
     page = handout.in_formulas(done.stdout)
+    # No font stretches the bar of a mean over two letters.
+    page = re.sub(r'<mover>((?:(?!<mover>).)*?)<mo[^>]*>¯</mo></mover>', r'<mrow class="mean">\1</mrow>', page, flags=re.S)
     page = re.sub(r'<math display="block".*?</math>', r'<span class="math">\g<0></span>', page, flags=re.S)
     page = re.sub(r'<math display="inline".*?</math>', lambda m: m[0] if len(re.sub(r'<annotation.*?</annotation>|<[^>]*>|\s', '', m[0])) < 34
                   else f'<span class="long">{m[0]}</span>', page, flags=re.S)
