@@ -94,16 +94,16 @@ F | The loop | film/loop.h |
 F | Light that no sample met | film/near_misses.h |
 '''
 
-# Diagrams by the heading that they follow: chapter, first words of the heading, name.
+# Diagrams by the heading that they follow: chapter, first words of the heading, name; ?: it shows answers, and folds out.
 DIAGRAMS = '''
 0 | Solid angle | area-solid-angle
 1 | The image plane | image-plane
-1 | The visible root | ray-sphere
+1 | The visible root | ray-sphere ?
 1 | Inside | edge-functions
-1 | Three slabs | slab
-2 | Up from the disc | malley
+1 | Three slabs | slab ?
+2 | Up from the disc | malley ?
 2 | 2.5 | cone-of-sphere
-2 | A slanted patch | area-solid-angle
+2 | A slanted patch | area-solid-angle ?
 3 | Weights that add up | mis-two-strategies
 3 | Compensation | roulette
 3 | Directions | snell
@@ -227,7 +227,7 @@ def code_of(section, part, found):
         if p.section == section:
             lines = lines_of(p.file)[p.first:p.last]
             out.append(listing(p.file, p.first, p.last, any(regions.BEGIN.match(l) for l in lines)))
-    if part in SOLVED and not any(p.section == part for p in found):
+    if part in SOLVED and not found:  # a chapter beside the lecture
         file, region = SOLVED[part]
         lines = (ROOT / file).read_text().split('\n')
         first, last = region.first, region.last + 1
@@ -350,8 +350,10 @@ def assembled(chapter, found, verdicts, drawn, figure, inserts):
         for key, words, name in rows(DIAGRAMS):
             if key == chapter.key and heading.startswith(words) and (words, name) not in used:
                 used.add((words, name))
+                name, spoils = name.removesuffix(' ?'), name.endswith(' ?')
                 if name in drawn:
-                    marks += inserts.mark(f'<figure class="diagram">{drawn[name]}</figure>')
+                    diagram = f'<figure class="diagram">{drawn[name]}</figure>'
+                    marks += inserts.mark(fold('Diagram, with answers', diagram, 'shown') if spoils else diagram)
         return marks
 
     def end_of_section(section):
@@ -441,6 +443,7 @@ def by_pandoc(text, key):
     if done.returncode or done.stderr:
         raise Malformed(f'chapter {key}: {done.stderr.strip()}')
     page = handout.in_formulas(done.stdout)
+    page = re.sub(r'\\text\{(?:ANSWER|REWSNA)\}', '', page)  # of the formulas as TeX, which pages carry
     # No font stretches the bar of a mean over two letters.
     page = re.sub(r'<mover>((?:(?!<mover>).)*?)<mo[^>]*>¯</mo></mover>', r'<mrow class="mean">\1</mrow>', page, flags=re.S)
     page = re.sub(r'<math display="block".*?</math>', r'<span class="math">\g<0></span>', page, flags=re.S)
@@ -497,7 +500,7 @@ def print_pdf(folder, all_chapters, bodies):
     if not browser:
         return False
     text = ''.join(f'<article><h1 id="{c.page}">{c.name}</h1>{bodies[c.key]}</article>' for c in all_chapters)
-    text = re.sub(r'<details(?= class="(?:solution|test|mistakes)")', '<details open', text)
+    text = re.sub(r'<details(?= class="(?:solution|test|mistakes|shown)")', '<details open', text)
     text = re.sub(r'</?live-figure[^>]*>', '', text)
     text = re.sub(r'href="[\w-]+\.html(#[^"]+)"', r'href="\1"', text)
     text = re.sub(r'href="([\w-]+\.html)"', r'href="#\1"', text)

@@ -1,6 +1,7 @@
 # course/book_test.py  3  the book: every line of the lecture in one chapter, and what its tables name is there
 import pathlib
 import re
+import shutil
 import sys
 import tempfile
 
@@ -12,7 +13,7 @@ from testing import expect, run  # noqa: E402
 
 def pages(found=None):
     """The chapters without Pandoc: their Markdown, with code, tests and mistakes in it."""
-    drawn = {name: f'<svg id="{name}"></svg>' for _, _, name in book.rows(book.DIAGRAMS)}
+    drawn = {name.removesuffix(' ?'): '<svg></svg>' for _, _, name in book.rows(book.DIAGRAMS)}
     inserts = book.Inserts()
     figure = lambda scene, *rest: f'<live-figure scene="{scene}">'  # noqa: E731
     found = book.pieces() if found is None else found
@@ -60,9 +61,24 @@ def test_each_exercise_has_its_code_test_and_mistakes():
     text = ''.join(pages().values())
     for e in book.regions.exercises():
         expect(text.count(f'<code>make check EX={e.number}</code>') == 1, e.number)
-        if e.week != '6':
-            expect(book.mistakes_of(e.number) in text and book.mistakes_of(e.number), e.number)
     expect(text.count('class="solution"') == len(book.regions.exercises()), text.count('class="solution"'))
+
+
+def test_all_named_mistakes_and_no_stub_stand_in_the_book():
+    lines = (ROOT / 'tests/course/mistakes.txt').read_text().split('\n')
+    named = [f for f in (line.split('\t') for line in lines if line and line[0] != '#') if f[1] != 'stub']
+    lists = re.findall(r'class="mistakes">(.*?)</details>', ''.join(pages().values()), re.S)
+    expect(sum(text.count('<li>') for text in lists) == len(named) > 400, len(named))
+
+
+def test_pandoc_understands_all_and_answers_fold_out():
+    if not shutil.which('pandoc'):
+        return
+    for c, text in zip(book.chapters(), pages().values()):
+        page = book.by_pandoc(text, c.key)
+        expect(not re.search(r'____|\$\$|ANSWER|REWSNA|@sheet|@report', page), c.key)
+        expect(page.count('class="answers"') > 3 or c.key in ('index', '0', 'F'), c.key)
+        expect(('class="shown"' in page) == (c.key in '12'), c.key)
 
 
 def test_new_text_is_short():
