@@ -102,7 +102,7 @@ DIAGRAMS = '''
 1 | Inside | edge-functions
 1 | Three slabs | slab ?
 2 | Up from the disc | malley ?
-2 | 2.5 | cone-of-sphere
+2 | The solid angle of a cap | cone-of-sphere ?
 2 | A slanted patch | area-solid-angle ?
 3 | Weights that add up | mis-two-strategies
 3 | Compensation | roulette
@@ -538,6 +538,8 @@ def main():
     if wrong := uncovered(bodies.values()):
         raise Malformed('lines of the lecture that are not in one chapter:\n' + '\n'.join(wrong))
     bodies['index'] += contents_of(all_chapters, bodies)
+    if figures.is_live:
+        bodies['index'] += '<p><a href="playground.html">The playground</a>: a scene of your own beside its picture and its paths.</p>'
     figures.draw()
     shutil.copy(HERE / 'book.css', folder / 'book.css')
     for before, c, after in zip([None] + all_chapters, all_chapters, all_chapters[1:] + [None]):
