@@ -298,16 +298,16 @@ def sheet_of(key):
 
 def report(more, file, begin):
     """A block of a report that begins with these words, and perhaps the next."""
-    blocks = (ROOT / 'reference' / file).read_text().split('\n\n')
+    path = (ROOT / 'reference' / file).resolve()
+    name, blocks = path.relative_to(ROOT), path.read_text().split('\n\n')
     found = [i for i, b in enumerate(blocks) if b.startswith(begin)]
     if len(found) != 1:
         raise Malformed(f'{file}: {len(found)} paragraphs begin with "{begin}"')
     i = found[0]
     block = '\n\n'.join(blocks[i:i + (2 if more or blocks[i].rstrip().endswith(':') else 1)])
-    block = re.sub(r'\]\((?!http|\.\.)([^)]+)\)', r'](../../reference/\1)', block)
     said = ' '.join(b.strip().replace('\n', ' ') for b in blocks if re.match('Written (on|by)|Not current', b))
-    said = re.sub(r'\]\((?!http)([^)]+)\)', r'](../../reference/\1)', said)
-    return '\n'.join(f'> {line}' for line in block.split('\n')) + f'\n>\n> [reference/{file}](../../reference/{file}). {said}'
+    quoted = '\n'.join(f'> {line}' for line in block.split('\n')) + f'\n>\n> [{name}](../../{name}). {said}'
+    return re.sub(r'\]\((?!http|\.\./)([^)]+)\)', rf'](../../{name.parent}/\1)', quoted)
 
 
 def with_sources(chapter):
