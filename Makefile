@@ -146,3 +146,4 @@ stb packages:
 -include src/labs/labs.mk
 -include src/web/web.mk
 -include src/course/classroom.mk
+-include src/book/book.mk

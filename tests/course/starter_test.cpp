@@ -1,4 +1,4 @@
-// course/starter_test.cpp  starters, and later ones in a student's folder: tests written in Python
+// course/starter_test.cpp  starters, later ones in a student's folder, and the book: tests written in Python
 #include <doctest/doctest.h>
 
 #include "course/python.h"
@@ -9,4 +9,8 @@ TEST_CASE("the generator: regions, weeks, what a starter holds, leaks, known mis
 
 TEST_CASE("make update: a later starter in copies that students modified keeps their solutions") {
     run_python_tests("tests/course/update_test.py");
+}
+
+TEST_CASE("the book: each line of the lecture in one chapter, and all that its tables name") {
+    run_python_tests("tests/course/book_test.py");
 }
