@@ -71,7 +71,7 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 
 # Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of
 # their folder and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 app:6 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 \
+LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 app:6 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 book:9 \
           oracle:10 whole:10 faults:10 fuzz:10
 # The core names no module, but in five headers: which tree, whether meshes are read, scenes checked, films kept, and
 # whether light may be unseen.  Nor do tests of the core.  A module's program stands above the app.
