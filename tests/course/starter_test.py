@@ -7,8 +7,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'src/course'))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / 'src' / folder) for folder in ('course', 'book')]
+import diagrams
 import handout
 import mistakes
 import mutants
@@ -475,6 +477,30 @@ def test_a_drawing_is_that_of_the_exercise_and_says_what_it_shows():
             expect(part in said and (folder.top / 'out/check/1.1.svg').exists(), said)
             (folder.top / 'build/course/judge_1').write_text('#!/bin/sh\necho "$3 right"\n')
             expect('drawn' not in folder.check('1.1')[0] and not (folder.top / 'out/check/1.1.svg').exists(), 'an old drawing')
+
+
+# ---- The book --------------------------------------------------------------------------------------
+
+def test_diagrams_are_drawn_and_computed():
+    names = ('image-plane ray-sphere edge-functions slab malley cone-of-sphere area-solid-angle mis-two-strategies roulette '
+             'halton-digits sobol-strata snell penumbra voronoi-cell form-factor').split()
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, diagrams.__file__, folder], check=True)
+        drawn = {path.stem: xml.etree.ElementTree.parse(path).getroot() for path in pathlib.Path(folder).glob('*')}
+    expect(sorted(drawn) == sorted(names), drawn)
+    for name, svg in drawn.items():
+        told = {part.get('id'): part.text for part in svg[:2]}
+        expect([*told] == svg.get('aria-labelledby').split() == [f'{name}-title', f'{name}-desc'], name, told)
+        expect(all(told.values()) and len(svg) > 10, name, told)
+    points = diagrams.sobol_points(16)
+    for k in range(5):
+        boxes = {(int(x * (16 >> k)), int(y * (1 << k))) for x, y in points}
+        expect(len(boxes) == 16, f'{16 >> k} x {1 << k}:', boxes)
+    areas = [diagrams.area(diagrams.cell_of(site, diagrams.SITES)) for site in diagrams.SITES]
+    expect(min(areas) > 0 and abs(sum(areas) - 1) < 1e-12, areas)
+    written = [''.join(part.itertext()) for part in drawn['voronoi-cell']]
+    expect(all(f'{area:.3f}' in written for area in areas), written)
+    expect([diagrams.mirrored(*pair) for pair in ((6, 2), (19, 3))] == ['011', '102'], 'the numbers of sheet 4.1')
 
 
 if __name__ == '__main__':
