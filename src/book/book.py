@@ -247,6 +247,8 @@ def verdict(exercise):
         return ''
     done = subprocess.run([judge, '--mistakes', 'tests/course/mistakes.txt', exercise, '--', answers], cwd=ROOT,
                           env={'PATH': '/usr/bin:/bin', 'ORACLE_PICTURES': ''}, capture_output=True, text=True)
+    if done.returncode or done.stderr:
+        raise Malformed(f'{exercise}: the solution is not right: {done.stdout}{done.stderr}')
     return done.stdout.strip()
 
 
@@ -400,15 +402,15 @@ def diagrams():
         return {p.stem: p.read_text()[p.read_text().index('<svg'):] for p in pathlib.Path(folder).glob('*.svg')}
 
 
+LIVE = 'figure.js', 'scenes.js', 'playground.html'
+
+
 class Figures:
     """Still pictures by build/penumbra, in live figures where build/web is there."""
 
     def __init__(self, folder):
         self.folder, self.web, self.orders = folder, ROOT / 'build/web', []
-
-    @property
-    def is_live(self):
-        return (self.web / 'figure.js').exists()
+        self.is_live = all((self.web / name).exists() for name in LIVE)
 
     def still(self, scene, options):
         name = re.sub(r'[^a-z0-9]+', '-', f'{scene} {options}').strip('-') + '.png'
@@ -428,7 +430,7 @@ class Figures:
             raise Malformed('build/penumbra is not there: make build/penumbra')
         for order in self.orders:
             subprocess.run(order, check=True, capture_output=True)
-        for name in ('figure.js', 'scenes.js', 'playground.html') if self.is_live else ():
+        for name in LIVE if self.is_live else ():
             shutil.copy(self.web / name, self.folder / name)
 
 

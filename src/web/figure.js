@@ -79,6 +79,7 @@ const workers = {
                 this.waiting.delete(call);
                 error === undefined ? resolve(result) : reject(Error(error));
             };
+            worker.onerror = ({ message }) => this.waiting.forEach(({ reject }) => reject(Error(message || "a worker ended")));
             this.all.push(worker);
         }
         await this.ask({ act: "start", module });
@@ -113,14 +114,15 @@ class Side {
         await workers.ask({ act: "load", id: this.id, scene: this.scene });
     }
 
-    get is_done() { return !this.desk.is_pilot && this.desk.n >= this.limit; }
+    get most() { return this.is_timed ? Infinity : this.limit; }  // B may be told to take as long as A
+    get is_done() { return !this.desk.is_pilot && this.desk.n >= this.most; }
     get samples() { return this.error?.spp ?? 0; }
 
     // The picture does not depend on where passes end; those of the pilot end at every sample.
     async pass(reference) {
         const { desk, id } = this;
         const quick = this.last ? Math.floor(0.2 / this.last.seconds * this.last.samples) : 1;
-        const n = desk.is_pilot ? desk.n + 1 : Math.min(this.limit, desk.n + Math.max(1, Math.min(quick, desk.n + 1)));
+        const n = desk.is_pilot ? desk.n + 1 : Math.min(this.most, desk.n + Math.max(1, Math.min(quick, desk.n + 1)));
         const begin = performance.now(), before = desk.n;
         const taken = await workers.ask({ act: "add", id, n });
         if (this.is_dropped) return;
@@ -356,6 +358,7 @@ class LiveFigure extends HTMLElement {
     disconnectedCallback() {
         this.observer.disconnect();
         this.is_seen = false;
+        ++this.turn;
         this.replace([]);
     }
     attributeChangedCallback() { if (this.is_seen) this.reload(); }
@@ -411,11 +414,11 @@ class LiveFigure extends HTMLElement {
     get next_side() {
         const [a, b] = this.sides;
         if (!a || !b) return a && !a.is_done ? a : null;
+        b.is_timed = this.mode.value !== "samples";
         if (this.mode.value === "samples") {
             if (a.is_done || b.is_done) return a.is_done && b.is_done ? null : a.is_done ? b : a;
             return b.samples < a.samples ? b : a;
         }
-        b.limit = Infinity;
         if (a.is_done) return b.seconds < a.seconds ? b : null;
         return b.seconds < a.seconds ? b : a;
     }
@@ -425,13 +428,10 @@ class LiveFigure extends HTMLElement {
         this.is_running = true;
         try {
             for (let side; this.is_seen && !this.is_paused && (side = this.next_side);) {
-                await side.pass(this.reference);
+                try { await side.pass(this.reference); } catch (error) { if (!side.is_dropped) throw error; }
                 if (!side.is_dropped) this.show(side);
             }
-        } catch (error) {
-            this.replace([]);
-            this.tell(error.message);
-        }
+        } catch (error) { this.replace([]), this.tell(error.message); }
         this.is_running = false;
         this.show_state();
     }

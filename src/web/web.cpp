@@ -224,6 +224,7 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
     if (!options.view.of) witness.emplace(s, options.technique, 0, s.size.height, s.line_of_light);
     const uint64_t N = options.spp ? options.spp : s.samples;
     const uint32_t K = options.replications ? options.replications : 2;
+    if (bytes_of(s.size, K) > 1e9) throw UserError("--size: a film of more than 1 GB");
     film = make_film(s.size, K, options.replications == 0 && N != 2);
     const uint64_t of_one = K * (film.is_pilot ? typical_weight : 1);
     Object o;
@@ -271,7 +272,8 @@ EXPORT(image) const float* image() {
     return picture.pixels[0].data();
 }
 
-// Mean samples per pixel; d_rel and its standard error; 1 if the error may be far above this.
+// Mean samples per pixel; d_rel and its standard error; 1 if the error may be far above this.  Near
+// misses, by which the program knows of more such errors, are not counted.
 EXPORT(error) const double* error() {
     static std::array<double, 4> told;
     const ImageError e = error_of(film);
@@ -282,6 +284,8 @@ EXPORT(error) const double* error() {
 
 // Answers the path of a sample: its vertices, and what --pixel prints of it.
 EXPORT(path) void path(int x, int y, double i, uint32_t set) {
+    if (x < 0 || y < 0 || x >= film.size.width || y >= film.size.height)
+        throw UserError("--pixel: outside the image");
     const Start at = start(scene(), pattern, {x, y, uint64_t(i), set});
     char* printed = nullptr;
     size_t size = 0;

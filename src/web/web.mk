@@ -8,14 +8,15 @@ WEB_FLAGS    := $(filter-out -M% -march% -pthread -DWITH_KEEP $(QUIET) $(HOMEBRE
 FUSED        := -mrelaxed-simd -fno-builtin-fma -fno-builtin-fmaf
 MODULES_OF_WEB := $(patsubst %,build/web/%$(SUFFIX).wasm,fused software)
 
-web: $(MODULES_OF_WEB) build/web/figure.js build/web/scenes.js build/web/playground.html  ## the renderer in a browser: build/web/playground.html
+web: $(MODULES_OF_WEB) $(if $(SUFFIX),,build/web/figure.js build/web/scenes.js build/web/playground.html)  ## the renderer in a browser: build/web/playground.html
 
 build/web/fused$(SUFFIX).wasm: WEB_FLAGS += $(FUSED)
 web-packages:
 	@LC_ALL=C dpkg -s $(WEB_PACKAGES) >/dev/null 2>&1 || { echo "penumbra: packages are missing; run: sudo apt-get install -y $(WEB_PACKAGES)" >&2; exit 1; }
 
-$(MODULES_OF_WEB): src/web/web.cpp src/web/files.h src/web/web.mk Makefile | web-packages
-	@mkdir -p build/web/instead/text && cp src/web/files.h build/web/instead/text/
+build/web/instead/text/files.h: src/web/files.h
+	@mkdir -p $(@D) && cp $< $@
+$(MODULES_OF_WEB): src/web/web.cpp build/web/instead/text/files.h src/web/web.mk Makefile | web-packages
 	clang++-19 $(WEB_FLAGS) -MMD -MP -MF $@.d -MT $@ -o $@ $<
 -include $(wildcard build/web/*.d)
 

@@ -22,7 +22,7 @@ bool has_pages() {
             MESSAGE("make web needs packages that this machine has not (", needed, "): not tested");
             return false;
         }
-    REQUIRE(status_of("env -u MAKEFLAGS -u MAKELEVEL make web >/dev/null") == 0);
+    REQUIRE(status_of("env -u MAKEFLAGS -u MAKELEVEL -u REAL -u TREE -u DEBUG -u SAN -u ARCH -u CXX make web >/dev/null") == 0);
     return true;
 }
 
