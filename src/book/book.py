@@ -118,7 +118,7 @@ R | The question | form-factor
 LIVE = '''
 0 | An estimator | cornell | --sampler independent --replications 1 --spp 1 | --sampler independent --replications 1 --spp 64 | One path per pixel, and 64: an estimate and a mean of estimates.
 1 | Any shape | materials | --view normal --spp 4 | | Normals as colours: what chapter 1 can see.
-2 | 2.2 | cornell36 | --view occlusion --spp 16 | | Ambient occlusion: the open part of the sky, by directions that follow the cosine.
+2 | 2.2 | cornell36 | --view occlusion --spp 16 | | Ambient occlusion: the open share of directions that follow the cosine.
 3 | 3.3 | coursework | --light none --spp 16 | --light nee --spp 16 | Without and with light sampling.
 3 | 3.4 | materials | --light nee --spp 16 | --light mis --spp 16 | Light sampling alone, and both ways with MIS weights.
 4 | 4.3 | coursework | --sampler independent --spp 16 | --sampler halton --spp 16 | Independent numbers and Halton points.
