@@ -2,7 +2,8 @@
 //
 // A page has an instance for each of its workers.  One that keeps the film is its desk: workers add
 // samples to blocks of their own films, the page copies the sums of these blocks into the desk's.
-// A sample depends on its pixel and index alone, so the picture has the same bits as the program's.
+// A sample depends on its pixel and index alone, so the picture has the same bits as the program's,
+// but below 400 pixels or 2 samples, of which the program makes other numbers of replications.
 #ifdef __wasm_relaxed_simd__
 #include <wasm_simd128.h>
 // WebAssembly has no fma.  This instruction is one where the processor has it; elsewhere it may
@@ -30,20 +31,17 @@ extern "C" inline float fmaf(float a, float b, float c) {
 #define IMPORT(name) extern "C" [[clang::import_module("page"), clang::import_name(#name)]]
 
 using namespace penumbra;
-
 IMPORT(fail) void page_fail(const char* text, size_t size);      // the instance ends
 IMPORT(answer) void page_answer(const char* text, size_t size);  // a text that a function returns
 
-// What is read: it comes before an error's message.
-static std::string reading;
+static std::string reading;  // what is read: it comes before an error's message
 
 [[noreturn]] static void end_instance(const std::string& why) {
     page_fail(why.data(), why.size());
     __builtin_trap();
 }
 
-// -fignore-exceptions leaves out every `catch`, and calls these for a `throw`: all that is thrown
-// is a runtime_error.
+// -fignore-exceptions leaves out every `catch`; a `throw` of a std::exception calls these.
 extern "C" {
 void* __cxa_allocate_exception(size_t size) noexcept { return std::malloc(size); }
 [[noreturn]] void __cxa_throw(void* thrown, void*, void* (*)(void*)) {
@@ -113,7 +111,6 @@ rgb radiance(const PixelSample& which, Tally&) {
     return Li(scene(), options.technique, at.ray, at.sampler);
 }
 
-// A text that the page has put into `room`.
 std::string taken_from(char* text, size_t size) {
     const std::string copy(text, size);
     std::free(text);
@@ -272,8 +269,7 @@ EXPORT(image) const float* image() {
     return picture.pixels[0].data();
 }
 
-// Mean samples per pixel; d_rel and its standard error; 1 if the error may be far above this.  Near
-// misses, by which the program knows of more such errors, are not counted.
+// Samples per pixel; d_rel, its standard error; 1: it may be far above (near misses do not count).
 EXPORT(error) const double* error() {
     static std::array<double, 4> told;
     const ImageError e = error_of(film);
