@@ -57,7 +57,7 @@ ORACLE := $(patsubst %,tests/oracle/%.h,checks numbers host hints pictures)
 # They lie beside the oracle, and include it alone.  build/oracle checks arrays in files.
 $(OBJECTS)/oracle-campaign.exe: tests/oracle/campaign.cpp
 $(OBJECTS)/oracle.exe: tests/oracle/arrays.cpp
-$(OBJECTS)/oracle-campaign.exe $(OBJECTS)/oracle.exe: $(RULES)
+$(OBJECTS)/oracle-campaign.exe $(OBJECTS)/oracle.exe: tests/oracle/oracle.h $(RULES)
 	@mkdir -p $(@D)
 	$(CXX) $(FLAGS) -Itests $(OPTIMISE:-O3=-O2) -MF $(@:.exe=.d) -MT $@ -o $@ $(filter %.cpp,$^)
 

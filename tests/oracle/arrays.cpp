@@ -32,7 +32,8 @@ A file is NumPy's .npy, or text: a row of numbers in each line, with commas or b
   --domain D     of points and density, the same in both: sphere (default; directions, per solid
                  angle), square ([0,1]^2), interval:A,B, box:A,B,A,B,... (lower and upper end of
                  each coordinate), triangle:X,Y,Z,X,Y,Z,X,Y,Z (or two coordinates for each corner)
-  -n N           points: how many (default: 1000000).  density: samples drawn, if some failed and
+  -n N           points: how many (default: 1000000); PDF has its values at all of them, in their
+                 order.  density: samples drawn, if some failed and
                  are not in the file.  image: samples of a pixel, for the words of a verdict
   --axis X,Y,Z   of a hemisphere or lobe, to name mistakes (default: the mean of the samples)
   --alpha A      probability that what is right is refused (default: 1e-6)
@@ -55,7 +56,9 @@ struct Array {
     std::vector<double> numbers = {};  // the last index runs fastest
     bool single = false;               // they were floats
 
-    size_t columns() const { return shape.size() > 1 ? numbers.size() / shape[0] : 1; }
+    size_t columns() const {
+        return shape.size() > 1 && shape[0] > 0 ? numbers.size() / shape[0] : 1;
+    }
     std::string sized() const {
         std::string sizes;
         for (size_t n : shape) sizes += (sizes.empty() ? "" : " x ") + std::to_string(n);
@@ -63,7 +66,7 @@ struct Array {
     }
     template <size_t N>
     std::vector<oracle::Point<N>> rows() const {
-        if (numbers.size() != N * shape[0])
+        if (columns() != N || numbers.size() / N != shape[0])
             throw Unusable(sized() + "; a row of this domain has " + std::to_string(N));
         std::vector<oracle::Point<N>> points(shape[0]);
         for (size_t i = 0; i < numbers.size(); ++i) points[i / N][i % N] = numbers[i];
@@ -115,6 +118,7 @@ Array read_npy(const std::string& file, const std::string& bytes) {
         begin += size_t(static_cast<unsigned char>(bytes[8 + i])) << 8 * i;
     if (begin > bytes.size()) throw Unusable(file + ": ends within its header");
     const std::string header = bytes.substr(8 + lengths, begin - 8 - lengths);
+    if (value_of("descr", header).empty()) throw Unusable(file + ": has no header of NumPy's");
     if (value_of("fortran_order", header) != "False")
         throw Unusable(file + ": is in the order of Fortran: save numpy.ascontiguousarray(...)");
     const std::string name = value_of("descr", header);
@@ -125,7 +129,10 @@ Array read_npy(const std::string& file, const std::string& bytes) {
     Array a{file};
     size_t count = 1;
     std::istringstream shape(value_of("shape", header));
-    for (size_t n; shape >> n; shape.ignore()) a.shape.push_back(n), count *= n;
+    for (size_t n; shape >> n; shape.ignore()) {
+        a.shape.push_back(n);
+        count = n > 0 && count > bytes.size() / n ? bytes.size() : count * n;  // beyond the file
+    }
     if (a.shape.empty()) a.shape = {1};
     const size_t size = bytes.size() - begin;
     if (size % type->second.bytes != 0 || size / type->second.bytes != count)
@@ -151,10 +158,12 @@ Array read_text(const std::string& file, const std::string& bytes) {
         for (std::string word; words >> word; ++found) {
             char* end;
             a.numbers.push_back(std::strtod(word.c_str(), &end));
-            names += *end != 0;
+            names += end != word.c_str() + word.size();
         }
         if (names > 0 && a.shape[0] > 0)
             throw Unusable(here + "'" + line + "' is no row of numbers");
+        if (names > 0 && (at > 1 || names < found))
+            throw Unusable(here + "'" + line + "' is no row of numbers, nor of names");
         if (names > 0) a.numbers.clear();
         if (names > 0 || found == 0) continue;
         if (a.shape[0]++ == 0) a.shape[1] = found;
@@ -168,11 +177,13 @@ Array read_text(const std::string& file, const std::string& bytes) {
 }
 
 Array read(const std::string& file) {
+    errno = 0;
     std::ifstream in(file, std::ios::binary);
     std::ostringstream all;
     if (in) all << in.rdbuf();
     const std::string bytes = all.str();
-    if (!in || bytes.empty()) throw Unusable(file + ": cannot be read: " + std::strerror(errno));
+    if (!in || errno != 0) throw Unusable(file + ": cannot be read: " + std::strerror(errno));
+    if (bytes.empty()) throw Unusable(file + ": has no numbers");
     return bytes.starts_with("\x93NUMPY") ? read_npy(file, bytes) : read_text(file, bytes);
 }
 
@@ -228,7 +239,8 @@ Command parsed(int count, char** arguments) {
     Command c;
     for (int i = 1; i < count; ++i) {
         const std::string word = arguments[i];
-        if (word.size() < 2 || word[0] != '-' || std::isdigit(word[1]) || word[1] == '.') {
+        if (word.size() < 2 || word[0] != '-' ||
+            std::isdigit(static_cast<unsigned char>(word[1])) || word[1] == '.') {
             c.words.push_back(word);
             continue;
         }
@@ -241,11 +253,11 @@ Command parsed(int count, char** arguments) {
             c.output = value;
         else if (word == "--name")
             o.name = value;
-        else if (word == "-n" && number(value) >= 1 && number(value) < 1e15)
+        else if (word == "-n" && number(value) >= 1 && number(value) <= 1e9)
             o.n = uint64_t(number(value));
         else if (word == "--alpha" && number(value) > 0 && number(value) < 1)
             o.alpha = number(value);
-        else if (word == "--tolerance" && number(value) >= 0)
+        else if (word == "--tolerance" && number(value) >= 0 && number(value) < 1)
             o.tolerance = number(value);
         else if (word == "--axis" && numbers(value).size() == 3)
             o.axis = point<3>(numbers(value).data());
@@ -271,7 +283,7 @@ auto with_domain(const std::string& words, F f) {
         oracle::Box<D> b;
         for (size_t k = 0; k < D; ++k) {
             b.lower[k] = x[2 * k], b.upper[k] = x[2 * k + 1];
-            if (!(b.lower[k] < b.upper[k]))
+            if (!(b.lower[k] < b.upper[k] && std::isfinite(b.upper[k] - b.lower[k])))
                 throw Unusable("domain " + words + ": an end is not above the other");
         }
         return f(b);
@@ -286,7 +298,7 @@ auto with_domain(const std::string& words, F f) {
                    "that many numbers");
 }
 
-// The first points do not depend on how many follow: `density` knows those that `points` wrote.
+// `density` makes those that `points` wrote, by their number.
 template <class Domain>
 auto points_of(const Domain& domain, size_t n) {
     oracle::Random random(oracle::seed_of("oracle points"));
@@ -311,8 +323,11 @@ oracle::Verdict verdict_of(const Command& c) {
     };
     if (takes("points", 0)) {
         if (output.empty()) throw Unusable("points: name a file to write, -o FILE");
-        const size_t n = o.n ? o.n : 1000000;
-        with_domain(domain, [&](const auto& d) { write(output, points_of(d, n)); });
+        const size_t n = with_domain(domain, [&](const auto& d) {
+            const auto points = points_of(d, o.n ? o.n : 1000000);
+            write(output, points);
+            return points.size();
+        });
         return {true, 1, 0,
                 std::to_string(n) + " points of the domain " + domain + " in " + output};
     }
@@ -363,7 +378,7 @@ int main(int count, char** arguments) {
         const oracle::Verdict v = verdict_of(command);
         std::printf("%s: %s\n", v.pass ? "passed" : "refused", v.text.c_str());
         return v.pass ? 0 : 1;
-    } catch (const Unusable& e) {
+    } catch (const std::exception& e) {
         std::fprintf(stderr, "oracle: %s; oracle --help lists checks and options\n", e.what());
         return 2;
     }

@@ -28,7 +28,7 @@ Triples cosine_samples(oracle::Random& random, size_t n) {
     return samples;
 }
 double cosine_pdf(const oracle::Triple& w) { return std::max(0.0, w[2]) / oracle::pi; }
-std::vector<double> at(const Triples& points, const auto& pdf) {
+std::vector<double> at(const auto& points, const auto& pdf) {
     std::vector<double> values;
     for (const auto& w : points) values.push_back(pdf(w));
     return values;
@@ -118,6 +118,44 @@ TEST_CASE(
     INFO(refused, " of ", runs, ", ", seen);
     CHECK(oracle::p_at_least(refused, runs, 0.05) > 1e-6);
     CHECK(seen == runs / 10);
+}
+
+TEST_CASE(
+    "arrays: what fails by chance, jumps, poles and what is forgiven are no reason to refuse") {
+    const oracle::Aside aside;
+    oracle::Random random(seed_here());
+    const oracle::Sphere sphere;
+    const oracle::Interval unit(0, 1);
+    const auto directions = oracle::points_in(random, sphere, 20000);
+    const auto points = oracle::points_in(random, unit, 20000),
+               many = oracle::points_in(random, unit, 800000);
+    for (int run = 0; run < 40; ++run) {
+        // Uniform directions, of which those below fail; a jump at b; a pole at 0, where x = u^2.
+        Triples above;
+        std::vector<oracle::Point<1>> below, pole;
+        const double b = 0.5 + 0.4 * random();
+        for (int i = 0; i < 60000; ++i) {
+            const double z = 2 * random() - 1, phi = 2 * oracle::pi * random();
+            const double s = std::sqrt(1 - z * z);
+            if (z > 0) above.push_back({s * std::cos(phi), s * std::sin(phi), z});
+            if (i < 20000) below.push_back({b * random()}), pole.push_back({std::pow(random(), 2)});
+        }
+        auto upper = [](auto& w) { return (w[2] > 0) / (4 * oracle::pi); };
+        CHECK(expect_samples(above, directions, at(directions, upper), sphere, {.n = 60000}).pass);
+        std::vector<double> jump, root;
+        for (const auto& x : points) jump.push_back((x[0] < b) / b);
+        for (const auto& x : many) root.push_back(0.5 / std::sqrt(x[0]));
+        CHECK(expect_samples(below, points, jump, unit).pass);
+        if (run % 8 > 0) continue;
+        const oracle::Verdict v = expect_samples(pole, many, root, unit);
+        INFO(v.text);
+        CHECK(v.pass);
+    }
+    const auto samples = cosine_samples(random, 20000);
+    auto more = [](auto& w) { return 1.02 * cosine_pdf(w); };
+    CHECK(!expect_samples(samples, directions, at(directions, more), sphere).pass);
+    CHECK(expect_samples(samples, directions, at(directions, more), sphere, {.tolerance = 0.05})
+              .pass);
 }
 
 TEST_CASE("arrays: points, two in each of equal parts") {
@@ -307,6 +345,9 @@ TEST_CASE("build/oracle: means, counts and images") {
     CHECK(program("counts counts.csv thirds.csv").status == 0);
     CHECK(program("counts counts.csv others.csv").status == 1);
     CHECK(program("counts counts.csv few.csv").status == 1);
+    write("negative.csv", "0.5 0.8 -0.3");
+    CHECK(program("counts counts.csv negative.csv")
+              .out.starts_with("refused: a count or probability is -0.3"));
 
     std::vector<float> truth, image, errors(48, 0.01f);
     for (int i = 0; i < 48; ++i) truth.push_back(float(1 + i));
@@ -357,6 +398,15 @@ TEST_CASE("build/oracle: what cannot be used is named, with status 2") {
     write("none.npy", std::string("\x93NUMPY\x01\0\x05\0{...}", 15));
     write("flat.npy", npy("<f8", "6,", ones));
     write("four.npy", npy("<f8", "1, 1, 6", ones));
+    write("nothing.npy", npy("<f8", "0, 3", ""));
+    write("wraps.npy", npy("<f8", "9223372036854775811, 2", ones));  // 6 modulo 2^64
+    write("wide.csv", std::string("1\0,\0"
+                                  "2\0\n\0"
+                                  "3\0,\0"
+                                  "4\0\n\0",
+                                  16));  // of UTF-16
+    write("half.csv", "1,2,3x\n1,2,3\n");
+    write("nil.csv", "");
     write("ragged.csv", "1,2\n3\n");
     write("word.csv", "1,2\n3,four\n");
     write("empty.csv", "only,names\n");
@@ -373,7 +423,17 @@ TEST_CASE("build/oracle: what cannot be used is named, with status 2") {
         {"mean huge.npy 1", "huge.npy: 9999999999 x 9999999999 numbers of 8 bytes expected"},
         {"mean cut.npy 1", "cut.npy: ends within its header"},
         {"mean head.npy 1", "head.npy: ends within its header"},
-        {"mean none.npy 1", "none.npy: "},
+        {"mean none.npy 1", "none.npy: has no header of NumPy's"},
+        {"density nothing.npy nothing.npy", "nothing.npy: 0 x 3 numbers"},
+        {"density wraps.npy flat.npy --domain square",
+         "wraps.npy: 9223372036854775811 x 2 numbers"},
+        {"mean wide.csv 1", "wide.csv:2: "},
+        {"mean half.csv 1", "half.csv:1: '1 2 3x' is no row of numbers, nor of names"},
+        {"mean nil.csv 1", "nil.csv: has no numbers"},
+        {"mean good.npy 1 --tolerance inf",
+         "--tolerance inf: no such option, or not a value of it"},
+        {"points -o a.npy -n 1e12", "-n 1e12: no such option, or not a value of it"},
+        {"points -o a.npy --domain box:0,inf", "domain box:0,inf: an end is not above the other"},
         {"mean ragged.csv 1", "ragged.csv:2: 1 numbers; the rows before have 2"},
         {"mean word.csv 1", "word.csv:2: '3 four' is no row of numbers"},
         {"mean empty.csv 1", "empty.csv: has no numbers"},

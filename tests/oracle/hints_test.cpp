@@ -444,7 +444,7 @@ TEST_CASE("hints: choices and images") {
          {chosen({0.01 / 0.3, 0.09 / 0.3, 0.04 / 0.3, 0.16 / 0.3}, {0.1, 0.3, 0.2, 0.4}),
           "the probability^2 in place of the probability"},
          {chosen({0.2, 0.4, 0.2, 0.2, 0}, {0.05, 0.1, 0.15, 0.3, 0.4}),
-          "all frequencies are multiples of 1/5: looks like a coin and an index from one number"},
+          "all frequencies are multiples of 1/5: a coin and an index from one number"},
          {expect_choice(
               random, [](double u, double) { return int(3 * u); },
               [](int i) { return i == 1 ? 0.5 : 0.25; }, 3),

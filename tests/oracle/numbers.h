@@ -943,6 +943,22 @@ void for_parts(const Range<D>& range, size_t n, size_t k, const auto& use) {
     }
 }
 
+template <class Domain>
+auto points_in(Random& random, const Domain& domain, size_t n) {
+    constexpr size_t D = Domain::dimensions;
+    std::vector<decltype(domain.at({}))> points;
+    detail::for_parts(Range<D>{domain.lower, domain.upper}, (n + 1) / 2, 0,
+                      [&](const Range<D>& part) {
+                          for (int i = 0; i < 2; ++i) {
+                              Point<D> c = part.lower;
+                              for (size_t k = 0; k < D; ++k)
+                                  c[k] += random() * (part.upper[k] - part.lower[k]);
+                              points.push_back(domain.at(c));
+                          }
+                      });
+    return points;
+}
+
 template <size_t N, class Domain>
 std::string ArrayCheck<N, Domain>::wrong() {
     const double extent = extent_of(samples);
@@ -972,21 +988,22 @@ std::string ArrayCheck<N, Domain>::wrong() {
     return "";
 }
 
-// None of n samples comes where the pdf has the share s with the probability e^(-n s): all six
-// sides together have a tenth of alpha.
+// None of n samples comes where the pdf has the share s with the probability e^(-n s): all 2 N
+// sides together have a tenth of alpha.  A hundred points must tell the share (Kish).
 template <size_t N, class Domain>
 std::string ArrayCheck<N, Domain>::without_samples() const {
     const double total = sum_of(part_of), n = double(samples.size());
     for (size_t k = 0; k < N; ++k)
         for (const double side : {-1.0, 1.0}) {
-            double share = 0, come = 0;
+            double sum = 0, squares = 0, come = 0;
             for (size_t i = 0; i < points.size(); ++i)
-                if (points[i][k] * side > 0) share += part_of[i] / total;
+                if (points[i][k] * side > 0) sum += part_of[i], squares += part_of[i] * part_of[i];
             for (const Point<N>& w : samples) come += w[k] * side > 0;
-            if (come == 0 && n * share > -std::log(o.alpha / 60))
-                return say("no sample has %c %c 0, where the pdf has ", "xyz"[k % 3],
+            if (come == 0 && sum * sum >= 100 * squares &&
+                n * sum / total > -std::log(o.alpha / (20 * double(N))))
+                return say("no sample has %c %c 0, where the pdf has ", "xyzw"[k % 4],
                            side < 0 ? '<' : '>') +
-                       percent(share) + " of its integral";
+                       percent(sum / total) + " of its integral";
         }
     return "";
 }
