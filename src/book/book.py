@@ -402,7 +402,7 @@ def diagrams():
         return {p.stem: p.read_text()[p.read_text().index('<svg'):] for p in pathlib.Path(folder).glob('*.svg')}
 
 
-LIVE = 'figure.js', 'scenes.js', 'playground.html'
+WEB_FILES = 'figure.js', 'scenes.js', 'playground.html'
 
 
 class Figures:
@@ -410,7 +410,7 @@ class Figures:
 
     def __init__(self, folder):
         self.folder, self.web, self.orders = folder, ROOT / 'build/web', []
-        self.is_live = all((self.web / name).exists() for name in LIVE)
+        self.is_live = all((self.web / name).exists() for name in WEB_FILES)
 
     def still(self, scene, options):
         name = re.sub(r'[^a-z0-9]+', '-', f'{scene} {options}').strip('-') + '.png'
@@ -430,7 +430,7 @@ class Figures:
             raise Malformed('build/penumbra is not there: make build/penumbra')
         for order in self.orders:
             subprocess.run(order, check=True, capture_output=True)
-        for name in LIVE if self.is_live else ():
+        for name in WEB_FILES if self.is_live else ():
             shutil.copy(self.web / name, self.folder / name)
 
 

@@ -89,7 +89,9 @@ inline void write_file(const std::string& path, std::string_view bytes) {
 namespace penumbra {
 inline void check_writable(const std::string& path) {
     std::error_code ignored;
-    const bool is_new = !std::filesystem::exists(path, ignored);
+    const auto status = std::filesystem::symlink_status(path, ignored);
+    if (std::filesystem::is_symlink(status) || std::filesystem::is_other(status)) return;
+    const bool is_new = !std::filesystem::exists(status);
     if (!std::ofstream(path, std::ios::app))
         throw UserError(path + ": cannot write: " + std::strerror(errno));
     if (is_new) std::filesystem::remove(path, ignored);

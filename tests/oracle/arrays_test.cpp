@@ -426,7 +426,7 @@ TEST_CASE("build/oracle: what cannot be used is named, with status 2") {
         {"mean none.npy 1", "none.npy: has no header of NumPy's"},
         {"density nothing.npy nothing.npy", "nothing.npy: 0 x 3 numbers"},
         {"density wraps.npy flat.npy --domain square",
-         "wraps.npy: 9223372036854775811 x 2 numbers"},
+         "wraps.npy: 9223372036854775811 x 2 numbers of 8 bytes expected"},
         {"mean wide.csv 1", "wide.csv:2: "},
         {"mean half.csv 1", "half.csv:1: '1 2 3x' is no row of numbers, nor of names"},
         {"mean nil.csv 1", "nil.csv: has no numbers"},
