@@ -118,11 +118,11 @@ Array read_npy(const std::string& file, const std::string& bytes) {
         begin += size_t(static_cast<unsigned char>(bytes[8 + i])) << 8 * i;
     if (begin > bytes.size()) throw Unusable(file + ": ends within its header");
     const std::string header = bytes.substr(8 + lengths, begin - 8 - lengths);
-    if (value_of("descr", header).empty()) throw Unusable(file + ": has no header of NumPy's");
+    const std::string name = value_of("descr", header);
+    if (name.empty()) throw Unusable(file + ": has no header of NumPy's");
     if (value_of("fortran_order", header) != "False")
         throw Unusable(file + ": is in the order of Fortran: save numpy.ascontiguousarray(...)");
-    const std::string name = value_of("descr", header);
-    const auto type = types.find(name.empty() ? "" : name.substr(1));
+    const auto type = types.find(name.substr(1));
     if (type == types.end())
         throw Unusable(file + ": has numbers of type '" + name +
                        "': save float32, float64 or integers");

@@ -1205,7 +1205,7 @@ Verdict ArrayCheck<N, Domain>::run() {
     if (const std::string why = wrong(); !why.empty()) return failure(why);
     // Of fewer the variance is not known well enough: with 25 a right cos^30 was refused once
     // in 200 runs at alpha = 1e-6.
-    const double fewest = fewest_points(), needed = 100;
+    const double fewest = fewest_points(), needed = fewest_in_cell;
     if (fewest < needed)
         return failure(
             say("%zu points are too few: %.0f tell the pdf in a cell of the samples, "

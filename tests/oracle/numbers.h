@@ -989,7 +989,7 @@ std::string ArrayCheck<N, Domain>::wrong() {
 }
 
 // None of n samples comes where the pdf has the share s with the probability e^(-n s): all 2 N
-// sides together have a tenth of alpha.  A hundred points must tell the share (Kish).
+// sides together have a tenth of alpha.  As many points as a cell needs must tell the share (Kish).
 template <size_t N, class Domain>
 std::string ArrayCheck<N, Domain>::without_samples() const {
     const double total = sum_of(part_of), n = double(samples.size());
@@ -999,7 +999,7 @@ std::string ArrayCheck<N, Domain>::without_samples() const {
             for (size_t i = 0; i < points.size(); ++i)
                 if (points[i][k] * side > 0) sum += part_of[i], squares += part_of[i] * part_of[i];
             for (const Point<N>& w : samples) come += w[k] * side > 0;
-            if (come == 0 && sum * sum >= 100 * squares &&
+            if (come == 0 && sum * sum >= fewest_in_cell * squares &&
                 n * sum / total > -std::log(o.alpha / (20 * double(N))))
                 return say("no sample has %c %c 0, where the pdf has ", "xyzw"[k % 4],
                            side < 0 ? '<' : '>') +

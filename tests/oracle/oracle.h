@@ -1206,7 +1206,7 @@ Verdict ArrayCheck<N, Domain>::run() {
     if (const std::string why = wrong(); !why.empty()) return failure(why);
     // Of fewer the variance is not known well enough: with 25 a right cos^30 was refused once
     // in 200 runs at alpha = 1e-6.
-    const double fewest = fewest_points(), needed = 100;
+    const double fewest = fewest_points(), needed = fewest_in_cell;
     if (fewest < needed)
         return failure(
             say("%zu points are too few: %.0f tell the pdf in a cell of the samples, "
@@ -2683,7 +2683,7 @@ std::string ArrayCheck<N, Domain>::wrong() {
 }
 
 // None of n samples comes where the pdf has the share s with the probability e^(-n s): all 2 N
-// sides together have a tenth of alpha.  A hundred points must tell the share (Kish).
+// sides together have a tenth of alpha.  As many points as a cell needs must tell the share (Kish).
 template <size_t N, class Domain>
 std::string ArrayCheck<N, Domain>::without_samples() const {
     const double total = sum_of(part_of), n = double(samples.size());
@@ -2693,7 +2693,7 @@ std::string ArrayCheck<N, Domain>::without_samples() const {
             for (size_t i = 0; i < points.size(); ++i)
                 if (points[i][k] * side > 0) sum += part_of[i], squares += part_of[i] * part_of[i];
             for (const Point<N>& w : samples) come += w[k] * side > 0;
-            if (come == 0 && sum * sum >= 100 * squares &&
+            if (come == 0 && sum * sum >= fewest_in_cell * squares &&
                 n * sum / total > -std::log(o.alpha / (20 * double(N))))
                 return say("no sample has %c %c 0, where the pdf has ", "xyzw"[k % 4],
                            side < 0 ? '<' : '>') +

@@ -23,7 +23,7 @@ const bits = side => `btoa(Array.from(new Uint8Array(figure.sides[${side}].image
 const finished = "figure.finished()", problem = "$('problem').textContent";
 const until = async (browser, condition) => {
     for (let k = 0; !await browser.run(condition); ++k) {
-        if (k > 200) throw Error(`never: ${condition}`);
+        if (k > 12000) throw Error(`never: ${condition}`);
         await new Promise(soon => setTimeout(soon, 50));
     }
 };
@@ -35,6 +35,7 @@ const tests = {
             ["atelier", "--view normal"], ["lanterns", "--sampler stratified --replications 4 --depth 3"]])
             for (const workers of [1, 3]) {
                 await browser.go(address({ scene, a: options, size: "40x20", samples: 24 }));
+                await browser.run(finished);  // workers that end in a pass would never answer
                 await browser.run(`Object.defineProperty(navigator, "hardwareConcurrency", { value: ${workers} });
                     workers.all.splice(0).forEach(worker => worker.terminate()); figure.reload(); ${finished}`);
                 expect(`${scene} ${options}, workers`, await browser.run("workers.all.length"), workers);
@@ -105,6 +106,7 @@ const tests = {
         await browser.run("figure.mode.value = 'time'; figure.sides[1].seconds = 0; figure.run()");
         await browser.run(finished);
         expect("equal time", await browser.run("figure.sides[1].seconds >= figure.sides[0].seconds"), true);
+        expect("B is done by samples again", await browser.run("figure.mode.value = 'samples'; figure.next_side === null && figure.sides[1].is_done"), true);
         expect("curves", await browser.run("figure.shadowRoot.querySelectorAll('.plot polyline').length"), 4);
     },
     async "the true error is that of the picture against its reference"(browser) {
