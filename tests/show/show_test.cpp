@@ -107,11 +107,15 @@ TEST_CASE("a run that fails has stopped, and one without a picture is done witho
 TEST_CASE("pictures are a second apart, and take at most a 20th of the time") {
     using std::chrono::milliseconds;
     const clock_::time_point start(day);
-    for (const auto& [took, next] :
-         {std::pair(0, 1000), {10, 1010}, {52, 1052}, {53, 1060}, {100, 2000}, {5000, 100000}}) {
-        INFO(took);
-        const auto due = next_picture(start, start + milliseconds(took), std::chrono::seconds(1));
-        CHECK((due == start + milliseconds(next)));
+    struct Row {
+        int took, next;  // ms
+    };
+    for (const Row& row :
+         {Row{0, 1000}, {10, 1010}, {52, 1052}, {53, 1060}, {100, 2000}, {5000, 100000}}) {
+        INFO(row.took);
+        const auto end = start + milliseconds(row.took);
+        CHECK(
+            (next_picture(start, end, std::chrono::seconds(1)) == start + milliseconds(row.next)));
     }
 }
 
