@@ -1,5 +1,5 @@
 # tests.mk  builds and runs the tests, and what checks them: mutants, fuzzers, other compilers, layers
-.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core freestanding layers read programs-to-test
+.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core freestanding layers editors read programs-to-test
 
 RULES := Makefile tests/tests.mk
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
@@ -78,14 +78,14 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 
 # Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of
 # their folder and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 replay:5 app:6 web:7 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 book:9 \
+LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 replay:5 app:6 show:7 web:7 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 book:9 \
           oracle:10 whole:10 faults:10 fuzz:10
-# The core names no module, but in six headers: which tree, whether files are durable, meshes read, scenes checked, paths
-# replayed, films kept, and whether light may be unseen.  Nor do tests of the core.  A module's program stands above the app.
+# The core names no module, but in seven files: which tree, whether files are durable, meshes read, scenes checked, paths
+# replayed, films kept, whether light may be unseen, and pictures shown.  Nor do tests of the core.  A module's program stands above the app.
 LECTURE := base world path film
 CORE    := $(LECTURE) text app
-MODULES := wide mesh check keep unseen replay web shadow voronoi radiosity
-DOORS   := world/tree.h:wide text/files.h:keep text/mesh.h:mesh text/scene_file.h:check app/options.h:replay app/render.h:keep app/render.h:unseen
+MODULES := wide mesh check keep unseen replay show web shadow voronoi radiosity
+DOORS   := world/tree.h:wide text/files.h:keep text/mesh.h:mesh text/scene_file.h:check app/options.h:replay app/render.h:keep app/render.h:unseen app/penumbra.cpp:show
 # Of a folder that is named here, a module includes these headers alone.
 NEEDS   := wide:world/shapes.h
 
@@ -117,6 +117,14 @@ read: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(filter-out src/web/%,$(wildcard src/
 layers:  ## check that every file includes only from layers below
 	@LAYERS='$(LAYERS)' LECTURE='$(LECTURE)' CORE='$(CORE)' MODULES='$(MODULES)' DOORS='$(DOORS)' NEEDS='$(NEEDS)' tests/layers
 
+# It asks clangd about one line: elsewhere it would try all that an editor asks.
+editors:  ## clangd, which editors ask, finds no error in a header of the lecture; ONLY='src/*/*.h tests/*/*.h': in these
+	@command -v clangd >/dev/null || { echo "make editors: skipped: no clangd"; exit; }; \
+	    for header in $(or $(ONLY),$(LECTURE:%=src/%/*.h)); do \
+	        said=$$(clangd --check=$$header --check-lines=1 2>&1) || \
+	            { echo "$$header: $$(echo "$$said" | sed -n 's/^E[^]]*] //p')"; bad=1; }; \
+	    done; [ -z "$$bad" ] && echo "clangd finds all that these headers include"
+
 # ---- Building ------------------------------------------------------------------------------------
 
 # Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
@@ -132,7 +140,7 @@ $(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
 # By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
 # for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
 # those that others must not see.
-TOGETHER := world wide mesh path film text check keep unseen app shadow voronoi radiosity whole
+TOGETHER := world wide mesh path film text check keep unseen app show shadow voronoi radiosity whole
 ALONE    := oracle/hosts_test
 FOLDER   = $(patsubst %/,%,$(dir $1))
 SHARED   = $(if $(filter $(TOGETHER),$(FOLDER)),core,$(FOLDER))$(if $(filter $(LATER),$1),-later)$(if $(filter $(HEAVY),$1),-heavy)

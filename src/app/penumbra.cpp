@@ -1,7 +1,18 @@
 // app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
-#include "app/threads.h"
-#include "text/program.h"
+
+#ifdef WITH_SHOW
+#include "show/show.h"
+#else
+namespace penumbra {
+struct Show {
+    OptionTable rows() const { return {}; }
+    void begin(auto&&...) const {}
+    void picture_now_and_then(auto&&...) const {}
+    void end(auto&&...) const {}
+};
+}  // namespace penumbra
+#endif
 
 namespace {
 using namespace penumbra;
@@ -72,7 +83,8 @@ FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, 
 // The program; returns its exit status, throws UserError and SystemError.
 int penumbra_main(const std::vector<std::string>& words) {
     Options o;
-    OptionTable table = option_table(o);
+    Show show;
+    OptionTable table = option_table(o) + show.rows();
     parse_options(table, o, words);
     if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
@@ -90,8 +102,14 @@ int penumbra_main(const std::vector<std::string>& words) {
     const Plan plan = plan_of(o, scene, o.view.of ? nullptr : &witness);
     const Radiance L = radiance_of(o, scene, pattern, witness);
     const FilmOf what = film_of(table, o, parsed, plan);
-    const Picture picture = render(o, plan, L, what);  // film and bar end here
-    return write_picture(o, table, scene, outputs, picture);
+    show.begin(o, outputs);
+    const auto look = [&](const Film& film, const Spent& spent) {
+        show.picture_now_and_then(o, scene, plan, film, spent);
+    };
+    const Picture picture = render(o, plan, L, what, look);  // film and bar end here
+    const int status = write_picture(o, table, scene, outputs, picture);
+    show.end(o, picture.run);
+    return status;
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ inline void check_finite(const Tally& t) {
     if (t.bad == 0) return;
     throw SystemError(counted(t.bad, "sample") + (t.bad == 1 ? " was" : " were") +
                       " not finite, the first at " + in_words(t.first_bad) + " (replay it by " +
-                      in_words(t.first_bad, "--pixel ", " --sample ") + "); nothing was written");
+                      in_words(t.first_bad, "--pixel ", " --sample ") + "); no result written");
 }
 
 // The results of a film.
@@ -168,9 +168,10 @@ struct Picture {
     std::string not_kept;  // why the film was not written, if it should have been
 };
 
-// Fills a film until the plan's target is met.
+// Fills a film until the plan's target is met; `look` sees it between passes.
+using Look = std::function<void(const Film&, const Spent&)>;
 inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
-                      const FilmOf& what = {}) {
+                      const FilmOf& what = {}, const Look& look = {}) {
     Film film = film_for(plan);
     Keeper keeper(o.keep, what);
     const Spent before = keeper.restore(film);
@@ -188,6 +189,7 @@ inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
     watch.interrupted = [] { return interrupted != 0; };
     watch.between = [&](const Film& f, const Tally& tally) {
         keeper.write_now_and_then(f, spent(tally));
+        if (look) look(f, spent(tally));
     };
     watch.show = [&](double now, double end) {
         progress.show(now / end, fixed(now * double(plan.paths), 1) + " samples per pixel");

@@ -69,11 +69,4 @@ inline bool by_workers(size_t count, unsigned threads,
     return done == count;
 }
 
-// The same for work that does not ask which thread it is in.
-inline bool in_parallel(size_t count, unsigned threads, const std::function<void(size_t)>& work,
-                        const std::function<void(double)>& meanwhile) {
-    return by_workers(
-        count, threads, [&](size_t k, unsigned) { work(k); }, meanwhile);
-}
-
 }  // namespace penumbra

@@ -8,6 +8,7 @@ planted bug.
 """
 import argparse
 import io
+import json
 import os
 import pathlib
 import re
@@ -21,11 +22,12 @@ import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
-FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app']
+FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app', 'show']
 ALSO = ['src/keep/read_pfm.h']  # build/beside compares pictures
 UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
 COURSE = ['beside.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'update', 'pictures.txt']  # of tests/course
+EDITORS = ['.devcontainer/devcontainer.json'] + [f'.vscode/{name}.json' for name in ('tasks', 'launch', 'extensions', 'settings')]
 HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
 Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
 names with two underscores. A region has only what its file includes, and no `<random>`: random numbers are arguments
@@ -171,8 +173,12 @@ def write_rest(plan, to):
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
           '    make check           # what is right, and what is to do\n'
-          '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n\n' % (2 * (plan.open[0].number,)) +
-          'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
+          '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n'
+          '    build/penumbra --pixel 100,60 scenes/cornell36.scene    # a pixel is wrong? every number of one of its paths\n'
+          '    build/penumbra --show scenes/cornell36.scene    # out/cornell36.html shows the picture while it renders\n\n'
+          % (2 * (plan.open[0].number,)) +
+          'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems, and for editors:\n'
+          'clangd and Visual Studio Code know this folder, and `.devcontainer` has all in a container.\n'
           'Start with the sheet of the week.  '
           f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
           ''.join(f'* [{title}](sheets/{name})\n' for _, name, title in listed) +
@@ -183,6 +189,37 @@ def write_rest(plan, to):
           ''.join(f'| {e.number} | {e.title} | src/{e.file} | {e.points} | {e.hours:g} |\n' for e in plan.open))
     write(to / '.clang-format', (ROOT / '.clang-format').read_text() + 'ReflowComments: false\n')
     write(to / 'LICENSE', (ROOT / 'LICENSE').read_text())
+
+
+def write_editors(plan, to):
+    """What an editor reads: this project's files, with the exercises of these weeks to choose from."""
+    flags = (ROOT / 'compile_flags.txt').read_text().splitlines(keepends=True)
+    write(to / 'compile_flags.txt', ''.join(f for f in flags if not re.match('-DWITH_|-DTREE_', f)))
+    read = {name: json.loads((ROOT / name).read_text()) for name in EDITORS}
+    container, tasks, launch = (read[name] for name in EDITORS[:3])
+    container['build'] = {'dockerfile': '../Dockerfile', 'args': {'MORE': 'clangd gdb'}}
+    for task in tasks['tasks']:
+        if task['label'] == 'test':
+            task.update(label='check all exercises', command='make check')
+    tasks['tasks'] = [of_week for t in tasks['tasks'] for of_week in each(t, plan, 'week')]
+    tasks['inputs'] = [{'id': 'exercise', 'type': 'pickString', 'description': 'which exercise?',
+                        'options': [e.number for e in plan.open], 'default': plan.open[0].number}]
+    launch['configurations'] = [of_one for c in launch['configurations'] for of_one in each(c, plan, 'exercise')]
+    launch['inputs'] = [i for i in launch['inputs'] if i['id'] in ('scene', 'pixel')]
+    for name, data in read.items():
+        write(to / name, json.dumps(data, indent=4) + '\n')
+
+
+def each(item, plan, what):
+    """A task or a way to debug; if it asks for a week, one of each week or exercise, and nothing is asked."""
+    if '${input:week}' not in json.dumps(item):
+        return [item]
+    def of(e):
+        text = json.dumps(item).replace('${input:week}', e.week).replace('${input:exercise}', e.number)
+        text = text.replace('build a check for a debugger', f'build week {e.week} for a debugger')
+        return json.loads(text.replace('the check of an exercise', f'{e.number} {e.title}'))
+    firsts = {e.week: e for e in reversed(plan.open)}
+    return [of(e) for e in plan.open if what == 'exercise' or e == firsts[e.week]]
 
 
 def draw_expected(plan, to, suffix):
@@ -216,7 +253,7 @@ def pack(folder):
 def make_starter(plan, to, suffix=None):
     """Writes the folder anew; without a suffix, without expected pictures."""
     shutil.rmtree(to, ignore_errors=True)
-    for step in (write_sources, write_checks, write_rest):
+    for step in (write_sources, write_checks, write_rest, write_editors):
         step(plan, to)
     if suffix is not None:
         draw_expected(plan, to, suffix)

@@ -169,9 +169,9 @@ int study(const Scope& scope) {
     const uint64_t trials = scope.quick ? 512 : 32768;
     Page page(scope, "estimators1d");
     std::array<Rows, std::size(cases)> parts;
-    in_parallel(
-        parts.size(), all_cores(), [&](size_t k) { parts[k] = rows_of(cases[k], trials); },
-        [](double) {});
+    by_workers(
+        parts.size(), all_cores(),
+        [&](size_t k, unsigned) { parts[k] = rows_of(cases[k], trials); }, [](double) {});
     Rows rows;
     for (const Rows& part : parts) append(rows, part);
     page.plot("estimators1d", plot(in_scene(rows, "e"), "samples N", "RMSE × √N / W", of_setting,

@@ -143,9 +143,9 @@ private:
         for (const Job& j : missing) truth(*j.subject);
         size_t count = 0;
         std::mutex lock;
-        in_parallel(
+        by_workers(
             missing.size(), jobs,
-            [&](size_t k) {
+            [&](size_t k, unsigned) {
                 const Row row =
                     rendered(missing[k], text("out/%s-%d-%zu", name_, int(::getpid()), k));
                 const std::lock_guard guard(lock);

@@ -93,7 +93,7 @@ inline Rendered by_control(const NamedScene& read, uint64_t spp, uint64_t seed) 
     const Pattern pattern = EndlessNumbers::pattern(SamplerKind::sobol, seed),
                   rest = EndlessNumbers::independent(seed);
     Image image(width, height);
-    auto row = [&](size_t y) {
+    auto row = [&](size_t y, unsigned) {
         for (int x = 0; x < image.width; ++x) {
             rgb sum;
             for (uint64_t i = 0; i < spp; ++i) {
@@ -104,7 +104,7 @@ inline Rendered by_control(const NamedScene& read, uint64_t spp, uint64_t seed) 
             for (size_t c = 0; c < 3; ++c) image.at(x, int(y))[c] = float(sum.*axis[c] / real(spp));
         }
     };
-    in_parallel(size_t(height), all_cores(), row, [](double) {});
+    by_workers(size_t(height), all_cores(), row, [](double) {});
     return {std::move(image), {{"cpu_seconds", processor_seconds() - start_of_all}}};
 }
 

@@ -45,7 +45,7 @@ inline rgb radiance(const Scene& scene, const Technique& t, Ray ray, vec2 u) {
 // Renders an image.  Each pixel is the mean over the first `spp` points.
 inline Image render(const Scene& scene, const Technique& t, uint64_t spp) {
     Image image(scene.size.width, scene.size.height);
-    auto row = [&](int y) {
+    auto row = [&](int y, unsigned) {
         for (int x = 0; x < image.width; ++x) {
             rgb sum;
             for (uint64_t i = 0; i < spp; ++i) {
@@ -57,7 +57,7 @@ inline Image render(const Scene& scene, const Technique& t, uint64_t spp) {
             for (size_t c = 0; c < 3; ++c) image.at(x, y)[c] = float(sum.*axis[c] / real(spp));
         }
     };
-    in_parallel(image.height, all_cores(), row, [](double) {});
+    by_workers(image.height, all_cores(), row, [](double) {});
     return image;
 }
 

@@ -25,9 +25,10 @@ inline NamedScene scene_named(const std::string& name) {
 
 // Traces n particles.
 inline void walk(Particles& particles, uint64_t n, unsigned threads = all_cores()) {
-    in_parallel(
+    by_workers(
         Particles::batches, threads,
-        [&](size_t batch) { particles.add(batch, Particles::of_each(n)); }, [](double) {});
+        [&](size_t batch, unsigned) { particles.add(batch, Particles::of_each(n)); },
+        [](double) {});
 }
 
 // The integral of the square of a map over all surfaces, summed over channels.

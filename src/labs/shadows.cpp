@@ -65,9 +65,9 @@ void tell_noise(Page& page, bool quick) {
         Scene scene = read_scene(text("scenes/%s.scene", name)).scene;
         scene.size = quick ? Size{32, 16} : Size{64, 32};
         std::vector<Pixel> pixels(size_t(scene.size.width) * size_t(scene.size.height));
-        in_parallel(
+        by_workers(
             pixels.size(), all_cores(),
-            [&](size_t i) {
+            [&](size_t i, unsigned) {
                 const PixelSample p{int(i) % scene.size.width, int(i) / scene.size.width};
                 pixels[i] = measure_pixel(scene, p, quick ? 16 : 256);
             },

@@ -23,6 +23,8 @@ inline std::string text(const char* format, const auto&... values) {
     std::snprintf(line.data(), line.size() + 1, format, for_printf(values)...);
     return line;
 }
+// "0.982 %"
+inline std::string percent(double x) { return text("%.3g %%", 100 * x); }
 
 struct PlotPoint {
     double x = 0, y = 0;

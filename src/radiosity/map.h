@@ -68,13 +68,13 @@ rgb pixel_of(const Scene& scene, int x, int y, int K, Value value) {
 template <class Value>
 Image image_of_rays(const Scene& scene, int K, unsigned threads, Value value) {
     Image image(scene.size.width, scene.size.height);
-    auto row = [&](int y) {
+    auto row = [&](int y, unsigned) {
         for (int x = 0; x < image.width; ++x) {
             const rgb c = pixel_of(scene, x, y, K, value);
             image.at(x, y) = {float(c.x), float(c.y), float(c.z)};
         }
     };
-    in_parallel(size_t(image.height), threads, row, [](double) {});
+    by_workers(size_t(image.height), threads, row, [](double) {});
     return image;
 }
 

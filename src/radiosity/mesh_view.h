@@ -30,7 +30,7 @@ inline rgb line_over(rgb L, real exposure) {
 }
 
 inline void draw_mesh(Image& image, const Scene& scene, const Mesh& mesh, int K, unsigned threads) {
-    auto row = [&](int y) {
+    auto row = [&](int y, unsigned) {
         for (int x = 0; x < image.width; ++x) {
             auto& pixel = image.at(x, y);
             const rgb L{pixel[0], pixel[1], pixel[2]};
@@ -39,7 +39,7 @@ inline void draw_mesh(Image& image, const Scene& scene, const Mesh& mesh, int K,
             pixel = {float(c.x), float(c.y), float(c.z)};
         }
     };
-    in_parallel(size_t(image.height), threads, row, [](double) {});
+    by_workers(size_t(image.height), threads, row, [](double) {});
 }
 
 }  // namespace penumbra

@@ -78,8 +78,8 @@ public:
             show(*this);
             if (enough) return;
             std::atomic<uint64_t> rays = 0;
-            auto work = [&](size_t k) { rays += receive(order_[k]); };
-            in_parallel(order_.size(), threads_, work, [](double) {});
+            auto work = [&](size_t k, unsigned) { rays += receive(order_[k]); };
+            by_workers(order_.size(), threads_, work, [](double) {});
             rays_ += rays;
         }
     }

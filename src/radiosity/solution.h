@@ -60,7 +60,7 @@ struct Solution {
 };
 
 inline std::string shot(uint64_t shots, double unshot) {
-    return counted(shots, "shot") + ", " + percent(unshot) + " unshot";
+    return counted(shots, "shot") + ", " + significant(100 * unshot, 3) + " % unshot";
 }
 
 inline Solution shoot(const RadiosityOptions& o, const Stage& stage) {
@@ -128,8 +128,9 @@ inline std::string stopped_by(const RadiosityOptions& o, const Solution& s) {
 
 inline std::string error_of(const RadiosityOptions& o, const Solution& s) {
     if (!std::isfinite(s.stated.error)) return "error not known";
-    const std::string words = is_random(o) ? "estimated " + error_words(s.stated)
-                                           : "error at most " + percent(s.stated.error);
+    const std::string words = is_random(o)
+                                  ? "estimated " + error_words(s.stated)
+                                  : "error at most " + significant(100 * s.stated.error, 3) + " %";
     return words + ", without the error of the mesh";
 }
 

@@ -8,6 +8,7 @@ namespace penumbra {
 
 // "error 2.9 % ± 0.05 %"
 inline std::string error_words(const MapError& e) {
+    auto percent = [](double x) { return significant(100 * x, 3) + " %"; };
     return "error " + percent(e.error) +
            (std::isfinite(e.uncertainty) ? " ± " + percent(e.uncertainty) : "");
 }
@@ -121,9 +122,9 @@ private:
             const double each = n > 0 ? elapsed / double(n) * least : 0;
             const uint64_t fit = least * end_of_pass(n / least, elapsed, each, target_.seconds),
                            next = to ? std::min(fit, to) : fit;
-            const bool complete = in_parallel(
+            const bool complete = by_workers(
                 Particles::batches, o_.threads,
-                [&](size_t batch) { particles_.add(batch, next - n); },
+                [&](size_t batch, unsigned) { particles_.add(batch, next - n); },
                 [&](double part) { show(double(n) + part * double(next - n)); });
             if (!complete) return false;
             // The estimate takes time: it is made when the particles have doubled.

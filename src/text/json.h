@@ -9,13 +9,6 @@
 
 namespace penumbra {
 
-// "0.982 %"
-inline std::string percent(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g %%", 100 * x);
-    return text;
-}
-
 inline std::string fixed(double x, int digits) {
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, x);

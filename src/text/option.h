@@ -53,9 +53,7 @@ inline OptionTable in_group(Text group, OptionTable rows) {
 }
 // Without the rows of these names.
 inline OptionTable without(OptionTable table, const std::vector<Text>& names) {
-    std::erase_if(table, [&](auto& r) {
-        return std::find(names.begin(), names.end(), r.name) != names.end();
-    });
+    std::erase_if(table, [&](auto& r) { return std::ranges::count(names, r.name) > 0; });
     return table;
 }
 
@@ -258,8 +256,7 @@ inline std::string option_lines(const OptionTable& table) {
     constexpr size_t indent = 24;
     std::vector<Text> groups;
     for (const Option& r : table)
-        if (std::find(groups.begin(), groups.end(), r.group) == groups.end())
-            groups.push_back(r.group);
+        if (std::ranges::count(groups, r.group) == 0) groups.push_back(r.group);
     std::string page;
     for (const Text group : groups) {
         if (!group.empty()) page += (page.empty() ? "" : "\n") + std::string(group) + ":\n";

@@ -48,21 +48,21 @@ TEST_CASE("the first signal to end asks for an end, a second Ctrl-C kills; what 
 
 TEST_CASE("an interrupted pass is told to be incomplete, though only its last work was cut short") {
     for (const auto& [count, last] : {std::pair(100u, 1u), std::pair(10u, 9u)}) {
-        CHECK(!in_parallel(
-            count, 1, [at = last](size_t k) { interrupted = k == at; }, [](double) {}));
+        CHECK(!by_workers(
+            count, 1, [at = last](size_t k, unsigned) { interrupted = k == at; }, [](double) {}));
         interrupted = 0;
     }
 }
 
 TEST_CASE("work that nobody waits for any more leaves its thread, and is no failure") {
     std::atomic<int> begun = 0;
-    auto work = [&](size_t k) {
+    auto work = [&](size_t k, unsigned) {
         ++begun;
         if (k != 5) return;
         interrupted = SIGINT;
         throw Interrupted();
     };
-    CHECK(!in_parallel(1 << 20, 1, work, [](double) {}));
+    CHECK(!by_workers(1 << 20, 1, work, [](double) {}));
     interrupted = 0;
     CHECK(begun == 6);
 }
@@ -70,22 +70,24 @@ TEST_CASE("work that nobody waits for any more leaves its thread, and is no fail
 TEST_CASE("what work throws reaches the caller, and nobody begins another piece") {
     for (unsigned threads : {1u, 3u}) {
         std::atomic<int> begun = 0;
-        auto work = [&](size_t k) {
+        auto work = [&](size_t k, unsigned) {
             ++begun;
             if (k == 5) throw std::bad_alloc();
         };
-        CHECK_THROWS_AS(in_parallel(1 << 20, threads, work, [](double) {}), std::bad_alloc);
+        CHECK_THROWS_AS(by_workers(1 << 20, threads, work, [](double) {}), std::bad_alloc);
         CHECK(begun < 1 << 20);
     }
-    auto slow = [&](size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(150)); };
+    auto slow = [&](size_t, unsigned) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    };
     auto meanwhile = [](double) { throw std::bad_alloc(); };
-    CHECK_THROWS_AS(in_parallel(2, 1, slow, meanwhile), std::bad_alloc);
+    CHECK_THROWS_AS(by_workers(2, 1, slow, meanwhile), std::bad_alloc);
 }
 
 TEST_CASE("who waits is told what part of the work is done") {
     std::atomic<int> calls = 0;
     std::vector<double> parts;
-    auto work = [&](size_t k) {
+    auto work = [&](size_t k, unsigned) {
         if (k != 3) return;
         // A call that has begun may precede the end of piece 2; the call after it cannot.
         for (const int before = calls; calls < before + 2;) std::this_thread::yield();
@@ -94,7 +96,7 @@ TEST_CASE("who waits is told what part of the work is done") {
         parts.push_back(part);
         ++calls;
     };
-    CHECK(in_parallel(4, 1, work, meanwhile));
+    CHECK(by_workers(4, 1, work, meanwhile));
     REQUIRE(parts.size() >= 3);
     CHECK(parts[parts.size() - 2] == 0.75);
     CHECK(parts.back() == 1);
@@ -106,13 +108,13 @@ TEST_CASE("every piece of work is done once, by any number of threads") {
             std::vector<std::atomic<int>> done(count);
             std::atomic<bool> outside = false;
             double part = -1;
-            auto work = [&](size_t k) {
+            auto work = [&](size_t k, unsigned) {
                 if (k >= count)
                     outside = true;
                 else
                     ++done[k];
             };
-            CHECK(in_parallel(count, threads, work, [&](double p) { part = p; }));
+            CHECK(by_workers(count, threads, work, [&](double p) { part = p; }));
             CHECK_FALSE(outside);
             CHECK(part == 1);
             for (const auto& times : done) CHECK(times == 1);

@@ -1,4 +1,4 @@
-// course/starter_test.cpp  starters, later ones in a student's folder, and the book: tests written in Python
+// course/starter_test.cpp  starters, later ones in a student's folder, what editors get, and the book: tests written in Python
 #include <doctest/doctest.h>
 
 #include "course/python.h"
@@ -9,6 +9,14 @@ TEST_CASE("the generator: regions, weeks, what a starter holds, leaks, known mis
 
 TEST_CASE("make update: a later starter in copies that students modified keeps their solutions") {
     run_python_tests("tests/course/update_test.py");
+}
+
+TEST_CASE("editors and debuggers find what they need, here and in a starter") {
+    run_python_tests("tests/course/editors_test.py");
+}
+
+TEST_CASE("sheets say what --pixel prints") {
+    run_python_tests("tests/course/pixel_test.py");
 }
 
 TEST_CASE("the book: each line of the lecture in one chapter, and all that its tables name") {

@@ -160,8 +160,9 @@ TEST_CASE("the sums are the same, bit for bit, for any number of threads and pas
         for (unsigned threads : {1u, 2u, 3u, 5u}) {
             Particles p(m.scene, m.mesh, Particles::pattern(kind, hash(seed_here(), 1)));
             for (uint64_t n : {8, 64, 128})
-                in_parallel(
-                    Particles::batches, threads, [&](size_t b) { p.add(b, n); }, [](double) {});
+                by_workers(
+                    Particles::batches, threads, [&](size_t b, unsigned) { p.add(b, n); },
+                    [](double) {});
             CHECK(p.of_each() == 200);
             CHECK(p.map() == one.map());
             CHECK(p.error() == one.error());
