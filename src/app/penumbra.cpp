@@ -1,7 +1,6 @@
 // app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
 #include "app/threads.h"
-#include "text/program.h"
 
 namespace {
 using namespace penumbra;

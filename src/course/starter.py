@@ -21,9 +21,9 @@ import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
-FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app']
+FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app', 'web']
 ALSO = ['src/keep/read_pfm.h']  # build/beside compares pictures
-UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
+UNTOLD = ['src/shadow/population.h', 'src/web/render.js']  # formulas of an exercise, which only experiments need; what tests need
 COURSE = ['beside.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'update', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
@@ -171,7 +171,8 @@ def write_rest(plan, to):
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
           '    make check           # what is right, and what is to do\n'
-          '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n\n' % (2 * (plan.open[0].number,)) +
+          '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n'
+          '    make web             # your renderer in a browser, with every step of its paths: build/web/playground.html\n\n' % (2 * (plan.open[0].number,)) +
           'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
           'Start with the sheet of the week.  '
           f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
