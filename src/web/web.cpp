@@ -2,8 +2,8 @@
 //
 // A page has an instance for each of its workers.  One that keeps the film is its desk: workers add
 // samples to blocks of their own films, the page copies the sums of these blocks into the desk's.
-// A sample depends on its pixel and index alone, and the program's plan says how many there are: the
-// picture has the same bits as the program's.
+// A sample depends on its pixel and index alone, and the program's plan says how many there are:
+// the picture has the same bits as the program's.
 #ifdef __wasm_relaxed_simd__
 #include <wasm_simd128.h>
 // WebAssembly has no fma.  This instruction is one where the processor has it; elsewhere it may
@@ -252,9 +252,7 @@ EXPORT(add_near) void add_near(char* bytes, size_t size) {
 
 // Samples of the pilot, after which weights are chosen; 0: they are, or need not be.
 EXPORT(pilot) double pilot() { return film.is_pilot ? double(pilot_samples) : 0; }
-EXPORT(choose) void choose() {
-    choose_weights(film, plan.noisy);
-}
+EXPORT(choose) void choose() { choose_weights(film, plan.noisy); }
 
 // Linear RGB, the top row first.
 EXPORT(image) const float* image() {
