@@ -80,10 +80,17 @@ TEST_CASE("a student's own build, stubs and all, draws the same bits for a brows
     const std::string starter = folder / "starter";
     REQUIRE(status_of("python3 src/course/starter.py --weeks 3 --no-pictures " + starter +
                       " >/dev/null") == 0);
+    const std::string mine = "# ${1} costs $2, `three` or \\ four\n";
+    folder.write("starter/scenes/mine.scene", mine);
     REQUIRE(status_of(std::string(without_options) + "make -C " + starter +
                       " web build/penumbra >" + (folder / "log") + " 2>&1") == 0);
     CHECK(folder.has("starter/build/web/playground.html"));
-    CHECK(folder.has("starter/build/web/scenes.js"));
+    const std::string print_mine =
+        "const page = {}; require(\"vm\").runInNewContext(require(\"fs\").readFileSync("
+        "process.argv[1], \"utf8\"), page); process.stdout.write(page.penumbra.scenes.mine)";
+    CHECK(status_of("node -e '" + print_mine + "' " + starter + "/build/web/scenes.js >" +
+                    (folder / "text")) == 0);
+    CHECK(folder.read("text") == mine);
     CHECK(folder.read("starter/build/web/figure.js").find("class LiveFigure") != std::string::npos);
     for (const std::string scene : {"cornell", "materials"}) {
         INFO(scene);
