@@ -61,18 +61,6 @@ private:
     bool shown_ = false;
 };
 
-// Why an error may be far too small; `missed_light` says which light samples may have missed.
-inline std::string in_words(Doubt doubt, const std::function<std::string()>& missed_light) {
-    switch (doubt) {
-        case Doubt::no: break;
-        case Doubt::black: return "no sample found light";
-        case Doubt::missed_light: return missed_light();
-        case Doubt::few_pixels: return "a few pixels dominate it";
-        case Doubt::noise: return "the picture is mostly noise";
-    }
-    return "";
-}
-
 // ---- Measurements of a run ----------------------------------------------------------------------
 
 struct Run : Spent {

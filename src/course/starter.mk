@@ -28,7 +28,7 @@ define program
 build/$(basename $(notdir $(1)))$(SUFFIX): $(1) build/compiler$(SUFFIX) | packages
 	@$$(CXX) $$(FLAGS) $$(BRIEFLY) -MF $$@.d -MT $$@ -o $$@ $$<
 endef
-$(foreach source,$(wildcard src/*/*.cpp),$(eval $(call program,$(source))))
+$(foreach source,$(filter-out src/web/%,$(wildcard src/*/*.cpp)),$(eval $(call program,$(source))))
 -include $(wildcard build/*.d)
 
 clean:  ## remove build/ and out/
@@ -36,7 +36,7 @@ clean:  ## remove build/ and out/
 
 help:  ## print this
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1]"
-	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' Makefile src/course/course.mk
+	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' Makefile src/course/course.mk src/web/web.mk
 
 # stb_image_write writes PNG files.
 packages:
@@ -44,3 +44,4 @@ packages:
 	    { echo "install stb (stb/stb_image_write.h); on Debian or Ubuntu: sudo apt-get install libstb-dev" >&2; exit 1; }
 
 include src/course/course.mk
+include src/web/web.mk

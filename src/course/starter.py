@@ -22,9 +22,9 @@ import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
-FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app', 'show']
+FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app', 'show', 'web']
 ALSO = ['src/keep/read_pfm.h']  # build/beside compares pictures
-UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
+UNTOLD = ['src/shadow/population.h', 'src/web/render.js']  # formulas of an exercise, which only experiments need; what tests need
 COURSE = ['beside.cpp', 'course.mk']  # of src/course
 KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'update', 'pictures.txt']  # of tests/course
 EDITORS = ['.devcontainer/devcontainer.json'] + [f'.vscode/{name}.json' for name in ('tasks', 'launch', 'extensions', 'settings')]
@@ -175,7 +175,8 @@ def write_rest(plan, to):
           '    make check           # what is right, and what is to do\n'
           '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n'
           '    build/penumbra --pixel 100,60 scenes/cornell36.scene    # a pixel is wrong? every number of one of its paths\n'
-          '    build/penumbra --show scenes/cornell36.scene    # out/cornell36.html shows the picture while it renders\n\n'
+          '    build/penumbra --show scenes/cornell36.scene    # out/cornell36.html shows the picture while it renders\n'
+          '    make web             # your renderer in a browser, with every step of its paths: build/web/playground.html\n\n'
           % (2 * (plan.open[0].number,)) +
           'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems, and for editors:\n'
           'clangd and Visual Studio Code know this folder, and `.devcontainer` has all in a container.\n'

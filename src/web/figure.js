@@ -34,10 +34,8 @@ const renderer_module = (() => {
 // The program of a worker.  It has an instance for each picture, which an error ends.
 function work() {
     const renderers = new Map();
-    let module;
     const acts = {
-        start: message => { module = message.module; },
-        load: async ({ id, scene }) => {
+        load: async ({ id, module, scene }) => {
             const renderer = await Renderer.of(module);
             renderer.load(scene);
             renderers.set(id, renderer);
@@ -67,9 +65,7 @@ const workers = {
     all: [],
     waiting: new Map(),
     calls: 0,
-    async start() {
-        if (this.all.length) return;
-        const module = await renderer_module();
+    start() {
         if (this.all.length) return;
         const source = URL.createObjectURL(new Blob([`"use strict";${Renderer};(${work})()`], { type: "text/javascript" }));
         for (let k = 0; k < Math.min(64, navigator.hardwareConcurrency || 2); ++k) {
@@ -79,10 +75,16 @@ const workers = {
                 this.waiting.delete(call);
                 error === undefined ? resolve(result) : reject(Error(error));
             };
-            worker.onerror = ({ message }) => this.waiting.forEach(({ reject }) => reject(Error(message || "a worker ended")));
+            worker.onerror = ({ message }) => this.end(message || "a worker ended");
             this.all.push(worker);
         }
-        await this.ask({ act: "start", module });
+    },
+    // Ends all workers, and what waits for them; a figure that is loaded later has new ones.
+    end(why) {
+        this.all.forEach(worker => worker.terminate());
+        this.all = [];
+        this.waiting.forEach(({ reject }) => reject(Error(why)));
+        this.waiting.clear();
     },
     // Sends a message to all workers, with the blocks of each, and waits for all results.
     ask(message) {
@@ -108,10 +110,12 @@ class Side {
 
     async load(scene) {
         this.scene = { ...scene, options: this.options };
-        this.desk = await Renderer.of(await renderer_module());
+        const module = await renderer_module();
+        this.desk = await Renderer.of(module);
         this.info = this.desk.load(this.scene);  // an error is told before any worker begins
         this.limit = this.info.samples;
-        await workers.ask({ act: "load", id: this.id, scene: this.scene });
+        this.workers = workers.all;
+        await workers.ask({ act: "load", id: this.id, module, scene: this.scene });
     }
 
     get most() { return this.is_timed ? Infinity : this.limit; }  // B may be told to take as long as A
@@ -121,6 +125,7 @@ class Side {
     // The picture does not depend on where passes end; those of the pilot end at every sample.
     async pass(reference) {
         const { desk, id } = this;
+        if (this.workers !== workers.all) throw Error("a worker ended");
         const quick = this.last ? Math.floor(0.2 / this.last.seconds * this.last.samples) : 1;
         const n = desk.is_pilot ? desk.n + 1 : Math.min(this.most, desk.n + Math.max(1, Math.min(quick, desk.n + 1)));
         const begin = performance.now(), before = desk.n;
@@ -146,7 +151,7 @@ class Side {
     drop() {
         if (this.is_dropped) return;
         this.is_dropped = true;
-        if (workers.all.length) workers.ask({ act: "drop", id: this.id });
+        workers.ask({ act: "drop", id: this.id }).catch(() => {});  // they may end before
     }
 }
 
@@ -163,7 +168,7 @@ function true_error(image, reference) {
 
 // ---- Words --------------------------------------------------------------------------------------
 
-const digits = x => x !== 0 && (Math.abs(x) >= 1e5 || Math.abs(x) < 1e-3) ? x.toExponential(2) : String(+x.toPrecision(4));
+const digits = x => x === null ? "not finite" : x !== 0 && (Math.abs(x) >= 1e5 || Math.abs(x) < 1e-3) ? x.toExponential(2) : String(+x.toPrecision(4));
 const percent = x => Number.isFinite(x) ? `${+(100 * x).toPrecision(3)} %` : "not known";
 
 // html`...` escapes its values, except those that it has made itself; lists are joined.
@@ -195,7 +200,8 @@ const style = `
 .row label { display: inline-flex; gap: .4rem; align-items: center; }
 button, select, input { font: inherit; min-height: 2.2rem; } input[type=number] { width: 4.6rem; }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-td, th { text-align: left; padding: .1rem .9rem .1rem 0; font-weight: 400; white-space: nowrap; }
+td, th { text-align: left; padding: .1rem .9rem .1rem 0; font-weight: 400; white-space: nowrap; vertical-align: baseline; }
+td.error { white-space: normal; min-width: 9rem; }
 th, .soft { color: var(--soft); } .a { color: var(--a); } .b { color: var(--b); } code { font: .9em ui-monospace, monospace; }
 .problem { border-left: .25rem solid var(--occluded); padding: .3rem .7rem; background: var(--card); overflow-wrap: anywhere; }
 .plot { width: 100%; max-width: 26rem; height: auto; display: block; }
@@ -303,10 +309,10 @@ function equation(v, path) {
     if (!v.p) lines.push(html`The ray meets nothing: nothing is added.`);
     else lines.push(html`point p = ${n(v.p)}, normal n = ${n(v.n)}`);
     if (v.emission) lines.push(html`<b>emitted:</b> β Lₑ w, with Lₑ = ${n(v.emission)}, MIS weight w = ${n(v.weight)}:
-        adds ${n(times(times(v.throughput, v.emission), v.weight))}`);
+        adds ${n(v.emitted)}`);
     if (l) lines.push(html`<b>light sample:</b> ${l.kind} light, chosen with probability ${n(l.chosen)},
         <b class="${seen}">${seen}</b>: β f L cos / p · w, with f = ${n(l.f)}, L = ${n(l.Le)}, cos = ${n(l.cosine)},
-        p = ${n(l.pdf)} /sr, MIS weight w = ${n(l.weight)}: reflects ${n(l.L)}, adds ${n(times(v.throughput, l.L))}`);
+        p = ${n(l.pdf)} /sr, MIS weight w = ${n(l.weight)}: reflects ${n(l.L)}, adds ${n(v.reflected)}`);
     if (v.unlit) lines.push(html`<b>no light sample:</b> ${v.unlit}`);
     if (v.pdf) lines.push(html`<b>next direction:</b> β f |cos| / p, with f = ${n(v.f)}, |cos| = ${n(v.cosine)},
         p = ${n(v.pdf)} /sr${v.next ? html`: β becomes ${n(v.next)}` : ""}`);
@@ -376,14 +382,13 @@ class LiveFigure extends HTMLElement {
         const turn = ++this.turn, scene = { name: this.name, text: this.text, files: penumbra.files };
         const option = (name, as) => this.getAttribute(name) ? `${as} ${this.getAttribute(name)} ` : "";
         const common = option("samples", "--spp") + option("size", "--size");
-        const sides = [new Side(common + (this.getAttribute("technique") ?? ""))];
-        if (this.hasAttribute("against")) sides.push(new Side(common + this.getAttribute("against")));
+        const names = this.hasAttribute("against") ? ["technique", "against"] : ["technique"];
+        const sides = names.map(name => new Side(common + (this.getAttribute(name) ?? "")));
         this.is_loading = true;
         try {
-            await workers.start();
+            workers.start();
             for (const side of sides) if (turn === this.turn) await side.load(scene);
-            const sizes = new Set(sides.map(side => side.desk?.pixels));
-            if (turn === this.turn && sizes.size > 1) throw Error("A and B differ in size");
+            if (sides.some(side => side.desk?.pixels !== sides[0].desk.pixels)) throw Error("A and B differ in size");
         } catch (error) {
             for (const side of sides) side.drop();
             if (turn === this.turn) this.tell(error.message);
@@ -431,7 +436,7 @@ class LiveFigure extends HTMLElement {
                 try { await side.pass(this.reference); } catch (error) { if (!side.is_dropped) throw error; }
                 if (!side.is_dropped) this.show(side);
             }
-        } catch (error) { this.replace([]), this.tell(error.message); }
+        } catch (error) { this.fail(error); }
         this.is_running = false;
         this.show_state();
     }
@@ -468,6 +473,7 @@ class LiveFigure extends HTMLElement {
         if (problem) this.dispatchEvent(new CustomEvent("problem", { detail: problem }));
         else this.dispatchEvent(new CustomEvent("loaded", { detail: this.sides[0].info.warnings }));
     }
+    fail(error) { this.replace([]), this.tell(error.message); }
 
     show(side) {
         const { width, height, exposure } = side.info, factor = exposure * 2 ** this.stops;
@@ -484,18 +490,17 @@ class LiveFigure extends HTMLElement {
     }
     show_state() {
         const has_truth = this.sides.some(side => side.curve.at(-1)?.[2] !== undefined);
-        const error_of = ({ d_rel, standard_error, is_doubted } = {}) => percent(d_rel) +
-            (standard_error >= 0 ? ` ± ${percent(standard_error)}` : "") + (is_doubted ? " (uncertain)" : "");
+        const error_of = ({ d_rel, standard_error, doubt }) => doubt ? `not known: ${doubt}` :
+            percent(d_rel) + (Number.isFinite(standard_error) ? ` ± ${percent(standard_error)}` : "");
         const row = (side, k) => html`<tr><th class="${"ab"[k]}" scope="row">${this.sides[1] ? "AB"[k] : "●"}</th>
-            <td>${digits(side.samples)}</td><td>${side.seconds.toPrecision(3)} s</td><td>${error_of(side.error ?? {})}</td>
+            <td>${digits(side.samples)}</td><td>${side.seconds.toPrecision(3)} s</td><td class="error">${error_of(side.error ?? {})}</td>
             ${has_truth ? html`<td>${percent(side.curve.at(-1)?.[2])}</td>` : ""}
             <td><code>${side.options || "default technique"}</code></td></tr>`;
         this.numbers.innerHTML = html`<table><tr><th></th><th scope="col">samples per pixel</th><th scope="col">work</th>
             <th scope="col">error</th>${has_truth ? html`<th scope="col">true error</th>` : ""}<th></th></tr>
             ${this.sides.map(row)}</table>`.text;
         this.curves.innerHTML = plot_of(this.sides).text;
-        const is_over = this.sides.length && !this.next_side;
-        this.toggle.textContent = this.is_paused ? "Continue" : is_over ? "4 times the samples" : "Pause";
+        this.toggle.textContent = this.is_paused ? "Continue" : this.sides.length && !this.next_side ? "4 times the samples" : "Pause";
     }
     show_divide() {
         if (this.sides[1]) this.canvases[1].style.clipPath = `inset(0 0 0 ${this.divide.value / 10}%)`;
@@ -561,18 +566,14 @@ class LiveFigure extends HTMLElement {
     }
     show_path() {
         const side = this.side_of_path, { info, desk } = side, [x, y] = this.cursor;
-        try {
-            this.path = desk.path(x, y, this.sample, this.half);
-        } catch (error) {
-            this.replace([]);
-            return this.tell(error.message);
-        }
+        try { this.path = desk.path(x, y, this.sample, this.half); } catch (error) { return this.fail(error); }
         const vertices = this.path.vertices, last = vertices.length - 1;
+        if (last < 0) return this.tell("the path has no vertex: no step was shown to the visitor");
         const k = this.vertex = Math.min(this.vertex, last), v = vertices[k];
         const button = (act, label, words, is_on = true) =>
             html`<button type="button" data-act="${act}" aria-label="${label}"${is_on ? "" : " disabled"}>${words}</button>`;
-        const seen = drawn_path(vertices, k, p => projected(info, p), info.width / 640);
-        this.overlay.innerHTML = html`${seen}<rect class="pixel" x="${x - 0.5}" y="${y - 0.5}" width="2" height="2"/>`.text;
+        this.overlay.innerHTML = html`${drawn_path(vertices, k, p => projected(info, p), info.width / 640)}
+            <rect class="pixel" x="${x - 0.5}" y="${y - 0.5}" width="2" height="2"/>`.text;
         this.path_box.hidden = false;
         this.path_box.innerHTML = html`<div class="row">
             <b>Path of pixel ${x},${y}${this.sides[1] ? ` in ${"AB"[this.sides.indexOf(side)]}` : ""}</b>
@@ -592,9 +593,7 @@ class LiveFigure extends HTMLElement {
 }
 
 // Linear radiance to a byte, as in the program's PNG (IEC 61966-2-1).
-function srgb(x) {
-    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * Math.min(1, x) ** (1 / 2.4) - 0.055);
-}
+const srgb = x => 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * Math.min(1, x) ** (1 / 2.4) - 0.055);
 
 // Without WebAssembly the still picture stays.
 if (globalThis.WebAssembly && globalThis.DecompressionStream) customElements.define("live-figure", LiveFigure);

@@ -53,14 +53,24 @@ class Renderer {
     array(Type, at, length) { return new Type(this.memory.buffer, at, length); }
     get image() { return this.array(Float32Array, this.calls.image(), 3 * this.pixels); }
     get error() {
-        const [spp, d_rel, standard_error, is_doubted] = this.array(Float64Array, this.calls.error(), 4);
-        return { spp, d_rel, standard_error, is_doubted: is_doubted > 0 };
+        this.calls.error();
+        return this.answer;
     }
     get sums() { return this.array(Float64Array, this.calls.sums(), 3 * this.scene.replications * this.pixels); }
     get deviations() { return this.array(Float32Array, this.calls.deviations(), this.is_pilot ? this.pixels : 0); }
+    get near() { return this.array(Uint8Array, this.calls.near(), this.calls.near_size()); }
 
+    // A path; at each vertex also what it adds to L, by its emission and by its light sample, and L so far.
     path(x, y, i = 0, set = 0) {
         this.calls.path(x, y, i, set);
+        const times = (a, b) => a.map((value, k) => value * (b[k] ?? b));
+        let L = [0, 0, 0];
+        for (const v of this.answer.vertices) {
+            v.emitted = v.emission && times(times(v.throughput, v.emission), v.weight);
+            v.reflected = v.light && times(v.throughput, v.light.L);
+            for (const added of [v.emitted, v.reflected]) if (added) L = L.map((sum, k) => sum + added[k]);
+            v.L = L;
+        }
         return this.answer;
     }
 
@@ -79,12 +89,13 @@ class Renderer {
     packed(first, step) {
         const sums = this.sums, deviations = this.deviations, size = 3 * this.scene.replications;
         const pixels = this.blocks(first, step, () => 0);
-        const taken = { first, step, sums: new Float64Array(size * pixels),
+        const taken = { first, step, near: this.near.slice(), sums: new Float64Array(size * pixels),
             deviations: new Float32Array(deviations.length && pixels) };
         this.blocks(first, step, (place, from, to) => {
             taken.sums.set(sums.subarray(size * from, size * to), size * place);
             if (deviations.length) taken.deviations.set(deviations.subarray(from, to), place);
         });
+        this.near.fill(0);  // each is taken once
         return taken;
     }
     put(taken) {
@@ -93,6 +104,7 @@ class Renderer {
             sums.set(taken.sums.subarray(size * place, size * (place + to - from)), size * from);
             if (deviations.length) deviations.set(taken.deviations.subarray(place, place + to - from), from);
         });
+        this.calls.add_near(...this.texts(taken.near));  // ends these views
     }
 }
 

@@ -2,8 +2,8 @@
 //
 // A page has an instance for each of its workers.  One that keeps the film is its desk: workers add
 // samples to blocks of their own films, the page copies the sums of these blocks into the desk's.
-// A sample depends on its pixel and index alone, so the picture has the same bits as the program's,
-// but below 400 pixels or 2 samples, of which the program makes other numbers of replications.
+// A sample depends on its pixel and index alone, and the program's plan says how many there are:
+// the picture has the same bits as the program's.
 #ifdef __wasm_relaxed_simd__
 #include <wasm_simd128.h>
 // WebAssembly has no fma.  This instruction is one where the processor has it; elsewhere it may
@@ -21,11 +21,8 @@ extern "C" inline float fmaf(float a, float b, float c) {
 // That of this folder comes first: it declares what the system lacks.
 #include "text/files.h"
 
-#include "app/options.h"
-#include "film/loop.h"
+#include "app/plan.h"
 #include "replay/replay.h"
-#include "text/scene_file.h"
-#include "unseen/unseen.h"
 
 #define EXPORT(name) extern "C" [[clang::export_name(#name)]]
 #define IMPORT(name) extern "C" [[clang::import_module("page"), clang::import_name(#name)]]
@@ -57,6 +54,7 @@ Options options;
 ParsedScene parsed;
 Pattern pattern;
 std::optional<Witness> witness;
+Plan plan;
 Film film;
 Image picture;
 
@@ -71,9 +69,7 @@ ParsedScene read_text(const std::string& text, const std::string& name) {
             reader.statement(words, number);
     });
     reading.clear();
-    ParsedScene read = reader.finish(name);
-    for (const std::string& hidden : hidden_lights(read.scene)) read.warnings.push_back(hidden);
-    return read;
+    return reader.finish(name);
 }
 
 // Options in the words of the command line: those that change samples.
@@ -91,24 +87,11 @@ void read_options(const Words& words) {
     }
 }
 
-// The program's `load`, which knows files.
-void apply_options(const std::string& name) {
-    NamedScene& s = scene();
-    s.size = options.size.value_or(s.size);
-    s.depth = options.view.scatters ? 1 : options.depth.value_or(s.depth);
-    if (options.view.of) s.exposure = 1;
-    if (options.exposure) s.exposure = real(*options.exposure);
-    for (size_t i = 0; i < s.lights.size(); ++i)
-        if (s.lights[i].is_delta() && options.technique.light == LightMode::none)
-            throw UserError(name + ":" + std::to_string(s.line_of_light[i]) +
-                            ": --light none: rays never hit a " + name_of(s.lights[i]) + " light");
-}
-
-rgb radiance(const PixelSample& which, Tally&) {
+rgb radiance(const PixelSample& which, Tally& tally) {
     const Start at = start(scene(), pattern, which);
     const auto& of = options.view.of;
     if (of) return of({scene(), at, meet(scene(), at.ray), far_of(scene())});
-    return Li(scene(), options.technique, at.ray, at.sampler);
+    return Li(scene(), options.technique, at.ray, at.sampler, witness->visitor(tally));
 }
 
 std::string taken_from(char* text, size_t size) {
@@ -163,11 +146,11 @@ std::string light_sample(const Vertex& x, const DirectLight& d) {
     return o.text();
 }
 
-// One vertex: every number of the rendering equation there, and L of the path so far.
-std::string vertex(const Segment& s, const Step& e, rgb L) {
+// One vertex: every number of the rendering equation there.
+std::string vertex(const Segment& s, const Step& e) {
     Object o;
     o.scalars({{"k", s.k}});
-    o.vectors({{"from", s.from}, {"direction", s.ray.d}, {"throughput", s.beta}, {"L", L}});
+    o.vectors({{"from", s.from}, {"direction", s.ray.d}, {"throughput", s.beta}});
     if (e.end != End::no) o.add("end", json::string(in_words(e.end)));
     if (!e.met) return o.text();
     const uint32_t shape = e.vertex.hit.id;
@@ -213,20 +196,19 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
           size_t words_size) {
     const std::string called = taken_from(name, name_size);
     read_options(words_before(taken_from(words, words_size), '\0'));
-    parsed = read_text(taken_from(text, text_size), called);
-    apply_options(called);
+    options.scene = called;
+    parsed = with_options(read_text(taken_from(text, text_size), called), options);
     const NamedScene& s = scene();
     pattern = make_pattern(options.sampler, options.seed, s.depth);
-    witness.reset();
-    if (!options.view.of) witness.emplace(s, options.technique, 0, s.size.height, s.line_of_light);
-    const uint64_t N = options.spp ? options.spp : s.samples;
-    const uint32_t K = options.replications ? options.replications : 2;
-    if (bytes_of(s.size, K) > 1e9) throw UserError("--size: a film of more than 1 GB");
-    film = make_film(s.size, K, options.replications == 0 && N != 2);
-    const uint64_t of_one = K * (film.is_pilot ? typical_weight : 1);
+    witness.emplace(s, options.technique, 0, s.size.height, s.line_of_light);
+    plan = plan_of(options, s, options.view.of ? nullptr : &*witness);
+    if (bytes_of(s.size, plan.replications) > 1e9)
+        throw UserError("--size: a film of more than 1 GB");
+    film = make_film(s.size, plan.replications, plan.is_adaptive);
+    film.near = plan.near;
     Object o;
     o.scalars({{"width", s.size.width}, {"height", s.size.height}, {"exposure", s.exposure}});
-    o.scalars({{"replications", K}, {"samples", (N + of_one - 1) / of_one}});  // of weight 1
+    o.scalars({{"replications", plan.replications}, {"samples", plan.samples}});  // of weight 1
     o.scalars({{"block", film.block_size()}, {"blocks", film.blocks()}});
     o.add("warnings", list(parsed.warnings, json::string));
     const Camera& c = s.camera;
@@ -241,8 +223,10 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
 // Adds samples to blocks first, first + step ... until each replication of weight 1 has n.
 EXPORT(add) void add(size_t first, size_t step, double n) {
     Tally tally;
+    tally.near.resize(film.near.size());
     for (size_t block = first; block < film.blocks(); block += step)
         add_samples(film, block, uint64_t(n), radiance, tally);
+    for (size_t g = 0; g < film.near.size(); ++g) film.near[g].add(tally.near[g]);
     if (tally.bad == 0) return;
     const PixelSample& at = tally.first_bad;
     end_instance("a sample is not finite: --pixel " + std::to_string(at.x) + "," +
@@ -257,11 +241,18 @@ EXPORT(took) void took(double n) { film.taken.assign(film.blocks(), uint64_t(n))
 EXPORT(sums) double* sums() { return film.sum[0].data(); }
 EXPORT(deviations) float* deviations() { return film.deviation.data(); }
 
+// Near misses: the page moves their sums from workers to the desk.
+EXPORT(near) NearMisses* near() { return film.near.data(); }
+EXPORT(near_size) size_t near_size() { return film.near.size() * sizeof(NearMisses); }
+EXPORT(add_near) void add_near(char* bytes, size_t size) {
+    std::vector<NearMisses> more(film.near.size());
+    std::memcpy(more.data(), taken_from(bytes, size).data(), std::min(size, near_size()));
+    for (size_t g = 0; g < more.size(); ++g) film.near[g].add(more[g]);
+}
+
 // Samples of the pilot, after which weights are chosen; 0: they are, or need not be.
 EXPORT(pilot) double pilot() { return film.is_pilot ? double(pilot_samples) : 0; }
-EXPORT(choose) void choose() {
-    choose_weights(film, witness ? witness->noisy() : std::vector<size_t>());
-}
+EXPORT(choose) void choose() { choose_weights(film, plan.noisy); }
 
 // Linear RGB, the top row first.
 EXPORT(image) const float* image() {
@@ -269,13 +260,15 @@ EXPORT(image) const float* image() {
     return picture.pixels[0].data();
 }
 
-// Samples per pixel; d_rel, its standard error; 1: it may be far above (near misses do not count).
-EXPORT(error) const double* error() {
-    static std::array<double, 4> told;
+// Answers samples per pixel; d_rel, its standard error, and why it may be far too small.
+EXPORT(error) void error() {
     const ImageError e = error_of(film);
-    told = {film.samples_per_pixel(), e.d_rel(), e.standard_error(),
-            double(doubt_of(film, e, {}) != Doubt::no)};
-    return told.data();
+    Object o;
+    o.scalars({{"spp", film.samples_per_pixel()}});
+    o.scalars({{"d_rel", e.d_rel()}, {"standard_error", e.standard_error()}});
+    auto missed_light = [&] { return Witness::why_unknown(film, e); };
+    o.add("doubt", json::string(in_words(doubt_of(film, e, plan.may_miss_light), missed_light)));
+    answer(o.text());
 }
 
 // Answers the path of a sample: its vertices, and what --pixel prints of it.
@@ -289,14 +282,11 @@ EXPORT(path) void path(int x, int y, double i, uint32_t set) {
     const PathLog log(scene(), out);
     log.film(at);
     std::vector<std::string> vertices;
-    rgb sum;
     End why = End::no;
     const rgb L =
         Li(scene(), options.technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
             log(s, e);
-            sum += s.beta * e.Le * e.weight;
-            sum += s.beta * e.direct.L;
-            vertices.push_back(vertex(s, e, sum));
+            vertices.push_back(vertex(s, e));
             why = e.end;
         });
     log.end(in_words(why), L);

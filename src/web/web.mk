@@ -1,4 +1,4 @@
-# web/web.mk  5  the renderer in a browser: modules by Debian's clang for wasm32-wasi, and pages
+# web/web.mk  5  the renderer in a browser: modules by Debian's clang for wasm32-wasi, and pages; students' Makefile has it, too
 .PHONY: web web-packages
 WEB_PACKAGES := clang-19 lld-19 libclang-rt-19-dev-wasm32 libc++-19-dev-wasm32
 # Exceptions end the instance (web.cpp).  Machines whose fma may round twice take software.wasm.
@@ -27,11 +27,13 @@ build/web/figure.js: $(MODULES_OF_WEB) src/web/renderer.js src/web/figure.js
 	        echo "'$${name%%[.-]*}': '$$(gzip -9nc $$module | base64 | tr -d '\n')',"; done; \
 	    echo '};'; cat src/web/renderer.js src/web/figure.js; } >$@
 
-build/web/scenes.js: $(wildcard scenes/*.scene scenes/*.obj scenes/*.mtl) build/knot.obj
+# Texts as JavaScript writes them, by their names.
+as_members = for file in $(1); do printf '"%s": `' "$$file"; sed 's/[`$$\\]/\\&/g' $$file; echo '`,'; done
+build/web/scenes.js: $(wildcard scenes/*.scene scenes/*.obj scenes/*.mtl) $(if $(wildcard src/labs/knot.cpp),build/knot.obj)
 	@mkdir -p $(@D)
-	@python3 -c 'import json, os, sys; read = lambda path: open(path).read(); \
-	    print("var penumbra = globalThis.penumbra ?? {}; penumbra.scenes =", json.dumps({os.path.basename(p)[:-6]: read(p) for p in sys.argv[1:] if p.endswith(".scene")}), \
-	        "; penumbra.files =", json.dumps({p: read(p) for p in sys.argv[1:] if not p.endswith(".scene")}), ";")' $^ >$@
+	@{ echo 'var penumbra = globalThis.penumbra ?? {}; penumbra.files = {'; $(call as_members,$^); echo '};'; \
+	    echo 'penumbra.scenes = Object.fromEntries(Object.entries(penumbra.files).filter(([name]) => name.endsWith(".scene"))'; \
+	    echo '    .map(([name, text]) => [name.slice("scenes/".length, -".scene".length), text]));'; } >$@
 
 build/web/playground.html: src/web/playground.html
 	@mkdir -p $(@D) && cp $< $@

@@ -34,8 +34,9 @@ class Bench:
             subprocess.run([*COMPILER, *words], cwd=ROOT, check=True)
 
     def execute(self, folder, seconds, *words):
-        """Exit status of a command, or timeout; what it leaves running ends with it."""
-        limits = f'ulimit -v 8000000 && ulimit -S -t {seconds} && exec "$@"'
+        """Exit status of a command, or timeout; what it leaves running ends with it.  Its memory is what it writes: Node.js
+        reserves more address space than there is."""
+        limits = f'ulimit -d 8000000 && ulimit -S -t {seconds} && exec "$@"'
         with open(folder / 'log', 'wb') as log:
             process = subprocess.Popen(['sh', '-c', limits, '-', *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=log,
                                        stderr=log, start_new_session=True)
@@ -52,6 +53,8 @@ class Bench:
         """Copies the project but for {file: its wrong text}; whether the test and its programs compile."""
         subprocess.run(['cp', '-al', self.tree, folder], check=True)
         (folder / 'build').mkdir()
+        if wrong and (pages := self.top / f'{test}{level}/build/web').exists():
+            subprocess.run(['cp', '-a', pages, folder / 'build'], check=True)  # make knows what the mutant makes old
         for file, text in wrong.items():
             (folder / file).unlink()
             (folder / file).write_text(text)

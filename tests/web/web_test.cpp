@@ -15,6 +15,10 @@ std::string program() {
 // The exit status of a command of the shell.
 int status_of(const std::string& command) { return std::system(command.c_str()); }
 
+// As if nothing had been said to the make that runs this test.
+constexpr const char* without_options =
+    "env -u MAKEFLAGS -u MAKELEVEL -u REAL -u TREE -u DEBUG -u SAN -u ARCH -u CXX ";
+
 // Makes the pages; false, with a word, where this machine has not what they need.
 bool has_pages() {
     for (const char* needed : {"command -v node", "make -s web-packages"})
@@ -22,7 +26,7 @@ bool has_pages() {
             MESSAGE("make web needs packages that this machine has not (", needed, "): not tested");
             return false;
         }
-    REQUIRE(status_of("env -u MAKEFLAGS -u MAKELEVEL -u REAL -u TREE -u DEBUG -u SAN -u ARCH -u CXX make web >/dev/null") == 0);
+    REQUIRE(status_of(std::string(without_options) + "make web >/dev/null") == 0);
     return true;
 }
 
@@ -66,6 +70,45 @@ TEST_CASE("modules for browsers print paths and messages as the program does") {
         CHECK(status_of(in_node("build/web/fused.wasm") + words + " 2>" + (folder / "web")) ==
               status_of(program() + " " + words + " 2>" + (folder / "here") + " -o " +
                         (folder / "x.pfm")));
+        CHECK(folder.same("web", "here"));
+    }
+}
+
+TEST_CASE("a student's own build, stubs and all, draws the same bits for a browser") {
+    if (!has_pages()) return;
+    const Folder folder;
+    const std::string starter = folder / "starter";
+    REQUIRE(status_of("python3 src/course/starter.py --weeks 3 --no-pictures " + starter +
+                      " >/dev/null") == 0);
+    const std::string mine = "# ${1} costs $2, `three` or \\ four\n";
+    folder.write("starter/scenes/mine.scene", mine);
+    REQUIRE(status_of(std::string(without_options) + "make -C " + starter +
+                      " web build/penumbra >" + (folder / "log") + " 2>&1") == 0);
+    CHECK(folder.has("starter/build/web/playground.html"));
+    const std::string print_mine =
+        "const page = {}; require(\"vm\").runInNewContext(require(\"fs\").readFileSync("
+        "process.argv[1], \"utf8\"), page); process.stdout.write(page.penumbra.scenes.mine)";
+    CHECK(status_of("node -e '" + print_mine + "' " + starter + "/build/web/scenes.js >" +
+                    (folder / "text")) == 0);
+    CHECK(folder.read("text") == mine);
+    CHECK(folder.read("starter/build/web/figure.js").find("class LiveFigure") != std::string::npos);
+    for (const std::string scene : {"cornell", "materials"}) {
+        INFO(scene);
+        const std::string words = "--quiet --size 40x20 --spp 16 -o ",
+                          file = "scenes/" + scene + ".scene";
+        CHECK(status_of(in_node(starter + "/build/web/fused.wasm") + words + (folder / "web") +
+                        ".pfm " + file) == 0);
+        CHECK(status_of(starter + "/build/penumbra " + words + (folder / "here") + ".pfm " +
+                        file) == 0);
+        CHECK(status_of(program() + " " + words + (folder / "solved") + ".pfm " + file) == 0);
+        CHECK(folder.same("web.pfm", "here.pfm"));
+        CHECK(!folder.same("web.pfm", "solved.pfm"));
+        const std::string pixel = "--pixel 20,12 --size 40x20 " + file;
+        CHECK(status_of(in_node(starter + "/build/web/software.wasm") + pixel + " >" +
+                        (folder / "web")) == 0);
+        CHECK(status_of(starter + "/build/penumbra " + pixel + " | tail -n +2 >" +
+                        (folder / "here")) == 0);
+        CHECK(folder.read("here").find("vertex 0") != std::string::npos);
         CHECK(folder.same("web", "here"));
     }
 }

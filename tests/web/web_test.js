@@ -8,9 +8,9 @@ const short = value => String(value).slice(0, 300);
 function expect(what, is, wanted) { if (is !== wanted) throw Error(`${what}: ${short(is)}, expected ${short(wanted)}`); }
 
 // What the program draws, as rows from the top, and what it prints.
-function drawn(scene, options) {
+function drawn(scene, options, ...more) {
     const file = path.join(folder, "picture.pfm");
-    execFileSync(penumbra, ["--quiet", ...options.split(" ").filter(Boolean), "-o", file, scene]);
+    execFileSync(penumbra, ["--quiet", ...options.split(" ").filter(Boolean), ...more, "-o", file, scene]);
     const bytes = fs.readFileSync(file), [, width, height] = bytes.toString("latin1", 0, 40).match(/^PF\n(\d+) (\d+)/).map(Number);
     const rows = bytes.subarray(bytes.length - 12 * width * height);
     const from_bottom = y => rows.subarray(12 * width * y, 12 * width * (y + 1));
@@ -28,20 +28,46 @@ const until = async (browser, condition) => {
     }
 };
 
+// Makes figures anew with so many workers.
+const with_workers = workers => `${finished}.then(() => {
+    Object.defineProperty(navigator, "hardwareConcurrency", { value: ${workers}, configurable: true });
+    workers.all.splice(0).forEach(worker => worker.terminate()); figure.reload(); return ${finished}; })`;
+
 const tests = {
-    async "pictures have the program's bits, whatever the number of workers"(browser) {
-        for (const [scene, options] of [["cornell", ""], ["materials", "--sampler halton --light nee"],
+    async "pictures have the program's bits, whatever their size and the number of workers"(browser) {
+        for (const [scene, options, size = "40x20", samples = 24] of [["cornell", ""], ["materials", "--sampler halton --light nee"],
             ["mesh", "--light none --direction uniform"], ["cornell36obj", "--sampler independent --seed 7"],
-            ["atelier", "--view normal"], ["lanterns", "--sampler stratified --replications 4 --depth 3"]])
+            ["atelier", "--view normal"], ["lanterns", "--sampler stratified --replications 4 --depth 3"],
+            ["cornell", "", "16x8"], ["materials", "", "1x1", 50], ["panel", "", "1x1", 3], ["cornell", "", "40x20", 1]])
             for (const workers of [1, 3]) {
-                await browser.go(address({ scene, a: options, size: "40x20", samples: 24 }));
-                await browser.run(finished);  // workers that end in a pass would never answer
-                await browser.run(`Object.defineProperty(navigator, "hardwareConcurrency", { value: ${workers} });
-                    workers.all.splice(0).forEach(worker => worker.terminate()); figure.reload(); ${finished}`);
+                await browser.go(address({ scene, a: options, size, samples }));
+                await browser.run(with_workers(workers));
                 expect(`${scene} ${options}, workers`, await browser.run("workers.all.length"), workers);
-                expect(`${scene} ${options}, ${workers} workers`, await browser.run(bits(0)),
-                    drawn(`scenes/${scene}.scene`, `--size 40x20 --spp 24 ${options}`));
+                expect(`${scene} ${options} ${size} ${samples}, ${workers} workers`, await browser.run(bits(0)),
+                    drawn(`scenes/${scene}.scene`, `--size ${size} --spp ${samples} ${options}`));
             }
+    },
+    async "an error is the program's, and so is the reason why it is not known"(browser) {
+        const sparks = fs.readFileSync("scenes/calibration/hard", "utf8").split(/^@@ /m), file = path.join(folder, "spark.scene");
+        for (const [name, options, reason] of [["spark_in_mirror", "", "in mirrors or glass"], ["spark", "", "smaller than a pixel"],
+            ["spark", "--replications 3 --light none", "smaller than a pixel"], ["bulb", "--depth 0 --light nee", "no sample found light"],
+            ["cornell", "", ""]]) {
+            const text = sparks.find(part => part.startsWith(`${name}\n`))?.replace(/^.*/, "") ?? fs.readFileSync(`scenes/${name}.scene`, "utf8");
+            fs.writeFileSync(file, text);
+            drawn(file, `--size 40x20 --spp 64 ${options}`, "--stats", path.join(folder, "stats.json"));
+            const stats = JSON.parse(fs.readFileSync(path.join(folder, "stats.json")));
+            for (const workers of [1, 3]) {
+                await browser.go(address({ scene: "cornell", text, a: options, size: "40x20", samples: 64 }));
+                await browser.run(with_workers(workers));
+                const { spp, d_rel, doubt } = await browser.run("figure.sides[0].error");
+                expect(`${name}: d_rel`, d_rel, stats.d_rel_by_spread);
+                expect(`${name}: samples`, spp, stats.samples_per_pixel);
+                expect(`${name}: reason`, doubt, stats.d_rel_reason ?? "");
+                expect(`${name}: kind of reason`, doubt.includes(reason) && (doubt === "") === (reason === ""), true);
+                const shown = await browser.run("figure.numbers.querySelector('.error').textContent");
+                expect(`${name}: shown`, reason ? shown : shown.replace(/[\d.]+/g, "1"), reason ? `not known: ${doubt}` : "1 % ± 1 %");
+            }
+        }
     },
     async "the module with fma in software has the same bits"(browser) {
         await browser.go(address({ scene: "cornell", size: "40x20", samples: 8 }));
@@ -69,6 +95,11 @@ const tests = {
                     expect(`${scene} ${i},${half}: ${name}`, JSON.stringify(told.vertices.filter(v => v.p && v[name]).map(v => v[name])),
                         JSON.stringify([...text.matchAll(new RegExp(`^  ${name}: (.*)`, "gm"))].map(m => m[1].split(" ").map(Number))));
                 expect("light samples", told.vertices.filter(v => v.light?.occluded).length, text.match(/, occluded$/gm)?.length ?? 0);
+                for (const { light: l, next, k } of told.vertices) {
+                    if (next) expect("the next throughput", JSON.stringify(next), JSON.stringify(told.vertices[k + 1].throughput));
+                    const is_reflected = (f, c) => Math.abs(f * l.Le[c] * l.cosine / l.pdf * l.weight - l.L[c]) <= 1e-12 * l.L[c];
+                    if (l && !l.occluded) expect("f of the light sample", l.f.every(is_reflected), true);
+                }
                 expect("the sum", JSON.stringify(told.vertices.at(-1).L), JSON.stringify(told.L));
                 expect("steps", told.vertices.filter(v => v.p).length, text.match(/^vertex /gm)?.length ?? 0);
             }
@@ -90,9 +121,49 @@ const tests = {
         expect("mended", await browser.run(problem), "");
         fs.writeFileSync(file, text.replace("gray", "lamp"));
         expect("its picture", await browser.run(bits(0)), drawn(file, "--size 40x20 --spp 4"));
-        await browser.run("$('a-light').value = 'none'; $('a-depth').value = 'x'; changed()");
+        await browser.run("$('size').value = '30000x30000'; changed()");
         await until(browser, problem);
+        expect("a film without room", await browser.run(problem), "--size: a film of more than 1 GB");
+        await browser.run("$('size').value = '40x20'; $('a-light').value = 'none'; $('a-depth').value = 'x'; changed()");
+        await until(browser, `${problem}.startsWith("--depth")`);
         expect("an option", await browser.run(problem), spawnSync(penumbra, ["--depth", "x", file]).stderr.toString().trim());
+    },
+    async "an error after a worker has begun is shown, and the next picture is right"(browser) {
+        const text = "camera 0 1e-5 5e-5  0 0 0  40\ndiffuse grey 0.5 0.5 0.5\n" +
+            "quad -1e-4 0 -1e-4  0 0 2e-4  2e-4 0 0  grey\npointlight 0 1e-5 0  1e30 1e30 1e30\n";
+        const file = path.join(folder, "bright.scene");
+        fs.writeFileSync(file, text);
+        await browser.go(address({ scene: "cornell", text, size: "40x20", samples: 4 }));
+        await until(browser, problem);
+        const told = await browser.run(problem), which = told.match(/^a sample is not finite: (--pixel \d+,\d+ --sample \d+,\d+)$/)?.[1];
+        const L = printed(file, `--size 40x20 ${which}`).match(/^L: (.*)/m)[1].split(" ");
+        expect("the sample is more than a float holds", L.every(x => Math.fround(+x) === Infinity), true);
+        const is_right = async what => {
+            await browser.run(`$("text").value = penumbra.scenes.cornell; $("samples").value = 8; changed(); figure.reload(); ${finished}`);
+            expect(what, await browser.run(bits(0)), drawn("scenes/cornell.scene", "--size 40x20 --spp 8"));
+            expect("no message", await browser.run("figure.message.textContent"), "");
+        };
+        await is_right("after a sample that is not finite");
+
+        // A worker that ends ends all: pictures that render say so, and those that go on later.
+        const end = "workers.all[0].dispatchEvent(new ErrorEvent('error', { message: 'no memory' }))";
+        await browser.run("figure.toggle.click()");
+        await browser.run(`figure.sides[0].limit = Infinity; figure.run(); ${end}`);
+        await until(browser, problem);
+        expect("while it renders", await browser.run(problem), "no memory");
+        await is_right("after a worker that ended");
+        await browser.run(`${end}; figure.toggle.click()`);
+        await until(browser, problem);
+        expect("before it goes on", await browser.run(problem), "a worker ended");
+        await is_right("after workers that had ended");
+    },
+    async "what a scene is called is text, and no markup"(browser) {
+        const text = fs.readFileSync("scenes/cornell.scene", "utf8").replaceAll("white", "<u>white</u>");
+        await browser.go(address({ scene: "cornell", text, size: "40x20", samples: 4, pixel: "20,17" }));
+        await browser.run(finished);
+        expect("the material", await browser.run("figure.path.vertices[0].material"), "<u>white</u>");
+        expect("shown", await browser.run("figure.path_box.textContent.includes('<u>white</u>')"), true);
+        expect("elements", await browser.run("figure.shadowRoot.querySelectorAll('u').length"), 0);
     },
     async "A and B stop at equal samples, or at equal time; the slider divides them"(browser) {
         await browser.go(address({ scene: "cornell", size: "40x20", samples: 32, b: "--light none" }));
@@ -103,9 +174,12 @@ const tests = {
         expect("divided", await browser.run("figure.canvases[1].style.clipPath"), "inset(0px 0px 0px 25%)");
         expect("the path left of it", await browser.run("figure.open_path(9, 3), figure.side_of_path === figure.sides[0]"), true);
         expect("the path right of it", await browser.run("figure.open_path(10, 3), figure.side_of_path === figure.sides[1]"), true);
-        await browser.run("figure.mode.value = 'time'; figure.sides[1].seconds = 0; figure.run()");
-        await browser.run(finished);
-        expect("equal time", await browser.run("figure.sides[1].seconds >= figure.sides[0].seconds"), true);
+        // B begins passes as long as it has worked less than A, which is done, and no longer.
+        await browser.run(`{ const [a, b] = figure.sides, pass = b.pass; a.seconds = 0.2; b.seconds = 0; b.before = [];
+            b.pass = reference => (b.before.push(b.seconds), pass.call(b, reference)); }
+            figure.mode.value = "time"; figure.run(); ${finished}`);
+        expect("equal time", await browser.run("figure.sides[1].before.every(seconds => seconds < 0.2) && figure.sides[1].seconds >= 0.2"), true);
+        expect("more samples", await browser.run("figure.sides[1].desk.n > figure.sides[1].limit && figure.sides[0].desk.n === figure.sides[0].limit"), true);
         expect("B is done by samples again", await browser.run("figure.mode.value = 'samples'; figure.next_side === null && figure.sides[1].is_done"), true);
         expect("curves", await browser.run("figure.shadowRoot.querySelectorAll('.plot polyline').length"), 4);
     },
@@ -170,8 +244,8 @@ const tests = {
             <div style="height:5000px"></div><live-figure scene="cornell" size="40x20" samples="4">still</live-figure>
             <script src="scenes.js"></script><script src="figure.js"></script>`);
         await browser.go(file);
-        await new Promise(soon => setTimeout(soon, 300));
         const figure = "document.querySelector('live-figure')";
+        await until(browser, `${figure}.is_seen === false`);  // the observer has told that it is not
         expect("before", await browser.run(`workers.all.length + ${figure}.sides.length + (penumbra.chosen ? 1 : 0)`), 0);
         expect("still", await browser.run(`${figure}.still.hidden`), false);
         await browser.run(`${figure}.scrollIntoView()`);
