@@ -20,9 +20,9 @@ grade: packages  ## grade submissions: SUBMISSIONS=FOLDER; OUT=FOLDER-grades, WE
 	    $(if $(JOBS),--jobs $(JOBS)) $(if $(SANDBOX),--sandbox $(SANDBOX)) '$(SUBMISSIONS)'
 
 # Gradescope's machines differ: what one compiles, another must run.
-autograder:  ## write the zip that Gradescope takes: build/autograder-1.zip for WEEKS=1; VISIBILITY=after_published, SEED=N
+autograder:  ## write the zip that Gradescope takes: build/autograder-1.zip for WEEKS=1; VISIBILITY=after_published, SEED=N, BOARD=FILE
 	@mkdir -p build; FLAGS="$(filter-out -M% -W% -march=%,$(FLAGS)) -Itests -w -O1" python3 src/course/autograder.py pack \
-	    $(if $(WEEKS),--weeks '$(WEEKS)') $(if $(SEED),--seed $(SEED)) $(if $(VISIBILITY),--visibility $(VISIBILITY)) 'build/autograder-$(or $(WEEKS),1-6).zip'
+	    $(if $(WEEKS),--weeks '$(WEEKS)') $(if $(SEED),--seed $(SEED)) $(if $(VISIBILITY),--visibility $(VISIBILITY)) $(if $(BOARD),--board '$(BOARD)') 'build/autograder-$(or $(WEEKS),1-6).zip'
 
 plant:  ## write a bug hunt: a solved copy with one mutant, as build/plant/N/ and .tar.gz; M=NAME or M=random, WEEKS=1-3
 	@$(if $(M),,echo "make plant M=NAME: which of tests/mutants/?  M=random draws one" >&2; exit 2;) \

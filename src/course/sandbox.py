@@ -109,7 +109,7 @@ def closed(paths):
     """Whoever is another user must not reach these; Missing names one that they can."""
     for path in paths if way == 'user' else []:
         path = pathlib.Path(path).resolve()
-        if all(folder.stat().st_mode & 0o001 for folder in (path, *path.parents)):
+        if all(folder.stat().st_mode & 0o001 for folder in (path, *path.parents) if folder.exists()):
             raise Missing(f'without namespaces, what students wrote is compiled by another user, who could read {path}: chmod 700 it')
 
 

@@ -22,9 +22,11 @@ struct Machine {
     }
     explicit Machine(const std::string& sandbox) : sandbox(sandbox) {
         fs::remove_all(top);
+        house().folder.write("board.csv", "ada@x.org,2.5\n\nBob@x.org, 1.25\neve@x.org,1\n");
         const Said said =
             run("sh -c \"FLAGS='-std=c++20 -DREAL=double -Isrc -Itests -w -O0 -pthread' python3 "
-                "src/course/autograder.py pack --weeks 1 --seed 4711 a.zip && unzip -q a.zip -d "
+                "src/course/autograder.py pack --weeks 1 --seed 4711 --board board.csv a.zip && "
+                "unzip -q a.zip -d "
                 "autograder/source && test -x autograder/source/run_autograder -a -x "
                 "autograder/source/setup.sh && python3 "
                 "autograder/source/penumbra/src/course/autograder.py setup\"");
@@ -71,7 +73,15 @@ void same_marks(const std::string& sandbox) {
         CHECK_MESSAGE(same.status == 0, same.out << result);
         CHECK((result.find("weaker sandbox") != result.npos) == (sandbox == "user"));
         if (student == "wrong") CHECK(result.find("this is no square") != result.npos);
+        CHECK(result.find("leaderboard") == result.npos);
     }
+    // The better of a pair's entries in the contest.
+    house().folder.write(
+        "autograder/submission_metadata.json",
+        R"({"users": [{"email": "ada@x.org"}, {"email": "bob@X.org"}, {"email": "dan@x.org"}]})");
+    CHECK(machine.grade(course, "empty").status == 0);
+    CHECK(house().folder.read("autograder/results/results.json").find(R"("value": 1.25,)") !=
+          std::string::npos);
     course.expect(
         {{"right", "1.3", "right", 6}, {"wrong", "1.2", "", 2}, {"hostile", "1.3", "", 0}});
 

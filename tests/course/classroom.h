@@ -6,7 +6,11 @@
 
 namespace classroom {
 
-inline const std::string twice_right = "inline double twice(double x) { return x + x; }\n";
+// Long enough to be no chance.
+inline const std::string twice_right =
+    "inline double twice(double x) {\n    double sum = 0;\n    for (int i = 0; i < 2; ++i) {\n"
+    "        sum += x;\n    }\n    if (!(sum == sum)) {\n        return x;\n    }\n    return "
+    "sum;\n}\n";
 inline const std::string twice_stub = "inline double twice(double x) { return x; }\n";
 inline const std::string square_right =
     "inline double square(double x) {\n    const double cipher = x;\n    return cipher * x;\n}\n";
