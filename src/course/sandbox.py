@@ -136,8 +136,7 @@ def within_reach(folder, room):
 
 def told():
     """What the reports say of the way."""
-    return '' if way == 'namespaces' else (
-        'Confined by the weaker sandbox: another user, limits and seccomp, but no namespaces, which this machine does not grant.')
+    return '' if way == 'namespaces' else 'Confined by the weaker sandbox: another user, limits and seccomp, without namespaces.'
 
 
 def environment():
