@@ -86,6 +86,7 @@ def main():
     if words.hunt.is_symlink() or not words.hunt.is_file() or words.hunt.stat().st_size > LARGEST:
         raise SystemExit(f'hunted: {words.hunt} is no file of at most {LARGEST >> 10} kB')
     sandbox.demand()
+    sandbox.closed([regions.ROOT])
     parts = verdict(top, words.hunt.read_text(errors='replace'))
     print(f'{sum(p for p, _, _ in parts)} of {sum(of for _, of, _ in parts)} points')
     for points, of, what in parts:

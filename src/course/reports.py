@@ -3,8 +3,10 @@
 # What students wrote, and what a compiler says of it, is shown as text: no marks of Markdown or HTML,
 # no formulas of a spreadsheet.  Of compilers only words about the student's own lines are shown, since
 # others could quote a solution.
+import collections
 import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -91,22 +93,27 @@ def sheet(grade):
     for number, e in grade['exercises'].items():
         lines.append(f'| {number} | {marked(e["title"])} | {points(e["points"])} | {e["of"]} | {marked(e["line"])} | '
                      f'{marked(e["together"])} |')
-    lines += ['', 'Each exercise is graded by itself, in a solution that is right elsewhere; later exercises are stubs.  A known mistake',
-              'costs half of the points, or a quarter if only items marked so are wrong.  Any other mistake costs at least as much,',
-              'and leaves no more than the share of items that are right.  Week 6 follows the rule of its sheet.  The column "all',
-              'together" has the verdict when all that was handed in is in one program; points do not depend on it.',
-              f'Seed {grade["seed"]}, solution {grade["course"][:16]}.', '']
+    lines += ['', *RULES, *TOGETHER, f'Seed {grade["seed"]}, solution {grade["course"][:16]}.  {grade["sandbox"]}'.rstrip(), '']
     for number, e in grade['exercises'].items():
-        if not e['items'] and not e['compiler']:
-            continue
-        lines += [f'## {number} {marked(e["title"])}', '']
-        for item in e['items']:
-            seen = f': {marked(item["seen"])}' if item['seen'] and not item['right'] else ''
-            state = 'right' if item['right'] else '**wrong**' if item['costs'] == 0.5 else '**wrong** (a quarter)'
-            lines.append(f'* {state}, {item["kind"]}: {marked(item["what"])}{seen}')
-        lines += [f'* {marked(message)}' for message in e['compiler']]
-        lines.append('')
+        if e['items'] or e['compiler']:
+            lines += [f'## {number} {marked(e["title"])}', '', *checks(e), '']
     return '\n'.join(lines)
+
+
+RULES = ['Each exercise is graded by itself, in a solution that is right elsewhere; later exercises are stubs.  A known mistake',
+         'costs half of the points, or a quarter if only items marked so are wrong.  Any other mistake costs at least as much,',
+         'and leaves no more than the share of items that are right.  Week 6 follows the rule of its sheet.']
+TOGETHER = ['The column "all together" has the verdict when all that was handed in is in one program; points do not depend on it.']
+
+
+def checks(e):
+    """What was looked at in an exercise, or what the compiler said: a list."""
+    lines = []
+    for item in e['items']:
+        seen = f': {marked(item["seen"])}' if item['seen'] and not item['right'] else ''
+        state = 'right' if item['right'] else '**wrong**' if item['costs'] == 0.5 else '**wrong** (a quarter)'
+        lines.append(f'* {state}, {item["kind"]}: {marked(item["what"])}{seen}')
+    return lines + [f'* {marked(message)}' for message in e['compiler']]
 
 
 def cell(text):
@@ -122,17 +129,33 @@ def counted(n, what):
 def look(verdict):
     """Why an instructor should look at it: it was not judged, refused or stopped; '': nothing of that."""
     state, says = verdict['state'], verdict['says']
+    seen = verdict['items'][-1]['seen'] if state == 'silent' else ''
+    # What ends the program, or answers in another's name, is no mistake in a formula.
+    hostile = 'hostile? ' if re.search('is no answer|, no answer$|ends the program', seen) else ''
     return {'missing': says, 'not judged': says, 'not compiled': says, 'refused': f'refused: {says}',
-            'silent': verdict['items'][-1]['seen'] if state == 'silent' else ''}.get(state, '')
+            'silent': hostile + seen}.get(state, '')
 
 
 def flags(grade):
     """What an instructor should look at, by its reasons."""
-    parts, reasons = grade['exercises'], {}
-    for number, e in parts.items():
-        if e['look']:
-            reasons.setdefault(e['look'], []).append(number)
-    return '; '.join(f'{"all" if len(numbers) == len(parts) > 1 else " ".join(numbers)}: {says}' for says, numbers in reasons.items())
+    numbers, reasons = list(grade['exercises']), {}
+    for number, e in grade['exercises'].items():
+        for reason in filter(None, (e['look'], grade.get('equal', {}).get(number))):
+            reasons.setdefault(reason, []).append(number)
+    return '; '.join(f'{ranges(of, numbers)}: {reason}' for reason, of in reasons.items())
+
+
+def ranges(some, numbers):
+    """1.1 1.3-1.6, of these numbers; all."""
+    if len(some) == len(numbers) > 1:
+        return 'all'
+    runs = []
+    for at in map(numbers.index, some):
+        if runs and runs[-1][1] == at - 1:
+            runs[-1][1] = at
+        else:
+            runs.append([at, at])
+    return ' '.join(numbers[a] if a == b else f'{numbers[a]}-{numbers[b]}' for a, b in runs)
 
 
 def table(path, rows):
@@ -174,6 +197,27 @@ def tables(folder, numbers, grades):
     table(os.path.join(folder, 'canvas.csv'), [['Student', 'ID', 'SIS User ID', 'SIS Login ID', 'Section', 'Penumbra'],
                                                ['    Points Possible', '', '', '', '', of]] + [
         [g['student'], g['number'], '', '', '', points(g['sum'])] for g in known])
+
+
+def class_page(numbers, grades):
+    """class.md: the mistakes that have a name, the most frequent first; how points are distributed; each exercise."""
+    of = grades[0]['of'] if grades else 0
+    lines = [f'# {counted(len(grades), "submission")}, {points(of)} points', '', '| students | exercise | mistake |', '|---|---|---|']
+    mistakes = collections.Counter((n, e['mistake']) for g in grades for n, e in g['exercises'].items() if e['mistake'])
+    lines += [f'| {count} | {n} | {marked(what)} |' for (n, what), count in mistakes.most_common()]
+    width = max(1, math.ceil(of / 10))
+    bins = collections.Counter(min(g['sum'], of - 1) // width for g in grades)  # the last has its end
+    lines += ['', '| points | students |', '|---|---|',
+              *(f'| {a} to {min(a + width, of)} | {bins[a // width]} |' for a in range(0, of, width)), '',
+              '| exercise | | of | mean | right | wrong, named | wrong, else | open | other |', '|---|---|---|---|---|---|---|---|---|']
+    for n in numbers:
+        parts = [g['exercises'][n] for g in grades]
+        states = collections.Counter('named' if p['mistake'] else 'wrong' if p['state'] == 'silent' else p['state'] for p in parts)
+        known = [states[state] for state in ('right', 'named', 'wrong', 'open')]
+        if parts:
+            lines.append(f'| {n} | {marked(parts[0]["title"])} | {parts[0]["of"]} | {points(sum(p["points"] for p in parts) / len(parts))} | '
+                         + ' | '.join(str(k) for k in [*known, len(parts) - sum(known)]) + ' |')
+    return '\n'.join(lines) + '\n'
 
 
 def feedback(grade):

@@ -106,18 +106,19 @@ class Workshop:
 
     # ---- Judges and headers, which come from the solution alone ----
 
-    def prepare(self, jobs):
-        """Compiles what all students need, unless it was done before.  What others left a week ago is removed."""
+    def prepare(self, jobs, numbers, room):
+        """Compiles what all need who solve these exercises, unless it was done before.  What others left a week ago is removed."""
         os.utime(self.cache)
         for other in self.cache.parent.iterdir():
             if other.stat().st_mtime < time.time() - 7 * 86400:
                 shutil.rmtree(other, ignore_errors=True)
         orders = [self.header_order()]
-        for week in self.programs:
+        for week in dict.fromkeys(n.split('.')[0] for n in numbers):
             name = f'judge_{week}'
             orders.append((name, [*self.cxx, *self.flags, '-D_GLIBCXX_ASSERTIONS', '-o', name, f'tests/course/{name}.cpp']))
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             list(pool.map(lambda order: self.trusted(*order), orders))
+        self.headers = sandbox.within_reach(str(self.cache / 'headers'), room)
 
     def header_order(self):
         """What the programs include of the standard library, compiled once."""
@@ -167,7 +168,7 @@ class Workshop:
 
     def build(self, week, texts, out, cpu):
         """The program, or None, and what the compiler said: (path, Built)."""
-        with tempfile.TemporaryDirectory(dir=self.cache) as top:
+        with tempfile.TemporaryDirectory(dir=os.path.dirname(out)) as top:
             os.chmod(top, 0o755)
             tree = pathlib.Path(top) / 'tree'
             self.write_tree(week, texts, tree)
@@ -175,7 +176,7 @@ class Workshop:
             os.chmod(out, 0o777)
             command = [*self.cxx, *self.flags, *STATIC, '-include', '/headers/all.h', '-o', '/out/answers',
                        self.programs[week]]
-            built = sandbox.build(str(tree), out, command, cpu, str(self.cache / 'headers'))
+            built = sandbox.build(str(tree), out, command, cpu, self.headers)
         program = os.path.join(out, 'answers')
         return (program if built.ok and os.path.isfile(program) and not os.path.islink(program) else None), built
 
@@ -245,7 +246,7 @@ class Workshop:
 
     # ---- What solution and stub are worth ----
 
-    def weigh(self, jobs, scratch):
+    def weigh(self, jobs, numbers, scratch):
         """number -> (items, of which the stub has right); limits of processor time follow from the solution's time, and
         from what the exercise allows.
 
@@ -262,7 +263,7 @@ class Workshop:
                 partial.write_text(json.dumps(worth))
                 partial.rename(path)
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-            list(pool.map(weigh, [n for n in self.solutions if n not in worth]))
+            list(pool.map(weigh, [n for n in numbers if n not in worth]))
         self.limits = {n: (5 + int(4 * w['compile']), 3 + int(3 * w['run'] + w['allows'])) for n, w in worth.items()}
         return {n: (w['items'], w['stub']) for n, w in worth.items()}
 

@@ -6,7 +6,11 @@
 
 namespace classroom {
 
-inline const std::string twice_right = "inline double twice(double x) { return x + x; }\n";
+// Long enough to be no chance.
+inline const std::string twice_right =
+    "inline double twice(double x) {\n    double sum = 0;\n    for (int i = 0; i < 2; ++i) {\n"
+    "        sum += x;\n    }\n    if (!(sum == sum)) {\n        return x;\n    }\n    return "
+    "sum;\n}\n";
 inline const std::string twice_stub = "inline double twice(double x) { return x; }\n";
 inline const std::string square_right =
     "inline double square(double x) {\n    const double cipher = x;\n    return cipher * x;\n}\n";
@@ -153,14 +157,21 @@ inline const House& house() {
     return one;
 }
 
-// Whether programs can be confined here; says so where not.
-inline bool sandboxed() {
-    static const bool can =
-        std::system(
-            "python3 -c 'import sys; sys.path.insert(0, \"src/course\"); import sandbox; "
-            "sandbox.demand()' >/dev/null 2>&1") == 0;
-    if (!can) MESSAGE("not tested: bubblewrap is missing, or may not make namespaces here");
-    return can;
+// Whether programs can be confined here, in this way; says so where not.
+inline bool sandboxed(const std::string& way = "namespaces") {
+    static std::map<std::string, bool> known;
+    if (!known.count(way))
+        known[way] =
+            std::system(
+                ("python3 -c 'import sys; sys.path.insert(0, \"src/course\"); import sandbox; "
+                 "sandbox.demand(\"" +
+                 way + "\")' >/dev/null 2>&1")
+                    .c_str()) == 0;
+    if (!known[way])
+        MESSAGE("not tested: " << (way == "user"
+                                       ? "only root can become another user"
+                                       : "bubblewrap is missing, or may not make namespaces here"));
+    return known[way];
 }
 
 // A folder of submissions, in the house.

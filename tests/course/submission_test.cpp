@@ -7,3 +7,8 @@ TEST_CASE(
     "submissions: archives, downloads of Moodle and Canvas, twice the same, what is damaged") {
     run_python_tests("tests/course/submission_test.py");
 }
+
+TEST_CASE(
+    "copies of the published solution or of another student are told, and the class counted") {
+    run_python_tests("tests/course/similar_test.py");
+}

@@ -6,7 +6,7 @@ stand before them, the source first:
     test: bvh_test           the test file that must fail, without its folder
     case: *part of a name*   only these test cases of it (doctest's -tc)
     program: penumbra        builds build/penumbra, too, for tests that run it; or several
-    needs: bwrap             without this command the test skips, and the mutant is left out
+    needs: bwrap             without this command (root: who is not root) the test skips, and the mutant is left out
 
 A mutant is a block.  Its first line has a unique name and describes the mistake.  All of these but file may follow and
 override those of the source, and so may
