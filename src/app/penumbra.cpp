@@ -1,6 +1,5 @@
 // app/penumbra.cpp  5  the program: options in, image and statistics out
 #include "app/render.h"
-#include "app/threads.h"
 
 #ifdef WITH_SHOW
 #include "show/show.h"
