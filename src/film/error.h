@@ -51,16 +51,16 @@ using MayMissLight = std::function<bool(const Film&, const ImageError&)>;
 // Why an error may be far above its estimate.
 enum class Doubt { no, black, missed_light, few_pixels, noise };
 
-// A relative standard error of 0.35 is that of 4 degrees of freedom, which are enough: of errors
-// that 8 would doubt besides, hardly one is twice the estimate.  With one degree, 8 of 10^5
-// estimates are below 10^-4 of the error: below 1e-6 it is small in any case.  Noise of half the
-// estimate still leaves it right within 2 (chosen by the hard scenes of calibration).
+// Estimates with 4 degrees of freedom, a relative standard error of 0.35, are good enough, and so
+// are those from 1/2 on: hardly one is less than half of the error.  With one degree, 8 of 10^5 are
+// below 10^-4 of the error: below 1e-6 it is small in any case.  Noise as large as the estimate
+// leaves most right within 2 (limits chosen by the hard scenes of calibration).
 inline Doubt doubt_of(const Film& film, const ImageError& error, const MayMissLight& may_miss) {
     if (error.norm() == 0) return Doubt::black;
     if (may_miss && error.d2() >= 0 && may_miss(film, error)) return Doubt::missed_light;
     if (!(error.d_rel() > 1e-6)) return Doubt::no;
-    if (error.spread_of_d() > 0.35) return Doubt::few_pixels;
-    return error.spread_of_d_rel() > 0.5 ? Doubt::noise : Doubt::no;
+    if (error.spread_of_d() > 0.35 && error.d_rel() < 0.5) return Doubt::few_pixels;
+    return error.spread_of_d_rel() > 1 ? Doubt::noise : Doubt::no;
 }
 
 // The rule of --error: d' + SE / 2 <= wanted.  d' counts the worst pixel twice, for light that no

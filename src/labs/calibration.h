@@ -24,7 +24,7 @@ inline bool is_understated(const Row& r) { return verdict(r, r["d_rel"]) == Verd
 // True if --error ended the run, and not another limit.
 inline bool is_reached(const Row& r) { return r["error"] == 1 && !is_hinted(r); }
 
-// The error that options request: 0.1 for "--error 10% --time 10", 0 without --error.
+// The error that options request: 0.1 for "--error 10% --spp 1024", 0 without --error.
 inline double asked_in(const std::string& setting) {
     const std::vector<std::string> words = words_in(setting);
     for (size_t k = 0; k + 1 < words.size(); ++k)

@@ -70,10 +70,7 @@ inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
     }
     for (size_t g = 0; g < parts.size(); ++g) {
         NearMisses& group = view.groups[g];
-        for (const auto& [i, a] : parts[g]) {
-            group.area += a;
-            group.a += std::max(0.0, a * (1 - a));
-        }
+        for (const auto& [i, a] : parts[g]) group.area += a, group.a += std::max(0.0, a * (1 - a));
         if (group.area < 16)
             for (const auto& [i, a] : parts[g]) view.noisy.push_back(i);
     }
@@ -205,8 +202,8 @@ public:
         }
     }
 
-    // Why the error of an image may be more than twice its estimate; empty if none is known.  `d2`:
-    // square of the estimate; `norm`: |f|.
+    // Why the relative error of an image may be more than twice its estimate; empty if none is
+    // known.  `d2`: square of the estimated error; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
         if (is_pilot_) return "too few samples";
         constexpr const char* words[ways] = {" in mirrors or glass", " by way of mirrors or glass",
@@ -234,7 +231,9 @@ public:
                 if (s[0].count() < 10) consider(greatest, l.line, words[way], s[0].count());
             }
         }
-        if (!(unseen > 3 * d2 * pixels)) return "";
+        // What is missing is missing from the truth F, too: (d^2 + u) / (F^2 + u) > 4 d^2 / F^2?
+        const double F2 = std::max(0.0, norm * norm - d2);
+        if (!(unseen * (F2 - 4 * d2) > 3 * d2 * F2 * pixels)) return "";
         return why + "; light not yet found may amount to " +
                significant(100 * std::sqrt(unseen / pixels) / norm, 1) + " %";
     }

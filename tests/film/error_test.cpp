@@ -300,15 +300,17 @@ TEST_CASE("an error is in doubt: black, by few pixels, lost in noise, or by its 
     // d +- 0.35 d corresponds to d^2 +- 0.7 d^2.
     CHECK(doubt(4, 2.79, 30, silent) == Doubt::no);
     CHECK(doubt(4, 2.81, 30, silent) == Doubt::few_pixels);
-    CHECK(doubt(4, 2.81, 3, silent) == Doubt::few_pixels);
+    // Few pixels that have an error of a half or more do not understate it: |F|^2 is 16 there.
+    CHECK(doubt(4, 2.81, 4.48, silent) == Doubt::few_pixels);
+    CHECK(doubt(4, 2.81, 4.46, silent) == Doubt::no);
     CHECK(doubt(4, 2.81, 30, doubtful) == Doubt::missed_light);
     // Rounding is no noise: d_rel of 1e-6 is small, however poorly it is known.
     CHECK(doubt(4, 3, 2.1e6, silent) == Doubt::no);
     CHECK(doubt(4, 3, 1.9e6, silent) == Doubt::few_pixels);
     CHECK(doubt(4, 3, 2.1e6, doubtful) == Doubt::missed_light);
     // |F|^2 = 9 - 4, so that d_rel has 9 / 5 of the relative spread; or |F|^2 would be negative.
-    CHECK(doubt(4, 2.2, 3, silent) == Doubt::no);
-    CHECK(doubt(4, 2.24, 3, silent) == Doubt::noise);
+    CHECK(doubt(4, 4.4, 3, silent) == Doubt::no);
+    CHECK(doubt(4, 4.5, 3, silent) == Doubt::noise);
     CHECK(doubt(4, 0.01, 1.9, silent) == Doubt::noise);
     CHECK(doubt(4, 0.01, 1.9, doubtful) == Doubt::missed_light);
     // One replication has no error to doubt.

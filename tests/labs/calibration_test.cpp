@@ -56,8 +56,8 @@ TEST_CASE("shares are of the runs whose truth is known") {
 }
 
 TEST_CASE("--error: what it asked for, and whether it was reached") {
-    CHECK(asked_in("--error 3% --time 10") == doctest::Approx(.03));
-    CHECK(asked_in("--time 10 --error 10%") == doctest::Approx(.1));
+    CHECK(asked_in("--error 3% --spp 1024") == doctest::Approx(.03));
+    CHECK(asked_in("--spp 1024 --error 10%") == doctest::Approx(.1));
     CHECK(asked_in("--spp 16") == 0);
     Row r = row(.5, .5);
     CHECK_FALSE(is_reached(r));

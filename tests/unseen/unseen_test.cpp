@@ -77,6 +77,12 @@ std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n
                 radiance(s, t, pattern, x, y, i, witness.visitor(tally));
     return tally.near;
 }
+// The greatest d^2 that light of square u could more than double, in a picture of square `norm2`:
+// where (d^2 + u) / (F^2 + u) = 4 d^2 / F^2 for the truth F^2 = norm2 - d^2 of what was found.
+double doubled_from(double u, double norm2) {
+    const double b = 3 * norm2 + 5 * u;
+    return (b - std::sqrt(b * b - 12 * u * norm2)) / 6;
+}
 // The sum of a power of c at a growth, for the first group.
 double c(const std::vector<NearMisses>& of, size_t kind, size_t k, size_t power = 0) {
     return value_of(of[0].sum[kind][k][power]);
@@ -313,15 +319,16 @@ TEST_CASE("a light that few of its samples reached is in doubt") {
         for (int i = 0; i < films; ++i) u.add({lamp}, 4, 1.0 / films);
         return u.doubt(d2, 2, 25);
     };
-    CHECK(doubt(3, 0.625 / 25 / 3 * 0.999) ==
+    const double few = doubled_from(0.625 / 25, 4), of_two = doubled_from(0.625 / 25 / 4, 4);
+    CHECK(doubt(3, few * 0.999) ==
           "the light of line 12 by light samples was hit 3 times; light not yet found may amount "
           "to 8 %");
-    CHECK(doubt(3, 0.625 / 25 / 3 * 1.001).empty());
+    CHECK(doubt(3, few * 1.001).empty());
     CHECK(doubt(9, 0) != "");
     CHECK(doubt(10, 0).empty());
     // Two films have twice the hits, each with half the contribution to the mean.
-    CHECK(doubt(4, 0.625 / 25 / 3 * 0.999 / 4, 2).starts_with("the light of line 12 by"));
-    CHECK(doubt(4, 0.625 / 25 / 3 * 1.001 / 4, 2).empty());
+    CHECK(doubt(4, of_two * 0.999, 2).starts_with("the light of line 12 by"));
+    CHECK(doubt(4, of_two * 1.001, 2).empty());
     CHECK(doubt(5, 0, 2).empty());
 }
 
@@ -348,17 +355,44 @@ TEST_CASE(
     CHECK(doubt(10, 10, 0, 0.01).empty());  // enough hits
     CHECK(doubt(0, 4, 0, 0).empty());       // too few to judge
     CHECK(!doubt(0, 5, 0, 0).empty());
-    // The unseen light has three times the observed variance.
-    CHECK(!doubt(0, 6, 0, 6 / 25.0 / 3 * 0.999).empty());
-    CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 1.001).empty());
-    CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 0.999 / 4, 2).size() > 0);
-    CHECK(doubt(0, 6, 0, 6 / 25.0 / 3 * 1.001 / 4, 2).empty());
+    // The unseen light has about three times the observed variance.
+    CHECK(!doubt(0, 6, 0, doubled_from(6 / 25.0, 4) * 0.999).empty());
+    CHECK(doubt(0, 6, 0, doubled_from(6 / 25.0, 4) * 1.001).empty());
+    CHECK(doubt(0, 6, 0, doubled_from(6 / 25.0 / 4, 4) * 0.999, 2).size() > 0);
+    CHECK(doubt(0, 6, 0, doubled_from(6 / 25.0 / 4, 4) * 1.001, 2).empty());
     // Eye rays see a light that covers a part of a pixel.
     lamp = {0, 8, 4, 0.1, 0.09};
     CHECK(
         doubt(0, 0, 0, 0, 12) ==
         "a light, smaller than a pixel, was hit 10 times; light not yet found may amount to 0.6 %");
     CHECK(doubt(0, 0, 0, 0, 12.6).empty());
+}
+
+TEST_CASE("no light that is missing can double an error of half the picture") {
+    // A truth F^2 = 1 of what was found, and missing light from a thousandth of it to a million
+    // times as much: it is in doubt if the relative error over the whole truth is more than twice
+    // the one that the halves tell.
+    int in_doubt = 0, known = 0;
+    for (double u = 1e-3; u < 1e6; u *= 1.7)
+        for (double error = 0.01; error < 3; error *= 1.3) {
+            const double d2 = error * error;
+            const bool doubles = std::sqrt((d2 + u) / (1 + u)) > 2 * error;
+            NearMisses lamp{12, 1, 4, 0, 0};
+            lamp.hits = 9, lamp.most = u / 1000;  // which a thousand of its like may exceed
+            Unseen unseen;
+            unseen.add({lamp}, 1);
+            CHECK(unseen.doubt(d2, std::sqrt(1 + d2), 1).empty() != doubles);
+            CHECK(!(doubles && error >= 0.5));
+            (doubles ? in_doubt : known) += 1;
+        }
+    CHECK(in_doubt > 100);
+    CHECK(known > 100);
+    // Where all is noise, the halves tell so.
+    NearMisses lamp{12, 1, 4, 0, 0};
+    lamp.hits = 9, lamp.most = 0.001;
+    Unseen unseen;
+    unseen.add({lamp}, 1);
+    CHECK(unseen.doubt(4, 1, 1).empty());
 }
 
 TEST_CASE("films of one picture add up") {
