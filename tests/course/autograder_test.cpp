@@ -20,8 +20,9 @@ struct Machine {
                             .c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, house().folder.read("said")};
     }
-    explicit Machine(const std::string& sandbox) : sandbox(sandbox) {
+    explicit Machine(const std::string& by) : sandbox(by) {
         fs::remove_all(top);
+        fs::create_directories(top);
         house().folder.write("board.csv", "ada@x.org,2.5\n\nBob@x.org, 1.25\neve@x.org,1\n");
         const Said said =
             run("sh -c \"FLAGS='-std=c++20 -DREAL=double -Isrc -Itests -w -O0 -pthread' python3 "
