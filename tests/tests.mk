@@ -1,5 +1,5 @@
 # tests.mk  builds and runs the tests, and what checks them: mutants, fuzzers, other compilers, layers
-.PHONY: test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core freestanding layers editors read programs-to-test
+.PHONY: told test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core freestanding layers editors read programs-to-test
 
 RULES := Makefile tests/tests.mk
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
@@ -8,7 +8,7 @@ SUITE := $(OBJECTS)/all-tests
 # and those that repeat runs, or read huge files, to see what is rare.
 space := $() $()
 LATER := course/% labs/% oracle/% fuzz/% web/% radiosity/walks% text/scene_file_bounds% \
-         $(foreach t,crowds faults from_blender how_to_add makefile memory parts radiosity_program resume runner scripts stopping,\
+         $(foreach t,cmake crowds faults from_blender how_to_add makefile memory parts radiosity_program resume runner scripts stopping,\
              whole/$t_test)
 
 test test-all: packages  ## test the renderer, in layer order; ONLY=bvh: tests of bvh.h; ALL=1: also above a failing layer
@@ -133,9 +133,10 @@ HEAVY := app/render course/my_tests labs/cube labs/indirect_paths oracle/arrays 
          radiosity/mesh radiosity/particles radiosity/shooting radiosity/transfer radiosity/walks shadow/estimates \
          shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms wide/wide_bvh world/bsdf world/bvh world/shapes
 HEAVY := $(HEAVY:%=%_test)
-$(OBJECTS)/tests/%: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
-$(HEAVY:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/%-heavy.exe $(OBJECTS)/programs.exe: OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
-$(OBJECTS)/std.h.gch: OPTIMISE := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
+TEST_OPTIMISE  := $(OPTIMISE:-O3=-Og) -D_GLIBCXX_ASSERTIONS
+HEAVY_OPTIMISE := $(OPTIMISE:-O3=-O1) -D_GLIBCXX_ASSERTIONS
+$(OBJECTS)/tests/% $(OBJECTS)/std.h.gch: OPTIMISE := $(TEST_OPTIMISE)
+$(HEAVY:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/%-heavy.exe $(OBJECTS)/programs.exe: OPTIMISE := $(HEAVY_OPTIMISE)
 
 # By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
 # for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
@@ -198,3 +199,12 @@ $(OBJECTS)/std.h.gch: tests/std.h $(RULES) | packages
 	$(CXX) $(FLAGS) $(OPTIMISE) -x c++-header -o $@ $<
 
 -include $(wildcard $(OBJECTS)/tests/*/*.d)
+
+# ---- CMake ---------------------------------------------------------------------------------------
+
+# CMakeLists.txt asks for these, and for the units of `make test`: a name and its words in a line.
+TOLD := FLAGS LINK OPTIMISE SUFFIX TEST_OPTIMISE HEAVY_OPTIMISE
+NOW  := $(foreach u,$(UNITS),$(if $(filter-out $(LATER),$(IN_$u)),$u))
+told:
+	@$(foreach v,$(TOLD),$(info $v $($v)))$(info PROGRAMS $(TESTED:%=src/%.cpp))$(info UNITS $(notdir $(NOW)))
+	@$(foreach u,$(NOW),$(info FILES_$(notdir $u) $(IN_$u:%=tests/%.cpp))$(info OPTIMISE_$(notdir $u) $(if $(filter %-heavy,$u),$(HEAVY_OPTIMISE),$(TEST_OPTIMISE))))

@@ -1,8 +1,11 @@
 # course/starter.mk  5  the Makefile of a starter: `make` draws pictures, `make check` says what is right
 CXX      ?= g++
 REAL     ?= double
-FLAGS    := -std=c++20 -march=native -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
-            -Wall -Wextra -Wpedantic -Wshadow
+# Compilers for other processors do not know this one.  Who needs a flag for fma, knows this flag.
+NATIVE   := $(shell $(CXX) -x c++ -march=native -fsyntax-only /dev/null >/dev/null 2>&1 && echo -march=native)
+HOMEBREW := $(addprefix -idirafter ,$(addsuffix /include,$(shell brew --prefix 2>/dev/null)))
+FLAGS    := -std=c++20 $(NATIVE) -ffp-contract=off -fno-math-errno -pthread -DREAL=$(REAL) -Isrc -MMD -MP \
+            -Wall -Wextra -Wpedantic -Wshadow $(HOMEBREW)
 SUFFIX   := $(if $(filter float,$(REAL)),-float)$(if $(DEBUG),-debug)
 SCENES   := $(patsubst scenes/%.scene,%,$(wildcard scenes/*.scene))
 ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
@@ -40,7 +43,7 @@ help:  ## print this
 
 # stb_image_write writes PNG files.
 packages:
-	@printf '\043include <stb/stb_image_write.h>\n' | $(CXX) -x c++ -Isrc -fsyntax-only - 2>/dev/null || \
+	@printf '\043include <stb/stb_image_write.h>\n' | $(CXX) -x c++ -Isrc $(HOMEBREW) -fsyntax-only - 2>/dev/null || \
 	    { echo "install stb (stb/stb_image_write.h); on Debian or Ubuntu: sudo apt-get install libstb-dev" >&2; exit 1; }
 
 include src/course/course.mk

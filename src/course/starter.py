@@ -1,10 +1,10 @@
 # course/starter.py  6  makes a starter: what students get, generated from the solution
-"""starter.py [--weeks 1-3,V] [--solved] [--no-pictures] FOLDER
+"""starter.py [--weeks 1-3,V] [--solved | --handed-in] [--no-pictures] FOLDER
 
 Writes FOLDER and FOLDER.tar.gz.  Exercises of these weeks are open: their stubs stand between
 `// BEGIN N.M` and `// END N.M`.  Those of earlier weeks come solved, those of later ones are stubs that
 nobody is asked to replace, so that no solution is given away.  --solved: all come solved, to look for a
-planted bug.
+planted bug.  --handed-in: the open ones are as who solved them hands them in, to try a machine.
 """
 import argparse
 import io
@@ -40,7 +40,7 @@ law. A mistake that it does not know by name may cost more.'''
 class Plan:
     """Which weeks are open, which exercises, and what becomes of each region."""
 
-    def __init__(self, words, solved=False):
+    def __init__(self, words, solved=False, handed_in=False):
         self.all = regions.exercises()
         weeks = list(dict.fromkeys(e.week for e in self.all))
         self.weeks = []
@@ -55,7 +55,7 @@ class Plan:
         # An optional project alone comes after the whole course.
         before = weeks[:first] if self.weeks[0].isdigit() else numbered
         self.solved_weeks = [w for w in before if w not in self.weeks]
-        self.solved = solved
+        self.solved, self.handed_in = solved, handed_in
         self.open = [e for e in self.all if e.week in self.weeks]
         given = self.weeks + self.solved_weeks
         for e in self.open:
@@ -72,7 +72,7 @@ class Plan:
         week = region.number.split('.')[0]
         if self.solved or week in self.solved_weeks:
             return None
-        return region.open(region.stub) if week in self.weeks else region.stub
+        return region.open(region.solution if self.handed_in else region.stub) if week in self.weeks else region.stub
 
 
 def write(path, text, executable=False):
@@ -264,10 +264,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n', 1)[0])
     parser.add_argument('--weeks', default='1-6')
     parser.add_argument('--solved', action='store_true')
+    parser.add_argument('--handed-in', action='store_true')
     parser.add_argument('--no-pictures', action='store_true')
     parser.add_argument('folder', type=pathlib.Path)
     words = parser.parse_args()
-    plan = Plan(words.weeks, words.solved)
+    plan = Plan(words.weeks, words.solved, words.handed_in)
     folder = words.folder.resolve()
     make_starter(plan, folder, None if words.no_pictures else os.environ.get('DRAW_SUFFIX', '-plain'))
     pack(folder)

@@ -53,8 +53,8 @@ public:
     Program(char** words, double patience) : patience_(patience) {
         std::signal(SIGPIPE, SIG_IGN);
         int in[2], out[2];
-        if (::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(out, O_CLOEXEC) != 0)
-            throw std::runtime_error("no pipe");
+        if (::pipe(in) != 0 || ::pipe(out) != 0) throw std::runtime_error("no pipe");
+        for (int end : {in[0], in[1], out[0], out[1]}) ::fcntl(end, F_SETFD, FD_CLOEXEC);
         pid_ = ::fork();
         if (pid_ < 0) throw std::runtime_error("no process");
         if (pid_ == 0) {

@@ -220,6 +220,46 @@ def test_all_that_a_starter_includes_is_there():
                 expect(found, f'{file.name} includes {name}')
 
 
+def test_students_compile_what_posix_has_and_linux_alone_has_not():
+    if 'Free Software Foundation' not in subprocess.run(['g++', '--version'], capture_output=True, text=True).stdout:
+        return print('not tested: g++ is not that of GNU')
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        starter.make_starter(starter.Plan('1-6,V,R'), folder)
+        for file in [*sorted(folder.glob('src/*/*.cpp')), *(folder / f'tests/course/{kind}_1.cpp' for kind in ('judge', 'answers'))]:
+            # Some headers of the library itself need more.
+            done = subprocess.run(['g++', '-std=c++20', '-U_GNU_SOURCE', '-D_XOPEN_SOURCE=700', '-D_DEFAULT_SOURCE', '-DREAL=double', '-Isrc', '-Itests',
+                                   '-fsyntax-only', file.relative_to(folder)], cwd=folder, capture_output=True, text=True)
+            ours = [line for line in done.stderr.splitlines() if re.match(r'(src|tests)/.*error', line)]
+            expect(not ours, *ours)
+
+
+# What bash 3.2, make 3.81 and the awk, sed and other tools of macOS do not know: a pattern, and an example of it.
+NEWER = {r'\bsed (-\w+ )*-i': 'sed -i s/a/b/ x', r'\bsed .*s(.).*\1.*\\n.*\1': "sed 's/ /\\n/'", r'\bdate .*%[-\d]*N': 'date +%s.%N',
+         r'\breadlink -f|\brealpath\b': 'readlink -f x', r'\bgrep -\w*P': 'grep -oP x', r'\b(head|tail) (-n ?|-c ?)-\d': 'head -n -1',
+         r'\bstat -\w*c': 'stat -c %s x', r'\b(mapfile|readarray|coproc|wait -n)\b': 'mapfile -t x', r'\b(declare|local|typeset) -\w*[Ang]': 'declare -A x',
+         r'\$\{\w+(\[.\])?(,,?|\^\^?|@\w)\}': '${x,,}', r'\$\{\w+\[-': '${x[-1]}', r'&>>|\|&|;;?&': 'x &>>y', r'\[\[ -v ': '[[ -v x ]]',
+         r'\b(cp|mv|rm|mkdir|ln|tar|mktemp|sort|sed|grep|cut|wc|ls)\b[^|;]* --(?!strip-components)[a-z]*': 'cp -- x y',
+         r'\bsort -\w*V|\bxargs -\w*r|-printf|\bbase64 -w|\bcp -\w*[alrdu]': 'sort -V',
+         r'\b(tac|seq|timeout|nproc|md5sum|sha256sum|shuf|setsid|free|getconf) (?!2>)': 'timeout 1 x',
+         r'\b(gensub|strftime|systime|asorti?|PROCINFO|BEGINFILE|ENDFILE)\b': 'gensub(/a/, "b", 1)',
+         r'^\.ONESHELL|^[\w ]+!=|^[^#\n"]*&:|\$\(file |^\w+ *::?:= *|\$\(guile |--output-sync|\$\(let |\$\(intcmp ': 'x != y'}
+
+
+def test_scripts_and_rules_do_without_what_macos_has_not():
+    for pattern, example in NEWER.items():
+        expect(re.search(pattern, example, re.M), pattern, 'does not find', example)
+    with tempfile.TemporaryDirectory() as temporary:
+        starter.make_starter(starter.Plan('1-6,V,R'), pathlib.Path(temporary))
+        scripts = [p for p in sorted(pathlib.Path(temporary).rglob('*')) if p.is_file() and
+                   (p.name == 'Makefile' or p.suffix == '.mk' or re.match(rb'#!.*\b(ba)?sh\n', p.read_bytes()[:40]))]
+        expect({'Makefile', 'course.mk', 'check', 'picture', 'update'} <= {p.name for p in scripts}, scripts)
+        for script in scripts:
+            for pattern in NEWER:
+                for found in re.finditer(pattern, re.sub(r'^\s*# .*', '', script.read_text(), flags=re.M), re.M):
+                    raise AssertionError(f'{script.name}: {found[0]}')
+
+
 def test_marks_survive_every_style_of_clang_format():
     if not shutil.which('clang-format'):
         return print('not tested: clang-format is not installed')
@@ -248,6 +288,20 @@ def test_another_compiler_builds_anew():
             done = subprocess.run(['make', 'build/penumbra', f'CXX=./{name}'], cwd=made.folder, capture_output=True, text=True)
             expect(done.returncode == 0, done.stderr)
             expect((made.folder / 'built').read_text() == 'x\n' * times, name, times, (made.folder / 'built').read_text())
+
+
+def test_a_compiler_that_does_not_know_this_processor_builds_for_its_own():
+    with Made() as made:
+        starter.write(made.folder / 'bin/brew', '#!/bin/sh\necho /opt/brew\n', True)
+        path = {**os.environ, 'PATH': f'{made.folder}/bin:{os.environ["PATH"]}'}
+        for refused, native in (('none', True), ('-march=native', False)):
+            starter.write(made.folder / 'cxx', f'#!/bin/sh\ncase "$*" in *{refused}*) exit 1;; esac\n[ "$1" = -x ] && exit\necho "$@" >built\n'
+                          'while [ "$1" != -o ]; do shift; done\necho >"$2"\n', True)
+            shutil.rmtree(made.folder / 'build', ignore_errors=True)
+            done = subprocess.run(['make', 'build/penumbra', 'CXX=./cxx'], cwd=made.folder, env=path, capture_output=True, text=True)
+            expect(done.returncode == 0, refused, done.stderr)
+            built = (made.folder / 'built').read_text()
+            expect((' -march=native ' in built) == native and ' -idirafter /opt/brew/include ' in built, refused, built)
 
 
 def test_a_program_for_a_debugger_is_kept_apart_and_named():
@@ -298,6 +352,17 @@ def test_a_solved_copy_has_all_solutions():
         text = '\n'.join(p.read_text() for p in sorted(pathlib.Path(temporary).rglob('*.h')))
         for number, (_, region) in regions.solution_files().items():
             expect('\n'.join(region.solution) in text, number)
+
+
+def test_a_starter_as_handed_in_has_the_solutions_of_its_weeks_between_marks():
+    with tempfile.TemporaryDirectory() as temporary:
+        plan = starter.Plan('2', handed_in=True)
+        starter.make_starter(plan, pathlib.Path(temporary) / 's')
+        for number, (name, r) in regions.solution_files().items():
+            if number.split('.')[0] in '234':
+                text = (pathlib.Path(temporary) / 's' / name).read_text()
+                expect(('\n'.join(r.open(r.solution)) in text) == (number[0] == '2'), number, text)
+                expect(('\n'.join(r.stub) in text) == (number[0] != '2'), number)
 
 
 def test_answers_stand_behind_blanks_and_stay_there():
