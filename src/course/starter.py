@@ -25,7 +25,7 @@ FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', '
 ALSO = ['src/keep/read_pfm.h', 'src/keep/pair.h']  # build/beside compares pictures
 UNTOLD = ['src/shadow/population.h']  # formulas of an exercise, which only experiments need
 COURSE = ['beside.cpp', 'course.mk']  # of src/course
-KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'update', 'pictures.txt']  # of tests/course
+KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'report', 'update', 'pictures.txt']  # of tests/course
 HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
 Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
 names with two underscores. A region has only what its file includes, and no `<random>`: random numbers are arguments
@@ -124,7 +124,10 @@ def write_checks(plan, to):
     numbers = {e.number for e in plan.open}
     files = KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]
     for file in with_headers(course, files):
-        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'picture', 'update'))
+        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'picture', 'report', 'update'))
+    write(to / 'tests/course/questions.txt', rows((course / 'questions.txt').read_text(), lambda w: w in plan.weeks))
+    commit = subprocess.run(['git', 'describe', '--always', '--dirty'], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    write(to / 'tests/course/starter.txt', f'Starter of week{"s" if len(plan.weeks) > 1 else ""} {" ".join(plan.weeks)}, Penumbra {commit or "of unknown commit"}.\n')
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
@@ -171,7 +174,8 @@ def write_rest(plan, to):
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
           '    make check           # what is right, and what is to do\n'
-          '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n\n' % (2 * (plan.open[0].number,)) +
+          '    make report          # out/report/index.html: verdicts, pictures, your answers in answers.md; WEEKS=%s\n'
+          '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n\n' % (plan.open[0].number, plan.weeks[0], plan.open[0].number) +
           'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems.\n'
           'Start with the sheet of the week.  '
           f'{len(plan.open)} exercises, {points} points, about {hours:g} hours.\n\n' +
