@@ -1,8 +1,9 @@
 // course/beside.cpp  3  a student's picture, the expected one, and their difference, side by side
 //
-//   beside IMAGE.pfm EXPECTED.pfm SIDE-BY-SIDE.png
-//
-// Prints d_rel and the mean of each channel.
+//   beside IMAGE.pfm EXPECTED.pfm SIDE-BY-SIDE.png   prints d_rel and the mean of each channel
+//   beside IMAGE.pfm EXPECTED.pfm                    prints both for a page, with a slider
+//   beside                                           prints what a page with sliders ends with
+#include "keep/pair.h"
 #include "keep/read_pfm.h"
 #include "text/program.h"
 
@@ -16,18 +17,6 @@ Channels mean_of(const Image& image) {
     for (const auto& pixel : image.pixels)
         for (size_t c = 0; c < 3; ++c) mean[c] += double(pixel[c]) / double(image.pixels.size());
     return mean;
-}
-
-// What is shown as white: the value that 2 % of all pixels exceed, or six times the median, for a
-// window may fill more; 1 if all is black.
-double white_of(const Image& image) {
-    std::vector<float> brightest;
-    for (const auto& pixel : image.pixels)
-        brightest.push_back(std::max({pixel[0], pixel[1], pixel[2]}));
-    std::sort(brightest.begin(), brightest.end());
-    const size_t n = brightest.size();
-    const float white = std::min(brightest[n * 98 / 100], 6 * brightest[n / 2]);
-    return white > 0 ? double(white) : 1;
 }
 
 // The image, what is expected, and grey plus twice the difference.
@@ -44,9 +33,15 @@ Image side_by_side(const Image& f, const Image& F, double white) {
 }
 
 int run(const std::vector<std::string>& words) {
-    if (words.size() != 3) throw UserError("usage: beside IMAGE.pfm EXPECTED.pfm SIDE-BY-SIDE.png");
+    if (words.empty()) return std::fwrite(pair_viewer.data(), 1, pair_viewer.size(), stdout), 0;
+    if (words.size() > 3 || words.size() < 2)
+        throw UserError("usage: beside [IMAGE.pfm EXPECTED.pfm [SIDE-BY-SIDE.png]]");
     const Image f = read_pfm(words[0]), F = read_pfm(words[1]);
     if (f.width != F.width || f.height != F.height) throw UserError("the pictures have two sizes");
+    if (words.size() == 2) {
+        std::puts(html_of({f, F, "yours", "expected", {f.width / 2, f.height / 2}}).c_str());
+        return 0;
+    }
     const double white = white_of(F);
     write_image(words[2], side_by_side(f, F, white), 1 / white);
     const Channels a = mean_of(f), b = mean_of(F);

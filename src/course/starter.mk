@@ -12,7 +12,7 @@ ifeq ($(MAKELEVEL)$(filter -j%,$(MAKEFLAGS)),0)
   MAKEFLAGS += -j$(shell nproc 2>/dev/null || sysctl -n hw.ncpu 2>/dev/null || echo 2)
 endif
 
-.PHONY: all clean help packages penumbra
+.PHONY: all clean help packages penumbra report
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -33,6 +33,9 @@ build/$(basename $(notdir $(1)))$(SUFFIX): $(1) build/compiler$(SUFFIX) | packag
 endef
 $(foreach source,$(filter-out src/web/%,$(wildcard src/*/*.cpp)),$(eval $(call program,$(source))))
 -include $(wildcard build/*.d)
+
+report:  ## out/report/index.html to hand in: verdicts, pictures beside the expected ones, your answers in answers.md; WEEKS=1-3
+	@MAKE='$(MAKE)' SUFFIX=$(SUFFIX) tests/course/report $(WEEKS)
 
 clean:  ## remove build/ and out/
 	rm -rf build out

@@ -23,10 +23,10 @@ from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
 FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app', 'show', 'web']
-ALSO = ['src/keep/read_pfm.h']  # build/beside compares pictures
+ALSO = ['src/keep/read_pfm.h', 'src/keep/pair.h']  # build/beside compares pictures
 UNTOLD = ['src/shadow/population.h', 'src/web/render.js']  # formulas of an exercise, which only experiments need; what tests need
 COURSE = ['beside.cpp', 'course.mk']  # of src/course
-KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'update', 'pictures.txt']  # of tests/course
+KIT = ['answers.h', 'judge.h', 'program.h', 'check', 'picture', 'report', 'update', 'pictures.txt']  # of tests/course
 EDITORS = ['.devcontainer/devcontainer.json'] + [f'.vscode/{name}.json' for name in ('tasks', 'launch', 'extensions', 'settings')]
 HAND_IN = '''Hand in the whole folder, or only src/, as .tar.gz or .zip: only the lines between `// BEGIN` and `// END` are read.
 Leave these marks as they are, and write plain C++ between them. The grader refuses `#include`, `#define`, `asm` and
@@ -126,7 +126,10 @@ def write_checks(plan, to):
     numbers = {e.number for e in plan.open}
     files = KIT + [f'{kind}_{w}.cpp' for w in plan.weeks for kind in ('answers', 'judge')]
     for file in with_headers(course, files):
-        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'picture', 'update'))
+        write(to / 'tests/course' / file, (course / file).read_text(), file in ('check', 'picture', 'report', 'update'))
+    write(to / 'tests/course/questions.txt', rows((course / 'questions.txt').read_text(), lambda w: w in plan.weeks))
+    commit = subprocess.run(['git', 'describe', '--always', '--dirty'], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    write(to / 'tests/course/starter.txt', f'Starter of week{"s" if len(plan.weeks) > 1 else ""} {" ".join(plan.weeks)}, Penumbra {commit or "of unknown commit"}.\n')
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
@@ -173,11 +176,12 @@ def write_rest(plan, to):
           '    make                 # draws every scene into out/\n'
           '    make check EX=%s    # is this exercise right?\n'
           '    make check           # what is right, and what is to do\n'
+          '    make report          # out/report/index.html: verdicts, pictures, your answers in answers.md; WEEKS=%s\n'
           '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n'
           '    build/penumbra --pixel 100,60 scenes/cornell36.scene    # a pixel is wrong? every number of one of its paths\n'
           '    build/penumbra --show scenes/cornell36.scene    # out/cornell36.html shows the picture while it renders\n'
           '    make web             # your renderer in a browser, with every step of its paths: build/web/playground.html\n\n'
-          % (2 * (plan.open[0].number,)) +
+          % (plan.open[0].number, plan.weeks[0], plan.open[0].number) +
           'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems, and for editors:\n'
           'clangd and Visual Studio Code know this folder, and `.devcontainer` has all in a container.\n'
           'Start with the sheet of the week.  '

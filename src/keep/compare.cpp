@@ -1,6 +1,7 @@
 // keep/compare.cpp  3  build/compare: the error of an image against a reference
 //
 //   build/compare REFERENCE IMAGE [--limit 2%] [--alpha 1e-6] [--heatmap FILE.png]
+//       [--page FILE.html]
 //
 // With the reference f, the image g and N numbers (three per pixel):
 //   d = sqrt(1/N sum (f - g)^2),  d_rel = d / sqrt(1/N sum f^2)   (Khodulev 1996, ch. 5)
@@ -9,6 +10,7 @@
 // applies.  The images differ, with exit status 1, if d_rel is above the limit or p below alpha.
 #include "base/stats.h"
 #include "keep/film_file.h"
+#include "keep/pair.h"
 #include "keep/read_pfm.h"
 #include "text/option.h"
 
@@ -89,6 +91,40 @@ Image heatmap(const Image& f, const Image& g, double d) {
     return map;
 }
 
+// A page that needs nothing beside it: both images with a slider, and the numbers, as JSON too.
+constexpr const char* page_head =
+    R"(<!doctype html><html lang="en"><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1"><title>compare</title><style>
+:root { color-scheme: light dark; }
+body { font: 1rem/1.5 system-ui, sans-serif; margin: 0 auto; max-width: 76rem; padding: 1rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin-bottom: 1rem; }
+th, td { padding: .2rem .8rem .2rem 0; text-align: left; font-weight: 400; }
+</style>
+<h1>An image and its reference</h1>
+<table id="difference"></table>
+)";
+constexpr const char* page_tail = R"(<script>
+const told = JSON.parse(document.getElementById("numbers").textContent);
+const whole = x => String(+(x ?? NaN).toPrecision(6));
+document.getElementById("difference").append(...[
+    ["d_rel", `${whole(100 * told.d_rel)} %: the RMS of the error over that of the reference`],
+    ["d", `${whole(told.d)}: the RMS of the error`], ["ratio of means", whole(told.ratio_of_means)],
+    ["largest error", `${whole(told.largest)} at ${told.at.join()}`]].map(([name, words]) =>
+    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, words))));
+</script>
+)";
+
+std::string page(const ImagePair& pair, const Difference& d) {
+    json::Object numbers;
+    numbers.add("d", json::number(d.d));
+    numbers.add("d_rel", json::number(d.d_rel));
+    numbers.add("ratio_of_means", json::number(d.ratio_of_means));
+    numbers.add("largest", json::number(d.largest));
+    numbers.add("at", "[" + std::to_string(d.x) + ", " + std::to_string(d.y) + "]");
+    return page_head + html_of(pair) + "<script type=\"application/json\" id=\"numbers\">" +
+           numbers.text() + "</script>\n" + std::string(pair_viewer) + page_tail;
+}
+
 void check_same_size(const Image& f, const Image& g) {
     if (f.width != g.width || f.height != g.height)
         throw UserError("sizes differ: " + std::to_string(f.width) + "x" +
@@ -134,7 +170,7 @@ Known read_known(const std::string& path) {
 
 struct Request : CommonOptions {
     std::vector<std::string> images;
-    std::string map;
+    std::string map, page;
     std::optional<double> limit, alpha;
 };
 
@@ -156,6 +192,12 @@ OptionTable table_of(Request& r) {
                             r.map = v;
                             if (!v.ends_with(".png"))
                                 throw UserError(in_quotes(v) + " must end in .png");
+                        }},
+                       {"--page", "FILE.html", "write a page with a slider between both images", "",
+                        [&r](Text v) {
+                            r.page = v;
+                            if (!v.ends_with(".html"))
+                                throw UserError(in_quotes(v) + " must end in .html");
                         }}} +
            in_group("", without(general_rows(r), {"--threads", "--quiet"}));
 }
@@ -203,11 +245,14 @@ int compare(const std::vector<std::string>& words) {
     std::optional<Equality> e;
     if (variance_f && variance_g) e = equality(f, g, *variance_f, *variance_g);
     if (r.alpha && !e) throw UserError("--alpha: needs two films of --replications 2 or more");
-    if (!r.map.empty()) check_writable(r.map);
+    for (const std::string& file : {r.map, r.page})
+        if (!file.empty()) check_writable(file);
     const Difference d = difference(f, g);
     print(d, e);
     if (!r.map.empty()) write_image(r.map, heatmap(f, g, d.d), 1);
-    if (!r.map.empty()) std::fprintf(stderr, "wrote %s\n", printable(r.map).c_str());
+    if (!r.page.empty()) write_file(r.page, page({g, f, r.images[1], r.images[0], {d.x, d.y}}, d));
+    for (const std::string& file : {r.map, r.page})
+        if (!file.empty()) std::fprintf(stderr, "wrote %s\n", printable(file).c_str());
     return judge(r, d, e);
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "keep/pair.h"
 #include "text/image_file.h"
 
 namespace penumbra {
@@ -50,20 +51,6 @@ inline std::string escaped(std::string_view words) {
     std::string out;
     for (char c : words)
         out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-    return out;
-}
-
-inline std::string base64(std::string_view bytes) {
-    constexpr std::string_view digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (size_t i = 0; i < bytes.size(); i += 3) {
-        uint32_t word = 0;
-        for (size_t k = 0; k < 3; ++k)
-            word = word << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0);
-        for (size_t k = 0; k < 4; ++k)
-            out += i + k > bytes.size() ? '=' : digits[word >> (18 - 6 * k) & 63];
-    }
     return out;
 }
 
@@ -110,7 +97,7 @@ public:
             "<image x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" "
             "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,%s\"/>\n",
             at.x, at.y, width, width * image.height / image.width,
-            svg::base64(encode_png(image, exposure)));
+            base64(encode_png(image, exposure)));
     }
 
     std::string file() const {

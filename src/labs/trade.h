@@ -1,5 +1,6 @@
 // labs/trade.h  6  the fastest setting for an error; the data of trade.html
 #pragma once
+#include "keep/pair.h"
 #include "labs/grid.h"
 #include "text/json.h"
 
@@ -168,7 +169,7 @@ inline std::string json_of(const Study& s) {
 }
 
 // Writes the page and its data.  A page opened without a server can read scripts only: trade.js has
-// the measurements, NAME.js a scene's images as floats, row by row from the top left pixel.
+// the measurements, NAME.js a scene's images as floats.
 inline void write_page(const std::vector<Study>& studies, const std::string& command, bool preview,
                        const std::string& folder) {
     const std::string data =
@@ -176,14 +177,14 @@ inline void write_page(const std::vector<Study>& studies, const std::string& com
                 "[0.1, 0.03, 0.01, 0.003]", "candidates", array(candidates(studies)), "scenes",
                 array(studies)});
     write_file(folder + "/trade.js", "const trade = " + data + ";\n");
-    write_file(folder + "/trade.html", read_file("src/labs/trade.html"));
+    std::string page = read_file("src/labs/trade.html");
+    const std::string_view place = "<!-- pair_viewer -->";
+    write_file(folder + "/trade.html", page.replace(page.find(place), place.size(), pair_viewer));
     for (const Study& s : studies) {
-        std::string floats;
-        for (const Shot& shot : s.shots)
-            floats.append(reinterpret_cast<const char*>(shot.image.pixels.data()),
-                          shot.image.pixels.size() * sizeof shot.image.pixels[0]);
+        std::string images;
+        for (const Shot& shot : s.shots) images += "\"" + base64(shot.image) + "\",\n";
         write_file(folder + "/" + s.scene + ".js",
-                   text("pixels(%s, \"%s\");\n", json::string(s.scene), svg::base64(floats)));
+                   text("pixels(%s, [\n%s]);\n", json::string(s.scene), images));
     }
 }
 

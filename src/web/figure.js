@@ -5,6 +5,7 @@
 //   technique   options of build/penumbra; against: those of a second picture, beside a slider
 //   samples     per pixel, then it stops; size: WIDTHxHEIGHT; pixel: X,Y: the path of this pixel is open
 // With figure.reference (a Float32Array, linear RGB) the true error is shown, too.
+// Its slider is not that of keep/pair.h: pictures change while it is moved, and paths are drawn over them.
 // Nothing is loaded before the figure is seen.  Where WebAssembly or JavaScript is missing, the still picture stays.
 "use strict";
 

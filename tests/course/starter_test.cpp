@@ -1,4 +1,4 @@
-// course/starter_test.cpp  starters, later ones in a student's folder, what editors get, and the book: tests written in Python
+// course/starter_test.cpp  starters, later ones in a student's folder, what editors get, the book and slides: tests written in Python
 #include <doctest/doctest.h>
 
 #include "course/python.h"
@@ -21,4 +21,8 @@ TEST_CASE("sheets say what --pixel prints") {
 
 TEST_CASE("the book: each line of the lecture in one chapter, and all that its tables name") {
     run_python_tests("tests/course/book_test.py");
+}
+
+TEST_CASE("slides: every session has a deck, and nothing on it is cut off") {
+    run_python_tests("tests/course/slides_test.py");
 }

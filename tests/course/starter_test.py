@@ -202,7 +202,12 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         for table in ('exercises.txt', 'mistakes.txt'):
             rows = [r for r in (made.folder / 'tests/course' / table).read_text().splitlines() if not r.startswith('#')]
             expect(rows and all(r[:2] in ('2.', '3.') for r in rows), table, rows[:1])
-        for name in ('Dockerfile', '.github/workflows/check.yml', '.clang-format', 'sheets/systems.md', 'tests/course/update', 'tests/course/picture'):
+        questions = (made.folder / 'tests/course/questions.txt').read_text().splitlines()
+        expect([q[0] for q in questions] == ['#', *'222333'], questions)
+        told = (made.folder / 'tests/course/starter.txt').read_text()
+        expect(re.fullmatch(r'Starter of weeks 2 3, Penumbra \S+\.\n', told), told)
+        for name in ('Dockerfile', '.github/workflows/check.yml', '.clang-format', 'sheets/systems.md', 'tests/course/update',
+                     'tests/course/picture', 'tests/course/report'):
             expect((made.folder / name).exists(), f'no {name}')
         expect('wide' not in (made.folder / 'src/world/tree.h').read_text(), 'the wide tree')
         guide = (made.folder / 'tests/oracle/README.md').read_text()

@@ -109,17 +109,6 @@ TEST_CASE("a contact sheet: pictures row by row, each with its words, all on the
     CHECK(find(file, "c").y < std::stod(file.substr(file.find("height=\"") + 8)));
 }
 
-TEST_CASE("base64 as in RFC 4648, section 10") {
-    CHECK(svg::base64("") == "");
-    CHECK(svg::base64("f") == "Zg==");
-    CHECK(svg::base64("fo") == "Zm8=");
-    CHECK(svg::base64("foo") == "Zm9v");
-    CHECK(svg::base64("foob") == "Zm9vYg==");
-    CHECK(svg::base64("fooba") == "Zm9vYmE=");
-    CHECK(svg::base64("foobar") == "Zm9vYmFy");
-    CHECK(svg::base64("\xff\xfe\x80") == "//6A");
-}
-
 TEST_CASE("axes go from one power of ten to another, with a tick at each") {
     const Axis a =
         axis_of({{"", {3, 20, 900}, {}}, {"", {2e-3, NAN, -1, INFINITY}, {}}}, &Series::x);

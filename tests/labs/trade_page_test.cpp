@@ -1,12 +1,7 @@
 // labs/trade_page_test.cpp  the page in a browser: it shows the data by mouse and keys
-//
-// A test adds a script to the page.  The script operates the page and writes its results into
-// attributes of the root; Chromium then prints the page.
-#include <cstdlib>
-
 #include "base/vec.h"
 #include "labs/trade.h"
-#include "text/folder.h"
+#include "text/browser.h"
 
 using namespace trade;
 
@@ -49,67 +44,21 @@ const std::vector<Study> sample = {sample_study("first", 12, 8), sample_study("s
 
 // ---- A browser ----------------------------------------------------------------------------------
 
-std::string browser() {
-    for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
-        if (std::system(text("command -v %s >/dev/null 2>&1", name).c_str()) == 0) return name;
-    MESSAGE("no Chromium on this machine (Debian: apt-get install chromium): not tested");
-    return "";
-}
-
-// The page of two small scenes, followed by a script that may use these functions.
+// The page of two small scenes, followed by a script, which waits for images.
 void write_driven(const Folder& folder, const std::string& script, bool preview = false) {
-    constexpr const char* tools = R"js(
-const root = document.documentElement, say = (name, value) => root.setAttribute("data-" + name, value);
-const soon = (ms = 50) => new Promise(done => setTimeout(done, ms));
-const key = (key, shiftKey) => stage.dispatchEvent(
-    new KeyboardEvent("keydown", { key, shiftKey, bubbles: true, cancelable: true }));
-const choose = async (id, value) => {
-    $(id).value = value;
-    $(id).dispatchEvent(new Event("input", { bubbles: true }));
-    do await soon(); while (!$("image-b").dataset.drawn.startsWith(scene().name + ","));
-};
-const drawn = (who, x, y) => $("image-" + who).getContext("2d").getImageData(x, y, 1, 1).data;
-const cells = k => [...$("values").querySelectorAll("tbody tr")[k].children].map(c => c.textContent);
-const mouse = (fx, fy) => {
-    const view = document.querySelector(".a .view"), box = view.getBoundingClientRect();
-    view.dispatchEvent(new PointerEvent("pointermove", { bubbles: true,
-        clientX: box.left + fx * box.width, clientY: box.top + fy * box.height }));
-};
-)js";
     write_page(sample, "build/trade", preview, folder.path.string());
     folder.write("trade.html",
-                 folder.read("trade.html") + "<script>{" + tools +
-                     "addEventListener(\"load\", async () => {\nwhile (!root.dataset.ready) await "
-                     "soon();\n" +
-                     script + "say(\"done\", 1); }); }</script>");
-}
-
-// The browser's stdout, or an empty string if the browser does not end.
-std::string browse(const Folder& folder, const std::string& flags, const std::string& address) {
-    const std::string command = text(
-        "timeout 120 %s --headless=new --no-sandbox --disable-gpu --hide-scrollbars "
-        "--virtual-time-budget=6000 --user-data-dir='%s' %s 'file://%s' >'%s' 2>/dev/null",
-        browser(), folder / "profile", flags, folder / address, folder / "out");
-    return std::system(command.c_str()) == 0 ? folder.read("out") : "";
-}
-
-// The attributes of a page's root, without "data-".
-std::map<std::string, std::string> said(const std::string& dom) {
-    std::map<std::string, std::string> all;
-    const size_t html = std::min(dom.find("<html"), dom.size());
-    const std::string root = dom.substr(html);
-    for (size_t at = 0; (at = root.find("data-", at)) < root.find("<head");) {
-        const size_t quote = root.find('"', at), end = root.find('"', quote + 1);
-        all[root.substr(at + 5, quote - at - 6)] = root.substr(quote + 1, end - quote - 1);
-        at = end;
-    }
-    return all;
+                 folder.read("trade.html") +
+                     driven_by("while (!root.dataset.ready) await soon();\n"
+                               "const choose = async name => { set(\"scene\", name); "
+                               "do await soon(); while (root.dataset.ready !== name); };\n" +
+                               script));
 }
 
 std::map<std::string, std::string> driven(const std::string& fragment, const std::string& script) {
     const Folder folder;
     write_driven(folder, script);
-    auto seen = said(browse(folder, "--dump-dom", "trade.html" + fragment));
+    auto seen = seen_in(browse(folder, "--dump-dom", "trade.html" + fragment));
     CHECK(seen["error"] == "");
     CHECK(seen["done"] == "1");
     return seen;
@@ -134,9 +83,11 @@ double pixel_error(const Study& s, size_t k, int x, int y) {
 
 TEST_CASE("the page needs nothing but what lies beside it, and is short") {
     const std::string page = read_file("src/labs/trade.html");
-    for (const char* outside : {"http", "//www", "@import", "url(", "fetch(", "import("})
+    for (const char* outside : {"http", "//www", "@import", "url(", "fetch(", "import("}) {
         CHECK_MESSAGE(page.find(outside) == page.npos, outside);
-    CHECK(std::count(page.begin(), page.end(), '\n') <= 350);
+        CHECK_MESSAGE(pair_viewer.find(outside) == pair_viewer.npos, outside);
+    }
+    CHECK(std::count(page.begin(), page.end(), '\n') <= 150);
     std::istringstream in(page);
     for (std::string line; std::getline(in, line);) CHECK_MESSAGE(line.size() <= 105, line);
 }
@@ -233,7 +184,7 @@ say("address", location.hash);
     CHECK(seen["alone"] == "true");
     CHECK(seen["live"].starts_with("Pixel 0, 7: A is off by "));
     CHECK(seen["address"] ==
-          "#scene=first&amp;at=0%2C7&amp;a=1&amp;b=2&amp;mode=side&amp;exposure=0&amp;"
+          "#scene=first&amp;at=0%2C7&amp;a=1&amp;b=2&amp;mode=slide&amp;exposure=0&amp;"
           "zoom=1");
 }
 
@@ -243,12 +194,12 @@ TEST_CASE("the mouse picks a pixel; images flip by button and space bar") {
 say("mode", stage.dataset.mode);
 const visible = () => ["a", "b"].map(who => getComputedStyle($("image-" + who)).visibility).join();
 mouse(3.5 / 12, 6.5 / 8); say("at", stage.dataset.at);
-await choose("mode", "flip"); say("one", visible());
+set("mode", "flip"); say("one", visible());
 $("flip").click(); await soon(); say("two", visible());
 key(" "); await soon(); say("three", visible());
 say("live", $("live").textContent);
 )js");
-    CHECK(seen["mode"] == "side");  // unknown scene
+    CHECK(seen["mode"] == "slide");  // unknown scene
     CHECK(seen["at"] == "3,6");
     CHECK(seen["one"] == "visible,hidden");
     CHECK(seen["two"] == "hidden,visible");
@@ -264,7 +215,7 @@ key("E"); key("E"); key("E"); key("E"); await soon(); say("dark", drawn("a", 5, 
 key("z"); key("z"); say("zoom", getComputedStyle(document.querySelector(".view")).transform);
 mouse(9.5 / 12, 4.5 / 8); say("at", stage.dataset.at);
 key("Z"); say("out", $("zoom").value);
-key("m"); key("m"); say("mode", stage.dataset.mode);
+key("m"); key("m"); key("m"); say("mode", stage.dataset.mode);
 key("2"); say("two", stage.dataset.mode + stage.dataset.shown);
 key("1"); say("one", stage.dataset.mode + stage.dataset.shown);
 key("r"); key("2"); await soon(); say("reference", drawn("b", 5, 2));
@@ -316,7 +267,7 @@ const light = e => colour_of(e).map((x, c) => [0.2126, 0.7152, 0.0722][c] *
 const steps = [...Array(17).keys()].map(k => light(10 ** (3 * k / 16 - 3)));
 say("rising", steps.every((x, k) => k === 0 || x > steps[k - 1]));
 say("ends", [0, 1e-3, NaN, 7].map(e => colour_of(e).map(Math.round)).join(" "));
-await choose("scene", "second");
+await choose("second");
 say("other", stage.dataset.at + " " + drawn("b", 4, 3));
 location.hash = "#scene=second&a=99&b=-1&mode=magic&zoom=x&at=1e9";
 await soon(300);
@@ -352,7 +303,7 @@ addEventListener("load", () => setTimeout(() => {
     say.cut = [...page.querySelectorAll("body *")].filter(e => !e.closest(".scroll, svg, select") &&
         e.getBoundingClientRect().right > root.clientWidth + 1).map(e => e.tagName + e.id);
 }, 1000));</script></body></html>)html");
-    auto seen = said(browse(folder, "--allow-file-access-from-files --dump-dom", "phone.html"));
+    auto seen = seen_in(browse(folder, "--allow-file-access-from-files --dump-dom", "phone.html"));
     CHECK(seen["wide"] == "0");
     CHECK(seen["inner"] == "true");
     CHECK(seen["preview"] == "true");

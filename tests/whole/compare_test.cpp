@@ -1,6 +1,8 @@
 // whole/compare_test.cpp  comparisons verified by hand, and how programs run other programs
 #include "keep/keep.h"
+#include "keep/pair.h"
 #include "labs/execute.h"
+#include "text/browser.h"
 #include "text/complaint.h"
 #include "text/png.h"
 #include "text/program.h"
@@ -91,6 +93,42 @@ TEST_CASE(
         CHECK((brightness(2) > 0) == differ);
         CHECK((brightness(3) > brightness(2)) == differ);
     }
+}
+
+TEST_CASE("compare: a page has both images, their numbers, and begins at the largest error") {
+    const Folder folder;
+    std::vector<float> f{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, g = f;
+    g[7] = 3;  // -5 at 0,1
+    folder.write("f.pfm", pfm(2, 2, f));
+    folder.write("g.pfm", pfm(2, 2, g));
+    const Outcome refused = expect_exit(folder, "compare f.pfm g.pfm --page x.png", 2);
+    CHECK(contains(refused.err, "must end in .html"));
+    const Outcome o = expect_exit(folder, "compare f.pfm g.pfm --page x.html --limit 10%", 1);
+    CHECK(o.err == "wrote x.html\n");
+    const std::string page = folder.read("x.html");
+    for (const char* name : {"f.pfm", "g.pfm"})
+        CHECK(contains(page, "\"" + std::string(name) + "\", \"pixels\": \"" +
+                                 base64(read_pfm(folder / name)) + "\""));
+    for (const char* outside : {"http", "//www", "@import", "url(", "fetch(", "src="})
+        CHECK_MESSAGE(!contains(page, outside), outside);
+    if (browser().empty()) return;
+    folder.write("driven.html", page + driven_by(R"js(
+say("numbers", $("numbers").textContent);
+say("table", [...$("difference").rows].map(row => row.textContent).join(" "));
+say("names", $("name-a").textContent + " " + $("name-b").textContent + " " + stage.dataset.at);
+say("green", cells(0)[2] + " " + cells(1)[2]);
+)js"));
+    auto seen = seen_in(browse(folder, "--dump-dom", "driven.html"));
+    CHECK(seen["error"] + seen["done"] == "1");
+    double d = 0, d_rel = 0;
+    CHECK(std::sscanf(seen["numbers"].c_str(), "{ &quot;d&quot;: %lf, &quot;d_rel&quot;: %lf,", &d,
+                      &d_rel) == 2);
+    CHECK(d == doctest::Approx(std::sqrt(25 / 12.0)).epsilon(1e-15));
+    CHECK(d_rel == doctest::Approx(std::sqrt(25 / 650.0)).epsilon(1e-15));
+    CHECK(contains(seen["table"], "d_rel19.6116 %: "));
+    CHECK(contains(seen["table"], "largest error5 at 0,1"));
+    CHECK(seen["names"] == "A: g.pfm B: f.pfm 0,1");
+    CHECK(seen["green"] == "3.00 8.00");
 }
 
 TEST_CASE("compare: two films show the same, or not") {
