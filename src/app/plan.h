@@ -87,7 +87,7 @@ inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness
 // The same where one sample of the film is the mean of all paths of a replication.
 inline Plan plan_at_once(const Options& o, const Scene& scene) {
     Plan plan = plan_of(o, scene);
-    plan.paths = std::exchange(plan.samples, 1);
+    plan.paths = plan.samples, plan.samples = 1;
     return plan;
 }
 
