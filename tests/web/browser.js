@@ -30,6 +30,9 @@ async function open() {
             if (method === "Log.entryAdded" && is_bad(params.entry.level)) problems.push(params.entry.text);
         }
     });
+    // Who waits for a browser that has ended would wait for ever, and Node.js would end without a word.
+    const ended = new Promise(resolve => child.on("exit", resolve));
+    ended.then(() => waiting.forEach(({ reject }) => reject(Error("the browser has ended"))));
     const send = (method, params = {}, own = session) => new Promise((resolve, reject) => {
         waiting.set(++calls, { resolve, reject });
         child.stdio[3].write(JSON.stringify({ id: calls, method, params, ...(own && { sessionId: own }) }) + "\0");
@@ -74,7 +77,6 @@ async function open() {
             fs.writeFileSync(file, Buffer.from(data, "base64"));
         },
         async close() {
-            const ended = new Promise(resolve => child.on("exit", resolve));
             await send("Browser.close", {}, undefined).catch(() => 0);
             await ended;
             fs.rmSync(profile, { recursive: true, force: true });
