@@ -118,7 +118,7 @@ def room(folder):
     """An empty folder for what is compiled: this one, or, without namespaces, one that other users can pass through."""
     if way == 'user':
         os.umask(0o022)
-        folder = tempfile.mkdtemp(prefix='penumbra-')
+        folder = tempfile.mkdtemp(prefix='penumbra-grade-')
     else:
         shutil.rmtree(folder, ignore_errors=True)
         os.mkdir(folder)

@@ -47,7 +47,7 @@ struct Machine {
 void same_marks(const std::string& sandbox) {
     if (!sandboxed(sandbox)) return;
     const Machine machine(sandbox);
-    Course course("gradescope " + sandbox);
+    Course course("gradescope" + sandbox);
     const std::string stops = "inline double square(double x) { std::exit(x > -4); }\n";
     course.hand_in("right", {{"1.1", twice_right}, {"1.2", square_right}, {"1.3", cube_right}});
     course.hand_in("wrong",
