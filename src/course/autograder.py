@@ -35,7 +35,7 @@ SETTINGS = ROOT / 'autograder.json'
 OLDEST = 12  # of g++
 # What grading needs: the solution, and what asks, judges and says which weeks there are.
 PACKED = ('src/**/*', 'tests/course/*', 'tests/oracle/*.h', 'LICENSE')
-UNUSED = ('src/labs/', 'src/web/', 'src/book/')
+UNUSED = ('src/labs/', 'src/book/')
 SETUP = '''#!/usr/bin/env bash
 # Gradescope runs this once, as root, when it builds the image.
 set -e

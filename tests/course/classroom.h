@@ -117,9 +117,11 @@ struct House {
                              read_file(entry.path().string()));
         for (const char* name : {"beside.cpp", "course.mk"})
             folder.write(std::string("src/course/") + name, "// nothing\n");
-        for (const std::string name : {"film", "app", "mesh", "check", "replay", "text"})
+        for (const std::string name :
+             {"film", "app", "mesh", "check", "replay", "show", "web", "text"})
             folder.write("src/" + name + "/nothing.h", "// " + name + "/nothing.h  1  nothing\n");
-        folder.write("src/keep/read_pfm.h", "// nothing\n");
+        for (const char* name : {"read_pfm.h", "pair.h"})
+            folder.write(std::string("src/keep/") + name, "// nothing\n");
         folder.write("src/world/numbers.h",
                      numbers_h(solved("1.1", twice_right), solved("1.2", square_right)));
         folder.write("src/path/cube.h", cube_h(solved("1.3", cube_right)));
