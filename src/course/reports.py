@@ -13,6 +13,9 @@ import re
 import time
 
 MOST_MESSAGES = 5
+# What a compiler says where a header is missing, which `make check` knows, too.
+OF_A_HEADER = re.compile(r"(member of|in namespace|template) [^ ]*std|std::.* (has not been declared|incomplete type)|#include <|the header <")
+ALONE = '; a region has only what its file includes'
 
 
 def plain(text, most=300):
@@ -29,10 +32,10 @@ def marked(text, most=300):
 def own_messages(said, region):
     """Errors of the compiler in the region's own lines, by the lines of the student's file."""
     kept = []
-    for line in said.split('\n'):
-        found = re.match(r'student/%s:(\d+):(?:\d+:)? (?:fatal )?error: (.*)$' % re.escape(region.exercise), line)
+    for part in re.split(r'\n(?=[^\n]*error: )', said):
+        found = re.match(r'student/%s:(\d+):(?:\d+:)? (?:fatal )?error: (.*)' % re.escape(region.exercise), part)
         if found and 1 <= int(found[1]) <= region.text.count('\n'):
-            kept.append(f'{region.file}:{region.line + int(found[1]) - 1}: {plain(found[2], 200)}')
+            kept.append(f'{region.file}:{region.line + int(found[1]) - 1}: {plain(found[2], 200)}' + (ALONE if OF_A_HEADER.search(part) else ''))
     return list(dict.fromkeys(kept))[:MOST_MESSAGES]
 
 

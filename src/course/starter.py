@@ -120,6 +120,12 @@ def rows(text, keep):
                    if line.startswith('#') or keep(re.split(r'[\t|]', line)[0].strip()))
 
 
+def frame(text):
+    """The sum, as of cksum(1), of what is outside of open regions, without marks and white space: `check` compares it."""
+    outside = re.sub(r'^[ \t]*// BEGIN .*?^[ \t]*// END [^\n]*', '', text, flags=re.M | re.S)
+    return subprocess.run(['cksum'], input=re.sub(r'\s', '', outside).encode(), stdout=subprocess.PIPE, check=True).stdout.decode().strip()
+
+
 def write_checks(plan, to):
     """tests/course: the kit, and answers, judges, exercises and known mistakes of the open weeks."""
     course = ROOT / 'tests/course'
@@ -132,6 +138,7 @@ def write_checks(plan, to):
     write(to / 'tests/course/starter.txt', f'Starter of week{"s" if len(plan.weeks) > 1 else ""} {" ".join(plan.weeks)}, Penumbra {commit or "of unknown commit"}.\n')
     write(to / 'tests/course/exercises.txt', rows((course / 'exercises.txt').read_text(), lambda n: n in numbers))
     write(to / 'tests/course/mistakes.txt', rows((course / 'mistakes.txt').read_text(), lambda n: n in numbers))
+    write(to / 'tests/course/frames.txt', ''.join(f'{f} {frame((to / "src" / f).read_text())}\n' for f in sorted({e.file for e in plan.open})))
     write(to / 'tests/oracle/oracle.h', (ROOT / 'tests/oracle/oracle.h').read_text())
     text = re.sub(r'\[bugs-found.md\].*?\n\n', '', (ROOT / 'tests/oracle/README.md').read_text(), flags=re.S)
     if '2' in plan.weeks:  # two examples sample spheres and triangles

@@ -7,5 +7,5 @@ int main(int argc, char** argv) {
     oracle::pictures = "";
     using namespace course;
     if (argc == 3) return show(practice(), argv[1], size_t(std::atoi(argv[2])));
-    return on_trial(practice(), practice());
+    return on_trial({}, practice());
 }

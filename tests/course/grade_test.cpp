@@ -296,9 +296,12 @@ TEST_CASE("compilers' words: only those about the student's lines, by the lines 
     for (int i = 0; i < 1000; ++i) flood += "int <b>=;\n";
     course.hand_in("flood", {{"1.1", flood}});
     course.hand_in("probing", {{"1.1", "inline double twice(double x) { return square; }\n"}});
+    course.hand_in("header", {{"1.1",
+                               "inline double twice(double x) {\n    std::mt19937 random;\n"
+                               "    return 2 * x;\n}\n"}});
     course.grade();
     CHECK(course.verdict("type", "1.1").line == "does not compile");
-    for (const std::string name : {"type", "brace", "flood", "probing"}) {
+    for (const std::string name : {"type", "brace", "flood", "probing", "header"}) {
         const std::string report = course.report(name);
         INFO(report);
         course.expect({{name, "1.1", "", -1, "not compiled"}});
@@ -307,6 +310,8 @@ TEST_CASE("compilers' words: only those about the student's lines, by the lines 
         if (name == "type")
             CHECK(report.find("src/world/numbers.h:9: 'y' was not declared in this scope\n") !=
                   report.npos);
+        const bool why = report.find("; a region has only what its file includes") != report.npos;
+        CHECK(why == (name == "header"));
     }
     CHECK(course.report("flood").find("<b>") == std::string::npos);
 }

@@ -113,8 +113,11 @@ void tree(Judge& j) {
     // Exactly; with a scale that is a power of two.
     const auto number = [&](const std::string& what, const Table& asked, double t,
                             double scale = 1) {
-        j.number(what, j.ask("nearest_hit", asked.numbers)[0] / scale, t, 0);
-        telling_limit(j);
+        const Out c = j.ask("nearest_hit", asked.numbers);
+        j.number(what, c[0] / scale, t, 0);
+        j.limit();
+        // With what was looked at: searches that go astray in other ways may have the same hit.
+        j.remember(row(c[0] / scale, Out(c.begin() + 1, c.end())));
     };
     // The left child's second leaf begins behind the hit in its first, the right leaf before it.
     Table three;

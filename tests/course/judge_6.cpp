@@ -9,7 +9,7 @@ using course::Judge, course::Out, course::Rows, course::Tally;
 
 namespace {
 
-constexpr size_t wrong[] = {5, 5, 6}, right = 3;  // published subjects of every exercise
+constexpr size_t wrong[] = {9, 7, 10}, right[] = {4, 7, 4};  // published subjects
 
 // Whether a right one passes in all of ten runs (2), in most or in few; each run is asked for
 // alone, as it may take its time.
@@ -35,33 +35,40 @@ std::string by_kind(const Out& of, size_t begin, size_t end, Is is) {
     return text;
 }
 
-// The published subjects are few, and may be called by their numbers; of hidden ones, their kinds.
-std::string missed(const Tally& t, const Out& of) {
-    std::string text = oracle::say("%zu of %zu found", t.found(), t.wrong);
-    if (t.found() == 0) return text + ": it never refuses any of them";
-    const std::string about = by_kind(of, 0, t.wrong, [&](size_t i) { return !t.is_found(i); });
-    if (!about.empty()) return text + ", but not " + about;
-    for (size_t i = 0; i < t.wrong; ++i)
-        if (!t.is_found(i)) text += oracle::say(", not number %zu", i + 1);
+// "number 3 (tmax), number 7 (...)": of published subjects these.
+template <class Is>
+std::string by_number(const Out& of, size_t begin, size_t end, Is is) {
+    std::string text;
+    for (size_t i = begin; i < end; ++i)
+        for (size_t kind = 0; is(i) && kind < course::kinds.size(); ++kind)
+            if (of.at(i) == double(kind))
+                text += oracle::say("%snumber %zu (%s)", text.empty() ? "" : ", ", i + 1,
+                                    course::kinds[kind].c_str());
     return text;
 }
 
+std::string missed(const Tally& t, const Out& of, bool published) {
+    const std::string text = oracle::say("%zu of %zu found", t.found(), t.wrong);
+    if (t.found() == 0) return text + ": it never refuses any of them";
+    auto out = [&](size_t i) { return !t.is_found(i); };
+    return text + ", but not " +
+           (published ? by_number(of, 0, t.wrong, out) : by_kind(of, 0, t.wrong, out));
+}
+
 // Whether right subjects are refused for what they are, or now and then, by chance.
-std::string refused(const Tally& t, const Out& of) {
+std::string refused(const Tally& t, const Out& of, bool published) {
     std::string text = oracle::say("%zu false alarms in %zu runs", t.alarms, t.right_runs);
     auto out = [&](size_t i) { return t.is_singled_out(i); };
+    const size_t end = t.refused.size();
     size_t n = 0;
-    std::string numbers;
-    for (size_t i = t.wrong; i < t.refused.size(); ++i)
-        if (out(i)) ++n, numbers += oracle::say(", number %zu", i + 1);
+    for (size_t i = t.wrong; i < end; ++i) n += out(i);
     if (t.alarms == 0) return text;
     if (t.alarms == t.right_runs) return text + ": whatever is right is refused";
     if (n == 0) return text + ", now and then: it refuses what chance alone brings";
-    const std::string about = by_kind(of, t.wrong, t.refused.size(), out);
     return text +
-           oracle::say("; %zu of %zu right subjects are refused for what they are", n,
-                       t.refused.size() - t.wrong) +
-           (about.empty() ? numbers : ", " + about);
+           oracle::say("; %zu of %zu right subjects are refused for what they are: ", n,
+                       end - t.wrong) +
+           (published ? by_number(of, t.wrong, end, out) : by_kind(of, t.wrong, end, out));
 }
 
 course::Judging judging(double exercise) {
@@ -69,9 +76,10 @@ course::Judging judging(double exercise) {
         j.credit = 0;
         const Out looks = j.probe("looks", Rows(Out{exercise})).numbers;
         const size_t first_right = wrong[size_t(exercise) - 1];
+        const bool published = j.ask("published", Out{exercise}).at(0) > 0;
         for (size_t i = 0; i < first_right; ++i)
             j.probe("practice", Rows(Out{exercise, double(i), 1}));
-        for (size_t i = 0; i < right; ++i)
+        for (size_t i = 0; i < right[size_t(exercise) - 1]; ++i)
             j.remember({passes(j, exercise, double(first_right + i))});
         j.probe_stub("asks", Rows(Out{exercise}));
         j.exact("the same seed gives the same run", looks.at(0) == 1,
@@ -83,8 +91,8 @@ course::Judging judging(double exercise) {
         const Out of = j.ask("kinds", Out{exercise});
         j.exact("a run takes 1 s of CPU at most, on average", t.in_time(),
                 oracle::say("%zu runs took %.3g s each", t.runs, t.seconds / double(t.runs)));
-        j.items.push_back({"right subjects pass", true, t.quiet(), refused(t, of)});
-        j.exact("wrong subjects are refused", t.found() == t.wrong, missed(t, of));
+        j.items.push_back({"right subjects pass", true, t.quiet(), refused(t, of, published)});
+        j.exact("wrong subjects are refused", t.found() == t.wrong, missed(t, of, published));
         j.credit = t.credit();
     };
 }

@@ -1,7 +1,7 @@
 // course/kinds.h  kinds of subjects of week 6, in the words of its sheet
 //
 // A subject's name is "KIND: DETAIL".  A report says of which kinds a test has missed some, or
-// always refuses one that is right; which they are stays hidden.
+// always refuses one that is right; which of the hidden ones they are is not said.
 #pragma once
 #include <string>
 #include <vector>

@@ -2,6 +2,8 @@
 // nothing else.
 #include "course/trial.h"
 
+#include <set>
+
 #include "course/hidden_subjects.h"
 #include "oracle/expect.h"
 
@@ -62,6 +64,26 @@ TEST_CASE("right intersectors meet the farthest point of a sphere, through its c
                 REQUIRE(came);
                 CHECK(std::abs(*came - t) <= 1e-3 * t);
             }
+}
+
+// What is graded must not be a kind that no student can see.
+TEST_CASE("of each kind of hidden subjects one is published, wrong or right as those are") {
+    auto kinds_of = [](const auto& side) {
+        std::set<int> kinds;
+        for (const auto& s : side) {
+            CAPTURE(s.name);
+            CHECK(kind_of(s.name) >= 0);
+            kinds.insert(kind_of(s.name));
+        }
+        return kinds;
+    };
+    auto expect_same = [&](const auto& hidden, const auto& published) {
+        CHECK(kinds_of(hidden.wrong) == kinds_of(published.wrong));
+        CHECK(kinds_of(hidden.right) == kinds_of(published.right));
+    };
+    expect_same(hidden_samplers(), practice_samplers());
+    expect_same(hidden_estimators(), practice_estimators());
+    expect_same(hidden_intersectors(), practice_intersectors());
 }
 
 // What is handed in meets float, so what is published must.

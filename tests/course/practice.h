@@ -1,4 +1,7 @@
 // course/practice.h  subjects to practise on in week 6: some are right, some are wrong
+//
+// Of every kind (kinds.h) by which tests are graded there is one: `make check` and the grader
+// differ in subjects, and not in what they ask for.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,7 +13,7 @@ namespace penumbra::course {
 
 template <class Subject>
 struct Named {
-    std::string name;  // what is wrong with it, or why it looks so
+    std::string name;  // "KIND: what is wrong with it, or why it looks so"
     Subject subject;
 };
 
@@ -35,16 +38,38 @@ inline Lineup<Sampler> practice_samplers() {
     constexpr double turn = 2 * std::numbers::pi;
     const auto right = [](double u, double v) { return about_z(bowl(u), turn * v); };
     auto scaled = [](double by) { return [by](vec3 w) { return by * bowl_pdf(w); }; };
-    return {{{"the density is half of what it ought to be", {right, scaled(0.5)}},
-             {"a gap: the azimuth goes to 6, and not to 2 pi",
+    // A lobe about an axis 30 degrees off z, so narrow that nothing of it is below the horizon.
+    const vec3 slanted{real(0.5), 0, real(std::sqrt(0.75))};
+    return {{{"a factor of the density: half of what it ought to be", {right, scaled(0.5)}},
+             {"pairs that cover a part alone: the azimuth goes to 6, and not to 2 pi",
               {[](double u, double v) { return about_z(bowl(u), 6 * v); }, bowl_pdf}},
-             {"the density is that of z, and forgets 1 / (2 pi)", {right, scaled(turn)}},
-             {"one direction in twenty is the pole",
+             {"a factor of the density: it is that of z, and forgets 1 / (2 pi)",
+              {right, scaled(turn)}},
+             {"the form of the density: one direction in twenty is the pole",
               {[](double u, double v) { return about_z(u > 0.95 ? 1 : bowl(u / 0.95), turn * v); },
                bowl_pdf}},
-             {"not a number in a corner of the square",
-              {[](double u, double v) { return about_z(bowl(u), turn * v * (v / v)); }, bowl_pdf}}},
-            {{"it begins with the other number, goes round the other way, and computes in float",
+             {"the borders of the square: not a number in a corner",
+              {[](double u, double v) { return about_z(bowl(u), turn * v * (v / v)); }, bowl_pdf}},
+             {"the borders of the square: near u = 1 the root of what rounding makes negative",
+              {[=](double u, double v) {
+                   return about_z(1 - std::sqrt(1 - u * (1 + 0x1p-22)), turn * v);
+               },
+               [](vec3 w) { return w.z > 0 ? (1 - double(w.z)) / std::numbers::pi : 0; }}},
+             {"the form of the density: up to 10 % off, in three sectors",
+              {right,
+               [](vec3 w) {
+                   return (1 + 0.1 * std::cos(3 * std::atan2(double(w.y), double(w.x)))) *
+                          bowl_pdf(w);
+               }}},
+             {"the horizon: the density is positive below it",
+              {right,
+               [](vec3 w) {
+                   return bowl_pdf({w.x, w.y, std::abs(w.z)});
+               }}},
+             {"lengths: directions of length 1.05",
+              {[=](double u, double v) { return real(1.05) * right(u, v); }, bowl_pdf}}},
+            {{"the rounding of float: it begins with the other number, goes round the other way, "
+              "and computes in float",
               {[](double u, double v) {
                    // Rounding takes the horizon to z = -4e-8.
                    const float angle = std::acos(float(bowl(v))), phi = float(-turn * u);
@@ -52,14 +77,22 @@ inline Lineup<Sampler> practice_samplers() {
                    return vec3{r * std::cos(phi), r * std::sin(phi), std::cos(angle)};
                },
                bowl_pdf}},
-             {"half of the pairs are rejected, and the density integrates to 1/2",
+             {"rejected pairs: half of them, and the density integrates to 1/2",
               {[=](double u, double v) -> std::optional<vec3> {
                    if (v > 0.5) return {};
                    return right(u, 2 * v);
                },
                scaled(0.5)}},
-             {"seven sheets: the azimuth goes round seven times",
-              {[](double u, double v) { return about_z(bowl(u), 7 * turn * v); }, bowl_pdf}}}};
+             {"another way: the cosine, in seven sheets: the azimuth goes round seven times",
+              {[](double u, double v) { return about_z(std::sqrt(u), 7 * turn * v); },
+               [](vec3 w) { return std::max(0.0, double(w.z)) / std::numbers::pi; }}},
+             {"another way: a narrow lobe about a slanted axis",
+              {[=](double u, double v) {
+                   return frame(slanted).to_world(about_z(std::pow(1 - u, 1 / 201.0), turn * v));
+               },
+               [=](vec3 w) {
+                   return 201 / turn * std::pow(std::max(0.0, double(dot(w, slanted))), 200);
+               }}}}};
 }
 
 // The square of the integral of e^x over [0,1], and the integral.
@@ -74,10 +107,11 @@ inline Lineup<Estimator> practice_estimators() {
     constexpr double e = std::numbers::e, integral = e - 1;
     auto square = [](uint64_t seed, int n) { return std::pow(mean_of_exp(seed, n), 2); };
     return {
-        {{"divided by n + 1",
+        {{"a bias of c / n: divided by n + 1",
           {[](uint64_t seed, int n) { return mean_of_exp(seed, n) * n / (n + 1); }, integral}},
-         {"the square of a mean is called unbiased", {square, integral * integral, true}},
-         {"numbers above 2.5 are cut off",
+         {"a bias of c / n: the square of a mean is called unbiased",
+          {square, integral * integral, true}},
+         {"the mean: numbers above 2.5 are cut off",
           {[](uint64_t seed, int n) {
                Rng rng{hash(seed, 2)};
                double sum = 0;
@@ -85,13 +119,27 @@ inline Lineup<Estimator> practice_estimators() {
                return sum / n;
            },
            integral}},
-         {"it never takes more than four samples",
+         {"noise that does not fall: it never takes more than four samples",
           {[](uint64_t seed, int n) { return mean_of_exp(seed, std::min(n, 4)); }, integral}},
-         {"consistent, with another limit",
+         {"the limit of a consistent one: 3 % off",
           {[=](uint64_t seed, int n) { return 1.03 * square(seed, n); }, integral * integral,
-           false}}},
-        {{"the square of a mean, consistent alone", {square, integral * integral, false}},
-         {"pairs of x and 1 - x",
+           false}},
+         {"noise that does not fall: two fifths of an estimate are its first number",
+          {[](uint64_t seed, int n) {
+               return 0.4 * mean_of_exp(seed, 1) + 0.6 * mean_of_exp(seed, n);
+           },
+           integral}},
+         {"numbers that are not finite: 0 / 0 for one estimate in 200",
+          {[](uint64_t seed, int n) {
+               Rng rng{hash(seed, 4)};
+               const double x = std::floor(200 * rng.uniform());
+               return x / x * mean_of_exp(seed, n);
+           },
+           integral}}},
+        {{"a declared bias: the square of a mean", {square, integral * integral, false}},
+         {"a declared bias: 5 / n is added",
+          {[](uint64_t seed, int n) { return mean_of_exp(seed, n) + 5.0 / n; }, integral, false}},
+         {"another way: pairs of x and 1 - x",
           {[](uint64_t seed, int n) {
                Rng rng{hash(seed, 3)};
                double sum = 0;
@@ -103,7 +151,25 @@ inline Lineup<Estimator> practice_estimators() {
            },
            integral}},
          {"no noise at all: its samples are all alike",
-          {[](uint64_t seed, int n) { return integral + 0 * double(seed % 2) * n; }, integral}}}};
+          {[](uint64_t seed, int n) { return integral + 0 * double(seed % 2) * n; }, integral}},
+         {"the rounding of float: sum and samples",
+          {[](uint64_t seed, int n) {
+               Rng rng{hash(seed, 5)};
+               float sum = 0;
+               for (int i = 0; i < n; ++i) sum += std::exp(float(rng.uniform()));
+               return double(sum / float(n));
+           },
+           integral}},
+         {"less noise than random numbers have: a number in each n-th of [0,1)",
+          {[](uint64_t seed, int n) {
+               Rng rng{hash(seed, 6)};
+               double sum = 0;
+               for (int i = 0; i < n; ++i) sum += std::exp((i + rng.uniform()) / n);
+               return sum / n;
+           },
+           integral}},
+         {"a truth of 0: numbers have both signs",
+          {[](uint64_t seed, int n) { return mean_of_exp(seed, n) - integral; }, 0}}}};
 }
 
 // The distance from p to a triangle: to its plane where p is above it, or else to an edge.
@@ -140,39 +206,73 @@ inline std::optional<double> march(const Body& s, const Beam& beam, double tmax)
 
 inline Lineup<Intersector> practice_intersectors() {
     auto sound = [](const Body& s, const Beam& beam) { return march(s, beam, beam.tmax); };
-    return {{{"it knows no tmax",
-              {[](const Body& s, const Beam& beam) { return march(s, beam, 1e6); }}},
-             {"spheres are 3 % too large", {[=](Body s, const Beam& beam) {
-                  s.r *= 1.03;
-                  return sound(s, beam);
-              }}},
-             {"triangles are met from one side alone", {[=](const Body& s, const Beam& beam) {
-                  const bool back = dot(beam.d, cross(s.b - s.a, s.c - s.a)) > 0;
-                  return s.r == 0 && back ? std::nullopt : sound(s, beam);
-              }}},
-             {"from within, spheres are not met", {[=](const Body& s, const Beam& beam) {
-                  const bool within = s.r > 0 && length(beam.o - s.a) < s.r;
-                  return within ? std::nullopt : sound(s, beam);
-              }}},
-             {"what is nearer than 1/100 is taken for the surface that the beam left",
-              {[=](const Body& s, const Beam& beam) {
-                  const auto t = sound(s, beam);
-                  return t && *t < 0.01 ? std::nullopt : t;
-              }}},
-             {"distances are 1 % too short", {[=](const Body& s, const Beam& beam) {
-                  const auto t = sound(s, beam);
-                  return t ? std::optional(*t * 0.99) : t;
-              }}}},
-            {{"it goes there in steps", {sound}},
-             {"in units of its own, and in float", {[=](Body s, Beam beam) {
-                  for (vec3* p : {&s.a, &s.b, &s.c, &beam.o}) *p = real(1000) * *p;
-                  s.r *= 1000, beam.tmax *= 1000;
-                  const auto t = sound(s, beam);
-                  return t ? std::optional(double(float(*t / 1000))) : t;
-              }}},
-             {"corners in another order", {[=](const Body& s, const Beam& beam) {
-                  return sound(s.r > 0 ? s : Body{s.c, s.b, s.a, 0}, beam);
-              }}}}};
+    // Its corners moved towards its centre, by this part of the way.
+    auto smaller = [](Body s, double by) {
+        const vec3 centre = (s.a + s.b + s.c) / 3;
+        if (s.r == 0)
+            for (vec3* p : {&s.a, &s.b, &s.c}) *p = *p + real(by) * (centre - *p);
+        return s;
+    };
+    return {
+        {{"tmax: it knows none",
+          {[](const Body& s, const Beam& beam) { return march(s, beam, 1e6); }}},
+         {"the radius: spheres are 3 % too large", {[=](Body s, const Beam& beam) {
+              s.r *= 1.03;
+              return sound(s, beam);
+          }}},
+         {"sides of a triangle: they are met from one alone",
+          {[=](const Body& s, const Beam& beam) {
+              const bool back = dot(beam.d, cross(s.b - s.a, s.c - s.a)) > 0;
+              return s.r == 0 && back ? std::nullopt : sound(s, beam);
+          }}},
+         {"roots of a sphere: from within, spheres are not met",
+          {[=](const Body& s, const Beam& beam) {
+              const bool within = s.r > 0 && length(beam.o - s.a) < s.r;
+              return within ? std::nullopt : sound(s, beam);
+          }}},
+         {"small bodies and distances: nothing is nearer than 1/100",
+          {[=](const Body& s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              return t && *t < 0.01 ? std::nullopt : t;
+          }}},
+         {"the distance: 1 % too short", {[=](const Body& s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              return t ? std::optional(*t * 0.99) : t;
+          }}},
+         {"edges of a triangle: triangles end too early, at a tenth of the way to the centre",
+          {[=](const Body& s, const Beam& beam) { return sound(smaller(s, 0.1), beam); }}},
+         {"edges of a triangle: they reach beyond one edge", {[=](const Body& s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              return t || s.r > 0 ? t : sound({s.a, s.b, s.a + s.b - s.c}, beam);
+          }}},
+         {"what lies behind: triangles behind the eye are met",
+          {[=](const Body& s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              if (t || s.r > 0) return t;
+              const auto behind = march(s, {beam.o, -beam.d}, 1e6);
+              return behind ? std::optional(-*behind) : t;
+          }}},
+         {"the radius: beams that miss a sphere by 5 % or less graze it",
+          {[=](Body s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              if (t || s.r == 0) return t;
+              s.r *= 1.05;
+              return sound(s, beam);
+          }}}},
+        {{"another way: it goes there in steps", {sound}},
+         {"the rounding of float: in units of its own, and in float", {[=](Body s, Beam beam) {
+              auto in_float = [](real x) { return real(float(1000 * x)); };
+              for (vec3* p : {&s.a, &s.b, &s.c, &beam.o})
+                  *p = {in_float(p->x), in_float(p->y), in_float(p->z)};
+              s.r = in_float(s.r), beam.tmax *= 1000;
+              const auto t = sound(s, beam);
+              return t ? std::optional(double(float(*t / 1000))) : t;
+          }}},
+         {"another way: corners in another order", {[=](const Body& s, const Beam& beam) {
+              return sound(s.r > 0 ? s : Body{s.c, s.b, s.a, 0}, beam);
+          }}},
+         {"another way: edges do not belong to a triangle",
+          {[=](const Body& s, const Beam& beam) { return sound(smaller(s, 1e-6), beam); }}}}};
 }
 
 }  // namespace penumbra::course

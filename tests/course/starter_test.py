@@ -525,15 +525,126 @@ def test_a_picture_waits_or_is_far_off():
 def test_it_is_said_why_a_region_has_no_header_of_its_own():
     why = 'a region has only what its file includes'
     with Checked({'1.1': 'wrong', '1.2': 'right'}, '3') as folder:
-        for error, said in (("no member named 'mt19937' in namespace 'std'", f'; {why}'), ("'mt19937' is not a member of 'std'", f'; {why}'),
-                            ("'y' was not declared in this scope", '')):
-            starter.write(folder.top / 'make', f'#!/bin/sh\necho "src/a.h:2:5: error: {error}"\nexit 1\n', True)
-            came = folder.check('1.1', make=str(folder.top / 'make'), suffix='-debug')[0]
-            expect(came == f'1.1 does not compile: src/a.h:2:5: error: {error}{said}\n', came)
+        for error, said in (("error: no member named 'mt19937' in namespace 'std'", f'; {why}'), ("error: 'mt19937' is not a member of 'std'", f'; {why}'),
+                            ('error: \u2018mt19937\u2019 is not a member of \u2018std\u2019', f'; {why}'), ("error: 'std::chrono' has not been declared", f'; {why}'),
+                            ("error: variable 'std::stringstream s' has initializer but incomplete type", f'; {why}'),
+                            ("error: implicit instantiation of undefined template 'std::array<int, 3>'", f'; {why}'),
+                            ("error: 'printf' was not declared in this scope\nsrc/a.h:1:1: note: 'printf' is defined in header '<cstdio>'; did you forget to "
+                             "'#include <cstdio>'?", f'; {why}'),
+                            ("error: 'y' was not declared in this scope", ''),
+                            ("error: 'y' was not declared in this scope\nsrc/a.h:3:5: error: 'mt19937' is not a member of 'std'", '')):
+            starter.write(folder.top / 'make', f'#!/bin/sh\ncat <<END\nsrc/a.h:2:5: {error}\nEND\nexit 1\n', True)
+            came = folder.check('1.1', make=str(folder.top / 'make'), suffix='-debug')[0].split('\n')[0]
+            expect(came == f'1.1 does not compile: src/a.h:2:5: {error}'.split('\n')[0] + said, came)
         for word, said in (('#', f'; {why}'), ('asm', '')):
             (folder.top / 'src/a.h').write_text(f'// BEGIN 1.1\n{word}\n// END 1.1\n')
             came = folder.check('1.1')[0]
             expect(came == f'1.1 cannot be handed in: src/a.h: line 2: {word} is refused{said}\n', came)
+
+
+def test_it_is_said_what_was_changed_outside_of_the_marks():
+    given = '// a.h\nint a;\n// BEGIN 1.1  it\nreturn 1;\n// END 1.1\nint b;\n    // BEGIN 1.2\n    // END 1.2\n'
+    with Checked({'1.1': 'right', '1.2': 'wrong'}, '3') as folder:
+        starter.write(folder.top / 'tests/course/frames.txt', f'a.h {starter.frame(given)}\n')
+        for text, changed in ((given, False), (given.replace('return 1;', 'int c;\nreturn c;'), False), (given.replace('\n', '\r\n'), False),
+                              (given.replace('int b;', '  int\n b ;\n\n'), False), (given.replace('int a;', '#include <random>\nint a;'), True),
+                              (given.replace('int b;', 'int b, c;'), True), (given + 'int c;', True)):
+            (folder.top / 'src/a.h').write_bytes(text.encode())
+            came = folder.check('1.1')[0]
+            expect(('src/a.h was changed outside of the marks' in came) == changed, text, came)
+    plan = starter.Plan('1-2')
+    with tempfile.TemporaryDirectory() as folder:
+        to = pathlib.Path(folder)
+        starter.write_sources(plan, to)
+        starter.write_checks(plan, to)
+        told = dict(line.split(' ', 1) for line in (to / 'tests/course/frames.txt').read_text().splitlines())
+        expect(told == {e.file: starter.frame((to / f'src/{e.file}').read_text()) for e in plan.open} and len(set(told.values())) == len(told) > 3, told)
+
+
+# Regions of one line: words, literals and comments that a grader may refuse or not.
+LINES = r"""
+int a__b;
+int _a, a_b;
+int _B;
+[[gnu::pure]] void f();
+[[clang::x]] int y;
+import x;
+asm("x");
+int important, gnus, R; R + 1;
+// # asm __ \ here
+/* # asm __ */ int x;
+/* # */ # /* */
+int x; // /*
+/*
+/* //
+*/
+#define a
+%:define a
+??=define a
+int hash = a##b;
+x = a /* b */ * c / d;
+a.b->c %= d ? e : f;
+puts("#");
+puts("%:");
+puts("a // b");
+puts("/*");
+puts("a__b asm");
+puts("a ?? b");
+puts("a\"#");
+puts("a\"");
+puts("\\"); puts("b"); // "#"
+puts("a" "#");
+puts("
+puts("'"); puts("''"); puts('"');
+puts(R"(a)");
+puts(u8"a");
+char c = '#';
+char c = '"'; // "
+char c = '\\'; int x;
+'
+''
+'ab'
+int n = 1'000'000, hex = 0xFF'FF;
+double d = 1.5e-3, h = 0x1p-24, f = .5f;
+int a = 1; \
+int a = \ b;
+// a \
+int größe = 2;
+// BEGIN 1.2
+// END 1.2
+//END 1.1
+// END 1.10
+// BEGIN 1.1.1
+// BEGIN the end
+int x; // END 1.1
+""".split('\n') + ['a\n#\nb', '/* a\n# */', '/* a\n# */ #', '// /*\n#', '/* /* \n */ #', '"a\nb"', 'int x;\f', 'int x;\x01', 'int x;\r', 'x\n' * 32767,
+                   'x\n' * 32768]
+
+
+def cannot_be_graded(text):
+    """Whether the grader refuses the region of 1.1 in a file."""
+    try:
+        region.without_comments(region.region(text.encode(), '1.1', 'src/a.h'))
+        return False
+    except region.Problem:
+        return True
+
+
+def test_whatever_a_grader_refuses_cannot_be_handed_in_and_nothing_else():
+    files = [f'// BEGIN 1.1\n{lines}\n// END 1.1\n' for lines in LINES]
+    bad = sum(map(cannot_be_graded, files))
+    expect(20 < bad < len(files) - 20, bad, len(files))
+    files += ['', '// BEGIN 1.1\n', '// END 1.1\n// BEGIN 1.1\n', '//  BEGIN\t1.1: a ray\n\n  // END 1.1 .\n', '#\n// BEGIN 1.1\n// END 1.1\n#\n',
+              '// BEGIN 1.1\n// END 1.1\n// BEGIN 1.1\n// END 1.1\n', '// BEGIN 1.10\n// END 1.10\n', 'x // BEGIN 1.1\n// END 1.1\n']
+    check = (regions.ROOT / 'tests/course/check').read_text()
+    unfit = check[check.index('\nunfit()'):check.index('\n}\n', check.index('\nunfit()')) + 3]
+    with tempfile.TemporaryDirectory() as folder:
+        for i, text in enumerate(files):
+            starter.write(pathlib.Path(folder) / f'src/{i}', text)
+        loop = f'field() {{ echo $i; }}; for ((i = 0; i < {len(files)}; ++i)); do echo $(unfit 1.1); done'
+        done = subprocess.run(['bash', '-c', 'alone=; ' + unfit + loop], cwd=folder, capture_output=True, text=True, check=True)
+    for text, said in zip(files, done.stdout.split('\n')):
+        expect((said != '') == cannot_be_graded(text), text[:200], said)
 
 
 def test_a_drawing_is_that_of_the_exercise_and_says_what_it_shows():

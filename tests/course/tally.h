@@ -10,7 +10,10 @@ namespace penumbra::course {
 // Seconds of CPU that a run may take on average: the oracle's check of a density takes 0.03 on an
 // idle machine.
 inline constexpr double limit = 1;
-inline constexpr size_t runs_of_wrong = 3, runs_of_right = 23;
+inline constexpr size_t runs_of_wrong = 3;
+// A test must not be lucky with few right subjects: they have so many runs in all, or some more.
+inline constexpr size_t least_runs = 161;
+inline size_t runs_of_right(size_t right) { return (least_runs + right - 1) / right; }
 
 struct Tally {
     std::vector<size_t> refused;  // runs of each subject, wrong ones first
@@ -32,7 +35,8 @@ struct Tally {
     }
     // A right one that is refused always, or more often than chance makes of the others' share.
     bool is_singled_out(size_t subject) const {
-        const double mine = double(refused[subject]), all = double(runs_of_right);
+        const double mine = double(refused[subject]);
+        const double all = double(runs_of_right(refused.size() - wrong));
         const double others = (double(alarms) - mine) / std::max(1.0, double(right_runs) - all);
         return mine == all || oracle::p_at_least(mine, all, std::max(1e-3, others)) < 1e-3;
     }
@@ -52,7 +56,7 @@ Tally tally(Judge& judge, double exercise) {
     auto fresh = [&] { return double(judge.random.bits() >> 11); };
     std::vector<size_t> runs;
     for (size_t i = 0; i < all; ++i)
-        runs.insert(runs.end(), i < wrong ? runs_of_wrong : runs_of_right, i);
+        runs.insert(runs.end(), i < wrong ? runs_of_wrong : runs_of_right(all - wrong), i);
     Tally t;
     t.refused.resize(all), t.wrong = wrong;
     const double budget = limit * double(runs.size());

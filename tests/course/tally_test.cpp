@@ -107,6 +107,17 @@ TEST_CASE("a right subject is singled out if it is refused more often than the o
     }
 }
 
+TEST_CASE("right subjects have as many runs if they are few") {
+    for (size_t right : {1, 3, 6, 7}) {
+        auto j = played([](size_t subject) { return subject < 12; });
+        j.right = right;
+        const Tally t = tally(j, 1);
+        CAPTURE(right);
+        CHECK(t.right_runs >= 161);
+        CHECK(t.right_runs < 161 + right);
+    }
+}
+
 TEST_CASE("when time is up no more is asked") {
     auto j = played([](size_t subject) { return subject < 12; });
     j.seconds = 10;

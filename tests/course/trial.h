@@ -57,7 +57,7 @@ Trial trial(const Lineup<Subject>& lineup, bool test(const Subject&, uint64_t),
 
 // Samples and densities, and many of them.
 inline Out looks_of_samplers(uint64_t seed) {
-    const Sampler right = practice_samplers().right.back().subject;  // in double
+    const Sampler right = practice_samplers().right[2].subject;  // in double
     Seen seen;
     size_t asked = 0;
     sampler_passes({[&](double u, double v) {
@@ -118,8 +118,10 @@ inline std::vector<Trial> practice() {
 
 inline double seconds_of_cpu() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-// The answers: trials[e] is that of exercise 6.e.  `practice` are those of the published subjects.
-inline int on_trial(const std::vector<Trial>& trials, const std::vector<Trial>& practice) {
+// The answers: trials[e] is that of exercise 6.e.  `practice` are those of the published subjects;
+// without trials of hidden ones they are those that count.
+inline int on_trial(const std::vector<Trial>& hidden, const std::vector<Trial>& practice) {
+    const std::vector<Trial>& trials = hidden.empty() ? practice : hidden;
     auto run = [](const Trial& t, size_t index, double seed) {
         const double begun = seconds_of_cpu();
         const bool passes = t.passes(index, uint64_t(seed));
@@ -134,6 +136,8 @@ inline int on_trial(const std::vector<Trial>& trials, const std::vector<Trial>& 
              return Out{double(t.wrong), double(t.right)};
          }},
         {"kinds", 1, [=](In x) { return at(trials, x[0]).kinds; }},
+        // Whether subjects are published, so that they may be called by their numbers.
+        {"published", 1, [=](In) { return Out{double(hidden.empty())}; }},
         // Exercise: a number that follows from all that the test asks.
         {"asks", 1, [=](In x) { return at(practice, x[0]).looks(1)[0]; }},
         // Exercise, key, place, seed: whether the subject at this place passes, and its seconds.
