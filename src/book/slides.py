@@ -215,7 +215,7 @@ def main():
         (folder / f'{session.key}.html').write_text(page_of(session, deck_of(session, drawn)))
         links += f'<li><a href="{session.key}.html">{session.key} · {session.title}</a></li>\n'
     (folder / 'index.html').write_text(f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>Slides</title><style>body {{ font: 1.1rem/1.6 system-ui, sans-serif; margin: 2rem auto; max-width: 40rem }}</style>\n'
-                                       f'<h1>Twelve sessions</h1><ul>\n{links}</ul>\n'
+                                       f'<h1>Sessions</h1><ul>\n{links}</ul>\n'
                                        '<p>Arrows, space, a click or a finger: next and last. p: notes in a second window. n: notes below. f: full screen. Print: each slide with its notes.</p>\n')
     print(f'{folder}/index.html: {links.count("<li>")} decks')
 

@@ -54,9 +54,11 @@ def pack(words):
     """Everything, with one seed for all submissions."""
     seed = secrets.randbelow(1 << 62) if words.seed is None else words.seed
     weeks = grade.Plan(words.weeks or grade.weekly()).weeks
-    lines = pathlib.Path(words.board).read_text().splitlines() if words.board else []
     try:
+        lines = pathlib.Path(words.board).read_text().splitlines() if words.board else []
         board = {email.strip().lower(): float(error) for email, error in (line.split(',') for line in lines if line.strip())}
+    except OSError as error:
+        raise Broken(str(error)) from None
     except ValueError as error:
         raise Broken(f'{words.board}: each line is an email, a comma and a number: {error}') from None
     settings = {'weeks': ','.join(weeks), 'seed': seed, 'visibility': words.visibility, 'flags': os.environ['FLAGS'], 'board': board}
@@ -72,7 +74,7 @@ def pack(words):
             name = str(path.relative_to(ROOT))
             if path.is_file() and not name.startswith(UNUSED) and '__pycache__' not in name:
                 add(f'penumbra/{name}', path.read_bytes())
-    print(f'{words.file}: week{"s" if len(weeks) > 1 else ""} {" ".join(weeks)}, {os.path.getsize(words.file) >> 10} kB')
+    print(f'{words.file}: week{"s" if len(weeks) > 1 else ""} {" ".join(weeks)}, {os.path.getsize(words.file) >> 10} kB, SEED={seed}')
 
 
 def settled():

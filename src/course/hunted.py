@@ -2,7 +2,7 @@
 """hunted.py FOLDER/N FILE
 
 FOLDER/N is a copy that plant.py made, FILE the tests/course/hunt.cpp that was handed in.  The test is
-compiled and run in bubblewrap: in the copy, and in one without the bug.  Prints what each part of the
+compiled and run in a sandbox: in the copy, and in one without the bug.  Prints what each part of the
 answer is worth: 1 for the file, 1 for the line, within two lines of what is wrong, 2 for red with the bug
 where it is green without it.
 """
@@ -85,12 +85,14 @@ def main():
         raise SystemExit(f'hunted: there is no {words.copy}.key')
     if words.hunt.is_symlink() or not words.hunt.is_file() or words.hunt.stat().st_size > LARGEST:
         raise SystemExit(f'hunted: {words.hunt} is no file of at most {LARGEST >> 10} kB')
-    sandbox.demand()
+    sandbox.demand(os.environ.get('SANDBOX', ''))
     sandbox.closed([regions.ROOT])
     parts = verdict(top, words.hunt.read_text(errors='replace'))
     print(f'{sum(p for p, _, _ in parts)} of {sum(of for _, of, _ in parts)} points')
     for points, of, what in parts:
         print(f'  {points} of {of}  {what}')
+    if sandbox.told():
+        print(sandbox.told())
     return 0 if all(points == of for points, of, _ in parts) else 1
 
 

@@ -276,9 +276,19 @@ def confining(*words):
     return [sys.executable, '-IS', os.path.abspath(__file__), *map(str, words)]
 
 
+def own_user():
+    """A number that no other process has; where so high ones are not mapped, one of 4336 that are."""
+    user = (1 << 30) + os.getpid()
+    with open('/proc/self/uid_map', encoding='ascii') as ranges:
+        for first, _, count in (map(int, line.split()) for line in ranges):
+            if first <= user < first + count:
+                return user
+    return 61184 + os.getpid() % 4336
+
+
 def confine(what, folder, out, cpu, memory, output, *command):
     """Becomes the command, in the folder, as a user of its own; what runs has the folder as its root directory."""
-    user = 61184 + os.getpid() % 4336  # a number that systemd keeps for users who come and go
+    user = own_user()
     running = what == 'run'
     program = command[0] if running else shutil.which(command[0], path='/usr/bin')
     environ = {} if running else {'PATH': '/usr/bin', 'LC_ALL': 'C', 'TMPDIR': out}

@@ -187,7 +187,7 @@ def write_rest(plan, to):
           '    make penumbra DEBUG=1    # build/penumbra-debug, for a debugger; make check EX=%s DEBUG=1\n'
           '    build/penumbra --pixel 100,60 scenes/cornell36.scene    # a pixel is wrong? every number of one of its paths\n'
           '    build/penumbra --show scenes/cornell36.scene    # out/cornell36.html shows the picture while it renders\n'
-          '    make web             # your renderer in a browser, with every step of its paths: build/web/playground.html\n\n'
+          '    make web             # (Debian, Ubuntu) your renderer in a browser, with every step of its paths: build/web/playground.html\n\n'
           % (plan.open[0].number, plan.weeks[0], plan.open[0].number) +
           'You need make, g++ 12 or clang++ 14, and stb (Debian, Ubuntu: `libstb-dev`); see *Setting up* for other systems, and for editors:\n'
           'clangd and Visual Studio Code know this folder, and `.devcontainer` has all in a container.\n'

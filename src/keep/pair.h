@@ -287,7 +287,7 @@ class ImagePair extends HTMLElement {
         "?": () => this.find("help").showModal(),
     };
     press(event) {
-        if (event.target.closest("input, select, button, summary, dialog") || event.ctrlKey) return;
+        if (event.target.closest("input, select, button, summary, dialog") || event.ctrlKey || event.altKey || event.metaKey) return;
         const arrow = ["ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown"].indexOf(event.key);
         const far = (event.shiftKey ? 10 : 1) * (arrow < 2 ? -1 : 1);
         if ((arrow >= 0 || event.key === " ") && event.target !== this.stage) return;  // these scroll

@@ -182,7 +182,7 @@ inline void write_page(const std::vector<Study>& studies, const std::string& com
     write_file(folder + "/trade.html", page.replace(page.find(place), place.size(), pair_viewer));
     for (const Study& s : studies) {
         std::string images;
-        for (const Shot& shot : s.shots) images += "\"" + base64(shot.image) + "\",\n";
+        for (const Shot& shot : s.shots) images.append("\"").append(base64(shot.image)).append("\",\n");
         write_file(folder + "/" + s.scene + ".js",
                    text("pixels(%s, [\n%s]);\n", json::string(s.scene), images));
     }

@@ -64,7 +64,7 @@ public:
 
     OptionTable rows() {
         const char* help =
-            "write the PNG every second while it renders, and beside it NAME.html, which shows it";
+            "write the PNG every second at most while it renders, and beside it NAME.html, which shows it";
         return in_group("Output", {{"--show", "", help, "", [this](Text) { wanted_ = true; }}});
     }
 
@@ -77,9 +77,13 @@ public:
         if (png == outputs.end()) throw UserError("--show: needs -o FILE.png");
         const std::string page = png->substr(0, png->size() - 3) + "html";
         const std::string_view first_line = show_page.substr(0, show_page.find('\n'));
-        for (const std::string& path : {page, page + ".js"}) check_writable(path);
-        if (std::filesystem::exists(page) && !read_file(page).starts_with(first_line))
-            throw UserError(page + ": --show would replace a page that is not its own");
+        for (const auto& [path, first] :
+             {std::pair{page, first_line}, std::pair{page + ".js", std::string_view("now(")}}) {
+            check_writable(path);
+            if (path == o.stats || path == o.keep ||
+                (std::filesystem::exists(path) && !read_file(path).starts_with(first)))
+                throw UserError(path + ": --show would replace a page that is not its own");
+        }
         png_ = *png, page_ = page;
         tell_page("rendering", o.scene);
         write_file(page, show_page);

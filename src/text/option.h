@@ -259,7 +259,7 @@ inline std::string option_lines(const OptionTable& table) {
         if (std::ranges::count(groups, r.group) == 0) groups.push_back(r.group);
     std::string page;
     for (const Text group : groups) {
-        if (!group.empty()) page += (page.empty() ? "" : "\n") + std::string(group) + ":\n";
+        if (!group.empty()) page.append(page.empty() ? "" : "\n").append(group).append(":\n");
         for (const Option& r : table) {
             if (r.group != group) continue;
             std::string line = "  " + usage_of(r) + " ";

@@ -63,7 +63,7 @@ class Renderer {
     // A path; at each vertex also what it adds to L, by its emission and by its light sample, and L so far.
     path(x, y, i = 0, set = 0) {
         this.calls.path(x, y, i, set);
-        const times = (a, b) => a.map((value, k) => value * (b[k] ?? b));
+        const times = (a, b) => a.map((value, k) => value * (b === null ? NaN : b[k] ?? b));
         let L = [0, 0, 0];
         for (const v of this.answer.vertices) {
             v.emitted = v.emission && times(times(v.throughput, v.emission), v.weight);

@@ -1,4 +1,4 @@
-// course/grade_user_walls_test.cpp  where no namespaces can be made: files, network, processes, solutions
+// course/grade_user_walls_test.cpp  without namespaces: files, network, processes, solutions
 #include <doctest/doctest.h>
 
 #include "course/attacks.h"

@@ -1,4 +1,4 @@
-// course/starter_test.cpp  starters, later ones in a student's folder, what editors get, the book and slides: tests written in Python
+// course/starter_test.cpp  starters, updates, editors, the book and slides: tests written in Python
 #include <doctest/doctest.h>
 
 #include "course/python.h"

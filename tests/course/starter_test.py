@@ -193,7 +193,7 @@ def test_no_sampler_beside_it_shows_how_4_3_goes():
 def test_a_starter_has_what_its_weeks_need_and_no_more():
     with Made() as made:
         folders = sorted(p.name for p in (made.folder / 'src').iterdir())
-        expect(folders == ['app', 'base', 'check', 'course', 'film', 'keep', 'mesh', 'path', 'replay', 'text', 'web', 'world'], folders)
+        expect(folders == ['app', 'base', 'check', 'course', 'film', 'keep', 'mesh', 'path', 'replay', 'show', 'text', 'web', 'world'], folders)
         names = sorted(p.name for p in (made.folder / 'tests/course').iterdir())
         expect(not [n for n in names if n.endswith('_test.cpp') or n.endswith('.py') or 'hidden' in n], names)
         expect([n for n in names if n.startswith('judge_')] ==
@@ -205,7 +205,7 @@ def test_a_starter_has_what_its_weeks_need_and_no_more():
         questions = (made.folder / 'tests/course/questions.txt').read_text().splitlines()
         expect([q[0] for q in questions] == ['#', *'222333'], questions)
         told = (made.folder / 'tests/course/starter.txt').read_text()
-        expect(re.fullmatch(r'Starter of weeks 2 3, Penumbra \S+\.\n', told), told)
+        expect(re.fullmatch(r'Starter of weeks 2 3, Penumbra .+\.\n', told), told)
         for name in ('Dockerfile', '.github/workflows/check.yml', '.clang-format', 'sheets/systems.md', 'tests/course/update',
                      'tests/course/picture', 'tests/course/report'):
             expect((made.folder / name).exists(), f'no {name}')
@@ -226,7 +226,7 @@ def test_all_that_a_starter_includes_is_there():
 
 
 def test_the_judge_starts_programs_by_what_posix_has():
-    if 'Free Software Foundation' not in subprocess.run(['g++', '--version'], capture_output=True, text=True).stdout:
+    if not shutil.which('g++') or 'Free Software Foundation' not in subprocess.run(['g++', '--version'], capture_output=True, text=True).stdout:
         return print('not tested: g++ is not that of GNU')
     with Made() as made:
         starter.write(made.folder / 'one.cpp', '#include "course/program.h"\n')

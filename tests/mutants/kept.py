@@ -9,7 +9,7 @@ from pathlib import Path
 from mutants import ROOT, source
 
 PATH = ROOT / 'build/mutants.verdicts'
-PROJECT = 'src tests scenes reference CMakeLists.txt Makefile README.md LICENSE .clang-format'.split()
+PROJECT = 'src tests scenes reference CMakeLists.txt Makefile README.md LICENSE .clang-format compile_flags.txt .vscode .devcontainer'.split()
 SEES_MORE = re.compile(r'popen|system\(|exec[lv]|"(src|tests|scenes|reference|\.\.?)/')
 
 

@@ -161,6 +161,12 @@ TEST_CASE("a page needs a PNG, and replaces nobody's file") {
           room.folder / "a.html" + ": --show would replace a page that is not its own");
     CHECK(room.folder.read("a.html") == "<!DOCTYPE html>mine");
     CHECK(room.folder.files() == 1);
+    room.folder.write("c.html.js", "mine");
+    CHECK(refused({room.folder / "c.png"}) ==
+          room.folder / "c.html.js" + ": --show would replace a page that is not its own");
+    room.o.stats = room.folder / "d.html";
+    CHECK(refused({room.folder / "d.png"}) ==
+          room.o.stats + ": --show would replace a page that is not its own");
     CHECK(refused({room.folder / "no/a.png"}).starts_with(room.folder / "no/a.html: cannot write"));
     fs::create_directory(room.folder.path / "b.html.js");
     CHECK(refused({room.folder / "b.png"}) == room.folder / "b.html.js: is a directory");

@@ -49,7 +49,8 @@ class House:
         self.temporary = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(self.temporary.name)
         self.write('src/base/x.h', SOURCE)
-        for name in ('scenes/a.scene', 'reference/a.md', 'CMakeLists.txt', 'Makefile', 'README.md', 'LICENSE', '.clang-format', 'tests/std.h', 'tests/main.cpp'):
+        for name in ('scenes/a.scene', 'reference/a.md', 'CMakeLists.txt', 'Makefile', 'README.md', 'LICENSE', '.clang-format',
+                     'compile_flags.txt', '.vscode/tasks.json', '.devcontainer/devcontainer.json', 'tests/std.h', 'tests/main.cpp'):
             self.write(name, '')
         self.write('tests/base/x_test.cpp', '#include "base/x.h"\n#include "base/y.h"\n')
         self.write('src/base/y.h', '')
