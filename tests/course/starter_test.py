@@ -246,7 +246,7 @@ NEWER = {r'\bsed (-\w+ )*-i': 'sed -i s/a/b/ x', r'\bsed .*s(.).*\1.*\\n.*\1': "
          r'\bsort -\w*V|\bxargs -\w*r|-printf|\bbase64 -w|\bcp -\w*[alrdu]': 'sort -V',
          r'\b(tac|seq|timeout|nproc|md5sum|sha256sum|shuf|setsid|free|getconf) (?!2>)': 'timeout 1 x',
          r'\b(gensub|strftime|systime|asorti?|PROCINFO|BEGINFILE|ENDFILE)\b': 'gensub(/a/, "b", 1)',
-         r'^\.ONESHELL|^[\w ]+!=|^[^#\n"]*&:|\$\(file |^\w+ *::?:= *|\$\(guile |--output-sync|\$\(let |\$\(intcmp ': 'x != y'}
+         r'^\.ONESHELL|^\w+ *!=|^[^#\n"]*&:|\$\(file |^\w+ *::?:= *|\$\(guile |--output-sync|\$\(let |\$\(intcmp ': 'x != y'}
 
 
 def test_scripts_and_rules_do_without_what_macos_has_not():
