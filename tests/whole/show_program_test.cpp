@@ -84,10 +84,10 @@ TEST_CASE("in a browser the page shows what it is told, and asks again") {
     folder.write(
         page + ".js",
         "globalThis.n = (globalThis.n ?? 0) + 1;\n"
-        "if (n > 1) document.body.dataset.before = document.querySelector('h1').className;\n"
+        "if (n === 3) document.body.dataset.before = document.querySelector('h1').className;\n"
         "now(n, n < 3 ? 'rendering' : 'done', n > 1, n < 3 ? 'soon' : '<i>3</i> & \"4\"');\n");
     const Printed dom =
-        output_of(browser.substr(0, browser.find('\n')) +
+        output_of("timeout 120 " + browser.substr(0, browser.find('\n')) +
                   " --headless=new --no-sandbox --disable-gpu --user-data-dir='" +
                   (folder / "profile") + "' --virtual-time-budget=4000 --dump-dom \"file://" +
                   folder.path.string() + "/a%20%231's.html\" 2>/dev/null");
