@@ -43,7 +43,10 @@ inline void write_images(const std::vector<std::string>& paths, const Image& pic
     if (const auto at = first_non_finite(picture))
         throw SystemError("pixel " + *at + " is more than a file can hold; nothing was written");
     for (const std::string& path : paths)
-        write_image(path, path.ends_with(".png") ? scaled(picture, shades) : picture, exposure);
+        if (path.ends_with(".png") && shades != Shades::as_they_are)
+            write_image(path, scaled(picture, shades), exposure);
+        else
+            write_image(path, picture, exposure);
 }
 
 // Says which files were written.
