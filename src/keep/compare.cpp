@@ -105,9 +105,9 @@ th, td { padding: .2rem .8rem .2rem 0; text-align: left; font-weight: 400; }
 )";
 constexpr const char* page_tail = R"(<script>
 const told = JSON.parse(document.getElementById("numbers").textContent);
-const whole = x => String(+(x ?? NaN).toPrecision(6));
+const whole = x => x === null ? "not finite" : String(+x.toPrecision(6));
 document.getElementById("difference").append(...[
-    ["d_rel", `${whole(told.d_rel === null ? null : 100 * told.d_rel)} %: the RMS of the error over that of the reference`],
+    ["d_rel", `${whole(told.d_rel && 100 * told.d_rel)} %: the RMS of the error over that of the reference`],
     ["d", `${whole(told.d)}: the RMS of the error`], ["ratio of means", whole(told.ratio_of_means)],
     ["largest error", `${whole(told.largest)} at ${told.at.join()}`]].map(([name, words]) =>
     make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, words))));

@@ -60,7 +60,7 @@ struct Solution {
 };
 
 inline std::string shot(uint64_t shots, double unshot) {
-    return counted(shots, "shot") + ", " + significant(100 * unshot, 3) + " % unshot";
+    return counted(shots, "shot") + ", " + in_percent(unshot) + " unshot";
 }
 
 inline Solution shoot(const RadiosityOptions& o, const Stage& stage) {
@@ -128,9 +128,8 @@ inline std::string stopped_by(const RadiosityOptions& o, const Solution& s) {
 
 inline std::string error_of(const RadiosityOptions& o, const Solution& s) {
     if (!std::isfinite(s.stated.error)) return "error not known";
-    const std::string words = is_random(o)
-                                  ? "estimated " + error_words(s.stated)
-                                  : "error at most " + significant(100 * s.stated.error, 3) + " %";
+    const std::string words = is_random(o) ? "estimated " + error_words(s.stated)
+                                           : "error at most " + in_percent(s.stated.error);
     return words + ", without the error of the mesh";
 }
 

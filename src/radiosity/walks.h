@@ -6,11 +6,11 @@
 
 namespace penumbra {
 
+inline std::string in_percent(double x) { return significant(100 * x, 3) + " %"; }
 // "error 2.9 % ± 0.05 %"
 inline std::string error_words(const MapError& e) {
-    auto percent = [](double x) { return significant(100 * x, 3) + " %"; };
-    return "error " + percent(e.error) +
-           (std::isfinite(e.uncertainty) ? " ± " + percent(e.uncertainty) : "");
+    return "error " + in_percent(e.error) +
+           (std::isfinite(e.uncertainty) ? " ± " + in_percent(e.uncertainty) : "");
 }
 
 // Progress for the bar.

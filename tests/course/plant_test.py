@@ -61,6 +61,7 @@ UNIFORM = lines_of('src/world/warp.h', 'inline real pdf_quad_area')
 def test_the_copy_has_the_wrong_line_in_place_of_the_right_one():
     with Copy(BUG) as copy:
         expect(not copy.refused, copy.refused)
+        expect('\nreport:' not in (copy.folder / 'Makefile').read_text(), 'a report of verdicts, without judges')
         old, new = copy.mutant.old, copy.mutant.new
         text = (copy.folder / copy.mutant.file).read_text()
         plan = starter.Plan('1-5', solved=True)

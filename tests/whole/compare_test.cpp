@@ -129,6 +129,13 @@ say("green", cells(0)[2] + " " + cells(1)[2]);
     CHECK(contains(seen["table"], "largest error5 at 0,1"));
     CHECK(seen["names"] == "A: g.pfm B: f.pfm 0,1");
     CHECK(seen["green"] == "3.00 8.00");
+    folder.write("black.pfm", pfm(2, 2, std::vector<float>(12, 0)));
+    expect_exit(folder, "compare black.pfm g.pfm --page x.html", 0);
+    folder.write("driven.html", folder.read("x.html") + driven_by(R"js(
+say("table", [...$("difference").rows].map(row => row.textContent).join(" "));
+)js"));
+    CHECK(contains(seen_in(browse(folder, "--dump-dom", "driven.html"))["table"],
+                   "d_relnot finite %: "));
 }
 
 TEST_CASE("compare: two films show the same, or not") {

@@ -1,8 +1,8 @@
 // whole/show_program_test.cpp  --show: pictures of a render that goes on, and the page in a browser
 #include <thread>
 
-#include "course/python.h"
 #include "show/show.h"
+#include "text/browser.h"
 #include "text/png.h"
 #include "whole/process.h"
 
@@ -68,13 +68,7 @@ TEST_CASE("--show without a PNG, or in the place of another page, is refused bef
 }
 
 TEST_CASE("in a browser the page shows what it is told, and asks again") {
-    const char* find =
-        "command -v chromium || command -v chromium-browser || command -v google-chrome";
-    const std::string browser = output_of(find).text;
-    if (browser.empty()) {
-        MESSAGE("chromium is not installed: not tested");
-        return;
-    }
+    if (browser().empty()) return;
     const Folder folder;
     const std::string page = "a #1's.html";  // a name that addresses do not have as it is
     folder.write(page, std::string(show_page));
@@ -86,16 +80,12 @@ TEST_CASE("in a browser the page shows what it is told, and asks again") {
         "globalThis.n = (globalThis.n ?? 0) + 1;\n"
         "if (n === 3) document.body.dataset.before = document.querySelector('h1').className;\n"
         "now(n, n < 3 ? 'rendering' : 'done', n > 1, n < 3 ? 'soon' : '<i>3</i> & \"4\"');\n");
-    const Printed dom =
-        output_of("timeout 120 " + browser.substr(0, browser.find('\n')) +
-                  " --headless=new --no-sandbox --disable-gpu --user-data-dir='" +
-                  (folder / "profile") + "' --virtual-time-budget=4000 --dump-dom \"file://" +
-                  folder.path.string() + "/a%20%231's.html\" 2>/dev/null");
-    INFO(dom.text);
+    const std::string dom = browse(folder, "--dump-dom", "a%20%231%27s.html");
+    INFO(dom);
     for (const char* part : {"<h1 class=\"done\">done, ", "<p>&lt;i&gt;3&lt;/i&gt; &amp; \"4\"</p>",
-                             "a%20%231's.png?", "data-before=\"rendering\""}) {
+                             "a%20%231%27s.png?", "data-before=\"rendering\""}) {
         INFO(part);
-        CHECK(contains(dom.text, part));
+        CHECK(contains(dom, part));
     }
-    CHECK_FALSE(contains(dom.text, "hidden=\"\""));
+    CHECK_FALSE(contains(dom, "hidden=\"\""));
 }
