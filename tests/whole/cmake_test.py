@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / 'tests/course'))
 import testing
 from testing import expect
 
-ENVIRONMENT = {key: value for key, value in os.environ.items() if not key.startswith(('MAKE', 'MFLAGS', 'CMAKE'))}
+ENVIRONMENT = {key: value for key, value in os.environ.items() if not key.startswith(('MAKE', 'MFLAGS', 'CMAKE', 'ONLY'))}
 PROJECT = 'cmake_minimum_required(VERSION 3.21)\nproject(mine LANGUAGES CXX)\n'
 USE = 'add_executable(hello hello.cpp)\ntarget_link_libraries(hello PRIVATE penumbra::oracle)\n'
 
