@@ -87,12 +87,12 @@ def test_a_subdirectory_is_the_oracle_and_changes_nothing_else():
     with Room() as room:
         status, said = room.configure('', 'without')
         expect(status == 0, said)
-        built = room.greets('set(before ${CMAKE_CXX_FLAGS})\nadd_subdirectory(../ours ours)\n'
+        built = room.greets('add_compile_options(-Weffc++ -Wfloat-equal -Werror)\nset(CMAKE_CXX_STANDARD 17)\nadd_subdirectory(../ours ours)\n'
                             'get_property(targets DIRECTORY ../ours PROPERTY BUILDSYSTEM_TARGETS)\n'
                             'get_property(tests DIRECTORY ../ours PROPERTY TESTS)\n'
                             'get_property(ours DIRECTORY . PROPERTY COMPILE_OPTIONS)\n'
                             'file(WRITE ${CMAKE_BINARY_DIR}/said "${targets}|${tests}|${ours}|${CMAKE_CXX_STANDARD}${CMAKE_EXPORT_COMPILE_COMMANDS}")\n')
-        expect((built / 'said').read_text() == 'penumbra_oracle||||'[:-1], (built / 'said').read_text())
+        expect((built / 'said').read_text() == 'penumbra_oracle||-Weffc++;-Wfloat-equal;-Werror|17', (built / 'said').read_text())
         # CMake itself keeps the version of any project.
         new = {e for e in entries(built) - entries(room.top / 'without') if not e.lower().startswith(('penumbra_', 'cmake_project_version'))}
         expect(not new, new)
@@ -137,6 +137,18 @@ def test_a_build_in_the_folder_itself_is_refused():
         status, said = run('cmake', '.', '-DPENUMBRA_PROGRAMS=OFF', cwd=room.top / 'ours')
         expect(status != 0 and 'cmake -B build' in said, said)
         expect((room.top / 'ours/Makefile').read_text() == 'ours\n', 'the Makefile is another one')
+
+
+def test_folders_have_spaces_and_other_names():
+    with tempfile.TemporaryDirectory() as folder:
+        top = pathlib.Path(folder)
+        (top / 'a way').mkdir()
+        (top / 'a way/source').symlink_to(ROOT)
+        for source, build in ((ROOT, top / 'a build'), (top / 'a way/source', top / 'a way/b')):
+            well('cmake', '-S', source, '-B', build, '-DPENUMBRA_TESTS=OFF')
+            well('cmake', '--build', build, '--target', 'commit')
+            described = well('git', '-C', ROOT, 'describe', '--always', '--dirty').strip()
+            expect(described.encode() in (build / 'commit/commit.o').read_bytes(), 'it names another commit', described)
 
 
 def test_packages_that_are_missing_are_named_and_found_later():
