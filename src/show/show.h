@@ -64,7 +64,8 @@ public:
 
     OptionTable rows() {
         const char* help =
-            "write the PNG every second at most while it renders, and beside it NAME.html, which shows it";
+            "write the PNG every second at most while it renders, and beside it NAME.html, which "
+            "shows it";
         return in_group("Output", {{"--show", "", help, "", [this](Text) { wanted_ = true; }}});
     }
 
@@ -80,8 +81,10 @@ public:
         for (const auto& [path, first] :
              {std::pair{page, first_line}, std::pair{page + ".js", std::string_view("now(")}}) {
             check_writable(path);
-            if (path == o.stats || path == o.keep ||
-                (std::filesystem::exists(path) && !read_file(path).starts_with(first)))
+            const std::string name = true_name(path),
+                              there = std::filesystem::exists(path) ? read_file(path) : "";
+            if (name == true_name(o.stats) || name == true_name(o.keep) ||
+                !(there.empty() || there.starts_with(first)))
                 throw UserError(path + ": --show would replace a page that is not its own");
         }
         png_ = *png, page_ = page;
@@ -121,7 +124,7 @@ public:
     void end(const Options& o, const Run& run) {
         if (page_.empty()) return;
         has_picture_ = run.spp > 0;
-        tell_page("done", summary(o.scene, run, o.error));
+        tell_page(run.interrupted() ? "stopped" : "done", summary(o.scene, run, o.error));
         page_.clear();
     }
 

@@ -86,7 +86,7 @@ TEST_CASE("the page is told of a picture after each is written, and of the last 
     CHECK(room.folder.files() == 3);  // the PFM and the statistics are not written yet
 }
 
-TEST_CASE("a run that fails has stopped, and one without a picture is done without one") {
+TEST_CASE("a run that fails or is interrupted has stopped, and may have no picture") {
     Room room;
     try {
         Show show;
@@ -102,7 +102,7 @@ TEST_CASE("a run that fails has stopped, and one without a picture is done witho
     Run run;
     run.stopped_by = Stop::interrupt;
     show.end(other.o, run);
-    CHECK(other.told().starts_with(R"("done", false, "the \"room\".scene: interrupted before)"));
+    CHECK(other.told().starts_with(R"("stopped", false, "the \"room\".scene: interrupted before)"));
 }
 
 TEST_CASE("pictures are a second apart, and take at most a 20th of the time") {
@@ -164,9 +164,15 @@ TEST_CASE("a page needs a PNG, and replaces nobody's file") {
     room.folder.write("c.html.js", "mine");
     CHECK(refused({room.folder / "c.png"}) ==
           room.folder / "c.html.js" + ": --show would replace a page that is not its own");
-    room.o.stats = room.folder / "d.html";
-    CHECK(refused({room.folder / "d.png"}) ==
-          room.o.stats + ": --show would replace a page that is not its own");
+    for (const char* name : {"d.html", "./d.html"}) {
+        room.o.stats = room.folder / name;
+        CHECK(refused({room.folder / "d.png"}) ==
+              room.folder / "d.html: --show would replace a page that is not its own");
+    }
+    room.folder.write("e.html", "");
+    room.folder.write("e.html.js", "");
+    show.begin(room.o, {room.folder / "e.png"});  // a full disk, say, left no more of it
+    CHECK(room.folder.read("e.html") == show_page);
     CHECK(refused({room.folder / "no/a.png"}).starts_with(room.folder / "no/a.html: cannot write"));
     fs::create_directory(room.folder.path / "b.html.js");
     CHECK(refused({room.folder / "b.png"}) == room.folder / "b.html.js: is a directory");
