@@ -33,6 +33,7 @@ from workshop import Broken
 TOP = pathlib.Path(os.environ.get('AUTOGRADER', '/autograder'))
 SETTINGS = ROOT / 'autograder.json'
 OLDEST = 12  # of g++
+JOBS = 2  # processors that a container has; Python would count those of its host
 # What grading needs: the solution, and what asks, judges and says which weeks there are.
 PACKED = ('src/**/*', 'tests/course/*', 'tests/oracle/*.h', 'LICENSE')
 UNUSED = ('src/labs/', 'src/book/')
@@ -88,7 +89,7 @@ def settled():
     os.environ['FLAGS'] = settings['flags']
     sandbox.demand(os.environ.get('SANDBOX', ''))
     sandbox.closed([ROOT, TOP / 'submission', TOP / 'results'])
-    words = types.SimpleNamespace(cache=ROOT / 'build/grade', weeks=settings['weeks'], jobs=os.cpu_count() or 2)
+    words = types.SimpleNamespace(cache=ROOT / 'build/grade', weeks=settings['weeks'], jobs=JOBS)
     return settings, grade.opened(words, settings['seed'], TOP / 'source/.work')
 
 
@@ -102,7 +103,7 @@ def run():
     result = TOP / 'results/results.json'
     result.unlink(missing_ok=True)
     settings, everything = settled()
-    with everything as (shop, numbers, worth, room), concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 2) as pool:
+    with everything as (shop, numbers, worth, room), concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
         student = grade.Student(Submission('submission', '', [str(TOP / 'submission')]), shop, numbers)
         with grade.scratch_in(room) as scratch:
             graded = student.grade(pool, scratch, worth)
