@@ -98,7 +98,7 @@ clean:  ## remove build/ and out/
 help:  ## show this help
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [TREE=wide|plain] [DEBUG=1] [SAN=1] [SIZE=WxH] [ARCH=native]"
 	@echo "  variants stand beside build/penumbra: build/penumbra-float, -plain, -debug, -san"
-	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(filter-out %.d,$(MAKEFILE_LIST))
+	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if (t ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' $(filter-out %.d,$(MAKEFILE_LIST))
 
 # ---- Building ------------------------------------------------------------------------------------
 

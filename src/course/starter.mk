@@ -42,10 +42,11 @@ clean:  ## remove build/ and out/
 
 help:  ## print this
 	@echo "make TARGET [CXX=g++|clang++] [REAL=double|float] [DEBUG=1]"
-	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if ($$2 ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' Makefile src/course/course.mk src/web/web.mk
+	@awk -F '  ## ' '/^[a-z].*  ## / { t = $$1; sub(/[: ].*/, "", t); if (t ~ /^out/) { t = "out/NAME.png"; sub(/^[^:]*: /, "", $$2) } printf "  %-14s %s\n", t, $$2 }' Makefile src/course/course.mk src/web/web.mk
 
 # stb_image_write writes PNG files.
 packages:
+	@command -v $(firstword $(CXX)) >/dev/null || { echo "no compiler $(CXX): install it, or say make CXX=..." >&2; exit 1; }
 	@printf '\043include <stb/stb_image_write.h>\n' | $(CXX) -x c++ -Isrc $(HOMEBREW) -fsyntax-only - 2>/dev/null || \
 	    { echo "install stb (stb/stb_image_write.h); on Debian or Ubuntu: sudo apt-get install libstb-dev" >&2; exit 1; }
 

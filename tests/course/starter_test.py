@@ -282,6 +282,19 @@ def test_marks_survive_every_style_of_clang_format():
                 expect(region.canonical(text) == region.canonical('\n'.join(solution.stub)), style, number, text)
 
 
+def test_help_names_every_target():
+    with Made() as made:
+        shown = subprocess.run(['make', 'help'], cwd=made.folder, capture_output=True, text=True, check=True).stdout
+        names = re.findall(r'^  (\S+)', shown, re.M)
+        expect(sorted(names) == sorted('all out/NAME.png penumbra report clean help check update web'.split()), names)
+
+
+def test_a_compiler_that_is_not_there_is_named():
+    with Made() as made:
+        done = subprocess.run(['make', 'build/penumbra', 'CXX=no-such-compiler'], cwd=made.folder, capture_output=True, text=True)
+        expect(done.returncode == 2 and 'no compiler no-such-compiler' in done.stderr and 'stb' not in done.stderr, done.stderr)
+
+
 def test_another_compiler_builds_anew():
     with Made() as made:
         for name in ('one', 'two'):

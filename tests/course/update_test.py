@@ -1,6 +1,7 @@
 # course/update_test.py  a later starter taken into ten modified copies: python3 tests/course/update_test.py [NAME...]
 """Each function test_... is a test; starter_test.cpp runs them one by one."""
 import functools
+import os
 import pathlib
 import re
 import shutil
@@ -96,6 +97,22 @@ def test_a_later_starter_keeps_what_was_written():
             if kept is not None:
                 found = sorted(str(p.relative_to(copy)) for p in copy.rglob('*.mine'))
                 expect(found == [f + '.mine' for f in kept], name, found)
+
+
+def test_what_was_built_of_older_files_is_built_again():
+    with tempfile.TemporaryDirectory() as top:
+        copy, later = pathlib.Path(top) / 'copy', pathlib.Path(top) / 'later'
+        starter.make_starter(starter.Plan('1'), copy)
+        shutil.copytree(copy, later)
+        for path in copy.rglob('*'):
+            os.utime(path, (1e9, 1e9))
+        (later / 'tests/course/judge_1.cpp').open('a').write('// a mended judge\n')
+        (later / 'src/new.h').write_text('')
+        starter.pack(later)
+        subprocess.run(['tests/course/update', f'{later}.tar.gz'], cwd=copy, check=True, capture_output=True)
+        newer = sorted(str(p.relative_to(copy)) for p in copy.rglob('*') if p.is_file() and p.stat().st_mtime != 1e9)
+        expect(newer == ['src/new.h', 'tests/course/judge_1.cpp'], newer)
+        expect(all(p.stat().st_mtime >= 1e9 for p in copy.rglob('*')), 'older than what it replaces')
 
 
 def test_what_is_no_starter_is_refused():
