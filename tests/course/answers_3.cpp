@@ -67,9 +67,12 @@ Out take_step(In x) {
                e.scattered.pdf);
 }
 
-// Of the ray that goes on; 0 if none does.
+// Of the ray that goes on; 0 if none does.  In glass there is one more number, eta2.
 rgb throughput(In x) {
-    const Step e = asked_step(x);
+    const Sampler numbers_of_path = sampler(x[3]);
+    Segment arrives = segment(x.subspan(4));
+    if (x.size() > 21) arrives.eta2 = real(x[21]);
+    const Step e = step(scene, technique(x), arrives, numbers_of_path);
     return e.end != End::no ? rgb{} : e.next.beta;
 }
 
@@ -92,12 +95,12 @@ Out light_sample(In x) {
         scene.light_tree.choose(at->at.p, at->local.n, numbers_of_path.choice(0, Draw::pick));
     const Light& light = scene.lights[chosen.light];
     const auto s = sample_light(light, at->at.p, numbers_of_path.get2(dimension(0, Draw::light_x)));
-    if (!s) return Out(22);
+    if (!s) return Out(23);
     const vec3 wi = at->local.to_local(s->wi);
     const DirectLight d = direct_light(scene, t, *at, numbers_of_path, 0);
     return row(chosen.pick, s->pdf, light.is_delta(), wi.z,
                pdf(*at->material, at->wo, wi, t.direction), eval(*at->material, at->wo, wi), s->L,
-               at->at.p, s->at.p, d.L, d.pdf, d.weight);
+               at->at.p, s->at.p, d.L, d.pdf, d.weight, d.occluded);
 }
 
 // How often visit is called, and how often with the segment whose turn it is.
@@ -148,6 +151,7 @@ int main() {
         {"visits", 10, visits},
         {"step", 21, take_step},
         {"throughput", 21, throughput},
+        {"throughput_in_glass", 22, throughput},
         {"direct_light", 10, found_by_aiming},
         {"light_sample", 10, light_sample},
         {"weight_of_emission", 27, weight},

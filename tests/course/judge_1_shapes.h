@@ -240,6 +240,13 @@ void sphere(Judge& j) {
     aimed(j, "intersect_sphere", "a ray that starts on a sphere and leaves does not meet it",
           "from its top, away", Rows(row(Triple{1, 2, 5}, z, endless, c, 2)));
     j.limit();
+    // Some roundings of 1, the radius.
+    const double near = 0x1p-16;
+    aimed(j, "intersect_sphere", "a hit counts however near it is, at 2^-16 of the radius",
+          "from nearby",
+          {row((1 + near) * z, back, endless, o, 1), row((1 - near) * z, z, endless, o, 1)},
+          {near, near}, 4 / near);
+    j.limit();
     aimed(j, "intersect_sphere", "a hit at tmax itself counts", "tmax = 5, 5 away",
           Rows(row(above, back, 5, c, 2)), {5}, 16);
     telling_limit(j);

@@ -128,6 +128,9 @@ void tree(Judge& j) {
     number("a box that begins behind the hit is left out, and others still wait", three, 4.5);
     number("boxes that the ray starts in, which it enters at 0, are opened",
            two_leaves(0, 0.5, 0, 0.25), 0.25);
+    Table at_end(3);
+    at_end.make_leaf(0, 3), at_end.enter(0) = 3;
+    number("the end of the ray belongs to it: a box that begins there is opened", at_end, 3);
     const double tiny = 0x1p-24;
     number("boxes that the ray starts in are opened where all is tiny, too, in units of 2^-24",
            two_leaves(tiny, 3 * tiny, 2 * tiny, 2.5 * tiny), 2.5, tiny);

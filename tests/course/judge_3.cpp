@@ -295,6 +295,14 @@ void roulette(Judge& j) {
     j.exact("where the threshold is 0 nobody dies", without[2] > 0, "a path was ended");
     const double chance = whole[2] / T;
 
+    const Rows inside =
+        j.ask("throughput_in_glass", asked_of_roulette(T / 4, 64, 1, row(from, 4.0)));
+    double least = T;
+    for (size_t i = 0; i < inside.size(); ++i)
+        if (inside[i][2] > 0) least = std::min(least, inside[i][2]);
+    j.number("in glass, too, no survivor has less than `threshold`, here 4 `technique.roulette`",
+             least, T, tolerance(j));
+
     const Rows bright = j.ask("throughput", asked(0.9 * whole[2], 64));
     bool untouched = true;
     for (size_t i = 0; i < bright.size(); ++i) untouched &= triple(bright[i]) == whole;

@@ -25,11 +25,15 @@ void from_a_point(Judge& j) {
     colour(j, "a point light's intensity, distance and cosine", triple(L[0]), truth, factors);
     build(j, 4, {ground, point_light(at, I), ball({0.5, 1, 1}, 0.2, rough)});
     const Rows hidden = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
+    const double in_the_way = j.ask("light_sample", aimed({by_aiming}, 1)).at(22);
     build(j, 4, {ground, point_light(at, I), ball({1.5, 3, 3}, 0.2, rough)});
     const Rows beyond = j.probe("direct_light", Rows(aimed({by_aiming}, 1)));
+    const double behind = j.ask("light_sample", aimed({by_aiming}, 1)).at(22);
     colour(j, "nothing of a point light comes past an obstacle", triple(hidden[0]), {0, 0, 0});
     colour(j, "all of a point light comes if an obstacle is behind it", triple(beyond[0]),
            triple(L[0]));
+    j.exact("`occluded` says whether something is in the way", in_the_way == 1 && behind == 0,
+            oracle::say("%g where something is, %g where nothing is", in_the_way, behind));
     colour(j, "no share of a point light is left to rays that cannot meet it", triple(L[1]), truth);
     build(j, 4, {ground, point_light(at, 1e6 * I)});
     const Out strong = j.ask("direct_light", aimed({by_aiming}, 1));

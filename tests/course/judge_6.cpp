@@ -9,7 +9,7 @@ using course::Judge, course::Out, course::Rows, course::Tally;
 
 namespace {
 
-constexpr size_t wrong[] = {9, 7, 10}, right[] = {4, 7, 4};  // published subjects
+constexpr size_t wrong[] = {9, 7, 11}, right[] = {4, 7, 4};  // published subjects
 
 // Whether a right one passes in all of ten runs (2), in most or in few; each run is asked for
 // alone, as it may take its time.
@@ -86,6 +86,9 @@ course::Judging judging(double exercise) {
                 "twice the same seed, and the subject was asked other questions");
         j.exact("other seeds give other random numbers", looks.at(1) == 1,
                 "two seeds, and the subject was asked the same questions");
+        if (exercise == 3)
+            j.exact("directions of beams have length 1", looks.at(6) == 0,
+                    "a beam went along a vector of another length; divide it by its length");
         const Tally t = course::tally(j, exercise);
         j.allows = course::limit * double(t.runs);
         const Out of = j.ask("kinds", Out{exercise});

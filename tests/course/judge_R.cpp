@@ -270,6 +270,15 @@ void walking(Judge& j) {
     for (size_t i = 0; i < white.size(); ++i) all += white[i][stops] / 200;
     j.exact("walks between white walls end, too", all > 2 && all < 1000,
             oracle::say("they have %.3g stops", all));
+    Worst carried;
+    for (size_t i = 0; i < white.size(); ++i)
+        for (size_t c = 0; white[i][stops] >= 2 && c < 3; ++c) {
+            const double has = white[i][second + c] / white[i][emitted + c];
+            carried.see(std::abs(has - 1 / 0.98), oracle::say("it has %.6g times the power", has));
+        }
+    j.worst(
+        "what leaves a white wall has 1 / 0.98 of the power that came, for the one in 50 that ends",
+        carried, 1e4 * j.epsilon);
 }
 
 }  // namespace

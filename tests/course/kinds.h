@@ -17,7 +17,7 @@ inline const std::vector<std::string> kinds = {
     "the limit of a consistent one",
     // wrong intersectors
     "roots of a sphere", "the radius", "tmax", "edges of a triangle", "what lies behind",
-    "sides of a triangle", "small bodies and distances", "the distance",
+    "sides of a triangle", "small bodies and distances", "the distance", "coordinates",
     // right ones
     "the rounding of float", "rejected pairs", "less noise than random numbers have",
     "no noise at all", "a declared bias", "a truth of 0", "another way"};

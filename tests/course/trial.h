@@ -5,6 +5,7 @@
 #include "course/my_tests.h"
 
 #include <ctime>
+#include <set>
 
 #include "course/answers.h"
 #include "course/kinds.h"
@@ -72,35 +73,57 @@ inline Out looks_of_samplers(uint64_t seed) {
     return seen.out();
 }
 
-// Many estimates, several numbers of samples, and what is said of a subject of either class.
+// Many estimates, several numbers of samples, what is said of a subject of either class, and
+// whether ten estimates or more have the same seed.
 inline Out looks_of_estimators(uint64_t seed) {
     Seen seen;
     int first = 0;
     size_t asked = 0;
+    std::set<uint64_t> seeds;
     for (bool unbiased : {true, false})
         estimator_passes({[&](uint64_t of, int n) {
                               if (first == 0) first = n;
+                              seeds.insert(of);
                               seen.look({double(of >> 32), double(uint32_t(of)), double(n)},
                                         {++asked >= 200, n != first, n >= 32});
                               return mean_of_exp(of, n);
                           },
                           std::numbers::e - 1, unbiased},
                          seed);
+    seen.features.push_back(10 * seeds.size() <= asked);
     return seen.out();
 }
 
-// Spheres, triangles, beams that end, and beams that begin within.
+// Spheres, triangles, beams that end, beams that begin within, directions of other lengths than 1;
+// and whether the last digits of a distance decide: spies whose distances are off by so many units
+// in the last place that one of them says what a test of equality expects: it asks further
+// questions.
 inline Out looks_of_intersectors(uint64_t seed) {
     const Intersector right = practice_intersectors().right[0].subject;
-    Seen seen;
-    intersector_passes({[&](const Body& s, const Beam& beam) {
-                           const auto [o, d, tmax] = beam;
-                           seen.look(
-                               {o.x, o.y, o.z, d.x, d.y, d.z},
-                               {s.r > 0, s.r == 0, tmax<infinity, s.r> 0 && length(o - s.a) < s.r});
-                           return right.meet(s, beam);
-                       }},
-                       seed);
+    size_t asked = 0;
+    auto spied = [&](int64_t units) {
+        Seen seen;
+        asked = 0;
+        intersector_passes(
+            {[&](const Body& s, const Beam& beam) {
+                const auto [o, d, tmax] = beam;
+                const bool within = s.r > 0 && length(o - s.a) < s.r, ends = std::isfinite(tmax);
+                seen.look({o.x, o.y, o.z, d.x, d.y, d.z},
+                          {s.r > 0, s.r == 0, ends, within, std::abs(length(d) - 1) > 1e-4});
+                ++asked;
+                const auto t = right.meet(s, beam);
+                return t ? std::optional(std::bit_cast<double>(std::bit_cast<int64_t>(*t) + units))
+                         : t;
+            }},
+            seed);
+        return seen;
+    };
+    Seen seen = spied(0);
+    const size_t before = asked;
+    bool minute = false;
+    for (int64_t units = -1000; before <= 10 && units <= 1000; ++units)
+        spied(units), minute = minute || asked > before;
+    seen.features.push_back(minute);
     return seen.out();
 }
 
