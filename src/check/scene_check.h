@@ -1,6 +1,7 @@
 // check/scene_check.h  1  problems of a scene that its text hides: surfaces in one place, point
 // lights on surfaces, coordinates too coarse for their precision
 #pragma once
+#include <concepts>
 #include <map>
 #include <set>
 #include <span>
@@ -47,6 +48,8 @@ inline bool share_surface(const Shape& s, const Shape& t, real room) {
         return ask(t, [&](auto other) {
             const auto corners = kind.corners(s);
             const auto others = other.corners(t);
+            static_assert(corners.size() > 0 || std::same_as<decltype(kind), SphereShape>,
+                          "`lifted`, `lies_on` and `near_hit` take a round shape for a sphere");
             if (corners.size() > 0 && others.size() > 0)
                 return share_plane(corners, others, e, room);
             const real apart = length(s.a - t.a) + length(s.b - t.b) + length(s.c - t.c);
@@ -144,11 +147,17 @@ private:
     }
 };
 
+// A light's shape when its surface is moved: corners follow p, and a point has no surface.
+inline void grow(SphereLight& ball, real by) { ball.r = std::max(ball.r / 2, ball.r + by); }
+template <int corners>
+void grow(PolygonLight<corners>&, real) {}
+template <class Kind>
+requires Kind::is_delta void grow(Kind&, real) {}
+
 // Moved along a normal; a round one, which has none, grows.
 inline Light lifted(Light l, real by) {
     l.p += by * l.n;
-    if (auto* ball = std::get_if<SphereLight>(&l.kind))
-        ball->r = std::max(ball->r / 2, ball->r + by);
+    std::visit([&](auto& kind) { grow(kind, by); }, l.kind);
     l.ask([&](const auto& kind) { kind.place(l); });
     return l;
 }

@@ -157,7 +157,7 @@ using LightKind = std::variant<PointLight, SphereLight, TriangleLight, QuadLight
 struct Light : Emitter {
     LightKind kind;
 
-    Light(vec3 at, LightKind k, rgb radiance = {}) : kind(k) {
+    Light(vec3 at, auto k, rgb radiance = {}) : kind(std::in_place_type<decltype(k)>, k) {
         p = centre = at, L = radiance;
         std::visit([&](const auto& light) { light.place(*this); }, kind);
     }

@@ -169,6 +169,7 @@ struct TriangleShape {
     static constexpr auto name = "triangle";
     static std::array<vec3, 3> corners(const Shape& s) { return {s.a, s.b, s.c}; }
     static Box box(const Shape& s) {
+        if (!s.is_triangle()) __builtin_trap();  // `ask` has no case for its kind
         Box box;
         for (vec3 p : corners(s)) box.add(p);
         return box;
