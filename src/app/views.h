@@ -23,7 +23,7 @@ inline real far_of(const Scene& scene) { return diagonal(scene) / 4; }
 
 struct View {
     Text help;
-    rgb (*of)(const Sight&) = nullptr;  // its value; none: radiance
+    rgb (*of)(const Sight&);  // its value; null: radiance
     Shades shades = Shades::as_they_are;
     bool scatters = false;  // needs the numbers of one direction
 
@@ -45,7 +45,7 @@ inline rgb work(const Sight& s) {
 }
 
 inline const Alternatives<View> views = {
-    {"radiance", {"radiance"}},
+    {"radiance", {"radiance", nullptr}},
     {"normal",
      {"(normal + 1) / 2", [](auto& s) { return s.x ? (s.x->at.n + alike(1)) / 2 : rgb{}; }}},
     {"depth",

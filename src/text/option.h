@@ -65,7 +65,8 @@ using Alternatives = std::vector<std::pair<Text, Value>>;
 
 template <class Value>
 Text word_of(const Alternatives<Value>& alternatives, Value value) {
-    return std::ranges::find(alternatives, value, &std::pair<Text, Value>::second)->first;
+    const auto at = std::ranges::find(alternatives, value, &std::pair<Text, Value>::second);
+    return alternatives.at(size_t(at - alternatives.begin())).first;  // throws: it has no word
 }
 // Throws UserError "unknown WHAT 'word' (did you mean ...?)".
 template <class Value>
