@@ -76,6 +76,11 @@ box 1 2 3  0  4 5 6  d
     CHECK(max_abs(box.hi - vec3{5, 7, 9}) < 32 * 9 * ulp);
 }
 
+TEST_CASE("a scene may ask for all samples that a pixel can have") {
+    const std::string ball = "diffuse d 1 1 1\nsphere 0 0 0 1 d\n";
+    CHECK(scene_of("samples 1099511627776\n" + ball).samples == max_samples);
+}
+
 TEST_CASE("what cannot be is refused, at its line") {
     const std::pair<const char*, const char*> rows[] = {
         {"phong p  .6 .6 .6  .5 .1 .1  7\n", "a.scene:2: reflects more than it receives"},
