@@ -4,12 +4,18 @@
 #include "path/pathtracer.h"
 #include "path/start.h"
 #include "text/option.h"
-#include "world/warp.h"
 
 namespace penumbra {
 
 // A PNG shows values from black, which is 0 or the least, to white.
 enum class Shades { as_they_are, from_zero, from_least };
+
+// Diagonal of the box about all shapes.
+inline real diagonal(const Scene& s) {
+    Box box;
+    for (const Shape& shape : s.shapes) box.add(bounds(shape));
+    return length(box.hi - box.lo);
+}
 
 // What a sample of a view depends on.
 struct Sight {

@@ -186,7 +186,8 @@ inline Order order_of(const NamedScene& s, uint32_t i) {
     std::array<std::array<real, 3>, 3> c{
         {{t.a.x, t.a.y, t.a.z}, {t.b.x, t.b.y, t.b.z}, {t.c.x, t.c.y, t.c.z}}};
     std::rotate(c.begin(), std::ranges::min_element(c), c.end());
-    Order order{2, m.ior(), t.r, real(s.line_of[i])};
+    const real ior = m.ask([](const auto& kind) -> real { return kind.ior; });
+    Order order{2, ior, t.r, real(s.line_of[i])};
     for (size_t k = 0; k < 9; ++k) order[k + 4] = c[k / 3][k % 3];
     return order;
 }

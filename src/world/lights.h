@@ -181,12 +181,6 @@ inline double strength(const Light& l, double factor = 1) {
     const double L = factor * double(mean_of(l.L));
     return l.ask([&](const auto& light) { return light.strength(L); });
 }
-// Emitted power in all directions (watts).  A convex body has four times the area that it shows,
-// in the mean of all directions (Cauchy 1841).
-inline double power(const Light& l) {
-    const int sides = l.is_round() ? 4 : l.twosided ? 2 : 1;
-    return sides * strength(l, std::numbers::pi);
-}
 inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
     return l.ask([&](const auto& light) { return light.sample(l, p, u); });
 }
