@@ -107,7 +107,7 @@ int penumbra_main(const std::vector<std::string>& words) {
     const auto look = [&](const Film& film, const Spent& spent) {
         show.picture_now_and_then(o, scene, plan, film, spent);
     };
-    const Picture picture = render(o, plan, L, what, look);  // film and bar end here
+    const Picture picture = render(o, plan, L, what, look);  // frees the film, erases the bar
     const int status = write_picture(o, table, scene, outputs, picture);
     show.end(o, picture.run);
     return status;

@@ -356,9 +356,8 @@ inline bool is_coarse(const Shape& s) {
     return 200 * rounding_error(s) > max_abs(box.hi - box.lo);
 }
 
-// The first shape too near to the middle of x, which is shape `own` or a point: both ways along the
-// normal of a flat shape, else along the axes.  A shape within four errors of a flat one touches
-// it.
+// The first other shape too near to the middle of x, which is shape `own` or a point: along +-n if
+// x is flat, else along the axes.  A shape within four errors of a flat one touches it.
 inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint32_t own,
                                    real reach) {
     const vec3 middle = ask(x, [&](auto kind) {

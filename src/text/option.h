@@ -46,12 +46,10 @@ inline OptionTable operator+(OptionTable a, const OptionTable& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
 }
-// The rows under one heading.
 inline OptionTable in_group(Text group, OptionTable rows) {
     for (Option& r : rows) r.group = group;
     return rows;
 }
-// Without the rows of these names.
 inline OptionTable without(OptionTable table, const std::vector<Text>& names) {
     std::erase_if(table, [&](auto& r) { return std::ranges::count(names, r.name) > 0; });
     return table;

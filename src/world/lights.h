@@ -1,6 +1,6 @@
 // world/lights.h  2  light sampling: points, spheres, polygons
 //
-// A kind of light is a struct with these functions; `Light` calls them, and holds the rest.
+// A kind of light is a struct with these; the functions at the end call them, Light has the rest.
 //     name            in what is told of a path
 //     is_delta        true if it has no surface that a ray could meet
 //     place(l)        sets what of Emitter follows from its shape, and the centre from l.p

@@ -60,8 +60,8 @@ struct Box {
 
 // ---- Triangles --------------------------------------------------------------------------------
 
-// The shear that turns a ray into the z axis: kz is the longest component of d (Woop, Benthin,
-// Wald 2013, JCGT 2(1)).
+// The shear that turns a ray into the z axis: z is the axis of the longest component of d (Woop,
+// Benthin, Wald 2013, JCGT 2(1)).
 struct Shear {
     size_t x, y, z;  // axes of the sheared space, as indices of axis
     real sx, sy, sz;
