@@ -7,7 +7,7 @@ TREE  ?= wide
 ARCH  ?= native
 SIZE  ?=
 
-# What is begun and does not yet use all it has gets a warning, and no error.
+# Unused names warn, but do not fail the build.
 UNUSED   ?= parameter variable function but-set-variable but-set-parameter label local-typedefs
 CLANG    := $(filter clang,$(shell $(CXX) --version 2>/dev/null))
 # Of -march=native clang 19 says on processors with AVX10 that it contradicts itself.

@@ -127,8 +127,7 @@ editors:  ## clangd, which editors ask, finds no error in a header of the lectur
 
 # ---- Building ------------------------------------------------------------------------------------
 
-# Most tests take longer to compile than to run; these compute much.  Whoever reads beyond the end of a
-# vector is told so.
+# Most tests take longer to compile than to run; these compute much.  Bounds of vectors are checked.
 HEAVY := app/render course/my_tests labs/cube labs/indirect_paths oracle/arrays oracle/mistakes oracle/oracle path/pathtracer \
          radiosity/mesh radiosity/particles radiosity/shooting radiosity/transfer radiosity/walks shadow/estimates \
          shadow/shadow voronoi/voronoi voronoi/weights whole/closed_forms wide/wide_bvh world/bsdf world/bvh world/shapes

@@ -49,7 +49,6 @@ inline void write_images(const std::vector<std::string>& paths, const Image& pic
             write_image(path, picture, exposure);
 }
 
-// Says which files were written.
 inline void tell_written(const CommonOptions& o, std::vector<std::string> files) {
     if (!o.stats.empty()) files.push_back(o.stats);
     std::string names;

@@ -69,8 +69,9 @@ FilmOf film_of(OptionTable& table, const Options& o, const ParsedScene& parsed, 
         {"precision", sizeof(real) == 4 ? "float" : "double"},
         {"size", std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height)},
         {"depth", std::to_string(scene.depth)}};
-    for (const Text name : {"--sampler", "--direction", "--light", "--roulette", "--view"})
-        what.samples.push_back({std::string(name.substr(2)), row(table, name).json()});
+    for (const Option& r :
+         without(table, {"--error", "--replications", "--seed", "--rows", "--threads"}))
+        if (r.json) what.samples.push_back({std::string(r.name.substr(2)), r.json()});
     what.samples.push_back(
         {"replications", plan.is_adaptive ? "adaptive" : std::to_string(plan.replications)});
     if (!moves_surfaces) what.samples.push_back({"check", "none"});
@@ -106,7 +107,7 @@ int penumbra_main(const std::vector<std::string>& words) {
     const auto look = [&](const Film& film, const Spent& spent) {
         show.picture_now_and_then(o, scene, plan, film, spent);
     };
-    const Picture picture = render(o, plan, L, what, look);  // film and bar end here
+    const Picture picture = render(o, plan, L, what, look);  // frees the film, erases the bar
     const int status = write_picture(o, table, scene, outputs, picture);
     show.end(o, picture.run);
     return status;

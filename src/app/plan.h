@@ -51,6 +51,11 @@ inline RowRange rows_of(const Options& o, const Scene& scene) {
     return o.rows.value_or(RowRange{0, scene.size.height - 1});
 }
 
+// Bytes of a film, later with its image: sums, and weight, deviation or image, and n of a block.
+inline double bytes_of(Size size, uint32_t K) {
+    return (24.0 * K + 16) * double(size.width) * double(size.height);
+}
+
 // Replications of each pixel, by default: 2, and up to 8 in pictures of less than 400 pixels, whose
 // error may be that of one pixel.  7 replications give its standard error as a quarter.
 inline uint32_t replications_of(Size size) {

@@ -160,7 +160,6 @@ inline std::string summary(const std::string& scene, const Run& run, double want
     return line + ", " + outcome_words(wanted, by, error_words(run, wanted));
 }
 
-// Adds the measurements to the options.
 inline void add_run(json::Object& object, const Run& run, Size size) {
     object.add("precision", sizeof(real) == 4 ? "\"float\"" : "\"double\"");
     object.add("interrupted", json::truth(run.interrupted()));

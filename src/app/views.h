@@ -4,12 +4,18 @@
 #include "path/pathtracer.h"
 #include "path/start.h"
 #include "text/option.h"
-#include "world/warp.h"
 
 namespace penumbra {
 
 // A PNG shows values from black, which is 0 or the least, to white.
 enum class Shades { as_they_are, from_zero, from_least };
+
+// Diagonal of the box about all shapes.
+inline real diagonal(const Scene& s) {
+    Box box;
+    for (const Shape& shape : s.shapes) box.add(bounds(shape));
+    return length(box.hi - box.lo);
+}
 
 // What a sample of a view depends on.
 struct Sight {
@@ -23,7 +29,7 @@ inline real far_of(const Scene& scene) { return diagonal(scene) / 4; }
 
 struct View {
     Text help;
-    rgb (*of)(const Sight&) = nullptr;  // its value; none: radiance
+    rgb (*of)(const Sight&);  // its value; null: radiance
     Shades shades = Shades::as_they_are;
     bool scatters = false;  // needs the numbers of one direction
 
@@ -45,7 +51,7 @@ inline rgb work(const Sight& s) {
 }
 
 inline const Alternatives<View> views = {
-    {"radiance", {"radiance"}},
+    {"radiance", {"radiance", nullptr}},
     {"normal",
      {"(normal + 1) / 2", [](auto& s) { return s.x ? (s.x->at.n + alike(1)) / 2 : rgb{}; }}},
     {"depth",

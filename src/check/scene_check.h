@@ -1,6 +1,7 @@
 // check/scene_check.h  1  problems of a scene that its text hides: surfaces in one place, point
 // lights on surfaces, coordinates too coarse for their precision
 #pragma once
+#include <concepts>
 #include <map>
 #include <set>
 #include <span>
@@ -47,6 +48,8 @@ inline bool share_surface(const Shape& s, const Shape& t, real room) {
         return ask(t, [&](auto other) {
             const auto corners = kind.corners(s);
             const auto others = other.corners(t);
+            static_assert(corners.size() > 0 || std::same_as<decltype(kind), SphereShape>,
+                          "`lifted`, `lies_on` and `near_hit` take a round shape for a sphere");
             if (corners.size() > 0 && others.size() > 0)
                 return share_plane(corners, others, e, room);
             const real apart = length(s.a - t.a) + length(s.b - t.b) + length(s.c - t.c);
@@ -144,11 +147,17 @@ private:
     }
 };
 
+// A light's shape when its surface is moved: corners follow p, and a point has no surface.
+inline void grow(SphereLight& ball, real by) { ball.r = std::max(ball.r / 2, ball.r + by); }
+template <int corners>
+void grow(PolygonLight<corners>&, real) {}
+template <class Kind>
+requires Kind::is_delta void grow(Kind&, real) {}
+
 // Moved along a normal; a round one, which has none, grows.
 inline Light lifted(Light l, real by) {
     l.p += by * l.n;
-    if (auto* ball = std::get_if<SphereLight>(&l.kind))
-        ball->r = std::max(ball->r / 2, ball->r + by);
+    std::visit([&](auto& kind) { grow(kind, by); }, l.kind);
     l.ask([&](const auto& kind) { kind.place(l); });
     return l;
 }
@@ -177,7 +186,8 @@ inline Order order_of(const NamedScene& s, uint32_t i) {
     std::array<std::array<real, 3>, 3> c{
         {{t.a.x, t.a.y, t.a.z}, {t.b.x, t.b.y, t.b.z}, {t.c.x, t.c.y, t.c.z}}};
     std::rotate(c.begin(), std::ranges::min_element(c), c.end());
-    Order order{2, m.ior(), t.r, real(s.line_of[i])};
+    const real ior = m.ask([](const auto& kind) -> real { return kind.ior; });
+    Order order{2, ior, t.r, real(s.line_of[i])};
     for (size_t k = 0; k < 9; ++k) order[k + 4] = c[k / 3][k % 3];
     return order;
 }
@@ -346,9 +356,8 @@ inline bool is_coarse(const Shape& s) {
     return 200 * rounding_error(s) > max_abs(box.hi - box.lo);
 }
 
-// The first shape too near to the middle of x, which is shape `own` or a point: both ways along the
-// normal of a flat shape, else along the axes.  A shape within four errors of a flat one touches
-// it.
+// The first other shape too near to the middle of x, which is shape `own` or a point: along +-n if
+// x is flat, else along the axes.  A shape within four errors of a flat one touches it.
 inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint32_t own,
                                    real reach) {
     const vec3 middle = ask(x, [&](auto kind) {

@@ -100,11 +100,6 @@ inline Film make_film(Size size, uint32_t K, bool is_pilot, int first_row = 0) {
     return film;
 }
 
-// Bytes of a film, later with its image: sums, and weight, deviation or image, and n of a block.
-inline double bytes_of(Size size, uint32_t K) {
-    return (24.0 * K + 16) * double(size.width) * double(size.height);
-}
-
 // ---- Pixels -------------------------------------------------------------------------------------
 
 // The mean of all samples of a pixel, in K independent replications, and the variance of that mean.

@@ -38,7 +38,5 @@ struct NearMisses {
                     sum[way][k][power] += other.sum[way][k][power];
     }
 };
-static_assert(sizeof(NearMisses) == 48 + 2 * ways * growths * sizeof(FixedPoint),
-              "a file holds no gaps");
 
 }  // namespace penumbra

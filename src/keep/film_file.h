@@ -19,6 +19,8 @@ namespace penumbra {
 
 static_assert(std::endian::native == std::endian::little,
               "numbers are written as memory holds them");
+static_assert(sizeof(NearMisses) == 48 + 2 * ways * growths * sizeof(FixedPoint),
+              "a file holds no gaps");
 
 // FNV-1a (Fowler, Noll, Vo 1991).  A step is a bijection of the sum for any byte, and of the byte
 // for any sum: a single damaged byte always changes the sum.  Several damaged bytes leave it the

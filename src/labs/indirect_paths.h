@@ -15,6 +15,7 @@
 // The number of bounces is unlimited, as in the maps: the scene's depth must be out of reach.
 #pragma once
 #include "app/threads.h"
+#include "app/views.h"
 #include "labs/room.h"
 #include "radiosity/gather.h"
 

@@ -3,6 +3,7 @@
 //   build/radiosity_error [--quick]
 //
 // Errors of maps cover all surfaces, not only visible ones, so this program runs radiosity's parts.
+#include "app/views.h"
 #include "labs/room.h"
 #include "labs/rows.h"
 #include "radiosity/walks.h"

@@ -16,6 +16,8 @@ inline constexpr uint32_t film_x = 0, film_y = 1;
 inline constexpr uint32_t dimension(int k, Draw what) {
     return 2 + uint32_t(k) * uint32_t(Draw::count) + uint32_t(what);
 }
+static_assert(dimension(0, Draw::light_y) == dimension(0, Draw::light_x) + 1);  // pairs, see get2
+static_assert(dimension(0, Draw::wi_y) == dimension(0, Draw::wi_x) + 1);
 
 // ---- Strata -------------------------------------------------------------------------------------
 

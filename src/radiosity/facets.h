@@ -184,4 +184,11 @@ inline Faceted faceted(const NamedScene& from, double H) {
     return result;
 }
 
+// Emitted power in all directions (watts).  A convex body has four times the area that it shows,
+// in the mean of all directions (Cauchy 1841).
+inline double power(const Light& l) {
+    const int sides = l.is_round() ? 4 : l.twosided ? 2 : 1;
+    return sides * strength(l, std::numbers::pi);
+}
+
 }  // namespace penumbra

@@ -20,7 +20,7 @@ enum class Estimator { stochastic, control, ratio, regression };
 
 // True if it needs all samples of a pixel together and is not a mean of samples.
 inline bool estimates_pixels(Estimator e) {
-    return e == Estimator::ratio || e == Estimator::regression;
+    return e != Estimator::stochastic && e != Estimator::control;
 }
 
 // Means and centred moments of n samples (U, w, w V), with b = w - U.
@@ -119,8 +119,9 @@ inline double estimate(Estimator e, const ShadowMoments& m) {
         case Estimator::stochastic: return stochastic(m);
         case Estimator::control: return control(m);
         case Estimator::ratio: return ratio(m);
-        default: return regression(m);
+        case Estimator::regression: break;
     }
+    return regression(m);
 }
 
 }  // namespace penumbra

@@ -23,8 +23,9 @@ struct ShadowPopulation {
             case Estimator::stochastic: return 0;
             case Estimator::control: return 1;
             case Estimator::ratio: return R();
-            default: return (wwV - S * W) / (ww - W * W);
+            case Estimator::regression: break;
         }
+        return (wwV - S * W) / (ww - W * W);
     }
     // N times the variance, which is that of w V - beta w; exactly 0 without noise.
     double variance(Estimator e) const {

@@ -46,12 +46,10 @@ inline OptionTable operator+(OptionTable a, const OptionTable& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
 }
-// The rows under one heading.
 inline OptionTable in_group(Text group, OptionTable rows) {
     for (Option& r : rows) r.group = group;
     return rows;
 }
-// Without the rows of these names.
 inline OptionTable without(OptionTable table, const std::vector<Text>& names) {
     std::erase_if(table, [&](auto& r) { return std::ranges::count(names, r.name) > 0; });
     return table;
@@ -65,7 +63,8 @@ using Alternatives = std::vector<std::pair<Text, Value>>;
 
 template <class Value>
 Text word_of(const Alternatives<Value>& alternatives, Value value) {
-    return std::ranges::find(alternatives, value, &std::pair<Text, Value>::second)->first;
+    const auto at = std::ranges::find(alternatives, value, &std::pair<Text, Value>::second);
+    return alternatives.at(size_t(at - alternatives.begin())).first;  // throws: it has no word
 }
 // Throws UserError "unknown WHAT 'word' (did you mean ...?)".
 template <class Value>

@@ -129,7 +129,7 @@ public:
         material_[name_] = uint32_t(scene.materials.size());
         add_material(scene, m, name_);
     }
-    void define(const Scattering& scattering) { define(Material{scattering}); }
+    void define(auto of) { define(Material{Scattering(std::in_place_type<decltype(of)>, of)}); }
 
     void light() {
         Material m{Rough(), colour()};

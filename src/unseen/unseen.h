@@ -206,8 +206,8 @@ public:
     // known.  `d2`: square of the estimated error; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
         if (is_pilot_) return "too few samples";
-        constexpr const char* words[ways] = {" in mirrors or glass", " by way of mirrors or glass",
-                                             " by way of gloss"};
+        constexpr std::array words = {" in mirrors or glass", " by way of mirrors or glass",
+                                      " by way of gloss"};
         double unseen = 0, most = 0;  // variances, summed over pixels
         std::string why;
         auto consider = [&](double variance, double line, const char* where, double met) {
@@ -228,7 +228,7 @@ public:
                 for (size_t k = 0; k < growths; ++k)
                     if (s[k].count() >= 5)
                         greatest = std::max(greatest, std::ldexp(s[k].variance, -2 * int(k)));
-                if (s[0].count() < 10) consider(greatest, l.line, words[way], s[0].count());
+                if (s[0].count() < 10) consider(greatest, l.line, words.at(way), s[0].count());
             }
         }
         // What is missing is missing from the truth F, too: (d^2 + u) / (F^2 + u) > 4 d^2 / F^2?

@@ -186,9 +186,6 @@ struct Material {
     bool has_choice() const {
         return ask([](const auto& kind) { return kind.has_choice(); });
     }
-    real ior() const {
-        return ask([](const auto& kind) -> real { return kind.ior; });
-    }
     rgb albedo() const {
         return ask([](const auto& kind) { return kind.albedo(); });
     }

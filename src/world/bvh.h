@@ -126,7 +126,6 @@ public:
         return work;
     }
 
-    // The nearest hit, or nothing.
     std::optional<Hit> closest(const Ray& ray, Work* work = nullptr) const {
         if (nodes_.empty()) return {};
         const Probe probe(ray);

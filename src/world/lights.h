@@ -1,6 +1,6 @@
 // world/lights.h  2  light sampling: points, spheres, polygons
 //
-// A kind of light is a struct with these functions; `Light` calls them, and holds the rest.
+// A kind of light is a struct with these; the functions at the end call them, Light has the rest.
 //     name            in what is told of a path
 //     is_delta        true if it has no surface that a ray could meet
 //     place(l)        sets what of Emitter follows from its shape, and the centre from l.p
@@ -157,7 +157,7 @@ using LightKind = std::variant<PointLight, SphereLight, TriangleLight, QuadLight
 struct Light : Emitter {
     LightKind kind;
 
-    Light(vec3 at, LightKind k, rgb radiance = {}) : kind(k) {
+    Light(vec3 at, auto k, rgb radiance = {}) : kind(std::in_place_type<decltype(k)>, k) {
         p = centre = at, L = radiance;
         std::visit([&](const auto& light) { light.place(*this); }, kind);
     }
@@ -180,12 +180,6 @@ inline const char* name_of(const Light& l) {
 inline double strength(const Light& l, double factor = 1) {
     const double L = factor * double(mean_of(l.L));
     return l.ask([&](const auto& light) { return light.strength(L); });
-}
-// Emitted power in all directions (watts).  A convex body has four times the area that it shows,
-// in the mean of all directions (Cauchy 1841).
-inline double power(const Light& l) {
-    const int sides = l.is_round() ? 4 : l.twosided ? 2 : 1;
-    return sides * strength(l, std::numbers::pi);
 }
 inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
     return l.ask([&](const auto& light) { return light.sample(l, p, u); });

@@ -62,13 +62,6 @@ struct Scene {
     }
 };
 
-// Diagonal of the box about all shapes.
-inline real diagonal(const Scene& s) {
-    Box box;
-    for (const Shape& shape : s.shapes) box.add(bounds(shape));
-    return length(box.hi - box.lo);
-}
-
 inline void add_shape(Scene& s, const Shape& shape, uint32_t material, int32_t light) {
     s.shapes.push_back(shape);
     s.material_of.push_back(material);

@@ -60,8 +60,8 @@ struct Box {
 
 // ---- Triangles --------------------------------------------------------------------------------
 
-// The shear that turns a ray into the z axis: kz is the longest component of d (Woop, Benthin,
-// Wald 2013, JCGT 2(1)).
+// The shear that turns a ray into the z axis: z is the axis of the longest component of d (Woop,
+// Benthin, Wald 2013, JCGT 2(1)).
 struct Shear {
     size_t x, y, z;  // axes of the sheared space, as indices of axis
     real sx, sy, sz;
@@ -169,6 +169,7 @@ struct TriangleShape {
     static constexpr auto name = "triangle";
     static std::array<vec3, 3> corners(const Shape& s) { return {s.a, s.b, s.c}; }
     static Box box(const Shape& s) {
+        if (!s.is_triangle()) __builtin_trap();  // `ask` has no case for its kind
         Box box;
         for (vec3 p : corners(s)) box.add(p);
         return box;

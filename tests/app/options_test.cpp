@@ -75,6 +75,12 @@ TEST_CASE("words of choices mean what they say") {
     }
 }
 
+TEST_CASE("a value that no word stands for has none") {
+    const Alternatives<int> words = {{"one", 1}, {"two", 2}};
+    CHECK(word_of(words, 2) == "two");
+    CHECK_THROWS(word_of(words, 3));
+}
+
 TEST_CASE("without options: Sobol' samples, importance-sampled, MIS, adaptive") {
     const Options o = parse("");
     CHECK(said(o.spp, o.seconds, o.error, o.seed, o.replications) ==

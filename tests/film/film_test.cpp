@@ -334,21 +334,3 @@ TEST_CASE("deviations of a pilot are roots of squared distances to the mean, of 
         CHECK(double(f.deviation[0]) == about(double(level) * std::sqrt(0.5), 1e-6));
     }
 }
-
-TEST_CASE("memory for a film and its image is what its arrays have") {
-    CHECK(sizeof(Sum) == 24);
-    for (uint32_t K : {1u, 2u, 8u})
-        for (Size size : {Size{40, 30}, Size{512, 300}})
-            for (bool is_pilot : {false, true}) {
-                Film f = make_film(size, K, is_pilot);
-                for (bool is_chosen : {false, true}) {
-                    if (is_chosen && is_pilot) choose_weights(f);
-                    const Image image = image_of(f);
-                    auto bytes = [](const auto& v) { return double(v.capacity() * sizeof v[0]); };
-                    const double later = std::max(bytes(f.deviation), bytes(image.pixels));
-                    const double all = bytes(f.sum) + bytes(f.weight) + bytes(f.taken) + later;
-                    CHECK(all <= bytes_of(size, K));
-                    CHECK(all > 0.8 * bytes_of(size, K));
-                }
-            }
-}

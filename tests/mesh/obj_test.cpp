@@ -255,9 +255,9 @@ TEST_CASE("MTL: diffuse, Phong, mirror and glass, none of an albedo above 1") {
                               "Tr .9\n", "d 0\nTr 1\n", "d .1\nillum 2\n"}) {
         m = read("Kd .5\nNi 1.3\n" + std::string(glass));
         INFO(glass);
-        CHECK((m.as<Glass>() && m.ior() == real(1.3)));
+        CHECK((m.as<Glass>() && m.as<Glass>()->ior == real(1.3)));
     }
-    CHECK(read("illum 7\n").ior() == 1.5);
+    CHECK(read("illum 7\n").as<Glass>()->ior == 1.5);
     // d counts, not Tr, which some programs write for opacity; what only fades is opaque.
     for (const char* opaque :
          {"Ni 1.3\nd 1\nTr 1\n", "Ni 1.3\nTr 1\nd 1\n", "Ni 1.3\n", "d .5\n", "d .5\nNi 1\n"})

@@ -5,6 +5,16 @@
 
 using namespace penumbra;
 
+TEST_CASE("a pattern that would be gone before its samples is refused") {
+    CHECK(!std::is_constructible_v<Sampler, Pattern, uint64_t, uint64_t>);
+    auto starts = [](auto&& p) {
+        return requires(const Scene& s) { start(s, std::forward<decltype(p)>(p), PixelSample()); };
+    };
+    Pattern stays;
+    CHECK(starts(stays));
+    CHECK(!starts(Pattern()));
+}
+
 TEST_CASE("a sample stays in its pixel, however wide the picture is") {
     for (const int x : {0, 1, 255, 4095, 65535}) {
         CHECK(in_pixel(x, 0) == real(x));

@@ -104,6 +104,19 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     }
 }
 
+TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels") {
+    const Light quad({}, QuadLight{{3, 0, 0}, {1, 2, 0}}, {1, 2, 3});
+    Light both = quad;
+    both.twosided = true;
+    for (const auto& [l, over_pi] :
+         {std::pair{Light({}, SphereLight{0.5}, {1, 2, 3}), 2 * std::numbers::pi},
+          {quad, 2.0 * 6},
+          {both, 2.0 * 12},
+          {Light({}, TriangleLight{{3, 0, 0}, {1, 2, 0}}, {1, 2, 3}), 2.0 * 3},
+          {Light({}, PointLight(), {1, 2, 3}), 8.0}})
+        CHECK(power(l) == doctest::Approx(std::numbers::pi * over_pi).epsilon(1e-6));
+}
+
 TEST_CASE("what is emitted is absorbed or escapes: coloured, open and closed, every sampler") {
     for (bool open : {false, true})
         for (SamplerKind kind : all_samplers) {

@@ -145,6 +145,10 @@ TEST_CASE("a scene may come through a pipe") {
     place.render("--spp 2 -o a.pfm");
     expect_exit(place, "penumbra --spp 2 -o b.pfm /dev/stdin", 0, {.input = good});
     CHECK(place.same("a.pfm", "b.pfm"));
+    for (int run = 0; run < 2; ++run)  // the second resumes the film of the first
+        expect_exit(place, "penumbra --spp 2 --keep a.film -o c.pfm /dev/stdin", 0,
+                    {.input = good});
+    CHECK(place.same("a.pfm", "c.pfm"));
 }
 
 TEST_CASE("a picture that is black, though there are lights, gets a hint") {

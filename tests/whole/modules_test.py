@@ -85,6 +85,7 @@ def test_an_include_that_does_not_is_refused():
     for name, line, why in (
             ('src/world/scene.h', '#include <string>', 'the lecture knows no text, file or thread'),
             ('src/path/li.h', '#include <thread>', 'the lecture knows no text, file or thread'),
+            ('src/path/li.h', '#  include <cstring>', 'the lecture knows no text, file or thread'),
             ('src/world/scene.h', '#include "path/li.h"', 'world/scene.h is not above path/li.h'),
             ('src/world/shapes.h', '#include "scene.h"', 'world/shapes.h is not above world/scene.h'),  # a cycle
             ('src/world/scene.h', '#include "world/scene.h"', 'world/scene.h is not above world/scene.h'),

@@ -154,16 +154,3 @@ TEST_CASE("point light: L = I / d^2, density 1, never hit by chance") {
     CHECK(pdf_light(l, {1, 2, 0}, s->at) == 0);
     CHECK(!sample_light(l, {1, 2, 3}, {}));
 }
-
-TEST_CASE("power: pi L A, twice that of two sides, 4 pi I, means of the channels") {
-    const Light quad({}, QuadLight{{3, 0, 0}, {1, 2, 0}}, {1, 2, 3});
-    Light both = quad;
-    both.twosided = true;
-    for (const auto& [l, over_pi] :
-         {std::pair{shining(Light({}, SphereLight{0.5})), 2 * std::numbers::pi},
-          {quad, 2.0 * 6},
-          {both, 2.0 * 12},
-          {Light({}, TriangleLight{{3, 0, 0}, {1, 2, 0}}, {1, 2, 3}), 2.0 * 3},
-          {Light({}, PointLight(), {1, 2, 3}), 8.0}})
-        CHECK(power(l) == doctest::Approx(std::numbers::pi * over_pi).epsilon(1e-6));
-}
