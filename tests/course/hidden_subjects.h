@@ -106,6 +106,8 @@ Lineup<Sampler> hidden_samplers() {
                return vec3{w.x, w.y, w.z * w.z};
            },
            cosine_pdf}},
+         {"lengths: directions of length 0.96",
+          {[](double u, double v) { return real(0.96) * cosine_sample(u, v); }, cosine_pdf}},
          {"the borders of the square: a logarithm of 0 at the border",
           {[](double u, double v) {
                return about_z(std::exp(std::log(u) / 2), whole_turn * v + 0 * std::log(u));
@@ -144,6 +146,11 @@ Lineup<Sampler> hidden_samplers() {
            },
            uniform_pdf}},
          {"another way: stretched", {stretched_sample, stretched_pdf}},
+         {"another way: a ring, between cosines of 0.5 and 0.8",
+          {turned([](double u) { return 0.8 - 0.3 * u; }),
+           [](vec3 w) {
+               return w.z >= real(0.5) && w.z <= real(0.8) ? 1 / (0.3 * whole_turn) : 0;
+           }}},
          {"another way: a narrow lobe",
           {[](double u, double v) { return power_sample(u, v, 200); }, power(200)}}}};
 }
@@ -239,6 +246,8 @@ Lineup<Estimator> hidden_estimators() {
          {"the mean: roulette is not weighed", {roulette(1), 2}},
          {"the mean: roulette is weighed by the other probability", {roulette(4 / 3.0), 2}},
          {"a bias of c / n: the ratio is called unbiased", {ratio, 2, true}},
+         {"a bias of c / n: the square of a mean is called unbiased",
+          {[](uint64_t seed, int n) { return std::pow(plain(seed, n), 2); }, 4, true}},
          {"a bias of c / n: the fit is called unbiased", {fitted, 2, true}},
          {"the mean: zeros are left out",
           {mean_of([](Rng& rng) {
@@ -250,7 +259,7 @@ Lineup<Estimator> hidden_estimators() {
          {"noise that does not fall: eight seeds, and no more",
           {[](uint64_t seed, int n) { return plain(seed % 8, n); }, 2}},
          {"noise that does not fall: n is ignored",
-          {[](uint64_t seed, int) { return plain(seed, 16); }, 2}},
+          {[](uint64_t seed, int) { return plain(seed, 16); }, 2, false}},
          {"noise that does not fall: a quarter of an estimate is that of two numbers",
           {[](uint64_t seed, int n) { return 0.25 * plain(~seed, 2) + 0.75 * plain(seed, n); }, 2}},
          {"the mean: it stops where it likes the mean", {stops_early, 2}},
@@ -262,6 +271,8 @@ Lineup<Estimator> hidden_estimators() {
                return x / x * bump(rng.uniform());
            }),
            2}},
+         {"the limit of a consistent one: the ratio, 4 % off",
+          {[](uint64_t seed, int n) { return 1.04 * ratio(seed, n); }, 2, false}},
          {"the limit of a consistent one: weights of another density",
           {self_normalised([](double) { return 1.0; }), mean_above, false}},
          {"the mean: all samples weigh alike, whatever the sign",
@@ -399,6 +410,8 @@ Lineup<Intersector> hidden_intersectors() {
     return {
         {{"roots of a sphere: spheres: the far root",
           rooted([](double, double far) { return far; })},
+         {"roots of a sphere: spheres: from within the nearer root in size",
+          rooted([](double near, double far) { return near > 0 ? near : std::min(-near, far); })},
          {"roots of a sphere: spheres: the near root alone",
           rooted([](double near, double) { return near; })},
          {"roots of a sphere: spheres: the nearer in size, behind the eye",
@@ -446,6 +459,14 @@ Lineup<Intersector> hidden_intersectors() {
           placed([](Place x, const Beam& b) { return inside(x) && x.t <= b.tmax; })},
          {"tmax: triangles: no tmax",
           placed([](Place x, const Beam&) { return inside(x) && x.t > 0; })},
+         {"tmax: triangles: beams end 3 % too late", flats([](const Body& s, const Beam& b) {
+              return flat(s, {b.o, b.d, real(1.03) * b.tmax});
+          })},
+         {"numbers that are not finite: triangles: from the back the distance is 0 / 0",
+          flats([](const Body& s, const Beam& b) {
+              const Meeting t = flat(s, b);
+              return t && dot(cross(s.b - s.a, s.c - s.a), b.d) > 0 ? Meeting(std::nan("")) : t;
+          })},
          {"sides of a triangle: triangles: from one side", flats([](const Body& s, const Beam& b) {
               return dot(cross(s.b - s.a, s.c - s.a), b.d) > 0 ? Meeting() : flat(s, b);
           })},
@@ -454,6 +475,9 @@ Lineup<Intersector> hidden_intersectors() {
               return std::abs(dot(cross(s.b - s.a, s.c - s.a), b.d)) < 1e-4 ? Meeting()
                                                                             : flat(s, b);
           })},
+         {"edges of a triangle: triangles: 5 % within the edge", placed([](Place x, const Beam& b) {
+              return ahead(x, b) && x.v >= 0.05 && x.w >= 0.05 && x.v + x.w <= 0.95;
+          })},
          {"edges of a triangle: triangles: 5 % off the edge", placed([](Place x, const Beam& b) {
               return ahead(x, b) && x.v >= -0.05 && x.w >= -0.05 && x.v + x.w <= 1.05;
           })},
@@ -461,6 +485,11 @@ Lineup<Intersector> hidden_intersectors() {
           {[](const Body& s, const Beam& b) {
               const auto t = sound(s, b);
               return t && *t < 0.05 ? Meeting() : t;
+          }}},
+         {"small bodies and distances: both: distances are multiples of 1/500",
+          {[](const Body& s, const Beam& b) {
+              const auto t = sound(s, b);
+              return t ? Meeting(std::round(500 * *t) / 500) : t;
           }}},
          {"the distance: both: 1 % too long", {[](const Body& s, const Beam& b) {
               const auto t = sound(s, b);

@@ -231,7 +231,7 @@ void sphere(Judge& j) {
          {"a sphere behind the origin is not seen", {{row(above, z, endless, c, 2), -1, "behind"}}},
          {"the ray ends at tmax",
           {{row(above, back, 4.5, c, 2), -1, "near side beyond tmax"},
-           {row(above, back, 7, c, 2), 5, "far side beyond tmax", 16.0 / 5},
+           {row(above, back, 6, c, 2), 5, "all but the near side beyond tmax", 16.0 / 5},
            {row(in, back, 2.5, c, 2), -1, "from inside, far side beyond tmax"}}},
          {"tiny spheres are seen from nearby",
           {{row(3 * tiny * z, back, endless, o, tiny), 2 * tiny, "scaled by 2^-24"}},
@@ -368,6 +368,9 @@ void triangle(Judge& j) {
              16 * j.epsilon);
     aimed(j, question, "a ray that starts on a triangle does not meet it", "from (1, 1, 0)",
           Rows(row(Triple{1, 1, 0}, back, endless, a, b, c)));
+    j.limit();
+    aimed(j, question, "the end of a slanted ray is told along the ray", "tmax = 4.5, 5 away",
+          Rows(row(Triple{-2, 1, -4}, Triple{0.6, 0, 0.8}, 4.5, a, b, c)));
     j.limit();
     aimed(j, question, "a hit at tmax itself counts", "tmax = 5, 5 away",
           Rows(row(above, back, 5, a, b, c)), {5}, 16);

@@ -99,6 +99,7 @@ void tree(Judge& j) {
         for (size_t k = 0; k < order.size(); ++k) right = right && c[4 + k] == order[k];
         std::string seen = say("t = %.6g; leaves looked at:", c[0]);
         for (size_t k = 0; k < 6 && c[4 + k] >= 0; ++k) seen += c[4 + k] == 1 ? " left" : " right";
+        if (!(c[4] >= 0)) seen += " none";
         j.exact(what, right, seen + say(" (t = %.6g and %zu expected)", t, order.size()));
     };
     finds("the left leaf is nearer, and its hit is before the right one: one is looked at", 0, 1.5,

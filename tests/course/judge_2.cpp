@@ -259,6 +259,10 @@ void phong_lobe(Judge& j) {
             oracle::say("it is %.6g at 60 degrees and %.6g on the axis", p[1], p[0]));
     j.exact("the density behind the lobe is 0, for even n, too", p[3] == 0,
             oracle::say("it is %.6g at a cosine of -0.5 with n = 2", p[3]));
+    const double of_all = j.ask(pdf, Rows(Out{-0.5, 0})).numbers.at(0);
+    j.exact("the density behind the lobe is 0 for n = 0, where the lobe is a hemisphere",
+            of_all == 0, oracle::say("it is %.6g at a cosine of -0.5", of_all));
+    j.limit();
     Worst integral;
     for (double n : {0.0, 1.0, 2.5, 20.0, 400.0}) {
         const double sum = over_hemisphere(j, pdf, {n});

@@ -277,6 +277,26 @@ size_t empty_boxes(Judge& j, const std::vector<size_t>& dims) {
     return empty;
 }
 
+// The first number of a path that, after as many samples as its prime, leaves one of as many parts
+// empty; if none does, how many numbers there are.
+size_t of_another_base(Judge& j) {
+    const Rows x = paths(j, 3, 11, 1, 271);  // the 58th prime
+    auto is_prime = [](size_t n) {
+        size_t divisor = 2;
+        while (n % divisor != 0) ++divisor;
+        return divisor == n;
+    };
+    size_t base = 1;
+    for (size_t dim = 0; dim < x.width; ++dim) {
+        do ++base;
+        while (!is_prime(base));
+        std::set<size_t> hit;
+        for (size_t i = 0; i < std::min(base, x.size()); ++i) hit.insert(part(j, base, x[i][dim]));
+        if (hit.size() < base) return dim;
+    }
+    return x.width;
+}
+
 // Over pixels: pairs of what happens to the first digits of two numbers, of bases 5 and 7.
 struct Pairs {
     std::set<size_t> shifts, factors;
@@ -359,6 +379,9 @@ void dimensions(Judge& j) {
             empty[0] + empty[1] + empty[2] == 0,
             oracle::say("%zu, %zu and %zu boxes stay empty in three pixels%s", empty[0], empty[1],
                         empty[2], alone.c_str()));
+    const size_t other = of_another_base(j);
+    j.exact("number k has the k-th prime for its base, as far as a path goes", other == width,
+            oracle::say("number %zu has another one", other));
     j.exact("what scrambles one number says nothing of what scrambles the next",
             pairs.shifts.size() == 35 && pairs.factors.size() == 24,
             oracle::say("over 2000 pixels %zu pairs of first digits of 35 are seen, and %zu pairs "

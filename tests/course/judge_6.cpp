@@ -9,7 +9,7 @@ using course::Judge, course::Out, course::Rows, course::Tally;
 
 namespace {
 
-constexpr size_t wrong[] = {9, 7, 11}, right[] = {4, 7, 4};  // published subjects
+constexpr size_t wrong[] = {10, 8, 17}, right[] = {4, 7, 4};  // published subjects
 
 // Whether a right one passes in all of ten runs (2), in most or in few; each run is asked for
 // alone, as it may take its time.

@@ -270,15 +270,21 @@ void walking(Judge& j) {
     for (size_t i = 0; i < white.size(); ++i) all += white[i][stops] / 200;
     j.exact("walks between white walls end, too", all > 2 && all < 1000,
             oracle::say("they have %.3g stops", all));
-    Worst carried;
+    Worst carried, balance;
     for (size_t i = 0; i < white.size(); ++i)
-        for (size_t c = 0; white[i][stops] >= 2 && c < 3; ++c) {
-            const double has = white[i][second + c] / white[i][emitted + c];
-            carried.see(std::abs(has - 1 / 0.98), oracle::say("it has %.6g times the power", has));
+        for (size_t c = 0; c < 3; ++c) {
+            const In w = white[i];
+            const double e = w[emitted + c], has = w[second + c] / e,
+                         stays = (w[absorbed + c] + w[escaped + c]) / e;
+            if (w[stops] >= 2)
+                carried.see(std::abs(has - 1 / 0.98), oracle::say("%.6g times as much", has));
+            balance.see(std::abs(stays - 1), oracle::say("%.6g of it is", stays));
         }
     j.worst(
         "what leaves a white wall has 1 / 0.98 of the power that came, for the one in 50 that ends",
         carried, 1e4 * j.epsilon);
+    j.worst("what is emitted between white walls is absorbed or escapes, gains set against losses",
+            balance, 1e6 * j.epsilon);
 }
 
 }  // namespace

@@ -67,7 +67,13 @@ inline Lineup<Sampler> practice_samplers() {
                    return bowl_pdf({w.x, w.y, std::abs(w.z)});
                }}},
              {"lengths: directions of length 1.05",
-              {[=](double u, double v) { return real(1.05) * right(u, v); }, bowl_pdf}}},
+              {[=](double u, double v) { return real(1.05) * right(u, v); }, bowl_pdf}},
+             {"a factor of the density: half of the pairs are rejected, and it integrates to 1",
+              {[=](double u, double v) -> std::optional<vec3> {
+                   if (v > 0.5) return {};
+                   return right(u, 2 * v);
+               },
+               bowl_pdf}}},
             {{"the rounding of float: it begins with the other number, goes round the other way, "
               "and computes in float",
               {[](double u, double v) {
@@ -91,7 +97,8 @@ inline Lineup<Sampler> practice_samplers() {
                    return frame(slanted).to_world(about_z(std::pow(1 - u, 1 / 201.0), turn * v));
                },
                [=](vec3 w) {
-                   return 201 / turn * std::pow(std::max(0.0, double(dot(w, slanted))), 200);
+                   const double cosine = w.z > 0 ? std::max(0.0, double(dot(w, slanted))) : 0;
+                   return 201 / turn * std::pow(cosine, 200);
                }}}}};
 }
 
@@ -128,14 +135,16 @@ inline Lineup<Estimator> practice_estimators() {
           {[](uint64_t seed, int n) {
                return 0.25 * mean_of_exp(seed, 1) + 0.75 * mean_of_exp(seed, n);
            },
-           integral}},
+           integral, false}},
          {"numbers that are not finite: 0 / 0 for one estimate in 200",
           {[](uint64_t seed, int n) {
                Rng rng{hash(seed, 4)};
                const double x = std::floor(200 * rng.uniform());
                return x / x * mean_of_exp(seed, n);
            },
-           integral}}},
+           integral}},
+         {"the mean: 1/20 is added, where the truth is 0",
+          {[](uint64_t seed, int n) { return mean_of_exp(seed, n) - integral + 0.05; }, 0}}},
         {{"a declared bias: the square of a mean", {square, integral * integral, false}},
          {"a declared bias: 5 / n is added",
           {[](uint64_t seed, int n) { return mean_of_exp(seed, n) + 5.0 / n; }, integral, false}},
@@ -266,6 +275,33 @@ inline Lineup<Intersector> practice_intersectors() {
                   if (std::abs(beam.d.*k) < std::abs(beam.d.*least)) least = k;
               if (s.r > 0) s.a.*least = beam.o.*least;
               return sound(s, beam);
+          }}},
+         {"small bodies and distances: distances are multiples of 1/1000",
+          {[=](const Body& s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              return t ? std::optional(std::round(1000 * *t) / 1000) : t;
+          }}},
+         {"tmax: beams end 2 % too late", {[=](const Body& s, const Beam& beam) {
+              return sound(s, {beam.o, beam.d, real(1.02) * beam.tmax});
+          }}},
+         {"edges of a triangle: triangles are a tenth larger all around",
+          {[=](const Body& s, const Beam& beam) { return sound(smaller(s, -0.1), beam); }}},
+         {"numbers that are not finite: from within a sphere the distance is 0 / 0",
+          {[=](const Body& s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              return t && length(beam.o - s.a) < s.r ? std::optional(std::nan("")) : t;
+          }}},
+         {"roots of a sphere: from within it is the root behind that counts, without its sign",
+          {[=](const Body& s, const Beam& beam) {
+              const bool within = s.r > 0 && length(beam.o - s.a) < s.r;
+              return sound(s, {beam.o, within ? -beam.d : beam.d, beam.tmax});
+          }}},
+         {"roots of a sphere: from outside the far side is met",
+          {[=](const Body& s, const Beam& beam) {
+              const auto t = sound(s, beam);
+              if (!t || s.r == 0 || length(beam.o - s.a) < s.r) return t;
+              const double far = 2 * dot(s.a - beam.o, beam.d) - *t;
+              return far <= beam.tmax ? std::optional(far) : std::nullopt;
           }}}},
         {{"another way: it goes there in steps", {sound}},
          {"the rounding of float: in units of its own, and in float", {[=](Body s, Beam beam) {
