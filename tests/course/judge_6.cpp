@@ -87,7 +87,7 @@ course::Judging judging(double exercise) {
         j.exact("other seeds give other random numbers", looks.at(1) == 1,
                 "two seeds, and the subject was asked the same questions");
         if (exercise == 3)
-            j.exact("directions of beams have length 1", looks.at(6) == 0,
+            j.exact("directions of beams have length 1", looks.at(6) == 1,
                     "a beam went along a vector of another length; divide it by its length");
         const Tally t = course::tally(j, exercise);
         j.allows = course::limit * double(t.runs);

@@ -73,8 +73,8 @@ inline Out looks_of_samplers(uint64_t seed) {
     return seen.out();
 }
 
-// Many estimates, several numbers of samples, what is said of a subject of either class, and
-// whether ten estimates or more have the same seed.
+// Many estimates, several numbers of samples, what is said of a subject of either class, and that
+// fewer than ten estimates have the same seed.
 inline Out looks_of_estimators(uint64_t seed) {
     Seen seen;
     int first = 0;
@@ -90,17 +90,19 @@ inline Out looks_of_estimators(uint64_t seed) {
                           },
                           std::numbers::e - 1, unbiased},
                          seed);
-    seen.features.push_back(10 * seeds.size() <= asked);
+    seen.features.resize(3);  // of a test that asks nothing
+    seen.features.push_back(10 * seeds.size() > asked);
     return seen.out();
 }
 
-// Spheres, triangles, beams that end, beams that begin within, directions of other lengths than 1;
-// and whether the last digits of a distance decide: spies whose distances are off by so many units
-// in the last place that one of them says what a test of equality expects: it asks further
+// Spheres, triangles, beams that end, beams that begin within; that all directions have length 1;
+// and that the last digits of a distance do not decide: spies whose distances are off by so many
+// units in the last place that one of them says what a test of equality expects: it asks further
 // questions.
 inline Out looks_of_intersectors(uint64_t seed) {
     const Intersector right = practice_intersectors().right[0].subject;
     size_t asked = 0;
+    bool all_unit = true, minute = false;
     auto spied = [&](int64_t units) {
         Seen seen;
         asked = 0;
@@ -108,8 +110,8 @@ inline Out looks_of_intersectors(uint64_t seed) {
             {[&](const Body& s, const Beam& beam) {
                 const auto [o, d, tmax] = beam;
                 const bool within = s.r > 0 && length(o - s.a) < s.r, ends = std::isfinite(tmax);
-                seen.look({o.x, o.y, o.z, d.x, d.y, d.z},
-                          {s.r > 0, s.r == 0, ends, within, std::abs(length(d) - 1) > 1e-4});
+                seen.look({o.x, o.y, o.z, d.x, d.y, d.z}, {s.r > 0, s.r == 0, ends, within});
+                all_unit = all_unit && std::abs(length(d) - 1) < 1e-4;
                 ++asked;
                 const auto t = right.meet(s, beam);
                 return t ? std::optional(std::bit_cast<double>(std::bit_cast<int64_t>(*t) + units))
@@ -120,10 +122,10 @@ inline Out looks_of_intersectors(uint64_t seed) {
     };
     Seen seen = spied(0);
     const size_t before = asked;
-    bool minute = false;
     for (int64_t units = -1000; before <= 10 && units <= 1000; ++units)
         spied(units), minute = minute || asked > before;
-    seen.features.push_back(minute);
+    seen.features.resize(4);
+    seen.features.insert(seen.features.end(), {all_unit, !minute});
     return seen.out();
 }
 
