@@ -152,6 +152,8 @@ int main() {
         {"step", 21, take_step},
         {"throughput", 21, throughput},
         {"throughput_in_glass", 22, throughput},
+        {"ended_by_roulette", 21,
+         [](In x) { return Out{double(asked_step(x).end == End::roulette)}; }},
         {"direct_light", 10, found_by_aiming},
         {"light_sample", 10, light_sample},
         {"weight_of_emission", 27, weight},

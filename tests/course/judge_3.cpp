@@ -289,12 +289,16 @@ void roulette(Judge& j) {
     double survivors = 0;
     for (size_t i = 0; i < many.size(); ++i) survivors += many[i][2] > 0;
     j.remember({survivors});
+    const Out ended = j.ask("ended_by_roulette", asked(T, 64)).numbers;
+    const double told = double(std::count(ended.begin(), ended.end(), 1));
     j.probe("throughput", asked(0.05, 1));
     const Triple without = triple(j.ask("throughput", question({}, 1, from)));
     const Triple whole = without[2] > 0 ? without : 0.5 * before;
     j.exact("where the threshold is 0 nobody dies", without[2] > 0, "a path was ended");
     const double chance = whole[2] / T;
 
+    j.exact("a path that roulette ends says so: End::roulette", told + survivors == 64,
+            oracle::say("of %g that end %g do", 64 - survivors, told));
     const Rows inside =
         j.ask("throughput_in_glass", asked_of_roulette(T / 4, 64, 1, row(from, 4.0)));
     double least = T;
