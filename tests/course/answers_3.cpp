@@ -54,9 +54,12 @@ Segment segment(In x) {
     return {ray, vec3_of(x, 6), real(x[9]), vec3_of(x, 10), int(x[13]), vec3_of(x, 14)};
 }
 
+// In glass there is one more number, eta2.
 Step asked_step(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
-    return step(scene, technique(x), segment(x.subspan(4)), numbers_of_path);
+    Segment arrives = segment(x.subspan(4));
+    if (x.size() > 21) arrives.eta2 = real(x[21]);
+    return step(scene, technique(x), arrives, numbers_of_path);
 }
 Out take_step(In x) {
     const Step e = asked_step(x);
@@ -67,12 +70,9 @@ Out take_step(In x) {
                e.scattered.pdf);
 }
 
-// Of the ray that goes on; 0 if none does.  In glass there is one more number, eta2.
+// Of the ray that goes on; 0 if none does.
 rgb throughput(In x) {
-    const Sampler numbers_of_path = sampler(x[3]);
-    Segment arrives = segment(x.subspan(4));
-    if (x.size() > 21) arrives.eta2 = real(x[21]);
-    const Step e = step(scene, technique(x), arrives, numbers_of_path);
+    const Step e = asked_step(x);
     return e.end != End::no ? rgb{} : e.next.beta;
 }
 

@@ -443,11 +443,8 @@ Lineup<Intersector> hidden_intersectors() {
           })},
          {"coordinates: spheres: the least of the three on the way to the centre counts as 0",
           balls([](Body s, const Beam& b) {
-              const vec3 way = s.a - b.o;
-              auto least = axis[0];
-              for (auto k : axis)
-                  if (std::abs(way.*k) < std::abs(way.*least)) least = k;
-              s.a.*least = b.o.*least;
+              const auto k = least_axis(s.a - b.o);
+              s.a.*k = b.o.*k;
               return ball(s, b);
           })},
          {"edges of a triangle: triangles: a parallelogram", placed([](Place x, const Beam& b) {

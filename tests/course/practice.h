@@ -3,6 +3,7 @@
 // Of every kind (kinds.h) by which tests are graded there is one: `make check` and the grader
 // differ in subjects, and not in what they ask for.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -213,6 +214,11 @@ inline std::optional<double> march(const Body& s, const Beam& beam, double tmax)
     return {};
 }
 
+// The axis along which v goes least, x before y before z.
+inline real vec3::*least_axis(vec3 v) {
+    return *std::ranges::min_element(axis, {}, [v](auto k) { return std::abs(v.*k); });
+}
+
 inline Lineup<Intersector> practice_intersectors() {
     auto sound = [](const Body& s, const Beam& beam) { return march(s, beam, beam.tmax); };
     // Its corners moved towards its centre, by this part of the way.
@@ -270,10 +276,8 @@ inline Lineup<Intersector> practice_intersectors() {
           }}},
          {"coordinates: a sphere's centre has that of the eye along which the beam goes least",
           {[=](Body s, const Beam& beam) {
-              auto least = axis[0];
-              for (auto k : axis)
-                  if (std::abs(beam.d.*k) < std::abs(beam.d.*least)) least = k;
-              if (s.r > 0) s.a.*least = beam.o.*least;
+              const auto k = least_axis(beam.d);
+              if (s.r > 0) s.a.*k = beam.o.*k;
               return sound(s, beam);
           }}},
          {"small bodies and distances: distances are multiples of 1/1000",
