@@ -55,7 +55,7 @@ TEST_CASE("pictures are there while it renders; Ctrl-C leaves a page that says s
     CHECK(o.status == 130);
     CHECK(place.has("a.pfm"));
     const std::string told = place.read("a.html.js");
-    CHECK(contains(told, "\"done\", true, "));
+    CHECK(contains(told, "\"stopped\", true, "));
     CHECK(told.ends_with(" (interrupted)\");\n"));
 }
 
