@@ -46,11 +46,11 @@ std::function<rgb(const Start&)> view_of(const Options& o, const Scene& scene) {
 
 // The function that renders a sample.  It abandons a path after an interrupt.
 Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
-                     const Witness& witness) {
+                     const std::optional<Witness>& witness) {
     return [&, view = view_of(o, scene)](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         if (view) return ++tally.rays, view(at);
-        auto misses = witness.visitor(tally);
+        auto misses = witness->visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {
                       if (interrupted) throw Interrupted();
@@ -99,8 +99,10 @@ int penumbra_main(const std::vector<std::string>& words) {
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     const RowRange rows = rows_of(o, scene);
-    const Witness witness(scene, o.technique, rows.first, rows.count(), scene.line_of_light);
-    const Plan plan = plan_of(o, scene, o.view.of ? nullptr : &witness);
+    std::optional<Witness> witness;
+    if (!o.view.of)
+        witness.emplace(scene, o.technique, Band{rows.first, rows.count()}, scene.line_of_light);
+    const Plan plan = plan_of(o, scene, witness ? &*witness : nullptr);
     const Radiance L = radiance_of(o, scene, pattern, witness);
     const FilmOf what = film_of(table, o, parsed, plan);
     show.begin(o, outputs);

@@ -15,8 +15,11 @@ struct Unseen {
     void add(const std::vector<NearMisses>&, double, double) {}
     std::string doubt(double, double, double) const { return ""; }
 };
+struct Band {
+    int first, count;
+};
 struct Witness {
-    Witness(const Scene&, const Technique&, int, int, const std::vector<uint32_t>&) {}
+    Witness(const Scene&, const Technique&, const Band&, const std::vector<uint32_t>&) {}
     std::vector<NearMisses> near_misses(double) const { return {}; }
     std::vector<size_t> noisy() const { return {}; }
     static std::string why_unknown(const Film&, const ImageError&) { return ""; }

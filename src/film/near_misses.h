@@ -25,13 +25,16 @@ struct NearMisses {
 
     // Sums of c and c^2 at each growth, of paths of each way.
     std::array<std::array<std::array<FixedPoint, 2>, growths>, ways> sum{};
-    // Light samples that reached the light, and the greatest |beta L w|^2 / (3 K^2) of them.
-    uint64_t hits = 0;
-    double most = 0;
+
+    // Of what the light sends to the picture, behind first surfaces that are no mirrors or glass:
+    // sums over pixels of its mean channel and of its square, and the variance of the first, by
+    // paths from the light; the same first sum by paths from the eye, in 2^-40 of it.
+    double sent = 0, sent_squares = 0, sent_variance = 0;
+    uint64_t came = 0;
 
     // Adds sums of more samples.
     void add(const NearMisses& other) {
-        hits += other.hits, most = std::max(most, other.most);
+        came += other.came;
         for (size_t way = 0; way < ways; ++way)
             for (size_t k = 0; k < growths; ++k)
                 for (size_t power = 0; power < 2; ++power)

@@ -54,12 +54,13 @@ inline constexpr uint64_t pilot_samples = 4;
 inline constexpr uint8_t min_of_noisy = 4;
 
 // Chooses weights by the pilot, which all blocks have; those of `noisy` pixels are 4 or more.  Near
-// misses count from then on, because those of the pilot do not have the pixel's share.
+// misses count from then on, because those of the pilot do not have the pixel's share.  What came is
+// kept: too much of it, in pixels of great weight, is better than too little.
 inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
     film.weight = weights_of(film.deviation, film.size);
     for (size_t i : noisy) film.weight[i] = std::max(film.weight[i], min_of_noisy);
     film.deviation = std::vector<float>();  // with its memory
-    for (NearMisses& group : film.near) group.sum = {}, group.hits = 0, group.most = 0;
+    for (NearMisses& group : film.near) group.sum = {};
     film.is_pilot = false;
     film.pilot = film.taken[0];
     film.taken.assign(film.taken.size(), 0);

@@ -4,69 +4,65 @@
 // times its area and 1/s^2 its radiance sends about the same light, but BSDF samples meet it s^2
 // times as often: near misses reveal rare light before a sample meets it.
 #pragma once
-#include <map>
-
 #include "film/loop.h"
 #include "path/halton.h"
 #include "path/pathtracer.h"
 #include "text/json.h"
 #include "text/words.h"
 #include "unseen/hidden.h"
+#include "unseen/particles.h"
 
 namespace penumbra {
-
-inline constexpr size_t max_light_groups = 64;  // more lights share groups with neighbours
 
 inline double mean_square(rgb L) {
     return (sqr(double(L.x)) + sqr(double(L.y)) + sqr(double(L.z))) / 3;
 }
 
-inline size_t group_of(const Scene& s, size_t light) {
-    return s.lights.size() <= max_light_groups ? light : light * max_light_groups / s.lights.size();
-}
-
 // ---- Lights in view of the camera ---------------------------------------------------------------
-
-// Adds the parts of pixels that a light covers in some rows, by sampling so many of its points.
-inline void add_view(std::map<size_t, double>& parts, const Scene& s, const Light& light,
-                     size_t points, int first_row, int rows) {
-    const Camera& c = s.camera;
-    const double pixel = 2 * double(c.tan_half) / s.size.height;
-    const int width = s.size.width;
-    for (size_t k = 0; k < points; ++k) {
-        const vec2 u{(real(k) + real(0.5)) / real(points), radical_inverse(2, k)};
-        const auto at = sample_light(light, c.eye, u);
-        const double cosine = at ? double(dot(at->wi, c.forward)) : 0;
-        if (!(cosine > 0)) continue;
-        const double right = double(dot(at->wi, c.right)), up = double(dot(at->wi, c.up));
-        const double x = width / 2.0 + right / (cosine * pixel);
-        const double y = s.size.height / 2.0 - up / (cosine * pixel) - first_row;
-        if (!(x >= 0 && x < width && y >= 0 && y < rows)) continue;
-        if (s.bvh.occluded(spawn_to({c.eye, {}, 0}, at->at))) continue;
-        // Relative to the solid angle of the pixel there.
-        parts[size_t(y) * size_t(width) + size_t(x)] +=
-            1 / (double(at->pdf) * double(points) * sqr(pixel) * cosine * cosine * cosine);
-    }
-}
 
 struct LightsInView {
     std::vector<NearMisses> groups;
     std::vector<size_t> noisy;  // pixels of groups that cover less than 16
 };
 
-// Samples 1024 points of each group.  Lines are those of the scene's file, or none.
-inline LightsInView lights_in_view(const Scene& s, int first_row, int rows,
+// Samples 1024 points of each group, and 4096 directions beside edges: parts of pixels that lights
+// cover.  Lines are those of the scene's file, or none.
+inline LightsInView lights_in_view(const Scene& s, const Band& band, const Edges& edges,
                                    const std::vector<uint32_t>& line_of_light = {}) {
     LightsInView view;
     view.groups.resize(std::min(s.lights.size(), max_light_groups));
     std::vector<std::map<size_t, double>> parts(view.groups.size());
+    const vec3 eye = s.camera.eye;
+    const size_t points = 1024 * view.groups.size() / std::max<size_t>(1, s.lights.size()) + 1;
+    const int beside = edges.empty() ? 0 : 4096;
+    // A sample of either kind counts as one of both together, pdf: of the light's points.
+    auto add = [&](size_t light, const Through& to, vec3 d, real pdf) {
+        parts[group_of(s, light)][to.pixel] +=
+            1 /
+            (to.solid_angle * (double(pdf) * double(points) + double(edges.pdf(eye, d)) * beside));
+    };
     for (size_t i = 0; i < s.lights.size(); ++i) {
         NearMisses& g = view.groups[group_of(s, i)];
         if (g.line == 0 && i < line_of_light.size()) g.line = float(line_of_light[i]);
         if (s.lights[i].is_delta()) continue;
         g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
-        const size_t points = 1024 * view.groups.size() / s.lights.size() + 1;
-        add_view(parts[group_of(s, i)], s, s.lights[i], points, first_row, rows);
+        for (size_t k = 0; k < points; ++k) {
+            const vec2 u{(real(k) + real(0.5)) / real(points), radical_inverse(2, k)};
+            const auto at = sample_light(s.lights[i], eye, u);
+            const auto to = at ? pixel_through(s, band, at->wi) : std::nullopt;
+            if (to && !s.bvh.occluded(spawn_to({eye, {}, 0}, at->at))) add(i, *to, at->wi, at->pdf);
+        }
+    }
+    for (int k = 0; k < beside; ++k) {
+        const Ray ray{eye, edges.sample(eye, radical_inverse(3, k),
+                                        {radical_inverse(5, k), radical_inverse(2, k)})};
+        const auto to = pixel_through(s, band, ray.d);
+        const auto hit = to ? s.bvh.closest(ray) : std::nullopt;
+        if (!hit || s.light_of[hit->id] == no_light) continue;
+        const size_t i = size_t(s.light_of[hit->id]);
+        const Surface x = s.surface(ray, *hit);
+        if (max_of(emitted(s.material(*hit), -dot(x.n, ray.d))) > 0)
+            add(i, *to, ray.d, pdf_light(s.lights[i], eye, x));
     }
     for (size_t g = 0; g < parts.size(); ++g) {
         NearMisses& group = view.groups[g];
@@ -112,7 +108,7 @@ inline uint32_t growths_met(const Light& light, const Ray& ray) {
     return met;
 }
 
-// Counts light samples that arrive, and sums, along a path, light that its rays met or nearly met:
+// Sums, along a path, what lights bring, and light that its rays met or nearly met:
 //     c = |beta L w|^2 / (3 L2 K^2)
 // for every growth that makes a ray meet the light.  It counts rays after mirrors and glass, where
 // there is no light sampling, and after narrow lobes, where it has a low weight.
@@ -121,20 +117,30 @@ struct NearMissVisitor {
     const Technique& technique;
     const std::vector<NearMisses>& groups;
     Tally& tally;
-    bool is_specular = true;
+    bool is_specular = true, is_seen = false;  // is_seen: the first surface is no mirror or glass
 
     void operator()(const Segment& segment, const Step& here) {
         constexpr real narrow = 10;  // 1/sr
         is_specular = is_specular && std::isinf(segment.pdf);
+        if (segment.k == 0) is_seen = here.met && !here.vertex.material->is_delta();
+        if (segment.k > 0 && max_of(here.Le) > 0)
+            add_came(size_t(scene.light_of[here.vertex.hit.id]),
+                     segment.beta * here.Le * here.weight);
         if (segment.k > 0 && segment.pdf > narrow && !groups.empty())
             add_near_misses(segment, here);
-        if (!here.direct.light || here.direct.occluded) return;
-        auto& g = tally.near[group_of(scene, size_t(here.direct.light - scene.lights.data()))];
-        const double c = mean_square(segment.beta * here.direct.L) * sqr(tally.share);
-        ++g.hits, g.most = std::max(g.most, c);
+        if (here.direct.light && !here.direct.occluded)
+            add_came(size_t(here.direct.light - scene.lights.data()), segment.beta * here.direct.L);
     }
 
 private:
+    // A path may bring up to 2^20 times what the light sends to all of the picture.
+    void add_came(size_t light, rgb L) {
+        const size_t g = group_of(scene, light);
+        const double sent = groups.empty() ? 0 : groups[g].sent;
+        if (is_seen && sent > 0)
+            tally.near[g].came +=
+                uint64_t(0x1p40 * std::min(0x1p20, double(mean_of(L)) * tally.share / sent));
+    }
     // Rarely called, so not inlined into the path's loop.
     [[gnu::noinline]] void add_near_misses(const Segment& segment, const Step& here) {
         const size_t n = scene.lights.size();
@@ -189,8 +195,10 @@ public:
             const NearMisses& group = groups[g];
             const double v = weight * weight * group.L2, n = t * double(group.K);
             lights_[g].line = double(group.line);
-            lights_[g].hits += double(group.hits);
-            lights_[g].most = std::max(lights_[g].most, sqr(weight / t) * group.most);
+            const double came = std::ldexp(double(group.came), -40) / t;
+            lights_[g].sent += weight * group.sent, lights_[g].came += weight * group.sent * came;
+            lights_[g].sent_variance += weight * group.sent_variance;
+            lights_[g].sent_squares += weight * group.sent_squares;
             lights_[g].met += group.area * n, lights_[g].variance += v * group.a / n;
             for (size_t way = 0; way < ways; ++way)
                 for (size_t k = 0; k < growths; ++k) {
@@ -210,25 +218,30 @@ public:
                                       " by way of gloss"};
         double unseen = 0, most = 0;  // variances, summed over pixels
         std::string why;
-        auto consider = [&](double variance, double line, const char* where, double met) {
+        auto consider = [&](double variance, const std::string& what) {
             unseen += variance;
-            if (!(variance > most)) return;
-            most = variance;
-            why = (line > 0 ? "the light of line " + fixed(line, 0) : "a light") + where +
-                  " was hit " + counted(fixed(met, 0), "time");
+            if (variance > most) most = variance, why = what;
         };
         for (const OneLight& l : lights_) {
-            if (l.met < 10) consider(l.variance, l.line, ", smaller than a pixel,", l.met);
-            // Ten samples tell a mean within a third.  Of fewer, the greatest hides up to a
-            // thousand of its like: chosen by the aimed scenes of calibration.
-            if (l.hits < 10) consider(1000 * l.most, l.line, " by light samples", l.hits);
+            const std::string name =
+                l.line > 0 ? "the light of line " + fixed(l.line, 0) : "a light";
+            auto hit = [&](const char* where, double met) {
+                return name + where + " was hit " + counted(fixed(met, 0), "time");
+            };
+            // Three standard errors.  Of few paths the squares are mostly too low: chosen by the
+            // aimed scenes of calibration.
+            const double less = l.sent - l.came;
+            if (less > 3 * std::sqrt(l.sent_variance))
+                consider(2 * sqr(less / l.sent) * l.sent_squares,
+                         "paths from the eye bring less than paths from " + name);
+            if (l.met < 10) consider(l.variance, hit(", smaller than a pixel,", l.met));
             for (size_t way = 0; way < ways; ++way) {
                 const auto& s = l.near[way];
                 double greatest = 0;
                 for (size_t k = 0; k < growths; ++k)
                     if (s[k].count() >= 5)
                         greatest = std::max(greatest, std::ldexp(s[k].variance, -2 * int(k)));
-                if (s[0].count() < 10) consider(greatest, l.line, words.at(way), s[0].count());
+                if (s[0].count() < 10) consider(greatest, hit(words.at(way), s[0].count()));
             }
         }
         // What is missing is missing from the truth F, too: (d^2 + u) / (F^2 + u) > 4 d^2 / F^2?
@@ -244,21 +257,24 @@ private:
         double count() const { return c > 0 ? c * c / c2 : 0; }  // (Kish 1965)
     };
     struct OneLight {
-        double line = 0, hits = 0, most = 0, variance = 0, met = 0;  // met: expected camera rays
+        double line = 0, variance = 0, met = 0;  // met: expected camera rays
+        double sent = 0, came = 0, sent_variance = 0, sent_squares = 0;
         std::array<std::array<NearSum, growths>, ways> near;
     };
     std::vector<OneLight> lights_;
     bool is_pilot_ = false;
 };
 
-// Observes the paths of a render, of rows from `first_row`, and judges its estimated error.
+// Observes the paths of a render, of a band, and judges its estimated error.
 class Witness {
 public:
-    Witness(const Scene& scene, const Technique& t, int first_row, int rows,
+    Witness(const Scene& scene, const Technique& t, const Band& band,
             const std::vector<uint32_t>& line_of_light = {})
-        : scene_(scene),
-          technique_(t),
-          view_(lights_in_view(scene, first_row, rows, line_of_light)) {}
+        : scene_(scene), technique_(t) {
+        const Edges edges(scene);
+        view_ = lights_in_view(scene, band, edges, line_of_light);
+        add_sent(view_.groups, scene, band, edges, light_paths(scene, band));
+    }
 
     // Lights, and pixels near them, of a film whose noisy pixels have K samples or more for each
     // sample of a replication of weight 1.
@@ -280,7 +296,7 @@ public:
 private:
     const Scene& scene_;
     const Technique technique_;
-    const LightsInView view_;
+    LightsInView view_;
 };
 
 }  // namespace penumbra

@@ -200,8 +200,10 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
     parsed = with_options(read_text(taken_from(text, text_size), called), options);
     const NamedScene& s = scene();
     pattern = make_pattern(options.sampler, options.seed, s.depth);
-    witness.emplace(s, options.technique, 0, s.size.height, s.line_of_light);
-    plan = plan_of(options, s, options.view.of ? nullptr : &*witness);
+    witness.reset();
+    if (!options.view.of)
+        witness.emplace(s, options.technique, Band{0, s.size.height}, s.line_of_light);
+    plan = plan_of(options, s, witness ? &*witness : nullptr);
     if (bytes_of(s.size, plan.replications) > 1e9)
         throw UserError("--size: a film of more than 1 GB");
     film = make_film(s.size, plan.replications, plan.is_adaptive);

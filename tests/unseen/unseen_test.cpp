@@ -67,7 +67,7 @@ NamedScene mirror_scene(real r, bool direct = false) {
 
 // The near misses of n samples per pixel, divided among K replications.
 std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n, double K = 1) {
-    const Witness witness(s, t, 0, s.size.height);
+    const Witness witness(s, t, {0, s.size.height});
     Tally tally;
     tally.share = 1 / K, tally.near = witness.near_misses(1);
     const Pattern pattern{SamplerKind::independent, seed_here()};
@@ -77,6 +77,8 @@ std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n
                 radiance(s, t, pattern, x, y, i, witness.visitor(tally));
     return tally.near;
 }
+LightsInView in_view(const Scene& s) { return lights_in_view(s, {0, s.size.height}, Edges(s)); }
+
 // The greatest d^2 that light of square u could more than double, in a picture of square `norm2`:
 // where (d^2 + u) / (F^2 + u) = 4 d^2 / F^2 for the truth F^2 = norm2 - d^2 of what was found.
 double doubled_from(double u, double norm2) {
@@ -139,7 +141,7 @@ TEST_CASE("a ray meets a grown light where it would meet that shape, from its br
 TEST_CASE("the part of pixels that lights cover, in view of the eye") {
     for (real r : {real(0.001), real(0.01), real(0.1)}) {
         const NamedScene s = mirror_scene(r, true);
-        const LightsInView view = lights_in_view(s, 0, s.size.height, s.line_of_light);
+        const LightsInView view = lights_in_view(s, {0, s.size.height}, Edges(s), s.line_of_light);
         const vec3 f = s.lights[0].p - s.camera.eye;
         const double pixel = 2 * double(s.camera.tan_half) / s.size.height;
         const double cosine = double(dot(unit(f), s.camera.forward));
@@ -155,19 +157,19 @@ TEST_CASE("the part of pixels that lights cover, in view of the eye") {
         CHECK(view.noisy.size() == (r < real(0.05) ? 1 : 4));
         double parts = 0;
         for (int row = 0; row < s.size.height; row += 2)
-            parts += lights_in_view(s, row, 2).groups[0].area;
+            parts += lights_in_view(s, {row, 2}, Edges(s)).groups[0].area;
         CHECK(parts == doctest::Approx(view.groups[0].area));
     }
     // A light that covers 16 pixels is not small.
-    const LightsInView large = lights_in_view(mirror_scene(real(0.9), true), 0, 8);
+    const LightsInView large = in_view(mirror_scene(real(0.9), true));
     CHECK(large.groups[0].area > 16);
     CHECK(large.noisy.empty());
     // A light seen only in mirrors, or behind something, does not count.
-    CHECK(lights_in_view(mirror_scene(real(0.1)), 0, 8).groups[0].area == 0);
+    CHECK(in_view(mirror_scene(real(0.1))).groups[0].area == 0);
     Scene hidden = mirror_scene(real(0.1), true);
     add_quad(hidden, {-1, -1, 1}, {2, 0, 0}, {0, 4, 0}, 0);
     prepare(hidden);
-    CHECK(lights_in_view(hidden, 0, 8).groups[0].area == 0);
+    CHECK(in_view(hidden).groups[0].area == 0);
 }
 
 TEST_CASE("near misses tell the light that is met, at every growth") {
@@ -194,7 +196,7 @@ TEST_CASE("near misses tell the light that is met, at every growth") {
 
 TEST_CASE("a film sums near misses by replications and weights, whatever the threads") {
     const NamedScene s = mirror_scene(real(0.3), true);
-    const Witness witness(s, {}, 0, 8, s.line_of_light);
+    const Witness witness(s, {}, {0, 8}, s.line_of_light);
     REQUIRE(!witness.noisy().empty());
     const Pattern pattern{SamplerKind::independent, seed_here()};
     // The other kind holds 1 / (K w) for each sample.
@@ -274,62 +276,87 @@ TEST_CASE("a thread told by its near misses: it is small in one direction only")
               doctest::Approx(c(e, 0, 0)).epsilon(5 / std::sqrt(c(e, 0, 0))));
 }
 
-TEST_CASE("light samples that reach a light are counted, and the greatest is known") {
-    // The eye sees the ceiling in a grey mirror; a shield hides one of two lamps from most of it.
-    NamedScene s = mirror_scene(real(0.05));
+TEST_CASE("what came of a light is its part of the radiance behind surfaces that are no mirrors") {
+    // The eye sees a rough wall, and beside it the ceiling in a grey mirror; of two lamps the wall
+    // meets one by chance, too.
+    NamedScene s = mirror_scene(real(0.4));
     s.materials[0] = {Mirror({0.5, 0.5, 0.5})}, s.depth = 3;
     add_material(s, {Rough({0.5, 0.5, 0.5})}, "rough");
     add_quad(s, {-9, 3, -9}, {18, 0, 0}, {0, 0, 18}, 2);
-    add_sphere(s, {-1, 1.1, 2}, real(0.05), 1);
-    add_quad(s, {-3, real(1.3), 0}, {real(2.7), 0, 0}, {0, 0, 4}, 2);
+    add_quad(s, {-9, 0, 5}, {0, 3, 0}, {18, 0, 0}, 2);
+    add_sphere(s, {-1, real(1.1), 2}, real(0.05), 1);
     prepare(s);
-    const Witness witness(s, {}, 0, s.size.height);
+    std::vector<NearMisses> groups(2);
+    groups[0].sent = 2, groups[1].sent = 0.25;
     Tally tally;
-    tally.share = 0.25, tally.near = witness.near_misses(1);
+    tally.share = 0.25, tally.near.resize(2);
     const Pattern pattern{SamplerKind::independent, seed_here()};
-    std::array<uint64_t, 2> hits{};
-    std::array<double, 2> most{};
-    int blocked = 0;
-    auto visit = [&, misses = witness.visitor(tally)](const Segment& path, const Step& e) mutable {
-        misses(path, e);
-        blocked += e.direct.occluded;
-        if (!e.direct.light || e.direct.occluded) return;
-        const size_t i = size_t(e.direct.light - s.lights.data());
-        ++hits[i], most[i] = std::max(most[i], mean_square(path.beta * e.direct.L) / 16);
-    };
-    for (uint64_t i = 0; i < 6400; ++i)
-        radiance(s, {}, pattern, int(i % 8), int(i / 8 % 8), i, visit);
-    CHECK(blocked > 100);
-    CHECK((hits[0] > 100 && hits[1] > 100));
-    Tally both = tally;
-    both.near[0].most = 0, both.add(tally);
-    for (size_t g = 0; g < 2; ++g) {
-        CHECK(most[g] > 0);
-        CHECK((tally.near[g].hits == hits[g] && tally.near[g].most == most[g]));
-        CHECK((both.near[g].hits == 2 * hits[g] && both.near[g].most == most[g]));
+    const Technique technique;
+    std::array<double, 2> came{};
+    int in_mirror = 0, met = 0, blocked = 0;
+    for (uint64_t i = 0; i < 6400; ++i) {
+        bool is_seen = false;
+        NearMissVisitor misses{s, technique, groups, tally};
+        radiance(s, technique, pattern, int(i % 8), int(i / 8 % 8), i,
+                 [&](const Segment& path, const Step& e) {
+                     misses(path, e);
+                     if (path.k == 0) is_seen = e.met && !e.vertex.material->is_delta();
+                     in_mirror += e.direct.light && !is_seen, blocked += e.direct.occluded;
+                     if (!is_seen) return;
+                     if (path.k > 0 && max_of(e.Le) > 0)
+                         ++met, came[size_t(s.light_of[e.vertex.hit.id])] +=
+                                double(mean_of(path.beta * e.Le * e.weight)) / 4;
+                     if (e.direct.light)
+                         came[size_t(e.direct.light - s.lights.data())] +=
+                             double(mean_of(path.beta * e.direct.L)) / 4;
+                 });
     }
+    CHECK((in_mirror > 100 && met > 100 && blocked > 100));
+    for (size_t g = 0; g < 2; ++g) {
+        CHECK(came[g] > 0);
+        CHECK(std::ldexp(double(tally.near[g].came), -40) * groups[g].sent ==
+              doctest::Approx(came[g]).epsilon(1e-6));
+    }
+    // Of a light that sends nothing nothing is summed; one path brings at most 2^20.
+    groups[0].sent = 0, groups[1].sent = 1e-300;
+    tally.near = std::vector<NearMisses>(2);
+    for (uint64_t i = 0; i < 64; ++i)
+        radiance(s, technique, pattern, int(i % 8), int(i / 8), i,
+                 NearMissVisitor{s, technique, groups, tally});
+    CHECK(tally.near[0].came == 0);
+    CHECK(tally.near[1].came > 0);
+    CHECK(tally.near[1].came % (uint64_t(1) << 60) == 0);
+    Tally both = tally;
+    both.add(tally);
+    CHECK(both.near[1].came == 2 * tally.near[1].came);
 }
 
-TEST_CASE("a light that few of its samples reached is in doubt") {
-    // The variance may be 1000 times the greatest contribution, of t = 4 samples: 1000 (0.1 / 4)^2.
-    auto doubt = [](unsigned hits, double d2, int films = 1) {
+TEST_CASE("a light whose own paths bring more than those from the eye is in doubt") {
+    // It sends 8 +- 1 to 25 pixels, a mean square of 2 / 25; the eye's paths, of t = 4 samples,
+    // have a part of it.
+    auto doubt = [](double part, double d2, std::vector<double> weights = {1}) {
         NearMisses lamp{12, 1, 4, 0, 0};
-        lamp.hits = hits, lamp.most = 0.01;
+        lamp.sent = 8, lamp.sent_variance = 1, lamp.sent_squares = 2;
+        lamp.came = uint64_t(part * 4 * 0x1p40);
         Unseen u;
-        for (int i = 0; i < films; ++i) u.add({lamp}, 4, 1.0 / films);
+        for (const double w : weights) u.add({lamp}, 4, w);
         return u.doubt(d2, 2, 25);
     };
-    const double few = doubled_from(0.625 / 25, 4), of_two = doubled_from(0.625 / 25 / 4, 4);
-    CHECK(doubt(3, few * 0.999) ==
-          "the light of line 12 by light samples was hit 3 times; light not yet found may amount "
-          "to 8 %");
-    CHECK(doubt(3, few * 1.001).empty());
-    CHECK(doubt(9, 0) != "");
-    CHECK(doubt(10, 0).empty());
-    // Two films have twice the hits, each with half the contribution to the mean.
-    CHECK(doubt(4, of_two * 0.999, 2).starts_with("the light of line 12 by"));
-    CHECK(doubt(4, of_two * 1.001, 2).empty());
-    CHECK(doubt(5, 0, 2).empty());
+    CHECK(doubt(0.62, 0) ==
+          "paths from the eye bring less than paths from the light of line 12; light not yet found "
+          "may amount to 8 %");
+    CHECK(doubt(0.63, 0).empty());  // three standard errors
+    // Twice the square of the part that is missing.
+    const double u = 2 * 2 * sqr(0.75) / 25;
+    CHECK(!doubt(0.25, doubled_from(u, 4) * 0.999).empty());
+    CHECK(doubt(0.25, doubled_from(u, 4) * 1.001).empty());
+    // Films of other seeds say the same; bands add up.
+    CHECK(!doubt(0.25, doubled_from(u, 4) * 0.999, {0.25, 0.75}).empty());
+    CHECK(doubt(0.25, doubled_from(u, 4) * 1.001, {0.25, 0.75}).empty());
+    CHECK(!doubt(0.25, doubled_from(2 * u, 4) * 0.999, {1, 1}).empty());
+    CHECK(doubt(0.25, doubled_from(2 * u, 4) * 1.001, {1, 1}).empty());
+    CHECK(!doubt(0.7, 0, {1, 1}).empty());  // 16 +- 1.4
+    CHECK(doubt(0.8, 0, {1, 1}).empty());
 }
 
 TEST_CASE(
@@ -378,7 +405,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
             const double d2 = error * error;
             const bool doubles = std::sqrt((d2 + u) / (1 + u)) > 2 * error;
             NearMisses lamp{12, 1, 4, 0, 0};
-            lamp.hits = 9, lamp.most = u / 1000;  // which a thousand of its like may exceed
+            lamp.sent = 1, lamp.sent_squares = u / 2;  // counted twice
             Unseen unseen;
             unseen.add({lamp}, 1);
             CHECK(unseen.doubt(d2, std::sqrt(1 + d2), 1).empty() != doubles);
@@ -389,7 +416,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
     CHECK(known > 100);
     // Where all is noise, the halves tell so.
     NearMisses lamp{12, 1, 4, 0, 0};
-    lamp.hits = 9, lamp.most = 0.001;
+    lamp.sent = 1, lamp.sent_squares = 0.5;
     Unseen unseen;
     unseen.add({lamp}, 1);
     CHECK(unseen.doubt(4, 1, 1).empty());
@@ -420,7 +447,7 @@ TEST_CASE("many lights share groups, and one near miss in many counts for all") 
     for (int i = 0; i < 999; ++i) add_sphere(many, {real(0.2), 50, 2}, real(1e-6), 1);
     many.line_of_light.resize(1000, 8);
     prepare(many);
-    CHECK(lights_in_view(many, 0, 8).groups.size() == max_light_groups);
+    CHECK(in_view(many).groups.size() == max_light_groups);
     const auto one = misses_of(few, {}, 2000), all = misses_of(many, {}, 2000);
     CHECK(c(all, 0, 0) == c(one, 0, 0));  // actual hits
     const double expected = c(one, 0, 6), sigma = std::sqrt(expected * 1000);
