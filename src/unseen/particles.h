@@ -5,6 +5,7 @@
 // (Veach 1997, ch. 4), where the eye sees a surface that is no mirror or glass.
 #pragma once
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -111,59 +112,69 @@ private:
 
 // ---- Paths from lights --------------------------------------------------------------------------
 
+// Random numbers of a path from a light.
+struct Draws {
+    uint64_t key, count = 0;
+    real one() { return to_unit(hash(key, count++)); }
+    vec2 two() {
+        const real x = one();
+        return {x, one()};
+    }
+};
+
+// A ray from a light, with its flux over its density; of a point light, intensity over density.
+struct Emission {
+    Ray ray;
+    rgb flux;
+};
+// Half of all directions are beside edges.
+inline Emission emission(const Light& l, const Edges& edges, Draws& u) {
+    const Surface from = point_of(l, u.two());
+    const bool is_point = l.is_delta(), is_turned = l.twosided && u.one() < real(0.5);
+    const vec3 n = is_turned ? -from.n : from.n;
+    const real area = l.is_round() ? 4 * pi * sqr(l.reach) : 1 / l.pdf_area;
+    const real beside = edges.empty() ? 0 : real(0.5), u_kind = u.one(), u_edge = u.one();
+    const vec2 at = u.two();
+    const vec3 d = u_kind < beside ? edges.sample(from.p, u_edge, at)
+                   : is_point      ? sample_uniform_sphere(at)
+                                   : frame(n).to_world(sample_cosine_hemisphere(at));
+    const real cosine = is_point ? 1 : std::max(real(0), dot(n, d));
+    const real pdf =
+        (1 - beside) * (is_point ? 1 / (4 * pi) : cosine / pi) + beside * edges.pdf(from.p, d);
+    return {spawn(from, d), l.L * ((is_point ? 1 : area * cosine * (l.twosided ? 2 : 1)) / pdf)};
+}
+
 // A path from a light.  Calls splat(pixel, radiance) where the eye sees it: the mean radiance of
 // the pixel, by this path.  Unbiased for what paths from the eye find behind a first surface that
 // is no mirror or glass.
 template <class Splat>
 void follow_light(const Scene& s, const Band& band, const Edges& edges, const Light& l,
                   uint64_t key, Splat splat) {
-    uint64_t draws = 0;
-    auto u = [&] { return to_unit(hash(key, draws++)); };
-    auto u2 = [&] {
-        const real x = u();
-        return vec2{x, u()};
-    };
-    const Surface from = point_of(l, u2());
-    const bool is_point = l.is_delta(), turned = l.twosided && u() < real(0.5);
-    const real area = l.is_round() ? 4 * pi * sqr(l.reach) : 1 / l.pdf_area;
-    const vec3 n = turned ? -from.n : from.n;
-    // Half of all directions are beside edges.
-    const real aimed = edges.empty() ? 0 : real(0.5);
-    const bool is_aimed = u() < aimed;
-    const vec2 at = u2();
-    vec3 d = is_point ? sample_uniform_sphere(at) : frame(n).to_world(sample_cosine_hemisphere(at));
-    if (is_aimed) d = edges.sample(from.p, u(), at);
-    const real cosine_l = is_point ? 1 : dot(n, d);
-    if (!(cosine_l > 0)) return;
-    const real pdf =
-        (1 - aimed) * (is_point ? 1 / (4 * pi) : cosine_l / pi) + aimed * edges.pdf(from.p, d);
-    // Flux over density; of a point, intensity over density.
-    rgb flux = l.L * ((is_point ? 1 : area * cosine_l * (l.twosided ? 2 : 1)) / pdf);
-    Ray ray = spawn(from, d);
-    for (int k = 0; k < s.depth; ++k) {
+    Draws u{key};
+    auto [ray, flux] = emission(l, edges, u);
+    for (int k = 0; k < s.depth && max_of(flux) > 0; ++k) {
         const auto hit = s.bvh.closest(ray);
         if (!hit) return;
         const Surface x = s.surface(ray, *hit);
         const Material& m = s.material(*hit);
         const real cosine = -dot(x.n, ray.d);
-        if (cosine == 0 || (is_point && k == 0 && m.is_delta())) return;
-        const vec3 n_front = cosine > 0 ? x.n : -x.n;
-        const Frame local = frame(n_front);
-        const vec3 wo = local.to_local(-ray.d), to_eye = s.camera.eye - x.p, w = unit(to_eye);
-        const real cos_eye = dot(n_front, w);
-        if (const auto to = pixel_through(s, band, -w); to && cos_eye > 0 && !m.is_delta()) {
-            const rgb L = flux * eval(m, wo, local.to_local(w)) *
-                          (cos_eye / dot(to_eye, to_eye) / real(to->solid_angle));
-            const Ray back = spawn_to({x.p, n_front, x.error}, {s.camera.eye, {}, 0});
+        if (cosine == 0 || (k == 0 && l.is_delta() && m.is_delta())) return;
+        const vec3 n = cosine > 0 ? x.n : -x.n, to_eye = s.camera.eye - x.p, d = unit(to_eye);
+        const Frame local = frame(n);
+        const vec3 wo = local.to_local(-ray.d);
+        if (const auto to = pixel_through(s, band, -d); to && dot(n, d) > 0 && !m.is_delta()) {
+            const rgb L = flux * eval(m, wo, local.to_local(d)) *
+                          (dot(n, d) / dot(to_eye, to_eye) / real(to->solid_angle));
+            const Ray back = spawn_to({x.p, n, x.error}, {s.camera.eye, {}, 0});
             if (max_of(L) > 0 && !s.bvh.occluded(back)) splat(to->pixel, L);
         }
-        const real u_lobe = u();
-        const BsdfSample b = sample(m, wo, cosine > 0, u_lobe, u2(), Direction::bsdf);
+        const real u_lobe = u.one();
+        const BsdfSample b = sample(m, wo, cosine > 0, u_lobe, u.two(), Direction::bsdf);
         if (!(max_of(b.f) > 0)) return;
         // Flux, unlike radiance, does not change by refraction (Veach 1997, sec. 5.2).
         const rgb goes_on = b.f * (std::abs(b.wi.z) / (b.pdf * b.eta2));
         const real survival = std::min(real(1), max_of(goes_on));
-        if (u() >= survival) return;
+        if (u.one() >= survival) return;
         flux *= goes_on / survival;
         ray = spawn(x, local.to_world(b.wi));
     }
@@ -178,15 +189,14 @@ inline uint64_t light_paths(const Scene& s, const Band& band) {
 // share alike and half by their strengths.
 inline void add_sent(std::vector<NearMisses>& groups, const Scene& s, const Band& band,
                      const Edges& edges, uint64_t paths) {
-    const size_t lights = s.lights.size();
-    if (lights == 0) return;
-    double most = 0, all = 0;
+    double most = std::numeric_limits<double>::min(), all = 0;
     for (const Light& l : s.lights) most = std::max(most, strength(l));
-    std::vector<double> upto(lights);  // sums of probabilities
     for (const Light& l : s.lights) all += strength(l, 1 / most);
-    for (size_t i = 0; i < lights; ++i)
-        upto[i] = (i > 0 ? upto[i - 1] : 0) + 0.5 / double(lights) +
-                  0.5 * strength(s.lights[i], 1 / most) / all;
+    if (!(all > 0)) return;
+    std::vector<double> upto;  // sums of probabilities
+    for (const Light& l : s.lights)
+        upto.push_back((upto.empty() ? 0 : upto.back()) + 0.5 / double(s.lights.size()) +
+                       0.5 * strength(l, 1 / most) / all);
     struct InPixel {
         double sum = 0, squares = 0;
     };
