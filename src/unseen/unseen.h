@@ -1,4 +1,4 @@
-// unseen/unseen.h  2  estimates of light that no sample has met, from near misses of small lights
+// unseen/unseen.h  3  estimates of light that no sample has met, from near misses of small lights
 //
 // The variance of samples does not contain light that no sample has met.  A light of s^2
 // times its area and 1/s^2 its radiance sends about the same light, but BSDF samples meet it s^2
@@ -10,7 +10,7 @@
 #include "text/json.h"
 #include "text/words.h"
 #include "unseen/hidden.h"
-#include "unseen/particles.h"
+#include "unseen/sent.h"
 
 namespace penumbra {
 

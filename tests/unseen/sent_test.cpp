@@ -1,5 +1,5 @@
-// unseen/particles_test.cpp  what lights send to the picture: pixels, edges, paths from lights
-#include "unseen/particles.h"
+// unseen/sent_test.cpp  what lights send to the picture: pixels, edges, paths from lights
+#include "unseen/sent.h"
 
 #include "oracle/expect.h"
 #include "path/paths.h"

@@ -1,4 +1,4 @@
-// unseen/particles.h  2  what lights bring to the picture, by paths that begin at them
+// unseen/sent.h  2  what lights bring to the picture, by paths that begin at them
 //
 // Paths from the eye may all miss a way of light that is easy to find from the lamp: over a small
 // bright surface, through a ball of glass or a gap.  Both kinds of paths estimate the same radiance
