@@ -22,7 +22,7 @@ from region import Region
 from regions import ROOT
 
 STATIC = ['-static', '-fno-diagnostics-show-caret', '-fdiagnostics-color=never', '-fmax-errors=20']
-PATIENCE = 20       # seconds by the clock for one answer: what computes is stopped by its processor time
+PATIENCE = 20       # seconds by the clock for one answer, more on a busy machine: what computes is stopped by its processor time
 
 
 class Broken(Exception):
@@ -226,11 +226,12 @@ class Workshop:
 
     def ask(self, number, program, cpu):
         """What the judge says; the program's own words and exit status count for nothing."""
+        patience = round(PATIENCE * max(1, os.getloadavg()[0] / (os.cpu_count() or 1)))
         with tempfile.TemporaryDirectory(dir=self.cache) as folder:
             answer = os.path.join(folder, 'verdict.json')
-            command = ['timeout', '-k', '1', str(PATIENCE + 4 * cpu), str(self.cache / f'judge_{number.split(".")[0]}'),
+            command = ['timeout', '-k', '1', str(patience + 4 * cpu), str(self.cache / f'judge_{number.split(".")[0]}'),
                        '--mistakes', str(ROOT / 'tests/course/mistakes.txt'), '--json', answer, '--seed', str(self.seed),
-                       '--patience', str(PATIENCE), number, '--', *sandbox.run_command(program, str(self.cache / 'rules'), cpu)]
+                       '--patience', str(patience), number, '--', *sandbox.run_command(program, str(self.cache / 'rules'), cpu)]
             with open(os.path.join(folder, 'stderr'), 'w+b') as words:
                 process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=words,
                                            env=sandbox.environment(), cwd=folder, start_new_session=True)

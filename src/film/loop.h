@@ -17,7 +17,7 @@ struct Plan {
     uint64_t paths = 1;                 // that one sample of the film stands for
     std::vector<NearMisses> near = {};  // of a film without samples
     std::vector<size_t> noisy = {};     // pixels where few samples meet bright light
-    MayMissLight may_miss_light = {};   // judges the error by near misses
+    MayMissLight may_miss_light = {};   // judges the error by what a witness saw
 };
 
 // Calls work(k, worker) for every k < count, perhaps from several threads, each with a number below

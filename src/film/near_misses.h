@@ -1,4 +1,4 @@
-// film/near_misses.h  1  sums over paths that met a light, or nearly did
+// film/near_misses.h  1  sums over paths that met a light, or nearly did, and what it brought
 #pragma once
 #include <algorithm>
 #include <array>
