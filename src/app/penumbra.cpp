@@ -45,12 +45,12 @@ std::function<rgb(const Start&)> view_of(const Options& o, const Scene& scene) {
 }
 
 // The function that renders a sample.  It abandons a path after an interrupt.
-Radiance radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
-                     const std::optional<Witness>& witness) {
+SampleFunction radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
+                           const std::optional<NearMissRecorder>& recorder) {
     return [&, view = view_of(o, scene)](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         if (view) return ++tally.rays, view(at);
-        auto misses = witness->visitor(tally);
+        auto misses = recorder->visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
                   [&](const Segment& segment, const Step& e) {
                       if (interrupted) throw Interrupted();
@@ -99,11 +99,11 @@ int penumbra_main(const std::vector<std::string>& words) {
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     const RowRange rows = rows_of(o, scene);
-    std::optional<Witness> witness;
+    std::optional<NearMissRecorder> recorder;
     if (!o.view.of)
-        witness.emplace(scene, o.technique, Band{rows.first, rows.count()}, scene.line_of_light);
-    const Plan plan = plan_of(o, scene, witness ? &*witness : nullptr);
-    const Radiance L = radiance_of(o, scene, pattern, witness);
+        recorder.emplace(scene, o.technique, Band{rows.first, rows.count()}, scene.line_of_light);
+    const Plan plan = plan_of(o, scene, recorder ? &*recorder : nullptr);
+    const SampleFunction L = radiance_of(o, scene, pattern, recorder);
     const FilmOf what = film_of(table, o, parsed, plan);
     show.begin(o, outputs);
     const auto look = [&](const Film& film, const Spent& spent) {

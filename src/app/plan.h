@@ -11,15 +11,15 @@
 #else
 namespace penumbra {
 inline std::vector<std::string> hidden_lights(const NamedScene&) { return {}; }
-struct Unseen {
+struct MissedLight {
     void add(const std::vector<NearMisses>&, double, double) {}
     std::string doubt(double, double, double) const { return ""; }
 };
 struct Band {
     int first, count;
 };
-struct Witness {
-    Witness(const Scene&, const Technique&, const Band&, const std::vector<uint32_t>&) {}
+struct NearMissRecorder {
+    NearMissRecorder(const Scene&, const Technique&, const Band&, const std::vector<uint32_t>&) {}
     std::vector<NearMisses> near_misses(double) const { return {}; }
     std::vector<size_t> noisy() const { return {}; }
     static std::string why_unknown(const Film&, const ImageError&) { return ""; }
@@ -70,8 +70,9 @@ inline uint64_t samples_for_one(const Plan& plan) {
     return plan.replications * (plan.is_adaptive ? typical_weight : 1);
 }
 
-// A scene without light is black, whatever error is asked for.  A witness observes the samples.
-inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness = nullptr) {
+// A scene without light is black, whatever error is asked for.  A recorder observes the samples.
+inline Plan plan_of(const Options& o, const Scene& scene,
+                    const NearMissRecorder* recorder = nullptr) {
     Plan plan;
     plan.error = scene.lights.empty() ? 0 : o.error, plan.seconds = o.seconds;
     const bool ends = o.spp > 0 || plan.seconds > 0 || plan.error > 0;
@@ -83,12 +84,12 @@ inline Plan plan_of(const Options& o, const Scene& scene, const Witness* witness
     plan.threads = o.threads;
     const RowRange rows = rows_of(o, scene);
     plan.size = {scene.size.width, rows.count()}, plan.first_row = rows.first;
-    if (!witness) return plan;
-    plan.noisy = witness->noisy();
+    if (!recorder) return plan;
+    plan.noisy = recorder->noisy();
     plan.may_miss_light = [](const Film& film, const ImageError& error) {
-        return !Witness::why_unknown(film, error).empty();
+        return !NearMissRecorder::why_unknown(film, error).empty();
     };
-    plan.near = witness->near_misses(plan.replications * (plan.is_adaptive ? min_of_noisy : 1));
+    plan.near = recorder->near_misses(plan.replications * (plan.is_adaptive ? min_of_noisy : 1));
     return plan;
 }
 

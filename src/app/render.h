@@ -59,7 +59,7 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent, Stop s
     run.stopped_by = stop;
     run.error = error_of(film);
     run.doubt = in_words(doubt_of(film, run.error, plan.may_miss_light),
-                         [&] { return Witness::why_unknown(film, run.error); });
+                         [&] { return NearMissRecorder::why_unknown(film, run.error); });
     run.replications = film.replications;
     const uint64_t n = film.min_taken();
     if (n > 0 && n == film.max_taken() && !film.is_pilot &&
@@ -76,7 +76,7 @@ struct Picture {
 
 // Fills a film until the plan's target is met; `look` sees it between passes.
 using Look = std::function<void(const Film&, const Spent&)>;
-inline Picture render(const Options& o, const Plan& plan, const Radiance& L,
+inline Picture render(const Options& o, const Plan& plan, const SampleFunction& L,
                       const FilmOf& what = {}, const Look& look = {}) {
     Film film = film_for(plan);
     Keeper keeper(o.keep, what);

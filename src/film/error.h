@@ -45,7 +45,7 @@ inline ImageError error_of(const Film& film) {
 
 // ---- Error checks -------------------------------------------------------------------------------
 
-// True if a film's error may be far above its estimate, by what a witness knows of it.
+// True if a film's error may be far above its estimate, by what a recorder knows of it.
 using MayMissLight = std::function<bool(const Film&, const ImageError&)>;
 
 // Why an error may be far above its estimate.

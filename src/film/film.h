@@ -40,7 +40,7 @@ inline bool fits_float(rgb L) {
 }
 
 // The radiance of a sample, and its tally.  Calls come from several threads.
-using Radiance = std::function<rgb(const PixelSample&, Tally&)>;
+using SampleFunction = std::function<rgb(const PixelSample&, Tally&)>;
 
 // A sum of samples, per channel.
 using Sum = std::array<double, 3>;
@@ -157,7 +157,7 @@ inline float with_deviation(float root, std::span<const Sum> sums, double count,
 
 // Adds samples, in order, to all replications of a block until it has n.  The image does not depend
 // on passes and threads.  If `radiance` throws, the block stays as it was.
-inline void add_samples(Film& film, size_t block, uint64_t n, const Radiance& radiance,
+inline void add_samples(Film& film, size_t block, uint64_t n, const SampleFunction& radiance,
                         Tally& tally) {
     const size_t from = film.begin(block), to = film.end(block), K = film.replications;
     std::vector<Sum> sums(&film.sum[from * K], &film.sum[from * K] + (to - from) * K);

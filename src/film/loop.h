@@ -17,7 +17,7 @@ struct Plan {
     uint64_t paths = 1;                 // that one sample of the film stands for
     std::vector<NearMisses> near = {};  // of a film without samples
     std::vector<size_t> noisy = {};     // pixels where few samples meet bright light
-    MayMissLight may_miss_light = {};   // judges the error by what a witness saw
+    MayMissLight may_miss_light = {};   // judges the error by what a recorder saw
 };
 
 // Calls work(k, worker) for every k < count, perhaps from several threads, each with a number below
@@ -53,7 +53,7 @@ inline uint64_t end_of_pass(uint64_t n, double elapsed, double each, double seco
 
 class Loop {
 public:
-    Loop(Film& film, const Plan& plan, const Radiance& radiance, const Watch& watch)
+    Loop(Film& film, const Plan& plan, const SampleFunction& radiance, const Watch& watch)
         : film_(film),
           plan_(plan),
           radiance_(radiance),
@@ -75,7 +75,7 @@ public:
 private:
     Film& film_;
     const Plan& plan_;
-    const Radiance& radiance_;
+    const SampleFunction& radiance_;
     const Watch& watch_;
     const uint64_t limit_, pilot_ = std::min(pilot_samples, limit_);  // samples
     ErrorCheck last_check_;

@@ -46,7 +46,7 @@ void check_cover(const std::vector<Part>& parts, int height) {
 
 // Merges row by row; memory holds the picture, and of each film a row and a weight per pixel.
 Image merge(const std::vector<Part>& parts, Size size, Run& run) {
-    Unseen unseen;
+    MissedLight unseen;
     Image image(size.width, size.height);
     for (size_t k = 0; k < parts.size();) {
         const auto [path, seed, rows, first, last] = parts[k];

@@ -232,8 +232,9 @@ int experiment(int argc, char** argv, const Lab& lab, Study study) try {
     if (help) std::printf("usage: %s [options]\n\n%s\n\n", lab.name.c_str(), lab.purpose.c_str());
     for (const Option& r : table)
         if (help)
-            std::printf("  %-20s%s%s\n", usage_of(r).c_str(), std::string(r.help).c_str(),
-                        r.otherwise.empty() ? "" : text(" (default: %s)", r.otherwise).c_str());
+            std::printf(
+                "  %-20s%s%s\n", usage_of(r).c_str(), std::string(r.help).c_str(),
+                r.default_text.empty() ? "" : text(" (default: %s)", r.default_text).c_str());
     return finished(help ? 0 : study(scope));
 } catch (...) {
     return failed();

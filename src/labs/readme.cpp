@@ -71,7 +71,7 @@ int write_all(const Scope& scope) {
     Lines rows;
     for (const Statement& s : grammar)
         rows.push_back({code(std::string(s.keyword) + " " + std::string(s.words)),
-                        std::string(s.meaning), std::string(s.otherwise)});
+                        std::string(s.meaning), std::string(s.default_text)});
     write_table("reference/scenes.md", "statements",
                 table({"statement", "meaning", "default"}, rows) + "\n");
     return 0;

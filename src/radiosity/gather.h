@@ -27,8 +27,8 @@ inline KnownLight known_light(const Scene& s, Mesh mesh, IlluminationMap map) {
 
 // The function that renders a sample.  The scene's depth is 1: paths add emission and light samples
 // as usual, and the radiance of the maps where they end.
-inline Radiance final_gather(const Scene& scene, const Technique& t, const KnownLight& known,
-                             const Pattern& pattern) {
+inline SampleFunction final_gather(const Scene& scene, const Technique& t, const KnownLight& known,
+                                   const Pattern& pattern) {
     return [=, &scene, &known, &pattern](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         rgb R;

@@ -100,7 +100,7 @@ inline OptionTable radiosity_table(RadiosityOptions& o) {
                     "triangles",
                     o.shows)}) +
         general_rows(o);
-    row(table, "--sampler").otherwise = "halton; sobol with --final-gather";
+    row(table, "--sampler").default_text = "halton; sobol with --final-gather";
     return table;
 }
 

@@ -82,7 +82,7 @@ int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
     if (o.seconds > 0) rest.seconds = std::max(1e-9, o.seconds - seconds);
     scene.depth = 1;
     const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
-    const Radiance L = final_gather(scene, o.technique, known, pattern);
+    const SampleFunction L = final_gather(scene, o.technique, known, pattern);
     Picture picture = render(rest, plan_of(rest, scene), L);
     picture.run.seconds += seconds, picture.run.rays += s.rays;
     picture.run.bias = "biased";

@@ -46,11 +46,11 @@ OptionTable shadow_table(ShadowOptions& o) {
                                            "number of independent replications per pixel; their "
                                            "sample variance gives the error estimate",
                                            "2", o.replications, 1, max_replications)});
-    row(table, "-o").otherwise = "out/NAME-shadow.png, .pfm";
+    row(table, "-o").default_text = "out/NAME-shadow.png, .pfm";
     row(table, "--replications").value = "K";
     row(table, "--replications").json = [&o] { return std::to_string(o.replications); };
     row(table, "--spp").help = "samples per pixel, of all replications together";
-    row(table, "--spp").otherwise = "the scene's";
+    row(table, "--spp").default_text = "the scene's";
     return table;
 }
 
@@ -67,7 +67,7 @@ int shadow(const std::vector<std::string>& words) {
     const auto outputs = outputs_of(o, parsed, "-shadow", plan.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
-    const Radiance L = shadow_estimate(scene, o.technique, pattern, o.estimator, plan.paths);
+    const SampleFunction L = shadow_estimate(scene, o.technique, pattern, o.estimator, plan.paths);
     Picture picture = render(o, plan, L);
     if (interrupted) picture.run.spp = 0;
     if (estimates_pixels(o.estimator)) picture.run.bias = "consistent";

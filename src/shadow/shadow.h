@@ -124,8 +124,8 @@ struct ShadowPixel {
 };
 
 // The function that renders a sample of the film: the estimate by all n paths of a replication.
-inline Radiance shadow_estimate(const Scene& scene, const Technique& t, const Pattern& pattern,
-                                Estimator e, uint64_t n) {
+inline SampleFunction shadow_estimate(const Scene& scene, const Technique& t,
+                                      const Pattern& pattern, Estimator e, uint64_t n) {
     return [=, &scene, &pattern](PixelSample s, Tally& tally) {
         ShadowPixel pixel;
         for (s.i = 0; s.i < n; ++s.i) {

@@ -19,10 +19,10 @@ namespace penumbra {
 using Text = std::string_view;
 
 struct Option {
-    Text name;              // "--spp"
-    std::string value;      // "N", or "none|nee|mis"; "": none
-    Text help;              // its meaning
-    std::string otherwise;  // the default; "": nothing
+    Text name;                 // "--spp"
+    std::string value;         // "N", or "none|nee|mis"; "": none
+    Text help;                 // its meaning
+    std::string default_text;  // the default; "": nothing
     std::function<void(Text)> set;
     std::function<std::string()> json = {};  // its value in --stats; none: not there
     Text also = {};                          // another name
@@ -91,10 +91,10 @@ Option one_of(Text name, const std::type_identity_t<Alternatives<Value>>& altern
 
 // A whole number of [least, most].
 template <class Whole>
-Option whole_number(Text name, Text help, std::string otherwise, Whole& at, uint64_t least,
+Option whole_number(Text name, Text help, std::string default_text, Whole& at, uint64_t least,
                     uint64_t most) {
     auto set = [&at, least, most](Text v) { at = Whole(parse_count(v, least, most)); };
-    return {name, "N", help, std::move(otherwise), set};
+    return {name, "N", help, std::move(default_text), set};
 }
 
 inline double parse_positive(Text text) {
@@ -131,7 +131,7 @@ struct CommonOptions {
     bool quiet = false, help = false, version = false;
 };
 
-inline OptionTable output_rows(CommonOptions& o, std::string otherwise) {
+inline OptionTable output_rows(CommonOptions& o, std::string default_text) {
     auto set = [&o](Text v) {
         if (!v.ends_with(".png") && !v.ends_with(".pfm") && !v.ends_with(".hdr"))
             throw UserError(in_quotes(v) + " must end in .png, .pfm or .hdr");
@@ -142,8 +142,8 @@ inline OptionTable output_rows(CommonOptions& o, std::string otherwise) {
         o.size = parse_size(width, height);
     };
     OptionTable rows = {
-        {"-o", "FILE", "image to write (.png, .pfm or .hdr); may be repeated", std::move(otherwise),
-         set},
+        {"-o", "FILE", "image to write (.png, .pfm or .hdr); may be repeated",
+         std::move(default_text), set},
         {"--size", "WxH", "width and height in pixels, e.g. 256x128; the field of view is vertical",
          "the scene's", set_size},
         {"--exposure", "E", "factor from radiance to PNG", "the scene's",
@@ -266,7 +266,7 @@ inline std::string option_lines(const OptionTable& table) {
             line.append(line.size() > indent ? indent : indent - line.size(), ' ');
             page += line;
             std::string text(r.help);
-            if (!r.otherwise.empty()) text += " (default: " + r.otherwise + ")";
+            if (!r.default_text.empty()) text += " (default: " + r.default_text + ")";
             wrap(page, text, indent);
         }
     }

@@ -39,8 +39,8 @@ class SceneReader;
 struct Statement {
     enum Kind { setting, material, content } kind;  // a setting stands once
     std::string_view keyword, words, meaning;
-    void (*read)(SceneReader&);       // reads the words after the keyword, or after NAME
-    std::string_view otherwise = {};  // without it; "": nothing
+    void (*read)(SceneReader&);          // reads the words after the keyword, or after NAME
+    std::string_view default_text = {};  // without it; "": nothing
 };
 inline const Statement& statement_of(const Words& words);
 

@@ -184,7 +184,7 @@ private:
 // ---- Light that may be missing ------------------------------------------------------------------
 
 // The near misses of films of one picture.
-class Unseen {
+class MissedLight {
 public:
     // Of a film with t samples in each replication of weight 1, 0 if it has only a pilot; its
     // picture has a weight in the mean of several.
@@ -266,10 +266,10 @@ private:
 };
 
 // Observes the paths of a render, of a band, and judges its estimated error.
-class Witness {
+class NearMissRecorder {
 public:
-    Witness(const Scene& scene, const Technique& t, const Band& band,
-            const std::vector<uint32_t>& line_of_light = {})
+    NearMissRecorder(const Scene& scene, const Technique& t, const Band& band,
+                     const std::vector<uint32_t>& line_of_light = {})
         : scene_(scene), technique_(t) {
         const Edges edges(scene);
         view_ = lights_in_view(scene, band, edges, line_of_light);
@@ -285,7 +285,7 @@ public:
     }
     const std::vector<size_t>& noisy() const { return view_.noisy; }
     static std::string why_unknown(const Film& film, const ImageError& error) {
-        Unseen unseen;
+        MissedLight unseen;
         unseen.add(film.near, double(film.min_taken()));
         return unseen.doubt(error.d2(), error.norm(), error.pixels);
     }

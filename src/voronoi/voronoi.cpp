@@ -46,16 +46,16 @@ OptionTable voronoi_table(VoronoiOptions& o) {
                           "number of independent replications per pixel; their sample variance "
                           "gives the error estimate",
                           "2", o.replications, 1, max_replications)});
-    row(table, "-o").otherwise = "out/NAME-voronoi.png, .pfm";
+    row(table, "-o").default_text = "out/NAME-voronoi.png, .pfm";
     row(table, "--replications").value = "K";
     row(table, "--replications").json = [&o] { return std::to_string(o.replications); };
     row(table, "--spp").help = "samples per pixel, of all replications together";
-    row(table, "--spp").otherwise = "the scene's";
+    row(table, "--spp").default_text = "the scene's";
     return table;
 }
 
 // The radiance of one path; the film gets only weighted means of paths.
-Radiance path_of(const Options& o, const Scene& scene, const Pattern& pattern) {
+SampleFunction path_of(const Options& o, const Scene& scene, const Pattern& pattern) {
     return [&](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](auto&, const Step& e) {
@@ -85,7 +85,7 @@ int voronoi_main(const std::vector<std::string>& words) {
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     WeightTroubles troubles;
-    const Radiance L =
+    const SampleFunction L =
         weighted_mean(scene, pattern, o.weights, plan.paths, path_of(o, scene, pattern), troubles);
     Picture picture = render(o, plan, L);
     Run& run = picture.run;

@@ -16,8 +16,8 @@ struct WeightTroubles {
 // A film's function of a sample from L, one of the pixel's samples: the weighted mean of all n of a
 // replication, by their places in the pixel.  The pattern is of independent numbers.  Bias class:
 // see Weighting.
-inline Radiance weighted_mean(const Scene& scene, const Pattern& pattern, Weighting kind,
-                              uint64_t n, const Radiance& L, WeightTroubles& troubles) {
+inline SampleFunction weighted_mean(const Scene& scene, const Pattern& pattern, Weighting kind,
+                                    uint64_t n, const SampleFunction& L, WeightTroubles& troubles) {
     return [=, &scene, &pattern, &troubles](PixelSample s, Tally& tally) {
         std::vector<Site> places;
         std::vector<rgb> values;

@@ -53,7 +53,7 @@ namespace {
 Options options;
 ParsedScene parsed;
 Pattern pattern;
-std::optional<Witness> witness;
+std::optional<NearMissRecorder> recorder;
 Plan plan;
 Film film;
 Image picture;
@@ -91,7 +91,7 @@ rgb radiance(const PixelSample& which, Tally& tally) {
     const Start at = start(scene(), pattern, which);
     const auto& of = options.view.of;
     if (of) return of({scene(), at, meet(scene(), at.ray), far_of(scene())});
-    return Li(scene(), options.technique, at.ray, at.sampler, witness->visitor(tally));
+    return Li(scene(), options.technique, at.ray, at.sampler, recorder->visitor(tally));
 }
 
 std::string taken_from(char* text, size_t size) {
@@ -200,10 +200,10 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
     parsed = with_options(read_text(taken_from(text, text_size), called), options);
     const NamedScene& s = scene();
     pattern = make_pattern(options.sampler, options.seed, s.depth);
-    witness.reset();
+    recorder.reset();
     if (!options.view.of)
-        witness.emplace(s, options.technique, Band{0, s.size.height}, s.line_of_light);
-    plan = plan_of(options, s, witness ? &*witness : nullptr);
+        recorder.emplace(s, options.technique, Band{0, s.size.height}, s.line_of_light);
+    plan = plan_of(options, s, recorder ? &*recorder : nullptr);
     if (bytes_of(s.size, plan.replications) > 1e9)
         throw UserError("--size: a film of more than 1 GB");
     film = make_film(s.size, plan.replications, plan.is_adaptive);
@@ -268,7 +268,7 @@ EXPORT(error) void error() {
     Object o;
     o.scalars({{"spp", film.samples_per_pixel()}});
     o.scalars({{"d_rel", e.d_rel()}, {"standard_error", e.standard_error()}});
-    auto missed_light = [&] { return Witness::why_unknown(film, e); };
+    auto missed_light = [&] { return NearMissRecorder::why_unknown(film, e); };
     o.add("doubt", json::string(in_words(doubt_of(film, e, plan.may_miss_light), missed_light)));
     answer(o.text());
 }

@@ -152,7 +152,7 @@ TEST_CASE("every option is in --help, with its value and its default, in lines t
         // Compares the words of the help text, whatever its line breaks are.
         std::istringstream lines(page.substr(at + 3 + usage.size()));
         std::string words = std::string(r.help);
-        if (!r.otherwise.empty()) words += " (default: " + r.otherwise + ")";
+        if (!r.default_text.empty()) words += " (default: " + r.default_text + ")";
         std::istringstream wanted(words);
         for (std::string a, b; wanted >> b;) {
             lines >> a;

@@ -34,7 +34,7 @@ struct Work {
 
     Work(const Options& o, const Scene& scene)
         : plan(plan_of(o, scene)), pattern(make_pattern(o.sampler, o.seed, scene.depth)) {}
-    Radiance radiance(const Options& o, const Scene& scene) const {
+    SampleFunction radiance(const Options& o, const Scene& scene) const {
         return [&, t = o.technique](const PixelSample& s, Tally& tally) {
             const Start at = start(scene, pattern, s);
             return Li(scene, t, at.ray, at.sampler, [&](const Segment&, const Step& e) {
@@ -148,22 +148,22 @@ TEST_CASE("a film begins as its plan says; near misses belong to radiance only")
     // A lamp smaller than a pixel makes that pixel noisy.
     const Scene scene =
         small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nsphere 0.1 0.1 0  0.01  l\n", {30, 20});
-    const Witness witness(scene, {}, {0, 20});
-    REQUIRE(witness.noisy().size() == 1);
+    const NearMissRecorder recorder(scene, {}, {0, 20});
+    REQUIRE(recorder.noisy().size() == 1);
     for (const uint32_t K : {0u, 1u, 2u, 5u}) {
         Options o = quick(SamplerKind::sobol, 64);
         o.replications = K;
-        const Plan view = plan_of(o, scene), plan = plan_of(o, scene, &witness);
+        const Plan view = plan_of(o, scene), plan = plan_of(o, scene, &recorder);
         CHECK((view.noisy.empty() && view.near.empty() && !view.may_miss_light));
         CHECK(film_for(view).near.empty());
-        CHECK(plan.noisy == witness.noisy());
+        CHECK(plan.noisy == recorder.noisy());
         CHECK(bool(plan.may_miss_light));
         CHECK(said(plan.replications, plan.samples) == said(view.replications, view.samples));
         // The pixel has weight 4 or more, if weights are chosen.
         const Film film = film_for(plan);
         REQUIRE(film.near.size() == 1);
         CHECK(film.near[0].K == (K ? float(K) : 2 * 4));
-        CHECK(film.near[0].area == witness.near_misses(1)[0].area);
+        CHECK(film.near[0].area == recorder.near_misses(1)[0].area);
         CHECK(said(film.size.width, film.size.height, film.replications, film.is_pilot) ==
               said(30, 20, K ? K : 2, K == 0));
     }
@@ -312,7 +312,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             CHECK(p.run.stopped_by == Stop::error);
             // The reference applies the rule to a film at every number of samples with a check.
             const Work j(o, scene);
-            const Radiance L = j.radiance(o, scene);
+            const SampleFunction L = j.radiance(o, scene);
             Film film = make_film(scene.size, 2, true);
             fill_pilot(film, pilot_samples, L);
             uint64_t checks = 0;
@@ -403,7 +403,7 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     CHECK(first_non_finite(p.image) == std::nullopt);
     // Ctrl-C in the first pass leaves pixels without samples: no image can be written.
     uint64_t calls = 0;
-    const Radiance L = [&](const PixelSample&, Tally&) {
+    const SampleFunction L = [&](const PixelSample&, Tally&) {
         if (++calls == 100) interrupted = SIGINT;
         return rgb{1, 1, 1};
     };
@@ -412,7 +412,7 @@ TEST_CASE("an interrupted image says so, and is of the samples that it has") {
     CHECK(none.run.spp == 0);
     CHECK(none.run.interrupted());
     // Ctrl-C comes just after the pilot, when most pixels have only its samples.
-    const Radiance others = [](const PixelSample& s, Tally&) {
+    const SampleFunction others = [](const PixelSample& s, Tally&) {
         if (s.i >= pilot_samples) interrupted = SIGINT;
         return rgb{1, 1, 1};
     };
@@ -470,7 +470,7 @@ TEST_CASE("memory for a film and its image is what its arrays have") {
 
 TEST_CASE("a film that the machine does not hold is refused before it is made") {
     const Options o = quick(SamplerKind::sobol, 4);
-    const Radiance L = [](const PixelSample&, Tally&) { return rgb{}; };
+    const SampleFunction L = [](const PixelSample&, Tally&) { return rgb{}; };
     for (const uint32_t K : {2u, 1024u}) {
         const double pixels = 1.001 * bytes_of_machine() / bytes_of({1, 1}, K);
         const Size size{1 << 14, int(pixels / (1 << 14)) + 1};

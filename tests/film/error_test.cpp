@@ -15,7 +15,7 @@ double normal(Rng& rng) {
     return r * std::cos(phi * rng.uniform());
 }
 
-const Radiance noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
+const SampleFunction noisy = random_radiance(5, [](const PixelSample&, vec2 u) {
     return rgb{u.x, u.x, u.x};
 });
 
@@ -62,7 +62,7 @@ TEST_CASE("d^2 of an image, by hand") {
 }
 
 TEST_CASE("the error of a film against brute force") {
-    const Radiance L = random_radiance(
+    const SampleFunction L = random_radiance(
         seed_here(), [](const PixelSample& s, vec2 u) { return heteroscedastic(s.x, s.y, u); });
     for (const uint32_t K : {0u, 5u}) {
         const Film film = filled({33, 17}, K, 24, L);
@@ -176,7 +176,7 @@ TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, wei
             Spread spread;
             for (uint64_t r = 0; r < 200; ++r) {
                 const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1);
-                const Radiance L = [&](const PixelSample& s, Tally&) {
+                const SampleFunction L = [&](const PixelSample& s, Tally&) {
                     const uint64_t pixel = uint64_t(s.y * 12 + s.x);
                     const Sampler sampler(pattern, pixel, s.i, s.set);
                     return heteroscedastic(s.x, s.y, sampler.get2(film_x));
@@ -236,7 +236,7 @@ TEST_CASE("checks are a lattice from 8 on, about a 32nd apart, wherever one asks
 }
 
 TEST_CASE("checks look at whole films when they are due, and tell what they expect") {
-    const Radiance one = [](const PixelSample&, Tally&) { return rgb{1, 1, 1}; };
+    const SampleFunction one = [](const PixelSample&, Tally&) { return rgb{1, 1, 1}; };
     const Size size{12, 9};
     // A pilot has no check, whatever its samples; the first check after it is at 8.
     Film film = make_film(size, 2, true);

@@ -7,7 +7,7 @@
 namespace penumbra {
 
 // Brings the blocks from `first` up to `last` to n samples.
-inline Tally fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const Radiance& L) {
+inline Tally fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const SampleFunction& L) {
     Tally all;
     for (size_t b = first; b < last; ++b) {
         Tally tally;
@@ -18,18 +18,18 @@ inline Tally fill_blocks(Film& f, size_t first, size_t last, uint64_t n, const R
     }
     return all;
 }
-inline Tally fill(Film& f, uint64_t n, const Radiance& L) {
+inline Tally fill(Film& f, uint64_t n, const SampleFunction& L) {
     return fill_blocks(f, 0, f.blocks(), n, L);
 }
 
 // A pilot of at most n samples, and weights chosen by it.
-inline void fill_pilot(Film& f, uint64_t n, const Radiance& L) {
+inline void fill_pilot(Film& f, uint64_t n, const SampleFunction& L) {
     for (uint64_t end = 1; end <= std::min(n, pilot_samples); ++end) fill(f, end, L);
     choose_weights(f);
 }
 
 // A film with n samples in each of K replications; K = 0: two, with weights.
-inline Film filled(Size size, uint32_t K, uint64_t n, const Radiance& L) {
+inline Film filled(Size size, uint32_t K, uint64_t n, const SampleFunction& L) {
     Film f = make_film(size, K ? K : 2, K == 0);
     if (K == 0) fill_pilot(f, n, L);
     fill(f, n, L);
@@ -37,7 +37,8 @@ inline Film filled(Size size, uint32_t K, uint64_t n, const Radiance& L) {
 }
 
 // A radiance from the numbers of an independent sample.
-inline Radiance random_radiance(uint64_t seed, std::function<rgb(const PixelSample&, vec2)> value) {
+inline SampleFunction random_radiance(uint64_t seed,
+                                      std::function<rgb(const PixelSample&, vec2)> value) {
     return [=](const PixelSample& s, Tally&) {
         const uint64_t pixel = hash(uint64_t(s.y), uint64_t(s.x)),
                        bits = hash(hash(hash(seed, pixel), s.set), s.i);

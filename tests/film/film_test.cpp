@@ -15,7 +15,7 @@ namespace {
 using Colour = std::array<float, 3>;
 
 // A value for every sample; the rounded sum depends on the order of addition.
-const Radiance numbered = [](const PixelSample& s, Tally& tally) {
+const SampleFunction numbered = [](const PixelSample& s, Tally& tally) {
     tally.rays += 1 + s.i;
     const uint64_t bits = hash(hash(hash(uint64_t(s.y), uint64_t(s.x)), s.set), s.i);
     const real v = std::ldexp(to_unit(bits), int(s.i * 37 % 60) - 30);
@@ -57,7 +57,7 @@ TEST_CASE("a pass takes each sample of each replication once, in order, of its o
         f.first_row = 100;
         std::map<std::array<int, 3>, uint64_t> taken;  // y, x, replication
         uint64_t out_of_order = 0;
-        const Radiance L = [&](const PixelSample& s, Tally&) {
+        const SampleFunction L = [&](const PixelSample& s, Tally&) {
             out_of_order += s.i != taken[{s.y, s.x, int(s.set)}]++;
             return rgb{1, 1, 1};
         };
@@ -162,7 +162,7 @@ TEST_CASE("samples that no file can hold are counted, and the first of them told
                                                    {{4, 1, 1, 2}, {1, 1, -infinity}},
                                                    {{4, 2, 0, 0}, {infinity, 1, 1}},
                                                    {{5, 0, 1, 0}, {1, nan, 1}}};
-    const Radiance L = [&](const PixelSample& s, Tally&) {
+    const SampleFunction L = [&](const PixelSample& s, Tally&) {
         const auto found = bad.find({int(s.i), int(s.set), s.y, s.x});
         return found == bad.end() ? rgb{1, 1, 1} : found->second;
     };
@@ -199,7 +199,7 @@ TEST_CASE("blocks commit whole: one whose function throws stays as it was, and i
         const Film before = f;
         for (uint64_t at = 1; at <= 5; ++at) {
             uint64_t calls = 0;
-            const Radiance stopped = [&](const PixelSample& s, Tally& tally) {
+            const SampleFunction stopped = [&](const PixelSample& s, Tally& tally) {
                 if (++calls == 2 * at) throw Failure();
                 return numbered(s, tally);
             };
@@ -303,7 +303,7 @@ TEST_CASE("the variance of a pixel far from 0 is that near 0") {
 }
 
 TEST_CASE("deviations of a pilot are roots of squared distances to the mean, of all channels") {
-    const Radiance L = random_radiance(seed_here(), [](const PixelSample& s, vec2 u) {
+    const SampleFunction L = random_radiance(seed_here(), [](const PixelSample& s, vec2 u) {
         return rgb{1000 + u.x, 3 * u.y, real(s.x)};
     });
     for (uint32_t K : {1u, 2u, 5u})

@@ -35,7 +35,7 @@ struct Rendered {
 };
 Rendered rendered(const Scene& scene) {
     const Pattern pattern = make_pattern(SamplerKind::sobol, 0, scene.depth);
-    const Radiance L = [&](const PixelSample& which, Tally& tally) {
+    const SampleFunction L = [&](const PixelSample& which, Tally& tally) {
         const Start at = start(scene, pattern, which);
         return Li(scene, {}, at.ray, at.sampler, [&](const Segment&, const Step& e) {
             tally.rays += 1 + (e.direct.light != nullptr);

@@ -8,7 +8,7 @@
 
 namespace {
 
-const Radiance noisy = random_radiance(
+const SampleFunction noisy = random_radiance(
     3, [](const PixelSample& s, vec2 u) { return heteroscedastic(s.x % 12, s.y, u); });
 
 // Replications are two; 0: two with weights, as in filled().
@@ -27,11 +27,11 @@ struct Run {
 };
 
 // Continues a film.  The clock ticks once per sample of a pixel, or stands still.
-Run run(Film& film, const Plan& plan, const Radiance& L = noisy, double tick = 0,
+Run run(Film& film, const Plan& plan, const SampleFunction& L = noisy, double tick = 0,
         std::function<void(const Film&, const Tally&)> between = {}) {
     Run r{};
     std::atomic<uint64_t> samples = 0;
-    const Radiance counting = [&](const PixelSample& s, Tally& tally) {
+    const SampleFunction counting = [&](const PixelSample& s, Tally& tally) {
         ++samples, ++tally.rays;
         return L(s, tally);
     };
@@ -185,7 +185,7 @@ TEST_CASE("of reasons to stop the first counts: Ctrl-C, NaN, error, samples, tim
             Watch watch;
             watch.elapsed = [&] { return film.min_taken() < 8 ? 0.0 : 1.0; };
             watch.interrupted = [] { return interrupted != 0; };
-            const Radiance L = [&](const PixelSample&, Tally&) {
+            const SampleFunction L = [&](const PixelSample&, Tally&) {
                 if (all & 16) interrupted = SIGINT;
                 return rgb{1, all & 8 ? real(NAN) : 1, 1};
             };
@@ -369,7 +369,7 @@ TEST_CASE("what a sample throws leaves the loop; the film goes on as if nothing 
 }
 
 TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C left out") {
-    const Radiance leaving = [](const PixelSample& s, Tally& tally) {
+    const SampleFunction leaving = [](const PixelSample& s, Tally& tally) {
         if (s.x == 5 && s.i == 17 && interrupted == SIGTERM) throw Interrupted();
         const size_t k = size_t(s.y) % growths;
         NearMisses& near = tally.near.at(size_t(s.x) % 3);
@@ -425,7 +425,7 @@ TEST_CASE("progress is shown in samples per pixel, now and at the end, if that i
     std::vector<std::pair<double, double>> shown;
     watch.elapsed = [] { return 1.0; };
     watch.show = [&](double now, double end) { shown.push_back({now, end}); };
-    auto show = [&](const Plan& plan, const Radiance& L = noisy) {
+    auto show = [&](const Plan& plan, const SampleFunction& L = noisy) {
         shown.clear();
         const Stop stop = Loop(film, plan, L, watch).run();
         interrupted = 0;

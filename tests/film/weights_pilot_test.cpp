@@ -108,7 +108,7 @@ TEST_CASE("a pixel's own samples have no say in its weight, however large they a
         CHECK(matters);  // for other pixels
     }
     // Of samples, too: all those of one pixel are others.
-    const Radiance L = random_radiance(seed_here(), [](const PixelSample& s, vec2 u) {
+    const SampleFunction L = random_radiance(seed_here(), [](const PixelSample& s, vec2 u) {
         return std::exp2(real(s.x)) * rgb{u.x, u.y, 1};
     });
     const Film whole = filled({7, 5}, 0, 5, L);
@@ -124,7 +124,7 @@ TEST_CASE("a pixel's own samples have no say in its weight, however large they a
 
 TEST_CASE("chosen weights keep the sums of the pilot; pixels where light is rare have 4 or more") {
     const Size size{40, 30};
-    const Radiance L = random_radiance(7, [](const PixelSample& s, vec2 u) {
+    const SampleFunction L = random_radiance(7, [](const PixelSample& s, vec2 u) {
         return rgb{(s.x > 36 ? 100 : 1) * u.x, u.y, 1};
     });
     for (uint64_t n : {1, 3, 4}) {
@@ -157,7 +157,7 @@ TEST_CASE("chosen weights leave every pixel's mean unbiased, that of rare light,
     const size_t middle = 40;
     Moments early, outlier, neighbour, pooled, weight;
     for (uint64_t r = 0; r < 5000; ++r) {
-        const Radiance L = random_radiance(hash(seed_here(), r), rare_light);
+        const SampleFunction L = random_radiance(hash(seed_here(), r), rare_light);
         Film f = make_film({9, 9}, 2, true);
         fill_pilot(f, 4, L);
         fill(f, 1, L);  // as after Ctrl-C

@@ -101,7 +101,7 @@ inline void check_rays(const Scene& s, Choices c) {
     }
 }
 
-inline Radiance radiance_of(const Scene& s, const Options& o, const Pattern& p) {
+inline SampleFunction radiance_of(const Scene& s, const Options& o, const Pattern& p) {
     return [&, far = far_of(s)](const PixelSample& at, Tally& tally) {
         const Start begin = start(s, p, at);
         if (o.view.of) return ++tally.rays, o.view.of({s, begin, meet(s, begin.ray), far});
@@ -116,7 +116,7 @@ inline void render_scene(Scene s, const Options& o, bool moderate) {
     try {
         const Plan plan = plan_of(o, s);
         const Pattern p = make_pattern(o.sampler, o.seed, s.depth);
-        const Radiance L = radiance_of(s, o, p);
+        const SampleFunction L = radiance_of(s, o, p);
         check_image(render(o, plan, L).image, plan.size, true);
     } catch (const SystemError& e) {
         demand(!moderate, e.what());  // a reported non-finite sample
@@ -177,7 +177,7 @@ private:
     Options o_;
     Scene s_;
     const Pattern p_;
-    const Radiance L_ = radiance_of(s_, o_, p_);
+    const SampleFunction L_ = radiance_of(s_, o_, p_);
 
     bool is_adaptive() const { return kind_ % 2 == 1; }
     // With a group of lights.

@@ -34,7 +34,7 @@ Film blank(uint32_t K, Size of_it = size) {
 Film fill(Film film, uint64_t n, unsigned threads = 2, int64_t stop_after = INT64_MAX,
           std::vector<Film>* passes = nullptr) {
     std::atomic<int64_t> left = stop_after;
-    const Radiance L = [&](const PixelSample& s, Tally& tally) {
+    const SampleFunction L = [&](const PixelSample& s, Tally& tally) {
         if (left-- <= 0) {
             interrupted = SIGTERM;
             throw Interrupted();

@@ -30,7 +30,7 @@ Picture render(const Scene& scene, Estimator e, uint64_t n, uint64_t seed, uint3
     o.replications = K, o.spp = n * K, o.threads = threads, o.quiet = true;
     const Plan plan = plan_at_once(o, scene);
     const Pattern pattern = make_pattern(kind, seed, scene.depth);
-    const Radiance L = shadow_estimate(scene, nee, pattern, e, n);
+    const SampleFunction L = shadow_estimate(scene, nee, pattern, e, n);
     return render(o, plan, L);
 }
 

@@ -24,7 +24,9 @@ struct Room {
         o.scene = "the \"room\".scene", o.quiet = true, o.stats = folder / "a.json";
         scene.exposure = 2;
         plan = plan_of(o, scene);
-        const Radiance L = [](const PixelSample& s, Tally&) { return rgb{real(s.x) / 20, 0, 1}; };
+        const SampleFunction L = [](const PixelSample& s, Tally&) {
+            return rgb{real(s.x) / 20, 0, 1};
+        };
         film = make_film(scene.size, 2, false);
         if (samples > 0) fill(film, samples, L);
     }

@@ -100,8 +100,8 @@ TEST_CASE("what cannot be is refused, at its line") {
 TEST_CASE("the defaults of the grammar are those of a scene that says nothing") {
     const NamedScene silent = scene_of("diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
     for (const Statement& s : grammar) {
-        if (s.otherwise.empty()) continue;
-        const std::string line = std::string(s.keyword) + " " + std::string(s.otherwise) + "\n";
+        if (s.default_text.empty()) continue;
+        const std::string line = std::string(s.keyword) + " " + std::string(s.default_text) + "\n";
         const NamedScene scene = scene_of(line + "diffuse d 1 1 1\nsphere 0 0 0 1 d\n");
         CHECK((scene.size.width == silent.size.width && scene.size.height == silent.size.height));
         CHECK(scene.depth == silent.depth);

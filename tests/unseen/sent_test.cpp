@@ -268,8 +268,8 @@ TEST_CASE("light that comes by a gap is found beside its edges, and none in a cl
         s.materials[3].Le = {40000, 30000, 20000};
         add_quad(s, {3, real(0.5), real(-0.5)}, {0, 0, 1}, {0, 1, 0}, 3);
         prepare(s);
-        const Witness witness(s, {}, {0, 32});
-        const NearMisses lamp = witness.near_misses(1)[0];
+        const NearMissRecorder recorder(s, {}, {0, 32});
+        const NearMisses lamp = recorder.near_misses(1)[0];
         CHECK((lamp.sent > 3 * std::sqrt(lamp.sent_variance)) == is_open);
         if (!is_open) CHECK(lamp.sent == 0);
     }

@@ -67,14 +67,14 @@ NamedScene mirror_scene(real r, bool direct = false) {
 
 // The near misses of n samples per pixel, divided among K replications.
 std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n, double K = 1) {
-    const Witness witness(s, t, {0, s.size.height});
+    const NearMissRecorder recorder(s, t, {0, s.size.height});
     Tally tally;
-    tally.share = 1 / K, tally.near = witness.near_misses(1);
+    tally.share = 1 / K, tally.near = recorder.near_misses(1);
     const Pattern pattern{SamplerKind::independent, seed_here()};
     for (int y = 0; y < s.size.height; ++y)
         for (int x = 0; x < s.size.width; ++x)
             for (uint64_t i = 0; i < n; ++i)
-                radiance(s, t, pattern, x, y, i, witness.visitor(tally));
+                radiance(s, t, pattern, x, y, i, recorder.visitor(tally));
     return tally.near;
 }
 LightsInView in_view(const Scene& s) { return lights_in_view(s, {0, s.size.height}, Edges(s)); }
@@ -196,17 +196,17 @@ TEST_CASE("near misses tell the light that is met, at every growth") {
 
 TEST_CASE("a film sums near misses by replications and weights, whatever the threads") {
     const NamedScene s = mirror_scene(real(0.3), true);
-    const Witness witness(s, {}, {0, 8}, s.line_of_light);
-    REQUIRE(!witness.noisy().empty());
+    const NearMissRecorder recorder(s, {}, {0, 8}, s.line_of_light);
+    REQUIRE(!recorder.noisy().empty());
     const Pattern pattern{SamplerKind::independent, seed_here()};
     // The other kind holds 1 / (K w) for each sample.
-    const Radiance L = [&](const PixelSample& p, Tally& tally) {
+    const SampleFunction L = [&](const PixelSample& p, Tally& tally) {
         tally.near[0].sum[1][0][0] += fixed_point(tally.share);
-        return radiance(s, {}, pattern, p.x, p.y, p.i * 3 + p.set, witness.visitor(tally));
+        return radiance(s, {}, pattern, p.x, p.y, p.i * 3 + p.set, recorder.visitor(tally));
     };
     Plan plan{s.size};
-    plan.replications = 3, plan.samples = 8, plan.noisy = witness.noisy();
-    plan.near = witness.near_misses(3 * 4);
+    plan.replications = 3, plan.samples = 8, plan.noisy = recorder.noisy();
+    plan.near = recorder.near_misses(3 * 4);
     Watch watch;
     watch.elapsed = [] { return 0; };
     auto filled_by = [&](unsigned threads) {
@@ -219,7 +219,7 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
     CHECK(same(filled_by(3), f));
     double shares = 0, squares = 0;
     for (size_t i = 0; i < f.pixels(); ++i) shares += double(f.samples(i) - 4) / f.weight[i];
-    for (size_t i : witness.noisy()) CHECK(f.weight[i] >= 4);
+    for (size_t i : recorder.noisy()) CHECK(f.weight[i] >= 4);
     CHECK(value_of(f.near[0].sum[1][0][0]) == doctest::Approx(shares));
     CHECK((f.near[0].K == 12 && f.near[0].line == 7));
     // A near miss by the mirror is worth the square of its share.
@@ -228,20 +228,20 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
             for (uint64_t n = 4; n < f.samples(i); ++n) {  // after the pilot
                 const PixelSample p = f.sample_of(i, n, k);
                 Tally tally;
-                tally.near = witness.near_misses(1);
-                radiance(s, {}, pattern, p.x, p.y, n * 3 + k, witness.visitor(tally));
+                tally.near = recorder.near_misses(1);
+                radiance(s, {}, pattern, p.x, p.y, n * 3 + k, recorder.visitor(tally));
                 squares += c(tally.near, 0, 2) / sqr(3.0 * f.weight[i]);
             }
     CHECK(squares > 0);
     CHECK(c(f.near, 0, 2) == doctest::Approx(squares));
     // The verdict is that of n samples of each replication of weight 1.
-    Unseen unseen;
+    MissedLight unseen;
     unseen.add(f.near, 8);
     ImageError black = error_of(f);
-    CHECK(Witness::why_unknown(f, black) == unseen.doubt(black.d2(), black.norm(), 64));
+    CHECK(NearMissRecorder::why_unknown(f, black) == unseen.doubt(black.d2(), black.norm(), 64));
     black.variances = {};
-    CHECK(Witness::why_unknown(f, black) == unseen.doubt(0, black.norm(), 64));
-    CHECK(Witness::why_unknown(f, black) != "");
+    CHECK(NearMissRecorder::why_unknown(f, black) == unseen.doubt(0, black.norm(), 64));
+    CHECK(NearMissRecorder::why_unknown(f, black) != "");
 }
 
 TEST_CASE("behind a rough surface it is another kind, and where light is aimed at it is none") {
@@ -340,7 +340,7 @@ TEST_CASE("a light whose own paths bring more than those from the eye is in doub
         NearMisses lamp{12, 1, 4, 0, 0};
         lamp.sent = 8, lamp.sent_variance = 1, lamp.sent_squares = 2;
         lamp.came = uint64_t(part * 4 * 0x1p40);
-        Unseen u;
+        MissedLight u;
         for (const double w : weights) u.add({lamp}, 4, w);
         return u.doubt(d2, 2, 25);
     };
@@ -368,7 +368,7 @@ TEST_CASE(
         NearMisses of_film = lamp;
         of_film.sum[kind].fill({fixed_point(near), fixed_point(near)});
         of_film.sum[kind][0].fill(fixed_point(hits));
-        Unseen u;
+        MissedLight u;
         u.add({of_film}, t);
         return u.doubt(d2, 2, 25);
     };
@@ -408,7 +408,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
             const bool doubles = std::sqrt((d2 + u) / (1 + u)) > 2 * error;
             NearMisses lamp{12, 1, 4, 0, 0};
             lamp.sent = 1, lamp.sent_squares = u / 2;  // counted twice
-            Unseen unseen;
+            MissedLight unseen;
             unseen.add({lamp}, 1);
             CHECK(unseen.doubt(d2, std::sqrt(1 + d2), 1).empty() != doubles);
             CHECK(!(doubles && error >= 0.5));
@@ -419,7 +419,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
     // Where all is noise, the halves tell so.
     NearMisses lamp{12, 1, 4, 0, 0};
     lamp.sent = 1, lamp.sent_squares = 0.5;
-    Unseen unseen;
+    MissedLight unseen;
     unseen.add({lamp}, 1);
     CHECK(unseen.doubt(4, 1, 1).empty());
 }
@@ -432,12 +432,12 @@ TEST_CASE("films of one picture add up") {
          {std::pair{1, "was hit 3 times; light not yet found may amount to 158 %"},
           {3, "was hit 9 times; light not yet found may amount to 91 %"},
           {4, "smaller than a pixel"}}) {
-        Unseen u;
+        MissedLight u;
         for (int i = 0; i < films; ++i) u.add({lamp}, 2, 1.0 / films);
         CHECK(u.doubt(0, 1, 1).c_str() == doctest::Contains(why));
     }
     // Films of more samples count for more: 6 hits of 8 samples of each replication, not of 2.
-    Unseen u;
+    MissedLight u;
     u.add({lamp}, 2, 0.2), u.add({lamp}, 8, 0.8);
     CHECK(u.doubt(0, 1, 1) ==
           "the light of line 3 in mirrors or glass was hit 6 times; light not yet found may amount "

@@ -22,10 +22,10 @@ TEST_CASE("a weighted mean is the sum of w L for every set of a pixel, and const
             auto place = [&](const PixelSample& s) {
                 return Sampler(pattern, uint64_t(4 * s.y + s.x), s.i, s.set).get2(film_x);
             };
-            const Radiance L = [&](const PixelSample& s, Tally& tally) {
+            const SampleFunction L = [&](const PixelSample& s, Tally& tally) {
                 return ++tally.rays, rgb{1, place(s).x, real(s.i % 3)};
             };
-            const Radiance mean = weighted_mean(scene, pattern, kind, n, L, troubles);
+            const SampleFunction mean = weighted_mean(scene, pattern, kind, n, L, troubles);
             uint64_t expected_redraws = 0, expected_fallbacks = 0;
             // One strip of vor in 4000 leaves the cell of one sample unbounded, and is drawn anew.
             const bool redrawn = kind == Weighting::vor && n == 1;
@@ -65,11 +65,11 @@ TEST_CASE("the stated d^2 of weighted means is that from seed to seed, on any nu
         for (uint64_t r = 0; r < 600; ++r) {
             const Pattern pattern{SamplerKind::independent, hash(seed_here(), r)};
             WeightTroubles troubles;
-            const Radiance sample = [&](const PixelSample& s, Tally&) {
+            const SampleFunction sample = [&](const PixelSample& s, Tally&) {
                 const Sampler numbers(pattern, uint64_t(6 * s.y + s.x), s.i, s.set);
                 return heteroscedastic(s.x, s.y, numbers.get2(film_x));
             };
-            const Radiance L = weighted_mean(scene, pattern, kind, 6, sample, troubles);
+            const SampleFunction L = weighted_mean(scene, pattern, kind, 6, sample, troubles);
             Options o;
             o.replications = 2, o.spp = 12, o.quiet = true;
             auto rendered = [&](unsigned threads) {

@@ -30,7 +30,7 @@ struct Stopped {
 // Follows the loop of renders with --error.
 Stopped stop_of(SamplerKind kind, uint64_t seed, double asked) {
     const Pattern pattern = make_pattern(kind, seed, 1);
-    const Radiance sample = [&](const PixelSample& s, Tally&) {
+    const SampleFunction sample = [&](const PixelSample& s, Tally&) {
         const uint64_t pixel = uint64_t(s.y) * uint64_t(size.width) + uint64_t(s.x);
         return L(s.x, s.y, Sampler(pattern, pixel, s.i, s.set).get2(0));
     };
