@@ -15,7 +15,7 @@ voronoi:                   ## weight samples of pixels by Voronoi cells (3 minut
 bench: build/knot.obj       ## rays per second, compared with Embree (libembree-dev); ARCHS="x86-64 native": by each set of instructions
 peers: $(PENUMBRA)         ## efficiency, compared with Cycles (blender; 5 minutes); SEEDS=5: more renders
 trade: $(PENUMBRA) build/penumbra-float$(VARIANT) build/knot.obj  ## error over time for every setting, and a page to choose (30 minutes; FULL=1: 4 hours)
-halves: $(PENUMBRA)         ## efficiency of two halves with weights (30 minutes; FORMER=PROGRAM: compare with a former penumbra)
+halves: $(PENUMBRA) build/knot.obj  ## efficiency of two halves with weights (30 minutes; FORMER=PROGRAM: compare with a former penumbra)
 calibration: $(PENUMBRA) build/knot.obj build/scenes  ## calibration of the error estimate (3 hours; SEEDS=4: 1 hour)
 
 voronoi2d: LAB_FLAGS := $(if $(FULL),--trials 10000)
