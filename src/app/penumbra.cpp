@@ -46,7 +46,7 @@ std::function<rgb(const Start&)> view_of(const Options& o, const Scene& scene) {
 
 // The function that renders a sample.  It abandons a path after an interrupt.
 SampleFunction radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
-                           const std::optional<NearMissRecorder>& recorder) {
+                           const std::optional<LightRecorder>& recorder) {
     return [&, view = view_of(o, scene)](const PixelSample& s, Tally& tally) {
         const Start at = start(scene, pattern, s);
         if (view) return ++tally.rays, view(at);
@@ -99,9 +99,9 @@ int penumbra_main(const std::vector<std::string>& words) {
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     const RowRange rows = rows_of(o, scene);
-    std::optional<NearMissRecorder> recorder;
+    std::optional<LightRecorder> recorder;
     if (!o.view.of)
-        recorder.emplace(scene, o.technique, Band{rows.first, rows.count()}, scene.line_of_light);
+        recorder.emplace(scene, o.technique, rows.first, rows.count(), scene.line_of_light);
     const Plan plan = plan_of(o, scene, recorder ? &*recorder : nullptr);
     const SampleFunction L = radiance_of(o, scene, pattern, recorder);
     const FilmOf what = film_of(table, o, parsed, plan);

@@ -15,11 +15,8 @@ struct MissedLight {
     void add(const std::vector<NearMisses>&, double, double) {}
     std::string doubt(double, double, double) const { return ""; }
 };
-struct Band {
-    int first, count;
-};
-struct NearMissRecorder {
-    NearMissRecorder(const Scene&, const Technique&, const Band&, const std::vector<uint32_t>&) {}
+struct LightRecorder {
+    explicit LightRecorder(auto&&...) {}
     std::vector<NearMisses> near_misses(double) const { return {}; }
     std::vector<size_t> noisy() const { return {}; }
     static std::string why_unknown(const Film&, const ImageError&) { return ""; }
@@ -71,8 +68,7 @@ inline uint64_t samples_for_one(const Plan& plan) {
 }
 
 // A scene without light is black, whatever error is asked for.  A recorder observes the samples.
-inline Plan plan_of(const Options& o, const Scene& scene,
-                    const NearMissRecorder* recorder = nullptr) {
+inline Plan plan_of(const Options& o, const Scene& scene, const LightRecorder* recorder = nullptr) {
     Plan plan;
     plan.error = scene.lights.empty() ? 0 : o.error, plan.seconds = o.seconds;
     const bool ends = o.spp > 0 || plan.seconds > 0 || plan.error > 0;
@@ -87,7 +83,7 @@ inline Plan plan_of(const Options& o, const Scene& scene,
     if (!recorder) return plan;
     plan.noisy = recorder->noisy();
     plan.may_miss_light = [](const Film& film, const ImageError& error) {
-        return !NearMissRecorder::why_unknown(film, error).empty();
+        return !LightRecorder::why_unknown(film, error).empty();
     };
     plan.near = recorder->near_misses(plan.replications * (plan.is_adaptive ? min_of_noisy : 1));
     return plan;

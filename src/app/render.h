@@ -59,7 +59,7 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent, Stop s
     run.stopped_by = stop;
     run.error = error_of(film);
     run.doubt = in_words(doubt_of(film, run.error, plan.may_miss_light),
-                         [&] { return NearMissRecorder::why_unknown(film, run.error); });
+                         [&] { return LightRecorder::why_unknown(film, run.error); });
     run.replications = film.replications;
     const uint64_t n = film.min_taken();
     if (n > 0 && n == film.max_taken() && !film.is_pilot &&

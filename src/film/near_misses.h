@@ -25,10 +25,8 @@ struct NearMisses {
 
     // Sums of c and c^2 at each growth, of paths of each way.
     std::array<std::array<std::array<FixedPoint, 2>, growths>, ways> sum{};
-
-    // Of what the light sends to the picture, behind first surfaces that are no mirrors or glass:
-    // sums over pixels of its mean channel and of its square, and the variance of the first, by
-    // paths from the light; the same first sum by paths from the eye, in 2^-40 of it.
+    // Of what the light sends to pixels that see no mirror or glass, by paths from the light: sums
+    // of the mean channel and its square, variance of the first; what came to the eye, in 2^-40.
     double sent = 0, sent_squares = 0, sent_variance = 0;
     uint64_t came = 0;
 
@@ -36,9 +34,8 @@ struct NearMisses {
     void add(const NearMisses& other) {
         came += other.came;
         for (size_t way = 0; way < ways; ++way)
-            for (size_t k = 0; k < growths; ++k)
-                for (size_t power = 0; power < 2; ++power)
-                    sum[way][k][power] += other.sum[way][k][power];
+            for (size_t k = 0; k < 2 * growths; ++k)
+                sum[way][k / 2][k % 2] += other.sum[way][k / 2][k % 2];
     }
 };
 

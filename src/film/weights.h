@@ -54,8 +54,7 @@ inline constexpr uint64_t pilot_samples = 4;
 inline constexpr uint8_t min_of_noisy = 4;
 
 // Chooses weights by the pilot, which all blocks have; those of `noisy` pixels are 4 or more.  Near
-// misses count from then on, because those of the pilot do not have the pixel's share.  What came
-// is kept: too much of it, in pixels of great weight, is better than too little.
+// misses of the pilot do not have the pixel's share, and go; what came stays, rather too much.
 inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
     film.weight = weights_of(film.deviation, film.size);
     for (size_t i : noisy) film.weight[i] = std::max(film.weight[i], min_of_noisy);

@@ -266,12 +266,13 @@ private:
 };
 
 // Observes the paths of a render, of a band, and judges its estimated error.
-class NearMissRecorder {
+class LightRecorder {
 public:
-    NearMissRecorder(const Scene& scene, const Technique& t, const Band& band,
-                     const std::vector<uint32_t>& line_of_light = {})
+    LightRecorder(const Scene& scene, const Technique& t, int first_row, int rows,
+                  const std::vector<uint32_t>& line_of_light = {})
         : scene_(scene), technique_(t) {
         const Edges edges(scene);
+        const Band band{first_row, rows};
         view_ = lights_in_view(scene, band, edges, line_of_light);
         add_sent(view_.groups, scene, band, edges, light_paths(scene, band));
     }

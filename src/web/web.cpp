@@ -53,7 +53,7 @@ namespace {
 Options options;
 ParsedScene parsed;
 Pattern pattern;
-std::optional<NearMissRecorder> recorder;
+std::optional<LightRecorder> recorder;
 Plan plan;
 Film film;
 Image picture;
@@ -201,8 +201,7 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
     const NamedScene& s = scene();
     pattern = make_pattern(options.sampler, options.seed, s.depth);
     recorder.reset();
-    if (!options.view.of)
-        recorder.emplace(s, options.technique, Band{0, s.size.height}, s.line_of_light);
+    if (!options.view.of) recorder.emplace(s, options.technique, 0, s.size.height, s.line_of_light);
     plan = plan_of(options, s, recorder ? &*recorder : nullptr);
     if (bytes_of(s.size, plan.replications) > 1e9)
         throw UserError("--size: a film of more than 1 GB");
@@ -268,7 +267,7 @@ EXPORT(error) void error() {
     Object o;
     o.scalars({{"spp", film.samples_per_pixel()}});
     o.scalars({{"d_rel", e.d_rel()}, {"standard_error", e.standard_error()}});
-    auto missed_light = [&] { return NearMissRecorder::why_unknown(film, e); };
+    auto missed_light = [&] { return LightRecorder::why_unknown(film, e); };
     o.add("doubt", json::string(in_words(doubt_of(film, e, plan.may_miss_light), missed_light)));
     answer(o.text());
 }

@@ -148,7 +148,7 @@ TEST_CASE("a film begins as its plan says; near misses belong to radiance only")
     // A lamp smaller than a pixel makes that pixel noisy.
     const Scene scene =
         small("camera 0 0 5  0 0 0  40\nlight l 1 1 1\nsphere 0.1 0.1 0  0.01  l\n", {30, 20});
-    const NearMissRecorder recorder(scene, {}, {0, 20});
+    const LightRecorder recorder(scene, {}, 0, 20);
     REQUIRE(recorder.noisy().size() == 1);
     for (const uint32_t K : {0u, 1u, 2u, 5u}) {
         Options o = quick(SamplerKind::sobol, 64);

@@ -67,7 +67,7 @@ NamedScene mirror_scene(real r, bool direct = false) {
 
 // The near misses of n samples per pixel, divided among K replications.
 std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n, double K = 1) {
-    const NearMissRecorder recorder(s, t, {0, s.size.height});
+    const LightRecorder recorder(s, t, 0, s.size.height);
     Tally tally;
     tally.share = 1 / K, tally.near = recorder.near_misses(1);
     const Pattern pattern{SamplerKind::independent, seed_here()};
@@ -196,7 +196,7 @@ TEST_CASE("near misses tell the light that is met, at every growth") {
 
 TEST_CASE("a film sums near misses by replications and weights, whatever the threads") {
     const NamedScene s = mirror_scene(real(0.3), true);
-    const NearMissRecorder recorder(s, {}, {0, 8}, s.line_of_light);
+    const LightRecorder recorder(s, {}, 0, 8, s.line_of_light);
     REQUIRE(!recorder.noisy().empty());
     const Pattern pattern{SamplerKind::independent, seed_here()};
     // The other kind holds 1 / (K w) for each sample.
@@ -238,10 +238,10 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
     MissedLight unseen;
     unseen.add(f.near, 8);
     ImageError black = error_of(f);
-    CHECK(NearMissRecorder::why_unknown(f, black) == unseen.doubt(black.d2(), black.norm(), 64));
+    CHECK(LightRecorder::why_unknown(f, black) == unseen.doubt(black.d2(), black.norm(), 64));
     black.variances = {};
-    CHECK(NearMissRecorder::why_unknown(f, black) == unseen.doubt(0, black.norm(), 64));
-    CHECK(NearMissRecorder::why_unknown(f, black) != "");
+    CHECK(LightRecorder::why_unknown(f, black) == unseen.doubt(0, black.norm(), 64));
+    CHECK(LightRecorder::why_unknown(f, black) != "");
 }
 
 TEST_CASE("behind a rough surface it is another kind, and where light is aimed at it is none") {
