@@ -128,7 +128,7 @@ struct NearMissVisitor {
                      segment.beta * here.Le * here.weight);
         if (segment.k > 0 && segment.pdf > narrow && !groups.empty())
             add_near_misses(segment, here);
-        if (here.direct.light && !here.direct.occluded)
+        if (here.direct.light)
             add_came(size_t(here.direct.light - scene.lights.data()), segment.beta * here.direct.L);
     }
 
