@@ -314,4 +314,10 @@ TEST_CASE("a lamp that the eye sees through a gap covers part of a pixel") {
     CHECK(view.groups[0].area == doctest::Approx(area).epsilon(0.15));
     CHECK(view.noisy.size() >= 1);
     CHECK(lights_in_view(s, {0, 32}, Edges(Scene())).groups[0].area == 0);
+    // Its back is dark.
+    s.shapes.resize(s.shapes.size() - 2), s.material_of.resize(s.shapes.size());
+    s.light_of.resize(s.shapes.size()), s.lights.clear();
+    add_quad(s, {-5, -5, -1}, {0, 10, 0}, {10, 0, 0}, 3);
+    prepare(s);
+    CHECK(lights_in_view(s, {0, 32}, Edges(s)).groups[0].area == 0);
 }
