@@ -25,8 +25,8 @@ struct NearMisses {
 
     // Sums of c and c^2 at each growth, of paths of each way.
     std::array<std::array<std::array<FixedPoint, 2>, growths>, ways> sum{};
-    // Of what the light sends to pixels that see no mirror or glass, by paths from the light: sums
-    // of the mean channel and its square, variance of the first; what came to the eye, in 2^-40.
+    // What the light sends to pixels that see no mirror or glass: sums of its mean channel and of
+    // the square, variance of the first; what came of it by paths from the eye, in 2^-40 of sent.
     double sent = 0, sent_squares = 0, sent_variance = 0;
     uint64_t came = 0;
 

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/portable.h"
 #include "base/rng.h"
 #include "film/near_misses.h"
 #include "world/scene.h"
@@ -55,31 +56,38 @@ class Edges {
     };
 
 public:
-    // Those of triangles that do not shine, without the diagonals of quads; of many a choice.
+    // Those of triangles that do not shine, without the diagonals of quads; of many 128, each as
+    // likely as any other (a reservoir, Vitter 1985).
     explicit Edges(const Scene& s) {
+        constexpr uint64_t most = 128;
+        uint64_t seen = 0;
+        auto add = [&](const Edge& edge) {
+            const uint64_t place = hash(seen, 0) % (seen + 1);
+            if (seen++ < most)
+                edges_.push_back(edge);
+            else if (place < most)
+                edges_[place] = edge;
+        };
         auto halves = [&](size_t i, size_t j) {  // of a quad
             return j < s.shapes.size() && s.shapes[i].a == s.shapes[j].a &&
                    s.shapes[i].c == s.shapes[j].b && s.shapes[j].is_triangle();
         };
-        std::vector<Edge> all;
         for (size_t i = 0; i < s.shapes.size(); ++i) {
             const auto& [a, b, c, r] = s.shapes[i];
             if (!s.shapes[i].is_triangle() || s.light_of[i] != no_light) continue;
-            all.push_back({b, c - b, a});
-            if (!halves(i, i + 1)) all.push_back({c, a - c, b});
-            if (i == 0 || !halves(i - 1, i)) all.push_back({a, b - a, c});
+            add({b, c - b, a});
+            if (!halves(i, i + 1)) add({c, a - c, b});
+            if (i == 0 || !halves(i - 1, i)) add({a, b - a, c});
         }
-        constexpr size_t most = 128;
-        for (uint64_t k = 0; k < most && all.size() > most; ++k)
-            edges_.push_back(all[hash(k, 0) % all.size()]);
-        if (all.size() <= most) edges_ = std::move(all);
     }
     bool empty() const { return edges_.empty(); }
 
     vec3 sample(vec3 y, real u_edge, vec2 u) const {
         const Edge& edge = edges_[size_t(u_edge * real(edges_.size()))];
         const vec3 r = edge.a - y, e = edge.e;
-        const vec3 d = r + e * u.x + away(edge, r) * (length(e) * std::exp2(15 * u.y - 12));
+        const vec3 d =
+            r + e * u.x +
+            away(edge, r) * (8 * length(e) * real(portable::pow(0.5, double(15 * (1 - u.y)))));
         return dot(d, d) > 0 ? unit(d) : d;
     }
     // Density per solid angle.
@@ -145,14 +153,14 @@ inline Emission emission(const Light& l, const Edges& edges, Draws& u) {
 }
 
 // A path from a light.  Calls splat(pixel, radiance) where the eye sees it: the mean radiance of
-// the pixel, by this path.  Unbiased for what paths from the eye find behind a first surface that
-// is no mirror or glass.
+// the pixel, by this path.  Unbiased for what paths of up to 32 bounces from the eye find behind a
+// first surface that is no mirror or glass; white walls would hold a path for ever.
 template <class Splat>
 void follow_light(const Scene& s, const Band& band, const Edges& edges, const Light& l,
                   uint64_t key, Splat splat) {
     Draws u{key};
     auto [ray, flux] = emission(l, edges, u);
-    for (int k = 0; k < s.depth && max_of(flux) > 0; ++k) {
+    for (int k = 0; k < std::min(s.depth, 32) && max_of(flux) > 0; ++k) {
         const auto hit = s.bvh.closest(ray);
         if (!hit) return;
         const Surface x = s.surface(ray, *hit);
@@ -222,7 +230,7 @@ inline void add_sent(std::vector<NearMisses>& groups, const Scene& s, const Band
         double of_pairs = 0;
         for (const auto& [pixel, at] : pixels[g]) of_pairs += at.sum * at.sum - at.squares;
         groups[g].sent_squares =
-            std::max(of_pairs, sqr(groups[g].sent) / (band.count * s.size.width));
+            std::max(of_pairs, square(groups[g].sent) / (band.count * s.size.width));
     }
 }
 

@@ -232,7 +232,7 @@ public:
             // aimed scenes of calibration.
             const double less = l.sent - l.came;
             if (less > 3 * std::sqrt(l.sent_variance))
-                consider(2 * sqr(less / l.sent) * l.sent_squares,
+                consider(2 * square(less / l.sent) * l.sent_squares,
                          "paths from the eye bring less than paths from " + name);
             if (l.met < 10) consider(l.variance, hit(", smaller than a pixel,", l.met));
             for (size_t way = 0; way < ways; ++way) {

@@ -116,6 +116,22 @@ TEST_CASE("directions beside edges come with their density") {
                    i == 0 ? 0.04 : 0.5);
         }
     }
+    // Of many edges each is as likely as any other: near triangles of the first half, and the last.
+    Scene row;
+    row.materials = {{}};
+    for (int k = 0; k < 300; ++k)
+        add_triangle(row, {real(k), 0, 0}, {real(k) + real(0.1), 0, 0}, {real(k), real(0.1), 0}, 0);
+    const Edges some(row);
+    std::array<int, 3> thirds{};
+    oracle::Random of_row(seed_here());
+    for (int i = 0; i < 3000; ++i) {
+        const vec3 y{150, 0, 1000};
+        const real u = real(of_row()), v = real(of_row());
+        const vec3 d = some.sample(y, real(of_row()), {u, v});
+        if (!(d.z < 0)) continue;
+        ++thirds[size_t(std::clamp((y - d * (1000 / d.z)).x, real(0), real(299))) / 100];
+    }
+    for (const int third : thirds) CHECK(third > 500);
     // Quads have four edges; lamps and balls none.
     Scene bare;
     bare.materials = {{}, {}};
@@ -162,6 +178,21 @@ TEST_CASE("paths from a light and paths from the eye bring the same to the pictu
                    0.06);
         }
     }
+}
+
+TEST_CASE("white walls do not hold a path for ever") {
+    // The lamp is a point, so that nothing absorbs.
+    Scene s = room(nullptr, {Rough({1, 1, 1})});
+    for (Material& m : s.materials) m = {Rough({1, 1, 1})};
+    add_light(s, {{0, real(1.5), 0}, PointLight(), {1, 1, 1}});
+    s.depth = max_depth;
+    prepare(s);
+    int splats = 0;
+    for (uint64_t key = 0; key < 8; ++key)
+        follow_light(s, {0, s.size.height}, Edges(Scene()), s.lights[0], key,
+                     [&](size_t, rgb) { ++splats; });
+    CHECK(splats > 8);
+    CHECK(splats <= 8 * 32);
 }
 
 TEST_CASE("the sums of groups are those of their lights, and of their squares those of pixels") {
@@ -222,7 +253,7 @@ TEST_CASE("the sums of groups are those of their lights, and of their squares th
             add_sent(one, s, all, edges, paths);
             for (const NearMisses& g : one) {
                 found += g.sent > 0;
-                CHECK(g.sent_squares >= sqr(g.sent) / 24 * 0.999999);
+                CHECK(g.sent_squares >= square(g.sent) / 24 * 0.999999);
             }
         }
         CHECK(found > 10);
