@@ -15,6 +15,15 @@ inline constexpr size_t growths = 11;  // a light has s^2 times its area, for s 
 enum class Way { mirrors, by_mirror, by_lobe, count };
 inline constexpr size_t ways = size_t(Way::count);
 
+inline constexpr size_t brightnesses = 8;
+
+// What lights bring to the picture by paths that aim, before a render: sums over pixels of the mean
+// channel and of its square, and the variance of the first.  What of it came during the render.
+struct Brought {
+    double sum = 0, squares = 0, variance = 0;
+    uint64_t came = 0;  // in 2^-40 of the sum
+};
+
 // What a film knows of a group of lights: how the camera sees them, and near misses (src/unseen).
 struct NearMisses {
     float line = 0;   // of the first light, from 1 on; 0 if unknown
@@ -25,14 +34,15 @@ struct NearMisses {
 
     // Sums of c and c^2 at each growth, of paths of each way.
     std::array<std::array<std::array<FixedPoint, 2>, growths>, ways> sum{};
-    // What the light sends to pixels that see no mirror or glass: sums of its mean channel and of
-    // the square, variance of the first; what came of it by paths from the eye, in 2^-40 of sent.
-    double sent = 0, sent_squares = 0, sent_variance = 0;
-    uint64_t came = 0;
+    // From the light, to pixels that see no mirror or glass; from the eye, apart by the octaves of
+    // the radiance that a path brings, for a sum of all would hide what is rare and bright.
+    Brought from_light{};
+    std::array<Brought, brightnesses> from_eye{};
 
     // Adds sums of more samples.
     void add(const NearMisses& other) {
-        came += other.came;
+        from_light.came += other.from_light.came;
+        for (size_t k = 0; k < from_eye.size(); ++k) from_eye[k].came += other.from_eye[k].came;
         for (size_t way = 0; way < ways; ++way)
             for (size_t k = 0; k < 2 * growths; ++k)
                 sum[way][k / 2][k % 2] += other.sum[way][k / 2][k % 2];

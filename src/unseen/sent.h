@@ -10,10 +10,8 @@
 #include <numbers>
 #include <optional>
 
-#include "base/portable.h"
-#include "base/rng.h"
 #include "film/near_misses.h"
-#include "world/scene.h"
+#include "unseen/aims.h"
 
 namespace penumbra {
 
@@ -44,78 +42,43 @@ inline std::optional<Through> pixel_through(const Scene& s, const Band& band, ve
     return Through{size_t(y) * size_t(width) + size_t(x), side * side * cosine * cosine * cosine};
 }
 
-// ---- Gaps ---------------------------------------------------------------------------------------
+// ---- Sums over paths ----------------------------------------------------------------------------
 
-// Directions beside edges, for light comes in by gaps, and gaps lie there.  An edge leads from a
-// to a + e; the third corner of its triangle is c.  A direction from y goes through
-//     a + x e + h w,    x uniform in [0,1), log h uniform from |e| / 4096 to 8 |e|,
-// w the normal of the plane of y and the edge, away from the triangle.
-class Edges {
-    struct Edge {
-        vec3 a, e, c;
-    };
-
+// What lights bring to pixels over many paths, by groups of any kind.
+class PictureSums {
 public:
-    // Those of triangles that do not shine, without the diagonals of quads; of many 128, each as
-    // likely as any other (a reservoir, Vitter 1985).
-    explicit Edges(const Scene& s) {
-        constexpr uint64_t most = 128;
-        uint64_t seen = 0;
-        auto add = [&](const Edge& edge) {
-            const uint64_t place = hash(seen, 0) % (seen + 1);
-            if (seen++ < most)
-                edges_.push_back(edge);
-            else if (place < most)
-                edges_[place] = edge;
-        };
-        auto halves = [&](size_t i, size_t j) {  // of a quad
-            return j < s.shapes.size() && s.shapes[i].a == s.shapes[j].a &&
-                   s.shapes[i].c == s.shapes[j].b && s.shapes[j].is_triangle();
-        };
-        for (size_t i = 0; i < s.shapes.size(); ++i) {
-            const auto& [a, b, c, r] = s.shapes[i];
-            if (!s.shapes[i].is_triangle() || s.light_of[i] != no_light) continue;
-            add({b, c - b, a});
-            if (!halves(i, i + 1)) add({c, a - c, b});
-            if (i == 0 || !halves(i - 1, i)) add({a, b - a, c});
-        }
-    }
-    bool empty() const { return edges_.empty(); }
+    explicit PictureSums(size_t groups) : of_group_(groups) {}
 
-    vec3 sample(vec3 y, real u_edge, vec2 u) const {
-        const Edge& edge = edges_[size_t(u_edge * real(edges_.size()))];
-        const vec3 r = edge.a - y, e = edge.e;
-        const vec3 d =
-            r + e * u.x +
-            away(edge, r) * (8 * length(e) * real(portable::pow(0.5, double(15 * (1 - u.y)))));
-        return dot(d, d) > 0 ? unit(d) : d;
+    // By the present path, to the mean of the pixel.
+    void add(size_t group, size_t pixel, double c) { path_[{group, pixel}] += c; }
+    void end_path() {
+        std::map<size_t, double> of_path;
+        for (const auto& [where, c] : path_) {
+            const auto [group, pixel] = where;
+            Pair& at = pixels_[where];
+            at.sum += c, at.squares += c * c, of_path[group] += c;
+        }
+        for (const auto& [group, c] : of_path)
+            of_group_[group].sum += c, of_group_[group].squares += c * c;
+        path_.clear();
     }
-    // Density per solid angle.
-    real pdf(vec3 y, vec3 d) const {
-        real sum = 0;
-        for (const Edge& edge : edges_) sum += pdf_beside(edge, edge.a - y, d);
-        return edges_.empty() ? 0 : sum / real(edges_.size());
+    // Unbiased for the square of a pixel's mean: products of two paths, not of one with itself.
+    Brought of(size_t group, double pixels) const {
+        double pairs = 0;
+        const auto end = pixels_.lower_bound({group + 1, 0});
+        for (auto it = pixels_.lower_bound({group, 0}); it != end; ++it)
+            pairs += square(it->second.sum) - it->second.squares;
+        const auto& [sum, squares] = of_group_[group];
+        return {sum, std::max(pairs, sum * sum / pixels), squares};
     }
 
 private:
-    std::vector<Edge> edges_;
-
-    static vec3 away(const Edge& edge, vec3 r) {
-        const vec3 n = cross(edge.e, r);
-        if (!(dot(n, n) > 0)) return {};
-        return unit(n) * (dot(n, edge.c - edge.a) > 0 ? real(-1) : real(1));
-    }
-    // At t d = r + x e + h w: t^2 / cosine, 1 / |e| and 1 / (h log 2^15).
-    static real pdf_beside(const Edge& edge, vec3 r, vec3 d) {
-        const vec3 e = edge.e, w = away(edge, r), in_plane = d - w * dot(d, w);
-        const real ee = dot(e, e), er = dot(e, r), rr = dot(r, r), det = ee * rr - er * er;
-        const real de = dot(in_plane, e), dr = dot(in_plane, r);
-        const real t = det / (dr * ee - de * er), x = t * (de * rr - dr * er) / det;
-        const real width = std::sqrt(ee), h = t * dot(d, w);
-        if (!(t > 0 && x >= 0 && x < 1 && h >= width / 4096 && h <= 8 * width)) return 0;
-        const real cosine = std::abs(dot(d, cross(e / width, w)));
-        return sqr(t) / (cosine * width * h * (15 * std::numbers::ln2_v<real>));
-    }
+    struct Pair {
+        double sum = 0, squares = 0;
+    };
+    std::vector<Pair> of_group_;
+    std::map<std::pair<size_t, size_t>, Pair> pixels_;
+    std::map<std::pair<size_t, size_t>, double> path_;
 };
 
 // ---- Paths from lights --------------------------------------------------------------------------
@@ -134,32 +97,39 @@ struct Draws {
 struct Emission {
     Ray ray;
     rgb flux;
+    std::optional<size_t> aim = {};  // number of the edge or shape that it aims at
+    double pdf = 0;                  // 1/sr
 };
-// Half of all directions are beside edges.
-inline Emission emission(const Light& l, const Edges& edges, Draws& u) {
+// Half of all directions aim.
+inline Emission emission(const Light& l, const Aims& aims, Draws& u) {
     const Surface from = point_of(l, u.two());
     const bool is_point = l.is_delta(), is_turned = l.twosided && u.one() < real(0.5);
     const vec3 n = is_turned ? -from.n : from.n;
     const real area = l.is_round() ? 4 * pi * sqr(l.reach) : 1 / l.pdf_area;
-    const real beside = edges.empty() ? 0 : real(0.5), u_kind = u.one(), u_edge = u.one();
+    const real aimed = aims.size() == 0 ? 0 : real(0.5), u_kind = u.one(), u_aim = u.one();
     const vec2 at = u.two();
-    const vec3 d = u_kind < beside ? edges.sample(from.p, u_edge, at)
-                   : is_point      ? sample_uniform_sphere(at)
-                                   : frame(n).to_world(sample_cosine_hemisphere(at));
-    const real cosine = is_point ? 1 : std::max(real(0), dot(n, d));
+    const auto aim = u_kind < aimed ? aims.sample(from.p, u_aim, at) : std::nullopt;
+    const vec3 d = aim              ? aim->d
+                   : u_kind < aimed ? vec3{}
+                   : is_point       ? sample_uniform_sphere(at)
+                                    : frame(n).to_world(sample_cosine_hemisphere(at));
+    const real cosine = is_point ? dot(d, d) : std::max(real(0), dot(n, d));
+    if (cosine == 0) return {{from.p, n}, {}};
     const real pdf =
-        (1 - beside) * (is_point ? 1 / (4 * pi) : cosine / pi) + beside * edges.pdf(from.p, d);
-    return {spawn(from, d), l.L * ((is_point ? 1 : area * cosine * (l.twosided ? 2 : 1)) / pdf)};
+        (1 - aimed) * (is_point ? 1 / (4 * pi) : cosine / pi) + aimed * aims.pdf(from.p, d);
+    return {spawn(from, d), l.L * ((is_point ? 1 : area * cosine * (l.twosided ? 2 : 1)) / pdf),
+            aim ? std::optional(aim->at) : std::nullopt, double(pdf)};
 }
 
-// A path from a light.  Calls splat(pixel, radiance) where the eye sees it: the mean radiance of
-// the pixel, by this path.  Unbiased for what paths of up to 32 bounces from the eye find behind a
-// first surface that is no mirror or glass; white walls would hold a path for ever.
+// A path from a light, from its emission.  Calls splat(pixel, radiance) where the eye sees it: the
+// mean radiance of the pixel, by this path.  Unbiased for what paths of up to 32 bounces from the
+// eye find behind a first surface that is no mirror or glass; white walls would hold a path for
+// ever.
 template <class Splat>
-void follow_light(const Scene& s, const Band& band, const Edges& edges, const Light& l,
-                  uint64_t key, Splat splat) {
-    Draws u{key};
-    auto [ray, flux] = emission(l, edges, u);
+void follow_light(const Scene& s, const Band& band, const Light& l, const Emission& emitted,
+                  Draws& u, Splat splat) {
+    Ray ray = emitted.ray;
+    rgb flux = emitted.flux;
     for (int k = 0; k < std::min(s.depth, 32) && max_of(flux) > 0; ++k) {
         const auto hit = s.bvh.closest(ray);
         if (!hit) return;
@@ -189,49 +159,43 @@ void follow_light(const Scene& s, const Band& band, const Edges& edges, const Li
 }
 
 // Eight for each pixel, as far as they take no more than a tenth of a second.
-inline uint64_t light_paths(const Scene& s, const Band& band) {
+inline uint64_t aimed_paths(const Scene& s, const Band& band) {
     return std::min<uint64_t>(8 * uint64_t(s.size.width) * uint64_t(band.count), 1 << 14);
 }
 
-// Adds what each group of lights sends to the picture, by so many paths, half of which the lights
-// share alike and half by their strengths.
-inline void add_sent(std::vector<NearMisses>& groups, const Scene& s, const Band& band,
-                     const Edges& edges, uint64_t paths) {
+// What each group of lights sends to the picture, by so many paths, half of which the lights share
+// alike and half by their strengths.  Half of the paths learn where to aim, the others count.
+inline PictureSums sent_by_lights(const Scene& s, const Band& band, Aims aims, uint64_t paths) {
+    PictureSums sums(std::min(s.lights.size(), max_light_groups));
     double most = std::numeric_limits<double>::min(), all = 0;
     for (const Light& l : s.lights) most = std::max(most, strength(l));
     for (const Light& l : s.lights) all += strength(l, 1 / most);
-    if (!(all > 0)) return;
+    if (!(all > 0)) return sums;
     std::vector<double> upto;  // sums of probabilities
     for (const Light& l : s.lights)
         upto.push_back((upto.empty() ? 0 : upto.back()) + 0.5 / double(s.lights.size()) +
                        0.5 * strength(l, 1 / most) / all);
-    struct InPixel {
-        double sum = 0, squares = 0;
-    };
-    std::vector<std::map<size_t, InPixel>> pixels(groups.size());
-    std::vector<double> squares(groups.size());
+    const uint64_t learning = aims.size() > 0 ? paths / 2 : 0;
+    std::vector<double> worth(aims.size());
     for (uint64_t k = 0; k < paths; ++k) {
-        const double u = (double(k) + 0.5) / double(paths) * upto.back();
-        const size_t i = size_t(std::ranges::upper_bound(upto, u) - upto.begin());
-        const double p = (upto[i] - (i > 0 ? upto[i - 1] : 0)) * double(paths);
-        const size_t g = group_of(s, i);
+        if (k == learning) aims.prefer(worth);
+        const bool learns = k < learning;
+        const double n = double(learns ? learning : paths - learning);
+        const double at = (double(learns ? k : k - learning) + 0.5) / n * upto.back();
+        const size_t i = size_t(std::ranges::upper_bound(upto, at) - upto.begin());
+        const double p = (upto[i] - (i > 0 ? upto[i - 1] : 0)) * n;
+        Draws u{hash(paths, k)};
+        const Emission emitted = emission(s.lights[i], aims, u);
         double sum = 0;
-        follow_light(s, band, edges, s.lights[i], hash(paths, k), [&](size_t pixel, rgb L) {
+        follow_light(s, band, s.lights[i], emitted, u, [&](size_t pixel, rgb L) {
             const double c = double(mean_of(L)) / p;
-            InPixel& at = pixels[g][pixel];
-            at.sum += c, at.squares += c * c, sum += c;
+            sum += c;
+            if (!learns) sums.add(group_of(s, i), pixel, c);
         });
-        groups[g].sent += sum, squares[g] += sum * sum;
+        sums.end_path();
+        if (emitted.aim) worth[*emitted.aim] += square(sum * emitted.pdf);
     }
-    for (size_t g = 0; g < groups.size(); ++g) {
-        groups[g].sent_variance = squares[g];
-        // Unbiased for the square of a pixel's mean: products of two visits, not of one with
-        // itself.
-        double of_pairs = 0;
-        for (const auto& [pixel, at] : pixels[g]) of_pairs += at.sum * at.sum - at.squares;
-        groups[g].sent_squares =
-            std::max(of_pairs, square(groups[g].sent) / (band.count * s.size.width));
-    }
+    return sums;
 }
 
 }  // namespace penumbra

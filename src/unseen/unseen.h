@@ -1,4 +1,4 @@
-// unseen/unseen.h  3  estimates of light that no sample has met, from near misses of small lights
+// unseen/unseen.h  4  estimates of light that no sample has met, from near misses of small lights
 //
 // The variance of samples does not contain light that no sample has met.  A light of s^2
 // times its area and 1/s^2 its radiance sends about the same light, but BSDF samples meet it s^2
@@ -10,68 +10,9 @@
 #include "text/json.h"
 #include "text/words.h"
 #include "unseen/hidden.h"
-#include "unseen/sent.h"
+#include "unseen/view.h"
 
 namespace penumbra {
-
-inline double mean_square(rgb L) {
-    return (sqr(double(L.x)) + sqr(double(L.y)) + sqr(double(L.z))) / 3;
-}
-
-// ---- Lights in view of the camera ---------------------------------------------------------------
-
-struct LightsInView {
-    std::vector<NearMisses> groups;
-    std::vector<size_t> noisy;  // pixels of groups that cover less than 16
-};
-
-// Samples 1024 points of each group, and 4096 directions beside edges: parts of pixels that lights
-// cover.  Lines are those of the scene's file, or none.
-inline LightsInView lights_in_view(const Scene& s, const Band& band, const Edges& edges,
-                                   const std::vector<uint32_t>& line_of_light = {}) {
-    LightsInView view;
-    view.groups.resize(std::min(s.lights.size(), max_light_groups));
-    std::vector<std::map<size_t, double>> parts(view.groups.size());
-    const vec3 eye = s.camera.eye;
-    const size_t points = 1024 * view.groups.size() / std::max<size_t>(1, s.lights.size()) + 1;
-    const int beside = edges.empty() ? 0 : 4096;
-    // A sample of either kind counts as one of both together, pdf: of the light's points.
-    auto add = [&](size_t light, const Through& to, vec3 d, real pdf) {
-        parts[group_of(s, light)][to.pixel] +=
-            1 /
-            (to.solid_angle * (double(pdf) * double(points) + double(edges.pdf(eye, d)) * beside));
-    };
-    for (size_t i = 0; i < s.lights.size(); ++i) {
-        NearMisses& g = view.groups[group_of(s, i)];
-        if (g.line == 0 && i < line_of_light.size()) g.line = float(line_of_light[i]);
-        if (s.lights[i].is_delta()) continue;
-        g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
-        for (size_t k = 0; k < points; ++k) {
-            const vec2 u{(real(k) + real(0.5)) / real(points), radical_inverse(2, k)};
-            const auto at = sample_light(s.lights[i], eye, u);
-            const auto to = at ? pixel_through(s, band, at->wi) : std::nullopt;
-            if (to && !s.bvh.occluded(spawn_to({eye, {}, 0}, at->at))) add(i, *to, at->wi, at->pdf);
-        }
-    }
-    for (int k = 0; k < beside; ++k) {
-        const Ray ray{eye, edges.sample(eye, radical_inverse(3, k),
-                                        {radical_inverse(5, k), radical_inverse(2, k)})};
-        const auto to = pixel_through(s, band, ray.d);
-        const auto hit = to ? s.bvh.closest(ray) : std::nullopt;
-        if (!hit || s.light_of[hit->id] == no_light) continue;
-        const size_t i = size_t(s.light_of[hit->id]);
-        const Surface x = s.surface(ray, *hit);
-        if (max_of(emitted(s.material(*hit), -dot(x.n, ray.d))) > 0)
-            add(i, *to, ray.d, pdf_light(s.lights[i], eye, x));
-    }
-    for (size_t g = 0; g < parts.size(); ++g) {
-        NearMisses& group = view.groups[g];
-        for (const auto& [i, a] : parts[g]) group.area += a, group.a += std::max(0.0, a * (1 - a));
-        if (group.area < 16)
-            for (const auto& [i, a] : parts[g]) view.noisy.push_back(i);
-    }
-    return view;
-}
 
 // ---- Hits and near misses -----------------------------------------------------------------------
 
@@ -123,23 +64,23 @@ struct NearMissVisitor {
         constexpr real narrow = 10;  // 1/sr
         is_specular = is_specular && std::isinf(segment.pdf);
         if (segment.k == 0) is_seen = here.met && !here.vertex.material->is_delta();
-        if (segment.k > 0 && max_of(here.Le) > 0)
-            add_came(size_t(scene.light_of[here.vertex.hit.id]),
-                     segment.beta * here.Le * here.weight);
         if (segment.k > 0 && segment.pdf > narrow && !groups.empty())
             add_near_misses(segment, here);
-        if (here.direct.light)
-            add_came(size_t(here.direct.light - scene.lights.data()), segment.beta * here.direct.L);
+        visit_lights(scene, segment, here, [&](size_t light, rgb L) { add_came(light, L); });
     }
 
 private:
-    // A path may bring up to 2^20 times what the light sends to all of the picture.
+    // A path may bring up to 2^20 times what lights bring to all of the picture.
     void add_came(size_t light, rgb L) {
-        const size_t g = group_of(scene, light);
-        const double sent = groups.empty() ? 0 : groups[g].sent;
-        if (is_seen && sent > 0)
-            tally.near[g].came +=
-                uint64_t(0x1p40 * std::min(0x1p20, double(mean_of(L)) * tally.share / sent));
+        const double mean = double(mean_of(L));
+        if (groups.empty() || !(mean > 0)) return;
+        const size_t g = group_of(scene, light), k = place_of(mean);
+        auto add = [&](const Brought& of, Brought& to) {
+            if (of.sum > 0)
+                to.came += uint64_t(0x1p40 * std::min(0x1p20, mean * tally.share / of.sum));
+        };
+        if (is_seen) add(groups[g].from_light, tally.near[g].from_light);
+        add(groups[g].from_eye[k], tally.near[g].from_eye[k]);
     }
     // Rarely called, so not inlined into the path's loop.
     [[gnu::noinline]] void add_near_misses(const Segment& segment, const Step& here) {
@@ -195,10 +136,9 @@ public:
             const NearMisses& group = groups[g];
             const double v = weight * weight * group.L2, n = t * double(group.K);
             lights_[g].line = double(group.line);
-            const double came = std::ldexp(double(group.came), -40) / t;
-            lights_[g].sent += weight * group.sent, lights_[g].came += weight * group.sent * came;
-            lights_[g].sent_variance += weight * group.sent_variance;
-            lights_[g].sent_squares += weight * group.sent_squares;
+            lights_[g].from_light.add(group.from_light, t, weight);
+            for (size_t k = 0; k < group.from_eye.size(); ++k)
+                lights_[g].from_eye[k].add(group.from_eye[k], t, weight);
             lights_[g].met += group.area * n, lights_[g].variance += v * group.a / n;
             for (size_t way = 0; way < ways; ++way)
                 for (size_t k = 0; k < growths; ++k) {
@@ -228,12 +168,10 @@ public:
             auto hit = [&](const char* where, double met) {
                 return name + where + " was hit " + counted(fixed(met, 0), "time");
             };
-            // Three standard errors.  Of few paths the squares are mostly too low: chosen by the
-            // aimed scenes of calibration.
-            const double less = l.sent - l.came;
-            if (less > 3 * std::sqrt(l.sent_variance))
-                consider(2 * square(less / l.sent) * l.sent_squares,
-                         "paths from the eye bring less than paths from " + name);
+            consider(l.from_light.missing(),
+                     "paths from the eye bring less than paths from " + name);
+            for (const Missing& of : l.from_eye)
+                consider(of.missing(), "paths from the eye that aim bring more of " + name);
             if (l.met < 10) consider(l.variance, hit(", smaller than a pixel,", l.met));
             for (size_t way = 0; way < ways; ++way) {
                 const auto& s = l.near[way];
@@ -256,9 +194,25 @@ private:
         double c = 0, c2 = 0, variance = 0;
         double count() const { return c > 0 ? c * c / c2 : 0; }  // (Kish 1965)
     };
+    struct Missing {
+        double sum = 0, squares = 0, variance = 0, came = 0;
+
+        void add(const Brought& of, double t, double weight) {
+            sum += weight * of.sum, squares += weight * of.squares;
+            variance += weight * of.variance;
+            came += weight * of.sum * std::ldexp(double(of.came), -40) / t;
+        }
+        // Sum over pixels of squares, if less came by more than three standard errors.  Of few
+        // paths the squares are mostly too low: chosen by the aimed scenes of calibration.
+        double missing() const {
+            return sum - came > 3 * std::sqrt(variance) ? 2 * square((sum - came) / sum) * squares
+                                                        : 0;
+        }
+    };
     struct OneLight {
         double line = 0, variance = 0, met = 0;  // met: expected camera rays
-        double sent = 0, came = 0, sent_variance = 0, sent_squares = 0;
+        Missing from_light;
+        std::array<Missing, brightnesses> from_eye;
         std::array<std::array<NearSum, growths>, ways> near;
     };
     std::vector<OneLight> lights_;
@@ -271,10 +225,14 @@ public:
     LightRecorder(const Scene& scene, const Technique& t, int first_row, int rows,
                   const std::vector<uint32_t>& line_of_light = {})
         : scene_(scene), technique_(t) {
-        const Edges edges(scene);
         const Band band{first_row, rows};
-        view_ = lights_in_view(scene, band, edges, line_of_light);
-        add_sent(view_.groups, scene, band, edges, light_paths(scene, band));
+        const uint64_t paths = aimed_paths(scene, band);
+        const Aims aims(scene);
+        view_ =
+            lights_in_view(scene, band, technique_, aims.with_reflections(), paths, line_of_light);
+        const PictureSums sent = sent_by_lights(scene, band, aims, paths);
+        for (size_t g = 0; g < view_.groups.size(); ++g)
+            view_.groups[g].from_light = sent.of(g, double(rows) * scene.size.width);
     }
 
     // Lights, and pixels near them, of a film whose noisy pixels have K samples or more for each

@@ -77,7 +77,9 @@ std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n
                 radiance(s, t, pattern, x, y, i, recorder.visitor(tally));
     return tally.near;
 }
-LightsInView in_view(const Scene& s) { return lights_in_view(s, {0, s.size.height}, Edges(s)); }
+LightsInView in_view(const Scene& s) {
+    return lights_in_view(s, {0, s.size.height}, {}, Aims(s), 4096);
+}
 
 // The greatest d^2 that light of square u could more than double, in a picture of square `norm2`:
 // where (d^2 + u) / (F^2 + u) = 4 d^2 / F^2 for the truth F^2 = norm2 - d^2 of what was found.
@@ -141,7 +143,8 @@ TEST_CASE("a ray meets a grown light where it would meet that shape, from its br
 TEST_CASE("the part of pixels that lights cover, in view of the eye") {
     for (real r : {real(0.001), real(0.01), real(0.1)}) {
         const NamedScene s = mirror_scene(r, true);
-        const LightsInView view = lights_in_view(s, {0, s.size.height}, Edges(s), s.line_of_light);
+        const LightsInView view =
+            lights_in_view(s, {0, s.size.height}, {}, Aims(s), 4096, s.line_of_light);
         const vec3 f = s.lights[0].p - s.camera.eye;
         const double pixel = 2 * double(s.camera.tan_half) / s.size.height;
         const double cosine = double(dot(unit(f), s.camera.forward));
@@ -155,10 +158,12 @@ TEST_CASE("the part of pixels that lights cover, in view of the eye") {
             CHECK(view.groups[0].a == doctest::Approx(area * (1 - area)).epsilon(0.02));
         // The noisy pixels are those of the light; bands of rows partition them.
         CHECK(view.noisy.size() == (r < real(0.05) ? 1 : 4));
+        auto area_of = [&](const Band& band) {
+            return lights_in_view(s, band, {}, Aims(Scene()), 0).groups[0].area;
+        };
         double parts = 0;
-        for (int row = 0; row < s.size.height; row += 2)
-            parts += lights_in_view(s, {row, 2}, Edges(s)).groups[0].area;
-        CHECK(parts == doctest::Approx(view.groups[0].area));
+        for (int row = 0; row < s.size.height; row += 2) parts += area_of({row, 2});
+        CHECK(parts == doctest::Approx(area_of({0, s.size.height})));
     }
     // A light that covers 16 pixels is not small.
     const LightsInView large = in_view(mirror_scene(real(0.9), true));
@@ -287,12 +292,15 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
     add_sphere(s, {-1, real(1.1), 3}, real(0.05), 1);
     prepare(s);
     std::vector<NearMisses> groups(2);
-    groups[0].sent = 2, groups[1].sent = 0.25;
+    groups[0].from_light.sum = 2, groups[1].from_light.sum = 0.25;
+    for (NearMisses& g : groups)
+        for (size_t k = 0; k < brightnesses; ++k) g.from_eye[k].sum = double(k + 1);
     Tally tally;
     tally.share = 0.25, tally.near.resize(2);
     const Pattern pattern{SamplerKind::independent, seed_here()};
     const Technique technique;
     std::array<double, 2> came{};
+    std::array<std::array<double, brightnesses>, 2> came_in{};
     int in_mirror = 0, met = 0, blocked = 0;
     for (uint64_t i = 0; i < 64000; ++i) {
         bool is_seen = false;
@@ -302,44 +310,58 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
                      misses(path, e);
                      if (path.k == 0) is_seen = e.met && !e.vertex.material->is_delta();
                      in_mirror += e.direct.light && !is_seen, blocked += e.direct.occluded;
-                     if (!is_seen) return;
+                     auto add = [&](size_t light, rgb L) {
+                         if (!(max_of(L) > 0)) return;
+                         came[light] += is_seen ? double(mean_of(L)) / 4 : 0;
+                         came_in[light][place_of(double(mean_of(L)))] += double(mean_of(L)) / 4;
+                     };
                      if (path.k > 0 && max_of(e.Le) > 0)
-                         ++met, came[size_t(s.light_of[e.vertex.hit.id])] +=
-                                double(mean_of(path.beta * e.Le * e.weight)) / 4;
+                         ++met,
+                             add(size_t(s.light_of[e.vertex.hit.id]), path.beta * e.Le * e.weight);
                      if (e.direct.light)
-                         came[size_t(e.direct.light - s.lights.data())] +=
-                             double(mean_of(path.beta * e.direct.L)) / 4;
+                         add(size_t(e.direct.light - s.lights.data()), path.beta * e.direct.L);
                  });
     }
     CHECK(in_mirror > 100);
     CHECK(met > 100);
     CHECK(blocked > 100);
+    auto same = [](uint64_t fixed, const Brought& of, double sum) {
+        CHECK(std::abs(std::ldexp(double(fixed), -40) * of.sum - sum) <=
+              1e-6 * sum + 64000 * 0x1p-40 * of.sum);
+    };
     for (size_t g = 0; g < 2; ++g) {
         CHECK(came[g] > 0);
-        CHECK(std::ldexp(double(tally.near[g].came), -40) * groups[g].sent ==
-              doctest::Approx(came[g]).epsilon(1e-6));
+        same(tally.near[g].from_light.came, groups[g].from_light, came[g]);
+        int places = 0;
+        for (size_t k = 0; k < brightnesses; ++k) {
+            places += came_in[g][k] > 0;
+            same(tally.near[g].from_eye[k].came, groups[g].from_eye[k], came_in[g][k]);
+        }
+        CHECK(places >= 3);
     }
     // Of a light that sends nothing nothing is summed; one path brings at most 2^20.
-    groups[0].sent = 0, groups[1].sent = 1e-300;
+    groups[0].from_light.sum = 0, groups[1].from_light.sum = 1e-300;
     tally.near = std::vector<NearMisses>(2);
     for (uint64_t i = 0; i < 64; ++i)
         radiance(s, technique, pattern, int(i % 8), int(i / 8), i,
                  NearMissVisitor{s, technique, groups, tally});
-    CHECK(tally.near[0].came == 0);
-    CHECK(tally.near[1].came > 0);
-    CHECK(tally.near[1].came % (uint64_t(1) << 60) == 0);
+    CHECK(tally.near[0].from_light.came == 0);
+    CHECK(tally.near[1].from_light.came > 0);
+    CHECK(tally.near[1].from_light.came % (uint64_t(1) << 60) == 0);
     Tally both = tally;
     both.add(tally);
-    CHECK(both.near[1].came == 2 * tally.near[1].came);
+    CHECK(both.near[1].from_light.came == 2 * tally.near[1].from_light.came);
+    for (size_t k = 0; k < brightnesses; ++k)
+        CHECK(both.near[1].from_eye[k].came == 2 * tally.near[1].from_eye[k].came);
 }
 
 TEST_CASE("a light whose own paths bring more than those from the eye is in doubt") {
     // It sends 8 +- 1 to 25 pixels, a mean square of 2 / 25; the eye's paths, of t = 4 samples,
     // have a part of it.
-    auto doubt = [](double part, double d2, std::vector<double> weights = {1}) {
+    auto doubt = [](double part, double d2, std::vector<double> weights = {1},
+                    bool is_from_eye = false) {
         NearMisses lamp{12, 1, 4, 0, 0};
-        lamp.sent = 8, lamp.sent_variance = 1, lamp.sent_squares = 2;
-        lamp.came = uint64_t(part * 4 * 0x1p40);
+        (is_from_eye ? lamp.from_eye[5] : lamp.from_light) = {8, 2, 1, uint64_t(part * 4 * 0x1p40)};
         MissedLight u;
         for (const double w : weights) u.add({lamp}, 4, w);
         return u.doubt(d2, 2, 25);
@@ -348,6 +370,9 @@ TEST_CASE("a light whose own paths bring more than those from the eye is in doub
           "paths from the eye bring less than paths from the light of line 12; light not yet found "
           "may amount to 8 %");
     CHECK(doubt(0.63, 0).empty());  // three standard errors
+    CHECK(doubt(0.62, 0, {1}, true) ==
+          "paths from the eye that aim bring more of the light of line 12; light not yet found "
+          "may amount to 8 %");
     // Twice the square of the part that is missing.
     const double u = 2 * 2 * sqr(0.75) / 25;
     CHECK(!doubt(0.25, doubled_from(u, 4) * 0.999).empty());
@@ -407,7 +432,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
             const double d2 = error * error;
             const bool doubles = std::sqrt((d2 + u) / (1 + u)) > 2 * error;
             NearMisses lamp{12, 1, 4, 0, 0};
-            lamp.sent = 1, lamp.sent_squares = u / 2;  // counted twice
+            lamp.from_light = {1, u / 2};  // counted twice
             MissedLight unseen;
             unseen.add({lamp}, 1);
             CHECK(unseen.doubt(d2, std::sqrt(1 + d2), 1).empty() != doubles);
@@ -418,7 +443,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
     CHECK(known > 100);
     // Where all is noise, the halves tell so.
     NearMisses lamp{12, 1, 4, 0, 0};
-    lamp.sent = 1, lamp.sent_squares = 0.5;
+    lamp.from_light = {1, 0.5};
     MissedLight unseen;
     unseen.add({lamp}, 1);
     CHECK(unseen.doubt(4, 1, 1).empty());

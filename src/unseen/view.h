@@ -1,0 +1,136 @@
+// unseen/view.h  3  what lights bring to the picture, by paths from the eye that aim
+#pragma once
+#include "path/halton.h"
+#include "path/pathtracer.h"
+#include "unseen/sent.h"
+
+namespace penumbra {
+
+inline double mean_square(rgb L) {
+    return (sqr(double(L.x)) + sqr(double(L.y)) + sqr(double(L.z))) / 3;
+}
+
+// Calls visit(light, L) with what lights bring at a vertex, but where the eye sees them.
+template <class Visit>
+void visit_lights(const Scene& s, const Segment& segment, const Step& here, Visit visit) {
+    if (segment.k > 0 && max_of(here.Le) > 0)
+        visit(size_t(s.light_of[here.vertex.hit.id]), segment.beta * here.Le * here.weight);
+    if (here.direct.light)
+        visit(size_t(here.direct.light - s.lights.data()), segment.beta * here.direct.L);
+}
+
+// The place in NearMisses::from_eye of a positive radiance: three octaves each, in turns.
+inline size_t place_of(double L) {
+    return size_t(std::ilogb(std::min(L, 1e300)) + 3 * 1024) / 3 % brightnesses;
+}
+
+// ---- Paths from the eye -------------------------------------------------------------------------
+
+// What a path from the eye finds that aims at edge or shape number `aim`, with density pdf per
+// pixel: mean channels of what lights bring, and the light that the eye sees.
+struct EyePath {
+    size_t aim, pixel;
+    double pdf;
+    std::vector<std::pair<size_t, double>> brought = {};
+    std::optional<size_t> seen = {};
+    double pdf_of_points = 0;  // density per pixel of samples of the light that the eye sees
+};
+
+// Path k of many, if it goes into the picture.
+inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const Technique& technique,
+                                       const Aims& aims, uint64_t k) {
+    static const Pattern pattern{SamplerKind::independent};
+    const vec3 eye = s.camera.eye;
+    const auto aim =
+        aims.sample(eye, radical_inverse(3, k), {radical_inverse(5, k), radical_inverse(2, k)});
+    const auto to = aim ? pixel_through(s, band, aim->d) : std::nullopt;
+    if (!to) return {};
+    EyePath path{aim->at, to->pixel, double(aims.pdf(eye, aim->d)) * to->solid_angle};
+    auto visit = [&](const Segment& segment, const Step& here) {
+        if (segment.k == 0 && max_of(here.Le) > 0) {
+            path.seen = size_t(s.light_of[here.vertex.hit.id]);
+            path.pdf_of_points =
+                double(pdf_light(s.lights[*path.seen], eye, here.vertex.at)) * to->solid_angle;
+        }
+        visit_lights(s, segment, here, [&](size_t light, rgb L) {
+            if (mean_of(L) > 0) path.brought.emplace_back(light, mean_of(L));
+        });
+    };
+    Li(s, technique, {eye, aim->d}, Sampler(pattern, 0, k), visit);
+    return path.pdf > 0 ? std::optional(path) : std::nullopt;
+}
+
+// Paths that bring much tell where to aim.
+inline void learn(Aims& aims, const Scene& s, const Band& band, const Technique& technique,
+                  uint64_t paths) {
+    std::vector<double> worth(aims.size());
+    for (uint64_t k = 0; k < paths; ++k)
+        if (const auto path = eye_path(s, band, technique, aims, k)) {
+            double L = 0;
+            for (const auto& [light, of_light] : path->brought) L += of_light;
+            worth[path->aim] += L * L;
+        }
+    aims.prefer(worth);
+}
+
+// ---- Lights in view -----------------------------------------------------------------------------
+
+struct LightsInView {
+    std::vector<NearMisses> groups;
+    std::vector<size_t> noisy;  // pixels of groups that cover less than 16
+};
+
+// Samples 1024 points of each group, and follows paths from the eye: parts of pixels that lights
+// cover, and what else they bring.  Half of the paths learn where to aim, the others count.  Lines
+// are those of the scene's file, or none.
+inline LightsInView lights_in_view(const Scene& s, const Band& band, const Technique& technique,
+                                   Aims aims, uint64_t paths,
+                                   const std::vector<uint32_t>& line_of_light = {}) {
+    const size_t groups = std::min(s.lights.size(), max_light_groups);
+    const size_t points = 1024 * groups / std::max<size_t>(1, s.lights.size()) + 1;
+    const uint64_t aimed = aims.size() > 0 ? paths / 2 : 0;
+    if (aimed > 0) learn(aims, s, band, technique, aimed);
+
+    LightsInView view{std::vector<NearMisses>(groups), {}};
+    std::vector<std::map<size_t, double>> parts(groups);
+    // A sample of either kind counts as one of both together.
+    auto add = [&](size_t light, size_t pixel, double pdf_of_points, double pdf) {
+        parts[group_of(s, light)][pixel] +=
+            1 / (pdf_of_points * double(points) + pdf * double(aimed));
+    };
+    for (size_t i = 0; i < s.lights.size(); ++i) {
+        NearMisses& g = view.groups[group_of(s, i)];
+        if (g.line == 0 && i < line_of_light.size()) g.line = float(line_of_light[i]);
+        if (s.lights[i].is_delta()) continue;
+        g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
+        for (size_t k = 0; k < points; ++k) {
+            const vec2 u{(real(k) + real(0.5)) / real(points), radical_inverse(2, k)};
+            const vec3 eye = s.camera.eye;
+            const auto at = sample_light(s.lights[i], eye, u);
+            const auto to = at ? pixel_through(s, band, at->wi) : std::nullopt;
+            if (to && !s.bvh.occluded(spawn_to({eye, {}, 0}, at->at)))
+                add(i, to->pixel, double(at->pdf) * to->solid_angle,
+                    double(aims.pdf(eye, at->wi)) * to->solid_angle);
+        }
+    }
+    PictureSums sums(groups * brightnesses);
+    for (uint64_t k = aimed; k < 2 * aimed; ++k)
+        if (const auto path = eye_path(s, band, technique, aims, k)) {
+            if (path->seen) add(*path->seen, path->pixel, path->pdf_of_points, path->pdf);
+            for (const auto& [light, L] : path->brought)
+                sums.add(group_of(s, light) * brightnesses + place_of(L), path->pixel,
+                         L / (path->pdf * double(aimed)));
+            sums.end_path();
+        }
+    for (size_t g = 0; g < groups; ++g) {
+        NearMisses& group = view.groups[g];
+        for (size_t k = 0; k < brightnesses; ++k)
+            group.from_eye[k] = sums.of(g * brightnesses + k, band.count * s.size.width);
+        for (const auto& [i, a] : parts[g]) group.area += a, group.a += std::max(0.0, a * (1 - a));
+        if (group.area < 16)
+            for (const auto& [i, a] : parts[g]) view.noisy.push_back(i);
+    }
+    return view;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,141 @@
+// unseen/aims_test.cpp  directions that aim at gaps and small things, and their density
+#include "unseen/aims.h"
+
+#include <array>
+
+#include "oracle/expect.h"
+#include "world/scene.h"
+
+using namespace penumbra;
+
+namespace {
+
+// Directions of many from y that aim: their parts for which `is_such` holds.
+double part_of_aims(const Aims& aims, vec3 y, int n, auto is_such) {
+    oracle::Random random(seed_here());
+    int such = 0, all = 0;
+    while (all < n) {
+        const real u = real(random()), v = real(random());
+        if (const auto aim = aims.sample(y, real(random()), {u, v})) ++all, such += is_such(*aim);
+    }
+    return such / double(n);
+}
+
+}  // namespace
+
+TEST_CASE("directions that aim come with their density") {
+    // Of two samplers with densities p and q: the means of q / (p + q) by the first, and of
+    // p / (p + q) by the second, are both the integral of p q / (p + q).
+    Scene s;
+    s.materials = {{}, {Mirror({1, 1, 1})}, {Glass(real(1.5))}};
+    for (int kind = 0; kind < 4; ++kind) {
+        if (kind == 0) add_sphere(s, {real(0.5), 2, 0}, 1, 0);
+        if (kind == 1) add_quad(s, {0, 0, 0}, {1, 0, real(0.2)}, {0, 1, 0}, 2);
+        if (kind == 2) add_triangle(s, {2, 0, 0}, {1, 1, 1}, {2, 2, 0}, 1);
+        if (kind == 3)  // many edges and shapes, of which it takes some
+            for (int k = 0; k < 100; ++k)
+                add_triangle(s, {real(k), 5, 0}, {real(k), 6, 0}, {real(k), 5, 1}, 0);
+        Aims aims = Aims(s).with_reflections();
+        std::vector<double> worth(aims.size());
+        for (size_t i = 0; i < worth.size(); ++i) worth[i] = double(i % 3);
+        for (const bool is_learned : {false, true}) {
+            if (is_learned) aims.prefer(worth);
+            for (const vec3 y : {vec3{real(0.5), real(0.4), real(0.4)}, vec3{1, -1, 1},
+                                 vec3{real(0.4), real(1.9), 0}}) {  // the last in the ball
+                oracle::Random random(seed_here());
+                auto u2 = [&] {
+                    const real x = real(random());
+                    return vec2{x, real(random())};
+                };
+                const double q = 1 / (4 * std::numbers::pi);
+                auto first = [&] {
+                    const real u = real(random());
+                    const auto aim = aims.sample(y, u, u2());
+                    return aim ? q / (q + double(aims.pdf(y, aim->d))) : 0;
+                };
+                auto second = [&] {
+                    const double p = double(aims.pdf(y, sample_uniform_sphere(u2())));
+                    return p / (p + q);
+                };
+                INFO(kind);
+                EXPECT(oracle::expect_equal(first, second, kind < 3 ? 100000 : 40000),
+                       kind < 3 ? 0.2 : 0.3);
+            }
+        }
+    }
+}
+
+TEST_CASE("of many edges and shapes each is as likely as any other, until paths have learned") {
+    Scene row;
+    row.materials = {{}};
+    for (int k = 0; k < 300; ++k)
+        add_triangle(row, {real(k), 0, 0}, {real(k) + real(0.1), 0, 0}, {real(k), real(0.1), 0}, 0);
+    Aims aims(row);
+    CHECK(aims.size() == 128 + 64);
+    const vec3 y{150, 0, 1000};
+    auto third = [&](int which) {
+        return part_of_aims(aims, y, 3000, [&](const Aims::Aim& aim) {
+            const real x = (y - aim.d * (1000 / aim.d.z)).x;
+            return int(std::clamp(x, real(0), real(299))) / 100 == which;
+        });
+    };
+    for (int which = 0; which < 3; ++which) CHECK(third(which) > 0.2);
+    auto at = [](size_t i) { return [i](const Aims::Aim& aim) { return aim.at == i; }; };
+    auto is_shape = [](const Aims::Aim& aim) { return aim.at >= 128; };
+    CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
+    // Nothing is learned from nothing; else half of all are as before.
+    aims.prefer(std::vector<double>(aims.size()));
+    CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
+    std::vector<double> worth(aims.size());
+    worth[7] = 3, worth[150] = 1;
+    aims.prefer(worth);
+    CHECK(std::abs(part_of_aims(aims, y, 10000, at(7)) - 0.378) < 0.03);
+    CHECK(std::abs(part_of_aims(aims, y, 10000, at(150)) - 0.127) < 0.03);
+    CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
+}
+
+TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps have none") {
+    Scene s;
+    s.materials = {{}, {}, {Mirror({1, 1, 1})}};
+    s.materials[1].Le = {1, 1, 1};
+    CHECK(Aims(s).size() == 0);
+    add_sphere(s, {}, 1, 1), add_quad(s, {}, {1, 0, 0}, {0, 1, 0}, 1);
+    CHECK(Aims(s).size() == 0);
+    add_sphere(s, {}, 1, 0);
+    CHECK(Aims(s).size() == 1);
+    add_quad(s, {2, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+    const Aims aims(s);
+    CHECK(aims.size() == 4 + 3);
+    const vec3 y{real(2.5), real(0.5), 3};
+    auto in_plane = [&](vec3 d) { return y - d * (3 / d.z) - vec3{2, 0, 0}; };
+    auto is_in_quad = [&](vec3 d) {
+        const vec3 p = in_plane(d);
+        return d.z < 0 && p.x > real(1e-5) && p.x < real(0.99999) && p.y > real(1e-5) &&
+               p.y < real(0.99999);
+    };
+    // Seen from before it, no direction beside an edge leads into the quad.
+    CHECK(part_of_aims(aims, y, 4000,
+                       [&](const Aims::Aim& a) { return a.at < 4 && is_in_quad(a.d); }) == 0);
+    CHECK(part_of_aims(aims, y, 4000,
+                       [&](const Aims::Aim& a) { return a.at >= 5 && !is_in_quad(a.d); }) < 0.001);
+    // Distances from edges: all octaves alike, from 2^-16 to 8.
+    auto nearer_than = [&](double most) {
+        return part_of_aims(aims, y, 20000,
+                            [&](const Aims::Aim& a) {
+                                if (a.at >= 4 || !(a.d.z < 0)) return false;
+                                const vec3 p = in_plane(a.d);
+                                const real h = std::max({-p.x, p.x - 1, -p.y, p.y - 1});
+                                return double(h) < most;
+                            }) /
+               0.75;
+    };
+    CHECK(std::abs(nearer_than(0x1p-2) - 14 / 19.0) < 0.03);
+    CHECK(std::abs(nearer_than(0x1p-12) - 4 / 19.0) < 0.03);
+    CHECK(nearer_than(0x1p-17) == 0);
+    // A mirror shows the edges again, also its own, to the eye alone; up to four do.
+    add_quad(s, {0, 0, -5}, {1, 0, 0}, {0, 1, 0}, 2);
+    CHECK(Aims(s).size() == 8 + 5);
+    CHECK(Aims(s).with_reflections().size() == 2 * 8 + 5);
+    for (int i = 0; i < 9; ++i) add_quad(s, {0, 0, real(-6 - i)}, {1, 0, 0}, {0, 1, 0}, 2);
+    CHECK(Aims(s).with_reflections().size() == 5 * 44 + 23);
+}

@@ -1,0 +1,138 @@
+// unseen/view_test.cpp  paths from the eye that aim: lights in view, and what else they bring
+#include "unseen/view.h"
+
+#include "oracle/expect.h"
+#include "path/paths.h"
+#include "unseen/room.h"
+#include "unseen/unseen.h"
+#include "world/prepare.h"
+
+namespace {
+
+// A wall with a square hole of side h at (0, 1, 0), 2.8 m before the eye; all behind is open.
+Scene wall_with_hole(real h) {
+    Scene s = room(nullptr, {Rough({real(0.5), real(0.5), real(0.5)})});
+    s.size = {48, 32};
+    s.shapes.clear(), s.material_of.clear(), s.light_of.clear();
+    add_quad(s, {-9, -8, 0}, {18, 0, 0}, {0, 9, 0}, 0);
+    add_quad(s, {-9, 1 + h, 0}, {18, 0, 0}, {0, 9, 0}, 0);
+    add_quad(s, {-9, 1, 0}, {9, 0, 0}, {0, h, 0}, 0);
+    add_quad(s, {h, 1, 0}, {9, 0, 0}, {0, h, 0}, 0);
+    return s;
+}
+// Of a parallelogram, in pixels.
+double area_in_picture(const Scene& s, vec3 p, vec3 e, vec3 f) {
+    const double side = 2 * double(s.camera.tan_half) / s.size.height;
+    // In the plane of the picture: perpendicular to forward, at distance 1.
+    auto at = [&](vec3 q) {
+        const vec3 d = q - s.camera.eye;
+        const double z = double(dot(d, s.camera.forward)) * side;
+        return std::pair{double(dot(d, s.camera.right)) / z, double(dot(d, s.camera.up)) / z};
+    };
+    const auto [x0, y0] = at(p);
+    const auto [x1, y1] = at(p + e);
+    const auto [x2, y2] = at(p + f);
+    return std::abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0));
+}
+
+}  // namespace
+
+TEST_CASE("a lamp that the eye sees through a gap covers part of a pixel") {
+    const real h = real(0.002);
+    Scene s = wall_with_hole(h);
+    add_quad(s, {-5, -5, -1}, {10, 0, 0}, {0, 10, 0}, 3);
+    prepare(s);
+    const double area = area_in_picture(s, {0, 1, 0}, {h, 0, 0}, {0, h, 0});
+    auto seen = [&](const Aims& aims) {
+        return lights_in_view(s, {0, 32}, {}, aims, 16384).groups[0].area;
+    };
+    const LightsInView view = lights_in_view(s, {0, 32}, {}, Aims(s), 16384);
+    CHECK(std::abs(view.groups[0].area / area - 1) < 0.15);
+    CHECK(view.noisy.size() >= 1);
+    CHECK(seen(Aims(Scene())) == 0);
+    // Its back is dark.
+    s.shapes.resize(s.shapes.size() - 2), s.material_of.resize(s.shapes.size());
+    s.light_of.resize(s.shapes.size()), s.lights.clear();
+    add_quad(s, {-5, -5, -1}, {0, 10, 0}, {10, 0, 0}, 3);
+    prepare(s);
+    CHECK(seen(Aims(s)) == 0);
+}
+
+TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in a mirror") {
+    // Behind the hole a bright wall, lit by a point: radiance rho / pi I / d^2, 1 cm before it.
+    const real h = real(0.01);
+    for (const bool in_mirror : {false, true}) {
+        Scene s = wall_with_hole(h);
+        add_quad(s, {-5, -5, real(-0.5)}, {10, 0, 0}, {0, 10, 0}, 0);
+        add_light(s, {{h / 2, 1 + h / 2, real(-0.25)}, PointLight(), {900, 900, 900}});
+        const double area = area_in_picture(s, {0, 1, 0}, {h, 0, 0}, {0, h, 0});
+        if (in_mirror) {  // the eye looks away from the wall, into a mirror behind it
+            s.materials[2] = {Mirror({1, 1, 1})};
+            add_quad(s, {-20, -20, real(5.6)}, {0, 40, 0}, {40, 0, 0}, 2);
+            s.camera = look_at({0, 1, real(2.8)}, {0, 1, 9}, 50);
+        }
+        prepare(s);
+        const NearMisses lamp =
+            lights_in_view(s, {0, 32}, {}, Aims(s).with_reflections(), 16384).groups[0];
+        double sum = 0, variance = 0;
+        for (const Brought& of : lamp.from_eye) sum += of.sum, variance += of.variance;
+        INFO(in_mirror);
+        CHECK(sum > 5 * std::sqrt(variance));
+        // The middle of the hole sees the wall before the lamp, about 0.25 m from it.
+        const double L = 0.5 / std::numbers::pi * 900 / 0.0625;
+        const double far = in_mirror ? sqr(2.8 / 8.4) : 1;
+        CHECK(std::abs(sum / (L * area * far) - 1) < 0.3);
+        if (in_mirror)
+            CHECK(lights_in_view(s, {0, 32}, {}, Aims(s), 16384).groups[0].from_eye[0].sum == 0);
+    }
+}
+
+TEST_CASE("paths that aim and all others bring the same, where both may find it") {
+    // The room is all edges and shapes, and few directions are far from all of them.
+    const vec3 above{real(-0.5), real(1.6), real(0.3)};
+    const Light point(above, PointLight(), {1, 2, 3});
+    for (const Material& ball : {Material{Mirror({1, 1, 1})}, Material{Glass(real(1.5))},
+                                 Material{Rough({real(0.5), real(0.5), real(0.5)})}}) {
+        Scene s = room(&point, ball);
+        add_quad(s, above, {real(0.6), 0, real(0.1)}, {0, real(0.05), real(0.6)}, 4);
+        prepare(s);
+        std::vector<NearMisses> groups(2);
+        for (NearMisses& g : groups)
+            for (Brought& of : g.from_eye) of.sum = 1;
+        Tally tally;
+        tally.near.resize(2);
+        const Pattern pattern{SamplerKind::sobol, seed_here()};
+        constexpr uint64_t n = 4000;
+        for (uint64_t i = 0; i < n; ++i)
+            for (int pixel = 0; pixel < 24; ++pixel)
+                radiance(s, {}, pattern, pixel % 6, pixel / 6, i,
+                         NearMissVisitor{s, {}, groups, tally});
+        const LightsInView many = lights_in_view(s, {0, 4}, {}, Aims(s).with_reflections(), 200000);
+        for (size_t light = 0; light < 2; ++light) {
+            double came = 0, sum = 0, variance = 0;
+            for (size_t k = 0; k < brightnesses; ++k) {
+                const Brought& of = many.groups[light].from_eye[k];
+                sum += of.sum, variance += of.variance;
+                came += std::ldexp(double(tally.near[light].from_eye[k].came), -40) / double(n);
+            }
+            CHECK(came > 0);
+            CHECK(std::sqrt(variance) < 0.03 * sum);
+            CHECK(std::abs(sum - came) < 4 * std::sqrt(variance) + 0.01 * came);
+        }
+    }
+}
+
+TEST_CASE("a place for every radiance: three octaves each, and eight places in turns") {
+    CHECK(place_of(1) == place_of(3.9));
+    CHECK(place_of(1) == place_of(std::ldexp(1.0, 24)));
+    std::set<size_t> places;
+    for (int octave = -1074; octave < 1024; ++octave) {
+        const size_t place = place_of(std::ldexp(1.0, octave));
+        REQUIRE(place < brightnesses);
+        places.insert(place);
+        if (octave >= -1071 && octave < 990)
+            CHECK(place_of(std::ldexp(1.0, octave + 3)) == (place + 1) % brightnesses);
+    }
+    CHECK(places.size() == brightnesses);
+    CHECK(place_of(std::numeric_limits<double>::infinity()) < brightnesses);
+}
