@@ -25,6 +25,11 @@ struct Chosen {
         else if (place < most)
             items[place] = item;
     }
+    // Adds the other's items, which it loses.
+    void take(Chosen& other) {
+        for (const Item& item : other.items) add(item);
+        other = {other.most};
+    }
 };
 
 // Light comes in by gaps, and gaps lie beside edges.  An edge leads from a to a + e; the third
@@ -43,45 +48,45 @@ class Aims {
     };
 
 public:
-    // 128 edges, but no diagonals of quads, and 64 shapes.
+    // 128 edges, but no diagonals of quads, and 64 shapes; no more than half of them from one run
+    // of shapes of one material, for a mesh has thousands.
     explicit Aims(const Scene& s) {
-        Chosen<Edge> edges{128};
-        Chosen<size_t> targets{64}, mirrors{4};
+        Chosen<Edge> edges{128}, of_run{64};
+        Chosen<size_t> shapes{64}, shapes_of_run{32}, mirrors{4};
         auto halves = [&](size_t i, size_t j) {  // of a quad
             return j < s.shapes.size() && s.shapes[i].a == s.shapes[j].a &&
                    s.shapes[i].c == s.shapes[j].b && s.shapes[j].is_triangle();
         };
         for (size_t i = 0; i < s.shapes.size(); ++i) {
+            if (i > 0 && s.material_of[i] != s.material_of[i - 1])
+                edges.take(of_run), shapes.take(shapes_of_run);
             if (s.light_of[i] != no_light) continue;
-            targets.add(i);
+            shapes_of_run.add(i);
             if (!s.shapes[i].is_triangle()) continue;
             const auto& [a, b, c, r] = s.shapes[i];
             const bool is_second = i > 0 && halves(i - 1, i);
-            edges.add({b, c - b, a});
-            if (!halves(i, i + 1)) edges.add({c, a - c, b});
-            if (!is_second) edges.add({a, b - a, c});
-            const Material& m = s.materials[s.material_of[i]];
-            if (!is_second && m.is_delta() && !m.transmits()) mirrors.add(i);
+            of_run.add({b, c - b, a});
+            if (!halves(i, i + 1)) of_run.add({c, a - c, b});
+            if (!is_second) of_run.add({a, b - a, c});
+            if (!is_second && s.materials[s.material_of[i]].is_delta()) mirrors.add(i);
         }
+        edges.take(of_run), shapes.take(shapes_of_run);
         edges_ = edges.items;
-        for (const size_t i : targets.items) {
-            const auto& [a, b, c, r] = s.shapes[i];
-            Light light = s.shapes[i].is_triangle() ? Light(a, TriangleLight{b - a, c - a})
-                                                    : Light(a, SphereLight{r});
-            light.twosided = true;
-            targets_.push_back({s.shapes[i], light});
-        }
+        for (const size_t i : shapes.items) targets_.push_back(target(s.shapes[i]));
         for (const size_t i : mirrors.items) mirrors_.push_back(s.shapes[i]);
         share();
     }
-    // Also the edges that an eye sees in up to four mirrors.
+    // Also what an eye sees in up to four plane mirrors or panes of glass.
     Aims with_reflections() const {
         Aims all = *this;
         for (const Shape& m : mirrors_) {
             const vec3 n = unit(area_vector(m));
-            auto reflect = [&](vec3 v) { return v - n * (2 * dot(n, v)); };
+            auto turn = [&](vec3 v) { return v - n * (2 * dot(n, v)); };
+            auto reflect = [&](vec3 p) { return m.a + turn(p - m.a); };
             for (const auto& [a, e, c] : edges_)
-                all.edges_.push_back({m.a + reflect(a - m.a), reflect(e), m.a + reflect(c - m.a)});
+                all.edges_.push_back({reflect(a), turn(e), reflect(c)});
+            for (const auto& [s, as_light] : targets_)
+                all.targets_.push_back(target({reflect(s.a), reflect(s.b), reflect(s.c), s.r}));
         }
         all.share();
         return all;
@@ -126,10 +131,12 @@ public:
         }
         return sum;
     }
-    // From now on half of all directions aim where they are worth most.
+    // From now on half of all directions aim where it is worth most; the others are as before, in
+    // defence (Hesterberg 1995).
     void prefer(const std::vector<double>& worth) {
         const double all = std::accumulate(worth.begin(), worth.end(), 0.0);
-        for (size_t i = 0; i < size() && all > 0; ++i) part_[i] = part_[i] / 2 + worth[i] / all / 2;
+        if (!(all > 0 && std::isfinite(all))) return;
+        for (size_t i = 0; i < size(); ++i) part_[i] = part_[i] / 2 + worth[i] / all / 2;
         sum_up();
     }
 
@@ -139,6 +146,13 @@ private:
     std::vector<Shape> mirrors_;
     std::vector<double> part_, upto_;  // parts of all directions: edges, then shapes
 
+    static Target target(const Shape& shape) {
+        const auto& [a, b, c, r] = shape;
+        Light light =
+            shape.is_triangle() ? Light(a, TriangleLight{b - a, c - a}) : Light(a, SphereLight{r});
+        light.twosided = true;
+        return {shape, light};
+    }
     void share() {
         const double of_targets = targets_.empty() ? 0 : edges_.empty() ? 1 : 0.25;
         part_.assign(edges_.size(), (1 - of_targets) / double(edges_.size()));

@@ -71,7 +71,7 @@ TEST_CASE("of many edges and shapes each is as likely as any other, until paths 
     for (int k = 0; k < 300; ++k)
         add_triangle(row, {real(k), 0, 0}, {real(k) + real(0.1), 0, 0}, {real(k), real(0.1), 0}, 0);
     Aims aims(row);
-    CHECK(aims.size() == 128 + 64);
+    CHECK(aims.size() == 64 + 32);
     const vec3 y{150, 0, 1000};
     auto third = [&](int which) {
         return part_of_aims(aims, y, 3000, [&](const Aims::Aim& aim) {
@@ -81,17 +81,43 @@ TEST_CASE("of many edges and shapes each is as likely as any other, until paths 
     };
     for (int which = 0; which < 3; ++which) CHECK(third(which) > 0.2);
     auto at = [](size_t i) { return [i](const Aims::Aim& aim) { return aim.at == i; }; };
-    auto is_shape = [](const Aims::Aim& aim) { return aim.at >= 128; };
+    auto is_shape = [](const Aims::Aim& aim) { return aim.at >= 64; };
     CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
-    // Nothing is learned from nothing; else half of all are as before.
+    // Nothing is learned from nothing, or from what is too much; else half of all are as before.
     aims.prefer(std::vector<double>(aims.size()));
+    aims.prefer(std::vector<double>(aims.size(), std::numeric_limits<double>::infinity()));
     CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
     std::vector<double> worth(aims.size());
-    worth[7] = 3, worth[150] = 1;
+    worth[7] = 3, worth[80] = 1;
     aims.prefer(worth);
-    CHECK(std::abs(part_of_aims(aims, y, 10000, at(7)) - 0.378) < 0.03);
-    CHECK(std::abs(part_of_aims(aims, y, 10000, at(150)) - 0.127) < 0.03);
+    CHECK(std::abs(part_of_aims(aims, y, 10000, at(7)) - (0.375 + 0.375 / 64)) < 0.03);
+    CHECK(std::abs(part_of_aims(aims, y, 10000, at(80)) - (0.125 + 0.125 / 32)) < 0.03);
     CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
+}
+
+TEST_CASE("a small thing is not lost in a mesh of another material") {
+    for (const bool is_last : {false, true}) {
+        Scene s;
+        s.materials = {{}, {}};
+        if (!is_last) add_sphere(s, {0, 0, 9}, real(0.01), 1);
+        for (int k = 0; k < 9000; ++k)
+            add_triangle(s, {real(k), 0, 0}, {real(k) + real(0.1), 0, 0}, {real(k), real(0.1), 0},
+                         0);
+        if (is_last) add_sphere(s, {0, 0, 9}, real(0.01), 1);
+        const Aims aims(s);
+        CHECK(aims.size() == 64 + 33);
+        const double part = part_of_aims(aims, {0, 0, 19}, 20000, [&](const Aims::Aim& aim) {
+            return aim.at >= 64 && double(-aim.d.z) > 0.9999995;  // 0.01 at 10
+        });
+        CHECK(std::abs(part - 0.25 / 33) < 0.003);
+    }
+    // Many runs, each of its own, and 128 edges of them all.
+    Scene s;
+    s.materials = {{}, {}};
+    for (int k = 0; k < 300; ++k)
+        add_triangle(s, {real(k), 0, 0}, {real(k) + real(0.1), 0, 0}, {real(k), real(0.1), 0},
+                     uint32_t(k % 2));
+    CHECK(Aims(s).size() == 128 + 64);
 }
 
 TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps have none") {
@@ -132,10 +158,14 @@ TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps
     CHECK(std::abs(nearer_than(0x1p-2) - 14 / 19.0) < 0.03);
     CHECK(std::abs(nearer_than(0x1p-12) - 4 / 19.0) < 0.03);
     CHECK(nearer_than(0x1p-17) == 0);
-    // A mirror shows the edges again, also its own, to the eye alone; up to four do.
+    // A mirror shows them again, also its own, to the eye alone; up to four do, or panes of glass.
     add_quad(s, {0, 0, -5}, {1, 0, 0}, {0, 1, 0}, 2);
     CHECK(Aims(s).size() == 8 + 5);
-    CHECK(Aims(s).with_reflections().size() == 2 * 8 + 5);
+    CHECK(Aims(s).with_reflections().size() == 2 * (8 + 5));
     for (int i = 0; i < 9; ++i) add_quad(s, {0, 0, real(-6 - i)}, {1, 0, 0}, {0, 1, 0}, 2);
-    CHECK(Aims(s).with_reflections().size() == 5 * 44 + 23);
+    CHECK(Aims(s).with_reflections().size() == 5 * (44 + 23));
+    s.materials[2] = {Glass(real(1.5))};
+    CHECK(Aims(s).with_reflections().size() == 5 * (44 + 23));
+    s.materials[2] = {};
+    CHECK(Aims(s).with_reflections().size() == 44 + 23);
 }
