@@ -1,5 +1,5 @@
 # tests.mk  builds and runs the tests, and what checks them: mutants, fuzzers, other compilers, layers
-.PHONY: told test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core freestanding layers editors read programs-to-test
+.PHONY: told test test-all test-everywhere test-farm mutants soak fuzz oracle-campaign extremes core freestanding layers alone editors read programs-to-test
 
 RULES := Makefile tests/tests.mk
 TESTS := $(patsubst tests/%.cpp,%,$(wildcard tests/*/*_test.cpp))
@@ -116,6 +116,10 @@ read: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(filter-out src/web/%,$(wildcard src/
 
 layers:  ## check that every file includes only from layers below
 	@LAYERS='$(LAYERS)' LECTURE='$(LECTURE)' CORE='$(CORE)' MODULES='$(MODULES)' DOORS='$(DOORS)' NEEDS='$(NEEDS)' tests/layers
+
+alone: $(OBJECTS)/std.h.gch | packages  ## every test compiles alone, not only beside others (2 minutes)
+	@printf '%s\n' tests/*/*_test.cpp | xargs -P2 -I{} $(CXX) $(filter-out -M%,$(FLAGS)) $(TEST_OPTIMISE) -Itests \
+	    -include $(OBJECTS)/std.h -fsyntax-only {} && echo "every test compiles alone"
 
 # It asks clangd about one line: elsewhere it would try all that an editor asks.
 editors:  ## clangd, which editors ask, finds no error in a header of the lecture; ONLY='src/*/*.h tests/*/*.h': in these

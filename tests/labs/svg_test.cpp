@@ -123,6 +123,7 @@ TEST_CASE("axes go from one power of ten to another, with a tick at each") {
 }
 
 TEST_CASE("ticks are written as short as they can be read") {
+    CHECK(percent(0.00982) == "0.982 %");
     CHECK(svg::tick(1e-3) == "10⁻³");
     CHECK(svg::tick(1e12) == "10¹²");
     CHECK(svg::tick(0.01) == "0.01");

@@ -105,6 +105,22 @@ TEST_CASE("white walls do not hold a path for ever") {
     CHECK(splats <= 8 * 32);
 }
 
+TEST_CASE("sums over paths: of a group, of its squares in pixels, and of squares of whole paths") {
+    PictureSums sums(3);
+    sums.add(0, 5, 1), sums.add(0, 6, 2), sums.add(0, 5, 1), sums.add(1, 5, 4);
+    sums.end_path();
+    sums.add(0, 5, 3), sums.add(1, 5, 2);
+    sums.end_path();
+    auto is = [&](size_t group, double sum, double squares, double variance) {
+        const Brought of = sums.of(group, 100);
+        CHECK((of.sum == sum && of.squares == squares && of.variance == variance && of.came == 0));
+    };
+    is(0, 7, 2 * 2 * 3, 4 * 4 + 3 * 3);
+    is(1, 6, 2 * 4 * 2, 4 * 4 + 2 * 2);
+    is(2, 0, 0, 0);
+    CHECK(sums.of(0, 2).squares == 49 / 2.0);
+}
+
 TEST_CASE("the sums of groups are those of their lights, and of their squares those of pixels") {
     // A bare wall before the eye, a strong point light, a weak one, and one that is behind the
     // wall.
