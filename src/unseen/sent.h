@@ -15,6 +15,7 @@
 
 namespace penumbra {
 
+inline constexpr int most_bounces = 32;          // white walls would hold a path for ever
 inline constexpr size_t max_light_groups = 256;  // more lights share groups with neighbours
 
 inline size_t group_of(const Scene& s, size_t light) {
@@ -122,15 +123,14 @@ inline Emission emission(const Light& l, const Aims& aims, Draws& u) {
 }
 
 // A path from a light, from its emission.  Calls splat(pixel, radiance) where the eye sees it: the
-// mean radiance of the pixel, by this path.  Unbiased for what paths of up to 32 bounces from the
-// eye find behind a first surface that is no mirror or glass; white walls would hold a path for
-// ever.
+// mean radiance of the pixel, by this path.  Unbiased for what paths of up to most_bounces from the
+// eye find behind a first surface that is no mirror or glass.
 template <class Splat>
 void follow_light(const Scene& s, const Band& band, const Light& l, const Emission& emitted,
                   Draws& u, Splat splat) {
     Ray ray = emitted.ray;
     rgb flux = emitted.flux;
-    for (int k = 0; k < std::min(s.depth, 32) && max_of(flux) > 0; ++k) {
+    for (int k = 0; k < std::min(s.depth, most_bounces) && max_of(flux) > 0; ++k) {
         const auto hit = s.bvh.closest(ray);
         if (!hit) return;
         const Surface x = s.surface(ray, *hit);

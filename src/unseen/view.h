@@ -36,7 +36,7 @@ struct EyePath {
     double pdf_of_points = 0;  // density per pixel of samples of the light that the eye sees
 };
 
-// Path k of many, if it goes into the picture.
+// Path k of many, of up to 32 bounces, if it goes into the picture.
 inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const Technique& technique,
                                        const Aims& aims, uint64_t k) {
     static const Pattern pattern{SamplerKind::independent};
@@ -46,7 +46,9 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
     const auto to = aim ? pixel_through(s, band, aim->d) : std::nullopt;
     if (!to) return {};
     EyePath path{aim->at, to->pixel, double(aims.pdf(eye, aim->d)) * to->solid_angle};
-    auto visit = [&](const Segment& segment, const Step& here) {
+    const Sampler sampler(pattern, 0, k);
+    for (Segment segment{{eye, aim->d}, eye}; segment.k <= most_bounces;) {
+        const Step here = step(s, technique, segment, sampler);
         if (segment.k == 0 && max_of(here.Le) > 0) {
             path.seen = size_t(s.light_of[here.vertex.hit.id]);
             path.pdf_of_points =
@@ -55,8 +57,9 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
         visit_lights(s, segment, here, [&](size_t light, rgb L) {
             if (mean_of(L) > 0) path.brought.emplace_back(light, mean_of(L));
         });
-    };
-    Li(s, technique, {eye, aim->d}, Sampler(pattern, 0, k), visit);
+        if (here.end != End::no) break;
+        segment = here.next;
+    }
     return path.pdf > 0 ? std::optional(path) : std::nullopt;
 }
 
@@ -88,7 +91,7 @@ inline LightsInView lights_in_view(const Scene& s, const Band& band, const Techn
                                    const std::vector<uint32_t>& line_of_light = {}) {
     const size_t groups = std::min(s.lights.size(), max_light_groups);
     const size_t points = 1024 * groups / std::max<size_t>(1, s.lights.size()) + 1;
-    const uint64_t aimed = aims.size() > 0 ? paths / 2 : 0;
+    const uint64_t aimed = aims.size() > 0 && groups > 0 ? paths / 2 : 0;
     if (aimed > 0) learn(aims, s, band, technique, aimed);
 
     LightsInView view{std::vector<NearMisses>(groups), {}};

@@ -128,6 +128,20 @@ TEST_CASE("paths that aim and all others bring the same, where both may find it"
     }
 }
 
+TEST_CASE("white walls do not hold a path from the eye for ever") {
+    Scene s = room(nullptr, {Rough({1, 1, 1})});
+    for (Material& m : s.materials) m = {Rough({1, 1, 1})};
+    add_light(s, {{0, real(1.5), 0}, PointLight(), {1, 1, 1}});
+    s.depth = 3000;
+    prepare(s);
+    size_t most = 0;
+    for (uint64_t k = 0; k < 16; ++k)
+        if (const auto path = eye_path(s, {0, 4}, {}, Aims(s), k))
+            most = std::max(most, path->brought.size());
+    CHECK(most > 10);
+    CHECK(most <= 33);
+}
+
 TEST_CASE("a place for every radiance: three octaves each, and eight places in turns") {
     CHECK(place_of(1) == place_of(3.9));
     CHECK(place_of(1) == place_of(std::ldexp(1.0, 24)));
