@@ -109,9 +109,9 @@ public:
         }
         const Edge& edge = edges_[i];
         const vec3 r = edge.a - y, e = edge.e;
-        const vec3 d =
-            r + e * u.x +
-            away(edge, r) * (8 * length(e) * real(portable::pow(0.5, double(19 * (1 - u.y)))));
+        const vec3 d = r + e * u.x +
+                       away(edge, r) * (widest * length(e) *
+                                        real(portable::pow(0.5, double(octaves * (1 - u.y)))));
         return dot(d, d) > 0 ? std::optional(Aim{i, unit(d)}) : std::nullopt;
     }
     // Density per solid angle.
@@ -125,7 +125,7 @@ public:
             const auto& [shape, as_light] = targets_[i - edges_.size()];
             const vec3 to_centre = as_light.centre - y;
             const vec3 across = to_centre - d * dot(to_centre, d);
-            if (dot(across, across) > sqr(as_light.reach * real(1.001))) continue;
+            if (dot(across, across) > sqr(as_light.reach * real(1.001))) continue;  // rounding
             if (const auto hit = intersect(shape, ray, k, infinity))
                 sum += real(part_[i]) * pdf_light(as_light, y, surface(shape, ray, *hit));
         }
@@ -141,6 +141,9 @@ public:
     }
 
 private:
+    // Of h, in lengths of the edge: a gap of a millimetre is beside an edge of 60 m, too.
+    static constexpr int octaves = 19;
+    static constexpr real widest = 8, narrowest = widest / (1 << octaves);
     std::vector<Edge> edges_;
     std::vector<Target> targets_;
     std::vector<Shape> mirrors_;
@@ -181,9 +184,9 @@ private:
         const real t = nn / (dr * ee - de * er), x = t * (de * rr - dr * er) / nn;
         if (!(t > 0 && x >= 0 && x < 1)) return 0;
         const real width = std::sqrt(ee), h = t * std::abs(dn) / std::sqrt(nn);
-        if (!(h >= width / 65536 && h <= 8 * width)) return 0;
+        if (!(h >= narrowest * width && h <= widest * width)) return 0;
         const real cosine = std::abs(dot(d, cross(e, n))) / (width * std::sqrt(nn));
-        return sqr(t) / (cosine * width * h * (19 * std::numbers::ln2_v<real>));
+        return sqr(t) / (cosine * width * h * (octaves * std::numbers::ln2_v<real>));
     }
 };
 

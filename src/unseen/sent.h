@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include "film/near_misses.h"

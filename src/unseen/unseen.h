@@ -5,8 +5,6 @@
 // times as often: near misses reveal rare light before a sample meets it.
 #pragma once
 #include "film/loop.h"
-#include "path/halton.h"
-#include "path/pathtracer.h"
 #include "text/json.h"
 #include "text/words.h"
 #include "unseen/hidden.h"

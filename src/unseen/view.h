@@ -46,6 +46,7 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
     const auto to = aim ? pixel_through(s, band, aim->d) : std::nullopt;
     if (!to) return {};
     EyePath path{aim->at, to->pixel, double(aims.pdf(eye, aim->d)) * to->solid_angle};
+    if (!(path.pdf > 0)) return {};
     const Sampler sampler(pattern, 0, k);
     for (Segment segment{{eye, aim->d}, eye}; segment.k <= most_bounces;) {
         const Step here = step(s, technique, segment, sampler);
@@ -60,7 +61,7 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
         if (here.end != End::no) break;
         segment = here.next;
     }
-    return path.pdf > 0 ? std::optional(path) : std::nullopt;
+    return path;
 }
 
 // Paths that bring much tell where to aim.

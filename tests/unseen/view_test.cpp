@@ -60,7 +60,7 @@ TEST_CASE("a lamp that the eye sees through a gap covers part of a pixel") {
 }
 
 TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in a mirror") {
-    // Behind the hole a bright wall, lit by a point: radiance rho / pi I / d^2, 1 cm before it.
+    // Behind the hole a bright wall, lit by a point 25 cm before it: radiance rho / pi I / d^2.
     const real h = real(0.01);
     for (const bool in_mirror : {false, true}) {
         Scene s = wall_with_hole(h);
@@ -79,7 +79,6 @@ TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in a mir
         for (const Brought& of : lamp.from_eye) sum += of.sum, variance += of.variance;
         INFO(in_mirror);
         CHECK(sum > 5 * std::sqrt(variance));
-        // The middle of the hole sees the wall before the lamp, about 0.25 m from it.
         const double L = 0.5 / std::numbers::pi * 900 / 0.0625;
         const double far = in_mirror ? sqr(2.8 / 8.4) : 1;
         CHECK(std::abs(sum / (L * area * far) - 1) < 0.3);
