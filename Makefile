@@ -120,7 +120,7 @@ $(APPS:%=$(OBJECTS)/%.exe): $(OBJECTS)/commit.o
 
 # What --version names.  It is linked, so that no program is compiled again after a commit.
 $(OBJECTS)/commit.o: always
-	@mkdir -p $(@D); echo 'namespace penumbra { const char* commit() { return "$(or $(shell git describe --always --dirty 2>/dev/null),unknown commit)"; } }' >$@.new; \
+	@mkdir -p $(@D); echo 'namespace penumbra { const char* commit() { return "$(or $(shell git -C "$(or $(SOURCE),.)" describe --always --dirty 2>/dev/null),unknown commit)"; } }' >$@.new; \
 	    cmp -s $@.new $(@:.o=.cpp) || { mv $@.new $(@:.o=.cpp) && $(CXX) -c -o $@ $(@:.o=.cpp); }
 $(foreach cpp,$(RENDERERS),$(eval $(OBJECTS)/$(basename $(notdir $(cpp))).exe: $(patsubst src/%.cpp,$(OBJECTS)/%.o,$(cpp))))
 
