@@ -40,7 +40,7 @@ inline std::string in_words(const PixelSample& s, const char* pixel = "pixel ",
                             const char* sample = " sample ") {
     const std::string words =
         pixel + std::to_string(s.x) + "," + std::to_string(s.y) + sample + std::to_string(s.i);
-    return s.set > 0 ? words + "," + std::to_string(s.set) : words;
+    return s.replication > 0 ? words + "," + std::to_string(s.replication) : words;
 }
 
 // A NaN is an error and no black dot.

@@ -25,7 +25,7 @@ struct Tally {
     std::vector<NearMisses> near = {};  // sums for each group of lights of the film
 
     void add_bad(uint64_t count, const PixelSample& first) {
-        auto order = [](const PixelSample& a) { return std::tuple(a.i, a.set, a.y, a.x); };
+        auto order = [](const PixelSample& a) { return std::tuple(a.i, a.replication, a.y, a.x); };
         if (count > 0 && (bad == 0 || order(first) < order(first_bad))) first_bad = first;
         bad += count;
     }

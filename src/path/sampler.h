@@ -138,20 +138,21 @@ inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
 
 inline constexpr uint64_t max_samples = uint64_t(1) << 40;  // of each replication
 
-// Sample i of replication `set` of pixel (x, y).
+// Sample i of a replication of pixel (x, y).
 struct PixelSample {
     int x = 0, y = 0;
     uint64_t i = 0;
-    uint32_t set = 0;
+    uint32_t replication = 0;
 };
 
 // The numbers in [0,1) of one sample of one pixel.  They depend only on (seed, pixel, replication,
-// sample, dimension): any thread may draw any path at any time.  Each replication of a pixel, its
-// `set`, has a randomisation of its own.
+// sample, dimension): any thread may draw any path at any time.  Each replication of a pixel
+// has a randomisation of its own.
 class Sampler {
 public:
-    Sampler(const Pattern& p, uint64_t pixel, uint64_t sample, uint32_t set = 0)
-        : points_(points_of(p.kind, {sample, hash(hash(hash(0, p.seed), pixel), set), p.bases})) {}
+    Sampler(const Pattern& p, uint64_t pixel, uint64_t sample, uint32_t replication = 0)
+        : points_(points_of(p.kind,
+                            {sample, hash(hash(hash(0, p.seed), pixel), replication), p.bases})) {}
     Sampler(const Pattern&&, uint64_t, uint64_t, uint32_t = 0) = delete;  // it would be gone
 
     real get(uint32_t dim) const {

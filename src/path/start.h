@@ -21,7 +21,7 @@ inline real in_pixel(int x, real u) { return std::min(real(x) + u, real(x + 1) *
 
 Start start(const Scene&, const Pattern&&, const PixelSample&) = delete;
 inline Start start(const Scene& scene, const Pattern& pattern, const PixelSample& s) {
-    const Sampler sampler(pattern, pixel_number(scene, s), s.i, s.set);
+    const Sampler sampler(pattern, pixel_number(scene, s), s.i, s.replication);
     const vec2 u = sampler.get2(film_x);
     return {sampler, u,
             camera_ray(scene.camera, scene.size, in_pixel(s.x, u.x), in_pixel(s.y, u.y))};

@@ -24,7 +24,7 @@ inline void set_sample(std::optional<PixelSample>& replay, Text v) {
     if (!replay) replay.emplace();
     replay->i = parse_count(v.substr(0, comma), 0, max_samples);
     if (comma != v.npos)
-        replay->set = uint32_t(parse_count(v.substr(comma + 1), 0, max_replications));
+        replay->replication = uint32_t(parse_count(v.substr(comma + 1), 0, max_replications));
 }
 
 inline OptionTable replay_rows(std::optional<PixelSample>& replay) {
@@ -140,7 +140,7 @@ inline void replay(const NamedScene& scene, const Technique& technique, const Pa
     const PathLog log(scene, stdout);
     const Start at = start(scene, pattern, which);
     std::printf("pixel %d,%d, sample %llu of replication %u, seed %llu\n", which.x, which.y,
-                static_cast<unsigned long long>(which.i), which.set,
+                static_cast<unsigned long long>(which.i), which.replication,
                 static_cast<unsigned long long>(pattern.seed));
     log.film(at);
     if (view) return log.end("a view, not radiance", view(at));

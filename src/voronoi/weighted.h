@@ -23,13 +23,13 @@ inline SampleFunction weighted_mean(const Scene& scene, const Pattern& pattern, 
         std::vector<rgb> values;
         const uint64_t pixel = pixel_number(scene, s);
         for (s.i = 0; s.i < n; ++s.i) {
-            const vec2 u = Sampler(pattern, pixel, s.i, s.set).get2(film_x);  // as L draws it
+            const vec2 u = Sampler(pattern, pixel, s.i, s.replication).get2(film_x);
             places.push_back({double(u.x), double(u.y)});
             values.push_back(L(s, tally));
         }
         Weigher weigher;
         // No path draws this number.
-        const uint64_t strip = hash(hash(hash(0, pattern.seed), pixel), UINT64_MAX - s.set);
+        const uint64_t strip = hash(hash(hash(0, pattern.seed), pixel), UINT64_MAX - s.replication);
         const std::vector<double>& weights = weigher(kind, places, strip);
         troubles.redraws += weigher.redraws, troubles.fallbacks += weigher.fallbacks;
         Sum sum{};

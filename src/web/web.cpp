@@ -232,7 +232,7 @@ EXPORT(add) void add(size_t first, size_t step, double n) {
     const PixelSample& at = tally.first_bad;
     end_instance("a sample is not finite: --pixel " + std::to_string(at.x) + "," +
                  std::to_string(at.y) + " --sample " + std::to_string(at.i) + "," +
-                 std::to_string(at.set));
+                 std::to_string(at.replication));
 }
 
 // All blocks have n: workers have added them, the page has copied their sums here.

@@ -31,7 +31,7 @@ TEST_CASE("every option sets what it is named after") {
     CHECK(said(o.scene, o.spp, o.seconds, *o.depth) == "a.scene 7 2.5 3");
     CHECK(said(o.technique.roulette, o.seed, o.threads) == "0.5 18446744073709551615 5");
     CHECK(said(o.size->width, o.size->height, *o.exposure, o.stats) == "30 20 0.25 s.json");
-    CHECK(said(o.replay->x, o.replay->y, o.replay->i, o.replay->set) == "6 8 9 4");
+    CHECK(said(o.replay->x, o.replay->y, o.replay->i, o.replay->replication) == "6 8 9 4");
     CHECK(o.outputs == std::vector<std::string>{"a.pfm", "b.png"});
     CHECK(said(o.replications, o.error, o.quiet, o.help) == "3 0.025 yes no");
     CHECK(Parsed({"--help"}).o.help);
@@ -48,7 +48,7 @@ TEST_CASE("every option sets what it is named after") {
     CHECK(said(band.keep, band.rows->first, band.rows->last, band.rows->count(),
                band.replications) == "a.film 3 17 15 0");
     const Options first = parse("--pixel 6,8"), set = parse("--sample 9 --pixel 6,8");
-    CHECK(said(first.replay->i, set.replay->i, set.replay->set) == "0 9 0");
+    CHECK(said(first.replay->i, set.replay->i, set.replay->replication) == "0 9 0");
 }
 
 TEST_CASE("words of choices mean what they say") {

@@ -428,7 +428,8 @@ TEST_CASE("a sample that is not finite is an error that tells how to replay it")
     auto why = [](PixelSample bad, const Plan& plan) {
         return complaint<SystemError>([&] {
             render(quick(SamplerKind::independent, 0), plan, [&](const PixelSample& s, Tally&) {
-                const bool is = s.x == bad.x && s.y == bad.y && s.i >= bad.i && s.set == bad.set;
+                const bool is = s.x == bad.x && s.y == bad.y && s.i >= bad.i &&
+                                s.replication == bad.replication;
                 return rgb{1, is ? real(NAN) : 1, 1};
             });
         });

@@ -34,7 +34,7 @@ TEST_CASE("d^2 of an image, by hand") {
     // twice as much, blue has no noise.
     const Film film = filled({3, 1}, 3, 2, [](const PixelSample& s, Tally&) {
         constexpr real values[3][3] = {{1, 5, 3}, {2, 6, 1}, {7, 7, 7}};
-        return rgb{values[s.x][s.set], 2 * values[s.x][s.set], 1};
+        return rgb{values[s.x][s.replication], 2 * values[s.x][s.replication], 1};
     });
     const ImageError e = error_of(film);
     CHECK(e.pixels == 3);
@@ -178,7 +178,7 @@ TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, wei
                 const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1);
                 const SampleFunction L = [&](const PixelSample& s, Tally&) {
                     const uint64_t pixel = uint64_t(s.y * 12 + s.x);
-                    const Sampler sampler(pattern, pixel, s.i, s.set);
+                    const Sampler sampler(pattern, pixel, s.i, s.replication);
                     return heteroscedastic(s.x, s.y, sampler.get2(film_x));
                 };
                 const Film film = filled({12, 9}, K, n, L);

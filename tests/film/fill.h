@@ -41,7 +41,7 @@ inline SampleFunction random_radiance(uint64_t seed,
                                       std::function<rgb(const PixelSample&, vec2)> value) {
     return [=](const PixelSample& s, Tally&) {
         const uint64_t pixel = hash(uint64_t(s.y), uint64_t(s.x)),
-                       bits = hash(hash(hash(seed, pixel), s.set), s.i);
+                       bits = hash(hash(hash(seed, pixel), s.replication), s.i);
         return value(s, {to_unit(bits), to_unit(mix(bits))});
     };
 }

@@ -17,9 +17,9 @@ using Colour = std::array<float, 3>;
 // A value for every sample; the rounded sum depends on the order of addition.
 const SampleFunction numbered = [](const PixelSample& s, Tally& tally) {
     tally.rays += 1 + s.i;
-    const uint64_t bits = hash(hash(hash(uint64_t(s.y), uint64_t(s.x)), s.set), s.i);
+    const uint64_t bits = hash(hash(hash(uint64_t(s.y), uint64_t(s.x)), s.replication), s.i);
     const real v = std::ldexp(to_unit(bits), int(s.i * 37 % 60) - 30);
-    return rgb{v, real(s.i), real(s.set)};
+    return rgb{v, real(s.i), real(s.replication)};
 };
 
 // Pixels have the weights 1, 2, 4, 8, 16 in turn, after a pilot of one sample or without.
@@ -58,7 +58,7 @@ TEST_CASE("a pass takes each sample of each replication once, in order, of its o
         std::map<std::array<int, 3>, uint64_t> taken;  // y, x, replication
         uint64_t out_of_order = 0;
         const SampleFunction L = [&](const PixelSample& s, Tally&) {
-            out_of_order += s.i != taken[{s.y, s.x, int(s.set)}]++;
+            out_of_order += s.i != taken[{s.y, s.x, int(s.replication)}]++;
             return rgb{1, 1, 1};
         };
         for (uint64_t n : {2, 5}) fill(f, n, L);
@@ -163,7 +163,7 @@ TEST_CASE("samples that no file can hold are counted, and the first of them told
                                                    {{4, 2, 0, 0}, {infinity, 1, 1}},
                                                    {{5, 0, 1, 0}, {1, nan, 1}}};
     const SampleFunction L = [&](const PixelSample& s, Tally&) {
-        const auto found = bad.find({int(s.i), int(s.set), s.y, s.x});
+        const auto found = bad.find({int(s.i), int(s.replication), s.y, s.x});
         return found == bad.end() ? rgb{1, 1, 1} : found->second;
     };
     for (bool upwards : {false, true}) {
@@ -177,7 +177,7 @@ TEST_CASE("samples that no file can hold are counted, and the first of them told
             all.add_bad(of_block.bad, of_block.first_bad);
         }
         const PixelSample& first = all.first_bad;
-        CHECK(said(all.bad, first.i, first.set, first.y, first.x) == "5 4 1 1 2");
+        CHECK(said(all.bad, first.i, first.replication, first.y, first.x) == "5 4 1 1 2");
     }
     const real beyond = real(1e30) * real(1e10);  // finite, but beyond float
     for (real bad_number : {beyond, nan, -infinity})

@@ -373,7 +373,7 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
         if (s.x == 5 && s.i == 17 && interrupted == SIGTERM) throw Interrupted();
         const size_t k = size_t(s.y) % growths;
         NearMisses& near = tally.near.at(size_t(s.x) % 3);
-        near.sum[s.set][k][1] += fixed_point(tally.share / (1.0 + double(s.i)));
+        near.sum[s.replication][k][1] += fixed_point(tally.share / (1.0 + double(s.i)));
         near.from_light.came += s.i < 4 ? 1000 : 1;
         return noisy(s, tally);
     };

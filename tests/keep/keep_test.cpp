@@ -17,7 +17,7 @@ constexpr Size size = {37, 25};  // 925 pixels: blocks of 3, and one of 1
 
 // Noise at the left, smooth values at the right.
 rgb noise(const PixelSample& s) {
-    const uint64_t key = hash(hash(hash(s.set, s.i), uint64_t(s.x)), uint64_t(s.y));
+    const uint64_t key = hash(hash(hash(s.replication, s.i), uint64_t(s.x)), uint64_t(s.y));
     const real u = real(to_unit(key));
     return s.x < 9 ? rgb{u, 0, 5 * u} : rgb{1, real(s.y), u / 100};
 }
@@ -41,7 +41,7 @@ Film fill(Film film, uint64_t n, unsigned threads = 2, int64_t stop_after = INT6
         }
         ++tally.rays;
         for (NearMisses& g : tally.near)
-            g.sum[s.i % 2][s.set % growths][1] += (FixedPoint(1) << 70) + s.i;
+            g.sum[s.i % 2][s.replication % growths][1] += (FixedPoint(1) << 70) + s.i;
         return noise(s);
     };
     Plan plan;

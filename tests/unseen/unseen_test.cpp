@@ -207,7 +207,7 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
     // The other kind holds 1 / (K w) for each sample.
     const SampleFunction L = [&](const PixelSample& p, Tally& tally) {
         tally.near[0].sum[1][0][0] += fixed_point(tally.share);
-        return radiance(s, {}, pattern, p.x, p.y, p.i * 3 + p.set, recorder.visitor(tally));
+        return radiance(s, {}, pattern, p.x, p.y, p.i * 3 + p.replication, recorder.visitor(tally));
     };
     Plan plan{s.size};
     plan.replications = 3, plan.samples = 8, plan.noisy = recorder.noisy();

@@ -20,7 +20,7 @@ TEST_CASE("a weighted mean is the sum of w L for every set of a pixel, and const
             const Pattern pattern{SamplerKind::independent, 7};
             WeightTroubles troubles;
             auto place = [&](const PixelSample& s) {
-                return Sampler(pattern, uint64_t(4 * s.y + s.x), s.i, s.set).get2(film_x);
+                return Sampler(pattern, uint64_t(4 * s.y + s.x), s.i, s.replication).get2(film_x);
             };
             const SampleFunction L = [&](const PixelSample& s, Tally& tally) {
                 return ++tally.rays, rgb{1, place(s).x, real(s.i % 3)};
@@ -36,13 +36,13 @@ TEST_CASE("a weighted mean is the sum of w L for every set of a pixel, and const
                 CHECK(tally.rays == n);
                 std::vector<Site> places;
                 for (uint64_t i = 0; i < n; ++i) {
-                    const vec2 u = place({s.x, s.y, i, s.set});
+                    const vec2 u = place({s.x, s.y, i, s.replication});
                     places.push_back({double(u.x), double(u.y)});
                 }
                 Weigher weigher;
-                const auto& w = weigher(
-                    kind, places,
-                    hash(hash(hash(0, pattern.seed), uint64_t(4 * s.y + s.x)), UINT64_MAX - s.set));
+                const auto& w = weigher(kind, places,
+                                        hash(hash(hash(0, pattern.seed), uint64_t(4 * s.y + s.x)),
+                                             UINT64_MAX - s.replication));
                 expected_redraws += weigher.redraws, expected_fallbacks += weigher.fallbacks;
                 double second = 0, third = 0;
                 for (uint64_t i = 0; i < n; ++i)
@@ -66,7 +66,7 @@ TEST_CASE("the stated d^2 of weighted means is that from seed to seed, on any nu
             const Pattern pattern{SamplerKind::independent, hash(seed_here(), r)};
             WeightTroubles troubles;
             const SampleFunction sample = [&](const PixelSample& s, Tally&) {
-                const Sampler numbers(pattern, uint64_t(6 * s.y + s.x), s.i, s.set);
+                const Sampler numbers(pattern, uint64_t(6 * s.y + s.x), s.i, s.replication);
                 return heteroscedastic(s.x, s.y, numbers.get2(film_x));
             };
             const SampleFunction L = weighted_mean(scene, pattern, kind, 6, sample, troubles);

@@ -32,7 +32,7 @@ Stopped stop_of(SamplerKind kind, uint64_t seed, double asked) {
     const Pattern pattern = make_pattern(kind, seed, 1);
     const SampleFunction sample = [&](const PixelSample& s, Tally&) {
         const uint64_t pixel = uint64_t(s.y) * uint64_t(size.width) + uint64_t(s.x);
-        return L(s.x, s.y, Sampler(pattern, pixel, s.i, s.set).get2(0));
+        return L(s.x, s.y, Sampler(pattern, pixel, s.i, s.replication).get2(0));
     };
     Film film = filled(size, 0, pilot_samples, sample);
     while (!is_small_enough(error_of(film), asked))
