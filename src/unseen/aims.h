@@ -1,14 +1,10 @@
-// unseen/aims.h  1  directions that aim at gaps and at small things
+// unseen/aims.h  2  directions that aim at gaps and at small things
 #pragma once
-#include <algorithm>
-#include <numbers>
 #include <numeric>
-#include <optional>
 #include <vector>
 
-#include "base/portable.h"
 #include "base/rng.h"
-#include "world/scene.h"
+#include "unseen/aim.h"
 
 namespace penumbra {
 
@@ -32,104 +28,102 @@ struct Chosen {
     }
 };
 
-// Light comes in by gaps, and gaps lie beside edges.  An edge leads from a to a + e; the third
-// corner of its triangle is c.  A direction from y goes through
-//     a + x e + h w,    x uniform in [0,1), log h uniform from |e| / 65536 to 8 |e|,
-// w the normal of the plane of y and the edge, away from the triangle.  One direction of four aims
-// at a shape instead, which may be small and throw light, as if it were a lamp.  Shapes that shine
-// have their own samples, and do not count.
+// Aims of a scene, in views.  A view is a list of mirrors, in the order in which a ray meets them,
+// and aims at what they show; view 0 has no mirrors, and lights have it alone.
 class Aims {
-    struct Edge {
-        vec3 a, e, c;
-    };
-    struct Target {
-        Shape shape;
-        Light as_light;
-    };
+    using View = std::vector<size_t>;
 
 public:
-    // 128 edges, but no diagonals of quads, and 64 shapes; no more than half of them from one run
-    // of shapes of one material, for a mesh has thousands.
+    // 128 edges, but no diagonals of quads, 64 shapes and lamps, 128 mirrors; no more than half of
+    // the edges and shapes from one run of shapes of one material, for a mesh has thousands.
     explicit Aims(const Scene& s) {
-        Chosen<Edge> edges{128}, of_run{64};
-        Chosen<size_t> shapes{64}, shapes_of_run{32}, mirrors{4};
+        Chosen<EdgeAim> edges{128}, of_run{64};
+        Chosen<size_t> shapes{64}, shapes_of_run{32}, lamps{64};
+        Chosen<PlaneMirror> mirrors{128};
+        auto normal = [&](size_t i) { return unit(area_vector(s.shapes[i])); };
         auto halves = [&](size_t i, size_t j) {  // of a quad
             return j < s.shapes.size() && s.shapes[i].a == s.shapes[j].a &&
                    s.shapes[i].c == s.shapes[j].b && s.shapes[j].is_triangle();
         };
+        auto is_flat = [&](size_t i, size_t j) {
+            return halves(i, j) && length(normal(i) - normal(j)) < real(1e-4);
+        };
         for (size_t i = 0; i < s.shapes.size(); ++i) {
             if (i > 0 && s.material_of[i] != s.material_of[i - 1])
                 edges.take(of_run), shapes.take(shapes_of_run);
-            if (s.light_of[i] != no_light) continue;
-            shapes_of_run.add(i);
-            if (!s.shapes[i].is_triangle()) continue;
+            (s.light_of[i] != no_light ? lamps : shapes_of_run).add(i);
+            if (s.light_of[i] != no_light || !s.shapes[i].is_triangle()) continue;
             const auto& [a, b, c, r] = s.shapes[i];
-            const bool is_second = i > 0 && halves(i - 1, i);
-            of_run.add({b, c - b, a});
-            if (!halves(i, i + 1)) of_run.add({c, a - c, b});
-            if (!is_second) of_run.add({a, b - a, c});
-            if (!is_second && s.materials[s.material_of[i]].is_delta()) mirrors.add(i);
+            of_run.add({b, c, a});
+            if (!halves(i, i + 1)) of_run.add({c, a, b});
+            if (i == 0 || !halves(i - 1, i)) of_run.add({a, b, c});
+            if (s.materials[s.material_of[i]].is_delta() && (i == 0 || !is_flat(i - 1, i)))
+                mirrors.add({i, is_flat(i, i + 1) ? i + 1 : i, a, b, c, normal(i)});
         }
         edges.take(of_run), shapes.take(shapes_of_run);
-        edges_ = edges.items;
-        for (const size_t i : shapes.items) targets_.push_back(target(s.shapes[i]));
-        for (const size_t i : mirrors.items) mirrors_.push_back(s.shapes[i]);
+        for (const EdgeAim& edge : edges.items)  // one of two triangles counts once
+            if (std::ranges::find(edges_, edge) == edges_.end()) edges_.push_back(edge);
+        for (const size_t i : shapes.items) shapes_.push_back(ShapeAim(s.shapes[i]));
+        mirrors_ = mirrors.items;
+        if (!mirrors_.empty())
+            for (const size_t i : lamps.items) lamps_.push_back(ShapeAim(s.shapes[i]));
         share();
     }
-    // Also what an eye sees in up to four plane mirrors or panes of glass.
-    Aims with_reflections() const {
+    // The eye's: also 256 corners, and views in mirrors, and in 128 pairs of them.
+    Aims of_eye(const Scene& s) const {
         Aims all = *this;
-        for (const Shape& m : mirrors_) {
-            const vec3 n = unit(area_vector(m));
-            auto turn = [&](vec3 v) { return v - n * (2 * dot(n, v)); };
-            auto reflect = [&](vec3 p) { return m.a + turn(p - m.a); };
-            for (const auto& [a, e, c] : edges_)
-                all.edges_.push_back({reflect(a), turn(e), reflect(c)});
-            for (const auto& [s, as_light] : targets_)
-                all.targets_.push_back(target({reflect(s.a), reflect(s.b), reflect(s.c), s.r}));
+        all.corners_ = corners(s);
+        Chosen<View> pairs{128};
+        for (size_t i = 0; i < mirrors_.size(); ++i) {
+            all.views_.push_back({i});
+            for (size_t j = 0; j < mirrors_.size(); ++j)
+                if (mirrors_[i].shows(mirrors_[j], s.camera.eye)) pairs.add({i, j});
         }
+        all.views_.insert(all.views_.end(), pairs.items.begin(), pairs.items.end());
         all.share();
         return all;
     }
-    size_t size() const { return edges_.size() + targets_.size(); }
+    size_t size() const { return part_.size(); }
 
-    // A direction, and the number of the edge or shape that it aims at.
+    // A direction, and its number among the aims of all views.
     struct Aim {
         size_t at;
         vec3 d;
     };
     std::optional<Aim> sample(vec3 y, real u_which, vec2 u) const {
-        const size_t i = std::min(
+        const size_t at = std::min(
             size_t(std::ranges::upper_bound(upto_, double(u_which)) - upto_.begin()), size() - 1);
-        if (i >= edges_.size()) {
-            const auto& [shape, as_light] = targets_[i - edges_.size()];
-            const auto at = sample_light(as_light, y, u);
-            const bool is_met = at && intersect(shape, {y, at->wi}, shear(at->wi), infinity);
-            return is_met ? std::optional(Aim{i, at->wi}) : std::nullopt;  // not if edge-on
-        }
-        const Edge& edge = edges_[i];
-        const vec3 r = edge.a - y, e = edge.e;
-        const vec3 d = r + e * u.x +
-                       away(edge, r) * (widest * length(e) *
-                                        real(portable::pow(0.5, double(octaves * (1 - u.y)))));
-        return dot(d, d) > 0 ? std::optional(Aim{i, unit(d)}) : std::nullopt;
+        const View& view = views_[view_of(at)];
+        auto d = toward(at % of_view(), image(y, view), u);
+        for (size_t k = view.size(); d && k-- > 0;) d = mirrors_[view[k]].turn(*d);
+        return d ? std::optional(Aim{at, *d}) : std::nullopt;
     }
-    // Density per solid angle.
-    real pdf(vec3 y, vec3 d) const {
+    // Density per solid angle, of directions of a view.
+    real pdf(vec3 y, vec3 d, size_t view = 0) const {
+        y = image(y, views_[view]);
+        for (const size_t i : views_[view]) d = mirrors_[i].turn(d);
+        const double* part = part_.data() + view * of_view();
         real sum = 0;
-        for (size_t i = 0; i < edges_.size(); ++i)
-            sum += real(part_[i]) * pdf_beside(edges_[i], edges_[i].a - y, d);
-        const Ray ray{y, d};
-        const Shear k = shear(d);
-        for (size_t i = edges_.size(); i < size(); ++i) {
-            const auto& [shape, as_light] = targets_[i - edges_.size()];
-            const vec3 to_centre = as_light.centre - y;
-            const vec3 across = to_centre - d * dot(to_centre, d);
-            if (dot(across, across) > sqr(as_light.reach * real(1.001))) continue;  // rounding
-            if (const auto hit = intersect(shape, ray, k, infinity))
-                sum += real(part_[i]) * pdf_light(as_light, y, surface(shape, ray, *hit));
-        }
+        auto add = [&](const auto& aims) {
+            for (const auto& aim : aims) {
+                const real p = real(*part++);
+                if (p > 0) sum += p * aim.pdf(y, d);
+            }
+        };
+        add(edges_), add(shapes_), add(lamps_), add(corners_);
         return sum;
+    }
+    size_t view_of(size_t at) const { return at / of_view(); }
+    // The view of rays of this one that a shape reflects, if there is one.
+    std::optional<size_t> in_mirror(size_t view, size_t shape) const {
+        const auto is_of = [&](const PlaneMirror& m) {
+            return m.first <= shape && shape <= m.last;
+        };
+        const auto mirror = std::ranges::find_if(mirrors_, is_of);
+        View next = views_[view];
+        next.push_back(size_t(mirror - mirrors_.begin()));
+        const size_t at = size_t(std::ranges::find(views_, next) - views_.begin());
+        return at < views_.size() ? std::optional(at) : std::nullopt;
     }
     // From now on half of all directions aim where it is worth most; the others are as before, in
     // defence (Hesterberg 1995).
@@ -141,52 +135,71 @@ public:
     }
 
 private:
-    // Of h, in lengths of the edge: a gap of a millimetre is beside an edge of 60 m, too.
-    static constexpr int octaves = 19;
-    static constexpr real widest = 8, narrowest = widest / (1 << octaves);
-    std::vector<Edge> edges_;
-    std::vector<Target> targets_;
-    std::vector<Shape> mirrors_;
-    std::vector<double> part_, upto_;  // parts of all directions: edges, then shapes
+    std::vector<EdgeAim> edges_;
+    std::vector<ShapeAim> shapes_, lamps_;  // lamps in mirrors; others have samples of their own
+    std::vector<CornerAim> corners_;
+    std::vector<PlaneMirror> mirrors_;
+    std::vector<View> views_{{}};
+    std::vector<double> part_, upto_;  // parts of all directions: by views, edges, shapes ...
 
-    static Target target(const Shape& shape) {
-        const auto& [a, b, c, r] = shape;
-        Light light =
-            shape.is_triangle() ? Light(a, TriangleLight{b - a, c - a}) : Light(a, SphereLight{r});
-        light.twosided = true;
-        return {shape, light};
+    size_t of_view() const {
+        return edges_.size() + shapes_.size() + lamps_.size() + corners_.size();
     }
+    vec3 image(vec3 p, const View& view) const {
+        for (const size_t i : view) p = mirrors_[i].image(p);
+        return p;
+    }
+    std::optional<vec3> toward(size_t i, vec3 y, vec2 u) const {
+        if (i < edges_.size()) return edges_[i].toward(y, u);
+        i -= edges_.size();
+        if (i < shapes_.size()) return shapes_[i].toward(y, u);
+        i -= shapes_.size();
+        if (i < lamps_.size()) return lamps_[i].toward(y, u);
+        return corners_[i - lamps_.size()].toward(y, u);
+    }
+    // Of all directions from a light 3/4 aim at edges, the others at shapes; of those from the eye
+    // in view 0 1/2 at edges, 1/4 at corners; of those in mirrors 1/2 at edges, 1/3 at lamps.  Per
+    // 4 in view 0 there are 3 in single mirrors, and 3 in pairs.
     void share() {
-        const double of_targets = targets_.empty() ? 0 : edges_.empty() ? 1 : 0.25;
-        part_.assign(edges_.size(), (1 - of_targets) / double(edges_.size()));
-        part_.resize(size(), of_targets / double(targets_.size()));
+        const double singles = double(mirrors_.size());
+        const double pairs = double(views_.size()) - 1 - singles;
+        part_.clear();
+        for (const View& view : views_) {
+            const bool has_corners = view.empty() && !corners_.empty();
+            const double alike = view.empty() ? 0.5 : view.size() == 1 ? singles : pairs;
+            auto add = [&](size_t n, double part) {
+                part_.insert(part_.end(), n, part / alike / double(n));
+            };
+            add(edges_.size(), has_corners ? 2 : 3), add(shapes_.size(), 1);
+            add(lamps_.size(), view.empty() ? 0 : 2), add(corners_.size(), has_corners ? 1 : 0);
+        }
+        const double all = std::accumulate(part_.begin(), part_.end(), 0.0);
+        for (double& part : part_) part /= all;
         sum_up();
     }
     void sum_up() {
         upto_.resize(size());
         std::partial_sum(part_.begin(), part_.end(), upto_.begin());
     }
-    // w, unless y is on the line of the edge.
-    static vec3 away(const Edge& edge, vec3 r) {
-        const vec3 n = cross(edge.e, r);
-        if (!(dot(n, n) > 0)) return {};
-        return unit(n) * (dot(n, edge.c - edge.a) > 0 ? real(-1) : real(1));
+    // From the eye to where an edge passes through the plane of the eye and another edge.
+    static std::optional<vec3> to_plane_of(const EdgeAim& other, const EdgeAim& edge, vec3 eye) {
+        const vec3 n = cross(other.a - eye, other.b - eye), r = edge.a - eye, e = edge.b - edge.a;
+        const real x = -dot(n, r) / dot(n, e);
+        return x > 0 && x < 1 ? std::optional(r + e * x) : std::nullopt;
     }
-    // At t d = r + x e + h w: t^2 / cosine, 1 / |e| and 1 / (h log 2^19).  Most edges are told by
-    // the signs of h and t, which need no square root.
-    static real pdf_beside(const Edge& edge, vec3 r, vec3 d) {
-        const vec3 e = edge.e, n = cross(e, r), side = edge.c - edge.a;
-        const real dn = dot(d, n), nn = dot(n, n);  // n n is ee rr - er^2, too
-        if (!(dot(n, side) > 0 ? dn < 0 : dn > 0)) return 0;
-        const vec3 in_plane = d - n * (dn / nn);
-        const real ee = dot(e, e), er = dot(e, r), rr = dot(r, r);
-        const real de = dot(in_plane, e), dr = dot(in_plane, r);
-        const real t = nn / (dr * ee - de * er), x = t * (de * rr - dr * er) / nn;
-        if (!(t > 0 && x >= 0 && x < 1)) return 0;
-        const real width = std::sqrt(ee), h = t * std::abs(dn) / std::sqrt(nn);
-        if (!(h >= narrowest * width && h <= widest * width)) return 0;
-        const real cosine = std::abs(dot(d, cross(e, n))) / (width * std::sqrt(nn));
-        return sqr(t) / (cosine * width * h * (octaves * std::numbers::ln2_v<real>));
+    // Points of edges in view of the eye, where it sees others behind them.
+    std::vector<CornerAim> corners(const Scene& s) const {
+        const vec3 eye = s.camera.eye;
+        Chosen<CornerAim> chosen{256};
+        for (const EdgeAim& edge : edges_)
+            for (const EdgeAim& other : edges_) {
+                const auto near = to_plane_of(other, edge, eye);
+                const auto far = to_plane_of(edge, other, eye);
+                if (!near || !far || dot(*far, *near) < real(1.0001) * dot(*near, *near)) continue;
+                const auto hit = s.bvh.closest({eye, unit(*near)});
+                if (!hit || hit->t > real(0.999) * length(*near)) chosen.add({eye + *near});
+            }
+        return chosen.items;
     }
 };
 

@@ -1,4 +1,4 @@
-// unseen/sent.h  2  what lights bring to the picture, by paths that begin at them
+// unseen/sent.h  3  what lights bring to the picture, by paths that begin at them
 //
 // Paths from the eye may all miss a way of light that is easy to find from the lamp: over a small
 // bright surface, through a ball of glass or a gap.  Both kinds of paths estimate the same radiance
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "film/near_misses.h"
@@ -14,11 +15,22 @@
 
 namespace penumbra {
 
-inline constexpr int most_bounces = 32;          // white walls would hold a path for ever
-inline constexpr size_t max_light_groups = 256;  // more lights share groups with neighbours
+inline constexpr int most_bounces = 32;  // white walls would hold a path for ever
+inline constexpr size_t max_light_groups = 256;
 
-inline size_t group_of(const Scene& s, size_t light) {
-    return s.lights.size() <= max_light_groups ? light : light * max_light_groups / s.lights.size();
+// The group of each light.  Of more lights than groups the brighter half of the groups has one
+// each, for others that are met often must not speak for a small bright one; the rest share with
+// neighbours.
+inline std::vector<size_t> light_groups(const Scene& s) {
+    const size_t n = s.lights.size(), alone = n > max_light_groups ? max_light_groups / 2 : n;
+    std::vector<size_t> order(n), group(n);
+    std::iota(order.begin(), order.end(), 0);
+    if (alone < n)
+        std::ranges::stable_sort(order, std::greater(),
+                                 [&](size_t i) { return mean_of(s.lights[i].L); });
+    for (size_t k = 0; k < n; ++k)
+        group[order[k]] = k < alone ? k : alone + order[k] * (max_light_groups - alone) / n;
+    return group;
 }
 
 // Some rows of the picture, with the pixels 0, 1 ...
@@ -166,6 +178,7 @@ inline uint64_t aimed_paths(const Scene& s, const Band& band) {
 // alike and half by their strengths.  Half of the paths learn where to aim, the others count.
 inline PictureSums sent_by_lights(const Scene& s, const Band& band, Aims aims, uint64_t paths) {
     PictureSums sums(std::min(s.lights.size(), max_light_groups));
+    const std::vector<size_t> group_of = light_groups(s);
     double most = std::numeric_limits<double>::min(), all = 0;
     for (const Light& l : s.lights) most = std::max(most, strength(l));
     for (const Light& l : s.lights) all += strength(l, 1 / most);
@@ -189,7 +202,7 @@ inline PictureSums sent_by_lights(const Scene& s, const Band& band, Aims aims, u
         follow_light(s, band, s.lights[i], emitted, u, [&](size_t pixel, rgb L) {
             const double c = double(mean_of(L)) / p;
             sum += c;
-            if (!learns) sums.add(group_of(s, i), pixel, c);
+            if (!learns) sums.add(group_of[i], pixel, c);
         });
         sums.end_path();
         if (emitted.aim) worth[*emitted.aim] += square(sum * emitted.pdf);

@@ -1,4 +1,4 @@
-// unseen/unseen.h  4  estimates of light that no sample has met, from near misses of small lights
+// unseen/unseen.h  5  estimates of light that no sample has met, from near misses of small lights
 //
 // The variance of samples does not contain light that no sample has met.  A light of s^2
 // times its area and 1/s^2 its radiance sends about the same light, but BSDF samples meet it s^2
@@ -14,33 +14,19 @@ namespace penumbra {
 
 // ---- Hits and near misses -----------------------------------------------------------------------
 
-// Bit k is set if the ray would meet the light grown to 4^k times its area, from the bright side. A
-// sphere counts as a disc about its centre that faces the ray, a polygon as a rectangle of its area
-// along its longest edge.  This first grows in width, until it is a square: a thread is small in
-// one direction only.  Lamps stand recessed: the ray may end before the light by half the side of a
-// square of its area.
+// Bit k is set if the ray would meet the light grown to 4^k times its area, from the bright side: a
+// disc of its area about its centre, in its plane; that of a sphere faces the ray.
 inline uint32_t growths_met(const Light& light, const Ray& ray) {
     if (light.is_delta()) return 0;
     const vec3 to_centre = light.centre - ray.o;
     const bool is_ball = light.is_round();
     const real cosine = is_ball ? -1 : dot(light.n, ray.d);
     const real t = is_ball ? dot(to_centre, ray.d) : dot(light.n, to_centre) / cosine;
-    const real recess = is_ball ? light.reach : std::sqrt(1 / light.pdf_area) / 2;
-    if (!(t > 0 && t < ray.tmax + recess)) return 0;
+    if (!(t > 0 && t < ray.tmax)) return 0;
     if (!(cosine < 0 || (light.twosided && cosine > 0))) return 0;
-    const vec3 y = t * ray.d - to_centre;
-    const real far = length(to_centre) / light.reach;  // 1: the light is as large as its distance
-    real least = length(y) / light.reach, most = far;  // growths
-    if (!is_ball) {
-        const vec3 e = light.edge;
-        const real edge = length(e), slender = sqr(edge) * light.pdf_area;  // length over width
-        const real along = 2 * std::abs(dot(y, e)) / sqr(edge);
-        const real across = 2 * std::abs(dot(y, cross(light.n, e))) * light.pdf_area;
-        least = along <= 1 && across <= slender
-                    ? std::sqrt(across)
-                    : std::sqrt(slender) * std::max(along, across / slender);
-        most = std::sqrt(slender) * (far < 1 ? std::sqrt(far) : far);
-    }
+    const real r = is_ball ? light.reach : 1 / std::sqrt(pi * light.pdf_area);
+    // most: the disc is as large as its distance.
+    const real least = length(t * ray.d - to_centre) / r, most = length(to_centre) / r;
     uint32_t met = 0;
     for (size_t k = 0; k < growths; ++k)
         met |= uint32_t(real(1 << k) >= least && real(1 << k) < most) << k;
@@ -48,21 +34,19 @@ inline uint32_t growths_met(const Light& light, const Ray& ray) {
 }
 
 // Sums, along a path, what lights bring, and light that its rays met or nearly met:
-//     c = |beta L w|^2 / (3 L2 K^2)
+//     c = |beta L|^2 / (3 L2 K^2)
 // for every growth that makes a ray meet the light.  It counts rays after mirrors and glass, where
-// there is no light sampling, and after narrow lobes, where it has a low weight.
+// there is no light sampling.
 struct NearMissVisitor {
     const Scene& scene;
-    const Technique& technique;
     const std::vector<NearMisses>& groups;
+    const std::vector<size_t>& group_of;  // of each light
     Tally& tally;
-    bool is_specular = true, is_seen = false;  // is_seen: the first surface is no mirror or glass
+    bool is_seen = false;  // the first surface is no mirror or glass
 
     void operator()(const Segment& segment, const Step& here) {
-        constexpr real narrow = 10;  // 1/sr
-        is_specular = is_specular && std::isinf(segment.pdf);
         if (segment.k == 0) is_seen = here.met && !here.vertex.material->is_delta();
-        if (segment.k > 0 && segment.pdf > narrow && !groups.empty())
+        if (segment.k > 0 && std::isinf(segment.pdf) && !groups.empty())
             add_near_misses(segment, here);
         visit_lights(scene, segment, here, [&](size_t light, rgb L) { add_came(light, L); });
     }
@@ -72,10 +56,11 @@ private:
     void add_came(size_t light, rgb L) {
         const double mean = double(mean_of(L));
         if (groups.empty() || !(mean > 0)) return;
-        const size_t g = group_of(scene, light), k = place_of(mean);
+        const size_t g = group_of[light], k = place_of(mean);
         auto add = [&](const Brought& of, Brought& to) {
             if (of.sum > 0)
-                to.came += uint64_t(0x1p40 * std::min(0x1p20, mean * tally.share / of.sum));
+                to.came += uint64_t(0x1p40 * std::min(0x1p20, mean * tally.share / of.sum)),
+                    ++to.hits;
         };
         if (is_seen) add(groups[g].from_light, tally.near[g].from_light);
         add(groups[g].from_eye[k], tally.near[g].from_eye[k]);
@@ -85,7 +70,7 @@ private:
         const size_t n = scene.lights.size();
         const bool met_one = here.met && max_of(here.Le) > 0;
         const size_t met = met_one ? size_t(scene.light_of[here.vertex.hit.id]) : n;
-        if (met_one) add(segment, met, ~0u, double(here.weight));
+        if (met_one) add(segment, met, ~0u);
         Ray ray = segment.ray;
         ray.tmax = here.met ? here.vertex.hit.t : infinity;
         // Of many lights one represents all, drawn by bits of the ray.
@@ -93,30 +78,16 @@ private:
             n > max_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
         for (size_t l = drawn % n; l < (drawn < n ? drawn + 1 : n); ++l)
             if (const uint32_t near = growths_met(scene.lights[l], ray) & ~1u; near && l != met)
-                add(segment, l, near,
-                    weight_of(segment, l) * (drawn < n ? std::sqrt(double(n)) : 1));
+                add(segment, l, near, drawn < n ? double(n) : 1);
     }
-    // MIS weight of a light that is met in its centre.
-    double weight_of(const Segment& segment, size_t i) const {
-        const Light& light = scene.lights[i];
-        if (technique.light == LightMode::none || std::isinf(segment.pdf)) return 1;
-        if (technique.light == LightMode::nee) return 0;
-        const real pdf = scene.light_tree.pick_of(i, segment.from, segment.n) *
-                         pdf_light(light, segment.from, {light.centre, light.n, 0});
-        return double(power_heuristic(segment.pdf, pdf));
-    }
-    void add(const Segment& segment, size_t light, uint32_t near, double weight) {
-        const size_t g = group_of(scene, light);
-        const double w = weight * tally.share;
-        const double c = mean_square(segment.beta * scene.lights[light].L) / groups[g].L2 * w * w;
+    void add(const Segment& segment, size_t light, uint32_t near, double represented = 1) {
+        const size_t g = group_of[light];
+        const double c = mean_square(segment.beta * scene.lights[light].L) / groups[g].L2 *
+                         square(tally.share) * represented;
         if (!(c > 0)) return;
         const FixedPoint c1 = fixed_point(c), c2 = fixed_point(c * c);
-        const Way way = is_specular               ? Way::mirrors
-                        : std::isinf(segment.pdf) ? Way::by_mirror
-                                                  : Way::by_lobe;
-        auto& sums = tally.near[g].sum[size_t(way)];
         for (size_t k = 0; k < growths; ++k)
-            if (near >> k & 1) sums[k][0] += c1, sums[k][1] += c2;
+            if (near >> k & 1) tally.near[g].sum[k][0] += c1, tally.near[g].sum[k][1] += c2;
     }
 };
 
@@ -132,19 +103,18 @@ public:
         lights_.resize(groups.size());
         for (size_t g = 0; g < lights_.size(); ++g) {
             const NearMisses& group = groups[g];
-            const double v = weight * weight * group.L2, n = t * double(group.K);
-            lights_[g].line = double(group.line);
+            const double v = weight * weight * group.L2, n = t * group.K;
+            lights_[g].line = group.line;
             lights_[g].from_light.add(group.from_light, t, weight);
             for (size_t k = 0; k < group.from_eye.size(); ++k)
                 lights_[g].from_eye[k].add(group.from_eye[k], t, weight);
             lights_[g].met += group.area * n, lights_[g].variance += v * group.a / n;
-            for (size_t way = 0; way < ways; ++way)
-                for (size_t k = 0; k < growths; ++k) {
-                    const auto& [c, c2] = group.sum[way][k];
-                    NearSum& of = lights_[g].near[way][k];
-                    of.c += value_of(c), of.c2 += value_of(c2);
-                    of.variance += v * value_of(c) / (t * t);
-                }
+            for (size_t k = 0; k < growths; ++k) {
+                const auto& [c, c2] = group.sum[k];
+                NearSum& of = lights_[g].near[k];
+                of.c += value_of(c), of.c2 += value_of(c2);
+                of.variance += v * value_of(c) / (t * t);
+            }
         }
     }
 
@@ -152,8 +122,6 @@ public:
     // known.  `d2`: square of the estimated error; `norm`: |f|.
     std::string doubt(double d2, double norm, double pixels) const {
         if (is_pilot_) return "too few samples";
-        constexpr std::array words = {" in mirrors or glass", " by way of mirrors or glass",
-                                      " by way of gloss"};
         double unseen = 0, most = 0;  // variances, summed over pixels
         std::string why;
         auto consider = [&](double variance, const std::string& what) {
@@ -168,17 +136,17 @@ public:
             };
             consider(l.from_light.missing(),
                      "paths from the eye bring less than paths from " + name);
-            for (const Missing& of : l.from_eye)
+            for (const Missing& of : l.from_eye) {
                 consider(of.missing(), "paths from the eye that aim bring more of " + name);
-            if (l.met < 10) consider(l.variance, hit(", smaller than a pixel,", l.met));
-            for (size_t way = 0; way < ways; ++way) {
-                const auto& s = l.near[way];
-                double greatest = 0;
-                for (size_t k = 0; k < growths; ++k)
-                    if (s[k].count() >= 5)
-                        greatest = std::max(greatest, std::ldexp(s[k].variance, -2 * int(k)));
-                if (s[0].count() < 10) consider(greatest, hit(words.at(way), s[0].count()));
+                consider(of.by_chance(), hit(" by rare bright paths", of.hits));
             }
+            if (l.met < 10) consider(l.variance, hit(", smaller than a pixel,", l.met));
+            double greatest = 0;
+            for (size_t k = 0; k < growths; ++k)
+                if (l.near[k].count() >= 5)
+                    greatest = std::max(greatest, std::ldexp(l.near[k].variance, -2 * int(k)));
+            if (l.near[0].count() < 10)
+                consider(greatest, hit(" by way of mirrors or glass", l.near[0].count()));
         }
         // What is missing is missing from the truth F, too: (d^2 + u) / (F^2 + u) > 4 d^2 / F^2?
         const double F2 = std::max(0.0, norm * norm - d2);
@@ -193,12 +161,13 @@ private:
         double count() const { return c > 0 ? c * c / c2 : 0; }  // (Kish 1965)
     };
     struct Missing {
-        double sum = 0, squares = 0, variance = 0, came = 0;
+        double sum = 0, squares = 0, variance = 0, came = 0, hits = 0;
 
         void add(const Brought& of, double t, double weight) {
             sum += weight * of.sum, squares += weight * of.squares;
             variance += weight * of.variance;
             came += weight * of.sum * std::ldexp(double(of.came), -40) / t;
+            hits += double(of.hits);
         }
         // Sum over pixels of squares, if less came by more than three standard errors.  Of few
         // paths the squares are mostly too low: chosen by the aimed scenes of calibration.
@@ -206,12 +175,16 @@ private:
             return sum - came > 3 * std::sqrt(variance) ? 2 * square((sum - came) / sum) * squares
                                                         : 0;
         }
+        // Variance of so few hits, which may come to both halves alike.
+        double by_chance() const {
+            return sum > 3 * std::sqrt(variance) && hits < 10 ? squares / std::max(1.0, hits) : 0;
+        }
     };
     struct OneLight {
         double line = 0, variance = 0, met = 0;  // met: expected camera rays
         Missing from_light;
         std::array<Missing, brightnesses> from_eye;
-        std::array<std::array<NearSum, growths>, ways> near;
+        std::array<NearSum, growths> near;
     };
     std::vector<OneLight> lights_;
     bool is_pilot_ = false;
@@ -222,12 +195,11 @@ class LightRecorder {
 public:
     LightRecorder(const Scene& scene, const Technique& t, int first_row, int rows,
                   const std::vector<uint32_t>& line_of_light = {})
-        : scene_(scene), technique_(t) {
+        : scene_(scene), group_of_(light_groups(scene)) {
         const Band band{first_row, rows};
         const uint64_t paths = aimed_paths(scene, band);
         const Aims aims(scene);
-        view_ =
-            lights_in_view(scene, band, technique_, aims.with_reflections(), paths, line_of_light);
+        view_ = lights_in_view(scene, band, t, aims.of_eye(scene), paths, line_of_light);
         const PictureSums sent = sent_by_lights(scene, band, aims, paths);
         for (size_t g = 0; g < view_.groups.size(); ++g)
             view_.groups[g].from_light = sent.of(g, double(rows) * scene.size.width);
@@ -237,7 +209,7 @@ public:
     // sample of a replication of weight 1.
     std::vector<NearMisses> near_misses(double K) const {
         std::vector<NearMisses> near = view_.groups;
-        for (NearMisses& g : near) g.K = float(K);
+        for (NearMisses& g : near) g.K = K;
         return near;
     }
     const std::vector<size_t>& noisy() const { return view_.noisy; }
@@ -246,13 +218,11 @@ public:
         unseen.add(film.near, double(film.min_taken()));
         return unseen.doubt(error.d2(), error.norm(), error.pixels);
     }
-    NearMissVisitor visitor(Tally& tally) const {
-        return {scene_, technique_, view_.groups, tally};
-    }
+    NearMissVisitor visitor(Tally& tally) const { return {scene_, view_.groups, group_of_, tally}; }
 
 private:
     const Scene& scene_;
-    const Technique technique_;
+    const std::vector<size_t> group_of_;
     LightsInView view_;
 };
 

@@ -1,4 +1,4 @@
-// unseen/view.h  3  what lights bring to the picture, by paths from the eye that aim
+// unseen/view.h  4  what lights bring to the picture, by paths from the eye that aim
 #pragma once
 #include "path/halton.h"
 #include "path/pathtracer.h"
@@ -30,13 +30,21 @@ inline size_t place_of(double L) {
 // pixel: mean channels of what lights bring, and the light that the eye sees.
 struct EyePath {
     size_t aim, pixel;
-    double pdf;
+    double pdf = 0;
     std::vector<std::pair<size_t, double>> brought = {};
     std::optional<size_t> seen = {};
     double pdf_of_points = 0;  // density per pixel of samples of the light that the eye sees
 };
 
-// Path k of many, of up to 32 bounces, if it goes into the picture.
+// The view of the next ray: that of a mirror, or the same behind glass; nothing at other surfaces.
+inline std::optional<size_t> next_view(const Aims& aims, size_t view, const Step& here) {
+    if (here.end != End::no || !here.vertex.material->is_delta()) return {};
+    return here.scattered.wi.z < 0 ? view : aims.in_mirror(view, here.vertex.hit.id);
+}
+
+// Path k of many, of up to 32 bounces, if it goes into the picture, and its first surface that is
+// no mirror or glass is in the view at which it aims.  (Each path is in one view: together they are
+// all paths.)
 inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const Technique& technique,
                                        const Aims& aims, uint64_t k) {
     static const Pattern pattern{SamplerKind::independent};
@@ -45,11 +53,16 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
         aims.sample(eye, radical_inverse(3, k), {radical_inverse(5, k), radical_inverse(2, k)});
     const auto to = aim ? pixel_through(s, band, aim->d) : std::nullopt;
     if (!to) return {};
-    EyePath path{aim->at, to->pixel, double(aims.pdf(eye, aim->d)) * to->solid_angle};
-    if (!(path.pdf > 0)) return {};
+    EyePath path{aim->at, to->pixel};
     const Sampler sampler(pattern, 0, k);
+    std::optional<size_t> view = 0;
     for (Segment segment{{eye, aim->d}, eye}; segment.k <= most_bounces;) {
         const Step here = step(s, technique, segment, sampler);
+        if (view) {
+            const auto next = next_view(aims, *view, here);
+            if (!next && *view != aims.view_of(aim->at)) return {};
+            view = next;
+        }
         if (segment.k == 0 && max_of(here.Le) > 0) {
             path.seen = size_t(s.light_of[here.vertex.hit.id]);
             path.pdf_of_points =
@@ -61,7 +74,8 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
         if (here.end != End::no) break;
         segment = here.next;
     }
-    return path;
+    path.pdf = double(aims.pdf(eye, aim->d, aims.view_of(aim->at))) * to->solid_angle;
+    return path.pdf > 0 ? std::optional(path) : std::nullopt;
 }
 
 // Paths that bring much tell where to aim.
@@ -84,48 +98,56 @@ struct LightsInView {
     std::vector<size_t> noisy;  // pixels of groups that cover less than 16
 };
 
-// Samples 1024 points of each group, and follows paths from the eye: parts of pixels that lights
-// cover, and what else they bring.  Half of the paths learn where to aim, the others count.  Lines
-// are those of the scene's file, or none.
-inline LightsInView lights_in_view(const Scene& s, const Band& band, const Technique& technique,
-                                   Aims aims, uint64_t paths,
-                                   const std::vector<uint32_t>& line_of_light = {}) {
-    const size_t groups = std::min(s.lights.size(), max_light_groups);
-    const size_t points = 1024 * groups / std::max<size_t>(1, s.lights.size()) + 1;
-    const uint64_t aimed = aims.size() > 0 && groups > 0 ? paths / 2 : 0;
-    if (aimed > 0) learn(aims, s, band, technique, aimed);
-
-    LightsInView view{std::vector<NearMisses>(groups), {}};
-    std::vector<std::map<size_t, double>> parts(groups);
-    // A sample of either kind counts as one of both together.
-    auto add = [&](size_t light, size_t pixel, double pdf_of_points, double pdf) {
-        parts[group_of(s, light)][pixel] +=
-            1 / (pdf_of_points * double(points) + pdf * double(aimed));
-    };
-    for (size_t i = 0; i < s.lights.size(); ++i) {
-        NearMisses& g = view.groups[group_of(s, i)];
-        if (g.line == 0 && i < line_of_light.size()) g.line = float(line_of_light[i]);
-        if (s.lights[i].is_delta()) continue;
-        g.L2 = std::max(g.L2, mean_square(s.lights[i].L));
-        for (size_t k = 0; k < points; ++k) {
-            const vec2 u{(real(k) + real(0.5)) / real(points), radical_inverse(2, k)};
-            const vec3 eye = s.camera.eye;
+// Calls add(light, pixel, pdf of the point, pdf of aims), densities per pixel, for n points of each
+// light that the eye sees.
+template <class Add>
+void visit_points(const Scene& s, const Band& band, const Aims& aims, size_t n, Add add) {
+    const vec3 eye = s.camera.eye;
+    for (size_t i = 0; i < s.lights.size(); ++i)
+        for (size_t k = 0; k < n && !s.lights[i].is_delta(); ++k) {
+            const vec2 u{(real(k) + real(0.5)) / real(n), radical_inverse(2, k)};
             const auto at = sample_light(s.lights[i], eye, u);
             const auto to = at ? pixel_through(s, band, at->wi) : std::nullopt;
             if (to && !s.bvh.occluded(spawn_to({eye, {}, 0}, at->at)))
                 add(i, to->pixel, double(at->pdf) * to->solid_angle,
                     double(aims.pdf(eye, at->wi)) * to->solid_angle);
         }
-    }
+}
+
+// Samples 1024 points of each group, and follows paths from the eye: parts of pixels that lights
+// cover, and what else they bring.  Half of the paths learn where to aim, the others count.  Lines
+// are those of the scene's file, or none.
+inline LightsInView lights_in_view(const Scene& s, const Band& band, const Technique& technique,
+                                   Aims aims, uint64_t paths,
+                                   const std::vector<uint32_t>& line_of_light = {}) {
+    const std::vector<size_t> group_of = light_groups(s);
+    const size_t groups = std::min(s.lights.size(), max_light_groups);
+    const size_t points = 1024 * groups / std::max<size_t>(1, s.lights.size()) + 1;
+    const uint64_t aimed = aims.size() > 0 && groups > 0 ? paths / 2 : 0;
+    if (aimed > 0) learn(aims, s, band, technique, aimed);
+
+    std::vector<std::map<size_t, double>> parts(groups);
+    // A sample of either kind counts as one of both together.
+    auto add = [&](size_t light, size_t pixel, double pdf_of_points, double pdf) {
+        parts[group_of[light]][pixel] += 1 / (pdf_of_points * double(points) + pdf * double(aimed));
+    };
+    visit_points(s, band, aims, points, add);
     PictureSums sums(groups * brightnesses);
     for (uint64_t k = aimed; k < 2 * aimed; ++k)
         if (const auto path = eye_path(s, band, technique, aims, k)) {
             if (path->seen) add(*path->seen, path->pixel, path->pdf_of_points, path->pdf);
             for (const auto& [light, L] : path->brought)
-                sums.add(group_of(s, light) * brightnesses + place_of(L), path->pixel,
+                sums.add(group_of[light] * brightnesses + place_of(L), path->pixel,
                          L / (path->pdf * double(aimed)));
             sums.end_path();
         }
+
+    LightsInView view{std::vector<NearMisses>(groups), {}};
+    for (size_t i = 0; i < s.lights.size(); ++i) {
+        NearMisses& group = view.groups[group_of[i]];
+        if (group.line == 0 && i < line_of_light.size()) group.line = line_of_light[i];
+        if (!s.lights[i].is_delta()) group.L2 = std::max(group.L2, mean_square(s.lights[i].L));
+    }
     for (size_t g = 0; g < groups; ++g) {
         NearMisses& group = view.groups[g];
         for (size_t k = 0; k < brightnesses; ++k)

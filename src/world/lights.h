@@ -25,7 +25,6 @@ struct Emitter {
     vec3 centre = {};  // of a sphere about it, of radius reach
     real reach = 0;
     vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
-    vec3 edge = {};     // its longest edge
     real pdf_area = 0;  // of a polygon: density of uniform points, 1 / its area
     bool twosided = false;
 
@@ -117,11 +116,9 @@ struct PolygonLight {
     vec3 e, f;
 
     void place(Emitter& l) const {
-        const vec3 third = is_quad ? vec3{} : e - f, to_centre = (e + f) / real(is_quad ? 2 : 3);
+        const vec3 to_centre = (e + f) / real(is_quad ? 2 : 3);
         l.n = unit(cross(e, f));
         l.pdf_area = is_quad ? pdf_quad_area(e, f) : pdf_triangle_area(e, f);
-        l.edge = length(e) >= length(f) ? e : f;
-        if (length(third) > length(l.edge)) l.edge = third;
         l.centre = l.p + to_centre;
         l.reach = is_quad
                       ? std::max(length(e + f), length(e - f)) / 2

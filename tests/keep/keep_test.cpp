@@ -41,7 +41,7 @@ Film fill(Film film, uint64_t n, unsigned threads = 2, int64_t stop_after = INT6
         }
         ++tally.rays;
         for (NearMisses& g : tally.near)
-            g.sum[s.i % 2][s.replication % growths][1] += (FixedPoint(1) << 70) + s.i;
+            g.sum[s.i % growths][s.replication % 2] += (FixedPoint(1) << 70) + s.i;
         return noise(s);
     };
     Plan plan;

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "oracle/expect.h"
-#include "world/scene.h"
+#include "world/prepare.h"
 
 using namespace penumbra;
 
@@ -35,7 +35,7 @@ TEST_CASE("directions that aim come with their density") {
         if (kind == 3)  // many edges and shapes, of which it takes some
             for (int k = 0; k < 100; ++k)
                 add_triangle(s, {real(k), 5, 0}, {real(k), 6, 0}, {real(k), 5, 1}, 0);
-        Aims aims = Aims(s).with_reflections();
+        Aims aims(s);
         std::vector<double> worth(aims.size());
         for (size_t i = 0; i < worth.size(); ++i) worth[i] = double(i % 3);
         for (const bool is_learned : {false, true}) {
@@ -158,14 +158,154 @@ TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps
     CHECK(std::abs(nearer_than(0x1p-2) - 14 / 19.0) < 0.03);
     CHECK(std::abs(nearer_than(0x1p-12) - 4 / 19.0) < 0.03);
     CHECK(nearer_than(0x1p-17) == 0);
-    // A mirror shows them again, also its own, to the eye alone; up to four do, or panes of glass.
-    add_quad(s, {0, 0, -5}, {1, 0, 0}, {0, 1, 0}, 2);
-    CHECK(Aims(s).size() == 8 + 5);
-    CHECK(Aims(s).with_reflections().size() == 2 * (8 + 5));
-    for (int i = 0; i < 9; ++i) add_quad(s, {0, 0, real(-6 - i)}, {1, 0, 0}, {0, 1, 0}, 2);
-    CHECK(Aims(s).with_reflections().size() == 5 * (44 + 23));
+    // An edge of two triangles counts once, whichever way it leads.
+    add_quad(s, {3, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+    CHECK(Aims(s).size() == 7 + 5);
+}
+
+TEST_CASE("an eye has views in mirrors and panes, and in pairs of which one can show the other") {
+    Scene s;
+    s.materials = {{}, {}, {Mirror({1, 1, 1})}};
+    s.materials[1].Le = {1, 1, 1};
+    s.camera = look_at({0, 0, 1}, {0, 0, 0}, 40);
+    add_sphere(s, {5, 0, 0}, 1, 1);
+    for (int i = 0; i < 10; ++i) add_quad(s, {0, 0, real(-i)}, {1, 0, 0}, {0, 1, 0}, 2);
+    auto views = [&] {
+        prepare(s);
+        const Aims aims = Aims(s).of_eye(s);
+        return aims.view_of(aims.size() - 1) + 1;
+    };
+    CHECK(views() == 1 + 10 + 45);  // each shows those before it
     s.materials[2] = {Glass(real(1.5))};
-    CHECK(Aims(s).with_reflections().size() == 5 * (44 + 23));
+    CHECK(views() == 1 + 10 + 45);
+    // Whichever half of a quad reflects; not from a shape that is none, or in more than two.
+    const Aims aims = Aims(s).of_eye(s);
+    for (const size_t shape : {size_t(3), size_t(4)}) {
+        const auto view = aims.in_mirror(0, shape);
+        REQUIRE(view);
+        CHECK(*view == 2);
+        CHECK(!aims.in_mirror(*view, shape));
+        CHECK(!aims.in_mirror(*view, 5));
+        const auto both = aims.in_mirror(*view, 1);
+        REQUIRE(both);
+        CHECK(*both > 10);
+        CHECK(!aims.in_mirror(*both, 3));
+    }
+    CHECK(!aims.in_mirror(0, 0));
     s.materials[2] = {};
-    CHECK(Aims(s).with_reflections().size() == 44 + 23);
+    CHECK(views() == 1);
+    // Quads that are bent have two planes.
+    s.materials[2] = {Mirror({1, 1, 1})};
+    s.shapes.resize(3), s.material_of.resize(3), s.light_of.resize(3);
+    CHECK(views() == 1 + 1);
+    s.shapes[2].c.z += real(0.01);  // a valley: each half shows the other
+    CHECK(views() == 1 + 2 + 2);
+    s.shapes[2].c.z -= real(0.02);  // a ridge
+    CHECK(views() == 1 + 2);
+}
+
+TEST_CASE("directions of each view come with their density, and a mirror shows what is before it") {
+    Scene s;
+    s.materials = {{}, {}, {Mirror({1, 1, 1})}};
+    s.materials[1].Le = {1, 1, 1};
+    s.camera = look_at({real(0.5), real(0.4), real(0.4)}, {1, 0, 0}, 40);
+    add_sphere(s, {real(1.5), 1, 1}, real(0.3), 1);
+    add_sphere(s, {1, real(0.5), 1}, real(0.2), 0);
+    add_quad(s, {2, 0, 0}, {0, real(0.7), 0}, {0, real(0.1), 1}, 2);
+    add_quad(s, {0, 0, 0}, {1, 0, real(0.1)}, {0, 1, 0}, 2);
+    prepare(s);
+    Aims aims = Aims(s).of_eye(s);
+    const size_t all = aims.size(), views = aims.view_of(all - 1) + 1;
+    REQUIRE(views == 5);
+    std::vector<double> worth(all);
+    for (size_t i = 0; i < all; ++i) worth[i] = double(i % 3);
+    const vec3 y = s.camera.eye;
+    oracle::Random random(seed_here());
+    auto u2 = [&] {
+        const real x = real(random());
+        return vec2{x, real(random())};
+    };
+    const double q = 1 / (4 * std::numbers::pi);
+    for (const bool is_learned : {false, true}) {
+        if (is_learned) aims.prefer(worth);
+        for (size_t view = 0; view < views; ++view) {
+            auto first = [&] {
+                const real u = real(random());
+                const auto aim = aims.sample(y, u, u2());
+                const bool is_of_view = aim && aims.view_of(aim->at) == view;
+                return is_of_view ? q / (q + double(aims.pdf(y, aim->d, view))) : 0;
+            };
+            auto second = [&] {
+                const double p = double(aims.pdf(y, sample_uniform_sphere(u2()), view));
+                return p / (p + q);
+            };
+            INFO(view);
+            EXPECT(oracle::expect_equal(first, second, 200000), 0.1);
+        }
+    }
+    // The lamp, from the eye's images: nearly a third of the directions of a view meet it.
+    auto reflect = [&](vec3 p, size_t shape) {
+        const vec3 n = unit(area_vector(s.shapes[shape]));
+        return p - n * (2 * dot(n, p - s.shapes[shape].a));
+    };
+    const Aims untaught = Aims(s).of_eye(s);
+    auto turn = [&](vec3 d, size_t shape) { return reflect(d, shape) - reflect({}, shape); };
+    const size_t both = *untaught.in_mirror(*untaught.in_mirror(0, 2), 4);
+    const vec3 image = reflect(reflect(y, 2), 4);
+    int of_view = 0, at_lamp = 0;
+    part_of_aims(untaught, y, 40000, [&](const Aims::Aim& aim) {
+        const vec3 d = turn(turn(aim.d, 2), 4), to = vec3{real(1.5), 1, 1} - image;
+        of_view += untaught.view_of(aim.at) == both;
+        at_lamp += untaught.view_of(aim.at) == both && length(cross(to, d)) < real(0.3);
+        return true;
+    });
+    CHECK(of_view > 2000);
+    CHECK(at_lamp > 0.3 * of_view);
+    CHECK(at_lamp < 0.5 * of_view);
+}
+
+TEST_CASE("about a corner all octaves of the tangent are alike, and come with their density") {
+    const CornerAim corner{{1, 2, 3}};
+    const vec3 y{real(0.5), 0, 1}, to = unit(corner.p - y), across = frame(to).to_world({1, 0, 0});
+    for (const double u : {0.01, 0.3, 0.55, 0.99}) {
+        const vec3 d = *corner.toward(y, {real(0.2), real(u)});
+        const double h = double(length(cross(to, d)) / dot(to, d));
+        CHECK(h == doctest::Approx(std::pow(0.5, 19 * (1 - u))).epsilon(u < 0.1 ? 0.1 : 1e-3));
+    }
+    // The density over a ring of two octaves, by the midpoint rule in log h.
+    for (const double from : {-16.0, -6.0, -2.0}) {
+        double sum = 0;
+        for (int k = 0; k < 1000; ++k) {
+            const double h = std::pow(2, from + (k + 0.5) * 2 / 1000), angle = std::atan(h);
+            const double step = h / (1 + h * h) * 2 / 1000 * std::numbers::ln2;
+            sum += double(corner.pdf(y, unit(to + real(h) * across))) * 2 * std::numbers::pi *
+                   std::sin(angle) * step;
+        }
+        CHECK(sum == doctest::Approx(2 / 19.0).epsilon(sizeof(real) == 4 ? 0.01 : 1e-4));
+    }
+    CHECK(corner.pdf(y, -to) == 0);
+    CHECK(corner.pdf(y, unit(to + real(1.1) * across)) == 0);
+}
+
+TEST_CASE("an eye aims at corners of gaps: where it sees edges cross, and nothing before them") {
+    // A slit of 1 mm, and behind it one across; the eye sees a square of 1 mm.
+    auto part = [](bool is_hidden) {
+        Scene s;
+        s.materials = {{}};
+        s.camera = look_at({0, 0, 5}, {}, 40);
+        const real h = real(0.001);
+        add_quad(s, {h, -20, 0}, {30, 0, 0}, {0, 40, 0}, 0);
+        add_quad(s, {-30, -20, 0}, {30, 0, 0}, {0, 40, 0}, 0);
+        add_quad(s, {-30, h, real(-0.01)}, {60, 0, 0}, {0, 10, 0}, 0);
+        add_quad(s, {-30, -10, real(-0.01)}, {60, 0, 0}, {0, 10, 0}, 0);
+        if (is_hidden) add_quad(s, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 0);
+        prepare(s);
+        const Aims aims = Aims(s).of_eye(s);
+        return part_of_aims(aims, s.camera.eye, 40000, [&](const Aims::Aim& aim) {
+            const vec3 p = s.camera.eye - aim.d * (5 / aim.d.z);
+            return aim.d.z < 0 && p.x > 0 && p.x < h && p.y > 0 && p.y < h;
+        });
+    };
+    CHECK(part(false) > 0.003);
+    CHECK(part(true) < 0.0003);
 }

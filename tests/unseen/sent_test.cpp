@@ -12,13 +12,14 @@ namespace {
 
 // Sums over pixels of what one path from the eye, and one from light 0, bring.
 double came(const Scene& s, const Pattern& pattern, uint64_t i) {
+    const std::vector<size_t> group_of = light_groups(s);
     std::vector<NearMisses> groups(s.lights.size());
     for (NearMisses& g : groups) g.from_light.sum = 1;
     Tally tally;
     tally.near.resize(groups.size());
     const uint64_t w = uint64_t(s.size.width), pixels = w * uint64_t(s.size.height);
     const int x = int(i % pixels % w), y = int(i % pixels / w);
-    radiance(s, {}, pattern, x, y, i, NearMissVisitor{s, {}, groups, tally});
+    radiance(s, {}, pattern, x, y, i, NearMissVisitor{s, groups, group_of, tally});
     return std::ldexp(double(tally.near[0].from_light.came), -40) * double(pixels);
 }
 double sent(const Scene& s, const Aims& aims, uint64_t key) {

@@ -59,48 +59,62 @@ TEST_CASE("a lamp that the eye sees through a gap covers part of a pixel") {
     CHECK(seen(Aims(s)) == 0);
 }
 
-TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in a mirror") {
-    // Behind the hole a bright wall, lit by a point 25 cm before it: radiance rho / pi I / d^2.
+TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in one mirror or two") {
+    // Behind the hole a bright wall, lit by a point 25 cm before it: radiance rho / pi I cos / d^2.
     const real h = real(0.01);
-    for (const bool in_mirror : {false, true}) {
+    const vec3 hole{h / 2, 1 + h / 2, 0};
+    for (const int mirrors : {0, 1, 2}) {
         Scene s = wall_with_hole(h);
         add_quad(s, {-5, -5, real(-0.5)}, {10, 0, 0}, {0, 10, 0}, 0);
-        add_light(s, {{h / 2, 1 + h / 2, real(-0.25)}, PointLight(), {900, 900, 900}});
+        add_light(s, {hole - vec3{0, 0, real(0.25)}, PointLight(), {900, 900, 900}});
+        // The eye looks away from the wall, into a mirror behind it, or into one beside it that
+        // shows the other; what it sees is what its image sees, which has the same camera.
+        const vec3 image = mirrors == 0   ? vec3{0, 1, real(2.8)}
+                           : mirrors == 1 ? vec3{0, 1, real(8.4)}
+                                          : vec3{3, 1, real(11.4)};
+        s.materials[2] = {Mirror({1, 1, 1})};
+        s.camera = look_at(image, hole, 50);
         const double area = area_in_picture(s, {0, 1, 0}, {h, 0, 0}, {0, h, 0});
-        if (in_mirror) {  // the eye looks away from the wall, into a mirror behind it
-            s.materials[2] = {Mirror({1, 1, 1})};
+        if (mirrors > 0) {
             add_quad(s, {-20, -20, real(5.6)}, {0, 40, 0}, {40, 0, 0}, 2);
-            s.camera = look_at({0, 1, real(2.8)}, {0, 1, 9}, 50);
+            s.camera = look_at({0, 1, real(2.8)}, {h / 2, 1 + h / 2, real(11.2)}, 50);
+        }
+        if (mirrors == 2) {
+            add_quad(s, {real(2.2), real(0.5), 2}, {real(0.4), 0, real(0.4)}, {0, 1, 0}, 2);
+            s.camera = look_at({0, 1, real(2.8)}, {real(2.374), 1, real(2.17)}, 50);
         }
         prepare(s);
-        const NearMisses lamp =
-            lights_in_view(s, {0, 32}, {}, Aims(s).with_reflections(), 16384).groups[0];
-        double sum = 0, variance = 0;
-        for (const Brought& of : lamp.from_eye) sum += of.sum, variance += of.variance;
-        INFO(in_mirror);
-        CHECK(sum > 5 * std::sqrt(variance));
-        const double L = 0.5 / std::numbers::pi * 900 / 0.0625;
-        const double far = in_mirror ? sqr(2.8 / 8.4) : 1;
-        CHECK(std::abs(sum / (L * area * far) - 1) < 0.3);
-        double recorded = 0, without_mirrors = 0;
-        for (const Brought& of : LightRecorder(s, {}, 0, 32).near_misses(1)[0].from_eye)
-            recorded += of.sum;
-        for (const Brought& of : lights_in_view(s, {0, 32}, {}, Aims(s), 16384).groups[0].from_eye)
-            without_mirrors += of.sum;
-        CHECK(recorded > 0.5 * sum);
-        CHECK((without_mirrors == 0) == in_mirror);
+        auto found = [&](const std::vector<NearMisses>& groups) {
+            double sum = 0, variance = 0;
+            for (const Brought& of : groups[0].from_eye) sum += of.sum, variance += of.variance;
+            return std::pair{sum, std::sqrt(variance)};
+        };
+        auto in_view_by = [&](const Aims& aims) {
+            return found(lights_in_view(s, {0, 32}, {}, aims, 16384).groups);
+        };
+        const auto [sum, error] = in_view_by(Aims(s).of_eye(s));
+        INFO(mirrors);
+        CHECK(sum > 5 * error);
+        const double off = double(0.5 * (image.x - hole.x) / image.z);
+        const double L = 0.5 / std::numbers::pi * 900 * 0.25 / std::pow(0.0625 + off * off, 1.5);
+        CHECK(std::abs(sum / (L * area) - 1) < 0.3);
+        CHECK(found(LightRecorder(s, {}, 0, 32).near_misses(1)).first > 0.5 * sum);
+        CHECK((in_view_by(Aims(s)).first == 0) == (mirrors > 0));
     }
 }
 
 TEST_CASE("paths that aim and all others bring the same, where both may find it") {
-    // The room is all edges and shapes, and few directions are far from all of them.
+    // The room is all edges and shapes, and few directions are far from all of them.  A mirror or
+    // pane shows it again.
     const vec3 above{real(-0.5), real(1.6), real(0.3)};
     const Light point(above, PointLight(), {1, 2, 3});
     for (const Material& ball : {Material{Mirror({1, 1, 1})}, Material{Glass(real(1.5))},
                                  Material{Rough({real(0.5), real(0.5), real(0.5)})}}) {
         Scene s = room(&point, ball);
         add_quad(s, above, {real(0.6), 0, real(0.1)}, {0, real(0.05), real(0.6)}, 4);
+        add_quad(s, {real(-1.2), real(0.3), real(-0.3)}, {real(0.9), 0, real(0.3)}, {0, 1, 0}, 2);
         prepare(s);
+        const std::vector<size_t> each = {0, 1};
         std::vector<NearMisses> groups(2);
         for (NearMisses& g : groups)
             for (Brought& of : g.from_eye) of.sum = 1;
@@ -111,8 +125,8 @@ TEST_CASE("paths that aim and all others bring the same, where both may find it"
         for (uint64_t i = 0; i < n; ++i)
             for (int pixel = 0; pixel < 24; ++pixel)
                 radiance(s, {}, pattern, pixel % 6, pixel / 6, i,
-                         NearMissVisitor{s, {}, groups, tally});
-        const LightsInView many = lights_in_view(s, {0, 4}, {}, Aims(s).with_reflections(), 200000);
+                         NearMissVisitor{s, groups, each, tally});
+        const LightsInView many = lights_in_view(s, {0, 4}, {}, Aims(s).of_eye(s), 600000);
         for (size_t light = 0; light < 2; ++light) {
             double came = 0, sum = 0, variance = 0;
             for (size_t k = 0; k < brightnesses; ++k) {

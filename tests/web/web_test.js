@@ -49,7 +49,7 @@ const tests = {
     },
     async "an error is the program's, and so is the reason why it is not known"(browser) {
         const sparks = fs.readFileSync("scenes/calibration/hard", "utf8").split(/^@@ /m), file = path.join(folder, "spark.scene");
-        for (const [name, options, reason] of [["spark_in_mirror", "", "in mirrors or glass"], ["spark", "", "smaller than a pixel"],
+        for (const [name, options, reason] of [["spark_in_mirror", "", "by way of mirrors or glass"], ["spark", "", "smaller than a pixel"],
             ["spark", "--replications 4 --light none", "smaller than a pixel"], ["bulb", "--depth 0 --light nee", "no sample found light"],
             ["cornell", "", ""]]) {
             const text = sparks.find(part => part.startsWith(`${name}\n`))?.replace(/^.*/, "") ?? fs.readFileSync(`scenes/${name}.scene`, "utf8");
