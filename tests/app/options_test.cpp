@@ -159,6 +159,7 @@ TEST_CASE("every option is in --help, with its value and its default, in lines t
             CHECK(a == b);
         }
     }
+    CHECK(usage_of(row(all.table, "--light")) == "--light none|nee|mis");
     std::istringstream lines(page);
     std::string headings;
     for (std::string line; std::getline(lines, line);) {

@@ -396,7 +396,7 @@ TEST_CASE("without bubblewrap nothing is compiled or run, and it is said what to
     fs::create_directory(house().folder / "programs");
     const std::string link = " '" + house().folder / "programs" + "/";
     shell("ln -sf \"$(python3 -c 'import sys; print(sys.executable)')\"" + link + "python3'");
-    for (const std::string name : {"g++", "prlimit", "timeout"})
+    for (const std::string name : {"g++", "as", "ld", "prlimit", "timeout"})
         shell("ln -sf \"$(command -v " + name + ")\"" + link + name + "'");
     course.said =
         house().grade("--out " + course.out + " '" + course.in + "'", house().folder / "programs");
