@@ -110,7 +110,8 @@ struct PlaneMirror {
 
     vec3 turn(vec3 v) const { return v - n * (2 * dot(n, v)); }
     vec3 image(vec3 p) const { return a + turn(p - a); }
-    // True if a corner of another is on the eye's side.
+    // True if a corner of another is on the eye's side.  Neighbours in one plane do not show each
+    // other by rounding: the height counts from 1e-4 of the distance on.
     bool shows(const PlaneMirror& other, vec3 eye) const {
         const real side = dot(n, eye - a) > 0 ? real(1) : real(-1);
         return std::ranges::any_of(std::array{other.a, other.b, other.c}, [&](vec3 p) {

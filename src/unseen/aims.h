@@ -45,7 +45,7 @@ public:
             return j < s.shapes.size() && s.shapes[i].a == s.shapes[j].a &&
                    s.shapes[i].c == s.shapes[j].b && s.shapes[j].is_triangle();
         };
-        auto is_flat = [&](size_t i, size_t j) {
+        auto is_flat = [&](size_t i, size_t j) {  // but for rounding
             return halves(i, j) && length(normal(i) - normal(j)) < real(1e-4);
         };
         for (size_t i = 0; i < s.shapes.size(); ++i) {
@@ -187,7 +187,8 @@ private:
         const real x = -dot(n, r) / dot(n, e);
         return x > 0 && x < 1 ? std::optional(r + e * x) : std::nullopt;
     }
-    // Points of edges in view of the eye, where it sees others behind them.
+    // Points of edges in view of the eye, where it sees others behind them: edges that meet are not
+    // behind each other, and a point on a surface is not hidden by it, but for rounding.
     std::vector<CornerAim> corners(const Scene& s) const {
         const vec3 eye = s.camera.eye;
         Chosen<CornerAim> chosen{256};

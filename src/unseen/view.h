@@ -42,9 +42,9 @@ inline std::optional<size_t> next_view(const Aims& aims, size_t view, const Step
     return here.scattered.wi.z < 0 ? view : aims.in_mirror(view, here.vertex.hit.id);
 }
 
-// Path k of many, of up to 32 bounces, if it goes into the picture, and its first surface that is
-// no mirror or glass is in the view at which it aims.  (Each path is in one view: together they are
-// all paths.)
+// Path k of many, of up to 32 bounces, if it goes into the picture, and comes by the mirrors of the
+// view at which it aims, and no other of which a view goes on.  (Each path is in one view: together
+// they are all paths.)
 inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const Technique& technique,
                                        const Aims& aims, uint64_t k) {
     static const Pattern pattern{SamplerKind::independent};

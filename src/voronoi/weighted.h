@@ -23,6 +23,7 @@ inline SampleFunction weighted_mean(const Scene& scene, const Pattern& pattern, 
         std::vector<rgb> values;
         const uint64_t pixel = pixel_number(scene, s);
         for (s.i = 0; s.i < n; ++s.i) {
+            // As L draws it.
             const vec2 u = Sampler(pattern, pixel, s.i, s.replication).get2(film_x);
             places.push_back({double(u.x), double(u.y)});
             values.push_back(L(s, tally));
