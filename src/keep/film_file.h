@@ -1,6 +1,6 @@
 // keep/film_file.h  1  .film files: a head that says what is in them, numbers, and a checksum; films from them
 //
-//     penumbra film 8                    what it is, and the version of this format
+//     penumbra film 9                    what it is, and the version of this format
 //     bytes 00000000000000001536         of numbers, after the head
 //     checksum 0f1e2d3c4b5a6978          of all that follows this line
 //     scene 7dc0f03976e8ec38             KEY VALUE: what the writer says of them
@@ -20,7 +20,7 @@ namespace penumbra {
 static_assert(std::endian::native == std::endian::little,
               "numbers are written as memory holds them");
 static_assert(sizeof(NearMisses) == 40 + (1 + brightnesses) * sizeof(Brought) +
-                                        2 * growths * sizeof(FixedPoint),
+                                        (brightnesses + 2 * growths) * sizeof(FixedPoint),
               "a file holds no gaps");
 
 // FNV-1a (Fowler, Noll, Vo 1991).  A step is a bijection of the sum for any byte, and of the byte
@@ -42,7 +42,7 @@ struct Checksum {
 // The three lines that come first; they have one length.
 inline std::string first_lines(uint64_t bytes, const Checksum& checksum) {
     const std::string digits = std::to_string(bytes);
-    return "penumbra film 8\nbytes " + std::string(20 - digits.size(), '0') + digits +
+    return "penumbra film 9\nbytes " + std::string(20 - digits.size(), '0') + digits +
            "\nchecksum " + checksum.text() + "\n";
 }
 

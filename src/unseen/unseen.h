@@ -58,12 +58,13 @@ private:
         if (groups.empty() || !(mean > 0)) return;
         const size_t g = group_of[light], k = place_of(mean);
         auto add = [&](const Brought& of, Brought& to) {
-            if (of.sum > 0)
-                to.came += uint64_t(0x1p40 * std::min(0x1p20, mean * tally.share / of.sum)),
-                    ++to.hits;
+            const double part = of.sum > 0 ? mean * tally.share / of.sum : 0;
+            to.came += uint64_t(0x1p40 * std::min(0x1p20, part)), ++to.hits;
         };
         if (is_seen) add(groups[g].from_light, tally.near[g].from_light);
         add(groups[g].from_eye[k], tally.near[g].from_eye[k]);
+        const double c = mean_square(L) / groups[g].L2 * square(tally.share);
+        if (c > 0) tally.near[g].squares[k] += fixed_point(0x1p20 * c);
     }
     // Rarely called, so not inlined into the path's loop.
     [[gnu::noinline]] void add_near_misses(const Segment& segment, const Step& here) {
@@ -106,8 +107,12 @@ public:
             const double v = weight * weight * group.L2, n = t * group.K;
             lights_[g].line = group.line;
             lights_[g].from_light.add(group.from_light, t, weight);
-            for (size_t k = 0; k < group.from_eye.size(); ++k)
+            for (size_t k = 0; k < brightnesses; ++k) {
                 lights_[g].from_eye[k].add(group.from_eye[k], t, weight);
+                lights_[g].from_eye[k].by_chance +=
+                    v * std::ldexp(value_of(group.squares[k]), -20) / (t * t);
+            }
+            lights_[g].samples += n, lights_[g].weight += weight;
             lights_[g].met += group.area * n, lights_[g].variance += v * group.a / n;
             for (size_t k = 0; k < growths; ++k) {
                 const auto& [c, c2] = group.sum[k];
@@ -138,9 +143,11 @@ public:
                      "paths from the eye bring less than paths from " + name);
             for (const Missing& of : l.from_eye) {
                 consider(of.missing(), "paths from the eye that aim bring more of " + name);
-                consider(of.by_chance(), hit(" by rare bright paths", of.hits));
+                if (of.hits < l.few())
+                    consider(of.by_chance, hit(" by rare bright paths", of.hits));
             }
-            if (l.met < 10) consider(l.variance, hit(", smaller than a pixel,", l.met));
+            if (l.met < std::max(10.0, l.few()))
+                consider(l.variance, hit(", smaller than a pixel,", l.met));
             double greatest = 0;
             for (size_t k = 0; k < growths; ++k)
                 if (l.near[k].count() >= 5)
@@ -162,6 +169,7 @@ private:
     };
     struct Missing {
         double sum = 0, squares = 0, variance = 0, came = 0, hits = 0;
+        double by_chance = 0;  // variance of the hits, if their number is random (Poisson)
 
         void add(const Brought& of, double t, double weight) {
             sum += weight * of.sum, squares += weight * of.squares;
@@ -175,16 +183,17 @@ private:
             return sum - came > 3 * std::sqrt(variance) ? 2 * square((sum - came) / sum) * squares
                                                         : 0;
         }
-        // Variance of so few hits, which may come to both halves alike.
-        double by_chance() const {
-            return sum > 3 * std::sqrt(variance) && hits < 10 ? squares / std::max(1.0, hits) : 0;
-        }
     };
     struct OneLight {
         double line = 0, variance = 0, met = 0;  // met: expected camera rays
+        double samples = 0, weight = 0;          // of a pixel near a light; of the films
         Missing from_light;
         std::array<Missing, brightnesses> from_eye;
         std::array<NearSum, growths> near;
+
+        // Fewer hits than a sixteenth of a pixel's samples are random in number, even if it has
+        // all of them: both halves may have met the light equally often, and agree by chance.
+        double few() const { return samples / weight / 16; }
     };
     std::vector<OneLight> lights_;
     bool is_pilot_ = false;

@@ -146,7 +146,7 @@ inline LightsInView lights_in_view(const Scene& s, const Band& band, const Techn
     for (size_t i = 0; i < s.lights.size(); ++i) {
         NearMisses& group = view.groups[group_of[i]];
         if (group.line == 0 && i < line_of_light.size()) group.line = line_of_light[i];
-        if (!s.lights[i].is_delta()) group.L2 = std::max(group.L2, mean_square(s.lights[i].L));
+        group.L2 = std::max(group.L2, mean_square(s.lights[i].L));
     }
     for (size_t g = 0; g < groups; ++g) {
         NearMisses& group = view.groups[g];

@@ -374,6 +374,7 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
         const size_t k = size_t(s.y) % growths;
         NearMisses& near = tally.near.at(size_t(s.x) % 3);
         near.sum[k][s.replication % 2] += fixed_point(tally.share / (1.0 + double(s.i)));
+        near.squares[s.replication % 2] += fixed_point(tally.share / (1.0 + double(s.i)));
         near.from_light.came += s.i < 4 ? 1000 : 1;
         return noisy(s, tally);
     };
@@ -389,7 +390,7 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
         return film;
     };
     const Film one = film_by(1, 0);
-    double expected = 0, found = 0;
+    double expected = 0, found = 0, squares = 0;
     uint64_t samples = 0;
     for (size_t p = 0; p < one.pixels(); ++p)
         for (uint64_t i = 4; i < one.samples(p); ++i, samples += one.replications)
@@ -400,7 +401,9 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
     CHECK(came == samples + 1000 * 4 * one.replications * one.pixels());
     for (const NearMisses& g : one.near)
         for (const auto& sums : g.sum) found += value_of(sums[0]) + value_of(sums[1]);
+    for (const NearMisses& g : one.near) squares += value_of(g.squares[0] + g.squares[1]);
     CHECK(found == about(expected, 1e-12));
+    CHECK(squares == about(expected, 1e-12));
     CHECK(one.near[1].area == 5);
     CHECK(same(one, [&] {
         Film film = film_of({24, 12}, 0);
