@@ -54,8 +54,8 @@ private:
     static constexpr real widest = 8;
 };
 
-// Where an edge crosses another, as an eye sees them, a gap may begin: h is the tangent of the
-// angle between the direction and the one to p.
+// Where the eye sees an outline cross another, of edges or balls, a gap may begin: h is the tangent
+// of the angle between the direction and the one to p.
 struct CornerAim {
     vec3 p;
 

@@ -181,24 +181,57 @@ private:
         upto_.resize(size());
         std::partial_sum(part_.begin(), part_.end(), upto_.begin());
     }
-    // From the eye to where an edge passes through the plane of the eye and another edge.
-    static std::optional<vec3> to_plane_of(const EdgeAim& other, const EdgeAim& edge, vec3 eye) {
-        const vec3 n = cross(other.a - eye, other.b - eye), r = edge.a - eye, e = edge.b - edge.a;
-        const real x = -dot(n, r) / dot(n, e);
-        return x > 0 && x < 1 ? std::optional(r + e * x) : std::nullopt;
+    // What hides light ends at an edge, or at the outline of a ball.  The eye sees either in
+    // directions d with axis d = cosine; an edge goes from a to a + e, relative to the eye.
+    struct Outline {
+        vec3 axis, a, e = {};
+        real cosine = 0, tangent = 0;  // of a ball: the distance of its outline
+
+        bool is_edge() const { return tangent == 0; }
+        // Distance along d; 0 beyond the ends of an edge.
+        real distance(vec3 d) const {
+            const vec3 w = cross(axis, d);
+            const real x = -dot(w, a) / dot(w, e), t = dot(d, a + e * x);
+            return !is_edge() ? tangent : x > 0 && x < 1 && t > 0 ? t : 0;
+        }
+    };
+    static Outline outline(const EdgeAim& edge, vec3 eye) {
+        const vec3 a = edge.a - eye;
+        return {unit(cross(a, edge.b - eye)), a, edge.b - edge.a};
     }
-    // Points of edges in view of the eye, where it sees others behind them: edges that meet are not
-    // behind each other, and a point on a surface is not hidden by it, but for rounding.
+    static Outline outline(const Shape& ball, vec3 eye) {
+        const vec3 a = ball.a - eye;
+        const real cosine = std::sqrt(1 - sqr(ball.r) / dot(a, a));
+        return {unit(a), a, {}, cosine, cosine * length(a)};
+    }
+    // Points where the eye sees an outline before another, and nothing before them: edges that meet
+    // are not one before the other, and a point is not hidden by its own surface, but for rounding.
     std::vector<CornerAim> corners(const Scene& s) const {
         const vec3 eye = s.camera.eye;
+        std::vector<Outline> outlines;
+        for (const EdgeAim& edge : edges_) outlines.push_back(outline(edge, eye));
+        Chosen<Shape> balls{64};
+        for (const Shape& shape : s.shapes)
+            if (!shape.is_triangle()) balls.add(shape);
+        for (const Shape& ball : balls.items) outlines.push_back(outline(ball, eye));
         Chosen<CornerAim> chosen{256};
-        for (const EdgeAim& edge : edges_)
-            for (const EdgeAim& other : edges_) {
-                const auto near = to_plane_of(other, edge, eye);
-                const auto far = to_plane_of(edge, other, eye);
-                if (!near || !far || dot(*far, *near) < real(1.0001) * dot(*near, *near)) continue;
-                const auto hit = s.bvh.closest({eye, unit(*near)});
-                if (!hit || hit->t > real(0.999) * length(*near)) chosen.add({eye + *near});
+        auto add = [&](const Outline& first, const Outline& second, vec3 d) {
+            const real t = first.distance(d), other = second.distance(d), near = std::min(t, other);
+            const bool may_meet = first.is_edge() && second.is_edge();
+            if (!(near > 0) || (may_meet && std::max(t, other) < real(1.0001) * near)) return;
+            const auto hit = s.bvh.closest({eye, d});
+            if (!hit || hit->t > real(0.999) * near) chosen.add({eye + near * d});
+        };
+        for (size_t i = 0; i < outlines.size(); ++i)
+            for (size_t j = 0; j < i; ++j) {
+                // d = x u + y v + z n has the cosines a, b to the axes u, v, and length 1.
+                const vec3 u = outlines[i].axis, v = outlines[j].axis, n = cross(u, v);
+                const real a = outlines[i].cosine, b = outlines[j].cosine, uv = dot(u, v);
+                const real x = (a - b * uv) / dot(n, n), y = (b - a * uv) / dot(n, n);
+                const real z = std::sqrt((1 - (x * a + y * b)) / dot(n, n));
+                if (!(z > 0)) continue;  // they do not cross, or the eye is in line or in a ball
+                for (const real side : {z, -z})
+                    add(outlines[i], outlines[j], u * x + v * y + n * side);
             }
         return chosen.items;
     }

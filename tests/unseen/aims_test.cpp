@@ -309,3 +309,70 @@ TEST_CASE("an eye aims at corners of gaps: where it sees edges cross, and nothin
     CHECK(part(false) > 0.003);
     CHECK(part(true) < 0.0003);
 }
+
+TEST_CASE(
+    "corners are where an eye sees outlines cross: of edges, of balls, of a ball and an edge") {
+    struct Ball {
+        vec3 p;
+        real r;
+    };
+    const vec3 eye{0, 0, 5};
+    auto scene_of = [&](const std::vector<Ball>& balls) {
+        Scene s;
+        s.materials = {{}};
+        s.camera = look_at(eye, {}, 40);
+        for (const auto& [p, r] : balls) add_sphere(s, p, r, 0);
+        return s;
+    };
+    auto corners = [](Scene s) {
+        prepare(s);
+        const Aims aims(s);
+        return aims.of_eye(s).size() - aims.size();
+    };
+    const Ball a{{0, 0, 0}, 1}, b{{real(1.5), 0, -1}, 1};
+    CHECK(corners(scene_of({a, b})) == 2);
+    CHECK(corners(scene_of({a, {{3, 0, 0}, 1}})) == 0);          // beside each other
+    CHECK(corners(scene_of({a, {{0, 0, 2}, real(0.2)}})) == 0);  // one before the other
+    CHECK(corners(scene_of({a, {{0, 0, -2}, 1}})) == 0);
+    CHECK(corners(scene_of({a, b, {{0, 0, 5}, 2}})) == 0);  // the eye is in one, which hides all
+    // A ball before one of the crossings, and its own with one ball or the other.
+    const real x = real(0.82), y = real(0.61);  // near a crossing, at the distance of a
+    CHECK(corners(scene_of({a, b, {{x / 2, y / 2, real(2.5)}, real(0.05)}})) == 1 + 4);
+    // Edges of a quad meet; its left edge is before the ball, or too short, or ends at its side.
+    auto with_quad = [&](vec3 from, real width, real height) {
+        Scene s = scene_of({a});
+        add_quad(s, from, {width, 0, 0}, {0, height, 0}, 0);
+        return corners(s);
+    };
+    CHECK(with_quad({0, -5, 2}, 9, 10) == 2);
+    CHECK(with_quad({0, -5, -2}, 9, 10) == 2);
+    CHECK(with_quad({0, 0, 2}, 9, 10) == 1 + 1);  // by its lower edge, too
+    CHECK(with_quad({0, real(-0.1), 2}, real(0.2), real(0.2)) == 0);
+    CHECK(with_quad({9, -5, 2}, 9, 10) == 0);
+    CHECK(with_quad({0, 4, 2}, 9, 10) == 0);
+    CHECK(with_quad({0, -5, 10}, 9, 10) == 0);  // behind the eye
+    // Edges in one plane meet.
+    for (const real before : {real(0), real(0.1)}) {
+        Scene s = scene_of({});
+        add_quad(s, {-1, -3, 0}, {2, 0, 0}, {0, 6, 0}, 0);
+        add_quad(s, {-3, -1, before}, {6, 0, 0}, {0, 2, 0}, 0);
+        CHECK(corners(s) == (before > 0 ? 4 : 0));
+    }
+    // Aims are about the points themselves, on both sides: nine of 19 octaves of the half that are
+    // no shapes have tangents below 2^-10.
+    Scene s = scene_of({a, b});
+    prepare(s);
+    const Aims aims = Aims(s).of_eye(s);
+    auto on_outline = [&](const Ball& ball, vec3 d) {
+        const vec3 to = ball.p - eye;
+        const double sine = double(length(cross(unit(to), d)));
+        return std::abs(std::asin(sine) - std::asin(double(ball.r / length(to)))) < 0x1p-10;
+    };
+    for (const real side : {-1, 1})
+        CHECK(std::abs(part_of_aims(aims, eye, 40000,
+                                    [&](const Aims::Aim& aim) {
+                                        return on_outline(a, aim.d) && on_outline(b, aim.d) &&
+                                               aim.d.y * side > 0;
+                                    }) -
+                       0.25 * 9 / 19) < 0.01);
+}
