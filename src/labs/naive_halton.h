@@ -26,7 +26,7 @@ inline rgb radiance(const Scene& scene, const Technique& t, Ray ray, vec2 u) {
             const auto s = sample_light(scene.lights[chosen.light], x->at.p, u);
             if (s && !scene.bvh.occluded(spawn_to(x->at, s->at))) {
                 const vec3 wi = x->local.to_local(s->wi);
-                L += beta * eval(m, x->wo, wi) * s->L * (wi.z / (chosen.pick * s->pdf));
+                L += beta * eval(m, x->wo, wi) * s->L * (wi.z / (chosen.probability * s->pdf));
             }
         }
         const BsdfSample b = sample(m, x->wo, x->cos_o > 0, u.x, u, t.direction);

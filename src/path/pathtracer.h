@@ -88,8 +88,8 @@ PART DirectLight direct_light(const Scene& scene, const Technique& technique, co
     if (technique.light == LightMode::none) return none(Unlit::by_technique);
     if (scene.lights.empty()) return none(Unlit::without_lights);
     if (material.is_delta()) return none(Unlit::by_delta);
-    const real u_pick = scene.lights.size() > 1 ? sampler.choice(k, Draw::pick) : 0;
-    const auto chosen = scene.light_tree.choose(vertex.at.p, vertex.local.n, u_pick);
+    const real u_light = scene.lights.size() > 1 ? sampler.choice(k, Draw::which_light) : 0;
+    const auto chosen = scene.light_tree.choose(vertex.at.p, vertex.local.n, u_light);
     const Light& light = scene.lights[chosen.light];
     const auto sample = sample_light(light, vertex.at.p, sampler.get2(dimension(k, Draw::light_x)));
     if (!sample) return none(Unlit::light_averted);
@@ -98,7 +98,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& technique, co
     if (max_of(f) <= 0) return none(wi.z > 0 ? Unlit::reflects_nothing : Unlit::light_behind);
     // exercise 3.3
     // f L cos / pdf where nothing is in the way; pdf is of the light and of the point on it.
-    const real pdf_light = chosen.pick * sample->pdf;
+    const real pdf_light = chosen.probability * sample->pdf;
     const bool by_mis = technique.light == LightMode::mis && !light.is_delta();
     const real weight =
         by_mis ? power_heuristic(pdf_light, pdf(material, vertex.wo, wi, technique.direction)) : 1;
@@ -143,8 +143,8 @@ inline real weight_of_emission(const Scene& scene, const Technique& technique,
     // exercise 3.4
     if (technique.light == LightMode::none || std::isinf(segment.pdf)) return 1;
     const size_t i = size_t(scene.light_of[vertex.hit.id]);
-    const real pick = scene.light_tree.pick_of(i, segment.from, segment.n);
-    const real pdf = pick * pdf_light(scene.lights[i], segment.from, vertex.at);
+    const real probability = scene.light_tree.probability_of(i, segment.from, segment.n);
+    const real pdf = probability * pdf_light(scene.lights[i], segment.from, vertex.at);
     // Light samples have pdf 0 inside a two-sided sphere light.
     if (technique.light == LightMode::nee) return pdf > 0 ? 0 : 1;
     return power_heuristic(segment.pdf, pdf);

@@ -11,7 +11,7 @@
 namespace penumbra {
 
 // Dimensions of the numbers of a path: dimension(k, what) at vertex k; the first surface has k = 0.
-enum class Draw { light_x, light_y, wi_x, wi_y, pick, lobe, roulette, count };
+enum class Draw { light_x, light_y, wi_x, wi_y, which_light, lobe, roulette, count };
 inline constexpr uint32_t film_x = 0, film_y = 1;
 inline constexpr uint32_t dimension(int k, Draw what) {
     return 2 + uint32_t(k) * uint32_t(Draw::count) + uint32_t(what);
@@ -171,7 +171,7 @@ public:
 
     // The number that chooses the light or the lobe; the pair of the same vertex samples it.
     real choice(int k, Draw what) const {
-        const uint32_t pair = dimension(k, what == Draw::pick ? Draw::light_x : Draw::wi_x);
+        const uint32_t pair = dimension(k, what == Draw::which_light ? Draw::light_x : Draw::wi_x);
         auto third = [&](const auto& points) {
             if constexpr (requires { points.choice(pair); }) return points.choice(pair);
             return points.get(dimension(k, what));

@@ -24,7 +24,7 @@ struct Balance {
 // are independent: Halton's bases would be large, and their points no better.
 class WalkNumbers {
 public:
-    static constexpr uint32_t pick = 0, point = 1, direction = 3, side = 5, structured = 8;
+    static constexpr uint32_t which_light = 0, point = 1, direction = 3, side = 5, structured = 8;
 
     WalkNumbers(const Pattern& pattern, const Pattern& independent, uint64_t batch, uint64_t i)
         : first_(pattern, batch, i), independent_(independent), batch_(batch), i_(i) {}
@@ -69,7 +69,9 @@ public:
         return std::min(size_t(i - cdf_.begin()), cdf_.size() - 1);
     }
     // The probability of a light's choice.
-    real pick_of(size_t light) const { return real(cdf_[light] - (light ? cdf_[light - 1] : 0)); }
+    real probability_of(size_t light) const {
+        return real(cdf_[light] - (light ? cdf_[light - 1] : 0));
+    }
 
 private:
     std::vector<double> cdf_;
@@ -78,19 +80,19 @@ private:
 // From a light chosen by its power, uniformly from its area, as Lambert's cosine law has it.  A
 // polygon or a point: spheres have become facets.
 inline Particle emit(const Scene& scene, const LightsByPower& lights, const WalkNumbers& u) {
-    const size_t chosen = lights.choose(u.start(WalkNumbers::pick));
-    const real pick = lights.pick_of(chosen);
+    const size_t chosen = lights.choose(u.start(WalkNumbers::which_light));
+    const real probability = lights.probability_of(chosen);
     const Light& l = scene.lights[chosen];
     const vec2 at = u.start2(WalkNumbers::point), d = u.start2(WalkNumbers::direction);
     if (l.is_delta()) {
         const vec3 w = sample_uniform_sphere(d);
-        return {{l.p, w}, l.L / (pdf_uniform_sphere() * pick)};
+        return {{l.p, w}, l.L / (pdf_uniform_sphere() * probability)};
     }
     Surface y = point_of(l, at);
     if (l.twosided && u.start(WalkNumbers::side) >= real(0.5)) y.n = -y.n;
     const vec3 w = frame(y.n).to_world(sample_cosine_hemisphere(d));
     const real area = real(l.ask([](const auto& kind) { return kind.strength(1); }));
-    return {spawn(y, w), pi * area * (l.twosided ? 2 : 1) * l.L / pick};
+    return {spawn(y, w), pi * area * (l.twosided ? 2 : 1) * l.L / probability};
 }
 
 // White walls absorb nothing, but walks have to end: one in fifty does, and the others weigh more.

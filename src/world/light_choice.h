@@ -132,26 +132,26 @@ public:
     // A light, and the probability that it is chosen.
     struct Choice {
         size_t light = 0;
-        real pick = 1;
+        real probability = 1;
     };
     // For a surface at p with normal m on the side of the eye, by u in [0,1): down from the group
     // of all lights, in each to the member that u chooses, until that is a light.
     Choice choose(vec3 p, vec3 m, real u) const {
         if (groups_.empty()) return {};
-        real pick = 1;
+        real probability = 1;
         for (const LightGroup* group = &groups_[0];;) {
             const LightGroup::Row<real> share = shares(*group, p, m);
             const auto [k, begin] = member_at(share, u);
-            pick *= share[k];
-            if (group->is_light[k]) return {group->child[k], pick};
+            probability *= share[k];
+            if (group->is_light[k]) return {group->child[k], probability};
             // Where u lies in the part of that member is a random number of its own.
             u = std::clamp((u - begin) / share[k], real(0), below_one);
             group = &groups_[group->child[k]];
         }
     }
     // The probability that it chooses this light.
-    real pick_of(size_t light, vec3 p, vec3 m) const {
-        return groups_.empty() ? 1 : pick_of(places_[light], p, m);
+    real probability_of(size_t light, vec3 p, vec3 m) const {
+        return groups_.empty() ? 1 : probability_of(places_[light], p, m);
     }
 
     // Calls visit(light, weight) for all lights that can contribute.
@@ -172,9 +172,9 @@ private:
     std::vector<LightGroup> groups_;  // the first holds all lights; none if there is one
     std::vector<Place> places_;       // of lights
 
-    real pick_of(Place at, vec3 p, vec3 m) const {
+    real probability_of(Place at, vec3 p, vec3 m) const {
         const LightGroup& g = groups_[at.group];
-        const real above = at.group == 0 ? 1 : pick_of({g.parent, g.place}, p, m);
+        const real above = at.group == 0 ? 1 : probability_of({g.parent, g.place}, p, m);
         return above * shares(g, p, m)[at.member];
     }
 

@@ -82,7 +82,7 @@ struct Purpose {
 };
 Purpose purpose(Draw what, bool glossy) {
     switch (what) {
-        case Draw::pick: return {of_light | of_place, of_light};
+        case Draw::which_light: return {of_light | of_place, of_light};
         case Draw::light_x:
         case Draw::light_y: return {of_place, of_place};
         case Draw::lobe:

@@ -14,7 +14,7 @@ const uint32_t dimensions = dimension(depth, Draw::light_x);
 real draw(const Sampler& s, uint32_t dim) {
     if (dim < 2) return dim == 0 ? s.get2(0).x : s.get2(0).y;
     const uint32_t k = (dim - 2) % uint32_t(Draw::count);
-    if (Draw(k) == Draw::pick || Draw(k) == Draw::lobe)
+    if (Draw(k) == Draw::which_light || Draw(k) == Draw::lobe)
         return s.choice(int((dim - 2) / uint32_t(Draw::count)), Draw(k));
     if (k < 4) return k % 2 == 0 ? s.get2(dim).x : s.get2(dim - 1).y;
     return s.get(dim);
@@ -114,8 +114,9 @@ TEST_CASE("no two numbers of a path come in the same order") {
     // = u + c modulo 1 the mean product is B2(c) / 2, its square 1 / 720, times 16 * 144.
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
         const Pattern pattern = make_pattern(kind, seed_here(), depth);
-        for (uint32_t dim : {film_x, film_y, dimension(0, Draw::light_x), dimension(1, Draw::pick),
-                             dimension(1, Draw::lobe), dimension(1, Draw::roulette)})
+        for (uint32_t dim :
+             {film_x, film_y, dimension(0, Draw::light_x), dimension(1, Draw::which_light),
+              dimension(1, Draw::lobe), dimension(1, Draw::roulette)})
             for (uint32_t other : {dimension(2, Draw::wi_x), dimension(3, Draw::light_y),
                                    dimension(2, Draw::lobe), dimension(3, Draw::roulette)}) {
                 double squares = 0;
@@ -165,8 +166,8 @@ TEST_CASE("Sobol' points of one pixel fill every elementary interval, every set'
                     const vec2 u = s.get2(dim);
                     for (uint64_t c : {0, 1, 2, 3, 4})  // 2^c columns
                         ++boxes[c][(part(1u << c, u.x) << (4 - c)) + part(16u >> c, u.y)];
-                    ++parts[part(16, draw(s, dimension(2, Draw::pick)))];
-                    for (Draw choice : {Draw::pick, Draw::lobe}) {
+                    ++parts[part(16, draw(s, dimension(2, Draw::which_light)))];
+                    for (Draw choice : {Draw::which_light, Draw::lobe}) {
                         const uint32_t k = choice == Draw::lobe;
                         const vec2 v = s.get2(dimension(1, k ? Draw::wi_x : Draw::light_x));
                         const uint64_t z = part(2, draw(s, dimension(1, choice)));
@@ -202,7 +203,7 @@ TEST_CASE("each 16 stratified samples have one in every cell of every grid") {
                     const Sampler s(p, pixel, i, set);
                     const vec2 u = s.get2(film_x);
                     ++film[part(4, u.y) * 4 + part(4, u.x)];
-                    ++pick[part(16, s.get(dimension(3, Draw::pick)))];
+                    ++pick[part(16, s.get(dimension(3, Draw::which_light)))];
                 }
                 for (size_t c = 0; c < 16; ++c) REQUIRE((film[c] == 1 && pick[c] == 1));
             }

@@ -88,19 +88,19 @@ TEST_CASE("a light is chosen as often as its power says, and says so") {
     for (int i = 0; i < 8000; ++i) ++count.at(three.choose((real(i) + real(0.5)) / 8000));
     CHECK(count == std::vector<int>{1000, 5000, 2000});
     for (size_t i = 0; i < 3; ++i)
-        CHECK(std::abs(three.pick_of(i) - real(count[i]) / 8000) < 2 * ulp);
+        CHECK(std::abs(three.probability_of(i) - real(count[i]) / 8000) < 2 * ulp);
     CHECK(three.choose(0) == 0);
-    CHECK(three.choose(three.pick_of(0)) == 1);  // the first has what is below
+    CHECK(three.choose(three.probability_of(0)) == 1);  // the first has what is below
     CHECK(three.choose(below_one) == 2);
     s.push_back({{}, PointLight(), {real(1e-30), 0, 0}});  // weak: its share rounds to 0
     const LightsByPower four(s);
-    CHECK(four.pick_of(3) > 0);
+    CHECK(four.probability_of(3) > 0);
     CHECK(four.choose(below_one) == 3);
     CHECK(four.choose(1) == 3);  // also beyond all numbers
     // Powers that underflow are alike.
     for (const real faint : {std::numeric_limits<real>::denorm_min(), real(0)}) {
         const LightsByPower dim({4, Light({}, PointLight(), {faint, 0, 0})});
-        for (size_t i = 0; i < 4; ++i) CHECK(dim.pick_of(i) == real(0.25));
+        for (size_t i = 0; i < 4; ++i) CHECK(dim.probability_of(i) == real(0.25));
     }
 }
 

@@ -192,7 +192,7 @@ double choice_of_lights(double ratio) {
     Worst worst;
     for (size_t i = 0; i < 3; ++i) {
         const big part = big((i < 2 ? first_of(i + 1) : all) - first_of(i)) / all;
-        worst.see(relative(lights.pick_of(i), part));
+        worst.see(relative(lights.probability_of(i), part));
     }
     return worst.value;
 }

@@ -63,13 +63,13 @@ TEST_CASE("one of many lights is chosen as often as is said") {
             for (real u : {real(0), dice(0, 1), below_one}) {
                 const auto chosen = tree.choose(p, m, u);
                 REQUIRE(chosen.light < n);
-                CHECK(chosen.pick > 0);
-                CHECK(chosen.pick == tree.pick_of(chosen.light, p, m));
+                CHECK(chosen.probability > 0);
+                CHECK(chosen.probability == tree.probability_of(chosen.light, p, m));
             }
             oracle::Random random(seed_here());
             EXPECT(oracle::expect_choice(
                        random, [&](real u) { return tree.choose(p, m, u).light; },
-                       [&](int i) { return tree.pick_of(size_t(i), p, m); }, n),
+                       [&](int i) { return tree.probability_of(size_t(i), p, m); }, n),
                    0.05);
         }
 }
@@ -77,8 +77,8 @@ TEST_CASE("one of many lights is chosen as often as is said") {
 TEST_CASE("one light is chosen always") {
     const Scene s = scene_of({shining(Light({0, 5, 0}, SphereLight{1}), 1)});
     CHECK(s.light_tree.choose({}, {0, 1, 0}, real(0.5)).light == 0);
-    CHECK(s.light_tree.choose({}, {0, 1, 0}, real(0.5)).pick == 1);
-    CHECK(s.light_tree.pick_of(0, {}, {0, -1, 0}) == 1);
+    CHECK(s.light_tree.choose({}, {0, 1, 0}, real(0.5)).probability == 1);
+    CHECK(s.light_tree.probability_of(0, {}, {0, -1, 0}) == 1);
 }
 
 TEST_CASE("a light is never chosen only where it sends nothing") {
@@ -93,7 +93,7 @@ TEST_CASE("a light is never chosen only where it sends nothing") {
         lights.push_back(shining(Light(p + m, PointLight()), 1));
         while (lights.size() <= others) lights.push_back(light_of(dice, r));
         const Light& first = lights[0];
-        const real pick = scene_of(lights).light_tree.pick_of(0, p, m);
+        const real probability = scene_of(lights).light_tree.probability_of(0, p, m);
         for (const vec3 corner : corners_of(first))
             beyond += length(corner - first.centre) > first.reach * (1 + 8 * ulp);
         real E = 0;
@@ -101,13 +101,13 @@ TEST_CASE("a light is never chosen only where it sends nothing") {
         // The bound is the rounding error of a cosine near 0.
         const bool sends_some = E > 256 * ulp * strength(first, std::numbers::pi);
         sent += sends_some;
-        lost += sends_some && !(pick > 0);
+        lost += sends_some && !(probability > 0);
         // The whole light lies below the horizon, or it faces away.
         const bool is_below = dot(m, first.centre - p) < -first.reach - 64 * ulp;
         const bool is_behind =
             first.n != vec3{} && !first.twosided && dot(first.n, p - first.p) < -64 * ulp * r;
         below += is_below, behind += is_behind;
-        wasted += others == 1 && (is_below || is_behind) && pick > 0;
+        wasted += others == 1 && (is_below || is_behind) && probability > 0;
     }
     CHECK(sent > 10000);
     CHECK(lost == 0);
@@ -127,7 +127,7 @@ TEST_CASE("a wall of lamps of one side is not chosen from behind") {
     const LightTree tree = scene_of(lights).light_tree;
     auto of_wall = [&](vec3 p, vec3 m) {
         real sum = 0;
-        for (size_t i = 0; i < 40; ++i) sum += tree.pick_of(i, p, m);
+        for (size_t i = 0; i < 40; ++i) sum += tree.probability_of(i, p, m);
         return sum;
     };
     CHECK(of_wall({20, -3, 20}, {0, 1, 0}) == 0);
@@ -155,7 +155,7 @@ TEST_CASE("far away, lights are chosen by what they send, but for the even part"
         }
         if (grazing || !(E[0] > 0 && E[1] > 0)) continue;
         const LightTree tree = scene_of(lights).light_tree;
-        const real a = tree.pick_of(0, p, m), b = tree.pick_of(1, p, m);
+        const real a = tree.probability_of(0, p, m), b = tree.probability_of(1, p, m);
         CHECK(std::min(a, b) >= even_part / 2);
         if (std::min(a, b) < real(0.1)) continue;  // rounding would count
         worst.see(std::abs((a - even_part / 2) / (b - even_part / 2) * (E[1] / E[0]) - 1));
@@ -184,7 +184,7 @@ TEST_CASE("of many lamps, those that send most are chosen most") {
             for (size_t k = 0; k < n; ++k) {
                 const double E = double(sends(lights[k], p, m, {real(0.5), real(0.5)}));
                 all += E, of_equal += E * E * double(n);
-                if (E > 0) of_this += E * E / double(s.light_tree.pick_of(k, p, m));
+                if (E > 0) of_this += E * E / double(s.light_tree.probability_of(k, p, m));
             }
             if (all == 0) continue;
             of_choice += of_this / (all * all) - 1, of_even += of_equal / (all * all) - 1;
@@ -217,7 +217,7 @@ TEST_CASE("near or far, strong or faint, few or many: probabilities add up to 1"
         const vec3 p = dice.below(8) ? dice.direction(dice.decades(-range, range)) : lights[0].p;
         const vec3 m = dice.direction();
         real sum = 0;
-        for (size_t k = 0; k < n; ++k) sum += s.light_tree.pick_of(k, p, m);
+        for (size_t k = 0; k < n; ++k) sum += s.light_tree.probability_of(k, p, m);
         REQUIRE(std::abs(sum - 1) < 32 * ulp);
     }
     // The point coincides with a light, or the square of a distance is infinite.
@@ -226,8 +226,8 @@ TEST_CASE("near or far, strong or faint, few or many: probabilities add up to 1"
     const real beyond = std::numeric_limits<real>::max() / 4;
     for (const vec3 p : {vec3{}, vec3{beyond, 0, 0}})
         for (const vec3 m : {vec3{1, 0, 0}, vec3{-1, 0, 0}}) {
-            CHECK(s.light_tree.pick_of(0, p, m) + s.light_tree.pick_of(1, p, m) == 1);
-            for (real u : {real(0), below_one}) CHECK(s.light_tree.choose(p, m, u).pick > 0);
+            CHECK(s.light_tree.probability_of(0, p, m) + s.light_tree.probability_of(1, p, m) == 1);
+            for (real u : {real(0), below_one}) CHECK(s.light_tree.choose(p, m, u).probability > 0);
         }
 }
 
@@ -237,12 +237,12 @@ TEST_CASE("where weights are so faint that their sum is denormal, shares are eve
         shining(Light({0, -5, 0}, SphereLight{1}), 1),  // below the horizon
         shining(Light({0, 5, 0}, SphereLight{1}), 1), shining(Light({9, 5, 0}, SphereLight{1}), 1)};
     const LightTree dark(lights, {1, faint, faint / 4});
-    CHECK(dark.pick_of(0, {}, {0, 1, 0}) == 0);
-    CHECK(dark.pick_of(1, {}, {0, 1, 0}) == real(0.5));
-    CHECK(dark.pick_of(2, {}, {0, 1, 0}) == real(0.5));
+    CHECK(dark.probability_of(0, {}, {0, 1, 0}) == 0);
+    CHECK(dark.probability_of(1, {}, {0, 1, 0}) == real(0.5));
+    CHECK(dark.probability_of(2, {}, {0, 1, 0}) == real(0.5));
     const LightTree dim(lights, {1, std::numeric_limits<real>::min() * 4000,
                                  std::numeric_limits<real>::min() * 1000});
-    CHECK(dim.pick_of(1, {}, {0, 1, 0}) > real(0.8));
+    CHECK(dim.probability_of(1, {}, {0, 1, 0}) > real(0.8));
     // One that shines alone is chosen, however faint.
     const Scene s = scene_of({shining(Light({0, -5, 0}, SphereLight{1}), real(1e30)),
                               shining(Light({0, real(0.5), 0}, PointLight()), faint)});
@@ -272,18 +272,18 @@ TEST_CASE("a sun that reaches nothing of a room leaves the samples to its candle
     };
     const vec3 floor{1, 0, 1}, up{0, 1, 0};
     const Scene one = room("sphere -.5 1 -.5  .05  flame\n");
-    CHECK(one.light_tree.pick_of(0, floor, up) == approx(double(even_part) / 2));
-    CHECK(one.light_tree.pick_of(1, floor, up) == approx(1 - double(even_part) / 2));
+    CHECK(one.light_tree.probability_of(0, floor, up) == approx(double(even_part) / 2));
+    CHECK(one.light_tree.probability_of(1, floor, up) == approx(1 - double(even_part) / 2));
     std::string candles;
     for (int i = 0; i < 30; ++i)
         candles += oracle::say("sphere -1 1 %.1f  .05  flame\n", -1.5 + 0.1 * i);
     const Scene many = room(candles.c_str());
-    CHECK(many.light_tree.pick_of(0, floor, up) <= even_part);
+    CHECK(many.light_tree.probability_of(0, floor, up) <= even_part);
     // Nor does the group that the sun is in get the samples of the others.
     double all = 0, squares = 0;
     for (size_t i = 1; i < many.lights.size(); ++i) {
         const double E = double(sends(many.lights[i], floor, up, {real(0.5), real(0.5)}));
-        all += E, squares += E * E / double(many.light_tree.pick_of(i, floor, up));
+        all += E, squares += E * E / double(many.light_tree.probability_of(i, floor, up));
     }
     CHECK(squares / (all * all) - 1 < 0.5);
     // A size in the scene does not change the choice, nor does the one that is asked for.
@@ -292,7 +292,8 @@ TEST_CASE("a sun that reaches nothing of a room leaves the samples to its candle
     const Scene tall =
         room("size 20 300\nsphere -.5 1 -.5  .05  flame\nsphere 1 2 1  .05  flame\n");
     for (size_t i = 0; i < 3; ++i)
-        CHECK(wide.light_tree.pick_of(i, floor, up) == tall.light_tree.pick_of(i, floor, up));
+        CHECK(wide.light_tree.probability_of(i, floor, up) ==
+              tall.light_tree.probability_of(i, floor, up));
 }
 
 TEST_CASE("mirrors show the surfaces that judge what arrives") {
@@ -305,7 +306,8 @@ TEST_CASE("mirrors show the surfaces that judge what arrives") {
             "sphere 0 4 5  .2  a\nsphere 0 8 5  .2  a\n",
             "mirror")
             .scene;
-    CHECK(s.light_tree.pick_of(0, {0, 0, 3}, {0, 1, 0}) == approx(1 - double(even_part) / 2));
+    CHECK(s.light_tree.probability_of(0, {0, 0, 3}, {0, 1, 0}) ==
+          approx(1 - double(even_part) / 2));
 }
 
 TEST_CASE("what arrives is looked at for few lights and many, and always the same") {
@@ -330,10 +332,10 @@ TEST_CASE("what arrives is looked at for few lights and many, and always the sam
         CHECK(below == n / 2);
         std::vector<real> picks;
         for (size_t i = 0; i < s.lights.size(); ++i)
-            picks.push_back(s.light_tree.pick_of(i, {0, 0, 1}, {0, 1, 0}));
+            picks.push_back(s.light_tree.probability_of(i, {0, 0, 1}, {0, 1, 0}));
         prepare(s);
         for (size_t i = 0; i < s.lights.size(); ++i)
-            CHECK(picks[i] == s.light_tree.pick_of(i, {0, 0, 1}, {0, 1, 0}));
+            CHECK(picks[i] == s.light_tree.probability_of(i, {0, 0, 1}, {0, 1, 0}));
     }
     // So many that there is not even a look: all strengths are as they were.
     std::vector<Light> many(20000, shining(Light({0, 3, 0}, PointLight()), 1));
