@@ -143,8 +143,8 @@ public:
                      "paths from the eye bring less than paths from " + name);
             for (const Missing& of : l.from_eye) {
                 consider(of.missing(), "paths from the eye that aim bring more of " + name);
-                if (of.hits < l.few())
-                    consider(of.by_chance, hit(" by rare bright paths", of.hits));
+                const double variance = of.hits < l.few() ? of.by_chance : 0;
+                consider(std::max(variance, of.of_few()), hit(" by rare bright paths", of.hits));
             }
             if (l.met < std::max(10.0, l.few()))
                 consider(l.variance, hit(", smaller than a pixel,", l.met));
@@ -182,6 +182,10 @@ private:
         double missing() const {
             return sum - came > 3 * std::sqrt(variance) ? 2 * square((sum - came) / sum) * squares
                                                         : 0;
+        }
+        // Variance of less than ten hits, by what they are known to bring.
+        double of_few() const {
+            return sum > 3 * std::sqrt(variance) && hits < 10 ? squares / std::max(1.0, hits) : 0;
         }
     };
     struct OneLight {

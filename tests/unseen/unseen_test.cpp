@@ -379,6 +379,27 @@ TEST_CASE("light of a few bright paths is in doubt, though all of it came to bot
     CHECK(doubt(4, 0, {1, 1}).empty());
 }
 
+TEST_CASE("few hits of light that aimed paths know have the variance of its square over them") {
+    auto doubt = [](uint64_t hits, double d2, double variance = 1, size_t films = 1) {
+        NearMisses lamp{12, 1, 4, 0, 0};
+        lamp.from_eye[5] = {8, 2, variance, uint64_t(4 * 0x1p40), hits};
+        MissedLight u;
+        for (size_t k = 0; k < films; ++k) u.add({lamp}, 4, 1 / double(films));
+        return u.doubt(d2, 2, 25);
+    };
+    CHECK(doubt(4, 0) ==
+          "the light of line 12 by rare bright paths was hit 4 times; light not yet found may "
+          "amount to 7 %");
+    CHECK(!doubt(9, 0).empty());
+    CHECK(doubt(10, 0).empty());
+    CHECK(!doubt(5, 0, 1, 1).empty());
+    CHECK(doubt(5, 0, 1, 2).empty());  // of two seeds together
+    CHECK(doubt(4, 0, 8).empty());     // hardly known itself: 8 +- 2.8
+    CHECK(!doubt(0, 0, 7).empty());
+    CHECK(!doubt(4, doubled_from(2 / 4.0 / 25, 4) * 0.999).empty());
+    CHECK(doubt(4, doubled_from(2 / 4.0 / 25, 4) * 1.001).empty());
+}
+
 TEST_CASE(
     "light is in doubt while few samples met it, and what is missing could double the error") {
     NearMisses lamp{12, 8, 4, 100, 0};
