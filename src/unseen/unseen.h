@@ -183,7 +183,7 @@ private:
             return sum - came > 3 * std::sqrt(variance) ? 2 * square((sum - came) / sum) * squares
                                                         : 0;
         }
-        // Variance of less than ten hits, by what they are known to bring.
+        // Variance of fewer than ten hits, by what aimed paths bring.
         double of_few() const {
             return sum > 3 * std::sqrt(variance) && hits < 10 ? squares / std::max(1.0, hits) : 0;
         }
