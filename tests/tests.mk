@@ -78,14 +78,14 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 
 # Folders by layer; those of one layer do not know each other.  Programs (.cpp) stand above app.  Tests may include all of
 # their folder and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
-LAYERS := base:0 world:1 wide:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 replay:5 app:6 show:7 web:7 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 book:9 \
+LAYERS := base:0 world:1 wide:2 many:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 replay:5 app:6 show:7 web:7 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 book:9 \
           oracle:10 whole:10 faults:10 fuzz:10
-# The core names no module, but in eight files: which tree, whether files are durable, meshes read, scenes checked, paths
+# The core names no module, but in ten files: which tree, which choice of lights (two), whether files are durable, meshes read, scenes checked, paths
 # replayed, films kept, whether light may be unseen, and pictures shown.  Nor do tests of the core.  A module's program stands above the app.
 LECTURE := base world path film
 CORE    := $(LECTURE) text app
-MODULES := wide mesh check keep unseen replay show web shadow voronoi radiosity
-DOORS   := world/tree.h:wide text/files.h:keep text/mesh.h:mesh text/scene_file.h:check app/options.h:replay app/render.h:keep app/plan.h:unseen app/penumbra.cpp:show
+MODULES := wide many mesh check keep unseen replay show web shadow voronoi radiosity
+DOORS   := world/tree.h:wide world/choice.h:many world/prepare.h:many text/files.h:keep text/mesh.h:mesh text/scene_file.h:check app/options.h:replay app/render.h:keep app/plan.h:unseen app/penumbra.cpp:show
 # Of a folder that is named here, a module includes these headers alone.
 NEEDS   := wide:world/shapes.h
 
@@ -106,7 +106,7 @@ freestanding:  ## the lecture without modules, threads, files, exceptions: compi
 	@missing=$$(LC_ALL=C dpkg -s $(WASI_PACKAGES) 2>&1 >/dev/null | grep -E 'not (installed|found)'); \
 	    [ -z "$$missing" ] || { echo "make freestanding: skipped:" $$missing; exit; }; set -e; mkdir -p build; \
 	    clang++-19 $(WASI_FLAGS) -O1 -DFREESTANDING -o build/lecture.wasm tests/film/lecture_test.cpp; \
-	    $(CXX) $(filter-out -M%,$(FLAGS)) -O1 -DFREESTANDING -o build/lecture tests/film/lecture_test.cpp; \
+	    $(CXX) $(filter-out -M% $(WITH),$(FLAGS)) -O1 -DFREESTANDING -o build/lecture tests/film/lecture_test.cpp; \
 	    build/lecture >build/lecture.here; node --no-warnings -e '$(RUN_WASI)' build/lecture.wasm >build/lecture.there; \
 	    cmp build/lecture.here build/lecture.there; echo "the lecture draws the same bits without threads, files and exceptions"
 
@@ -144,7 +144,7 @@ $(HEAVY:%=$(OBJECTS)/tests/%.o) $(OBJECTS)/tests/%-heavy.exe $(OBJECTS)/programs
 # By name, a test is a program of its own.  Together they are compiled in few units, which takes a third of the time: one
 # for all that compute much in the folders of TOGETHER, one for all others there, and a few for every other folder; ALONE,
 # those that others must not see.
-TOGETHER := world wide mesh path film text check keep unseen app show shadow voronoi radiosity whole
+TOGETHER := world wide many mesh path film text check keep unseen app show shadow voronoi radiosity whole
 ALONE    := oracle/hosts_test
 FOLDER   = $(patsubst %/,%,$(dir $1))
 SHARED   = $(if $(filter $(TOGETHER),$(FOLDER)),core,$(FOLDER))$(if $(filter $(LATER),$1),-later)$(if $(filter $(HEAVY),$1),-heavy)

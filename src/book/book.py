@@ -73,6 +73,7 @@ CODE = '''
 3 | 3.5 | path/pathtracer.h | // Light that leaves glass gives eta2
 3 | 3.6 | world/bsdf.h | // exercise 3.6
 3 | One light of many | world/light_choice.h |
+3 | One light of many | world/choice.h |
 3 | One light of many | world/prepare.h |
 4 | 4.1 | path/halton.h |
 4 | 4.2 | path/halton.h | // Returns the next digit of a fraction

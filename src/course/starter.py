@@ -22,7 +22,7 @@ import sheets
 from regions import ROOT
 
 WINGS = {'5': 'shadow', 'V': 'voronoi', 'R': 'radiosity'}
-FOLDERS = ['base', 'world', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app', 'show', 'web']
+FOLDERS = ['base', 'world', 'many', 'text', 'mesh', 'check', 'path', 'film', 'replay', 'app', 'show', 'web']
 ALSO = ['src/keep/read_pfm.h', 'src/keep/pair.h']  # build/beside compares pictures
 UNTOLD = ['src/shadow/population.h', 'src/web/render.js']  # formulas of an exercise, which only experiments need; what tests need
 COURSE = ['beside.cpp', 'course.mk']  # of src/course

@@ -22,7 +22,7 @@ inline rgb radiance(const Scene& scene, const Technique& t, Ray ray, vec2 u) {
         if (m.emits() && count_emission) L += beta * emitted(m, x->cos_o);
         if (k == scene.depth || x->cos_o == 0) return L;
         if (nee && !m.is_delta() && !scene.lights.empty()) {
-            const auto chosen = scene.light_tree.choose(x->at.p, x->local.n, u.x);
+            const auto chosen = scene.light_choice.choose(x->at.p, x->local.n, u.x);
             const auto s = sample_light(scene.lights[chosen.light], x->at.p, u);
             if (s && !scene.bvh.occluded(spawn_to(x->at, s->at))) {
                 const vec3 wi = x->local.to_local(s->wi);

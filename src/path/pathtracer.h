@@ -89,7 +89,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& technique, co
     if (scene.lights.empty()) return none(Unlit::without_lights);
     if (material.is_delta()) return none(Unlit::by_delta);
     const real u_light = scene.lights.size() > 1 ? sampler.choice(k, Draw::which_light) : 0;
-    const auto chosen = scene.light_tree.choose(vertex.at.p, vertex.local.n, u_light);
+    const auto chosen = scene.light_choice.choose(vertex.at.p, vertex.local.n, u_light);
     const Light& light = scene.lights[chosen.light];
     const auto sample = sample_light(light, vertex.at.p, sampler.get2(dimension(k, Draw::light_x)));
     if (!sample) return none(Unlit::light_averted);
@@ -143,7 +143,7 @@ inline real weight_of_emission(const Scene& scene, const Technique& technique,
     // exercise 3.4
     if (technique.light == LightMode::none || std::isinf(segment.pdf)) return 1;
     const size_t i = size_t(scene.light_of[vertex.hit.id]);
-    const real probability = scene.light_tree.probability_of(i, segment.from, segment.n);
+    const real probability = scene.light_choice.probability_of(i, segment.from, segment.n);
     const real pdf = probability * pdf_light(scene.lights[i], segment.from, vertex.at);
     // Light samples have pdf 0 inside a two-sided sphere light.
     if (technique.light == LightMode::nee) return pdf > 0 ? 0 : 1;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "world/bsdf.h"
-#include "world/light_choice.h"
+#include "world/choice.h"
 #include "world/tree.h"
 
 namespace penumbra {
@@ -53,7 +53,7 @@ struct Scene {
 
     Tree bvh;                    // from here on made by prepare
     std::vector<Facing> facing;  // of each shape
-    LightTree light_tree;
+    LightChoice light_choice;
 
     const Material& material_at(uint32_t shape) const { return materials[material_of[shape]]; }
     const Material& material(const Hit& hit) const { return material_at(hit.id); }

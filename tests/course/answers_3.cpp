@@ -91,7 +91,7 @@ Out light_sample(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
     const auto at = meet(scene, {vec3_of(x, 4), vec3_of(x, 7)});
     if (!at) throw std::runtime_error("the ray meets nothing");
-    const auto chosen = scene.light_tree.choose(at->at.p, at->local.n,
+    const auto chosen = scene.light_choice.choose(at->at.p, at->local.n,
                                                 numbers_of_path.choice(0, Draw::which_light));
     const Light& light = scene.lights[chosen.light];
     const auto s = sample_light(light, at->at.p, numbers_of_path.get2(dimension(0, Draw::light_x)));
@@ -130,7 +130,7 @@ Out likelihood(In x) {
     const Segment s = segment(x.subspan(3));
     const Vertex y = on_a_light(x.subspan(20));
     const size_t light = size_t(scene.light_of[y.hit.id]);
-    return row(scene.light_tree.probability_of(light, s.from, s.n),
+    return row(scene.light_choice.probability_of(light, s.from, s.n),
                pdf_light(scene.lights[light], s.from, y.at));
 }
 

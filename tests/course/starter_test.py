@@ -193,7 +193,7 @@ def test_no_sampler_beside_it_shows_how_4_3_goes():
 def test_a_starter_has_what_its_weeks_need_and_no_more():
     with Made() as made:
         folders = sorted(p.name for p in (made.folder / 'src').iterdir())
-        expect(folders == ['app', 'base', 'check', 'course', 'film', 'keep', 'mesh', 'path', 'replay', 'show', 'text', 'web', 'world'], folders)
+        expect(folders == ['app', 'base', 'check', 'course', 'film', 'keep', 'many', 'mesh', 'path', 'replay', 'show', 'text', 'web', 'world'], folders)
         names = sorted(p.name for p in (made.folder / 'tests/course').iterdir())
         expect(not [n for n in names if n.endswith('_test.cpp') or n.endswith('.py') or 'hidden' in n], names)
         expect([n for n in names if n.startswith('judge_')] ==
