@@ -15,8 +15,8 @@ struct Arrival {
     }
     // Where a light is visible with probability v, the variance is least if its share is in
     // proportion to w sqrt(v), for its contribution has the mean square v w^2.  Fewer than 16
-    // surfaces (Kish 1965) say nothing: what an eighth of them sees, all of so few may miss, with
-    // a probability of (7/8)^16 = 12 %.
+    // surfaces, by their effective number (Kish 1965), say nothing: what an eighth of them sees,
+    // all of so few may miss, with a probability of (7/8)^16 = 12 %.
     double factor() const { return all * all / squares >= 16 ? std::sqrt(visible / all) : 1; }
 };
 
@@ -62,6 +62,7 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
             const bool outside = dot(x.n, ray.d) < 0;
             const Frame local = frame(outside ? x.n : -x.n);
             const vec3 wo = local.to_local(-ray.d);
+            if (!(wo.z > 0)) break;  // edge-on
             if (!m.is_delta()) {
                 add_arrivals(arrivals, s, tree, x, local, m, wo, double(max_of(beta)),
                              hash(path, max_draws + draws));

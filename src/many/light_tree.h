@@ -1,8 +1,8 @@
 // many/light_tree.h  1  light selection in a tree of lights
 //
-// Lights that are near each other form groups, and groups larger groups (Conty Estevez, Kulla
-// 2018).  From the root, the choice descends from group to member, each time with probabilities by
-// the members' estimated contributions.
+// Lights that are near each other form groups, and groups larger groups.  From the root, the choice
+// descends from group to member, each time with probabilities by the members' estimated
+// contributions (after Conty Estevez, Kulla 2018); a part of each step goes to all members alike.
 #pragma once
 #include <array>
 
@@ -45,7 +45,7 @@ struct LightWeights {
 inline LightWeights weights(const LightGroup& g, vec3 p, vec3 m) {
     LightWeights w;
     for (size_t k = 0; k < max_members; ++k) {
-        const LightWeight member = weight_of(g.member(k), p, m);
+        const LightWeight member = light_weight(g.member(k), p, m);
         w.value[k] = member.value, w.can[k] = member.can;
     }
     return w;
@@ -59,11 +59,10 @@ inline real sum_of(const LightGroup::Row<real>& a) {
 // Probabilities of members.
 inline LightGroup::Row<real> shares(const LightGroup& g, vec3 p, vec3 m) {
     const LightWeights w = weights(g, p, m);
-    const real number = sum_of(w.can);
-    const LightShares shares({sum_of(w.value), number});
+    const LightShares shares({sum_of(w.value), sum_of(w.can)});
     LightGroup::Row<real> of;
     for (size_t k = 0; k < max_members; ++k) of[k] = shares.of({w.value[k], w.can[k]});
-    if (number == 0) of = {1};  // none contributes, whichever is chosen
+    if (shares.none) of = {1};
     return of;
 }
 

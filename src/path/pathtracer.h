@@ -118,7 +118,7 @@ struct Segment {
     real pdf = infinity;
     rgb beta{1, 1, 1};
     int k = 0;
-    vec3 n = {};    // normal of the surface at `from`, on the side of the ray
+    vec3 n = {};    // normal of the surface at `from`, on the side of the eye
     real eta2 = 1;  // factor of beta by refraction, which the path gives back where it leaves glass
 };
 

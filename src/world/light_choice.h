@@ -1,7 +1,7 @@
 // world/light_choice.h  3  light selection by estimated contribution
 //
-// A sample chooses one light of several: mostly the one that seems to send most (Shirley, Wang,
-// Zimmerman 1996).
+// A sample chooses one light of several, each with a probability by what it seems to send (Shirley,
+// Wang, Zimmerman 1996).
 #pragma once
 #include <limits>
 #include <vector>
@@ -22,10 +22,10 @@ inline constexpr real even_part = real(0.0625);
 struct DistantLight {
     vec3 centre = {};   // of several: the mean of theirs, by strength
     real reach = 0;     // radius of a sphere about the centre that holds all
-    real spread2 = 0;   // mean square of the distance from the centre
-    vec3 axis = {};     // normal of a polygon; of several: the mean by strength
+    real spread2 = 0;   // reach^2; of several: mean square of the distance from the centre
+    vec3 axis = {};     // normal of a polygon; of several: the mean of those of one side
     real round = 1;     // the part that shines in all directions
-    real behind = 0;    // distance behind the plane through the centre that is still lit
+    real behind = 0;    // distance behind the plane through the centre that is still lit, or < 0
     real twosided = 0;  // 1: it shines against its axis, too
     real strength = 0;
 };
@@ -39,13 +39,13 @@ inline DistantLight from_afar(const Light& l, real strength) {
 }
 
 // Its estimated contribution to a surface at p with normal m on the side of the eye.  For d^2
-// stands d^2 + spread2: only a near point has no finite weight.  For the height of the centre above
-// the surface's plane stands that of the sphere's top.
+// stands d^2 + spread2: only a point light at p itself has no finite weight.  For the height of the
+// centre above the surface's plane stands that of the sphere's top.
 struct LightWeight {
     real value;
     real can;  // 0: all of it is below the horizon or turned away; else 1
 };
-inline LightWeight weight_of(const DistantLight& light, vec3 p, vec3 m) {
+inline LightWeight light_weight(const DistantLight& light, vec3 p, vec3 m) {
     const vec3 to = light.centre - p;
     const real d2 = dot(to, to) + light.spread2, d = std::sqrt(d2), per_d2 = 1 / d2;
     const real height = dot(m, to) + light.reach;
@@ -62,10 +62,11 @@ inline LightWeight weight_of(const DistantLight& light, vec3 p, vec3 m) {
 
 // Probabilities, by the sums of weights over all lights to choose from.
 struct LightShares {
+    bool none;  // no light can contribute: whichever is chosen
     real by_weight, even;
 
-    explicit LightShares(LightWeight sum) {
-        // Part of a denormal sum could be rounded to all of it.
+    explicit LightShares(LightWeight sum) : none(sum.can == 0) {
+        // The reciprocal of a denormal sum may be infinite.
         const bool is_sum = sum.value >= std::numeric_limits<real>::min() && sum.value < infinity;
         by_weight = is_sum ? (1 - even_part) / sum.value : 0;
         even = (is_sum ? even_part : 1) / sum.can;
@@ -101,7 +102,7 @@ inline std::vector<DistantLight> from_afar(const std::vector<Light>& lights,
     return all;
 }
 
-// Each choice looks at all lights.
+// Each choice looks at all lights, of which there is one at least.
 class LightList {
 public:
     LightList() = default;
@@ -112,10 +113,10 @@ public:
     // and the one whose part holds u is chosen.
     ChosenLight choose(vec3 p, vec3 m, real u) const {
         ChosenLight chosen;
-        const LightWeight sum = sum_of_weights(p, m);
+        const LightShares shares = shares_at(p, m);
         real begin = 0;
         for (size_t i = 0; i < lights_.size() && begin <= u; ++i) {
-            const real share = share_of(i, sum, p, m);
+            const real share = share_of(i, shares, p, m);
             if (share > 0) chosen = {i, share};  // rounding may leave a gap below 1
             begin += share;
         }
@@ -123,23 +124,23 @@ public:
     }
     // The probability that it chooses this light.
     real probability_of(size_t light, vec3 p, vec3 m) const {
-        return share_of(light, sum_of_weights(p, m), p, m);
+        return share_of(light, shares_at(p, m), p, m);
     }
 
 private:
     std::vector<DistantLight> lights_;
 
-    LightWeight sum_of_weights(vec3 p, vec3 m) const {
+    LightShares shares_at(vec3 p, vec3 m) const {
         LightWeight sum{};
         for (const DistantLight& light : lights_) {
-            const LightWeight w = weight_of(light, p, m);
+            const LightWeight w = light_weight(light, p, m);
             sum.value += w.value, sum.can += w.can;
         }
-        return sum;
+        return LightShares(sum);
     }
-    real share_of(size_t light, LightWeight sum, vec3 p, vec3 m) const {
-        if (lights_.size() == 1 || sum.can == 0) return light == 0;  // whichever: none contributes
-        return LightShares(sum).of(weight_of(lights_[light], p, m));
+    real share_of(size_t light, const LightShares& shares, vec3 p, vec3 m) const {
+        if (lights_.size() == 1 || shares.none) return light == 0;
+        return shares.of(light_weight(lights_[light], p, m));
     }
 };
 

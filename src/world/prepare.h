@@ -1,4 +1,4 @@
-// world/prepare.h  7  what rendering needs of a scene: the BVH, and the choice of lights
+// world/prepare.h  7  what rendering needs of a scene: the BVH, normals, and the choice of lights
 #pragma once
 #include "world/scene.h"
 
@@ -17,7 +17,7 @@ inline void prepare(Scene& s) {
     s.bvh = Tree(s.shapes);
     s.facing.clear();
     for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
-    s.light_choice = light_choice_for(s);
+    s.light_choice = light_choice_for(s);  // last: it may trace rays
 }
 
 }  // namespace penumbra
