@@ -116,30 +116,6 @@ inline void add_quad(Scene& s, vec3 p, vec3 u, vec3 v, uint32_t material) {
     add_face(s, p, p + u, p + u + v, p + v, material);
 }
 
-// Cosine and sine of an angle in degrees.
-inline vec2 turned_about_y(real degrees) {
-    const real turns = degrees / 360;
-    return unit_circle(turns - std::floor(turns));
-}
-
-// Size along x, y, z from the origin, then rotated about y (x' = c x + s z, z' = c z - s x), then
-// moved.  Faces outwards.  Each corner is computed once, so the box is watertight.
-inline void add_box(Scene& s, vec3 size, real degrees, vec3 move, uint32_t material) {
-    const vec2 turn = turned_about_y(degrees);
-    const double cosine = double(turn.x), sine = double(turn.y);
-    vec3 corner[8];  // bit 0: far in x, bit 1: in y, bit 2: in z
-    for (int i = 0; i < 8; ++i) {
-        const double x = double(size.x) * (i & 1), z = double(size.z) * (i >> 2);
-        corner[i] = {real(cosine * x + sine * z + double(move.x)),
-                     size.y * real(i >> 1 & 1) + move.y,
-                     real(cosine * z - sine * x + double(move.z))};
-    }
-    for (auto [a, b, c, d] : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6},   // -z, +z
-                              std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3},   // -y, +y
-                              std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})  // -x, +x
-        add_face(s, corner[a], corner[b], corner[c], corner[d], material);
-}
-
 // A light that has no surface; dark, it is none.
 inline void add_light(Scene& s, const Light& light) {
     if (!(max_of(light.L) <= 0)) s.lights.push_back(light);

@@ -121,29 +121,3 @@ TEST_CASE("what has no area is dropped and counted") {
     add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
     CHECK(s.dropped == 3);
 }
-
-TEST_CASE("a box faces outwards and turns about y: x' = c x + s z, z' = c z - s x") {
-    for (real degrees : {real(0), real(30), real(90), real(-135), real(480)}) {
-        Scene s = empty_scene();
-        const vec3 size{1, 2, 3}, move{10, 20, 30};
-        add_box(s, size, degrees, move, grey);
-        CHECK(s.dropped == 0);
-        REQUIRE(s.shapes.size() == 12);
-        const real c = std::cos(degrees * pi / 180), sine = std::sin(degrees * pi / 180);
-        auto turned = [&](vec3 v) { return vec3{c * v.x + sine * v.z, v.y, c * v.z - sine * v.x}; };
-        const vec3 centre = turned(size / 2) + move;
-        real volume = 0;
-        for (const Shape& t : s.shapes) {
-            CHECK(dot(area_vector(t), t.a - centre) > 0);
-            volume += dot(area_vector(t), t.a - centre) / 6;
-        }
-        CHECK(double(volume) == doctest::Approx(6).epsilon(1e-5));
-        const vec3 far = turned(size) + move;
-        const bool found = std::any_of(s.shapes.begin(), s.shapes.end(), [&](const Shape& t) {
-            for (vec3 p : {t.a, t.b, t.c})
-                if (length(p - far) < 128 * ulp * length(far)) return true;
-            return false;
-        });
-        CHECK(found);
-    }
-}
